@@ -1,0 +1,51 @@
+#![allow(clippy::unwrap_used)]
+
+use super::*;
+
+const GOOD: &str = "PROGRAM Main VAR x : INT; END_VAR x := x + 1; END_PROGRAM";
+
+fn folder(name: &str, files: &[(&str, &str)]) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("staunch-build-{}-{name}", std::process::id()));
+    for (file, text) in files {
+        let path = folder.join(file);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    }
+    folder
+}
+
+#[test]
+fn a_folder_becomes_a_module() {
+    let folder =
+        folder("good", &[("src/b/main.iecst", GOOD), ("src/a.ST", "TYPE T : INT; END_TYPE"), ("src/x.txt", "")]);
+    let mut cargo = cargo::Instructions::default();
+    let build = Build::new().folder(folder.join("src")).name("plant");
+    assert_eq!(build.compile_to(&folder, &mut cargo), Ok(()));
+    let text = std::fs::read_to_string(folder.join("plant.rs")).unwrap();
+    assert!(text.contains("mod plant {") && text.contains("pub use plant::*;"), "{text}");
+    let expected = ["src", "src/a.ST", "src/b", "src/b/main.iecst"];
+    let expected = expected.map(|it| format!("cargo::rerun-if-changed={}", folder.join(it).display()));
+    assert_eq!(cargo.lines, expected);
+    std::fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn a_mistake_is_shown_with_its_place() {
+    let folder = folder("bad", &[("plc.st", "PROGRAM Main\nx := 1;\nEND_PROGRAM\n")]);
+    let mut cargo = cargo::Instructions::default();
+    assert_eq!(Build::new().file(folder.join("plc.st")).compile_to(&folder, &mut cargo), Err(Failed));
+    let errors: Vec<_> = cargo.lines.iter().filter_map(|it| it.strip_prefix("cargo::error=")).collect();
+    assert!(errors[0].starts_with("error[E"), "{errors:?}");
+    assert!(errors.iter().any(|it| it.contains("plc.st:2:1")), "{errors:?}");
+    assert!(errors.iter().any(|it| it.contains('^')), "{errors:?}");
+    assert!(!folder.join("plc.rs").exists());
+    std::fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn a_missing_file_is_named() {
+    let mut cargo = cargo::Instructions::default();
+    let build = Build::new().file("no/such.st");
+    assert_eq!(build.compile_to(Path::new("."), &mut cargo), Err(Failed));
+    assert!(cargo.lines.iter().any(|it| it.contains("cannot read no/such.st")), "{:?}", cargo.lines);
+}

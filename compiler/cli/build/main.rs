@@ -1,0 +1,113 @@
+//! Packs what the command carries: the runtime's source, for compiling with rustc where no
+//! registry can be reached, and the runtime's libraries for the host, so that a native
+//! executable needs a linker only.
+
+#[path = "../src/toolchain.rs"]
+#[allow(dead_code)]
+mod toolchain;
+
+use std::env;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use toolchain::{Library, RUNTIME, Rustc};
+
+fn main() {
+    if let Err(error) = pack() {
+        println!("cargo::error={}", error.replace('\n', "\ncargo::error="));
+    }
+}
+
+fn pack() -> Result<(), String> {
+    println!("cargo::rerun-if-changed=build/main.rs");
+    println!("cargo::rerun-if-changed=src/toolchain.rs");
+    let out = PathBuf::from(variable("OUT_DIR")?);
+    let sources = out.join("sources");
+    let _ = fs::remove_dir_all(&sources);
+    let mut archive = Vec::new();
+    for (package, folder) in packages()? {
+        println!("cargo::rerun-if-changed={}", folder.join("src").display());
+        for file in rust_files(&folder.join("src"))? {
+            let relative = file.strip_prefix(&folder).map_err(|it| it.to_string())?;
+            let text = fs::read(&file).map_err(|it| format!("{}: {it}", file.display()))?;
+            let path = Path::new(&package).join(relative);
+            append(&mut archive, &path, &text)?;
+            write(&sources.join(&path), &text)?;
+        }
+    }
+    write(&out.join("runtime-sources"), &archive)?;
+    println!("cargo::rustc-env=STAUNCH_TARGET={}", variable("TARGET")?);
+    let built = out.join("runtime");
+    fs::create_dir_all(&built).map_err(|it| it.to_string())?;
+    let rustc = Rustc { program: variable("RUSTC")?.into(), target: Some(variable("TARGET")?) };
+    rustc.runtime(&sources, &built, true)?;
+    for library in [Library::Runtime, Library::Program] {
+        strip(&rustc.static_library(library, &built)?);
+    }
+    Ok(())
+}
+
+fn variable(name: &str) -> Result<String, String> {
+    env::var(name).map_err(|_| format!("cargo sets {name}"))
+}
+
+/// The folders of the runtime's packages, as this build resolved them.
+fn packages() -> Result<Vec<(String, PathBuf)>, String> {
+    let manifest = Path::new(&variable("CARGO_MANIFEST_DIR")?).join("Cargo.toml");
+    let output = Command::new(variable("CARGO")?)
+        .args(["metadata", "--format-version=1", "--offline", "--manifest-path"])
+        .arg(manifest)
+        .output()
+        .map_err(|it| format!("cannot run cargo metadata: {it}"))?;
+    if !output.status.success() {
+        return Err(format!("cargo metadata failed:\n{}", String::from_utf8_lossy(&output.stderr)));
+    }
+    let metadata: serde_json::Value = serde_json::from_slice(&output.stdout).map_err(|it| it.to_string())?;
+    let all = metadata["packages"].as_array().ok_or("cargo metadata lists packages")?;
+    RUNTIME
+        .iter()
+        .map(|recipe| {
+            let found = all.iter().find(|it| it["name"] == recipe.package);
+            let path = found.and_then(|it| it["manifest_path"].as_str()).and_then(|it| Path::new(it).parent());
+            let path = path.ok_or_else(|| format!("{} is not among the dependencies", recipe.package))?;
+            Ok((recipe.package.to_owned(), path.to_owned()))
+        })
+        .collect()
+}
+
+/// Every Rust file below `folder`, sorted: the archive is the same in every build.
+fn rust_files(folder: &Path) -> Result<Vec<PathBuf>, String> {
+    let mut files = Vec::new();
+    let entries = fs::read_dir(folder).map_err(|it| format!("{}: {it}", folder.display()))?;
+    for entry in entries {
+        let path = entry.map_err(|it| it.to_string())?.path();
+        if path.is_dir() {
+            files.extend(rust_files(&path)?);
+        } else if path.extension().is_some_and(|it| it == "rs") {
+            files.push(path);
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+/// One file of the archive: its path and length on a line, then its bytes.
+fn append(archive: &mut Vec<u8>, path: &Path, text: &[u8]) -> Result<(), String> {
+    let path = path.to_str().ok_or("the runtime's paths are UTF-8")?.replace('\\', "/");
+    archive.extend(format!("{path}\t{}\n", text.len()).bytes());
+    archive.extend(text);
+    Ok(())
+}
+
+fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    let folder = path.parent().unwrap_or(Path::new("."));
+    fs::create_dir_all(folder).map_err(|it| format!("{}: {it}", folder.display()))?;
+    fs::write(path, bytes).map_err(|it| format!("{}: {it}", path.display()))
+}
+
+/// Takes out the debug information and the bitcode that are for other builds than this: two
+/// thirds of the library. It works with them too, where the host has no `strip`.
+fn strip(library: &Path) {
+    let sections = ["--strip-debug", "--remove-section=.llvmbc", "--remove-section=.llvmcmd"];
+    let _ = Command::new("strip").args(sections).arg(library).status();
+}

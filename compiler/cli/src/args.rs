@@ -1,0 +1,242 @@
+//! The command line, as `docs/cli.md` promises it.
+
+use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
+use staunch_frontend::Dialect;
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+/// Ahead-of-time compiler for IEC 61131-3 Structured Text.
+#[derive(Debug, Parser)]
+#[command(name = "staunch", version, max_term_width = 100, arg_required_else_help = true)]
+#[command(after_help = "A FILE may be a folder (every .st and .iecst below it) or - (standard input).\n\
+    Exit codes: 0 done; 1 the program was rejected; 2 wrong usage; 3 the program faulted while it ran;\n\
+    101 an internal error.")]
+pub struct Cli {
+    #[command(subcommand)]
+    pub command: Command,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Report mistakes; the same verdict as build
+    Check(Files),
+    /// Compile to Rust, an object, a library, an executable, a C header or a map of the variables
+    Build(Build),
+    /// Run scans on a virtual clock, with stimulus and trace
+    Run(Run),
+    /// Measure the time of a scan
+    Bench(Bench),
+    /// Find out what a move to another system changes
+    Compare(Compare),
+    /// Print the long text of a diagnostic
+    Explain(Explain),
+    /// Make a project that builds and runs
+    New(New),
+}
+
+/// What every verb takes.
+#[derive(Clone, Debug, Args)]
+pub struct Common {
+    /// Whose counters a bare name means, and what is allowed beyond the standard
+    #[arg(long, global = true, value_parser = dialect, value_name = "iec|cscape|codesys|logix")]
+    pub dialect: Option<Dialect>,
+    /// How diagnostics are written
+    #[arg(long, global = true, value_enum, default_value_t = MessageFormat::Human)]
+    pub message_format: MessageFormat,
+    /// Colours in diagnostics
+    #[arg(long, global = true, value_enum, default_value_t = Color::Auto)]
+    pub color: Color,
+    /// Warn about a lint
+    #[arg(short = 'W', long = "warn", global = true, value_name = "CODE", action = ArgAction::Append)]
+    pub warn: Vec<String>,
+    /// Reject a lint (`-D warnings` rejects all)
+    #[arg(short = 'D', long = "deny", global = true, value_name = "CODE", action = ArgAction::Append)]
+    pub deny: Vec<String>,
+    /// Allow a lint
+    #[arg(short = 'A', long = "allow", global = true, value_name = "CODE", action = ArgAction::Append)]
+    pub allow: Vec<String>,
+    /// Print nothing but errors
+    #[arg(short, long, global = true)]
+    pub quiet: bool,
+    /// Say what is done
+    #[arg(short, long, global = true, action = ArgAction::Count)]
+    pub verbose: u8,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum MessageFormat {
+    Human,
+    Short,
+    Json,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Color {
+    Auto,
+    Always,
+    Never,
+}
+
+#[derive(Clone, Debug, Args)]
+pub struct Files {
+    /// Source files or folders; those of staunch.toml without one
+    #[arg(value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Emit {
+    Rust,
+    Obj,
+    Lib,
+    Exe,
+    Header,
+    Map,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum BuildBackend {
+    Rust,
+    Native,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Backend {
+    Native,
+    Rust,
+    Interpret,
+}
+
+#[derive(Clone, Debug, Args)]
+pub struct Build {
+    #[command(flatten)]
+    pub files: Files,
+    /// What to make
+    #[arg(long, value_enum, default_value_t = Emit::Exe)]
+    pub emit: Emit,
+    /// Where to write it; - is standard output
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+    /// The machine to compile for
+    #[arg(long, value_name = "TRIPLE")]
+    pub target: Option<String>,
+    /// What compiles it
+    #[arg(long, value_enum, default_value_t = BuildBackend::Native)]
+    pub backend: BuildBackend,
+    /// The PROGRAM to run, where the sources hold several
+    #[arg(long, value_name = "NAME")]
+    pub program: Option<String>,
+}
+
+#[derive(Clone, Debug, Args)]
+pub struct Run {
+    #[command(flatten)]
+    pub files: Files,
+    /// The PROGRAM to run, where the sources hold several
+    #[arg(long, value_name = "NAME")]
+    pub program: Option<String>,
+    /// Number of scans
+    #[arg(long, value_name = "N")]
+    pub scans: Option<u64>,
+    /// Time from scan to scan: 10ms, T#1s
+    #[arg(long, value_name = "TIME")]
+    pub cycle: Option<String>,
+    /// Inputs over time
+    #[arg(long, value_name = "IN.csv")]
+    pub stimulus: Option<PathBuf>,
+    /// Where to write the variables after each scan: .csv, .vcd, .svg, or - for standard output
+    #[arg(long, value_name = "OUT")]
+    pub trace: Option<PathBuf>,
+    // In a doc comment `[1,2]` would be a link.
+    #[arg(long, value_name = "NAMES", help = "The variables to show, in order: a,b.CV,m[1,2]")]
+    pub vars: Option<String>,
+    /// What runs it
+    #[arg(long, value_enum, default_value_t = Backend::Native)]
+    pub backend: Backend,
+    /// Keep retained variables in this file
+    #[arg(long, value_name = "FILE")]
+    pub retain: Option<PathBuf>,
+    /// Sleep, so that scans happen at their time
+    #[arg(long)]
+    pub realtime: bool,
+}
+
+#[derive(Clone, Debug, Args)]
+pub struct Bench {
+    #[command(flatten)]
+    pub files: Files,
+    /// The PROGRAM to measure, where the sources hold several
+    #[arg(long, value_name = "NAME")]
+    pub program: Option<String>,
+    /// Number of scans
+    #[arg(long, value_name = "N")]
+    pub scans: Option<u64>,
+    /// Inputs, repeated; without them every BOOL input toggles in each scan
+    #[arg(long, value_name = "IN.csv")]
+    pub stimulus: Option<PathBuf>,
+    /// Time from scan to scan on the program's clock
+    #[arg(long, value_name = "TIME")]
+    pub cycle: Option<String>,
+    /// What runs it
+    #[arg(long, value_enum, default_value_t = BuildBackend::Native)]
+    pub backend: BuildBackend,
+}
+
+#[derive(Clone, Debug, Args)]
+pub struct Compare {
+    #[command(flatten)]
+    pub files: Files,
+    /// The dialect that the program is written in
+    #[arg(long, value_parser = dialect, value_name = "DIALECT")]
+    pub from: Dialect,
+    /// The dialect that it moves to
+    #[arg(long, value_parser = dialect, value_name = "DIALECT")]
+    pub to: Dialect,
+    /// The program as rewritten for the other system, where it cannot stay as it is
+    #[arg(long, value_name = "FILE")]
+    pub against: Option<PathBuf>,
+    /// The PROGRAM to run, where the sources hold several
+    #[arg(long, value_name = "NAME")]
+    pub program: Option<String>,
+    /// Inputs over time; without them the command searches for inputs that make a difference
+    #[arg(long, value_name = "IN.csv")]
+    pub stimulus: Option<PathBuf>,
+    /// Number of scans with a stimulus
+    #[arg(long, value_name = "N", requires = "stimulus")]
+    pub scans: Option<u64>,
+    /// Time from scan to scan: 10ms, T#1s
+    #[arg(long, value_name = "TIME")]
+    pub cycle: Option<String>,
+    /// Compare only these variables: a,b.CV
+    #[arg(long, value_name = "NAMES")]
+    pub vars: Option<String>,
+    /// Try every sequence of inputs of at most this many scans
+    #[arg(long, value_name = "N", default_value_t = 12)]
+    pub depth: usize,
+    /// Scans that the search may take in all
+    #[arg(long, value_name = "N", default_value_t = 2_000_000)]
+    pub budget: u64,
+}
+
+#[derive(Clone, Debug, Args)]
+pub struct Explain {
+    /// A diagnostic's code, as E0101
+    pub code: String,
+}
+
+#[derive(Clone, Debug, Args)]
+pub struct New {
+    /// The folder to make
+    pub dir: PathBuf,
+}
+
+fn dialect(name: &str) -> Result<Dialect, String> {
+    Dialect::named(name).ok_or_else(|| "the dialects are iec, cscape, codesys and logix".to_owned())
+}
+
+/// The arguments of this process.
+pub fn parse(arguments: impl Iterator<Item = OsString>) -> Result<Cli, clap::Error> {
+    Cli::try_parse_from(arguments)
+}

@@ -1,0 +1,181 @@
+//! `staunch bench`: the time of a scan, and the size of the code.
+
+use crate::args::{Bench, BuildBackend, MessageFormat};
+use crate::machine::Native;
+use crate::run::{cycle, map};
+use crate::rustc::{self, Kind};
+use crate::session::Session;
+use crate::{REJECTED, output};
+use staunch_host::{BenchOptions, Error, Timing};
+use staunch_ir::Program;
+use staunch_ir::layout::Layout;
+use staunch_native::Target;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// What was measured.
+struct Figures {
+    timing: Timing,
+    /// Bytes of code that the program was compiled to.
+    text: u64,
+    /// Time of the back end.
+    compile: Duration,
+}
+
+/// How a measurement ends that does not succeed: with an exit code, after its reason was printed.
+enum Stop {
+    Message(String),
+    Code(u8),
+}
+
+impl From<String> for Stop {
+    fn from(message: String) -> Self {
+        Self::Message(message)
+    }
+}
+
+pub fn bench(session: &Session, args: &Bench) -> Result<u8, String> {
+    let Some(program) = session.program_to_run(args.program.as_deref())? else { return Ok(REJECTED) };
+    let options = BenchOptions {
+        // The program holds just the instances that run.
+        program: None,
+        scans: args.scans,
+        cycle: cycle(session, args.cycle.as_deref())?,
+        stimulus: args.stimulus.clone(),
+    };
+    let measured = match args.backend {
+        BuildBackend::Native => native(&program, &options),
+        BuildBackend::Rust => rust(&program, &options),
+    };
+    match measured {
+        Ok(figures) => {
+            output::print(text(session, args, &program, &figures).as_bytes())?;
+            Ok(0)
+        }
+        Err(Stop::Code(code)) => Ok(code),
+        Err(Stop::Message(message)) => Err(message),
+    }
+}
+
+fn native(program: &Program, options: &BenchOptions) -> Result<Figures, Stop> {
+    let start = Instant::now();
+    let mut machine = Native::new(program)?;
+    let compile = start.elapsed();
+    let timing = staunch_host::bench(&mut machine, &map(program)?, options).map_err(stop)?;
+    let target = Target::host().map_err(|it| it.to_string())?;
+    let object = staunch_native::object(program, &target).map_err(|it| it.to_string())?;
+    Ok(Figures { timing, text: text_bytes(&object), compile })
+}
+
+fn stop(error: Error) -> Stop {
+    eprintln!("error: {error}");
+    Stop::Code(error.exit_code())
+}
+
+/// Builds an executable, which measures itself.
+fn rust(program: &Program, options: &BenchOptions) -> Result<Figures, Stop> {
+    let start = Instant::now();
+    let executable = rustc::compile(program, Kind::Executable, None)?;
+    let compile = start.elapsed();
+    let object = rustc::compile(program, Kind::Object, None)?;
+    let object = std::fs::read(&object).map_err(|error| format!("{}: {error}", object.display()))?;
+    let mut command = Command::new(&executable);
+    command.arg("--bench").stdout(Stdio::piped());
+    options.scans.map(|it| command.arg("--scans").arg(it.to_string()));
+    options.cycle.map(|it| command.arg("--cycle").arg(format!("{it}ns")));
+    options.stimulus.as_ref().map(|it| command.arg("--stimulus").arg(it));
+    let ran = command.spawn().and_then(std::process::Child::wait_with_output);
+    let ran = ran.map_err(|error| format!("cannot run {}: {error}", executable.display()))?;
+    if !ran.status.success() {
+        return Err(match ran.status.code().and_then(|it| u8::try_from(it).ok()) {
+            Some(code) => Stop::Code(code),
+            None => Stop::Message(format!("{} ended with {}", executable.display(), ran.status)),
+        });
+    }
+    let line = String::from_utf8_lossy(&ran.stdout);
+    let timing = line.parse().map_err(|()| format!("{} printed no figures: {line}", executable.display()))?;
+    Ok(Figures { timing, text: text_bytes(&object), compile })
+}
+
+fn text(session: &Session, args: &Bench, program: &Program, figures: &Figures) -> String {
+    let Figures { timing: Timing { scans, min, median, p99 }, text, compile } = figures;
+    let state = Layout::new(program).machine.size;
+    let milliseconds = (session.compile_time + *compile).as_secs_f64() * 1e3;
+    if session.common.message_format == MessageFormat::Json {
+        return format!(
+            "{{\"reason\":\"bench\",\"scans\":{scans},\"ns_min\":{min:.2},\"ns_median\":{median:.2},\"ns_p99\":{p99:.2},\
+             \"text_bytes\":{text},\"state_bytes\":{state},\"compile_ms\":{milliseconds:.3}}}\n"
+        );
+    }
+    let names: Vec<&str> = program.instances.iter().map(|it| it.name.as_str()).collect();
+    let backend = match args.backend {
+        BuildBackend::Native => "native",
+        BuildBackend::Rust => "Rust",
+    };
+    let rows = [
+        ("minimum", format!("{} per scan", nanoseconds(*min))),
+        ("median", format!("{} per scan", nanoseconds(*median))),
+        ("99th percentile", format!("{} per scan", nanoseconds(*p99))),
+        ("code", format!("{text} bytes")),
+        ("state", format!("{state} bytes")),
+        ("compiled in", format!("{milliseconds:.1} ms")),
+    ];
+    let mut out = format!("{}: {scans} scans, {backend} back end\n", names.join(", "));
+    for (name, value) in rows {
+        out += &format!("{name:>16}  {value}\n");
+    }
+    out
+}
+
+fn nanoseconds(value: f64) -> String {
+    match value {
+        0.0..1e3 => format!("{value:.1} ns"),
+        0.0..1e6 => format!("{:.2} µs", value / 1e3),
+        _ => format!("{:.2} ms", value / 1e6),
+    }
+}
+
+/// Bytes of the executable sections of an ELF object; 0 if it is none of 64 bits.
+fn text_bytes(object: &[u8]) -> u64 {
+    const EXECUTABLE: u64 = 4;
+    if object.get(..6) != Some(b"\x7fELF\x02\x01") {
+        return 0;
+    }
+    let number = |at: u64, size: usize| {
+        let at = usize::try_from(at).ok()?;
+        let bytes = object.get(at..at.checked_add(size)?)?;
+        Some(bytes.iter().rev().fold(0, |sum, byte| sum << 8 | u64::from(*byte)))
+    };
+    let (Some(table), Some(size), Some(count)) = (number(0x28, 8), number(0x3A, 2), number(0x3C, 2)) else { return 0 };
+    let sections = (0..count).map(|it| table + it * size);
+    let sizes = sections.filter_map(|at| Some((number(at + 8, 8)?, number(at + 0x20, 8)?)));
+    sizes.filter(|(flags, _)| flags & EXECUTABLE != 0).map(|(_, size)| size).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_code_counts() {
+        let mut object = vec![0; 64 + 3 * 64];
+        object[..6].copy_from_slice(b"\x7fELF\x02\x01");
+        object[0x28] = 64;
+        object[0x3A] = 64;
+        object[0x3C] = 3;
+        for (section, flags, size) in [(0, 6, 100), (1, 2, 50), (2, 4, 7)] {
+            object[64 + section * 64 + 8] = flags;
+            object[64 + section * 64 + 0x20] = size;
+        }
+        assert_eq!(text_bytes(&object), 107);
+        assert_eq!(text_bytes(&object[..70]), 0);
+        assert_eq!(text_bytes(b"MZ"), 0);
+    }
+
+    #[test]
+    fn times_for_people() {
+        assert_eq!(nanoseconds(12.34), "12.3 ns");
+        assert_eq!(nanoseconds(12_345.0), "12.35 µs");
+        assert_eq!(nanoseconds(2e6), "2.00 ms");
+    }
+}

@@ -1,0 +1,98 @@
+//! `staunch build`: the program in the form that is asked for.
+
+use crate::args::{Build, BuildBackend, Emit};
+use crate::rustc::{self, Kind};
+use crate::session::Session;
+use crate::{REJECTED, header, link, output};
+use staunch_ir::Program;
+use staunch_ir::layout::Layout;
+use staunch_native::Target;
+use std::path::{Path, PathBuf};
+
+pub fn build(session: &Session, args: &Build) -> Result<u8, String> {
+    let Some(program) = session.program() else { return Ok(REJECTED) };
+    let out = args.output.clone().unwrap_or_else(|| default_name(session, args));
+    let target = args.target.as_deref().map(full_name);
+    let target = target.as_deref();
+    match args.emit {
+        Emit::Rust => {
+            let text = staunch_rust::emit(program, &staunch_rust::Options::default());
+            output::write(&out, text.as_bytes())?;
+        }
+        Emit::Map => {
+            let program = if program.instances.len() > 1 { &runnable(session, args)? } else { program };
+            let text = staunch_ir::symbols::map_text(program, &Layout::new(program));
+            output::write(&out, text.as_bytes())?;
+        }
+        Emit::Header => {
+            let text = header::header(&runnable(session, args)?, &out, &session.first);
+            output::write(&out, text.as_bytes())?;
+        }
+        Emit::Obj | Emit::Lib | Emit::Exe => compile(&runnable(session, args)?, args, target, &out)?,
+    }
+    if out != Path::new("-") {
+        session.say("Wrote", &out);
+    }
+    Ok(0)
+}
+
+fn runnable(session: &Session, args: &Build) -> Result<Program, String> {
+    let program = session.program_to_run(args.program.as_deref())?;
+    program.ok_or_else(|| "the program was rejected".to_owned())
+}
+
+fn compile(program: &Program, args: &Build, target: Option<&str>, out: &Path) -> Result<(), String> {
+    match args.backend {
+        BuildBackend::Native => native(program, args.emit, target, out),
+        BuildBackend::Rust => rust(program, args.emit, target, out),
+    }
+}
+
+fn native(program: &Program, emit: Emit, target: Option<&str>, out: &Path) -> Result<(), String> {
+    let machine = match target {
+        Some(target) => Target::parse(target),
+        None => Target::host(),
+    };
+    let machine = machine.map_err(|it| it.to_string())?;
+    let object = staunch_native::object(program, &machine).map_err(|it| it.to_string())?;
+    match emit {
+        Emit::Lib => link::static_library(&object, target, out),
+        Emit::Exe => link::executable(&object, target, out),
+        Emit::Obj | Emit::Rust | Emit::Header | Emit::Map => output::write(out, &object),
+    }
+}
+
+fn rust(program: &Program, emit: Emit, target: Option<&str>, out: &Path) -> Result<(), String> {
+    let kind = match emit {
+        Emit::Lib => Kind::StaticLibrary,
+        Emit::Exe => Kind::Executable,
+        Emit::Obj | Emit::Rust | Emit::Header | Emit::Map => Kind::Object,
+    };
+    let made = rustc::compile(program, kind, target)?;
+    let bytes = std::fs::read(&made).map_err(|it| format!("{}: {it}", made.display()))?;
+    if kind == Kind::Executable { output::executable(out, &bytes) } else { output::write(out, &bytes) }
+}
+
+/// rustc's name of a target that is given by its architecture alone.
+fn full_name(target: &str) -> String {
+    match target {
+        "aarch64" => "aarch64-unknown-linux-gnu".to_owned(),
+        "riscv64" | "riscv64gc" => "riscv64gc-unknown-linux-gnu".to_owned(),
+        "x86_64" => "x86_64-unknown-linux-gnu".to_owned(),
+        other => other.to_owned(),
+    }
+}
+
+/// In the current folder, after the first source.
+fn default_name(session: &Session, args: &Build) -> PathBuf {
+    let stem = session.first.file_stem().map(|it| it.to_string_lossy().into_owned());
+    let stem = stem.filter(|it| !it.starts_with('<')).unwrap_or_else(|| "program".to_owned());
+    PathBuf::from(match args.emit {
+        Emit::Rust => format!("{stem}.rs"),
+        Emit::Obj => format!("{stem}.o"),
+        Emit::Lib => format!("lib{stem}.a"),
+        Emit::Exe => stem,
+        Emit::Header => format!("{stem}.h"),
+        Emit::Map => format!("{stem}.map"),
+    })
+}

@@ -1,0 +1,363 @@
+//! A program with counter blocks as it would be written for Logix: a COUNTER for each instance, an
+//! instruction for each of its inputs.
+
+use staunch_frontend::ast::{
+    Argument, ArgumentKind, BinaryOp, Expr, ExprKind, File, Initial, InitialKind, Item, Name, Pou, Statement,
+    StatementKind, TypeKind, VarBlock, VarDecl,
+};
+use staunch_frontend::{Dialect, Source, Sources, Span, parse};
+use std::collections::HashMap;
+
+pub struct Rewritten {
+    pub sources: Sources,
+    /// Lines before and after.
+    pub notes: Vec<(String, String)>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Direction {
+    Up,
+    Down,
+    Both,
+}
+
+/// A counter that a POU declares.
+#[derive(Clone, Copy, Debug)]
+struct Counter {
+    direction: Direction,
+    /// Its fourth input is the variable that keeps its count.
+    keeps: bool,
+    /// What its count is converted with: Logix counts in DINT.
+    narrow: Option<&'static str>,
+}
+
+impl Counter {
+    fn named(name: &str, from: Dialect) -> Option<Self> {
+        let upper = name.to_ascii_uppercase();
+        let (keeps, plain) = upper.strip_prefix("R_").map_or((false, upper.as_str()), |it| (true, it));
+        let (base, wide) = plain.split_once('_').unwrap_or((plain, ""));
+        let direction = match base {
+            "CTU" => Direction::Up,
+            "CTD" => Direction::Down,
+            "CTUD" => Direction::Both,
+            _ => return None,
+        };
+        let narrow = match (wide, from) {
+            ("DINT", _) => None,
+            ("" | "INT", Dialect::Codesys) => Some("DINT_TO_WORD"),
+            ("" | "INT", _) => Some("DINT_TO_INT"),
+            // Wider than a COUNTER, or unsigned: not the same thing.
+            _ => return None,
+        };
+        Some(Self { direction, keeps, narrow })
+    }
+
+    fn pins(self) -> &'static [&'static str] {
+        match (self.direction, self.keeps) {
+            (Direction::Up, false) => &["CU", "R", "PV"],
+            (Direction::Up, true) => &["CU", "R", "PV", "RCV"],
+            (Direction::Down, false) => &["CD", "LD", "PV"],
+            (Direction::Down, true) => &["CD", "LD", "PV", "RCV"],
+            (Direction::Both, _) => &["CU", "CD", "R", "LD", "PV"],
+        }
+    }
+}
+
+/// A replacement in one file.
+struct Edit {
+    start: usize,
+    end: usize,
+    text: String,
+}
+
+/// `None` where there is nothing to rewrite.
+pub fn rewrite(sources: &Sources, from: Dialect) -> Option<Rewritten> {
+    let mut rewritten = Rewritten { sources: Sources::default(), notes: Vec::new() };
+    for (source, number) in sources.files().iter().zip(0u16..) {
+        let file = parse(number, &source.text, &mut Vec::new());
+        let mut writer = Writer { text: &source.text, from, counters: HashMap::new(), edits: Vec::new() };
+        writer.file(&file);
+        rewritten.notes.extend(writer.notes());
+        let text = writer.apply(0, source.text.len());
+        rewritten.sources.add(Source::new(source.path.clone(), text));
+    }
+    (!rewritten.notes.is_empty()).then_some(rewritten)
+}
+
+struct Writer<'t> {
+    text: &'t str,
+    from: Dialect,
+    counters: HashMap<String, Counter>,
+    edits: Vec<Edit>,
+}
+
+/// Counting, then resetting: reset wins.
+fn up(owner: &str, counts: Option<&str>, resets: Option<&str>) -> Vec<String> {
+    let count = counts.map(|it| format!("CTU({owner}, {it})"));
+    let reads_itself = |it: &&str| it.to_ascii_uppercase().contains(&format!("{}.", owner.to_ascii_uppercase()));
+    // A reset that reads the counter is decided before the instruction that counts changes it.
+    if let (Some(reset), Some(count)) = (resets.filter(reads_itself), &count) {
+        return vec![format!("IF {reset} THEN {count}; RES({owner}, TRUE); ELSE {count}; END_IF")];
+    }
+    let reset = resets.map(|it| format!("RES({owner}, {it})"));
+    count.into_iter().chain(reset).collect()
+}
+
+fn bounds(span: Span) -> (usize, usize) {
+    let at = |it: u32| usize::try_from(it).unwrap_or(usize::MAX);
+    (at(span.start), at(span.end))
+}
+
+impl Writer<'_> {
+    fn file(&mut self, file: &File<'_>) {
+        for item in &file.items {
+            if let Item::Globals(block) = item {
+                self.block(block);
+            }
+        }
+        for item in &file.items {
+            if let Item::Pou(pou) = item {
+                self.pou(pou);
+            }
+        }
+    }
+
+    fn pou(&mut self, pou: &Pou<'_>) {
+        let outer = self.counters.clone();
+        pou.blocks.iter().for_each(|it| self.block(it));
+        self.statements(&pou.body);
+        self.counters = outer;
+    }
+
+    fn block(&mut self, block: &VarBlock<'_>) {
+        block.vars.iter().for_each(|it| self.declaration(it));
+    }
+
+    fn declaration(&mut self, decl: &VarDecl<'_>) {
+        let TypeKind::Named(names) = &decl.ty.kind else { return };
+        let [Name { text, .. }] = names.as_slice() else { return };
+        let Some(counter) = Counter::named(text, self.from) else { return };
+        let ty = if counter.direction == Direction::Both { "FBD_COUNTER" } else { "COUNTER" };
+        self.edit(decl.ty.span, ty.to_owned());
+        for name in &decl.names {
+            self.counters.insert(name.text.to_ascii_uppercase(), counter);
+        }
+        if let Some(Initial { kind: InitialKind::Fields(fields), .. }) = &decl.initial {
+            for (name, _) in fields.iter().filter(|it| it.0.text.eq_ignore_ascii_case("PV")) {
+                self.edit(name.span, "PRE".to_owned());
+            }
+        }
+    }
+
+    fn edit(&mut self, span: Span, text: String) {
+        let (start, end) = bounds(span);
+        self.edits.push(Edit { start, end, text });
+    }
+
+    fn counter(&self, expr: &Expr<'_>) -> Option<Counter> {
+        match &expr.kind {
+            ExprKind::Name(name) => self.counters.get(&name.text.to_ascii_uppercase()).copied(),
+            _ => None,
+        }
+    }
+
+    fn statements(&mut self, statements: &[Statement<'_>]) {
+        statements.iter().for_each(|it| self.statement(it));
+    }
+
+    fn statement(&mut self, statement: &Statement<'_>) {
+        match &statement.kind {
+            StatementKind::Assign { target, value } | StatementKind::SetReset { target, value, .. } => {
+                self.expr(target, false);
+                self.expr(value, true);
+            }
+            StatementKind::Expr(expr) => match &expr.kind {
+                ExprKind::Call(callee, arguments) => match self.counter(callee) {
+                    Some(counter) => self.call(expr.span, callee, counter, arguments),
+                    None => self.expr(expr, true),
+                },
+                _ => self.expr(expr, true),
+            },
+            StatementKind::If { branches, otherwise } => {
+                for (condition, body) in branches {
+                    self.expr(condition, true);
+                    self.statements(body);
+                }
+                self.statements(otherwise.as_deref().unwrap_or_default());
+            }
+            StatementKind::Case { selector, arms, otherwise } => {
+                self.expr(selector, true);
+                arms.iter().for_each(|it| self.statements(&it.body));
+                self.statements(otherwise.as_deref().unwrap_or_default());
+            }
+            StatementKind::For { from, to, by, body, .. } => {
+                [from, to].into_iter().chain(by).for_each(|it| self.expr(it, true));
+                self.statements(body);
+            }
+            StatementKind::While { condition, body } => {
+                self.expr(condition, true);
+                self.statements(body);
+            }
+            StatementKind::Repeat { body, until } => {
+                self.statements(body);
+                self.expr(until, true);
+            }
+            StatementKind::Empty
+            | StatementKind::Exit
+            | StatementKind::Continue
+            | StatementKind::Return
+            | StatementKind::Error => {}
+        }
+    }
+
+    /// Members of counters by their Logix names. `narrow`: a count takes its old type again.
+    fn expr(&mut self, expr: &Expr<'_>, narrow: bool) {
+        match &expr.kind {
+            ExprKind::Literal(_) | ExprKind::Name(_) | ExprKind::Address(_) => {}
+            ExprKind::Member(base, name) => match self.counter(base) {
+                Some(counter) => self.member(expr, base, *name, counter, narrow),
+                None => self.expr(base, narrow),
+            },
+            ExprKind::Part(inner, _) | ExprKind::Deref(inner) | ExprKind::Unary(_, inner) | ExprKind::Paren(inner) => {
+                self.expr(inner, narrow);
+            }
+            ExprKind::Index(base, indices) => {
+                self.expr(base, narrow);
+                indices.iter().for_each(|it| self.expr(it, true));
+            }
+            ExprKind::Call(_, arguments) => arguments.iter().for_each(|it| self.argument(it)),
+            ExprKind::Binary(left, op, _, right) => {
+                let compares = matches!(
+                    op,
+                    BinaryOp::Lt | BinaryOp::Gt | BinaryOp::Le | BinaryOp::Ge | BinaryOp::Eq | BinaryOp::Ne
+                );
+                self.expr(left, narrow && !compares);
+                self.expr(right, narrow && !compares);
+            }
+        }
+    }
+
+    fn argument(&mut self, argument: &Argument<'_>) {
+        match &argument.kind {
+            ArgumentKind::Positional(value) | ArgumentKind::Input(_, value) => self.expr(value, true),
+            ArgumentKind::Output { target, .. } => target.iter().for_each(|it| self.expr(it, false)),
+        }
+    }
+
+    fn member(&mut self, expr: &Expr<'_>, base: &Expr<'_>, name: Name<'_>, counter: Counter, narrow: bool) {
+        let (start, end) = bounds(base.span);
+        let owner = &self.text[start..end];
+        let text = match (name.text.to_ascii_uppercase().as_str(), counter.narrow) {
+            ("Q" | "QU", _) => format!("{owner}.DN"),
+            ("QD", _) => format!("({owner}.ACC <= 0)"),
+            ("CV", Some(conversion)) if narrow => format!("{conversion}({owner}.ACC)"),
+            ("CV", _) => format!("{owner}.ACC"),
+            ("PV", Some(conversion)) if narrow => format!("{conversion}({owner}.PRE)"),
+            ("PV", _) => format!("{owner}.PRE"),
+            // Nothing stands for it; the compiler says so at this place.
+            _ => return,
+        };
+        self.edit(expr.span, text);
+    }
+
+    /// A call as instructions. What its inputs are is decided before the first of them.
+    fn call(&mut self, span: Span, callee: &Expr<'_>, counter: Counter, arguments: &[Argument<'_>]) {
+        let (start, end) = bounds(callee.span);
+        let owner = self.text[start..end].to_owned();
+        arguments.iter().for_each(|it| self.argument(it));
+        let given = self.inputs(counter, arguments);
+        let get = |pin: &str| given.iter().find(|it| it.0 == pin).map(|it| it.1.as_str());
+        let mut lines = Vec::new();
+        lines.extend(get("PV").map(|it| format!("{owner}.PRE := {it}")));
+        match counter.direction {
+            Direction::Up => lines.extend(up(&owner, get("CU"), get("R"))),
+            Direction::Down => {
+                lines.extend(get("CD").map(|it| format!("CTD({owner}, {it})")));
+                lines.extend(get("LD").map(|it| format!("IF {it} THEN {owner}.ACC := {owner}.PRE; END_IF")));
+            }
+            Direction::Both => {
+                for (pin, member) in [("CU", "CUEnable"), ("CD", "CDEnable"), ("R", "Reset")] {
+                    lines.extend(get(pin).map(|it| format!("{owner}.{member} := {it}")));
+                }
+                lines.push(format!("CTUD({owner})"));
+                lines.extend(get("LD").map(|it| format!("IF {it} THEN {owner}.ACC := {owner}.PRE; END_IF")));
+            }
+        }
+        lines.extend(get("RCV").map(|it| format!("{it} := DINT_TO_INT({owner}.ACC)")));
+        for argument in arguments {
+            if let ArgumentKind::Output { name, negated, target: Some(target) } = &argument.kind {
+                let (start, end) = bounds(target.span);
+                let value = match (name.text.to_ascii_uppercase().as_str(), counter.narrow) {
+                    ("CV", Some(conversion)) => format!("{conversion}({owner}.ACC)"),
+                    ("CV", None) => format!("{owner}.ACC"),
+                    ("QD", _) => format!("{owner}.ACC <= 0"),
+                    _ => format!("{owner}.DN"),
+                };
+                let not = if *negated { "NOT " } else { "" };
+                lines.push(format!("{} := {not}{value}", self.apply(start, end)));
+            }
+        }
+        self.replace(span, lines.join("; "));
+    }
+
+    /// Replaces a call; the replacements inside it are part of this one.
+    fn replace(&mut self, span: Span, text: String) {
+        let (from, to) = bounds(span);
+        self.edits.retain(|it| it.start < from || it.end > to);
+        self.edits.push(Edit { start: from, end: to, text });
+    }
+
+    /// The inputs by their pins' short names, with the replacements inside them.
+    fn inputs(&self, counter: Counter, arguments: &[Argument<'_>]) -> Vec<(&'static str, String)> {
+        let mut found = Vec::new();
+        for (at, argument) in arguments.iter().enumerate() {
+            let (pin, value) = match &argument.kind {
+                ArgumentKind::Positional(value) => (counter.pins().get(at).copied(), value),
+                ArgumentKind::Input(name, value) => {
+                    let name = match name.text.to_ascii_uppercase().as_str() {
+                        "RESET" => "R".to_owned(),
+                        "LOAD" => "LD".to_owned(),
+                        other => other.to_owned(),
+                    };
+                    (counter.pins().iter().copied().find(|it| *it == name), value)
+                }
+                ArgumentKind::Output { .. } => continue,
+            };
+            let (start, end) = bounds(value.span);
+            found.extend(pin.map(|it| (it, self.apply(start, end))));
+        }
+        found
+    }
+
+    /// The text from `start` to `end` with the replacements in it.
+    fn apply(&self, start: usize, end: usize) -> String {
+        let mut edits: Vec<&Edit> = self.edits.iter().filter(|it| it.start >= start && it.end <= end).collect();
+        edits.sort_by_key(|it| it.start);
+        let mut out = String::new();
+        let mut at = start;
+        for edit in edits {
+            out.push_str(&self.text[at..edit.start]);
+            out.push_str(&edit.text);
+            at = edit.end;
+        }
+        out.push_str(&self.text[at..end]);
+        out
+    }
+
+    /// The lines that change, before and after.
+    fn notes(&self) -> Vec<(String, String)> {
+        let mut notes: Vec<(String, String)> = Vec::new();
+        let mut edits: Vec<&Edit> = self.edits.iter().collect();
+        edits.sort_by_key(|it| it.start);
+        for edit in edits {
+            let start = self.text[..edit.start].rfind('\n').map_or(0, |it| it + 1);
+            let end = self.text[edit.end..].find('\n').map_or(self.text.len(), |it| edit.end + it);
+            let one_line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+            let note = (one_line(&self.text[start..end]), one_line(&self.apply(start, end)));
+            if notes.last() != Some(&note) {
+                notes.push(note);
+            }
+        }
+        notes
+    }
+}

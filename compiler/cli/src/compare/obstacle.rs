@@ -1,0 +1,76 @@
+//! Why a program cannot be compared: the other system rejects it.
+
+use super::trap::Trap;
+use crate::session::Session;
+use staunch_frontend::{Code, Diagnostic, Dialect, Severity};
+
+/// What stands in the way, and what to do.
+pub struct Obstacle {
+    pub trap: Option<Trap>,
+    pub why: String,
+    pub advice: String,
+}
+
+const TO_LOGIX: &str =
+    "Logix has no counter blocks. Declare a COUNTER (it has CU CD DN OV UN : BOOL; PRE ACC : DINT) and write its \
+instructions, one a rung:
+    c.PRE := preset;
+    CTU(Counter := c, RungIn := sensor);
+    light := c.DN;
+    RES(Counter := c, RungIn := clear);
+Give the rewritten program with --against FILE to compare it";
+
+const FROM_LOGIX: &str = "A COUNTER and its instructions become an instance and its call: CTU(c, rung) and RES(c, clear) are \
+`c(CU := rung, R := clear, PV := preset)`, c.DN is c.Q, c.ACC is c.CV. Give the rewritten program with --against FILE to \
+compare it";
+
+/// The reason behind the first error.
+pub fn find(to: &Session, from: Dialect, target: Dialect) -> Obstacle {
+    let errors = to.diagnostics.iter().filter(|it| it.severity == Severity::Error);
+    let found = errors.map(|it| of(to, it, from, target));
+    let mut found: Vec<_> = found.collect();
+    let at = found.iter().position(|it| it.trap.is_some()).unwrap_or(0);
+    if found.is_empty() {
+        return Obstacle { trap: None, why: format!("{} rejects the program", target.name()), advice: String::new() };
+    }
+    found.swap_remove(at)
+}
+
+fn of(to: &Session, error: &Diagnostic, from: Dialect, target: Dialect) -> Obstacle {
+    let name = to.sources.text(error.span).to_ascii_uppercase();
+    let system = target.name().to_ascii_uppercase();
+    let block = matches!(error.code, Code::E0309 | Code::E0102 | Code::E0305 | Code::E0307);
+    let why = format!("{system} rejects the program: {}", error.message);
+    let trap = |number| Some(Trap::numbered(number));
+    if target == Dialect::Logix && block {
+        return Obstacle { trap: None, why, advice: TO_LOGIX.to_owned() };
+    }
+    if from == Dialect::Logix && block {
+        return Obstacle { trap: trap(11), why, advice: FROM_LOGIX.to_owned() };
+    }
+    match name.as_str() {
+        "R_CTU" | "R_CTD" => {
+            let plain = &name[2..];
+            let advice = format!("Use a {plain} in VAR RETAIN, without RCV; its count survives a restart there");
+            Obstacle { trap: trap(11), why, advice }
+        }
+        _ if name.contains("CTUD") && target == Dialect::Cscape => {
+            let advice = "Use a CTU and a CTD and subtract, or count in a variable of your own".to_owned();
+            Obstacle { trap: None, why, advice }
+        }
+        _ if block => {
+            Obstacle { trap: None, why, advice: "Name the family, or choose a block that the system has".to_owned() }
+        }
+        _ if widths(error) => Obstacle {
+            trap: trap(8),
+            why,
+            advice: "Convert the count or the preset explicitly, as `WORD_TO_INT(…)`".to_owned(),
+        },
+        _ => Obstacle { trap: None, why, advice: "Change it as the message says".to_owned() },
+    }
+}
+
+/// Whether the error is about types, whose widths the move changes.
+fn widths(error: &Diagnostic) -> bool {
+    error.code.name().starts_with("E02")
+}

@@ -1,0 +1,90 @@
+//! Source files from the command line: named ones, folders, standard input.
+
+use staunch_frontend::{Source, Sources};
+use std::collections::HashSet;
+use std::fs;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// Files that may not be larger: positions in a file are 32-bit.
+const MAX_BYTES: u64 = 1 << 31;
+/// Folders that lie deeper than this are taken for a loop of links.
+const MAX_DEPTH: usize = 64;
+
+/// Reads every file that the arguments name, each once, folders in sorted order.
+pub fn read(arguments: &[PathBuf]) -> Result<Sources, String> {
+    let mut paths = Vec::new();
+    for argument in arguments {
+        collect(argument, 0, &mut paths)?;
+    }
+    if paths.is_empty() {
+        return Err("no source file was found".to_owned());
+    }
+    if paths.len() > usize::from(u16::MAX) {
+        return Err(format!("{} files are more than one program may have", paths.len()));
+    }
+    let mut seen = HashSet::new();
+    let mut sources = Sources::default();
+    for path in paths {
+        let identity = path.canonicalize().unwrap_or_else(|_| path.clone());
+        if seen.insert(identity) {
+            sources.add(source(&path)?);
+        }
+    }
+    Ok(sources)
+}
+
+fn collect(path: &Path, depth: usize, paths: &mut Vec<PathBuf>) -> Result<(), String> {
+    if path == Path::new("-") || !path.is_dir() {
+        paths.push(path.to_owned());
+        return Ok(());
+    }
+    if depth > MAX_DEPTH {
+        return Err(format!("{}: folders are nested too deeply", path.display()));
+    }
+    let entries = fs::read_dir(path).map_err(|it| format!("{}: {it}", path.display()))?;
+    let mut inside =
+        entries.map(|it| it.map(|it| it.path())).collect::<Result<Vec<_>, _>>().map_err(|it| it.to_string())?;
+    inside.sort();
+    for entry in inside {
+        let hidden = entry.file_name().is_some_and(|it| it.to_string_lossy().starts_with('.'));
+        if !hidden && (entry.is_dir() || is_source(&entry)) {
+            collect(&entry, depth + 1, paths)?;
+        }
+    }
+    Ok(())
+}
+
+fn is_source(path: &Path) -> bool {
+    let extension = path.extension().map(|it| it.to_string_lossy().to_ascii_lowercase());
+    matches!(extension.as_deref(), Some("st" | "iecst"))
+}
+
+fn source(path: &Path) -> Result<Source, String> {
+    let name = path.display().to_string();
+    let extension = path.extension().map(|it| it.to_string_lossy().to_ascii_lowercase());
+    if matches!(extension.as_deref(), Some("tcpou" | "tcgvl" | "tcdut")) {
+        return Err(format!("{name}: TwinCAT's XML files are not supported yet; export the code as .st"));
+    }
+    if path == Path::new("-") {
+        let mut bytes = Vec::new();
+        std::io::stdin()
+            .lock()
+            .take(MAX_BYTES + 1)
+            .read_to_end(&mut bytes)
+            .map_err(|it| format!("standard input: {it}"))?;
+        return decode("<stdin>", &bytes);
+    }
+    let file = fs::File::open(path).map_err(|it| format!("{name}: {it}"))?;
+    let mut bytes = Vec::new();
+    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|it| format!("{name}: {it}"))?;
+    decode(&name, &bytes)
+}
+
+fn decode(name: &str, bytes: &[u8]) -> Result<Source, String> {
+    let too_large = u64::try_from(bytes.len()).unwrap_or(u64::MAX) > MAX_BYTES;
+    if too_large {
+        return Err(format!("{name}: a source file may have 2 GiB"));
+    }
+    Ok(Source::decode(name, bytes))
+}

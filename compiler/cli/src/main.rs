@@ -1,0 +1,89 @@
+//! The command `staunch`: arguments, files, exit codes. What it promises stands in `docs/cli.md`.
+
+mod args;
+mod project;
+
+mod input;
+mod session;
+
+mod cache;
+mod toolchain;
+
+mod archive;
+mod build;
+mod header;
+mod link;
+mod rustc;
+
+mod bench;
+mod compare;
+mod machine;
+mod run;
+
+mod explain;
+mod new;
+
+mod output;
+
+use args::{Cli, Command};
+use session::Session;
+use std::process::ExitCode;
+
+/// The program was rejected, or a test failed.
+pub const REJECTED: u8 = 1;
+/// The command was used wrongly, or a file or tool was missing.
+pub const USAGE: u8 = 2;
+/// The program faulted while it ran.
+pub const FAULTED: u8 = 3;
+/// A mistake of the compiler's own.
+const INTERNAL: u8 = 101;
+
+/// Deep enough for expressions and statements at the parser's nesting limit, also unoptimised.
+const STACK: usize = 256 << 20;
+
+fn main() -> ExitCode {
+    let cli = match args::parse(std::env::args_os()) {
+        Ok(cli) => cli,
+        Err(error) => {
+            let _ = error.print();
+            let code = if error.use_stderr() { USAGE } else { 0 };
+            return ExitCode::from(code);
+        }
+    };
+    std::panic::set_hook(Box::new(report_panic));
+    let worker = std::thread::Builder::new().stack_size(STACK).spawn(move || dispatch(cli));
+    let code = worker.map(std::thread::JoinHandle::join);
+    match code {
+        Ok(Ok(code)) => ExitCode::from(code),
+        Ok(Err(_)) => ExitCode::from(INTERNAL),
+        Err(error) => {
+            eprintln!("error: cannot start a thread: {error}");
+            ExitCode::from(USAGE)
+        }
+    }
+}
+
+fn report_panic(panic: &std::panic::PanicHookInfo<'_>) {
+    eprintln!("internal error: {panic}");
+    eprintln!("This is a mistake in Staunch, not in your program. Please report it, with the source if you can,");
+    eprintln!("at {}/issues (staunch {}).", env!("CARGO_PKG_REPOSITORY"), env!("CARGO_PKG_VERSION"));
+}
+
+fn dispatch(cli: Cli) -> u8 {
+    let result = match &cli.command {
+        Command::Explain(it) => explain::explain(it),
+        Command::New(it) => new::new(it, &cli.common),
+        Command::Check(it) => Session::start(&cli.common, it).map(|session| session.check()),
+        Command::Build(it) => Session::start(&cli.common, &it.files).and_then(|session| build::build(&session, it)),
+        Command::Run(it) => Session::start(&cli.common, &it.files).and_then(|session| run::run(&session, it)),
+        Command::Compare(it) => compare::compare(&cli.common, it),
+        Command::Bench(it) => Session::start(&cli.common, &it.files).and_then(|session| bench::bench(&session, it)),
+    };
+    match result {
+        Ok(code) => code,
+        Err(message) => {
+            eprintln!("error: {message}");
+            USAGE
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! Files, and standard output, whose reader may leave early.
+
+use std::io::{ErrorKind, Write};
+use std::path::Path;
+
+/// Writes to standard output. A reader that has left, as `head` does, ends the command quietly.
+pub fn print(bytes: &[u8]) -> Result<(), String> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(bytes).and_then(|()| out.flush()) {
+        Ok(()) => Ok(()),
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => std::process::exit(0),
+        Err(error) => Err(format!("standard output: {error}")),
+    }
+}
+
+/// Writes a whole file, or standard output for `-`.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    if path == Path::new("-") {
+        return print(bytes);
+    }
+    std::fs::write(path, bytes).map_err(|error| format!("{}: {error}", path.display()))
+}
+
+/// Writes a file that can be run. One of that name may be running: it keeps its old contents.
+pub fn executable(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    if path.is_file() {
+        let _ = std::fs::remove_file(path);
+    }
+    write(path, bytes)?;
+    // A device, as /dev/null, is left as it is.
+    if path.is_file() && path != Path::new("-") { allow_to_run(path) } else { Ok(()) }
+}
+
+#[cfg(unix)]
+fn allow_to_run(path: &Path) -> Result<(), String> {
+    use std::os::unix::fs::PermissionsExt;
+    let shown = |error| format!("{}: {error}", path.display());
+    let mut permissions = std::fs::metadata(path).map_err(shown)?.permissions();
+    // Whoever may read it may run it.
+    permissions.set_mode(permissions.mode() | (permissions.mode() & 0o444) >> 2);
+    std::fs::set_permissions(path, permissions).map_err(shown)
+}
+
+#[cfg(not(unix))]
+fn allow_to_run(_path: &Path) -> Result<(), String> {
+    Ok(())
+}

@@ -1,0 +1,106 @@
+//! `staunch run`: in this process, or, for the Rust back end, as an executable of its own.
+
+use crate::REJECTED;
+use crate::args::{Backend, Run};
+use crate::machine::{Interpreted, Native};
+use crate::rustc::{self, Kind};
+use crate::session::Session;
+use staunch_host::{Error, Machine, Map, Options};
+use staunch_ir::Program;
+use staunch_ir::interpret::Interpreter;
+use staunch_ir::layout::Layout;
+use std::process::Command;
+
+pub fn run(session: &Session, args: &Run) -> Result<u8, String> {
+    let Some(program) = session.program_to_run(args.program.as_deref())? else { return Ok(REJECTED) };
+    match args.backend {
+        Backend::Native => {
+            let mut machine = Native::new(&program)?;
+            scans(session, args, &program, &mut machine)
+        }
+        Backend::Interpret => {
+            let mut machine = Interpreted(Interpreter::new(&program));
+            scans(session, args, &program, &mut machine)
+        }
+        Backend::Rust => execute(session, args, &program),
+    }
+}
+
+fn scans(session: &Session, args: &Run, program: &Program, machine: &mut dyn Machine) -> Result<u8, String> {
+    let map = map(program)?;
+    let options = options(session, args)?;
+    match staunch_host::run(machine, &map, &options) {
+        Ok(_) => Ok(0),
+        Err(Error::ClosedPipe) => Ok(0),
+        Err(error) => {
+            eprintln!("error: {error}");
+            Ok(error.exit_code())
+        }
+    }
+}
+
+pub fn map(program: &Program) -> Result<Map, String> {
+    let text = staunch_ir::symbols::map_text(program, &Layout::new(program));
+    Map::parse(&text).map_err(|it| it.to_string())
+}
+
+/// The cycle of the command line, or of the project file.
+pub fn cycle(session: &Session, asked: Option<&str>) -> Result<Option<i64>, String> {
+    let text = asked.or(session.project.cycle.as_deref());
+    text.map(|it| staunch_host::parse_duration(it).map_err(|error| format!("--cycle: {error}"))).transpose()
+}
+
+fn options(session: &Session, args: &Run) -> Result<Options, String> {
+    Ok(Options {
+        // The program holds just the instances that run.
+        program: None,
+        scans: args.scans,
+        cycle: cycle(session, args.cycle.as_deref())?,
+        stimulus: args.stimulus.clone(),
+        trace: args.trace.clone(),
+        vars: args.vars.clone(),
+        retain: args.retain.clone(),
+        realtime: args.realtime,
+        table: true,
+        quiet: session.common.quiet,
+    })
+}
+
+/// Builds an executable in the cache and runs it with the same arguments.
+fn execute(session: &Session, args: &Run, program: &Program) -> Result<u8, String> {
+    let executable = rustc::compile(program, Kind::Executable, None)?;
+    let mut command = Command::new(&executable);
+    command.arg("--table");
+    let texts = [
+        ("--scans", args.scans.map(|it| it.to_string())),
+        ("--cycle", cycle(session, args.cycle.as_deref())?.map(|it| format!("{it}ns"))),
+        ("--vars", args.vars.clone()),
+    ];
+    for (flag, value) in texts {
+        value.map(|it| command.arg(flag).arg(it));
+    }
+    let paths = [("--stimulus", &args.stimulus), ("--trace", &args.trace), ("--retain", &args.retain)];
+    for (flag, path) in paths {
+        path.as_ref().map(|it| command.arg(flag).arg(it));
+    }
+    if args.realtime {
+        command.arg("--realtime");
+    }
+    if session.common.quiet {
+        command.arg("--quiet");
+    }
+    become_process(command).map_err(|error| format!("cannot run {}: {error}", executable.display()))
+}
+
+/// The executable takes this process over, so that signals reach it and nothing else.
+#[cfg(unix)]
+fn become_process(mut command: Command) -> std::io::Result<u8> {
+    use std::os::unix::process::CommandExt;
+    Err(command.exec())
+}
+
+#[cfg(not(unix))]
+fn become_process(mut command: Command) -> std::io::Result<u8> {
+    let status = command.status()?;
+    Ok(status.code().and_then(|it| u8::try_from(it).ok()).unwrap_or(crate::FAULTED))
+}

@@ -1,0 +1,287 @@
+//! One compilation: sources and settings in, diagnostics out, and the program where there is one.
+
+use crate::args::{Color, Common, Files, MessageFormat};
+use crate::project::{self, Project};
+use crate::{REJECTED, input, output};
+use staunch_frontend::{Code, Compilation, Diagnostic, Dialect, Format, Options, Severity, Sources, Style};
+use staunch_ir::Program;
+use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+#[derive(Debug)]
+pub struct Session {
+    pub common: Common,
+    pub project: Project,
+    /// The first source file, which outputs are named after.
+    pub first: PathBuf,
+    pub sources: Sources,
+    /// `None` when the program was rejected.
+    program: Option<Program>,
+    /// At their levels.
+    pub diagnostics: Vec<Diagnostic>,
+    pub compile_time: Duration,
+}
+
+impl Session {
+    /// Reads and checks the sources, and prints what there is to say about them.
+    pub fn start(common: &Common, files: &Files) -> Result<Self, String> {
+        let near = files.files.first().filter(|it| it.as_path() != Path::new("-"));
+        let folder = near.map_or(Path::new("."), |it| if it.is_dir() { it } else { parent(it) });
+        let project = project::find(folder)?.unwrap_or_default();
+        let named = if files.files.is_empty() {
+            project.files.iter().map(|it| project.folder.join(it)).collect()
+        } else {
+            files.files.clone()
+        };
+        if named.is_empty() {
+            return Err("name a source file or folder, or list `files` in staunch.toml".to_owned());
+        }
+        let levels = Levels::new(common, &project)?;
+        let sources = input::read(&named)?;
+        let start = Instant::now();
+        let compilation = staunch_frontend::compile(&sources, &options(common, &project)?);
+        let compile_time = start.elapsed();
+        let first = PathBuf::from(&sources.files()[0].path);
+        let diagnostics = Vec::new();
+        let common = common.clone();
+        let mut session = Self { common, project, first, sources, program: None, diagnostics, compile_time };
+        session.accept(compilation, &levels, &[])?;
+        Ok(session)
+    }
+
+    /// The same program, or `sources` in its place, as it moves to another dialect. What has been
+    /// said of it is not said again.
+    pub fn moved(&self, to: Dialect, sources: Option<Sources>) -> Result<Self, String> {
+        let from = options(&self.common, &self.project)?;
+        let known: &[Diagnostic] = if sources.is_none() { &self.diagnostics } else { &[] };
+        let sources = sources.unwrap_or_else(|| self.sources.clone());
+        let options = Options { dialect: to, moved_from: Some(from.dialect), ..from };
+        let start = Instant::now();
+        let compilation = staunch_frontend::compile(&sources, &options);
+        let mut session = Self {
+            common: self.common.clone(),
+            project: self.project.clone(),
+            first: self.first.clone(),
+            sources,
+            program: None,
+            diagnostics: Vec::new(),
+            compile_time: start.elapsed(),
+        };
+        session.accept(compilation, &Levels::new(&self.common, &self.project)?, known)?;
+        Ok(session)
+    }
+
+    /// Prints what is not `known`.
+    fn accept(&mut self, compilation: Compilation, levels: &Levels, known: &[Diagnostic]) -> Result<(), String> {
+        let diagnostics: Vec<_> = compilation.diagnostics.into_iter().filter_map(|it| levels.apply(it)).collect();
+        let is_error = |it: &Diagnostic| it.severity == Severity::Error;
+        let is_new =
+            |it: &&Diagnostic| is_error(it) || !known.iter().any(|old| old.code == it.code && old.span == it.span);
+        let new: Vec<_> = diagnostics.iter().filter(is_new).cloned().collect();
+        let errors = new.iter().filter(|it| is_error(it)).count();
+        self.print(&new, errors)?;
+        self.program = compilation.program.filter(|_| errors == 0);
+        self.diagnostics = diagnostics;
+        Ok(())
+    }
+
+    fn print(&self, diagnostics: &[Diagnostic], errors: usize) -> Result<(), String> {
+        let format = match self.common.message_format {
+            MessageFormat::Human => Format::Human,
+            MessageFormat::Short => Format::Short,
+            MessageFormat::Json => Format::Json,
+        };
+        let style = Style { color: self.color() };
+        let shown = diagnostics.iter().filter(|it| !self.common.quiet || it.severity == Severity::Error);
+        let mut text = String::new();
+        for diagnostic in shown {
+            text += &staunch_frontend::render(diagnostic, &self.sources, format, style);
+            if format == Format::Human {
+                text.push('\n');
+            }
+        }
+        if format == Format::Json {
+            return output::print(text.as_bytes());
+        }
+        if format == Format::Human && !diagnostics.is_empty() && (errors > 0 || !self.common.quiet) {
+            text += &summary(errors, diagnostics.len() - errors);
+        }
+        // A closed standard error leaves nobody to tell.
+        let _ = std::io::stderr().lock().write_all(text.as_bytes());
+        Ok(())
+    }
+
+    fn color(&self) -> bool {
+        match self.common.color {
+            Color::Always => true,
+            Color::Never => false,
+            Color::Auto => {
+                let wanted = std::env::var_os("NO_COLOR").is_none_or(|it| it.is_empty());
+                wanted && std::io::stderr().is_terminal()
+            }
+        }
+    }
+
+    /// The verdict of `check`.
+    pub fn check(&self) -> u8 {
+        if self.program.is_none() {
+            return REJECTED;
+        }
+        self.say("Checked", &self.first);
+        0
+    }
+
+    /// The program, or `None` when it was rejected, which has been said.
+    pub fn program(&self) -> Option<&Program> {
+        self.program.as_ref()
+    }
+
+    /// The program with the instances that are to run: those of its CONFIGURATION, its only
+    /// PROGRAM, or the one that is asked for by its own or its instance's name.
+    pub fn program_to_run(&self, asked: Option<&str>) -> Result<Option<Program>, String> {
+        let Some(program) = &self.program else { return Ok(None) };
+        let mut program = program.clone();
+        let asked = asked.or(self.project.program.as_deref());
+        let names: Vec<_> = program.instances.iter().map(|it| it.name.clone()).collect();
+        match asked {
+            Some(asked) => {
+                let of = |it: &staunch_ir::Instance| program.pous[it.program.index()].name.eq_ignore_ascii_case(asked);
+                let wanted: Vec<_> = program
+                    .instances
+                    .iter()
+                    .filter(|it| it.name.eq_ignore_ascii_case(asked) || of(it))
+                    .cloned()
+                    .collect();
+                if wanted.is_empty() {
+                    return Err(format!("there is no PROGRAM `{asked}`; there {}", are(&names)));
+                }
+                program.instances = wanted;
+            }
+            None if program.instances.is_empty() => {
+                return Err("there is nothing to run: the sources hold no PROGRAM".to_owned());
+            }
+            None if program.instances.len() > 1 && !self.configured(&program) => {
+                return Err(format!(
+                    "the sources hold several programs; choose one with --program: there {}",
+                    are(&names)
+                ));
+            }
+            None => {}
+        }
+        Ok(Some(program))
+    }
+
+    /// Whether a CONFIGURATION says which instances run: then they bear names of their own, or
+    /// the source has a TASK.
+    fn configured(&self, program: &Program) -> bool {
+        let plain =
+            |it: &staunch_ir::Instance| it.interval.is_none() && it.name == program.pous[it.program.index()].name;
+        !program.instances.iter().all(plain)
+    }
+
+    /// A line for people on standard error, as cargo prints them.
+    pub fn say(&self, verb: &str, path: &Path) {
+        let silent = self.common.quiet || self.common.message_format != MessageFormat::Human;
+        if !silent {
+            let _ = writeln!(std::io::stderr(), "{verb:>12} {}", path.display());
+        }
+    }
+}
+
+fn parent(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    }
+}
+
+fn are(names: &[String]) -> String {
+    match names {
+        [] => "is none".to_owned(),
+        [one] => format!("is {one}"),
+        several => format!("are {}", several.join(", ")),
+    }
+}
+
+fn options(common: &Common, project: &Project) -> Result<Options, String> {
+    let dialect = match (common.dialect, &project.dialect) {
+        (Some(dialect), _) => dialect,
+        (None, Some(name)) => {
+            Dialect::named(name).ok_or_else(|| format!("staunch.toml: there is no dialect `{name}`"))?
+        }
+        (None, None) => Dialect::default(),
+    };
+    Ok(Options { dialect, ctu_stop_at_pv: project.ctu_stop_at_pv, moved_from: None })
+}
+
+fn summary(errors: usize, warnings: usize) -> String {
+    let count = |number: usize, what: &str| format!("{number} {what}{}", if number == 1 { "" } else { "s" });
+    match (errors, warnings) {
+        (0, warnings) => format!("warning: {}\n", count(warnings, "warning")),
+        (errors, 0) => format!("error: rejected with {}\n", count(errors, "error")),
+        (errors, warnings) => {
+            format!("error: rejected with {} and {}\n", count(errors, "error"), count(warnings, "warning"))
+        }
+    }
+}
+
+/// What `-W`, `-D`, `-A` and the project file say of lints; the command line comes later.
+struct Levels {
+    rules: Vec<(Option<Code>, Level)>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Level {
+    Warn,
+    Deny,
+    Allow,
+}
+
+impl Levels {
+    fn new(common: &Common, project: &Project) -> Result<Self, String> {
+        let mut rules = Vec::new();
+        let lists = [
+            (&project.warn, Level::Warn),
+            (&project.deny, Level::Deny),
+            (&project.allow, Level::Allow),
+            (&common.warn, Level::Warn),
+            (&common.deny, Level::Deny),
+            (&common.allow, Level::Allow),
+        ];
+        for (codes, level) in lists {
+            for name in codes {
+                rules.push((lint(name)?, level));
+            }
+        }
+        Ok(Self { rules })
+    }
+
+    /// The diagnostic at its level, or `None` where it is allowed.
+    fn apply(&self, mut diagnostic: Diagnostic) -> Option<Diagnostic> {
+        if diagnostic.severity == Severity::Error {
+            return Some(diagnostic);
+        }
+        let applies = |(code, _): &&(Option<Code>, Level)| code.is_none_or(|it| it == diagnostic.code);
+        match self.rules.iter().rev().find(applies).map(|(_, level)| *level) {
+            Some(Level::Allow) => None,
+            Some(Level::Deny) => {
+                diagnostic.severity = Severity::Error;
+                Some(diagnostic)
+            }
+            Some(Level::Warn) | None => Some(diagnostic),
+        }
+    }
+}
+
+/// A lint by its code; `None` for `warnings`, which means all.
+fn lint(name: &str) -> Result<Option<Code>, String> {
+    if name.eq_ignore_ascii_case("warnings") {
+        return Ok(None);
+    }
+    match Code::named(name) {
+        Some(code) if code.severity() == Severity::Warning => Ok(Some(code)),
+        Some(code) => Err(format!("{} is an error; only lints (W…) have levels", code.name())),
+        None => Err(format!("there is no lint `{name}`")),
+    }
+}

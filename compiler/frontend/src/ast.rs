@@ -1,0 +1,468 @@
+//! The syntax tree: mirrors the grammar, keeps comments, knows no meaning. Names are text.
+//!
+//! The parser limits nesting ([`MAX_DEPTH`]), so later passes may recurse freely.
+
+use crate::source::Span;
+
+/// Nesting of expressions, statements, types and initial values.
+pub const MAX_DEPTH: usize = 256;
+/// Operands of one chain of binary operators, and branches of one IF.
+pub const MAX_CHAIN: usize = 1000;
+
+/// A name as the source spells it; comparison ignores case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Name<'s> {
+    pub text: &'s str,
+    pub span: Span,
+}
+
+/// One source file.
+#[derive(Clone, Debug, Default)]
+pub struct File<'s> {
+    pub items: Vec<Item<'s>>,
+    /// Every `{…}` in the file, in order, without its braces.
+    pub pragmas: Vec<Name<'s>>,
+}
+
+#[derive(Clone, Debug)]
+pub enum Item<'s> {
+    Pou(Pou<'s>),
+    Types(Vec<TypeDecl<'s>>),
+    /// VAR_GLOBAL at file level.
+    Globals(VarBlock<'s>),
+    Configuration(Configuration<'s>),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PouKind {
+    Program,
+    FunctionBlock,
+    Function,
+}
+
+#[derive(Clone, Debug)]
+pub struct Pou<'s> {
+    pub kind: PouKind,
+    pub name: Name<'s>,
+    /// A FUNCTION's result type; a FUNCTION may have none.
+    pub result: Option<TypeSpec<'s>>,
+    pub blocks: Vec<VarBlock<'s>>,
+    pub body: Vec<Statement<'s>>,
+    /// The comment that stands directly before the POU, cleaned of its marks.
+    pub doc: Option<String>,
+    pub span: Span,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VarKind {
+    Var,
+    Input,
+    Output,
+    InOut,
+    Temp,
+    Stat,
+    Global,
+    External,
+}
+
+#[derive(Clone, Debug)]
+pub struct VarBlock<'s> {
+    pub kind: VarKind,
+    pub constant: Option<Span>,
+    pub retain: Option<Span>,
+    pub non_retain: Option<Span>,
+    pub persistent: Option<Span>,
+    pub vars: Vec<VarDecl<'s>>,
+    /// The keyword that opens the block.
+    pub span: Span,
+}
+
+/// `a, b AT %IX0.0 : BOOL R_EDGE := TRUE;`
+#[derive(Clone, Debug)]
+pub struct VarDecl<'s> {
+    pub names: Vec<Name<'s>>,
+    pub address: Option<Name<'s>>,
+    pub ty: TypeSpec<'s>,
+    pub edge: Option<(Edge, Span)>,
+    pub initial: Option<Initial<'s>>,
+    /// The comment on the declaration's line or directly before it.
+    pub doc: Option<String>,
+    pub span: Span,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Edge {
+    Rising,
+    Falling,
+}
+
+#[derive(Clone, Debug)]
+pub struct TypeSpec<'s> {
+    pub kind: TypeKind<'s>,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug)]
+pub enum TypeKind<'s> {
+    /// An elementary type, a user's, or a block, possibly qualified: `CODESYS.CTU`. A family or
+    /// namespace comes first.
+    Named(Vec<Name<'s>>),
+    /// `STRING`, `STRING[80]`, `STRING(80)`, WSTRING alike.
+    String { wide: bool, capacity: Option<Box<Expr<'s>>> },
+    /// `INT (0..100)`, also on a named base.
+    Subrange { base: Name<'s>, low: Box<Expr<'s>>, high: Box<Expr<'s>> },
+    /// `ARRAY[1..3, 0..4] OF T`; an empty list is `ARRAY[*]`.
+    Array { bounds: Vec<Bound<'s>>, element: Box<TypeSpec<'s>> },
+    /// `STRUCT … END_STRUCT`
+    Struct(Vec<VarDecl<'s>>),
+    /// `(Red, Green := 5) INT`, also `INT (Red, Green)`.
+    Enum { base: Option<Name<'s>>, values: Vec<EnumValue<'s>> },
+    /// A construct that is parsed to be refused by name: REF_TO, POINTER TO, REFERENCE TO, UNION.
+    Unsupported(&'static str),
+}
+
+#[derive(Clone, Debug)]
+pub enum Bound<'s> {
+    Range(Expr<'s>, Expr<'s>),
+    /// `*`
+    Open(Span),
+}
+
+#[derive(Clone, Debug)]
+pub struct EnumValue<'s> {
+    pub name: Name<'s>,
+    pub value: Option<Expr<'s>>,
+    pub doc: Option<String>,
+}
+
+#[derive(Clone, Debug)]
+pub struct TypeDecl<'s> {
+    pub name: Name<'s>,
+    pub ty: TypeSpec<'s>,
+    pub initial: Option<Initial<'s>>,
+    pub doc: Option<String>,
+}
+
+/// An initial value. `(a := 1)` is `Fields`; `[4(0), 1]` is `Elements`.
+#[derive(Clone, Debug)]
+pub struct Initial<'s> {
+    pub kind: InitialKind<'s>,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug)]
+pub enum InitialKind<'s> {
+    Value(Expr<'s>),
+    Elements(Vec<Element<'s>>),
+    Fields(Vec<(Name<'s>, Initial<'s>)>),
+}
+
+/// `x`, or `n(x, y, …)`: the values `count` times over. A repeat without values, `4()`, repeats
+/// the element type's own initial value.
+#[derive(Clone, Debug)]
+pub struct Element<'s> {
+    pub count: Option<Expr<'s>>,
+    pub values: Vec<Initial<'s>>,
+}
+
+#[derive(Clone, Debug)]
+pub struct Configuration<'s> {
+    pub name: Name<'s>,
+    pub globals: Vec<VarBlock<'s>>,
+    pub resources: Vec<Resource<'s>>,
+    pub span: Span,
+}
+
+/// A RESOURCE; tasks and programs that stand directly in a CONFIGURATION make one without a name.
+#[derive(Clone, Debug, Default)]
+pub struct Resource<'s> {
+    pub name: Option<Name<'s>>,
+    pub globals: Vec<VarBlock<'s>>,
+    pub tasks: Vec<Task<'s>>,
+    pub programs: Vec<ProgramInstance<'s>>,
+}
+
+/// `TASK t (INTERVAL := T#20ms, PRIORITY := 1);`
+#[derive(Clone, Debug)]
+pub struct Task<'s> {
+    pub name: Name<'s>,
+    pub properties: Vec<(Name<'s>, Expr<'s>)>,
+}
+
+/// `PROGRAM main WITH t : Main;`
+#[derive(Clone, Debug)]
+pub struct ProgramInstance<'s> {
+    pub name: Name<'s>,
+    pub task: Option<Name<'s>>,
+    pub program: Name<'s>,
+}
+
+#[derive(Clone, Debug)]
+pub struct Statement<'s> {
+    pub kind: StatementKind<'s>,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug)]
+pub enum StatementKind<'s> {
+    /// `;`
+    Empty,
+    /// `a := b`
+    Assign {
+        target: Expr<'s>,
+        value: Expr<'s>,
+    },
+    /// `a S= b` (set) and `a R= b` (reset).
+    SetReset {
+        target: Expr<'s>,
+        value: Expr<'s>,
+        set: bool,
+    },
+    /// An expression that stands alone; only a call has a meaning there.
+    Expr(Expr<'s>),
+    /// IF and ELSIF branches, and ELSE.
+    If {
+        branches: Vec<(Expr<'s>, Vec<Statement<'s>>)>,
+        otherwise: Option<Vec<Statement<'s>>>,
+    },
+    Case {
+        selector: Expr<'s>,
+        arms: Vec<Arm<'s>>,
+        otherwise: Option<Vec<Statement<'s>>>,
+    },
+    For {
+        counter: Box<Expr<'s>>,
+        from: Box<Expr<'s>>,
+        to: Box<Expr<'s>>,
+        by: Option<Box<Expr<'s>>>,
+        body: Vec<Statement<'s>>,
+    },
+    While {
+        condition: Expr<'s>,
+        body: Vec<Statement<'s>>,
+    },
+    Repeat {
+        body: Vec<Statement<'s>>,
+        until: Expr<'s>,
+    },
+    Exit,
+    Continue,
+    Return,
+    /// What recovery put in place of something that did not parse; it has been reported.
+    Error,
+}
+
+#[derive(Clone, Debug)]
+pub struct Arm<'s> {
+    pub labels: Vec<Label<'s>>,
+    pub body: Vec<Statement<'s>>,
+}
+
+#[derive(Clone, Debug)]
+pub struct Label<'s> {
+    pub low: Expr<'s>,
+    pub high: Option<Expr<'s>>,
+}
+
+#[derive(Clone, Debug)]
+pub struct Expr<'s> {
+    pub kind: ExprKind<'s>,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug)]
+pub enum ExprKind<'s> {
+    Literal(Literal<'s>),
+    Name(Name<'s>),
+    /// `%IX0.0`, as spelled.
+    Address(Name<'s>),
+    /// `a.b`
+    Member(Box<Expr<'s>>, Name<'s>),
+    /// `a.3`, `a.%X3`, `a.%B1`: the text after the point.
+    Part(Box<Expr<'s>>, Name<'s>),
+    /// `a[i, j]`
+    Index(Box<Expr<'s>>, Vec<Expr<'s>>),
+    /// `a^`
+    Deref(Box<Expr<'s>>),
+    /// `f(…)`, `instance(…)`, `array[i](…)`
+    Call(Box<Expr<'s>>, Vec<Argument<'s>>),
+    Unary(UnaryOp, Box<Expr<'s>>),
+    /// The operator's own span is kept for messages.
+    Binary(Box<Expr<'s>>, BinaryOp, Span, Box<Expr<'s>>),
+    /// `( … )`: kept, since it ends a chain.
+    Paren(Box<Expr<'s>>),
+}
+
+#[derive(Clone, Debug)]
+pub struct Argument<'s> {
+    pub kind: ArgumentKind<'s>,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug)]
+pub enum ArgumentKind<'s> {
+    /// `x`
+    Positional(Expr<'s>),
+    /// `IN := x`
+    Input(Name<'s>, Expr<'s>),
+    /// `OUT => x`, `NOT OUT => x`; the variable may be missing: `OUT => `.
+    Output { name: Name<'s>, negated: bool, target: Option<Expr<'s>> },
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UnaryOp {
+    Neg,
+    Plus,
+    Not,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BinaryOp {
+    Power,
+    Mul,
+    Div,
+    Mod,
+    Add,
+    Sub,
+    Lt,
+    Gt,
+    Le,
+    Ge,
+    Eq,
+    Ne,
+    And,
+    AndThen,
+    Xor,
+    Or,
+    OrElse,
+}
+
+impl BinaryOp {
+    /// As Structured Text writes it.
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Power => "**",
+            Self::Mul => "*",
+            Self::Div => "/",
+            Self::Mod => "MOD",
+            Self::Add => "+",
+            Self::Sub => "-",
+            Self::Lt => "<",
+            Self::Gt => ">",
+            Self::Le => "<=",
+            Self::Ge => ">=",
+            Self::Eq => "=",
+            Self::Ne => "<>",
+            Self::And => "AND",
+            Self::AndThen => "AND_THEN",
+            Self::Xor => "XOR",
+            Self::Or => "OR",
+            Self::OrElse => "OR_ELSE",
+        }
+    }
+}
+
+/// A literal: its value, and the type a prefix gave it (`INT#5`, `Color#Red`).
+#[derive(Clone, Debug)]
+pub struct Literal<'s> {
+    pub prefix: Option<Name<'s>>,
+    pub value: LiteralValue<'s>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum LiteralValue<'s> {
+    Bool(bool),
+    /// The magnitude; a sign is an operator. `based` when written `16#FF`. Values above
+    /// `u64::MAX` have been reported by the parser.
+    Integer {
+        value: u64,
+        based: bool,
+    },
+    /// The digits as spelled, without `_`: they are read at the width their place asks for.
+    Real(String),
+    /// Signed nanoseconds, of `T#…` (`long: false`) or `LTIME#…`.
+    Time {
+        nanoseconds: i64,
+        long: bool,
+    },
+    /// The bytes of `'…'`, escapes resolved, or the UTF-16 units of `"…"` as UTF-8 text.
+    String {
+        bytes: Vec<u8>,
+        wide: bool,
+    },
+    /// After `Color#`.
+    Enumerator(Name<'s>),
+    /// D#, TOD#, DT# and their L forms: refused by name for now.
+    Date(&'static str),
+}
+
+/// Calls `visit` with every expression in the statements, outer ones first.
+pub(crate) fn each_expr<'a, 's>(statements: &'a [Statement<'s>], visit: &mut dyn FnMut(&'a Expr<'s>)) {
+    for statement in statements {
+        match &statement.kind {
+            StatementKind::Empty
+            | StatementKind::Exit
+            | StatementKind::Continue
+            | StatementKind::Return
+            | StatementKind::Error => {}
+            StatementKind::Assign { target, value } | StatementKind::SetReset { target, value, .. } => {
+                each_part(target, visit);
+                each_part(value, visit);
+            }
+            StatementKind::Expr(expr) => each_part(expr, visit),
+            StatementKind::If { branches, otherwise } => {
+                for (condition, body) in branches {
+                    each_part(condition, visit);
+                    each_expr(body, visit);
+                }
+                each_expr(otherwise.as_deref().unwrap_or_default(), visit);
+            }
+            StatementKind::Case { selector, arms, otherwise } => {
+                each_part(selector, visit);
+                arms.iter().for_each(|arm| each_expr(&arm.body, visit));
+                each_expr(otherwise.as_deref().unwrap_or_default(), visit);
+            }
+            StatementKind::For { counter, from, to, by, body } => {
+                [counter, from, to].into_iter().chain(by).for_each(|it| each_part(it, visit));
+                each_expr(body, visit);
+            }
+            StatementKind::While { condition, body } => {
+                each_part(condition, visit);
+                each_expr(body, visit);
+            }
+            StatementKind::Repeat { body, until } => {
+                each_expr(body, visit);
+                each_part(until, visit);
+            }
+        }
+    }
+}
+
+fn each_part<'a, 's>(expr: &'a Expr<'s>, visit: &mut dyn FnMut(&'a Expr<'s>)) {
+    visit(expr);
+    match &expr.kind {
+        ExprKind::Literal(_) | ExprKind::Name(_) | ExprKind::Address(_) => {}
+        ExprKind::Member(inner, _)
+        | ExprKind::Part(inner, _)
+        | ExprKind::Deref(inner)
+        | ExprKind::Unary(_, inner)
+        | ExprKind::Paren(inner) => each_part(inner, visit),
+        ExprKind::Index(base, indices) => {
+            each_part(base, visit);
+            indices.iter().for_each(|it| each_part(it, visit));
+        }
+        ExprKind::Call(callee, arguments) => {
+            each_part(callee, visit);
+            for argument in arguments {
+                match &argument.kind {
+                    ArgumentKind::Positional(value) | ArgumentKind::Input(_, value) => each_part(value, visit),
+                    ArgumentKind::Output { target, .. } => target.iter().for_each(|it| each_part(it, visit)),
+                }
+            }
+        }
+        ExprKind::Binary(left, _, _, right) => {
+            each_part(left, visit);
+            each_part(right, visit);
+        }
+    }
+}

@@ -1,0 +1,402 @@
+//! Calls: what is called, and which argument goes to which parameter.
+
+use super::Checker;
+use super::operand::Operand;
+use crate::declare::{Entry, Formal};
+use crate::key::{Key, list, nearest};
+use crate::{Code, Diagnostic, Span, ast, dialect};
+use ast::{ArgumentKind, ExprKind as Ast};
+use staunch_ir::{BlockId, Section, Type};
+
+/// What stands before the parentheses.
+pub(super) enum Callee<'s> {
+    /// A user's FUNCTION, by its slot.
+    Function(usize),
+    /// An instruction of a structure that instructions share (Logix), by its name.
+    Instruction(ast::Name<'s>),
+    /// A standard function.
+    Standard(ast::Name<'s>),
+    /// An instance of a block.
+    Instance,
+}
+
+/// What a parameter was given.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Given<'a, 's> {
+    Nothing,
+    /// By position, or `IN := x`.
+    Value(&'a ast::Expr<'s>),
+    /// `OUT => x`
+    Output {
+        target: Option<&'a ast::Expr<'s>>,
+        negated: bool,
+    },
+}
+
+/// The parameters of something that can be called, for matching arguments to them.
+pub(super) struct Parameter<'n> {
+    pub name: &'n str,
+    pub section: Section,
+}
+
+impl<'s> Checker<'_, 's> {
+    pub(super) fn call_value(
+        &mut self,
+        expr: &ast::Expr<'s>,
+        callee: &ast::Expr<'s>,
+        arguments: &[ast::Argument<'s>],
+        expected: Option<Type>,
+    ) -> Option<Operand> {
+        match self.callee(callee)? {
+            Callee::Standard(name) => self.standard_function(name, arguments, expected, expr.span),
+            other => {
+                if self.signature.is_none() {
+                    self.report(super::not_constant(expr.span));
+                    return None;
+                }
+                let value = self.call(other, callee, arguments, expr.span)?;
+                if value.is_none() {
+                    self.report_no_value(callee, expr.span);
+                }
+                value.map(Operand::Typed)
+            }
+        }
+    }
+
+    pub(super) fn call_statement(
+        &mut self,
+        expr: &ast::Expr<'s>,
+        callee: &ast::Expr<'s>,
+        arguments: &[ast::Argument<'s>],
+    ) {
+        match self.callee(callee) {
+            Some(Callee::Standard(name)) => {
+                let value = self.standard_function(name, arguments, None, expr.span);
+                if value.is_none() {
+                    return;
+                }
+                self.report(
+                    Diagnostic::new(Code::E0508, expr.span, format!("the result of `{}` is not used", name.text))
+                        .label("this statement has no effect")
+                        .help(format!("assign it: `result := {}(…);`", name.text)),
+                );
+            }
+            Some(other) => {
+                self.call(other, callee, arguments, expr.span);
+            }
+            None => {}
+        }
+    }
+
+    fn call(
+        &mut self,
+        what: Callee<'s>,
+        callee: &ast::Expr<'s>,
+        arguments: &[ast::Argument<'s>],
+        span: Span,
+    ) -> Option<Option<staunch_ir::Expr>> {
+        match what {
+            Callee::Function(slot) => self.user_function(slot, arguments, span),
+            Callee::Instruction(name) => self.instruction(name, arguments, span).map(Some),
+            Callee::Instance => self.instance_call(callee, arguments, span).map(|()| None),
+            Callee::Standard(_) => None,
+        }
+    }
+
+    fn report_no_value(&mut self, callee: &ast::Expr<'s>, span: Span) {
+        let text = self.decl.sources.text(callee.span).to_owned();
+        self.report(
+            Diagnostic::new(Code::E0311, span, format!("a call of `{text}` has no value"))
+                .label("this cannot stand in an expression")
+                .help("call it in a statement of its own, then read its outputs"),
+        );
+    }
+
+    fn callee(&mut self, callee: &ast::Expr<'s>) -> Option<Callee<'s>> {
+        match &callee.kind {
+            Ast::Name(name) => self.named_callee(*name),
+            Ast::Member(base, name) => {
+                if let Ast::Name(family) = &base.kind
+                    && self.scope.get(family.text).is_none()
+                    && let Some(it) = dialect::family_named(family.text)
+                {
+                    if is_instruction(it, name.text) {
+                        return Some(Callee::Instruction(*name));
+                    }
+                    self.report_family_call(it, *name);
+                    return None;
+                }
+                Some(Callee::Instance)
+            }
+            Ast::Index(..) | Ast::Paren(_) => Some(Callee::Instance),
+            Ast::Deref(_)
+            | Ast::Literal(_)
+            | Ast::Address(_)
+            | Ast::Part(..)
+            | Ast::Call(..)
+            | Ast::Unary(..)
+            | Ast::Binary(..) => {
+                self.error(Code::E0305, callee.span, "this cannot be called");
+                None
+            }
+        }
+    }
+
+    fn report_family_call(&mut self, family: staunch_runtime::Family, name: ast::Name<'s>) {
+        let owner = dialect::family_name(family);
+        if dialect::block_in(family, name.text).is_some() {
+            self.report(
+                Diagnostic::new(Code::E0305, name.span, format!("`{owner}.{}` is a type, not a function", name.text))
+                    .label("an instance of it can be called")
+                    .help(format!("declare one: `VAR c : {owner}.{}; END_VAR`, and call `c(…)`", name.text)),
+            );
+        } else {
+            self.report(super::no_such_block(family, name));
+        }
+    }
+
+    fn named_callee(&mut self, name: ast::Name<'s>) -> Option<Callee<'s>> {
+        if let Some(variable) = self.scope.get(name.text) {
+            // A variable that cannot be called does not hide a function of its name.
+            let callable = matches!(variable.place.ty, Type::Block(_) | Type::Struct(_));
+            let function = super::function::exists(name.text)
+                || matches!(self.decl.names.get(&Key(name.text)), Some(Entry::Pou(_)));
+            if callable || !function {
+                return Some(Callee::Instance);
+            }
+        }
+        if self.scope.is_refused(name.text) {
+            return None;
+        }
+        match self.decl.names.get(&Key(name.text)).copied() {
+            Some(Entry::Global(_)) => return Some(Callee::Instance),
+            Some(Entry::Pou(slot)) => {
+                let pou = self.decl.pous[slot].ast;
+                if pou.kind == ast::PouKind::Function {
+                    return Some(Callee::Function(slot));
+                }
+                return self.report_type_called(name, pou.kind);
+            }
+            Some(Entry::Type(_)) => {
+                self.error(Code::E0305, name.span, format!("`{}` is a type; it cannot be called", name.text));
+                return None;
+            }
+            None => {}
+        }
+        let own = self.decl.dialect(name.span);
+        if is_instruction(own.family(), name.text) {
+            return Some(Callee::Instruction(name));
+        }
+        if super::function::exists(name.text) {
+            return Some(Callee::Standard(name));
+        }
+        self.report_unknown_function(name);
+        None
+    }
+
+    fn report_type_called(&mut self, name: ast::Name<'s>, kind: ast::PouKind) -> Option<Callee<'s>> {
+        let mut error = Diagnostic::new(
+            Code::E0305,
+            name.span,
+            match kind {
+                ast::PouKind::Program => format!("the PROGRAM `{}` cannot be called", name.text),
+                _ => format!("`{}` is a FUNCTION_BLOCK; an instance of it is called", name.text),
+            },
+        );
+        if kind == ast::PouKind::FunctionBlock {
+            error = error.help(format!("declare one: `VAR instance : {}; END_VAR`, and call `instance(…)`", name.text));
+        }
+        self.report(error);
+        None
+    }
+
+    fn report_unknown_function(&mut self, name: ast::Name<'s>) {
+        if self.decl.bare_block(name.text, name.span).is_some() {
+            self.report_type_called(name, ast::PouKind::FunctionBlock);
+            return;
+        }
+        if dialect::FAMILIES.iter().any(|(_, family)| is_instruction(*family, name.text)) {
+            if let Some(error) = super::block_of_another_dialect(self.decl.dialect(name.span), name) {
+                self.report(error);
+                return;
+            }
+            self.report(
+                Diagnostic::new(Code::E0309, name.span, format!("`{}` is an instruction of LOGIX", name.text))
+                    .help(format!("write `LOGIX.{}(…)`, or compile with `--dialect logix`", name.text)),
+            );
+            return;
+        }
+        if not_yet(name.text) {
+            self.decl.not_supported(name.span, &format!("the function {}", name.text.to_ascii_uppercase()));
+            return;
+        }
+        let own = self.decl.pous.iter().filter(|it| it.ast.kind == ast::PouKind::Function).map(|it| it.ast.name.text);
+        let instances =
+            self.scope.variables.iter().filter(|it| matches!(it.place.ty, Type::Block(_) | Type::Struct(_)));
+        let standard = super::function::names().map(|it| -> &str { it });
+        let candidates = own.chain(instances.map(|it| it.name.text)).chain(standard);
+        let near = nearest(name.text, candidates).map(str::to_owned);
+        let mut error =
+            Diagnostic::new(Code::E0307, name.span, format!("there is no function or instance `{}`", name.text))
+                .label("unknown name");
+        if let Some(near) = near {
+            error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
+        }
+        self.report(error);
+    }
+
+    /// Matches arguments to parameters. Positional ones take the next free parameter: inputs and
+    /// in-outs first, then outputs.
+    pub(super) fn bind<'a>(
+        &mut self,
+        owner: &str,
+        parameters: &[Parameter<'_>],
+        arguments: &'a [ast::Argument<'s>],
+        unknown: impl Fn(ast::Name<'s>) -> Diagnostic,
+    ) -> Option<Vec<Given<'a, 's>>> {
+        let mut given = vec![Given::Nothing; parameters.len()];
+        let outputs_last = |output: bool| {
+            let is_output = move |it: &Section| (*it == Section::Output) == output;
+            (0..parameters.len()).filter(move |at| is_output(&parameters[*at].section))
+        };
+        let order: Vec<_> = outputs_last(false).chain(outputs_last(true)).collect();
+        let mut complete = true;
+        for argument in arguments {
+            let slot = match &argument.kind {
+                ArgumentKind::Positional(value) => {
+                    let free = order.iter().copied().find(|at| matches!(given[*at], Given::Nothing));
+                    match free {
+                        Some(at) if parameters[at].section == Section::Output => {
+                            Ok((at, Given::Output { target: Some(value), negated: false }))
+                        }
+                        Some(at) => Ok((at, Given::Value(value))),
+                        None => Err(Box::new(self.too_many(owner, parameters, argument.span))),
+                    }
+                }
+                ArgumentKind::Input(name, value) => self
+                    .parameter(parameters, *name, &unknown)
+                    .and_then(|at| self.direction(owner, &parameters[at], false, *name).map(|()| at))
+                    .map(|at| (at, Given::Value(value))),
+                ArgumentKind::Output { name, negated, target } => self
+                    .parameter(parameters, *name, &unknown)
+                    .and_then(|at| self.direction(owner, &parameters[at], true, *name).map(|()| at))
+                    .map(|at| (at, Given::Output { target: target.as_ref(), negated: *negated })),
+            };
+            match slot {
+                Ok((at, _)) if !matches!(given[at], Given::Nothing) => {
+                    complete = false;
+                    let name = parameters[at].name;
+                    self.report(
+                        Diagnostic::new(Code::E0304, argument.span, format!("`{name}` is given twice"))
+                            .label("it has a value already"),
+                    );
+                }
+                Ok((at, value)) => given[at] = value,
+                Err(error) => {
+                    complete = false;
+                    self.report(*error);
+                }
+            }
+        }
+        complete.then_some(given)
+    }
+
+    fn parameter(
+        &self,
+        parameters: &[Parameter<'_>],
+        name: ast::Name<'s>,
+        unknown: &impl Fn(ast::Name<'s>) -> Diagnostic,
+    ) -> Result<usize, Box<Diagnostic>> {
+        let found = parameters.iter().position(|it| it.name.eq_ignore_ascii_case(name.text));
+        found.ok_or_else(|| Box::new(unknown(name)))
+    }
+
+    /// `:=` is for inputs, `=>` for outputs.
+    fn direction(
+        &self,
+        owner: &str,
+        parameter: &Parameter<'_>,
+        arrow: bool,
+        name: ast::Name<'s>,
+    ) -> Result<(), Box<Diagnostic>> {
+        let is_output = parameter.section == Section::Output;
+        if is_output == arrow {
+            return Ok(());
+        }
+        let (what, right, wrong) = if is_output { ("an output", "=>", ":=") } else { ("an input", ":=", "=>") };
+        let error = Diagnostic::new(Code::E0312, name.span, format!("`{}` is {what} of `{owner}`", parameter.name))
+            .label(format!("connected with `{right}`, not with `{wrong}`"))
+            .help(format!("write `{} {right} …`", name.text));
+        Err(Box::new(error))
+    }
+
+    fn too_many(&self, owner: &str, parameters: &[Parameter<'_>], span: Span) -> Diagnostic {
+        let names: Vec<_> = parameters.iter().map(|it| it.name).collect();
+        let count = names.len();
+        let error =
+            Diagnostic::new(Code::E0302, span, format!("`{owner}` takes {}", plural(count))).label("one too many");
+        if names.is_empty() { error } else { error.note(format!("they are {}", names.join(", "))) }
+    }
+
+    pub(super) fn unknown_formal(owner: &str, formals: &[Formal<'s>], name: ast::Name<'s>) -> Diagnostic {
+        let names: Vec<_> = formals.iter().map(|it| it.name.text).collect();
+        let error = Diagnostic::new(Code::E0301, name.span, format!("`{owner}` has no parameter `{}`", name.text))
+            .label("unknown parameter");
+        match nearest(name.text, names.iter().copied()) {
+            Some(near) => error.help(format!("did you mean `{near}`?")).fix(name.span, near),
+            None if names.is_empty() => error,
+            None => error.help(format!("its parameters are {}", list(&names))),
+        }
+    }
+}
+
+/// Functions of the standard's tables, and of CODESYS, that are known to be missing.
+fn not_yet(name: &str) -> bool {
+    let name = name.to_ascii_uppercase();
+    let conversion = |part: &str| {
+        let texts = ["STRING", "WSTRING", "DATE", "TOD", "DT", "LDATE", "LTOD", "LDT", "CHAR", "WCHAR", "BCD"];
+        texts.iter().any(|it| part == *it || part.starts_with("BCD") || part.ends_with("BCD"))
+    };
+    let (from, to) = name.split_once("_TO_").or_else(|| Some(("", name.strip_prefix("TO_")?))).unwrap_or(("", ""));
+    let others = [
+        "ATAN2",
+        "ROUND",
+        "CEIL",
+        "FLOOR",
+        "SIZEOF",
+        "ASSERT",
+        "LOWER_BOUND",
+        "UPPER_BOUND",
+        "ADR",
+        "TIME",
+        "ADD_TIME",
+        "SUB_TIME",
+        "MUL_TIME",
+        "DIV_TIME",
+        "MULTIME",
+        "DIVTIME",
+        "CONCAT_DATE_TOD",
+        "CONCAT_TIME",
+        "UPPER_CASE",
+    ];
+    conversion(from) || conversion(to) || others.contains(&name.as_str())
+}
+
+/// Whether `name` is an instruction of a structure in `family`.
+fn is_instruction(family: staunch_runtime::Family, name: &str) -> bool {
+    instruction_in(family, name).is_some()
+}
+
+/// The first structure with the instruction `name`, and the instruction's position.
+pub(super) fn instruction_in(family: staunch_runtime::Family, name: &str) -> Option<(BlockId, usize)> {
+    let blocks = staunch_runtime::BLOCKS.iter().enumerate().filter(|(_, it)| it.family == family);
+    blocks.into_iter().find_map(|(at, block)| {
+        let found = block.instructions.iter().position(|it| !it.name.is_empty() && it.name.eq_ignore_ascii_case(name));
+        found.map(|instruction| (BlockId::next(at), instruction))
+    })
+}
+
+/// `1 argument`, `2 arguments`.
+pub(super) fn plural(count: usize) -> String {
+    if count == 1 { "1 argument".to_owned() } else { format!("{count} arguments") }
+}

@@ -1,0 +1,238 @@
+//! Implicit conversions: they only widen. What needs a function, the message names.
+
+use super::Checker;
+use super::operand::Operand;
+use crate::{Code, Diagnostic, Span, ast};
+use staunch_ir::{Conversion, Elementary, Expr, ExprKind, Lane, Op, Type, Value};
+
+impl<'s> Checker<'_, 's> {
+    /// The value of `expr`, to be stored where `ty` (and a subrange) is declared.
+    pub(super) fn value(&mut self, expr: &ast::Expr<'s>, ty: Type, range: Option<(i128, i128)>) -> Option<Expr> {
+        let operand = self.operand(expr, Some(ty))?;
+        let value = self.coerce(operand, ty, expr.span)?;
+        self.in_range(value, range, expr.span)
+    }
+
+    /// Adds the check of a subrange; a constant is checked now.
+    pub(super) fn in_range(&mut self, value: Expr, range: Option<(i128, i128)>, span: Span) -> Option<Expr> {
+        let Some((low, high)) = range else { return Some(value) };
+        let Type::Elementary(ty) = value.ty else { return Some(value) };
+        if let Some(number) = value.as_const().and_then(Value::as_integer) {
+            if (low..=high).contains(&number) {
+                return Some(value);
+            }
+            self.report(
+                Diagnostic::new(Code::E0202, span, format!("{number} lies outside the subrange {low}..{high}"))
+                    .label("the variable cannot hold it"),
+            );
+            return None;
+        }
+        let at = self.at(span);
+        let bound = |number| Some(Expr::constant(ty, ty.lane().integer(number)?, at));
+        let operands = vec![bound(low)?, value, bound(high)?];
+        Some(Expr::apply(Op::InRange, Type::Elementary(ty), operands, at))
+    }
+
+    /// Converts implicitly to `to`, or says why that is not done.
+    pub(super) fn coerce(&mut self, operand: Operand, to: Type, span: Span) -> Option<Expr> {
+        match (operand, to) {
+            (Operand::Typed(expr), _) => self.coerce_typed(expr, to, span),
+            (literal, Type::Elementary(ty)) => self.literal_as(&literal, ty, span),
+            (literal, Type::Enum(id)) if self.decl.dialect(span).mixes_bits_and_integers() => {
+                let base = self.decl.program.enumeration(id).base;
+                let value = self.literal_as(&literal, base, span)?;
+                Some(self.convert(Conversion::Same, to, value))
+            }
+            (_, Type::String(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_)) => {
+                let expected = self.type_name(to);
+                self.report(
+                    Diagnostic::new(Code::E0201, span, format!("expected {expected}, found a number"))
+                        .label(format!("expected {expected}")),
+                );
+                None
+            }
+        }
+    }
+
+    fn coerce_typed(&mut self, expr: Expr, to: Type, span: Span) -> Option<Expr> {
+        if expr.ty == to {
+            return match to {
+                Type::Block(_) => self.instance_is_no_value(&expr, span),
+                Type::Struct(id) if self.decl.is_instance(id) => self.instance_is_no_value(&expr, span),
+                _ => Some(expr),
+            };
+        }
+        match (expr.ty, to) {
+            (Type::Elementary(from), Type::Elementary(into)) => {
+                if widens(from, into) || self.dialect_allows(from, into, span) {
+                    return Some(self.convert(Conversion::Value, to, expr));
+                }
+                self.report_narrowing(from, into, span);
+                None
+            }
+            (Type::String(_), Type::String(_)) => Some(self.convert(Conversion::Value, to, expr)),
+            (Type::Enum(id), Type::Elementary(into))
+                if self.decl.dialect(span).mixes_bits_and_integers()
+                    && widens(self.decl.program.enumeration(id).base, into) =>
+            {
+                let base = Type::Elementary(self.decl.program.enumeration(id).base);
+                let number = self.convert(Conversion::Same, base, expr);
+                Some(self.convert(Conversion::Value, to, number))
+            }
+            (Type::Block(_), _) => self.instance_is_no_value(&expr, span),
+            (Type::Struct(id), _) if self.decl.is_instance(id) => self.instance_is_no_value(&expr, span),
+            _ => {
+                let (expected, found) = (self.type_name(to), self.type_name(expr.ty));
+                self.report(
+                    Diagnostic::new(Code::E0201, span, format!("expected {expected}, found {found}"))
+                        .label(format!("this is {found}")),
+                );
+                None
+            }
+        }
+    }
+
+    fn instance_is_no_value(&mut self, expr: &Expr, span: Span) -> Option<Expr> {
+        let ty = self.type_name(expr.ty);
+        let outputs: Vec<String> = match expr.ty {
+            Type::Block(id) => id.info().outputs().map(|it| it.name.to_owned()).collect(),
+            Type::Struct(id) => {
+                let fields = &self.decl.program.structure(id).fields;
+                let outputs = fields.iter().filter(|it| it.section == staunch_ir::Section::Output);
+                outputs.map(|it| it.name.clone()).collect()
+            }
+            Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) => Vec::new(),
+        };
+        let text = self.decl.sources.text(span);
+        let mut error = Diagnostic::new(Code::E0210, span, format!("an instance of {ty} is not a value"))
+            .label("this is the block itself");
+        if !outputs.is_empty() && !text.contains(char::is_whitespace) {
+            let names: Vec<_> = outputs.iter().map(|it| format!("{text}.{it}")).collect();
+            let names: Vec<_> = names.iter().map(String::as_str).collect();
+            error = error.help(format!("read one of its outputs: {}", crate::key::list(&names)));
+        }
+        self.report(error);
+        None
+    }
+
+    /// What CODESYS converts without being asked.
+    fn dialect_allows(&mut self, from: Elementary, to: Elementary, span: Span) -> bool {
+        if !self.decl.dialect(span).mixes_bits_and_integers() {
+            return false;
+        }
+        let (low, high) = (from.lane().range(), to.lane().range());
+        let (Some(from_range), Some(to_range)) = (low, high) else {
+            return widens(as_number(from), to);
+        };
+        if from == Elementary::Bool || to == Elementary::Bool || from.is_time() || to.is_time() {
+            return false;
+        }
+        if from_range.0 >= to_range.0 && from_range.1 <= to_range.1 {
+            return true;
+        }
+        let sign_only = from.lane().size() <= to.lane().size();
+        if sign_only {
+            self.report(
+                Diagnostic::new(
+                    Code::W0506,
+                    span,
+                    format!("{} becomes {}: the sign may change", from.name(), to.name()),
+                )
+                .label("implicit conversion")
+                .help(format!("say so: `{}_TO_{}(…)`", from.name(), to.name())),
+            );
+        }
+        sign_only
+    }
+
+    fn report_narrowing(&mut self, from: Elementary, to: Elementary, span: Span) {
+        let text = self.decl.sources.text(span).to_owned();
+        let function = format!("{}_TO_{}", from.name(), to.name());
+        let mut error = Diagnostic::new(Code::E0203, span, format!("expected {}, found {}", to.name(), from.name()))
+            .label(format!("{} does not convert to {} by itself", from.name(), to.name()));
+        let short = !text.is_empty() && text.len() < 60 && !text.contains('\n');
+        error = if short {
+            error.help(format!("write `{function}({text})`")).fix(span, format!("{function}({text})"))
+        } else {
+            error.help(format!("convert it with `{function}(…)`"))
+        };
+        self.report(error);
+    }
+
+    /// A conversion node, folded where the value is constant.
+    pub(super) fn convert(&mut self, how: Conversion, ty: Type, value: Expr) -> Expr {
+        let at = value.at;
+        if value.ty == ty {
+            return value;
+        }
+        let how = match how {
+            Conversion::Value if self.same_lane(value.ty, ty) => Conversion::Same,
+            other => other,
+        };
+        match (&value.kind, ty, self.decl.program.lane(ty)) {
+            (ExprKind::Const(it), _, Some(lane)) => {
+                let converted = match how {
+                    Conversion::Same => *it,
+                    Conversion::Value => staunch_runtime::ops::convert_value(*it, lane),
+                    Conversion::Truncate => staunch_runtime::ops::trunc_value(*it, lane),
+                };
+                Expr::new(ty, ExprKind::Const(converted), at)
+            }
+            (ExprKind::Text(bytes), Type::String(capacity), _) => {
+                let mut bytes = bytes.clone();
+                bytes.truncate(usize::from(capacity));
+                Expr::new(ty, ExprKind::Text(bytes), at)
+            }
+            _ => Expr::convert(how, ty, value, at),
+        }
+    }
+
+    fn same_lane(&self, a: Type, b: Type) -> bool {
+        let (a, b): (Option<Lane>, Option<Lane>) = (self.decl.program.lane(a), self.decl.program.lane(b));
+        a.is_some() && a == b
+    }
+}
+
+/// Whether every value of `from` is one of `to`, by the standard's figure of implicit conversions.
+pub(super) fn widens(from: Elementary, to: Elementary) -> bool {
+    if from == to {
+        return true;
+    }
+    if from.is_bits() || to.is_bits() {
+        return from.is_bits() && to.is_bits() && from.lane().size() < to.lane().size()
+            || (from == Elementary::Bool && to == Elementary::Byte);
+    }
+    if from.is_time() || to.is_time() {
+        return from == Elementary::Time && to == Elementary::Ltime;
+    }
+    match (from.lane().range(), to.lane().range()) {
+        (Some(from), Some(to)) => from.0 >= to.0 && from.1 <= to.1,
+        // A REAL holds 24 bits exactly, an LREAL 53.
+        (Some(_), None) => from.lane().size() * 2 <= to.lane().size(),
+        (None, Some(_)) => false,
+        (None, None) => from.lane().size() <= to.lane().size(),
+    }
+}
+
+/// The type at which two operands meet.
+pub(super) fn join(a: Elementary, b: Elementary) -> Option<Elementary> {
+    if widens(a, b) {
+        return Some(b);
+    }
+    if widens(b, a) {
+        return Some(a);
+    }
+    let meeting = [Elementary::Int, Elementary::Dint, Elementary::Lint, Elementary::Real, Elementary::Lreal];
+    meeting.into_iter().find(|it| widens(a, *it) && widens(b, *it))
+}
+
+/// The integer type that a bit string counts as where bits and integers mix.
+pub(super) fn as_number(ty: Elementary) -> Elementary {
+    match ty {
+        Elementary::Byte => Elementary::Usint,
+        Elementary::Word => Elementary::Uint,
+        Elementary::Dword => Elementary::Udint,
+        Elementary::Lword => Elementary::Ulint,
+        other => other,
+    }
+}

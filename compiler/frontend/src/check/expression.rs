@@ -1,0 +1,251 @@
+use super::Checker;
+use super::operand::Operand;
+use crate::key::Key;
+use crate::{Code, Diagnostic, Span, ast};
+use ast::{ExprKind as Ast, UnaryOp};
+use staunch_ir::{Conversion, Elementary, Expr, ExprKind, Op, Type, Value};
+
+impl<'s> Checker<'_, 's> {
+    /// Types an expression. `expected` is what its place asks for; only literals, bare
+    /// enumerators and overloaded functions listen to it.
+    pub(super) fn operand(&mut self, expr: &ast::Expr<'s>, expected: Option<Type>) -> Option<Operand> {
+        match &expr.kind {
+            Ast::Literal(literal) => self.literal(literal, expr.span),
+            Ast::Paren(inner) => self.operand(inner, expected),
+            Ast::Name(name) => self.name(*name, expected).map(Operand::Typed),
+            Ast::Member(base, name) => self.member_value(expr, base, *name).map(Operand::Typed),
+            Ast::Address(_) | Ast::Index(..) => self.load(expr).map(Operand::Typed),
+            Ast::Part(base, part) => self.part(base, *part).map(Operand::Typed),
+            Ast::Deref(_) => {
+                self.decl.not_supported(expr.span, "dereferencing");
+                None
+            }
+            Ast::Call(callee, arguments) => self.call_value(expr, callee, arguments, expected),
+            Ast::Unary(op, inner) => self.unary(*op, inner, expected, expr.span),
+            Ast::Binary(left, op, op_span, right) => self.binary(left, *op, *op_span, right, expected, expr.span),
+        }
+    }
+
+    /// A BOOL, for IF, WHILE, UNTIL.
+    pub(super) fn condition(&mut self, expr: &ast::Expr<'s>) -> Option<Expr> {
+        let value = self.operand(expr, Some(Type::BOOL))?;
+        if let Some(found) = value.ty()
+            && found != Type::BOOL
+        {
+            let name = self.type_name(found);
+            let text = self.decl.sources.text(expr.span).to_owned();
+            let mut error = Diagnostic::new(Code::E0507, expr.span, format!("a condition is a BOOL, this is {name}"))
+                .label("expected BOOL");
+            if matches!(found, Type::Elementary(it) if it.lane().is_integer()) && !text.contains(' ') {
+                error = error.help(format!("compare it: `{text} <> 0`")).fix(expr.span, format!("{text} <> 0"));
+            }
+            self.report(error);
+            return None;
+        }
+        self.coerce(value, Type::BOOL, expr.span)
+    }
+
+    fn name(&mut self, name: ast::Name<'s>, expected: Option<Type>) -> Option<Expr> {
+        if let Some(found) = self.find_variable(name) {
+            let variable = found?;
+            if let Some(value) = variable.constant_value() {
+                return self.constant_variable(&variable, value, name.span);
+            }
+            if self.context == super::Context::Initial {
+                let initial = variable.resolved.initial.clone();
+                return self.constant_variable(&variable, initial, name.span);
+            }
+            if self.signature.is_none() {
+                self.report(
+                    super::not_constant(name.span)
+                        .other(variable.name.span, format!("`{}` is a variable", name.text))
+                        .help("declare it in VAR CONSTANT"),
+                );
+                return None;
+            }
+            let at = self.at(name.span);
+            return Some(Expr::load(variable.place, at));
+        }
+        if let Some(value) = self.bare_enumerator(name, expected) {
+            return value;
+        }
+        self.unknown_name(name);
+        None
+    }
+
+    /// Reads a CONSTANT: a scalar is its value, so that it can size an array or label a CASE.
+    fn constant_variable(
+        &mut self,
+        variable: &crate::declare::Variable<'s>,
+        value: staunch_ir::Const,
+        span: Span,
+    ) -> Option<Expr> {
+        use staunch_ir::Const;
+        let at = self.at(span);
+        let ty = variable.resolved.ty;
+        let kind = match (value, self.decl.program.lane(ty), ty) {
+            (Const::Scalar(value), _, _) => ExprKind::Const(value),
+            (Const::Zero, Some(lane), _) => ExprKind::Const(lane.zero()),
+            (Const::Text(bytes), _, _) => ExprKind::Text(bytes),
+            (Const::Zero, None, Type::String(_)) => ExprKind::Text(Vec::new()),
+            (other, _, _) if self.context != super::Context::Body => ExprKind::Aggregate(other),
+            _ => ExprKind::Load(variable.place.clone()),
+        };
+        Some(Expr::new(ty, kind, at))
+    }
+
+    /// `a.b`, or the enumerator `Color.Red`. A variable hides a type of its name, unless it is an
+    /// enumeration, which has no members: `state := State.Idle`.
+    fn member_value(&mut self, expr: &ast::Expr<'s>, base: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<Expr> {
+        if let Ast::Name(ty) = &base.kind
+            && self.scope.get(ty.text).is_none_or(|it| matches!(it.place.ty, Type::Enum(_)))
+            && let Some(crate::declare::Entry::Type(_)) = self.decl.names.get(&Key(ty.text))
+        {
+            return self.enumerator(*ty, name);
+        }
+        self.load(expr)
+    }
+
+    fn load(&mut self, expr: &ast::Expr<'s>) -> Option<Expr> {
+        let found = self.place(expr)?;
+        if self.signature.is_none() {
+            self.report(super::not_constant(expr.span));
+            return None;
+        }
+        let at = self.at(expr.span);
+        Some(Expr::load(found.place, at))
+    }
+
+    /// `x.3`, `x.%X3`, `x.%B1`: a part of an integer or bit string.
+    fn part(&mut self, base: &ast::Expr<'s>, part: ast::Name<'s>) -> Option<Expr> {
+        let value = self.typed(base, None)?;
+        let part = self.find_part(value.ty, part)?;
+        let Type::Elementary(ty) = value.ty else { return None };
+        let (at, span) = (value.at, base.span);
+        let whole = value.ty;
+        let shift = Expr::constant(Elementary::Lint, Value::I64(i64::from(part.shift)), at);
+        let shifted = self.apply(Op::Shr, whole, vec![value, shift], whole, span)?;
+        if part.ty == Elementary::Bool {
+            let one = Expr::constant(ty, ty.lane().integer(1)?, at);
+            let masked = self.apply(Op::And, whole, vec![shifted, one], whole, span)?;
+            return Some(self.convert(Conversion::Value, Type::BOOL, masked));
+        }
+        Some(self.convert(Conversion::Value, Type::Elementary(part.ty), shifted))
+    }
+
+    fn unary(&mut self, op: UnaryOp, inner: &ast::Expr<'s>, expected: Option<Type>, span: Span) -> Option<Operand> {
+        let operand = self.operand(inner, expected)?;
+        match (op, operand) {
+            (UnaryOp::Plus, operand) => Some(operand),
+            (UnaryOp::Neg, Operand::Integer(value)) => Some(Operand::Integer(-value)),
+            (UnaryOp::Neg, Operand::Real { value, digits }) => {
+                Some(Operand::Real { value: -value, digits: digits.map(|it| format!("-{it}")) })
+            }
+            (UnaryOp::Neg, Operand::Typed(value)) => self.negate(value, span).map(Operand::Typed),
+            (UnaryOp::Not, operand) => {
+                let value = self.materialise(operand, expected, inner.span)?;
+                self.not(value, inner.span).map(Operand::Typed)
+            }
+        }
+    }
+
+    fn negate(&mut self, value: Expr, span: Span) -> Option<Expr> {
+        let value = if self.decl.dialect(span).mixes_bits_and_integers() { self.signed(value) } else { value };
+        let ty = value.ty;
+        let numeric = matches!(ty, Type::Elementary(it) if it.is_integer() || it.is_real() || it.is_time());
+        if !numeric {
+            let found = self.type_name(ty);
+            self.report(
+                Diagnostic::new(Code::E0204, span, format!("`-` needs a number or a TIME, this is {found}"))
+                    .label(format!("this is {found}")),
+            );
+            return None;
+        }
+        self.apply(Op::Neg, ty, vec![value], ty, span)
+    }
+
+    /// Where bit strings count as numbers, the negative of one needs a sign.
+    fn signed(&mut self, value: Expr) -> Expr {
+        let signed = match value.ty {
+            Type::Elementary(Elementary::Byte) => Type::INT,
+            Type::Elementary(Elementary::Word) => Type::DINT,
+            Type::Elementary(Elementary::Dword | Elementary::Lword) => Type::LINT,
+            _ => return value,
+        };
+        self.convert(Conversion::Value, signed, value)
+    }
+
+    pub(super) fn not(&mut self, value: Expr, span: Span) -> Option<Expr> {
+        let ty = value.ty;
+        let mixes = self.decl.dialect(span).mixes_bits_and_integers();
+        let bits = matches!(ty, Type::Elementary(it) if it.is_bits() || (mixes && it.is_integer()));
+        if !bits {
+            let found = self.type_name(ty);
+            self.report(
+                Diagnostic::new(Code::E0204, span, format!("NOT needs a BOOL or a bit string, this is {found}"))
+                    .label(format!("this is {found}")),
+            );
+            return None;
+        }
+        self.apply(Op::Not, ty, vec![value], ty, span)
+    }
+
+    /// An operation node at the lane of `operands`, folded where all operands are constant.
+    pub(super) fn apply(
+        &mut self,
+        op: Op,
+        operands: Type,
+        values: Vec<Expr>,
+        result: Type,
+        span: Span,
+    ) -> Option<Expr> {
+        if let (Type::Enum(id), false) = (operands, op.result().is_some()) {
+            return self.apply_to_enums(op, id, values, result, span);
+        }
+        let at = self.at(span);
+        let lane = self.decl.program.lane(operands)?;
+        let constants: Option<Vec<_>> = values.iter().map(Expr::as_const).collect();
+        match constants.and_then(|it| staunch_ir::apply(op, lane, &it)) {
+            Some(Ok(value)) => Some(Expr::new(result, ExprKind::Const(value), at)),
+            Some(Err(fault)) => {
+                self.report(
+                    Diagnostic::new(Code::E0207, span, format!("{fault} in a constant expression"))
+                        .label("this would fault in every scan"),
+                );
+                None
+            }
+            None => {
+                self.constant_zero_divisor(op, &values, span);
+                Some(Expr::apply(op, result, values, at))
+            }
+        }
+    }
+
+    /// SEL, MAX and the like take enumerations as numbers of their base type.
+    fn apply_to_enums(
+        &mut self,
+        op: Op,
+        id: staunch_ir::EnumId,
+        values: Vec<Expr>,
+        result: Type,
+        span: Span,
+    ) -> Option<Expr> {
+        let base = Type::Elementary(self.decl.program.enumeration(id).base);
+        let number = |this: &mut Self, value: Expr| match value.ty {
+            Type::Enum(_) => this.convert(Conversion::Same, base, value),
+            _ => value,
+        };
+        let values = values.into_iter().map(|it| number(self, it)).collect();
+        let value = self.apply(op, base, values, base, span)?;
+        Some(self.convert(Conversion::Same, result, value))
+    }
+
+    /// `x / 0` faults whatever `x` is.
+    fn constant_zero_divisor(&mut self, op: Op, values: &[Expr], span: Span) {
+        let divides = matches!(op, Op::Div | Op::Mod);
+        let zero = values.get(1).and_then(Expr::as_const).and_then(Value::as_integer) == Some(0);
+        if divides && zero {
+            self.report(Diagnostic::new(Code::E0207, span, "division by zero").label("the divisor is the constant 0"));
+        }
+    }
+}

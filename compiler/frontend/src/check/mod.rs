@@ -1,0 +1,263 @@
+//! One pass that types each expression and builds its IR node.
+
+mod block_call;
+mod call;
+mod case;
+mod chain;
+mod coerce;
+mod conversion;
+mod expression;
+mod function;
+mod literal;
+mod loops;
+mod migration;
+mod operand;
+mod operator;
+mod place;
+mod prescan;
+mod statement;
+mod unknown;
+
+pub(crate) use function::exists as is_function;
+pub(crate) use unknown::{block_of_another_dialect, no_such_block, not_constant};
+
+use crate::ast;
+use crate::declare::{Declarations, Resolved, Scope, Signature};
+use crate::{Code, Diagnostic, Span};
+use staunch_ir::{
+    Block, Const, Expr, Local, LocalId, Location, Place, Pou, PouKind, Statement, StatementKind, Type, Variable,
+};
+use std::rc::Rc;
+
+/// Checks the body of one POU, or one constant expression.
+pub(crate) struct Checker<'d, 's> {
+    pub decl: &'d mut Declarations<'s>,
+    scope: Rc<Scope<'s>>,
+    signature: Option<Rc<Signature<'s>>>,
+    /// The statements made so far for the innermost list; hoisted calls go to its end.
+    block: Block,
+    locals: Vec<Local>,
+    /// The counters of the FOR loops around the statement.
+    counters: Vec<Place>,
+    loops: usize,
+    uses: prescan::Uses,
+    context: Context,
+    /// Instances called so far on the way to this statement.
+    called: Vec<(Place, Span)>,
+    /// What is copied back behind the call that is being made.
+    copies_back: Block,
+}
+
+/// What a name of a variable stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Context {
+    /// Its storage.
+    Body,
+    /// Nothing: a constant is wanted.
+    Constant,
+    /// Its initial value: another variable's initial value may use it.
+    Initial,
+}
+
+/// The bodies of all POUs, in the order of their slots; `None` where there was an error.
+pub(crate) fn bodies(decl: &mut Declarations<'_>) -> Vec<Option<Pou>> {
+    (0..decl.pous.len()).map(|at| body(decl, at)).collect()
+}
+
+fn body(decl: &mut Declarations<'_>, at: usize) -> Option<Pou> {
+    let pou = decl.pous[at].ast;
+    let signature = decl.signature(at)?;
+    let mut checker = Checker {
+        scope: Rc::clone(&signature.scope),
+        locals: signature.locals.clone(),
+        signature: Some(Rc::clone(&signature)),
+        block: Vec::new(),
+        counters: Vec::new(),
+        loops: 0,
+        uses: prescan::Uses::default(),
+        context: Context::Body,
+        called: Vec::new(),
+        copies_back: Block::new(),
+        decl,
+    };
+    checker.edge_inputs(&signature, pou.name.span);
+    let mut body = checker.block_of(&pou.body);
+    checker.migration_lints(pou);
+    let mut edges = std::mem::take(&mut checker.block);
+    edges.append(&mut body);
+    let prescan = checker.prescan(pou);
+    let locals = std::mem::take(&mut checker.locals);
+    checker.report_unused(&signature);
+    let location = decl.location(pou.name.span);
+    Some(Pou {
+        kind: kind(pou.kind),
+        name: pou.name.text.to_owned(),
+        doc: pou.doc.clone(),
+        location,
+        state: signature.state,
+        params: signature.params.clone(),
+        locals,
+        result: signature.result.as_ref().map(|(id, _)| *id),
+        variables: variables(&signature),
+        body: edges,
+        prescan,
+    })
+}
+
+fn kind(kind: ast::PouKind) -> PouKind {
+    match kind {
+        ast::PouKind::Program => PouKind::Program,
+        ast::PouKind::FunctionBlock => PouKind::FunctionBlock,
+        ast::PouKind::Function => PouKind::Function,
+    }
+}
+
+fn variables(signature: &Signature<'_>) -> Vec<Variable> {
+    let variable = |it: &crate::declare::Variable<'_>| Variable {
+        name: it.name.text.to_owned(),
+        section: it.section,
+        place: it.place.clone(),
+    };
+    signature.scope.variables.iter().map(variable).collect()
+}
+
+/// The constant `expr`, converted to `target` where there is one; other expressions are refused.
+pub(crate) fn constant<'s>(
+    decl: &mut Declarations<'s>,
+    scope: &Rc<Scope<'s>>,
+    expr: &ast::Expr<'s>,
+    target: Option<&Resolved>,
+) -> Option<Expr> {
+    let mut checker = Checker {
+        decl,
+        scope: Rc::clone(scope),
+        signature: None,
+        block: Vec::new(),
+        locals: Vec::new(),
+        counters: Vec::new(),
+        loops: 0,
+        uses: prescan::Uses::default(),
+        called: Vec::new(),
+        copies_back: Block::new(),
+        context: if target.is_some() { Context::Initial } else { Context::Constant },
+    };
+    let value = match target {
+        Some(target) => checker.value(expr, target.ty, target.range)?,
+        None => checker.typed(expr, None)?,
+    };
+    if !is_constant(&value) {
+        checker.decl.report(not_constant(expr.span));
+        return None;
+    }
+    Some(value)
+}
+
+fn is_constant(expr: &Expr) -> bool {
+    use staunch_ir::ExprKind;
+    match &expr.kind {
+        ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => true,
+        ExprKind::Load(_) | ExprKind::Apply(..) | ExprKind::ApplyText(..) | ExprKind::Convert(..) => false,
+    }
+}
+
+impl<'s> Declarations<'s> {
+    /// A constant whole number: an array bound, a string's length, an enumerator's value.
+    pub fn constant_integer(&mut self, expr: &ast::Expr<'s>, scope: &Rc<Scope<'s>>) -> Option<i128> {
+        let value = constant(self, scope, expr, None)?;
+        let number = value.as_const().and_then(staunch_ir::Value::as_integer);
+        if number.is_none() || value.ty == Type::BOOL {
+            self.report(
+                Diagnostic::new(Code::E0201, expr.span, "a whole number is expected here")
+                    .label(format!("this is {}", self.program.type_name(value.ty))),
+            );
+            return None;
+        }
+        number
+    }
+}
+
+impl<'s> Checker<'_, 's> {
+    fn report(&mut self, diagnostic: Diagnostic) {
+        self.decl.report(diagnostic);
+    }
+
+    fn error(&mut self, code: Code, span: Span, message: impl Into<String>) {
+        self.decl.error(code, span, message);
+    }
+
+    fn at(&mut self, span: Span) -> Location {
+        self.decl.location(span)
+    }
+
+    fn type_name(&self, ty: Type) -> String {
+        self.decl.program.type_name(ty)
+    }
+
+    fn push(&mut self, kind: StatementKind, span: Span) {
+        let at = self.at(span);
+        self.block.push(Statement::new(kind, at));
+    }
+
+    fn assign(&mut self, target: Place, value: Expr, span: Span) {
+        self.push(StatementKind::Assign { target, value }, span);
+    }
+
+    /// The statements that `make` adds, as a list of their own.
+    fn nested(&mut self, make: impl FnOnce(&mut Self)) -> Block {
+        let outer = std::mem::take(&mut self.block);
+        make(self);
+        std::mem::replace(&mut self.block, outer)
+    }
+
+    /// A local that the source does not name.
+    fn temporary(&mut self, name: &str, ty: Type) -> Place {
+        self.temporary_with(name, ty, Const::Zero)
+    }
+
+    fn temporary_with(&mut self, name: &str, ty: Type, initial: Const) -> Place {
+        let id = LocalId::next(self.locals.len());
+        self.locals.push(Local { name: name.to_owned(), ty, initial, doc: None });
+        Place::local(id, ty)
+    }
+
+    /// Runs `next`; if it hoisted a call, what was evaluated before it is saved first, so that
+    /// evaluation goes left to right.
+    fn after<T>(&mut self, done: &mut [&mut Expr], next: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
+        let mark = self.block.len();
+        let result = next(self);
+        if self.block.len() > mark {
+            let mut saved = Vec::new();
+            for expr in done.iter_mut().filter(|it| !is_constant(it)) {
+                let place = self.temporary("saved", expr.ty);
+                let at = expr.at;
+                let value = std::mem::replace(*expr, Expr::load(place.clone(), at));
+                saved.push(Statement::assign(place, value, at));
+            }
+            self.block.splice(mark..mark, saved);
+        }
+        result
+    }
+
+    /// As [`after`](Self::after), for the indices of a place that was evaluated before.
+    fn after_place<T>(&mut self, place: &mut Place, next: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
+        let indices = place.projections.iter_mut().filter_map(|it| match it {
+            staunch_ir::Projection::Index { index, .. } => Some(index.as_mut()),
+            staunch_ir::Projection::Field(_) => None,
+        });
+        let mut indices: Vec<_> = indices.collect();
+        self.after(&mut indices, next)
+    }
+
+    fn report_unused(&mut self, signature: &Signature<'s>) {
+        for variable in &signature.scope.variables {
+            use staunch_ir::Section;
+            let internal = matches!(variable.section, Section::Internal | Section::Temp | Section::External);
+            if internal && !variable.used.get() && !variable.name.text.starts_with('_') {
+                self.decl.report(
+                    Diagnostic::new(Code::W0501, variable.name.span, format!("`{}` is never used", variable.name.text))
+                        .label("declared here, read and written nowhere"),
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! Operands: typed expressions, and literals that take the type of their place.
+
+use super::Checker;
+use crate::{Code, Diagnostic, Span, ast};
+use staunch_ir::{Elementary, Expr, Type, Value};
+
+/// A checked expression, or a number that no type has been asked of yet.
+#[derive(Clone, Debug)]
+pub(super) enum Operand {
+    Typed(Expr),
+    Integer(i128),
+    /// The digits as spelled are kept, so that a REAL is rounded once.
+    Real {
+        value: f64,
+        digits: Option<String>,
+    },
+}
+
+impl Operand {
+    pub(super) fn typed(&self) -> Option<&Expr> {
+        match self {
+            Self::Typed(expr) => Some(expr),
+            Self::Integer(_) | Self::Real { .. } => None,
+        }
+    }
+
+    pub fn typed_mut(&mut self) -> Option<&mut Expr> {
+        match self {
+            Self::Typed(expr) => Some(expr),
+            Self::Integer(_) | Self::Real { .. } => None,
+        }
+    }
+
+    pub fn ty(&self) -> Option<Type> {
+        self.typed().map(|it| it.ty)
+    }
+}
+
+impl<'s> Checker<'_, 's> {
+    /// The expression with a concrete type: its own, else the expected one, else the default.
+    pub(super) fn typed(&mut self, expr: &ast::Expr<'s>, expected: Option<Type>) -> Option<Expr> {
+        let operand = self.operand(expr, expected)?;
+        self.materialise(operand, expected, expr.span)
+    }
+
+    /// Gives an untyped number a type.
+    pub(super) fn materialise(&mut self, operand: Operand, expected: Option<Type>, span: Span) -> Option<Expr> {
+        let ty = match &operand {
+            Operand::Typed(_) => None,
+            Operand::Integer(value) => Some(integer_type(*value, expected)),
+            Operand::Real { .. } => Some(match expected {
+                Some(Type::Elementary(it)) if it.is_real() => it,
+                _ => Elementary::Lreal,
+            }),
+        };
+        match ty {
+            Some(ty) => self.coerce(operand, Type::Elementary(ty), span),
+            None => match operand {
+                Operand::Typed(expr) => Some(expr),
+                Operand::Integer(_) | Operand::Real { .. } => None,
+            },
+        }
+    }
+
+    /// An untyped number as a constant of `ty`.
+    pub(super) fn literal_as(&mut self, operand: &Operand, ty: Elementary, span: Span) -> Option<Expr> {
+        let at = self.at(span);
+        let value = match operand {
+            Operand::Typed(expr) => return Some(expr.clone()),
+            Operand::Integer(value) => self.integer_as(*value, ty, span)?,
+            Operand::Real { value, digits } => self.real_as(*value, digits.as_deref(), ty, span)?,
+        };
+        Some(Expr::constant(ty, value, at))
+    }
+
+    fn integer_as(&mut self, value: i128, ty: Elementary, span: Span) -> Option<Value> {
+        if ty.is_real() {
+            return self.real_as(to_f64(value), Some(&value.to_string()), ty, span);
+        }
+        if ty.is_time() {
+            self.report(
+                Diagnostic::new(Code::E0201, span, format!("a {} is expected, not a number", ty.name()))
+                    .label(format!("expected {}", ty.name()))
+                    .help(format!("write the unit: `T#{value}ms`")),
+            );
+            return None;
+        }
+        if let Some(it) = ty.lane().integer(value) {
+            return Some(it);
+        }
+        if let Some(it) = self.wrapped_bits(value, ty, span) {
+            return Some(it);
+        }
+        let (low, high) = ty.lane().range()?;
+        self.report(
+            Diagnostic::new(Code::E0202, span, format!("{value} does not fit {}", ty.name()))
+                .label(format!("{} holds {low} to {high}", ty.name())),
+        );
+        None
+    }
+
+    /// CODESYS writes -1 to a WORD as 65535.
+    fn wrapped_bits(&mut self, value: i128, ty: Elementary, span: Span) -> Option<Value> {
+        let (_, high) = ty.lane().range()?;
+        let mixes = self.decl.dialect(span).mixes_bits_and_integers();
+        if !mixes || value >= 0 || ty == Elementary::Bool || !ty.lane().is_unsigned() || -value > high / 2 + 1 {
+            return None;
+        }
+        self.report(
+            Diagnostic::new(Code::W0506, span, format!("{value} becomes {} in {}", value + high + 1, ty.name()))
+                .label(format!("{} has no sign", ty.name())),
+        );
+        ty.lane().integer(value + high + 1)
+    }
+
+    fn real_as(&mut self, value: f64, digits: Option<&str>, ty: Elementary, span: Span) -> Option<Value> {
+        let value = match ty {
+            Elementary::Lreal => Value::F64(value),
+            Elementary::Real => {
+                let short = match digits.and_then(|it| it.parse::<f32>().ok()) {
+                    Some(it) => it,
+                    None => narrow(value),
+                };
+                Value::F32(short)
+            }
+            other => {
+                self.report(
+                    Diagnostic::new(
+                        Code::E0203,
+                        span,
+                        format!("a number with a fraction does not fit {}", other.name()),
+                    )
+                    .label(format!("expected {}", other.name()))
+                    .help(format!("round it with `REAL_TO_{}(…)`, or cut it with `TRUNC(…)`", other.name())),
+                );
+                return None;
+            }
+        };
+        let infinite = match value {
+            Value::F32(it) => it.is_infinite(),
+            Value::F64(it) => it.is_infinite(),
+            _ => false,
+        };
+        if infinite && digits.is_some() {
+            self.error(Code::E0202, span, format!("this number is too large for {}", ty.name()));
+            return None;
+        }
+        Some(value)
+    }
+}
+
+fn narrow(value: f64) -> f32 {
+    staunch_runtime::ops::convert::<f64, f32>(value)
+}
+
+pub(super) fn to_f64(value: i128) -> f64 {
+    value.to_string().parse().unwrap_or(f64::INFINITY)
+}
+
+/// The expected type where the value fits it, else the smallest of INT, DINT, LINT, ULINT.
+fn integer_type(value: i128, expected: Option<Type>) -> Elementary {
+    if let Some(Type::Elementary(expected)) = expected {
+        let fits = expected.is_real() || (!expected.is_time() && expected.lane().integer(value).is_some());
+        if fits && expected != Elementary::Bool {
+            return expected;
+        }
+    }
+    let candidates = [Elementary::Int, Elementary::Dint, Elementary::Lint];
+    let fitting = candidates.into_iter().find(|it| it.lane().integer(value).is_some());
+    fitting.unwrap_or(Elementary::Ulint)
+}

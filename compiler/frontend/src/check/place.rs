@@ -1,0 +1,393 @@
+//! Storage that an expression names.
+
+use super::Checker;
+use crate::declare::{Entry, Variable};
+use crate::key::{Key, nearest};
+use crate::{Code, Diagnostic, Span, ast};
+use ast::ExprKind as Ast;
+use staunch_ir::{ArrayId, BlockId, Elementary, Expr, FieldId, Op, Place, Section, StructId, Type, Value};
+use staunch_runtime::Direction;
+
+/// A place, and what may be done with it.
+#[derive(Clone, Debug)]
+pub(super) struct Found<'s> {
+    pub place: Place,
+    pub range: Option<(i128, i128)>,
+    pub access: Access<'s>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Access<'s> {
+    Write,
+    Constant(ast::Name<'s>),
+    /// An input of the POU itself.
+    OwnInput(ast::Name<'s>),
+    /// An output of a block, seen from outside.
+    Output(ast::Name<'s>),
+}
+
+/// A part of an integer or bit string: `.3`, `.%W1`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Part {
+    pub ty: Elementary,
+    pub shift: u32,
+}
+
+impl<'s> Checker<'_, 's> {
+    /// The place that `expr` names, for reading or writing.
+    pub(super) fn place(&mut self, expr: &ast::Expr<'s>) -> Option<Found<'s>> {
+        match &expr.kind {
+            Ast::Name(name) => self.variable_place(*name),
+            Ast::Paren(inner) => self.place(inner),
+            Ast::Address(name) => {
+                let place = self.decl.direct_address(*name)?;
+                Some(Found { place, range: None, access: Access::Write })
+            }
+            Ast::Member(base, name) => self.member(base, *name),
+            Ast::Index(base, indices) => self.index(base, indices),
+            Ast::Deref(_) => {
+                self.decl.not_supported(expr.span, "dereferencing");
+                None
+            }
+            Ast::Literal(_) | Ast::Part(..) | Ast::Call(..) | Ast::Unary(..) | Ast::Binary(..) => {
+                self.report(
+                    Diagnostic::new(Code::E0306, expr.span, "a variable is expected here").label("this is a value"),
+                );
+                None
+            }
+        }
+    }
+
+    /// The variable that a name means; the inner `None` says that it was reported.
+    pub(super) fn find_variable(&mut self, name: ast::Name<'s>) -> Option<Option<Variable<'s>>> {
+        if let Some(variable) = self.scope.get(name.text) {
+            variable.used.set(true);
+            return Some(Some(variable.clone()));
+        }
+        if let Some(result) = self.result_variable(name) {
+            return Some(Some(result));
+        }
+        if self.scope.is_refused(name.text) {
+            return Some(None);
+        }
+        let unknown_constant = self.scope.constants.as_ref().is_some_and(|it| it.is_refused(name.text));
+        if unknown_constant && self.context != super::Context::Body {
+            self.report(
+                Diagnostic::new(Code::E0402, name.span, format!("the value of `{}` is not known here", name.text))
+                    .label("it needs itself, or its declaration is wrong"),
+            );
+            return Some(None);
+        }
+        match self.decl.names.get(&Key(name.text)).copied() {
+            Some(Entry::Global(at)) => {
+                let variable = self.decl.global(at);
+                if let Some(variable) = &variable {
+                    variable.used.set(true);
+                }
+                Some(variable)
+            }
+            Some(Entry::Pou(_) | Entry::Type(_)) | None => {
+                // A variable whose declaration was refused is not reported again at every use.
+                self.declared_but_refused(name).then_some(None)
+            }
+        }
+    }
+
+    /// A FUNCTION's own name is its result.
+    fn result_variable(&self, name: ast::Name<'s>) -> Option<Variable<'s>> {
+        let signature = self.signature.as_ref()?;
+        let (id, resolved) = signature.result.as_ref()?;
+        let local = &self.locals[id.index()];
+        local.name.eq_ignore_ascii_case(name.text).then(|| Variable {
+            name,
+            place: Place::local(*id, resolved.ty),
+            resolved: resolved.clone(),
+            section: Section::Internal,
+            constant: false,
+            retain: false,
+            used: std::rc::Rc::default(),
+        })
+    }
+
+    fn declared_but_refused(&self, name: ast::Name<'s>) -> bool {
+        self.signature.is_none()
+            && self.decl.pous.iter().any(|pou| {
+                let mut names = pou.ast.blocks.iter().flat_map(|it| &it.vars).flat_map(|it| &it.names);
+                names.any(|it| it.span == name.span)
+            })
+    }
+
+    fn variable_place(&mut self, name: ast::Name<'s>) -> Option<Found<'s>> {
+        let Some(found) = self.find_variable(name) else {
+            self.unknown_name(name);
+            return None;
+        };
+        let variable = found?;
+        let access = match variable.section {
+            _ if variable.constant => Access::Constant(name),
+            Section::Input if self.signature.is_some() => Access::OwnInput(name),
+            Section::Input
+            | Section::Output
+            | Section::InOut
+            | Section::Internal
+            | Section::Temp
+            | Section::Global
+            | Section::External => Access::Write,
+        };
+        Some(Found { place: variable.place, range: variable.resolved.range, access })
+    }
+
+    fn member(&mut self, base: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<Found<'s>> {
+        if let Ast::Name(owner) = &base.kind
+            && let Some(found) = self.global_of_namespace(*owner, name)
+        {
+            return found;
+        }
+        let found = self.place(base)?;
+        match found.place.ty {
+            Type::Struct(id) => self.struct_member(found, id, name),
+            Type::Block(id) => self.pin(found, id, name),
+            Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) => {
+                let ty = self.type_name(found.place.ty);
+                self.report(
+                    Diagnostic::new(Code::E0107, name.span, format!("{ty} has no members"))
+                        .label(format!("`{}` cannot be part of {ty}", name.text)),
+                );
+                None
+            }
+        }
+    }
+
+    /// `Globals.x`: a global by its structure's name, where no variable is called so.
+    fn global_of_namespace(&mut self, owner: ast::Name<'s>, name: ast::Name<'s>) -> Option<Option<Found<'s>>> {
+        let hidden = self.scope.get(owner.text).is_some() || self.decl.names.contains_key(&Key(owner.text));
+        if hidden || !owner.text.eq_ignore_ascii_case("Globals") {
+            return None;
+        }
+        match self.decl.names.get(&Key(name.text)) {
+            Some(Entry::Global(_)) => Some(self.variable_place(name)),
+            Some(Entry::Pou(_) | Entry::Type(_)) | None => None,
+        }
+    }
+
+    fn struct_member(&mut self, found: Found<'s>, id: StructId, name: ast::Name<'s>) -> Option<Found<'s>> {
+        let instance = self.decl.is_instance(id);
+        if self.is_refused_member(id, name) {
+            return None;
+        }
+        let fields = &self.decl.program.structure(id).fields;
+        let at = fields.iter().position(|it| it.name.eq_ignore_ascii_case(name.text));
+        let Some(at) = at else {
+            let visible = fields.iter().filter(|it| !instance || is_pin(it.section));
+            let near = nearest(name.text, visible.map(|it| it.name.as_str())).map(str::to_owned);
+            self.decl.unknown_member(name, found.place.ty, near.as_deref());
+            return None;
+        };
+        let (ty, range, section, constant) = (fields[at].ty, fields[at].range, fields[at].section, fields[at].constant);
+        if instance && !is_pin(section) {
+            let owner = self.type_name(found.place.ty);
+            self.report(
+                Diagnostic::new(
+                    Code::E0109,
+                    name.span,
+                    format!("`{}` is an internal variable of `{owner}`", name.text),
+                )
+                .label("only inputs and outputs can be reached from outside"),
+            );
+            return None;
+        }
+        let access = match section {
+            _ if constant => Access::Constant(name),
+            Section::Output if instance => Access::Output(name),
+            // A structure in a constant stays constant; an instance's input is for its callers.
+            _ if instance => Access::Write,
+            _ => found.access,
+        };
+        Some(Found { place: found.place.field(FieldId::next(at), ty), range, access })
+    }
+
+    /// Whether the member was declared, but refused.
+    pub(super) fn is_refused_member(&mut self, id: StructId, name: ast::Name<'s>) -> bool {
+        let signature = self.decl.slot_of_instance(id).and_then(|slot| self.decl.signature(slot));
+        signature.is_some_and(|it| it.scope.is_refused(name.text))
+    }
+
+    fn pin(&mut self, found: Found<'s>, id: BlockId, name: ast::Name<'s>) -> Option<Found<'s>> {
+        let pins = id.info().pins;
+        let visible = |pin: &&staunch_runtime::Pin| pin.direction != Direction::Memory;
+        let own = self.own_pin_name(id, name);
+        let at = pins.iter().position(|it| visible(&it) && it.name.eq_ignore_ascii_case(own.text));
+        let Some(at) = at else {
+            self.report(super::unknown::unknown_pin(id, name));
+            return None;
+        };
+        let access = if pins[at].direction == Direction::Output { Access::Output(name) } else { Access::Write };
+        let field = FieldId::next(at);
+        Some(Found { place: found.place.field(field, id.pin_type(field)?), range: None, access })
+    }
+
+    fn index(&mut self, base: &ast::Expr<'s>, indices: &[ast::Expr<'s>]) -> Option<Found<'s>> {
+        let mut found = self.place(base)?;
+        for index in indices {
+            let Type::Array(id) = found.place.ty else {
+                let ty = self.type_name(found.place.ty);
+                self.report(
+                    Diagnostic::new(Code::E0302, index.span, format!("{ty} has no index here"))
+                        .label("one index too many, or not an array"),
+                );
+                return None;
+            };
+            let Found { place, access, .. } = found;
+            let mut place = place;
+            let index_value = self.after_place(&mut place, |this| this.index_value(index, id))?;
+            let at = self.at(index.span);
+            let element = self.decl.program.array(id).element;
+            let range = self.decl.elements[id.index()].range;
+            found = Found { place: place.index(index_value, element, at), range, access };
+        }
+        Some(found)
+    }
+
+    /// An index as LINT; a constant one is checked now.
+    fn index_value(&mut self, index: &ast::Expr<'s>, id: ArrayId) -> Option<Expr> {
+        let array = self.decl.program.array(id);
+        let value = self.typed(index, None)?;
+        let value = match value.ty {
+            Type::Elementary(it) if it.is_integer() || (it.is_bits() && it != Elementary::Bool) => value,
+            other => {
+                let found = self.type_name(other);
+                self.report(
+                    Diagnostic::new(Code::E0201, index.span, format!("an index is an integer, this is {found}"))
+                        .label("expected an integer"),
+                );
+                return None;
+            }
+        };
+        if let Some(number) = value.as_const().and_then(Value::as_integer)
+            && !(i128::from(array.low)..=i128::from(array.high)).contains(&number)
+        {
+            self.report(
+                Diagnostic::new(Code::E0208, index.span, format!("the index {number} is out of range"))
+                    .label(format!("the array goes from {} to {}", array.low, array.high)),
+            );
+            return None;
+        }
+        self.as_lint(value, index.span)
+    }
+
+    /// Any integer as LINT; a ULINT beyond LINT becomes the largest LINT, which no array holds.
+    fn as_lint(&mut self, value: Expr, span: Span) -> Option<Expr> {
+        let value = if self.decl.program.lane(value.ty) == Some(staunch_ir::Lane::U64) {
+            let (ty, at) = (value.ty, value.at);
+            let most = Expr::new(ty, staunch_ir::ExprKind::Const(Value::U64(u64::MAX >> 1)), at);
+            self.apply(Op::Min, ty, vec![value, most], ty, span)?
+        } else {
+            value
+        };
+        Some(self.convert(staunch_ir::Conversion::Value, Type::LINT, value))
+    }
+
+    /// What `.3` or `.%W1` selects from a value of type `ty`.
+    pub(super) fn find_part(&mut self, ty: Type, part: ast::Name<'s>) -> Option<Part> {
+        let width = match ty {
+            Type::Elementary(it) if it.lane().is_integer() && !it.is_time() => it.lane().size() * 8,
+            other => {
+                let found = self.type_name(other);
+                self.report(
+                    Diagnostic::new(Code::E0204, part.span, format!("{found} has no bits to select"))
+                        .label("bits are selected from integers and bit strings"),
+                );
+                return None;
+            }
+        };
+        let text = part.text.trim_start_matches('%');
+        let (of, number) = match text.chars().next().map(|it| it.to_ascii_uppercase()) {
+            Some('X') => (Elementary::Bool, &text[1..]),
+            Some('B') => (Elementary::Byte, &text[1..]),
+            Some('W') => (Elementary::Word, &text[1..]),
+            Some('D') => (Elementary::Dword, &text[1..]),
+            Some(_) => (Elementary::Bool, text),
+            None => return None,
+        };
+        let size = if of == Elementary::Bool { 1 } else { of.lane().size() * 8 };
+        let shift = number.parse::<u32>().ok().and_then(|it| it.checked_mul(size));
+        let Some(shift) = shift.filter(|it| it + size <= width) else {
+            let found = self.type_name(ty);
+            self.report(
+                Diagnostic::new(Code::E0208, part.span, format!("`.{}` lies outside {found}", part.text))
+                    .label(format!("{found} has {width} bits, the first is 0")),
+            );
+            return None;
+        };
+        Some(Part { ty: of, shift })
+    }
+
+    /// Refuses a write where the place may not be written.
+    pub(super) fn writable(&mut self, found: &Found<'s>, span: Span) -> bool {
+        if self.is_counter(&found.place) {
+            return self.report_counter(span);
+        }
+        match found.access {
+            Access::Write => true,
+            Access::Constant(name) => {
+                self.report(
+                    Diagnostic::new(Code::E0501, span, format!("`{}` is a CONSTANT", name.text))
+                        .label("a constant cannot be assigned to"),
+                );
+                false
+            }
+            Access::OwnInput(name) if self.decl.dialect(span).assigns_inputs() => {
+                self.report(
+                    Diagnostic::new(Code::W0504, span, format!("the input `{}` is assigned from inside", name.text))
+                        .label("the caller's value is lost"),
+                );
+                true
+            }
+            Access::OwnInput(name) => {
+                self.report(
+                    Diagnostic::new(Code::E0502, span, format!("`{}` is an input", name.text))
+                        .label("an input is set by the caller only")
+                        .help("assign to a variable of your own, or declare it VAR_IN_OUT"),
+                );
+                false
+            }
+            Access::Output(name) => {
+                self.report(
+                    Diagnostic::new(Code::E0504, span, format!("`{}` is an output", name.text))
+                        .label("only the block itself sets its outputs"),
+                );
+                false
+            }
+        }
+    }
+
+    fn is_counter(&self, place: &Place) -> bool {
+        place.projections.iter().all(|it| matches!(it, staunch_ir::Projection::Field(_)))
+            && self.counters.iter().any(|it| same_place(it, place))
+    }
+
+    fn report_counter(&mut self, span: Span) -> bool {
+        let lint = self.decl.dialect(span).assigns_inputs();
+        let code = if lint { Code::W0505 } else { Code::E0503 };
+        self.report(
+            Diagnostic::new(code, span, "the counter of a FOR loop is assigned inside the loop")
+                .label("the loop itself advances it")
+                .help("use WHILE to decide the next value yourself, or EXIT to leave the loop"),
+        );
+        lint
+    }
+}
+
+pub(super) fn same_place(a: &Place, b: &Place) -> bool {
+    let field = |it: &staunch_ir::Projection| match it {
+        staunch_ir::Projection::Field(id) => Some(*id),
+        staunch_ir::Projection::Index { .. } => None,
+    };
+    a.root == b.root
+        && a.projections.len() == b.projections.len()
+        && a.projections.iter().zip(&b.projections).all(|(a, b)| field(a).is_some() && field(a) == field(b))
+}
+
+fn is_pin(section: Section) -> bool {
+    matches!(section, Section::Input | Section::Output)
+}

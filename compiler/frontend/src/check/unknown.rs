@@ -1,0 +1,132 @@
+//! Names that are not there, and what was probably meant.
+
+use super::Checker;
+use crate::dialect::{self, Dialect, family_name};
+use crate::key::{list, nearest};
+use crate::{Code, Diagnostic, Span, ast};
+use staunch_ir::BlockId;
+use staunch_runtime::{BLOCKS, Direction, Family};
+
+pub(crate) fn not_constant(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0205, span, "a constant is expected here")
+        .label("its value is not known before the program runs")
+}
+
+/// `CSCAPE.CTUD`: the family has no such block.
+pub(crate) fn no_such_block(family: Family, name: ast::Name<'_>) -> Diagnostic {
+    let names: Vec<_> =
+        BLOCKS.iter().filter(|it| it.family == family && !dialect::is_option_row(it.name)).map(|it| it.name).collect();
+    let owner = family_name(family);
+    let error = Diagnostic::new(Code::E0309, name.span, format!("{owner} documents no `{}`", name.text))
+        .label(format!("not a block of {owner}"));
+    match nearest(name.text, names.iter().copied()).filter(|near| near.len() == name.text.len()) {
+        Some(near) => error.help(format!("did you mean `{near}`?")).fix(name.span, near),
+        None => error.help(format!("{owner} has {}", list(&names))),
+    }
+}
+
+/// A block that exists, but not under the dialect's bare names.
+pub(crate) fn block_of_another_dialect(dialect: Dialect, name: ast::Name<'_>) -> Option<Diagnostic> {
+    let owners: Vec<_> =
+        BLOCKS.iter().filter(|it| it.name.eq_ignore_ascii_case(name.text)).map(|it| it.family).collect();
+    if owners.is_empty() || dialect::is_option_row(name.text) {
+        return None;
+    }
+    let system = family_name(dialect.family());
+    let qualified: Vec<_> = owners.iter().map(|it| format!("{}.{}", family_name(*it), name.text)).collect();
+    let qualified: Vec<_> = qualified.iter().map(String::as_str).collect();
+    let others: Vec<_> = Dialect::ALL.iter().filter(|it| owners.contains(&it.family())).map(|it| it.name()).collect();
+    Some(
+        Diagnostic::new(Code::E0309, name.span, format!("{system} documents no `{}`", name.text))
+            .label(format!("under `--dialect {}` this name has no block", dialect.name()))
+            .note(format!("the dialect {} has it", list(&others)))
+            .help(format!("name the family: {}", list(&qualified))),
+    )
+}
+
+/// `c.RST` or `c(RESET := …)` on a block that has no such pin.
+pub(super) fn unknown_pin(block: BlockId, name: ast::Name<'_>) -> Diagnostic {
+    let info = block.info();
+    let pins: Vec<_> = info.pins.iter().filter(|it| it.direction != Direction::Memory).map(|it| it.name).collect();
+    let full = format!("{}.{}", family_name(info.family), info.name);
+    let error =
+        Diagnostic::new(Code::E0301, name.span, format!("`{full}` has no pin `{}`", name.text)).label("unknown pin");
+    let meant = other_dialects_pin(block, name.text).or_else(|| nearest(name.text, pins.iter().copied()));
+    let error = match meant {
+        Some(pin) => error.help(format!("did you mean `{pin}`?")).fix(name.span, pin),
+        None => error.help(format!("its pins are {}", list(&pins))),
+    };
+    match owner_of_pin(block, name.text) {
+        Some(family) => error.note(format!(
+            "the pin is called `{}` in {}, whose blocks a bare name means under `--dialect {}`",
+            name.text.to_ascii_uppercase(),
+            family_name(family),
+            dialect_of(family).name()
+        )),
+        None => error,
+    }
+}
+
+/// The pins that two systems call by different names.
+const RENAMED: [(&str, &str); 8] = [
+    ("R", "RESET"),
+    ("LD", "LOAD"),
+    ("S1", "SET1"),
+    ("R1", "RESET1"),
+    ("S", "SET"),
+    ("Q1", "Q"),
+    // Of the two bistables one has a dominant set, the other a dominant reset.
+    ("S", "S1"),
+    ("R", "R1"),
+];
+
+/// This block's name for a pin that another system calls `name`.
+pub(super) fn other_dialects_pin(block: BlockId, name: &str) -> Option<&'static str> {
+    let has = |pin: &str| block.info().pin(pin).is_some();
+    RENAMED.into_iter().find_map(|(short, long)| {
+        if name.eq_ignore_ascii_case(long) && has(short) {
+            Some(short)
+        } else if name.eq_ignore_ascii_case(short) && has(long) {
+            Some(long)
+        } else {
+            None
+        }
+    })
+}
+
+/// The family whose block of the same name has a pin `name`.
+fn owner_of_pin(block: BlockId, name: &str) -> Option<Family> {
+    let info = block.info();
+    let same = BLOCKS.iter().filter(|it| it.family != info.family && it.name.eq_ignore_ascii_case(info.name));
+    same.filter(|it| it.pin(name).is_some()).map(|it| it.family).next_back()
+}
+
+fn dialect_of(family: Family) -> Dialect {
+    Dialect::ALL.into_iter().find(|it| it.family() == family).unwrap_or_default()
+}
+
+impl<'s> Checker<'_, 's> {
+    /// Reports a name that means nothing here.
+    pub(super) fn unknown_name(&mut self, name: ast::Name<'s>) {
+        if let Some(crate::declare::Entry::Type(_) | crate::declare::Entry::Pou(_)) =
+            self.decl.names.get(&crate::key::Key(name.text))
+        {
+            self.report(
+                Diagnostic::new(Code::E0101, name.span, format!("`{}` is not a variable", name.text))
+                    .label("a variable or a value is expected here"),
+            );
+            return;
+        }
+        let mut error =
+            Diagnostic::new(Code::E0101, name.span, format!("`{}` is not declared", name.text)).label("unknown name");
+        let own = self.scope.variables.iter().map(|it| it.name.text);
+        let near = nearest(name.text, own.chain(self.decl.names.keys().map(|key| key.0)));
+        let enumerators = self.decl.enumerators.keys().map(|key| key.0);
+        if let Some(near) = near.or_else(|| nearest(name.text, enumerators)) {
+            error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
+        } else if dialect::bare_block(self.decl.dialect(name.span), name.text).is_some() {
+            error = error.help(format!("declare an instance: `VAR counter : {}; END_VAR`", name.text));
+        }
+        self.report(error);
+    }
+}

@@ -1,0 +1,121 @@
+//! CONFIGURATION, RESOURCE and TASK: which programs run, and how often.
+
+use super::{Declarations, Entry};
+use crate::ast;
+use crate::check;
+use crate::key::{Key, nearest};
+use crate::{Code, Diagnostic};
+use staunch_ir::{Instance, PouId, PouKind, Value};
+
+const LOWEST_PRIORITY: u32 = 65535;
+
+/// Fills the program's instances: those of the configurations, or else one of each PROGRAM.
+pub(super) fn instances(declarations: &mut Declarations<'_>) {
+    let configurations = declarations.configurations.clone();
+    for resource in configurations.iter().flat_map(|it| &it.resources) {
+        declarations.resource(resource);
+    }
+    if !declarations.program.instances.is_empty() {
+        return;
+    }
+    let programs: Vec<_> =
+        (0..declarations.pous.len()).filter(|at| declarations.pous[*at].ast.kind == ast::PouKind::Program).collect();
+    for at in programs {
+        declarations.program.instances.push(Instance {
+            name: declarations.pous[at].ast.name.text.to_owned(),
+            program: PouId::next(at),
+            interval: None,
+            priority: LOWEST_PRIORITY,
+        });
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Timing {
+    interval: Option<i64>,
+    priority: u32,
+}
+
+impl<'s> Declarations<'s> {
+    fn resource(&mut self, resource: &'s ast::Resource<'s>) {
+        let tasks: Vec<_> = resource.tasks.iter().map(|task| (task.name, self.task(task))).collect();
+        for instance in &resource.programs {
+            let mut timing = Timing { interval: None, priority: LOWEST_PRIORITY };
+            if let Some(name) = instance.task {
+                let found = tasks.iter().find(|(it, _)| it.text.eq_ignore_ascii_case(name.text));
+                match found {
+                    Some((_, it)) => timing = *it,
+                    None => self.unknown_task(name, &tasks),
+                }
+            }
+            self.instance(instance, timing);
+        }
+    }
+
+    fn unknown_task(&mut self, name: ast::Name<'s>, tasks: &[(ast::Name<'s>, Timing)]) {
+        let near = nearest(name.text, tasks.iter().map(|(it, _)| it.text));
+        let mut error = Diagnostic::new(Code::E0101, name.span, format!("there is no TASK `{}`", name.text));
+        if let Some(near) = near {
+            error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
+        }
+        self.report(error);
+    }
+
+    fn instance(&mut self, instance: &'s ast::ProgramInstance<'s>, timing: Timing) {
+        let found = self.names.get(&Key(instance.program.text)).copied();
+        let program = match found {
+            Some(Entry::Pou(at)) if self.pous[at].ast.kind == ast::PouKind::Program => at,
+            _ => {
+                let programs = self.pous.iter().filter(|it| it.ast.kind == ast::PouKind::Program);
+                let near = nearest(instance.program.text, programs.map(|it| it.ast.name.text));
+                let mut error = Diagnostic::new(
+                    Code::E0101,
+                    instance.program.span,
+                    format!("there is no PROGRAM `{}`", instance.program.text),
+                );
+                if let Some(near) = near {
+                    error = error.help(format!("did you mean `{near}`?")).fix(instance.program.span, near);
+                }
+                self.report(error);
+                return;
+            }
+        };
+        let known = self.program.instances.iter().any(|it| it.name.eq_ignore_ascii_case(instance.name.text));
+        if known {
+            self.error(Code::E0103, instance.name.span, format!("`{}` is declared twice", instance.name.text));
+            return;
+        }
+        self.program.instances.push(Instance {
+            name: instance.name.text.to_owned(),
+            program: PouId::next(program),
+            interval: timing.interval,
+            priority: timing.priority,
+        });
+        debug_assert!(self.program.pous.get(program).is_none_or(|it| it.kind == PouKind::Program));
+    }
+
+    fn task(&mut self, task: &'s ast::Task<'s>) -> Timing {
+        let mut timing = Timing { interval: None, priority: LOWEST_PRIORITY };
+        for (name, expr) in &task.properties {
+            let scope = std::rc::Rc::default();
+            let value = check::constant(self, &scope, expr, None).and_then(|it| it.as_const());
+            match (name.text.to_ascii_uppercase().as_str(), value) {
+                ("INTERVAL", Some(Value::I64(interval))) if interval > 0 => timing.interval = Some(interval),
+                ("INTERVAL", _) => self.report(
+                    Diagnostic::new(Code::E0201, expr.span, "INTERVAL is a TIME above zero").help("write `T#10ms`"),
+                ),
+                ("PRIORITY", Some(value)) => match value.as_integer().and_then(|it| u32::try_from(it).ok()) {
+                    Some(priority) => timing.priority = priority,
+                    None => self.error(Code::E0201, expr.span, "PRIORITY is a whole number from 0"),
+                },
+                ("PRIORITY", None) => {}
+                ("SINGLE", _) => self.not_supported(name.span, "SINGLE"),
+                _ => self.report(
+                    Diagnostic::new(Code::E0107, name.span, format!("a TASK has no `{}`", name.text))
+                        .help("it has INTERVAL, PRIORITY and SINGLE"),
+                ),
+            }
+        }
+        timing
+    }
+}

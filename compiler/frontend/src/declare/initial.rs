@@ -1,0 +1,315 @@
+//! Initial values, folded to constants.
+
+use super::types::{Resolved, scalar_initial};
+use super::{Declarations, Scope};
+use crate::ast::{self, InitialKind};
+use crate::check;
+use crate::key::nearest;
+use crate::{Code, Diagnostic, Span};
+use staunch_ir::{Array, ArrayId, Const, ExprKind, StructId, Type};
+use std::rc::Rc;
+
+/// Elements of an array that have been given, in runs.
+struct Runs {
+    runs: Vec<(u64, Const)>,
+    len: u64,
+}
+
+impl<'s> Declarations<'s> {
+    /// The constant that `initial` gives a variable declared as `target`.
+    pub fn initial(
+        &mut self,
+        initial: &'s ast::Initial<'s>,
+        target: &Resolved,
+        scope: &Rc<Scope<'s>>,
+    ) -> Option<Const> {
+        match (&initial.kind, target.ty) {
+            (InitialKind::Value(expr), _) => self.initial_value(expr, target, scope),
+            (InitialKind::Elements(elements), Type::Array(id)) => self.initial_array(elements, id, scope, initial.span),
+            (InitialKind::Fields(fields), Type::Struct(id)) => self.initial_struct(fields, id, target, scope),
+            (InitialKind::Fields(fields), Type::Block(id)) => self.initial_block(fields, id, target, scope),
+            (InitialKind::Elements(_) | InitialKind::Fields(_), _) => {
+                let shape = if matches!(initial.kind, InitialKind::Elements(_)) { "an array" } else { "a structure" };
+                let found = self.program.type_name(target.ty);
+                self.report(
+                    Diagnostic::new(Code::E0201, initial.span, format!("{shape} value cannot initialise {found}"))
+                        .label(format!("expected a value of type {found}")),
+                );
+                None
+            }
+        }
+    }
+
+    fn initial_value(&mut self, expr: &'s ast::Expr<'s>, target: &Resolved, scope: &Rc<Scope<'s>>) -> Option<Const> {
+        let value = check::constant(self, scope, expr, Some(target))?;
+        match value.kind {
+            ExprKind::Const(it) => Some(scalar_initial(it)),
+            ExprKind::Text(bytes) if bytes.is_empty() => Some(Const::Zero),
+            ExprKind::Text(bytes) => Some(Const::Text(bytes)),
+            ExprKind::Aggregate(it) => Some(it),
+            ExprKind::Load(_) | ExprKind::Apply(..) | ExprKind::ApplyText(..) | ExprKind::Convert(..) => {
+                self.report(check::not_constant(expr.span));
+                None
+            }
+        }
+    }
+
+    fn initial_array(
+        &mut self,
+        elements: &'s [ast::Element<'s>],
+        id: ArrayId,
+        scope: &Rc<Scope<'s>>,
+        span: Span,
+    ) -> Option<Const> {
+        let array = self.program.array(id);
+        // A flat list fills a nested array row by row.
+        let (leaf, total) = self.flat(elements, array, id);
+        let mut runs = Runs { runs: Vec::new(), len: 0 };
+        for element in elements {
+            self.initial_element(element, &leaf, scope, &mut runs)?;
+        }
+        if runs.len > total {
+            self.report(
+                Diagnostic::new(Code::E0206, span, "there are more initial values than elements")
+                    .label(format!("{} values for {total} elements", runs.len)),
+            );
+            return None;
+        }
+        runs.push(total - runs.len, leaf.initial.clone());
+        if runs.runs.iter().all(|(_, it)| *it == Const::Zero) {
+            return Some(Const::Zero);
+        }
+        Some(self.nest(runs, array, &leaf))
+    }
+
+    /// What one value of the list initialises, and how many of these there are.
+    fn flat(&self, elements: &[ast::Element<'s>], array: Array, id: ArrayId) -> (Resolved, u64) {
+        let mut leaf = self.elements[id.index()].clone();
+        let mut total = array.len();
+        let nested = |it: &ast::Initial<'_>| matches!(it.kind, InitialKind::Elements(_));
+        if elements.iter().flat_map(|it| &it.values).any(nested) {
+            return (leaf, total);
+        }
+        while let Type::Array(inner) = leaf.ty {
+            total = total.saturating_mul(self.program.array(inner).len());
+            leaf = self.elements[inner.index()].clone();
+        }
+        (leaf, total)
+    }
+
+    fn initial_element(
+        &mut self,
+        element: &'s ast::Element<'s>,
+        leaf: &Resolved,
+        scope: &Rc<Scope<'s>>,
+        runs: &mut Runs,
+    ) -> Option<()> {
+        if let Some((count, values)) = named_repeat(element) {
+            let times = self.repeat_count(count, scope)?;
+            let mut given = Vec::new();
+            for value in values {
+                given.push(self.initial_value(value, leaf, scope)?);
+            }
+            return self.push_repeated(times, given, count.span, leaf, runs);
+        }
+        let count = match &element.count {
+            None => 1,
+            Some(expr) => self.repeat_count(expr, scope)?,
+        };
+        let mut values = Vec::new();
+        for value in &element.values {
+            values.push(self.initial(value, leaf, scope)?);
+        }
+        let span = element.values.first().map_or_else(Span::default, |it| it.span);
+        self.push_repeated(count, values, span, leaf, runs)
+    }
+
+    fn repeat_count(&mut self, expr: &ast::Expr<'s>, scope: &Rc<Scope<'s>>) -> Option<u64> {
+        let count = self.constant_integer(expr, scope)?;
+        let fits = u64::try_from(count).ok().filter(|it| *it <= super::types::MAX_SIZE);
+        if fits.is_none() {
+            self.error(Code::E0206, expr.span, format!("a value cannot be repeated {count} times"));
+        }
+        fits
+    }
+
+    /// The values, all of them `count` times over.
+    fn push_repeated(
+        &mut self,
+        count: u64,
+        values: Vec<Const>,
+        span: Span,
+        leaf: &Resolved,
+        runs: &mut Runs,
+    ) -> Option<()> {
+        match values.as_slice() {
+            [] => runs.push(count, leaf.initial.clone()),
+            [one] => runs.push(count, one.clone()),
+            several => {
+                let given = u64::try_from(several.len()).unwrap_or(u64::MAX).saturating_mul(count);
+                if given > super::types::MAX_SIZE / 64 {
+                    self.error(Code::E0206, span, format!("{given} initial values are too many to list"));
+                    return None;
+                }
+                for _ in 0..count {
+                    several.iter().for_each(|it| runs.push(1, it.clone()));
+                }
+            }
+        }
+        Some(())
+    }
+
+    /// Cuts flat runs into the rows of a nested array.
+    fn nest(&self, runs: Runs, array: Array, leaf: &Resolved) -> Const {
+        if array.element == leaf.ty {
+            return Const::Array(runs.runs);
+        }
+        let Type::Array(inner) = array.element else { return Const::Array(runs.runs) };
+        let inner = self.program.array(inner);
+        let mut row_len = inner.len();
+        let mut deeper = inner.element;
+        while deeper != leaf.ty
+            && let Type::Array(id) = deeper
+        {
+            row_len = row_len.saturating_mul(self.program.array(id).len());
+            deeper = self.program.array(id).element;
+        }
+        let mut rows = Runs { runs: Vec::new(), len: 0 };
+        let mut rest = runs.runs.into_iter();
+        let mut current = rest.next();
+        for _ in 0..array.len() {
+            let mut row = Runs { runs: Vec::new(), len: 0 };
+            while row.len < row_len
+                && let Some((count, value)) = &mut current
+            {
+                let taken = (*count).min(row_len - row.len);
+                row.push(taken, value.clone());
+                *count -= taken;
+                if *count == 0 {
+                    current = rest.next();
+                }
+            }
+            rows.push(1, self.nest(row, inner, leaf));
+        }
+        Const::Array(rows.runs)
+    }
+
+    fn initial_struct(
+        &mut self,
+        given: &'s [(ast::Name<'s>, ast::Initial<'s>)],
+        id: StructId,
+        target: &Resolved,
+        scope: &Rc<Scope<'s>>,
+    ) -> Option<Const> {
+        let fields = self.program.structure(id).fields.clone();
+        let mut values = parts(&target.initial, fields.len());
+        let mut seen = Vec::new();
+        for (name, initial) in given {
+            let found = fields.iter().position(|it| it.name.eq_ignore_ascii_case(name.text));
+            let Some(at) = found else {
+                let near = nearest(name.text, fields.iter().map(|it| it.name.as_str()));
+                self.unknown_member(*name, target.ty, near);
+                return None;
+            };
+            if !once(&mut seen, at) {
+                self.given_twice(*name);
+                continue;
+            }
+            let field = &fields[at];
+            let resolved = Resolved { ty: field.ty, range: field.range, initial: field.initial.clone() };
+            values[at] = self.initial(initial, &resolved, scope)?;
+        }
+        Some(collapse(values))
+    }
+
+    fn initial_block(
+        &mut self,
+        given: &'s [(ast::Name<'s>, ast::Initial<'s>)],
+        id: staunch_ir::BlockId,
+        target: &Resolved,
+        scope: &Rc<Scope<'s>>,
+    ) -> Option<Const> {
+        let pins = id.info().pins;
+        let mut values = parts(&target.initial, pins.len());
+        let mut seen = Vec::new();
+        for (name, initial) in given {
+            let Some(at) = pins.iter().position(|it| it.name.eq_ignore_ascii_case(name.text)) else {
+                self.unknown_member(*name, target.ty, nearest(name.text, pins.iter().map(|it| it.name)));
+                return None;
+            };
+            if !once(&mut seen, at) {
+                self.given_twice(*name);
+                continue;
+            }
+            values[at] = self.initial(initial, &Resolved::plain(id.pin_type(staunch_ir::FieldId::next(at))?), scope)?;
+        }
+        Some(collapse(values))
+    }
+
+    fn given_twice(&mut self, name: ast::Name<'s>) {
+        self.report(
+            Diagnostic::new(Code::E0304, name.span, format!("`{}` is given twice", name.text))
+                .label("it has a value already"),
+        );
+    }
+
+    pub fn unknown_member(&mut self, name: ast::Name<'s>, ty: Type, near: Option<&str>) {
+        let owner = self.program.type_name(ty);
+        let mut error = Diagnostic::new(Code::E0107, name.span, format!("`{owner}` has no member `{}`", name.text))
+            .label("unknown member");
+        if let Some(near) = near {
+            error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
+        }
+        self.report(error);
+    }
+}
+
+/// `N(0)` with a named count reads as a call.
+fn named_repeat<'a, 's>(element: &'a ast::Element<'s>) -> Option<(&'a ast::Expr<'s>, Vec<&'a ast::Expr<'s>>)> {
+    let (None, [value]) = (&element.count, element.values.as_slice()) else { return None };
+    let InitialKind::Value(ast::Expr { kind: ast::ExprKind::Call(callee, arguments), .. }) = &value.kind else {
+        return None;
+    };
+    let ast::ExprKind::Name(name) = &callee.kind else { return None };
+    if check::is_function(name.text) {
+        return None;
+    }
+    let positional = |it: &'a ast::Argument<'s>| match &it.kind {
+        ast::ArgumentKind::Positional(value) => Some(value),
+        ast::ArgumentKind::Input(..) | ast::ArgumentKind::Output { .. } => None,
+    };
+    let values: Option<Vec<_>> = arguments.iter().map(positional).collect();
+    Some((callee, values?))
+}
+
+impl Runs {
+    fn push(&mut self, count: u64, value: Const) {
+        if count == 0 {
+            return;
+        }
+        self.len += count;
+        match self.runs.last_mut() {
+            Some((run, last)) if *last == value => *run += count,
+            _ => self.runs.push((count, value)),
+        }
+    }
+}
+
+/// Notes a member; false if it was there before.
+fn once(seen: &mut Vec<usize>, at: usize) -> bool {
+    let new = !seen.contains(&at);
+    seen.push(at);
+    new
+}
+
+/// The members of a structure constant.
+fn parts(whole: &Const, len: usize) -> Vec<Const> {
+    match whole {
+        Const::Struct(values) => values.clone(),
+        Const::Zero | Const::Scalar(_) | Const::Text(_) | Const::Array(_) => vec![Const::Zero; len],
+    }
+}
+
+fn collapse(values: Vec<Const>) -> Const {
+    if values.iter().all(|it| *it == Const::Zero) { Const::Zero } else { Const::Struct(values) }
+}

@@ -1,0 +1,501 @@
+//! Names, types and signatures: everything that holds before a body is read.
+//!
+//! Declarations may stand in any order and in any file, so each is resolved when it is first
+//! asked for; one that needs itself is a cycle.
+
+mod address;
+mod configuration;
+mod initial;
+mod order;
+mod pou;
+mod prescan;
+mod scope;
+mod types;
+
+pub(crate) use pou::{Formal, Signature, Target, pin_place};
+pub(crate) use scope::{Scope, Variable};
+pub(crate) use types::Resolved;
+
+use crate::ast;
+use crate::check;
+use crate::dialect::{self, Dialect};
+use crate::key::{Key, nearest};
+use crate::{Code, Diagnostic, Options, Sources, Span};
+use staunch_ir::layout::{Layout, TooLarge};
+use staunch_ir::{Location, Place, Program, Root, SourceFile, Struct, StructId, Type};
+use std::collections::HashMap;
+use std::rc::Rc;
+
+/// Stands for the globals' structure until it is made, when all globals are known.
+pub(crate) const GLOBALS: StructId = StructId(u32::MAX);
+
+/// Pragmas that change what a program means: to pass over them would compile another program.
+const DECIDING_PRAGMAS: [&str; 7] = ["external", "if", "elsif", "else", "end_if", "define", "undefine"];
+/// Pragmas for editors and other tools.
+const HARMLESS_PRAGMAS: [&str; 12] = [
+    "attribute",
+    "region",
+    "endregion",
+    "end_region",
+    "warning",
+    "info",
+    "text",
+    "error",
+    "flag",
+    "analysis",
+    "nobp",
+    "bp",
+];
+
+/// Declarations that need one another in a row, the needed one behind: each takes a few frames of
+/// the stack, and a compilation has to fit a thread's 2 MiB.
+const MAX_NEEDS: usize = 48;
+
+/// Something that is resolved on demand.
+#[derive(Debug)]
+pub(crate) enum Slot<T> {
+    Waiting,
+    /// Being resolved: to ask for it now is a cycle.
+    Active,
+    Done(T),
+    /// It has been reported.
+    Failed,
+}
+
+/// What a name at file level means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Entry {
+    Type(usize),
+    Pou(usize),
+    Global(usize),
+}
+
+pub(crate) struct TypeSlot<'s> {
+    pub decl: &'s ast::TypeDecl<'s>,
+    pub slot: Slot<Resolved>,
+}
+
+pub(crate) struct PouSlot<'s> {
+    pub ast: &'s ast::Pou<'s>,
+    pub slot: Slot<Rc<Signature<'s>>>,
+}
+
+pub(crate) struct GlobalSlot<'s> {
+    pub name: ast::Name<'s>,
+    pub block: &'s ast::VarBlock<'s>,
+    pub decl: &'s ast::VarDecl<'s>,
+    pub slot: Slot<Variable<'s>>,
+}
+
+/// The program while it is being declared and checked.
+pub(crate) struct Declarations<'s> {
+    pub sources: &'s Sources,
+    pub options: &'s Options,
+    /// A dialect for each file.
+    pub dialects: Vec<Dialect>,
+    pub diagnostics: Vec<Diagnostic>,
+    pub names: HashMap<Key<'s>, Entry>,
+    /// The declarations in which a bare enumerator is named, with their type's slot.
+    pub enumerators: HashMap<Key<'s>, Vec<usize>>,
+    pub types: Vec<TypeSlot<'s>>,
+    pub pous: Vec<PouSlot<'s>>,
+    pub globals: Vec<GlobalSlot<'s>>,
+    pub configurations: Vec<&'s ast::Configuration<'s>>,
+    pub addresses: address::Addresses<'s>,
+    pub program: Program,
+    /// For each array of `program`, what its elements are.
+    pub elements: Vec<Resolved>,
+    /// For each structure of `program`, about how many bytes it takes.
+    pub sizes: Vec<u64>,
+    /// For each anonymous or named enumeration, in order of declaration, the enumerators.
+    pub anonymous_enumerators: HashMap<Key<'s>, (Type, staunch_ir::Value)>,
+    /// The POU slot of each structure that is an instance's state.
+    pub instances: HashMap<StructId, usize>,
+    /// How many declarations are being resolved, each because the one before needs it.
+    depth: usize,
+    /// How many constants the initial values hold so far.
+    constants: usize,
+    line_cache: LineCache,
+}
+
+/// The last line that was looked up: the next position is usually on it or just behind.
+#[derive(Default)]
+struct LineCache {
+    file: u16,
+    line: u32,
+    start: u32,
+    end: u32,
+    /// The last position that was looked up on the line, and the characters before it.
+    counted_to: u32,
+    count: usize,
+}
+
+pub(crate) fn declare<'s>(
+    sources: &'s Sources,
+    files: &'s [ast::File<'s>],
+    options: &'s Options,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Option<Program> {
+    let mut declarations = Declarations::new(sources, options);
+    for file in files {
+        declarations.read_pragmas(file);
+    }
+    for file in files {
+        declarations.collect(file);
+    }
+    declarations.addresses = address::collect(&mut declarations, files);
+    declarations.resolve_all();
+    let bodies = check::bodies(&mut declarations);
+    let program = declarations.finish(bodies);
+    diagnostics.append(&mut declarations.diagnostics);
+    program
+}
+
+impl<'s> Declarations<'s> {
+    fn new(sources: &'s Sources, options: &'s Options) -> Self {
+        let files = sources.files().iter().map(|it| SourceFile { path: it.path.clone() }).collect();
+        Self {
+            sources,
+            options,
+            dialects: Vec::new(),
+            diagnostics: Vec::new(),
+            names: HashMap::new(),
+            enumerators: HashMap::new(),
+            types: Vec::new(),
+            pous: Vec::new(),
+            globals: Vec::new(),
+            configurations: Vec::new(),
+            addresses: address::Addresses::default(),
+            program: empty_program(files),
+            elements: Vec::new(),
+            sizes: Vec::new(),
+            anonymous_enumerators: HashMap::new(),
+            instances: HashMap::new(),
+            depth: 0,
+            constants: 0,
+            line_cache: LineCache::default(),
+        }
+    }
+
+    pub fn report(&mut self, diagnostic: Diagnostic) {
+        self.diagnostics.push(diagnostic);
+    }
+
+    pub fn error(&mut self, code: Code, span: Span, message: impl Into<String>) {
+        self.report(Diagnostic::new(code, span, message));
+    }
+
+    pub fn dialect(&self, span: Span) -> Dialect {
+        self.dialects.get(usize::from(span.file)).copied().unwrap_or(self.options.dialect)
+    }
+
+    /// Where `span` starts, for people.
+    pub fn location(&mut self, span: Span) -> Location {
+        let cache = &self.line_cache;
+        let cached = cache.file == span.file && (cache.start..cache.end).contains(&span.start);
+        if !cached {
+            let source = self.sources.get(span.file);
+            let (line, _) = source.line_column(span.start);
+            let (start, end) = source.line_bounds(line);
+            self.line_cache = LineCache { file: span.file, line, start, end, counted_to: start, count: 0 };
+        }
+        // A line may be long: what was counted is not counted again.
+        let cache = &mut self.line_cache;
+        if span.start < cache.counted_to {
+            (cache.counted_to, cache.count) = (cache.start, 0);
+        }
+        let between = Span { file: span.file, start: cache.counted_to, end: span.start };
+        cache.count += self.sources.text(between).chars().count();
+        cache.counted_to = span.start;
+        let (line, column) = (cache.line, u16::try_from(cache.count + 1).unwrap_or(u16::MAX));
+        Location { file: span.file, line, column }
+    }
+
+    fn read_pragmas(&mut self, file: &ast::File<'s>) {
+        let mut found: Option<(Dialect, Span)> = None;
+        for pragma in &file.pragmas {
+            let Some(name) = dialect_pragma(pragma.text) else {
+                self.check_pragma(*pragma);
+                continue;
+            };
+            let Some(dialect) = Dialect::named(name) else {
+                let names: Vec<_> = Dialect::ALL.iter().map(|it| it.name()).collect();
+                let mut error = Diagnostic::new(Code::E0105, pragma.span, format!("there is no dialect `{name}`"))
+                    .label("unknown dialect");
+                let near = nearest(name, names.iter().copied());
+                error = error.help(match near {
+                    Some(near) => format!("did you mean `{{dialect '{near}'}}`?"),
+                    None => format!("the dialects are {}", crate::key::list(&names)),
+                });
+                self.report(error);
+                continue;
+            };
+            if let Some((_, first)) = found {
+                self.report(
+                    Diagnostic::new(Code::E0106, pragma.span, "a file has one dialect")
+                        .label("a second dialect pragma")
+                        .other(first, "the first one")
+                        .help("keep one of them; a block of another system is named in full, `CODESYS.CTU`"),
+                );
+                continue;
+            }
+            found = Some((dialect, pragma.span));
+        }
+        let own = found.map(|(dialect, _)| dialect).filter(|it| self.options.moved_from != Some(*it));
+        self.dialects.push(own.unwrap_or(self.options.dialect));
+    }
+
+    /// What a pragma that does not name a dialect is good for.
+    fn check_pragma(&mut self, pragma: ast::Name<'s>) {
+        let word: String =
+            pragma.text.trim().chars().take_while(|it| it.is_ascii_alphanumeric() || *it == '_').collect();
+        let word = word.to_ascii_lowercase();
+        if DECIDING_PRAGMAS.contains(&word.as_str()) {
+            self.not_supported(pragma.span, &format!("the pragma `{word}`"));
+        } else if !HARMLESS_PRAGMAS.contains(&word.as_str()) {
+            self.report(
+                Diagnostic::new(Code::W0102, pragma.span, format!("the pragma `{word}` is not known"))
+                    .label("it has no effect"),
+            );
+        }
+    }
+
+    fn collect(&mut self, file: &'s ast::File<'s>) {
+        for item in &file.items {
+            match item {
+                ast::Item::Types(decls) => decls.iter().for_each(|decl| self.collect_type(decl)),
+                ast::Item::Pou(pou) => {
+                    self.enter(pou.name, Entry::Pou(self.pous.len()));
+                    self.pous.push(PouSlot { ast: pou, slot: Slot::Waiting });
+                }
+                ast::Item::Globals(block) => self.collect_globals(block),
+                ast::Item::Configuration(it) => self.collect_configuration(it),
+            }
+        }
+    }
+
+    fn collect_type(&mut self, decl: &'s ast::TypeDecl<'s>) {
+        let slot = self.types.len();
+        self.enter(decl.name, Entry::Type(slot));
+        if let ast::TypeKind::Enum { values, .. } = &decl.ty.kind {
+            for value in values {
+                self.enumerators.entry(Key(value.name.text)).or_default().push(slot);
+            }
+        }
+        self.types.push(TypeSlot { decl, slot: Slot::Waiting });
+    }
+
+    fn collect_globals(&mut self, block: &'s ast::VarBlock<'s>) {
+        for decl in &block.vars {
+            for name in &decl.names {
+                self.enter(*name, Entry::Global(self.globals.len()));
+                self.globals.push(GlobalSlot { name: *name, block, decl, slot: Slot::Waiting });
+            }
+        }
+    }
+
+    fn collect_configuration(&mut self, configuration: &'s ast::Configuration<'s>) {
+        self.configurations.push(configuration);
+        let resources = configuration.resources.iter().flat_map(|it| &it.globals);
+        for block in configuration.globals.iter().chain(resources) {
+            self.collect_globals(block);
+        }
+    }
+
+    /// Enters a name at file level; the first declaration of a name wins.
+    fn enter(&mut self, name: ast::Name<'s>, entry: Entry) {
+        if staunch_ir::Elementary::named(name.text).is_some() {
+            self.error(Code::E0104, name.span, format!("`{}` is the name of an elementary type", name.text));
+            return;
+        }
+        // The head of this declaration did not parse, which has been reported.
+        if name.text.is_empty() {
+            return;
+        }
+        if let Some(first) = self.names.get(&Key(name.text)).copied() {
+            let first = self.span_of(first);
+            self.report(
+                Diagnostic::new(Code::E0103, name.span, format!("`{}` is declared twice", name.text))
+                    .label("declared again here")
+                    .other(first, "first declared here"),
+            );
+            return;
+        }
+        self.names.insert(Key(name.text), entry);
+    }
+
+    pub fn span_of(&self, entry: Entry) -> Span {
+        match entry {
+            Entry::Type(at) => self.types[at].decl.name.span,
+            Entry::Pou(at) => self.pous[at].ast.name.span,
+            Entry::Global(at) => self.globals[at].name.span,
+        }
+    }
+
+    fn resolve_all(&mut self) {
+        for at in 0..self.types.len() {
+            self.resolve_type_slot(at);
+        }
+        for at in 0..self.globals.len() {
+            self.global(at);
+        }
+        for at in 0..self.pous.len() {
+            self.signature(at);
+        }
+    }
+
+    /// Resolves a declaration that others may wait for, unless too many do.
+    fn deeper<T>(&mut self, name: ast::Name<'s>, resolve: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
+        if self.depth == MAX_NEEDS {
+            let message = format!("more than {} declarations need one another in a row", MAX_NEEDS);
+            self.report(
+                Diagnostic::new(Code::E0091, name.span, message)
+                    .label(format!("before `{}` is needed", name.text))
+                    .help("declare what is needed before what needs it"),
+            );
+            return None;
+        }
+        self.depth += 1;
+        let resolved = resolve(self);
+        self.depth -= 1;
+        resolved
+    }
+
+    /// The global variable in slot `at`.
+    pub fn global(&mut self, at: usize) -> Option<Variable<'s>> {
+        match &self.globals[at].slot {
+            Slot::Done(variable) => return Some(variable.clone()),
+            Slot::Failed => return None,
+            Slot::Active => {
+                let name = self.globals[at].name;
+                self.error(Code::E0402, name.span, format!("the declaration of `{}` needs itself", name.text));
+                return None;
+            }
+            Slot::Waiting => {}
+        }
+        self.globals[at].slot = Slot::Active;
+        let GlobalSlot { name, block, decl, .. } = self.globals[at];
+        let variable = self.deeper(name, |this| this.global_variable(at, name, block, decl));
+        self.globals[at].slot = variable.clone().map_or(Slot::Failed, Slot::Done);
+        variable
+    }
+
+    fn global_variable(
+        &mut self,
+        at: usize,
+        name: ast::Name<'s>,
+        block: &'s ast::VarBlock<'s>,
+        decl: &'s ast::VarDecl<'s>,
+    ) -> Option<Variable<'s>> {
+        let resolved = self.declared_type(decl, &Rc::new(Scope::default()), name.text)?;
+        if let Some(address) = decl.address
+            && let Some(parsed) = self.address(address)
+        {
+            self.check_width(parsed, &resolved, address.span);
+        }
+        self.check_retain(block, resolved.ty, name.span);
+        let place = Place::root(Root::Globals, Type::Struct(GLOBALS)).field(staunch_ir::FieldId::next(at), resolved.ty);
+        Some(self.variable(name, block, resolved, place))
+    }
+
+    /// Whether the structure is the state of a PROGRAM or FUNCTION_BLOCK.
+    pub fn is_instance(&self, id: StructId) -> bool {
+        self.instances.contains_key(&id)
+    }
+
+    pub fn slot_of_instance(&self, id: StructId) -> Option<usize> {
+        self.instances.get(&id).copied()
+    }
+
+    /// The type of a field of the globals.
+    pub fn global_type(&self, field: staunch_ir::FieldId) -> Option<Type> {
+        match self.globals.get(field.index()).map(|it| &it.slot) {
+            Some(Slot::Done(variable)) => Some(variable.place.ty),
+            Some(Slot::Waiting | Slot::Active | Slot::Failed) => None,
+            None => self.addresses.type_of(field.index() - self.globals.len()),
+        }
+    }
+
+    /// The standard block that a bare `name` means where `span` stands.
+    pub fn bare_block(&self, name: &str, span: Span) -> Option<staunch_ir::BlockId> {
+        let dialect = self.dialect(span);
+        self.block_in(dialect.family(), name).or_else(|| dialect::bare_block(dialect, name))
+    }
+
+    /// The block called `name` in `family`, as the options have it.
+    pub fn block_in(&self, family: staunch_runtime::Family, name: &str) -> Option<staunch_ir::BlockId> {
+        let stops = self.options.ctu_stop_at_pv && family == staunch_runtime::Family::Codesys;
+        let name = if stops && name.eq_ignore_ascii_case("CTU") { "CTU_STOP_AT_PV" } else { name };
+        dialect::block_in(family, name)
+    }
+
+    /// Puts the parts together: the globals' structure, the instances, the order of the POUs.
+    fn finish(&mut self, bodies: Vec<Option<staunch_ir::Pou>>) -> Option<Program> {
+        let fields = (0..self.globals.len()).map(|at| self.global_field(at)).collect::<Vec<_>>();
+        let hidden = self.addresses.take_fields();
+        self.program.globals = StructId::next(self.program.structs.len());
+        let location = Location::default();
+        self.program.structs.push(Struct {
+            name: "Globals".to_owned(),
+            doc: None,
+            location,
+            fields: fields.into_iter().flatten().chain(hidden).collect(),
+        });
+        self.program.pous = bodies.into_iter().collect::<Option<Vec<_>>>()?;
+        configuration::instances(self);
+        order::order(self)?;
+        self.check_size()?;
+        Some(std::mem::replace(&mut self.program, empty_program(Vec::new())))
+    }
+
+    /// Whether all variables together, and each type, fit into memory.
+    fn check_size(&mut self) -> Option<()> {
+        let Err(TooLarge { at, .. }) = Layout::try_new(&self.program) else { return Some(()) };
+        let program = self.program.instances.last().map(|it| self.program.pou(it.program).location);
+        let span = self.name_at(at.or(program).unwrap_or_default());
+        self.report(
+            Diagnostic::new(Code::E0901, span, "the variables up to this one take more than 1 GiB")
+                .label("too large together"),
+        );
+        None
+    }
+
+    /// The name that stands at a location.
+    fn name_at(&self, at: Location) -> Span {
+        let source = self.sources.get(at.file);
+        let range = source.line_range(at.line);
+        let (start, line) = (range.start, &source.text[range]);
+        let before = usize::from(at.column).saturating_sub(1);
+        let before: usize = line.chars().take(before).map(char::len_utf8).sum();
+        let name = line[before..].chars().take_while(|it| it.is_ascii_alphanumeric() || *it == '_').count();
+        let offset = |length: usize| u32::try_from(start + length).unwrap_or(u32::MAX);
+        Span { file: at.file, start: offset(before), end: offset(before + name) }
+    }
+
+    fn global_field(&mut self, at: usize) -> Option<staunch_ir::Field> {
+        let variable = self.global(at)?;
+        let GlobalSlot { block, decl, .. } = self.globals[at];
+        Some(self.field(&variable, block, decl, staunch_ir::Section::Global))
+    }
+}
+
+fn empty_program(files: Vec<SourceFile>) -> Program {
+    Program {
+        files,
+        enums: Vec::new(),
+        arrays: Vec::new(),
+        structs: Vec::new(),
+        globals: StructId(0),
+        pous: Vec::new(),
+        instances: Vec::new(),
+    }
+}
+
+/// The quoted name in `dialect 'codesys'`.
+fn dialect_pragma(text: &str) -> Option<&str> {
+    let text = text.trim();
+    let (word, rest) = text.split_at_checked("dialect".len())?;
+    let rest = rest.trim_start().trim_start_matches(":=").trim();
+    let quoted = rest.strip_prefix('\'')?.strip_suffix('\'');
+    word.eq_ignore_ascii_case("dialect").then_some(quoted).flatten()
+}

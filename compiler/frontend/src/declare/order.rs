@@ -1,0 +1,152 @@
+//! The order of POUs: a callee before its callers. Recursion ends here.
+
+use super::Declarations;
+use crate::{Code, Diagnostic};
+use staunch_ir::{Block, Pou, PouId, Statement, StatementKind};
+
+/// Bytes that the variables of one call chain may take: they live on the stack.
+const MAX_STACK: u64 = 1 << 20;
+
+/// Sorts the program's POUs. `None` when there is recursion, which has been reported.
+pub(super) fn order(declarations: &mut Declarations<'_>) -> Option<()> {
+    super::prescan::nest(declarations);
+    let calls: Vec<_> = declarations.program.pous.iter_mut().map(callees).collect();
+    let mut order = Vec::new();
+    let mut marks = vec![Mark::New; calls.len()];
+    for at in 0..calls.len() {
+        if let Err(cycle) = visit(at, &calls, &mut marks, &mut order) {
+            report_recursion(declarations, &cycle);
+            return None;
+        }
+    }
+    check_stack(declarations, &calls, &order);
+    renumber(declarations, &order);
+    Some(())
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Mark {
+    New,
+    Open,
+    Closed,
+}
+
+/// Depth-first with its own stack: a chain of calls may be long. The error is the cycle.
+fn visit(start: usize, calls: &[Vec<usize>], marks: &mut [Mark], order: &mut Vec<usize>) -> Result<(), Vec<usize>> {
+    if marks[start] != Mark::New {
+        return Ok(());
+    }
+    marks[start] = Mark::Open;
+    let mut stack = vec![(start, 0)];
+    while let Some((at, next)) = stack.last_mut() {
+        let Some(callee) = calls[*at].get(*next).copied() else {
+            marks[*at] = Mark::Closed;
+            order.push(*at);
+            stack.pop();
+            continue;
+        };
+        *next += 1;
+        match marks[callee] {
+            Mark::Closed => {}
+            Mark::New => {
+                marks[callee] = Mark::Open;
+                stack.push((callee, 0));
+            }
+            Mark::Open => {
+                let first = stack.iter().position(|(at, _)| *at == callee).unwrap_or(0);
+                return Err(stack[first..].iter().map(|(at, _)| *at).collect());
+            }
+        }
+    }
+    Ok(())
+}
+
+fn report_recursion(declarations: &mut Declarations<'_>, cycle: &[usize]) {
+    let name = |at: usize| declarations.pous[at].ast.name;
+    let first = name(cycle[0]);
+    let way: Vec<_> = cycle.iter().chain(&cycle[..1]).map(|at| name(*at).text).collect();
+    declarations.report(
+        Diagnostic::new(Code::E0310, first.span, format!("`{}` calls itself", first.text))
+            .label("recursion has no bound on its stack")
+            .note(format!("the calls go {}", way.join(" -> ")))
+            .help("write it as a loop"),
+    );
+}
+
+/// Variables that live for one call are on the stack; a long chain of large ones is refused.
+fn check_stack(declarations: &mut Declarations<'_>, calls: &[Vec<usize>], order: &[usize]) {
+    let mut depth = vec![0u64; calls.len()];
+    for at in order.iter().copied() {
+        let locals = &declarations.program.pous[at].locals;
+        let own = locals.iter().map(|it| declarations.size_of(it.ty)).fold(0, u64::saturating_add);
+        let below = calls[at].iter().map(|callee| depth[*callee]).max().unwrap_or(0);
+        depth[at] = own.saturating_add(below);
+        if depth[at] > MAX_STACK && below <= MAX_STACK {
+            let name = declarations.pous[at].ast.name;
+            declarations.report(
+                Diagnostic::new(
+                    Code::E0903,
+                    name.span,
+                    format!("the temporary variables of `{}` take {own} bytes", name.text),
+                )
+                .label("a call's variables, with those of the calls it makes, may take 1 MiB")
+                .help("move large arrays to VAR of a FUNCTION_BLOCK or PROGRAM, or to VAR_GLOBAL"),
+            );
+        }
+    }
+}
+
+fn renumber(declarations: &mut Declarations<'_>, order: &[usize]) {
+    let mut new = vec![PouId(0); order.len()];
+    for (position, at) in order.iter().enumerate() {
+        new[*at] = PouId::next(position);
+    }
+    let program = &mut declarations.program;
+    let mut pous: Vec<_> = std::mem::take(&mut program.pous).into_iter().map(Some).collect();
+    program.pous = order.iter().filter_map(|at| pous[*at].take()).collect();
+    for pou in &mut program.pous {
+        each_call(&mut pou.body, &mut |id| *id = new[id.index()]);
+        each_call(&mut pou.prescan, &mut |id| *id = new[id.index()]);
+    }
+    for instance in &mut program.instances {
+        instance.program = new[instance.program.index()];
+    }
+}
+
+fn callees(pou: &mut Pou) -> Vec<usize> {
+    let mut found = Vec::new();
+
+    each_call(&mut pou.body, &mut |id| found.push(id.index()));
+    each_call(&mut pou.prescan, &mut |id| found.push(id.index()));
+    found.sort_unstable();
+    found.dedup();
+    found
+}
+
+/// Calls `visit` with the id of every POU that the block calls.
+fn each_call(block: &mut Block, visit: &mut dyn FnMut(&mut PouId)) {
+    for Statement { kind, .. } in block {
+        match kind {
+            StatementKind::Call { callee, .. } | StatementKind::PrescanInstance { callee, .. } => visit(callee),
+            StatementKind::If { then, otherwise, .. } => {
+                each_call(then, visit);
+                each_call(otherwise, visit);
+            }
+            StatementKind::Case { arms, otherwise, .. } => {
+                arms.iter_mut().for_each(|arm| each_call(&mut arm.body, visit));
+                each_call(otherwise, visit);
+            }
+            StatementKind::Loop { body, continuing } => {
+                each_call(body, visit);
+                each_call(continuing, visit);
+            }
+            StatementKind::Assign { .. }
+            | StatementKind::Exit
+            | StatementKind::Continue
+            | StatementKind::Return
+            | StatementKind::CallBlock { .. }
+            | StatementKind::PrescanBlock { .. }
+            | StatementKind::Fault(_) => {}
+        }
+    }
+}

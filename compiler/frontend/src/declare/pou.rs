@@ -1,0 +1,424 @@
+//! Signatures: what callers of a POU see, and where its variables live.
+
+use super::types::Resolved;
+use super::{Declarations, Scope, Slot, Variable};
+use crate::ast::{self, PouKind, VarKind};
+use crate::{Code, Diagnostic, Span, dialect};
+use staunch_ir::{
+    BlockId, Const, Field, FieldId, Local, LocalId, Mode, Param, ParamId, Place, Root, Section, Struct, StructId, Type,
+};
+use staunch_runtime::Family;
+use std::rc::Rc;
+
+/// A formal parameter, in declaration order.
+#[derive(Clone, Debug)]
+pub(crate) struct Formal<'s> {
+    pub name: ast::Name<'s>,
+    pub section: Section,
+    pub resolved: Resolved,
+    pub target: Target,
+}
+
+/// How an argument reaches its parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Target {
+    /// A field of the instance.
+    Field(FieldId),
+    /// A parameter of the call.
+    Param(usize),
+}
+
+/// An input declared R_EDGE or F_EDGE: the body sees the trigger's output.
+#[derive(Clone, Debug)]
+pub(crate) struct EdgeInput {
+    pub input: Place,
+    pub trigger: Place,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct Signature<'s> {
+    pub scope: Rc<Scope<'s>>,
+    /// The structure of an instance, for a PROGRAM or FUNCTION_BLOCK.
+    pub state: Option<StructId>,
+    pub formals: Vec<Formal<'s>>,
+    pub params: Vec<Param>,
+    pub locals: Vec<Local>,
+    pub result: Option<(LocalId, Resolved)>,
+    pub edges: Vec<EdgeInput>,
+}
+
+/// A signature while its variables are read.
+struct Builder<'s> {
+    scope: Rc<Scope<'s>>,
+    fields: Vec<Field>,
+    formals: Vec<Formal<'s>>,
+    params: Vec<Param>,
+    locals: Vec<Local>,
+    edges: Vec<EdgeInput>,
+    /// False when the result's type was refused.
+    complete: bool,
+}
+
+impl<'s> Declarations<'s> {
+    /// The signature of the POU in slot `at`.
+    pub fn signature(&mut self, at: usize) -> Option<Rc<Signature<'s>>> {
+        match &self.pous[at].slot {
+            Slot::Done(signature) => return Some(Rc::clone(signature)),
+            Slot::Failed => return None,
+            Slot::Active => {
+                let name = self.pous[at].ast.name;
+                self.report(
+                    Diagnostic::new(Code::E0402, name.span, format!("`{}` contains an instance of itself", name.text))
+                        .label("its size would be endless"),
+                );
+                return None;
+            }
+            Slot::Waiting => {}
+        }
+        self.pous[at].slot = Slot::Active;
+        let pou = self.pous[at].ast;
+        let signature = self.deeper(pou.name, |this| this.build_signature(at, pou)).map(Rc::new);
+        self.pous[at].slot = signature.clone().map_or(Slot::Failed, Slot::Done);
+        signature
+    }
+
+    fn build_signature(&mut self, slot: usize, pou: &'s ast::Pou<'s>) -> Option<Signature<'s>> {
+        let mut builder = Builder {
+            scope: Rc::new(Scope::default()),
+            fields: Vec::new(),
+            formals: Vec::new(),
+            params: Vec::new(),
+            locals: Vec::new(),
+            edges: Vec::new(),
+            complete: true,
+        };
+        let constants = self.early_constants(pou);
+        Rc::get_mut(&mut builder.scope).expect("the scope is new").constants = Some(Rc::new(constants));
+        let result = self.result(pou, &mut builder);
+        for block in &pou.blocks {
+            self.check_block_qualifiers(pou, block);
+            for decl in &block.vars {
+                self.declare_variables(pou, block, decl, &mut builder);
+            }
+        }
+        let state = (pou.kind != PouKind::Function).then(|| {
+            let location = self.location(pou.name.span);
+            let fields = std::mem::take(&mut builder.fields);
+            let id =
+                self.push_struct(Struct { name: pou.name.text.to_owned(), doc: pou.doc.clone(), location, fields });
+            self.instances.insert(id, slot);
+            id
+        });
+        let Builder { scope, formals, params, locals, edges, complete, .. } = builder;
+        complete.then_some(Signature { scope, state, formals, params, locals, result, edges })
+    }
+
+    /// The CONSTANTs of a POU by their values: a declaration before them may use them. What is wrong
+    /// with one of them is reported when its own turn comes, but what it needs was resolved for good.
+    fn early_constants(&mut self, pou: &'s ast::Pou<'s>) -> Scope<'s> {
+        let mut scope = Rc::new(Scope::default());
+        let counted = self.constants;
+        let blocks = pou.blocks.iter().filter(|it| it.constant.is_some() && it.kind != VarKind::External);
+        let named = |it: &&'s ast::VarDecl<'s>| matches!(it.ty.kind, ast::TypeKind::Named(_));
+        let mut waiting: Vec<_> =
+            blocks.flat_map(|block| block.vars.iter().filter(named).map(move |decl| (block, decl))).collect();
+        // One constant may use another that is declared behind it, so rounds go on while they help.
+        loop {
+            let before = waiting.len();
+            waiting.retain(|(block, decl)| {
+                let reported = self.diagnostics.len();
+                let resolved = self.declared_type(decl, &scope, pou.name.text);
+                let known = resolved.filter(|_| self.diagnostics.len() == reported);
+                let others = self.diagnostics.split_off(reported).into_iter().filter(|it| !within(it.span, decl.span));
+                self.diagnostics.extend(others);
+                let Some(resolved) = known else { return true };
+                for name in &decl.names {
+                    let place = Place::root(Root::Instance, resolved.ty);
+                    let variable = self.variable(*name, block, resolved.clone(), place);
+                    let scope = Rc::get_mut(&mut scope).expect("no one else holds the scope between declarations");
+                    let _ = scope.insert(variable);
+                }
+                false
+            });
+            if waiting.len() == before || waiting.is_empty() {
+                break;
+            }
+        }
+        for name in waiting.iter().flat_map(|(_, decl)| &decl.names) {
+            Rc::get_mut(&mut scope).expect("no one else holds the scope between declarations").refuse(*name);
+        }
+        self.constants = counted;
+        Rc::into_inner(scope).unwrap_or_default()
+    }
+
+    /// A FUNCTION's result is the local that bears its name.
+    fn result(&mut self, pou: &'s ast::Pou<'s>, builder: &mut Builder<'s>) -> Option<(LocalId, Resolved)> {
+        let spec = pou.result.as_ref()?;
+        let scope = Rc::clone(&builder.scope);
+        let Some(resolved) = self.resolve_spec(spec, &scope, pou.name.text) else {
+            builder.complete = false;
+            return None;
+        };
+        let id = builder.local(pou.name.text, &resolved, None);
+        Some((id, resolved))
+    }
+
+    pub fn resolve_spec(&mut self, spec: &'s ast::TypeSpec<'s>, scope: &Rc<Scope<'s>>, name: &str) -> Option<Resolved> {
+        self.resolve_type_named(spec, scope, name, None)
+    }
+
+    fn check_block_qualifiers(&mut self, pou: &ast::Pou<'s>, block: &ast::VarBlock<'s>) {
+        let retain = block.retain.or(block.persistent);
+        let lives_one_call = block.kind == VarKind::Temp || pou.kind == PouKind::Function;
+        if let Some(span) = retain
+            && (lives_one_call || matches!(block.kind, VarKind::InOut | VarKind::External))
+        {
+            let what = match block.kind {
+                VarKind::Temp => "VAR_TEMP",
+                VarKind::InOut => "VAR_IN_OUT",
+                VarKind::External => "VAR_EXTERNAL",
+                VarKind::Var | VarKind::Input | VarKind::Output | VarKind::Stat | VarKind::Global => {
+                    "a FUNCTION's variable"
+                }
+            };
+            self.report(
+                Diagnostic::new(Code::E0403, span, format!("{what} cannot be RETAIN"))
+                    .label("it has no value of its own to keep over a restart")
+                    .help("declare the variable in VAR RETAIN"),
+            );
+        }
+        if block.kind == VarKind::InOut && pou.kind == PouKind::Program {
+            self.report(
+                Diagnostic::new(Code::E0403, block.span, "a PROGRAM has no VAR_IN_OUT")
+                    .label("no call gives it a variable")
+                    .help("use VAR_INPUT and VAR_OUTPUT, or VAR_EXTERNAL for a global variable"),
+            );
+        }
+        if let Some(span) = block.constant
+            && matches!(block.kind, VarKind::Output | VarKind::InOut)
+        {
+            self.error(Code::E0403, span, "an output cannot be CONSTANT");
+        }
+        if block.kind == VarKind::Stat && pou.kind == PouKind::Function {
+            self.not_supported(block.span, "VAR_STAT in a FUNCTION");
+        }
+        if block.kind == VarKind::Global {
+            self.report(
+                Diagnostic::new(
+                    Code::E0403,
+                    block.span,
+                    "VAR_GLOBAL stands outside of PROGRAM, FUNCTION and FUNCTION_BLOCK",
+                )
+                .help("move the block to file level, or into a CONFIGURATION"),
+            );
+        }
+    }
+
+    fn declare_variables(
+        &mut self,
+        pou: &'s ast::Pou<'s>,
+        block: &'s ast::VarBlock<'s>,
+        decl: &'s ast::VarDecl<'s>,
+        builder: &mut Builder<'s>,
+    ) {
+        let scope = Rc::clone(&builder.scope);
+        let owner = decl.names.first().map_or(pou.name.text, |it| it.text);
+        if block.kind == VarKind::External {
+            drop(scope);
+            self.declare_externals(decl, builder);
+            return;
+        }
+        let resolved = self.declared_type(decl, &scope, owner);
+        drop(scope);
+        let Some(resolved) = resolved else {
+            decl.names.iter().for_each(|name| builder.refuse(*name));
+            return;
+        };
+        if block.constant.is_some() && decl.initial.is_none() && block.kind == VarKind::Var {
+            self.report(
+                Diagnostic::new(Code::E0404, decl.span, format!("the CONSTANT `{owner}` has no value"))
+                    .help("give it one: `name : TYPE := value;`"),
+            );
+        }
+        self.check_retain(block, resolved.ty, decl.span);
+        for name in &decl.names {
+            let Some(place) = self.place_variable(pou, block, decl, *name, &resolved, builder) else {
+                builder.refuse(*name);
+                continue;
+            };
+            let mut variable = self.variable(*name, block, resolved.clone(), place);
+            if let Some(early) = builder.scope.constants.as_ref().and_then(|it| it.get(name.text)) {
+                variable.used = Rc::clone(&early.used);
+            }
+            let scope = Rc::get_mut(&mut builder.scope).expect("no one else holds the scope between declarations");
+            self.enter_variable(scope, variable);
+        }
+    }
+
+    fn declare_externals(&mut self, decl: &'s ast::VarDecl<'s>, builder: &mut Builder<'s>) {
+        let wanted = self.resolve_spec(&decl.ty, &Rc::new(Scope::default()), "external");
+        for name in &decl.names {
+            let Some(global) = self.external(*name) else {
+                builder.refuse(*name);
+                continue;
+            };
+            if let Some(wanted) = &wanted
+                && wanted.ty != global.resolved.ty
+            {
+                let (found, ours) = (self.program.type_name(global.resolved.ty), self.program.type_name(wanted.ty));
+                self.report(
+                    Diagnostic::new(
+                        Code::E0405,
+                        decl.ty.span,
+                        format!("the global `{}` is of type {found}", name.text),
+                    )
+                    .label(format!("declared as {ours} here"))
+                    .other(global.name.span, "the global variable")
+                    .fix(decl.ty.span, found),
+                );
+            }
+            let variable = Variable { name: *name, section: Section::External, ..global };
+            let scope = Rc::get_mut(&mut builder.scope).expect("no one else holds the scope between declarations");
+            self.enter_variable(scope, variable);
+        }
+    }
+
+    /// Gives a variable its storage: a field of the instance, a local, or a parameter.
+    fn place_variable(
+        &mut self,
+        pou: &'s ast::Pou<'s>,
+        block: &'s ast::VarBlock<'s>,
+        decl: &'s ast::VarDecl<'s>,
+        name: ast::Name<'s>,
+        resolved: &Resolved,
+        builder: &mut Builder<'s>,
+    ) -> Option<Place> {
+        if decl.address.is_some() && pou.kind != PouKind::Program {
+            self.report(
+                Diagnostic::new(Code::E0409, name.span, "only a PROGRAM's variables and globals have an address")
+                    .help("declare it in VAR_GLOBAL and name it in VAR_EXTERNAL here"),
+            );
+        }
+        let section = super::scope::section(block.kind);
+        let formal = |target| Formal { name, section, resolved: resolved.clone(), target };
+        let place = match (pou.kind, block.kind) {
+            (_, VarKind::InOut) => {
+                let at = builder.param(name.text, resolved, decl, Mode::Reference);
+                builder.formals.push(formal(Target::Param(at)));
+                Place::root(Root::Param(ParamId::next(at)), resolved.ty)
+            }
+            (PouKind::Function, VarKind::Input) => {
+                let local = builder.local(name.text, resolved, decl.doc.clone());
+                let at = builder.param(name.text, resolved, decl, Mode::Value(local));
+                builder.formals.push(formal(Target::Param(at)));
+                Place::local(local, resolved.ty)
+            }
+            (PouKind::Function, VarKind::Output) => {
+                let at = builder.param(name.text, resolved, decl, Mode::Reference);
+                builder.formals.push(formal(Target::Param(at)));
+                Place::root(Root::Param(ParamId::next(at)), resolved.ty)
+            }
+            (PouKind::Function, _) | (_, VarKind::Temp) => {
+                Place::local(builder.local(name.text, resolved, decl.doc.clone()), resolved.ty)
+            }
+            (PouKind::Program | PouKind::FunctionBlock, _) => {
+                if let Some(place) = decl.address.and_then(|it| self.shared_address(it, resolved, name)) {
+                    return Some(place);
+                }
+                let place = self.push_field(block, decl, name, resolved, builder);
+                if matches!(block.kind, VarKind::Input | VarKind::Output) {
+                    builder.formals.push(formal(Target::Field(FieldId::next(builder.fields.len() - 1))));
+                }
+                match decl.edge {
+                    Some((edge, span)) => self.edge_input(edge, span, name, place, builder)?,
+                    None => place,
+                }
+            }
+        };
+        if let (Some((_, span)), true) = (decl.edge, block.kind != VarKind::Input || pou.kind == PouKind::Function) {
+            self.error(Code::E0403, span, "R_EDGE and F_EDGE belong to the inputs of a FUNCTION_BLOCK or PROGRAM");
+        }
+        Some(place)
+    }
+
+    fn push_field(
+        &mut self,
+        block: &'s ast::VarBlock<'s>,
+        decl: &'s ast::VarDecl<'s>,
+        name: ast::Name<'s>,
+        resolved: &Resolved,
+        builder: &mut Builder<'s>,
+    ) -> Place {
+        let id = FieldId::next(builder.fields.len());
+        let place = Place::root(Root::Instance, resolved.ty).field(id, resolved.ty);
+        let variable = self.variable(name, block, resolved.clone(), place.clone());
+        let field = self.field(&variable, block, decl, super::scope::section(block.kind));
+        builder.fields.push(field);
+        place
+    }
+
+    /// Adds the hidden trigger of an edge input; the body reads the trigger's `Q`.
+    fn edge_input(
+        &mut self,
+        edge: ast::Edge,
+        span: Span,
+        name: ast::Name<'s>,
+        input: Place,
+        builder: &mut Builder<'s>,
+    ) -> Option<Place> {
+        if input.ty != Type::BOOL {
+            self.error(Code::E0403, span, "R_EDGE and F_EDGE are for inputs of type BOOL");
+            return None;
+        }
+        let block = match edge {
+            ast::Edge::Rising => dialect::block_in(Family::Iec, "R_TRIG")?,
+            ast::Edge::Falling => dialect::block_in(Family::Iec, "F_TRIG")?,
+        };
+        let id = FieldId::next(builder.fields.len());
+        builder.fields.push(Field {
+            name: format!("{}_edge", name.text),
+            ty: Type::Block(block),
+            initial: Const::Zero,
+            section: Section::Internal,
+            retain: false,
+            constant: false,
+            address: None,
+            range: None,
+            doc: Some(format!("Edge memory of `{}`", name.text)),
+            location: self.location(name.span),
+        });
+        let trigger = Place::root(Root::Instance, Type::Block(block)).field(id, Type::Block(block));
+        builder.edges.push(EdgeInput { input, trigger: trigger.clone() });
+        Some(pin_place(trigger, block, "Q"))
+    }
+}
+
+fn within(inner: Span, outer: Span) -> bool {
+    inner.file == outer.file && outer.start <= inner.start && inner.end <= outer.end
+}
+
+/// The pin `name` of the block at `place`.
+pub(crate) fn pin_place(place: Place, block: BlockId, name: &str) -> Place {
+    let at = block.info().pins.iter().position(|pin| pin.name.eq_ignore_ascii_case(name));
+    let at = at.expect("the runtime's own pin names");
+    let field = FieldId::next(at);
+    let ty = block.pin_type(field).expect("the pin was found above");
+    place.field(field, ty)
+}
+
+impl<'s> Builder<'s> {
+    fn refuse(&mut self, name: ast::Name<'s>) {
+        Rc::get_mut(&mut self.scope).expect("no one else holds the scope between declarations").refuse(name);
+    }
+
+    fn local(&mut self, name: &str, resolved: &Resolved, doc: Option<String>) -> LocalId {
+        let id = LocalId::next(self.locals.len());
+        self.locals.push(Local { name: name.to_owned(), ty: resolved.ty, initial: resolved.initial.clone(), doc });
+        id
+    }
+
+    fn param(&mut self, name: &str, resolved: &Resolved, decl: &ast::VarDecl<'_>, mode: Mode) -> usize {
+        self.params.push(Param { name: name.to_owned(), ty: resolved.ty, doc: decl.doc.clone(), mode });
+        self.params.len() - 1
+    }
+}

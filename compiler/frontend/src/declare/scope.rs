@@ -1,0 +1,191 @@
+use super::types::Resolved;
+use super::{Declarations, GlobalSlot};
+use crate::ast;
+use crate::key::Key;
+use staunch_ir::{Const, Field, Place, Section};
+use std::cell::Cell;
+use std::collections::{HashMap, HashSet};
+use std::rc::Rc;
+
+/// A variable as a body knows it.
+#[derive(Clone, Debug)]
+pub(crate) struct Variable<'s> {
+    pub name: ast::Name<'s>,
+    pub place: Place,
+    pub resolved: Resolved,
+    pub section: Section,
+    pub constant: bool,
+    pub retain: bool,
+    /// Set when a body reads or writes it; shared between the copies of one declaration.
+    pub used: Rc<Cell<bool>>,
+}
+
+impl Variable<'_> {
+    /// The value of a CONSTANT of an elementary or enumeration type.
+    pub fn constant_value(&self) -> Option<Const> {
+        self.constant.then(|| self.resolved.initial.clone())
+    }
+}
+
+/// The variables a POU can name without a qualifier.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Scope<'s> {
+    pub variables: Vec<Variable<'s>>,
+    index: HashMap<Key<'s>, usize>,
+    /// Names whose declarations were refused: what uses them is not reported again.
+    refused: HashSet<Key<'s>>,
+    /// The CONSTANTs of the POU, which size arrays wherever they are declared.
+    pub constants: Option<Rc<Scope<'s>>>,
+}
+
+impl<'s> Scope<'s> {
+    pub fn get(&self, name: &str) -> Option<&Variable<'s>> {
+        let own = self.index.get(&Key(name)).map(|at| &self.variables[*at]);
+        own.or_else(|| self.constants.as_ref()?.get(name))
+    }
+
+    pub fn refuse(&mut self, name: ast::Name<'s>) {
+        self.refused.insert(Key(name.text));
+    }
+
+    pub fn is_refused(&self, name: &str) -> bool {
+        self.refused.contains(&Key(name))
+    }
+
+    /// The earlier variable of that name, if there is one.
+    pub fn insert(&mut self, variable: Variable<'s>) -> Result<(), ast::Name<'s>> {
+        let key = Key(variable.name.text);
+        if let Some(at) = self.index.get(&key) {
+            return Err(self.variables[*at].name);
+        }
+        self.index.insert(key, self.variables.len());
+        self.variables.push(variable);
+        Ok(())
+    }
+}
+
+pub(crate) fn section(kind: ast::VarKind) -> Section {
+    match kind {
+        ast::VarKind::Var | ast::VarKind::Stat => Section::Internal,
+        ast::VarKind::Input => Section::Input,
+        ast::VarKind::Output => Section::Output,
+        ast::VarKind::InOut => Section::InOut,
+        ast::VarKind::Temp => Section::Temp,
+        ast::VarKind::Global => Section::Global,
+        ast::VarKind::External => Section::External,
+    }
+}
+
+/// RETAIN, or its synonym PERSISTENT.
+fn is_declared_retain(block: &ast::VarBlock<'_>) -> bool {
+    block.retain.is_some() || block.persistent.is_some()
+}
+
+impl<'s> Declarations<'s> {
+    pub fn variable(
+        &self,
+        name: ast::Name<'s>,
+        block: &ast::VarBlock<'s>,
+        resolved: Resolved,
+        place: Place,
+    ) -> Variable<'s> {
+        Variable {
+            name,
+            place,
+            section: section(block.kind),
+            constant: block.constant.is_some(),
+            retain: (is_declared_retain(block) && !self.loses_its_count(resolved.ty)) || self.is_retentive(resolved.ty),
+            resolved,
+            used: Rc::new(Cell::new(false)),
+        }
+    }
+
+    /// Whether RETAIN does not keep an instance: Cscape has R_CTU and R_CTD for that.
+    pub fn loses_its_count(&self, ty: staunch_ir::Type) -> bool {
+        match ty {
+            staunch_ir::Type::Block(id) => {
+                id.info().family == staunch_runtime::Family::Cscape && matches!(id.info().name, "CTU" | "CTD")
+            }
+            staunch_ir::Type::Array(id) => self.loses_its_count(self.program.array(id).element),
+            staunch_ir::Type::Elementary(_)
+            | staunch_ir::Type::String(_)
+            | staunch_ir::Type::Enum(_)
+            | staunch_ir::Type::Struct(_) => false,
+        }
+    }
+
+    /// Reports RETAIN where it keeps nothing.
+    pub fn check_retain(&mut self, block: &ast::VarBlock<'s>, ty: staunch_ir::Type, span: crate::Span) {
+        if is_declared_retain(block) && self.loses_its_count(ty) {
+            self.report(
+                crate::Diagnostic::new(crate::Code::W0302, span, "RETAIN does not keep the count of a Cscape counter")
+                    .label("it starts at 0 after a restart")
+                    .help("use R_CTU or R_CTD, with a RETAIN variable for RCV"),
+            );
+        }
+    }
+
+    /// Whether every instance of the type is retentive (Logix tags).
+    fn is_retentive(&self, ty: staunch_ir::Type) -> bool {
+        match ty {
+            staunch_ir::Type::Block(id) => id.info().retentive,
+            staunch_ir::Type::Array(id) => self.is_retentive(self.program.array(id).element),
+            staunch_ir::Type::Elementary(_)
+            | staunch_ir::Type::String(_)
+            | staunch_ir::Type::Enum(_)
+            | staunch_ir::Type::Struct(_) => false,
+        }
+    }
+
+    pub fn field(
+        &mut self,
+        variable: &Variable<'s>,
+        block: &ast::VarBlock<'s>,
+        decl: &ast::VarDecl<'s>,
+        section: Section,
+    ) -> Field {
+        let address = decl.address.and_then(|it| self.address(it));
+        Field {
+            name: variable.name.text.to_owned(),
+            ty: variable.resolved.ty,
+            initial: variable.resolved.initial.clone(),
+            section,
+            retain: variable.retain,
+            constant: block.constant.is_some(),
+            address,
+            range: variable.resolved.range,
+            doc: decl.doc.clone(),
+            location: self.location(variable.name.span),
+        }
+    }
+
+    /// Reports a second variable of the same name in one scope.
+    pub fn enter_variable(&mut self, scope: &mut Scope<'s>, variable: Variable<'s>) {
+        let name = variable.name;
+        if let Err(first) = scope.insert(variable) {
+            self.report(
+                crate::Diagnostic::new(crate::Code::E0103, name.span, format!("`{}` is declared twice", name.text))
+                    .label("declared again here")
+                    .other(first.span, "first declared here"),
+            );
+        }
+    }
+
+    pub fn external(&mut self, name: ast::Name<'s>) -> Option<Variable<'s>> {
+        let Some(super::Entry::Global(at)) = self.names.get(&Key(name.text)).copied() else {
+            let near = crate::key::nearest(name.text, self.globals.iter().map(|it: &GlobalSlot<'s>| it.name.text));
+            let mut error = crate::Diagnostic::new(
+                crate::Code::E0101,
+                name.span,
+                format!("there is no global variable `{}`", name.text),
+            )
+            .label("VAR_EXTERNAL names a variable of a VAR_GLOBAL");
+            if let Some(near) = near {
+                error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
+            }
+            self.report(error);
+            return None;
+        };
+        self.global(at)
+    }
+}

@@ -1,0 +1,542 @@
+//! Type specifications to types.
+
+use super::{Declarations, Entry, Scope, Slot};
+use crate::ast::{self, Bound, TypeKind};
+use crate::check;
+use crate::dialect::{self, Dialect};
+use crate::key::{Key, list, nearest};
+use crate::{Code, Diagnostic, Span};
+use staunch_ir::{Array, ArrayId, Const, Elementary, Enum, EnumId, Enumerator, Struct, StructId, Type, Value};
+use std::rc::Rc;
+
+/// What a type specification means for a variable declared with it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Resolved {
+    pub ty: Type,
+    /// The bounds of a subrange.
+    pub range: Option<(i128, i128)>,
+    /// The initial value of a variable that is declared without one.
+    pub initial: Const,
+}
+
+impl Resolved {
+    pub fn plain(ty: Type) -> Self {
+        Self { ty, range: None, initial: Const::Zero }
+    }
+}
+
+/// A variable larger than this many bytes is refused.
+pub(crate) const MAX_SIZE: u64 = 1 << 30;
+/// The initial values of all variables hold at most so many constants.
+const MAX_CONSTANTS: usize = 1 << 20;
+/// An array of arrays is refused beyond so many dimensions: rustc takes no type that is much deeper.
+const MAX_DIMENSIONS: usize = 64;
+/// Longest string.
+const MAX_CAPACITY: i128 = 32767;
+
+const NOT_YET: [&str; 19] = [
+    "RTC",
+    "LTON",
+    "LTOF",
+    "LTP",
+    "BLINK",
+    "DATE",
+    "LDATE",
+    "TOD",
+    "LTOD",
+    "TIME_OF_DAY",
+    "LTIME_OF_DAY",
+    "DT",
+    "LDT",
+    "DATE_AND_TIME",
+    "LDATE_AND_TIME",
+    "CHAR",
+    "WCHAR",
+    "WSTRING",
+    "POINTER",
+];
+
+impl<'s> Declarations<'s> {
+    /// The named type in slot `at`.
+    pub fn resolve_type_slot(&mut self, at: usize) -> Option<Resolved> {
+        let decl = self.types[at].decl;
+        match &self.types[at].slot {
+            Slot::Done(resolved) => return Some(resolved.clone()),
+            Slot::Failed => return None,
+            Slot::Active => {
+                self.report(
+                    Diagnostic::new(
+                        Code::E0402,
+                        decl.name.span,
+                        format!("the type `{}` contains itself", decl.name.text),
+                    )
+                    .label("its size would be endless"),
+                );
+                return None;
+            }
+            Slot::Waiting => {}
+        }
+        self.types[at].slot = Slot::Active;
+        let resolved = self.deeper(decl.name, |this| this.resolve_type_decl(decl));
+        self.types[at].slot = resolved.clone().map_or(Slot::Failed, Slot::Done);
+        resolved
+    }
+
+    fn resolve_type_decl(&mut self, decl: &'s ast::TypeDecl<'s>) -> Option<Resolved> {
+        let scope = Rc::new(Scope::default());
+        let doc = decl.doc.clone();
+        let mut resolved = self.resolve_type_named(&decl.ty, &scope, decl.name.text, doc)?;
+        if let Some(initial) = &decl.initial {
+            resolved.initial = self.initial(initial, &resolved, &scope)?;
+        }
+        Some(resolved)
+    }
+
+    /// The type of a declared variable, with the variable's own initial value.
+    pub fn declared_type(&mut self, decl: &'s ast::VarDecl<'s>, scope: &Rc<Scope<'s>>, name: &str) -> Option<Resolved> {
+        let mut resolved = self.resolve_type_named(&decl.ty, scope, name, None)?;
+        if let Some(initial) = &decl.initial {
+            // A refused value has been reported; the type is known all the same.
+            let value = self.initial(initial, &resolved, scope);
+            resolved.initial = value.unwrap_or(resolved.initial);
+        }
+        self.count_constants(&mut resolved, decl);
+        Some(resolved)
+    }
+
+    /// Refuses an initial value with which all of them would hold too many constants: a structure
+    /// of structures of structures holds very many soon.
+    fn count_constants(&mut self, resolved: &mut Resolved, decl: &ast::VarDecl<'s>) {
+        let own = constants(&resolved.initial).saturating_mul(decl.names.len());
+        if self.constants.saturating_add(own) <= MAX_CONSTANTS {
+            self.constants += own;
+            return;
+        }
+        resolved.initial = Const::Zero;
+        let message = format!("the initial values hold more than {MAX_CONSTANTS} constants");
+        self.report(Diagnostic::new(Code::E0901, decl.span, message).label(format!("{own} of them are here")));
+    }
+
+    /// `name` is what an anonymous structure or enumeration is called after.
+    pub fn resolve_type_named(
+        &mut self,
+        spec: &'s ast::TypeSpec<'s>,
+        scope: &Rc<Scope<'s>>,
+        name: &str,
+        doc: Option<String>,
+    ) -> Option<Resolved> {
+        match &spec.kind {
+            TypeKind::Named(path) => self.resolve_path(path, spec.span),
+            TypeKind::String { wide: true, .. } => {
+                self.not_supported(spec.span, "WSTRING");
+                None
+            }
+            TypeKind::String { wide: false, capacity } => self.string(capacity.as_deref(), scope, spec.span),
+            TypeKind::Subrange { base, low, high } => self.subrange(*base, low, high, scope),
+            TypeKind::Array { bounds, element } => self.array_type(bounds, element, scope, name, spec.span),
+            TypeKind::Struct(members) => self.structure(members, scope, name, doc, spec.span),
+            TypeKind::Enum { base, values } => self.enumeration(*base, values, scope, name, doc, spec.span),
+            // The parser has said so.
+            TypeKind::Unsupported(_) => None,
+        }
+    }
+
+    pub fn not_supported(&mut self, span: Span, what: &str) {
+        self.report(
+            Diagnostic::new(Code::E0902, span, format!("{what} is not supported yet"))
+                .label("this version of Staunch cannot compile it"),
+        );
+    }
+
+    fn resolve_path(&mut self, path: &[ast::Name<'s>], span: Span) -> Option<Resolved> {
+        match path {
+            [name] => self.resolve_name(*name),
+            [family, name] => self.resolve_qualified(*family, *name),
+            _ => {
+                self.error(Code::E0102, span, "a type is named by at most a family and a name");
+                None
+            }
+        }
+    }
+
+    fn resolve_qualified(&mut self, family: ast::Name<'s>, name: ast::Name<'s>) -> Option<Resolved> {
+        let Some(it) = dialect::family_named(family.text) else {
+            let names: Vec<_> = dialect::FAMILIES.iter().map(|(name, _)| *name).collect();
+            self.report(
+                Diagnostic::new(Code::E0102, family.span, format!("there is no block family `{}`", family.text))
+                    .help(format!("the families are {}", list(&names))),
+            );
+            return None;
+        };
+        // The rows of options are reached by the option, not by name.
+        let block = self.block_in(it, name.text).filter(|_| !dialect::is_option_row(name.text));
+        // What all systems share needs no family of its own.
+        let block = block.or_else(|| {
+            (!dialect::is_counter(name.text))
+                .then(|| dialect::block_in(staunch_runtime::Family::Iec, name.text))
+                .flatten()
+        });
+        let Some(block) = block else {
+            self.report(check::no_such_block(it, name));
+            return None;
+        };
+        Some(block_type(block))
+    }
+
+    fn resolve_name(&mut self, name: ast::Name<'s>) -> Option<Resolved> {
+        if let Some(elementary) = Elementary::named(name.text) {
+            return Some(Resolved::plain(Type::Elementary(elementary)));
+        }
+        match self.names.get(&Key(name.text)).copied() {
+            Some(Entry::Type(at)) => return self.resolve_type_slot(at),
+            Some(Entry::Pou(at)) => return self.instance_type(at, name),
+            Some(Entry::Global(_)) | None => {}
+        }
+        if let Some(block) = self.bare_block(name.text, name.span) {
+            return Some(block_type(block));
+        }
+        self.report_unknown_type(name);
+        None
+    }
+
+    /// The state of a FUNCTION_BLOCK: the type of its instances.
+    fn instance_type(&mut self, at: usize, name: ast::Name<'s>) -> Option<Resolved> {
+        let pou = self.pous[at].ast;
+        if pou.kind != ast::PouKind::FunctionBlock {
+            let kind = if pou.kind == ast::PouKind::Program { "PROGRAM" } else { "FUNCTION" };
+            self.report(
+                Diagnostic::new(Code::E0102, name.span, format!("`{}` is a {kind}, not a type", name.text))
+                    .label("a FUNCTION_BLOCK or a type is expected here")
+                    .other(pou.name.span, "declared here"),
+            );
+            return None;
+        }
+        let signature = self.signature(at)?;
+        let state = signature.state?;
+        Some(Resolved {
+            ty: Type::Struct(state),
+            range: None,
+            initial: struct_initial(&self.program.structure(state).fields),
+        })
+    }
+
+    fn report_unknown_type(&mut self, name: ast::Name<'s>) {
+        if NOT_YET.iter().any(|it| it.eq_ignore_ascii_case(name.text)) {
+            self.not_supported(name.span, &format!("the type {}", name.text.to_ascii_uppercase()));
+            return;
+        }
+        if let Some(error) = check::block_of_another_dialect(self.dialect(name.span), name) {
+            self.report(error);
+            return;
+        }
+        let dialect = self.dialect(name.span);
+        let blocks = staunch_runtime::BLOCKS.iter().map(|it| it.name);
+        let blocks = blocks.filter(|it| dialect::bare_block(dialect, it).is_some());
+        let elementary = Elementary::ALL.iter().map(|it| it.name());
+        let own = self.names.iter().filter(|(_, entry)| !matches!(entry, Entry::Global(_)));
+        let candidates = own.map(|(key, _)| key.0).chain(elementary).chain(blocks).chain(["STRING"]);
+        let near = nearest(name.text, candidates).map(str::to_owned);
+        let mut error =
+            Diagnostic::new(Code::E0102, name.span, format!("there is no type `{}`", name.text)).label("unknown type");
+        if let Some(near) = near {
+            error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
+        }
+        self.report(error);
+    }
+
+    fn string(&mut self, capacity: Option<&'s ast::Expr<'s>>, scope: &Rc<Scope<'s>>, span: Span) -> Option<Resolved> {
+        let default = if self.dialect(span) == Dialect::Iec { 254 } else { 80 };
+        let Some(expr) = capacity else { return Some(Resolved::plain(Type::String(default))) };
+        let length = self.constant_integer(expr, scope)?;
+        if !(1..=MAX_CAPACITY).contains(&length) {
+            self.report(
+                Diagnostic::new(Code::E0206, expr.span, format!("a STRING holds 1 to {MAX_CAPACITY} bytes"))
+                    .label(format!("this is {length}")),
+            );
+            return None;
+        }
+        Some(Resolved::plain(Type::String(u16::try_from(length).unwrap_or(u16::MAX))))
+    }
+
+    fn subrange(
+        &mut self,
+        base: ast::Name<'s>,
+        low: &'s ast::Expr<'s>,
+        high: &'s ast::Expr<'s>,
+        scope: &Rc<Scope<'s>>,
+    ) -> Option<Resolved> {
+        let resolved = self.resolve_name(base)?;
+        let lane = match resolved.ty {
+            Type::Elementary(it) if it.is_integer() => it.lane(),
+            _ => {
+                self.report(
+                    Diagnostic::new(Code::E0407, base.span, "a subrange is made of an integer type")
+                        .label(format!("this is {}", self.program.type_name(resolved.ty))),
+                );
+                return None;
+            }
+        };
+        let bounds = (self.constant_integer(low, scope)?, self.constant_integer(high, scope)?);
+        let whole = resolved.range.or(lane.range())?;
+        if bounds.0 > bounds.1 || bounds.0 < whole.0 || bounds.1 > whole.1 {
+            self.report(
+                Diagnostic::new(
+                    Code::E0407,
+                    low.span.to(high.span),
+                    format!(
+                        "the bounds of a subrange of `{}` lie between {} and {}, the lower one first",
+                        base.text, whole.0, whole.1
+                    ),
+                )
+                .label(format!("these are {} and {}", bounds.0, bounds.1)),
+            );
+            return None;
+        }
+        let zero_fits = (bounds.0..=bounds.1).contains(&0);
+        let initial = if zero_fits { Const::Zero } else { Const::Scalar(lane.integer(bounds.0)?) };
+        Some(Resolved { ty: resolved.ty, range: Some(bounds), initial })
+    }
+
+    fn array_type(
+        &mut self,
+        bounds: &'s [Bound<'s>],
+        element: &'s ast::TypeSpec<'s>,
+        scope: &Rc<Scope<'s>>,
+        name: &str,
+        span: Span,
+    ) -> Option<Resolved> {
+        let mut resolved = self.resolve_type_named(element, scope, name, None);
+        let mut dimensions = Vec::new();
+        for bound in bounds {
+            match bound {
+                Bound::Open(span) => {
+                    self.not_supported(*span, "ARRAY[*]");
+                    resolved = None;
+                }
+                Bound::Range(low, high) => dimensions.push((low, high)),
+            }
+        }
+        for (low, high) in dimensions.into_iter().rev() {
+            let (first, last) = (self.constant_integer(low, scope), self.constant_integer(high, scope));
+            let (Some(first), Some(last), Some(inner)) = (first, last, resolved.take()) else { continue };
+            resolved = self.dimension(first, last, inner, low.span.to(high.span));
+        }
+        let resolved = resolved?;
+        if self.size_of(resolved.ty) > MAX_SIZE {
+            self.error(Code::E0901, span, "this array is larger than 1 GiB");
+            return None;
+        }
+        Some(resolved)
+    }
+
+    fn dimension(&mut self, low: i128, high: i128, element: Resolved, span: Span) -> Option<Resolved> {
+        if low > high {
+            self.report(
+                Diagnostic::new(Code::E0406, span, "the bounds of an array stand in the wrong order")
+                    .label(format!("{low} is above {high}"))
+                    .fix(span, format!("{high}..{low}")),
+            );
+            return None;
+        }
+        let (Ok(low), Ok(high)) = (i64::try_from(low), i64::try_from(high)) else {
+            self.error(Code::E0406, span, "the bounds of an array are LINT values");
+            return None;
+        };
+        if self.dimensions(element.ty) >= MAX_DIMENSIONS {
+            self.error(Code::E0901, span, format!("an array has at most {MAX_DIMENSIONS} dimensions"));
+            return None;
+        }
+        let count = high.abs_diff(low).saturating_add(1);
+        if count.saturating_mul(self.size_of(element.ty).max(1)) > MAX_SIZE {
+            self.error(Code::E0901, span, "this array is larger than 1 GiB");
+            return None;
+        }
+        let initial = match &element.initial {
+            Const::Zero => Const::Zero,
+            other => Const::Array(vec![(count, other.clone())]),
+        };
+        Some(Resolved { ty: self.intern_array(low, high, element), range: None, initial })
+    }
+
+    fn dimensions(&self, mut ty: Type) -> usize {
+        let mut count = 0;
+        while let Type::Array(id) = ty {
+            ty = self.program.array(id).element;
+            count += 1;
+        }
+        count
+    }
+
+    fn intern_array(&mut self, low: i64, high: i64, element: Resolved) -> Type {
+        let array = Array { low, high, element: element.ty };
+        let known = self.program.arrays.iter().zip(&self.elements);
+        if let Some(at) = known.into_iter().position(|(it, of)| *it == array && *of == element) {
+            return Type::Array(ArrayId::next(at));
+        }
+        let id = ArrayId::next(self.program.arrays.len());
+        self.program.arrays.push(array);
+        self.elements.push(element);
+        Type::Array(id)
+    }
+
+    fn structure(
+        &mut self,
+        members: &'s [ast::VarDecl<'s>],
+        scope: &Rc<Scope<'s>>,
+        name: &str,
+        doc: Option<String>,
+        span: Span,
+    ) -> Option<Resolved> {
+        let block = ast::VarBlock {
+            kind: ast::VarKind::Var,
+            constant: None,
+            retain: None,
+            non_retain: None,
+            persistent: None,
+            vars: Vec::new(),
+            span,
+        };
+        let mut seen = Scope::default();
+        let mut fields = Vec::new();
+        let mut complete = true;
+        for decl in members {
+            let owner = decl.names.first().map_or(name, |it| it.text);
+            let Some(resolved) = self.declared_type(decl, scope, owner) else {
+                complete = false;
+                continue;
+            };
+            for member in &decl.names {
+                let place = staunch_ir::Place::root(staunch_ir::Root::Instance, resolved.ty);
+                let variable = self.variable(*member, &block, resolved.clone(), place);
+                fields.push(self.field(&variable, &block, decl, staunch_ir::Section::Internal));
+                self.enter_variable(&mut seen, variable);
+            }
+        }
+        if fields.is_empty() && complete {
+            self.error(Code::E0408, span, "a structure has at least one member");
+            return None;
+        }
+        let initial = struct_initial(&fields);
+        let location = self.location(span);
+        let id = self.push_struct(Struct { name: name.to_owned(), doc, location, fields });
+        complete.then_some(Resolved { ty: Type::Struct(id), range: None, initial })
+    }
+
+    pub fn push_struct(&mut self, structure: Struct) -> StructId {
+        let id = StructId::next(self.program.structs.len());
+        let size = structure.fields.iter().map(|it| self.size_of(it.ty)).fold(0, u64::saturating_add);
+        self.sizes.push(size);
+        self.program.structs.push(structure);
+        id
+    }
+
+    /// About how many bytes a value of the type takes: alignment may add some.
+    pub fn size_of(&self, ty: Type) -> u64 {
+        match ty {
+            Type::Elementary(it) => u64::from(it.lane().size()),
+            Type::String(capacity) => u64::from(capacity) + 2,
+            Type::Enum(id) => u64::from(self.program.enumeration(id).base.lane().size()),
+            Type::Struct(id) => self.sizes[id.index()],
+            Type::Block(id) => u64::try_from(id.info().size).unwrap_or(u64::MAX),
+            Type::Array(id) => {
+                let array = self.program.array(id);
+                array.len().saturating_mul(self.size_of(array.element))
+            }
+        }
+    }
+
+    fn enumeration(
+        &mut self,
+        base: Option<ast::Name<'s>>,
+        values: &'s [ast::EnumValue<'s>],
+        scope: &Rc<Scope<'s>>,
+        name: &str,
+        doc: Option<String>,
+        span: Span,
+    ) -> Option<Resolved> {
+        let base = match base {
+            None => Elementary::Int,
+            Some(name) => match Elementary::named(name.text).filter(|it| it.lane().is_integer() && !it.is_time()) {
+                Some(base) => base,
+                None => {
+                    self.error(Code::E0407, name.span, "the base of an enumeration is an integer or bit-string type");
+                    return None;
+                }
+            },
+        };
+        let mut enumerators: Vec<Enumerator> = Vec::new();
+        let mut next = 0i128;
+        for value in values {
+            if let Some(expr) = &value.value {
+                next = self.constant_integer(expr, scope)?;
+            }
+            let Some(number) = base.lane().integer(next) else {
+                self.report(
+                    Diagnostic::new(Code::E0202, value.name.span, format!("{next} does not fit {}", base.name()))
+                        .label(format!("the enumeration's values are of type {}", base.name())),
+                );
+                return None;
+            };
+            if let Some(first) = enumerators.iter().position(|it| it.name.eq_ignore_ascii_case(value.name.text)) {
+                self.report(
+                    Diagnostic::new(Code::E0103, value.name.span, format!("`{}` is declared twice", value.name.text))
+                        .other(values[first].name.span, "first declared here"),
+                );
+            }
+            enumerators.push(Enumerator { name: value.name.text.to_owned(), doc: value.doc.clone(), value: number });
+            next += 1;
+        }
+        let Some(first) = enumerators.first().map(|it| it.value) else {
+            self.error(Code::E0408, span, "an enumeration has at least one value");
+            return None;
+        };
+        let id = EnumId::next(self.program.enums.len());
+        for (value, declared) in values.iter().zip(&enumerators) {
+            self.anonymous_enumerators.entry(Key(value.name.text)).or_insert((Type::Enum(id), declared.value));
+        }
+        let location = self.location(span);
+        self.program.enums.push(Enum { name: name.to_owned(), doc, location, base, values: enumerators });
+        Some(Resolved { ty: Type::Enum(id), range: None, initial: scalar_initial(first) })
+    }
+}
+
+/// The initial value of a structure: all zero where every field's is.
+pub(crate) fn struct_initial(fields: &[staunch_ir::Field]) -> Const {
+    if fields.iter().all(|it| it.initial == Const::Zero) {
+        return Const::Zero;
+    }
+    Const::Struct(fields.iter().map(|it| it.initial.clone()).collect())
+}
+
+/// How many constants an initial value is written with; a repeated one counts once.
+fn constants(initial: &Const) -> usize {
+    match initial {
+        Const::Zero | Const::Scalar(_) | Const::Text(_) => 1,
+        Const::Array(runs) => runs.iter().map(|(_, it)| constants(it)).sum(),
+        Const::Struct(fields) => fields.iter().map(constants).sum(),
+    }
+}
+
+/// A scalar constant, in its shortest form.
+pub(crate) fn scalar_initial(value: Value) -> Const {
+    // -0.0 equals 0.0 but has other bytes.
+    let is_zero = match value {
+        Value::F32(it) => it.to_bits() == 0,
+        Value::F64(it) => it.to_bits() == 0,
+        other => other == other.lane().zero(),
+    };
+    if is_zero { Const::Zero } else { Const::Scalar(value) }
+}
+
+fn block_type(block: staunch_ir::BlockId) -> Resolved {
+    let pins = block.info().pins;
+    let initial = if pins.iter().any(|pin| pin.starts_true) {
+        let value = |pin: &staunch_runtime::Pin| {
+            if pin.starts_true { Const::Scalar(Value::Bool(true)) } else { Const::Zero }
+        };
+        Const::Struct(pins.iter().map(value).collect())
+    } else {
+        Const::Zero
+    };
+    Resolved { ty: Type::Block(block), range: None, initial }
+}

@@ -1,0 +1,522 @@
+use super::Severity;
+
+macro_rules! codes {
+    ($($code:ident $severity:ident $title:literal $explanation:literal;)*) => {
+        /// A stable code. `E` codes are errors, `W` codes are lints.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum Code { $($code),* }
+
+        impl Code {
+            pub const ALL: &'static [Self] = &[$(Self::$code),*];
+
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$code => stringify!($code)),* }
+            }
+
+            /// The diagnostic in a few words.
+            pub const fn title(self) -> &'static str {
+                match self { $(Self::$code => $title),* }
+            }
+
+            /// The long text that `staunch explain` prints.
+            pub const fn explanation(self) -> &'static str {
+                match self { $(Self::$code => $explanation),* }
+            }
+
+            /// What it is unless the user says otherwise.
+            pub const fn severity(self) -> Severity {
+                match self { $(Self::$code => Severity::$severity),* }
+            }
+
+            /// A lint about which statements run and which variables they use.
+            pub const fn is_of_the_flow(self) -> bool {
+                matches!(self, Self::W0501 | Self::W0502 | Self::W0507)
+            }
+
+            pub fn named(name: &str) -> Option<Self> {
+                Self::ALL.iter().copied().find(|it| it.name().eq_ignore_ascii_case(name))
+            }
+        }
+    };
+}
+
+// 00xx text and syntax; 01xx names; 02xx types and values; 03xx calls and blocks; 04xx
+// declarations; 05xx statements; 06xx what a move between systems changes, by the number that
+// `docs/compare.md` gives it; 09xx limits and what is not supported.
+codes! {
+    E0001 Error "the text does not parse"
+"The text breaks the grammar at the marked place. The message says what was expected there.
+
+    x = 1;      (* an assignment is written x := 1; *)
+";
+E0002 Error "a character that means nothing"
+"Outside strings and comments, Structured Text is written in ASCII letters, digits and a few signs. The
+marked characters are none of them. Typographic quotes and dashes come from word processors.
+
+    name := ‘Mixer’;      (* before *)
+    name := 'Mixer';      (* after *)
+";
+E0003 Error "a comment or pragma is not closed"
+"The comment or pragma that starts at the marked place runs to the end of the file. Comments nest: inside
+`(* … *)` every further `(*` needs its own `*)`.
+
+    (* count the parts (* of line 1 *)         before
+    (* count the parts (* of line 1 *) *)      after
+";
+E0004 Error "a string is not closed"
+"A string ends on the line it starts on. A line break inside a string is written `$N`, a quote `$'`.
+
+    text := 'it's late';       (* before *)
+    text := 'it$'s late';      (* after *)
+";
+E0005 Error "a number that cannot be read"
+"A number is decimal, or has one of the bases 2, 8 and 16. Its value fits 64 bits, and its digits belong to its
+base. `_` may stand between digits.
+
+    mask := 2#1021;      (* before *)
+    mask := 2#1011;      (* after *)
+";
+E0006 Error "a duration that cannot be read"
+"A duration is a sequence of numbers with units, from the longest unit to the shortest: d, h, m, s, ms, us, ns.
+It is held as signed nanoseconds in 64 bits, so it reaches about 292 years.
+
+    delay := T#500;        (* before *)
+    delay := T#500ms;      (* after *)
+";
+E0007 Error "an escape that means nothing"
+"In a string, `$` starts an escape: `$$`, `$'`, `$\"`, `$L` and `$N` (new line), `$P` (new page), `$R` (return),
+`$T` (tab), or a character's number in two hexadecimal digits (four in a WSTRING). A dollar sign is `$$`.
+
+    price := '5$';       (* before *)
+    price := '5$$';      (* after *)
+";
+E0008 Error "`=` where `:=` assigns"
+"`=` compares. An assignment is written `:=`, in one piece.
+
+    x = 1;       (* before *)
+    x := 1;      (* after *)
+";
+E0009 Error "`:=` where `=` compares"
+"`:=` assigns, and an assignment is a statement, not a condition. A comparison is written `=`.
+
+    IF x := 1 THEN      (* before *)
+    IF x = 1 THEN       (* after *)
+";
+E0010 Error "an operator of another language"
+"Structured Text has its own operators:
+
+    C           Structured Text
+    a == b      a = b
+    a != b      a <> b
+    a && b      a AND b      (AND_THEN: b only when needed)
+    a || b      a OR b       (OR_ELSE: b only when needed)
+    !a          NOT a
+    a % b       a MOD b
+    a += b      a := a + b
+";
+E0011 Error "`ELSE IF` where `ELSIF` is meant"
+"`ELSE IF` starts a second IF inside the ELSE, and that one needs an END_IF of its own. A further branch of the
+same IF is written ELSIF.
+
+    IF a THEN           (* before *)
+        x := 1;
+    ELSE IF b THEN
+        x := 2;
+    END_IF
+
+    IF a THEN           (* after *)
+        x := 1;
+    ELSIF b THEN
+        x := 2;
+    END_IF
+";
+E0012 Error "a missing `;`"
+"Every statement and every declaration ends with `;`.
+
+    x := 1         (* before *)
+    y := 2;
+
+    x := 1;        (* after *)
+    y := 2;
+";
+E0013 Error "a missing THEN, DO or OF"
+"A condition is followed by THEN (IF, ELSIF) or DO (WHILE), the bounds of a FOR by DO, the selector of a CASE and
+the bounds of an ARRAY by OF.
+
+    IF ready            (* before *)
+        start := TRUE;
+    END_IF
+
+    IF ready THEN       (* after *)
+        start := TRUE;
+    END_IF
+";
+E0014 Error "a block is not closed"
+"Every block is closed by its own END_: IF by END_IF, FOR by END_FOR, VAR by END_VAR, PROGRAM by END_PROGRAM, and
+so on; REPEAT by UNTIL and END_REPEAT. The message says what was opened, and where.
+
+    FOR i := 1 TO 3 DO      (* before *)
+        sum := sum + i;
+    END_PROGRAM
+
+    FOR i := 1 TO 3 DO      (* after *)
+        sum := sum + i;
+    END_FOR
+    END_PROGRAM
+";
+E0015 Error "an END_, ELSE or UNTIL that belongs to nothing"
+"The marked keyword closes or continues a block, but no such block is open here: it stands twice, or the block
+was closed before.
+
+    IF a THEN x := 1; END_IF
+    END_IF                          (* delete this *)
+";
+E0016 Error "a reserved word used as a name"
+"Keywords cannot be names, in any mixture of capital and small letters.
+
+    VAR to : INT; END_VAR          (* before *)
+    VAR target : INT; END_VAR      (* after *)
+";
+E0017 Error "a declaration behind statements"
+"All VAR blocks of a PROGRAM, FUNCTION_BLOCK or FUNCTION stand before its first statement.
+
+    x := 1;                    (* before *)
+    VAR x : INT; END_VAR
+
+    VAR x : INT; END_VAR       (* after *)
+    x := 1;
+";
+E0018 Error "a misspelt keyword"
+"Keywords that end a block have a stroke, and stand in one piece: END_IF, END_FOR, END_VAR. A further branch of an IF
+is ELSIF.
+
+    IF a THEN x := 1; ENDIF       (* before *)
+    IF a THEN x := 1; END_IF      (* after *)
+";
+E0019 Error "RETURN with a value"
+"RETURN leaves the POU; it takes no value. A FUNCTION's result is what was assigned to its own name.
+
+    FUNCTION Twice : INT           (* before *)
+    VAR_INPUT x : INT; END_VAR
+        RETURN 2 * x;
+    END_FUNCTION
+
+    FUNCTION Twice : INT           (* after *)
+    VAR_INPUT x : INT; END_VAR
+        Twice := 2 * x;
+    END_FUNCTION
+";
+E0030 Error "too many errors"
+"Reading stopped here: what follows was not looked at. Correct the errors above first.
+";
+E0031 Error "a file that is too large"
+"A source file has at most 4 GiB.
+";
+E0090 Error "not supported yet"
+"The marked construct is valid in IEC 61131-3 or in a vendor's dialect, and this compiler knows it, but does not
+compile it yet.
+";
+E0091 Error "too deep or too long"
+"Expressions, statements, types and initial values nest at most 256 levels deep, and at most 48 declarations need
+one another in a row, each declared before what it needs; a chain of operators has at most
+1000 operands and an IF at most 1000 branches. Split the construct: name a part of the expression with a
+variable, or move statements into a FUNCTION.
+";
+    E0101 Error "unknown name"
+"A name is used that no declaration introduces. Names compare without regard to case. The
+message offers the nearest declared name, where there is one.
+
+    VAR count : INT; END_VAR
+    cuont := 1;      (* did you mean `count`? *)
+";
+    E0102 Error "unknown type"
+"A declaration names a type that is neither elementary, nor declared in a TYPE block, nor a
+FUNCTION_BLOCK of the program, nor a standard block of the dialect in force.
+
+    VAR speed : IINT; END_VAR      (* did you mean `INT`? *)
+";
+    W0102 Warning "unknown pragma"
+"A pragma in braces that Staunch does not know: it has no effect. Those of editors and other tools
+pass without a word; those that would change the program's meaning are refused.
+";
+    E0103 Error "declared twice"
+"A scope holds each name once, whatever its case: `Motor` and `MOTOR` are one name. POUs, types
+and global variables share one scope; the variables of a POU are another.
+";
+    E0104 Error "reserved name"
+"A POU, type or global variable cannot bear the name of an elementary type.
+";
+    E0105 Error "unknown dialect"
+"The pragma `{dialect '…'}` names a dialect that does not exist. The dialects are iec, cscape,
+codesys and logix; they decide whose counters a bare `CTU` means.
+";
+    E0106 Error "two dialects in one file"
+"A file has one dialect. To use a block of another system beside it, name its family:
+
+    VAR
+        a : CTU;             (* of the file's dialect *)
+        b : CODESYS.CTU;     (* of CODESYS, in every dialect *)
+    END_VAR
+";
+    E0107 Error "unknown member"
+"A structure, enumeration or instance has no member of that name.
+";
+    E0108 Error "ambiguous enumerator"
+"Several enumerations have a value of that name, and the place does not say which is meant.
+Qualify it: `Color#Red` or `Color.Red`.
+";
+    E0109 Error "internal variable"
+"From outside an instance only its inputs and outputs can be reached. Declare the variable in
+VAR_OUTPUT to show it.
+";
+    E0201 Error "wrong type"
+"The value is of another type than its place, and no implicit conversion leads there.
+";
+    E0202 Error "value does not fit"
+"A literal or constant lies outside the range of its type.
+
+    VAR small : SINT; END_VAR
+    small := 300;      (* a SINT holds -128 to 127 *)
+";
+    E0203 Error "conversion needed"
+"Implicit conversions only widen (IEC 61131-3, third edition, figure 12). One that may lose
+something is written down, so that a reader sees it:
+
+    VAR long : DINT; short : INT; END_VAR
+    short := DINT_TO_INT(long);
+";
+    E0204 Error "operator does not take these types"
+"Arithmetic takes numbers, AND OR XOR NOT take BOOL and bit strings, comparisons take two
+operands of one type. A TIME is added to a TIME, and multiplied or divided by a number. A bit
+string becomes a number with a conversion: `WORD_TO_UINT(w) + 1`. The codesys dialect lets bit
+strings and integers mix.
+";
+    E0205 Error "not a constant"
+"Array bounds, string lengths, initial values, CASE labels and enumerators are computed by the
+compiler: they may use literals, enumerators and variables declared CONSTANT.
+";
+    E0206 Error "wrong length or count"
+"A string's length, a repeat count or the number of initial values does not fit its type.
+";
+    E0207 Error "constant expression faults"
+"The compiler computed a constant expression, and it faults: a division by zero, for instance.
+In the program it would stop every scan.
+";
+    E0208 Error "constant index out of range"
+"An index that is known now lies outside the array's bounds, or a bit number outside of the
+value. An index that is not known is checked in every scan, and faults.
+";
+    E0209 Error "constant TIME overflows"
+"A TIME counts nanoseconds in 64 bits: it reaches 292 years either way.
+";
+    E0210 Error "an instance is not a value"
+"A counter, timer or other block instance is storage with behaviour; it is called, and its
+outputs are read. It cannot be copied or computed with.
+
+    VAR parts : CTU; count : INT; END_VAR
+    count := parts.CV;      (* not `count := parts;` *)
+";
+    E0301 Error "unknown pin or parameter"
+"A call names a parameter that the block or function does not have. Systems disagree on pin
+names: the reset of a counter is `R` in IEC 61131-3, `RESET` in CODESYS and Cscape; the load
+input is `LD` or `LOAD`. Positional arguments mean the same in all of them.
+";
+    E0302 Error "wrong number of arguments"
+"A call gives more or fewer arguments than the function takes, or an array more indices than it
+has dimensions. A block's inputs may be omitted: they keep their values.
+";
+    E0303 Error "argument missing"
+"A VAR_IN_OUT works on the caller's variable, so each call names one.
+";
+    E0304 Error "argument given twice"
+"A parameter was given by position and by name, or by name twice.
+";
+    E0305 Error "cannot be called"
+"Only functions and instances of blocks are called. A FUNCTION_BLOCK is a type: declare an
+instance and call that.
+";
+    E0306 Error "a variable is needed"
+"The call writes here, so a literal or expression will not do.
+";
+    E0307 Error "unknown function"
+"No function or instance of that name is declared, and the standard has none.
+";
+    E0309 Error "a block of another dialect"
+"The dialect in force decides whose blocks a bare name means, and its system documents no block
+of this name. Name the family (`IEC.CTUD`), compile with another `--dialect`, or start the file
+with `{dialect 'iec'}`.
+";
+    E0310 Error "recursion"
+"A POU calls itself, directly or through others. The stack of a controller is bounded, and so
+is the time of a scan: IEC 61131-3 forbids it. Write a loop.
+";
+    E0311 Error "the call has no value"
+"A block, or a FUNCTION without a result type, has no value. Call it in a statement, then read
+its outputs.
+";
+    E0312 Error "wrong arrow"
+"Inputs are connected with `:=`, outputs with `=>`.
+
+    VAR parts : CTU; sensor, full : BOOL; END_VAR
+    parts(CU := sensor, PV := 10, Q => full);
+";
+    E0313 Error "instruction on the wrong structure"
+"The Logix instructions CTU, CTD and RES work on a COUNTER, CTUD on an FBD_COUNTER.
+";
+    E0314 Error "RCV shared by two counters"
+"R_CTU and R_CTD keep their count in the variable given as RCV. Two counters on one variable
+would overwrite each other's count.
+";
+    E0315 Error "RCV is assigned"
+"Only the counter writes the variable that keeps its count. To clear the count, call the counter
+with RESET TRUE.
+";
+    E0402 Error "a declaration needs itself"
+"A structure contains itself, an instance contains an instance of its own kind, or a constant is
+defined by itself: its size or value would have no end.
+";
+    E0403 Error "qualifier does not belong here"
+"RETAIN, CONSTANT, R_EDGE and F_EDGE each have sections to which they belong. A VAR_TEMP or a
+function's variable has no value from one call to the next, so there is nothing to retain.
+";
+    E0404 Error "a constant without a value"
+"A CONSTANT never changes, so its declaration gives the value.
+";
+    E0405 Error "VAR_EXTERNAL differs from its global"
+"VAR_EXTERNAL names a global variable, with the type of its declaration.
+";
+    E0406 Error "array bounds"
+"The bounds of an array are two whole numbers, the lower one first.
+";
+    E0407 Error "base of a subrange or enumeration"
+"A subrange is a part of an integer type; an enumeration's values are of one.
+";
+    E0408 Error "empty type"
+"A structure has at least one member, an enumeration at least one value.
+";
+    E0409 Error "direct address"
+"A direct address is an area (I inputs, Q outputs, M memory), a size (X bit, B byte, W 16, D 32,
+L 64 bits) and a place: `%IX0.3`, `%QW2`. Its variable has just that many bits. It belongs to a
+PROGRAM or to the globals.
+";
+    E0410 Error "overlapping addresses"
+"In CODESYS memory is addressed in several sizes, so that %MB1 is a part of %MW0. Staunch keeps such
+variables apart, and refuses a program that may count on the shared bits. Declare the larger one, and
+take its parts: `word.%B1`, `word.3`.
+";
+    E0501 Error "assignment to a constant"
+"A variable declared CONSTANT keeps its value.
+";
+    E0502 Error "assignment to an input"
+"A POU does not assign to its own VAR_INPUT: the caller decides it. The codesys dialect makes
+this a lint, since real code does it.
+";
+    E0503 Error "assignment to a FOR counter"
+"A FOR loop alone advances its counter. The codesys dialect makes this a lint.
+";
+    E0504 Error "assignment to an output from outside"
+"An output is set by its block only.
+";
+    E0505 Error "EXIT or CONTINUE outside of a loop"
+"EXIT leaves the innermost FOR, WHILE or REPEAT, CONTINUE goes on with its next turn.
+";
+    E0506 Error "CASE label twice"
+"Each value selects one branch. The second label of a value could never be chosen.
+";
+    E0507 Error "condition is not a BOOL"
+"IF, ELSIF, WHILE and UNTIL take a BOOL. A number is compared first: `count <> 0`.
+";
+    E0508 Error "statement without effect"
+"An expression alone does nothing. An instance is called with parentheses: `timer();`.
+";
+    E0509 Error "FOR step is 0"
+"A FOR loop with the step 0 would never end.
+";
+    E0901 Error "too large"
+"Variables are laid out in one block of memory, which may take 1 GiB. An array has at most 64 dimensions,
+and all initial values together hold at most 1048576 constants; a repeated one counts once.
+";
+    E0902 Error "not supported yet"
+"The construct is part of the language, but this version of Staunch cannot compile it. It is
+refused rather than compiled wrongly.
+";
+    E0903 Error "too many temporary variables"
+"VAR_TEMP and the variables of functions live on the stack during a call. Those of a call and of
+all calls below it may take 1 MiB.
+";
+    W0301 Warning "RCV is not retained"
+"R_CTU and R_CTD restore their count from the variable given as RCV after a restart. A variable
+that is not RETAIN starts anew, and so does the count.
+";
+    W0302 Warning "RETAIN keeps nothing here"
+"Horner Cscape keeps the count of R_CTU and R_CTD over a restart, through a RETAIN variable given as
+RCV. Its CTU and CTD start at 0, however they are declared.
+";
+    W0410 Warning "overlapping addresses"
+"Two variables lie on addresses that share bits, such as %MW0 and %MB1. Staunch keeps them
+apart: writing one does not change the other.
+";
+    W0501 Warning "unused variable"
+"A variable is declared but never read or written. Start its name with `_` to keep it.
+";
+    W0502 Warning "unreachable statement"
+"The statement stands behind EXIT, CONTINUE or RETURN.
+";
+    W0503 Warning "REAL compared for equality"
+"Rounding makes results differ that are equal on paper. Compare the distance.
+";
+    W0504 Warning "input assigned from inside"
+"The codesys dialect allows it; the caller's value is lost.
+";
+    W0505 Warning "FOR counter assigned in its loop"
+"The codesys dialect allows it; the loop goes on from the new value.
+";
+    W0507 Warning "instance called twice in a scan"
+"A counter, trigger or timer works once a scan. Called twice, it sees the input of the first call
+as the past of the second: an edge is counted twice, or not at all. Branches that exclude each
+other may each call it.
+";
+    W0508 Warning "endless loop"
+"The condition of a WHILE or REPEAT is constant, and no EXIT or RETURN leaves it: the scan would
+never come to its end.
+";
+    W0506 Warning "sign may change"
+"The codesys dialect converts between signed and unsigned types of one size without being asked.
+";
+    W0602 Warning "a count is compared beyond its preset"
+"A CSCAPE counter stops at its preset, so its count is not above it. Elsewhere counting goes on, and programs
+that were written there wait for the count to pass PV. (Only after PV was lowered can CV lie above it.)
+
+    parts(CU := sensor, PV := 10);
+    IF parts.CV > 10 THEN alarm := TRUE; END_IF      (* before *)
+    IF parts.CV >= 10 THEN alarm := TRUE; END_IF     (* after *)
+";
+    W0608 Warning "an unsigned value is compared with what lies below zero"
+"An unsigned value, or a bit string, is never negative: `x < 0` is always FALSE, `x >= 0` always TRUE. CODESYS counts
+in WORD, so its counters stop at 0 where others go on to -1.
+
+    down(CD := sensor);
+    IF down.CV < 0 THEN alarm := TRUE; END_IF      (* before *)
+    IF down.CV = 0 THEN alarm := TRUE; END_IF      (* after *)
+";
+    W0609 Warning "a pin has another name on this system"
+"`staunch compare` reads the program as another system's. That system has the pin, under another name: R or RESET,
+LD or LOAD, S1 or SET1. Inputs that are given by position need no change.
+
+    parts(CU := sensor, R := clear, PV := 10);          (* IEC *)
+    parts(CU := sensor, RESET := clear, PV := 10);      (* CODESYS, CSCAPE *)
+    parts(sensor, clear, 10);                           (* all three *)
+";
+    W0612 Warning "a counter's own output resets it"
+"The reset takes effect in the scan after the count is complete. Reset wins over counting, and the edge memory goes on
+working under it: an edge that arrives in that scan is consumed without being counted. Reset the counter in a second
+call in the scan in which it completes; the input is then seen again before the next edge.
+
+    parts(CU := sensor, R := done, PV := 10);      (* before *)
+    done := parts.Q;
+
+    parts(CU := sensor, R := FALSE, PV := 10);     (* after *)
+    done := parts.Q;
+    IF done THEN parts(R := TRUE); END_IF
+";
+}

@@ -1,0 +1,69 @@
+//! Tokens to the syntax tree: one function a production, over chumsky's input.
+//!
+//! Productions decide by the tokens ahead and never go back, so that each mistake is told once,
+//! where it is, and reading goes on in the list it belongs to (`recover`).
+
+mod configuration;
+mod declaration;
+mod doc;
+mod expression;
+mod literal;
+mod member;
+mod mistake;
+mod moves;
+mod recover;
+mod statement;
+mod types;
+mod unit;
+
+#[cfg(test)]
+mod tests;
+
+use chumsky::{Parser, input::InputRef, primitive::custom};
+
+use crate::{
+    ast::File,
+    diagnostic::{Code, Diagnostic},
+    lex::{Kind, lex},
+    source::Span,
+};
+
+use moves::{Extra, State};
+
+/// The tree of a file. What does not parse is reported, and left out of the tree.
+pub fn parse<'s>(file: u16, text: &'s str, diagnostics: &mut Vec<Diagnostic>) -> File<'s> {
+    if u32::try_from(text.len()).is_err() {
+        let span = Span { file, start: 0, end: 0 };
+        diagnostics.push(Diagnostic::new(Code::E0031, span, "the file is larger than 4 GiB"));
+        return File::default();
+    }
+    let mut tokens = lex(file, text);
+    let mut state = State {
+        file,
+        text,
+        tokens: &tokens,
+        diagnostics: Vec::new(),
+        open: Vec::new(),
+        depth: 0,
+        height: 0,
+        stopped: false,
+        waiting: Vec::new(),
+        instead: None,
+    };
+    let items = parse_items(&mut state);
+    let mut found = state.diagnostics;
+    found.append(&mut tokens.diagnostics);
+    found.sort_by_key(|it| (it.span.start, it.span.end));
+    diagnostics.append(&mut found);
+    File { items, pragmas: tokens.pragmas }
+}
+
+fn parse_items<'t, 's>(state: &mut State<'t, 's>) -> Vec<crate::ast::Item<'s>> {
+    let kinds: &'t [Kind] = &state.tokens.kinds;
+    let file = custom(|input: &mut InputRef<'t, '_, &'t [Kind], Extra<'t, 's>>| {
+        let items = unit::items(input);
+        while input.next().is_some() {}
+        Ok(items)
+    });
+    file.parse_with_state(kinds, state).into_output().unwrap_or_default()
+}

@@ -1,0 +1,339 @@
+//! Expressions, by precedence climbing.
+//!
+//! Written as productions over chumsky's input rather than with its `pratt`: that tries eight
+//! levels behind each operand, and needs a stack frame for each, where a nesting limit counts.
+
+use crate::{
+    ast::{Argument, ArgumentKind, BinaryOp, Expr, ExprKind, Name, UnaryOp},
+    lex::Kind,
+    source::Span,
+};
+
+use super::{
+    literal, mistake,
+    moves::{Expected, In, Moves, Parsed, Waiting},
+};
+
+/// Arguments of one call.
+const MAX_ARGUMENTS: usize = 10_000;
+
+/// An operator and how strongly it binds; `=` and what C writes for it are 4.
+fn infix(kind: Kind) -> Option<(BinaryOp, u8)> {
+    Some(match kind {
+        Kind::Or | Kind::OrOr => (BinaryOp::Or, 1),
+        Kind::OrElse => (BinaryOp::OrElse, 1),
+        Kind::Xor => (BinaryOp::Xor, 2),
+        Kind::And | Kind::Ampersand | Kind::AndAnd => (BinaryOp::And, 3),
+        Kind::AndThen => (BinaryOp::AndThen, 3),
+        Kind::Equal | Kind::EqualEqual => (BinaryOp::Eq, 4),
+        Kind::Unequal | Kind::BangEqual => (BinaryOp::Ne, 4),
+        Kind::Less => (BinaryOp::Lt, 5),
+        Kind::Greater => (BinaryOp::Gt, 5),
+        Kind::LessEqual => (BinaryOp::Le, 5),
+        Kind::GreaterEqual | Kind::Arrow => (BinaryOp::Ge, 5),
+        Kind::Plus => (BinaryOp::Add, 6),
+        Kind::Minus => (BinaryOp::Sub, 6),
+        Kind::Star => (BinaryOp::Mul, 7),
+        Kind::Slash => (BinaryOp::Div, 7),
+        Kind::Mod | Kind::Percent => (BinaryOp::Mod, 7),
+        Kind::Power => (BinaryOp::Power, 8),
+        _ => return None,
+    })
+}
+
+/// Signs of other languages that are read as ours, and reported.
+fn is_foreign(kind: Kind) -> bool {
+    matches!(kind, Kind::EqualEqual | Kind::BangEqual | Kind::AndAnd | Kind::OrOr | Kind::Percent | Kind::Arrow)
+}
+
+/// Operands and operators, joined by precedence, from the left. What waits for a right side is on
+/// a stack of the state: neither a frame nor memory of its own for each level.
+pub fn expression<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
+    let mut left = unary(input)?;
+    let base = input.state().waiting.len();
+    loop {
+        let next = infix(input.kind());
+        left = reduce(input, left, base, next.map_or(0, |(_, power)| power))?;
+        let Some((op, power)) = next else { return Ok(left) };
+        let kind = input.kind();
+        let sign = input.take();
+        if is_foreign(kind) {
+            mistake::foreign_operator(input, kind, op, sign);
+        }
+        let state = input.state();
+        let height = state.height;
+        state.waiting.push(Waiting { left, height, op, power, sign });
+        left = unary(input).inspect_err(|_| input.state().waiting.truncate(base))?;
+    }
+}
+
+/// Joins what waits for `right` above `base` and binds at least as strongly as `power`.
+fn reduce<'s>(input: &mut In<'_, '_, 's>, mut right: Expr<'s>, base: usize, power: u8) -> Parsed<Expr<'s>> {
+    while let state = input.state()
+        && state.waiting.len() > base
+        && let Some(waiting) = state.waiting.pop_if(|it| it.power >= power)
+    {
+        let height = state.height.max(waiting.height);
+        input.grow(height)?;
+        right = join(waiting.left, waiting.op, waiting.sign, right);
+    }
+    Ok(right)
+}
+
+/// A condition: an expression that somebody may have written with `:=`.
+pub fn condition<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
+    let left = expression(input)?;
+    if input.kind() == Kind::Assign { assigned(input, left) } else { Ok(left) }
+}
+
+fn assigned<'s>(input: &mut In<'_, '_, 's>, left: Expr<'s>) -> Parsed<Expr<'s>> {
+    let sign = input.take();
+    let it = mistake::assign_for_equal(input.text(left.span), sign);
+    input.report(it);
+    let right = expression(input)?;
+    Ok(join(left, BinaryOp::Eq, sign, right))
+}
+
+fn join<'s>(left: Expr<'s>, op: BinaryOp, sign: Span, right: Expr<'s>) -> Expr<'s> {
+    let span = left.span.to(right.span);
+    Expr { kind: ExprKind::Binary(Box::new(left), op, sign, Box::new(right)), span }
+}
+
+// The functions on the way around a pair of brackets are small: without optimisation, a frame has
+// room for every value of its function.
+
+fn unary<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
+    match input.kind() {
+        Kind::Minus => signed(input, UnaryOp::Neg),
+        Kind::Plus => signed(input, UnaryOp::Plus),
+        Kind::Not | Kind::Bang => signed(input, UnaryOp::Not),
+        _ => postfix(input),
+    }
+}
+
+fn signed<'s>(input: &mut In<'_, '_, 's>, op: UnaryOp) -> Parsed<Expr<'s>> {
+    if input.kind() == Kind::Bang {
+        let span = input.here();
+        input.report(mistake::foreign_not(span));
+    }
+    let sign = input.take();
+    input.enter()?;
+    let operand = unary(input)?;
+    input.leave();
+    let height = input.state().height;
+    input.grow(height)?;
+    Ok(negated(op, sign, operand))
+}
+
+fn negated<'s>(op: UnaryOp, sign: Span, operand: Expr<'s>) -> Expr<'s> {
+    let span = sign.to(operand.span);
+    Expr { kind: ExprKind::Unary(op, Box::new(operand)), span }
+}
+
+/// An operand and what follows it: `.member`, `.3`, `[i]`, `^`, `(…)`.
+pub fn postfix<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
+    let expr = primary(input)?;
+    match input.kind() {
+        Kind::Dot | Kind::OpenBracket | Kind::OpenParen | Kind::Caret => suffixes(input, expr),
+        _ => Ok(expr),
+    }
+}
+
+fn suffixes<'s>(input: &mut In<'_, '_, 's>, mut expr: Expr<'s>) -> Parsed<Expr<'s>> {
+    let mut height = input.state().height;
+    loop {
+        // Arguments and indices leave their own height.
+        input.state().height = 0;
+        let start = expr.span;
+        let kind = match input.kind() {
+            Kind::Dot => member(input, expr)?,
+            Kind::OpenBracket => ExprKind::Index(Box::new(expr), indices(input)?),
+            Kind::OpenParen => ExprKind::Call(Box::new(expr), arguments(input)?),
+            Kind::Caret => {
+                input.take();
+                ExprKind::Deref(Box::new(expr))
+            }
+            _ => break,
+        };
+        height = height.max(input.state().height);
+        input.grow(height)?;
+        height += 1;
+        expr = Expr { kind, span: start.to(input.last()) };
+    }
+    input.state().height = height;
+    Ok(expr)
+}
+
+fn member<'s>(input: &mut In<'_, '_, 's>, of: Expr<'s>) -> Parsed<ExprKind<'s>> {
+    input.take();
+    match input.kind() {
+        Kind::Integer | Kind::Part => {
+            let span = input.take();
+            Ok(ExprKind::Part(Box::new(of), Name { text: input.text(span), span }))
+        }
+        _ => Ok(ExprKind::Member(Box::new(of), input.name()?)),
+    }
+}
+
+fn indices<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Vec<Expr<'s>>> {
+    let opened = input.number();
+    input.take();
+    let mut indices = Vec::with_capacity(1);
+    let mut height = 0;
+    input.enter()?;
+    loop {
+        indices.push(expression(input)?);
+        height = height.max(input.state().height);
+        if input.eat(Kind::Comma).is_none() {
+            break;
+        }
+    }
+    close(input, Kind::CloseBracket, opened)?;
+    input.leave();
+    input.state().height = height;
+    Ok(indices)
+}
+
+/// `( [argument {, argument}] )`
+pub fn arguments<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Vec<Argument<'s>>> {
+    let opened = input.number();
+    input.take();
+    let mut arguments = Vec::new();
+    let mut height = 0;
+    if input.eat(Kind::CloseParen).is_some() {
+        return Ok(arguments);
+    }
+    input.enter()?;
+    loop {
+        input.state().height = 0;
+        if let Some(argument) = argument(input)? {
+            arguments.push(argument);
+            if arguments.len() > MAX_ARGUMENTS {
+                let span = input.here();
+                return Err(input.state().stop(span, mistake::too_many(MAX_ARGUMENTS)));
+            }
+        }
+        height = height.max(input.state().height);
+        if input.eat(Kind::Comma).is_none() {
+            break;
+        }
+    }
+    close(input, Kind::CloseParen, opened)?;
+    input.leave();
+    input.state().height = height;
+    Ok(arguments)
+}
+
+/// None for `IN :=` without a value, which vendors' editors write for a pin that is left out.
+fn argument<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Argument<'s>>> {
+    match (input.kind(), input.kind_ahead(1)) {
+        (Kind::Name, Kind::Assign) => named(input),
+        (Kind::Name, Kind::Arrow) => output(input).map(Some),
+        (Kind::Not, Kind::Name) if input.kind_ahead(2) == Kind::Arrow => output(input).map(Some),
+        _ => positional(input).map(Some),
+    }
+}
+
+fn positional<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Argument<'s>> {
+    let value = expression(input)?;
+    let span = value.span;
+    Ok(Argument { kind: ArgumentKind::Positional(value), span })
+}
+
+fn named<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Argument<'s>>> {
+    let name = input.name()?;
+    input.take();
+    if is_left_out(input) {
+        return Ok(None);
+    }
+    let value = expression(input)?;
+    let span = name.span.to(value.span);
+    Ok(Some(Argument { kind: ArgumentKind::Input(name, value), span }))
+}
+
+fn output<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Argument<'s>> {
+    let start = input.here();
+    let negated = input.eat(Kind::Not).is_some();
+    let name = input.name()?;
+    input.take();
+    let target = if is_left_out(input) { None } else { Some(expression(input)?) };
+    let span = start.to(input.last());
+    Ok(Argument { kind: ArgumentKind::Output { name, negated, target }, span })
+}
+
+fn is_left_out(input: &mut In<'_, '_, '_>) -> bool {
+    matches!(input.kind(), Kind::Comma | Kind::CloseParen)
+}
+
+/// Behind a list: its end, or one more item. `opened` is the number of the opening token.
+pub fn close(input: &mut In<'_, '_, '_>, end: Kind, opened: usize) -> Parsed<Span> {
+    match input.eat(end) {
+        Some(span) => Ok(span),
+        None => Err(input.problem(Expected::More(end, opened))),
+    }
+}
+
+fn primary<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
+    input.state().height = 0;
+    match input.kind() {
+        Kind::OpenParen => parenthesis(input),
+        Kind::Prefix => typed(input),
+        _ => atom(input),
+    }
+}
+
+fn atom<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
+    let span = input.here();
+    let kind = match input.kind() {
+        Kind::Name => ExprKind::Name(input.name()?),
+        // The functions of these names: `AND(a, b, c)`.
+        Kind::And | Kind::Or | Kind::Xor | Kind::Mod if input.kind_ahead(1) == Kind::OpenParen => {
+            input.take();
+            ExprKind::Name(Name { text: input.text(span), span })
+        }
+        Kind::Address => {
+            input.take();
+            ExprKind::Address(Name { text: input.text(span), span })
+        }
+        _ => match literal::untyped(input, None) {
+            Some(literal) => ExprKind::Literal(literal),
+            None => return Err(input.problem(Expected::Expression)),
+        },
+    };
+    Ok(Expr { kind, span })
+}
+
+fn parenthesis<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
+    let opened = input.number();
+    let start = input.take();
+    input.enter()?;
+    let inner = Box::new(expression(input)?);
+    let inner = if input.kind() == Kind::Assign { Box::new(assigned(input, *inner)?) } else { inner };
+    input.leave();
+    if input.eat(Kind::CloseParen).is_none() {
+        return Err(input.problem(Expected::Closing(Kind::CloseParen, opened)));
+    }
+    let height = input.state().height;
+    input.grow(height)?;
+    Ok(Expr { kind: ExprKind::Paren(inner), span: start.to(input.last()) })
+}
+
+/// `INT#5`, `INT#-5`, `Color#Red`; a sign becomes an operator around the literal.
+fn typed<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
+    let span = input.take();
+    let name = Span { end: span.end - 1, ..span };
+    let prefix = Name { text: input.text(name), span: name };
+    let sign = match input.kind() {
+        Kind::Minus => Some((UnaryOp::Neg, input.take())),
+        Kind::Plus => Some((UnaryOp::Plus, input.take())),
+        _ => None,
+    };
+    let literal = literal::typed(input, prefix)?;
+    let mut expr = Expr { kind: ExprKind::Literal(literal), span: span.to(input.last()) };
+    if let Some((op, at)) = sign {
+        input.state().height = 1;
+        // The operator stands inside the literal, so the whole has one span.
+        expr = Expr { span: expr.span, ..negated(op, at, expr) };
+    }
+    Ok(expr)
+}

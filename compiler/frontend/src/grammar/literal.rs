@@ -1,0 +1,85 @@
+//! Literals: their tokens' values, with what is wrong in them reported at the place.
+
+use crate::{
+    ast::{Literal, LiteralValue, Name},
+    diagnostic::{Code, Diagnostic},
+    lex::{self, Fault, Kind},
+    source::Span,
+};
+
+use super::moves::{Expected, In, Moves, Parsed};
+
+/// A literal, if the current token is one.
+pub fn untyped<'s>(input: &mut In<'_, '_, 's>, prefix: Option<Name<'s>>) -> Option<Literal<'s>> {
+    let kind = input.kind();
+    let span = input.here();
+    let text = input.text(span);
+    let value = match kind {
+        Kind::True => LiteralValue::Bool(true),
+        Kind::False => LiteralValue::Bool(false),
+        Kind::Integer | Kind::Based => integer(input, span, text),
+        Kind::Real => LiteralValue::Real(lex::real(text)),
+        Kind::Time => duration(input, span, text),
+        Kind::Date => LiteralValue::Date(date_kind(text)),
+        Kind::Text | Kind::WideText | Kind::OpenText => string(input, span, text),
+        _ => return None,
+    };
+    input.take();
+    Some(Literal { prefix, value })
+}
+
+/// What stands behind `INT#`.
+pub fn typed<'s>(input: &mut In<'_, '_, 's>, prefix: Name<'s>) -> Parsed<Literal<'s>> {
+    if input.kind() == Kind::Name {
+        let value = LiteralValue::Enumerator(input.name()?);
+        return Ok(Literal { prefix: Some(prefix), value });
+    }
+    match untyped(input, Some(prefix)) {
+        Some(literal) => Ok(literal),
+        None => Err(input.problem(Expected::Expression)),
+    }
+}
+
+fn report(input: &mut In<'_, '_, '_>, code: Code, span: Span, fault: Fault) {
+    let at = |place: usize| span.start + u32::try_from(place).unwrap_or(0);
+    let span = Span { start: at(fault.start), end: at(fault.end), ..span };
+    input.report(Diagnostic::new(code, span, fault.message));
+}
+
+fn integer<'s>(input: &mut In<'_, '_, '_>, span: Span, text: &str) -> LiteralValue<'s> {
+    let value = lex::integer(text).unwrap_or_else(|fault| {
+        report(input, Code::E0005, span, fault);
+        0
+    });
+    LiteralValue::Integer { value, based: text.contains('#') }
+}
+
+fn duration<'s>(input: &mut In<'_, '_, '_>, span: Span, text: &str) -> LiteralValue<'s> {
+    let (nanoseconds, long) = lex::duration(text).unwrap_or_else(|fault| {
+        report(input, Code::E0006, span, fault);
+        (0, false)
+    });
+    LiteralValue::Time { nanoseconds, long }
+}
+
+fn string<'s>(input: &mut In<'_, '_, '_>, span: Span, text: &str) -> LiteralValue<'s> {
+    let wide = text.starts_with('"');
+    let (bytes, faults) = lex::string(text, wide);
+    for fault in faults {
+        report(input, Code::E0007, span, fault);
+    }
+    LiteralValue::String { bytes, wide }
+}
+
+/// The type that a date literal's prefix names.
+fn date_kind(text: &str) -> &'static str {
+    let prefix = text.split('#').next().unwrap_or_default().to_ascii_uppercase();
+    match prefix.as_str() {
+        "D" | "DATE" => "DATE",
+        "LD" | "LDATE" => "LDATE",
+        "TOD" | "TIME_OF_DAY" => "TIME_OF_DAY",
+        "LTOD" | "LTIME_OF_DAY" => "LTIME_OF_DAY",
+        "DT" | "DATE_AND_TIME" => "DATE_AND_TIME",
+        _ => "LDATE_AND_TIME",
+    }
+}

@@ -1,0 +1,282 @@
+//! What productions stand on: the tokens, the state beside them, and the moves over them.
+
+use chumsky::{
+    DefaultExpected,
+    error::{Error, LabelError},
+    extra,
+    input::{Checkpoint, Cursor, InputRef},
+    inspector::Inspector,
+    prelude::SimpleSpan,
+    util::MaybeRef,
+};
+
+use crate::{
+    ast::{BinaryOp, Expr, MAX_CHAIN, MAX_DEPTH, Name},
+    diagnostic::{Code, Diagnostic},
+    lex::{Kind, MAX_REPORTS, Tokens, index},
+    source::Span,
+};
+
+use super::mistake;
+
+pub type Extra<'t, 's> = extra::Full<Problem, State<'t, 's>, ()>;
+/// What a production reads from: `'t` are the tokens, `'s` is the text.
+pub type In<'t, 'p, 's> = InputRef<'t, 'p, &'t [Kind], Extra<'t, 's>>;
+/// A place to come back to.
+pub type Start<'t, 'p> = Checkpoint<'t, 'p, &'t [Kind], ()>;
+pub type Parsed<T> = Result<T, Problem>;
+
+/// Why a production gave up. Small and without text: most are never shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Problem {
+    /// Number of the token that does not fit.
+    pub at: usize,
+    pub expected: Expected,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Expected {
+    Token(Kind),
+    /// `,` or the bracket that closes the one at this token number.
+    More(Kind, usize),
+    /// The bracket that closes the one at this token number.
+    Closing(Kind, usize),
+    Name,
+    Expression,
+    Variable,
+    Type,
+    Label,
+    /// `:=` or a call's `(`.
+    Action,
+    Block,
+    /// The user has been told already.
+    Reported,
+}
+
+impl Problem {
+    pub const REPORTED: Self = Self { at: 0, expected: Expected::Reported };
+}
+
+impl<'t> Error<'t, &'t [Kind]> for Problem {}
+
+impl<'t> LabelError<'t, &'t [Kind], DefaultExpected<'t, Kind>> for Problem {
+    fn expected_found<E: IntoIterator<Item = DefaultExpected<'t, Kind>>>(
+        expected: E,
+        _: Option<MaybeRef<'t, Kind>>,
+        span: SimpleSpan,
+    ) -> Self {
+        let kind = expected.into_iter().find_map(|it| match it {
+            DefaultExpected::Token(kind) => Some(*kind),
+            _ => None,
+        });
+        Self { at: span.start, expected: kind.map_or(Expected::Name, Expected::Token) }
+    }
+}
+
+/// The left side of an operator.
+#[derive(Debug)]
+pub struct Waiting<'s> {
+    pub left: Expr<'s>,
+    pub height: usize,
+    pub op: BinaryOp,
+    pub power: u8,
+    pub sign: Span,
+}
+
+/// What stands beside the tokens. Productions do not go back over what they reported, so
+/// nothing in it is undone.
+#[derive(Debug)]
+pub struct State<'t, 's> {
+    pub file: u16,
+    pub text: &'s str,
+    pub tokens: &'t Tokens<'s>,
+    pub diagnostics: Vec<Diagnostic>,
+    /// Blocks around the current place: what ends them, and what opened them.
+    pub open: Vec<(Kind, Span)>,
+    /// How deep the current production is nested.
+    pub depth: usize,
+    /// Height of the tree of the expression that was read last.
+    pub height: usize,
+    /// Behind a limit there are no more tokens.
+    pub stopped: bool,
+    /// Operands whose operator waits for its right side, of all expressions being read.
+    pub waiting: Vec<Waiting<'s>>,
+    /// A misspelt keyword that was taken, and is read as this one.
+    pub instead: Option<Kind>,
+}
+
+impl<'t, 's> Inspector<'t, &'t [Kind]> for State<'t, 's> {
+    type Checkpoint = ();
+    fn on_token(&mut self, _: &Kind) {}
+    fn on_save<'p>(&self, _: &Cursor<'t, 'p, &'t [Kind]>) {}
+    fn on_rewind<'p>(&mut self, _: &Checkpoint<'t, 'p, &'t [Kind], ()>) {}
+}
+
+impl<'s> State<'_, 's> {
+    pub fn place(&self, at: usize) -> Span {
+        let (start, end) = self.tokens.places[at.min(self.tokens.places.len() - 1)];
+        Span { file: self.file, start, end }
+    }
+
+    pub fn slice(&self, span: Span) -> &'s str {
+        self.text.get(index(span.start)..index(span.end)).unwrap_or_default()
+    }
+
+    /// Whether a line break stands between two offsets.
+    pub fn breaks(&self, from: u32, to: u32) -> bool {
+        self.text.get(index(from)..index(to)).is_some_and(|it| it.contains('\n'))
+    }
+
+    pub fn report(&mut self, diagnostic: Diagnostic) {
+        if self.stopped {
+            return;
+        }
+        let found = self.diagnostics.len() + self.tokens.diagnostics.len();
+        if found < MAX_REPORTS {
+            self.diagnostics.push(diagnostic);
+            return;
+        }
+        self.stopped = true;
+        let text = format!("more than {MAX_REPORTS} errors: the rest of the file was not read");
+        self.diagnostics.push(Diagnostic::new(Code::E0030, diagnostic.span, text));
+    }
+
+    /// A limit was reached: one error, and nothing behind it is read.
+    pub fn stop(&mut self, span: Span, message: String) -> Problem {
+        self.report(Diagnostic::new(Code::E0091, span, message));
+        self.stopped = true;
+        Problem::REPORTED
+    }
+}
+
+/// The moves of a production over the tokens.
+pub trait Moves<'t, 's> {
+    fn number(&self) -> usize;
+    fn kind(&mut self) -> Kind;
+    /// The kind of the token `ahead` places behind the current one.
+    fn kind_ahead(&mut self, ahead: usize) -> Kind;
+    fn here(&mut self) -> Span;
+    /// The token before the current one.
+    fn last(&mut self) -> Span;
+    fn text(&mut self, span: Span) -> &'s str;
+    /// Whether the current token is this name, in any case. For words with a meaning in some
+    /// places only.
+    fn is_word(&mut self, word: &str) -> bool;
+    fn on_new_line(&mut self) -> bool;
+    /// Takes the current token, whatever it is.
+    fn take(&mut self) -> Span;
+    fn eat(&mut self, kind: Kind) -> Option<Span>;
+    fn expect(&mut self, kind: Kind) -> Parsed<Span>;
+    fn problem(&mut self, expected: Expected) -> Problem;
+    fn name(&mut self) -> Parsed<Name<'s>>;
+    fn report(&mut self, diagnostic: Diagnostic);
+    /// One level deeper, unless that is too deep. Who recovers from a problem restores the depth.
+    fn enter(&mut self) -> Parsed<()>;
+    fn leave(&mut self);
+    /// The tree that is being made is one higher than its parts.
+    fn grow(&mut self, parts: usize) -> Parsed<()>;
+}
+
+impl<'t, 's> Moves<'t, 's> for In<'t, '_, 's> {
+    fn number(&self) -> usize {
+        *self.cursor().inner()
+    }
+
+    fn kind(&mut self) -> Kind {
+        self.kind_ahead(0)
+    }
+
+    fn kind_ahead(&mut self, ahead: usize) -> Kind {
+        let at = self.number() + ahead;
+        let state = self.state();
+        if state.stopped {
+            return Kind::End;
+        }
+        if let (0, Some(kind)) = (ahead, state.instead) {
+            return kind;
+        }
+        state.tokens.kinds.get(at).copied().unwrap_or(Kind::End)
+    }
+
+    fn here(&mut self) -> Span {
+        let at = self.number();
+        self.state().place(at)
+    }
+
+    fn last(&mut self) -> Span {
+        let at = self.number();
+        self.state().place(at.saturating_sub(1))
+    }
+
+    fn text(&mut self, span: Span) -> &'s str {
+        self.state().slice(span)
+    }
+
+    fn is_word(&mut self, word: &str) -> bool {
+        self.kind() == Kind::Name && {
+            let span = self.here();
+            self.text(span).eq_ignore_ascii_case(word)
+        }
+    }
+
+    fn on_new_line(&mut self) -> bool {
+        let (last, here) = (self.last(), self.here());
+        self.state().breaks(last.end, here.start)
+    }
+
+    fn take(&mut self) -> Span {
+        if self.state().instead.take().is_some() {
+            return self.last();
+        }
+        let span = self.here();
+        if self.kind() != Kind::End {
+            self.skip();
+        }
+        span
+    }
+
+    fn eat(&mut self, kind: Kind) -> Option<Span> {
+        (self.kind() == kind).then(|| self.take())
+    }
+
+    fn expect(&mut self, kind: Kind) -> Parsed<Span> {
+        self.eat(kind).ok_or_else(|| self.problem(Expected::Token(kind)))
+    }
+
+    fn problem(&mut self, expected: Expected) -> Problem {
+        Problem { at: self.number(), expected }
+    }
+
+    fn name(&mut self) -> Parsed<Name<'s>> {
+        if let Some(span) = self.eat(Kind::Name) {
+            return Ok(Name { text: self.text(span), span });
+        }
+        Err(self.problem(Expected::Name))
+    }
+
+    fn report(&mut self, diagnostic: Diagnostic) {
+        self.state().report(diagnostic);
+    }
+
+    fn enter(&mut self) -> Parsed<()> {
+        self.state().depth += 1;
+        if self.state().depth <= MAX_DEPTH {
+            return Ok(());
+        }
+        let span = self.here();
+        Err(self.state().stop(span, mistake::too_deep()))
+    }
+
+    fn leave(&mut self) {
+        self.state().depth -= 1;
+    }
+
+    fn grow(&mut self, parts: usize) -> Parsed<()> {
+        self.state().height = parts + 1;
+        if parts < MAX_CHAIN {
+            return Ok(());
+        }
+        let span = self.last();
+        Err(self.state().stop(span, mistake::too_long()))
+    }
+}

@@ -1,0 +1,423 @@
+//! Statements and lists of them. A statement that does not parse is reported where it breaks,
+//! and reading goes on at the next one.
+
+use crate::{
+    ast::{Arm, Expr, ExprKind, Label, MAX_CHAIN, Statement, StatementKind},
+    lex::Kind,
+    source::Span,
+};
+
+use super::{
+    expression::{condition, expression, postfix},
+    member, mistake,
+    moves::{Expected, In, Moves, Parsed, Problem},
+    recover,
+};
+
+/// Statements up to a keyword that ends or continues the block around them.
+pub fn statements<'s>(input: &mut In<'_, '_, 's>) -> Vec<Statement<'s>> {
+    let mut statements = Vec::new();
+    list(input, &mut statements, |_| false);
+    statements
+}
+
+fn list<'s>(
+    input: &mut In<'_, '_, 's>,
+    statements: &mut Vec<Statement<'s>>,
+    ends: impl Fn(&mut In<'_, '_, 's>) -> bool,
+) {
+    loop {
+        match input.kind() {
+            // A run of `;` means no more than one.
+            Kind::Semicolon => {
+                let span = input.take();
+                if !matches!(statements.last(), Some(Statement { kind: StatementKind::Empty, .. })) {
+                    statements.push(Statement { kind: StatementKind::Empty, span });
+                }
+            }
+            kind if recover::ends_statements(kind) => {
+                if !recover::stray(input) {
+                    return;
+                }
+            }
+            _ if ends(input) => return,
+            Kind::Name if member::skip(input) => {}
+            _ => statements.push(statement(input)),
+        }
+    }
+}
+
+fn statement<'s>(input: &mut In<'_, '_, 's>) -> Statement<'s> {
+    let (before, start) = (input.save(), input.here());
+    let depth = input.state().depth;
+    let result = input.enter().and_then(|()| statement_kind(input));
+    input.state().depth = depth;
+    let kind = result.unwrap_or_else(|problem| {
+        recover::statement(input, problem, before);
+        StatementKind::Error
+    });
+    Statement { kind, span: start.to(input.last()) }
+}
+
+fn statement_kind<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
+    match input.kind() {
+        Kind::If => if_statement(input),
+        Kind::Case => case(input),
+        Kind::For => for_loop(input),
+        Kind::While => while_loop(input),
+        Kind::Repeat => repeat(input),
+        Kind::Exit => word(input, StatementKind::Exit),
+        Kind::Continue => word(input, StatementKind::Continue),
+        Kind::Return => return_statement(input),
+        _ => simple(input),
+    }
+}
+
+fn word<'s>(input: &mut In<'_, '_, 's>, kind: StatementKind<'s>) -> Parsed<StatementKind<'s>> {
+    input.take();
+    end(input)?;
+    Ok(kind)
+}
+
+fn return_statement<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
+    let word = input.take();
+    if !recover::begins_statement(input) && input.kind() != Kind::Semicolon {
+        let value = expression(input)?;
+        input.report(mistake::return_value(word.to(value.span), value.span));
+    }
+    end(input)?;
+    Ok(StatementKind::Return)
+}
+
+/// The `;` of a statement, or a complaint that leaves what follows in place.
+fn end(input: &mut In<'_, '_, '_>) -> Parsed<()> {
+    if input.eat(Kind::Semicolon).is_some() {
+        return Ok(());
+    }
+    if recover::begins_statement(input) {
+        mistake::missing_semicolon(input);
+        return Ok(());
+    }
+    Err(input.problem(Expected::Token(Kind::Semicolon)))
+}
+
+/// Assignments and calls.
+fn simple<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
+    let foreign = input.kind();
+    let target = match foreign {
+        Kind::Name | Kind::Address | Kind::OpenParen => postfix(input)?,
+        _ => return Err(input.problem(Expected::Variable)),
+    };
+    let kind = match input.kind() {
+        Kind::Assign => {
+            input.take();
+            assignment(input, target)?
+        }
+        Kind::Equal | Kind::EqualEqual => {
+            let sign = input.take();
+            let it = mistake::equal_for_assign(sign, input.text(sign));
+            input.report(it);
+            assignment(input, target)?
+        }
+        Kind::Colon => return split_assign(input, target),
+        Kind::PlusEqual | Kind::MinusEqual | Kind::StarEqual | Kind::SlashEqual => {
+            mistake::compound_assignment(input, &target);
+            input.take();
+            assignment(input, target)?
+        }
+        Kind::Attempt => {
+            let sign = input.take();
+            input.report(mistake::unsupported(sign, "the assignment attempt `?=`"));
+            assignment(input, target)?
+        }
+        Kind::Name => latch(input, target)?,
+        Kind::Semicolon if mistake::is_misspelt(&target) => return Err(Problem::REPORTED),
+        Kind::Semicolon => StatementKind::Expr(target),
+        _ if matches!(target.kind, ExprKind::Call(..)) => StatementKind::Expr(target),
+        _ => return without_effect(input, target),
+    };
+    end(input)?;
+    Ok(kind)
+}
+
+fn assignment<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<StatementKind<'s>> {
+    let value = expression(input)?;
+    while let Some(sign) = input.eat(Kind::Assign) {
+        input.report(mistake::unsupported(sign, "an assignment inside another one"));
+        expression(input)?;
+    }
+    Ok(StatementKind::Assign { target, value })
+}
+
+/// `x : = 1`, or a label to jump to.
+fn split_assign<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<StatementKind<'s>> {
+    if input.kind_ahead(1) == Kind::Equal {
+        let sign = input.take().to(input.last());
+        let sign = sign.to(input.take());
+        let it = mistake::equal_for_assign(sign, input.text(sign));
+        input.report(it);
+        let kind = assignment(input, target)?;
+        end(input)?;
+        return Ok(kind);
+    }
+    if matches!(target.kind, ExprKind::Name(_)) && input.state().open.len() <= 1 {
+        let colon = input.take();
+        input.report(mistake::unsupported(target.span.to(colon), "a label to jump to"));
+        return Ok(StatementKind::Error);
+    }
+    Err(input.problem(Expected::Action))
+}
+
+/// `a S= b`, `a R= b`, `a REF= b`: the letters mean this only with the `=` directly behind them.
+fn latch<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<StatementKind<'s>> {
+    let word = input.here();
+    let joined = input.kind_ahead(1) == Kind::Equal && {
+        let sign = input.number() + 1;
+        input.state().place(sign).start == word.end
+    };
+    let set = match input.text(word) {
+        "S" | "s" if joined => true,
+        "R" | "r" if joined => false,
+        text if joined && text.eq_ignore_ascii_case("REF") => {
+            input.report(mistake::unsupported(word, "the reference assignment `REF=`"));
+            false
+        }
+        _ if matches!(target.kind, ExprKind::Call(..)) => return Ok(StatementKind::Expr(target)),
+        _ => return without_effect(input, target),
+    };
+    input.take();
+    input.take();
+    let value = expression(input)?;
+    Ok(StatementKind::SetReset { target, value, set })
+}
+
+/// Something that is neither an assignment nor a call.
+fn without_effect<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<StatementKind<'s>> {
+    if mistake::increment(input, &target) {
+        return Err(Problem::REPORTED);
+    }
+    Err(input.problem(Expected::Action))
+}
+
+/// The part between a keyword and THEN, DO or OF. None when it did not parse.
+fn header<'s, T>(
+    input: &mut In<'_, '_, 's>,
+    ends: Kind,
+    part: impl FnOnce(&mut In<'_, '_, 's>) -> Parsed<T>,
+) -> Option<T> {
+    let opened = input.last();
+    let result = part(input);
+    match &result {
+        Ok(_) if input.eat(ends).is_some() => {}
+        Ok(_) => mistake::missing_word(input, ends, opened),
+        Err(problem) => {
+            mistake::report(input, *problem);
+            recover::skip_header(input, ends, opened);
+        }
+    }
+    result.ok()
+}
+
+fn if_statement<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
+    let opened = input.take();
+    input.state().open.push((Kind::EndIf, opened));
+    let mut branches = Vec::with_capacity(1);
+    let mut broken = false;
+    loop {
+        let condition = header(input, Kind::Then, condition);
+        let body = statements(input);
+        match condition {
+            Some(condition) => branches.push((condition, body)),
+            None => broken = true,
+        }
+        if branches.len() > MAX_CHAIN {
+            return Err(input.state().stop(opened, mistake::too_long()));
+        }
+        if input.eat(Kind::Elsif).is_none() {
+            break;
+        }
+    }
+    let mut nested_if = None;
+    let mut otherwise = None;
+    while let kind @ (Kind::Else | Kind::Elsif) = input.kind() {
+        let word = input.take();
+        if otherwise.is_some() {
+            input.report(mistake::behind_else(word, kind));
+        }
+        if kind == Kind::Elsif {
+            header(input, Kind::Then, condition);
+        } else if input.kind() == Kind::If && !input.on_new_line() {
+            nested_if = Some(word.to(input.here()));
+        }
+        let body = statements(input);
+        otherwise.get_or_insert(body);
+    }
+    input.state().open.pop();
+    match nested_if {
+        Some(words) if input.kind() != Kind::EndIf => mistake::else_if(input, words, opened),
+        _ => close(input, Kind::EndIf, opened),
+    }
+    Ok(if broken { StatementKind::Error } else { StatementKind::If { branches, otherwise } })
+}
+
+/// The END_ of a block, with the `;` that may follow it.
+fn close(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
+    if input.eat(end).is_none() {
+        mistake::missing_end(input, end, opened);
+    }
+    input.eat(Kind::Semicolon);
+}
+
+/// Statements of a block that `end` closes.
+fn block<'s>(input: &mut In<'_, '_, 's>, end: Kind, opened: Span) -> Vec<Statement<'s>> {
+    input.state().open.push((end, opened));
+    let body = statements(input);
+    input.state().open.pop();
+    body
+}
+
+fn case<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
+    let opened = input.take();
+    let selector = header(input, Kind::Of, expression);
+    input.state().open.push((Kind::EndCase, opened));
+    let mut arms = Vec::new();
+    loop {
+        match input.kind() {
+            Kind::Semicolon => {
+                input.take();
+            }
+            kind if recover::ends_statements(kind) => {
+                if !recover::stray(input) {
+                    break;
+                }
+            }
+            _ => arms.extend(arm(input)),
+        }
+    }
+    let otherwise = input.eat(Kind::Else).map(|_| {
+        input.eat(Kind::Colon);
+        statements(input)
+    });
+    input.state().open.pop();
+    close(input, Kind::EndCase, opened);
+    Ok(match selector {
+        Some(selector) => StatementKind::Case { selector, arms, otherwise },
+        None => StatementKind::Error,
+    })
+}
+
+fn arm<'s>(input: &mut In<'_, '_, 's>) -> Option<Arm<'s>> {
+    let start = input.here();
+    let labels = labels(input);
+    if let Err(problem) = labels {
+        mistake::report(input, problem);
+        recover::skip_label(input, start);
+    }
+    let mut body = Vec::new();
+    list(input, &mut body, at_label);
+    Some(Arm { labels: labels.ok()?, body })
+}
+
+fn labels<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Vec<Label<'s>>> {
+    if !at_label(input) {
+        return Err(input.problem(Expected::Label));
+    }
+    let mut labels = Vec::with_capacity(1);
+    loop {
+        let low = expression(input)?;
+        let high = match input.eat(Kind::DotDot) {
+            Some(_) => Some(expression(input)?),
+            None => None,
+        };
+        labels.push(Label { low, high });
+        if input.eat(Kind::Comma).is_none() {
+            break;
+        }
+    }
+    if input.eat(Kind::Colon).is_none() {
+        if !recover::begins_statement(input) {
+            return Err(input.problem(Expected::Token(Kind::Colon)));
+        }
+        mistake::missing_colon(input);
+    }
+    Ok(labels)
+}
+
+/// Whether the tokens ahead are labels: constants up to a `:`. No statement starts with a number.
+fn at_label(input: &mut In<'_, '_, '_>) -> bool {
+    if matches!(input.kind(), Kind::Integer | Kind::Based | Kind::Minus | Kind::Prefix) {
+        return true;
+    }
+    let mut ahead = 0;
+    loop {
+        match input.kind_ahead(ahead) {
+            Kind::Colon => return ahead > 0 && input.kind_ahead(ahead + 1) != Kind::Equal,
+            Kind::Name | Kind::Dot | Kind::DotDot | Kind::Comma | Kind::Prefix => {}
+            Kind::Integer | Kind::Based | Kind::Real | Kind::Time | Kind::Date => {}
+            Kind::Text | Kind::WideText | Kind::True | Kind::False => {}
+            Kind::Plus | Kind::Minus | Kind::Star | Kind::Slash | Kind::Mod | Kind::Not => {}
+            _ => return false,
+        }
+        ahead += 1;
+    }
+}
+
+fn for_loop<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
+    let opened = input.take();
+    let range = header(input, Kind::Do, |input| {
+        let counter = postfix(input)?;
+        if let Some(sign) = input.eat(Kind::Equal) {
+            let it = mistake::equal_for_assign(sign, "=");
+            input.report(it);
+        } else {
+            input.expect(Kind::Assign)?;
+        }
+        let from = expression(input)?;
+        input.expect(Kind::To)?;
+        let to = expression(input)?;
+        let by = if input.eat(Kind::By).is_some() { Some(expression(input)?) } else { None };
+        let by = by.map(Box::new);
+        Ok((Box::new(counter), Box::new(from), Box::new(to), by))
+    });
+    let body = block(input, Kind::EndFor, opened);
+    close(input, Kind::EndFor, opened);
+    Ok(match range {
+        Some((counter, from, to, by)) => StatementKind::For { counter, from, to, by, body },
+        None => StatementKind::Error,
+    })
+}
+
+fn while_loop<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
+    let opened = input.take();
+    let condition = header(input, Kind::Do, condition);
+    let body = block(input, Kind::EndWhile, opened);
+    close(input, Kind::EndWhile, opened);
+    Ok(match condition {
+        Some(condition) => StatementKind::While { condition, body },
+        None => StatementKind::Error,
+    })
+}
+
+fn repeat<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
+    let opened = input.take();
+    let body = block(input, Kind::EndRepeat, opened);
+    let Some(_) = input.eat(Kind::Until) else {
+        if input.kind() == Kind::EndRepeat {
+            let problem = input.problem(Expected::Token(Kind::Until));
+            mistake::report(input, problem);
+        }
+        close(input, Kind::EndRepeat, opened);
+        return Ok(StatementKind::Error);
+    };
+    let until = condition(input);
+    if let Err(problem) = until {
+        mistake::report(input, problem);
+        recover::skip_header(input, Kind::Semicolon, opened);
+    }
+    input.eat(Kind::Semicolon);
+    close(input, Kind::EndRepeat, opened);
+    Ok(match until {
+        Ok(until) => StatementKind::Repeat { body, until },
+        Err(_) => StatementKind::Error,
+    })
+}

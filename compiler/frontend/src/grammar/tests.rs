@@ -1,0 +1,4 @@
+mod recovery;
+mod robust;
+mod shape;
+mod trees;

@@ -1,0 +1,196 @@
+//! Each mistake is told once, where it is, and what follows is read as if it were not there.
+
+use super::shape::parsed;
+use crate::{lex::index, source::Source};
+
+/// Lines end in `// E0000` for each code that is expected there.
+#[track_caller]
+fn expect(text: &str) {
+    let (_, diagnostics) = parsed(text);
+    let source = Source::new("", text.to_owned());
+    let mut found: Vec<(u32, &str)> =
+        diagnostics.iter().map(|it| (source.line_column(it.span.start).0, it.code.name())).collect();
+    found.sort_unstable();
+    let mut expected = Vec::new();
+    for (line, number) in text.lines().zip(1..) {
+        let marks = line.rsplit_once("// ").map_or("", |(_, marks)| marks);
+        expected.extend(marks.split(' ').filter(|it| it.starts_with('E')).map(|it| (number, it)));
+    }
+    expected.sort_unstable();
+    let messages: Vec<_> = diagnostics.iter().map(|it| &it.message).collect();
+    assert_eq!(found, expected, "{messages:#?}\n{text}");
+}
+
+#[test]
+fn declarations() {
+    expect(
+        "PROGRAM p
+         VAR
+           a : INT // E0012
+           b : INT;
+           c := INT; // E0001
+           to : INT; // E0016
+           d : ARRAY[1..3 OF INT; // E0001
+           e : ARRAY[1..3] INT; // E0013
+           f, : INT; // E0001
+           g INT; // E0001
+           h : INT = 1; // E0008
+           h : INT;
+         END_VAR
+           h := ; // E0001
+         END_PROGRAM
+         FUNCTION_BLOCK b
+         VAR x : INT; ENDVAR // E0018
+         VAR x : INT;
+           x := 1; // E0014
+         VAR y : INT; END_VAR // E0017
+         END_FUNCTION // E0014
+         TYPE
+           A : INT // E0012
+           B : STRUCT x : INT; y : ; END_STRUCT; // E0001
+           C : (Red, 5); // E0001
+         END_TYPE",
+    );
+}
+
+#[test]
+fn statements() {
+    expect(
+        "PROGRAM p
+           x = 1; // E0008
+           IF x := 1 THEN y := 2; END_IF // E0009
+           IF x == 1 && y != 2 || !z THEN y := 2; END_IF // E0010 E0010 E0010 E0010 E0010
+           x += 1; // E0010
+           x++; // E0010
+           x := 5 % 2; // E0010
+           IF (x => 1) THEN ; END_IF // E0010
+           IF x // E0013
+             y := 2;
+           END_IF
+           WHILE x DO y := 1 END_WHILE // E0012
+           WHILE x THEN y := 1; END_WHILE // E0013
+           FOR i = 1 TO 3 DO ; END_FOR // E0008
+           FOR i := 1 TO DO ; END_FOR // E0001
+           CASE x 1: ; END_CASE // E0013
+           CASE x OF
+             1: y := ; // E0001
+             2 y := 1; // E0001
+             , 3: y := 1; // E0001
+             4: y := 1;
+           END_CASE
+           x := 1 // E0012
+           y := 2;
+           x := (1 + 2; // E0001
+           f(1, ); // E0001
+           x : = 1; // E0008
+           RETURN x; // E0019
+           a + b; // E0001
+           x := 1 2; // E0001
+           x := 'abc; // E0004
+           x := §; // E0002
+           x := 16#FG + T#5x + T#5 + '$q'; // E0005 E0006 E0006 E0007
+           x := 3;
+         END_PROGRAM",
+    );
+}
+
+#[test]
+fn ends_of_blocks() {
+    expect(
+        "PROGRAM p
+           FOR i := 1 TO 3 DO
+             x := 1;
+         END_PROGRAM // E0014
+         PROGRAM q
+           IF a THEN
+             WHILE b DO
+               x := 1;
+           END_IF // E0014
+           END_IF // E0015
+           ELSE // E0015
+           UNTIL // E0015
+           x := ; // E0001
+         END_PROGRAM
+         PROGRAM r
+           IF a THEN x := 1;
+           ELSE IF b THEN x := 2; // E0011
+           END_IF
+         END_PROGRAM
+         PROGRAM s
+           IF a THEN x := 1; ELSEIF b THEN x := 2; ENDIF // E0018 E0018
+           IF a THEN x := 1; END IF // E0018
+           IF a THEN ELSE ELSE END_IF // E0015
+           IF a THEN ELSE ELSIF b THEN END_IF // E0015
+           REPEAT x := 1; END_REPEAT // E0001
+           REPEAT x := 1; UNTIL END_REPEAT // E0001
+         FUNCTION f : INT // E0014
+           x := 1;
+         END_FUNCTION
+         END_FUNCTION // E0015
+         garbage // E0001
+         TYPE A : INT; END_TYPE",
+    );
+}
+
+#[test]
+fn what_is_not_supported_is_named() {
+    expect(
+        "FUNCTION_BLOCK ABSTRACT b EXTENDS c IMPLEMENTS d, e // E0090 E0090 E0090
+         VAR x : POINTER TO INT; y : REFERENCE TO INT; z : REF_TO INT; END_VAR // E0090 E0090 E0090
+         VAR_CONFIG x : y; END_VAR // E0090
+           x := y := 1; // E0090
+           x REF= y; // E0090
+           x ?= y; // E0090
+           JMP there; // E0090
+           there: // E0090
+           METHOD PUBLIC m : INT // E0090
+             VAR x : INT; END_VAR
+             x := 1;
+           END_METHOD
+           x = 1; // E0008
+         END_FUNCTION_BLOCK
+         INTERFACE i // E0090
+           METHOD m END_METHOD
+         END_INTERFACE
+         NAMESPACE n // E0090
+           FUNCTION f END_FUNCTION
+         END_NAMESPACE
+         USING n; // E0090
+         TYPE U : UNION a : INT; END_UNION; V EXTENDS W : STRUCT END_STRUCT; END_TYPE // E0090 E0090
+         PROGRAM p x := ; END_PROGRAM // E0001",
+    );
+}
+
+#[test]
+fn fixes_make_the_text_right() {
+    let cases = [
+        ("x = 1;", "x := 1;"),
+        ("x : = 1;", "x := 1;"),
+        ("IF x := 1 THEN ; END_IF", "IF x = 1 THEN ; END_IF"),
+        ("x := a&&b;", "x := a AND b;"),
+        ("x := a || b;", "x := a OR b;"),
+        ("x := a%b;", "x := a MOD b;"),
+        ("x := !a;", "x := NOT a;"),
+        ("x += 1;", "x := x + 1;"),
+        ("x--;", "x := x - 1;"),
+        ("x := 1\n y := 2;", "x := 1;\n y := 2;"),
+        ("IF a\n x := 1; END_IF", "IF a THEN\n x := 1; END_IF"),
+        ("FOR i := 1 TO 3 THEN ; END_FOR", "FOR i := 1 TO 3 DO ; END_FOR"),
+        ("IF a THEN ; ELSE  IF b THEN ; END_IF", "IF a THEN ; ELSIF b THEN ; END_IF"),
+        ("IF a THEN ; ELSEIF b THEN ; END IF", "IF a THEN ; ELSIF b THEN ; END_IF"),
+        ("CASE x OF 1 y := 1; END_CASE", "CASE x OF 1: y := 1; END_CASE"),
+    ];
+    for (wrong, right) in cases {
+        let (before, after) = ("PROGRAM p ", " END_PROGRAM");
+        let text = format!("{before}{wrong}{after}");
+        let (_, diagnostics) = parsed(&text);
+        let mut fixed = text.clone();
+        for it in diagnostics.iter().rev() {
+            let fix = it.fix.as_ref().unwrap_or_else(|| panic!("{wrong}: {}", it.message));
+            let range = index(fix.span.start)..index(fix.span.end);
+            fixed.replace_range(range, &fix.replacement);
+        }
+        assert_eq!(fixed, format!("{before}{right}{after}"));
+        super::shape::correct(&fixed);
+    }
+}

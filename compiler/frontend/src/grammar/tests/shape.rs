@@ -1,0 +1,185 @@
+//! Trees as short text, so that a test is a line.
+
+use crate::{ast::*, diagnostic::Diagnostic, grammar::parse};
+
+pub fn parsed(text: &str) -> (File<'_>, Vec<Diagnostic>) {
+    let mut diagnostics = Vec::new();
+    let file = parse(0, text, &mut diagnostics);
+    (file, diagnostics)
+}
+
+/// The file, which must parse.
+pub fn correct(text: &str) -> File<'_> {
+    let (file, diagnostics) = parsed(text);
+    let messages: Vec<_> = diagnostics.iter().map(|it| (it.span, &it.message)).collect();
+    assert!(messages.is_empty(), "{text}\n{messages:?}");
+    file
+}
+
+/// The statements of a program with this body.
+pub fn body(statements: &str) -> String {
+    let text = format!("PROGRAM p {statements} END_PROGRAM");
+    let file = correct(&text);
+    let Item::Pou(pou) = &file.items[0] else { panic!("no program") };
+    block(&pou.body)
+}
+
+pub fn initial_of(declaration: &str) -> String {
+    let text = format!("VAR_GLOBAL {declaration} END_VAR");
+    let file = correct(&text);
+    let Item::Globals(block) = &file.items[0] else { panic!("no globals") };
+    block.vars.iter().map(var).collect::<Vec<_>>().join(" ")
+}
+
+fn block(statements: &[Statement<'_>]) -> String {
+    statements.iter().map(statement).collect::<Vec<_>>().join(" ")
+}
+
+fn statement(it: &Statement<'_>) -> String {
+    match &it.kind {
+        StatementKind::Empty => ";".into(),
+        StatementKind::Assign { target, value } => format!("{}:={}", expr(target), expr(value)),
+        StatementKind::SetReset { target, value, set } => {
+            format!("{}{}{}", expr(target), if *set { " S=" } else { " R=" }, expr(value))
+        }
+        StatementKind::Expr(it) => expr(it),
+        StatementKind::If { branches, otherwise } => {
+            let branches: Vec<_> =
+                branches.iter().map(|(test, body)| format!("{}?{{{}}}", expr(test), block(body))).collect();
+            let otherwise = otherwise.as_ref().map_or(String::new(), |it| format!("else{{{}}}", block(it)));
+            format!("if {}{otherwise}", branches.join(""))
+        }
+        StatementKind::Case { selector, arms, otherwise } => {
+            let arms: Vec<_> = arms
+                .iter()
+                .map(|arm| {
+                    let labels: Vec<_> = arm
+                        .labels
+                        .iter()
+                        .map(|it| match &it.high {
+                            Some(high) => format!("{}..{}", expr(&it.low), expr(high)),
+                            None => expr(&it.low),
+                        })
+                        .collect();
+                    format!(" {}:{{{}}}", labels.join(","), block(&arm.body))
+                })
+                .collect();
+            let otherwise = otherwise.as_ref().map_or(String::new(), |it| format!(" else{{{}}}", block(it)));
+            format!("case {}{}{otherwise}", expr(selector), arms.join(""))
+        }
+        StatementKind::For { counter, from, to, by, body } => {
+            let by = by.as_ref().map_or(String::new(), |it| format!(" by {}", expr(it)));
+            format!("for {}:={} to {}{by}{{{}}}", expr(counter), expr(from), expr(to), block(body))
+        }
+        StatementKind::While { condition, body } => format!("while {}{{{}}}", expr(condition), block(body)),
+        StatementKind::Repeat { body, until } => format!("repeat{{{}}}until {}", block(body), expr(until)),
+        StatementKind::Exit => "exit".into(),
+        StatementKind::Continue => "continue".into(),
+        StatementKind::Return => "return".into(),
+        StatementKind::Error => "error".into(),
+    }
+}
+
+pub fn expr(it: &Expr<'_>) -> String {
+    match &it.kind {
+        ExprKind::Literal(it) => literal(it),
+        ExprKind::Name(name) | ExprKind::Address(name) => name.text.into(),
+        ExprKind::Member(of, name) | ExprKind::Part(of, name) => format!("{}.{}", expr(of), name.text),
+        ExprKind::Index(of, indices) => {
+            format!("{}[{}]", expr(of), indices.iter().map(expr).collect::<Vec<_>>().join(","))
+        }
+        ExprKind::Deref(of) => format!("{}^", expr(of)),
+        ExprKind::Call(of, arguments) => {
+            format!("{}({})", expr(of), arguments.iter().map(argument).collect::<Vec<_>>().join(","))
+        }
+        ExprKind::Unary(op, of) => format!("{op:?}({})", expr(of)),
+        ExprKind::Binary(left, op, _, right) => format!("({} {} {})", expr(left), op.text(), expr(right)),
+        ExprKind::Paren(inner) => format!("<{}>", expr(inner)),
+    }
+}
+
+fn argument(it: &Argument<'_>) -> String {
+    match &it.kind {
+        ArgumentKind::Positional(it) => expr(it),
+        ArgumentKind::Input(name, it) => format!("{}:={}", name.text, expr(it)),
+        ArgumentKind::Output { name, negated, target } => {
+            let not = if *negated { "not " } else { "" };
+            format!("{not}{}=>{}", name.text, target.as_ref().map_or(String::new(), expr))
+        }
+    }
+}
+
+fn literal(it: &Literal<'_>) -> String {
+    let prefix = it.prefix.map_or(String::new(), |it| format!("{}#", it.text));
+    let value = match &it.value {
+        LiteralValue::Bool(it) => it.to_string(),
+        LiteralValue::Integer { value, .. } => value.to_string(),
+        LiteralValue::Real(digits) => digits.clone(),
+        LiteralValue::Time { nanoseconds, long } => format!("{nanoseconds}{}ns", if *long { "l" } else { "" }),
+        LiteralValue::String { bytes, .. } => format!("{:?}", String::from_utf8_lossy(bytes)),
+        LiteralValue::Enumerator(name) => name.text.into(),
+        LiteralValue::Date(kind) => (*kind).into(),
+    };
+    prefix + &value
+}
+
+fn var(it: &VarDecl<'_>) -> String {
+    let names = it.names.iter().map(|it| it.text).collect::<Vec<_>>().join(",");
+    let address = it.address.map_or(String::new(), |it| format!(" at {}", it.text));
+    let edge = it.edge.map_or(String::new(), |(it, _)| format!(" {it:?}"));
+    let start = it.initial.as_ref().map_or(String::new(), |it| format!(" := {}", initial(it)));
+    format!("{names}{address}: {}{edge}{start};", ty(&it.ty))
+}
+
+pub fn ty(it: &TypeSpec<'_>) -> String {
+    match &it.kind {
+        TypeKind::Named(path) => path.iter().map(|it| it.text).collect::<Vec<_>>().join("."),
+        TypeKind::String { wide, capacity } => {
+            let capacity = capacity.as_ref().map_or(String::new(), |it| format!("[{}]", expr(it)));
+            format!("{}{capacity}", if *wide { "wstring" } else { "string" })
+        }
+        TypeKind::Subrange { base, low, high } => format!("{}({}..{})", base.text, expr(low), expr(high)),
+        TypeKind::Array { bounds, element } => {
+            let bounds: Vec<_> = bounds
+                .iter()
+                .map(|it| match it {
+                    Bound::Range(low, high) => format!("{}..{}", expr(low), expr(high)),
+                    Bound::Open(_) => "*".into(),
+                })
+                .collect();
+            format!("array[{}] {}", bounds.join(","), ty(element))
+        }
+        TypeKind::Struct(fields) => format!("{{{}}}", fields.iter().map(var).collect::<Vec<_>>().join(" ")),
+        TypeKind::Enum { base, values } => {
+            let values: Vec<_> = values
+                .iter()
+                .map(|it| match &it.value {
+                    Some(value) => format!("{}={}", it.name.text, expr(value)),
+                    None => it.name.text.into(),
+                })
+                .collect();
+            format!("enum({}){}", values.join(","), base.map_or("", |it| it.text))
+        }
+        TypeKind::Unsupported(what) => (*what).into(),
+    }
+}
+
+fn initial(it: &Initial<'_>) -> String {
+    match &it.kind {
+        InitialKind::Value(it) => expr(it),
+        InitialKind::Elements(elements) => {
+            let elements: Vec<_> = elements
+                .iter()
+                .map(|it| {
+                    let values = it.values.iter().map(initial).collect::<Vec<_>>().join(",");
+                    it.count.as_ref().map_or(values.clone(), |count| format!("{}x({values})", expr(count)))
+                })
+                .collect();
+            format!("[{}]", elements.join(","))
+        }
+        InitialKind::Fields(fields) => {
+            let fields: Vec<_> = fields.iter().map(|(name, it)| format!("{}={}", name.text, initial(it))).collect();
+            format!("({})", fields.join(","))
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! Text to tokens. Lexing never fails: characters that are no token become one
+//! [`Kind::Unknown`] a run, reported here; comments and pragmas are kept aside.
+
+mod comment;
+mod kind;
+mod literal;
+
+pub use kind::Kind;
+pub use literal::{Fault, duration, integer, real, string};
+
+use logos::Logos;
+
+use crate::{
+    ast::Name,
+    diagnostic::{Code, Diagnostic},
+    source::Span,
+};
+
+/// Errors of one file after which reading stops.
+pub const MAX_REPORTS: usize = 100;
+
+/// One file's tokens, ended by one [`Kind::End`]; `kinds` and `places` go together.
+#[derive(Debug, Default)]
+pub struct Tokens<'s> {
+    pub kinds: Vec<Kind>,
+    /// First byte, and the byte after the last.
+    pub places: Vec<(u32, u32)>,
+    pub comments: Vec<(u32, u32)>,
+    pub pragmas: Vec<Name<'s>>,
+    pub diagnostics: Vec<Diagnostic>,
+    /// The end of the file is no end: an unclosed comment or too many errors came before it.
+    pub cut: bool,
+}
+
+/// Reads a text of at most `u32::MAX` bytes.
+pub fn lex(file: u16, text: &str) -> Tokens<'_> {
+    // Real programs have a token for each ten bytes or more.
+    let guess = text.len() / 10 + 16;
+    let tokens = Tokens { kinds: Vec::with_capacity(guess), places: Vec::with_capacity(guess), ..Tokens::default() };
+    let mut reading = Reading { file, text, tokens };
+    for (kind, range) in Kind::lexer(text).spanned() {
+        let place = (offset(range.start), offset(range.end));
+        reading.token(kind.unwrap_or(Kind::Unknown), place);
+        if reading.tokens.diagnostics.len() >= MAX_REPORTS {
+            reading.tokens.cut = true;
+            break;
+        }
+    }
+    let end = offset(text.len());
+    reading.push(Kind::End, (end, end));
+    reading.tokens
+}
+
+struct Reading<'s> {
+    file: u16,
+    text: &'s str,
+    tokens: Tokens<'s>,
+}
+
+impl<'s> Reading<'s> {
+    fn token(&mut self, kind: Kind, place: (u32, u32)) {
+        match kind {
+            Kind::Comment => self.comment(place),
+            Kind::Pragma => self.pragma(place),
+            Kind::Unknown => self.unknown(place),
+            Kind::Name => self.name(place),
+            Kind::OpenText => self.open_text(place),
+            kind => self.push(kind, place),
+        }
+    }
+
+    fn push(&mut self, kind: Kind, place: (u32, u32)) {
+        self.report_unknown();
+        self.tokens.kinds.push(kind);
+        self.tokens.places.push(place);
+    }
+
+    fn span(&self, (start, end): (u32, u32)) -> Span {
+        Span { file: self.file, start, end }
+    }
+
+    fn slice(&self, (start, end): (u32, u32)) -> &'s str {
+        &self.text[index(start)..index(end)]
+    }
+
+    fn comment(&mut self, place: (u32, u32)) {
+        self.tokens.comments.push(place);
+        let opening = self.slice(place);
+        if index(place.1) == self.text.len() && !comment::is_closed(opening) {
+            let (open, close) = if opening.starts_with("(*") { ("(*", "*)") } else { ("/*", "*/") };
+            let mut it = self.unclosed(place, 2, "the comment", open, close);
+            if open == "(*" {
+                it = it.note("comments nest: each `(*` needs its own `*)`");
+            }
+            self.tokens.diagnostics.push(it);
+        }
+    }
+
+    fn pragma(&mut self, place: (u32, u32)) {
+        let text = self.slice(place);
+        if text.ends_with('}') {
+            let span = self.span((place.0 + 1, place.1 - 1));
+            self.tokens.pragmas.push(Name { text: &text[1..text.len() - 1], span });
+        } else {
+            let it = self.unclosed(place, 1, "the pragma", "{", "}");
+            self.tokens.diagnostics.push(it);
+        }
+    }
+
+    fn unclosed(&mut self, at: (u32, u32), len: u32, what: &str, open: &str, close: &str) -> Diagnostic {
+        self.tokens.cut = true;
+        let span = self.span((at.0, at.0 + len));
+        Diagnostic::new(Code::E0003, span, format!("{what} that starts here is not closed"))
+            .label(format!("this `{open}` has no `{close}`"))
+            .help(format!("write `{close}` where {what} ends"))
+    }
+
+    /// Lengthens the run of unknown characters, or starts one.
+    fn unknown(&mut self, place: (u32, u32)) {
+        if let (Some(Kind::Unknown), Some(last)) = (self.tokens.kinds.last(), self.tokens.places.last_mut())
+            && last.1 == place.0
+        {
+            last.1 = place.1;
+        } else {
+            self.push(Kind::Unknown, place);
+        }
+    }
+
+    /// Reports a run of unknown characters once it has ended.
+    fn report_unknown(&mut self) {
+        let (Some(Kind::Unknown), Some(place)) = (self.tokens.kinds.last(), self.tokens.places.last()) else {
+            return;
+        };
+        let shown: String = self.slice(*place).chars().take(20).flat_map(char::escape_debug).collect();
+        let mut it =
+            Diagnostic::new(Code::E0002, self.span(*place), format!("`{shown}` means nothing in Structured Text"));
+        it = match shown.chars().next() {
+            Some('‘' | '’' | '‚' | '`') => it.help("a string stands between two `'`"),
+            Some('“' | '”' | '„') => it.help("a string stands between two `'`, a WSTRING between two `\"`"),
+            Some('–' | '—' | '−') => it.help("write `-`"),
+            Some('\u{a0}') => it.help("write an ordinary space"),
+            _ => it.label("delete this"),
+        };
+        self.tokens.diagnostics.push(it);
+    }
+
+    fn name(&mut self, place: (u32, u32)) {
+        let name = self.slice(place);
+        if !name.is_ascii() {
+            let it = Diagnostic::new(
+                Code::E0002,
+                self.span(place),
+                format!("`{name}` has a letter that a name cannot have"),
+            )
+            .label("expected only A to Z, 0 to 9 and `_`")
+            .help("write the name with unaccented letters");
+            self.tokens.diagnostics.push(it);
+        }
+        self.push(Kind::Name, place);
+    }
+
+    fn open_text(&mut self, place: (u32, u32)) {
+        let quote = &self.slice(place)[..1];
+        let it = Diagnostic::new(Code::E0004, self.span(place), "the string is not closed on its line")
+            .label(format!("this {quote} has no partner"))
+            .help(format!("write {quote} where the string ends; a line break inside a string is `$N`"));
+        self.tokens.diagnostics.push(it);
+        self.push(Kind::OpenText, place);
+    }
+}
+
+fn offset(at: usize) -> u32 {
+    u32::try_from(at).unwrap_or(u32::MAX)
+}
+
+/// A stored offset as an index of the text.
+pub fn index(at: u32) -> usize {
+    usize::try_from(at).unwrap_or(usize::MAX)
+}

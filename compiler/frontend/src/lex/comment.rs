@@ -1,0 +1,72 @@
+//! The ends of comments and pragmas. Each takes the rest of the text when its end is missing;
+//! the caller sees that from the last characters.
+
+use logos::Lexer;
+
+use super::Kind;
+
+/// `(* … (* … *) … *)`
+pub fn nested(lexer: &mut Lexer<'_, Kind>) {
+    let bytes = lexer.remainder().as_bytes();
+    let mut depth = 1_usize;
+    let mut at = 0;
+    while at + 1 < bytes.len() {
+        match (bytes[at], bytes[at + 1]) {
+            (b'*', b')') => depth -= 1,
+            (b'(', b'*') => depth += 1,
+            _ => {
+                at += 1;
+                continue;
+            }
+        }
+        at += 2;
+        if depth == 0 {
+            lexer.bump(at);
+            return;
+        }
+    }
+    lexer.bump(bytes.len());
+}
+
+/// `/* … */`
+pub fn plain(lexer: &mut Lexer<'_, Kind>) {
+    until(lexer, "*/");
+}
+
+/// `{ … }`
+pub fn pragma(lexer: &mut Lexer<'_, Kind>) {
+    until(lexer, "}");
+}
+
+fn until(lexer: &mut Lexer<'_, Kind>, end: &str) {
+    let rest = lexer.remainder();
+    lexer.bump(rest.find(end).map_or(rest.len(), |at| at + end.len()));
+}
+
+/// Whether a comment or pragma reached its own end.
+pub fn is_closed(text: &str) -> bool {
+    match text.as_bytes() {
+        [b'/', b'/', ..] => true,
+        [b'(', b'*', rest @ ..] => rest.ends_with(b"*)") && balanced(text),
+        [b'/', b'*', rest @ ..] => rest.ends_with(b"*/"),
+        _ => text.ends_with('}'),
+    }
+}
+
+/// A nested comment may end with the mark of an inner one.
+fn balanced(text: &str) -> bool {
+    let bytes = text.as_bytes();
+    let (mut depth, mut at) = (0_usize, 0);
+    while at + 1 < bytes.len() {
+        match (bytes[at], bytes[at + 1]) {
+            (b'(', b'*') => depth += 1,
+            (b'*', b')') => depth = depth.saturating_sub(1),
+            _ => {
+                at += 1;
+                continue;
+            }
+        }
+        at += 2;
+    }
+    depth == 0
+}

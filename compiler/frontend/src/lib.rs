@@ -1,0 +1,74 @@
+//! Structured Text in, typed intermediate representation out.
+#![forbid(unsafe_code)]
+
+mod diagnostic;
+mod source;
+
+pub mod ast;
+mod grammar;
+mod lex;
+
+mod check;
+mod declare;
+mod dialect;
+mod key;
+
+pub use diagnostic::{Code, Diagnostic, Fix, Format, Label, Severity, Style, render};
+pub use dialect::Dialect;
+pub use grammar::parse;
+pub use source::{Source, Sources, Span};
+
+use staunch_ir::Program;
+
+/// How to read the sources.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// For files that do not name their own with `{dialect '…'}`.
+    pub dialect: Dialect,
+    /// CODESYS `CTU` stops at its preset, as some of its documents say.
+    pub ctu_stop_at_pv: bool,
+    /// The dialect that the sources were written in, where `dialect` is the one they move to:
+    /// its pragma then means the new dialect, and a pin by its old name is a lint.
+    pub moved_from: Option<Dialect>,
+}
+
+/// What came out of a compilation.
+#[derive(Debug)]
+pub struct Compilation {
+    /// Verified, unless there was an error.
+    pub program: Option<Program>,
+    /// In the order of files and lines.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Compilation {
+    pub fn has_errors(&self) -> bool {
+        self.diagnostics.iter().any(|it| it.severity == Severity::Error)
+    }
+}
+
+/// Checks the sources as one program; the order of files does not matter.
+pub fn compile(sources: &Sources, options: &Options) -> Compilation {
+    let mut diagnostics = Vec::new();
+    let files: Vec<_> = sources
+        .files()
+        .iter()
+        .zip(0u16..)
+        .map(|(source, number)| parse(number, &source.text, &mut diagnostics))
+        .collect();
+    let program = declare::declare(sources, &files, options, &mut diagnostics);
+    diagnostics.sort_by_key(|it| (it.span.file, it.span.start, it.span.end, it.code));
+    let rejected = diagnostics.iter().any(|it| it.severity == Severity::Error);
+    let program = program.filter(|_| !rejected);
+    if rejected {
+        // What is unused or unreachable is not known before everything is understood.
+        diagnostics.retain(|it| it.severity == Severity::Error || !it.code.is_of_the_flow());
+    }
+    if cfg!(debug_assertions)
+        && let Some(program) = &program
+        && let Err(violations) = staunch_ir::verify::verify(program)
+    {
+        unreachable!("the front end made IR that does not verify: {violations:?}");
+    }
+    Compilation { program, diagnostics }
+}

@@ -1,0 +1,81 @@
+use crate::{Const, Elementary, Location, Op, Place, TextOp, Type, Value};
+
+/// A value with its type. Reads, computes or faults; changes nothing.
+#[derive(Clone, Debug)]
+pub struct Expr {
+    pub ty: Type,
+    pub kind: ExprKind,
+    /// Where a fault in this node (not in its operands) is reported.
+    pub at: Location,
+}
+
+#[derive(Clone, Debug)]
+pub enum ExprKind {
+    /// An elementary or enumeration constant, in the lane of the expression's type.
+    Const(Value),
+    /// A string constant no longer than the capacity of the expression's type.
+    Text(Vec<u8>),
+    /// An array or structure constant.
+    Aggregate(Const),
+    /// Reads a place of the expression's type.
+    Load(Place),
+    /// An operation at `lane`: that of each operand and the result which the operation's row
+    /// calls `T`. Operands of a comparison may be enumerations; both then have one type.
+    Apply(Op, Vec<Expr>),
+    /// A string function. A string result is cut at the capacity of the expression's type.
+    ApplyText(TextOp, Vec<Expr>),
+    /// A change of type: between elementary types, from or to an enumeration through its base
+    /// type, between string capacities.
+    Convert(Conversion, Box<Expr>),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Conversion {
+    /// `staunch_runtime::ops::convert`: integers keep their low bits, reals round to nearest
+    /// (ties to even) and saturate, BOOL is `<> 0` one way and 0 or 1 the other. Between
+    /// strings: cut at the capacity.
+    Value,
+    /// `staunch_runtime::ops::trunc`: a real toward zero, saturating.
+    Truncate,
+    /// Same lane, other type: WORD and UINT, LINT and TIME, an enumeration and its base.
+    Same,
+}
+
+impl Expr {
+    pub fn new(ty: Type, kind: ExprKind, at: Location) -> Self {
+        Self { ty, kind, at }
+    }
+
+    pub fn constant(ty: Elementary, value: Value, at: Location) -> Self {
+        Self::new(Type::Elementary(ty), ExprKind::Const(value), at)
+    }
+
+    pub fn bool(value: bool, at: Location) -> Self {
+        Self::constant(Elementary::Bool, Value::Bool(value), at)
+    }
+
+    pub fn load(place: Place, at: Location) -> Self {
+        Self::new(place.ty, ExprKind::Load(place), at)
+    }
+
+    pub fn apply(op: Op, ty: Type, operands: Vec<Self>, at: Location) -> Self {
+        Self::new(ty, ExprKind::Apply(op, operands), at)
+    }
+
+    pub fn convert(how: Conversion, ty: Type, value: Self, at: Location) -> Self {
+        Self::new(ty, ExprKind::Convert(how, Box::new(value)), at)
+    }
+
+    /// The value, when the expression is an elementary or enumeration constant.
+    pub fn as_const(&self) -> Option<Value> {
+        match &self.kind {
+            ExprKind::Const(value) => Some(*value),
+            ExprKind::Text(_)
+            | ExprKind::Aggregate(_)
+            | ExprKind::Load(_)
+            | ExprKind::Apply(..)
+            | ExprKind::ApplyText(..)
+            | ExprKind::Convert(..) => None,
+        }
+    }
+}

@@ -1,0 +1,178 @@
+//! The reference interpreter: runs a program over the bytes of its state, with the runtime's own
+//! operations and blocks. What it does is what every back end must do.
+
+mod evaluate;
+mod execute;
+mod fold;
+
+pub use fold::fold;
+
+use crate::layout::{Layout, usize_of};
+use crate::{Place, Pou, PouId, Program, Statement, Value};
+use core::fmt;
+use evaluate::Scope;
+use staunch_runtime::{Context, Fault};
+
+/// Why a scan ended early.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stop {
+    /// What every executor reports.
+    Fault(Fault),
+    /// The scan used up the steps of [`Interpreter::set_budget`].
+    OutOfSteps,
+}
+
+/// One running program.
+#[derive(Debug)]
+pub struct Interpreter<'p> {
+    program: &'p Program,
+    layout: Layout,
+    frames: Vec<FrameImage>,
+    initial: Vec<u8>,
+    /// The state, and behind it the locals of the POUs that are running, callee after caller.
+    memory: Vec<u8>,
+    /// Where the by-reference parameters of the running POUs refer to: offsets in `memory`.
+    references: Vec<usize>,
+    /// The inputs of a standard block between their evaluation and the call.
+    inputs: Vec<Value>,
+    budget: Option<u64>,
+    steps_left: Option<u64>,
+}
+
+/// A POU's locals at the start of a call.
+#[derive(Debug)]
+struct FrameImage {
+    bytes: Vec<u8>,
+    offsets: Vec<usize>,
+}
+
+/// A POU that is running. Positions are offsets in `Interpreter::memory`.
+#[derive(Clone, Copy, Debug)]
+struct Frame {
+    pou: PouId,
+    instance: usize,
+    locals: usize,
+    /// Offset in `Interpreter::references` of its first parameter.
+    references: usize,
+}
+
+impl<'p> Interpreter<'p> {
+    /// A program in its initial state.
+    ///
+    /// # Panics
+    /// Here and later if `program` is not verified.
+    pub fn new(program: &'p Program) -> Self {
+        let layout = Layout::new(program);
+        let initial = layout.image(program);
+        Self {
+            program,
+            frames: program.pous.iter().map(|pou| FrameImage::new(program, &layout, pou)).collect(),
+            memory: initial.clone(),
+            initial,
+            layout,
+            references: Vec::new(),
+            inputs: Vec::new(),
+            budget: None,
+            steps_left: None,
+        }
+    }
+
+    /// Writes the initial image over all of the state.
+    pub fn init(&mut self) {
+        self.memory.clone_from(&self.initial);
+    }
+
+    /// Limits each later scan to this many statements and turns of loops; `None` for no limit.
+    pub fn set_budget(&mut self, steps: Option<u64>) {
+        self.budget = steps;
+    }
+
+    /// One scan of an instance. After an early end the state stays as it was at that point.
+    pub fn scan(&mut self, instance: usize, cx: &Context) -> Result<(), Stop> {
+        self.steps_left = self.budget;
+        let id = self.program.instances[instance].program;
+        let state = usize_of(self.layout.machine.instances[instance]);
+        let pou = self.program.pou(id);
+        if cx.first_scan {
+            self.run(id, state, &pou.prescan, cx)?;
+        }
+        self.run(id, state, &pou.body, cx)
+    }
+
+    pub fn state(&self) -> &[u8] {
+        &self.memory[..self.initial.len()]
+    }
+
+    pub fn state_mut(&mut self) -> &mut [u8] {
+        &mut self.memory[..self.initial.len()]
+    }
+
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    pub fn program(&self) -> &'p Program {
+        self.program
+    }
+
+    /// Runs a block of a PROGRAM with nothing below it on the stack.
+    fn run(&mut self, pou: PouId, instance: usize, block: &'p [Statement], cx: &Context) -> Result<(), Stop> {
+        let frame = self.enter(pou, instance);
+        let end = self.block(&frame, block, cx);
+        self.memory.truncate(self.initial.len());
+        self.references.clear();
+        end.map(|_| ())
+    }
+
+    /// Opens a frame with the locals at their initial values.
+    fn enter(&mut self, pou: PouId, instance: usize) -> Frame {
+        let frame = Frame { pou, instance, locals: self.memory.len(), references: self.references.len() };
+        self.memory.extend_from_slice(&self.frames[pou.index()].bytes);
+        frame
+    }
+
+    fn leave(&mut self, frame: &Frame) {
+        self.memory.truncate(frame.locals);
+        self.references.truncate(frame.references);
+    }
+
+    fn scope<'a>(&'a self, frame: &'a Frame) -> Scope<'a> {
+        Scope { interpreter: self, frame }
+    }
+
+    fn resolve(&self, frame: &Frame, place: &Place) -> Result<usize, Fault> {
+        self.scope(frame).resolve(place)
+    }
+}
+
+impl FrameImage {
+    fn new(program: &Program, layout: &Layout, pou: &Pou) -> Self {
+        let frame = layout.frame(&pou.locals);
+        let mut bytes = vec![0; usize_of(frame.size)];
+        let offsets: Vec<usize> = frame.offsets.into_iter().map(usize_of).collect();
+        for (local, offset) in pou.locals.iter().zip(&offsets) {
+            layout.write_const(program, local.ty, &local.initial, &mut bytes[*offset..]);
+        }
+        Self { bytes, offsets }
+    }
+}
+
+impl From<Fault> for Stop {
+    fn from(fault: Fault) -> Self {
+        Self::Fault(fault)
+    }
+}
+
+impl fmt::Display for Stop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Fault(fault) => fault.fmt(f),
+            Self::OutOfSteps => f.write_str("the scan used up its steps"),
+        }
+    }
+}
+
+impl core::error::Error for Stop {}
+
+#[cfg(test)]
+mod tests;

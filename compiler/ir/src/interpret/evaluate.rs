@@ -1,0 +1,180 @@
+//! Expressions and places: reading, computing, faulting.
+
+use super::{Frame, Interpreter};
+use crate::layout::usize_of;
+use crate::op::TextValue;
+use crate::{
+    Conversion, Expr, ExprKind, FaultKind, FieldId, Lane, Location, Op, Place, Projection, Root, TextOp, Type, Value,
+    apply, apply_text,
+};
+use staunch_runtime::{Fault, ops};
+
+/// No operation has more operands.
+const MAX_OPERANDS: usize = 4;
+
+/// Where the values of places come from.
+pub(super) trait Storage {
+    fn load(&self, place: &Place) -> Result<Value, Fault>;
+    fn load_text(&self, place: &Place) -> Result<Vec<u8>, Fault>;
+}
+
+/// The value of an expression of an elementary or enumeration type.
+pub(super) fn scalar(storage: &impl Storage, expr: &Expr) -> Result<Value, Fault> {
+    match &expr.kind {
+        ExprKind::Const(value) => Ok(*value),
+        ExprKind::Load(place) => storage.load(place),
+        ExprKind::Apply(op, operands) => operation(storage, *op, operands, expr.at),
+        ExprKind::ApplyText(op, operands) => match text_operation(storage, *op, operands, 0)? {
+            TextValue::Scalar(value) => Ok(value),
+            TextValue::Text(_) => {
+                unreachable!("verified IR: a text operation with a scalar result")
+            }
+        },
+        ExprKind::Convert(how, operand) => Ok(convert(*how, scalar(storage, operand)?, expr.ty)),
+        ExprKind::Text(_) | ExprKind::Aggregate(_) => {
+            unreachable!("verified IR: an expression of an elementary type")
+        }
+    }
+}
+
+/// The value of an expression of a string type, within its capacity.
+pub(super) fn text(storage: &impl Storage, expr: &Expr) -> Result<Vec<u8>, Fault> {
+    match &expr.kind {
+        ExprKind::Text(bytes) => Ok(bytes.clone()),
+        ExprKind::Load(place) => storage.load_text(place),
+        ExprKind::ApplyText(op, operands) => match text_operation(storage, *op, operands, capacity(expr.ty))? {
+            TextValue::Text(bytes) => Ok(bytes),
+            TextValue::Scalar(_) => {
+                unreachable!("verified IR: a text operation with a string result")
+            }
+        },
+        ExprKind::Convert(_, operand) => {
+            let mut bytes = text(storage, operand)?;
+            bytes.truncate(usize::from(capacity(expr.ty)));
+            Ok(bytes)
+        }
+        ExprKind::Const(_) | ExprKind::Apply(..) | ExprKind::Aggregate(_) => {
+            unreachable!("verified IR: an expression of a string type")
+        }
+    }
+}
+
+fn operation(storage: &impl Storage, op: Op, operands: &[Expr], at: Location) -> Result<Value, Fault> {
+    let mut values = [Value::Bool(false); MAX_OPERANDS];
+    for (value, operand) in values.iter_mut().zip(operands) {
+        *value = scalar(storage, operand)?;
+    }
+    let values = &values[..operands.len()];
+    // The operation's lane is that of its first operand without a fixed one.
+    let lane = op.operands().iter().zip(values).find(|(fixed, _)| fixed.is_none());
+    let outcome = lane.and_then(|(_, value)| apply(op, value.lane(), values));
+    outcome.expect("verified IR: operands have the operation's lane").map_err(|kind| Fault { kind, at })
+}
+
+fn text_operation(storage: &impl Storage, op: TextOp, operands: &[Expr], capacity: u16) -> Result<TextValue, Fault> {
+    let values: Vec<TextValue> = operands
+        .iter()
+        .map(|operand| match operand.ty {
+            Type::String(_) => text(storage, operand).map(TextValue::Text),
+            Type::Elementary(_) | Type::Enum(_) => scalar(storage, operand).map(TextValue::Scalar),
+            Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
+                unreachable!("verified IR: operands of a text operation")
+            }
+        })
+        .collect::<Result<_, _>>()?;
+    Ok(apply_text(op, &values, capacity).expect("verified IR: operands of a text operation"))
+}
+
+fn convert(how: Conversion, value: Value, ty: Type) -> Value {
+    match how {
+        Conversion::Same => value,
+        Conversion::Value => ops::convert_value(value, elementary_lane(ty)),
+        Conversion::Truncate => ops::trunc_value(value, elementary_lane(ty)),
+    }
+}
+
+fn elementary_lane(ty: Type) -> Lane {
+    ty.elementary().expect("verified IR: a conversion to an elementary type").lane()
+}
+
+fn capacity(ty: Type) -> u16 {
+    match ty {
+        Type::String(capacity) => capacity,
+        Type::Elementary(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
+            unreachable!("verified IR: an expression of a string type")
+        }
+    }
+}
+
+/// The storage that a running POU sees.
+pub(super) struct Scope<'a> {
+    pub(super) interpreter: &'a Interpreter<'a>,
+    pub(super) frame: &'a Frame,
+}
+
+impl Storage for Scope<'_> {
+    fn load(&self, place: &Place) -> Result<Value, Fault> {
+        let at = self.resolve(place)?;
+        let lane = self.interpreter.program.lane(place.ty).expect("verified IR: an elementary place");
+        Ok(Value::read(lane, &self.interpreter.memory[at..]))
+    }
+
+    fn load_text(&self, place: &Place) -> Result<Vec<u8>, Fault> {
+        let at = self.resolve(place)?;
+        let header = &self.interpreter.memory[at..];
+        let Value::U16(length) = Value::read(Lane::U16, header) else { unreachable!("read as U16") };
+        // A host may have written any length.
+        let length = usize::from(length.min(capacity(place.ty)));
+        Ok(header[2..2 + length].to_vec())
+    }
+}
+
+impl Scope<'_> {
+    /// The offset in the interpreter's memory that `place` means.
+    pub(super) fn resolve(&self, place: &Place) -> Result<usize, Fault> {
+        let (mut offset, mut ty) = self.root(place.root);
+        for projection in &place.projections {
+            let (step, part) = match projection {
+                Projection::Field(field) => self.field(ty, *field),
+                Projection::Index { index, at } => self.element(ty, index, *at)?,
+            };
+            offset += step;
+            ty = part;
+        }
+        Ok(offset)
+    }
+
+    fn root(&self, root: Root) -> (usize, Type) {
+        let Self { interpreter, frame } = self;
+        let program = interpreter.program;
+        let pou = program.pou(frame.pou);
+        match root {
+            Root::Instance => {
+                let state = pou.state.expect("verified IR: a POU with an instance");
+                (frame.instance, Type::Struct(state))
+            }
+            Root::Globals => (usize_of(interpreter.layout.machine.globals), Type::Struct(program.globals)),
+            Root::Local(id) => {
+                let offset = interpreter.frames[frame.pou.index()].offsets[id.index()];
+                (frame.locals + offset, pou.locals[id.index()].ty)
+            }
+            Root::Param(id) => {
+                let offset = interpreter.references[frame.references + id.index()];
+                (offset, pou.params[id.index()].ty)
+            }
+        }
+    }
+
+    fn field(&self, ty: Type, field: FieldId) -> (usize, Type) {
+        let part = self.interpreter.program.member(ty, field).expect("verified IR: a member's id");
+        (usize_of(self.interpreter.layout.offset(ty, field)), part)
+    }
+
+    fn element(&self, ty: Type, index: &Expr, at: Location) -> Result<(usize, Type), Fault> {
+        let Type::Array(id) = ty else { unreachable!("verified IR: an index into an array") };
+        let Value::I64(index) = scalar(self, index)? else { unreachable!("verified IR: a LINT index") };
+        let array = self.interpreter.program.array(id);
+        let position = ops::index(index, array.low, array.high).map_err(|kind: FaultKind| Fault { kind, at })?;
+        Ok((position * usize_of(self.interpreter.layout.stride(id)), array.element))
+    }
+}

@@ -1,0 +1,254 @@
+//! Statements: control flow, writes and calls.
+
+use super::evaluate::{scalar, text};
+use super::{Frame, Interpreter, Stop};
+use crate::layout::usize_of;
+use crate::{Argument, Arm, BlockId, Expr, ExprKind, Mode, Place, Pou, PouId, Statement, StatementKind, Type, Value};
+use staunch_runtime::{Context, Fault, Instruction};
+
+/// How a statement ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Flow {
+    Next,
+    Exit,
+    Continue,
+    Return,
+}
+
+impl<'p> Interpreter<'p> {
+    pub(super) fn block(&mut self, frame: &Frame, block: &'p [Statement], cx: &Context) -> Result<Flow, Stop> {
+        for statement in block {
+            let flow = self.statement(frame, statement, cx)?;
+            if flow != Flow::Next {
+                return Ok(flow);
+            }
+        }
+        Ok(Flow::Next)
+    }
+
+    fn statement(&mut self, frame: &Frame, statement: &'p Statement, cx: &Context) -> Result<Flow, Stop> {
+        self.step()?;
+        match &statement.kind {
+            StatementKind::Assign { target, value } => self.assign(frame, target, value)?,
+            StatementKind::If { condition, then, otherwise } => {
+                let block = if self.condition(frame, condition)? { then } else { otherwise };
+                return self.block(frame, block, cx);
+            }
+            StatementKind::Case { selector, arms, otherwise } => {
+                let block = self.arm(frame, selector, arms)?.unwrap_or(otherwise);
+                return self.block(frame, block, cx);
+            }
+            StatementKind::Loop { body, continuing } => {
+                return self.turns(frame, body, continuing, cx);
+            }
+            StatementKind::Exit => return Ok(Flow::Exit),
+            StatementKind::Continue => return Ok(Flow::Continue),
+            StatementKind::Return => return Ok(Flow::Return),
+            StatementKind::Call { callee, instance, arguments, result } => {
+                let instance = instance.as_ref().map(|place| self.resolve(frame, place)).transpose()?;
+                let inner = self.open(frame, *callee, instance, arguments)?;
+                self.block(&inner, &self.program.pou(*callee).body, cx)?;
+                self.close(frame, &inner, result.as_ref())?;
+            }
+            StatementKind::CallBlock { block, instruction, inputs } => {
+                self.call_block(frame, block, *instruction, inputs, cx)?;
+            }
+            StatementKind::PrescanBlock { block, instruction } => {
+                self.prescan_block(frame, block, *instruction)?;
+            }
+            StatementKind::PrescanInstance { callee, instance } => {
+                let instance = self.resolve(frame, instance)?;
+                let inner = self.enter(*callee, instance);
+                self.block(&inner, &self.program.pou(*callee).prescan, cx)?;
+                self.leave(&inner);
+            }
+            StatementKind::Fault(kind) => {
+                return Err(Fault { kind: *kind, at: statement.at }.into());
+            }
+        }
+        Ok(Flow::Next)
+    }
+
+    fn step(&mut self) -> Result<(), Stop> {
+        if let Some(left) = &mut self.steps_left {
+            *left = left.checked_sub(1).ok_or(Stop::OutOfSteps)?;
+        }
+        Ok(())
+    }
+
+    fn condition(&self, frame: &Frame, condition: &Expr) -> Result<bool, Fault> {
+        Ok(as_bool(scalar(&self.scope(frame), condition)?))
+    }
+
+    /// The body of the arm that a selector takes.
+    fn arm(&self, frame: &Frame, selector: &Expr, arms: &'p [Arm]) -> Result<Option<&'p Vec<Statement>>, Fault> {
+        let value = scalar(&self.scope(frame), selector)?;
+        let number = value.as_integer().expect("verified IR: an integer selector");
+        let holds = |arm: &&Arm| arm.labels.iter().any(|(low, high)| (*low..=*high).contains(&number));
+        Ok(arms.iter().find(holds).map(|arm| &arm.body))
+    }
+
+    fn turns(
+        &mut self,
+        frame: &Frame,
+        body: &'p [Statement],
+        continuing: &'p [Statement],
+        cx: &Context,
+    ) -> Result<Flow, Stop> {
+        loop {
+            self.step()?;
+            for block in [body, continuing] {
+                match self.block(frame, block, cx)? {
+                    Flow::Next | Flow::Continue => {}
+                    Flow::Exit => return Ok(Flow::Next),
+                    Flow::Return => return Ok(Flow::Return),
+                }
+            }
+        }
+    }
+
+    fn assign(&mut self, frame: &Frame, target: &Place, value: &Expr) -> Result<(), Fault> {
+        let offset = self.resolve(frame, target)?;
+        self.store(frame, value, offset)
+    }
+
+    /// Writes the value of an expression to an offset in memory.
+    fn store(&mut self, frame: &Frame, value: &Expr, offset: usize) -> Result<(), Fault> {
+        match value.ty {
+            Type::Elementary(_) | Type::Enum(_) => {
+                let value = scalar(&self.scope(frame), value)?;
+                value.write(&mut self.memory[offset..]);
+            }
+            Type::String(capacity) => {
+                let value = text(&self.scope(frame), value)?;
+                self.store_text(&value, capacity, offset);
+            }
+            Type::Array(_) | Type::Struct(_) | Type::Block(_) => self.store_aggregate(frame, value, offset)?,
+        }
+        Ok(())
+    }
+
+    /// The bytes past the length become zero, as in every executor.
+    fn store_text(&mut self, text: &[u8], capacity: u16, offset: usize) {
+        let length = u16::try_from(text.len()).expect("verified IR: a string fits its capacity");
+        let target = &mut self.memory[offset..][..2 + usize::from(capacity)];
+        Value::U16(length).write(target);
+        target[2..2 + text.len()].copy_from_slice(text);
+        target[2 + text.len()..].fill(0);
+    }
+
+    fn store_aggregate(&mut self, frame: &Frame, value: &Expr, offset: usize) -> Result<(), Fault> {
+        match &value.kind {
+            ExprKind::Load(place) => {
+                let from = self.resolve(frame, place)?;
+                self.copy(from, offset, value.ty);
+            }
+            ExprKind::Aggregate(constant) => {
+                let target = &mut self.memory[offset..];
+                self.layout.write_const(self.program, value.ty, constant, target);
+            }
+            ExprKind::Const(_)
+            | ExprKind::Text(_)
+            | ExprKind::Apply(..)
+            | ExprKind::ApplyText(..)
+            | ExprKind::Convert(..) => {
+                unreachable!("verified IR: an aggregate is read or constant")
+            }
+        }
+        Ok(())
+    }
+
+    fn copy(&mut self, from: usize, to: usize, ty: Type) {
+        let size = usize_of(self.layout.size(ty));
+        self.memory.copy_within(from..from + size, to);
+    }
+
+    /// Opens the callee's frame and evaluates its arguments into it, left to right.
+    fn open(
+        &mut self,
+        caller: &Frame,
+        callee: PouId,
+        instance: Option<usize>,
+        arguments: &'p [Argument],
+    ) -> Result<Frame, Fault> {
+        let frame = self.enter(callee, instance.unwrap_or_default());
+        for (param, argument) in self.program.pou(callee).params.iter().zip(arguments) {
+            let reference = match argument {
+                Argument::Reference(place) => self.resolve(caller, place)?,
+                Argument::Value(value) => {
+                    let Mode::Value(local) = param.mode else { unreachable!("verified IR: argument modes") };
+                    let offset = frame.locals + self.frames[callee.index()].offsets[local.index()];
+                    self.store(caller, value, offset)?;
+                    offset
+                }
+            };
+            self.references.push(reference);
+        }
+        Ok(frame)
+    }
+
+    /// Hands a FUNCTION's result to its caller and drops its frame.
+    fn close(&mut self, caller: &Frame, callee: &Frame, result: Option<&Place>) -> Result<(), Fault> {
+        if let Some(target) = result {
+            let pou: &Pou = self.program.pou(callee.pou);
+            let local = pou.result.expect("verified IR: a FUNCTION with a result");
+            let from = callee.locals + self.frames[callee.pou.index()].offsets[local.index()];
+            let to = self.resolve(caller, target)?;
+            self.copy(from, to, target.ty);
+        }
+        self.leave(callee);
+        Ok(())
+    }
+
+    fn call_block(
+        &mut self,
+        frame: &Frame,
+        block: &Place,
+        instruction: usize,
+        inputs: &[Expr],
+        cx: &Context,
+    ) -> Result<(), Fault> {
+        let offset = self.resolve(frame, block)?;
+        self.inputs.clear();
+        for input in inputs {
+            let value = scalar(&self.scope(frame), input)?;
+            self.inputs.push(value);
+        }
+        let info = block_id(block).info();
+        let instruction = &info.instructions[instruction];
+        let bytes = &mut self.memory[offset..offset + info.size];
+        let rung = if instruction.takes_rung {
+            as_bool(self.inputs[0])
+        } else {
+            for (pin, value) in info.inputs().zip(&self.inputs) {
+                value.write(&mut bytes[pin.offset..]);
+            }
+            true
+        };
+        (instruction.run)(bytes, cx, rung);
+        Ok(())
+    }
+
+    fn prescan_block(&mut self, frame: &Frame, block: &Place, instruction: usize) -> Result<(), Fault> {
+        let offset = self.resolve(frame, block)?;
+        let info = block_id(block).info();
+        let instruction: &Instruction = &info.instructions[instruction];
+        let prescan = instruction.prescan.expect("verified IR: an instruction with a prescan");
+        (prescan.run)(&mut self.memory[offset..offset + info.size]);
+        Ok(())
+    }
+}
+
+fn block_id(place: &Place) -> BlockId {
+    match place.ty {
+        Type::Block(id) => id,
+        Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) => {
+            unreachable!("verified IR: an instance of a standard block")
+        }
+    }
+}
+
+fn as_bool(value: Value) -> bool {
+    let Value::Bool(value) = value else { unreachable!("verified IR: a condition is a BOOL") };
+    value
+}

@@ -1,0 +1,49 @@
+//! The typed intermediate representation: what the front end proves, and all a back end sees.
+//!
+//! A [`Program`] is a set of types, the global variables, and the program organisation units
+//! (POUs) with their bodies. What holds in it stands in [`verify`](mod@verify), and carries a
+//! contract: **verified IR cannot make a back end fail or panic.**
+//!
+//! 1. Every expression has one concrete type: no ANY, no untyped literal.
+//! 2. No implicit conversion: operands already have the type their operation wants.
+//! 3. Ids, never names. Names are kept for people: messages, traces, emitted code.
+//! 4. Expressions are pure: they read, compute or fault. A call is a statement.
+//! 5. Evaluation goes left to right, and the first fault wins.
+//! 6. WHILE, REPEAT and FOR are one [`StatementKind::Loop`].
+//! 7. Calls carry every argument, in declaration order.
+//! 8. A [`Place`] is a root and projections; an index outside its bounds faults.
+//! 9. A fault is the only unexpected exit, and has a location.
+//! 10. Constants are folded by the interpreter, with the functions that run later.
+#![forbid(unsafe_code)]
+#![cfg_attr(test, allow(clippy::unwrap_used))]
+
+mod program;
+mod types;
+
+mod expression;
+mod op;
+mod place;
+mod statement;
+
+mod print;
+pub mod verify;
+
+pub mod interpret;
+pub mod layout;
+pub mod symbols;
+
+#[cfg(test)]
+mod fixture;
+
+pub use expression::{Conversion, Expr, ExprKind};
+pub use op::{Op, TextOp, apply, apply_text};
+pub use place::{Place, Projection, Root};
+pub use print::print;
+pub use program::{
+    Address, Area, Field, FieldId, Instance, Local, LocalId, Mode, Param, ParamId, Pou, PouId, PouKind, Program,
+    Section, SourceFile, Variable,
+};
+pub use statement::{Argument, Arm, Block, Statement, StatementKind};
+pub use types::{Array, ArrayId, BlockId, Const, Elementary, Enum, EnumId, Enumerator, Struct, StructId, Type};
+
+pub use staunch_runtime::{FaultKind, Lane, Location, Value};

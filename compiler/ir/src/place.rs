@@ -1,0 +1,55 @@
+use crate::{Expr, FieldId, LocalId, Location, ParamId, Type};
+
+/// Storage: a root and the way from it to the part that is meant.
+#[derive(Clone, Debug)]
+pub struct Place {
+    pub root: Root,
+    pub projections: Vec<Projection>,
+    /// The type of the part.
+    pub ty: Type,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Root {
+    /// The state of the PROGRAM or FUNCTION_BLOCK instance whose body this is.
+    Instance,
+    /// The global variables.
+    Globals,
+    /// A variable that lives for one call: VAR_TEMP, a function's variables, inputs and result.
+    Local(LocalId),
+    /// What a by-reference parameter refers to: VAR_IN_OUT, a function's VAR_OUTPUT.
+    Param(ParamId),
+}
+
+#[derive(Clone, Debug)]
+pub enum Projection {
+    /// A field of a structure, or a pin (by its position) of a standard block.
+    Field(FieldId),
+    /// An element of an array. `index` is a LINT in the array's own bounds; outside of them it
+    /// faults with IndexOutOfRange at `at`.
+    Index { index: Box<Expr>, at: Location },
+}
+
+impl Place {
+    pub fn root(root: Root, ty: Type) -> Self {
+        Self { root, projections: Vec::new(), ty }
+    }
+
+    pub fn local(local: LocalId, ty: Type) -> Self {
+        Self::root(Root::Local(local), ty)
+    }
+
+    #[must_use]
+    pub fn field(mut self, field: FieldId, ty: Type) -> Self {
+        self.projections.push(Projection::Field(field));
+        self.ty = ty;
+        self
+    }
+
+    #[must_use]
+    pub fn index(mut self, index: Expr, element: Type, at: Location) -> Self {
+        self.projections.push(Projection::Index { index: Box::new(index), at });
+        self.ty = element;
+        self
+    }
+}

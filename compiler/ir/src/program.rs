@@ -1,0 +1,251 @@
+use crate::types::ids;
+use crate::{Array, ArrayId, Block, Const, Enum, EnumId, Location, Place, Root, Struct, StructId, Type};
+use core::fmt;
+
+ids! {
+    PouId;
+    LocalId;
+    ParamId;
+    /// Position of a field in its structure, or of a pin in its standard block.
+    FieldId;
+}
+
+/// A whole checked program.
+#[derive(Clone, Debug)]
+pub struct Program {
+    /// What `Location::file` counts.
+    pub files: Vec<SourceFile>,
+    pub enums: Vec<Enum>,
+    pub arrays: Vec<Array>,
+    /// A structure stands after those it contains.
+    pub structs: Vec<Struct>,
+    /// The structure that holds the global variables; it may be empty.
+    pub globals: StructId,
+    /// In an order in which a callee stands before its callers.
+    pub pous: Vec<Pou>,
+    /// The programs that run, in order.
+    pub instances: Vec<Instance>,
+}
+
+#[derive(Clone, Debug)]
+pub struct SourceFile {
+    /// As the user named it.
+    pub path: String,
+}
+
+/// One running PROGRAM.
+#[derive(Clone, Debug)]
+pub struct Instance {
+    pub name: String,
+    pub program: PouId,
+    /// Nanoseconds between two scans, where the source has a TASK that says so.
+    pub interval: Option<i64>,
+    /// Lower runs first among instances that are due together.
+    pub priority: u32,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum PouKind {
+    Program,
+    FunctionBlock,
+    Function,
+}
+
+#[derive(Clone, Debug)]
+pub struct Pou {
+    pub kind: PouKind,
+    pub name: String,
+    pub doc: Option<String>,
+    pub location: Location,
+    /// The instance's state, for a PROGRAM or FUNCTION_BLOCK.
+    pub state: Option<StructId>,
+    /// What a caller passes at each call: a FUNCTION's inputs, outputs and in-outs, a
+    /// FUNCTION_BLOCK's in-outs.
+    pub params: Vec<Param>,
+    /// Variables that live for one call; they start at their initial values.
+    pub locals: Vec<Local>,
+    /// A FUNCTION's result: one of `locals`.
+    pub result: Option<LocalId>,
+    /// Every declared variable, in declaration order, for traces and emitted documentation.
+    pub variables: Vec<Variable>,
+    pub body: Block,
+    /// Runs at the start of the first scan, before `body`: what some systems do to counters
+    /// at a restart. For a FUNCTION_BLOCK it covers the instances it contains.
+    pub prescan: Block,
+}
+
+#[derive(Clone, Debug)]
+pub struct Param {
+    pub name: String,
+    pub ty: Type,
+    pub doc: Option<String>,
+    pub mode: Mode,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// The callee has its own copy, in this local.
+    Value(LocalId),
+    /// The callee works on the caller's variable.
+    Reference,
+}
+
+#[derive(Clone, Debug)]
+pub struct Local {
+    /// As declared, or a made-up one for a temporary.
+    pub name: String,
+    pub ty: Type,
+    pub initial: Const,
+    pub doc: Option<String>,
+}
+
+/// A field of a structure, or a variable of a PROGRAM, FUNCTION_BLOCK or of the globals.
+#[derive(Clone, Debug)]
+pub struct Field {
+    /// The declaration's spelling.
+    pub name: String,
+    pub ty: Type,
+    pub initial: Const,
+    pub section: Section,
+    /// Kept over a restart.
+    pub retain: bool,
+    /// Never written.
+    pub constant: bool,
+    pub address: Option<Address>,
+    /// The bounds of a subrange type.
+    pub range: Option<(i128, i128)>,
+    pub doc: Option<String>,
+    pub location: Location,
+}
+
+/// Where a variable was declared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Section {
+    Input,
+    Output,
+    InOut,
+    /// VAR, and a structure's members.
+    Internal,
+    Temp,
+    Global,
+    External,
+}
+
+/// A name under which a POU knows some storage.
+#[derive(Clone, Debug)]
+pub struct Variable {
+    pub name: String,
+    pub section: Section,
+    pub place: Place,
+}
+
+/// A direct address, `%QX1.3`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Address {
+    pub area: Area,
+    /// First bit in the area.
+    pub bit: u64,
+    /// Number of bits.
+    pub width: u8,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Area {
+    Input,
+    Output,
+    Memory,
+}
+
+impl Program {
+    pub fn enumeration(&self, id: EnumId) -> &Enum {
+        &self.enums[id.index()]
+    }
+
+    pub fn array(&self, id: ArrayId) -> Array {
+        self.arrays[id.index()]
+    }
+
+    pub fn structure(&self, id: StructId) -> &Struct {
+        &self.structs[id.index()]
+    }
+
+    pub fn pou(&self, id: PouId) -> &Pou {
+        &self.pous[id.index()]
+    }
+
+    /// The POU whose instances have the state `id`, if it is not a user's structure.
+    pub fn pou_of_state(&self, id: StructId) -> Option<PouId> {
+        let at = self.pous.iter().position(|pou| pou.state == Some(id))?;
+        Some(PouId::next(at))
+    }
+
+    /// The type of a place's root in a POU; `None` when the POU has no such storage.
+    pub fn root_type(&self, pou: &Pou, root: Root) -> Option<Type> {
+        match root {
+            Root::Instance => pou.state.map(Type::Struct),
+            Root::Globals => Some(Type::Struct(self.globals)),
+            Root::Local(id) => pou.locals.get(id.index()).map(|local| local.ty),
+            Root::Param(id) => pou.params.get(id.index()).map(|param| param.ty),
+        }
+    }
+
+    /// The type of a structure's field or a standard block's pin; `None` for any other type, or
+    /// when there is no such member.
+    pub fn member(&self, ty: Type, id: FieldId) -> Option<Type> {
+        match ty {
+            Type::Struct(structure) => self.structure(structure).fields.get(id.index()).map(|field| field.ty),
+            Type::Block(block) => block.pin_type(id),
+            Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) => None,
+        }
+    }
+
+    /// The type's name as a user writes it.
+    pub fn type_name(&self, ty: Type) -> String {
+        match ty {
+            Type::Elementary(it) => it.name().to_owned(),
+            Type::String(capacity) => format!("STRING[{capacity}]"),
+            Type::Enum(id) => self.enumeration(id).name.clone(),
+            Type::Struct(id) => self.structure(id).name.clone(),
+            Type::Block(id) => id.info().name.to_owned(),
+            Type::Array(id) => self.array_name(id),
+        }
+    }
+
+    fn array_name(&self, id: ArrayId) -> String {
+        let mut bounds = Vec::new();
+        let mut ty = Type::Array(id);
+        while let Type::Array(id) = ty {
+            let array = self.array(id);
+            bounds.push(format!("{}..{}", array.low, array.high));
+            ty = array.element;
+        }
+        format!("ARRAY[{}] OF {}", bounds.join(", "), self.type_name(ty))
+    }
+
+    /// The lane of an elementary or enumeration type.
+    pub fn lane(&self, ty: Type) -> Option<staunch_runtime::Lane> {
+        match ty {
+            Type::Elementary(it) => Some(it.lane()),
+            Type::Enum(id) => Some(self.enumeration(id).base.lane()),
+            Type::String(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => None,
+        }
+    }
+}
+
+impl fmt::Display for Address {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let area = match self.area {
+            Area::Input => 'I',
+            Area::Output => 'Q',
+            Area::Memory => 'M',
+        };
+        let position = self.bit / u64::from(self.width.max(1));
+        match self.width {
+            8 => write!(f, "%{area}B{position}"),
+            16 => write!(f, "%{area}W{position}"),
+            32 => write!(f, "%{area}D{position}"),
+            64 => write!(f, "%{area}L{position}"),
+            _ => write!(f, "%{area}X{}.{}", self.bit / 8, self.bit % 8),
+        }
+    }
+}

@@ -1,0 +1,285 @@
+//! The map: which variable lies where, as text that a host, a trace or a debugger reads.
+//!
+//! One record a line, fields apart by tabs, `-` for what is absent. Types are structural (an
+//! array names its element's type), so the map grows with declarations, not with elements.
+
+use crate::layout::Layout;
+use crate::{Address, BlockId, Field, FieldId, Pou, PouKind, Program, Projection, Root, Section, Type, Variable};
+use core::fmt::{self, Write};
+use staunch_runtime::{Direction, Pin};
+use std::collections::BTreeSet;
+
+/// The map's version, in its first line.
+pub const VERSION: u32 = 1;
+
+/// The map of a verified program. Its records, in order:
+///
+/// ```text
+/// map        1
+/// machine    size  align
+/// file       number  path
+/// enum       id  name  lane's Rust name  NAME=value …
+/// array      id  low  high  element type  stride
+/// struct     id  name  size            then its fields
+/// block      id  name  size            then its pins, as fields; only blocks in use
+/// field      name  type  offset  section  flags  address  low..high
+/// globals    struct:id  offset
+/// instance   number  name  program  struct:id  offset  interval in ns  priority
+/// variable   instance  name  section  type  offset in the machine  flags  address  low..high
+/// ```
+///
+/// A type is an IEC name, `STRING[n]`, or `enum:id`, `array:id`, `struct:id`, `block:id`. A
+/// variable that lives for one call has no record.
+pub fn map_text(program: &Program, layout: &Layout) -> String {
+    let mut map = Map { program, layout, text: String::new() };
+    map.write().expect("writing to a String does not fail");
+    map.text
+}
+
+struct Map<'a> {
+    program: &'a Program,
+    layout: &'a Layout,
+    text: String,
+}
+
+/// What a `field` or `variable` line says after its place.
+struct Attributes {
+    retain: bool,
+    constant: bool,
+    address: Option<Address>,
+    range: Option<(i128, i128)>,
+}
+
+impl Map<'_> {
+    fn write(&mut self) -> fmt::Result {
+        let machine = &self.layout.machine;
+        writeln!(self.text, "map\t{VERSION}")?;
+        writeln!(self.text, "machine\t{}\t{}", machine.size, machine.align)?;
+        for (number, file) in self.program.files.iter().enumerate() {
+            writeln!(self.text, "file\t{number}\t{}", one_line(&file.path))?;
+        }
+        self.enums()?;
+        self.arrays()?;
+        self.structs()?;
+        self.blocks()?;
+        writeln!(self.text, "globals\tstruct:{}\t{}", self.program.globals.0, machine.globals)?;
+        self.instances()
+    }
+
+    fn enums(&mut self) -> fmt::Result {
+        for (id, enumeration) in self.program.enums.iter().enumerate() {
+            let lane = enumeration.base.lane().rust_name();
+            write!(self.text, "enum\t{id}\t{}\t{lane}", enumeration.name)?;
+            for value in &enumeration.values {
+                let number = value.value.as_integer().expect("verified IR: integer enumerators");
+                write!(self.text, "\t{}={number}", value.name)?;
+            }
+            self.text.push('\n');
+        }
+        Ok(())
+    }
+
+    fn arrays(&mut self) -> fmt::Result {
+        for (id, array) in self.program.arrays.iter().enumerate() {
+            let (low, high, stride) = (array.low, array.high, self.layout.size(array.element));
+            writeln!(self.text, "array\t{id}\t{low}\t{high}\t{}\t{stride}", TypeName(array.element))?;
+        }
+        Ok(())
+    }
+
+    fn structs(&mut self) -> fmt::Result {
+        for (id, structure) in self.program.structs.iter().enumerate() {
+            let ty = Type::Struct(crate::StructId::next(id));
+            let (name, size, kind) = (&structure.name, self.layout.size(ty), self.kind(crate::StructId::next(id)));
+            writeln!(self.text, "struct\t{id}\t{name}\t{size}\t{kind}")?;
+            for (position, field) in structure.fields.iter().enumerate() {
+                let offset = self.layout.offset(ty, FieldId::next(position));
+                self.field(field, offset)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// A structure's members are all for users; an instance's inputs and outputs are.
+    fn kind(&self, id: crate::StructId) -> &'static str {
+        match self.program.pou_of_state(id).map(|it| self.program.pou(it).kind) {
+            Some(PouKind::Program) => "program",
+            Some(PouKind::FunctionBlock | PouKind::Function) => "function_block",
+            None if id == self.program.globals => "globals",
+            None => "structure",
+        }
+    }
+
+    fn field(&mut self, field: &Field, offset: u64) -> fmt::Result {
+        let section = section_name(field.section);
+        write!(self.text, "field\t{}\t{}\t{offset}\t{section}", field.name, TypeName(field.ty))?;
+        let attributes = self.attributes_of(field);
+        self.write_attributes(&attributes)
+    }
+
+    /// The standard blocks that the program's types mention.
+    fn blocks(&mut self) -> fmt::Result {
+        let fields = self.program.structs.iter().flat_map(|structure| &structure.fields).map(|field| field.ty);
+        let elements = self.program.arrays.iter().map(|array| array.element);
+        let used: BTreeSet<BlockId> = fields.chain(elements).filter_map(block_of).collect();
+        used.into_iter().try_for_each(|id| self.block(id))
+    }
+
+    fn block(&mut self, id: BlockId) -> fmt::Result {
+        let info = id.info();
+        writeln!(self.text, "block\t{}\t{}\t{}", id.0, info.name, info.size)?;
+        for (position, pin) in info.pins.iter().enumerate() {
+            let ty = id.pin_type(FieldId::next(position)).expect("position of a pin");
+            let Pin { name, offset, .. } = pin;
+            write!(self.text, "field\t{name}\t{}\t{offset}\t{}", TypeName(ty), direction_name(pin.direction))?;
+            self.write_attributes(&Attributes::NONE)?;
+        }
+        Ok(())
+    }
+
+    fn instances(&mut self) -> fmt::Result {
+        let offsets = self.layout.machine.instances.iter();
+        for (number, (instance, offset)) in self.program.instances.iter().zip(offsets).enumerate() {
+            let pou = self.program.pou(instance.program);
+            let state = pou.state.expect("verified IR: a PROGRAM has a state").0;
+            write!(self.text, "instance\t{number}\t{}\t{}\tstruct:{state}\t{offset}\t", instance.name, pou.name)?;
+            match instance.interval {
+                Some(nanoseconds) => write!(self.text, "{nanoseconds}")?,
+                None => self.text.push('-'),
+            }
+            writeln!(self.text, "\t{}", instance.priority)?;
+            self.variables(number, pou, *offset)?;
+        }
+        Ok(())
+    }
+
+    fn variables(&mut self, instance: usize, pou: &Pou, base: u64) -> fmt::Result {
+        for variable in &pou.variables {
+            let Some((offset, attributes)) = self.storage(pou, variable, base) else { continue };
+            let section = section_name(variable.section);
+            let ty = TypeName(variable.place.ty);
+            write!(self.text, "variable\t{instance}\t{}\t{section}\t{ty}\t{offset}", variable.name)?;
+            self.write_attributes(&attributes)?;
+        }
+        Ok(())
+    }
+
+    /// Where a variable lies in the machine, and the attributes of the field it is; `None` for
+    /// one that lives for a call.
+    fn storage(&self, pou: &Pou, variable: &Variable, base: u64) -> Option<(u64, Attributes)> {
+        let (mut offset, structure) = match variable.place.root {
+            Root::Instance => (base, pou.state?),
+            Root::Globals => (self.layout.machine.globals, self.program.globals),
+            Root::Local(_) | Root::Param(_) => return None,
+        };
+        let mut ty = Type::Struct(structure);
+        let mut attributes = Attributes::NONE;
+        for projection in &variable.place.projections {
+            let Projection::Field(id) = projection else { unreachable!("verified IR: a variable is a field") };
+            offset += self.layout.offset(ty, *id);
+            (ty, attributes) = self.member(ty, *id)?;
+        }
+        Some((offset, attributes))
+    }
+
+    fn member(&self, ty: Type, id: FieldId) -> Option<(Type, Attributes)> {
+        match ty {
+            Type::Struct(structure) => {
+                let field = &self.program.structure(structure).fields[id.index()];
+                Some((field.ty, self.attributes_of(field)))
+            }
+            Type::Block(block) => Some((block.pin_type(id)?, Attributes::NONE)),
+            Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) => None,
+        }
+    }
+
+    /// An instance of a block that is always retentive is one, whatever its declaration says.
+    fn attributes_of(&self, field: &Field) -> Attributes {
+        let mut ty = field.ty;
+        while let Type::Array(id) = ty {
+            ty = self.program.array(id).element;
+        }
+        let retentive = block_of(ty).is_some_and(|block| block.info().retentive);
+        Attributes {
+            retain: field.retain || retentive,
+            constant: field.constant,
+            address: field.address,
+            range: field.range,
+        }
+    }
+
+    /// `flags`, `address` and `range`, to the end of the line.
+    fn write_attributes(&mut self, attributes: &Attributes) -> fmt::Result {
+        let flags = match (attributes.retain, attributes.constant) {
+            (false, false) => "-",
+            (true, false) => "retain",
+            (false, true) => "constant",
+            (true, true) => "retain,constant",
+        };
+        write!(self.text, "\t{flags}\t")?;
+        match attributes.address {
+            Some(address) => write!(self.text, "{address}")?,
+            None => self.text.push('-'),
+        }
+        match attributes.range {
+            Some((low, high)) => writeln!(self.text, "\t{low}..{high}"),
+            None => writeln!(self.text, "\t-"),
+        }
+    }
+}
+
+impl Attributes {
+    const NONE: Self = Self { retain: false, constant: false, address: None, range: None };
+}
+
+/// A type as the map writes it.
+struct TypeName(Type);
+
+impl fmt::Display for TypeName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Type::Elementary(it) => f.write_str(it.name()),
+            Type::String(capacity) => write!(f, "STRING[{capacity}]"),
+            Type::Enum(id) => write!(f, "enum:{}", id.0),
+            Type::Array(id) => write!(f, "array:{}", id.0),
+            Type::Struct(id) => write!(f, "struct:{}", id.0),
+            Type::Block(id) => write!(f, "block:{}", id.0),
+        }
+    }
+}
+
+fn block_of(ty: Type) -> Option<BlockId> {
+    match ty {
+        Type::Block(id) => Some(id),
+        Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) => None,
+    }
+}
+
+/// A path with a tab or line end in it would break the record.
+fn one_line(path: &str) -> String {
+    path.replace(|c: char| c.is_control(), "?")
+}
+
+fn section_name(section: Section) -> &'static str {
+    match section {
+        Section::Input => "input",
+        Section::Output => "output",
+        Section::InOut => "inout",
+        Section::Internal => "var",
+        Section::Temp => "temp",
+        Section::Global => "global",
+        Section::External => "external",
+    }
+}
+
+fn direction_name(direction: Direction) -> &'static str {
+    match direction {
+        Direction::Input => "input",
+        Direction::Output => "output",
+        Direction::Memory => "memory",
+        Direction::Member => "member",
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,127 @@
+//! Expressions: operands and results of the types that operations take and give.
+
+use super::Verifier;
+use super::statement::Body;
+use crate::{Conversion, Expr, ExprKind, Lane, Location, Op, TextOp, Type, Value};
+
+impl Verifier<'_> {
+    pub(super) fn expr(&mut self, body: &Body, expr: &Expr) {
+        self.location(expr.at);
+        match &expr.kind {
+            ExprKind::Const(value) => self.const_expr(expr, *value),
+            ExprKind::Text(bytes) => {
+                let fits = matches!(expr.ty, Type::String(capacity) if bytes.len() <= capacity.into());
+                self.require(fits, expr.at, "a string constant longer than its type");
+            }
+            ExprKind::Aggregate(value) => {
+                let aggregate = matches!(expr.ty, Type::Array(_) | Type::Struct(_) | Type::Block(_));
+                if self.require(aggregate, expr.at, "an aggregate of a simple type") {
+                    self.declared(expr.ty, expr.at);
+                    self.constant(expr.ty, value, expr.at);
+                }
+            }
+            ExprKind::Load(place) => {
+                self.place(body, place, expr.at);
+                self.require(place.ty == expr.ty, expr.at, "a read of another type");
+            }
+            ExprKind::Apply(op, operands) => {
+                operands.iter().for_each(|operand| self.expr(body, operand));
+                self.operation(*op, operands, expr.ty, expr.at);
+            }
+            ExprKind::ApplyText(op, operands) => {
+                operands.iter().for_each(|operand| self.expr(body, operand));
+                self.text_operation(*op, operands, expr.ty, expr.at);
+            }
+            ExprKind::Convert(how, operand) => {
+                self.expr(body, operand);
+                self.conversion(*how, operand.ty, expr.ty, expr.at);
+            }
+        }
+    }
+
+    /// An expression of exactly this type.
+    pub(super) fn expr_of(&mut self, body: &Body, expr: &Expr, ty: Type) {
+        self.expr(body, expr);
+        let holds = expr.ty == ty;
+        self.require(holds, expr.at, format_args!("expected {ty:?}, found {:?}", expr.ty));
+    }
+
+    fn const_expr(&mut self, expr: &Expr, value: Value) {
+        let lane = self.lane(expr.ty);
+        self.require(lane == Some(value.lane()), expr.at, "a constant in the wrong lane");
+    }
+
+    /// The lane of an elementary or enumeration type that exists.
+    pub(super) fn lane(&self, ty: Type) -> Option<Lane> {
+        let exists = !matches!(ty, Type::Enum(id) if id.index() >= self.program.enums.len());
+        exists.then(|| self.program.lane(ty)).flatten()
+    }
+
+    fn operation(&mut self, op: Op, operands: &[Expr], result: Type, at: Location) {
+        let name = op.source_name();
+        if !self.require(operands.len() == op.arity(), at, format_args!("{name}: operand count")) {
+            return;
+        }
+        let pairs = || op.operands().iter().zip(operands);
+        for (fixed, operand) in pairs() {
+            let holds = fixed.is_none() || Self::elementary_lane(operand.ty) == *fixed;
+            self.require(holds, operand.at, format_args!("{name}: an operand of the wrong lane"));
+        }
+        let free: Vec<Type> = pairs().filter(|(fixed, _)| fixed.is_none()).map(|(_, operand)| operand.ty).collect();
+        let Some(lane) = self.shared_lane(op, &free) else {
+            return self.report(at, format_args!("{name}: operands of {free:?}"));
+        };
+        self.require(op.allows(lane), at, format_args!("{name} does not exist at {lane:?}"));
+        let expected = op.result().unwrap_or(lane);
+        let holds = Self::elementary_lane(result) == Some(expected);
+        self.require(holds, at, format_args!("{name}: a result of {result:?}"));
+    }
+
+    /// The lane of operands that share one. Enumerations have a lane only in a comparison of
+    /// two of one type.
+    fn shared_lane(&self, op: Op, operands: &[Type]) -> Option<Lane> {
+        let first = *operands.first()?;
+        if let Type::Enum(_) = first {
+            let equal = is_comparison(op) && operands.iter().all(|ty| *ty == first);
+            return self.lane(first).filter(|_| equal);
+        }
+        let lane = Self::elementary_lane(first)?;
+        operands.iter().all(|ty| Self::elementary_lane(*ty) == Some(lane)).then_some(lane)
+    }
+
+    fn text_operation(&mut self, op: TextOp, operands: &[Expr], result: Type, at: Location) {
+        let name = op.source_name();
+        let wanted = op.operands();
+        self.require(operands.len() == wanted.len(), at, format_args!("{name}: operand count"));
+        for (wanted, operand) in wanted.iter().zip(operands) {
+            let holds = is_text_or_lane(operand.ty, *wanted);
+            self.require(holds, operand.at, format_args!("{name}: an operand of {:?}", operand.ty));
+        }
+        let holds = is_text_or_lane(result, op.result());
+        self.require(holds, at, format_args!("{name}: a result of {result:?}"));
+    }
+
+    fn conversion(&mut self, how: Conversion, from: Type, to: Type, at: Location) {
+        let elementary = (Self::elementary_lane(from), Self::elementary_lane(to));
+        let holds = match (how, from, to) {
+            (Conversion::Value, Type::String(_), Type::String(_)) => true,
+            (Conversion::Value, _, _) => matches!(elementary, (Some(_), Some(_))),
+            (Conversion::Truncate, _, _) => {
+                matches!(elementary, (Some(from), Some(to)) if from.is_float() && to.is_integer())
+            }
+            (Conversion::Same, _, _) => self.lane(from).is_some() && self.lane(from) == self.lane(to),
+        };
+        self.require(holds, at, format_args!("no conversion {how:?} from {from:?} to {to:?}"));
+    }
+}
+
+fn is_text_or_lane(ty: Type, lane: Option<Lane>) -> bool {
+    match lane {
+        Some(lane) => Verifier::elementary_lane(ty) == Some(lane),
+        None => matches!(ty, Type::String(_)),
+    }
+}
+
+fn is_comparison(op: Op) -> bool {
+    matches!(op, Op::Eq | Op::Ne | Op::Lt | Op::Le | Op::Gt | Op::Ge)
+}

@@ -1,0 +1,83 @@
+//! Places: what is there, of which type, and whether it may be written.
+
+use super::Verifier;
+use super::statement::Body;
+use crate::{FieldId, Location, Place, Projection, Root, Type};
+
+impl Verifier<'_> {
+    /// `place` exists and has the type it says.
+    pub(super) fn place(&mut self, body: &Body, place: &Place, at: Location) {
+        let Some(mut ty) = self.root(body, place.root, at) else { return };
+        let mut is_pin = false;
+        for projection in &place.projections {
+            is_pin = matches!(ty, Type::Block(_));
+            let part = match projection {
+                Projection::Field(field) => self.field(ty, *field, at),
+                Projection::Index { index, at } => {
+                    self.location(*at);
+                    self.expr_of(body, index, Type::LINT);
+                    self.element(ty, *at)
+                }
+            };
+            let Some(part) = part else { return };
+            ty = part;
+        }
+        let same = ty == place.ty || is_pin && Self::same_lane(ty, place.ty);
+        self.require(same, at, format_args!("a place of type {ty:?} that says {:?}", place.ty));
+    }
+
+    /// A pin has a lane; whether it is a WORD or a UINT is for the front end to say.
+    fn same_lane(pin: Type, says: Type) -> bool {
+        Self::elementary_lane(pin) == Self::elementary_lane(says)
+    }
+
+    fn root(&mut self, body: &Body, root: Root, at: Location) -> Option<Type> {
+        let ty = self.program.root_type(body.pou, root).filter(|_| body.refers(root));
+        self.require(ty.is_some(), at, format_args!("no such storage: {root:?}"));
+        ty
+    }
+
+    fn field(&mut self, ty: Type, field: FieldId, at: Location) -> Option<Type> {
+        let member = self.program.member(ty, field);
+        self.require(member.is_some(), at, format_args!("{ty:?} has no member {}", field.0));
+        member
+    }
+
+    fn element(&mut self, ty: Type, at: Location) -> Option<Type> {
+        let Type::Array(id) = ty else {
+            self.report(at, format_args!("an index into {ty:?}"));
+            return None;
+        };
+        Some(self.program.array(id).element)
+    }
+
+    /// `place` exists, has the type it says, and no part of the way to it is constant.
+    pub(super) fn writable(&mut self, body: &Body, place: &Place, at: Location) {
+        let before = self.violations.len();
+        self.place(body, place, at);
+        if self.violations.len() == before {
+            let constant = self.is_constant(body, place);
+            self.require(!constant, at, "a write to a constant");
+        }
+    }
+
+    fn is_constant(&mut self, body: &Body, place: &Place) -> bool {
+        let Some(mut ty) = self.root(body, place.root, Location::default()) else { return false };
+        for projection in &place.projections {
+            let part = match projection {
+                Projection::Field(field) => {
+                    if let Type::Struct(id) = ty
+                        && self.program.structure(id).fields[field.index()].constant
+                    {
+                        return true;
+                    }
+                    self.program.member(ty, *field)
+                }
+                Projection::Index { at, .. } => self.element(ty, *at),
+            };
+            let Some(part) = part else { return false };
+            ty = part;
+        }
+        false
+    }
+}

@@ -1,0 +1,206 @@
+//! Statements: control flow that leads somewhere, and calls that fit what they call.
+
+use super::Verifier;
+use crate::{
+    Argument, Arm, Block, Expr, Location, Mode, Param, Place, Pou, PouId, PouKind, Root, Statement, StatementKind, Type,
+};
+use staunch_runtime::BlockInfo;
+
+/// The block that is being checked, and where in it.
+#[derive(Clone, Copy)]
+pub(super) struct Body<'p> {
+    pub(super) pou: &'p Pou,
+    id: PouId,
+    /// In a prescan, in-outs do not exist.
+    is_prescan: bool,
+    in_loop: bool,
+    in_continuing: bool,
+}
+
+impl Body<'_> {
+    /// A parameter is storage here if it is passed by reference, and passed at all.
+    pub(super) fn refers(&self, root: Root) -> bool {
+        match root {
+            Root::Param(id) => {
+                let mode = self.pou.params.get(id.index()).map(|param| param.mode);
+                mode == Some(Mode::Reference) && !self.is_prescan
+            }
+            Root::Instance | Root::Globals | Root::Local(_) => true,
+        }
+    }
+}
+
+impl<'p> Verifier<'p> {
+    pub(super) fn bodies(&mut self) {
+        for (id, pou) in self.program.pous.iter().enumerate() {
+            self.within.clone_from(&pou.name);
+            for variable in &pou.variables {
+                self.variable(pou, variable);
+            }
+            let id = PouId::next(id);
+            let body = Body { pou, id, is_prescan: false, in_loop: false, in_continuing: false };
+            self.block(&body, &pou.body);
+            self.block(&Body { is_prescan: true, ..body }, &pou.prescan);
+        }
+    }
+
+    fn block(&mut self, body: &Body<'p>, block: &Block) {
+        for statement in block {
+            self.statement(body, statement);
+        }
+    }
+
+    fn statement(&mut self, body: &Body<'p>, statement: &Statement) {
+        let at = statement.at;
+        self.location(at);
+        match &statement.kind {
+            StatementKind::Assign { target, value } => {
+                self.writable(body, target, at);
+                self.expr_of(body, value, target.ty);
+            }
+            StatementKind::If { condition, then, otherwise } => {
+                self.expr_of(body, condition, Type::BOOL);
+                self.block(body, then);
+                self.block(body, otherwise);
+            }
+            StatementKind::Case { selector, arms, otherwise } => {
+                self.case(body, selector, arms, at);
+                self.block(body, otherwise);
+            }
+            StatementKind::Loop { body: block, continuing } => {
+                let inside = Body { in_loop: true, in_continuing: false, ..*body };
+                self.block(&inside, block);
+                self.block(&Body { in_continuing: true, ..inside }, continuing);
+            }
+            StatementKind::Exit => {
+                self.require(body.in_loop, at, "EXIT outside of a loop");
+            }
+            StatementKind::Continue => {
+                let holds = body.in_loop && !body.in_continuing;
+                self.require(holds, at, "CONTINUE outside of a loop's body");
+            }
+            StatementKind::Return | StatementKind::Fault(_) => {}
+            StatementKind::Call { callee, instance, arguments, result } => {
+                self.call(body, *callee, instance.as_ref(), arguments, at);
+                self.call_result(body, *callee, result.as_ref(), at);
+            }
+            StatementKind::CallBlock { block, instruction, inputs } => {
+                self.call_block(body, block, *instruction, inputs, at);
+            }
+            StatementKind::PrescanBlock { block, instruction } => {
+                self.prescan_block(body, block, *instruction, at);
+            }
+            StatementKind::PrescanInstance { callee, instance } => {
+                if self.callee(body, *callee, Some(instance), at).is_some() {
+                    self.writable(body, instance, at);
+                }
+            }
+        }
+    }
+
+    fn case(&mut self, body: &Body<'p>, selector: &Expr, arms: &[Arm], at: Location) {
+        self.expr(body, selector);
+        let lane = self.lane(selector.ty);
+        let range = lane.filter(|lane| lane.is_integer()).and_then(|lane| lane.range());
+        let Some((min, max)) = range else {
+            return self.report(selector.at, "a selector that is not an integer");
+        };
+        let mut labels: Vec<_> = arms.iter().flat_map(|arm| arm.labels.iter().copied()).collect();
+        let fit = labels.iter().all(|(low, high)| min <= *low && low <= high && *high <= max);
+        self.require(fit, at, "a label outside the selector's type");
+        labels.sort_unstable();
+        let disjoint = labels.windows(2).all(|pair| pair[0].1 < pair[1].0);
+        self.require(disjoint, at, "labels that overlap");
+        for arm in arms {
+            self.block(body, &arm.body);
+        }
+    }
+
+    /// The callee, if it may be called here with this instance.
+    fn callee(&mut self, body: &Body<'p>, callee: PouId, instance: Option<&Place>, at: Location) -> Option<&'p Pou> {
+        let before = self.require(callee < body.id, at, "a callee that does not stand before its caller");
+        let pou = before.then(|| self.program.pou(callee))?;
+        let fits = match (pou.kind, instance) {
+            (PouKind::Function, None) => true,
+            (PouKind::FunctionBlock, Some(place)) => Some(place.ty) == pou.state.map(Type::Struct),
+            (PouKind::Function, Some(_)) | (PouKind::FunctionBlock, None) | (PouKind::Program, _) => false,
+        };
+        self.require(fits, at, format_args!("{} is not called on what it wants", pou.name)).then_some(pou)
+    }
+
+    fn call(&mut self, body: &Body<'p>, callee: PouId, instance: Option<&Place>, arguments: &[Argument], at: Location) {
+        let Some(pou) = self.callee(body, callee, instance, at) else { return };
+        if let Some(instance) = instance {
+            self.writable(body, instance, at);
+        }
+        self.require(arguments.len() == pou.params.len(), at, format_args!("{}: argument count", pou.name));
+        for (param, argument) in pou.params.iter().zip(arguments) {
+            self.argument(body, param, argument, at);
+        }
+    }
+
+    fn argument(&mut self, body: &Body<'p>, param: &Param, argument: &Argument, at: Location) {
+        match (param.mode, argument) {
+            (Mode::Value(_), Argument::Value(value)) => self.expr_of(body, value, param.ty),
+            (Mode::Reference, Argument::Reference(place)) => {
+                self.writable(body, place, at);
+                self.require(place.ty == param.ty, at, format_args!("{}: a place of another type", param.name));
+            }
+            (Mode::Value(_), Argument::Reference(_)) | (Mode::Reference, Argument::Value(_)) => {
+                self.report(at, format_args!("{}: passed the wrong way", param.name));
+            }
+        }
+    }
+
+    /// A result goes to a local as a whole.
+    fn call_result(&mut self, body: &Body<'p>, callee: PouId, result: Option<&Place>, at: Location) {
+        let Some(target) = result else { return };
+        self.place(body, target, at);
+        let local = matches!(target.root, Root::Local(_)) && target.projections.is_empty();
+        self.require(local, at, "a result that does not go to a local");
+        let pou = self.program.pous.get(callee.index());
+        let ty = pou.and_then(|pou| Some(pou.locals.get(pou.result?.index())?.ty));
+        self.require(ty == Some(target.ty), at, "a result of another type");
+    }
+
+    fn block_info(&mut self, place: &Place, at: Location) -> Option<&'static BlockInfo> {
+        match place.ty {
+            Type::Block(id) => Some(id.info()),
+            Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) => {
+                self.report(at, "not a standard block");
+                None
+            }
+        }
+    }
+
+    fn call_block(&mut self, body: &Body<'p>, block: &Place, instruction: usize, inputs: &[Expr], at: Location) {
+        let before = self.violations.len();
+        self.writable(body, block, at);
+        inputs.iter().for_each(|input| self.expr(body, input));
+        if self.violations.len() > before {
+            return;
+        }
+        let Some(info) = self.block_info(block, at) else { return };
+        let Some(instruction) = info.instructions.get(instruction) else {
+            return self.report(at, format_args!("{} has no such instruction", info.name));
+        };
+        let found: Vec<_> = inputs.iter().map(|input| Self::elementary_lane(input.ty)).collect();
+        let wanted: Vec<_> = if instruction.takes_rung {
+            vec![Some(crate::Lane::Bool)]
+        } else {
+            info.inputs().map(|pin| Some(pin.lane)).collect()
+        };
+        self.require(found == wanted, at, format_args!("{}: inputs in {found:?}", info.name));
+    }
+
+    fn prescan_block(&mut self, body: &Body<'p>, block: &Place, instruction: usize, at: Location) {
+        let before = self.violations.len();
+        self.writable(body, block, at);
+        if self.violations.len() > before {
+            return;
+        }
+        let Some(info) = self.block_info(block, at) else { return };
+        let prescan = info.instructions.get(instruction).and_then(|it| it.prescan);
+        self.require(prescan.is_some(), at, format_args!("{} has no such prescan", info.name));
+    }
+}

@@ -1,0 +1,154 @@
+//! Calls of POUs and of standard blocks.
+
+use crate::function::Function;
+use crate::inline_block;
+use crate::memory::Address;
+use crate::place::Site;
+use crate::shim::by_pointer;
+use crate::signature::result_type;
+use crate::unit::Part;
+use cranelift_codegen::ir::{self as clif, InstBuilder};
+use staunch_ir::{Argument, Expr, Lane, Place, PouId, Type};
+use staunch_runtime::{BlockInfo, Instruction};
+
+impl Function<'_, '_> {
+    pub(crate) fn call(
+        &mut self,
+        callee: PouId,
+        instance: Option<&Place>,
+        arguments: &[Argument],
+        result: Option<&Place>,
+    ) {
+        let instance = instance.map(|place| self.reference(place));
+        let mut values = self.start_of_call(callee, Part::Body, instance);
+        for argument in arguments {
+            let value = match argument {
+                Argument::Value(value) => self.argument(value),
+                Argument::Reference(place) => self.reference(place),
+            };
+            values.push(value);
+        }
+        let out = self.result_pointer(callee, result);
+        values.extend(out);
+        let returned = self.call_part(callee, Part::Body, &values);
+        if let (Some(returned), Some(target)) = (returned, result) {
+            match self.site(target) {
+                Site::Variable(variable) => self.builder.def_var(variable, returned),
+                Site::Memory(address) => self.store(returned, address),
+            }
+        }
+    }
+
+    /// Runs the prescan of an instance; an empty one has no function.
+    pub(crate) fn prescan_instance(&mut self, callee: PouId, instance: &Place) {
+        let instance = self.reference(instance);
+        if self.unit.function(callee, Part::Prescan).is_some() {
+            let values = self.start_of_call(callee, Part::Prescan, Some(instance));
+            self.call_part(callee, Part::Prescan, &values);
+        }
+    }
+
+    /// What every function takes first.
+    fn start_of_call(&self, callee: PouId, part: Part, instance: Option<clif::Value>) -> Vec<clif::Value> {
+        let facts = self.unit.facts(callee, part);
+        let context = self.start.context.filter(|_| facts.uses_context);
+        let globals = self.start.globals.filter(|_| facts.uses_globals);
+        [context, globals, instance].into_iter().flatten().collect()
+    }
+
+    /// Calls a function, passes its fault on, and gives an elementary result.
+    fn call_part(&mut self, callee: PouId, part: Part, values: &[clif::Value]) -> Option<clif::Value> {
+        let function = self.unit.function(callee, part).expect("a part that has a function");
+        let function = self.function_ref(function);
+        let call = self.ins().call(function, values);
+        let results = self.builder.inst_results(call).to_vec();
+        if !self.unit.facts(callee, part).may_fault {
+            return results.first().copied();
+        }
+        self.pass_fault(results[0]);
+        results.get(1).copied()
+    }
+
+    fn reference(&mut self, place: &Place) -> clif::Value {
+        let address = self.address(place);
+        self.pointer(address)
+    }
+
+    /// An argument that the callee copies, if it is not elementary.
+    fn argument(&mut self, value: &Expr) -> clif::Value {
+        match value.ty {
+            Type::Elementary(_) | Type::Enum(_) => self.scalar(value),
+            Type::String(_) => self.text_pointer(value),
+            Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
+                let address = self.aggregate(value);
+                self.pointer(address)
+            }
+        }
+    }
+
+    /// Where a callee puts a result that is not elementary, whether it is wanted or not.
+    fn result_pointer(&mut self, callee: PouId, result: Option<&Place>) -> Option<clif::Value> {
+        let program = self.unit.program;
+        let ty = result_type(program.pou(callee)).filter(|ty| program.lane(*ty).is_none())?;
+        let address = match result {
+            Some(place) => self.address(place),
+            None => {
+                let shape = self.unit.layout.shape(ty);
+                self.temporary(shape)
+            }
+        };
+        Some(self.pointer(address))
+    }
+
+    pub(crate) fn call_block(&mut self, block: &Place, instruction: usize, inputs: &[Expr]) {
+        let info = block_info(block);
+        let address = self.address(block);
+        let values: Vec<_> = inputs.iter().map(|input| self.scalar(input)).collect();
+        if let Some(emit) = inline_block::find(block, instruction) {
+            return emit(self, info, address, &values);
+        }
+        let instruction = &info.instructions[instruction];
+        let rung = if instruction.takes_rung {
+            values[0]
+        } else {
+            self.store_pins(info, address, &values);
+            self.integer(clif::types::I8, 1)
+        };
+        self.run_instruction(instruction, address, rung);
+    }
+
+    pub(crate) fn store_pins(&mut self, info: &BlockInfo, address: Address, values: &[clif::Value]) {
+        for (pin, value) in info.inputs().zip(values) {
+            self.store(*value, address.plus(offset(pin.offset)));
+        }
+    }
+
+    fn run_instruction(&mut self, instruction: &Instruction, block: Address, rung: clif::Value) {
+        let context = self.start.context.expect("a function that calls blocks gets the context");
+        let block = self.pointer(block);
+        let rung = self.by_lane(Lane::Bool, rung);
+        let arguments = [by_pointer(block), by_pointer(context), rung];
+        self.call_runtime(instruction.symbol, &arguments, None);
+    }
+
+    pub(crate) fn prescan_block(&mut self, block: &Place, instruction: usize) {
+        let prescan = block_info(block).instructions[instruction].prescan;
+        let symbol = prescan.expect("verified IR: an instruction with a prescan").symbol;
+        let block = self.reference(block);
+        self.call_runtime(symbol, &[by_pointer(block)], None);
+    }
+}
+
+pub(crate) fn block_info(place: &Place) -> &'static BlockInfo {
+    match place.ty {
+        Type::Block(id) => id.info(),
+        Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) => {
+            unreachable!("verified IR: an instance of a standard block")
+        }
+    }
+}
+
+/// The offset of a pin in its block.
+pub(crate) fn offset(of_pin: usize) -> u64 {
+    u64::try_from(of_pin).expect("blocks are small")
+}

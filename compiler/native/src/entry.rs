@@ -1,0 +1,178 @@
+//! The program's entry points, which a host calls by their C symbols: `staunch_init` and
+//! `staunch_scan`, and for objects the data `staunch_map` and `staunch_map_len`.
+
+use crate::Error;
+use crate::memory::Address;
+use crate::signature::{CODE, POINTER};
+use crate::unit::{EntryPoints, Part, Unit, Workspace, define_data};
+use cranelift_codegen::ir::{self as clif, AbiParam, BlockArg, InstBuilder, MemFlagsData, UserFuncName, types};
+use cranelift_frontend::{FunctionBuilder, Switch};
+use cranelift_module::{FuncId, Linkage, Module};
+use staunch_ir::PouId;
+use staunch_runtime::Context;
+
+/// Runs of zeros in the initial image that are at least this long are not kept as data.
+const GAP: usize = 256;
+
+pub(crate) fn emit(unit: &mut Unit<'_>, workspace: &mut Workspace) -> Result<EntryPoints, Error> {
+    let init = define(unit, workspace, "staunch_init", &[POINTER], &[], init)?;
+    let parameters = [POINTER, POINTER, types::I32];
+    let scan = define(unit, workspace, "staunch_scan", &parameters, &[CODE], scan)?;
+    Ok(EntryPoints { init, scan })
+}
+
+fn define(
+    unit: &mut Unit<'_>,
+    workspace: &mut Workspace,
+    name: &str,
+    params: &[clif::Type],
+    returns: &[clif::Type],
+    emit: fn(&mut Unit<'_>, &mut FunctionBuilder<'_>, &[clif::Value]),
+) -> Result<FuncId, Error> {
+    let mut signature = unit.module.make_signature();
+    signature.params.extend(params.iter().map(|ty| AbiParam::new(*ty)));
+    signature.returns.extend(returns.iter().map(|ty| AbiParam::new(*ty)));
+    let id = unit.module.declare_function(name, Linkage::Export, &signature)?;
+    let context = &mut workspace.context;
+    context.func.signature = signature;
+    context.func.name = UserFuncName::user(0, id.as_u32());
+    let mut builder = FunctionBuilder::new(&mut context.func, &mut workspace.builder);
+    let entry = builder.create_block();
+    builder.append_block_params_for_function_params(entry);
+    builder.switch_to_block(entry);
+    let values = builder.block_params(entry).to_vec();
+    emit(unit, &mut builder, &values);
+    builder.seal_all_blocks();
+    builder.finalize(unit.module.target_config());
+    unit.define(context, id, name)?;
+    Ok(id)
+}
+
+/// `staunch_init(state)`: zeros, and over them the parts of the initial image that are not.
+fn init(unit: &mut Unit<'_>, builder: &mut FunctionBuilder<'_>, values: &[clif::Value]) {
+    let (state, config) = (values[0], unit.module.target_config());
+    let image = unit.layout.image(unit.program);
+    let size = i64::try_from(image.len()).expect("verified IR: sizes are within 1 GiB");
+    let size = builder.ins().iconst(POINTER, size);
+    let zero = builder.ins().iconst(types::I8, 0);
+    builder.call_memset(config, state, zero, size);
+    for (start, end) in parts(&image) {
+        let id = unit.constant(image[start..end].to_vec());
+        let data = unit.module.declare_data_in_func(id, builder.func);
+        let from = builder.ins().symbol_value(POINTER, data);
+        let to = builder.ins().iadd_imm_s(state, immediate(start));
+        let size = builder.ins().iconst(POINTER, immediate(end - start));
+        builder.call_memcpy(config, to, from, size);
+    }
+    builder.ins().return_(&[]);
+}
+
+/// Where an image is not zero: from byte, to byte.
+fn parts(image: &[u8]) -> Vec<(usize, usize)> {
+    let mut parts: Vec<(usize, usize)> = Vec::new();
+    for (at, _) in image.iter().enumerate().filter(|(_, byte)| **byte != 0) {
+        match parts.last_mut() {
+            Some((_, end)) if at - *end < GAP => *end = at + 1,
+            Some(_) | None => parts.push((at, at + 1)),
+        }
+    }
+    parts
+}
+
+/// `staunch_scan(state, context, instance)`: the code of a fault, or 0. A number that is no
+/// instance's does nothing.
+fn scan(unit: &mut Unit<'_>, builder: &mut FunctionBuilder<'_>, values: &[clif::Value]) {
+    let &[state, context, instance] = values else { unreachable!("as many as declared above") };
+    let done = builder.create_block();
+    builder.append_block_param(done, CODE);
+    let otherwise = builder.create_block();
+    let blocks: Vec<_> = unit.program.instances.iter().map(|_| builder.create_block()).collect();
+    let mut switch = Switch::new();
+    for (number, block) in blocks.iter().enumerate() {
+        switch.set_entry(u128::try_from(number).expect("a usize fits"), *block);
+    }
+    switch.emit(builder, instance, otherwise);
+    for (number, block) in blocks.into_iter().enumerate() {
+        builder.switch_to_block(block);
+        let mut scan = Scan { unit, builder, state, context, done };
+        scan.instance(number);
+    }
+    builder.switch_to_block(otherwise);
+    let none = builder.ins().iconst(CODE, 0);
+    builder.ins().jump(done, &[BlockArg::Value(none)]);
+    builder.switch_to_block(done);
+    let code = builder.block_params(done)[0];
+    builder.ins().return_(&[code]);
+}
+
+struct Scan<'s, 'p, 'b> {
+    unit: &'s mut Unit<'p>,
+    builder: &'s mut FunctionBuilder<'b>,
+    state: clif::Value,
+    context: clif::Value,
+    done: clif::Block,
+}
+
+impl Scan<'_, '_, '_> {
+    fn instance(&mut self, number: usize) {
+        let pou = self.unit.program.instances[number].program;
+        let at = Address::at(self.state).plus(self.unit.layout.machine.instances[number]);
+        if self.unit.function(pou, Part::Prescan).is_some() {
+            self.prescan(pou, at);
+        }
+        let code = self.call(pou, Part::Body, at);
+        self.builder.ins().jump(self.done, &[BlockArg::Value(code)]);
+    }
+
+    /// In the first scan, and only on if it does not fault.
+    fn prescan(&mut self, pou: PouId, at: Address) {
+        let offset = core::mem::offset_of!(Context, first_scan);
+        let offset = i32::try_from(offset).expect("a context is small");
+        let flags = MemFlagsData::trusted();
+        let first_scan = self.builder.ins().load(types::I8, flags, self.context, offset);
+        let [prescan, body] = [(); 2].map(|()| self.builder.create_block());
+        self.builder.ins().brif(first_scan, prescan, &[], body, &[]);
+        self.builder.switch_to_block(prescan);
+        let code = self.call(pou, Part::Prescan, at);
+        self.builder.ins().brif(code, self.done, &[BlockArg::Value(code)], body, &[]);
+        self.builder.switch_to_block(body);
+    }
+
+    /// Calls a PROGRAM's function; gives the code that it returned, or 0.
+    fn call(&mut self, pou: PouId, part: Part, instance: Address) -> clif::Value {
+        let facts = self.unit.facts(pou, part).clone();
+        let id = self.unit.function(pou, part).expect("a part that has a function");
+        let function = self.unit.module.declare_func_in_func(id, self.builder.func);
+        let mut values = Vec::new();
+        if facts.uses_context {
+            values.push(self.context);
+        }
+        if facts.uses_globals {
+            values.push(self.pointer(Address::at(self.state).plus(self.unit.layout.machine.globals)));
+        }
+        values.push(self.pointer(instance));
+        let call = self.builder.ins().call(function, &values);
+        match self.builder.inst_results(call).first() {
+            Some(code) => *code,
+            None => self.builder.ins().iconst(CODE, 0),
+        }
+    }
+
+    fn pointer(&mut self, address: Address) -> clif::Value {
+        self.builder.ins().iadd_imm_s(address.base, i64::from(address.displacement()))
+    }
+}
+
+fn immediate(size: usize) -> i64 {
+    i64::try_from(size).expect("verified IR: sizes are within 1 GiB")
+}
+
+/// `staunch_map`, the map's text, and `staunch_map_len`, its length.
+pub(crate) fn map(module: &mut dyn Module, text: &str) -> Result<(), Error> {
+    let length = u64::try_from(text.len()).expect("a usize fits a u64").to_le_bytes();
+    for (name, bytes) in [("staunch_map", text.as_bytes()), ("staunch_map_len", length.as_slice())] {
+        let id = module.declare_data(name, Linkage::Export, false, false)?;
+        define_data(module, id, bytes.to_vec())?;
+    }
+    Ok(())
+}

@@ -1,0 +1,32 @@
+//! What can go wrong: nothing in a program but its size.
+
+use core::fmt;
+
+/// Why there is no code. Verified IR for a supported target has no cause for it but size.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Error {
+    /// No code is made for this target; the sentence says what to do.
+    Target(String),
+    /// The code generator refused a function: it is too large for it.
+    Code { function: String, reason: String },
+    /// The object or the memory for the code cannot be made.
+    Output(String),
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Target(sentence) => f.write_str(sentence),
+            Self::Code { function, reason } => write!(f, "no native code for {function}: {reason}"),
+            Self::Output(reason) => write!(f, "no native code: {reason}"),
+        }
+    }
+}
+
+impl core::error::Error for Error {}
+
+impl From<cranelift_module::ModuleError> for Error {
+    fn from(error: cranelift_module::ModuleError) -> Self {
+        Self::Output(error.to_string())
+    }
+}

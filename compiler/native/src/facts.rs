@@ -1,0 +1,160 @@
+//! What a block of a POU needs and may do, found before any code is made for it: its function
+//! takes no more than it needs, and a caller checks only calls that may fault.
+
+use crate::{inline_block, inline_op};
+use staunch_ir::{
+    Argument, Block, Expr, ExprKind, Place, Pou, PouId, Program, Projection, Root, Statement, StatementKind, Type,
+    Value,
+};
+
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Facts {
+    pub(crate) may_fault: bool,
+    pub(crate) uses_context: bool,
+    pub(crate) uses_globals: bool,
+    /// For each local, whether a call gets a reference to it.
+    pub(crate) referred: Vec<bool>,
+}
+
+/// The facts of a POU's body and of its prescan.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct PouFacts {
+    pub(crate) body: Facts,
+    pub(crate) prescan: Facts,
+}
+
+/// The facts of every POU. A callee stands before its callers, so one pass is enough.
+pub(crate) fn of_program(program: &Program) -> Vec<PouFacts> {
+    let mut known = Vec::with_capacity(program.pous.len());
+    for pou in &program.pous {
+        let body = of_block(program, &known, pou, &pou.body);
+        let prescan = of_block(program, &known, pou, &pou.prescan);
+        known.push(PouFacts { body, prescan });
+    }
+    known
+}
+
+fn of_block(program: &Program, known: &[PouFacts], pou: &Pou, block: &Block) -> Facts {
+    let facts = Facts { referred: vec![false; pou.locals.len()], ..Facts::default() };
+    let mut finder = Finder { program, known, pou, facts };
+    finder.block(block);
+    finder.facts
+}
+
+struct Finder<'a> {
+    program: &'a Program,
+    known: &'a [PouFacts],
+    pou: &'a Pou,
+    facts: Facts,
+}
+
+impl Finder<'_> {
+    fn block(&mut self, block: &Block) {
+        block.iter().for_each(|statement| self.statement(statement));
+    }
+
+    fn statement(&mut self, statement: &Statement) {
+        match &statement.kind {
+            StatementKind::Assign { target, value } => {
+                self.place(target);
+                self.expr(value);
+            }
+            StatementKind::If { condition, then, otherwise } => {
+                self.expr(condition);
+                self.block(then);
+                self.block(otherwise);
+            }
+            StatementKind::Case { selector, arms, otherwise } => {
+                self.expr(selector);
+                arms.iter().for_each(|arm| self.block(&arm.body));
+                self.block(otherwise);
+            }
+            StatementKind::Loop { body, continuing } => {
+                self.block(body);
+                self.block(continuing);
+            }
+            StatementKind::Exit | StatementKind::Continue | StatementKind::Return => {}
+            StatementKind::Call { callee, instance, arguments, result: _ } => {
+                self.instance(instance.as_ref());
+                arguments.iter().for_each(|argument| self.argument(argument));
+                self.callee(*callee, |facts| &facts.body);
+            }
+            StatementKind::CallBlock { block, instruction, inputs } => {
+                self.instance(Some(block));
+                inputs.iter().for_each(|input| self.expr(input));
+                self.facts.uses_context |= inline_block::find(block, *instruction).is_none();
+            }
+            StatementKind::PrescanBlock { block, instruction: _ } => self.instance(Some(block)),
+            StatementKind::PrescanInstance { callee, instance } => {
+                self.instance(Some(instance));
+                self.callee(*callee, |facts| &facts.prescan);
+            }
+            StatementKind::Fault(_) => self.facts.may_fault = true,
+        }
+    }
+
+    fn callee(&mut self, callee: PouId, part: fn(&PouFacts) -> &Facts) {
+        let callee = part(&self.known[callee.index()]);
+        self.facts.may_fault |= callee.may_fault;
+        self.facts.uses_context |= callee.uses_context;
+        self.facts.uses_globals |= callee.uses_globals;
+    }
+
+    /// A place whose address is taken.
+    fn instance(&mut self, place: Option<&Place>) {
+        let Some(place) = place else { return };
+        self.place(place);
+        if let Root::Local(id) = place.root {
+            self.facts.referred[id.index()] = true;
+        }
+    }
+
+    fn argument(&mut self, argument: &Argument) {
+        match argument {
+            Argument::Value(value) => self.expr(value),
+            Argument::Reference(place) => self.instance(Some(place)),
+        }
+    }
+
+    fn expr(&mut self, expr: &Expr) {
+        match &expr.kind {
+            ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => {}
+            ExprKind::Load(place) => self.place(place),
+            ExprKind::Apply(op, operands) => {
+                operands.iter().for_each(|operand| self.expr(operand));
+                self.facts.may_fault |= inline_op::may_fault(self.program, *op, operands);
+            }
+            ExprKind::ApplyText(_, operands) => {
+                operands.iter().for_each(|operand| self.expr(operand));
+            }
+            ExprKind::Convert(_, operand) => self.expr(operand),
+        }
+    }
+
+    fn place(&mut self, place: &Place) {
+        self.facts.uses_globals |= place.root == Root::Globals;
+        let mut ty = self.program.root_type(self.pou, place.root);
+        for projection in &place.projections {
+            ty = match projection {
+                Projection::Field(field) => ty.and_then(|ty| self.program.member(ty, *field)),
+                Projection::Index { index, .. } => {
+                    self.expr(index);
+                    self.element(ty, index)
+                }
+            };
+        }
+    }
+
+    fn element(&mut self, ty: Option<Type>, index: &Expr) -> Option<Type> {
+        let Some(Type::Array(id)) = ty else { unreachable!("verified IR: an index into an array") };
+        let array = self.program.array(id);
+        self.facts.may_fault |= constant_position(index, array.low, array.high).is_none();
+        Some(array.element)
+    }
+}
+
+/// The 0-based position of an index that is constant and within the bounds: it needs no check.
+pub(crate) fn constant_position(index: &Expr, low: i64, high: i64) -> Option<u64> {
+    let Some(Value::I64(index)) = index.as_const() else { return None };
+    (low..=high).contains(&index).then(|| index.abs_diff(low))
+}

@@ -1,0 +1,275 @@
+//! The function of one block of a POU: what it starts and ends with.
+
+use crate::Error;
+use crate::facts::Facts;
+use crate::fault::Faults;
+use crate::memory::{Address, Temporaries};
+use crate::signature::{POINTER, clif_type, result_type};
+use crate::unit::{Part, Unit, Workspace};
+use cranelift_codegen::ir::{self as clif, InstBuilder, StackSlot, UserFuncName};
+use cranelift_frontend::{FuncInstBuilder, FunctionBuilder, Variable};
+use cranelift_module::{DataId, FuncId};
+use staunch_ir::{Const, LocalId, Mode, Pou, PouId, Program, Type};
+use std::collections::HashMap;
+
+/// More variables than this make the construction of SSA form slow; the rest live in the frame.
+const MAX_VARIABLES: usize = 1000;
+
+/// Emits a function, statement by statement.
+pub(crate) struct Function<'a, 'p> {
+    pub(crate) unit: &'a mut Unit<'p>,
+    pub(crate) builder: FunctionBuilder<'a>,
+    pub(crate) pou: &'p Pou,
+    pub(crate) start: Start,
+    pub(crate) locals: Vec<Home>,
+    /// The innermost loop is the last.
+    pub(crate) loops: Vec<Turn>,
+    /// Where RETURN goes.
+    pub(crate) exit: clif::Block,
+    pub(crate) faults: Faults,
+    pub(crate) temporaries: Temporaries,
+    functions: HashMap<FuncId, clif::FuncRef>,
+    data: HashMap<DataId, clif::GlobalValue>,
+    result: Option<(LocalId, Type)>,
+}
+
+/// What a function is given, where it needs it.
+#[derive(Debug, Default)]
+pub(crate) struct Start {
+    pub(crate) context: Option<clif::Value>,
+    pub(crate) globals: Option<clif::Value>,
+    pub(crate) instance: Option<clif::Value>,
+    /// One for each parameter; in a prescan there are none.
+    pub(crate) params: Vec<clif::Value>,
+    /// Where a result goes that is not elementary.
+    pub(crate) result: Option<clif::Value>,
+}
+
+/// Where a local lives.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Home {
+    Variable(Variable),
+    Slot(StackSlot),
+}
+
+/// A loop that is being emitted.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Turn {
+    /// Runs `continuing`.
+    pub(crate) next: clif::Block,
+    pub(crate) after: clif::Block,
+    pub(crate) is_continued: bool,
+    pub(crate) is_left: bool,
+}
+
+pub(crate) fn emit(unit: &mut Unit<'_>, workspace: &mut Workspace, id: PouId, part: Part) -> Result<(), Error> {
+    let pou = unit.program.pou(id);
+    let function = unit.function(id, part).expect("a part with statements has a function");
+    let context = &mut workspace.context;
+    context.func.signature = unit.signature(id, part);
+    context.func.name = UserFuncName::user(0, function.as_u32());
+    let builder = FunctionBuilder::new(&mut context.func, &mut workspace.builder);
+    let block = match part {
+        Part::Body => &pou.body,
+        Part::Prescan => &pou.prescan,
+    };
+    let facts = unit.facts(id, part).clone();
+    let mut function_of_part = Function::open(unit, builder, pou, part, &facts);
+    let goes = function_of_part.block(block);
+    function_of_part.close(goes, &facts);
+    let name = match part {
+        Part::Body => pou.name.clone(),
+        Part::Prescan => format!("{} (prescan)", pou.name),
+    };
+    unit.define(context, function, &name)
+}
+
+impl<'a, 'p> Function<'a, 'p> {
+    fn open(unit: &'a mut Unit<'p>, mut builder: FunctionBuilder<'a>, pou: &'p Pou, part: Part, facts: &Facts) -> Self {
+        let entry = builder.create_block();
+        builder.append_block_params_for_function_params(entry);
+        builder.switch_to_block(entry);
+        builder.seal_block(entry);
+        let start = Start::new(builder.block_params(entry), unit.program, pou, part, facts);
+        let exit = builder.create_block();
+        let mut function = Self {
+            unit,
+            builder,
+            pou,
+            start,
+            locals: Vec::with_capacity(pou.locals.len()),
+            loops: Vec::new(),
+            exit,
+            faults: Faults::default(),
+            temporaries: Temporaries::default(),
+            functions: HashMap::new(),
+            data: HashMap::new(),
+            result: pou.result.filter(|_| part == Part::Body).zip(result_type(pou)),
+        };
+        function.place_locals(facts);
+        function.start_locals();
+        function
+    }
+
+    fn place_locals(&mut self, facts: &Facts) {
+        let mut variables = 0;
+        for (local, is_referred) in self.pou.locals.iter().zip(&facts.referred) {
+            let lane = self.unit.program.lane(local.ty).filter(|_| !is_referred);
+            let home = match lane {
+                Some(lane) if variables < MAX_VARIABLES => {
+                    variables += 1;
+                    Home::Variable(self.builder.declare_var(clif_type(lane)))
+                }
+                Some(_) | None => {
+                    let shape = self.unit.layout.shape(local.ty);
+                    Home::Slot(self.slot(shape))
+                }
+            };
+            self.locals.push(home);
+        }
+    }
+
+    /// Every call starts with arguments and initial values.
+    fn start_locals(&mut self) {
+        let pou = self.pou;
+        let mut arguments = vec![None; pou.locals.len()];
+        for (param, value) in pou.params.iter().zip(&self.start.params) {
+            if let Mode::Value(local) = param.mode {
+                arguments[local.index()] = Some(*value);
+            }
+        }
+        for (at, argument) in arguments.into_iter().enumerate() {
+            let (home, local) = (self.locals[at], &pou.locals[at]);
+            match argument {
+                Some(value) => self.start_with_argument(home, local.ty, value),
+                None => self.start_with_constant(home, local.ty, &local.initial),
+            }
+        }
+    }
+
+    fn start_with_argument(&mut self, home: Home, ty: Type, value: clif::Value) {
+        match home {
+            Home::Variable(variable) => self.builder.def_var(variable, value),
+            Home::Slot(slot) => {
+                let target = self.slot_address(slot);
+                match ty {
+                    Type::Elementary(_) | Type::Enum(_) => self.store(value, target),
+                    Type::String(capacity) => self.copy_text(value, target, capacity),
+                    Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
+                        self.copy(Address::at(value), target, ty);
+                    }
+                }
+            }
+        }
+    }
+
+    fn start_with_constant(&mut self, home: Home, ty: Type, initial: &Const) {
+        match home {
+            Home::Variable(variable) => {
+                let lane = self.unit.program.lane(ty).expect("a variable is elementary");
+                let initial = match initial {
+                    Const::Scalar(value) => *value,
+                    Const::Zero | Const::Text(_) | Const::Array(_) | Const::Struct(_) => lane.zero(),
+                };
+                let value = self.constant(initial);
+                self.builder.def_var(variable, value);
+            }
+            Home::Slot(slot) => {
+                let target = self.slot_address(slot);
+                self.store_const(ty, initial, target);
+            }
+        }
+    }
+
+    fn close(mut self, goes: Goes, facts: &Facts) {
+        if goes == Goes::On {
+            let exit = self.exit;
+            self.ins().jump(exit, &[]);
+        }
+        self.builder.switch_to_block(self.exit);
+        self.builder.seal_block(self.exit);
+        let result = self.result();
+        let mut values = Vec::new();
+        if facts.may_fault {
+            values.push(self.code(0));
+        }
+        values.extend(result);
+        self.ins().return_(&values);
+        self.close_faults();
+        self.builder.finalize(self.unit.module.target_config());
+    }
+
+    /// Stores a result that goes to memory; gives one that is returned.
+    fn result(&mut self) -> Option<clif::Value> {
+        let (local, ty) = self.result?;
+        match (self.locals[local.index()], self.start.result) {
+            (Home::Variable(variable), _) => Some(self.builder.use_var(variable)),
+            (Home::Slot(slot), None) => {
+                let from = self.slot_address(slot);
+                Some(self.load(ty, from))
+            }
+            (Home::Slot(slot), Some(target)) => {
+                let from = self.slot_address(slot);
+                self.copy(from, Address::at(target), ty);
+                None
+            }
+        }
+    }
+
+    /// What is returned beside a fault's code.
+    pub(crate) fn no_result(&mut self) -> Option<clif::Value> {
+        let (_, ty) = self.result?;
+        let lane = self.unit.program.lane(ty)?;
+        Some(self.constant(lane.zero()))
+    }
+
+    pub(crate) fn ins(&mut self) -> FuncInstBuilder<'_, 'a> {
+        self.builder.ins()
+    }
+
+    pub(crate) fn function_ref(&mut self, id: FuncId) -> clif::FuncRef {
+        if let Some(known) = self.functions.get(&id) {
+            return *known;
+        }
+        let new = self.unit.module.declare_func_in_func(id, self.builder.func);
+        self.functions.insert(id, new);
+        new
+    }
+
+    /// A pointer to a constant of the unit.
+    pub(crate) fn data_pointer(&mut self, id: DataId) -> clif::Value {
+        let known = self.data.get(&id).copied();
+        let data = known.unwrap_or_else(|| {
+            let new = self.unit.module.declare_data_in_func(id, self.builder.func);
+            self.data.insert(id, new);
+            new
+        });
+        self.ins().symbol_value(POINTER, data)
+    }
+}
+
+/// Whether control reaches the end of a statement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Goes {
+    On,
+    Away,
+}
+
+impl Start {
+    fn new(values: &[clif::Value], program: &Program, pou: &Pou, part: Part, facts: &Facts) -> Self {
+        let mut values = values.iter().copied();
+        let mut next_if = |needed: bool| if needed { values.next() } else { None };
+        let context = next_if(facts.uses_context);
+        let globals = next_if(facts.uses_globals);
+        let instance = next_if(pou.state.is_some());
+        let (params, result) = match part {
+            Part::Prescan => (Vec::new(), None),
+            Part::Body => {
+                let params = values.by_ref().take(pou.params.len()).collect();
+                let by_pointer = result_type(pou).is_some_and(|ty| program.lane(ty).is_none());
+                (params, values.next().filter(|_| by_pointer))
+            }
+        };
+        Self { context, globals, instance, params, result }
+    }
+}

@@ -1,0 +1,255 @@
+//! The steps of the most used standard blocks, emitted in place and without branches: a call and
+//! its return cost as much as the step. Small counts are computed at 32 bits. A test drives each
+//! row here against the runtime's own step.
+
+use crate::call::{block_info, offset};
+use crate::function::Function;
+use crate::memory::Address;
+use crate::signature::clif_type;
+use cranelift_codegen::ir::condcodes::IntCC;
+use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Type, Value as Clif, types};
+use staunch_ir::{Lane, Place};
+use staunch_runtime::{BlockInfo, Pin};
+
+/// Stores the inputs and does the step.
+type Emit = fn(&mut Function<'_, '_>, &'static BlockInfo, Address, &[Clif]);
+
+/// By the instruction's symbol.
+const INLINE: &[(&str, Emit)] = &[
+    ("staunch_iec_ctu", ctu),
+    ("staunch_iec_ctd", ctd),
+    ("staunch_iec_ctud", ctud),
+    ("staunch_iec_ctu_int", ctu),
+    ("staunch_iec_ctd_int", ctd),
+    ("staunch_iec_ctud_int", ctud),
+    ("staunch_iec_ctu_dint", ctu),
+    ("staunch_iec_ctd_dint", ctd),
+    ("staunch_iec_ctud_dint", ctud),
+    ("staunch_iec_ctu_lint", ctu),
+    ("staunch_iec_ctd_lint", ctd),
+    ("staunch_iec_ctud_lint", ctud),
+    ("staunch_iec_ctu_udint", ctu),
+    ("staunch_iec_ctd_udint", ctd),
+    ("staunch_iec_ctud_udint", ctud),
+    ("staunch_iec_ctu_ulint", ctu),
+    ("staunch_iec_ctd_ulint", ctd),
+    ("staunch_iec_ctud_ulint", ctud),
+    ("staunch_codesys_ctu", ctu),
+    ("staunch_codesys_ctd", ctd),
+    ("staunch_codesys_ctud", ctud),
+    ("staunch_codesys_lctu", ctu),
+    ("staunch_codesys_lctd", ctd),
+    ("staunch_codesys_lctud", ctud),
+    ("staunch_iec_r_trig", r_trig),
+    ("staunch_iec_f_trig", f_trig),
+    ("staunch_iec_sr", sr),
+    ("staunch_iec_rs", rs),
+    ("staunch_codesys_sr", sr),
+    ("staunch_codesys_rs", rs),
+];
+
+/// What emits an instruction of the block at `place`.
+pub(crate) fn find(place: &Place, instruction: usize) -> Option<Emit> {
+    let symbol = block_info(place).instructions[instruction].symbol;
+    INLINE.iter().find(|(known, _)| *known == symbol).map(|(_, emit)| *emit)
+}
+
+fn ctu(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Address, inputs: &[Clif]) {
+    f.store_pins(info, at, inputs);
+    let mut step = Counter { f, info, at };
+    let up = step.edge("cu", inputs[0]);
+    let cv = step.load_count("cv");
+    let counted = step.count_up(cv, up);
+    let cv = step.or_zero(inputs[1], counted);
+    step.store_count("cv", cv);
+    let pv = step.widen(inputs[2]);
+    step.store_at_least("q", cv, pv);
+}
+
+fn ctd(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Address, inputs: &[Clif]) {
+    f.store_pins(info, at, inputs);
+    let mut step = Counter { f, info, at };
+    let down = step.edge("cd", inputs[0]);
+    let cv = step.load_count("cv");
+    let counted = step.count_down(cv, down);
+    let pv = step.widen(inputs[2]);
+    let cv = step.f.ins().select(inputs[1], pv, counted);
+    step.store_count("cv", cv);
+    step.store_not_positive("q", cv);
+}
+
+fn ctud(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Address, inputs: &[Clif]) {
+    let &[_, _, r, ld, pv] = inputs else { unreachable!("verified IR: every input has a value") };
+    f.store_pins(info, at, inputs);
+    let mut step = Counter { f, info, at };
+    let up = step.edge("cu", inputs[0]);
+    let down = step.edge("cd", inputs[1]);
+    // Both together leave the count alone, also at a limit.
+    let only_up = step.f.ins().band_not(up, down);
+    let only_down = step.f.ins().band_not(down, up);
+    let cv = step.load_count("cv");
+    let raised = step.count_up(cv, only_up);
+    let counted = step.count_down(raised, only_down);
+    let pv = step.widen(pv);
+    let loaded = step.f.ins().select(ld, pv, counted);
+    let cv = step.or_zero(r, loaded);
+    step.store_count("cv", cv);
+    step.store_at_least("qu", cv, pv);
+    step.store_not_positive("qd", cv);
+}
+
+fn r_trig(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Address, inputs: &[Clif]) {
+    f.store_pins(info, at, inputs);
+    let mut step = Counter { f, info, at };
+    let q = step.edge("clk", inputs[0]);
+    step.store("q", q);
+}
+
+fn f_trig(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Address, inputs: &[Clif]) {
+    f.store_pins(info, at, inputs);
+    let mut step = Counter { f, info, at };
+    let before = step.load("clk_before");
+    let q = step.f.ins().band_not(before, inputs[0]);
+    step.store("clk_before", inputs[0]);
+    step.store("q", q);
+}
+
+fn sr(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Address, inputs: &[Clif]) {
+    f.store_pins(info, at, inputs);
+    let mut step = Counter { f, info, at };
+    let q = step.load("q1");
+    let kept = step.f.ins().band_not(q, inputs[1]);
+    let q = step.f.ins().bor(inputs[0], kept);
+    step.store("q1", q);
+}
+
+fn rs(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Address, inputs: &[Clif]) {
+    f.store_pins(info, at, inputs);
+    let mut step = Counter { f, info, at };
+    let q = step.load("q1");
+    let set = step.f.ins().bor(inputs[0], q);
+    let q = step.f.ins().band_not(set, inputs[1]);
+    step.store("q1", q);
+}
+
+/// A block's members, by the names of their Rust fields.
+struct Counter<'s, 'a, 'p> {
+    f: &'s mut Function<'a, 'p>,
+    info: &'static BlockInfo,
+    at: Address,
+}
+
+impl Counter<'_, '_, '_> {
+    fn pin(&self, field: &str) -> &'static Pin {
+        let pin = self.info.pins.iter().find(|pin| pin.field == field);
+        pin.expect("a block of the table has the members that its step uses")
+    }
+
+    fn load(&mut self, field: &str) -> Clif {
+        let pin = self.pin(field);
+        self.f.load_as(clif_type(pin.lane), self.at.plus(offset(pin.offset)))
+    }
+
+    fn store(&mut self, field: &str, value: Clif) {
+        let pin = self.pin(field);
+        self.f.store(value, self.at.plus(offset(pin.offset)));
+    }
+
+    /// A rising edge of `input`, which is also remembered.
+    fn edge(&mut self, field: &str, input: Clif) -> Clif {
+        let memory = format!("{field}_before");
+        let before = self.load(&memory);
+        self.store(&memory, input);
+        self.f.ins().band_not(input, before)
+    }
+
+    fn lane(&self) -> Lane {
+        self.pin("cv").lane
+    }
+
+    /// The type that counts are computed in.
+    fn wide(&self) -> Type {
+        if self.is_small() { types::I32 } else { clif_type(self.lane()) }
+    }
+
+    fn is_small(&self) -> bool {
+        self.lane().size() < 4
+    }
+
+    fn widen(&mut self, value: Clif) -> Clif {
+        match (self.is_small(), self.lane().is_signed()) {
+            (false, _) => value,
+            (true, true) => self.f.ins().sextend(types::I32, value),
+            (true, false) => self.f.ins().uextend(types::I32, value),
+        }
+    }
+
+    fn load_count(&mut self, field: &str) -> Clif {
+        if !self.is_small() {
+            return self.load(field);
+        }
+        let from = self.at.plus(offset(self.pin(field).offset));
+        let (flags, displacement) = (MemFlagsData::trusted(), from.displacement());
+        if self.lane().is_signed() {
+            self.f.ins().sload16(types::I32, flags, from.base, displacement)
+        } else {
+            self.f.ins().uload16(types::I32, flags, from.base, displacement)
+        }
+    }
+
+    fn store_count(&mut self, field: &str, value: Clif) {
+        if !self.is_small() {
+            return self.store(field, value);
+        }
+        let to = self.at.plus(offset(self.pin(field).offset));
+        self.f.ins().istore16(MemFlagsData::trusted(), value, to.base, to.displacement());
+    }
+
+    fn limits(&self) -> (i128, i128) {
+        self.lane().range().expect("counts are integers")
+    }
+
+    /// `cv` and one more if `edge`, unless it is at its maximum.
+    fn count_up(&mut self, cv: Clif, edge: Clif) -> Clif {
+        let (_, max) = self.limits();
+        let step = self.unless_at(max, cv, edge);
+        self.f.ins().iadd(cv, step)
+    }
+
+    /// `cv` and one less if `edge`, unless it is at its minimum.
+    fn count_down(&mut self, cv: Clif, edge: Clif) -> Clif {
+        let (min, _) = self.limits();
+        let step = self.unless_at(min, cv, edge);
+        self.f.ins().isub(cv, step)
+    }
+
+    fn unless_at(&mut self, limit: i128, cv: Clif, edge: Clif) -> Clif {
+        let wide = self.wide();
+        let limit = self.f.integer(wide, limit);
+        let may_count = self.f.ins().icmp(IntCC::NotEqual, cv, limit);
+        let counts = self.f.ins().band(edge, may_count);
+        self.f.ins().uextend(wide, counts)
+    }
+
+    fn or_zero(&mut self, condition: Clif, value: Clif) -> Clif {
+        let wide = self.wide();
+        let zero = self.f.integer(wide, 0);
+        self.f.ins().select(condition, zero, value)
+    }
+
+    fn store_at_least(&mut self, field: &str, cv: Clif, pv: Clif) {
+        let signed = self.lane().is_signed();
+        let condition = if signed { IntCC::SignedGreaterThanOrEqual } else { IntCC::UnsignedGreaterThanOrEqual };
+        let holds = self.f.ins().icmp(condition, cv, pv);
+        self.store(field, holds);
+    }
+
+    fn store_not_positive(&mut self, field: &str, cv: Clif) {
+        let signed = self.lane().is_signed();
+        let condition = if signed { IntCC::SignedLessThanOrEqual } else { IntCC::UnsignedLessThanOrEqual };
+        let wide = self.wide();
+        let zero = self.f.integer(wide, 0);
+        let holds = self.f.ins().icmp(condition, cv, zero);
+        self.store(field, holds);
+    }
+}

@@ -1,0 +1,274 @@
+//! The operations that are a few instructions: emitted in place, with the meaning of the
+//! runtime's function. A test compares both over all edge values. What has no row here is a call.
+
+use crate::expression::Operands;
+use crate::function::Function;
+use crate::signature::clif_type;
+use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
+use cranelift_codegen::ir::{InstBuilder, Value as Clif, types};
+use staunch_ir::{Expr, FaultKind, Lane, Op, Program};
+
+type Emit = fn(&mut Function<'_, '_>, &Operands) -> Clif;
+
+const INLINE: &[(Op, Emit)] = &[
+    (Op::Add, add),
+    (Op::Sub, sub),
+    (Op::Mul, mul),
+    (Op::Div, div),
+    (Op::Mod, modulo),
+    (Op::Neg, neg),
+    (Op::Abs, abs),
+    (Op::Sqrt, |f, o| f.ins().sqrt(o.values[0])),
+    (Op::And, |f, o| f.ins().band(o.values[0], o.values[1])),
+    (Op::Or, |f, o| f.ins().bor(o.values[0], o.values[1])),
+    (Op::Xor, |f, o| f.ins().bxor(o.values[0], o.values[1])),
+    (Op::Not, not),
+    (Op::Shl, shl),
+    (Op::Shr, shr),
+    // The instruction takes its count modulo the width as well.
+    (Op::Rol, |f, o| f.ins().rotl(o.values[0], o.values[1])),
+    (Op::Ror, |f, o| f.ins().rotr(o.values[0], o.values[1])),
+    (Op::Eq, |f, o| compare(f, o.lane, Order::Equal, o.values[0], o.values[1])),
+    (Op::Ne, |f, o| compare(f, o.lane, Order::NotEqual, o.values[0], o.values[1])),
+    (Op::Lt, |f, o| compare(f, o.lane, Order::Less, o.values[0], o.values[1])),
+    (Op::Le, |f, o| compare(f, o.lane, Order::LessOrEqual, o.values[0], o.values[1])),
+    (Op::Gt, |f, o| compare(f, o.lane, Order::Less, o.values[1], o.values[0])),
+    (Op::Ge, |f, o| compare(f, o.lane, Order::LessOrEqual, o.values[1], o.values[0])),
+    (Op::Max, max),
+    (Op::Min, min),
+    (Op::Limit, limit),
+    (Op::Sel, |f, o| f.ins().select(o.values[0], o.values[2], o.values[1])),
+    (Op::InRange, in_range),
+];
+
+/// What emits `op` in place.
+pub(crate) fn find(op: Op) -> Option<Emit> {
+    INLINE.iter().find(|(known, _)| *known == op).map(|(_, emit)| *emit)
+}
+
+/// The lane that the operation's row calls `T`.
+pub(crate) fn lane(program: &Program, op: Op, operands: &[Expr]) -> Lane {
+    let free = op.operands().iter().zip(operands).find(|(fixed, _)| fixed.is_none());
+    let lane = free.and_then(|(_, operand)| program.lane(operand.ty));
+    lane.expect("verified IR: operands have the operation's lane")
+}
+
+/// Whether code for the operation has a way to a fault.
+pub(crate) fn may_fault(program: &Program, op: Op, operands: &[Expr]) -> bool {
+    let is_division = matches!(op, Op::Div | Op::Mod);
+    let is_safe = is_division
+        && (lane(program, op, operands).is_float()
+            || operands[1].as_const().is_some_and(|divisor| divisor.as_integer() != Some(0)));
+    op.can_fault() && !is_safe
+}
+
+fn add(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
+    let (a, b) = (o.values[0], o.values[1]);
+    if o.lane.is_float() { f.ins().fadd(a, b) } else { f.ins().iadd(a, b) }
+}
+
+fn sub(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
+    let (a, b) = (o.values[0], o.values[1]);
+    if o.lane.is_float() { f.ins().fsub(a, b) } else { f.ins().isub(a, b) }
+}
+
+fn mul(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
+    let (a, b) = (o.values[0], o.values[1]);
+    if o.lane.is_float() { f.ins().fmul(a, b) } else { f.ins().imul(a, b) }
+}
+
+fn neg(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
+    let value = o.values[0];
+    if o.lane.is_float() { f.ins().fneg(value) } else { f.ins().ineg(value) }
+}
+
+fn abs(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
+    let value = o.values[0];
+    if o.lane.is_float() {
+        return f.ins().fabs(value);
+    }
+    if !o.lane.is_signed() {
+        return value;
+    }
+    let negated = f.ins().ineg(value);
+    let is_negative = f.ins().icmp_imm_s(IntCC::SignedLessThan, value, 0);
+    f.ins().select(is_negative, negated, value)
+}
+
+fn not(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
+    let value = o.values[0];
+    if o.lane == Lane::Bool { f.ins().bxor_imm_u(value, 1) } else { f.ins().bnot(value) }
+}
+
+fn div(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
+    if o.lane.is_float() {
+        return f.ins().fdiv(o.values[0], o.values[1]);
+    }
+    let division = Division::new(f, o);
+    let quotient = division.quotient(f);
+    division.narrowed(f, quotient)
+}
+
+fn modulo(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
+    let division = Division::new(f, o);
+    let remainder = division.remainder(f);
+    division.narrowed(f, remainder)
+}
+
+/// An integer division that cannot trap: the instruction does for a zero divisor, and for
+/// `MIN / -1`, which small integers avoid by being divided at 32 bits.
+struct Division {
+    lane: Lane,
+    a: Clif,
+    b: Clif,
+    /// At run time the divisor may be -1, with a dividend of the same width.
+    may_overflow: bool,
+}
+
+impl Division {
+    fn new(f: &mut Function<'_, '_>, o: &Operands) -> Self {
+        let divisor = o.constants[1].and_then(staunch_ir::Value::as_integer);
+        if divisor.is_none_or(|divisor| divisor == 0) {
+            let is_zero = f.ins().icmp_imm_u(IntCC::Equal, o.values[1], 0);
+            f.fault_if(is_zero, FaultKind::DivideByZero, o.at);
+        }
+        let is_small = o.lane.size() < 4;
+        let may_overflow = o.lane.is_signed() && !is_small && divisor.is_none_or(|divisor| divisor == -1);
+        let mut wide = |value| if is_small { extend(f, o.lane, value) } else { value };
+        Self { lane: o.lane, a: wide(o.values[0]), b: wide(o.values[1]), may_overflow }
+    }
+
+    fn quotient(&self, f: &mut Function<'_, '_>) -> Clif {
+        if !self.lane.is_signed() {
+            return f.ins().udiv(self.a, self.b);
+        }
+        if !self.may_overflow {
+            return f.ins().sdiv(self.a, self.b);
+        }
+        let (is_minus_one, divisor) = self.safe_divisor(f);
+        let quotient = f.ins().sdiv(self.a, divisor);
+        let negated = f.ins().ineg(self.a);
+        f.ins().select(is_minus_one, negated, quotient)
+    }
+
+    fn remainder(&self, f: &mut Function<'_, '_>) -> Clif {
+        if !self.lane.is_signed() {
+            return f.ins().urem(self.a, self.b);
+        }
+        if !self.may_overflow {
+            return f.ins().srem(self.a, self.b);
+        }
+        // The remainder by 1 is that by -1: zero.
+        let (_, divisor) = self.safe_divisor(f);
+        f.ins().srem(self.a, divisor)
+    }
+
+    fn safe_divisor(&self, f: &mut Function<'_, '_>) -> (Clif, Clif) {
+        let is_minus_one = f.ins().icmp_imm_s(IntCC::Equal, self.b, -1);
+        let one = f.integer(clif_type(self.lane), 1);
+        (is_minus_one, f.ins().select(is_minus_one, one, self.b))
+    }
+
+    fn narrowed(&self, f: &mut Function<'_, '_>, value: Clif) -> Clif {
+        if self.lane.size() < 4 { f.ins().ireduce(clif_type(self.lane), value) } else { value }
+    }
+}
+
+/// A small integer at 32 bits.
+fn extend(f: &mut Function<'_, '_>, lane: Lane, value: Clif) -> Clif {
+    if lane.is_signed() { f.ins().sextend(types::I32, value) } else { f.ins().uextend(types::I32, value) }
+}
+
+fn shl(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
+    shift(f, o, |f, value, count| f.ins().ishl(value, count))
+}
+
+fn shr(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
+    shift(f, o, |f, value, count| f.ins().ushr(value, count))
+}
+
+/// The instruction takes its count modulo the width; a count below zero or past the width is
+/// decided around it.
+fn shift(f: &mut Function<'_, '_>, o: &Operands, by: fn(&mut Function<'_, '_>, Clif, Clif) -> Clif) -> Clif {
+    let (value, count) = (o.values[0], o.values[1]);
+    let ty = clif_type(o.lane);
+    let width = i64::from(ty.bits());
+    if let Some(constant) = o.constants[1].and_then(staunch_ir::Value::as_integer) {
+        return match constant {
+            ..=0 => value,
+            it if it < i128::from(width) => by(f, value, count),
+            _ => f.integer(ty, 0),
+        };
+    }
+    let moved = by(f, value, count);
+    let is_negative = f.ins().icmp_imm_s(IntCC::SignedLessThan, count, 0);
+    let kept = f.ins().select(is_negative, value, moved);
+    let is_past = f.ins().icmp_imm_s(IntCC::SignedGreaterThanOrEqual, count, width);
+    let nothing = f.integer(ty, 0);
+    f.ins().select(is_past, nothing, kept)
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Order {
+    Equal,
+    NotEqual,
+    Less,
+    LessOrEqual,
+}
+
+/// A comparison in a lane's order; with a NaN only `NotEqual` holds.
+fn compare(f: &mut Function<'_, '_>, lane: Lane, order: Order, a: Clif, b: Clif) -> Clif {
+    if lane.is_float() {
+        let condition = match order {
+            Order::Equal => FloatCC::Equal,
+            Order::NotEqual => FloatCC::NotEqual,
+            Order::Less => FloatCC::LessThan,
+            Order::LessOrEqual => FloatCC::LessThanOrEqual,
+        };
+        return f.ins().fcmp(condition, a, b);
+    }
+    let condition = match (order, lane.is_signed()) {
+        (Order::Equal, _) => IntCC::Equal,
+        (Order::NotEqual, _) => IntCC::NotEqual,
+        (Order::Less, true) => IntCC::SignedLessThan,
+        (Order::Less, false) => IntCC::UnsignedLessThan,
+        (Order::LessOrEqual, true) => IntCC::SignedLessThanOrEqual,
+        (Order::LessOrEqual, false) => IntCC::UnsignedLessThanOrEqual,
+    };
+    f.ins().icmp(condition, a, b)
+}
+
+fn less(f: &mut Function<'_, '_>, lane: Lane, a: Clif, b: Clif) -> Clif {
+    compare(f, lane, Order::Less, a, b)
+}
+
+// The instructions for the minimum and maximum of reals treat NaN and -0 otherwise.
+
+fn max(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
+    let (a, b) = (o.values[0], o.values[1]);
+    let is_less = less(f, o.lane, a, b);
+    f.ins().select(is_less, b, a)
+}
+
+fn min(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
+    let (a, b) = (o.values[0], o.values[1]);
+    let is_less = less(f, o.lane, b, a);
+    f.ins().select(is_less, b, a)
+}
+
+fn limit(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
+    let (min, value, max) = (o.values[0], o.values[1], o.values[2]);
+    let is_below = less(f, o.lane, value, min);
+    let is_above = less(f, o.lane, max, value);
+    let lowered = f.ins().select(is_above, max, value);
+    f.ins().select(is_below, min, lowered)
+}
+
+fn in_range(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
+    let (min, value, max) = (o.values[0], o.values[1], o.values[2]);
+    let is_below = less(f, o.lane, value, min);
+    let is_above = less(f, o.lane, max, value);
+    let is_outside = f.ins().bor(is_below, is_above);
+    f.fault_if(is_outside, FaultKind::SubrangeViolated, o.at);
+    value
+}

@@ -1,0 +1,43 @@
+//! The native back end: verified IR to object code, or to code in memory that runs at once,
+//! through Cranelift. 64-bit targets only.
+//!
+//! [`object`] and [`Jit`] make the same functions: each POU becomes one (and one for its prescan),
+//! and the entry points are the program's C symbols. Operations and standard blocks are the
+//! runtime's: code calls them by symbol, or has them inline where a test proves the same meaning.
+#![cfg_attr(test, allow(clippy::unwrap_used))]
+
+mod error;
+mod target;
+
+mod facts;
+mod signature;
+mod unit;
+
+mod function;
+mod statement;
+
+mod call;
+mod case;
+mod expression;
+mod place;
+mod text;
+
+mod inline_block;
+mod inline_conversion;
+mod inline_op;
+mod shim;
+
+mod fault;
+mod memory;
+
+mod entry;
+
+mod jit;
+mod listing;
+mod object;
+
+pub use error::Error;
+pub use jit::{Jit, State};
+pub use listing::clif;
+pub use object::object;
+pub use target::Target;

@@ -1,0 +1,175 @@
+//! Values in memory: addresses, loads and stores, copies, and the frame.
+
+use crate::function::Function;
+use crate::signature::{POINTER, clif_type};
+use cranelift_codegen::ir::{self as clif, InstBuilder, MemFlagsData, StackSlot, StackSlotData, StackSlotKind, types};
+use staunch_ir::layout::{Shape, usize_of};
+use staunch_ir::{Const, Type, Value};
+use std::collections::HashMap;
+
+/// A pointer and a constant distance from it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Address {
+    pub(crate) base: clif::Value,
+    pub(crate) offset: u64,
+}
+
+impl Address {
+    pub(crate) fn at(base: clif::Value) -> Self {
+        Self { base, offset: 0 }
+    }
+
+    #[must_use]
+    pub(crate) fn plus(self, offset: u64) -> Self {
+        Self { offset: self.offset + offset, ..self }
+    }
+
+    /// The distance as instructions carry it.
+    pub(crate) fn displacement(self) -> i32 {
+        i32::try_from(self.offset).expect("verified IR: sizes are within 1 GiB")
+    }
+}
+
+/// Parts of the frame that live for a statement, and are used again in later ones.
+#[derive(Debug, Default)]
+pub(crate) struct Temporaries {
+    /// By size and alignment.
+    free: HashMap<(u64, u64), Vec<StackSlot>>,
+    taken: Vec<(Shape, StackSlot)>,
+}
+
+impl Function<'_, '_> {
+    pub(crate) fn slot(&mut self, shape: Shape) -> StackSlot {
+        let size = u32::try_from(shape.size.max(1)).expect("verified IR: sizes are within 1 GiB");
+        let align_shift = u8::try_from(shape.align.trailing_zeros()).expect("alignments are small");
+        let data = StackSlotData::new(StackSlotKind::ExplicitSlot, size, align_shift);
+        self.builder.create_sized_stack_slot(data)
+    }
+
+    pub(crate) fn slot_address(&mut self, slot: StackSlot) -> Address {
+        Address::at(self.ins().stack_addr(POINTER, slot, 0))
+    }
+
+    /// Space until the end of the statement.
+    pub(crate) fn temporary(&mut self, shape: Shape) -> Address {
+        let reused = self.temporaries.free.get_mut(&(shape.size, shape.align)).and_then(Vec::pop);
+        let slot = reused.unwrap_or_else(|| self.slot(shape));
+        self.temporaries.taken.push((shape, slot));
+        self.slot_address(slot)
+    }
+
+    pub(crate) fn release_temporaries(&mut self) {
+        for (shape, slot) in self.temporaries.taken.drain(..) {
+            self.temporaries.free.entry((shape.size, shape.align)).or_default().push(slot);
+        }
+    }
+
+    pub(crate) fn pointer(&mut self, address: Address) -> clif::Value {
+        match address.displacement() {
+            0 => address.base,
+            offset => self.ins().iadd_imm_s(address.base, i64::from(offset)),
+        }
+    }
+
+    /// Reads a value of an elementary or enumeration type.
+    pub(crate) fn load(&mut self, ty: Type, from: Address) -> clif::Value {
+        let lane = self.unit.program.lane(ty).expect("verified IR: an elementary type");
+        self.load_as(clif_type(lane), from)
+    }
+
+    pub(crate) fn load_as(&mut self, ty: clif::Type, from: Address) -> clif::Value {
+        self.ins().load(ty, MemFlagsData::trusted(), from.base, from.displacement())
+    }
+
+    pub(crate) fn store(&mut self, value: clif::Value, to: Address) {
+        self.ins().store(MemFlagsData::trusted(), value, to.base, to.displacement());
+    }
+
+    /// Copies a value; both places may be the same.
+    pub(crate) fn copy(&mut self, from: Address, to: Address, ty: Type) {
+        let shape = self.unit.layout.shape(ty);
+        self.copy_bytes(from, to, shape);
+    }
+
+    pub(crate) fn copy_bytes(&mut self, from: Address, to: Address, shape: Shape) {
+        if from.base == to.base && from.offset == to.offset {
+            return;
+        }
+        let (from, to) = (self.pointer(from), self.pointer(to));
+        let (config, align) = (self.unit.module.target_config(), align_of(shape));
+        let flags = MemFlagsData::trusted();
+        self.builder.emit_small_memory_copy(config, to, from, shape.size, align, align, false, flags);
+    }
+
+    /// Writes a constant of any type.
+    pub(crate) fn store_const(&mut self, ty: Type, value: &Const, to: Address) {
+        if let Const::Scalar(value) = value {
+            let value = self.constant(*value);
+            return self.store(value, to);
+        }
+        let shape = self.unit.layout.shape(ty);
+        if let Some(from) = self.const_data(ty, value) {
+            self.copy_bytes(from, to, shape);
+        } else {
+            let (config, align) = (self.unit.module.target_config(), align_of(shape));
+            let to = self.pointer(to);
+            let flags = MemFlagsData::trusted();
+            self.builder.emit_small_memset(config, to, 0, shape.size, align, flags);
+        }
+    }
+
+    /// A constant as read-only data; `None` if its bytes are all zero.
+    fn const_data(&mut self, ty: Type, value: &Const) -> Option<Address> {
+        let layout = &self.unit.layout;
+        if matches!(value, Const::Zero) {
+            return None;
+        }
+        let mut bytes = vec![0; usize_of(layout.size(ty))];
+        layout.write_const(self.unit.program, ty, value, &mut bytes);
+        bytes.iter().any(|byte| *byte != 0).then(|| self.data(bytes))
+    }
+
+    /// Read-only bytes.
+    pub(crate) fn data(&mut self, bytes: Vec<u8>) -> Address {
+        let id = self.unit.constant(bytes);
+        Address::at(self.data_pointer(id))
+    }
+
+    pub(crate) fn constant(&mut self, value: Value) -> clif::Value {
+        match value {
+            Value::F32(it) => self.ins().f32const(it),
+            Value::F64(it) => self.ins().f64const(it),
+            Value::Bool(_)
+            | Value::I8(_)
+            | Value::I16(_)
+            | Value::I32(_)
+            | Value::I64(_)
+            | Value::U8(_)
+            | Value::U16(_)
+            | Value::U32(_)
+            | Value::U64(_) => {
+                let number = value.as_integer().expect("not a real");
+                self.integer(clif_type(value.lane()), number)
+            }
+        }
+    }
+
+    /// The low bits of `number`.
+    pub(crate) fn integer(&mut self, ty: clif::Type, number: i128) -> clif::Value {
+        self.ins().iconst(ty, low_bits(ty, number))
+    }
+
+    pub(crate) fn code(&mut self, code: u64) -> clif::Value {
+        self.integer(types::I64, i128::from(code))
+    }
+}
+
+/// `number` as an immediate: the bits that fit the type, zeros above them.
+fn low_bits(ty: clif::Type, number: i128) -> i64 {
+    let mask = (1_i128 << ty.bits()) - 1;
+    u64::try_from(number & mask).expect("integers have at most 64 bits").cast_signed()
+}
+
+fn align_of(shape: Shape) -> u8 {
+    u8::try_from(shape.align).expect("alignments are small")
+}

@@ -1,0 +1,34 @@
+//! Object files, for a linker to join with the runtime and a host.
+
+use crate::{Error, Target, entry, unit};
+use cranelift_module::default_libcall_names;
+use cranelift_object::object::SectionKind;
+use cranelift_object::{ObjectBuilder, ObjectModule};
+use staunch_ir::Program;
+use staunch_ir::layout::Layout;
+use staunch_ir::symbols::map_text;
+
+/// A relocatable object with the entry points of a verified program: position independent,
+/// without unwind tables. It needs the symbols of `staunch-runtime-abi`, `memcpy`, `memmove` and
+/// `memset`.
+///
+/// # Errors
+/// If a function is too large for the code generator.
+pub fn object(program: &Program, target: &Target) -> Result<Vec<u8>, Error> {
+    let mut module = module(target)?;
+    unit::emit(program, &mut module, None)?;
+    entry::map(&mut module, &map_text(program, &Layout::new(program)))?;
+    let mut product = module.finish();
+    // Without this section a linker takes the stack to be executable.
+    let name = b".note.GNU-stack".to_vec();
+    product.object.add_section(Vec::new(), name, SectionKind::Other);
+    product.emit().map_err(|error| Error::Output(error.to_string()))
+}
+
+pub(crate) fn module(target: &Target) -> Result<ObjectModule, Error> {
+    let isa = target.isa()?;
+    let mut builder = ObjectBuilder::new(isa, "program.st", default_libcall_names())?;
+    // A linker can then drop functions that nothing calls.
+    builder.per_function_section(true);
+    Ok(ObjectModule::new(builder))
+}

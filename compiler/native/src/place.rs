@@ -1,0 +1,76 @@
+//! Places: where a variable, a field or an element is.
+
+use crate::facts::constant_position;
+use crate::function::{Function, Home};
+use crate::memory::Address;
+use cranelift_codegen::ir::{InstBuilder, condcodes::IntCC};
+use cranelift_frontend::Variable;
+use staunch_ir::{ArrayId, Expr, FaultKind, Location, Place, Projection, Root, Type};
+
+/// Where the value of a place is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Site {
+    Variable(Variable),
+    Memory(Address),
+}
+
+impl Function<'_, '_> {
+    pub(crate) fn site(&mut self, place: &Place) -> Site {
+        if let Root::Local(id) = place.root
+            && let Home::Variable(variable) = self.locals[id.index()]
+        {
+            return Site::Variable(variable);
+        }
+        Site::Memory(self.address(place))
+    }
+
+    /// The address of a place that is not a variable of the code generator's.
+    pub(crate) fn address(&mut self, place: &Place) -> Address {
+        let mut address = self.root(place.root);
+        let root_type = self.unit.program.root_type(self.pou, place.root);
+        let mut ty = root_type.expect("verified IR: a root that the POU has");
+        for projection in &place.projections {
+            (address, ty) = match projection {
+                Projection::Field(field) => {
+                    let member = self.unit.program.member(ty, *field);
+                    let offset = self.unit.layout.offset(ty, *field);
+                    (address.plus(offset), member.expect("verified IR: a member of the type"))
+                }
+                Projection::Index { index, at } => {
+                    let Type::Array(id) = ty else { unreachable!("verified IR: an index into an array") };
+                    (self.element(address, id, index, *at), self.unit.program.array(id).element)
+                }
+            };
+        }
+        address
+    }
+
+    fn root(&mut self, root: Root) -> Address {
+        match root {
+            Root::Instance => Address::at(self.start.instance.expect("verified IR: a POU with an instance")),
+            Root::Globals => Address::at(self.start.globals.expect("a function that uses globals gets them")),
+            Root::Param(id) => Address::at(self.start.params[id.index()]),
+            Root::Local(id) => match self.locals[id.index()] {
+                Home::Slot(slot) => self.slot_address(slot),
+                Home::Variable(_) => unreachable!("an elementary local without references to it"),
+            },
+        }
+    }
+
+    fn element(&mut self, array: Address, id: ArrayId, index: &Expr, at: Location) -> Address {
+        let (bounds, stride) = (self.unit.program.array(id), self.unit.layout.stride(id));
+        if let Some(position) = constant_position(index, bounds.low, bounds.high) {
+            return array.plus(position * stride);
+        }
+        let index = self.scalar(index);
+        // Below the lower bound the difference wraps, and is too large as well.
+        let position = self.ins().iadd_imm_s(index, bounds.low.wrapping_neg());
+        let last = bounds.high.abs_diff(bounds.low).cast_signed();
+        let outside = self.ins().icmp_imm_u(IntCC::UnsignedGreaterThan, position, last);
+        self.fault_if(outside, FaultKind::IndexOutOfRange, at);
+        let stride = i64::try_from(stride).expect("verified IR: sizes are within 1 GiB");
+        let distance = self.ins().imul_imm_s(position, stride);
+        let base = self.ins().iadd(array.base, distance);
+        Address { base, ..array }
+    }
+}

@@ -1,0 +1,61 @@
+//! Calls of the runtime's C symbols.
+
+use crate::expression::Operands;
+use crate::function::Function;
+use crate::signature::{POINTER, c_value};
+use cranelift_codegen::ir::{self as clif, AbiParam, InstBuilder, types};
+use staunch_ir::layout::Shape;
+use staunch_ir::{Lane, Op};
+
+impl Function<'_, '_> {
+    /// Calls a symbol of the runtime; gives its result if it has one.
+    pub(crate) fn call_runtime(
+        &mut self,
+        symbol: &str,
+        arguments: &[(AbiParam, clif::Value)],
+        result: Option<AbiParam>,
+    ) -> Option<clif::Value> {
+        let mut signature = self.unit.module.make_signature();
+        signature.params.extend(arguments.iter().map(|(param, _)| *param));
+        signature.returns.extend(result);
+        let id = self.unit.import(symbol, &signature);
+        let function = self.function_ref(id);
+        let values: Vec<_> = arguments.iter().map(|(_, value)| *value).collect();
+        let call = self.ins().call(function, &values);
+        self.builder.inst_results(call).first().copied()
+    }
+
+    pub(crate) fn by_lane(&self, lane: Lane, value: clif::Value) -> (AbiParam, clif::Value) {
+        (self.c_param(lane), value)
+    }
+
+    pub(crate) fn c_param(&self, lane: Lane) -> AbiParam {
+        c_value(self.unit.module.isa().triple(), lane)
+    }
+}
+
+/// An argument that is a pointer.
+pub(crate) fn by_pointer(value: clif::Value) -> (AbiParam, clif::Value) {
+    (AbiParam::new(POINTER), value)
+}
+
+/// An operation by its symbol.
+pub(crate) fn operation(f: &mut Function<'_, '_>, op: Op, operands: &Operands) -> clif::Value {
+    let lane = operands.lane;
+    let symbol = format!("staunch_{}_{}", op.function(), lane.rust_name());
+    let lanes = op.operands().iter().map(|fixed| fixed.unwrap_or(lane));
+    let mut arguments: Vec<_> = lanes.zip(&operands.values).map(|(lane, value)| f.by_lane(lane, *value)).collect();
+    let result = op.result().unwrap_or(lane);
+    if !op.can_fault() {
+        let result = f.c_param(result);
+        let value = f.call_runtime(&symbol, &arguments, Some(result));
+        return value.expect("a total operation returns its result");
+    }
+    let size = u64::from(result.size());
+    let out = f.temporary(Shape { size, align: size });
+    let pointer = f.pointer(out);
+    arguments.push(by_pointer(pointer));
+    let kind = f.call_runtime(&symbol, &arguments, Some(AbiParam::new(types::I8).uext()));
+    f.fault_of_kind(kind.expect("an operation that may fault returns its code"), operands.at);
+    f.load_as(crate::signature::clif_type(result), out)
+}

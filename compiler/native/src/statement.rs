@@ -1,0 +1,180 @@
+//! Statements: writes and control flow.
+
+use crate::function::{Function, Goes, Turn};
+use crate::memory::Address;
+use crate::place::Site;
+use cranelift_codegen::ir::{self as clif, InstBuilder};
+use staunch_ir::{Block, Expr, ExprKind, Place, Statement, StatementKind, Type};
+
+impl Function<'_, '_> {
+    /// What stands behind a statement that control does not pass is left out.
+    pub(crate) fn block(&mut self, block: &Block) -> Goes {
+        for statement in block {
+            if self.statement(statement) == Goes::Away {
+                return Goes::Away;
+            }
+        }
+        Goes::On
+    }
+
+    fn statement(&mut self, statement: &Statement) -> Goes {
+        self.release_temporaries();
+        match &statement.kind {
+            StatementKind::Assign { target, value } => self.assign(target, value),
+            StatementKind::If { condition, then, otherwise } => {
+                return self.branch(condition, then, otherwise);
+            }
+            StatementKind::Case { selector, arms, otherwise } => {
+                return self.case(selector, arms, otherwise);
+            }
+            StatementKind::Loop { body, continuing } => return self.turns(body, continuing),
+            StatementKind::Exit => return self.leave_loop(),
+            StatementKind::Continue => return self.continue_loop(),
+            StatementKind::Return => return self.go(self.exit),
+            StatementKind::Call { callee, instance, arguments, result } => {
+                self.call(*callee, instance.as_ref(), arguments, result.as_ref());
+            }
+            StatementKind::CallBlock { block, instruction, inputs } => {
+                self.call_block(block, *instruction, inputs);
+            }
+            StatementKind::PrescanBlock { block, instruction } => {
+                self.prescan_block(block, *instruction);
+            }
+            StatementKind::PrescanInstance { callee, instance } => {
+                self.prescan_instance(*callee, instance);
+            }
+            StatementKind::Fault(kind) => {
+                self.fault(*kind, statement.at);
+                return Goes::Away;
+            }
+        }
+        Goes::On
+    }
+
+    fn assign(&mut self, target: &Place, value: &Expr) {
+        match self.site(target) {
+            Site::Variable(variable) => {
+                let value = self.scalar(value);
+                self.builder.def_var(variable, value);
+            }
+            Site::Memory(address) => self.assign_to(value, address),
+        }
+    }
+
+    fn assign_to(&mut self, value: &Expr, target: Address) {
+        match value.ty {
+            Type::Elementary(_) | Type::Enum(_) => {
+                let value = self.scalar(value);
+                self.store(value, target);
+            }
+            Type::String(_) => self.assign_text(value, target),
+            Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
+                self.assign_aggregate(value, target);
+            }
+        }
+    }
+
+    fn assign_aggregate(&mut self, value: &Expr, target: Address) {
+        if let ExprKind::Aggregate(constant) = &value.kind {
+            return self.store_const(value.ty, constant, target);
+        }
+        let from = self.aggregate(value);
+        self.copy(from, target, value.ty);
+    }
+
+    /// An array or structure for reading.
+    pub(crate) fn aggregate(&mut self, value: &Expr) -> Address {
+        match &value.kind {
+            ExprKind::Load(place) => self.address(place),
+            ExprKind::Aggregate(constant) => {
+                let shape = self.unit.layout.shape(value.ty);
+                let address = self.temporary(shape);
+                self.store_const(value.ty, constant, address);
+                address
+            }
+            ExprKind::Const(_)
+            | ExprKind::Text(_)
+            | ExprKind::Apply(..)
+            | ExprKind::ApplyText(..)
+            | ExprKind::Convert(..) => {
+                unreachable!("verified IR: an aggregate is read or constant")
+            }
+        }
+    }
+
+    fn branch(&mut self, condition: &Expr, then: &Block, otherwise: &Block) -> Goes {
+        let condition = self.scalar(condition);
+        let (then_block, after) = (self.builder.create_block(), self.builder.create_block());
+        if otherwise.is_empty() {
+            self.ins().brif(condition, then_block, &[], after, &[]);
+            self.arm(then_block, then, after);
+            self.go_on_in(after);
+            return Goes::On;
+        }
+        let otherwise_block = self.builder.create_block();
+        self.ins().brif(condition, then_block, &[], otherwise_block, &[]);
+        let goes = [self.arm(then_block, then, after), self.arm(otherwise_block, otherwise, after)];
+        self.join(&goes, after)
+    }
+
+    /// One way through a branch, from `block` to `after`.
+    pub(crate) fn arm(&mut self, block: clif::Block, body: &Block, after: clif::Block) -> Goes {
+        self.go_on_in(block);
+        let goes = self.block(body);
+        if goes == Goes::On {
+            self.ins().jump(after, &[]);
+        }
+        goes
+    }
+
+    /// Goes on behind a branch, if one of its ways leads there.
+    pub(crate) fn join(&mut self, ways: &[Goes], after: clif::Block) -> Goes {
+        if !ways.contains(&Goes::On) {
+            return Goes::Away;
+        }
+        self.go_on_in(after);
+        Goes::On
+    }
+
+    fn turns(&mut self, body: &Block, continuing: &Block) -> Goes {
+        let [start, next, after] = [(); 3].map(|()| self.builder.create_block());
+        self.ins().jump(start, &[]);
+        self.builder.switch_to_block(start);
+        self.loops.push(Turn { next, after, is_continued: false, is_left: false });
+        if self.block(body) == Goes::On {
+            self.continue_loop();
+        }
+        if self.turn().is_continued {
+            self.go_on_in(next);
+            if self.block(continuing) == Goes::On {
+                self.ins().jump(start, &[]);
+            }
+        }
+        self.builder.seal_block(start);
+        let turn = self.loops.pop().expect("pushed above");
+        self.join(&[if turn.is_left { Goes::On } else { Goes::Away }], after)
+    }
+
+    fn turn(&mut self) -> &mut Turn {
+        self.loops.last_mut().expect("verified IR: EXIT and CONTINUE stand in a loop")
+    }
+
+    fn leave_loop(&mut self) -> Goes {
+        let turn = self.turn();
+        turn.is_left = true;
+        let after = turn.after;
+        self.go(after)
+    }
+
+    fn continue_loop(&mut self) -> Goes {
+        let turn = self.turn();
+        turn.is_continued = true;
+        let next = turn.next;
+        self.go(next)
+    }
+
+    fn go(&mut self, block: clif::Block) -> Goes {
+        self.ins().jump(block, &[]);
+        Goes::Away
+    }
+}

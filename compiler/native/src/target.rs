@@ -1,0 +1,168 @@
+//! The machines that code is made for, and Cranelift's settings for each.
+
+use crate::Error;
+use cranelift_codegen::isa::{self, OwnedTargetIsa};
+use cranelift_codegen::settings::{self, Configurable, Flags};
+use std::str::FromStr;
+use target_lexicon::{Aarch64Architecture, Architecture, BinaryFormat, Environment, PointerWidth, Triple};
+
+/// A machine and system that [`object`](crate::object) makes code for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Target {
+    triple: Triple,
+    machine: Machine,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Machine {
+    X86_64,
+    Aarch64,
+    Riscv64,
+}
+
+/// Instructions that every x86-64-v2 machine has. Without them rounding becomes calls of libm.
+const X86_64: &[&str] = &["has_sse3", "has_ssse3", "has_sse41", "has_sse42", "has_popcnt"];
+/// The G in riscv64gc.
+const RISCV64: &[&str] = &["has_m", "has_a", "has_f", "has_d", "has_zicsr", "has_zifencei"];
+
+impl Target {
+    /// The targets that the tests link and run. Others of these machines with ELF objects, such
+    /// as musl, work the same way.
+    pub const SUPPORTED: [&'static str; 3] =
+        ["x86_64-unknown-linux-gnu", "aarch64-unknown-linux-gnu", "riscv64gc-unknown-linux-gnu"];
+
+    /// The machine that this runs on.
+    ///
+    /// # Errors
+    /// If it is none that native code is made for.
+    pub fn host() -> Result<Self, Error> {
+        Self::of_triple(Triple::host())
+    }
+
+    /// A target by its Rust triple, or by `x86_64`, `aarch64` or `riscv64` for Linux.
+    ///
+    /// # Errors
+    /// If no native code is made for it; the text tells a user what to do.
+    pub fn parse(name: &str) -> Result<Self, Error> {
+        let name = match name {
+            "x86_64" => Self::SUPPORTED[0],
+            "aarch64" => Self::SUPPORTED[1],
+            "riscv64" | "riscv64gc" => Self::SUPPORTED[2],
+            other => other,
+        };
+        Self::of_triple(Triple::from_str(name).map_err(|_| unknown(name))?)
+    }
+
+    fn of_triple(triple: Triple) -> Result<Self, Error> {
+        let name = triple.to_string();
+        if matches!(triple.pointer_width(), Ok(PointerWidth::U16 | PointerWidth::U32)) {
+            return Err(narrow(&name));
+        }
+        let machine = match triple.architecture {
+            Architecture::X86_64 => Machine::X86_64,
+            Architecture::Aarch64(Aarch64Architecture::Aarch64) => Machine::Aarch64,
+            Architecture::Riscv64(_) => Machine::Riscv64,
+            _ => return Err(unknown(&name)),
+        };
+        if triple.binary_format != BinaryFormat::Elf || triple.environment == Environment::Sgx {
+            return Err(unknown(&name));
+        }
+        Ok(Self { triple, machine })
+    }
+
+    /// The triple.
+    pub fn name(&self) -> String {
+        self.triple.to_string()
+    }
+
+    /// For objects that any machine of the target runs.
+    pub(crate) fn isa(&self) -> Result<OwnedTargetIsa, Error> {
+        let mut builder = isa::lookup(self.triple.clone()).map_err(|_| unknown(&self.name()))?;
+        let features = match self.machine {
+            Machine::X86_64 => X86_64,
+            Machine::Aarch64 => &[],
+            Machine::Riscv64 => RISCV64,
+        };
+        for feature in features {
+            builder.enable(feature).expect("a feature of the machine");
+        }
+        builder.finish(flags("true")).map_err(|error| Error::Output(error.to_string()))
+    }
+}
+
+/// For code that runs here and now, with all that this machine can do.
+pub(crate) fn native_isa() -> Result<OwnedTargetIsa, Error> {
+    let builder = cranelift_native::builder().map_err(|error| Error::Target(error.to_owned()))?;
+    builder.finish(flags("false")).map_err(|error| Error::Output(error.to_string()))
+}
+
+fn flags(is_pic: &str) -> Flags {
+    let verifier = if cfg!(debug_assertions) { "true" } else { "false" };
+    let mut flags = settings::builder();
+    for (name, value) in [
+        ("is_pic", is_pic),
+        ("opt_level", "speed"),
+        ("enable_verifier", verifier),
+        // An .eh_frame from Cranelift needs absolute relocations, which static PIE refuses.
+        ("unwind_info", "false"),
+        // A frame larger than the guard page touches each page.
+        ("enable_probestack", "true"),
+        ("probestack_strategy", "inline"),
+    ] {
+        flags.set(name, value).expect("a setting of Cranelift");
+    }
+    Flags::new(flags)
+}
+
+fn narrow(name: &str) -> Error {
+    Error::Target(format!(
+        "the native back end makes 64-bit code only; for {name} use --backend rust (or --emit rust) \
+         and compile the result with rustc"
+    ))
+}
+
+fn unknown(name: &str) -> Error {
+    let supported = Target::SUPPORTED.join(", ");
+    Error::Target(format!(
+        "the native back end does not know the target {name}; it makes code for {supported} \
+         (for any other target use --backend rust)"
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn short_names_are_linux() {
+        let names = ["x86_64", "aarch64", "riscv64"].map(|name| Target::parse(name).unwrap().name());
+        assert_eq!(names, Target::SUPPORTED);
+        for name in Target::SUPPORTED {
+            Target::parse(name).unwrap().isa().unwrap();
+        }
+        assert!(Target::parse("x86_64-unknown-linux-musl").unwrap().isa().is_ok());
+        assert!(Target::host().is_ok());
+    }
+
+    #[test]
+    fn narrow_targets_are_sent_to_rust() {
+        for name in [
+            "armv7-unknown-linux-gnueabihf",
+            "thumbv7em-none-eabihf",
+            "riscv32imac-unknown-none-elf",
+            "i686-unknown-linux-gnu",
+        ] {
+            let text = Target::parse(name).unwrap_err().to_string();
+            assert!(text.contains("--backend rust (or --emit rust)"), "{text}");
+            assert!(text.contains(name), "{text}");
+        }
+    }
+
+    #[test]
+    fn unknown_targets_name_the_known_ones() {
+        for name in ["vax", "x86_64-pc-windows-msvc", "s390x-unknown-linux-gnu", "aarch64_be-unknown-linux-gnu"] {
+            let text = Target::parse(name).unwrap_err().to_string();
+            assert!(Target::SUPPORTED.iter().all(|known| text.contains(known)), "{text}");
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! Every instruction and prescan of the standard blocks, inline or called, does what the runtime's
+//! own step does to every member.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod support;
+
+use staunch_ir::*;
+use staunch_runtime::{BLOCKS, BlockInfo, Context};
+use support::*;
+
+/// Repeatable and good enough: xorshift.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0
+    }
+
+    fn below(&mut self, limit: usize) -> usize {
+        usize::try_from(self.next() % u64::try_from(limit).unwrap()).unwrap()
+    }
+
+    /// Often an edge, else any bits.
+    fn value(&mut self, lane: Lane) -> Value {
+        let edges = edges(lane);
+        if lane == Lane::Bool || !self.next().is_multiple_of(4) {
+            return edges[self.below(edges.len())];
+        }
+        Value::read(lane, &self.next().to_ne_bytes())
+    }
+}
+
+/// The block is field 0; the inputs are the fields behind it.
+fn program_of(id: BlockId, instruction: usize, is_prescan: bool) -> Program {
+    let info = id.info();
+    let lanes = inputs(info, instruction);
+    let mut fields = vec![zero("block", Type::Block(id))];
+    fields.extend(lanes.iter().map(|lane| zero("input", elementary(*lane))));
+    let block = || member(StructId(0), 0, Type::Block(id));
+    let input = |(at, lane): (usize, &Lane)| load(member(StructId(0), at + 1, elementary(*lane)));
+    let kind = if is_prescan {
+        StatementKind::PrescanBlock { block: block(), instruction }
+    } else {
+        let inputs = lanes.iter().enumerate().map(input).collect();
+        StatementKind::CallBlock { block: block(), instruction, inputs }
+    };
+    let main = Pou { body: vec![stmt(kind)], ..pou(PouKind::Program, "Main", Some(StructId(0))) };
+    program(Vec::new(), vec![structure("Main", fields)], vec![main])
+}
+
+fn inputs(info: &BlockInfo, instruction: usize) -> Vec<Lane> {
+    if info.instructions[instruction].takes_rung {
+        return vec![Lane::Bool];
+    }
+    info.inputs().map(|pin| pin.lane).collect()
+}
+
+fn drive(id: BlockId, instruction: usize, is_prescan: bool, random: &mut Random) {
+    let info = id.info();
+    let program = program_of(id, instruction, is_prescan);
+    let mut native = Native::new(&program);
+    let start = native.offset(&program, 0, 0);
+    let mut expected = vec![0; info.size];
+    for turn in 0..3000 {
+        // Now and then from anywhere; mostly on from where it is.
+        if turn % 7 == 0 {
+            for pin in info.pins {
+                random.value(pin.lane).write(&mut expected[pin.offset..]);
+            }
+            native.state.bytes_mut()[start..start + info.size].copy_from_slice(&expected);
+        }
+        let cx = Context { now: i64::from(turn) * 1_000_000, first_scan: random.next().is_multiple_of(5) };
+        let values: Vec<_> = inputs(info, instruction).into_iter().map(|lane| random.value(lane)).collect();
+        for (at, value) in values.iter().enumerate() {
+            let offset = native.offset(&program, 0, at + 1);
+            value.write(&mut native.state.bytes_mut()[offset..]);
+        }
+        let before = expected.clone();
+        native.jit.scan(&mut native.state, 0, &cx).unwrap();
+        run(info, instruction, is_prescan, &mut expected, &cx, &values);
+        for pin in info.pins {
+            let found = Value::read(pin.lane, &native.state.bytes()[start + pin.offset..]);
+            let wanted = Value::read(pin.lane, &expected[pin.offset..]);
+            assert_eq!(found, wanted, "{info:?}.{} after {values:?} from {before:?}", pin.name);
+        }
+    }
+}
+
+fn run(info: &BlockInfo, instruction: usize, is_prescan: bool, bytes: &mut [u8], cx: &Context, values: &[Value]) {
+    let instruction = &info.instructions[instruction];
+    if is_prescan {
+        return (instruction.prescan.unwrap().run)(bytes);
+    }
+    if instruction.takes_rung {
+        return (instruction.run)(bytes, cx, values[0] == Value::Bool(true));
+    }
+    for (pin, value) in info.inputs().zip(values) {
+        value.write(&mut bytes[pin.offset..]);
+    }
+    (instruction.run)(bytes, cx, true);
+}
+
+#[test]
+fn every_instruction_of_every_block() {
+    let mut random = Random(0x9E37_79B9_7F4A_7C15);
+    for number in 0..BLOCKS.len() {
+        let id = BlockId::next(number);
+        for (at, instruction) in id.info().instructions.iter().enumerate() {
+            drive(id, at, false, &mut random);
+            if instruction.prescan.is_some() {
+                drive(id, at, true, &mut random);
+            }
+        }
+    }
+}

@@ -1,0 +1,375 @@
+//! Makes shared storage something Rust can say: after this pass no call hands out two paths to
+//! one variable. A call that would do so goes to a copy of its callee, in which the parameters
+//! that overlap are places below one root (the globals, the instance, or one shared parameter);
+//! array subscripts on the way are checked at the call and arrive by value.
+//!
+//! Both programs mean the same: the result is IR, and verifies and interprets like its source.
+
+mod call;
+mod hoist;
+mod naming;
+mod overlap;
+mod rewrite;
+
+use std::collections::HashMap;
+
+use staunch_ir::{
+    Argument, Block, FieldId, Mode, Param, Place, Pou, PouId, PouKind, Program, Projection, Root, Statement,
+    StatementKind, Type,
+};
+
+use call::Call;
+use naming::{copy_name, group_name};
+pub use overlap::overlap;
+use rewrite::Body;
+
+/// A program without aliases in its calls.
+#[derive(Debug)]
+pub struct Separated {
+    pub program: Program,
+    /// For each of its POUs.
+    pub origins: Vec<Origin>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Origin {
+    Declared,
+    /// A copy of a declared POU in which parameters share storage.
+    Copy,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Part {
+    Body,
+    Prescan,
+}
+
+/// A callee, and what of it shares storage with what.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+struct Key {
+    pou: PouId,
+    part: Part,
+    /// For the instance, then for each parameter.
+    bindings: Vec<Binding>,
+    /// The types of the parameters that a copy gets for shared storage.
+    groups: Vec<Type>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+enum Binding {
+    /// It is handed over as declared.
+    Own,
+    /// It is part of what the callee reaches anyway.
+    Within { root: SharedRoot, steps: Vec<Step> },
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum SharedRoot {
+    Globals,
+    Instance,
+    Group(usize),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Step {
+    Field(FieldId),
+    /// The subscript arrives as a parameter.
+    Index,
+}
+
+/// Whether a POU touches the globals, itself or through a callee.
+#[derive(Clone, Copy, Debug, Default)]
+struct UsesGlobals {
+    body: bool,
+    prescan: bool,
+}
+
+struct Separator<'p> {
+    source: &'p Program,
+    globals: Vec<UsesGlobals>,
+    known: HashMap<Key, PouId>,
+    pous: Vec<Pou>,
+    origins: Vec<Origin>,
+}
+
+/// Rewrites every call that Rust's rules on `&mut` would refuse.
+pub fn separate(source: &Program) -> Separated {
+    let globals = globals_used(source);
+    let mut separator = Separator { source, globals, known: HashMap::new(), pous: Vec::new(), origins: Vec::new() };
+    let ids: Vec<PouId> = (0..source.pous.len()).map(|at| separator.declared(PouId::next(at))).collect();
+    let mut program = Program { pous: separator.pous, ..source.clone() };
+    for instance in &mut program.instances {
+        instance.program = ids[instance.program.index()];
+    }
+    Separated { program, origins: separator.origins }
+}
+
+fn globals_used(program: &Program) -> Vec<UsesGlobals> {
+    let mut known: Vec<UsesGlobals> = Vec::with_capacity(program.pous.len());
+    for pou in &program.pous {
+        let uses = UsesGlobals { body: block_uses(&pou.body, &known), prescan: block_uses(&pou.prescan, &known) };
+        known.push(uses);
+    }
+    known
+}
+
+fn block_uses(block: &Block, known: &[UsesGlobals]) -> bool {
+    let mut uses = false;
+    crate::walk::statements(block, &mut |statement| {
+        crate::walk::accesses(statement, &mut |place, _| uses |= place.root == Root::Globals);
+        if let StatementKind::Call { callee, .. } = statement.kind {
+            uses |= known[callee.index()].body;
+        }
+        if let StatementKind::PrescanInstance { callee, .. } = statement.kind {
+            uses |= known[callee.index()].prescan;
+        }
+    });
+    uses
+}
+
+impl Separator<'_> {
+    /// The POU as declared, with its calls rewritten.
+    fn declared(&mut self, id: PouId) -> PouId {
+        let params = self.source.pou(id).params.len();
+        let bindings = vec![Binding::Own; params + 1];
+        self.resolve(Key { pou: id, part: Part::Body, bindings, groups: Vec::new() })
+    }
+
+    fn resolve(&mut self, key: Key) -> PouId {
+        if let Some(known) = self.known.get(&key) {
+            return *known;
+        }
+        let declared = key.part == Part::Body && key.bindings.iter().all(|it| *it == Binding::Own);
+        let pou = if declared { self.rewrite_declared(key.pou) } else { self.copy(&key) };
+        // Its callees have taken their places meanwhile, so they stand before it.
+        let id = PouId::next(self.pous.len());
+        self.pous.push(pou);
+        self.origins.push(if declared { Origin::Declared } else { Origin::Copy });
+        self.known.insert(key, id);
+        id
+    }
+
+    fn rewrite_declared(&mut self, id: PouId) -> Pou {
+        let source = self.source.pou(id);
+        let mut body = Body::declared(source);
+        let rewritten = self.block(&mut body, &source.body);
+        let prescan = self.block(&mut body, &source.prescan);
+        Pou { locals: body.locals, body: rewritten, prescan, ..source.clone() }
+    }
+
+    fn copy(&mut self, key: &Key) -> Pou {
+        let source = self.source.pou(key.pou);
+        let mut body = Body { params: Vec::new(), ..Body::declared(source) };
+        body.instance = body.bind(&key.bindings[0], "instance", source.location);
+        body.bases = Vec::new();
+        for (param, binding) in source.params.iter().zip(&key.bindings[1..]) {
+            let base = match binding {
+                Binding::Own => body.keep(param),
+                Binding::Within { .. } => body.bind(binding, &param.name, source.location),
+            };
+            body.bases.push(base);
+        }
+        let first_group = body.params.len();
+        for (number, ty) in key.groups.iter().enumerate() {
+            let name = group_name(source, key, number);
+            body.params.push(Param { name, ty: *ty, doc: None, mode: Mode::Reference });
+        }
+        body.place_groups(first_group);
+        let statements = match key.part {
+            Part::Body => self.block(&mut body, &source.body),
+            Part::Prescan => self.block(&mut body, &source.prescan),
+        };
+        let detached = key.bindings[0] != Binding::Own;
+        Pou {
+            kind: if detached { PouKind::Function } else { source.kind },
+            name: copy_name(self.source, source, key),
+            doc: source.doc.clone(),
+            location: source.location,
+            state: source.state.filter(|_| !detached),
+            params: body.params,
+            locals: body.locals,
+            result: source.result,
+            variables: Vec::new(),
+            body: statements,
+            prescan: Block::new(),
+        }
+    }
+
+    fn block(&mut self, body: &mut Body, block: &Block) -> Block {
+        let mut rewritten = Block::with_capacity(block.len());
+        for statement in block {
+            self.statement(body, statement, &mut rewritten);
+        }
+        rewritten
+    }
+
+    fn statement(&mut self, body: &mut Body, statement: &Statement, out: &mut Block) {
+        let at = statement.at;
+        let kind = match &statement.kind {
+            StatementKind::Assign { target, value } => {
+                StatementKind::Assign { target: body.place(target), value: body.expr(value) }
+            }
+            StatementKind::If { condition, then, otherwise } => StatementKind::If {
+                condition: body.expr(condition),
+                then: self.block(body, then),
+                otherwise: self.block(body, otherwise),
+            },
+            StatementKind::Case { selector, arms, otherwise } => StatementKind::Case {
+                selector: body.expr(selector),
+                arms: arms
+                    .iter()
+                    .map(|arm| staunch_ir::Arm { labels: arm.labels.clone(), body: self.block(body, &arm.body) })
+                    .collect(),
+                otherwise: self.block(body, otherwise),
+            },
+            StatementKind::Loop { body: inner, continuing } => {
+                StatementKind::Loop { body: self.block(body, inner), continuing: self.block(body, continuing) }
+            }
+            StatementKind::Call { callee, instance, arguments, result } => {
+                let instance = instance.as_ref().map(|it| body.place(it));
+                let arguments = arguments.iter().map(|it| body.argument(it)).collect();
+                let result = result.as_ref().map(|it| body.place(it));
+                let call = Call { callee: *callee, part: Part::Body, instance, arguments, result, at };
+                return self.call(body, call, out);
+            }
+            StatementKind::PrescanInstance { callee, instance } => {
+                let instance = Some(body.place(instance));
+                let arguments = Vec::new();
+                let call = Call { callee: *callee, part: Part::Prescan, instance, arguments, result: None, at };
+                return self.call(body, call, out);
+            }
+            StatementKind::CallBlock { block, instruction, inputs } => StatementKind::CallBlock {
+                block: body.place(block),
+                instruction: *instruction,
+                inputs: inputs.iter().map(|it| body.expr(it)).collect(),
+            },
+            StatementKind::PrescanBlock { block, instruction } => {
+                StatementKind::PrescanBlock { block: body.place(block), instruction: *instruction }
+            }
+            StatementKind::Exit => StatementKind::Exit,
+            StatementKind::Continue => StatementKind::Continue,
+            StatementKind::Return => StatementKind::Return,
+            StatementKind::Fault(kind) => StatementKind::Fault(*kind),
+        };
+        out.push(Statement::new(kind, at));
+    }
+
+    /// Emits a call whose places and values are already the caller's.
+    fn call(&mut self, body: &mut Body, call: Call, out: &mut Block) {
+        let uses = self.globals[call.callee.index()];
+        let uses_globals = match call.part {
+            Part::Body => uses.body,
+            Part::Prescan => uses.prescan,
+        };
+        let ancestors = overlap::ancestors(&call.references(), uses_globals);
+        if ancestors.is_empty() {
+            return self.plain_call(body, call, out);
+        }
+        let (key, groups) = call.key(self.source.pou(call.callee), &ancestors, body, self.source);
+        let callee = self.resolve(key.clone());
+        let (instance, arguments) = self.hand_over(body, call.clone(), &key, groups, out);
+        let kind = StatementKind::Call { callee, instance, arguments, result: call.result };
+        out.push(Statement::new(kind, call.at));
+    }
+
+    /// A call with nothing shared. Values that are read from what an earlier argument borrows
+    /// are read before the call, and then so is everything that might fault.
+    fn plain_call(&mut self, body: &mut Body, mut call: Call, out: &mut Block) {
+        let callee = self.declared(call.callee);
+        if call.reads_borrowed() {
+            let mut arguments = Vec::with_capacity(call.arguments.len());
+            call.instance = call.instance.map(|place| self.fix_place(body, place, out));
+            for argument in call.arguments {
+                arguments.push(match argument {
+                    Argument::Value(value) => Argument::Value(body.fix_value(value, out)),
+                    Argument::Reference(place) => Argument::Reference(self.fix_place(body, place, out)),
+                });
+            }
+            call.arguments = arguments;
+        }
+        let kind = match (call.part, call.instance) {
+            (Part::Prescan, Some(instance)) => StatementKind::PrescanInstance { callee, instance },
+            (Part::Body | Part::Prescan, instance) => {
+                StatementKind::Call { callee, instance, arguments: call.arguments, result: call.result }
+            }
+        };
+        out.push(Statement::new(kind, call.at));
+    }
+
+    /// The arguments for a copy, everything that might fault evaluated in order before the call.
+    fn hand_over(
+        &mut self,
+        body: &mut Body,
+        call: Call,
+        key: &Key,
+        groups: Vec<Place>,
+        out: &mut Block,
+    ) -> (Option<Place>, Vec<Argument>) {
+        let mut arguments = Vec::new();
+        let instance = call.instance.map(|place| self.fix_place(body, place, out));
+        let own_instance = match (&key.bindings[0], instance) {
+            (Binding::Own, instance) => instance,
+            (binding @ Binding::Within { .. }, Some(place)) => {
+                capture(binding, &place, &mut arguments);
+                None
+            }
+            (Binding::Within { .. }, None) => unreachable!("only an instance is bound as one"),
+        };
+        for (argument, binding) in call.arguments.into_iter().zip(&key.bindings[1..]) {
+            match argument {
+                Argument::Value(value) => arguments.push(Argument::Value(body.fix_value(value, out))),
+                Argument::Reference(place) => {
+                    let place = self.fix_place(body, place, out);
+                    match binding {
+                        Binding::Own => arguments.push(Argument::Reference(place)),
+                        Binding::Within { .. } => capture(binding, &place, &mut arguments),
+                    }
+                }
+            }
+        }
+        arguments.extend(groups.into_iter().map(Argument::Reference));
+        (own_instance, arguments)
+    }
+
+    /// The place with each subscript evaluated into a local and checked.
+    fn fix_place(&mut self, body: &mut Body, place: Place, out: &mut Block) -> Place {
+        let mut ty = body.root_type(self.source, place.root);
+        let mut projections = Vec::with_capacity(place.projections.len());
+        for projection in place.projections {
+            let next = element(self.source, ty, &projection);
+            projections.push(match (projection, ty) {
+                (Projection::Index { index, at }, Type::Array(array)) if index.as_const().is_none() => {
+                    let array = self.source.array(array);
+                    let index = Box::new(body.fix_index(*index, (array.low, array.high), at, out));
+                    Projection::Index { index, at }
+                }
+                (projection, _) => projection,
+            });
+            ty = next;
+        }
+        Place { projections, ..place }
+    }
+}
+
+/// The subscripts of `place` that the callee gets by value.
+fn capture(binding: &Binding, place: &Place, arguments: &mut Vec<Argument>) {
+    let Binding::Within { steps, .. } = binding else { return };
+    let behind = &place.projections[place.projections.len() - steps.len()..];
+    for projection in behind {
+        if let Projection::Index { index, .. } = projection {
+            arguments.push(Argument::Value(index.as_ref().clone()));
+        }
+    }
+}
+
+/// The type behind a projection.
+pub fn element(program: &Program, ty: Type, projection: &Projection) -> Type {
+    match (projection, ty) {
+        (Projection::Field(field), _) => program.member(ty, *field).expect("verified IR: the member exists"),
+        (Projection::Index { .. }, Type::Array(array)) => program.array(array).element,
+        (Projection::Index { .. }, _) => unreachable!("verified IR: only arrays have elements"),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,90 @@
+//! Which places Rust takes for overlapping: one is a part of the other, where any two elements
+//! of an array count as the same one.
+
+use staunch_ir::{Place, Program, Projection, Root, Type};
+
+use super::{SharedRoot, element};
+
+/// A reference that a call hands over; number 0 is the instance.
+pub struct Slot<'a> {
+    pub number: usize,
+    pub place: &'a Place,
+}
+
+/// A place that several references lie in. Its prefix has no subscripts.
+#[derive(Debug)]
+pub struct Ancestor {
+    pub root: Root,
+    pub prefix: Vec<Projection>,
+    pub slots: Vec<usize>,
+    /// The callee reaches it through the globals.
+    pub through_globals: bool,
+}
+
+pub fn overlap(a: &Place, b: &Place) -> bool {
+    a.root == b.root && paths_overlap(&a.projections, &b.projections)
+}
+
+fn paths_overlap(a: &[Projection], b: &[Projection]) -> bool {
+    a.iter().zip(b).all(|(a, b)| match (a, b) {
+        (Projection::Field(a), Projection::Field(b)) => a == b,
+        (Projection::Index { .. }, Projection::Index { .. }) => true,
+        (Projection::Field(_), Projection::Index { .. }) | (Projection::Index { .. }, Projection::Field(_)) => true,
+    })
+}
+
+/// The fields that both paths start with.
+fn common(a: &[Projection], b: &[Projection]) -> Vec<Projection> {
+    let same = |(a, b): &(&Projection, &Projection)| match (a, b) {
+        (Projection::Field(a), Projection::Field(b)) => a == b,
+        (Projection::Index { .. }, _) | (_, Projection::Index { .. }) => false,
+    };
+    a.iter().zip(b).take_while(same).map(|(a, _)| a.clone()).collect()
+}
+
+/// For each set of references that overlap (or meet a callee's globals), what they share.
+pub fn ancestors(references: &[Slot<'_>], uses_globals: bool) -> Vec<Ancestor> {
+    let mut groups: Vec<Ancestor> = Vec::new();
+    if uses_globals {
+        groups.push(Ancestor { root: Root::Globals, prefix: Vec::new(), slots: Vec::new(), through_globals: true });
+    }
+    for slot in references {
+        let mut group = Ancestor {
+            root: slot.place.root,
+            prefix: slot.place.projections.clone(),
+            slots: vec![slot.number],
+            through_globals: false,
+        };
+        // A merged group is wider, so it may meet groups that its parts did not.
+        while let Some(at) = groups.iter().position(|it| meets(it, &group)) {
+            let other = groups.remove(at);
+            group.prefix = common(&other.prefix, &group.prefix);
+            group.slots = [other.slots, group.slots].concat();
+            group.through_globals |= other.through_globals;
+        }
+        groups.push(group);
+    }
+    groups.retain(|group| group.slots.len() + usize::from(group.through_globals) > 1);
+    groups
+}
+
+fn meets(a: &Ancestor, b: &Ancestor) -> bool {
+    a.root == b.root && paths_overlap(&a.prefix, &b.prefix)
+}
+
+impl Ancestor {
+    /// How the callee reaches it without a parameter, if it does.
+    pub fn shared_root(&self, references: &[Slot<'_>]) -> Option<SharedRoot> {
+        if self.through_globals {
+            return Some(SharedRoot::Globals);
+        }
+        let is_instance = |slot: &&Slot<'_>| slot.number == 0 && slot.place.projections.len() == self.prefix.len();
+        let held = references.iter().filter(|slot| self.slots.contains(&slot.number));
+        held.into_iter().find(is_instance).map(|_| SharedRoot::Instance)
+    }
+
+    pub fn place(&self, program: &Program, root: Type) -> Place {
+        let ty = self.prefix.iter().fold(root, |ty, it| element(program, ty, it));
+        Place { root: self.root, projections: self.prefix.clone(), ty }
+    }
+}

@@ -1,0 +1,99 @@
+//! A body whose places move to other roots.
+
+use staunch_ir::{
+    Argument, Expr, ExprKind, Local, LocalId, Param, ParamId, Place, Pou, Program, Projection, Root, StructId, Type,
+};
+
+/// What stands for a root of the source's.
+#[derive(Clone, Debug)]
+pub struct Base {
+    pub root: Root,
+    pub projections: Vec<Projection>,
+    /// The shared parameter that is the root, until it has its number.
+    pub group: Option<usize>,
+}
+
+/// The POU being written: its signature so far, and where its source's roots have gone.
+#[derive(Debug)]
+pub struct Body {
+    pub params: Vec<Param>,
+    pub locals: Vec<Local>,
+    pub state: Option<StructId>,
+    pub instance: Base,
+    /// For each of the source's parameters.
+    pub bases: Vec<Base>,
+    /// The parameters that hold subscripts.
+    pub subscripts: Vec<LocalId>,
+}
+
+impl Body {
+    /// Every root stays what it is.
+    pub fn declared(source: &Pou) -> Self {
+        let same = |root| Base { root, projections: Vec::new(), group: None };
+        Self {
+            params: source.params.clone(),
+            locals: source.locals.clone(),
+            state: source.state,
+            subscripts: Vec::new(),
+            instance: same(Root::Instance),
+            bases: (0..source.params.len()).map(|at| same(Root::Param(ParamId::next(at)))).collect(),
+        }
+    }
+
+    /// Gives the shared parameters their numbers.
+    pub fn place_groups(&mut self, first: usize) {
+        for base in self.bases.iter_mut().chain([&mut self.instance]) {
+            if let Some(group) = base.group {
+                base.root = Root::Param(ParamId::next(first + group));
+            }
+        }
+    }
+
+    pub fn root_type(&self, program: &Program, root: Root) -> Type {
+        match root {
+            Root::Instance => Type::Struct(self.state.expect("verified IR: an instance has a state")),
+            Root::Globals => Type::Struct(program.globals),
+            Root::Local(id) => self.locals[id.index()].ty,
+            Root::Param(id) => self.params[id.index()].ty,
+        }
+    }
+
+    pub fn place(&self, place: &Place) -> Place {
+        let behind = place.projections.iter().map(|it| self.projection(it));
+        match place.root {
+            Root::Instance => below(&self.instance, behind, place.ty),
+            Root::Param(id) => below(&self.bases[id.index()], behind, place.ty),
+            Root::Globals | Root::Local(_) => Place { root: place.root, projections: behind.collect(), ty: place.ty },
+        }
+    }
+
+    fn projection(&self, projection: &Projection) -> Projection {
+        match projection {
+            Projection::Field(field) => Projection::Field(*field),
+            Projection::Index { index, at } => Projection::Index { index: Box::new(self.expr(index)), at: *at },
+        }
+    }
+
+    pub fn expr(&self, expr: &Expr) -> Expr {
+        let all = |operands: &[Expr]| operands.iter().map(|it| self.expr(it)).collect();
+        let kind = match &expr.kind {
+            ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => return expr.clone(),
+            ExprKind::Load(place) => ExprKind::Load(self.place(place)),
+            ExprKind::Apply(op, operands) => ExprKind::Apply(*op, all(operands)),
+            ExprKind::ApplyText(op, operands) => ExprKind::ApplyText(*op, all(operands)),
+            ExprKind::Convert(how, value) => ExprKind::Convert(*how, Box::new(self.expr(value))),
+        };
+        Expr::new(expr.ty, kind, expr.at)
+    }
+
+    pub fn argument(&self, argument: &Argument) -> Argument {
+        match argument {
+            Argument::Value(value) => Argument::Value(self.expr(value)),
+            Argument::Reference(place) => Argument::Reference(self.place(place)),
+        }
+    }
+}
+
+fn below(base: &Base, behind: impl Iterator<Item = Projection>, ty: Type) -> Place {
+    Place { root: base.root, projections: base.projections.iter().cloned().chain(behind).collect(), ty }
+}

@@ -1,0 +1,85 @@
+//! What every part of the printer knows, and how types are written.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+use staunch_ir::layout::Layout;
+use staunch_ir::{Location, Place, Pou, Program, Root, Type};
+
+use crate::alias::{Origin, element};
+use crate::constant::{number, rust_path};
+use crate::names::{Names, ident};
+use crate::needs::{PouNeeds, needs};
+
+pub struct Emitter<'p> {
+    pub program: &'p Program,
+    pub origins: &'p [Origin],
+    pub names: Names,
+    pub needs: Vec<PouNeeds>,
+    pub layout: Layout,
+}
+
+impl<'p> Emitter<'p> {
+    pub fn new(program: &'p Program, origins: &'p [Origin]) -> Self {
+        let (names, needs) = (Names::new(program, origins), needs(program));
+        Self { program, origins, names, needs, layout: Layout::new(program) }
+    }
+
+    pub fn ty(&self, ty: Type) -> TokenStream {
+        match ty {
+            Type::Elementary(it) if it.is_time() => quote!(Time),
+            Type::Elementary(it) => {
+                let lane = ident(it.lane().rust_name());
+                quote!(#lane)
+            }
+            Type::String(capacity) => {
+                let capacity = number(u64::from(capacity));
+                quote!(Text<#capacity>)
+            }
+            Type::Enum(id) => {
+                let name = self.names.enumeration(id);
+                quote!(#name)
+            }
+            Type::Array(id) => {
+                let array = self.program.array(id);
+                let (element, len) = (self.ty(array.element), number(array.len()));
+                quote!([#element; #len])
+            }
+            Type::Struct(id) => {
+                let name = self.names.structure(id);
+                quote!(#name)
+            }
+            Type::Block(id) => rust_path(id.info().rust_path, false),
+        }
+    }
+
+    /// `.at(FILE, line, column)`, which gives a fault its place.
+    pub fn at(&self, at: Location) -> TokenStream {
+        let (file, line, column) = (self.names.file(at.file), number(at.line.into()), number(at.column.into()));
+        quote!(.at(#file, #line, #column))
+    }
+
+    pub fn root_type(&self, pou: &Pou, root: Root) -> Type {
+        match root {
+            Root::Instance => Type::Struct(pou.state.expect("verified IR: an instance has a state")),
+            Root::Globals => Type::Struct(self.program.globals),
+            Root::Local(id) => pou.locals[id.index()].ty,
+            Root::Param(id) => pou.params[id.index()].ty,
+        }
+    }
+
+    /// The type before each projection of a place.
+    pub fn types_along(&self, pou: &Pou, place: &Place) -> Vec<Type> {
+        let mut ty = self.root_type(pou, place.root);
+        let mut types = Vec::with_capacity(place.projections.len());
+        for projection in &place.projections {
+            types.push(ty);
+            ty = element(self.program, ty, projection);
+        }
+        types
+    }
+
+    /// `parking_garage.st:12`.
+    pub fn source(&self, at: Location) -> String {
+        format!("{}:{}", self.program.files[usize::from(at.file)].path, at.line)
+    }
+}

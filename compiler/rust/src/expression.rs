@@ -1,0 +1,311 @@
+//! Expressions. Whatever is printed in Rust's own words means exactly what the runtime's function
+//! of that name does; everything else calls that function.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+use staunch_ir::{Conversion, Expr, ExprKind, Lane, Op, Type, Value};
+
+use crate::code::{Code, Level};
+use crate::constant::{literal, plain};
+use crate::function::Function;
+use crate::names::ident;
+use crate::walk;
+
+impl Function<'_> {
+    /// An expression where its type is known from the surroundings.
+    pub fn expr(&self, expr: &Expr) -> Code {
+        match &expr.kind {
+            ExprKind::Const(value) => self.scalar(expr.ty, *value, false),
+            ExprKind::Text(text) => self.emitter.constant(expr.ty, &staunch_ir::Const::Text(text.clone())),
+            ExprKind::Aggregate(value) => self.emitter.constant(expr.ty, value),
+            ExprKind::Load(place) => self.load(place),
+            ExprKind::Apply(op, operands) => self.apply(expr, *op, operands),
+            ExprKind::ApplyText(op, operands) => self.apply_text(expr, *op, operands, false),
+            ExprKind::Convert(how, value) => self.convert(*how, expr.ty, value),
+        }
+    }
+
+    /// An expression whose own text says its type.
+    pub fn typed(&self, expr: &Expr) -> Code {
+        match &expr.kind {
+            ExprKind::Const(value) => self.scalar(expr.ty, *value, true),
+            ExprKind::Text(_)
+            | ExprKind::Aggregate(_)
+            | ExprKind::Load(_)
+            | ExprKind::Apply(..)
+            | ExprKind::ApplyText(..)
+            | ExprKind::Convert(..) => self.expr(expr),
+        }
+    }
+
+    fn scalar(&self, ty: Type, value: Value, suffixed: bool) -> Code {
+        match ty {
+            Type::Elementary(it) => literal(it, value, suffixed),
+            Type::Enum(id) => self.emitter.enum_value(id, value),
+            Type::String(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
+                unreachable!("verified IR: a scalar has a scalar's type")
+            }
+        }
+    }
+
+    pub fn lane(&self, ty: Type) -> Lane {
+        self.emitter.program.lane(ty).expect("verified IR: operands are scalars")
+    }
+
+    fn apply(&self, expr: &Expr, op: Op, operands: &[Expr]) -> Code {
+        let lane = self.operation_lane(expr, op, operands);
+        let float = lane.is_float();
+        match op {
+            Op::Add | Op::Sub | Op::Mul if float => self.operator(op, operands),
+            Op::Div if float => self.operator(op, operands),
+            Op::Add => self.method("wrapping_add", operands),
+            Op::Sub => self.method("wrapping_sub", operands),
+            Op::Mul => self.method("wrapping_mul", operands),
+            Op::Neg if float => self.prefix(quote!(-), operands),
+            Op::Neg => self.method("wrapping_neg", operands),
+            Op::Not => self.not(&operands[0]),
+            Op::And | Op::Or if lane == Lane::Bool => self.logical(op, operands),
+            Op::And | Op::Or | Op::Xor | Op::Eq | Op::Ne | Op::Lt | Op::Le | Op::Gt | Op::Ge => {
+                self.operator(op, operands)
+            }
+            Op::Div
+            | Op::Mod
+            | Op::Abs
+            | Op::Expt
+            | Op::Sqrt
+            | Op::Ln
+            | Op::Log
+            | Op::Exp
+            | Op::Sin
+            | Op::Cos
+            | Op::Tan
+            | Op::Asin
+            | Op::Acos
+            | Op::Atan
+            | Op::Shl
+            | Op::Shr
+            | Op::Rol
+            | Op::Ror
+            | Op::Max
+            | Op::Min
+            | Op::Limit
+            | Op::Sel
+            | Op::InRange => self.call_op(expr, op, operands),
+        }
+    }
+
+    /// The lane of the row's `T`.
+    fn operation_lane(&self, expr: &Expr, op: Op, operands: &[Expr]) -> Lane {
+        let first = op.operands().iter().position(Option::is_none);
+        self.lane(first.map_or(expr.ty, |at| operands[at].ty))
+    }
+
+    /// Operands for an operator or method: at least one says its type.
+    fn operands(&self, op: Op, operands: &[Expr]) -> Vec<Code> {
+        let generic = |at: usize| op.operands().get(at).is_none_or(Option::is_none);
+        let untyped = |at: usize, it: &Expr| generic(at) && it.as_const().is_some();
+        let all_untyped = operands.iter().enumerate().all(|(at, it)| !generic(at) || untyped(at, it));
+        let mut suffix = all_untyped;
+        let mut printed = Vec::with_capacity(operands.len());
+        for (at, operand) in operands.iter().enumerate() {
+            let typed = suffix && generic(at);
+            printed.push(if typed { self.typed(operand) } else { self.expr(operand) });
+            suffix &= !typed;
+        }
+        printed
+    }
+
+    fn operator(&self, op: Op, operands: &[Expr]) -> Code {
+        let mut printed = self.operands(op, operands).into_iter();
+        let mut next = || printed.next().expect("verified IR: an operator has two operands");
+        let (a, b) = (next(), next());
+        let (level, sign) = operator(op);
+        let a = match level {
+            Level::Compare => a.above(level),
+            _ => apart(a, level),
+        };
+        let b = if b.level == level { b.above(level) } else { apart(b, level) };
+        Code::new(quote!(#a #sign #b), level)
+    }
+
+    /// `a && b` where `b` cannot fault, so that nobody can tell whether it was evaluated.
+    fn logical(&self, op: Op, operands: &[Expr]) -> Code {
+        if walk::expr_faults(self.emitter.program, &operands[1]) {
+            return self.operator(op, operands);
+        }
+        let (a, b) = (self.expr(&operands[0]), self.expr(&operands[1]));
+        if let Op::And = op {
+            let (a, b) = (a.at_least(Level::LazyAnd), b.above(Level::LazyAnd));
+            return Code::new(quote!(#a && #b), Level::LazyAnd);
+        }
+        // `a && b || c` is right without parentheses, and easier to read with them.
+        let (a, b) = (clearly(a), clearly(b));
+        Code::new(quote!(#a || #b), Level::LazyOr)
+    }
+
+    fn prefix(&self, sign: TokenStream, operands: &[Expr]) -> Code {
+        let value = self.expr(&operands[0]).at_least(Level::Unary);
+        Code::new(quote!(#sign #value), Level::Unary)
+    }
+
+    /// `!value`; a comparison turns around where that says the same.
+    pub fn not(&self, value: &Expr) -> Code {
+        if let ExprKind::Apply(op, operands) = &value.kind {
+            let exact = operands.first().is_some_and(|it| !self.lane(it.ty).is_float());
+            match op {
+                Op::Not if self.lane(value.ty) == Lane::Bool => return self.expr(&operands[0]),
+                Op::Eq => return self.operator(Op::Ne, operands),
+                Op::Ne => return self.operator(Op::Eq, operands),
+                Op::Lt if exact => return self.operator(Op::Ge, operands),
+                Op::Le if exact => return self.operator(Op::Gt, operands),
+                Op::Gt if exact => return self.operator(Op::Le, operands),
+                Op::Ge if exact => return self.operator(Op::Lt, operands),
+                _ => {}
+            }
+        }
+        let value = self.expr(value).at_least(Level::Unary);
+        Code::new(quote!(!#value), Level::Unary)
+    }
+
+    fn method(&self, name: &str, operands: &[Expr]) -> Code {
+        let name = ident(name);
+        let receiver = self.receiver(&operands[0]);
+        let rest = operands[1..].iter().map(|it| self.expr(it).tokens);
+        Code::postfix(quote!(#receiver.#name(#(#rest),*)))
+    }
+
+    /// What a method is called on; Rust follows a reference there by itself.
+    fn receiver(&self, expr: &Expr) -> TokenStream {
+        if let ExprKind::Load(place) = &expr.kind {
+            return self.place(place);
+        }
+        self.typed(expr).at_least(Level::Postfix)
+    }
+
+    /// `ops::name(…)`; enumerations go in and out as their numbers.
+    fn call_op(&self, expr: &Expr, op: Op, operands: &[Expr]) -> Code {
+        let function = ident(op.function());
+        let printed = self.operands(op, operands).into_iter().zip(operands);
+        let arguments = printed.map(|(code, operand)| match operand.ty {
+            Type::Enum(_) => {
+                let code = code.at_least(Level::Postfix);
+                quote!(#code.0)
+            }
+            Type::Elementary(_) | Type::String(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => code.tokens,
+        });
+        let call = quote!(ops::#function(#(#arguments),*));
+        let call = if op.can_fault() {
+            let at = self.emitter.at(expr.at);
+            quote!(#call #at?)
+        } else {
+            call
+        };
+        match (expr.ty, op.result()) {
+            (Type::Enum(id), None) => {
+                let name = self.emitter.names.enumeration(id);
+                Code::postfix(quote!(#name(#call)))
+            }
+            _ => Code::postfix(call),
+        }
+    }
+
+    fn convert(&self, how: Conversion, ty: Type, value: &Expr) -> Code {
+        match (ty, value.ty) {
+            (Type::String(to), Type::String(from)) if to == from => self.expr(value),
+            (Type::String(_), Type::String(_)) => {
+                let value = self.text_reference(value);
+                Code::postfix(quote!(Text::from_text(#value)))
+            }
+            (Type::Enum(to), Type::Enum(from)) if to == from => self.expr(value),
+            (Type::Enum(id), _) => {
+                if let (Some(value), Conversion::Same) = (value.as_const(), how) {
+                    return self.emitter.enum_value(id, value);
+                }
+                let base = Type::Elementary(self.emitter.program.enumeration(id).base);
+                let name = self.emitter.names.enumeration(id);
+                let number = self.convert(how, base, value).tokens;
+                Code::postfix(quote!(#name(#number)))
+            }
+            _ => self.convert_lane(how, self.lane(ty), value),
+        }
+    }
+
+    /// Between lanes; an enumeration gives its number.
+    fn convert_lane(&self, how: Conversion, to: Lane, value: &Expr) -> Code {
+        let from = self.lane(value.ty);
+        let inner = |typed: bool| {
+            let code = if typed { self.typed(value) } else { self.expr(value) };
+            match value.ty {
+                Type::Enum(_) => {
+                    let code = code.at_least(Level::Postfix);
+                    Code::postfix(quote!(#code.0))
+                }
+                Type::Elementary(_) | Type::String(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => code,
+            }
+        };
+        let (to_name, from_name) = (ident(to.rust_name()), ident(from.rust_name()));
+        match how {
+            Conversion::Truncate => {
+                let value = inner(false).tokens;
+                Code::postfix(quote!(ops::trunc::<#from_name, #to_name>(#value)))
+            }
+            _ if from == to => inner(true),
+            Conversion::Value | Conversion::Same if is_lossless(from, to) => {
+                let value = inner(true).tokens;
+                Code::postfix(quote!(#to_name::from(#value)))
+            }
+            Conversion::Value | Conversion::Same if to == Lane::Bool => {
+                let value = inner(true).above(Level::Compare);
+                let zero = literal(plain(from), from.zero(), false).tokens;
+                Code::new(quote!(#value != #zero), Level::Compare)
+            }
+            Conversion::Value | Conversion::Same => {
+                let value = inner(false).tokens;
+                Code::postfix(quote!(ops::convert::<#from_name, #to_name>(#value)))
+            }
+        }
+    }
+}
+
+/// An operand of a sign on bits, in parentheses if it has another such sign.
+fn apart(code: Code, level: Level) -> TokenStream {
+    let bits = matches!(code.level, Level::And | Level::Or | Level::Xor);
+    if bits && code.level != level { code.at_least(Level::Postfix) } else { code.at_least(level) }
+}
+
+/// An operand of `||`, in parentheses if it is an `&&`.
+fn clearly(code: Code) -> TokenStream {
+    if code.level == Level::LazyAnd { code.at_least(Level::Postfix) } else { code.at_least(Level::LazyOr) }
+}
+
+fn operator(op: Op) -> (Level, TokenStream) {
+    match op {
+        Op::Add => (Level::Sum, quote!(+)),
+        Op::Sub => (Level::Sum, quote!(-)),
+        Op::Mul => (Level::Product, quote!(*)),
+        Op::Div => (Level::Product, quote!(/)),
+        Op::And => (Level::And, quote!(&)),
+        Op::Or => (Level::Or, quote!(|)),
+        Op::Xor => (Level::Xor, quote!(^)),
+        Op::Eq => (Level::Compare, quote!(==)),
+        Op::Ne => (Level::Compare, quote!(!=)),
+        Op::Lt => (Level::Compare, quote!(<)),
+        Op::Le => (Level::Compare, quote!(<=)),
+        Op::Gt => (Level::Compare, quote!(>)),
+        Op::Ge => (Level::Compare, quote!(>=)),
+        _ => unreachable!("only operators with a sign in Rust are printed as one"),
+    }
+}
+
+/// Whether Rust has `From` between the lanes; it then means what `ops::convert` means.
+fn is_lossless(from: Lane, to: Lane) -> bool {
+    if from == Lane::Bool {
+        return true;
+    }
+    if to.is_float() {
+        // A mantissa holds the smaller integers exactly.
+        return from.size() < to.size() && to != Lane::Bool;
+    }
+    let widens = from.size() < to.size();
+    from.is_integer() && to.is_integer() && widens && (from.is_unsigned() || to.is_signed())
+}

@@ -1,0 +1,209 @@
+//! Functions: signatures, locals, and how they end.
+
+use std::collections::HashMap;
+
+use proc_macro2::{Ident, TokenStream};
+use quote::quote;
+use staunch_ir::{Block, LocalId, Mode, Place, Pou, PouId, PouKind, StatementKind};
+
+use crate::declare::{Declaration, Plan, plan};
+use crate::emitter::Emitter;
+use crate::names::{LocalNames, ident};
+use crate::needs::Needs;
+use crate::repeat::Loops;
+
+/// One function being printed.
+pub struct Function<'a> {
+    pub emitter: &'a Emitter<'a>,
+    pub pou: &'a Pou,
+    pub names: LocalNames,
+    pub plan: Plan,
+    /// It returns a `Result`.
+    pub faults: bool,
+    pub loops: Loops,
+    /// Variables that the loops around have copied, innermost last.
+    pub counters: Vec<(Place, Ident)>,
+    /// The names of those copies, by what they copy.
+    pub counter_names: HashMap<String, Ident>,
+    /// The line last marked.
+    pub marked: Option<(u16, u32)>,
+}
+
+/// What a function of a POU is to the Rust reader.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// A PROGRAM's or FUNCTION_BLOCK's method; its signature does not depend on its body.
+    Scan,
+    Prescan,
+    Free,
+}
+
+impl<'a> Emitter<'a> {
+    /// The method or function with the POU's body.
+    pub fn scan(&self, id: PouId) -> TokenStream {
+        let pou = self.program.pou(id);
+        let needs = self.needs[id.index()].body;
+        let role = if pou.kind == PouKind::Function { Role::Free } else { Role::Scan };
+        let name = self.names.pou(id);
+        let mut function = self.function(pou, &pou.body, role == Role::Scan || needs.faults);
+        let before = (pou.kind == PouKind::Program).then(|| self.first_scan(id)).flatten();
+        let body = function.body(&pou.body);
+        let signature = function.signature(name, needs, role);
+        let docs = self.scan_docs(id, role);
+        quote!(#docs #signature { #before #body })
+    }
+
+    /// The method with the POU's prescan, if it has one.
+    pub fn prescan(&self, id: PouId) -> Option<TokenStream> {
+        let pou = self.program.pou(id);
+        if pou.prescan.is_empty() {
+            return None;
+        }
+        let needs = self.needs[id.index()].prescan;
+        let mut function = self.function(pou, &pou.prescan, needs.faults);
+        let body = function.body(&pou.prescan);
+        let signature = function.signature(&ident("prescan"), needs, Role::Prescan);
+        Some(quote! {
+            /// What counters need before the first scan.
+            #signature { #body }
+        })
+    }
+
+    fn first_scan(&self, id: PouId) -> Option<TokenStream> {
+        let pou = self.program.pou(id);
+        let needs = self.needs[id.index()].prescan;
+        let arguments = extra_arguments(needs);
+        let propagate = needs.faults.then(|| quote!(?));
+        (!pou.prescan.is_empty()).then(|| quote!(if cx.first_scan { self.prescan(#(#arguments),*) #propagate; }))
+    }
+
+    fn function<'b>(&'b self, pou: &'b Pou, body: &Block, faults: bool) -> Function<'b> {
+        let (names, plan) = (self.names.locals(pou), plan(pou, body));
+        Function {
+            emitter: self,
+            pou,
+            names,
+            plan,
+            faults,
+            loops: Loops::default(),
+            counters: Vec::new(),
+            counter_names: HashMap::new(),
+            marked: None,
+        }
+    }
+}
+
+/// The context and the globals, where a callee wants them.
+fn extra_arguments(needs: Needs) -> Vec<TokenStream> {
+    let context = needs.context.then(|| quote!(cx));
+    let globals = needs.globals.then(|| quote!(globals));
+    context.into_iter().chain(globals).collect()
+}
+
+impl Function<'_> {
+    /// The context comes first and the globals last, so that arguments may read globals.
+    fn signature(&self, name: &Ident, needs: Needs, role: Role) -> TokenStream {
+        let receiver = (self.pou.kind != PouKind::Function).then(|| quote!(&mut self));
+        let context = match (needs.context, role) {
+            (true, _) => Some(quote!(cx: &Context)),
+            (false, Role::Scan) => Some(quote!(_cx: &Context)),
+            (false, Role::Prescan | Role::Free) => None,
+        };
+        let params = if role == Role::Prescan { Vec::new() } else { self.params() };
+        let globals_type = self.emitter.ty(staunch_ir::Type::Struct(self.emitter.program.globals));
+        let globals = needs.globals.then(|| quote!(globals: &mut #globals_type));
+        let all = receiver.into_iter().chain(context).chain(params).chain(globals);
+        let result = self.result_type();
+        quote!(pub fn #name(#(#all),*) #result)
+    }
+
+    fn params(&self) -> Vec<TokenStream> {
+        let params = self.pou.params.iter().zip(&self.names.params);
+        params
+            .map(|(param, name)| {
+                let ty = self.emitter.ty(param.ty);
+                match param.mode {
+                    Mode::Reference => quote!(#name: &mut #ty),
+                    Mode::Value(local) if self.plan.locals[local.index()].mutable => quote!(mut #name: #ty),
+                    Mode::Value(_) => quote!(#name: #ty),
+                }
+            })
+            .collect()
+    }
+
+    fn result_type(&self) -> Option<TokenStream> {
+        let value = self.pou.result.map(|it| self.emitter.ty(self.pou.locals[it.index()].ty));
+        match (value, self.faults) {
+            (Some(ty), true) => Some(quote!(-> Result<#ty, Fault>)),
+            (None, true) => Some(quote!(-> Result<(), Fault>)),
+            (Some(ty), false) => Some(quote!(-> #ty)),
+            (None, false) => None,
+        }
+    }
+
+    fn body(&mut self, block: &Block) -> TokenStream {
+        let mut block = block.as_slice();
+        // What follows the body returns anyway.
+        while let [before @ .., last] = block
+            && matches!(last.kind, StatementKind::Return)
+        {
+            block = before;
+        }
+        let (block, tail) = self.tail(block);
+        let locals = self.top_locals();
+        let statements = self.statements(block);
+        let end = match tail {
+            Some(value) => Some(if self.faults { quote!(Ok(#value)) } else { value }),
+            None => self.returned(),
+        };
+        quote!(#(#locals)* #statements #end)
+    }
+
+    /// A last assignment to the result needs no variable, where nothing else mentions it.
+    fn tail<'s>(&self, block: &'s [staunch_ir::Statement]) -> (&'s [staunch_ir::Statement], Option<TokenStream>) {
+        if let (Some(result), [before @ .., last]) = (self.pou.result, block)
+            && let StatementKind::Assign { target, value } = &last.kind
+            && self.plan.locals[result.index()].mentions == 1
+            && self.plan.declares(last, target) == Some(result)
+        {
+            return (before, Some(self.expr(value).tokens));
+        }
+        (block, None)
+    }
+
+    fn top_locals(&self) -> Vec<TokenStream> {
+        let locals = (0..self.pou.locals.len()).map(LocalId::next);
+        let top = locals.filter(|it| self.plan.locals[it.index()].how == Declaration::Top);
+        top.map(|it| {
+            let local = &self.pou.locals[it.index()];
+            let value = self.emitter.constant(local.ty, &local.initial).tokens;
+            let left = self.let_local(it);
+            quote!(#left = #value;)
+        })
+        .collect()
+    }
+
+    /// `let mut name: type`.
+    pub fn let_local(&self, id: LocalId) -> TokenStream {
+        let (name, ty) = (&self.names.locals[id.index()], self.emitter.ty(self.pou.locals[id.index()].ty));
+        let mutable = self.plan.locals[id.index()].mutable.then(|| quote!(mut));
+        quote!(let #mutable #name: #ty)
+    }
+
+    /// What a `return` hands back.
+    pub fn returned(&self) -> Option<TokenStream> {
+        let value = self.pou.result.map(|it| &self.names.locals[it.index()]);
+        match (value, self.faults) {
+            (Some(value), true) => Some(quote!(Ok(#value))),
+            (None, true) => Some(quote!(Ok(()))),
+            (Some(value), false) => Some(quote!(#value)),
+            (None, false) => None,
+        }
+    }
+
+    /// A name for a variable that the printer needs, apart from all of the user's.
+    pub fn made_up(&self, wanted: &str, number: usize) -> Ident {
+        let prefix = self.names.scope.unused_prefix(wanted);
+        if number == 0 { ident(&prefix) } else { ident(&format!("{prefix}_{}", number + 1)) }
+    }
+}

@@ -1,0 +1,167 @@
+//! Items: structures, enumerations, implementations, and the names of the source files.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+use staunch_ir::{EnumId, FieldId, Pou, PouId, PouKind, StructId, Type};
+
+use crate::alias::Origin;
+use crate::constant::literal;
+use crate::emitter::Emitter;
+use crate::function::Role;
+
+impl Emitter<'_> {
+    pub fn items(&self) -> TokenStream {
+        let files = self.files();
+        let enums = (0..self.program.enums.len()).map(|at| self.enumeration(EnumId::next(at)));
+        let structs = (0..self.program.structs.len()).map(|at| self.structure(StructId::next(at)));
+        let functions = (0..self.program.pous.len())
+            .map(PouId::next)
+            .filter(|id| self.program.pou(*id).kind == PouKind::Function)
+            .map(|id| self.scan(id));
+        quote!(#files #(#enums)* #(#structs)* #(#functions)*)
+    }
+
+    fn files(&self) -> TokenStream {
+        let paths = self.program.files.iter().map(|it| &it.path);
+        let consts = self.program.files.iter().zip(0_u16..).map(|(_, number)| {
+            let (name, number) = (self.names.file(number), proc_macro2::Literal::u16_unsuffixed(number));
+            quote!(const #name: u16 = #number;)
+        });
+        quote! {
+            /// The sources, as the `file` of a fault's location counts them.
+            pub const FILES: &[&str] = &[#(#paths),*];
+            #(#consts)*
+        }
+    }
+
+    fn enumeration(&self, id: EnumId) -> TokenStream {
+        let enumeration = self.program.enumeration(id);
+        let name = self.names.enumeration(id);
+        let base = self.ty(Type::Elementary(enumeration.base));
+        let docs = self.docs(
+            enumeration.doc.as_deref(),
+            &format!("TYPE {} ({})", enumeration.name, self.source(enumeration.location)),
+        );
+        let consts = enumeration.values.iter().enumerate().map(|(at, enumerator)| {
+            let (name, doc) = (self.names.enumerator(id, at), doc(enumerator.doc.as_deref()));
+            let value = literal(enumeration.base, enumerator.value, false).tokens;
+            quote!(#doc pub const #name: Self = Self(#value);)
+        });
+        quote! {
+            #docs
+            #[repr(transparent)]
+            #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+            pub struct #name(pub #base);
+            impl #name { #(#consts)* }
+        }
+    }
+
+    fn structure(&self, id: StructId) -> TokenStream {
+        let structure = self.program.structure(id);
+        let name = self.names.structure(id);
+        let docs = self.structure_docs(id);
+        let fields = structure.fields.iter().enumerate().map(|(at, field)| {
+            let (name, ty) = (self.names.field(id, FieldId::next(at)), self.ty(field.ty));
+            let doc = doc(field.doc.as_deref());
+            let address = field.address.map(|it| doc_line(&format!("At `{it}`.")));
+            quote!(#doc #address pub #name: #ty)
+        });
+        let values = structure.fields.iter().enumerate().map(|(at, field)| {
+            let name = self.names.field(id, FieldId::next(at));
+            let value = self.constant(field.ty, &field.initial).tokens;
+            quote!(#name: #value)
+        });
+        let methods = self.methods(id);
+        quote! {
+            #docs
+            #[repr(C)]
+            #[derive(Clone, Copy, Debug, PartialEq)]
+            pub struct #name { #(#fields),* }
+            impl #name {
+                /// With initial values.
+                pub const fn new() -> Self { Self { #(#values),* } }
+                #methods
+            }
+            impl Default for #name { fn default() -> Self { Self::new() } }
+        }
+    }
+
+    /// The scan, its copies and the prescan of the POU whose state the structure is.
+    fn methods(&self, id: StructId) -> TokenStream {
+        let of_state = |pou: &Pou| pou.state == Some(id) && pou.kind != PouKind::Function;
+        let ids = (0..self.program.pous.len()).map(PouId::next);
+        let methods = ids.filter(|id| of_state(self.program.pou(*id))).map(|id| {
+            let (scan, prescan) = (self.scan(id), self.prescan(id));
+            quote!(#scan #prescan)
+        });
+        quote!(#(#methods)*)
+    }
+
+    fn structure_docs(&self, id: StructId) -> TokenStream {
+        let structure = self.program.structure(id);
+        if id == self.program.globals {
+            return self.docs(structure.doc.as_deref(), "The global variables.");
+        }
+        let pou = self.program.pou_of_state(id).map(|it| self.program.pou(it));
+        let (keyword, doc) = match pou {
+            Some(pou) => (keyword(pou.kind), pou.doc.as_ref().or(structure.doc.as_ref())),
+            None => ("TYPE", structure.doc.as_ref()),
+        };
+        let title = format!("{keyword} {} ({})", structure.name, self.source(structure.location));
+        self.docs(doc.map(String::as_str), &title)
+    }
+
+    /// What a function says of itself.
+    pub fn scan_docs(&self, id: PouId, role: Role) -> TokenStream {
+        let pou = self.program.pou(id);
+        let copy = self.origins[id.index()] == Origin::Copy;
+        match role {
+            Role::Scan if copy => doc_line("One scan, for calls whose arguments share storage."),
+            Role::Scan => doc_line("One scan."),
+            Role::Free if copy => {
+                let source = self.source(pou.location);
+                self.docs(pou.doc.as_deref(), &format!("A copy of {source}, for calls whose arguments share storage."))
+            }
+            Role::Free | Role::Prescan => {
+                let title = format!("FUNCTION {} ({})", pou.name, self.source(pou.location));
+                self.docs(pou.doc.as_deref(), &title)
+            }
+        }
+    }
+
+    /// What the declaration is, and what its author wrote about it.
+    fn docs(&self, written: Option<&str>, title: &str) -> TokenStream {
+        let title = doc_line(title);
+        match written {
+            Some(_) => {
+                let (gap, written) = (quote!(#[doc = ""]), doc(written));
+                quote!(#title #gap #written)
+            }
+            None => title,
+        }
+    }
+}
+
+fn keyword(kind: PouKind) -> &'static str {
+    match kind {
+        PouKind::Program => "PROGRAM",
+        PouKind::FunctionBlock => "FUNCTION_BLOCK",
+        PouKind::Function => "FUNCTION",
+    }
+}
+
+fn doc(written: Option<&str>) -> TokenStream {
+    written.into_iter().flat_map(str::lines).map(doc_line).collect()
+}
+
+/// A comment's line as documentation: nothing in it may become a code example.
+fn doc_line(line: &str) -> TokenStream {
+    let text = readable(line.trim()).replace("```", "'''").replace("~~~", "---").replace('\t', " ");
+    let text = if text.is_empty() { text } else { format!(" {text}") };
+    quote!(#[doc = #text])
+}
+
+/// The text without what turns the direction of writing: rustc refuses it in comments.
+pub fn readable(text: &str) -> String {
+    text.replace(|it| matches!(it, '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}'), "")
+}

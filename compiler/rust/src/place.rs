@@ -1,0 +1,122 @@
+//! Places: a root and the way from it. A subscript is checked where it stands.
+
+use proc_macro2::{Ident, TokenStream};
+use quote::quote;
+use staunch_ir::{Expr, Location, Place, Projection, Root, Type, Value};
+
+use crate::code::{Code, Level};
+use crate::constant::{number, signed};
+use crate::function::Function;
+use crate::names::ident;
+
+impl Function<'_> {
+    /// The place, as what an assignment, a borrow or a method call takes. A parameter's own name
+    /// stands for the reference that it is.
+    pub fn place(&self, place: &Place) -> TokenStream {
+        if let Some((_, copy)) = self.counters.iter().rev().find(|(counter, _)| is_same(counter, place)) {
+            return quote!(#copy);
+        }
+        self.written_place(place)
+    }
+
+    /// The place itself, also where a loop has a copy of its value.
+    pub fn written_place(&self, place: &Place) -> TokenStream {
+        self.place_with(place, &mut |index, ty, at| self.position(index, ty, at))
+    }
+
+    /// The place with its subscripts evaluated before, by the statements in `before`.
+    pub fn fixed_place(&self, place: &Place, before: &mut Vec<TokenStream>) -> TokenStream {
+        let before = core::cell::RefCell::new(before);
+        self.place_with(place, &mut |index, ty, at| {
+            let position = self.position(index, ty, at);
+            if index.as_const().is_some() {
+                return position;
+            }
+            let mut before = before.borrow_mut();
+            let name = self.made_up("index", before.len());
+            before.push(quote!(let #name = #position;));
+            quote!(#name)
+        })
+    }
+
+    fn place_with(&self, place: &Place, position: &mut dyn FnMut(&Expr, Type, Location) -> TokenStream) -> TokenStream {
+        let mut tokens = self.root(place.root);
+        let types = self.emitter.types_along(self.pou, place);
+        for (projection, ty) in place.projections.iter().zip(types) {
+            tokens = match projection {
+                Projection::Field(field) => {
+                    let name = match ty {
+                        Type::Struct(id) => self.emitter.names.field(id, *field).clone(),
+                        Type::Block(id) => ident(id.info().pins[field.index()].field),
+                        Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) => {
+                            unreachable!("verified IR: only structures and blocks have fields")
+                        }
+                    };
+                    quote!(#tokens.#name)
+                }
+                Projection::Index { index, at } => {
+                    let index = position(index, ty, *at);
+                    quote!(#tokens[#index])
+                }
+            };
+        }
+        tokens
+    }
+
+    /// The 0-based position of an element.
+    fn position(&self, index: &Expr, ty: Type, at: Location) -> TokenStream {
+        let Type::Array(id) = ty else { unreachable!("verified IR: only arrays have elements") };
+        let array = self.emitter.program.array(id);
+        if let Some(Value::I64(value)) = index.as_const()
+            && (array.low..=array.high).contains(&value)
+        {
+            let position = number(value.abs_diff(array.low));
+            return quote!(#position);
+        }
+        let (low, high) = (signed(array.low.into(), "").tokens, signed(array.high.into(), "").tokens);
+        let (index, at) = (self.expr(index).tokens, self.emitter.at(at));
+        quote!(ops::index(#index, #low, #high) #at?)
+    }
+
+    fn root(&self, root: Root) -> TokenStream {
+        let name: &Ident = match root {
+            Root::Instance => return quote!(self),
+            Root::Globals => return quote!(globals),
+            Root::Local(id) => &self.names.locals[id.index()],
+            Root::Param(id) => &self.names.params[id.index()],
+        };
+        quote!(#name)
+    }
+
+    /// Whether the place's text is a reference: a parameter, the instance or the globals.
+    pub fn is_whole_param(&self, place: &Place) -> bool {
+        place.projections.is_empty() && !matches!(place.root, Root::Local(_))
+    }
+
+    pub fn load(&self, place: &Place) -> Code {
+        let tokens = self.place(place);
+        if self.is_whole_param(place) { Code::new(quote!(*#tokens), Level::Unary) } else { Code::postfix(tokens) }
+    }
+
+    /// The place as the target of an assignment.
+    pub fn target(&self, place: &Place, tokens: TokenStream) -> TokenStream {
+        if self.is_whole_param(place) { quote!(*#tokens) } else { tokens }
+    }
+
+    /// The place handed over as `&mut`.
+    pub fn borrowed(&self, place: &Place) -> TokenStream {
+        let tokens = self.place(place);
+        if self.is_whole_param(place) { tokens } else { quote!(&mut #tokens) }
+    }
+}
+
+/// Whether two places are one variable; places with subscripts are not compared.
+fn is_same(a: &Place, b: &Place) -> bool {
+    let field = |(a, b): (&Projection, &Projection)| match (a, b) {
+        (Projection::Field(a), Projection::Field(b)) => a == b,
+        (Projection::Index { .. }, _) | (_, Projection::Index { .. }) => false,
+    };
+    a.root == b.root
+        && a.projections.len() == b.projections.len()
+        && a.projections.iter().zip(&b.projections).all(field)
+}

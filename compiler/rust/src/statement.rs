@@ -1,0 +1,274 @@
+//! Statements, each behind a mark of its source line (`polish` turns marks into comments).
+
+use proc_macro2::TokenStream;
+use quote::{format_ident, quote};
+use staunch_ir::{
+    Argument, Arm, Block, Expr, ExprKind, Lane, Location, Place, PouId, Root, Statement, StatementKind, Type,
+};
+
+use crate::code::Level;
+use crate::constant::{literal, plain};
+use crate::function::Function;
+use crate::names::ident;
+use crate::walk;
+
+impl Function<'_> {
+    pub fn block(&mut self, block: &Block) -> TokenStream {
+        self.statements(block)
+    }
+
+    pub fn statements(&mut self, statements: &[Statement]) -> TokenStream {
+        let mut printed = TokenStream::new();
+        let mut rest = statements;
+        while let [statement, after @ ..] = rest {
+            rest = after;
+            if !self.prints(statement) {
+                continue;
+            }
+            printed.extend(self.mark(statement.at));
+            if let Some((joined, then)) = self.joined(statement, after) {
+                rest = then;
+                printed.extend(joined);
+            } else {
+                printed.extend(self.statement(statement));
+            }
+        }
+        printed
+    }
+
+    fn prints(&self, statement: &Statement) -> bool {
+        match &statement.kind {
+            StatementKind::PrescanInstance { callee, .. } => !self.emitter.program.pou(*callee).prescan.is_empty(),
+            StatementKind::If { .. }
+            | StatementKind::Assign { .. }
+            | StatementKind::Case { .. }
+            | StatementKind::Loop { .. }
+            | StatementKind::Exit
+            | StatementKind::Continue
+            | StatementKind::Return
+            | StatementKind::Call { .. }
+            | StatementKind::CallBlock { .. }
+            | StatementKind::PrescanBlock { .. }
+            | StatementKind::Fault(_) => true,
+        }
+    }
+
+    fn mark(&mut self, at: Location) -> Option<TokenStream> {
+        let line = Some((at.file, at.line));
+        if line == self.marked || at.line == 0 {
+            return None;
+        }
+        self.marked = line;
+        let text = if at.file == self.pou.location.file { format!(":{}", at.line) } else { self.emitter.source(at) };
+        Some(quote!(st_mark!(#text);))
+    }
+
+    /// `x = f(…);` for a call whose result only the assignment behind it reads.
+    fn joined<'s>(&self, statement: &Statement, after: &'s [Statement]) -> Option<(TokenStream, &'s [Statement])> {
+        let StatementKind::Call { result: Some(result), .. } = &statement.kind else { return None };
+        let (next, then) = after.split_first()?;
+        let StatementKind::Assign { target, value } = &next.kind else { return None };
+        let (Root::Local(id), ExprKind::Load(place)) = (result.root, &value.kind) else { return None };
+        let only = place.root == result.root
+            && place.projections.is_empty()
+            && result.projections.is_empty()
+            && self.plan.locals[id.index()].mentions == 2
+            && self.pou.result != Some(id);
+        if !only {
+            return None;
+        }
+        let call = self.call(&statement.kind);
+        Some((self.assigned(next, target, call), then))
+    }
+
+    fn statement(&mut self, statement: &Statement) -> TokenStream {
+        match &statement.kind {
+            StatementKind::Assign { target, value } => self.assign(statement, target, value),
+            StatementKind::If { condition, then, otherwise } => self.if_else(condition, then, otherwise),
+            StatementKind::Case { selector, arms, otherwise } => self.case(selector, arms, otherwise),
+            StatementKind::Loop { body, continuing } => self.repeat(body, continuing),
+            StatementKind::Exit => self.leave(),
+            StatementKind::Continue => self.next(),
+            StatementKind::Return => {
+                let value = self.returned();
+                quote!(return #value;)
+            }
+            StatementKind::Call { result: Some(result), .. } => {
+                let call = self.call(&statement.kind);
+                self.assigned(statement, result, call)
+            }
+            StatementKind::Call { result: None, .. } | StatementKind::PrescanInstance { .. } => {
+                let call = self.call(&statement.kind);
+                quote!(#call;)
+            }
+            StatementKind::CallBlock { block, instruction, inputs } => self.call_block(block, *instruction, inputs),
+            StatementKind::PrescanBlock { block, instruction } => self.prescan_block(block, *instruction),
+            StatementKind::Fault(kind) => {
+                let (kind, at) = (format_ident!("{kind:?}"), self.emitter.at(statement.at));
+                quote!(return Err(FaultKind::#kind)#at;)
+            }
+        }
+    }
+
+    fn assign(&mut self, statement: &Statement, target: &Place, value: &Expr) -> TokenStream {
+        let printed = self.expr(value).tokens;
+        // Rust evaluates the value before the target's subscripts; the first fault wins here.
+        if walk::place_faults(self.emitter.program, target) && walk::expr_faults(self.emitter.program, value) {
+            let mut before = Vec::new();
+            let place = self.fixed_place(target, &mut before);
+            return quote!(#(#before)* #place = #printed;);
+        }
+        self.assigned(statement, target, printed)
+    }
+
+    /// `target = value;`, which may declare the target.
+    fn assigned(&self, statement: &Statement, target: &Place, value: TokenStream) -> TokenStream {
+        if let Some(local) = self.plan.declares(statement, target) {
+            let left = self.let_local(local);
+            return quote!(#left = #value;);
+        }
+        let target = self.target(target, self.written_place(target));
+        quote!(#target = #value;)
+    }
+
+    fn if_else(&mut self, condition: &Expr, then: &Block, otherwise: &Block) -> TokenStream {
+        let condition = self.expr(condition).tokens;
+        let then = self.block(then);
+        let otherwise = match otherwise.as_slice() {
+            [] => None,
+            [Statement { kind: StatementKind::If { condition, then, otherwise }, .. }] => {
+                let chained = self.if_else(condition, then, otherwise);
+                Some(quote!(else #chained))
+            }
+            _ => {
+                let otherwise = self.block(otherwise);
+                Some(quote!(else { #otherwise }))
+            }
+        };
+        quote!(if #condition { #then } #otherwise)
+    }
+
+    fn case(&mut self, selector: &Expr, arms: &[Arm], otherwise: &Block) -> TokenStream {
+        let lane = self.lane(selector.ty);
+        let named = match selector.ty {
+            Type::Enum(_) => arms.iter().flat_map(|arm| &arm.labels).all(|(first, last)| first == last),
+            Type::Elementary(_) | Type::String(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => false,
+        };
+        let labelled = if named { Some(selector.ty) } else { None };
+        let on = if let (Type::Enum(_), false) = (selector.ty, named) {
+            let selector = self.typed(selector).at_least(Level::Postfix);
+            quote!(#selector.0)
+        } else {
+            self.typed(selector).tokens
+        };
+        if arms.is_empty() {
+            let otherwise = self.block(otherwise);
+            return quote!(let _ = #on; #otherwise);
+        }
+        if let [Arm { labels, body }] = arms {
+            let pattern = self.pattern(labels, lane, labelled);
+            let condition = match labels.as_slice() {
+                [(first, last)] if first == last => quote!(#on == #pattern),
+                _ => quote!(matches!(#on, #pattern)),
+            };
+            let body = self.block(body);
+            let otherwise = (!otherwise.is_empty()).then(|| {
+                let otherwise = self.block(otherwise);
+                quote!(else { #otherwise })
+            });
+            return quote!(if #condition { #body } #otherwise);
+        }
+        let mut printed = Vec::with_capacity(arms.len());
+        for arm in arms {
+            let (pattern, body) = (self.pattern(&arm.labels, lane, labelled), self.block(&arm.body));
+            printed.push(quote!(#pattern => { #body }));
+        }
+        let rest = (named || !covers(arms, lane)).then(|| {
+            let otherwise = self.block(otherwise);
+            quote!(_ => { #otherwise })
+        });
+        quote!(match #on { #(#printed)* #rest })
+    }
+
+    /// Labels as a pattern; by name if the selector is of an enumeration.
+    fn pattern(&self, labels: &[(i128, i128)], lane: Lane, named: Option<Type>) -> TokenStream {
+        let value = |number: i128| -> TokenStream {
+            let value = lane.integer(number).expect("verified IR: a label fits its selector");
+            match named {
+                Some(Type::Enum(id)) => self.emitter.enum_value(id, value).tokens,
+                Some(_) | None => literal(plain(lane), value, false).tokens,
+            }
+        };
+        let labels = labels.iter().map(|(first, last)| {
+            let (low, high) = (value(*first), value(*last));
+            if first == last { low } else { quote!(#low..=#high) }
+        });
+        quote!(#(#labels)|*)
+    }
+
+    /// A call of a user's POU, as an expression.
+    fn call(&self, call: &StatementKind) -> TokenStream {
+        let (callee, instance, arguments, is_prescan) = match call {
+            StatementKind::Call { callee, instance, arguments, .. } => {
+                (*callee, instance.as_ref(), arguments.as_slice(), false)
+            }
+            StatementKind::PrescanInstance { callee, instance } => (*callee, Some(instance), [].as_slice(), true),
+            _ => unreachable!("only calls are printed as calls"),
+        };
+        let needs = self.emitter.needs[callee.index()];
+        let needs = if is_prescan { needs.prescan } else { needs.body };
+        let method = instance.is_some();
+        let context = (needs.context || method && !is_prescan).then(|| quote!(cx));
+        let globals = needs.globals.then(|| quote!(globals));
+        let arguments = arguments.iter().map(|it| self.argument(it));
+        let all = context.into_iter().chain(arguments).chain(globals);
+        let head = self.call_head(callee, instance, is_prescan);
+        let propagate = (needs.faults || method && !is_prescan).then(|| quote!(?));
+        quote!(#head(#(#all),*) #propagate)
+    }
+
+    fn call_head(&self, callee: PouId, instance: Option<&Place>, is_prescan: bool) -> TokenStream {
+        let name = if is_prescan { ident("prescan") } else { self.emitter.names.pou(callee).clone() };
+        match instance {
+            Some(place) => {
+                let place = self.place(place);
+                quote!(#place.#name)
+            }
+            None => quote!(#name),
+        }
+    }
+
+    fn argument(&self, argument: &Argument) -> TokenStream {
+        match argument {
+            Argument::Value(value) => self.expr(value).tokens,
+            Argument::Reference(place) => self.borrowed(place),
+        }
+    }
+
+    fn call_block(&self, block: &Place, instruction: usize, inputs: &[Expr]) -> TokenStream {
+        let info = &block_of(block).instructions[instruction];
+        let (place, method) = (self.place(block), ident(info.method));
+        let inputs = inputs.iter().map(|it| self.expr(it).tokens);
+        let context = info.needs_context.then(|| quote!(cx));
+        let arguments = inputs.chain(context);
+        quote!(#place.#method(#(#arguments),*);)
+    }
+
+    fn prescan_block(&self, block: &Place, instruction: usize) -> TokenStream {
+        let Some(prescan) = &block_of(block).instructions[instruction].prescan else { return TokenStream::new() };
+        let (place, method) = (self.place(block), ident(prescan.method));
+        quote!(#place.#method();)
+    }
+}
+
+fn block_of(place: &Place) -> &'static staunch_runtime::BlockInfo {
+    let Type::Block(id) = place.ty else { unreachable!("verified IR: a block is called") };
+    id.info()
+}
+
+/// Whether the labels leave no value over.
+fn covers(arms: &[Arm], lane: Lane) -> bool {
+    let Some((least, greatest)) = lane.range() else { return false };
+    let held: i128 = arms.iter().flat_map(|arm| &arm.labels).map(|(first, last)| last - first + 1).sum();
+    held == greatest - least + 1
+}

@@ -1,0 +1,126 @@
+//! Expressions on character strings.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+use staunch_ir::{Expr, ExprKind, TextOp, Type};
+
+use crate::code::{Code, Level};
+use crate::constant::number;
+use crate::function::Function;
+use crate::names::ident;
+use crate::walk;
+
+impl Function<'_> {
+    /// A string as `&Text`.
+    pub fn text_reference(&self, value: &Expr) -> TokenStream {
+        match &value.kind {
+            ExprKind::Load(place) if self.is_whole_param(place) => self.place(place),
+            ExprKind::Load(place) => {
+                let place = self.place(place);
+                quote!(&#place)
+            }
+            ExprKind::Const(_)
+            | ExprKind::Text(_)
+            | ExprKind::Aggregate(_)
+            | ExprKind::Apply(..)
+            | ExprKind::ApplyText(..)
+            | ExprKind::Convert(..) => {
+                let value = self.typed_text(value).at_least(Level::Postfix);
+                quote!(&#value)
+            }
+        }
+    }
+
+    /// A string whose own text says its capacity.
+    fn typed_text(&self, value: &Expr) -> Code {
+        let ty = typed_head(value.ty);
+        match &value.kind {
+            ExprKind::ApplyText(op, operands) => self.apply_text(value, *op, operands, true),
+            ExprKind::Convert(_, inner) if inner.ty != value.ty => {
+                let inner = self.text_reference(inner);
+                Code::postfix(quote!(#ty::from_text(#inner)))
+            }
+            ExprKind::Text(text) => {
+                let text = proc_macro2::Literal::byte_string(text);
+                Code::postfix(quote!(#ty::new(#text)))
+            }
+            ExprKind::Const(_)
+            | ExprKind::Aggregate(_)
+            | ExprKind::Load(_)
+            | ExprKind::Apply(..)
+            | ExprKind::Convert(..) => self.expr(value),
+        }
+    }
+
+    /// A string as a byte slice.
+    fn bytes(&self, value: &Expr) -> TokenStream {
+        match &value.kind {
+            ExprKind::Text(text) => {
+                let text = proc_macro2::Literal::byte_string(text);
+                quote!(#text)
+            }
+            ExprKind::Load(place) => {
+                let place = self.place(place);
+                quote!(#place.as_bytes())
+            }
+            ExprKind::Const(_)
+            | ExprKind::Aggregate(_)
+            | ExprKind::Apply(..)
+            | ExprKind::ApplyText(..)
+            | ExprKind::Convert(..) => {
+                let value = self.typed_text(value).at_least(Level::Postfix);
+                quote!(#value.as_bytes())
+            }
+        }
+    }
+
+    pub fn apply_text(&self, expr: &Expr, op: TextOp, operands: &[Expr], typed: bool) -> Code {
+        let function = ident(op.function());
+        let print = |it: &Expr| match it.ty {
+            Type::String(_) => self.bytes(it),
+            Type::Elementary(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
+                self.expr(it).tokens
+            }
+        };
+        if op.result().is_some() {
+            let arguments = operands.iter().map(print);
+            return Code::postfix(quote!(text::#function(#(#arguments),*)));
+        }
+        // A closure cannot pass on a fault: what might fault is evaluated before it.
+        let (mut before, mut arguments) = (Vec::new(), Vec::new());
+        for operand in operands {
+            // Each is printed once, or a long nest of them would be printed without end.
+            if !walk::expr_faults(self.emitter.program, operand) {
+                arguments.push(print(operand));
+                continue;
+            }
+            let name = self.made_up("operand", before.len());
+            before.push(match &operand.kind {
+                // A made string must outlive its bytes.
+                ExprKind::ApplyText(..) | ExprKind::Convert(..) if matches!(operand.ty, Type::String(_)) => {
+                    let value = self.typed_text(operand).tokens;
+                    arguments.push(quote!(#name.as_bytes()));
+                    quote!(let #name = #value;)
+                }
+                _ => {
+                    let value = print(operand);
+                    arguments.push(quote!(#name));
+                    quote!(let #name = #value;)
+                }
+            });
+        }
+        let head = if typed { typed_head(expr.ty) } else { quote!(Text) };
+        let build = quote!(#head::build(|out| text::#function(#(#arguments,)* out)));
+        if before.is_empty() {
+            return Code::postfix(build);
+        }
+        Code::new(quote!({ #(#before)* #build }), Level::Block)
+    }
+}
+
+/// `Text::<80>`.
+fn typed_head(ty: Type) -> TokenStream {
+    let Type::String(capacity) = ty else { unreachable!("verified IR: a string has a string's type") };
+    let capacity = number(u64::from(capacity));
+    quote!(Text::<#capacity>)
+}

@@ -1,0 +1,133 @@
+//! Walks over statements and expressions, in the order of evaluation.
+
+use staunch_ir::{Argument, Block, Expr, ExprKind, Lane, Op, Place, Program, Projection, Statement, StatementKind};
+
+/// What a statement does with a place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Access {
+    Read,
+    /// The whole place gets a new value.
+    Write,
+    /// It is handed to a callee that may read and write it.
+    Borrow,
+}
+
+/// Calls `see` for each place that evaluating `expr` reads.
+pub fn reads(expr: &Expr, see: &mut dyn FnMut(&Place)) {
+    match &expr.kind {
+        ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => {}
+        ExprKind::Load(place) => {
+            index_reads(place, see);
+            see(place);
+        }
+        ExprKind::Apply(_, operands) | ExprKind::ApplyText(_, operands) => {
+            operands.iter().for_each(|it| reads(it, see));
+        }
+        ExprKind::Convert(_, value) => reads(value, see),
+    }
+}
+
+/// Calls `see` for each place that finding `place` reads.
+pub fn index_reads(place: &Place, see: &mut dyn FnMut(&Place)) {
+    for projection in &place.projections {
+        if let Projection::Index { index, .. } = projection {
+            reads(index, see);
+        }
+    }
+}
+
+/// Calls `see` for each place that the statement itself, without the blocks in it, touches.
+pub fn accesses(statement: &Statement, see: &mut dyn FnMut(&Place, Access)) {
+    match &statement.kind {
+        StatementKind::Assign { target, value } => {
+            index_reads(target, &mut |it| see(it, Access::Read));
+            reads(value, &mut |it| see(it, Access::Read));
+            see(target, Access::Write);
+        }
+        StatementKind::If { condition: value, .. } | StatementKind::Case { selector: value, .. } => {
+            reads(value, &mut |it| see(it, Access::Read));
+        }
+        StatementKind::Call { instance, arguments, result, .. } => {
+            instance.iter().for_each(|place| borrow(place, see));
+            arguments.iter().for_each(|argument| argument_accesses(argument, see));
+            result.iter().for_each(|place| see(place, Access::Write));
+        }
+        StatementKind::CallBlock { block, inputs, .. } => {
+            borrow(block, see);
+            inputs.iter().for_each(|it| reads(it, &mut |place| see(place, Access::Read)));
+        }
+        StatementKind::PrescanBlock { block: place, .. } | StatementKind::PrescanInstance { instance: place, .. } => {
+            borrow(place, see);
+        }
+        StatementKind::Loop { .. }
+        | StatementKind::Exit
+        | StatementKind::Continue
+        | StatementKind::Return
+        | StatementKind::Fault(_) => {}
+    }
+}
+
+fn argument_accesses(argument: &Argument, see: &mut dyn FnMut(&Place, Access)) {
+    match argument {
+        Argument::Value(value) => reads(value, &mut |it| see(it, Access::Read)),
+        Argument::Reference(place) => borrow(place, see),
+    }
+}
+
+fn borrow(place: &Place, see: &mut dyn FnMut(&Place, Access)) {
+    index_reads(place, &mut |it| see(it, Access::Read));
+    see(place, Access::Borrow);
+}
+
+/// The blocks in a statement, in order.
+pub fn blocks(statement: &Statement) -> Vec<&Block> {
+    match &statement.kind {
+        StatementKind::If { then, otherwise, .. } => vec![then, otherwise],
+        StatementKind::Case { arms, otherwise, .. } => arms.iter().map(|arm| &arm.body).chain([otherwise]).collect(),
+        StatementKind::Loop { body, continuing } => vec![body, continuing],
+        StatementKind::Assign { .. }
+        | StatementKind::Exit
+        | StatementKind::Continue
+        | StatementKind::Return
+        | StatementKind::Call { .. }
+        | StatementKind::CallBlock { .. }
+        | StatementKind::PrescanBlock { .. }
+        | StatementKind::PrescanInstance { .. }
+        | StatementKind::Fault(_) => Vec::new(),
+    }
+}
+
+/// Calls `see` for each statement in `block`, at any depth.
+pub fn statements<'a>(block: &'a [Statement], see: &mut dyn FnMut(&'a Statement)) {
+    for statement in block {
+        see(statement);
+        blocks(statement).into_iter().for_each(|inner| statements(inner, see));
+    }
+}
+
+/// Whether evaluating `expr` can fault.
+pub fn expr_faults(program: &Program, expr: &Expr) -> bool {
+    match &expr.kind {
+        ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => false,
+        ExprKind::Load(place) => place_faults(program, place),
+        ExprKind::Apply(op, operands) => {
+            op_faults(program, *op, operands) || operands.iter().any(|it| expr_faults(program, it))
+        }
+        ExprKind::ApplyText(_, operands) => operands.iter().any(|it| expr_faults(program, it)),
+        ExprKind::Convert(_, value) => expr_faults(program, value),
+    }
+}
+
+/// The division of reals is IEEE's, and never faults.
+pub fn op_faults(program: &Program, op: Op, operands: &[Expr]) -> bool {
+    let real = operands.first().and_then(|it| program.lane(it.ty)).is_some_and(Lane::is_float);
+    op.can_fault() && !(real && matches!(op, Op::Div))
+}
+
+/// Whether finding `place` can fault. An index that is a constant has been checked.
+pub fn place_faults(program: &Program, place: &Place) -> bool {
+    place.projections.iter().any(|projection| match projection {
+        Projection::Field(_) => false,
+        Projection::Index { index, .. } => index.as_const().is_none() || expr_faults(program, index),
+    })
+}

@@ -1,0 +1,68 @@
+//! A shim for each row of the operation table, at each of its lanes.
+
+use staunch_runtime::{for_each_op, ops};
+
+macro_rules! shims {
+    ($($op:ident $source:literal $function:ident ($($arg:ident: $ty:ident),*) $result:ident [$class:ident] $outcome:ident;)*) => {
+        pub(crate) fn for_each_symbol(each: &mut dyn FnMut(&'static str, *const u8)) {
+            $(at_lanes!($class each { $outcome $function ($($arg: $ty),*) $result });)*
+        }
+    };
+}
+
+/// One shim for each lane of a class.
+macro_rules! at_lanes {
+    (any $each:ident $row:tt) => {
+        at_lanes!(@ $each $row bool i8 i16 i32 i64 u8 u16 u32 u64 f32 f64)
+    };
+    (number $each:ident $row:tt) => {
+        at_lanes!(@ $each $row i8 i16 i32 i64 u8 u16 u32 u64 f32 f64)
+    };
+    (integer $each:ident $row:tt) => {
+        at_lanes!(@ $each $row i8 i16 i32 i64 u8 u16 u32 u64)
+    };
+    (real $each:ident $row:tt) => {
+        at_lanes!(@ $each $row f32 f64)
+    };
+    (bits $each:ident $row:tt) => {
+        at_lanes!(@ $each $row bool i8 i16 i32 i64 u8 u16 u32 u64)
+    };
+    (@ $each:ident $row:tt $($lane:ident)*) => {
+        $(shim!($each $lane $row);)*
+    };
+}
+
+macro_rules! shim {
+    ($each:ident $lane:ident { total $function:ident ($($arg:ident: $ty:ident),*) $result:ident }) => {{
+        #[allow(dead_code, reason = "some rows have no operand or result of the lane")]
+        type T = $lane;
+
+        // SAFETY: the prefix belongs to this crate, and a function and a lane meet in one row.
+        #[unsafe(export_name = concat!("staunch_", stringify!($function), "_", stringify!($lane)))]
+        extern "C" fn shim($($arg: $ty),*) -> $result {
+            ops::$function($($arg),*)
+        }
+        $each(concat!("staunch_", stringify!($function), "_", stringify!($lane)), shim as *const u8);
+    }};
+    ($each:ident $lane:ident { faults $function:ident ($($arg:ident: $ty:ident),*) $result:ident }) => {{
+        type T = $lane;
+
+        /// # Safety
+        /// `out` is writable and aligned for the result.
+        // SAFETY (the symbol): as for the total rows.
+        #[unsafe(export_name = concat!("staunch_", stringify!($function), "_", stringify!($lane)))]
+        unsafe extern "C" fn shim($($arg: $ty,)* out: *mut $result) -> u8 {
+            match ops::$function($($arg),*) {
+                Ok(result) => {
+                    // SAFETY: the caller's promise.
+                    unsafe { out.write(result) };
+                    0
+                }
+                Err(kind) => kind as u8,
+            }
+        }
+        $each(concat!("staunch_", stringify!($function), "_", stringify!($lane)), shim as *const u8);
+    }};
+}
+
+for_each_op!(shims);

@@ -1,0 +1,220 @@
+use crate::{Context, Lane, Scalar, Time, Value};
+
+/// Which way a member of a block faces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// Written by the caller, in declaration order when arguments are positional.
+    Input,
+    /// Read by the caller after a call.
+    Output,
+    /// Edge and timer memory: an instance carries it, a caller does not see it.
+    Memory,
+    /// Read and written by anyone: a member of a structure that instructions share (Logix).
+    Member,
+}
+
+/// One member of a standard function block, as the compiler sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct Pin {
+    /// The vendor's spelling.
+    pub name: &'static str,
+    /// The Rust field.
+    pub field: &'static str,
+    pub direction: Direction,
+    pub lane: Lane,
+    /// TRUE for a TIME: it shares its lane with LINT.
+    pub is_time: bool,
+    /// TRUE for a BOOL whose initial value the vendor gives as TRUE. The all-zero start state
+    /// cannot say it, so the compiler does: it puts TRUE into the instance's initial value.
+    pub starts_true: bool,
+    pub offset: usize,
+}
+
+/// The system whose documentation defines a block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Family {
+    /// IEC 61131-3 as Autonomy Edge / OpenPLC has it. Owns also the blocks all systems share.
+    Iec,
+    Cscape,
+    Codesys,
+    Logix,
+}
+
+/// What a caller can do with a block: one unnamed instruction for a function block, several
+/// named ones for a structure that instructions share (Logix `CTU`, `CTD`, `RES`).
+#[derive(Clone, Copy)]
+pub struct Instruction {
+    /// Empty for a function block: it is called by its instance's name.
+    pub name: &'static str,
+    /// The Rust method; its arguments are the inputs (or the rung), by value, in order.
+    pub method: &'static str,
+    /// The C symbol: `extern "C" fn(block: *mut B, cx: *const Context, rung: bool)`.
+    pub symbol: &'static str,
+    /// TRUE when the instruction takes a rung condition as its one argument; otherwise its
+    /// arguments are the block's input pins (none for an instruction of a shared structure).
+    pub takes_rung: bool,
+    /// TRUE when the Rust method takes a `&Context` as its last argument.
+    pub needs_context: bool,
+    /// Runs the instruction on an instance's bytes (the interpreter's way in).
+    pub run: fn(bytes: &mut [u8], cx: &Context, rung: bool),
+    /// Runs once for each instance that this instruction is used on, before the first scan:
+    /// the method's name and the C symbol (`extern "C" fn(block: *mut B)`).
+    pub prescan: Option<Prescan>,
+}
+
+/// What a Logix controller does with an instruction's structure before the first scan.
+#[derive(Clone, Copy)]
+pub struct Prescan {
+    pub method: &'static str,
+    pub symbol: &'static str,
+    pub run: fn(bytes: &mut [u8]),
+}
+
+/// Everything the compiler knows of a standard function block.
+#[derive(Clone, Copy)]
+pub struct BlockInfo {
+    pub family: Family,
+    /// Its name in Structured Text, without the family: `CTU_DINT`.
+    pub name: &'static str,
+    /// The Rust type below the runtime's root: `iec::Ctu<i32>`.
+    pub rust_path: &'static str,
+    pub size: usize,
+    pub align: usize,
+    /// Inputs first, in positional order, then outputs, then the rest.
+    pub pins: &'static [Pin],
+    pub instructions: &'static [Instruction],
+    /// TRUE when every instance is retentive, whatever its declaration says (Logix tags).
+    pub retentive: bool,
+}
+
+/// A standard function block: a plain `repr(C)` struct whose all-zero state is its start state.
+pub trait Block: Copy + Default {
+    const PINS: &'static [Pin];
+    /// The instance held in `bytes`, laid out as `repr(C)` lays it out.
+    fn load(bytes: &[u8]) -> Self;
+    fn store(&self, bytes: &mut [u8]);
+}
+
+impl BlockInfo {
+    pub fn pin(&self, name: &str) -> Option<&'static Pin> {
+        self.pins.iter().find(|pin| pin.name.eq_ignore_ascii_case(name))
+    }
+
+    pub fn inputs(&self) -> impl Iterator<Item = &'static Pin> {
+        self.pins.iter().filter(|pin| pin.direction == Direction::Input)
+    }
+
+    pub fn outputs(&self) -> impl Iterator<Item = &'static Pin> {
+        self.pins.iter().filter(|pin| pin.direction == Direction::Output)
+    }
+}
+
+impl core::fmt::Debug for BlockInfo {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        write!(f, "{:?}.{}", self.family, self.name)
+    }
+}
+
+impl core::fmt::Debug for Instruction {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(self.method)
+    }
+}
+
+impl core::fmt::Debug for Prescan {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(self.method)
+    }
+}
+
+/// The fields of a block are scalars; these read and write one through its lane.
+pub(crate) fn load_field<T: Scalar>(bytes: &[u8], offset: usize) -> T {
+    T::from_value(Value::read(T::LANE, &bytes[offset..])).unwrap_or_default()
+}
+
+pub(crate) fn store_field<T: Scalar>(value: T, bytes: &mut [u8], offset: usize) {
+    value.into_value().write(&mut bytes[offset..]);
+}
+
+/// Declares a block's members once, in the order of its struct: the [`Block`] implementation
+/// and a `const fn new`. A member that is left out does not compile.
+///
+/// A row is `field: type = "name in Structured Text"`, and `true` behind it if it starts TRUE.
+macro_rules! pins {
+    ([$($generics:tt)*] $block:ty {
+        $($direction:ident { $($field:ident: $ty:ident = $name:literal $($initial:literal)?),* $(,)? })*
+    }) => {
+        impl<$($generics)*> $block {
+            /// The start state: all zero.
+            #[inline]
+            pub const fn new() -> Self {
+                Self { $($($field: <$ty as $crate::Scalar>::ZERO,)*)* }
+            }
+        }
+
+        impl<$($generics)*> $crate::Block for $block {
+            const PINS: &'static [$crate::Pin] = &[$($($crate::Pin {
+                name: $name,
+                field: stringify!($field),
+                direction: $crate::Direction::$direction,
+                lane: <$ty as $crate::Scalar>::LANE,
+                is_time: $crate::block::is_time!($ty),
+                starts_true: false $(|| $initial)?,
+                offset: core::mem::offset_of!($block, $field),
+            },)*)*];
+
+            fn load(bytes: &[u8]) -> Self {
+                Self { $($($field: $crate::block::load_field(bytes, core::mem::offset_of!($block, $field)),)*)* }
+            }
+
+            fn store(&self, bytes: &mut [u8]) {
+                $($($crate::block::store_field(self.$field, bytes, core::mem::offset_of!($block, $field));)*)*
+            }
+        }
+    };
+}
+pub(crate) use pins;
+
+macro_rules! is_time {
+    (Time) => {
+        true
+    };
+    ($other:ident) => {
+        false
+    };
+}
+pub(crate) use is_time;
+
+/// `pins` with other names in Structured Text. `N` is their number.
+pub(crate) const fn renamed<const N: usize>(pins: &[Pin], names: &[(&str, &'static str)]) -> [Pin; N] {
+    assert!(pins.len() == N);
+    let mut renamed = [pins[0]; N];
+    let mut used = 0;
+    let mut at = 0;
+    while at < N {
+        renamed[at] = pins[at];
+        let mut row = 0;
+        while row < names.len() {
+            if same(pins[at].name, names[row].0) {
+                renamed[at].name = names[row].1;
+                used += 1;
+            }
+            row += 1;
+        }
+        at += 1;
+    }
+    assert!(used == names.len(), "a renamed pin does not exist");
+    renamed
+}
+
+/// `a == b`, in constants.
+const fn same(a: &str, b: &str) -> bool {
+    let (a, b) = (a.as_bytes(), b.as_bytes());
+    let mut at = 0;
+    while at < a.len() && at < b.len() && a[at] == b[at] {
+        at += 1;
+    }
+    at == a.len() && at == b.len()
+}
+
+const _: () = assert!(size_of::<Time>() == 8);

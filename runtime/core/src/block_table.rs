@@ -1,0 +1,167 @@
+use crate::block::renamed;
+use crate::{Block, BlockInfo, Family, Instruction, Pin, Prescan, codesys, cscape, iec, logix};
+
+/// Every standard function block, one row each.
+///
+/// The runtime expands the table into [`BLOCKS`]; `staunch-runtime-abi` expands it into the C
+/// symbols that native code calls.
+///
+/// An instruction's first word says how it is called: `plain` and `timed` are function blocks
+/// (a step, without and with need of the context), `rung` takes a rung condition, `tag` nothing.
+/// Its method is what generated Rust calls.
+#[macro_export]
+macro_rules! for_each_block {
+    ($expand:ident) => {
+        $expand! {
+            // family, name in ST, Rust type, renamed pins, { how, name, method, symbol }
+            Iec "CTU" iec::Ctu<i16> {} { plain "" call staunch_iec_ctu; }
+            Iec "CTD" iec::Ctd<i16> {} { plain "" call staunch_iec_ctd; }
+            Iec "CTUD" iec::Ctud<i16> {} { plain "" call staunch_iec_ctud; }
+            Iec "CTU_INT" iec::Ctu<i16> {} { plain "" call staunch_iec_ctu_int; }
+            Iec "CTD_INT" iec::Ctd<i16> {} { plain "" call staunch_iec_ctd_int; }
+            Iec "CTUD_INT" iec::Ctud<i16> {} { plain "" call staunch_iec_ctud_int; }
+            Iec "CTU_DINT" iec::Ctu<i32> {} { plain "" call staunch_iec_ctu_dint; }
+            Iec "CTD_DINT" iec::Ctd<i32> {} { plain "" call staunch_iec_ctd_dint; }
+            Iec "CTUD_DINT" iec::Ctud<i32> {} { plain "" call staunch_iec_ctud_dint; }
+            Iec "CTU_LINT" iec::Ctu<i64> {} { plain "" call staunch_iec_ctu_lint; }
+            Iec "CTD_LINT" iec::Ctd<i64> {} { plain "" call staunch_iec_ctd_lint; }
+            Iec "CTUD_LINT" iec::Ctud<i64> {} { plain "" call staunch_iec_ctud_lint; }
+            Iec "CTU_UDINT" iec::Ctu<u32> {} { plain "" call staunch_iec_ctu_udint; }
+            Iec "CTD_UDINT" iec::Ctd<u32> {} { plain "" call staunch_iec_ctd_udint; }
+            Iec "CTUD_UDINT" iec::Ctud<u32> {} { plain "" call staunch_iec_ctud_udint; }
+            Iec "CTU_ULINT" iec::Ctu<u64> {} { plain "" call staunch_iec_ctu_ulint; }
+            Iec "CTD_ULINT" iec::Ctd<u64> {} { plain "" call staunch_iec_ctd_ulint; }
+            Iec "CTUD_ULINT" iec::Ctud<u64> {} { plain "" call staunch_iec_ctud_ulint; }
+
+            // Shared by all dialects.
+            Iec "TON" iec::Ton {} { timed "" call staunch_iec_ton; }
+            Iec "TOF" iec::Tof {} { timed "" call staunch_iec_tof; }
+            Iec "TP" iec::Tp {} { timed "" call staunch_iec_tp; }
+            Iec "R_TRIG" iec::RTrig {} { plain "" call staunch_iec_r_trig; }
+            Iec "F_TRIG" iec::FTrig {} { plain "" call staunch_iec_f_trig; }
+            Iec "SR" iec::Sr {} { plain "" call staunch_iec_sr; }
+            Iec "RS" iec::Rs {} { plain "" call staunch_iec_rs; }
+
+            // The compiler adds RCV to the inputs of R_CTU and R_CTD.
+            Cscape "CTU" cscape::Ctu {} { plain "" call staunch_cscape_ctu; }
+            Cscape "CTD" cscape::Ctd {} { plain "" call staunch_cscape_ctd; }
+            Cscape "R_CTU" cscape::RCtu {} { plain "" call staunch_cscape_r_ctu; }
+            Cscape "R_CTD" cscape::RCtd {} { plain "" call staunch_cscape_r_ctd; }
+
+            Codesys "CTU" codesys::Ctu { "R" => "RESET" } { plain "" call staunch_codesys_ctu; }
+            Codesys "CTD" codesys::Ctd { "LD" => "LOAD" } { plain "" call staunch_codesys_ctd; }
+            Codesys "CTUD" codesys::Ctud { "R" => "RESET", "LD" => "LOAD" } { plain "" call staunch_codesys_ctud; }
+            Codesys "LCTU" codesys::Lctu { "R" => "RESET" } { plain "" call staunch_codesys_lctu; }
+            Codesys "LCTD" codesys::Lctd { "LD" => "LOAD" } { plain "" call staunch_codesys_lctd; }
+            Codesys "LCTUD" codesys::Lctud { "R" => "RESET", "LD" => "LOAD" } { plain "" call staunch_codesys_lctud; }
+            Codesys "SR" codesys::Sr { "S1" => "SET1", "R" => "RESET" } { plain "" call staunch_codesys_sr; }
+            Codesys "RS" codesys::Rs { "S" => "SET", "R1" => "RESET1" } { plain "" call staunch_codesys_rs; }
+            // What CTU and LCTU mean under the option `ctu-stop-at-pv`.
+            Codesys "CTU_STOP_AT_PV" codesys::CtuStopAtPv<u16> {} { plain "" call staunch_codesys_ctu_stop_at_pv; }
+            Codesys "LCTU_STOP_AT_PV" codesys::CtuStopAtPv<u64> {} { plain "" call staunch_codesys_lctu_stop_at_pv; }
+
+            Logix "COUNTER" logix::Counter {} {
+                rung "CTU" ctu staunch_logix_counter_ctu, prescan prescan_ctu staunch_logix_counter_prescan_ctu;
+                rung "CTD" ctd staunch_logix_counter_ctd, prescan prescan_ctd staunch_logix_counter_prescan_ctd;
+                rung "RES" res staunch_logix_counter_res;
+            }
+            Logix "FBD_COUNTER" logix::FbdCounter {} {
+                tag "CTUD" ctud staunch_logix_fbd_counter_ctud, prescan prescan_ctud staunch_logix_fbd_counter_prescan_ctud;
+            }
+        }
+    };
+}
+
+/// Runs an instruction of [`for_each_block!`] on a Rust struct.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! run_instruction {
+    (plain $block:ident $method:ident $cx:expr, $rung:expr) => {
+        $block.step($cx)
+    };
+    (timed $block:ident $method:ident $cx:expr, $rung:expr) => {
+        $block.step($cx)
+    };
+    (rung $block:ident $method:ident $cx:expr, $rung:expr) => {{
+        $block.$method($rung);
+    }};
+    (tag $block:ident $method:ident $cx:expr, $rung:expr) => {
+        $block.$method()
+    };
+}
+
+macro_rules! declare_blocks {
+    ($($family:ident $name:literal $block:ty { $($pin:literal => $renamed:literal),* } {
+        $($how:ident $instruction:literal $method:ident $symbol:ident
+            $(, prescan $prescan:ident $prescan_symbol:ident)?;)*
+    })*) => {
+        /// Every standard function block. A block's position is its number in the compiler.
+        pub static BLOCKS: &[BlockInfo] = &[$(BlockInfo {
+            family: Family::$family,
+            name: $name,
+            rust_path: stringify!($block),
+            size: size_of::<$block>(),
+            align: align_of::<$block>(),
+            pins: {
+                const PINS: &[Pin] = <$block as Block>::PINS;
+                const RENAMED: &[Pin] = &renamed::<{ PINS.len() }>(PINS, &[$(($pin, $renamed)),*]);
+                RENAMED
+            },
+            instructions: &[$(Instruction {
+                name: $instruction,
+                method: stringify!($method),
+                symbol: stringify!($symbol),
+                takes_rung: is!($how rung),
+                needs_context: is!($how timed),
+                run: |bytes, _cx, _rung| {
+                    let mut block = <$block as Block>::load(bytes);
+                    $crate::run_instruction!($how block $method _cx, _rung);
+                    block.store(bytes);
+                },
+                prescan: prescan!($block $(, $prescan $prescan_symbol)?),
+            }),*],
+            retentive: retentive!($family),
+        }),*];
+    };
+}
+
+macro_rules! is {
+    (rung rung) => {
+        true
+    };
+    (timed timed) => {
+        true
+    };
+    ($how:ident $other:ident) => {
+        false
+    };
+}
+
+macro_rules! prescan {
+    ($block:ty) => {
+        None
+    };
+    ($block:ty, $prescan:ident $symbol:ident) => {
+        Some(Prescan {
+            method: stringify!($prescan),
+            symbol: stringify!($symbol),
+            run: |bytes| {
+                let mut block = <$block as Block>::load(bytes);
+                block.$prescan();
+                block.store(bytes);
+            },
+        })
+    };
+}
+
+/// Logix keeps every tag over a restart; elsewhere the declaration decides.
+macro_rules! retentive {
+    (Logix) => {
+        true
+    };
+    ($family:ident) => {
+        false
+    };
+}
+
+for_each_block!(declare_blocks);

@@ -1,0 +1,173 @@
+//! The counters of Autonomy Edge / OpenPLC, and the blocks that all families share.
+//!
+//! The counters count rising edges; an input that is TRUE in the first call is one. The edge
+//! memory follows the input in every call, so an edge under reset or load is used up. Counting
+//! stops at the limits of the type.
+
+pub use super::bistable::{Rs, Sr};
+pub use super::edge::{FTrig, RTrig};
+pub use super::timer::{Tof, Ton, Tp};
+
+use crate::block::pins;
+use crate::{Context, Scalar};
+
+/// A type that counters count in.
+pub trait Count: Scalar + Ord + From<bool> {
+    fn saturating_add(self, other: Self) -> Self;
+    fn saturating_sub(self, other: Self) -> Self;
+}
+
+macro_rules! counts {
+    ($($rust:ident)*) => { $(
+        impl Count for $rust {
+            #[inline]
+            fn saturating_add(self, other: Self) -> Self { self.saturating_add(other) }
+            #[inline]
+            fn saturating_sub(self, other: Self) -> Self { self.saturating_sub(other) }
+        }
+    )* };
+}
+
+counts!(i16 i32 i64 u16 u32 u64);
+
+/// `CTU`: counts up on each rising edge of `cu`, also past `pv`; `q` while `cv >= pv`. Reset
+/// wins over counting; `cv` stops at the type's maximum instead of wrapping.
+///
+/// ```
+/// let mut parts = staunch_runtime::iec::Ctu::<i16>::new();
+/// parts.call(true, false, 2);
+/// parts.call(true, false, 2);
+/// assert_eq!((parts.cv, parts.q), (1, false));
+/// parts.call(false, false, 2);
+/// parts.call(true, false, 2);
+/// assert_eq!((parts.cv, parts.q), (2, true));
+/// ```
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Ctu<T> {
+    pub cu: bool,
+    pub r: bool,
+    pub pv: T,
+    pub q: bool,
+    pub cv: T,
+    /// Memory: `cu` in the last call.
+    pub cu_before: bool,
+}
+
+impl<T: Count> Ctu<T> {
+    /// One call: sets the inputs and counts.
+    #[inline]
+    pub fn call(&mut self, cu: bool, r: bool, pv: T) {
+        (self.cu, self.r, self.pv) = (cu, r, pv);
+        self.step(&Context::at(0));
+    }
+
+    /// One call with the inputs as they are.
+    #[inline]
+    pub fn step(&mut self, _: &Context) {
+        let edge = self.cu & !self.cu_before;
+        self.cu_before = self.cu;
+        let counted = self.cv.saturating_add(T::from(edge));
+        self.cv = if self.r { T::ZERO } else { counted };
+        self.q = self.cv >= self.pv;
+    }
+}
+
+pins!([T: Count] Ctu<T> {
+    Input { cu: bool = "CU", r: bool = "R", pv: T = "PV" }
+    Output { q: bool = "Q", cv: T = "CV" }
+    Memory { cu_before: bool = "cu_before" }
+});
+
+/// `CTD`: counts down on each rising edge of `cd`; `q` while `cv <= 0`. While `ld`, `cv` is `pv`:
+/// load wins over counting. `cv` goes below 0 and stops at the type's minimum, which is 0 for an
+/// unsigned type.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Ctd<T> {
+    pub cd: bool,
+    pub ld: bool,
+    pub pv: T,
+    pub q: bool,
+    pub cv: T,
+    /// Memory: `cd` in the last call.
+    pub cd_before: bool,
+}
+
+impl<T: Count> Ctd<T> {
+    /// One call: sets the inputs and counts.
+    #[inline]
+    pub fn call(&mut self, cd: bool, ld: bool, pv: T) {
+        (self.cd, self.ld, self.pv) = (cd, ld, pv);
+        self.step(&Context::at(0));
+    }
+
+    /// One call with the inputs as they are.
+    #[inline]
+    pub fn step(&mut self, _: &Context) {
+        let edge = self.cd & !self.cd_before;
+        self.cd_before = self.cd;
+        let counted = self.cv.saturating_sub(T::from(edge));
+        self.cv = if self.ld { self.pv } else { counted };
+        self.q = self.cv <= T::ZERO;
+    }
+}
+
+pins!([T: Count] Ctd<T> {
+    Input { cd: bool = "CD", ld: bool = "LD", pv: T = "PV" }
+    Output { q: bool = "Q", cv: T = "CV" }
+    Memory { cd_before: bool = "cd_before" }
+});
+
+/// `CTUD`: counts up on each rising edge of `cu` and down on each of `cd`; both in one call
+/// leave `cv` alone, also at the limits. `qu` while `cv >= pv`, `qd` while `cv <= 0`. Reset wins
+/// over load, load over counting; `cv` stops at the limits of the type.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Ctud<T> {
+    pub cu: bool,
+    pub cd: bool,
+    pub r: bool,
+    pub ld: bool,
+    pub pv: T,
+    pub qu: bool,
+    pub qd: bool,
+    pub cv: T,
+    /// Memory: `cu` in the last call.
+    pub cu_before: bool,
+    /// Memory: `cd` in the last call.
+    pub cd_before: bool,
+}
+
+impl<T: Count> Ctud<T> {
+    /// One call: sets the inputs and counts.
+    #[inline]
+    pub fn call(&mut self, cu: bool, cd: bool, r: bool, ld: bool, pv: T) {
+        (self.cu, self.cd, self.r, self.ld, self.pv) = (cu, cd, r, ld, pv);
+        self.step(&Context::at(0));
+    }
+
+    /// One call with the inputs as they are.
+    #[inline]
+    pub fn step(&mut self, _: &Context) {
+        let up = self.cu & !self.cu_before;
+        let down = self.cd & !self.cd_before;
+        (self.cu_before, self.cd_before) = (self.cu, self.cd);
+        // At most one of the two counts, so a limit cannot make the pair lopsided.
+        let raised = self.cv.saturating_add(T::from(up & !down));
+        let counted = raised.saturating_sub(T::from(down & !up));
+        let loaded = if self.ld { self.pv } else { counted };
+        self.cv = if self.r { T::ZERO } else { loaded };
+        self.qu = self.cv >= self.pv;
+        self.qd = self.cv <= T::ZERO;
+    }
+}
+
+pins!([T: Count] Ctud<T> {
+    Input { cu: bool = "CU", cd: bool = "CD", r: bool = "R", ld: bool = "LD", pv: T = "PV" }
+    Output { qu: bool = "QU", qd: bool = "QD", cv: T = "CV" }
+    Memory { cu_before: bool = "cu_before", cd_before: bool = "cd_before" }
+});
+
+// Controllers hold thousands of these.
+const _: () = assert!(size_of::<Ctu<i16>>() <= 10);

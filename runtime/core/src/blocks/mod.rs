@@ -1,0 +1,15 @@
+//! The standard function blocks: plain structs whose members stand in the order inputs, outputs,
+//! memory, with no branch in a step where a select will do. Each family's module holds what its
+//! vendor defines; `iec` also holds what all of them share.
+//!
+//! A block's `call` sets the inputs and runs one step; `step` runs one with the inputs as they
+//! are, and takes the context whether it needs it or not, so that native code can call any.
+
+pub mod codesys;
+pub mod cscape;
+pub mod iec;
+pub mod logix;
+
+mod bistable;
+mod edge;
+mod timer;

@@ -1,0 +1,153 @@
+//! Timers. They have no clock: they measure from the scan time they are called with, so within
+//! one scan no time passes. A negative `pt` acts as 0.
+
+use crate::block::pins;
+use crate::{Context, Time};
+
+/// `TON`: `q` once `in_` has been TRUE for `pt`, until it falls. `et` is the time it has been
+/// TRUE, up to `pt`. While it runs, each call's `pt` counts; once it has expired, `q` and `et`
+/// stay as they are. With a `pt` of 0, `q` comes in the first call with `in_`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Ton {
+    pub in_: bool,
+    pub pt: Time,
+    pub q: bool,
+    pub et: Time,
+    /// Memory: `in_` in the last call.
+    pub in_before: bool,
+    /// Memory: when `in_` rose.
+    pub start: Time,
+}
+
+impl Ton {
+    /// One call: sets the inputs and measures.
+    #[inline]
+    pub fn call(&mut self, in_: bool, pt: Time, cx: &Context) {
+        (self.in_, self.pt) = (in_, pt);
+        self.step(cx);
+    }
+
+    /// One call with the inputs as they are.
+    #[inline]
+    pub fn step(&mut self, cx: &Context) {
+        let rises = self.in_ & !self.in_before;
+        self.in_before = self.in_;
+        self.start = if rises { cx.now } else { self.start };
+        let held = self.in_ & self.q;
+        let run = Run::measure(self.start, cx.now, self.pt);
+        let et = if held { self.et } else { run.elapsed };
+        self.et = if self.in_ { et } else { 0 };
+        self.q = self.in_ & (held | run.over);
+    }
+}
+
+pins!([] Ton {
+    Input { in_: bool = "IN", pt: Time = "PT" }
+    Output { q: bool = "Q", et: Time = "ET" }
+    Memory { in_before: bool = "in_before", start: Time = "start" }
+});
+
+/// `TOF`: `q` while `in_`, and for `pt` after it falls; FALSE until `in_` is first TRUE. `et` is
+/// the time since it fell, up to `pt`. While it runs, each call's `pt` counts; once it has
+/// expired, `et` stays until `in_` rises. With a `pt` of 0, `q` follows `in_`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tof {
+    pub in_: bool,
+    pub pt: Time,
+    pub q: bool,
+    pub et: Time,
+    /// Memory: `in_` in the last call.
+    pub in_before: bool,
+    /// Memory: when `in_` fell.
+    pub start: Time,
+}
+
+impl Tof {
+    /// One call: sets the inputs and measures.
+    #[inline]
+    pub fn call(&mut self, in_: bool, pt: Time, cx: &Context) {
+        (self.in_, self.pt) = (in_, pt);
+        self.step(cx);
+    }
+
+    /// One call with the inputs as they are.
+    #[inline]
+    pub fn step(&mut self, cx: &Context) {
+        let falls = !self.in_ & self.in_before;
+        self.in_before = self.in_;
+        self.start = if falls { cx.now } else { self.start };
+        let run = Run::measure(self.start, cx.now, self.pt);
+        let et = if self.q { run.elapsed } else { self.et };
+        self.et = if self.in_ { 0 } else { et };
+        self.q = self.in_ | (self.q & !run.over);
+    }
+}
+
+pins!([] Tof {
+    Input { in_: bool = "IN", pt: Time = "PT" }
+    Output { q: bool = "Q", et: Time = "ET" }
+    Memory { in_before: bool = "in_before", start: Time = "start" }
+});
+
+/// `TP`: a rising `in_` gives a pulse of `q` that lasts `pt`, whatever `in_` does meanwhile;
+/// another rise during the pulse, or in the call that ends it, is lost. `et` is the pulse's age;
+/// after it, `et` stays until `in_` is FALSE. During the pulse each call's `pt` counts; a `pt`
+/// of 0 gives none.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tp {
+    pub in_: bool,
+    pub pt: Time,
+    pub q: bool,
+    pub et: Time,
+    /// Memory: `in_` in the last call.
+    pub in_before: bool,
+    /// Memory: when the pulse began.
+    pub start: Time,
+}
+
+impl Tp {
+    /// One call: sets the inputs and measures.
+    #[inline]
+    pub fn call(&mut self, in_: bool, pt: Time, cx: &Context) {
+        (self.in_, self.pt) = (in_, pt);
+        self.step(cx);
+    }
+
+    /// One call with the inputs as they are.
+    #[inline]
+    pub fn step(&mut self, cx: &Context) {
+        let begins = self.in_ & !self.in_before & !self.q;
+        self.in_before = self.in_;
+        self.start = if begins { cx.now } else { self.start };
+        let pulse = begins | self.q;
+        let run = Run::measure(self.start, cx.now, self.pt);
+        let et = if pulse { run.elapsed } else { self.et };
+        self.q = pulse & !run.over;
+        self.et = if self.in_ | self.q { et } else { 0 };
+    }
+}
+
+pins!([] Tp {
+    Input { in_: bool = "IN", pt: Time = "PT" }
+    Output { q: bool = "Q", et: Time = "ET" }
+    Memory { in_before: bool = "in_before", start: Time = "start" }
+});
+
+/// How far a delay has run.
+struct Run {
+    /// At most the delay.
+    elapsed: Time,
+    over: bool,
+}
+
+impl Run {
+    #[inline]
+    fn measure(start: Time, now: Time, delay: Time) -> Self {
+        let elapsed = now.wrapping_sub(start);
+        let delay = delay.max(0);
+        Self { elapsed: elapsed.min(delay), over: elapsed >= delay }
+    }
+}

@@ -1,0 +1,119 @@
+use core::fmt;
+
+/// Why a scan stopped. The discriminant is the low byte of what native code returns; 0 there
+/// means that no fault happened.
+#[repr(u8)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FaultKind {
+    /// An integer was divided by zero, by `/` or `MOD`.
+    DivideByZero = 1,
+    /// An array index, or the selector of `MUX`, lies outside its bounds.
+    IndexOutOfRange = 2,
+    /// A value does not fit the subrange of the variable it was assigned to.
+    SubrangeViolated = 3,
+    /// The step of a FOR loop is zero.
+    ZeroStep = 4,
+}
+
+impl FaultKind {
+    pub const ALL: [Self; 4] = [Self::DivideByZero, Self::IndexOutOfRange, Self::SubrangeViolated, Self::ZeroStep];
+
+    /// The fault with this code, as native code returns it.
+    pub fn from_code(code: u8) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| *kind as u8 == code)
+    }
+
+    /// What happened, in the words that the command prints.
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::DivideByZero => "division by zero",
+            Self::IndexOutOfRange => "index out of range",
+            Self::SubrangeViolated => "value outside its subrange",
+            Self::ZeroStep => "the step of a FOR loop is 0",
+        }
+    }
+}
+
+impl fmt::Display for FaultKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.text())
+    }
+}
+
+/// A place in Structured Text: the file's number in the program, and 1-based line and column.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Location {
+    pub file: u16,
+    pub column: u16,
+    pub line: u32,
+}
+
+/// A fault and where in the source it happened: the only unexpected way out of a scan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fault {
+    pub kind: FaultKind,
+    pub at: Location,
+}
+
+impl Fault {
+    /// The fault as native code returns it, never 0: from the low bit, 8 bits of kind, 16 of
+    /// file, 16 of column, 24 of line. A line that needs more shows as the greatest.
+    pub const fn code(self) -> u64 {
+        let line = if self.at.line > LINE_MAX { LINE_MAX } else { self.at.line };
+        self.kind as u64 | (self.at.file as u64) << 8 | (self.at.column as u64) << 24 | (line as u64) << 40
+    }
+
+    /// The fault with this code; `None` for 0, and for what [`code`](Self::code) never gives.
+    pub fn from_code(code: u64) -> Option<Self> {
+        let kind = FaultKind::from_code(code as u8)?;
+        let at = Location { file: (code >> 8) as u16, column: (code >> 24) as u16, line: (code >> 40) as u32 };
+        Some(Self { kind, at })
+    }
+}
+
+/// The greatest line that a fault's code can carry.
+const LINE_MAX: u32 = 0xFF_FFFF;
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} at line {}, column {}", self.kind, self.at.line, self.at.column)
+    }
+}
+
+impl core::error::Error for Fault {}
+
+/// Gives the bare [`FaultKind`] of an operation its place in the source.
+pub trait OrFault<T> {
+    /// `file` is the file's number in the program; `line` and `column` count from 1.
+    fn at(self, file: u16, line: u32, column: u16) -> Result<T, Fault>;
+}
+
+impl<T> OrFault<T> for Result<T, FaultKind> {
+    #[inline]
+    fn at(self, file: u16, line: u32, column: u16) -> Result<T, Fault> {
+        match self {
+            Ok(value) => Ok(value),
+            Err(kind) => Err(Fault { kind, at: Location { file, column, line } }),
+        }
+    }
+}
+
+/// What an operation returns: a value, or a value unless it faults.
+pub trait Outcome {
+    type Value;
+    fn outcome(self) -> Result<Self::Value, FaultKind>;
+}
+
+impl<T> Outcome for Result<T, FaultKind> {
+    type Value = T;
+    fn outcome(self) -> Self {
+        self
+    }
+}
+
+impl<T: crate::Scalar> Outcome for T {
+    type Value = T;
+    fn outcome(self) -> Result<T, FaultKind> {
+        Ok(self)
+    }
+}

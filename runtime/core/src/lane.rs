@@ -1,0 +1,235 @@
+use core::fmt::Debug;
+
+/// How an elementary value is carried: a Rust primitive. Several IEC types share a lane
+/// (BYTE and USINT; LINT, TIME and LTIME).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Lane {
+    Bool,
+    I8,
+    I16,
+    I32,
+    I64,
+    U8,
+    U16,
+    U32,
+    U64,
+    F32,
+    F64,
+}
+
+/// One value in its lane, for executors that learn the type at run time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    Bool(bool),
+    I8(i8),
+    I16(i16),
+    I32(i32),
+    I64(i64),
+    U8(u8),
+    U16(u16),
+    U32(u32),
+    U64(u64),
+    F32(f32),
+    F64(f64),
+}
+
+/// A Rust primitive that carries an elementary IEC value.
+pub trait Scalar: Copy + Default + PartialEq + PartialOrd + Debug + 'static {
+    const LANE: Lane;
+    /// Zero, or FALSE.
+    const ZERO: Self;
+    fn into_value(self) -> Value;
+    /// `None` when `value` is of another lane.
+    fn from_value(value: Value) -> Option<Self>;
+}
+
+macro_rules! lanes {
+    ($($rust:ident $lane:ident $size:literal;)*) => {
+        $(impl Scalar for $rust {
+            const LANE: Lane = Lane::$lane;
+            const ZERO: Self = zero!($rust);
+            #[inline]
+            fn into_value(self) -> Value { Value::$lane(self) }
+            #[inline]
+            fn from_value(value: Value) -> Option<Self> {
+                if let Value::$lane(it) = value { Some(it) } else { None }
+            }
+        })*
+
+        impl Lane {
+            pub const ALL: [Self; 11] = [$(Self::$lane),*];
+
+            /// Size in bytes, which is also the alignment.
+            pub const fn size(self) -> u32 {
+                match self { $(Self::$lane => $size),* }
+            }
+
+            /// The Rust primitive's name.
+            pub const fn rust_name(self) -> &'static str {
+                match self { $(Self::$lane => stringify!($rust)),* }
+            }
+
+            /// Zero, or FALSE.
+            pub const fn zero(self) -> Value {
+                match self { $(Self::$lane => Value::$lane(zero!($rust))),* }
+            }
+        }
+
+        impl Value {
+            pub const fn lane(self) -> Lane {
+                match self { $(Self::$lane(_) => Lane::$lane),* }
+            }
+
+            /// Reads a value of `lane` from the start of `bytes`, in the machine's byte order.
+            ///
+            /// # Panics
+            /// If `bytes` is shorter than the lane.
+            pub fn read(lane: Lane, bytes: &[u8]) -> Self {
+                match lane {
+                    $(lane_arm!(@pat $lane) => lane_arm!(@read $rust $lane bytes),)*
+                }
+            }
+
+            /// Writes the value to the start of `bytes`, in the machine's byte order.
+            ///
+            /// # Panics
+            /// If `bytes` is shorter than the value.
+            pub fn write(self, bytes: &mut [u8]) {
+                match self {
+                    $(lane_arm!(@bind $lane it) => lane_arm!(@write $rust it bytes),)*
+                }
+            }
+        }
+    };
+}
+
+macro_rules! zero {
+    (bool) => {
+        false
+    };
+    (f32) => {
+        0.0
+    };
+    (f64) => {
+        0.0
+    };
+    ($int:ident) => {
+        0
+    };
+}
+
+// BOOL's bytes are read and written apart: any other bit pattern is not a `bool`.
+macro_rules! lane_arm {
+    (@pat Bool) => {
+        Lane::Bool
+    };
+    (@pat $lane:ident) => {
+        Lane::$lane
+    };
+    (@bind Bool $it:ident) => {
+        Self::Bool($it)
+    };
+    (@bind $lane:ident $it:ident) => {
+        Self::$lane($it)
+    };
+    (@read bool $lane:ident $bytes:ident) => {
+        Self::Bool($bytes[0] != 0)
+    };
+    (@read $rust:ident $lane:ident $bytes:ident) => {{
+        let mut raw = [0; size_of::<$rust>()];
+        raw.copy_from_slice(&$bytes[..size_of::<$rust>()]);
+        Self::$lane($rust::from_ne_bytes(raw))
+    }};
+    (@write bool $it:ident $bytes:ident) => {
+        $bytes[0] = u8::from($it)
+    };
+    (@write $rust:ident $it:ident $bytes:ident) => {
+        $bytes[..size_of::<$rust>()].copy_from_slice(&$it.to_ne_bytes())
+    };
+}
+
+lanes! {
+    bool Bool 1;
+    i8 I8 1;
+    i16 I16 2;
+    i32 I32 4;
+    i64 I64 8;
+    u8 U8 1;
+    u16 U16 2;
+    u32 U32 4;
+    u64 U64 8;
+    f32 F32 4;
+    f64 F64 8;
+}
+
+impl Lane {
+    pub const fn is_signed(self) -> bool {
+        matches!(self, Self::I8 | Self::I16 | Self::I32 | Self::I64)
+    }
+
+    pub const fn is_unsigned(self) -> bool {
+        matches!(self, Self::U8 | Self::U16 | Self::U32 | Self::U64)
+    }
+
+    pub const fn is_integer(self) -> bool {
+        self.is_signed() || self.is_unsigned()
+    }
+
+    pub const fn is_float(self) -> bool {
+        matches!(self, Self::F32 | Self::F64)
+    }
+
+    /// The least and greatest value of an integer lane; FALSE and TRUE count as 0 and 1.
+    pub const fn range(self) -> Option<(i128, i128)> {
+        Some(match self {
+            Self::Bool => (0, 1),
+            Self::I8 => (i8::MIN as i128, i8::MAX as i128),
+            Self::I16 => (i16::MIN as i128, i16::MAX as i128),
+            Self::I32 => (i32::MIN as i128, i32::MAX as i128),
+            Self::I64 => (i64::MIN as i128, i64::MAX as i128),
+            Self::U8 => (0, u8::MAX as i128),
+            Self::U16 => (0, u16::MAX as i128),
+            Self::U32 => (0, u32::MAX as i128),
+            Self::U64 => (0, u64::MAX as i128),
+            Self::F32 | Self::F64 => return None,
+        })
+    }
+
+    /// The value of an integer lane (or BOOL) that equals `number`; `None` if it does not fit.
+    pub fn integer(self, number: i128) -> Option<Value> {
+        Some(match self {
+            Self::Bool => Value::Bool(match number {
+                0 => false,
+                1 => true,
+                _ => return None,
+            }),
+            Self::I8 => Value::I8(number.try_into().ok()?),
+            Self::I16 => Value::I16(number.try_into().ok()?),
+            Self::I32 => Value::I32(number.try_into().ok()?),
+            Self::I64 => Value::I64(number.try_into().ok()?),
+            Self::U8 => Value::U8(number.try_into().ok()?),
+            Self::U16 => Value::U16(number.try_into().ok()?),
+            Self::U32 => Value::U32(number.try_into().ok()?),
+            Self::U64 => Value::U64(number.try_into().ok()?),
+            Self::F32 | Self::F64 => return None,
+        })
+    }
+}
+
+impl Value {
+    /// The number of an integer or BOOL value.
+    pub fn as_integer(self) -> Option<i128> {
+        Some(match self {
+            Self::Bool(it) => i128::from(it),
+            Self::I8(it) => i128::from(it),
+            Self::I16(it) => i128::from(it),
+            Self::I32(it) => i128::from(it),
+            Self::I64(it) => i128::from(it),
+            Self::U8(it) => i128::from(it),
+            Self::U16(it) => i128::from(it),
+            Self::U32(it) => i128::from(it),
+            Self::U64(it) => i128::from(it),
+            Self::F32(_) | Self::F64(_) => return None,
+        })
+    }
+}

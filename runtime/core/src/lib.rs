@@ -1,0 +1,45 @@
+//! What compiled Structured Text needs at run time: exact IEC arithmetic and the standard
+//! function blocks. No allocation, no `std`, no `unsafe`, no clock.
+//!
+//! Every executor shares this crate. Generated Rust calls it, native code calls it through
+//! `staunch-runtime-abi`, and the compiler's interpreter calls it to fold constants. A rule
+//! written here holds everywhere.
+#![no_std]
+#![forbid(unsafe_code)]
+
+mod context;
+mod fault;
+mod lane;
+
+mod op_table;
+pub mod ops;
+
+pub mod text;
+pub mod time;
+
+mod block;
+mod block_table;
+pub mod blocks;
+
+pub use block::{Block, BlockInfo, Direction, Family, Instruction, Pin, Prescan};
+pub use block_table::BLOCKS;
+pub use blocks::{codesys, cscape, iec, logix};
+pub use context::Context;
+pub use fault::{Fault, FaultKind, Location, OrFault, Outcome};
+pub use lane::{Lane, Scalar, Value};
+pub use text::Text;
+pub use time::Time;
+
+/// Includes what `staunch_build` made of Structured Text, by its name there: the file's stem.
+///
+/// ```ignore
+/// mod plc {
+///     staunch_runtime::include_st!("parking_garage");
+/// }
+/// ```
+#[macro_export]
+macro_rules! include_st {
+    ($name:literal) => {
+        include!(concat!(env!("OUT_DIR"), "/", $name, ".rs"));
+    };
+}

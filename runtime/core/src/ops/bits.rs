@@ -1,0 +1,83 @@
+use super::{Bits, Integer};
+
+/// `a AND b`, bit by bit.
+#[inline]
+pub fn and<T: Bits>(a: T, b: T) -> T {
+    a & b
+}
+
+/// `a OR b`, bit by bit.
+#[inline]
+pub fn or<T: Bits>(a: T, b: T) -> T {
+    a | b
+}
+
+/// `a XOR b`, bit by bit.
+#[inline]
+pub fn xor<T: Bits>(a: T, b: T) -> T {
+    a ^ b
+}
+
+/// `NOT value`, bit by bit.
+#[inline]
+pub fn not<T: Bits>(value: T) -> T {
+    !value
+}
+
+/// Moves the bits of `value` left by `count`; zeros come in. All are gone when `count` reaches
+/// the width; a negative `count` moves nothing.
+///
+/// ```
+/// use staunch_runtime::ops::shl;
+/// assert_eq!(shl(0x81_u8, 1), 0x02);
+/// assert_eq!(shl(0x81_u8, 8), 0);
+/// assert_eq!(shl(0x81_u8, -1), 0x81);
+/// ```
+#[inline]
+pub fn shl<T: Integer>(value: T, count: i64) -> T {
+    shift(value, count, T::shifted_left)
+}
+
+/// Moves the bits of `value` right by `count`; zeros come in, also for signed types. All are
+/// gone when `count` reaches the width; a negative `count` moves nothing.
+///
+/// ```
+/// use staunch_runtime::ops::shr;
+/// assert_eq!(shr(0x81_u8, 1), 0x40);
+/// assert_eq!(shr(-2_i8, 1), 127);
+/// ```
+#[inline]
+pub fn shr<T: Integer>(value: T, count: i64) -> T {
+    shift(value, count, T::shifted_right)
+}
+
+#[inline]
+fn shift<T: Integer>(value: T, count: i64, by: fn(T, u32) -> T) -> T {
+    if count >= i64::from(T::BITS) { T::ZERO } else { by(value, count.max(0) as u32) }
+}
+
+/// Turns the bits of `value` left by `count` modulo the width; a negative `count` turns right.
+///
+/// ```
+/// use staunch_runtime::ops::rol;
+/// assert_eq!(rol(0x81_u8, 1), 0x03);
+/// assert_eq!(rol(0x81_u8, 9), 0x03);
+/// assert_eq!(rol(0x81_u8, -1), 0xC0);
+/// ```
+#[inline]
+pub fn rol<T: Integer>(value: T, count: i64) -> T {
+    value.rotated_left(turns::<T>(count))
+}
+
+/// Turns the bits of `value` right by `count` modulo the width; a negative `count` turns left.
+#[inline]
+pub fn ror<T: Integer>(value: T, count: i64) -> T {
+    value.rotated_right(turns::<T>(count))
+}
+
+/// The least non-negative count that turns a `T` as far as `count` does.
+#[inline]
+fn turns<T: Integer>(count: i64) -> u32 {
+    // Every width is a power of two, so the mask is the euclidean remainder.
+    count as u32 & (T::BITS - 1)
+}

@@ -1,0 +1,167 @@
+use crate::{Lane, Scalar, Value, with_lane};
+
+/// A lane that converts to lane `T`; every pair does.
+pub trait ConvertTo<T> {
+    /// See [`convert`].
+    fn converted(self) -> T;
+}
+
+/// A real lane that truncates to integer lane `T`; every such pair does.
+pub trait TruncateTo<T> {
+    /// See [`trunc`].
+    fn truncated(self) -> T;
+}
+
+/// Changes the lane of a value.
+///
+/// | from | to | result |
+/// |---|---|---|
+/// | integer | integer | the low bits |
+/// | integer | real | the nearest, ties to even |
+/// | real | integer | the nearest, ties to even; saturated; NaN gives 0 |
+/// | real | real | the nearest, ties to even |
+/// | BOOL | number | 0 or 1 |
+/// | number | BOOL | whether it is `<> 0`, so TRUE for NaN |
+///
+/// ```
+/// use staunch_runtime::ops::convert;
+/// assert_eq!(convert::<i16, i8>(200), -56);
+/// assert_eq!(convert::<f32, i32>(2.5), 2);
+/// assert_eq!(convert::<f32, i32>(3.5), 4);
+/// assert_eq!(convert::<f32, i32>(-2.5), -2);
+/// assert_eq!(convert::<f64, u8>(1e9), 255);
+/// assert_eq!(convert::<f64, bool>(f64::NAN), true);
+/// ```
+#[inline]
+pub fn convert<F: ConvertTo<T>, T>(value: F) -> T {
+    value.converted()
+}
+
+/// Changes a real to an integer toward zero; saturated; NaN gives 0.
+///
+/// ```
+/// use staunch_runtime::ops::trunc;
+/// assert_eq!(trunc::<f32, i16>(-2.9), -2);
+/// assert_eq!(trunc::<f32, i16>(1e9), i16::MAX);
+/// ```
+#[inline]
+pub fn trunc<F: TruncateTo<T>, T>(value: F) -> T {
+    value.truncated()
+}
+
+macro_rules! conversions {
+    ($($from:ident $kind:ident;)*) => { $(
+        conversions!(@from $kind $from:
+            bool bool, i8 integer, i16 integer, i32 integer, i64 integer,
+            u8 integer, u16 integer, u32 integer, u64 integer, f32 real, f64 real);
+    )* };
+    (@from $kind:ident $from:ident: $($to:ident $to_kind:ident),*) => { $(
+        impl ConvertTo<$to> for $from {
+            #[inline]
+            fn converted(self) -> $to { conversions!(@ $kind $to_kind self $from $to) }
+        }
+    )* };
+    (@ bool bool $value:ident $from:ident $to:ident) => { $value };
+    (@ bool $any:ident $value:ident $from:ident $to:ident) => { u8::from($value) as $to };
+    (@ $any:ident bool $value:ident $from:ident $to:ident) => { $value != <$from>::ZERO };
+    (@ real integer $value:ident $from:ident $to:ident) => { nearest!($from $value) as $to };
+    (@ $any:ident $other:ident $value:ident $from:ident $to:ident) => { $value as $to };
+}
+
+/// The nearest whole number, ties to even.
+macro_rules! nearest {
+    (f32 $value:ident) => {
+        libm::rintf($value)
+    };
+    (f64 $value:ident) => {
+        libm::rint($value)
+    };
+}
+
+conversions! {
+    bool bool;
+    i8 integer;
+    i16 integer;
+    i32 integer;
+    i64 integer;
+    u8 integer;
+    u16 integer;
+    u32 integer;
+    u64 integer;
+    f32 real;
+    f64 real;
+}
+
+macro_rules! truncations {
+    ($from:ident: $($to:ident)*) => { $(
+        impl TruncateTo<$to> for $from {
+            #[inline]
+            fn truncated(self) -> $to { self as $to }
+        }
+    )* };
+}
+
+truncations!(f32: i8 i16 i32 i64 u8 u16 u32 u64);
+truncations!(f64: i8 i16 i32 i64 u8 u16 u32 u64);
+
+/// [`convert`] for a value whose lane is known at run time.
+pub fn convert_value(value: Value, to: Lane) -> Value {
+    match value {
+        Value::Bool(it) => converted(it, to),
+        Value::I8(it) => converted(it, to),
+        Value::I16(it) => converted(it, to),
+        Value::I32(it) => converted(it, to),
+        Value::I64(it) => converted(it, to),
+        Value::U8(it) => converted(it, to),
+        Value::U16(it) => converted(it, to),
+        Value::U32(it) => converted(it, to),
+        Value::U64(it) => converted(it, to),
+        Value::F32(it) => converted(it, to),
+        Value::F64(it) => converted(it, to),
+    }
+}
+
+/// [`trunc`] for a value whose lane is known at run time. What has nothing to truncate (a value
+/// that is not a real, a target that is not an integer) is [converted](convert_value).
+pub fn trunc_value(value: Value, to: Lane) -> Value {
+    match value {
+        Value::F32(it) => with_lane!(integer to, T => trunc::<f32, T>(it).into_value(), converted(it, to)),
+        Value::F64(it) => with_lane!(integer to, T => trunc::<f64, T>(it).into_value(), converted(it, to)),
+        Value::Bool(_)
+        | Value::I8(_)
+        | Value::I16(_)
+        | Value::I32(_)
+        | Value::I64(_)
+        | Value::U8(_)
+        | Value::U16(_)
+        | Value::U32(_)
+        | Value::U64(_) => convert_value(value, to),
+    }
+}
+
+/// A lane that converts to every lane.
+trait ConvertToAny:
+    Scalar
+    + ConvertTo<bool>
+    + ConvertTo<i8>
+    + ConvertTo<i16>
+    + ConvertTo<i32>
+    + ConvertTo<i64>
+    + ConvertTo<u8>
+    + ConvertTo<u16>
+    + ConvertTo<u32>
+    + ConvertTo<u64>
+    + ConvertTo<f32>
+    + ConvertTo<f64>
+{
+}
+
+macro_rules! convert_to_any {
+    ($($from:ident)*) => { $(impl ConvertToAny for $from {})* };
+}
+
+convert_to_any!(bool i8 i16 i32 i64 u8 u16 u32 u64 f32 f64);
+
+fn converted<F: ConvertToAny>(value: F, to: Lane) -> Value {
+    with_lane!(any to, T => convert::<F, T>(value).into_value(), value.into_value())
+}

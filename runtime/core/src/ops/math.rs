@@ -1,0 +1,70 @@
+//! REAL mathematics. Every function is libm's own code, so its bits are the same on every target.
+
+use super::Real;
+
+/// `base` to the power of `exponent`: IEEE `pow`. NaN for a negative base with a broken exponent;
+/// 1 for an exponent of 0, whatever the base.
+#[inline]
+pub fn expt<T: Real>(base: T, exponent: T) -> T {
+    base.power(exponent)
+}
+
+/// The square root, correctly rounded; NaN below zero.
+#[inline]
+pub fn sqrt<T: Real>(value: T) -> T {
+    value.square_root()
+}
+
+/// The natural logarithm; negative infinity at zero, NaN below.
+#[inline]
+pub fn ln<T: Real>(value: T) -> T {
+    value.natural_log()
+}
+
+/// The logarithm to base 10; negative infinity at zero, NaN below.
+#[inline]
+pub fn log<T: Real>(value: T) -> T {
+    value.decimal_log()
+}
+
+/// The natural exponential; infinity when it exceeds the type.
+#[inline]
+pub fn exp<T: Real>(value: T) -> T {
+    value.exponential()
+}
+
+/// The sine of an angle in radians; NaN at the infinities.
+#[inline]
+pub fn sin<T: Real>(value: T) -> T {
+    value.sine()
+}
+
+/// The cosine of an angle in radians; NaN at the infinities.
+#[inline]
+pub fn cos<T: Real>(value: T) -> T {
+    value.cosine()
+}
+
+/// The tangent of an angle in radians; NaN at the infinities.
+#[inline]
+pub fn tan<T: Real>(value: T) -> T {
+    value.tangent()
+}
+
+/// The angle in radians, `-pi/2..=pi/2`, whose sine is `value`; NaN outside `-1..=1`.
+#[inline]
+pub fn asin<T: Real>(value: T) -> T {
+    value.arc_sine()
+}
+
+/// The angle in radians, `0..=pi`, whose cosine is `value`; NaN outside `-1..=1`.
+#[inline]
+pub fn acos<T: Real>(value: T) -> T {
+    value.arc_cosine()
+}
+
+/// The angle in radians, `-pi/2..=pi/2`, whose tangent is `value`.
+#[inline]
+pub fn atan<T: Real>(value: T) -> T {
+    value.arc_tangent()
+}

@@ -1,0 +1,49 @@
+use super::Integer;
+use crate::{FaultKind, Scalar};
+
+/// The greater of two values; `a` when neither is greater. So `MAX(-0.0, 0.0)` is `-0.0`, and
+/// when one of them is NaN the result is `a`.
+#[inline]
+pub fn max<T: Scalar>(a: T, b: T) -> T {
+    if a < b { b } else { a }
+}
+
+/// The lesser of two values; `a` when neither is less. So `MIN(0.0, -0.0)` is `0.0`, and when
+/// one of them is NaN the result is `a`.
+#[inline]
+pub fn min<T: Scalar>(a: T, b: T) -> T {
+    if b < a { b } else { a }
+}
+
+/// `value`, or the bound that it passes. The lower bound is looked at first: with crossed bounds
+/// a value below `min` gives `min`, any other gives `max`. A NaN value stays, a NaN bound does
+/// not bind.
+///
+/// ```
+/// use staunch_runtime::ops::limit;
+/// assert_eq!(limit(0, 5, 3), 3);
+/// assert_eq!(limit(10, 5, 3), 10);
+/// assert_eq!(limit(10, 12, 3), 3);
+/// ```
+#[inline]
+pub fn limit<T: Scalar>(min: T, value: T, max: T) -> T {
+    if value < min {
+        min
+    } else if value > max {
+        max
+    } else {
+        value
+    }
+}
+
+/// `SEL`: `in0` when `g` is FALSE, `in1` when it is TRUE. Both have been evaluated.
+#[inline]
+pub fn sel<T: Scalar>(g: bool, in0: T, in1: T) -> T {
+    if g { in1 } else { in0 }
+}
+
+/// `value` if it lies in `min..=max`, else [`FaultKind::SubrangeViolated`].
+#[inline]
+pub fn in_range<T: Integer>(min: T, value: T, max: T) -> Result<T, FaultKind> {
+    if value < min || value > max { Err(FaultKind::SubrangeViolated) } else { Ok(value) }
+}

@@ -1,0 +1,139 @@
+//! The arguments of a built executable: those of `staunch run`.
+
+use crate::bench::BenchOptions;
+use crate::literal;
+use crate::path::nearest;
+use crate::run::Options;
+use crate::value::parse_duration_text;
+use staunch_runtime::Time;
+use std::ffi::OsString;
+
+/// What the user of an executable wants.
+#[derive(Clone, Debug)]
+pub enum Wish {
+    Run(Options),
+    Bench(BenchOptions),
+    Help(String),
+}
+
+const FLAGS: [(&str, &str, &str); 12] = [
+    ("--program", "NAME", "Run this program only"),
+    ("--scans", "N", "End after N scans"),
+    ("--cycle", "TIME", "Time between two scans, as 10ms"),
+    ("--stimulus", "FILE", "Inputs, from a CSV file"),
+    ("--trace", "FILE", "Write a row a scan, as .csv, .vcd or .svg; - for standard output"),
+    ("--vars", "NAMES", "Variables to show, apart by commas"),
+    ("--retain", "FILE", "Keep retained variables in a file"),
+    ("--realtime", "", "Wait for the time at which each scan is due"),
+    ("--table", "", "Print the last scans as a table"),
+    ("--bench", "", "Measure the time of a scan instead"),
+    ("--quiet", "", "Print nothing but errors and the trace"),
+    ("--help", "", "Print this"),
+];
+
+/// Reads the arguments, of which the first is the executable's name.
+pub fn parse_options(mut arguments: impl Iterator<Item = OsString>) -> Result<Wish, String> {
+    let name = arguments.next().unwrap_or_default();
+    let (mut options, mut bench) = (Options::default(), false);
+    while let Some(argument) = arguments.next() {
+        let text = argument.to_string_lossy().into_owned();
+        let (flag, attached) = match text.split_once('=') {
+            Some((flag, value)) => (flag, Some(OsString::from(value))),
+            None => (text.as_str(), None),
+        };
+        let mut value = || match attached.clone().or_else(|| arguments.next()) {
+            Some(value) => Ok(value),
+            None => Err(format!("{flag} needs a value")),
+        };
+        match flag {
+            "--program" => options.program = Some(utf8(value()?)?),
+            "--scans" => options.scans = Some(count(&utf8(value()?)?)?),
+            "--cycle" => options.cycle = Some(parse_duration(&utf8(value()?)?)?),
+            "--stimulus" => options.stimulus = Some(value()?.into()),
+            "--trace" => options.trace = Some(value()?.into()),
+            "--vars" => options.vars = Some(utf8(value()?)?),
+            "--retain" => options.retain = Some(value()?.into()),
+            "--table" => options.table = true,
+            "--realtime" => options.realtime = true,
+            "--bench" => bench = true,
+            "--quiet" | "-q" => options.quiet = true,
+            "--help" | "-h" => return Ok(Wish::Help(help(&name.to_string_lossy()))),
+            other => {
+                let near = nearest(other, FLAGS.iter().map(|it| it.0));
+                return Err(format!("unknown argument `{other}`{near} (--help lists them)"));
+            }
+        }
+    }
+    let Options { program, scans, cycle, stimulus, .. } = options;
+    Ok(match bench {
+        true => Wish::Bench(BenchOptions { program, scans, cycle, stimulus }),
+        false => Wish::Run(Options { program, scans, cycle, stimulus, ..options }),
+    })
+}
+
+fn utf8(text: OsString) -> Result<String, String> {
+    text.into_string().map_err(|text| format!("`{}` is not UTF-8", text.to_string_lossy()))
+}
+
+fn count(text: &str) -> Result<u64, String> {
+    text.replace('_', "").parse().map_err(|_| format!("`{text}` is not a number of scans"))
+}
+
+/// Nanoseconds of `10ms`, `1s500ms` or `T#10ms`, above zero.
+pub fn parse_duration(text: &str) -> Result<Time, String> {
+    let time = match text.contains('#') {
+        true => literal::time(text).ok(),
+        false => parse_duration_text(text),
+    };
+    time.filter(|it| *it > 0).ok_or_else(|| format!("`{text}` is not a time above zero: write `10ms`"))
+}
+
+fn help(name: &str) -> String {
+    let name = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    let mut text = format!(
+        "Runs a compiled IEC 61131-3 program.\n\n\
+         With --scans, --stimulus, --trace or --table it runs on a virtual clock that does not\n\
+         wait; without, in real time until it is interrupted.\n\nUsage: {name} [OPTIONS]\n\nOptions:\n"
+    );
+    for (flag, value, meaning) in FLAGS {
+        text += &format!("  {:<18} {meaning}\n", format!("{flag} {value}"));
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> Result<Wish, String> {
+        parse_options(
+            std::iter::once("x").chain(text.split_whitespace()).map(OsString::from).collect::<Vec<_>>().into_iter(),
+        )
+    }
+
+    #[test]
+    fn every_flag_is_read() {
+        let text =
+            "--program P --scans=5 --cycle 1ms --stimulus a.csv --trace - --vars a,b --retain r --realtime --table -q";
+        let Wish::Run(options) = parse(text).unwrap() else { panic!() };
+        assert_eq!(options.program.as_deref(), Some("P"));
+        assert_eq!((options.scans, options.cycle), (Some(5), Some(1_000_000)));
+        assert_eq!(options.trace, Some("-".into()));
+        assert!(options.stimulus.is_some() && options.vars.is_some() && options.retain.is_some());
+        assert!(options.realtime && options.table && options.quiet);
+        let Wish::Bench(bench) = parse("--bench --scans 7").unwrap() else { panic!() };
+        assert_eq!(bench.scans, Some(7));
+        let Wish::Help(help) = parse("--help").unwrap() else { panic!() };
+        assert!(FLAGS.iter().all(|it| help.contains(it.0)));
+    }
+
+    #[test]
+    fn mistakes_are_told() {
+        assert_eq!(
+            parse("--scan 1").unwrap_err(),
+            "unknown argument `--scan`; did you mean `--scans`? (--help lists them)"
+        );
+        assert_eq!(parse("--scans").unwrap_err(), "--scans needs a value");
+        assert_eq!(parse("--cycle 0s").unwrap_err(), "`0s` is not a time above zero: write `10ms`");
+    }
+}

@@ -1,0 +1,253 @@
+//! How long a scan takes.
+
+use crate::map::{Elementary, Map, Type, Variable};
+use crate::path::Place;
+use crate::run::running;
+use crate::schedule::Schedule;
+use crate::stimulus::{Stimulus, Write};
+use crate::{Error, Machine};
+use staunch_runtime::{Context, Lane, Time};
+use std::fmt;
+use std::path::PathBuf;
+use std::str::FromStr;
+use std::time::{Duration, Instant};
+
+/// A batch is long enough that reading the clock does not count.
+const BATCH: Duration = Duration::from_micros(50);
+const LARGEST_BATCH: u64 = 1 << 16;
+/// Measuring goes on for this long unless the number of scans is given.
+const LENGTH: Duration = Duration::from_millis(700);
+const WARM_UP: Duration = Duration::from_millis(100);
+
+#[derive(Clone, Debug, Default)]
+pub struct BenchOptions {
+    pub program: Option<String>,
+    /// Scans to measure, after the warm-up.
+    pub scans: Option<u64>,
+    pub cycle: Option<Time>,
+    /// Its rows repeat. Without one, every BOOL input changes in each scan.
+    pub stimulus: Option<PathBuf>,
+}
+
+/// Nanoseconds per scan, of batches of scans.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Timing {
+    /// Scans that were measured.
+    pub scans: u64,
+    pub min: f64,
+    pub median: f64,
+    pub p99: f64,
+}
+
+/// One line that people and programs read: `scans=500 ns_min=1.5 ns_median=1.6 ns_p99=2.0`.
+impl fmt::Display for Timing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { scans, min, median, p99 } = self;
+        write!(f, "scans={scans} ns_min={min:.2} ns_median={median:.2} ns_p99={p99:.2}")
+    }
+}
+
+impl FromStr for Timing {
+    type Err = ();
+
+    fn from_str(text: &str) -> Result<Self, ()> {
+        let field = |name: &str| {
+            let found = text.split_whitespace().find_map(|it| it.strip_prefix(name)?.strip_prefix('='));
+            found.ok_or(())
+        };
+        let number = |name| field(name).and_then(|it| it.parse().map_err(drop));
+        let scans = field("scans")?.parse().map_err(drop)?;
+        Ok(Self { scans, min: number("ns_min")?, median: number("ns_median")?, p99: number("ns_p99")? })
+    }
+}
+
+/// Times scans alone, on the monotonic clock.
+pub fn bench(machine: &mut dyn Machine, map: &Map, options: &BenchOptions) -> Result<Timing, Error> {
+    let running = running(map, options.program.as_deref())?;
+    let inputs = match &options.stimulus {
+        Some(path) => Inputs::of_stimulus(&Stimulus::read(path, map, &running)?),
+        None => Inputs::Toggled(bool_inputs(map, &running)),
+    };
+    machine.init();
+    let schedule = Schedule::new(map, &running, options.cycle);
+    let fresh = vec![true; map.instances.len()];
+    let mut bench = Bench { machine, map, inputs, schedule, fresh, number: 0, now: 0 };
+    let batch = bench.warm_up()?;
+    let mut samples = Vec::with_capacity(1 << 16);
+    let (began, mut scans) = (Instant::now(), 0);
+    while options.scans.map_or(began.elapsed() < LENGTH, |wanted| scans < wanted) {
+        let count = options.scans.map_or(batch, |wanted| batch.min(wanted - scans));
+        samples.push(bench.batch(count)?.as_nanos() as f64 / count as f64);
+        scans += count;
+    }
+    samples.sort_by(f64::total_cmp);
+    let at = |part: f64| samples.get(((samples.len() as f64 - 1.0).max(0.0) * part) as usize).copied().unwrap_or(0.0);
+    Ok(Timing { scans, min: at(0.0), median: at(0.5), p99: at(0.99) })
+}
+
+/// What changes from scan to scan.
+enum Inputs {
+    /// Offsets of BOOLs.
+    Toggled(Vec<usize>),
+    /// Writes before each scan of a stimulus.
+    Repeated(Vec<Vec<Write>>),
+}
+
+impl Inputs {
+    /// Rows as scans; a row that is placed by time alone counts as one scan.
+    fn of_stimulus(stimulus: &Stimulus) -> Self {
+        let mut scans: Vec<Vec<Write>> = Vec::new();
+        for row in &stimulus.rows {
+            let number = row.scan.and_then(|it| usize::try_from(it).ok()).unwrap_or(scans.len() + 1);
+            // A row far ahead would only repeat the one before it.
+            if number > scans.len() && number < scans.len() + (1 << 20) {
+                scans.resize_with(number, Vec::new);
+            }
+            if let Some(last) = scans.last_mut() {
+                last.extend(row.writes.iter().cloned());
+            }
+        }
+        Self::Repeated(scans)
+    }
+
+    fn apply(&self, number: u64, state: &mut [u8]) {
+        match self {
+            Self::Toggled(offsets) => offsets.iter().for_each(|at| state[*at] ^= 1),
+            Self::Repeated(scans) if scans.is_empty() => {}
+            Self::Repeated(scans) => {
+                for write in &scans[(number % scans.len() as u64) as usize] {
+                    state[write.offset..write.offset + write.bytes.len()].copy_from_slice(&write.bytes);
+                }
+            }
+        }
+    }
+}
+
+fn bool_inputs(map: &Map, running: &[usize]) -> Vec<usize> {
+    let is_input = |it: &&Variable| {
+        let is_bool = matches!(it.ty, Type::Elementary(Elementary { lane: Lane::Bool, .. }));
+        it.is_input() && is_bool && !it.constant
+    };
+    let (globals, base) = map.globals();
+    let own = running.iter().flat_map(|at| &map.instances[*at].variables).filter(is_input).map(|it| Place::of(it, 0));
+    let global = globals.iter().filter(is_input).map(|it| Place::of(it, base));
+    let mut offsets: Vec<usize> = own.chain(global).map(|it| it.offset).collect();
+    offsets.sort_unstable();
+    offsets.dedup();
+    offsets
+}
+
+struct Bench<'a> {
+    machine: &'a mut dyn Machine,
+    map: &'a Map,
+    inputs: Inputs,
+    schedule: Schedule,
+    fresh: Vec<bool>,
+    number: u64,
+    now: Time,
+}
+
+impl Bench<'_> {
+    /// Finds how many scans make a batch, and goes on until caches and clock rate have settled.
+    fn warm_up(&mut self) -> Result<u64, Error> {
+        let began = Instant::now();
+        let mut count = 1;
+        loop {
+            let took = self.batch(count)?;
+            if took < BATCH && count < LARGEST_BATCH {
+                count *= 2;
+            } else if began.elapsed() >= WARM_UP {
+                return Ok(count);
+            }
+        }
+    }
+
+    fn batch(&mut self, count: u64) -> Result<Duration, Error> {
+        let began = Instant::now();
+        let end = match self.schedule.only() {
+            Some((instance, period)) => self.only(count, instance, period),
+            None => self.scheduled(count),
+        };
+        let took = began.elapsed();
+        end.map(|()| took)
+    }
+
+    /// Scans of one program: as little as can be stands between them.
+    fn only(&mut self, count: u64, instance: usize, period: Time) -> Result<(), Error> {
+        for _ in 0..count {
+            self.inputs.apply(self.number, self.machine.state_mut());
+            let now = self.now;
+            self.number += 1;
+            self.now += period;
+            self.scan(instance, now)?;
+        }
+        Ok(())
+    }
+
+    fn scheduled(&mut self, count: u64) -> Result<(), Error> {
+        for _ in 0..count {
+            self.inputs.apply(self.number, self.machine.state_mut());
+            self.number += 1;
+            self.now = self.schedule.next();
+            self.schedule.advance(self.now, false);
+            for at in 0..self.schedule.due().len() {
+                self.scan(self.schedule.due()[at], self.now)?;
+            }
+        }
+        Ok(())
+    }
+
+    #[inline]
+    fn scan(&mut self, instance: usize, now: Time) -> Result<(), Error> {
+        let first_scan = std::mem::take(&mut self.fresh[instance]);
+        self.machine.scan(instance, &Context { now, first_scan }).map_err(|fault| Error::Fault {
+            fault,
+            scan: self.number,
+            instance: self.map.instances[instance].name.clone(),
+            path: self.map.file(fault.at.file).to_owned(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::{Garage, map, offset_of};
+
+    #[test]
+    fn a_given_number_of_scans_is_measured() {
+        let options = BenchOptions { scans: Some(500), ..BenchOptions::default() };
+        let timing = bench(&mut Garage::new(), &map(), &options).unwrap();
+        assert_eq!(timing.scans, 500);
+        assert!(0.0 < timing.min && timing.min <= timing.median && timing.median <= timing.p99, "{timing:?}");
+    }
+
+    #[test]
+    fn a_timing_reads_back() {
+        let timing = Timing { scans: 500, min: 1.5, median: 1.75, p99: 2.0 };
+        assert_eq!(timing.to_string(), "scans=500 ns_min=1.50 ns_median=1.75 ns_p99=2.00");
+        assert_eq!(timing.to_string().parse(), Ok(timing));
+        assert_eq!("scans=500".parse::<Timing>(), Err(()));
+    }
+
+    #[test]
+    fn a_fault_ends_it() {
+        let mut machine = Garage::new();
+        machine.fault_at = 3;
+        let error = bench(&mut machine, &map(), &BenchOptions::default()).unwrap_err();
+        assert_eq!(error.exit_code(), 3);
+    }
+
+    #[test]
+    fn inputs_toggle_or_repeat() {
+        assert_eq!(bool_inputs(&map(), &[0]), [offset_of("up")]);
+        let stimulus = Stimulus::parse("s.csv".as_ref(), "scan,up\n1,1\n3,0\n", &map(), &[0]).unwrap();
+        let inputs = Inputs::of_stimulus(&stimulus);
+        let mut state = vec![0; 128];
+        let seen = (0..6).map(|number| {
+            inputs.apply(number, &mut state);
+            state[offset_of("up")]
+        });
+        assert_eq!(seen.collect::<Vec<_>>(), [1, 1, 0, 1, 1, 0]);
+    }
+}

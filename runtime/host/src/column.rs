@@ -1,0 +1,119 @@
+//! Which values a trace shows, and under which heading.
+
+use crate::map::{Map, Section, StructureKind, Type};
+use crate::path::{self, Place};
+
+/// One elementary value.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Column {
+    pub heading: String,
+    pub place: Place,
+}
+
+/// Every variable of the running programs in declaration order, or what `vars` asks for.
+///
+/// The error is a sentence without a full stop.
+pub(crate) fn columns(map: &Map, running: &[usize], vars: Option<&str>) -> Result<Vec<Column>, String> {
+    let mut columns = Vec::new();
+    match vars {
+        Some(vars) => {
+            for name in split(vars) {
+                expand(map, name.to_owned(), path::resolve(map, running, name)?, &mut columns);
+            }
+        }
+        None => {
+            for at in running {
+                let instance = &map.instances[*at];
+                let prefix = if running.len() > 1 { format!("{}.", instance.name) } else { String::new() };
+                for variable in &instance.variables {
+                    expand(map, format!("{prefix}{}", variable.name), Place::of(variable, 0), &mut columns);
+                }
+            }
+        }
+    }
+    Ok(columns)
+}
+
+/// Parts at commas outside brackets.
+fn split(vars: &str) -> Vec<&str> {
+    let mut depth = 0_usize;
+    let parts = vars.split(|character| {
+        match character {
+            '[' => depth += 1,
+            ']' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        character == ',' && depth == 0
+    });
+    parts.map(str::trim).filter(|it| !it.is_empty()).collect()
+}
+
+fn expand(map: &Map, heading: String, place: Place, out: &mut Vec<Column>) {
+    match place.ty {
+        Type::Elementary(_) | Type::String(_) | Type::Enum(_) => out.push(Column { heading, place }),
+        Type::Array(_) => elements(map, &heading, String::new(), place, out),
+        Type::Struct(_) | Type::Block(_) => members(map, &heading, place, out),
+    }
+}
+
+/// The indices of nested arrays stand in one pair of brackets.
+fn elements(map: &Map, heading: &str, indices: String, place: Place, out: &mut Vec<Column>) {
+    let Some(array) = map.array(place.ty) else {
+        return expand(map, format!("{heading}[{indices}]"), place, out);
+    };
+    let comma = if indices.is_empty() { "" } else { "," };
+    for (position, index) in (array.low..=array.high).enumerate() {
+        let element = place.part(array.element, position * array.stride);
+        elements(map, heading, format!("{indices}{comma}{index}"), element, out);
+    }
+}
+
+fn members(map: &Map, heading: &str, place: Place, out: &mut Vec<Column>) {
+    let Some(structure) = map.structure(place.ty) else { return };
+    let all = matches!(structure.kind, StructureKind::Structure | StructureKind::Globals);
+    for member in &structure.members {
+        let shown = match member.section {
+            Section::Input | Section::Output | Section::Member => true,
+            Section::Var | Section::Global => all,
+            Section::InOut | Section::Temp | Section::External | Section::Memory => false,
+        };
+        if shown {
+            let inner = place.part(member.ty, member.offset);
+            expand(map, format!("{heading}.{}", member.name), inner, out);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::map;
+
+    fn headings(vars: Option<&str>) -> Vec<String> {
+        columns(&map(), &[0], vars).unwrap().into_iter().map(|it| it.heading).collect()
+    }
+
+    #[test]
+    fn every_variable_in_declaration_order() {
+        let expected = "up c.CU c.R c.PV c.Q c.CV m[1,-1] m[1,0] m[1,1] m[1,2] m[2,-1] m[2,0] m[2,1] m[2,2] speed \
+                        colour name pause level limit mixer.run corner.x corner.y total";
+        assert_eq!(headings(None).join(" "), expected);
+    }
+
+    #[test]
+    fn asked_for_variables_keep_their_text() {
+        assert_eq!(headings(Some("C.cv, m[2,-1],c.m,globals.LAMP")), ["C.cv", "m[2,-1]", "c.m", "globals.LAMP"]);
+        assert_eq!(headings(Some("corner,")), ["corner.x", "corner.y"]);
+        assert!(columns(&map(), &[0], Some("nothing")).is_err());
+    }
+
+    #[test]
+    fn several_programs_have_prefixes() {
+        let mut map = map();
+        map.instances.push(map.instances[0].clone());
+        map.instances[1].name = "other".to_owned();
+        let columns = columns(&map, &[0, 1], None).unwrap();
+        assert_eq!(columns[0].heading, "main.up");
+        assert_eq!(columns.last().unwrap().heading, "other.total");
+    }
+}

@@ -1,0 +1,191 @@
+//! Compiled code as a machine, and what an executable made of it does.
+
+use crate::args::{Wish, parse_options};
+use crate::bench::bench;
+use crate::map::Map;
+use crate::run::run;
+use crate::{Error, Machine};
+use staunch_runtime::{Context, Fault};
+use std::ffi::OsString;
+use std::fmt;
+use std::process::ExitCode;
+
+/// `staunch_init`: writes the initial values over all of the state.
+pub type Init = unsafe extern "C" fn(state: *mut u8);
+/// `staunch_scan`: one scan of an instance; 0, or a fault's code.
+pub type Scan = unsafe extern "C" fn(state: *mut u8, cx: *const Context, instance: u32) -> u64;
+
+/// The entry points of a compiled program.
+#[derive(Clone, Copy)]
+pub struct Code {
+    map: &'static str,
+    init: Init,
+    scan: Scan,
+}
+
+impl Code {
+    /// # Safety
+    /// `init` and `scan` are the entry points of the program that `map` describes.
+    pub const unsafe fn new(map: &'static str, init: Init, scan: Scan) -> Self {
+        Self { map, init, scan }
+    }
+}
+
+impl fmt::Debug for Code {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Code").finish_non_exhaustive()
+    }
+}
+
+/// A compiled program and its state.
+pub struct Compiled {
+    /// Aligned for every type; the state is at its start.
+    memory: Vec<u128>,
+    size: usize,
+    instances: usize,
+    init: Init,
+    scan: Scan,
+}
+
+impl Compiled {
+    /// # Safety
+    /// `init` and `scan` are the entry points of the program that `map` describes, and stay
+    /// callable as long as this value lives.
+    pub unsafe fn new(map: &Map, init: Init, scan: Scan) -> Self {
+        let memory = vec![0; map.size.div_ceil(size_of::<u128>()).max(1)];
+        Self { memory, size: map.size, instances: map.instances.len(), init, scan }
+    }
+
+    fn pointer(&mut self) -> *mut u8 {
+        self.memory.as_mut_ptr().cast()
+    }
+}
+
+impl fmt::Debug for Compiled {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Compiled").field("size", &self.size).finish_non_exhaustive()
+    }
+}
+
+impl Machine for Compiled {
+    fn state(&self) -> &[u8] {
+        // SAFETY: `memory` holds at least `size` bytes, all initialised.
+        unsafe { std::slice::from_raw_parts(self.memory.as_ptr().cast(), self.size) }
+    }
+
+    fn state_mut(&mut self) -> &mut [u8] {
+        let (pointer, size) = (self.pointer(), self.size);
+        // SAFETY: `memory` holds at least `size` bytes, all initialised, and is borrowed here.
+        unsafe { std::slice::from_raw_parts_mut(pointer, size) }
+    }
+
+    fn init(&mut self) {
+        let (init, state) = (self.init, self.pointer());
+        // SAFETY: `new` was promised that `init` writes the state that the map describes.
+        unsafe { init(state) }
+    }
+
+    fn scan(&mut self, instance: usize, cx: &Context) -> Result<(), Fault> {
+        assert!(instance < self.instances, "instance {instance} of {}", self.instances);
+        let (scan, state) = (self.scan, self.pointer());
+        // SAFETY: `new` was promised that `scan` works on the state that the map describes, and
+        // the instance is one of that map's.
+        let code = unsafe { scan(state, cx, instance as u32) };
+        Fault::from_code(code).map_or(Ok(()), Err)
+    }
+}
+
+/// What a built executable does: runs its program as its arguments say.
+pub fn main(code: Code) -> ExitCode {
+    ExitCode::from(main_with(code, std::env::args_os()))
+}
+
+/// [`main`] with the arguments given, the executable's name first. Returns the exit code, for a
+/// C `main`.
+pub fn main_with(code: Code, arguments: impl Iterator<Item = OsString>) -> u8 {
+    match start(code, arguments) {
+        Ok(()) => 0,
+        Err(error) => {
+            if !matches!(error, Error::ClosedPipe) {
+                eprintln!("error: {error}");
+            }
+            error.exit_code()
+        }
+    }
+}
+
+fn start(code: Code, arguments: impl Iterator<Item = OsString>) -> Result<(), Error> {
+    let map = Map::parse(code.map)?;
+    // SAFETY: `Code::new` was promised that the entry points belong to the map.
+    let mut machine = unsafe { Compiled::new(&map, code.init, code.scan) };
+    let mut options = match parse_options(arguments).map_err(Error::Usage)? {
+        Wish::Run(options) => options,
+        Wish::Bench(options) => {
+            let timing = bench(&mut machine, &map, &options)?;
+            print(&format!("{timing}\n"));
+            return Ok(());
+        }
+        Wish::Help(text) => {
+            print(&text);
+            return Ok(());
+        }
+    };
+    // On its own an executable is the controller itself.
+    let alone = options.scans.is_none() && options.stimulus.is_none() && options.trace.is_none();
+    options.realtime |= alone && !options.table;
+    options.table |= !alone;
+    run(&mut machine, &map, &options).map(drop)
+}
+
+/// A reader that has gone away wants no help.
+fn print(text: &str) {
+    use std::io::Write;
+    let _ = std::io::stdout().write_all(text.as_bytes());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::{MAP, map, offset_of};
+
+    unsafe extern "C" fn init(state: *mut u8) {
+        // SAFETY: the tests below give it the state of the fixture's map.
+        unsafe { state.write_bytes(0, 128) }
+    }
+
+    unsafe extern "C" fn scan(state: *mut u8, cx: *const Context, instance: u32) -> u64 {
+        // SAFETY: as above; the offset is below the map's size.
+        unsafe {
+            *state.add(36) = instance as u8 + 7;
+            if (*cx).now >= 20_000_000 { 1 | 5 << 24 | 9 << 40 } else { 0 }
+        }
+    }
+
+    fn arguments(text: &str) -> impl Iterator<Item = OsString> {
+        std::iter::once("garage").chain(text.split_whitespace()).map(OsString::from).collect::<Vec<_>>().into_iter()
+    }
+
+    #[test]
+    fn compiled_code_is_a_machine() {
+        // SAFETY: the functions above stay within the map's size.
+        let mut machine = unsafe { Compiled::new(&map(), init, scan) };
+        assert_eq!(machine.state().len(), 128);
+        machine.state_mut().fill(1);
+        machine.init();
+        assert_eq!(machine.scan(0, &Context::at(0)), Ok(()));
+        assert_eq!(machine.state()[offset_of("speed")], 7);
+        let fault = machine.scan(0, &Context::at(20_000_000)).unwrap_err();
+        assert_eq!((fault.at.line, fault.at.column), (9, 5));
+    }
+
+    #[test]
+    fn an_executable_reports_as_the_command_does() {
+        // SAFETY: as above.
+        let code = unsafe { Code::new(MAP, init, scan) };
+        assert_eq!(main_with(code, arguments("--scans 2 -q")), 0);
+        assert_eq!(main_with(code, arguments("--bench --scans 2 --cycle 1us")), 3);
+        assert_eq!(main_with(code, arguments("--scans 9 -q")), 3);
+        assert_eq!(main_with(code, arguments("--scan 9")), 2);
+        assert_eq!(main_with(code, arguments("--scans 1 --vars nothing")), 2);
+    }
+}

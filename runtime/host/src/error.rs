@@ -1,0 +1,64 @@
+//! What can go wrong around a program.
+
+use staunch_runtime::Fault;
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+
+#[derive(Debug)]
+pub enum Error {
+    /// The command line asks for something that is not there, or contradicts itself.
+    Usage(String),
+    /// A place in a stimulus file: 1-based line, and column in characters.
+    Stimulus { path: PathBuf, line: usize, column: usize, text: String },
+    /// A file of retained variables that cannot be used.
+    Retain { path: PathBuf, text: String },
+    /// A file that cannot be read or written.
+    File { path: PathBuf, doing: &'static str, error: io::Error },
+    /// The reader of the output has gone away: no mistake of anyone.
+    ClosedPipe,
+    /// The program's map does not read: program and host are of different versions.
+    Map { line: usize, text: String },
+    /// The program faulted.
+    Fault { fault: Fault, scan: u64, instance: String, path: String },
+}
+
+impl Error {
+    pub(crate) fn file(path: &Path, doing: &'static str, error: io::Error) -> Self {
+        match error.kind() {
+            io::ErrorKind::BrokenPipe => Self::ClosedPipe,
+            _ => Self::File { path: path.to_owned(), doing, error },
+        }
+    }
+
+    /// What a process that ends with this error returns.
+    pub const fn exit_code(&self) -> u8 {
+        match self {
+            Self::ClosedPipe => 0,
+            Self::Fault { .. } => 3,
+            Self::Map { .. } => 101,
+            Self::Usage(_) | Self::Stimulus { .. } | Self::Retain { .. } | Self::File { .. } => 2,
+        }
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Usage(text) => f.write_str(text),
+            Self::Stimulus { path, line, column, text } => {
+                write!(f, "{}:{line}:{column}: {text}", path.display())
+            }
+            Self::Retain { path, text } => write!(f, "{}: {text}", path.display()),
+            Self::File { path, doing, error } => write!(f, "cannot {doing} {}: {error}", path.display()),
+            Self::ClosedPipe => f.write_str("the output was closed"),
+            Self::Map { line, text } => write!(f, "the program's map, line {line}: {text}"),
+            Self::Fault { fault, scan, instance, path } => {
+                let (line, column) = (fault.at.line, fault.at.column);
+                write!(f, "{path}:{line}:{column}: fault: {} (scan {scan}, program {instance})", fault.kind)
+            }
+        }
+    }
+}
+
+impl std::error::Error for Error {}

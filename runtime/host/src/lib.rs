@@ -1,0 +1,51 @@
+//! Runs a compiled program: scans on a virtual or the real clock, stimulus, trace, retained
+//! variables. What `staunch run` does, and what a built executable does on its own.
+//!
+//! It depends on the runtime alone: the command carries its source, to build executables where
+//! no package registry can be reached.
+#![cfg_attr(test, allow(clippy::unwrap_used))]
+
+mod error;
+mod map;
+mod path;
+
+mod csv;
+mod literal;
+mod value;
+
+mod column;
+mod retain;
+mod schedule;
+mod stimulus;
+mod trace;
+
+mod bench;
+mod run;
+
+mod args;
+mod compiled;
+mod signal;
+
+#[cfg(test)]
+mod fixture;
+
+pub use args::{Wish, parse_duration, parse_options};
+pub use bench::{BenchOptions, Timing, bench};
+pub use compiled::{Code, Compiled, Init, Scan, main, main_with};
+pub use error::Error;
+pub use map::{Elementary, Instance, Map, Section, Structure, StructureKind, Type, Variable};
+pub use path::Place;
+pub use run::{Options, RealTime, Summary, run};
+pub use value::format_time;
+
+use staunch_runtime::{Context, Fault};
+
+/// A program that can be scanned: its state as bytes, laid out as its map says.
+pub trait Machine {
+    fn state(&self) -> &[u8];
+    fn state_mut(&mut self) -> &mut [u8];
+    /// Writes the initial values over all of the state.
+    fn init(&mut self);
+    /// One scan of an instance. After a fault the state stays as it was at that point.
+    fn scan(&mut self, instance: usize, cx: &Context) -> Result<(), Fault>;
+}

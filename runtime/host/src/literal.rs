@@ -1,0 +1,178 @@
+//! Cells of a stimulus: values as people write them.
+
+use crate::map::{Enum, Map, Type};
+use crate::path::{Place, nearest, same};
+use crate::value::parse_duration_text;
+use staunch_runtime::{Lane, Value};
+
+/// The bytes that `text` stands for in a variable; the error is a sentence without a full stop.
+pub(crate) fn parse(map: &Map, place: Place, text: &str) -> Result<Vec<u8>, String> {
+    let value = match place.ty {
+        Type::String(capacity) => return string(text, capacity),
+        Type::Elementary(it) if it.is_time() => Value::I64(time(text)?),
+        Type::Elementary(it) if it.lane == Lane::Bool => Value::Bool(boolean(text)?),
+        Type::Elementary(it) if it.lane.is_float() => float(text, it.name, it.lane)?,
+        Type::Elementary(it) => integer(text, it.name, it.lane)?,
+        Type::Enum(id) => {
+            let found = map.enums.get(&id).map(|it| enumerator(text, it));
+            found.unwrap_or_else(|| Err("the type is not in the map".to_owned()))?
+        }
+        Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
+            return Err(format!("it is a whole {}: name a member or an element", map.type_name(place.ty)));
+        }
+    };
+    if let (Some((low, high)), Some(number)) = (place.range, value.as_integer()) {
+        if !(low..=high).contains(&number) {
+            return Err(format!("`{text}` is outside the subrange {low}..{high}"));
+        }
+    }
+    let mut bytes = vec![0; value.lane().size() as usize];
+    value.write(&mut bytes);
+    Ok(bytes)
+}
+
+fn string(text: &str, capacity: u16) -> Result<Vec<u8>, String> {
+    let capacity = usize::from(capacity);
+    if text.len() > capacity {
+        return Err(format!("the text has {} bytes, a STRING[{capacity}] holds {capacity}", text.len()));
+    }
+    let mut bytes = vec![0; 2 + capacity];
+    Value::U16(text.len() as u16).write(&mut bytes);
+    bytes[2..2 + text.len()].copy_from_slice(text.as_bytes());
+    Ok(bytes)
+}
+
+/// `text` without the prefix `NAME#`, if it has that one.
+fn untyped<'t>(text: &'t str, names: &[&str]) -> &'t str {
+    match text.split_once('#') {
+        Some((prefix, rest)) if names.iter().any(|it| same(it, prefix)) => rest,
+        _ => text,
+    }
+}
+
+fn boolean(text: &str) -> Result<bool, String> {
+    let value = untyped(text, &["BOOL"]);
+    match value {
+        "1" => Ok(true),
+        "0" => Ok(false),
+        _ if same(value, "TRUE") => Ok(true),
+        _ if same(value, "FALSE") => Ok(false),
+        _ => Err(format!("`{text}` is not a BOOL: write TRUE or FALSE")),
+    }
+}
+
+pub(crate) fn time(text: &str) -> Result<i64, String> {
+    let Some((prefix, rest)) = text.split_once('#') else {
+        return Err(format!("`{text}` is not a TIME: write `T#500ms`"));
+    };
+    let known = ["T", "TIME", "LT", "LTIME"].iter().any(|it| same(it, prefix));
+    let value = if known { parse_duration_text(rest) } else { None };
+    value.ok_or_else(|| format!("`{text}` is not a TIME that fits: write `T#1s500ms`"))
+}
+
+fn float(text: &str, name: &str, lane: Lane) -> Result<Value, String> {
+    let digits = untyped(text, &[name]).replace('_', "");
+    let number = digits.parse::<f64>().map_err(|_| format!("`{text}` is not a {name}"))?;
+    let value = match lane {
+        // Read as an f32 at once: by way of an f64 it could be rounded twice.
+        Lane::F32 => Value::F32(digits.parse().map_err(|_| format!("`{text}` is not a {name}"))?),
+        _ => Value::F64(number),
+    };
+    let infinite =
+        matches!(value, Value::F32(it) if it.is_infinite()) || matches!(value, Value::F64(it) if it.is_infinite());
+    match infinite && digits.contains(|it: char| it.is_ascii_digit()) {
+        true => Err(format!("`{text}` does not fit {name}")),
+        false => Ok(value),
+    }
+}
+
+fn integer(text: &str, name: &str, lane: Lane) -> Result<Value, String> {
+    let number = number(untyped(text, &[name])).ok_or_else(|| format!("`{text}` is not {} {name}", article(name)))?;
+    lane.integer(number).ok_or_else(|| match lane.range() {
+        Some((low, high)) => format!("`{text}` does not fit {name}, which holds {low} to {high}"),
+        None => format!("`{text}` does not fit {name}"),
+    })
+}
+
+fn article(name: &str) -> &'static str {
+    if name.starts_with('I') { "an" } else { "a" }
+}
+
+/// `-12`, `1_000`, `16#FF`, `2#1010`.
+fn number(text: &str) -> Option<i128> {
+    let (negative, digits) = match text.strip_prefix('-') {
+        Some(rest) => (true, rest),
+        None => (false, text.strip_prefix('+').unwrap_or(text)),
+    };
+    let (base, digits) = match digits.split_once('#') {
+        Some(("2", digits)) => (2, digits),
+        Some(("8", digits)) => (8, digits),
+        Some(("16", digits)) => (16, digits),
+        Some(_) => return None,
+        None => (10, digits),
+    };
+    let digits = digits.replace('_', "");
+    if !digits.starts_with(|it: char| it.is_digit(base)) {
+        return None;
+    }
+    let number = i128::from_str_radix(&digits, base).ok()?;
+    Some(if negative { -number } else { number })
+}
+
+fn enumerator(text: &str, enumeration: &Enum) -> Result<Value, String> {
+    let name = untyped(text, &[&enumeration.name]);
+    let found = enumeration.values.iter().find(|(it, _)| same(it, name));
+    let by_number = || number(name).and_then(|number| enumeration.values.iter().find(|(_, it)| *it == number));
+    let value = found.or_else(by_number).and_then(|(_, number)| enumeration.lane.integer(*number));
+    value.ok_or_else(|| {
+        let near = nearest(name, enumeration.values.iter().map(|(it, _)| it.as_str()));
+        format!("{} has no value `{name}`{near}", enumeration.name)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::map;
+    use crate::path::resolve;
+
+    fn read(name: &str, text: &str) -> Result<Vec<u8>, String> {
+        let map = map();
+        parse(&map, resolve(&map, &[0], name).unwrap(), text)
+    }
+
+    #[test]
+    fn a_value_has_many_spellings() {
+        for text in ["TRUE", "true", "1", "BOOL#1"] {
+            assert_eq!(read("up", text).unwrap(), [1]);
+        }
+        for text in ["255", "16#FF", "INT#255", "INT#16#ff", "2#1111_1111", "+255"] {
+            assert_eq!(read("c.CV", text).unwrap(), 255_i16.to_ne_bytes());
+        }
+        for text in ["1.5", "REAL#1.5", "15e-1", "1.500"] {
+            assert_eq!(read("speed", text).unwrap(), 1.5_f32.to_ne_bytes());
+        }
+        for text in ["T#1s500ms", "TIME#1.5s", "LTIME#1500ms"] {
+            assert_eq!(read("pause", text).unwrap(), 1_500_000_000_i64.to_ne_bytes());
+        }
+        for text in ["Green", "color#GREEN", "5"] {
+            assert_eq!(read("colour", text).unwrap(), 5_i16.to_ne_bytes());
+        }
+        assert_eq!(read("name", "ab").unwrap(), [2, 0, b'a', b'b', 0, 0]);
+    }
+
+    #[test]
+    fn what_does_not_fit_is_told() {
+        let error = |name, text| read(name, text).unwrap_err();
+        assert_eq!(error("up", "2"), "`2` is not a BOOL: write TRUE or FALSE");
+        assert_eq!(error("c.CV", "40000"), "`40000` does not fit INT, which holds -32768 to 32767");
+        assert_eq!(error("c.CV", "1.5"), "`1.5` is not an INT");
+        assert_eq!(error("c.CV", "UINT#5"), "`UINT#5` is not an INT");
+        assert_eq!(error("level", "11"), "`11` is outside the subrange 0..10");
+        assert_eq!(error("speed", "1e99"), "`1e99` does not fit REAL");
+        assert_eq!(error("pause", "5"), "`5` is not a TIME: write `T#500ms`");
+        assert_eq!(error("colour", "Gren"), "Color has no value `Gren`; did you mean `Green`?");
+        assert_eq!(error("name", "abcde"), "the text has 5 bytes, a STRING[4] holds 4");
+        assert_eq!(error("c", "1"), "it is a whole CTU: name a member or an element");
+    }
+}

@@ -1,0 +1,446 @@
+//! The map: which variable lies where. The compiler writes it as text, one record a line.
+
+use crate::Error;
+use staunch_runtime::Lane;
+use std::collections::BTreeMap;
+
+/// The version of the text that this host reads.
+const VERSION: &str = "1";
+
+/// Types, instances and variables of one program.
+#[derive(Clone, Debug, Default)]
+pub struct Map {
+    /// Bytes of the whole state.
+    pub size: usize,
+    pub align: usize,
+    /// Source paths, as the user named them; a fault names one by its number.
+    pub files: Vec<String>,
+    pub(crate) enums: BTreeMap<u32, Enum>,
+    pub(crate) arrays: BTreeMap<u32, Array>,
+    pub(crate) structs: BTreeMap<u32, Structure>,
+    pub(crate) blocks: BTreeMap<u32, Structure>,
+    /// The structure of the global variables, and where it lies.
+    pub(crate) globals: Option<(Type, usize)>,
+    pub instances: Vec<Instance>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Type {
+    Elementary(Elementary),
+    /// A string of at most this many bytes.
+    String(u16),
+    Enum(u32),
+    Array(u32),
+    Struct(u32),
+    Block(u32),
+}
+
+/// An elementary type: its lane, and how its values read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Elementary {
+    pub name: &'static str,
+    pub lane: Lane,
+}
+
+const ELEMENTARY: [Elementary; 17] = [
+    Elementary { name: "BOOL", lane: Lane::Bool },
+    Elementary { name: "BYTE", lane: Lane::U8 },
+    Elementary { name: "WORD", lane: Lane::U16 },
+    Elementary { name: "DWORD", lane: Lane::U32 },
+    Elementary { name: "LWORD", lane: Lane::U64 },
+    Elementary { name: "SINT", lane: Lane::I8 },
+    Elementary { name: "INT", lane: Lane::I16 },
+    Elementary { name: "DINT", lane: Lane::I32 },
+    Elementary { name: "LINT", lane: Lane::I64 },
+    Elementary { name: "USINT", lane: Lane::U8 },
+    Elementary { name: "UINT", lane: Lane::U16 },
+    Elementary { name: "UDINT", lane: Lane::U32 },
+    Elementary { name: "ULINT", lane: Lane::U64 },
+    Elementary { name: "REAL", lane: Lane::F32 },
+    Elementary { name: "LREAL", lane: Lane::F64 },
+    Elementary { name: "TIME", lane: Lane::I64 },
+    Elementary { name: "LTIME", lane: Lane::I64 },
+];
+
+impl Elementary {
+    pub fn is_time(self) -> bool {
+        matches!(self.name, "TIME" | "LTIME")
+    }
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct Enum {
+    pub name: String,
+    pub lane: Lane,
+    pub values: Vec<(String, i128)>,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Array {
+    pub low: i64,
+    pub high: i64,
+    pub element: Type,
+    /// Bytes from one element to the next.
+    pub stride: usize,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StructureKind {
+    /// A user's structure type.
+    Structure,
+    FunctionBlock,
+    Program,
+    Globals,
+    /// A function block or structure of the standard.
+    Standard,
+}
+
+#[derive(Clone, Debug)]
+pub struct Structure {
+    pub name: String,
+    pub size: usize,
+    pub kind: StructureKind,
+    pub members: Vec<Variable>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Section {
+    Input,
+    Output,
+    InOut,
+    Var,
+    Temp,
+    Global,
+    External,
+    /// A standard block's edge and timer memory.
+    Memory,
+    /// What everyone may read and write in a standard structure.
+    Member,
+}
+
+/// A member of a structure, or a variable of an instance.
+#[derive(Clone, Debug)]
+pub struct Variable {
+    /// In the declaration's spelling.
+    pub name: String,
+    pub ty: Type,
+    /// In its structure; in the whole state for a variable of an instance.
+    pub offset: usize,
+    pub section: Section,
+    pub retain: bool,
+    pub constant: bool,
+    /// `%IX0.0`
+    pub address: Option<String>,
+    pub range: Option<(i128, i128)>,
+}
+
+/// One running PROGRAM.
+#[derive(Clone, Debug)]
+pub struct Instance {
+    pub name: String,
+    pub program: String,
+    pub ty: Type,
+    pub offset: usize,
+    /// Nanoseconds between two scans, if a TASK says so.
+    pub interval: Option<i64>,
+    /// Lower runs first among those that are due together.
+    pub priority: u32,
+    /// In declaration order.
+    pub variables: Vec<Variable>,
+}
+
+impl Map {
+    /// Reads the text that the compiler wrote.
+    pub fn parse(text: &str) -> Result<Self, Error> {
+        let mut map = Self::default();
+        let mut open: Option<Type> = None;
+        for (number, line) in text.lines().enumerate() {
+            let mut record = Record { line: number + 1, cells: line.split('\t') };
+            map.record(&mut record, &mut open)?;
+        }
+        match map.size {
+            0 if map.instances.is_empty() => Err(Error::Map { line: 1, text: "it is empty".to_owned() }),
+            _ => map.checked(),
+        }
+    }
+
+    fn record(&mut self, record: &mut Record<'_>, open: &mut Option<Type>) -> Result<(), Error> {
+        match record.text()? {
+            "map" => record.version(),
+            "machine" => {
+                (self.size, self.align) = (record.number()?, record.number()?);
+                Ok(())
+            }
+            "file" => record.file().map(|path| self.files.push(path)),
+            "enum" => {
+                let (id, enumeration) = record.enumeration()?;
+                self.enums.insert(id, enumeration);
+                Ok(())
+            }
+            "array" => {
+                let (id, array) = record.array()?;
+                self.arrays.insert(id, array);
+                Ok(())
+            }
+            "struct" => {
+                let (id, structure) = record.structure(StructureKind::Structure)?;
+                *open = Some(Type::Struct(id));
+                self.structs.insert(id, structure);
+                Ok(())
+            }
+            "block" => {
+                let (id, structure) = record.structure(StructureKind::Standard)?;
+                *open = Some(Type::Block(id));
+                self.blocks.insert(id, structure);
+                Ok(())
+            }
+            "field" => self.field(record, *open),
+            "globals" => {
+                self.globals = Some((record.ty()?, record.number()?));
+                Ok(())
+            }
+            "instance" => record.instance().map(|it| self.instances.push(it)),
+            "variable" => self.variable(record),
+            // A later version may add records; what is known keeps its meaning.
+            _ => Ok(()),
+        }
+    }
+
+    fn field(&mut self, record: &mut Record<'_>, open: Option<Type>) -> Result<(), Error> {
+        let name = record.text()?.to_owned();
+        let (ty, offset, section) = (record.ty()?, record.number()?, record.section()?);
+        let member = record.attributes(Variable::new(name, ty, offset, section))?;
+        let structure = match open {
+            Some(Type::Struct(id)) => self.structs.get_mut(&id),
+            Some(Type::Block(id)) => self.blocks.get_mut(&id),
+            _ => None,
+        };
+        structure.ok_or_else(|| record.error("a field outside a structure"))?.members.push(member);
+        Ok(())
+    }
+
+    fn variable(&mut self, record: &mut Record<'_>) -> Result<(), Error> {
+        let number: usize = record.number()?;
+        let name = record.text()?.to_owned();
+        let (section, ty, offset) = (record.section()?, record.ty()?, record.number()?);
+        let variable = record.attributes(Variable::new(name, ty, offset, section))?;
+        let instance = self.instances.get_mut(number);
+        instance.ok_or_else(|| record.error("a variable of no instance"))?.variables.push(variable);
+        Ok(())
+    }
+
+    /// Every type that is named is there, so that later look-ups need no errors.
+    fn checked(self) -> Result<Self, Error> {
+        let structures = self.structs.values().chain(self.blocks.values());
+        let members = structures.flat_map(|it| &it.members).map(|it| it.ty);
+        let variables = self.instances.iter().flat_map(|it| &it.variables).map(|it| it.ty);
+        let roots = self.instances.iter().map(|it| it.ty).chain(self.globals.map(|it| it.0));
+        let elements = self.arrays.values().map(|it| it.element);
+        let mut all = members.chain(variables).chain(roots).chain(elements);
+        match all.find(|ty| !self.knows(*ty)) {
+            Some(ty) => Err(Error::Map { line: 0, text: format!("{ty:?} is not in it") }),
+            None => Ok(self),
+        }
+    }
+
+    fn knows(&self, ty: Type) -> bool {
+        match ty {
+            Type::Elementary(_) | Type::String(_) => true,
+            Type::Enum(id) => self.enums.contains_key(&id),
+            Type::Array(id) => self.arrays.contains_key(&id),
+            Type::Struct(id) => self.structs.contains_key(&id),
+            Type::Block(id) => self.blocks.contains_key(&id),
+        }
+    }
+
+    /// The members of a structure, or of an instance of a block.
+    pub fn structure(&self, ty: Type) -> Option<&Structure> {
+        match ty {
+            Type::Struct(id) => self.structs.get(&id),
+            Type::Block(id) => self.blocks.get(&id),
+            Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) => None,
+        }
+    }
+
+    pub(crate) fn array(&self, ty: Type) -> Option<Array> {
+        match ty {
+            Type::Array(id) => self.arrays.get(&id).copied(),
+            Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Struct(_) | Type::Block(_) => None,
+        }
+    }
+
+    /// The members of the global variables' structure, and where it lies.
+    pub(crate) fn globals(&self) -> (&[Variable], usize) {
+        let found = self.globals.and_then(|(ty, offset)| Some((self.structure(ty)?, offset)));
+        found.map_or((&[], 0), |(structure, offset)| (&structure.members, offset))
+    }
+
+    /// Size in bytes.
+    pub fn size_of(&self, ty: Type) -> usize {
+        match ty {
+            Type::Elementary(it) => it.lane.size() as usize,
+            Type::String(capacity) => 2 + usize::from(capacity).next_multiple_of(2),
+            Type::Enum(id) => self.enums.get(&id).map_or(0, |it| it.lane.size() as usize),
+            Type::Array(_) => self.array(ty).map_or(0, |it| it.stride * it.len()),
+            Type::Struct(_) | Type::Block(_) => self.structure(ty).map_or(0, |it| it.size),
+        }
+    }
+
+    /// The type's name as a user writes it.
+    pub fn type_name(&self, ty: Type) -> String {
+        match ty {
+            Type::Elementary(it) => it.name.to_owned(),
+            Type::String(capacity) => format!("STRING[{capacity}]"),
+            Type::Enum(id) => self.enums.get(&id).map_or_else(String::new, |it| it.name.clone()),
+            Type::Array(_) => self.array(ty).map_or_else(String::new, |it| {
+                format!("ARRAY[{}..{}] OF {}", it.low, it.high, self.type_name(it.element))
+            }),
+            Type::Struct(_) | Type::Block(_) => self.structure(ty).map_or_else(String::new, |it| it.name.clone()),
+        }
+    }
+
+    /// Path of a source file by its number.
+    pub(crate) fn file(&self, number: u16) -> &str {
+        self.files.get(usize::from(number)).map_or("?", String::as_str)
+    }
+}
+
+impl Array {
+    pub fn len(self) -> usize {
+        usize::try_from(self.high.abs_diff(self.low)).map_or(usize::MAX, |it| it.saturating_add(1))
+    }
+}
+
+impl Variable {
+    fn new(name: String, ty: Type, offset: usize, section: Section) -> Self {
+        Self { name, ty, offset, section, retain: false, constant: false, address: None, range: None }
+    }
+
+    /// TRUE for what the world outside writes: it holds its value over a restart.
+    pub fn is_input(&self) -> bool {
+        self.section == Section::Input || self.address.as_deref().is_some_and(|it| it.starts_with("%I"))
+    }
+}
+
+/// One line of the map.
+struct Record<'a> {
+    line: usize,
+    cells: std::str::Split<'a, char>,
+}
+
+impl<'a> Record<'a> {
+    fn error(&self, text: impl Into<String>) -> Error {
+        Error::Map { line: self.line, text: text.into() }
+    }
+
+    fn text(&mut self) -> Result<&'a str, Error> {
+        self.cells.next().ok_or_else(|| self.error("a record is cut off"))
+    }
+
+    fn number<T: std::str::FromStr>(&mut self) -> Result<T, Error> {
+        let text = self.text()?;
+        text.parse().map_err(|_| self.error(format!("`{text}` is not a number")))
+    }
+
+    fn version(&mut self) -> Result<(), Error> {
+        match self.text()? {
+            VERSION => Ok(()),
+            other => Err(self.error(format!("version {other} is not {VERSION}"))),
+        }
+    }
+
+    fn file(&mut self) -> Result<String, Error> {
+        self.text()?;
+        Ok(self.text()?.to_owned())
+    }
+
+    fn enumeration(&mut self) -> Result<(u32, Enum), Error> {
+        let (id, name, lane) = (self.number()?, self.text()?.to_owned(), self.text()?);
+        let lane = Lane::ALL.into_iter().find(|it| it.rust_name() == lane);
+        let lane = lane.ok_or_else(|| self.error("an unknown lane"))?;
+        let values = self.cells.by_ref().filter_map(|cell| {
+            let (name, value) = cell.split_once('=')?;
+            Some((name.to_owned(), value.parse().ok()?))
+        });
+        Ok((id, Enum { name, lane, values: values.collect() }))
+    }
+
+    fn array(&mut self) -> Result<(u32, Array), Error> {
+        let (id, low, high) = (self.number()?, self.number()?, self.number()?);
+        Ok((id, Array { low, high, element: self.ty()?, stride: self.number()? }))
+    }
+
+    fn structure(&mut self, kind: StructureKind) -> Result<(u32, Structure), Error> {
+        let (id, name, size) = (self.number()?, self.text()?.to_owned(), self.number()?);
+        let kind = match self.cells.next() {
+            Some("function_block") => StructureKind::FunctionBlock,
+            Some("program") => StructureKind::Program,
+            Some("globals") => StructureKind::Globals,
+            _ => kind,
+        };
+        Ok((id, Structure { name, size, kind, members: Vec::new() }))
+    }
+
+    fn instance(&mut self) -> Result<Instance, Error> {
+        self.text()?;
+        let (name, program) = (self.text()?.to_owned(), self.text()?.to_owned());
+        let (ty, offset) = (self.ty()?, self.number()?);
+        let interval = self.optional()?.map(|it| it.parse().map_err(|_| self.error("a bad interval")));
+        let (interval, priority) = (interval.transpose()?, self.number()?);
+        Ok(Instance { name, program, ty, offset, interval, priority, variables: Vec::new() })
+    }
+
+    fn optional(&mut self) -> Result<Option<&'a str>, Error> {
+        Ok(Some(self.text()?).filter(|it| *it != "-"))
+    }
+
+    fn attributes(&mut self, mut variable: Variable) -> Result<Variable, Error> {
+        for flag in self.optional()?.into_iter().flat_map(|it| it.split(',')) {
+            match flag {
+                "retain" => variable.retain = true,
+                "constant" => variable.constant = true,
+                _ => {}
+            }
+        }
+        variable.address = self.optional()?.map(str::to_owned);
+        variable.range = self.optional()?.and_then(|it| {
+            let (low, high) = it.split_once("..")?;
+            Some((low.parse().ok()?, high.parse().ok()?))
+        });
+        Ok(variable)
+    }
+
+    fn section(&mut self) -> Result<Section, Error> {
+        Ok(match self.text()? {
+            "input" => Section::Input,
+            "output" => Section::Output,
+            "inout" => Section::InOut,
+            "var" => Section::Var,
+            "temp" => Section::Temp,
+            "global" => Section::Global,
+            "external" => Section::External,
+            "memory" => Section::Memory,
+            "member" => Section::Member,
+            other => return Err(self.error(format!("`{other}` is not a section"))),
+        })
+    }
+
+    fn ty(&mut self) -> Result<Type, Error> {
+        let text = self.text()?;
+        type_named(text).ok_or_else(|| self.error(format!("`{text}` is not a type")))
+    }
+}
+
+fn type_named(text: &str) -> Option<Type> {
+    if let Some(capacity) = text.strip_prefix("STRING[") {
+        return Some(Type::String(capacity.strip_suffix(']')?.parse().ok()?));
+    }
+    match text.split_once(':') {
+        Some(("enum", id)) => Some(Type::Enum(id.parse().ok()?)),
+        Some(("array", id)) => Some(Type::Array(id.parse().ok()?)),
+        Some(("struct", id)) => Some(Type::Struct(id.parse().ok()?)),
+        Some(("block", id)) => Some(Type::Block(id.parse().ok()?)),
+        Some(_) => None,
+        None => ELEMENTARY.into_iter().find(|it| it.name == text).map(Type::Elementary),
+    }
+}

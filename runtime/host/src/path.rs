@@ -1,0 +1,295 @@
+//! Variables by the names that people use for them.
+
+use crate::map::{Map, Section, Type, Variable};
+
+/// A variable, or a part of one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// In the program's state.
+    pub offset: usize,
+    pub ty: Type,
+    /// Bounds of a subrange type.
+    pub range: Option<(i128, i128)>,
+    pub constant: bool,
+    /// The world outside writes it.
+    pub input: bool,
+}
+
+impl Place {
+    pub(crate) fn of(variable: &Variable, base: usize) -> Self {
+        let Variable { offset, ty, range, constant, .. } = *variable;
+        Self { offset: base + offset, ty, range, constant, input: variable.is_input() }
+    }
+
+    /// A member or element of this variable.
+    pub(crate) fn part(self, ty: Type, offset: usize) -> Self {
+        Self { ty, offset: self.offset + offset, range: None, ..self }
+    }
+
+    fn member(self, variable: &Variable) -> Self {
+        Self { range: variable.range, ..self.part(variable.ty, variable.offset) }
+    }
+}
+
+/// Finds the variable that `text` names, seen from the instances `running`.
+///
+/// The error is a sentence without a full stop, with a name that might have been meant.
+pub fn resolve(map: &Map, running: &[usize], text: &str) -> Result<Place, String> {
+    let text = text.trim();
+    if text.starts_with('%') {
+        return by_address(map, running, text);
+    }
+    let steps = steps(text).ok_or_else(|| format!("`{text}` is not the name of a variable"))?;
+    let Some((Step::Name(first), rest)) = steps.split_first() else {
+        return Err(format!("`{text}` is not the name of a variable"));
+    };
+    let mut found = in_programs(map, running, first)?;
+    if let (None, Some((Step::Name(second), after))) = (found, rest.split_first()) {
+        if let Some(place) = in_scope(map, running, first, second)? {
+            return follow(map, place, after);
+        }
+    }
+    if found.is_none() {
+        let (globals, base) = map.globals();
+        found = named(globals, first).map(|it| Place::of(it, base));
+    }
+    let place = found.ok_or_else(|| unknown(map, running, first))?;
+    follow(map, place, rest)
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Step<'t> {
+    Name(&'t str),
+    Index(i64),
+}
+
+/// The steps of `a.b[1,2].c`; `None` if it does not read as a path.
+fn steps(text: &str) -> Option<Vec<Step<'_>>> {
+    let mut steps = Vec::new();
+    let mut rest = text;
+    loop {
+        let end = rest.find(['.', '[']).unwrap_or(rest.len());
+        let name = rest[..end].trim();
+        if name.is_empty() || !name.chars().all(|it| it.is_alphanumeric() || it == '_') {
+            return None;
+        }
+        steps.push(Step::Name(name));
+        rest = &rest[end..];
+        while let Some(inside) = rest.strip_prefix('[') {
+            let (indices, after) = inside.split_once(']')?;
+            for index in indices.split(',') {
+                steps.push(Step::Index(index.trim().parse().ok()?));
+            }
+            rest = after.trim_start();
+        }
+        match rest.strip_prefix('.') {
+            Some(after) => rest = after,
+            None if rest.is_empty() => return Some(steps),
+            None => return None,
+        }
+    }
+}
+
+fn named<'m>(variables: &'m [Variable], name: &str) -> Option<&'m Variable> {
+    variables.iter().find(|it| same(&it.name, name))
+}
+
+/// IEC names are the same in any case.
+pub fn same(a: &str, b: &str) -> bool {
+    a.eq_ignore_ascii_case(b) || a.to_lowercase() == b.to_lowercase()
+}
+
+/// A variable of the one running program that has it.
+fn in_programs(map: &Map, running: &[usize], name: &str) -> Result<Option<Place>, String> {
+    let mut found: Option<(usize, Place)> = None;
+    for at in running {
+        let Some(variable) = named(&map.instances[*at].variables, name) else { continue };
+        let place = Place::of(variable, 0);
+        match found {
+            Some((first, before)) if before.offset != place.offset => {
+                let (a, b) = (&map.instances[first].name, &map.instances[*at].name);
+                return Err(format!("`{name}` is ambiguous: `{a}.{name}` or `{b}.{name}`"));
+            }
+            _ => found = Some((*at, place)),
+        }
+    }
+    Ok(found.map(|it| it.1))
+}
+
+/// `scope.name`, where the scope is an instance, a PROGRAM, or `Globals`.
+fn in_scope(map: &Map, running: &[usize], scope: &str, name: &str) -> Result<Option<Place>, String> {
+    let instances = map.instances.iter();
+    let one = instances.clone().find(|it| same(&it.name, scope));
+    let mut of_program = running.iter().map(|at| &map.instances[*at]).filter(|it| same(&it.program, scope));
+    let instance = match (one, of_program.next(), of_program.next()) {
+        (Some(one), ..) => Some(one),
+        (None, Some(a), Some(b)) => {
+            return Err(format!("`{scope}` is ambiguous: `{}` or `{}`", a.name, b.name));
+        }
+        (None, first, _) => first.or_else(|| instances.clone().find(|it| same(&it.program, scope))),
+    };
+    if let Some(instance) = instance {
+        let found = named(&instance.variables, name).map(|it| Place::of(it, 0));
+        return found.map(Some).ok_or_else(|| {
+            let near = nearest(name, instance.variables.iter().map(|it| it.name.as_str()));
+            format!("PROGRAM `{}` has no variable `{name}`{near}", instance.program)
+        });
+    }
+    let (globals, base) = map.globals();
+    if !same(scope, "Globals") {
+        return Ok(None);
+    }
+    let found = named(globals, name).map(|it| Place::of(it, base));
+    found.map(Some).ok_or_else(|| {
+        let near = nearest(name, globals.iter().map(|it| it.name.as_str()));
+        format!("there is no global variable `{name}`{near}")
+    })
+}
+
+fn follow(map: &Map, mut place: Place, steps: &[Step<'_>]) -> Result<Place, String> {
+    for step in steps {
+        place = match step {
+            Step::Name(name) => member(map, place, name)?,
+            Step::Index(index) => element(map, place, *index)?,
+        };
+    }
+    Ok(place)
+}
+
+fn member(map: &Map, place: Place, name: &str) -> Result<Place, String> {
+    let Some(structure) = map.structure(place.ty) else {
+        return Err(format!("{} has no member `{name}`", with_article(&map.type_name(place.ty))));
+    };
+    named(&structure.members, name).map(|it| place.member(it)).ok_or_else(|| {
+        let near = nearest(name, structure.members.iter().map(|it| it.name.as_str()));
+        format!("{} has no member `{name}`{near}", structure.name)
+    })
+}
+
+fn with_article(name: &str) -> String {
+    let article = if name.starts_with(['A', 'E', 'I', 'O']) { "an" } else { "a" };
+    format!("{article} {name}")
+}
+
+fn element(map: &Map, place: Place, index: i64) -> Result<Place, String> {
+    let Some(array) = map.array(place.ty) else {
+        return Err(format!("{} has no elements", with_article(&map.type_name(place.ty))));
+    };
+    if !(array.low..=array.high).contains(&index) {
+        return Err(format!("the index {index} is outside {}..{}", array.low, array.high));
+    }
+    let position = usize::try_from(index.abs_diff(array.low)).unwrap_or(usize::MAX);
+    let part = place.part(array.element, position * array.stride);
+    // A subrange holds for the elements of an array too.
+    Ok(Place { range: place.range, ..part })
+}
+
+fn by_address(map: &Map, running: &[usize], text: &str) -> Result<Place, String> {
+    let wanted = canonical(text);
+    let has = |it: &&Variable| it.address.as_deref().is_some_and(|it| canonical(it) == wanted);
+    let (globals, base) = map.globals();
+    let global = || globals.iter().find(has).map(|it| Place::of(it, base));
+    let own = running.iter().flat_map(|at| &map.instances[*at].variables).find(has);
+    let found = own.map(|it| Place::of(it, 0)).or_else(global).or_else(|| inside_blocks(map, running, &wanted));
+    found.ok_or_else(|| format!("no variable has the address `{text}`"))
+}
+
+/// An address inside a function block instance.
+fn inside_blocks(map: &Map, running: &[usize], wanted: &str) -> Option<Place> {
+    let variables = running.iter().flat_map(|at| &map.instances[*at].variables);
+    variables.map(|it| Place::of(it, 0)).find_map(|it| find_address(map, it, wanted))
+}
+
+fn find_address(map: &Map, place: Place, wanted: &str) -> Option<Place> {
+    map.structure(place.ty)?.members.iter().find_map(|it| {
+        let inner = place.member(it);
+        match it.address.as_deref().map(canonical) {
+            Some(address) if address == wanted => Some(Place { input: it.is_input(), ..inner }),
+            _ => find_address(map, inner, wanted),
+        }
+    })
+}
+
+/// `%i0.0` and `%IX0.0` are one address.
+fn canonical(address: &str) -> String {
+    let upper = address.to_ascii_uppercase();
+    match upper.as_bytes().get(2) {
+        Some(b'0'..=b'9') => format!("{}X{}", &upper[..2], &upper[2..]),
+        _ => upper,
+    }
+}
+
+fn unknown(map: &Map, running: &[usize], name: &str) -> String {
+    let own = running.iter().flat_map(|at| &map.instances[*at].variables);
+    let globals = map.globals().0.iter();
+    let scopes = map.instances.iter().flat_map(|it| [it.name.as_str(), it.program.as_str()]);
+    let names = own.chain(globals).filter(|it| it.section != Section::Temp).map(|it| it.name.as_str());
+    format!("there is no variable `{name}`{}", nearest(name, names.chain(scopes)))
+}
+
+/// `; did you mean …?` for the name that is most like `wanted`, or nothing.
+pub fn nearest<'n>(wanted: &str, names: impl Iterator<Item = &'n str>) -> String {
+    let wanted = wanted.to_lowercase();
+    let limit = wanted.chars().count() / 3 + 1;
+    let ranked = names.map(|name| (distance(&wanted, &name.to_lowercase()), name));
+    match ranked.min_by_key(|(distance, _)| *distance) {
+        Some((distance, name)) if distance <= limit => format!("; did you mean `{name}`?"),
+        _ => String::new(),
+    }
+}
+
+/// Insertions, deletions and replacements from `a` to `b`.
+fn distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, x) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, y) in b.iter().enumerate() {
+            let replaced = diagonal + usize::from(x != *y);
+            diagonal = row[j + 1];
+            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::{map, offset_of};
+
+    fn find(text: &str) -> Result<Place, String> {
+        resolve(&map(), &[0], text)
+    }
+
+    #[test]
+    fn a_path_starts_at_the_program_its_instance_or_a_global() {
+        let cv = find("c.CV").unwrap();
+        assert_eq!(cv.offset, offset_of("c.CV"));
+        for text in ["C.cv", "main.c.CV", "Garage.c.CV", " garage . c . cv "] {
+            assert_eq!(find(text).unwrap(), cv, "{text}");
+        }
+        assert_eq!(find("total").unwrap(), find("Globals.total").unwrap());
+        assert_eq!(find("%IX0.0").unwrap(), find("up").unwrap());
+        assert_eq!(find("%i0.0").unwrap(), find("up").unwrap());
+    }
+
+    #[test]
+    fn elements_of_arrays_are_counted_from_their_bounds() {
+        assert_eq!(find("m[1,2]").unwrap(), find("m[1][2]").unwrap());
+        assert_eq!(find("m[1, -1]").unwrap().offset, find("m").unwrap().offset);
+        assert_eq!(find("m[2,2]").unwrap().offset, find("m").unwrap().offset + 7 * 2);
+        assert_eq!(find("m[3,0]").unwrap_err(), "the index 3 is outside 1..2");
+    }
+
+    #[test]
+    fn a_wrong_name_gets_a_near_one() {
+        assert_eq!(find("c.CW").unwrap_err(), "CTU has no member `CW`; did you mean `CU`?");
+        assert_eq!(find("Upp").unwrap_err(), "there is no variable `Upp`; did you mean `up`?");
+        assert_eq!(find("main.sped").unwrap_err(), "PROGRAM `Garage` has no variable `sped`; did you mean `speed`?");
+        assert_eq!(find("up.x").unwrap_err(), "a BOOL has no member `x`");
+        assert_eq!(find("a..b").unwrap_err(), "`a..b` is not the name of a variable");
+        assert_eq!(find("%QX7.7").unwrap_err(), "no variable has the address `%QX7.7`");
+    }
+}

@@ -1,0 +1,413 @@
+//! A run: scan after scan, with what goes in and what comes out.
+
+use crate::column::columns;
+use crate::map::Map;
+use crate::path::{nearest, same};
+use crate::retain::Retained;
+use crate::schedule::Schedule;
+use crate::stimulus::{Stimulus, Write};
+use crate::trace::{Row, Subject, Table, Trace};
+use crate::{Error, Machine, format_time, signal};
+use staunch_runtime::{Context, Time};
+use std::io::{self, Write as _};
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// Scans of a run that nothing else ends.
+const DEFAULT_SCANS: u64 = 100;
+/// The priority of a program without a TASK.
+const LOWEST_PRIORITY: u32 = 65535;
+
+/// What to run and how. The default is 100 scans.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// An instance or a PROGRAM by name; all of them if the source has a CONFIGURATION.
+    pub program: Option<String>,
+    /// `None`: to the last row of the stimulus, or 100; in real time without a stimulus, for ever.
+    pub scans: Option<u64>,
+    /// Nanoseconds between two scans, above zero; 10 ms, or the TASKs' intervals.
+    pub cycle: Option<Time>,
+    pub stimulus: Option<PathBuf>,
+    /// CSV, VCD or SVG by its ending; `-` is standard output.
+    pub trace: Option<PathBuf>,
+    /// Variables to trace, apart by commas.
+    pub vars: Option<String>,
+    /// A file that keeps retained variables from run to run.
+    pub retain: Option<PathBuf>,
+    /// Waits for the time at which each scan is due.
+    pub realtime: bool,
+    /// Prints nothing but errors and the trace.
+    pub quiet: bool,
+    /// Prints the last scans as a table, if there is no trace.
+    pub table: bool,
+}
+
+impl Options {
+    /// A large array has many columns: they are not made for nothing.
+    fn shows_values(&self) -> bool {
+        self.trace.is_some() || self.vars.is_some() || (self.table && !self.quiet)
+    }
+}
+
+/// What a run came to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Summary {
+    pub scans: u64,
+    /// On the clock of the program, in nanoseconds, to the end of the last cycle.
+    pub time: Time,
+    /// How long the run took.
+    pub elapsed: Duration,
+    /// Of a run in real time.
+    pub real: Option<RealTime>,
+}
+
+/// How well a run kept the real time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RealTime {
+    /// Scans that began late because the one before took too long.
+    pub overruns: u64,
+    pub shortest: Duration,
+    pub longest: Duration,
+    pub total: Duration,
+}
+
+/// Runs a program from its initial state: what `staunch run` does.
+///
+/// The trace holds the rows before a fault, and retained variables are saved whatever happens.
+pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Summary, Error> {
+    let running = running(map, options.program.as_deref())?;
+    if options.cycle.is_some_and(|it| it <= 0) {
+        return Err(Error::Usage("the cycle is a time above zero".to_owned()));
+    }
+    let stimulus = options.stimulus.as_deref().map(|path| Stimulus::read(path, map, &running)).transpose()?;
+    let columns = match options.shows_values() {
+        true => columns(map, &running, options.vars.as_deref()).map_err(|it| Error::Usage(format!("--vars: {it}")))?,
+        false => Vec::new(),
+    };
+    let subject = Subject { map, columns, title: title(map, &running) };
+    let mut runner = Runner {
+        machine,
+        map,
+        options,
+        schedule: Schedule::new(map, &running, options.cycle),
+        stimulus: stimulus.unwrap_or_default(),
+        next_row: 0,
+        held: Vec::new(),
+        fresh: vec![true; map.instances.len()],
+        retained: Retained::of(map),
+        out: Output { trace: None, table: Table::default() },
+        clock: None,
+        summary: Summary::default(),
+    };
+    runner.start()?;
+    if let Some(path) = &options.trace {
+        runner.out.trace = Some(Trace::create(path, &subject)?);
+    }
+    let ran = runner.scans(&subject);
+    let finished = runner.finish(&subject);
+    ran.and(finished).map(|()| runner.summary)
+}
+
+/// The instances to run, by their numbers.
+pub(crate) fn running(map: &Map, program: Option<&str>) -> Result<Vec<usize>, Error> {
+    let all = 0..map.instances.len();
+    let names = || map.instances.iter().flat_map(|it| [it.name.as_str(), it.program.as_str()]);
+    let Some(wanted) = program else {
+        if map.instances.is_empty() {
+            return Err(Error::Usage("there is no PROGRAM to run".to_owned()));
+        }
+        let unconfigured = |at: usize| {
+            let it = &map.instances[at];
+            it.interval.is_none() && it.priority == LOWEST_PRIORITY && it.name == it.program
+        };
+        if all.len() > 1 && all.clone().all(unconfigured) {
+            let names: Vec<String> = map.instances.iter().map(|it| format!("`{}`", it.name)).collect();
+            let text =
+                format!("no CONFIGURATION says which PROGRAM runs: pick one with --program: {}", names.join(", "));
+            return Err(Error::Usage(text));
+        }
+        return Ok(all.collect());
+    };
+    if let Some(at) = all.clone().find(|at| same(&map.instances[*at].name, wanted)) {
+        return Ok(vec![at]);
+    }
+    let found: Vec<usize> = all.filter(|at| same(&map.instances[*at].program, wanted)).collect();
+    match found.is_empty() {
+        true => Err(Error::Usage(format!("there is no PROGRAM `{wanted}`{}", nearest(wanted, names())))),
+        false => Ok(found),
+    }
+}
+
+fn title(map: &Map, running: &[usize]) -> String {
+    let mut names: Vec<&str> = running.iter().map(|at| map.instances[*at].program.as_str()).collect();
+    names.dedup();
+    names.join(", ")
+}
+
+struct Runner<'a> {
+    machine: &'a mut dyn Machine,
+    map: &'a Map,
+    options: &'a Options,
+    schedule: Schedule,
+    stimulus: Stimulus,
+    /// The next row of the stimulus.
+    next_row: usize,
+    /// What the stimulus wrote to inputs: they hold over a restart.
+    held: Vec<Write>,
+    /// Instances that have not run since the start.
+    fresh: Vec<bool>,
+    retained: Retained,
+    out: Output,
+    clock: Option<Clock>,
+    summary: Summary,
+}
+
+struct Output {
+    trace: Option<Trace>,
+    table: Table,
+}
+
+impl Runner<'_> {
+    fn start(&mut self) -> Result<(), Error> {
+        self.machine.init();
+        if let Some(path) = &self.options.retain {
+            for note in self.retained.load(self.map, path, self.machine.state_mut())? {
+                eprintln!("note: {}: {note}", path.display());
+            }
+        }
+        Ok(())
+    }
+
+    fn scans(&mut self, subject: &Subject<'_>) -> Result<(), Error> {
+        let began = Instant::now();
+        if self.options.realtime {
+            signal::listen();
+            self.clock = Some(Clock::start());
+        }
+        if self.options.scans == Some(0) {
+            self.record(subject, 0)?;
+        }
+        let mut before = None;
+        let mut ran = Ok(());
+        while ran.is_ok() && !self.is_done() {
+            match self.scan(subject, before) {
+                Ok(Some(now)) => before = Some(now),
+                Ok(None) => break,
+                Err(error) => ran = Err(error),
+            }
+        }
+        self.summary.elapsed = began.elapsed();
+        self.summary.time = if self.summary.scans == 0 { 0 } else { self.schedule.next() };
+        self.summary.real = self.clock.as_ref().map(|it| it.figures);
+        ran
+    }
+
+    fn is_done(&self) -> bool {
+        match self.options.scans {
+            Some(scans) => self.summary.scans >= scans,
+            None if !self.stimulus.rows.is_empty() => self.next_row >= self.stimulus.rows.len(),
+            None => !self.options.realtime && self.summary.scans >= DEFAULT_SCANS,
+        }
+    }
+
+    /// Runs the next scan and returns its time; `None` when the user has asked for an end.
+    fn scan(&mut self, subject: &Subject<'_>, before: Option<Time>) -> Result<Option<Time>, Error> {
+        let number = self.summary.scans + 1;
+        let placed = self.stimulus.placed(self.next_row, number, before)?;
+        let mut now = placed.unwrap_or_else(|| self.schedule.next());
+        if let Some(clock) = &mut self.clock {
+            match clock.wait(now) {
+                Some(actual) => now = actual,
+                None => return Ok(None),
+            }
+        }
+        self.stimulate(number, now)?;
+        let began = self.clock.as_ref().map(|_| Instant::now());
+        for instance in self.schedule.advance(now, placed.is_some()) {
+            let first_scan = std::mem::take(&mut self.fresh[*instance]);
+            let end = self.machine.scan(*instance, &Context { now, first_scan });
+            end.map_err(|fault| Error::Fault {
+                fault,
+                scan: number,
+                instance: self.map.instances[*instance].name.clone(),
+                path: self.map.file(fault.at.file).to_owned(),
+            })?;
+        }
+        if let (Some(clock), Some(began)) = (&mut self.clock, began) {
+            clock.figures.add(began.elapsed());
+        }
+        self.summary.scans = number;
+        self.record(subject, now)?;
+        Ok(Some(now))
+    }
+
+    /// Events and values that come before scan `number`.
+    fn stimulate(&mut self, number: u64, now: Time) -> Result<(), Error> {
+        while self.stimulus.acts(self.next_row, number, now) {
+            if self.stimulus.rows[self.next_row].restart {
+                self.restart()?;
+            }
+            let state = self.machine.state_mut();
+            for write in &self.stimulus.rows[self.next_row].writes {
+                put(write, state);
+                if write.input {
+                    self.held.retain(|it| it.offset != write.offset);
+                    self.held.push(write.clone());
+                }
+            }
+            self.next_row += 1;
+        }
+        Ok(())
+    }
+
+    /// A power cycle: retained variables and inputs keep their values.
+    fn restart(&mut self) -> Result<(), Error> {
+        let kept = self.retained.snapshot(self.machine.state());
+        self.save()?;
+        self.machine.init();
+        let state = self.machine.state_mut();
+        self.retained.restore(&kept, state);
+        self.held.iter().for_each(|it| put(it, state));
+        self.fresh.fill(true);
+        Ok(())
+    }
+
+    fn save(&self) -> Result<(), Error> {
+        self.options.retain.as_ref().map_or(Ok(()), |path| self.retained.save(path, self.machine.state()))
+    }
+
+    fn record(&mut self, subject: &Subject<'_>, now: Time) -> Result<(), Error> {
+        let row = Row { scan: self.summary.scans, time: now, state: self.machine.state() };
+        match &mut self.out.trace {
+            Some(trace) => {
+                trace.row(subject, row)?;
+                if self.options.realtime { trace.flush() } else { Ok(()) }
+            }
+            None => {
+                if self.options.table {
+                    self.out.table.row(subject, row);
+                }
+                Ok(())
+            }
+        }
+    }
+
+    fn finish(&mut self, subject: &Subject<'_>) -> Result<(), Error> {
+        let saved = self.save();
+        match &mut self.out.trace {
+            Some(trace) => trace.finish(subject).and(saved),
+            None if self.options.quiet => saved,
+            None => {
+                let mut text = Vec::new();
+                let printed = self.out.table.print(subject, &mut text).and_then(|()| self.totals(subject, &mut text));
+                let printed = printed.and_then(|()| io::stdout().write_all(&text)).and_then(|()| io::stdout().flush());
+                printed.map_err(|error| Error::file("standard output".as_ref(), "write", error)).and(saved)
+            }
+        }
+    }
+
+    fn totals(&self, subject: &Subject<'_>, out: &mut dyn io::Write) -> io::Result<()> {
+        let Summary { scans, time, elapsed, real } = self.summary;
+        let plural = if scans == 1 { "" } else { "s" };
+        write!(out, "{scans} scan{plural} of {}, ", subject.title)?;
+        let Some(real) = real else {
+            return writeln!(out, "{} of virtual time, in {}", spoken(time), rounded(elapsed));
+        };
+        let mean = real.total.checked_div(u32::try_from(scans).unwrap_or(u32::MAX)).unwrap_or_default();
+        let (min, mean, max) = (rounded(real.shortest), rounded(mean), rounded(real.longest));
+        let plural = if real.overruns == 1 { "" } else { "s" };
+        write!(
+            out,
+            "{} in real time, {} overrun{plural}; a scan took {min} at least, ",
+            rounded(elapsed),
+            real.overruns
+        )?;
+        writeln!(out, "{mean} on average, {max} at most")
+    }
+}
+
+fn put(write: &Write, state: &mut [u8]) {
+    state[write.offset..write.offset + write.bytes.len()].copy_from_slice(&write.bytes);
+}
+
+/// `2 s`, `1 min 30 s`: a time for a sentence.
+fn spoken(time: Time) -> String {
+    let text = format_time(time);
+    let mut out = String::new();
+    let mut digit = true;
+    for character in text.trim_start_matches("T#").chars() {
+        if character.is_ascii_digit() != digit {
+            out.push(' ');
+            digit = !digit;
+        }
+        out.push(character);
+    }
+    let words = out.split(' ').map(|it| if it == "m" { "min" } else { it });
+    words.collect::<Vec<_>>().join(" ")
+}
+
+/// Three digits are enough for people.
+fn rounded(duration: Duration) -> String {
+    let nanoseconds = duration.as_nanos();
+    let (value, unit) = match nanoseconds {
+        0..=999 => return format!("{nanoseconds} ns"),
+        1_000..=999_999 => (nanoseconds as f64 / 1e3, "µs"),
+        1_000_000..=999_999_999 => (nanoseconds as f64 / 1e6, "ms"),
+        _ => (nanoseconds as f64 / 1e9, "s"),
+    };
+    let digits = if value < 10.0 { 2 } else { usize::from(value < 100.0) };
+    format!("{value:.digits$} {unit}")
+}
+
+/// The real time since the start of the run.
+struct Clock {
+    start: Instant,
+    figures: RealTime,
+    has_run: bool,
+}
+
+/// A signal cannot end a sleep, so none is longer than this.
+const NAP: Duration = Duration::from_millis(50);
+
+impl Clock {
+    fn start() -> Self {
+        let figures = RealTime { overruns: 0, shortest: Duration::MAX, longest: Duration::ZERO, total: Duration::ZERO };
+        Self { start: Instant::now(), figures, has_run: false }
+    }
+
+    /// Sleeps until `time`. Returns the time at which the scan begins, later than that after an
+    /// overrun; `None` when the user has asked for an end.
+    fn wait(&mut self, time: Time) -> Option<Time> {
+        let due = self.start + Duration::from_nanos(u64::try_from(time).unwrap_or(0));
+        let mut slept = false;
+        loop {
+            if signal::asked_to_stop() {
+                return None;
+            }
+            let left = due.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                break;
+            }
+            slept = true;
+            std::thread::sleep(left.min(NAP));
+        }
+        let late = !slept && std::mem::replace(&mut self.has_run, true);
+        self.has_run = true;
+        if !late {
+            return Some(time);
+        }
+        self.figures.overruns += 1;
+        Some(time.max(Time::try_from(self.start.elapsed().as_nanos()).unwrap_or(Time::MAX)))
+    }
+}
+
+impl RealTime {
+    fn add(&mut self, scan: Duration) {
+        self.shortest = self.shortest.min(scan);
+        self.longest = self.longest.max(scan);
+        self.total += scan;
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,152 @@
+use super::*;
+use crate::fixture::{Garage, map};
+use staunch_runtime::Value;
+use std::path::Path;
+
+/// A folder of its own for each test.
+fn folder(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("staunch-run-{}-{name}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn traced(folder: &Path, stimulus: &str, options: Options) -> (Result<Summary, Error>, String, Garage) {
+    let mut machine = Garage::new();
+    let (result, text) = traced_on(&mut machine, folder, stimulus, options);
+    (result, text, machine)
+}
+
+fn traced_on(
+    machine: &mut Garage,
+    folder: &Path,
+    stimulus: &str,
+    options: Options,
+) -> (Result<Summary, Error>, String) {
+    let (input, output) = (folder.join("in.csv"), folder.join("out.csv"));
+    std::fs::write(&input, stimulus).unwrap();
+    let options = Options { stimulus: Some(input), trace: Some(output.clone()), quiet: true, ..options };
+    let result = run(machine, &map(), &options);
+    (result, std::fs::read_to_string(output).unwrap_or_default())
+}
+
+fn vars(vars: &str) -> Options {
+    Options { vars: Some(vars.to_owned()), ..Options::default() }
+}
+
+#[test]
+fn inputs_hold_and_time_moves_by_the_cycle() {
+    let stimulus = "scan,up\n1,TRUE\n3,FALSE\n4,TRUE\n";
+    let (result, trace, _) = traced(&folder("hold"), stimulus, vars("up,c.CV"));
+    assert_eq!(trace, "scan,time_ms,up,c.CV\n1,0,TRUE,1\n2,10,TRUE,1\n3,20,FALSE,1\n4,30,TRUE,2\n");
+    let summary = result.unwrap();
+    assert_eq!((summary.scans, summary.time), (4, 40_000_000));
+}
+
+#[test]
+fn scans_can_be_placed_in_time() {
+    let options = Options { scans: Some(4), cycle: Some(5_000_000), ..vars("speed") };
+    let (_, trace, _) = traced(&folder("placed"), "scan,time,up\n2,T#1s,TRUE\n", options);
+    assert_eq!(trace, "scan,time_ms,speed\n1,0,0.0\n2,1000,1.0\n3,1005,1.005\n4,1010,1.01\n");
+    let (result, _, _) = traced(&folder("back"), "scan,time,up\n3,T#1ms,TRUE\n", Options::default());
+    assert!(
+        result
+            .unwrap_err()
+            .to_string()
+            .ends_with("in.csv:2:3: scan 3 cannot run at T#1ms: the scan before it runs at T#10ms")
+    );
+}
+
+#[test]
+fn a_restart_keeps_retained_variables_and_inputs() {
+    let stimulus = "scan,up,@event\n1,TRUE,\n2,,restart\n3,,\n";
+    let (_, trace, machine) = traced(&folder("restart"), stimulus, vars("up,c.CV,total,mixer.count"));
+    assert_eq!(trace, "scan,time_ms,up,c.CV,total,mixer.count\n1,0,TRUE,1,1,1\n2,10,TRUE,1,2,2\n3,20,TRUE,1,2,2\n");
+    assert_eq!(machine.first_scans, [0, 10_000_000]);
+    assert_eq!(machine.read("limit"), Value::I16(7));
+}
+
+#[test]
+fn scan_zero_shows_the_initial_values() {
+    let options = Options { scans: Some(0), ..vars("limit") };
+    let (result, trace, _) = traced(&folder("zero"), "scan,up\n1,TRUE\n", options);
+    assert_eq!(trace, "scan,time_ms,limit\n0,0,7\n");
+    let summary = result.unwrap();
+    assert_eq!((summary.scans, summary.time), (0, 0));
+}
+
+#[test]
+fn a_fault_leaves_the_rows_before_it() {
+    let mut machine = Garage::new();
+    machine.fault_at = 2;
+    let stimulus = "scan,up\n1,1\n2,0\n3,1\n9,0\n";
+    let (result, trace) = traced_on(&mut machine, &folder("fault"), stimulus, vars("c.CV"));
+    assert_eq!(trace, "scan,time_ms,c.CV\n1,0,1\n2,10,1\n");
+    let error = result.unwrap_err();
+    assert_eq!(error.exit_code(), 3);
+    assert_eq!(error.to_string(), "garage.st:12:5: fault: division by zero (scan 3, program main)");
+}
+
+#[test]
+fn retained_variables_live_in_a_file() {
+    let folder = folder("file");
+    let options = || Options { retain: Some(folder.join("garage.ret")), ..vars("total") };
+    let stimulus = "scan,up\n1,1\n";
+    assert_eq!(traced(&folder, stimulus, options()).1, "scan,time_ms,total\n1,0,1\n");
+    assert_eq!(traced(&folder, stimulus, options()).1, "scan,time_ms,total\n1,0,2\n");
+}
+
+#[test]
+fn a_run_ends_by_itself() {
+    let options = Options { quiet: true, ..Options::default() };
+    let summary = run(&mut Garage::new(), &map(), &options).unwrap();
+    assert_eq!(summary.scans, DEFAULT_SCANS);
+    let (result, _, _) = traced(&folder("by-time"), "time,up\nT#0s,1\nT#25ms,0\n", vars("up"));
+    assert_eq!(result.unwrap().scans, 4);
+}
+
+#[test]
+fn real_time_is_waited_for() {
+    let options = Options { realtime: true, quiet: true, scans: Some(3), cycle: Some(4_000_000), ..Options::default() };
+    let summary = run(&mut Garage::new(), &map(), &options).unwrap();
+    assert!(summary.elapsed >= Duration::from_millis(8), "{summary:?}");
+    assert!(summary.real.unwrap().shortest <= summary.real.unwrap().longest);
+}
+
+#[test]
+fn the_program_to_run_is_picked_by_name() {
+    let mut map = map();
+    assert_eq!(running(&map, Some("garage")).unwrap(), [0]);
+    assert_eq!(running(&map, Some("main")).unwrap(), [0]);
+    assert_eq!(
+        running(&map, Some("Garagee")).unwrap_err().to_string(),
+        "there is no PROGRAM `Garagee`; did you mean `Garage`?"
+    );
+    map.instances[0].name = "Garage".to_owned();
+    map.instances.push(map.instances[0].clone());
+    map.instances[1].name = "Mixer".to_owned();
+    map.instances[1].program = "Mixer".to_owned();
+    assert_eq!(
+        running(&map, None).unwrap_err().to_string(),
+        "no CONFIGURATION says which PROGRAM runs: pick one with --program: `Garage`, `Mixer`"
+    );
+    map.instances[1].priority = 1;
+    assert_eq!(running(&map, None).unwrap(), [0, 1]);
+}
+
+#[test]
+fn wrong_wishes_are_told() {
+    let error = |options| run(&mut Garage::new(), &map(), &options).unwrap_err();
+    assert_eq!(error(vars("upp")).to_string(), "--vars: there is no variable `upp`; did you mean `up`?");
+    assert_eq!(error(Options { cycle: Some(0), ..Options::default() }).exit_code(), 2);
+    let missing = error(Options { stimulus: Some("no/such.csv".into()), ..Options::default() });
+    assert!(missing.to_string().starts_with("cannot read no/such.csv: "), "{missing}");
+}
+
+#[test]
+fn times_for_people() {
+    assert_eq!(spoken(2_000_000_000), "2 s");
+    assert_eq!(spoken(90_500_000_000), "1 min 30 s 500 ms");
+    assert_eq!(rounded(Duration::from_nanos(950)), "950 ns");
+    assert_eq!(rounded(Duration::from_nanos(1_234_567)), "1.23 ms");
+    assert_eq!(rounded(Duration::from_secs(123)), "123 s");
+}

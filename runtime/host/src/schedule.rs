@@ -1,0 +1,129 @@
+//! When which program runs.
+
+use crate::map::Map;
+use staunch_runtime::Time;
+
+/// Time between scans where neither the command nor the source says one.
+const DEFAULT_CYCLE: Time = 10_000_000;
+
+#[derive(Clone, Debug)]
+pub(crate) struct Schedule {
+    /// In the order in which programs run that are due together.
+    tasks: Vec<Task>,
+    /// Scans fall on multiples of it.
+    tick: Option<Time>,
+    due: Vec<usize>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Task {
+    instance: usize,
+    period: Time,
+    next: Time,
+}
+
+impl Schedule {
+    /// `cycle` takes the place of the programs' intervals. Where they differ it cannot, and is
+    /// the grid on which they fall.
+    pub fn new(map: &Map, running: &[usize], cycle: Option<Time>) -> Self {
+        let mut intervals: Vec<Time> = running.iter().filter_map(|at| map.instances[*at].interval).collect();
+        intervals.sort_unstable();
+        intervals.dedup();
+        let tick = cycle.filter(|_| intervals.len() > 1);
+        let period = |at: usize| match (cycle, map.instances[at].interval) {
+            (Some(cycle), _) if tick.is_none() => cycle,
+            (_, Some(interval)) => interval,
+            (cycle, None) => cycle.unwrap_or(DEFAULT_CYCLE),
+        };
+        let mut order = running.to_vec();
+        order.sort_by_key(|at| (map.instances[*at].priority, *at));
+        let tasks = order.into_iter().map(|instance| Task { instance, period: period(instance), next: 0 });
+        Self { tasks: tasks.collect(), tick, due: Vec::new() }
+    }
+
+    /// When the next scan is due.
+    pub fn next(&self) -> Time {
+        let next = self.tasks.iter().map(|it| it.next).min().unwrap_or(0);
+        match self.tick {
+            Some(tick) => next.div_euclid(tick).saturating_add(Time::from(next % tick != 0)).saturating_mul(tick),
+            None => next,
+        }
+    }
+
+    /// The instances that run at `now`. At least one does. After a scan that was `placed` at
+    /// `now`, the next follows a period later.
+    pub fn advance(&mut self, now: Time, placed: bool) -> &[usize] {
+        let threshold = self.tasks.iter().map(|it| it.next).min().unwrap_or(0).max(now);
+        self.due.clear();
+        for task in self.tasks.iter_mut().filter(|it| it.next <= threshold) {
+            self.due.push(task.instance);
+            let missed = if placed { 0 } else { now.saturating_sub(task.next) / task.period };
+            let from = if placed { now } else { task.next };
+            task.next = from.saturating_add(task.period.saturating_mul(missed + 1));
+        }
+        &self.due
+    }
+
+    /// What [`advance`](Self::advance) returned last.
+    pub fn due(&self) -> &[usize] {
+        &self.due
+    }
+
+    /// The instance and its period, if there is only one.
+    pub fn only(&self) -> Option<(usize, Time)> {
+        match self.tasks.as_slice() {
+            [task] => Some((task.instance, task.period)),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::Instance;
+
+    fn times(intervals: &[(Option<Time>, u32)], cycle: Option<Time>, count: usize) -> Vec<(Time, Vec<usize>)> {
+        let mut map = crate::fixture::map();
+        let first = map.instances[0].clone();
+        let instance = |(interval, priority): &(Option<Time>, u32)| Instance {
+            interval: *interval,
+            priority: *priority,
+            ..first.clone()
+        };
+        map.instances = intervals.iter().map(instance).collect();
+        let running: Vec<usize> = (0..intervals.len()).collect();
+        let mut schedule = Schedule::new(&map, &running, cycle);
+        let step = |_| {
+            let now = schedule.next();
+            (now, schedule.advance(now, false).to_vec())
+        };
+        (0..count).map(step).collect()
+    }
+
+    #[test]
+    fn one_program_runs_every_cycle() {
+        let ms = 1_000_000;
+        assert_eq!(times(&[(None, 0)], None, 2)[1].0, 10 * ms);
+        assert_eq!(times(&[(Some(20 * ms), 0)], None, 2)[1].0, 20 * ms);
+        assert_eq!(times(&[(Some(20 * ms), 0)], Some(5 * ms), 2)[1].0, 5 * ms);
+    }
+
+    #[test]
+    fn tasks_keep_their_own_intervals() {
+        let expected = [(0, vec![1, 0]), (20, vec![0]), (30, vec![1]), (40, vec![0]), (60, vec![1, 0])];
+        assert_eq!(times(&[(Some(20), 5), (Some(30), 1)], None, 5), expected);
+        let on_grid = [(0, vec![1, 0]), (24, vec![0]), (36, vec![1]), (48, vec![0]), (60, vec![1, 0])];
+        assert_eq!(times(&[(Some(20), 5), (Some(30), 1)], Some(12), 5), on_grid);
+    }
+
+    #[test]
+    fn a_placed_scan_moves_those_after_it() {
+        let mut schedule = Schedule::new(&crate::fixture::map(), &[0], Some(10));
+        assert_eq!(schedule.advance(0, false), [0]);
+        assert_eq!(schedule.advance(3, true), [0]);
+        assert_eq!(schedule.next(), 13);
+        assert_eq!(schedule.advance(45, false), [0]);
+        assert_eq!(schedule.next(), 53);
+    }
+}

@@ -1,0 +1,279 @@
+//! What the world does to a program, scan by scan: a CSV file.
+
+use crate::Error;
+use crate::csv::{self, Cell};
+use crate::literal;
+use crate::map::Map;
+use crate::path::{self, Place, same};
+use staunch_runtime::Time;
+use std::path::{Path, PathBuf};
+
+/// Rows in the order in which they act.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Stimulus {
+    path: PathBuf,
+    pub rows: Vec<Row>,
+}
+
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Row {
+    /// Acts before this scan; by `time` alone if there is none.
+    pub scan: Option<u64>,
+    /// With `scan`, when that scan runs; alone, the row acts before the first scan from then on.
+    pub time: Option<Time>,
+    /// A power cycle, or a change from IDLE to RUN, comes first.
+    pub restart: bool,
+    pub writes: Vec<Write>,
+    /// Line and column.
+    at: (usize, usize),
+    time_at: (usize, usize),
+}
+
+/// Bytes that go into the state.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Write {
+    pub offset: usize,
+    pub bytes: Vec<u8>,
+    /// To an input, which holds over a restart.
+    pub input: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Column {
+    Scan,
+    Time,
+    Event,
+    Variable(Place),
+}
+
+impl Stimulus {
+    pub fn read(path: &Path, map: &Map, running: &[usize]) -> Result<Self, Error> {
+        let bytes = std::fs::read(path).map_err(|error| Error::file(path, "read", error))?;
+        let text = String::from_utf8_lossy(&bytes);
+        Self::parse(path, &text, map, running)
+    }
+
+    /// `path` is for messages.
+    pub fn parse(path: &Path, text: &str, map: &Map, running: &[usize]) -> Result<Self, Error> {
+        let mut parser = Parser { path, map, running, columns: Vec::new() };
+        let open = |(line, column)| parser.error(line, column, "a quote that is not closed".to_owned());
+        let cells = csv::parse(text).map_err(open)?;
+        let Some((header, rows)) = cells.split_first() else {
+            return Err(parser.error(
+                1,
+                1,
+                "it is empty: the first line names `scan` or `time`, and variables".to_owned(),
+            ));
+        };
+        parser.header(header)?;
+        let rows = rows.iter().map(|cells| parser.row(cells)).collect::<Result<Vec<_>, _>>()?;
+        parser.in_order(&rows)?;
+        Ok(Self { path: path.to_owned(), rows })
+    }
+
+    /// When scan `number` runs, if the row at `next` places it in time; `before` is when the last
+    /// scan ran.
+    pub fn placed(&self, next: usize, number: u64, before: Option<Time>) -> Result<Option<Time>, Error> {
+        let Some(Row { scan: Some(scan), time: Some(time), time_at: (line, column), .. }) = self.rows.get(next) else {
+            return Ok(None);
+        };
+        if *scan != number {
+            return Ok(None);
+        }
+        match before {
+            Some(before) if before > *time => Err(Error::Stimulus {
+                path: self.path.clone(),
+                line: *line,
+                column: *column,
+                text: format!(
+                    "scan {number} cannot run at {}: the scan before it runs at {}",
+                    crate::format_time(*time),
+                    crate::format_time(before)
+                ),
+            }),
+            _ => Ok(Some(*time)),
+        }
+    }
+
+    /// TRUE when the row at `next` acts before scan `number`, at `time`.
+    pub fn acts(&self, next: usize, number: u64, time: Time) -> bool {
+        self.rows.get(next).is_some_and(|row| match (row.scan, row.time) {
+            (Some(scan), _) => scan <= number,
+            (None, Some(at)) => at <= time,
+            (None, None) => true,
+        })
+    }
+}
+
+struct Parser<'a> {
+    path: &'a Path,
+    map: &'a Map,
+    running: &'a [usize],
+    columns: Vec<Column>,
+}
+
+impl Parser<'_> {
+    fn error(&self, line: usize, column: usize, text: String) -> Error {
+        Error::Stimulus { path: self.path.to_owned(), line, column, text }
+    }
+
+    fn at(&self, cell: &Cell, text: impl Into<String>) -> Error {
+        self.error(cell.line, cell.column, text.into())
+    }
+
+    fn header(&mut self, cells: &[Cell]) -> Result<(), Error> {
+        for (position, cell) in cells.iter().enumerate() {
+            let column = self.column(position, cell)?;
+            if self.columns.contains(&column) {
+                return Err(self.at(cell, format!("`{}` already has a column", cell.text)));
+            }
+            self.columns.push(column);
+        }
+        Ok(())
+    }
+
+    fn column(&self, position: usize, cell: &Cell) -> Result<Column, Error> {
+        let is_clock = |it| matches!(it, &Column::Scan | &Column::Time);
+        match cell.text.as_str() {
+            text if position < 2 && same(text, "scan") && !self.columns.contains(&Column::Scan) => Ok(Column::Scan),
+            text if position < 2 && same(text, "time") && !self.columns.contains(&Column::Time) => Ok(Column::Time),
+            _ if position == 0 => {
+                Err(self.at(cell, format!("the first column is `scan` or `time`, not `{}`", cell.text)))
+            }
+            _ if !self.columns.iter().any(is_clock) => Err(self.at(cell, "the first column is `scan` or `time`")),
+            text if same(text, "@event") => Ok(Column::Event),
+            text => self.variable(cell, text),
+        }
+    }
+
+    fn variable(&self, cell: &Cell, name: &str) -> Result<Column, Error> {
+        let place = path::resolve(self.map, self.running, name).map_err(|text| self.at(cell, text))?;
+        match place.constant {
+            true => Err(self.at(cell, format!("`{name}` is CONSTANT: nothing writes it"))),
+            false => Ok(Column::Variable(place)),
+        }
+    }
+
+    fn row(&self, cells: &[Cell]) -> Result<Row, Error> {
+        let at = cells.first().map_or((1, 1), |it| (it.line, it.column));
+        let mut row = Row { at, ..Row::default() };
+        if let Some(surplus) = cells.get(self.columns.len()) {
+            return Err(self.at(surplus, format!("the header has only {} columns", self.columns.len())));
+        }
+        for (cell, column) in cells.iter().zip(&self.columns).filter(|(cell, _)| !cell.is_empty()) {
+            match column {
+                Column::Scan => row.scan = Some(self.scan(cell)?),
+                Column::Time => {
+                    row.time = Some(self.time(cell)?);
+                    row.time_at = (cell.line, cell.column);
+                }
+                Column::Event => row.restart = self.event(cell)?,
+                Column::Variable(place) => row.writes.push(self.write(cell, *place)?),
+            }
+        }
+        match (row.scan, row.time, cells.first()) {
+            (None, None, Some(first)) => Err(self.at(first, "the row does not say when: its first cell is empty")),
+            _ => Ok(row),
+        }
+    }
+
+    fn scan(&self, cell: &Cell) -> Result<u64, Error> {
+        match cell.text.parse() {
+            Ok(0) => Err(self.at(cell, "scans count from 1")),
+            Ok(scan) => Ok(scan),
+            Err(_) => Err(self.at(cell, format!("`{}` is not the number of a scan", cell.text))),
+        }
+    }
+
+    fn time(&self, cell: &Cell) -> Result<Time, Error> {
+        match literal::time(&cell.text) {
+            Ok(time) if time < 0 => Err(self.at(cell, "time starts at T#0s")),
+            Ok(time) => Ok(time),
+            Err(text) => Err(self.at(cell, text)),
+        }
+    }
+
+    fn event(&self, cell: &Cell) -> Result<bool, Error> {
+        match cell.text.to_ascii_lowercase().as_str() {
+            "restart" | "run" => Ok(true),
+            _ => Err(self.at(cell, format!("`{}` is no event: there are `restart` and `run`", cell.text))),
+        }
+    }
+
+    fn write(&self, cell: &Cell, place: Place) -> Result<Write, Error> {
+        let bytes = literal::parse(self.map, place, &cell.text).map_err(|text| self.at(cell, text))?;
+        Ok(Write { offset: place.offset, bytes, input: place.input })
+    }
+
+    fn in_order(&self, rows: &[Row]) -> Result<(), Error> {
+        let (mut scan, mut time) = (0, 0);
+        for row in rows {
+            let back = row.scan.is_some_and(|it| it < scan) || row.time.is_some_and(|it| it < time);
+            if back {
+                let (line, column) = row.at;
+                return Err(self.error(
+                    line,
+                    column,
+                    "rows are out of order: this one is earlier than one above".to_owned(),
+                ));
+            }
+            (scan, time) = (row.scan.unwrap_or(scan), row.time.unwrap_or(time));
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::{map, offset_of};
+
+    fn read(text: &str) -> Result<Stimulus, String> {
+        Stimulus::parse(Path::new("in.csv"), text, &map(), &[0]).map_err(|it| it.to_string())
+    }
+
+    #[test]
+    fn rows_write_their_non_empty_cells() {
+        let stimulus = read("scan,up,@event,c.CV\n1,TRUE,,\n3,,restart,16#F\n3,0,,\n").unwrap();
+        let [first, second, third] = stimulus.rows.as_slice() else { panic!("{stimulus:?}") };
+        let up = |value| vec![Write { offset: offset_of("up"), bytes: vec![value], input: true }];
+        assert_eq!((first.scan, first.restart, &first.writes), (Some(1), false, &up(1)));
+        assert_eq!((second.scan, second.restart), (Some(3), true));
+        assert_eq!(second.writes[0].bytes, 15_i16.to_ne_bytes());
+        assert_eq!(third.writes, up(0));
+    }
+
+    #[test]
+    fn rows_are_placed_by_scan_or_time() {
+        let by_time = read("time,up\nT#0s,1\nT#25ms,0\n").unwrap();
+        assert!(by_time.acts(0, 1, 0) && !by_time.acts(1, 3, 20_000_000) && by_time.acts(1, 4, 30_000_000));
+        assert!(!by_time.acts(2, 9, i64::MAX));
+        let placed = read("scan,time,up\n2,T#25ms,1\n").unwrap();
+        assert_eq!(placed.placed(0, 1, None).unwrap(), None);
+        assert_eq!(placed.placed(0, 2, Some(0)).unwrap(), Some(25_000_000));
+        let error = placed.placed(0, 2, Some(30_000_000)).unwrap_err().to_string();
+        assert_eq!(error, "in.csv:2:3: scan 2 cannot run at T#25ms: the scan before it runs at T#30ms");
+    }
+
+    #[test]
+    fn mistakes_name_their_place() {
+        for (text, expected) in [
+            ("", "in.csv:1:1: it is empty: the first line names `scan` or `time`, and variables"),
+            ("up\n1\n", "in.csv:1:1: the first column is `scan` or `time`, not `up`"),
+            ("scan,Upp\n", "in.csv:1:6: there is no variable `Upp`; did you mean `up`?"),
+            ("scan,up,UP\n", "in.csv:1:9: `UP` already has a column"),
+            ("scan,limit\n", "in.csv:1:6: `limit` is CONSTANT: nothing writes it"),
+            ("scan,up\n0,1\n", "in.csv:2:1: scans count from 1"),
+            ("scan,up\nx,1\n", "in.csv:2:1: `x` is not the number of a scan"),
+            ("time,up\n5,1\n", "in.csv:2:1: `5` is not a TIME: write `T#500ms`"),
+            ("scan,up\n1,5\n", "in.csv:2:3: `5` is not a BOOL: write TRUE or FALSE"),
+            ("scan,up\n1,1,1\n", "in.csv:2:5: the header has only 2 columns"),
+            ("scan,up\n,1\n", "in.csv:2:1: the row does not say when: its first cell is empty"),
+            ("scan,@event\n1,stop\n", "in.csv:2:3: `stop` is no event: there are `restart` and `run`"),
+            ("scan,up\n3,1\n2,1\n", "in.csv:3:1: rows are out of order: this one is earlier than one above"),
+            ("scan,up\n1,\"1\n", "in.csv:2:3: a quote that is not closed"),
+        ] {
+            assert_eq!(read(text).unwrap_err(), expected, "{text}");
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! Where the values of a run go: a row a scan.
+
+mod diagram;
+mod rows;
+mod table;
+mod waves;
+
+use crate::Error;
+use crate::column::Column;
+use crate::map::Map;
+use crate::value;
+use staunch_runtime::Time;
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+pub(crate) use table::Table;
+
+/// The state after a scan.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Row<'a> {
+    /// 0 for the state before the first scan.
+    pub scan: u64,
+    /// When the scan began.
+    pub time: Time,
+    pub state: &'a [u8],
+}
+
+/// What a trace is about.
+#[derive(Debug)]
+pub(crate) struct Subject<'a> {
+    pub map: &'a Map,
+    pub columns: Vec<Column>,
+    /// Names the run to people.
+    pub title: String,
+}
+
+impl Subject<'_> {
+    /// Writes a column's value over `cell`.
+    pub fn cell(&self, column: &Column, state: &[u8], cell: &mut String) {
+        cell.clear();
+        value::format(self.map, column.place.ty, &state[column.place.offset..], cell);
+    }
+}
+
+pub(crate) trait Sink {
+    fn row(&mut self, subject: &Subject<'_>, row: Row<'_>) -> io::Result<()>;
+    /// What is still to be written, after the last row.
+    fn finish(&mut self, subject: &Subject<'_>) -> io::Result<()>;
+    /// Shows what has been written so far.
+    fn flush(&mut self) -> io::Result<()>;
+}
+
+/// An open trace file.
+pub(crate) struct Trace {
+    path: PathBuf,
+    sink: Box<dyn Sink>,
+}
+
+impl Trace {
+    /// The file's ending says the form: `.vcd`, `.svg`, or else CSV; `-` is standard output.
+    pub fn create(path: &Path, subject: &Subject<'_>) -> Result<Self, Error> {
+        let file = |error| Error::file(path, "write", error);
+        let out: Box<dyn Write> = match path.as_os_str() == "-" {
+            true => Box::new(BufWriter::new(io::stdout())),
+            false => Box::new(BufWriter::with_capacity(1 << 16, File::create(path).map_err(file)?)),
+        };
+        let ending = path.extension().map(|it| it.to_string_lossy().to_ascii_lowercase());
+        let sink = match ending.as_deref() {
+            Some("vcd") => waves::Waves::new(out, subject).map(|it| Box::new(it) as Box<dyn Sink>),
+            Some("svg") => Ok(Box::new(diagram::Diagram::new(out, subject)) as Box<dyn Sink>),
+            _ => rows::Rows::new(out, subject).map(|it| Box::new(it) as Box<dyn Sink>),
+        };
+        Ok(Self { path: path.to_owned(), sink: sink.map_err(file)? })
+    }
+
+    pub fn row(&mut self, subject: &Subject<'_>, row: Row<'_>) -> Result<(), Error> {
+        self.sink.row(subject, row).map_err(|error| Error::file(&self.path, "write", error))
+    }
+
+    pub fn finish(&mut self, subject: &Subject<'_>) -> Result<(), Error> {
+        let finished = self.sink.finish(subject).and_then(|()| self.sink.flush());
+        finished.map_err(|error| Error::file(&self.path, "write", error))
+    }
+
+    pub fn flush(&mut self) -> Result<(), Error> {
+        self.sink.flush().map_err(|error| Error::file(&self.path, "write", error))
+    }
+}
+
+/// Milliseconds without needless zeros.
+pub(crate) fn milliseconds(time: Time) -> String {
+    let (whole, rest) = (time / 1_000_000, time % 1_000_000);
+    match rest {
+        0 => whole.to_string(),
+        _ => format!("{whole}.{rest:06}").trim_end_matches('0').to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::offset_of;
+    use staunch_runtime::Value;
+    use std::cell::RefCell;
+    use std::rc::Rc;
+
+    /// A file in memory.
+    #[derive(Clone, Default)]
+    struct Shared(Rc<RefCell<Vec<u8>>>);
+
+    impl Write for Shared {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            self.0.borrow_mut().extend_from_slice(bytes);
+            Ok(bytes.len())
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    /// What a sink writes of three scans.
+    pub(super) fn written(subject: &Subject<'_>, open: impl FnOnce(Box<dyn Write>) -> Box<dyn Sink>) -> String {
+        let file = Shared::default();
+        let mut sink = open(Box::new(file.clone()));
+        let mut state = vec![0; 128];
+        sink.row(subject, Row { scan: 1, time: 0, state: &state }).unwrap();
+        Value::Bool(true).write(&mut state[offset_of("up")..]);
+        Value::I16(1).write(&mut state[offset_of("c.CV")..]);
+        Value::I16(-1).write(&mut state[offset_of("m[1,2]")..]);
+        let name = offset_of("name");
+        state[name..name + 5].copy_from_slice(&[3, 0, b'a', b',', b'b']);
+        sink.row(subject, Row { scan: 2, time: 10_000_000, state: &state }).unwrap();
+        Value::F32(0.5).write(&mut state[offset_of("speed")..]);
+        sink.row(subject, Row { scan: 3, time: 10_250_000, state: &state }).unwrap();
+        sink.finish(subject).unwrap();
+        let bytes = file.0.borrow().clone();
+        String::from_utf8(bytes).unwrap()
+    }
+
+    #[test]
+    fn milliseconds_are_short() {
+        assert_eq!(milliseconds(0), "0");
+        assert_eq!(milliseconds(10_000_000), "10");
+        assert_eq!(milliseconds(10_250_000), "10.25");
+        assert_eq!(milliseconds(1), "0.000001");
+    }
+}

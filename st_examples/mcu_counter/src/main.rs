@@ -1,0 +1,100 @@
+//! A Cortex-M4 without an operating system: the stimulus that the host's run reads drives the
+//! same program here, and its rows go out by semihosting. Nothing allocates.
+#![no_std]
+#![no_main]
+
+mod stimulus;
+
+mod plc {
+    staunch_runtime::include_st!("counter");
+}
+
+use core::panic::PanicInfo;
+use cortex_m::Peripherals;
+use cortex_m::peripheral::SYST;
+use cortex_m::peripheral::syst::SystClkSource;
+use cortex_m_rt::entry;
+use cortex_m_semihosting::{debug, heprintln, hprintln};
+use plc::Counter;
+use staunch_runtime::{Context, Fault};
+use stimulus::Stimulus;
+
+const CYCLE: i64 = 10_000_000;
+const STIMULUS: &str = include_str!("../stimulus.csv");
+
+/// Scans whose instructions are counted.
+const MEASURED: u32 = 1000;
+/// The machine runs at 25 MHz, and QEMU's `-icount shift=0` runs an instruction in a nanosecond.
+const INSTRUCTIONS_PER_TICK: u32 = 40;
+
+#[entry]
+fn main() -> ! {
+    let ended = follow_stimulus().and_then(|()| measure());
+    match ended {
+        Ok(()) => debug::exit(debug::EXIT_SUCCESS),
+        Err(fault) => {
+            heprintln!("{:?} in line {}", fault.kind, fault.at.line);
+            debug::exit(debug::EXIT_FAILURE);
+        }
+    }
+    loop {
+        cortex_m::asm::wfi();
+    }
+}
+
+/// Prints what `staunch run --trace -` prints for the same stimulus.
+fn follow_stimulus() -> Result<(), Fault> {
+    let mut counter = Counter::new();
+    hprintln!("scan,time_ms,Arrives,Leaves,NewShift,OnBelt.CV,Shift.CV,Full,Idle,PerMinute");
+    let mut now = 0;
+    for (scan, inputs) in (1_u32..).zip(Stimulus::new(STIMULUS)) {
+        counter.arrives = inputs.arrives;
+        counter.leaves = inputs.leaves;
+        counter.new_shift = inputs.new_shift;
+        counter.scan(&Context { now, first_scan: now == 0 })?;
+        row(scan, now, &counter);
+        now += CYCLE;
+    }
+    Ok(())
+}
+
+fn row(scan: u32, now: i64, counter: &Counter) {
+    let [arrives, leaves, new_shift, full, idle] =
+        [counter.arrives, counter.leaves, counter.new_shift, counter.full, counter.idle].map(word);
+    let (on_belt, shift, per_minute) = (counter.on_belt.cv, counter.shift.cv, counter.per_minute);
+    let time = now / 1_000_000;
+    hprintln!("{scan},{time},{arrives},{leaves},{new_shift},{on_belt},{shift},{full},{idle},{per_minute}");
+}
+
+fn word(value: bool) -> &'static str {
+    if value { "TRUE" } else { "FALSE" }
+}
+
+/// Counts the instructions of a scan, with parts that come and go.
+fn measure() -> Result<(), Fault> {
+    // SAFETY: nothing else in this program touches the peripherals.
+    let mut timer = unsafe { Peripherals::steal() }.SYST;
+    timer.set_clock_source(SystClkSource::Core);
+    timer.set_reload(0x00FF_FFFF);
+    timer.clear_current();
+    timer.enable_counter();
+    let mut counter = Counter::new();
+    let start = SYST::get_current();
+    for scan in 0..MEASURED {
+        counter.arrives = scan & 1 == 0;
+        counter.leaves = scan & 2 == 0;
+        counter.scan(&Context::at(i64::from(scan) * CYCLE))?;
+    }
+    let ticks = start.wrapping_sub(SYST::get_current()) & 0x00FF_FFFF;
+    let instructions = ticks * INSTRUCTIONS_PER_TICK / MEASURED;
+    heprintln!("{instructions} instructions a scan; {} bytes of state", size_of::<Counter>());
+    Ok(())
+}
+
+#[panic_handler]
+fn panic(_: &PanicInfo<'_>) -> ! {
+    debug::exit(debug::EXIT_FAILURE);
+    loop {
+        cortex_m::asm::bkpt();
+    }
+}

@@ -1,0 +1,231 @@
+//! A run of a program on each executor, by the product's own scan loop.
+
+use crate::generated::Generated;
+use crate::leaf::Leaves;
+use crate::scan::{Fault, Table};
+use staunch_host::{Error, Machine, Map, Options, run as host_run};
+use staunch_ir::Program;
+use staunch_ir::interpret::{Interpreter, Stop};
+use staunch_ir::symbols::map_text;
+use staunch_native::{Jit, State};
+use staunch_runtime::Context;
+use std::fs;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Executor {
+    Interpreter,
+    /// What the Rust back end printed, compiled into this crate.
+    Rust,
+    /// What the native back end made, in memory.
+    Native,
+}
+
+impl Executor {
+    pub const ALL: [Self; 3] = [Self::Interpreter, Self::Rust, Self::Native];
+
+    /// The program in its initial state. `module` is its name among the generated modules.
+    pub fn machine<'p>(self, program: &'p Program, module: &str) -> Result<Box<dyn Machine + 'p>, String> {
+        Ok(match self {
+            Self::Interpreter => Box::new(Interpreted(Interpreter::new(program))),
+            Self::Rust => {
+                let map = map_text(program, Leaves::new(program).layout());
+                let machine = Generated::new(module).filter(|it| it.has_map(&map));
+                Box::new(machine.ok_or("there is no generated Rust of this program: is the build up to date?")?)
+            }
+            Self::Native => {
+                let jit = Jit::new(program).map_err(|error| error.to_string())?;
+                Box::new(Native { state: jit.state(), jit })
+            }
+        })
+    }
+}
+
+struct Interpreted<'p>(Interpreter<'p>);
+
+/// Statements and turns of loops that a scan may take: a case that hangs fails instead.
+const STEPS: u64 = 50_000_000;
+
+impl Machine for Interpreted<'_> {
+    fn state(&self) -> &[u8] {
+        self.0.state()
+    }
+
+    fn state_mut(&mut self) -> &mut [u8] {
+        self.0.state_mut()
+    }
+
+    fn init(&mut self) {
+        self.0.init();
+    }
+
+    fn scan(&mut self, instance: usize, cx: &Context) -> Result<(), staunch_runtime::Fault> {
+        self.0.set_budget(Some(STEPS));
+        self.0.scan(instance, cx).map_err(|stop| match stop {
+            Stop::Fault(fault) => fault,
+            Stop::OutOfSteps => panic!("the scan does not end"),
+        })
+    }
+}
+
+struct Native {
+    state: State,
+    jit: Jit,
+}
+
+impl Machine for Native {
+    fn state(&self) -> &[u8] {
+        self.state.bytes()
+    }
+
+    fn state_mut(&mut self) -> &mut [u8] {
+        self.state.bytes_mut()
+    }
+
+    fn init(&mut self) {
+        self.jit.init(&mut self.state);
+    }
+
+    fn scan(&mut self, instance: usize, cx: &Context) -> Result<(), staunch_runtime::Fault> {
+        self.jit.scan(&mut self.state, instance, cx)
+    }
+}
+
+/// What came out of a run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Outcome {
+    /// The stimulus with its outputs.
+    pub table: Table,
+    /// All variables after each scan of an instance.
+    pub states: Vec<Vec<(String, String)>>,
+}
+
+/// What a run needs beside its table.
+#[derive(Clone, Debug, Default)]
+pub struct Settings {
+    /// As `--cycle` takes it.
+    pub cycle: Option<String>,
+    /// For each scan, whether the program is told that it is the first; else the host decides.
+    pub first: Option<Vec<bool>>,
+}
+
+/// Runs the table on one executor.
+pub fn run(
+    executor: Executor,
+    program: &Program,
+    module: &str,
+    table: &Table,
+    settings: &Settings,
+) -> Result<Outcome, String> {
+    let mut machine = executor.machine(program, module)?;
+    let map = Map::parse(&map_text(program, Leaves::new(program).layout())).map_err(|it| it.to_string())?;
+    let folder = Folder::new()?;
+    let (stimulus, trace) = (folder.0.join("stimulus.csv"), folder.0.join("trace.csv"));
+    fs::write(&stimulus, table.stimulus()).map_err(|it| it.to_string())?;
+    let cycle = settings.cycle.as_deref().map(staunch_host::parse_duration).transpose()?;
+    let options = Options {
+        scans: table.scans().last().copied(),
+        cycle,
+        stimulus: Some(stimulus),
+        trace: Some(trace.clone()),
+        vars: Some(table.variables().join(",")),
+        quiet: true,
+        ..Options::default()
+    };
+    let mut recorder = Recorder {
+        machine: machine.as_mut(),
+        leaves: Leaves::new(program),
+        states: Vec::new(),
+        first: settings.first.as_deref(),
+    };
+    let fault = match host_run(&mut recorder, &map, &options) {
+        Ok(_) => None,
+        Err(Error::Fault { fault, path, .. }) => Some(shown(fault, &path, &map)),
+        Err(error) => return Err(error.to_string()),
+    };
+    let states = recorder.states;
+    let traced = fs::read_to_string(&trace).map_err(|it| it.to_string())?;
+    Ok(Outcome { table: table.with_outputs(&traced, fault)?, states })
+}
+
+/// Runs the table on all executors, and compares every variable after every scan.
+pub fn agree(program: &Program, module: &str, table: &Table, settings: &Settings) -> Result<Outcome, String> {
+    let reference = run(Executor::Interpreter, program, module, table, settings)?;
+    for executor in [Executor::Rust, Executor::Native] {
+        let outcome = run(executor, program, module, table, settings).map_err(|it| format!("{executor:?}: {it}"))?;
+        if outcome != reference {
+            return Err(format!("{executor:?} and the interpreter disagree\n{}", disagreement(&reference, &outcome)));
+        }
+    }
+    Ok(reference)
+}
+
+fn disagreement(reference: &Outcome, outcome: &Outcome) -> String {
+    let scans = reference.states.iter().zip(&outcome.states).enumerate();
+    for (scan, (a, b)) in scans {
+        if let Some(((path, a), (_, b))) = a.iter().zip(b).find(|(a, b)| a != b) {
+            return format!("  scan {}: {path} is {b}, the interpreter has {a}", scan + 1);
+        }
+    }
+    crate::difference::lines(&reference.table.to_string(), &outcome.table.to_string())
+}
+
+fn shown(fault: staunch_runtime::Fault, path: &str, map: &Map) -> Fault {
+    let (line, column) = (fault.at.line, fault.at.column);
+    let place = match map.files.first() {
+        Some(first) if first == path => format!("{line}:{column}"),
+        _ => format!("{path}:{line}:{column}"),
+    };
+    Fault { text: fault.kind.to_string(), place }
+}
+
+/// A machine that writes down its state after every scan.
+struct Recorder<'m> {
+    machine: &'m mut dyn Machine,
+    leaves: Leaves<'m>,
+    states: Vec<Vec<(String, String)>>,
+    first: Option<&'m [bool]>,
+}
+
+impl Machine for Recorder<'_> {
+    fn state(&self) -> &[u8] {
+        self.machine.state()
+    }
+
+    fn state_mut(&mut self) -> &mut [u8] {
+        self.machine.state_mut()
+    }
+
+    fn init(&mut self) {
+        self.machine.init();
+    }
+
+    fn scan(&mut self, instance: usize, cx: &Context) -> Result<(), staunch_runtime::Fault> {
+        let told = self.first.and_then(|it| it.get(self.states.len()).copied());
+        let cx = Context { first_scan: told.unwrap_or(cx.first_scan), ..*cx };
+        let end = self.machine.scan(instance, &cx);
+        self.states.push(self.leaves.of(self.machine.state()));
+        end
+    }
+}
+
+/// A folder of its own for the files of a run.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new() -> Result<Self, String> {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let name = format!("staunch-tests-{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
+        let path = std::env::temp_dir().join(name);
+        fs::create_dir_all(&path).map_err(|it| it.to_string())?;
+        Ok(Self(path))
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        // What cannot be removed is left to the system's own cleaning.
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}

@@ -1,0 +1,222 @@
+//! A program with a PROGRAM for every operation at every lane, and one for every conversion:
+//! the IR as the front end would build it, without the front end.
+
+use staunch_ir::{
+    Const, Conversion, Elementary, Expr, Field, FieldId, Instance, Lane, Location, Op, Place, Pou, PouId, PouKind,
+    Program, Root, Section, SourceFile, Statement, Struct, StructId, Type, Value, Variable,
+};
+
+/// What one instance of the program computes from its operands.
+#[derive(Clone, Copy, Debug)]
+pub enum Task {
+    Apply(Op, Lane),
+    /// The back ends may turn a negated comparison around.
+    NotApply(Op, Lane),
+    Convert(Conversion, Lane, Lane),
+}
+
+impl Task {
+    /// In the order of the program's instances.
+    pub fn all() -> Vec<Self> {
+        let mut tasks = Vec::new();
+        for op in Op::ALL {
+            for lane in Lane::ALL.into_iter().filter(|it| op.allows(*it)) {
+                tasks.push(Self::Apply(*op, lane));
+                if op.result() == Some(Lane::Bool) {
+                    tasks.push(Self::NotApply(*op, lane));
+                }
+            }
+        }
+        for from in Lane::ALL {
+            tasks.extend(
+                Lane::ALL.into_iter().filter(|to| *to != from).map(|to| Self::Convert(Conversion::Value, from, to)),
+            );
+            if from.is_float() {
+                let integers = Lane::ALL.into_iter().filter(|it| it.is_integer());
+                tasks.extend(integers.map(|to| Self::Convert(Conversion::Truncate, from, to)));
+            }
+        }
+        tasks
+    }
+
+    /// The lanes of the fields `a`, `b` …
+    pub fn operands(self) -> Vec<Lane> {
+        match self {
+            Self::Apply(op, lane) | Self::NotApply(op, lane) => {
+                op.operands().iter().map(|it| it.unwrap_or(lane)).collect()
+            }
+            Self::Convert(_, from, _) => vec![from],
+        }
+    }
+
+    /// The lane of the field behind the operands.
+    pub fn result(self) -> Lane {
+        match self {
+            Self::Apply(op, lane) => op.result().unwrap_or(lane),
+            Self::NotApply(..) => Lane::Bool,
+            Self::Convert(_, _, to) => to,
+        }
+    }
+
+    pub fn name(self) -> String {
+        match self {
+            Self::Apply(op, lane) => format!("{op:?}_{lane:?}"),
+            Self::NotApply(op, lane) => format!("Not{op:?}_{lane:?}"),
+            Self::Convert(how, from, to) => format!("{how:?}_{from:?}_{to:?}"),
+        }
+    }
+
+    /// `result := op(a, b, …);`, every node at a place of its own.
+    fn statement(self, state: StructId) -> Statement {
+        let operands = self.operands();
+        let place = |at: usize, lane| {
+            Place::root(Root::Instance, Type::Struct(state))
+                .field(FieldId::next(at), Type::Elementary(elementary(lane)))
+        };
+        let loads = operands.iter().enumerate().map(|(at, lane)| Expr::load(place(at, *lane), AT)).collect();
+        let ty = Type::Elementary(elementary(self.result()));
+        let value = match self {
+            Self::Apply(op, _) => Expr::apply(op, ty, loads, AT),
+            Self::NotApply(op, _) => Expr::apply(Op::Not, ty, vec![Expr::apply(op, ty, loads, AT)], AT),
+            Self::Convert(how, ..) => {
+                Expr::convert(how, ty, loads.into_iter().next().expect("a conversion has an operand"), AT)
+            }
+        };
+        Statement::assign(place(operands.len(), self.result()), value, AT)
+    }
+}
+
+/// Where every operation stands.
+pub const AT: Location = Location { file: 0, line: 7, column: 3 };
+
+pub fn program(tasks: &[Task]) -> Program {
+    let mut structs: Vec<_> = tasks.iter().map(|it| structure(*it)).collect();
+    structs.push(Struct { name: "globals".to_owned(), doc: None, location: AT, fields: Vec::new() });
+    Program {
+        files: vec![SourceFile { path: "operations.st".to_owned() }],
+        enums: Vec::new(),
+        arrays: Vec::new(),
+        globals: StructId::next(tasks.len()),
+        structs,
+        pous: tasks.iter().enumerate().map(|(at, task)| pou(*task, StructId::next(at))).collect(),
+        instances: tasks.iter().enumerate().map(|(at, task)| instance(*task, PouId::next(at))).collect(),
+    }
+}
+
+fn fields(task: Task) -> Vec<(String, Type)> {
+    let names = ["a", "b", "c", "d"].into_iter().map(str::to_owned);
+    let mut fields: Vec<_> =
+        names.zip(task.operands().into_iter().map(|it| Type::Elementary(elementary(it)))).collect();
+    fields.push(("result".to_owned(), Type::Elementary(elementary(task.result()))));
+    fields
+}
+
+fn structure(task: Task) -> Struct {
+    let field = |(name, ty)| Field {
+        name,
+        ty,
+        initial: Const::Zero,
+        section: Section::Internal,
+        retain: false,
+        constant: false,
+        address: None,
+        range: None,
+        doc: None,
+        location: AT,
+    };
+    Struct { name: task.name(), doc: None, location: AT, fields: fields(task).into_iter().map(field).collect() }
+}
+
+fn pou(task: Task, state: StructId) -> Pou {
+    let variable = |(at, (name, ty))| Variable {
+        name,
+        section: Section::Internal,
+        place: Place::root(Root::Instance, Type::Struct(state)).field(FieldId::next(at), ty),
+    };
+    Pou {
+        kind: PouKind::Program,
+        name: task.name(),
+        doc: None,
+        location: AT,
+        state: Some(state),
+        params: Vec::new(),
+        locals: Vec::new(),
+        result: None,
+        variables: fields(task).into_iter().enumerate().map(variable).collect(),
+        body: vec![task.statement(state)],
+        prescan: Vec::new(),
+    }
+}
+
+fn instance(task: Task, program: PouId) -> Instance {
+    Instance { name: format!("run_{}", task.name().to_lowercase()), program, interval: None, priority: 0 }
+}
+
+/// A type that values of this lane have.
+fn elementary(lane: Lane) -> Elementary {
+    Elementary::ALL.into_iter().rev().find(|it| it.lane() == lane).expect("every lane has a type")
+}
+
+/// Values at which operations are likely to differ.
+pub fn edges(lane: Lane) -> Vec<Value> {
+    match lane {
+        Lane::Bool => vec![Value::Bool(false), Value::Bool(true)],
+        Lane::F32 => FLOATS.iter().map(|it| Value::F32(*it)).chain(singles()).collect(),
+        Lane::F64 => FLOATS.iter().map(|it| Value::F64(f64::from(*it))).chain(doubles()).collect(),
+        _ => integers(lane),
+    }
+}
+
+fn integers(lane: Lane) -> Vec<Value> {
+    let (low, high) = lane.range().expect("an integer lane has a range");
+    let bits = i128::from(lane.size()) * 8;
+    let near = [low, low + 1, -2, -1, 0, 1, 2, 3, 7, bits - 1, bits, bits + 1, high / 2, high / 2 + 1, high - 1, high];
+    let mut values: Vec<i128> = near.into_iter().filter(|it| (low..=high).contains(it)).collect();
+    values.sort_unstable();
+    values.dedup();
+    values.into_iter().filter_map(|it| lane.integer(it)).collect()
+}
+
+const FLOATS: &[f32] = &[
+    f32::NAN,
+    f32::NEG_INFINITY,
+    -2.5,
+    -1.5,
+    -1.0,
+    -0.5,
+    -0.0,
+    0.0,
+    0.5,
+    1.0,
+    1.5,
+    2.5,
+    3.5,
+    127.5,
+    255.5,
+    32767.5,
+    65535.5,
+    2_147_483_648.0,
+    4_294_967_296.0,
+    9_223_372_036_854_775_808.0,
+    18_446_744_073_709_551_616.0,
+    f32::INFINITY,
+];
+
+fn singles() -> impl Iterator<Item = Value> {
+    [f32::MIN, f32::MAX, f32::MIN_POSITIVE, f32::from_bits(1)].into_iter().map(Value::F32)
+}
+
+fn doubles() -> impl Iterator<Item = Value> {
+    [
+        f64::MIN,
+        f64::MAX,
+        f64::MIN_POSITIVE,
+        f64::from_bits(1),
+        9_007_199_254_740_993.0,
+        0.1,
+        2_147_483_647.5,
+        -2_147_483_648.5,
+    ]
+    .into_iter()
+    .map(Value::F64)
+}

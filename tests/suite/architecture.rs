@@ -1,0 +1,198 @@
+//! Who may depend on whom, and where `unsafe` and `unwrap` may stand.
+
+use serde_json::Value as Json;
+use staunch_tests::project;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// What each crate may name in its `[dependencies]`. A name that ends in `*` is a family.
+const EDGES: &[(&str, &[&str])] = &[
+    ("staunch-runtime", &["libm"]),
+    ("staunch-runtime-abi", &["staunch-runtime"]),
+    ("staunch-host", &["staunch-runtime"]),
+    ("staunch-ir", &["staunch-runtime"]),
+    ("staunch-frontend", &["staunch-ir", "staunch-runtime", "logos", "chumsky", "annotate-snippets"]),
+    ("staunch-rust", &["staunch-ir", "staunch-runtime", "quote", "syn", "proc-macro2", "prettyplease"]),
+    (
+        "staunch-native",
+        &["staunch-ir", "staunch-runtime", "staunch-runtime-abi", "cranelift-*", "object", "gimli", "target-lexicon"],
+    ),
+    ("staunch-build", &["staunch-frontend", "staunch-ir", "staunch-rust"]),
+    ("staunch-example-build-script", &["staunch-runtime", "staunch-build"]),
+];
+
+/// What a user's build script must never compile.
+const KEPT_FROM_BUILD: [&str; 4] = ["cranelift", "cc", "cmake", "stacker"];
+
+/// Folders whose code may be `unsafe`, each block with its `SAFETY:`.
+const UNSAFE: &[&str] = &[
+    "runtime/abi/",
+    "runtime/host/src/compiled.rs",
+    "runtime/host/src/signal.rs",
+    "compiler/native/src/jit.rs",
+    "compiler/rust/src/glue.rs",
+    // Texts of entry points, compiled on their own.
+    "compiler/cli/src/toolchain.rs",
+    "compiler/cli/src/rustc.rs",
+    "compiler/rust/tests/",
+    "tests/src/generated.rs",
+];
+
+fn metadata() -> Json {
+    let mut cargo = Command::new(env!("CARGO"));
+    let output =
+        cargo.args(["metadata", "--format-version", "1", "--offline"]).current_dir(project()).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn texts<'j>(json: &'j Json, list: &str) -> impl Iterator<Item = &'j Json> {
+    json[list].as_array().unwrap().iter()
+}
+
+/// Crates that users copy: what they may name is their own affair.
+const EXAMPLES: &str = "staunch-example-";
+
+/// For each crate of the project, its normal dependencies and those of its build script.
+fn edges(metadata: &Json) -> BTreeMap<String, BTreeSet<String>> {
+    let members: BTreeSet<_> = texts(metadata, "workspace_members").map(|it| it.as_str().unwrap()).collect();
+    let packages = texts(metadata, "packages").filter(|it| members.contains(it["id"].as_str().unwrap()));
+    let edges = packages.map(|package| {
+        let named = texts(package, "dependencies").filter(|it| it["kind"] != "dev");
+        (name(package), named.map(name).collect())
+    });
+    edges.collect()
+}
+
+fn name(json: &Json) -> String {
+    json["name"].as_str().unwrap().to_owned()
+}
+
+fn allowed(edges: &[&str], name: &str) -> bool {
+    edges.iter().any(|it| it.strip_suffix('*').map_or(*it == name, |family| name.starts_with(family)))
+}
+
+#[test]
+fn crates_depend_as_the_design_says() {
+    let found = edges(&metadata());
+    for (name, allowed_edges) in EDGES {
+        let named = found.get(*name).unwrap_or_else(|| panic!("there is no crate {name}"));
+        let others: Vec<_> = named.iter().filter(|it| !allowed(allowed_edges, it)).collect();
+        assert!(others.is_empty(), "{name} may not depend on {others:?}");
+    }
+    let known = |it: &&String| {
+        EDGES.iter().any(|(name, _)| name == it)
+            || ["staunch", "staunch-tests"].contains(&it.as_str())
+            || it.starts_with(EXAMPLES)
+    };
+    let unknown: Vec<_> = found.keys().filter(|it| !known(it)).collect();
+    assert!(unknown.is_empty(), "{unknown:?} stand in no rule");
+}
+
+#[test]
+fn only_the_native_back_end_names_cranelift() {
+    for (name, dependencies) in edges(&metadata()) {
+        let names_it = dependencies.iter().any(|it| it.starts_with("cranelift"));
+        assert_eq!(names_it, name == "staunch-native", "{name}");
+    }
+}
+
+#[test]
+fn a_build_script_compiles_neither_cranelift_nor_c() {
+    let metadata = metadata();
+    let nodes: BTreeMap<_, _> =
+        texts(&metadata["resolve"], "nodes").map(|it| (it["id"].as_str().unwrap(), it)).collect();
+    let root = nodes.keys().copied().find(|it| package_name(it) == "staunch-build").unwrap();
+    let (mut reached, mut open) = (BTreeSet::new(), vec![root]);
+    while let Some(id) = open.pop() {
+        if reached.insert(id) {
+            let normal = |it: &&Json| texts(it, "dep_kinds").any(|kind| kind["kind"] != "dev");
+            open.extend(texts(nodes[id], "deps").filter(normal).map(|it| it["pkg"].as_str().unwrap()));
+        }
+    }
+    assert!(reached.len() > 10, "{reached:?}");
+    let refused = |it: &str| KEPT_FROM_BUILD.iter().any(|kept| it == *kept || it.starts_with("cranelift"));
+    let found: Vec<_> = reached.into_iter().map(package_name).filter(|it| refused(it)).collect();
+    assert!(found.is_empty(), "staunch-build reaches {found:?}");
+}
+
+/// From `registry+…#name@1.0.0` or `path+file:///…/folder#name@1.0.0`.
+fn package_name(id: &str) -> &str {
+    let last = id.rsplit_once('#').unwrap().1;
+    last.split_once('@').map_or_else(|| id.rsplit_once('#').unwrap().0.rsplit('/').next().unwrap(), |it| it.0)
+}
+
+#[test]
+fn no_code_unwraps() {
+    let offending = lines_with(|line| line.contains(".unwrap()"));
+    assert!(offending.is_empty(), "{}", offending.join("\n"));
+}
+
+#[test]
+fn unsafe_stands_where_it_may() {
+    let is_unsafe = |line: &str| {
+        let words = line.split(|it: char| !it.is_alphanumeric() && it != '_');
+        words.clone().any(|it| it == "unsafe")
+            && !line.contains("\"unsafe\"")
+            && !line.contains(".replace(")
+            && !line.contains("unsafe_code")
+            && !line.trim_start().starts_with("//")
+    };
+    let found = lines_with(is_unsafe);
+    let offending: Vec<_> = found.iter().filter(|it| !UNSAFE.iter().any(|path| it.starts_with(path))).collect();
+    assert!(offending.is_empty(), "{offending:#?}");
+    assert!(!found.is_empty());
+}
+
+#[test]
+fn crates_without_unsafe_forbid_it() {
+    for (path, text) in sources() {
+        let is_root = path.ends_with("src/lib.rs") || path.ends_with("src/main.rs");
+        let folder = path.split("src/").next().unwrap();
+        let may = UNSAFE.iter().any(|it| it.starts_with(folder));
+        if is_root && !may && folder.starts_with("compiler") && folder != "compiler/cli/" {
+            assert!(text.contains("#![forbid(unsafe_code)]"), "{path} does not forbid unsafe code");
+        }
+    }
+}
+
+/// `path:line: text` of each line of code, outside tests, that `wanted` picks.
+fn lines_with(wanted: impl Fn(&str) -> bool) -> Vec<String> {
+    let mut found = Vec::new();
+    for (path, text) in sources() {
+        let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap();
+        let lines = code.lines().enumerate().filter(|(_, line)| wanted(line));
+        found.extend(lines.map(|(at, line)| format!("{path}:{}: {}", at + 1, line.trim())));
+    }
+    found
+}
+
+/// Path and text of the project's Rust, without tests.
+fn sources() -> Vec<(String, String)> {
+    let mut paths = Vec::new();
+    for folder in ["compiler", "runtime", "tests"] {
+        list(&project().join(folder), &mut paths);
+    }
+    let shown = |it: &Path| it.strip_prefix(project()).unwrap().to_string_lossy().replace('\\', "/");
+    let all = paths.iter().map(|it| (shown(it), std::fs::read_to_string(it).unwrap()));
+    all.filter(|(path, _)| !is_test(path)).collect()
+}
+
+fn is_test(path: &str) -> bool {
+    ["/tests/", "/tests.rs", "/suite/", "fixture.rs"].iter().any(|it| path.contains(it))
+        || path == "tests/suite/main.rs"
+}
+
+fn list(folder: &Path, paths: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap().flatten() {
+        let path = entry.path();
+        let name = entry.file_name();
+        match path.is_dir() {
+            true if name != "target" && name != "cases" => list(&path, paths),
+            true => {}
+            false if path.extension().is_some_and(|it| it == "rs") => paths.push(path),
+            false => {}
+        }
+    }
+}

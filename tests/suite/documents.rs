@@ -1,0 +1,82 @@
+//! The Structured Text in the documentation compiles.
+//!
+//! A fence ```` ```iecst ```` holds a whole program, or statements, or declarations. After the
+//! language may stand `ignore` (a fragment), `error` (it must be refused), or a dialect's name.
+
+use staunch_frontend::{Compilation, Dialect, Format, Options, Source, Sources, Style, render};
+use staunch_tests::project;
+use std::path::PathBuf;
+
+struct Fence {
+    place: String,
+    words: Vec<String>,
+    text: String,
+}
+
+#[test]
+fn the_structured_text_in_documents_compiles() {
+    let fences: Vec<_> = documents().iter().flat_map(fences).collect();
+    let failures: Vec<_> = fences.iter().filter_map(|it| check(it).err()).collect();
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+fn documents() -> Vec<PathBuf> {
+    let docs = std::fs::read_dir(project().join("docs")).into_iter().flatten().flatten().map(|it| it.path());
+    let all = [project().join("README.md")].into_iter().chain(docs);
+    all.filter(|it| it.is_file() && it.extension().is_some_and(|it| it == "md")).collect()
+}
+
+fn fences(path: &PathBuf) -> Vec<Fence> {
+    let text = std::fs::read_to_string(path).unwrap();
+    let name = path.file_name().unwrap().to_string_lossy();
+    let mut fences: Vec<Fence> = Vec::new();
+    let mut open: Option<Fence> = None;
+    for (number, line) in text.lines().enumerate() {
+        match (&mut open, line.trim_start().strip_prefix("```")) {
+            (None, Some(info)) => {
+                let words = info.split([' ', ',']).filter(|it| !it.is_empty()).map(str::to_owned).collect();
+                open = Some(Fence { place: format!("{name}:{}", number + 1), words, text: String::new() });
+            }
+            (Some(_), Some(_)) => fences.extend(open.take()),
+            (Some(fence), None) => fence.text.push_str(&format!("{line}\n")),
+            (None, None) => {}
+        }
+    }
+    assert!(open.is_none(), "{name}: a fence is not closed");
+    fences.into_iter().filter(|it| it.words.first().is_some_and(|it| it == "iecst")).collect()
+}
+
+fn check(fence: &Fence) -> Result<(), String> {
+    let has = |word: &str| fence.words.iter().any(|it| it == word);
+    if has("ignore") {
+        return Ok(());
+    }
+    let dialect = fence.words.iter().find_map(|it| Dialect::named(it)).unwrap_or_default();
+    let (sources, compilation) = compile(fence, dialect);
+    match (compilation.has_errors(), has("error")) {
+        (false, true) => Err(format!("{}: it is marked `error`, and compiles", fence.place)),
+        (true, false) => {
+            let messages =
+                compilation.diagnostics.iter().map(|it| render(it, &sources, Format::Human, Style::default()));
+            Err(format!("{}:\n{}", fence.place, messages.collect::<String>()))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn compile(fence: &Fence, dialect: Dialect) -> (Sources, Compilation) {
+    let mut sources = Sources::default();
+    sources.add(Source::new(fence.place.clone(), wrapped(&fence.text)));
+    let compilation = staunch_frontend::compile(&sources, &Options { dialect, ..Options::default() });
+    (sources, compilation)
+}
+
+/// Declarations of variables, with or without statements, become a PROGRAM.
+fn wrapped(text: &str) -> String {
+    let units = ["PROGRAM ", "FUNCTION", "TYPE", "CONFIGURATION", "VAR_GLOBAL", "{dialect"];
+    let is_unit = |line: &str| units.iter().any(|it| line.starts_with(it));
+    match text.lines().any(is_unit) {
+        true => text.to_owned(),
+        false => format!("PROGRAM Example\n{text}\nEND_PROGRAM\n"),
+    }
+}

@@ -1,0 +1,51 @@
+//! Every case below `cases/`, each a test of its own.
+
+use staunch_frontend::{Code, Options, Source, Sources};
+use staunch_tests::case::{self, Case, Pin};
+use staunch_tests::{cases, golden};
+
+include!(concat!(env!("OUT_DIR"), "/golden_tests.rs"));
+
+fn check(name: &str) {
+    let (cases, _) = case::discover(&cases());
+    let case = cases.iter().find(|it| it.name == name).unwrap();
+    if let Err(difference) = golden::check(case) {
+        panic!("{name}: {difference}");
+    }
+}
+
+#[test]
+fn nothing_lies_about() {
+    let (cases, problems) = case::discover(&cases());
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+    assert!(cases.len() > 100, "only {} cases", cases.len());
+}
+
+#[test]
+fn every_diagnostic_has_a_case() {
+    let (cases, _) = case::discover(&cases());
+    let pinned: String = cases.iter().filter(|it| it.pins.contains(&Pin::Diagnostics)).map(errors).collect();
+    let shown = |code: &Code| pinned.contains(&format!("[{}]", code.name()));
+    let missing: Vec<_> =
+        Code::ALL.iter().filter(|it| !shown(it) && !WITHOUT_CASE.contains(it)).map(|it| it.name()).collect();
+    assert!(missing.is_empty(), "no case shows {}", missing.join(", "));
+}
+
+/// A test below shows the first; the second takes a file of 4 GiB.
+const WITHOUT_CASE: [Code; 2] = [Code::E0030, Code::E0031];
+
+#[test]
+fn reading_stops_after_many_errors() {
+    let mut sources = Sources::default();
+    sources.add(Source::new(
+        "many.st",
+        format!("PROGRAM Main\nVAR x : INT; END_VAR\n{}END_PROGRAM\n", "x = 1;\n".repeat(500)),
+    ));
+    let compilation = staunch_frontend::compile(&sources, &Options::default());
+    let codes: Vec<_> = compilation.diagnostics.iter().map(|it| it.code).collect();
+    assert!(codes.contains(&Code::E0030) && codes.len() < 110, "{} diagnostics", codes.len());
+}
+
+fn errors(case: &Case) -> String {
+    case.pinned(Pin::Diagnostics)
+}

@@ -1,0 +1,11 @@
+//! All tests of this crate: one program, so that the executors are linked once.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod golden;
+mod vectors;
+
+mod operations;
+mod programs;
+
+mod architecture;
+mod documents;
