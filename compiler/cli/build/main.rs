@@ -55,7 +55,8 @@ fn variable(name: &str) -> Result<String, String> {
 fn packages() -> Result<Vec<(String, PathBuf)>, String> {
     let manifest = Path::new(&variable("CARGO_MANIFEST_DIR")?).join("Cargo.toml");
     let output = Command::new(variable("CARGO")?)
-        .args(["metadata", "--format-version=1", "--offline", "--manifest-path"])
+        // Packages for other platforms than the target's need not be on this machine.
+        .args(["metadata", "--format-version=1", "--filter-platform", &variable("TARGET")?, "--manifest-path"])
         .arg(manifest)
         .output()
         .map_err(|it| format!("cannot run cargo metadata: {it}"))?;
