@@ -8,8 +8,8 @@ use staunch_ir::{Arm, Block, Expr};
 /// A range with more values than this is compared for.
 const WIDE: i128 = 16;
 
-impl Function<'_, '_> {
-    pub(crate) fn case(&mut self, selector: &Expr, arms: &[Arm], otherwise: &Block) -> Goes {
+impl<'p> Function<'_, 'p> {
+    pub(crate) fn case(&mut self, selector: &Expr, arms: &'p [Arm], otherwise: &'p Block) -> Goes {
         let selector = self.scalar(selector);
         let blocks: Vec<_> = arms.iter().map(|_| self.builder.create_block()).collect();
         let (otherwise_block, after) = (self.builder.create_block(), self.builder.create_block());

@@ -22,7 +22,10 @@ impl Function<'_, '_> {
     pub(crate) fn scalar(&mut self, expr: &Expr) -> clif::Value {
         match &expr.kind {
             ExprKind::Const(value) => self.constant(*value),
-            ExprKind::Load(place) => self.load_place(place),
+            ExprKind::Load(place) => match self.counter(expr) {
+                Some(counter) => self.narrowed(self.lane_of(expr), counter),
+                None => self.load_place(place),
+            },
             ExprKind::Apply(op, operands) => self.apply(*op, operands, expr.at),
             ExprKind::ApplyText(op, operands) => self.text_scalar(*op, operands),
             ExprKind::Convert(how, operand) => self.convert(*how, operand, expr),
@@ -32,7 +35,7 @@ impl Function<'_, '_> {
         }
     }
 
-    fn load_place(&mut self, place: &Place) -> clif::Value {
+    pub(crate) fn load_place(&mut self, place: &Place) -> clif::Value {
         match self.site(place) {
             Site::Variable(variable) => self.builder.use_var(variable),
             Site::Memory(address) => self.load(place.ty, address),
@@ -51,6 +54,13 @@ impl Function<'_, '_> {
     }
 
     fn convert(&mut self, how: Conversion, operand: &Expr, expr: &Expr) -> clif::Value {
+        if how == Conversion::Value
+            && let Some(counter) = self.counter(operand)
+            && self.lane_of(expr).is_integer()
+            && self.lane_of(expr).size() == 8
+        {
+            return counter;
+        }
         let value = self.scalar(operand);
         let (from, to) = (self.lane_of(operand), self.lane_of(expr));
         match how {

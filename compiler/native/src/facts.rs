@@ -1,10 +1,10 @@
 //! What a block of a POU needs and may do, found before any code is made for it: its function
 //! takes no more than it needs, and a caller checks only calls that may fault.
 
+use crate::counted::{Counted, constant_position, is_within};
 use crate::{inline_block, inline_op};
 use staunch_ir::{
-    Argument, Block, Expr, ExprKind, Place, Pou, PouId, Program, Projection, Root, Statement, StatementKind, Type,
-    Value,
+    Argument, Expr, ExprKind, Place, Pou, PouId, Program, Projection, Root, Statement, StatementKind, Type,
 };
 
 #[derive(Clone, Debug, Default)]
@@ -34,9 +34,9 @@ pub(crate) fn of_program(program: &Program) -> Vec<PouFacts> {
     known
 }
 
-fn of_block(program: &Program, known: &[PouFacts], pou: &Pou, block: &Block) -> Facts {
+fn of_block(program: &Program, known: &[PouFacts], pou: &Pou, block: &[Statement]) -> Facts {
     let facts = Facts { referred: vec![false; pou.locals.len()], ..Facts::default() };
-    let mut finder = Finder { program, known, pou, facts };
+    let mut finder = Finder { program, known, pou, counters: Vec::new(), facts };
     finder.block(block);
     finder.facts
 }
@@ -45,16 +45,18 @@ struct Finder<'a> {
     program: &'a Program,
     known: &'a [PouFacts],
     pou: &'a Pou,
+    /// Of the loops around.
+    counters: Vec<Counted<'a>>,
     facts: Facts,
 }
 
-impl Finder<'_> {
-    fn block(&mut self, block: &Block) {
-        block.iter().for_each(|statement| self.statement(statement));
+impl<'a> Finder<'a> {
+    fn block(&mut self, block: &'a [Statement]) {
+        (0..block.len()).for_each(|at| self.statement(block, at));
     }
 
-    fn statement(&mut self, statement: &Statement) {
-        match &statement.kind {
+    fn statement(&mut self, block: &'a [Statement], at: usize) {
+        match &block[at].kind {
             StatementKind::Assign { target, value } => {
                 self.place(target);
                 self.expr(value);
@@ -69,10 +71,13 @@ impl Finder<'_> {
                 arms.iter().for_each(|arm| self.block(&arm.body));
                 self.block(otherwise);
             }
-            StatementKind::Loop { body, continuing } => {
-                self.block(body);
-                self.block(continuing);
-            }
+            StatementKind::Loop { body, continuing } => match Counted::find(self.program, self.pou, block, at) {
+                Some(counted) => self.turns(counted),
+                None => {
+                    self.block(body);
+                    self.block(continuing);
+                }
+            },
             StatementKind::Exit | StatementKind::Continue | StatementKind::Return => {}
             StatementKind::Call { callee, instance, arguments, result: _ } => {
                 self.instance(instance.as_ref());
@@ -91,6 +96,14 @@ impl Finder<'_> {
             }
             StatementKind::Fault(_) => self.facts.may_fault = true,
         }
+    }
+
+    /// The steps of a counter cannot fault.
+    fn turns(&mut self, counted: Counted<'a>) {
+        self.expr(counted.last);
+        self.counters.push(counted);
+        self.block(counted.body);
+        self.counters.pop();
     }
 
     fn callee(&mut self, callee: PouId, part: fn(&PouFacts) -> &Facts) {
@@ -147,14 +160,8 @@ impl Finder<'_> {
 
     fn element(&mut self, ty: Option<Type>, index: &Expr) -> Option<Type> {
         let Some(Type::Array(id)) = ty else { unreachable!("verified IR: an index into an array") };
-        let array = self.program.array(id);
-        self.facts.may_fault |= constant_position(index, array.low, array.high).is_none();
-        Some(array.element)
+        self.facts.may_fault |=
+            constant_position(self.program, index, id).is_none() && !is_within(self.program, index, id, &self.counters);
+        Some(self.program.array(id).element)
     }
-}
-
-/// The 0-based position of an index that is constant and within the bounds: it needs no check.
-pub(crate) fn constant_position(index: &Expr, low: i64, high: i64) -> Option<u64> {
-    let Some(Value::I64(index)) = index.as_const() else { return None };
-    (low..=high).contains(&index).then(|| index.abs_diff(low))
 }

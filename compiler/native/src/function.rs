@@ -1,6 +1,7 @@
 //! The function of one block of a POU: what it starts and ends with.
 
 use crate::Error;
+use crate::counted::Counted;
 use crate::facts::Facts;
 use crate::fault::Faults;
 use crate::memory::{Address, Temporaries};
@@ -24,6 +25,10 @@ pub(crate) struct Function<'a, 'p> {
     pub(crate) locals: Vec<Home>,
     /// The innermost loop is the last.
     pub(crate) loops: Vec<Turn>,
+    /// The FOR loops among them whose counters are in registers.
+    pub(crate) counters: Vec<Counted<'p>>,
+    /// One for each of `counters`: its value, extended to 64 bits.
+    pub(crate) registers: Vec<Variable>,
     /// Where RETURN goes.
     pub(crate) exit: clif::Block,
     pub(crate) faults: Faults,
@@ -99,6 +104,8 @@ impl<'a, 'p> Function<'a, 'p> {
             start,
             locals: Vec::with_capacity(pou.locals.len()),
             loops: Vec::new(),
+            counters: Vec::new(),
+            registers: Vec::new(),
             exit,
             faults: Faults::default(),
             temporaries: Temporaries::default(),

@@ -212,6 +212,11 @@ impl Counter<'_, '_, '_> {
     /// `cv` and one more if `edge`, unless it is at its maximum.
     fn count_up(&mut self, cv: Clif, edge: Clif) -> Clif {
         let (_, max) = self.limits();
+        if self.is_small() {
+            let (step, max) = (self.f.ins().uextend(types::I32, edge), self.f.integer(types::I32, max));
+            let next = self.f.ins().iadd(cv, step);
+            return self.f.ins().smin(next, max);
+        }
         let step = self.unless_at(max, cv, edge);
         self.f.ins().iadd(cv, step)
     }
@@ -219,6 +224,11 @@ impl Counter<'_, '_, '_> {
     /// `cv` and one less if `edge`, unless it is at its minimum.
     fn count_down(&mut self, cv: Clif, edge: Clif) -> Clif {
         let (min, _) = self.limits();
+        if self.is_small() {
+            let (step, min) = (self.f.ins().uextend(types::I32, edge), self.f.integer(types::I32, min));
+            let next = self.f.ins().isub(cv, step);
+            return self.f.ins().smax(next, min);
+        }
         let step = self.unless_at(min, cv, edge);
         self.f.ins().isub(cv, step)
     }

@@ -9,11 +9,13 @@
 mod error;
 mod target;
 
+mod counted;
 mod facts;
 mod signature;
 mod unit;
 
 mod function;
+mod loops;
 mod statement;
 
 mod call;

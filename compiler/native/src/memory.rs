@@ -4,7 +4,7 @@ use crate::function::Function;
 use crate::signature::{POINTER, clif_type};
 use cranelift_codegen::ir::{self as clif, InstBuilder, MemFlagsData, StackSlot, StackSlotData, StackSlotKind, types};
 use staunch_ir::layout::{Shape, usize_of};
-use staunch_ir::{Const, Type, Value};
+use staunch_ir::{Const, Lane, Type, Value};
 use std::collections::HashMap;
 
 /// A pointer and a constant distance from it.
@@ -83,6 +83,17 @@ impl Function<'_, '_> {
 
     pub(crate) fn store(&mut self, value: clif::Value, to: Address) {
         self.ins().store(MemFlagsData::trusted(), value, to.base, to.displacement());
+    }
+
+    /// Stores as many low bits of a wider value as `lane` has.
+    pub(crate) fn store_low(&mut self, lane: Lane, value: clif::Value, to: Address) {
+        let (flags, displacement) = (MemFlagsData::trusted(), to.displacement());
+        match lane.size() {
+            1 => self.ins().istore8(flags, value, to.base, displacement),
+            2 => self.ins().istore16(flags, value, to.base, displacement),
+            4 => self.ins().istore32(flags, value, to.base, displacement),
+            _ => self.ins().store(flags, value, to.base, displacement),
+        };
     }
 
     /// Copies a value; both places may be the same.

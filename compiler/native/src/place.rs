@@ -1,6 +1,6 @@
 //! Places: where a variable, a field or an element is.
 
-use crate::facts::constant_position;
+use crate::counted::{constant_position, is_within};
 use crate::function::{Function, Home};
 use crate::memory::Address;
 use cranelift_codegen::ir::{InstBuilder, condcodes::IntCC};
@@ -58,16 +58,20 @@ impl Function<'_, '_> {
     }
 
     fn element(&mut self, array: Address, id: ArrayId, index: &Expr, at: Location) -> Address {
-        let (bounds, stride) = (self.unit.program.array(id), self.unit.layout.stride(id));
-        if let Some(position) = constant_position(index, bounds.low, bounds.high) {
+        let (program, stride) = (self.unit.program, self.unit.layout.stride(id));
+        if let Some(position) = constant_position(program, index, id) {
             return array.plus(position * stride);
         }
+        let bounds = program.array(id);
+        let needs_check = !is_within(program, index, id, &self.counters);
         let index = self.scalar(index);
         // Below the lower bound the difference wraps, and is too large as well.
         let position = self.ins().iadd_imm_s(index, bounds.low.wrapping_neg());
-        let last = bounds.high.abs_diff(bounds.low).cast_signed();
-        let outside = self.ins().icmp_imm_u(IntCC::UnsignedGreaterThan, position, last);
-        self.fault_if(outside, FaultKind::IndexOutOfRange, at);
+        if needs_check {
+            let last = bounds.high.abs_diff(bounds.low).cast_signed();
+            let outside = self.ins().icmp_imm_u(IntCC::UnsignedGreaterThan, position, last);
+            self.fault_if(outside, FaultKind::IndexOutOfRange, at);
+        }
         let stride = i64::try_from(stride).expect("verified IR: sizes are within 1 GiB");
         let distance = self.ins().imul_imm_s(position, stride);
         let base = self.ins().iadd(array.base, distance);

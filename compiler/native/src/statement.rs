@@ -1,23 +1,24 @@
 //! Statements: writes and control flow.
 
-use crate::function::{Function, Goes, Turn};
+use crate::function::{Function, Goes};
 use crate::memory::Address;
 use crate::place::Site;
 use cranelift_codegen::ir::{self as clif, InstBuilder};
-use staunch_ir::{Block, Expr, ExprKind, Place, Statement, StatementKind, Type};
+use staunch_ir::{Block, Expr, ExprKind, Op, Place, Statement, StatementKind, Type};
 
-impl Function<'_, '_> {
+impl<'p> Function<'_, 'p> {
     /// What stands behind a statement that control does not pass is left out.
-    pub(crate) fn block(&mut self, block: &Block) -> Goes {
-        for statement in block {
-            if self.statement(statement) == Goes::Away {
+    pub(crate) fn block(&mut self, block: &'p [Statement]) -> Goes {
+        for at in 0..block.len() {
+            if self.statement(block, at) == Goes::Away {
                 return Goes::Away;
             }
         }
         Goes::On
     }
 
-    fn statement(&mut self, statement: &Statement) -> Goes {
+    fn statement(&mut self, block: &'p [Statement], at: usize) -> Goes {
+        let statement = &block[at];
         self.release_temporaries();
         match &statement.kind {
             StatementKind::Assign { target, value } => self.assign(target, value),
@@ -27,7 +28,7 @@ impl Function<'_, '_> {
             StatementKind::Case { selector, arms, otherwise } => {
                 return self.case(selector, arms, otherwise);
             }
-            StatementKind::Loop { body, continuing } => return self.turns(body, continuing),
+            StatementKind::Loop { body, continuing } => return self.turns(block, at, body, continuing),
             StatementKind::Exit => return self.leave_loop(),
             StatementKind::Continue => return self.continue_loop(),
             StatementKind::Return => return self.go(self.exit),
@@ -102,23 +103,31 @@ impl Function<'_, '_> {
         }
     }
 
-    fn branch(&mut self, condition: &Expr, then: &Block, otherwise: &Block) -> Goes {
-        let condition = self.scalar(condition);
+    fn branch(&mut self, condition: &Expr, then: &'p Block, otherwise: &'p Block) -> Goes {
         let (then_block, after) = (self.builder.create_block(), self.builder.create_block());
         if otherwise.is_empty() {
-            self.ins().brif(condition, then_block, &[], after, &[]);
+            self.test(condition, then_block, after);
             self.arm(then_block, then, after);
             self.go_on_in(after);
             return Goes::On;
         }
         let otherwise_block = self.builder.create_block();
-        self.ins().brif(condition, then_block, &[], otherwise_block, &[]);
+        self.test(condition, then_block, otherwise_block);
         let goes = [self.arm(then_block, then, after), self.arm(otherwise_block, otherwise, after)];
         self.join(&goes, after)
     }
 
+    /// Goes one way or the other. A NOT costs nothing here.
+    pub(crate) fn test(&mut self, condition: &Expr, holds: clif::Block, fails: clif::Block) {
+        if let ExprKind::Apply(Op::Not, operands) = &condition.kind {
+            return self.test(&operands[0], fails, holds);
+        }
+        let condition = self.scalar(condition);
+        self.ins().brif(condition, holds, &[], fails, &[]);
+    }
+
     /// One way through a branch, from `block` to `after`.
-    pub(crate) fn arm(&mut self, block: clif::Block, body: &Block, after: clif::Block) -> Goes {
+    pub(crate) fn arm(&mut self, block: clif::Block, body: &'p Block, after: clif::Block) -> Goes {
         self.go_on_in(block);
         let goes = self.block(body);
         if goes == Goes::On {
@@ -136,44 +145,7 @@ impl Function<'_, '_> {
         Goes::On
     }
 
-    fn turns(&mut self, body: &Block, continuing: &Block) -> Goes {
-        let [start, next, after] = [(); 3].map(|()| self.builder.create_block());
-        self.ins().jump(start, &[]);
-        self.builder.switch_to_block(start);
-        self.loops.push(Turn { next, after, is_continued: false, is_left: false });
-        if self.block(body) == Goes::On {
-            self.continue_loop();
-        }
-        if self.turn().is_continued {
-            self.go_on_in(next);
-            if self.block(continuing) == Goes::On {
-                self.ins().jump(start, &[]);
-            }
-        }
-        self.builder.seal_block(start);
-        let turn = self.loops.pop().expect("pushed above");
-        self.join(&[if turn.is_left { Goes::On } else { Goes::Away }], after)
-    }
-
-    fn turn(&mut self) -> &mut Turn {
-        self.loops.last_mut().expect("verified IR: EXIT and CONTINUE stand in a loop")
-    }
-
-    fn leave_loop(&mut self) -> Goes {
-        let turn = self.turn();
-        turn.is_left = true;
-        let after = turn.after;
-        self.go(after)
-    }
-
-    fn continue_loop(&mut self) -> Goes {
-        let turn = self.turn();
-        turn.is_continued = true;
-        let next = turn.next;
-        self.go(next)
-    }
-
-    fn go(&mut self, block: clif::Block) -> Goes {
+    pub(crate) fn go(&mut self, block: clif::Block) -> Goes {
         self.ins().jump(block, &[]);
         Goes::Away
     }
