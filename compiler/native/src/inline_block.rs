@@ -1,6 +1,6 @@
 //! The steps of the most used standard blocks, emitted in place and without branches: a call and
-//! its return cost as much as the step. Small counts are computed at 32 bits. A test drives each
-//! row here against the runtime's own step.
+//! its return cost as much as the step. Counts are computed at twice their bits where there are
+//! such. A test drives each row here against the runtime's own step.
 
 use crate::call::{block_info, offset};
 use crate::function::Function;
@@ -84,12 +84,8 @@ fn ctud(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Address, inputs:
     let mut step = Counter { f, info, at };
     let up = step.edge("cu", inputs[0]);
     let down = step.edge("cd", inputs[1]);
-    // Both together leave the count alone, also at a limit.
-    let only_up = step.f.ins().band_not(up, down);
-    let only_down = step.f.ins().band_not(down, up);
     let cv = step.load_count("cv");
-    let raised = step.count_up(cv, only_up);
-    let counted = step.count_down(raised, only_down);
+    let counted = step.count(cv, up, down);
     let pv = step.widen(pv);
     let loaded = step.f.ins().select(ld, pv, counted);
     let cv = step.or_zero(r, loaded);
@@ -167,42 +163,40 @@ impl Counter<'_, '_, '_> {
         self.pin("cv").lane
     }
 
-    /// The type that counts are computed in.
-    fn wide(&self) -> Type {
-        if self.is_small() { types::I32 } else { clif_type(self.lane()) }
+    /// Whether counts are computed at more bits than they have, where a step cannot overflow.
+    fn has_room(&self) -> bool {
+        self.lane().size() < 8
     }
 
-    fn is_small(&self) -> bool {
-        self.lane().size() < 4
+    /// The type that counts are computed in.
+    fn wide(&self) -> Type {
+        if self.lane().size() < 4 { types::I32 } else { types::I64 }
     }
 
     fn widen(&mut self, value: Clif) -> Clif {
-        match (self.is_small(), self.lane().is_signed()) {
+        let wide = self.wide();
+        match (self.has_room(), self.lane().is_signed()) {
             (false, _) => value,
-            (true, true) => self.f.ins().sextend(types::I32, value),
-            (true, false) => self.f.ins().uextend(types::I32, value),
+            (true, true) => self.f.ins().sextend(wide, value),
+            (true, false) => self.f.ins().uextend(wide, value),
         }
     }
 
     fn load_count(&mut self, field: &str) -> Clif {
-        if !self.is_small() {
-            return self.load(field);
-        }
         let from = self.at.plus(offset(self.pin(field).offset));
-        let (flags, displacement) = (MemFlagsData::trusted(), from.displacement());
-        if self.lane().is_signed() {
-            self.f.ins().sload16(types::I32, flags, from.base, displacement)
-        } else {
-            self.f.ins().uload16(types::I32, flags, from.base, displacement)
+        let (flags, base, displacement) = (MemFlagsData::trusted(), from.base, from.displacement());
+        match (self.lane().size(), self.lane().is_signed()) {
+            (2, true) => self.f.ins().sload16(types::I32, flags, base, displacement),
+            (2, false) => self.f.ins().uload16(types::I32, flags, base, displacement),
+            (4, true) => self.f.ins().sload32(flags, base, displacement),
+            (4, false) => self.f.ins().uload32(flags, base, displacement),
+            _ => self.load(field),
         }
     }
 
     fn store_count(&mut self, field: &str, value: Clif) {
-        if !self.is_small() {
-            return self.store(field, value);
-        }
         let to = self.at.plus(offset(self.pin(field).offset));
-        self.f.ins().istore16(MemFlagsData::trusted(), value, to.base, to.displacement());
+        self.f.store_low(self.lane(), value, to);
     }
 
     fn limits(&self) -> (i128, i128) {
@@ -212,25 +206,59 @@ impl Counter<'_, '_, '_> {
     /// `cv` and one more if `edge`, unless it is at its maximum.
     fn count_up(&mut self, cv: Clif, edge: Clif) -> Clif {
         let (_, max) = self.limits();
-        if self.is_small() {
-            let (step, max) = (self.f.ins().uextend(types::I32, edge), self.f.integer(types::I32, max));
-            let next = self.f.ins().iadd(cv, step);
-            return self.f.ins().smin(next, max);
+        if !self.has_room() {
+            let step = self.unless_at(max, cv, edge);
+            return self.f.ins().iadd(cv, step);
         }
-        let step = self.unless_at(max, cv, edge);
-        self.f.ins().iadd(cv, step)
+        let step = self.number(edge);
+        let next = self.f.ins().iadd(cv, step);
+        self.at_most(max, next)
     }
 
     /// `cv` and one less if `edge`, unless it is at its minimum.
     fn count_down(&mut self, cv: Clif, edge: Clif) -> Clif {
         let (min, _) = self.limits();
-        if self.is_small() {
-            let (step, min) = (self.f.ins().uextend(types::I32, edge), self.f.integer(types::I32, min));
-            let next = self.f.ins().isub(cv, step);
-            return self.f.ins().smax(next, min);
+        if !self.has_room() {
+            let step = self.unless_at(min, cv, edge);
+            return self.f.ins().isub(cv, step);
         }
-        let step = self.unless_at(min, cv, edge);
-        self.f.ins().isub(cv, step)
+        let step = self.number(edge);
+        let next = self.f.ins().isub(cv, step);
+        self.at_least(min, next)
+    }
+
+    /// Both edges together leave the count alone, also at a limit.
+    fn count(&mut self, cv: Clif, up: Clif, down: Clif) -> Clif {
+        if !self.has_room() {
+            let only_up = self.f.ins().band_not(up, down);
+            let only_down = self.f.ins().band_not(down, up);
+            let raised = self.count_up(cv, only_up);
+            return self.count_down(raised, only_down);
+        }
+        let (min, max) = self.limits();
+        let (up, down) = (self.number(up), self.number(down));
+        let raised = self.f.ins().iadd(cv, up);
+        let next = self.f.ins().isub(raised, down);
+        let next = self.at_most(max, next);
+        self.at_least(min, next)
+    }
+
+    fn number(&mut self, edge: Clif) -> Clif {
+        let wide = self.wide();
+        self.f.ins().uextend(wide, edge)
+    }
+
+    /// Counts with room for a step are in order as signed numbers, also those of an unsigned type.
+    fn at_most(&mut self, max: i128, count: Clif) -> Clif {
+        let wide = self.wide();
+        let max = self.f.integer(wide, max);
+        self.f.ins().smin(count, max)
+    }
+
+    fn at_least(&mut self, min: i128, count: Clif) -> Clif {
+        let wide = self.wide();
+        let min = self.f.integer(wide, min);
+        self.f.ins().smax(count, min)
     }
 
     fn unless_at(&mut self, limit: i128, cv: Clif, edge: Clif) -> Clif {
