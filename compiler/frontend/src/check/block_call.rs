@@ -313,7 +313,7 @@ impl<'s> Checker<'_, 's> {
             );
             return None;
         }
-        self.note_assigned(&found.place, expr.span);
+        self.note_passed(&found.place, expr.span, formal.name.span);
         Some(found.place)
     }
 

@@ -19,6 +19,7 @@ mod statement;
 mod unknown;
 
 pub(crate) use function::exists as is_function;
+pub(crate) use prescan::{Assigned, KeptCount, Uses, assigned_count, lost_count, same_storage, shared_count};
 pub(crate) use unknown::{block_of_another_dialect, no_such_block, not_constant};
 
 use crate::ast;
@@ -40,7 +41,7 @@ pub(crate) struct Checker<'d, 's> {
     /// The counters of the FOR loops around the statement.
     counters: Vec<Place>,
     loops: usize,
-    uses: prescan::Uses,
+    uses: Uses,
     context: Context,
     /// Instances called so far on the way to this statement.
     called: Vec<(Place, Span)>,
@@ -60,11 +61,11 @@ pub(crate) enum Context {
 }
 
 /// The bodies of all POUs, in the order of their slots; `None` where there was an error.
-pub(crate) fn bodies(decl: &mut Declarations<'_>) -> Vec<Option<Pou>> {
+pub(crate) fn bodies(decl: &mut Declarations<'_>) -> Vec<Option<(Pou, Uses)>> {
     (0..decl.pous.len()).map(|at| body(decl, at)).collect()
 }
 
-fn body(decl: &mut Declarations<'_>, at: usize) -> Option<Pou> {
+fn body(decl: &mut Declarations<'_>, at: usize) -> Option<(Pou, Uses)> {
     let pou = decl.pous[at].ast;
     let signature = decl.signature(at)?;
     let mut checker = Checker {
@@ -74,7 +75,7 @@ fn body(decl: &mut Declarations<'_>, at: usize) -> Option<Pou> {
         block: Vec::new(),
         counters: Vec::new(),
         loops: 0,
-        uses: prescan::Uses::default(),
+        uses: Uses::default(),
         context: Context::Body,
         called: Vec::new(),
         copies_back: Block::new(),
@@ -85,11 +86,11 @@ fn body(decl: &mut Declarations<'_>, at: usize) -> Option<Pou> {
     checker.migration_lints(pou);
     let mut edges = std::mem::take(&mut checker.block);
     edges.append(&mut body);
-    let prescan = checker.prescan(pou);
+    let uses = checker.finish_uses();
     let locals = std::mem::take(&mut checker.locals);
     checker.report_unused(&signature);
     let location = decl.location(pou.name.span);
-    Some(Pou {
+    let body = Pou {
         kind: kind(pou.kind),
         name: pou.name.text.to_owned(),
         doc: pou.doc.clone(),
@@ -100,8 +101,9 @@ fn body(decl: &mut Declarations<'_>, at: usize) -> Option<Pou> {
         result: signature.result.as_ref().map(|(id, _)| *id),
         variables: variables(&signature),
         body: edges,
-        prescan,
-    })
+        prescan: Block::new(),
+    };
+    Some((body, uses))
 }
 
 fn kind(kind: ast::PouKind) -> PouKind {
@@ -136,7 +138,7 @@ pub(crate) fn constant<'s>(
         locals: Vec::new(),
         counters: Vec::new(),
         loops: 0,
-        uses: prescan::Uses::default(),
+        uses: Uses::default(),
         called: Vec::new(),
         copies_back: Block::new(),
         context: if target.is_some() { Context::Initial } else { Context::Constant },
@@ -183,6 +185,11 @@ impl<'s> Checker<'_, 's> {
 
     fn error(&mut self, code: Code, span: Span, message: impl Into<String>) {
         self.decl.error(code, span, message);
+    }
+
+    fn is_function_block(&self) -> bool {
+        let slot = self.signature.as_ref().and_then(|it| it.state).and_then(|it| self.decl.slot_of_instance(it));
+        slot.is_some_and(|slot| self.decl.pous[slot].ast.kind == ast::PouKind::FunctionBlock)
     }
 
     fn at(&mut self, span: Span) -> Location {

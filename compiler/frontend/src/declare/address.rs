@@ -149,10 +149,6 @@ pub(crate) fn parse(text: &str) -> Option<Address> {
 }
 
 impl<'s> Addresses<'s> {
-    pub fn type_of(&self, at: usize) -> Option<Type> {
-        self.fields.get(at).map(|it| it.ty)
-    }
-
     pub fn take_fields(&mut self) -> Vec<Field> {
         std::mem::take(&mut self.fields)
     }

@@ -407,15 +407,6 @@ impl<'s> Declarations<'s> {
         self.instances.get(&id).copied()
     }
 
-    /// The type of a field of the globals.
-    pub fn global_type(&self, field: staunch_ir::FieldId) -> Option<Type> {
-        match self.globals.get(field.index()).map(|it| &it.slot) {
-            Some(Slot::Done(variable)) => Some(variable.place.ty),
-            Some(Slot::Waiting | Slot::Active | Slot::Failed) => None,
-            None => self.addresses.type_of(field.index() - self.globals.len()),
-        }
-    }
-
     /// The standard block that a bare `name` means where `span` stands.
     pub fn bare_block(&self, name: &str, span: Span) -> Option<staunch_ir::BlockId> {
         let dialect = self.dialect(span);
@@ -430,7 +421,7 @@ impl<'s> Declarations<'s> {
     }
 
     /// Puts the parts together: the globals' structure, the instances, the order of the POUs.
-    fn finish(&mut self, bodies: Vec<Option<staunch_ir::Pou>>) -> Option<Program> {
+    fn finish(&mut self, bodies: Vec<Option<(staunch_ir::Pou, check::Uses)>>) -> Option<Program> {
         let fields = (0..self.globals.len()).map(|at| self.global_field(at)).collect::<Vec<_>>();
         let hidden = self.addresses.take_fields();
         self.program.globals = StructId::next(self.program.structs.len());
@@ -441,9 +432,10 @@ impl<'s> Declarations<'s> {
             location,
             fields: fields.into_iter().flatten().chain(hidden).collect(),
         });
-        self.program.pous = bodies.into_iter().collect::<Option<Vec<_>>>()?;
+        let (pous, uses) = bodies.into_iter().collect::<Option<Vec<_>>>()?.into_iter().unzip();
+        self.program.pous = pous;
         configuration::instances(self);
-        order::order(self)?;
+        order::order(self, uses)?;
         self.check_size()?;
         Some(std::mem::replace(&mut self.program, empty_program(Vec::new())))
     }

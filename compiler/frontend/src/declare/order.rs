@@ -1,6 +1,7 @@
 //! The order of POUs: a callee before its callers. Recursion ends here.
 
 use super::Declarations;
+use crate::check::Uses;
 use crate::{Code, Diagnostic};
 use staunch_ir::{Block, Pou, PouId, Statement, StatementKind};
 
@@ -8,20 +9,34 @@ use staunch_ir::{Block, Pou, PouId, Statement, StatementKind};
 const MAX_STACK: u64 = 1 << 20;
 
 /// Sorts the program's POUs. `None` when there is recursion, which has been reported.
-pub(super) fn order(declarations: &mut Declarations<'_>) -> Option<()> {
-    super::prescan::nest(declarations);
-    let calls: Vec<_> = declarations.program.pous.iter_mut().map(callees).collect();
-    let mut order = Vec::new();
-    let mut marks = vec![Mark::New; calls.len()];
-    for at in 0..calls.len() {
-        if let Err(cycle) = visit(at, &calls, &mut marks, &mut order) {
-            report_recursion(declarations, &cycle);
-            return None;
-        }
+pub(super) fn order(declarations: &mut Declarations<'_>, uses: Vec<Uses>) -> Option<()> {
+    let mut calls = all_callees(declarations);
+    let mut order = sorted(declarations, &calls)?;
+    if super::prescan::add(declarations, uses, &order) {
+        // A prescan calls those of contained instances.
+        calls = all_callees(declarations);
+        order = sorted(declarations, &calls)?;
     }
     check_stack(declarations, &calls, &order);
     renumber(declarations, &order);
     Some(())
+}
+
+fn all_callees(declarations: &mut Declarations<'_>) -> Vec<Vec<usize>> {
+    declarations.program.pous.iter_mut().map(callees).collect()
+}
+
+/// The slots of the POUs, a callee before its callers.
+fn sorted(declarations: &mut Declarations<'_>, calls: &[Vec<usize>]) -> Option<Vec<usize>> {
+    let mut order = Vec::new();
+    let mut marks = vec![Mark::New; calls.len()];
+    for at in 0..calls.len() {
+        if let Err(cycle) = visit(at, calls, &mut marks, &mut order) {
+            report_recursion(declarations, &cycle);
+            return None;
+        }
+    }
+    Some(order)
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]

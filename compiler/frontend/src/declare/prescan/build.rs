@@ -1,0 +1,151 @@
+//! The statements of a prescan.
+
+use crate::declare::pin_place;
+use staunch_ir::{
+    Block, Const, Elementary, Expr, Local, LocalId, Location, Op, Place, Program, Projection, Statement, StatementKind,
+    Type, Value,
+};
+
+/// Builds the prescan of one POU.
+pub(super) struct Builder<'p> {
+    program: &'p Program,
+    pou: usize,
+    locals: Vec<Local>,
+    block: Block,
+    at: Location,
+}
+
+impl<'p> Builder<'p> {
+    pub fn new(program: &'p Program, pou: usize) -> Self {
+        let it = &program.pous[pou];
+        Self { program, pou, locals: it.locals.clone(), block: Block::new(), at: it.location }
+    }
+
+    pub fn finish(self) -> (Block, Vec<Local>) {
+        (self.block, self.locals)
+    }
+
+    /// What an instruction does to the structures that it works on.
+    pub fn instruction(&mut self, place: &Place, instruction: usize) {
+        let Type::Block(id) = place.ty else { return };
+        if id.info().instructions[instruction].prescan.is_none() {
+            return;
+        }
+        let at = self.at;
+        let kind = |block| StatementKind::PrescanBlock { block, instruction };
+        self.everywhere(place, &mut |_, place| vec![Statement::new(kind(place), at)]);
+    }
+
+    /// CV starts at the kept count where that is retained, else at 0. Counters and counts in arrays
+    /// belong together element by element.
+    pub fn restore(&mut self, counter: &Place, kept: &Place, retained: bool) {
+        let Type::Block(id) = counter.ty else { return };
+        let at = self.at;
+        self.everywhere(counter, &mut |indices, counter| {
+            let value = if retained {
+                Expr::load(at_indices(kept, indices), at)
+            } else {
+                Expr::constant(Elementary::Int, Value::I16(0), at)
+            };
+            vec![Statement::assign(pin_place(counter, id, "CV"), value, at)]
+        });
+    }
+
+    /// Runs another POU's prescan on its instance.
+    pub fn instance(&mut self, callee: staunch_ir::PouId, place: &Place) {
+        let at = self.at;
+        self.everywhere(place, &mut |_, instance| {
+            vec![Statement::new(StatementKind::PrescanInstance { callee, instance }, at)]
+        });
+    }
+
+    /// Runs `make` on the place; where an index is not constant, on every element.
+    fn everywhere(&mut self, place: &Place, make: &mut dyn FnMut(&[Expr], Place) -> Block) {
+        let mut made = self.elements(place.clone(), 0, &mut Vec::new(), make);
+        self.block.append(&mut made);
+    }
+
+    fn elements(
+        &mut self,
+        mut place: Place,
+        from: usize,
+        indices: &mut Vec<Expr>,
+        make: &mut dyn FnMut(&[Expr], Place) -> Block,
+    ) -> Block {
+        let open = (from..place.projections.len()).find(|position| is_open(&place.projections[*position]));
+        let Some(position) = open else { return make(indices, place) };
+        let Some((low, high)) = self.bounds_at(&place, position) else { return Block::new() };
+        let counter = LocalId::next(self.locals.len());
+        self.locals.push(Local { name: "element".to_owned(), ty: Type::LINT, initial: Const::Zero, doc: None });
+        let counter = Place::local(counter, Type::LINT);
+        let index = Expr::load(counter.clone(), self.at);
+        place.projections[position] = Projection::Index { index: Box::new(index.clone()), at: self.at };
+        indices.push(index.clone());
+        let body = self.elements(place, position + 1, indices, make);
+        indices.pop();
+        for_each(counter, index, (low, high), body, self.at)
+    }
+
+    /// The bounds of the array that projection `position` indexes.
+    fn bounds_at(&self, place: &Place, position: usize) -> Option<(i64, i64)> {
+        let mut ty = self.program.root_type(&self.program.pous[self.pou], place.root)?;
+        for projection in &place.projections[..position] {
+            ty = match (projection, ty) {
+                (Projection::Field(field), _) => self.program.member(ty, *field)?,
+                (Projection::Index { .. }, Type::Array(id)) => self.program.array(id).element,
+                (Projection::Index { .. }, _) => return None,
+            };
+        }
+        let Type::Array(id) = ty else { return None };
+        Some((self.program.array(id).low, self.program.array(id).high))
+    }
+}
+
+/// An index that is known in the call only; in a prescan it stands for every element.
+fn is_open(projection: &Projection) -> bool {
+    matches!(projection, Projection::Index { index, .. } if index.as_const().is_none())
+}
+
+fn at_indices(place: &Place, indices: &[Expr]) -> Place {
+    let mut place = place.clone();
+    let open = place.projections.iter_mut().filter(|it| is_open(it));
+    for (projection, given) in open.zip(indices) {
+        if let Projection::Index { index, .. } = projection {
+            **index = given.clone();
+        }
+    }
+    place
+}
+
+fn for_each(counter: Place, index: Expr, (low, high): (i64, i64), mut body: Block, at: Location) -> Block {
+    let lint = |value| Expr::constant(Elementary::Lint, Value::I64(value), at);
+    let over = Expr::apply(Op::Gt, Type::BOOL, vec![index.clone(), lint(high)], at);
+    let exit = vec![Statement::new(StatementKind::Exit, at)];
+    let mut inside = vec![Statement::new(StatementKind::If { condition: over, then: exit, otherwise: Vec::new() }, at)];
+    inside.append(&mut body);
+    let next = Expr::apply(Op::Add, Type::LINT, vec![index, lint(1)], at);
+    let continuing = vec![Statement::assign(counter.clone(), next, at)];
+    vec![
+        Statement::assign(counter, lint(low), at),
+        Statement::new(StatementKind::Loop { body: inside, continuing }, at),
+    ]
+}
+
+/// Whether a restart keeps the place: it, or what it is a part of, is RETAIN.
+pub(super) fn is_retained(program: &Program, pou: usize, place: &Place) -> bool {
+    let mut ty = program.root_type(&program.pous[pou], place.root);
+    for projection in &place.projections {
+        ty = match (projection, ty) {
+            (Projection::Field(field), Some(Type::Struct(id))) => {
+                let field = &program.structure(id).fields[field.index()];
+                if field.retain {
+                    return true;
+                }
+                Some(field.ty)
+            }
+            (Projection::Index { .. }, Some(Type::Array(id))) => Some(program.array(id).element),
+            (Projection::Field(_) | Projection::Index { .. }, _) => return false,
+        };
+    }
+    false
+}

@@ -1,0 +1,130 @@
+//! A prescan reaches the instances inside: each POU's runs those of the instances it contains.
+
+use super::build::{Builder, is_retained};
+use super::reach::joined;
+use crate::check::{KeptCount, Uses};
+use crate::declare::Declarations;
+use staunch_ir::{Elementary, Expr, FieldId, Location, Op, Place, PouId, Program, Root, StructId, Type, Value};
+
+/// The slots of the POUs that have instances, with their structures: parts before what they are
+/// parts of, as structures stand in that order.
+fn owners(program: &Program) -> Vec<(StructId, usize)> {
+    let pous = program.pous.iter().enumerate();
+    let mut owners: Vec<_> = pous.filter_map(|(at, pou)| Some((pou.state?, at))).collect();
+    owners.sort_unstable();
+    owners
+}
+
+/// Adds the prescans of contained instances.
+pub(super) fn nest(declarations: &mut Declarations<'_>, open: &OpenCounts) {
+    for (state, at) in owners(&declarations.program) {
+        extend(declarations, open, at, Root::Instance, state);
+    }
+    let first = declarations.program.instances.first().map(|it| it.program.index());
+    if let Some(at) = first {
+        extend(declarations, open, at, Root::Globals, declarations.program.globals);
+    }
+}
+
+fn extend(declarations: &mut Declarations<'_>, open: &OpenCounts, at: usize, root: Root, state: StructId) {
+    let instances = instances(declarations, root, state);
+    if instances.is_empty() {
+        return;
+    }
+    let program = &declarations.program;
+    let mut builder = Builder::new(program, at);
+    for Inside { slot, place, retained } in instances {
+        if !program.pous[slot].prescan.is_empty() {
+            builder.instance(PouId::next(slot), &place);
+        }
+        // The block itself cannot know that its instance is RETAIN as a whole.
+        if retained {
+            for count in &open[slot] {
+                builder.restore(&joined(&place, &count.counter), &joined(&place, &count.kept), true);
+            }
+        }
+    }
+    let (mut block, locals) = builder.finish();
+    let pou = &mut declarations.program.pous[at];
+    pou.prescan.append(&mut block);
+    pou.locals = locals;
+}
+
+/// An instance of a user's FUNCTION_BLOCK.
+struct Inside {
+    slot: usize,
+    place: Place,
+    retained: bool,
+}
+
+/// The instances in a POU's state, or in the globals.
+fn instances(declarations: &Declarations<'_>, root: Root, state: StructId) -> Vec<Inside> {
+    let mut found = Vec::new();
+    members(declarations, &Place::root(root, Type::Struct(state)), state, false, &mut found);
+    found
+}
+
+fn members(declarations: &Declarations<'_>, place: &Place, id: StructId, retained: bool, found: &mut Vec<Inside>) {
+    for (at, field) in declarations.program.structure(id).fields.iter().enumerate() {
+        let member = place.clone().field(FieldId::next(at), field.ty);
+        inside(declarations, member, retained || field.retain, found);
+    }
+}
+
+/// The instances at `place`: itself, or its elements or members.
+fn inside(declarations: &Declarations<'_>, place: Place, retained: bool, found: &mut Vec<Inside>) {
+    match place.ty {
+        Type::Struct(id) => match declarations.slot_of_instance(id) {
+            Some(slot) => found.push(Inside { slot, place, retained }),
+            None => members(declarations, &place, id, retained, found),
+        },
+        Type::Array(id) => {
+            let element = declarations.program.array(id).element;
+            inside(declarations, place.index(every(), element, Location::default()), retained, found);
+        }
+        Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Block(_) => {}
+    }
+}
+
+/// An index that is not constant: the builder puts every element in its place.
+fn every() -> Expr {
+    let at = Location::default();
+    let zero = Expr::constant(Elementary::Lint, Value::I64(0), at);
+    Expr::apply(Op::Neg, Type::LINT, vec![zero], at)
+}
+
+/// For each POU, the counts that its instances keep in themselves but not RETAIN there.
+pub(super) type OpenCounts = Vec<Vec<KeptCount>>;
+
+pub(super) fn open_counts(declarations: &Declarations<'_>, uses: &[Uses]) -> OpenCounts {
+    let program = &declarations.program;
+    let mut open = vec![Vec::new(); uses.len()];
+    for (state, at) in owners(program) {
+        let is_inside = |it: &&KeptCount| it.counter.root == Root::Instance && it.kept.root == Root::Instance;
+        let own = uses[at].counts.iter().filter(is_inside);
+        let mut counts: Vec<_> = own.filter(|it| !is_retained(program, at, &it.kept)).cloned().collect();
+        for Inside { slot, place, retained } in instances(declarations, Root::Instance, state) {
+            if !retained {
+                counts.extend(open[slot].iter().map(|it: &KeptCount| KeptCount {
+                    counter: joined(&place, &it.counter),
+                    kept: joined(&place, &it.kept),
+                    ..it.clone()
+                }));
+            }
+        }
+        open[at] = counts;
+    }
+    open
+}
+
+/// The counts that are kept because an instance around them is RETAIN as a whole.
+pub(super) fn kept_from_outside<'o>(
+    declarations: &Declarations<'_>,
+    open: &'o OpenCounts,
+) -> impl Iterator<Item = &'o KeptCount> {
+    let program = &declarations.program;
+    let states = owners(program).into_iter().map(|(state, _)| (Root::Instance, state));
+    let all = states.chain([(Root::Globals, program.globals)]);
+    let all: Vec<_> = all.flat_map(|(root, state)| instances(declarations, root, state)).collect();
+    all.into_iter().filter(|it| it.retained).flat_map(|it| &open[it.slot])
+}
