@@ -6,7 +6,7 @@ use super::{Declarations, GlobalSlot};
 use crate::ast;
 use crate::dialect::Dialect;
 use crate::{Code, Diagnostic, Span};
-use staunch_ir::{Address, Area, Elementary, Field, FieldId, Place, Root, Section, Type};
+use staunch_ir::{Address, Area, Elementary, Field, Place, Section, Type};
 use std::collections::HashMap;
 
 #[derive(Clone, Copy, Debug)]
@@ -19,11 +19,8 @@ enum Storage {
 
 /// Where the shared addresses are kept.
 #[derive(Debug, Default)]
-pub(crate) struct Addresses<'s> {
+pub(crate) struct Addresses {
     shared: HashMap<Address, Storage>,
-    fields: Vec<Field>,
-    /// The first declaration of each hidden field.
-    names: Vec<Option<ast::Name<'s>>>,
 }
 
 #[derive(Clone, Copy)]
@@ -34,7 +31,7 @@ enum Use {
 }
 
 /// Finds which addresses are shared.
-pub(super) fn collect<'s>(declarations: &mut Declarations<'s>, files: &'s [ast::File<'s>]) -> Addresses<'s> {
+pub(super) fn collect<'s>(declarations: &mut Declarations<'s>, files: &'s [ast::File<'s>]) -> Addresses {
     let mut uses: Vec<(Address, Span, Use)> = Vec::new();
     for at in 0..declarations.globals.len() {
         let GlobalSlot { decl, .. } = declarations.globals[at];
@@ -56,7 +53,7 @@ pub(super) fn collect<'s>(declarations: &mut Declarations<'s>, files: &'s [ast::
             shared.insert(group[0].0, storage);
         }
     }
-    Addresses { shared, fields: Vec::new(), names: Vec::new() }
+    Addresses { shared }
 }
 
 fn storage_of(group: &[(Address, Span, Use)]) -> Option<Storage> {
@@ -148,12 +145,6 @@ pub(crate) fn parse(text: &str) -> Option<Address> {
     Some(Address { area, bit, width })
 }
 
-impl<'s> Addresses<'s> {
-    pub fn take_fields(&mut self) -> Vec<Field> {
-        std::mem::take(&mut self.fields)
-    }
-}
-
 impl<'s> Declarations<'s> {
     /// The address that a declaration names.
     pub fn address(&mut self, name: ast::Name<'s>) -> Option<Address> {
@@ -188,11 +179,11 @@ impl<'s> Declarations<'s> {
                 Some(global.place)
             }
             Storage::Hidden(Some(at)) => {
-                let (ty, first) = (self.addresses.fields[at].ty, self.addresses.names[at]);
+                let (ty, first) = (self.hidden.field_type(at), self.hidden.declared(at));
                 self.same_type(resolved.ty, ty, name, first);
                 Some(self.hidden_place(at))
             }
-            Storage::Hidden(None) => Some(self.add_hidden(address, resolved, variable.text, Some(variable))),
+            Storage::Hidden(None) => Some(self.share_address(address, resolved, variable.text, Some(variable))),
         }
     }
 
@@ -241,30 +232,21 @@ impl<'s> Declarations<'s> {
                 };
                 let resolved = Resolved::plain(Type::Elementary(elementary));
                 let text = name.text.trim_start_matches('%').replace('.', "_");
-                Some(self.add_hidden(address, &resolved, &text, None))
+                Some(self.share_address(address, &resolved, &text, None))
             }
         }
     }
 
-    fn add_hidden(
+    fn share_address(
         &mut self,
         address: Address,
         resolved: &Resolved,
         name: &str,
         declared: Option<ast::Name<'s>>,
     ) -> Place {
-        let at = self.addresses.fields.len();
         let location = declared.map(|it| self.location(it.span)).unwrap_or_default();
-        let taken = |name: &str| {
-            self.addresses.fields.iter().any(|it| it.name.eq_ignore_ascii_case(name))
-                || self.globals.iter().any(|it| it.name.text.eq_ignore_ascii_case(name))
-        };
-        let mut unique = name.to_owned();
-        while taken(&unique) {
-            unique.push('_');
-        }
-        self.addresses.fields.push(Field {
-            name: unique,
+        let field = Field {
+            name: name.to_owned(),
             ty: resolved.ty,
             initial: resolved.initial.clone(),
             section: Section::Global,
@@ -274,14 +256,9 @@ impl<'s> Declarations<'s> {
             range: resolved.range,
             doc: None,
             location,
-        });
-        self.addresses.names.push(declared);
+        };
+        let at = self.add_hidden(field, declared);
         self.addresses.shared.insert(address, Storage::Hidden(Some(at)));
         self.hidden_place(at)
-    }
-
-    fn hidden_place(&self, at: usize) -> Place {
-        let id = FieldId::next(self.globals.len() + at);
-        Place::root(Root::Globals, Type::Struct(super::GLOBALS)).field(id, self.addresses.fields[at].ty)
     }
 }

@@ -5,6 +5,7 @@
 
 mod address;
 mod configuration;
+mod hidden;
 mod initial;
 mod order;
 mod pou;
@@ -101,7 +102,8 @@ pub(crate) struct Declarations<'s> {
     pub pous: Vec<PouSlot<'s>>,
     pub globals: Vec<GlobalSlot<'s>>,
     pub configurations: Vec<&'s ast::Configuration<'s>>,
-    pub addresses: address::Addresses<'s>,
+    pub addresses: address::Addresses,
+    pub hidden: hidden::Hidden<'s>,
     pub program: Program,
     /// For each array of `program`, what its elements are.
     pub elements: Vec<Resolved>,
@@ -166,6 +168,7 @@ impl<'s> Declarations<'s> {
             globals: Vec::new(),
             configurations: Vec::new(),
             addresses: address::Addresses::default(),
+            hidden: hidden::Hidden::default(),
             program: empty_program(files),
             elements: Vec::new(),
             sizes: Vec::new(),
@@ -423,7 +426,7 @@ impl<'s> Declarations<'s> {
     /// Puts the parts together: the globals' structure, the instances, the order of the POUs.
     fn finish(&mut self, bodies: Vec<Option<(staunch_ir::Pou, check::Uses)>>) -> Option<Program> {
         let fields = (0..self.globals.len()).map(|at| self.global_field(at)).collect::<Vec<_>>();
-        let hidden = self.addresses.take_fields();
+        let hidden = self.hidden.take_fields();
         self.program.globals = StructId::next(self.program.structs.len());
         let location = Location::default();
         self.program.structs.push(Struct {

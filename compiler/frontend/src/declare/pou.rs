@@ -169,7 +169,8 @@ impl<'s> Declarations<'s> {
 
     fn check_block_qualifiers(&mut self, pou: &ast::Pou<'s>, block: &ast::VarBlock<'s>) {
         let retain = block.retain.or(block.persistent);
-        let lives_one_call = block.kind == VarKind::Temp || pou.kind == PouKind::Function;
+        let lives_one_call =
+            block.kind == VarKind::Temp || (pou.kind == PouKind::Function && block.kind != VarKind::Stat);
         if let Some(span) = retain
             && (lives_one_call || matches!(block.kind, VarKind::InOut | VarKind::External))
         {
@@ -198,9 +199,6 @@ impl<'s> Declarations<'s> {
             && matches!(block.kind, VarKind::Output | VarKind::InOut)
         {
             self.error(Code::E0403, span, "an output cannot be CONSTANT");
-        }
-        if block.kind == VarKind::Stat && pou.kind == PouKind::Function {
-            self.not_supported(block.span, "VAR_STAT in a FUNCTION");
         }
         if block.kind == VarKind::Global {
             self.report(
@@ -302,6 +300,10 @@ impl<'s> Declarations<'s> {
         let section = super::scope::section(block.kind);
         let formal = |target| Formal { name, section, resolved: resolved.clone(), target };
         let place = match (pou.kind, block.kind) {
+            // A program has one set of variables, so they last anyway.
+            (PouKind::Function | PouKind::FunctionBlock, VarKind::Stat) => {
+                return Some(self.static_variable(pou, block, decl, name, resolved));
+            }
             (_, VarKind::InOut) => {
                 let at = builder.param(name.text, resolved, decl, Mode::Reference);
                 builder.formals.push(formal(Target::Param(at)));
@@ -355,6 +357,22 @@ impl<'s> Declarations<'s> {
         let field = self.field(&variable, block, decl, super::scope::section(block.kind));
         builder.fields.push(field);
         place
+    }
+
+    /// VAR_STAT: one variable for all calls and all instances.
+    fn static_variable(
+        &mut self,
+        pou: &'s ast::Pou<'s>,
+        block: &'s ast::VarBlock<'s>,
+        decl: &'s ast::VarDecl<'s>,
+        name: ast::Name<'s>,
+        resolved: &Resolved,
+    ) -> Place {
+        let variable = self.variable(name, block, resolved.clone(), Place::root(Root::Globals, resolved.ty));
+        let mut field = self.field(&variable, block, decl, Section::Global);
+        field.name = format!("{}_{}", pou.name.text, name.text);
+        let at = self.add_hidden(field, Some(name));
+        self.hidden_place(at)
     }
 
     /// Adds the hidden trigger of an edge input; the body reads the trigger's `Q`.
