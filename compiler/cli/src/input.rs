@@ -57,13 +57,18 @@ fn collect(path: &Path, depth: usize, paths: &mut Vec<PathBuf>) -> Result<(), St
 
 fn is_source(path: &Path) -> bool {
     let extension = path.extension().map(|it| it.to_string_lossy().to_ascii_lowercase());
-    matches!(extension.as_deref(), Some("st" | "iecst"))
+    matches!(extension.as_deref(), Some("st" | "iecst")) || is_twincat(path)
+}
+
+/// A file of TwinCAT's is refused, also in a folder: a program without it would be another one.
+fn is_twincat(path: &Path) -> bool {
+    let extension = path.extension().map(|it| it.to_string_lossy().to_ascii_lowercase());
+    matches!(extension.as_deref(), Some("tcpou" | "tcgvl" | "tcdut"))
 }
 
 fn source(path: &Path) -> Result<Source, String> {
     let name = path.display().to_string();
-    let extension = path.extension().map(|it| it.to_string_lossy().to_ascii_lowercase());
-    if matches!(extension.as_deref(), Some("tcpou" | "tcgvl" | "tcdut")) {
+    if is_twincat(path) {
         return Err(format!("{name}: TwinCAT's XML files are not supported yet; export the code as .st"));
     }
     if path == Path::new("-") {

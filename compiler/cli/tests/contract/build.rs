@@ -1,0 +1,70 @@
+//! What `build` makes.
+
+use super::{COUNTER, Folder, Ran, has};
+use std::process::{Command, Stdio};
+
+#[test]
+fn every_kind_is_made_where_it_is_asked_for() {
+    let folder = Folder::with("kinds", &[("main.st", COUNTER)]);
+    for (kind, file, part) in
+        [("rust", "out.rs", "forbid(unsafe_code)"), ("header", "out.h", "staunch_scan"), ("map", "out.map", "parts")]
+    {
+        folder.staunch(&format!("build main.st --emit {kind} -o {file} -q")).out(0);
+        has(&folder.read(file), &[part]);
+    }
+    for (kind, file) in [("obj", "out.o"), ("lib", "libout.a"), ("exe", "out")] {
+        folder.staunch(&format!("build main.st --emit {kind} -o {file} -q")).out(0);
+        assert!(folder.0.join(file).metadata().unwrap().len() > 100, "{file}");
+    }
+    folder.staunch("build main.st --emit nonsense").err(2);
+}
+
+#[test]
+fn output_is_the_same_byte_for_byte() {
+    let folder = Folder::with("same", &[("main.st", COUNTER)]);
+    for kind in ["rust", "map", "header", "obj"] {
+        let build = || {
+            folder.staunch(&format!("build main.st --emit {kind} -o made -q")).out(0);
+            std::fs::read(folder.0.join("made")).unwrap()
+        };
+        assert_eq!(build(), build(), "{kind}");
+    }
+}
+
+#[test]
+fn an_executable_takes_the_flags_of_run() {
+    let folder = Folder::with("exe", &[("main.st", COUNTER), ("in.csv", "scan,pulse\n1,TRUE\n2,FALSE\n3,TRUE\n")]);
+    folder.staunch("build main.st -o plant -q").out(0);
+    let plant = |arguments: &str| {
+        let mut command = Command::new(folder.0.join("plant"));
+        Ran::of(command.args(arguments.split_whitespace()).current_dir(&folder.0).output().unwrap())
+    };
+    let expected = folder.staunch("run main.st --stimulus in.csv --trace -").out(0);
+    assert_eq!(plant("--stimulus in.csv --trace -").out(0), expected);
+    plant("--nonsense").err(2);
+}
+
+#[test]
+#[cfg(unix)]
+fn an_executable_runs_until_it_is_stopped() {
+    let folder = Folder::with("stopped", &[("main.st", COUNTER)]);
+    folder.staunch("build main.st -o plant -q").out(0);
+    let mut command = Command::new(folder.0.join("plant"));
+    let child = command.arg("--cycle").arg("5ms").stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    std::thread::sleep(std::time::Duration::from_millis(300));
+    let stop = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
+    assert!(stop.success());
+    let ran = Ran::of(child.wait_with_output().unwrap());
+    has(&format!("{}{}", ran.out, ran.err), &["scans"]);
+    assert_eq!(ran.code, 0);
+}
+
+#[test]
+fn what_cannot_be_built_is_refused_with_the_way_to_go() {
+    let folder = Folder::with("refused", &[("main.st", COUNTER)]);
+    let narrow = folder.staunch("build main.st --emit obj --target thumbv7em-none-eabihf").err(2);
+    has(&narrow, &["64-bit", "--backend rust"]);
+    folder.staunch("build main.st --emit obj --target nowhere").err(2);
+    folder.write("fb.st", "FUNCTION_BLOCK F VAR a : INT; END_VAR a := 1; END_FUNCTION_BLOCK");
+    has(&folder.staunch("run fb.st").err(2), &["PROGRAM"]);
+}

@@ -1,0 +1,108 @@
+//! Diagnostics: verdicts, forms, lints, dialects.
+
+use super::{COUNTER, Folder, has};
+
+const WRONG: &str = "PROGRAM Main
+VAR size : INT; END_VAR (* größe *)
+size := 300000;
+other := 1;
+END_PROGRAM
+";
+
+#[test]
+fn the_verdict_is_the_exit_code() {
+    let folder = Folder::with("verdict", &[("good.st", COUNTER), ("bad.st", WRONG)]);
+    assert_eq!(folder.staunch("check good.st").out(0), "");
+    has(&folder.staunch("check bad.st").err(1), &["error", "bad.st:4:1", "other"]);
+    folder.staunch("build bad.st --emit rust").err(1);
+    folder.staunch("run bad.st").err(1);
+    for usage in ["check", "check missing.st", "check --nonsense good.st", "nonsense", "run good.st --scans many"] {
+        folder.staunch(usage).err(2);
+    }
+}
+
+#[test]
+fn short_is_a_line_a_diagnostic() {
+    let folder = Folder::with("short", &[("bad.st", WRONG)]);
+    let err = folder.staunch("check bad.st --message-format short").err(1);
+    let lines: Vec<_> = err.lines().filter(|it| it.contains(": error[")).collect();
+    assert_eq!(lines.len(), 2, "{err}");
+    assert!(lines[0].starts_with("bad.st:3:9: error[E"), "{err}");
+    assert!(lines[1].starts_with("bad.st:4:1: error[E"), "{err}");
+}
+
+#[test]
+fn json_is_an_object_a_line() {
+    let folder = Folder::with("json", &[("bad.st", WRONG)]);
+    let out = folder.staunch("check bad.st --message-format json").out(1);
+    let diagnostics: Vec<serde_json::Value> = out.lines().map(|it| serde_json::from_str(it).unwrap()).collect();
+    let second = &diagnostics[1];
+    assert_eq!(second["reason"], "diagnostic");
+    assert_eq!(second["severity"], "error");
+    assert!(second["code"].as_str().unwrap().starts_with('E'));
+    assert!(second["message"].as_str().unwrap().contains("other"));
+    assert!(second["rendered"].as_str().unwrap().contains("bad.st:4:1"));
+    let span = &second["spans"][0];
+    let start = usize::try_from(span["byte_start"].as_u64().unwrap()).unwrap();
+    assert_eq!(&WRONG[start..start + 5], "other");
+    assert_eq!((&span["line_start"], &span["column_start"]), (&4.into(), &1.into()));
+}
+
+#[test]
+fn sources_are_files_folders_and_standard_input() {
+    let folder = Folder::with("sources", &[]);
+    std::fs::create_dir_all(folder.0.join("plc/inner")).unwrap();
+    folder.write("plc/main.st", "PROGRAM Main VAR a : INT; END_VAR a := Twice(a); END_PROGRAM");
+    folder
+        .write("plc/inner/twice.iecst", "FUNCTION Twice : INT VAR_INPUT x : INT; END_VAR Twice := 2 * x; END_FUNCTION");
+    folder.staunch("check plc").out(0);
+    folder.staunch("check plc/main.st").err(1);
+    folder.staunch("check plc/inner/twice.iecst plc/main.st").out(0);
+    folder.with_input("check -", COUNTER).out(0);
+    has(&folder.with_input("check -", WRONG).err(1), &["<stdin>:4:1"]);
+    folder.write("plc/other.TcPOU", "<TcPlcObject/>");
+    has(&folder.staunch("check plc").err(2), &["other.TcPOU", "TwinCAT"]);
+}
+
+#[test]
+fn lints_are_warned_of_denied_and_allowed() {
+    let folder = Folder::with("lints", &[("unused.st", "PROGRAM Main VAR a : INT; END_VAR ; END_PROGRAM")]);
+    has(&folder.staunch("check unused.st").err(0), &["warning[W0501]"]);
+    has(&folder.staunch("check unused.st -D W0501").err(1), &["error[W0501]"]);
+    has(&folder.staunch("check unused.st -D warnings").err(1), &["W0501"]);
+    assert_eq!(folder.staunch("check unused.st -A W0501 -q").err(0), "");
+    folder.staunch("check unused.st -A W9999").err(2);
+}
+
+#[test]
+fn a_dialect_is_a_flag_a_pragma_or_a_setting() {
+    let wide = "PROGRAM Main VAR c : CTU; w : WORD; END_VAR c(RESET := FALSE, PV := 1); w := c.CV; END_PROGRAM";
+    let folder = Folder::with("dialect", &[("wide.st", wide)]);
+    has(&folder.staunch("check wide.st").err(1), &["RESET"]);
+    folder.staunch("check wide.st --dialect codesys").out(0);
+    folder.write("pragma.st", format!("{{dialect 'codesys'}}\n{wide}"));
+    folder.staunch("check pragma.st").out(0);
+    folder.staunch("check pragma.st --dialect iec").out(0);
+    folder.write("staunch.toml", "dialect = \"codesys\"\nfiles = [\"wide.st\"]\n");
+    folder.staunch("check").out(0);
+    folder.staunch("check wide.st --dialect pascal").err(2);
+    folder.write("staunch.toml", "dialekt = \"codesys\"\n");
+    has(&folder.staunch("check wide.st").err(2), &["staunch.toml", "dialekt"]);
+}
+
+#[test]
+fn codes_are_explained() {
+    let folder = Folder::new("explain");
+    has(&folder.staunch("explain E0203").out(0), &["E0203"]);
+    folder.staunch("explain Z9").err(2);
+}
+
+#[test]
+fn a_new_project_builds_and_runs() {
+    let folder = Folder::new("new");
+    folder.staunch("new plant").out(0);
+    let inside = Folder(folder.0.join("plant"));
+    inside.staunch("check -D warnings").out(0);
+    inside.staunch("run").out(0);
+    folder.staunch("new plant").err(2);
+}

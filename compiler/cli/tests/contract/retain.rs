@@ -1,0 +1,66 @@
+//! Retained variables between processes.
+
+use super::{Folder, has};
+
+const PROGRAM: &str = "PROGRAM Main
+VAR_INPUT pulse : BOOL; END_VAR
+VAR RETAIN kept : INT; other : DINT := 4; END_VAR
+VAR c : CSCAPE.R_CTU; plain : INT; END_VAR
+c(CU := pulse, RESET := FALSE, PV := 100, RCV := kept);
+plain := plain + 1;
+other := other + 1;
+END_PROGRAM
+";
+
+const RUN: &str = "run main.st --stimulus in.csv --trace - --retain plant.retain --vars kept,other,c.CV,plain";
+
+fn folder(name: &str) -> Folder {
+    Folder::with(name, &[("main.st", PROGRAM), ("in.csv", "scan,pulse\n1,TRUE\n2,TRUE\n")])
+}
+
+#[test]
+fn they_live_from_process_to_process() {
+    let folder = folder("retain");
+    assert_eq!(folder.staunch(RUN).out(0), "scan,time_ms,kept,other,c.CV,plain\n1,0,1,5,1,1\n2,10,2,6,2,2\n");
+    assert_eq!(folder.staunch(RUN).out(0), "scan,time_ms,kept,other,c.CV,plain\n1,0,3,7,3,1\n2,10,4,8,4,2\n");
+    let interpreted = folder.staunch(&format!("{RUN} --backend interpret")).out(0);
+    assert_eq!(interpreted, "scan,time_ms,kept,other,c.CV,plain\n1,0,5,9,5,1\n2,10,6,10,6,2\n");
+}
+
+#[test]
+fn an_edited_program_takes_what_still_fits() {
+    let folder = folder("edited");
+    folder.staunch(RUN).out(0);
+    folder.write("main.st", PROGRAM.replace("other : DINT := 4", "more : INT; other : LINT := 4"));
+    let ran = folder.staunch(RUN);
+    has(&ran.err, &["other"]);
+    assert_eq!(ran.out(0), "scan,time_ms,kept,other,c.CV,plain\n1,0,3,5,3,1\n2,10,4,6,4,2\n");
+}
+
+#[test]
+fn a_damaged_file_is_refused_and_kept() {
+    let folder = folder("damaged");
+    folder.staunch(RUN).out(0);
+    let whole = std::fs::read(folder.0.join("plant.retain")).unwrap();
+    for cut in [0, 1, whole.len() / 2, whole.len() - 1] {
+        folder.write("plant.retain", &whole[..cut]);
+        has(&folder.staunch(RUN).err(2), &["plant.retain"]);
+        assert_eq!(std::fs::read(folder.0.join("plant.retain")).unwrap(), &whole[..cut]);
+    }
+    for flipped in 0..whole.len() {
+        let mut bytes = whole.clone();
+        bytes[flipped] ^= 0x10;
+        folder.write("plant.retain", &bytes);
+        if flipped % 7 == 0 {
+            folder.staunch(RUN).err(2);
+        }
+    }
+}
+
+#[test]
+fn a_file_of_another_program_is_refused() {
+    let folder = folder("another");
+    folder.staunch(RUN).out(0);
+    folder.write("main.st", PROGRAM.replace("Main", "Other"));
+    has(&folder.staunch(RUN).err(2), &["plant.retain", "Main"]);
+}

@@ -1,0 +1,118 @@
+//! Runs: traces, names, faults, the clock.
+
+use super::{COUNTER, Folder, has};
+
+const TYPES: &str = "TYPE
+    Color : (Red, Green := 5, Blue);
+    Point : STRUCT x, y : INT; END_STRUCT;
+END_TYPE
+VAR_GLOBAL total : DINT := 7; END_VAR
+PROGRAM Main
+VAR_INPUT Start : BOOL; END_VAR
+VAR_OUTPUT Done : BOOL; END_VAR
+VAR
+    c : CTU;
+    p : Point := (x := -1);
+    a : ARRAY[1..2] OF INT := [3, 4];
+    m : ARRAY[1..2, 0..1] OF BYTE;
+    r : REAL := 0.1;
+    l : ARRAY[0..3] OF LREAL := [1.0, 1.0E21, 0.1, 1.0E-7];
+    t : TIME := T#1s500ms;
+    Hue : Color := Green;
+    s : STRING[8] := 'a,\"b$'';
+    w : LWORD := 16#FFFF_FFFF_FFFF_FFFF;
+END_VAR
+c(CU := Start, R := FALSE, PV := 2);
+Done := c.Q;
+END_PROGRAM
+";
+
+#[test]
+fn a_trace_has_every_variable_in_order_and_spelling() {
+    let folder = Folder::with("trace", &[("types.st", TYPES)]);
+    assert_eq!(
+        folder.staunch("run types.st --scans 1 --trace - -q -A warnings").out(0),
+        "scan,time_ms,Start,Done,c.CU,c.R,c.PV,c.Q,c.CV,p.x,p.y,a[1],a[2],\"m[1,0]\",\"m[1,1]\",\"m[2,0]\",\"m[2,1]\",\
+         r,l[0],l[1],l[2],l[3],t,Hue,s,w\n\
+         1,0,FALSE,FALSE,FALSE,FALSE,2,FALSE,0,-1,0,3,4,0,0,0,0,0.1,1.0,1e21,0.1,1e-7,T#1s500ms,Green,\"a,\"\"b'\",\
+         18446744073709551615\n"
+    );
+    folder.staunch("run types.st --scans 1 --trace out.csv -q").out(0);
+    assert_eq!(folder.read("out.csv"), folder.staunch("run types.st --scans 1 --trace - -q").out(0));
+}
+
+#[test]
+fn names_are_paths_in_any_case() {
+    let folder = Folder::with("names", &[("types.st", TYPES)]);
+    assert_eq!(
+        folder
+            .staunch("run types.st --scans 0 --trace - -q --vars start,A[1],m[1,0],Main.C.cv,c.CU_BEFORE,total,Hue")
+            .out(0),
+        "scan,time_ms,start,A[1],\"m[1,0]\",Main.C.cv,c.CU_BEFORE,total,Hue\n0,0,FALSE,3,0,0,FALSE,7,Green\n"
+    );
+    has(&folder.staunch("run types.st --vars c.CW --trace -").err(2), &["CW", "CU"]);
+}
+
+#[test]
+fn every_back_end_gives_the_same_trace() {
+    let folder = Folder::with("backends", &[("main.st", COUNTER), ("in.csv", "scan,pulse\n1,TRUE\n2,FALSE\n3,TRUE\n")]);
+    let trace =
+        |backend| folder.staunch(&format!("run main.st --stimulus in.csv --trace - --backend {backend}")).out(0);
+    let native = trace("native");
+    assert!(native.ends_with("3,20,TRUE,FALSE,TRUE,TRUE,FALSE,2,TRUE,2\n"), "{native}");
+    assert_eq!(native, trace("interpret"));
+    assert_eq!(native, trace("rust"));
+}
+
+#[test]
+fn a_fault_ends_the_run_after_the_rows_before_it() {
+    let divides = "PROGRAM Main\nVAR_INPUT d : INT := 1; END_VAR\nVAR q : INT; END_VAR\nq := 6 / d;\nEND_PROGRAM\n";
+    let folder = Folder::with("fault", &[("main.st", divides), ("in.csv", "scan,d\n2,2\n3,0\n9,1\n")]);
+    for backend in ["native", "interpret"] {
+        let ran = folder.staunch(&format!("run main.st --stimulus in.csv --trace - --backend {backend}"));
+        has(&ran.err, &["division by zero", "main.st:4:", "scan 3"]);
+        assert_eq!(ran.out(3), "scan,time_ms,d,q\n1,0,1,6\n2,10,2,3\n");
+    }
+}
+
+#[test]
+fn the_clock_moves_by_the_cycle() {
+    let timer = "PROGRAM Main\nVAR t : TON; END_VAR\nt(IN := TRUE, PT := T#50ms);\nEND_PROGRAM\n";
+    let folder = Folder::with("clock", &[("main.st", timer)]);
+    assert_eq!(
+        folder.staunch("run main.st --scans 3 --cycle 25ms --trace - --vars t.ET,t.Q").out(0),
+        "scan,time_ms,t.ET,t.Q\n1,0,T#0s,FALSE\n2,25,T#25ms,FALSE\n3,50,T#50ms,TRUE\n"
+    );
+    let task = format!(
+        "{timer}CONFIGURATION C RESOURCE R ON PLC TASK T(INTERVAL := T#20ms, PRIORITY := 1); \
+         PROGRAM P WITH T : Main; END_RESOURCE END_CONFIGURATION"
+    );
+    folder.write("task.st", task);
+    let out = folder.staunch("run task.st --scans 2 --trace - --vars t.ET").out(0);
+    assert_eq!(out, "scan,time_ms,t.ET\n1,0,T#0s\n2,20,T#20ms\n");
+}
+
+#[test]
+fn traces_are_waves_and_diagrams_too() {
+    let folder = Folder::with("waves", &[("main.st", COUNTER)]);
+    folder.staunch("run main.st --scans 3 --trace out.vcd").out(0);
+    has(&folder.read("out.vcd"), &["$timescale", "$enddefinitions", "pulse", "$dumpvars"]);
+    folder.staunch("run main.st --scans 3 --trace out.svg").out(0);
+    has(&folder.read("out.svg"), &["<svg", "pulse", "</svg>"]);
+}
+
+#[test]
+fn without_a_trace_there_is_a_table() {
+    let folder = Folder::with("table", &[("main.st", COUNTER)]);
+    has(&folder.staunch("run main.st --scans 5").out(0), &["parts.CV", "5  40ms"]);
+}
+
+#[test]
+fn bench_reports_one_object() {
+    let folder = Folder::with("bench", &[("main.st", COUNTER)]);
+    let out = folder.staunch("bench main.st --scans 2000 --message-format json").out(0);
+    let report: serde_json::Value = serde_json::from_str(out.trim()).unwrap();
+    for key in ["scans", "ns_min", "ns_median", "ns_p99", "text_bytes", "state_bytes", "compile_ms"] {
+        assert!(report[key].is_number(), "{key} in {report}");
+    }
+}

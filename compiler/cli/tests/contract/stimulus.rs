@@ -1,0 +1,76 @@
+//! The stimulus: how rows reach the program, and what is wrong with some.
+
+use super::{Folder, has};
+
+const PROGRAM: &str = "VAR_GLOBAL total : DINT; END_VAR
+PROGRAM Main
+VAR_INPUT a : INT; on : BOOL; span : TIME; END_VAR
+VAR input AT %IW1 : INT; bit AT %IX0.3 : BOOL; list : ARRAY[1..2] OF INT; n : INT; END_VAR
+n := n + 1;
+END_PROGRAM
+";
+
+fn trace(name: &str, stimulus: &str, rest: &str) -> String {
+    let folder = Folder::with(name, &[("main.st", PROGRAM), ("in.csv", stimulus)]);
+    folder.staunch(&format!("run main.st --stimulus in.csv --trace - -q -A warnings {rest}")).out(0)
+}
+
+#[test]
+fn rows_are_written_before_their_scan_and_hold() {
+    assert_eq!(
+        trace(
+            "holds",
+            "scan,a,Main.on,%IW1,%IX0.3,list[2],total\n2,-5,TRUE,7,TRUE,9,\n4,,FALSE,,,,12\n",
+            "--scans 5 --vars a,on,input,bit,list[2],total"
+        ),
+        "scan,time_ms,a,on,input,bit,list[2],total\n\
+         1,0,0,FALSE,0,FALSE,0,0\n\
+         2,10,-5,TRUE,7,TRUE,9,0\n\
+         3,20,-5,TRUE,7,TRUE,9,0\n\
+         4,30,-5,FALSE,7,TRUE,9,12\n\
+         5,40,-5,FALSE,7,TRUE,9,12\n"
+    );
+}
+
+#[test]
+fn times_and_scans_place_rows() {
+    assert_eq!(
+        trace("times", "time,a\nT#0s,1\nT#25ms,2\n", "--vars a"),
+        "scan,time_ms,a\n1,0,1\n2,10,1\n3,20,1\n4,30,2\n"
+    );
+    assert_eq!(
+        trace("both", "scan,time,a\n1,T#0s,1\n3,T#1s,2\n", "--scans 4 --vars a"),
+        "scan,time_ms,a\n1,0,1\n2,10,1\n3,1000,2\n4,1010,2\n"
+    );
+}
+
+#[test]
+fn events_restart_the_program() {
+    assert_eq!(
+        trace("events", "scan,@event,a\n1,,3\n3,restart,\n4,run,\n", "--vars n,a"),
+        "scan,time_ms,n,a\n1,0,1,3\n2,10,2,3\n3,20,1,3\n4,30,1,3\n"
+    );
+}
+
+#[test]
+fn what_is_wrong_is_named_with_its_place() {
+    for (number, (stimulus, place, word)) in [
+        ("scan,b\n1,1\n", "in.csv:1:6", "`b`"),
+        ("scan,a\n1,1\n2,70000\n", "in.csv:3:3", "70000"),
+        ("scan,a\n1,x\n", "in.csv:2:3", "`x`"),
+        ("scan,a\n2,1\n1,1\n", "in.csv:3:1", "1"),
+        ("scan,a\n0,1\n", "in.csv:2:1", "from 1"),
+        ("scan,a\n1,1,2\n", "in.csv:2", "2"),
+        ("scan,@event\n1,stop\n", "in.csv:2:3", "stop"),
+        ("a\n1\n", "in.csv:1:1", "scan"),
+        ("", "in.csv:1:1", "scan"),
+        ("scan,span\n1,5\n", "in.csv:2:3", "5"),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let folder = Folder::with(&format!("wrong{number}"), &[("main.st", PROGRAM), ("in.csv", stimulus)]);
+        let err = folder.staunch("run main.st --stimulus in.csv --trace - -A warnings").err(2);
+        has(&err, &[place, word]);
+    }
+}
