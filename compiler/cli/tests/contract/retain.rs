@@ -47,13 +47,11 @@ fn a_damaged_file_is_refused_and_kept() {
         has(&folder.staunch(RUN).err(2), &["plant.retain"]);
         assert_eq!(std::fs::read(folder.0.join("plant.retain")).unwrap(), &whole[..cut]);
     }
-    for flipped in 0..whole.len() {
+    for flipped in (0..whole.len()).step_by(7) {
         let mut bytes = whole.clone();
         bytes[flipped] ^= 0x10;
         folder.write("plant.retain", &bytes);
-        if flipped % 7 == 0 {
-            folder.staunch(RUN).err(2);
-        }
+        folder.staunch(RUN).err(2);
     }
 }
 
