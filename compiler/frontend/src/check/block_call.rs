@@ -35,16 +35,14 @@ impl<'s> Checker<'_, 's> {
 
     /// A counter or timer that is called twice in a scan sees two edges, or none.
     fn note_called(&mut self, place: &Place, span: Span) {
-        if let Some((_, first)) = self.called.iter().find(|(it, _)| super::place::same_place(it, place)) {
+        if let Some(first) = self.called.note(place, span) {
             let text = self.decl.sources.text(span).to_owned();
             let error = Diagnostic::new(Code::W0507, span, format!("`{text}` is called twice in a scan"))
                 .label("called again here")
-                .other(*first, "first called here")
+                .other(first, "first called here")
                 .help("declare a second instance, or call it once and use its outputs");
             self.report(error);
-            return;
         }
-        self.called.push((place.clone(), span));
     }
 
     fn callable(&mut self, found: &Found<'s>, span: Span) -> Option<()> {

@@ -44,13 +44,13 @@ impl<'s> Checker<'_, 's> {
             };
             let before = self.called.len();
             let body = self.block_of(&arm.body);
-            called.append(&mut self.leave_branch(before, &arm.body));
+            called.extend(self.leave_branch(before, &arm.body));
             if !labels.is_empty() {
                 built.push(Arm { labels, body });
             }
         }
         let otherwise = otherwise.map(|it| self.block_of(it)).unwrap_or_default();
-        self.called.append(&mut called);
+        self.called.append(called);
         self.push(StatementKind::Case { selector: value?, arms: built, otherwise }, span);
         Some(())
     }

@@ -4,10 +4,12 @@
 use super::Checker;
 use super::unknown::other_dialects_pin;
 use crate::dialect::family_name;
+use crate::key::Key;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ArgumentKind, BinaryOp, ExprKind as Ast, LiteralValue, StatementKind};
 use staunch_ir::{BlockId, Elementary, Expr, Op, Type, Value};
 use staunch_runtime::{Direction, Family};
+use std::collections::{HashMap, HashSet};
 
 /// A call of a counter that is a variable of its own.
 struct CounterCall<'a, 's> {
@@ -54,6 +56,14 @@ pub(super) fn only_resets(arguments: &[ast::Argument<'_>]) -> bool {
         ArgumentKind::Positional(_) | ArgumentKind::Output { .. } => false,
     };
     !arguments.is_empty() && arguments.iter().all(resets)
+}
+
+/// Whether the type is a counter with a count to read.
+fn counts(ty: Type) -> bool {
+    match ty {
+        Type::Block(block) => block.info().pin("CV").is_some_and(|it| it.direction == Direction::Output),
+        Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) => false,
+    }
 }
 
 /// This block's name for a pin.
@@ -119,6 +129,9 @@ impl<'s> Checker<'_, 's> {
 
     /// Traps 2 and 12, which show in how a POU uses its counters.
     pub(super) fn migration_lints(&mut self, pou: &ast::Pou<'s>) {
+        if !self.scope.variables.iter().any(|it| counts(it.place.ty)) {
+            return;
+        }
         let mut calls = Vec::new();
         let mut comparisons = Vec::new();
         ast::each_expr(&pou.body, &mut |expr| match &expr.kind {
@@ -127,11 +140,20 @@ impl<'s> Checker<'_, 's> {
             Ast::Binary(left, BinaryOp::Lt, span, right) => comparisons.push((&**right, &**left, *span)),
             _ => {}
         });
-        for (count, limit, span) in comparisons {
-            self.beyond_preset(&calls, count, limit, span);
-        }
+        let mut calls_of: HashMap<_, Vec<_>> = HashMap::new();
         for call in &calls {
-            self.reset_by_itself(call, &pou.body);
+            calls_of.entry(Key(call.name)).or_default().push(call);
+        }
+        for (count, limit, span) in comparisons {
+            let Some(counter) = member_of(count, "CV") else { continue };
+            if let Some(calls) = calls_of.get(&Key(counter.text)) {
+                self.beyond_preset(calls, counter, limit, span);
+            }
+        }
+        let mut read = HashSet::new();
+        note_members_read(&pou.body, &mut read);
+        for call in &calls {
+            self.reset_by_itself(call, &read);
         }
     }
 
@@ -142,27 +164,22 @@ impl<'s> Checker<'_, 's> {
     ) -> Option<CounterCall<'a, 's>> {
         let Ast::Name(name) = callee.kind else { return None };
         let Type::Block(block) = self.scope.get(name.text)?.place.ty else { return None };
-        let info = block.info();
-        let counts = info.pin("CV").is_some_and(|it| it.direction == Direction::Output);
-        counts.then_some(CounterCall { name: name.text, span: callee.span, block, arguments })
+        counts(Type::Block(block)).then_some(CounterCall { name: name.text, span: callee.span, block, arguments })
     }
 
-    /// `c.CV > PV`, where `c` stops at PV.
+    /// `c.CV > PV`, where `c` stops at PV; `calls` are those of `c`.
     fn beyond_preset(
         &mut self,
-        calls: &[CounterCall<'_, 's>],
-        count: &ast::Expr<'s>,
+        calls: &[&CounterCall<'_, 's>],
+        counter: ast::Name<'s>,
         limit: &ast::Expr<'s>,
         span: Span,
     ) {
-        let Some(counter) = member_of(count, "CV") else { return };
-        let of = |it: &&CounterCall<'_, '_>| it.name.eq_ignore_ascii_case(counter.text);
         let stops = |it: &CounterCall<'_, '_>| {
             let info = it.block.info();
             info.family == Family::Cscape && info.pin("CU").is_some() || info.name.ends_with("CTU_STOP_AT_PV")
         };
-        let mut calls = calls.iter().filter(of).peekable();
-        if calls.peek().is_none_or(|it| !stops(it)) {
+        if calls.first().is_none_or(|it| !stops(it)) {
             return;
         }
         let own = member_of(limit, "PV").is_some_and(|it| it.text.eq_ignore_ascii_case(counter.text));
@@ -171,7 +188,7 @@ impl<'s> Checker<'_, 's> {
             (Some(preset), Some(limit)) => preset <= limit,
             _ => text(given) == text(limit),
         };
-        if own || calls.all(|it| it.input("PV").is_some_and(|(given, _)| at_most(given))) {
+        if own || calls.iter().all(|it| it.input("PV").is_some_and(|(given, _)| at_most(given))) {
             self.report(
                 Diagnostic::new(Code::W0602, span, format!("`{}.CV` does not pass its preset", counter.text))
                     .label("the counter stops at PV, so this never holds")
@@ -182,7 +199,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// `c(R := done); done := c.Q;`
-    fn reset_by_itself(&mut self, call: &CounterCall<'_, 's>, body: &[ast::Statement<'s>]) {
+    fn reset_by_itself(&mut self, call: &CounterCall<'_, 's>, read: &MembersRead<'s>) {
         let family = call.block.info().family;
         if !matches!(family, Family::Iec | Family::Codesys) {
             return;
@@ -198,8 +215,10 @@ impl<'s> Checker<'_, 's> {
                 let mut targets = outputs.iter().filter_map(|it| call.output(it));
                 targets.any(|it| matches!(&it.kind, Ast::Name(it) if it.text.eq_ignore_ascii_case(name.text)))
             };
+            let reads_output =
+                |name: ast::Name<'s>| outputs.iter().any(|it| read.contains(&[name.text, call.name, it].map(Key)));
             let own = match &bare(given).kind {
-                Ast::Name(name) => set_by_call(*name) || assigned(body, name.text, &mut |value| is_output(bare(value))),
+                Ast::Name(name) => set_by_call(*name) || reads_output(*name),
                 _ => is_output(bare(given)),
             };
             if own {
@@ -246,29 +265,43 @@ fn number(expr: &ast::Expr<'_>) -> Option<u64> {
     }
 }
 
-/// Whether the statements assign to `name` a value that `wanted` accepts.
-fn assigned<'s>(body: &[ast::Statement<'s>], name: &str, wanted: &mut dyn FnMut(&ast::Expr<'s>) -> bool) -> bool {
-    body.iter().any(|statement| match &statement.kind {
-        StatementKind::Assign { target, value } => {
-            matches!(&target.kind, Ast::Name(it) if it.text.eq_ignore_ascii_case(name)) && wanted(value)
+/// Each `a := b.c` of a body, as these three names: a body may have thousands of them and of counters.
+type MembersRead<'s> = HashSet<[Key<'s>; 3]>;
+
+fn note_members_read<'s>(body: &[ast::Statement<'s>], read: &mut MembersRead<'s>) {
+    for statement in body {
+        match &statement.kind {
+            StatementKind::Assign { target, value } => read.extend(member_read(target, value)),
+            StatementKind::If { branches, otherwise } => {
+                branches.iter().for_each(|(_, body)| note_members_read(body, read));
+                note_members_read(otherwise.as_deref().unwrap_or_default(), read);
+            }
+            StatementKind::Case { arms, otherwise, .. } => {
+                arms.iter().for_each(|it| note_members_read(&it.body, read));
+                note_members_read(otherwise.as_deref().unwrap_or_default(), read);
+            }
+            StatementKind::For { body, .. }
+            | StatementKind::While { body, .. }
+            | StatementKind::Repeat { body, .. } => {
+                note_members_read(body, read);
+            }
+            StatementKind::Empty
+            | StatementKind::SetReset { .. }
+            | StatementKind::Expr(_)
+            | StatementKind::Exit
+            | StatementKind::Continue
+            | StatementKind::Return
+            | StatementKind::Error => {}
         }
-        StatementKind::If { branches, otherwise } => {
-            branches.iter().any(|(_, body)| assigned(body, name, wanted))
-                || otherwise.as_ref().is_some_and(|it| assigned(it, name, wanted))
-        }
-        StatementKind::Case { arms, otherwise, .. } => {
-            arms.iter().any(|it| assigned(&it.body, name, wanted))
-                || otherwise.as_ref().is_some_and(|it| assigned(it, name, wanted))
-        }
-        StatementKind::For { body, .. } | StatementKind::While { body, .. } | StatementKind::Repeat { body, .. } => {
-            assigned(body, name, wanted)
-        }
-        StatementKind::Empty
-        | StatementKind::SetReset { .. }
-        | StatementKind::Expr(_)
-        | StatementKind::Exit
-        | StatementKind::Continue
-        | StatementKind::Return
-        | StatementKind::Error => false,
-    })
+    }
+}
+
+fn member_read<'s>(target: &ast::Expr<'s>, value: &ast::Expr<'s>) -> Option<[Key<'s>; 3]> {
+    match (&target.kind, &bare(value).kind) {
+        (Ast::Name(target), Ast::Member(base, member)) => match &base.kind {
+            Ast::Name(owner) => Some([target.text, owner.text, member.text].map(Key)),
+            _ => None,
+        },
+        _ => None,
+    }
 }

@@ -2,6 +2,7 @@
 
 mod block_call;
 mod call;
+mod called;
 mod case;
 mod chain;
 mod coerce;
@@ -44,7 +45,7 @@ pub(crate) struct Checker<'d, 's> {
     uses: Uses,
     context: Context,
     /// Instances called so far on the way to this statement.
-    called: Vec<(Place, Span)>,
+    called: called::Called,
     /// What is copied back behind the call that is being made.
     copies_back: Block,
 }
@@ -77,7 +78,7 @@ fn body(decl: &mut Declarations<'_>, at: usize) -> Option<(Pou, Uses)> {
         loops: 0,
         uses: Uses::default(),
         context: Context::Body,
-        called: Vec::new(),
+        called: called::Called::default(),
         copies_back: Block::new(),
         decl,
     };
@@ -139,7 +140,7 @@ pub(crate) fn constant<'s>(
         counters: Vec::new(),
         loops: 0,
         uses: Uses::default(),
-        called: Vec::new(),
+        called: called::Called::default(),
         copies_back: Block::new(),
         context: if target.is_some() { Context::Initial } else { Context::Constant },
     };

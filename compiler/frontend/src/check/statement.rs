@@ -1,4 +1,5 @@
 use super::Checker;
+use super::called::Instance;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, StatementKind as Ast_};
 use staunch_ir::{Block, Conversion, Elementary, Expr, Op, Place, StatementKind, Type, Value};
@@ -205,7 +206,7 @@ impl<'s> Checker<'_, 's> {
 
     /// What a branch called, taken away so that the next branch, which excludes it, may call it
     /// too; nothing where the branch does not come back.
-    pub(super) fn leave_branch(&mut self, before: usize, body: &[ast::Statement<'s>]) -> Vec<(Place, Span)> {
+    pub(super) fn leave_branch(&mut self, before: usize, body: &[ast::Statement<'s>]) -> Vec<(Instance, Span)> {
         let called = self.called.split_off(before);
         let leaves = |it: &ast::Statement<'s>| matches!(it.kind, Ast_::Exit | Ast_::Continue | Ast_::Return);
         if body.last().is_some_and(leaves) { Vec::new() } else { called }
@@ -226,10 +227,10 @@ impl<'s> Checker<'_, 's> {
         let value = self.condition(condition);
         let before = self.called.len();
         let then = self.block_of(body);
-        let mut called = self.leave_branch(before, body);
+        let called = self.leave_branch(before, body);
         // An ELSIF's condition, with the calls in it, is evaluated only when the ones before fail.
         let otherwise = self.nested(|this| this.branches(rest, otherwise));
-        self.called.append(&mut called);
+        self.called.append(called);
         if let Some(condition) = value {
             self.push(StatementKind::If { condition, then, otherwise }, at);
         }
