@@ -73,7 +73,7 @@ fn dispatch(cli: Cli) -> u8 {
     let result = match &cli.command {
         Command::Explain(it) => explain::explain(it),
         Command::New(it) => new::new(it, &cli.common),
-        Command::Check(it) => Session::start(&cli.common, it).map(|session| session.check()),
+        Command::Check(it) => Session::check(&cli.common, it),
         Command::Build(it) => Session::start(&cli.common, &it.files).and_then(|session| build::build(&session, it)),
         Command::Run(it) => Session::start(&cli.common, &it.files).and_then(|session| run::run(&session, it)),
         Command::Compare(it) => compare::compare(&cli.common, it),

@@ -24,8 +24,31 @@ pub struct Session {
 }
 
 impl Session {
-    /// Reads and checks the sources, and prints what there is to say about them.
+    /// Reads and compiles the sources, and prints what there is to say about them.
     pub fn start(common: &Common, files: &Files) -> Result<Self, String> {
+        Self::begin(common, files, staunch_frontend::compile).map(|(session, _)| session)
+    }
+
+    /// As [`start`](Self::start), but without a program at the end: the verdict alone.
+    pub fn check(common: &Common, files: &Files) -> Result<u8, String> {
+        let check = |sources: &_, options: &_| {
+            let diagnostics = staunch_frontend::check(sources, options);
+            Compilation { program: None, diagnostics }
+        };
+        let (session, errors) = Self::begin(common, files, check)?;
+        if errors > 0 {
+            return Ok(REJECTED);
+        }
+        session.say("Checked", &session.first);
+        Ok(0)
+    }
+
+    /// With the number of errors.
+    fn begin(
+        common: &Common,
+        files: &Files,
+        compile: impl FnOnce(&Sources, &Options) -> Compilation,
+    ) -> Result<(Self, usize), String> {
         let near = files.files.first().filter(|it| it.as_path() != Path::new("-"));
         let folder = near.map_or(Path::new("."), |it| if it.is_dir() { it } else { parent(it) });
         let project = project::find(folder)?.unwrap_or_default();
@@ -40,14 +63,14 @@ impl Session {
         let levels = Levels::new(common, &project)?;
         let sources = input::read(&named)?;
         let start = Instant::now();
-        let compilation = staunch_frontend::compile(&sources, &options(common, &project)?);
+        let compilation = compile(&sources, &options(common, &project)?);
         let compile_time = start.elapsed();
         let first = PathBuf::from(&sources.files()[0].path);
         let diagnostics = Vec::new();
         let common = common.clone();
         let mut session = Self { common, project, first, sources, program: None, diagnostics, compile_time };
-        session.accept(compilation, &levels, &[])?;
-        Ok(session)
+        let errors = session.accept(compilation, &levels, &[])?;
+        Ok((session, errors))
     }
 
     /// The same program, or `sources` in its place, as it moves to another dialect. What has been
@@ -72,8 +95,8 @@ impl Session {
         Ok(session)
     }
 
-    /// Prints what is not `known`.
-    fn accept(&mut self, compilation: Compilation, levels: &Levels, known: &[Diagnostic]) -> Result<(), String> {
+    /// Prints what is not `known`, and counts the errors.
+    fn accept(&mut self, compilation: Compilation, levels: &Levels, known: &[Diagnostic]) -> Result<usize, String> {
         let diagnostics: Vec<_> = compilation.diagnostics.into_iter().filter_map(|it| levels.apply(it)).collect();
         let is_error = |it: &Diagnostic| it.severity == Severity::Error;
         let is_new =
@@ -83,7 +106,7 @@ impl Session {
         self.print(&new, errors)?;
         self.program = compilation.program.filter(|_| errors == 0);
         self.diagnostics = diagnostics;
-        Ok(())
+        Ok(errors)
     }
 
     fn print(&self, diagnostics: &[Diagnostic], errors: usize) -> Result<(), String> {
@@ -121,15 +144,6 @@ impl Session {
                 wanted && std::io::stderr().is_terminal()
             }
         }
-    }
-
-    /// The verdict of `check`.
-    pub fn check(&self) -> u8 {
-        if self.program.is_none() {
-            return REJECTED;
-        }
-        self.say("Checked", &self.first);
-        0
     }
 
     /// The program, or `None` when it was rejected, which has been said.

@@ -24,6 +24,16 @@ pub struct File<'s> {
     pub pragmas: Vec<Name<'s>>,
 }
 
+impl<'s> File<'s> {
+    /// Takes out the bodies of the POUs, in order: each can be let go when it has been checked.
+    pub(crate) fn take_bodies(&mut self) -> impl Iterator<Item = Vec<Statement<'s>>> {
+        self.items.iter_mut().filter_map(|it| match it {
+            Item::Pou(pou) => Some(std::mem::take(&mut pou.body)),
+            Item::Types(_) | Item::Globals(_) | Item::Configuration(_) => None,
+        })
+    }
+}
+
 #[derive(Clone, Debug)]
 pub enum Item<'s> {
     Pou(Pou<'s>),
@@ -365,7 +375,7 @@ impl BinaryOp {
 /// A literal: its value, and the type a prefix gave it (`INT#5`, `Color#Red`).
 #[derive(Clone, Debug)]
 pub struct Literal<'s> {
-    pub prefix: Option<Name<'s>>,
+    pub prefix: Option<Box<Name<'s>>>,
     pub value: LiteralValue<'s>,
 }
 
@@ -379,7 +389,7 @@ pub enum LiteralValue<'s> {
         based: bool,
     },
     /// The digits as spelled, without `_`: they are read at the width their place asks for.
-    Real(String),
+    Real(Box<str>),
     /// Signed nanoseconds, of `T#…` (`long: false`) or `LTIME#…`.
     Time {
         nanoseconds: i64,
@@ -387,11 +397,11 @@ pub enum LiteralValue<'s> {
     },
     /// The bytes of `'…'`, escapes resolved, or the UTF-16 units of `"…"` as UTF-8 text.
     String {
-        bytes: Vec<u8>,
+        bytes: Box<[u8]>,
         wide: bool,
     },
     /// After `Color#`.
-    Enumerator(Name<'s>),
+    Enumerator(Box<Name<'s>>),
     /// D#, TOD#, DT# and their L forms: refused by name for now.
     Date(&'static str),
 }

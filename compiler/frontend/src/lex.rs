@@ -34,8 +34,8 @@ pub struct Tokens<'s> {
 
 /// Reads a text of at most `u32::MAX` bytes.
 pub fn lex(file: u16, text: &str) -> Tokens<'_> {
-    // Real programs have a token for each ten bytes or more.
-    let guess = text.len() / 10 + 16;
+    // Real programs have a token for each five bytes or so.
+    let guess = text.len() / 4 + 16;
     let tokens = Tokens { kinds: Vec::with_capacity(guess), places: Vec::with_capacity(guess), ..Tokens::default() };
     let mut reading = Reading { file, text, tokens };
     for (kind, range) in Kind::lexer(text).spanned() {

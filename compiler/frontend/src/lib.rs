@@ -49,14 +49,33 @@ impl Compilation {
 
 /// Checks the sources as one program; the order of files does not matter.
 pub fn compile(sources: &Sources, options: &Options) -> Compilation {
+    run(sources, options, Bodies::Kept)
+}
+
+/// What [`compile`] has to say, in less memory: each body is let go when it has been checked.
+pub fn check(sources: &Sources, options: &Options) -> Vec<Diagnostic> {
+    // A debug build verifies what was made.
+    let bodies = if cfg!(debug_assertions) { Bodies::Kept } else { Bodies::Dropped };
+    run(sources, options, bodies).diagnostics
+}
+
+/// Whether the program that is made has the bodies of its POUs, or the calls in them alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Bodies {
+    Kept,
+    Dropped,
+}
+
+fn run(sources: &Sources, options: &Options, bodies: Bodies) -> Compilation {
     let mut diagnostics = Vec::new();
-    let files: Vec<_> = sources
+    let mut files: Vec<_> = sources
         .files()
         .iter()
         .zip(0u16..)
         .map(|(source, number)| parse(number, &source.text, &mut diagnostics))
         .collect();
-    let program = declare::declare(sources, &files, options, &mut diagnostics);
+    let statements = files.iter_mut().flat_map(ast::File::take_bodies).collect();
+    let program = declare::declare(sources, &files, statements, options, bodies, &mut diagnostics);
     diagnostics.sort_by_key(|it| (it.span.file, it.span.start, it.span.end, it.code));
     let rejected = diagnostics.iter().any(|it| it.severity == Severity::Error);
     let program = program.filter(|_| !rejected);

@@ -26,6 +26,8 @@ pub struct Source {
     pub text: String,
     /// Byte offset at which each line starts.
     lines: Vec<u32>,
+    /// Whether each character is one byte.
+    ascii: bool,
 }
 
 /// All files of one compilation; `Span::file` counts them.
@@ -36,10 +38,11 @@ pub struct Sources {
 
 impl Source {
     pub fn new(path: impl Into<String>, text: String) -> Self {
-        let starts = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
+        let starts = text.match_indices('\n');
         let lines =
             core::iter::once(0).chain(starts.map(|(at, _)| u32::try_from(at + 1).unwrap_or(u32::MAX))).collect();
-        Self { path: path.into(), text, lines }
+        let ascii = text.is_ascii();
+        Self { path: path.into(), text, lines, ascii }
     }
 
     /// UTF-8, with or without a byte order mark; any other text is read as Windows-1252.
@@ -69,6 +72,15 @@ impl Source {
         let start = self.lines.get(at).copied().unwrap_or(0);
         let end = self.lines.get(at + 1).copied();
         (start, end.unwrap_or_else(|| u32::try_from(self.text.len() + 1).unwrap_or(u32::MAX)))
+    }
+
+    pub fn is_ascii(&self) -> bool {
+        self.ascii
+    }
+
+    /// The 1-based line of a byte.
+    pub fn line(&self, offset: u32) -> u32 {
+        u32::try_from(self.lines.partition_point(|start| *start <= offset).max(1)).unwrap_or(u32::MAX)
     }
 
     /// 1-based line, and 1-based column in characters.

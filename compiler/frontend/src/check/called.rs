@@ -1,8 +1,8 @@
 //! The instances that were called on the way to a statement.
 
 use crate::Span;
+use rustc_hash::FxHashMap;
 use staunch_ir::{FieldId, Place, Projection, Root};
-use std::collections::HashMap;
 
 /// An instance that no index decides.
 pub(super) type Instance = (Root, Vec<FieldId>);
@@ -11,7 +11,7 @@ pub(super) type Instance = (Root, Vec<FieldId>);
 #[derive(Debug, Default)]
 pub(super) struct Called {
     order: Vec<Instance>,
-    first: HashMap<Instance, Span>,
+    first: FxHashMap<Instance, Span>,
 }
 
 impl Called {

@@ -64,7 +64,7 @@ impl<'s> Checker<'_, 's> {
                 return None;
             }
             let at = self.at(name.span);
-            return Some(Expr::load(variable.place, at));
+            return Some(Expr::load(variable.place.clone(), at));
         }
         if let Some(value) = self.bare_enumerator(name, expected) {
             return value;

@@ -8,8 +8,8 @@ use staunch_ir::{Elementary, Expr, ExprKind, Type, Value};
 impl<'s> Checker<'_, 's> {
     pub(super) fn literal(&mut self, literal: &ast::Literal<'s>, span: Span) -> Option<Operand> {
         match (&literal.prefix, &literal.value) {
-            (Some(prefix), LiteralValue::Enumerator(name)) => self.enumerator(*prefix, *name).map(Operand::Typed),
-            (Some(prefix), value) => self.typed_literal(*prefix, value, span).map(Operand::Typed),
+            (Some(prefix), LiteralValue::Enumerator(name)) => self.enumerator(**prefix, **name).map(Operand::Typed),
+            (Some(prefix), value) => self.typed_literal(**prefix, value, span).map(Operand::Typed),
             (None, value) => self.plain_literal(value, span),
         }
     }
@@ -22,7 +22,7 @@ impl<'s> Checker<'_, 's> {
             LiteralValue::Integer { value, .. } => Some(Operand::Integer(i128::from(*value))),
             LiteralValue::Real(digits) => {
                 let value = digits.parse().unwrap_or(f64::INFINITY);
-                Some(Operand::Real { value, digits: Some(digits.clone()) })
+                Some(Operand::Real { value, digits: Some(digits.to_string()) })
             }
             LiteralValue::Time { nanoseconds, long } => {
                 let ty = if *long { Elementary::Ltime } else { Elementary::Time };
@@ -75,7 +75,7 @@ impl<'s> Checker<'_, 's> {
             LiteralValue::Integer { value, .. } => self.literal_as(&Operand::Integer(i128::from(*value)), ty, span),
             LiteralValue::Real(digits) => {
                 let value = digits.parse().unwrap_or(f64::INFINITY);
-                self.literal_as(&Operand::Real { value, digits: Some(digits.clone()) }, ty, span)
+                self.literal_as(&Operand::Real { value, digits: Some(digits.to_string()) }, ty, span)
             }
             LiteralValue::Bool(_)
             | LiteralValue::Time { .. }

@@ -7,9 +7,9 @@ use crate::dialect::family_name;
 use crate::key::Key;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ArgumentKind, BinaryOp, ExprKind as Ast, LiteralValue, StatementKind};
+use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{BlockId, Elementary, Expr, Op, Type, Value};
 use staunch_runtime::{Direction, Family};
-use std::collections::{HashMap, HashSet};
 
 /// A call of a counter that is a variable of its own.
 struct CounterCall<'a, 's> {
@@ -128,19 +128,19 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// Traps 2 and 12, which show in how a POU uses its counters.
-    pub(super) fn migration_lints(&mut self, pou: &ast::Pou<'s>) {
+    pub(super) fn migration_lints(&mut self, body: &[ast::Statement<'s>]) {
         if !self.scope.variables.iter().any(|it| counts(it.place.ty)) {
             return;
         }
         let mut calls = Vec::new();
         let mut comparisons = Vec::new();
-        ast::each_expr(&pou.body, &mut |expr| match &expr.kind {
+        ast::each_expr(body, &mut |expr| match &expr.kind {
             Ast::Call(callee, arguments) => calls.extend(self.counter_call(callee, arguments)),
             Ast::Binary(left, BinaryOp::Gt, span, right) => comparisons.push((&**left, &**right, *span)),
             Ast::Binary(left, BinaryOp::Lt, span, right) => comparisons.push((&**right, &**left, *span)),
             _ => {}
         });
-        let mut calls_of: HashMap<_, Vec<_>> = HashMap::new();
+        let mut calls_of: FxHashMap<_, Vec<_>> = FxHashMap::default();
         for call in &calls {
             calls_of.entry(Key(call.name)).or_default().push(call);
         }
@@ -150,8 +150,8 @@ impl<'s> Checker<'_, 's> {
                 self.beyond_preset(calls, counter, limit, span);
             }
         }
-        let mut read = HashSet::new();
-        note_members_read(&pou.body, &mut read);
+        let mut read = FxHashSet::default();
+        note_members_read(body, &mut read);
         for call in &calls {
             self.reset_by_itself(call, &read);
         }
@@ -266,7 +266,7 @@ fn number(expr: &ast::Expr<'_>) -> Option<u64> {
 }
 
 /// Each `a := b.c` of a body, as these three names: a body may have thousands of them and of counters.
-type MembersRead<'s> = HashSet<[Key<'s>; 3]>;
+type MembersRead<'s> = FxHashSet<[Key<'s>; 3]>;
 
 fn note_members_read<'s>(body: &[ast::Statement<'s>], read: &mut MembersRead<'s>) {
     for statement in body {

@@ -25,7 +25,7 @@ pub(crate) use unknown::{block_of_another_dialect, no_such_block, not_constant};
 
 use crate::ast;
 use crate::declare::{Declarations, Resolved, Scope, Signature};
-use crate::{Code, Diagnostic, Span};
+use crate::{Bodies, Code, Diagnostic, Span};
 use staunch_ir::{
     Block, Const, Expr, Local, LocalId, Location, Place, Pou, PouKind, Statement, StatementKind, Type, Variable,
 };
@@ -62,11 +62,57 @@ pub(crate) enum Context {
 }
 
 /// The bodies of all POUs, in the order of their slots; `None` where there was an error.
-pub(crate) fn bodies(decl: &mut Declarations<'_>) -> Vec<Option<(Pou, Uses)>> {
-    (0..decl.pous.len()).map(|at| body(decl, at)).collect()
+pub(crate) fn bodies<'s>(
+    decl: &mut Declarations<'s>,
+    statements: Vec<Vec<ast::Statement<'s>>>,
+    bodies: Bodies,
+) -> Vec<Option<(Pou, Uses)>> {
+    let checked = |(at, statements): (usize, Vec<_>)| {
+        let (mut pou, uses) = body(decl, at, &statements)?;
+        if bodies == Bodies::Dropped {
+            pou.body = calls(pou.body);
+        }
+        Some((pou, uses))
+    };
+    statements.into_iter().enumerate().map(checked).collect()
 }
 
-fn body(decl: &mut Declarations<'_>, at: usize) -> Option<(Pou, Uses)> {
+/// The calls in a block, which is what later checks ask of it.
+fn calls(block: Block) -> Block {
+    let mut calls = Block::new();
+    move_calls(block, &mut calls);
+    calls
+}
+
+fn move_calls(block: Block, calls: &mut Block) {
+    for statement in block {
+        match statement.kind {
+            StatementKind::Call { .. } => calls.push(statement),
+            StatementKind::If { then, otherwise, .. } => {
+                move_calls(then, calls);
+                move_calls(otherwise, calls);
+            }
+            StatementKind::Case { arms, otherwise, .. } => {
+                arms.into_iter().for_each(|arm| move_calls(arm.body, calls));
+                move_calls(otherwise, calls);
+            }
+            StatementKind::Loop { body, continuing } => {
+                move_calls(body, calls);
+                move_calls(continuing, calls);
+            }
+            StatementKind::Assign { .. }
+            | StatementKind::Exit
+            | StatementKind::Continue
+            | StatementKind::Return
+            | StatementKind::CallBlock { .. }
+            | StatementKind::PrescanBlock { .. }
+            | StatementKind::PrescanInstance { .. }
+            | StatementKind::Fault(_) => {}
+        }
+    }
+}
+
+fn body<'s>(decl: &mut Declarations<'s>, at: usize, statements: &[ast::Statement<'s>]) -> Option<(Pou, Uses)> {
     let pou = decl.pous[at].ast;
     let signature = decl.signature(at)?;
     let mut checker = Checker {
@@ -83,8 +129,8 @@ fn body(decl: &mut Declarations<'_>, at: usize) -> Option<(Pou, Uses)> {
         decl,
     };
     checker.edge_inputs(&signature, pou.name.span);
-    let mut body = checker.block_of(&pou.body);
-    checker.migration_lints(pou);
+    let mut body = checker.block_of(statements);
+    checker.migration_lints(statements);
     let mut edges = std::mem::take(&mut checker.block);
     edges.append(&mut body);
     let uses = checker.finish_uses();
@@ -116,7 +162,7 @@ fn kind(kind: ast::PouKind) -> PouKind {
 }
 
 fn variables(signature: &Signature<'_>) -> Vec<Variable> {
-    let variable = |it: &crate::declare::Variable<'_>| Variable {
+    let variable = |it: &Rc<crate::declare::Variable<'_>>| Variable {
         name: it.name.text.to_owned(),
         section: it.section,
         place: it.place.clone(),

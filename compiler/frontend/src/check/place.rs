@@ -7,6 +7,7 @@ use crate::{Code, Diagnostic, Span, ast};
 use ast::ExprKind as Ast;
 use staunch_ir::{ArrayId, BlockId, Elementary, Expr, FieldId, Op, Place, Section, StructId, Type, Value};
 use staunch_runtime::Direction;
+use std::rc::Rc;
 
 /// A place, and what may be done with it.
 #[derive(Clone, Debug)]
@@ -59,13 +60,13 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// The variable that a name means; the inner `None` says that it was reported.
-    pub(super) fn find_variable(&mut self, name: ast::Name<'s>) -> Option<Option<Variable<'s>>> {
+    pub(super) fn find_variable(&mut self, name: ast::Name<'s>) -> Option<Option<Rc<Variable<'s>>>> {
         if let Some(variable) = self.scope.get(name.text) {
             variable.used.set(true);
-            return Some(Some(variable.clone()));
+            return Some(Some(Rc::clone(variable)));
         }
         if let Some(result) = self.result_variable(name) {
-            return Some(Some(result));
+            return Some(Some(Rc::new(result)));
         }
         if self.scope.is_refused(name.text) {
             return Some(None);
@@ -101,11 +102,11 @@ impl<'s> Checker<'_, 's> {
         local.name.eq_ignore_ascii_case(name.text).then(|| Variable {
             name,
             place: Place::local(*id, resolved.ty),
-            resolved: resolved.clone(),
+            resolved: Rc::new(resolved.clone()),
             section: Section::Internal,
             constant: false,
             retain: false,
-            used: std::rc::Rc::default(),
+            used: Rc::default(),
         })
     }
 
@@ -134,7 +135,7 @@ impl<'s> Checker<'_, 's> {
             | Section::Global
             | Section::External => Access::Write,
         };
-        Some(Found { place: variable.place, range: variable.resolved.range, access })
+        Some(Found { place: variable.place.clone(), range: variable.resolved.range, access })
     }
 
     fn member(&mut self, base: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<Found<'s>> {

@@ -6,8 +6,8 @@ use super::{Declarations, GlobalSlot};
 use crate::ast;
 use crate::dialect::Dialect;
 use crate::{Code, Diagnostic, Span};
+use rustc_hash::FxHashMap;
 use staunch_ir::{Address, Area, Elementary, Field, Place, Section, Type};
-use std::collections::HashMap;
 
 #[derive(Clone, Copy, Debug)]
 enum Storage {
@@ -20,7 +20,7 @@ enum Storage {
 /// Where the shared addresses are kept.
 #[derive(Debug, Default)]
 pub(crate) struct Addresses {
-    shared: HashMap<Address, Storage>,
+    shared: FxHashMap<Address, Storage>,
 }
 
 #[derive(Clone, Copy)]
@@ -30,8 +30,8 @@ enum Use {
     Direct,
 }
 
-/// Finds which addresses are shared.
-pub(super) fn collect<'s>(declarations: &mut Declarations<'s>, files: &'s [ast::File<'s>]) -> Addresses {
+/// Finds which addresses are shared; `bodies` are those of the POUs.
+pub(super) fn collect<'s>(declarations: &mut Declarations<'s>, bodies: &[Vec<ast::Statement<'s>>]) -> Addresses {
     let mut uses: Vec<(Address, Span, Use)> = Vec::new();
     for at in 0..declarations.globals.len() {
         let GlobalSlot { decl, .. } = declarations.globals[at];
@@ -40,14 +40,15 @@ pub(super) fn collect<'s>(declarations: &mut Declarations<'s>, files: &'s [ast::
             uses.push((address, name.span, Use::Global(at)));
         }
     }
-    for (file, source) in files.iter().zip(declarations.sources.files()) {
-        if source.text.contains('%') {
-            collect_file(file, &mut uses);
+    let has_addresses: Vec<_> = declarations.sources.files().iter().map(|it| it.text.contains('%')).collect();
+    for (pou, body) in declarations.pous.iter().zip(bodies) {
+        if has_addresses[usize::from(pou.ast.span.file)] {
+            collect_pou(pou.ast, body, &mut uses);
         }
     }
     uses.sort_by_key(|(address, span, _)| (*address, span.file, span.start));
     report_overlaps(declarations, &uses);
-    let mut shared = HashMap::new();
+    let mut shared = FxHashMap::default();
     for group in uses.chunk_by(|a, b| a.0 == b.0) {
         if let Some(storage) = storage_of(group) {
             shared.insert(group[0].0, storage);
@@ -99,22 +100,19 @@ fn share_memory(dialect: Dialect, a: Address, b: Address) -> bool {
     dialect != Dialect::Iec || a.area == Area::Memory || a.width == b.width
 }
 
-fn collect_file<'s>(file: &'s ast::File<'s>, uses: &mut Vec<(Address, Span, Use)>) {
-    for item in &file.items {
-        let ast::Item::Pou(pou) = item else { continue };
-        for name in pou.blocks.iter().flat_map(|it| &it.vars).filter_map(|it| it.address) {
-            if let Some(address) = parse(name.text) {
-                uses.push((address, name.span, Use::Local));
-            }
+fn collect_pou(pou: &ast::Pou<'_>, body: &[ast::Statement<'_>], uses: &mut Vec<(Address, Span, Use)>) {
+    for name in pou.blocks.iter().flat_map(|it| &it.vars).filter_map(|it| it.address) {
+        if let Some(address) = parse(name.text) {
+            uses.push((address, name.span, Use::Local));
         }
-        ast::each_expr(&pou.body, &mut |expr| {
-            if let ast::ExprKind::Address(name) = &expr.kind
-                && let Some(address) = parse(name.text)
-            {
-                uses.push((address, name.span, Use::Direct));
-            }
-        });
     }
+    ast::each_expr(body, &mut |expr| {
+        if let ast::ExprKind::Address(name) = &expr.kind
+            && let Some(address) = parse(name.text)
+        {
+            uses.push((address, name.span, Use::Direct));
+        }
+    });
 }
 
 /// `%IX1.3`, `%QW10`, `%M5.1`. `None` for `%I*` and for what is no address.
@@ -176,7 +174,7 @@ impl<'s> Declarations<'s> {
             Storage::Global(at) => {
                 let global = self.global(at)?;
                 self.same_type(resolved.ty, global.resolved.ty, name, Some(global.name));
-                Some(global.place)
+                Some(global.place.clone())
             }
             Storage::Hidden(Some(at)) => {
                 let (ty, first) = (self.hidden.field_type(at), self.hidden.declared(at));
@@ -220,7 +218,7 @@ impl<'s> Declarations<'s> {
     pub fn direct_address(&mut self, name: ast::Name<'s>) -> Option<Place> {
         let address = self.address(name)?;
         match self.addresses.shared.get(&address).copied() {
-            Some(Storage::Global(at)) => Some(self.global(at)?.place),
+            Some(Storage::Global(at)) => Some(self.global(at)?.place.clone()),
             Some(Storage::Hidden(Some(at))) => Some(self.hidden_place(at)),
             Some(Storage::Hidden(None)) | None => {
                 let elementary = match address.width {

@@ -21,10 +21,10 @@ use crate::ast;
 use crate::check;
 use crate::dialect::{self, Dialect};
 use crate::key::{Key, nearest};
-use crate::{Code, Diagnostic, Options, Sources, Span};
+use crate::{Bodies, Code, Diagnostic, Options, Sources, Span};
+use rustc_hash::FxHashMap;
 use staunch_ir::layout::{Layout, TooLarge};
 use staunch_ir::{Location, Place, Program, Root, SourceFile, Struct, StructId, Type};
-use std::collections::HashMap;
 use std::rc::Rc;
 
 /// Stands for the globals' structure until it is made, when all globals are known.
@@ -85,7 +85,7 @@ pub(crate) struct GlobalSlot<'s> {
     pub name: ast::Name<'s>,
     pub block: &'s ast::VarBlock<'s>,
     pub decl: &'s ast::VarDecl<'s>,
-    pub slot: Slot<Variable<'s>>,
+    pub slot: Slot<Rc<Variable<'s>>>,
 }
 
 /// The program while it is being declared and checked.
@@ -95,9 +95,9 @@ pub(crate) struct Declarations<'s> {
     /// A dialect for each file.
     pub dialects: Vec<Dialect>,
     pub diagnostics: Vec<Diagnostic>,
-    pub names: HashMap<Key<'s>, Entry>,
+    pub names: FxHashMap<Key<'s>, Entry>,
     /// The declarations in which a bare enumerator is named, with their type's slot.
-    pub enumerators: HashMap<Key<'s>, Vec<usize>>,
+    pub enumerators: FxHashMap<Key<'s>, Vec<usize>>,
     pub types: Vec<TypeSlot<'s>>,
     pub pous: Vec<PouSlot<'s>>,
     pub globals: Vec<GlobalSlot<'s>>,
@@ -110,9 +110,9 @@ pub(crate) struct Declarations<'s> {
     /// For each structure of `program`, about how many bytes it takes.
     pub sizes: Vec<u64>,
     /// For each anonymous or named enumeration, in order of declaration, the enumerators.
-    pub anonymous_enumerators: HashMap<Key<'s>, (Type, staunch_ir::Value)>,
+    pub anonymous_enumerators: FxHashMap<Key<'s>, (Type, staunch_ir::Value)>,
     /// The POU slot of each structure that is an instance's state.
-    pub instances: HashMap<StructId, usize>,
+    pub instances: FxHashMap<StructId, usize>,
     /// How many declarations are being resolved, each because the one before needs it.
     depth: usize,
     /// How many constants the initial values hold so far.
@@ -135,7 +135,9 @@ struct LineCache {
 pub(crate) fn declare<'s>(
     sources: &'s Sources,
     files: &'s [ast::File<'s>],
+    statements: Vec<Vec<ast::Statement<'s>>>,
     options: &'s Options,
+    bodies: Bodies,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Option<Program> {
     let mut declarations = Declarations::new(sources, options);
@@ -145,9 +147,9 @@ pub(crate) fn declare<'s>(
     for file in files {
         declarations.collect(file);
     }
-    declarations.addresses = address::collect(&mut declarations, files);
+    declarations.addresses = address::collect(&mut declarations, &statements);
     declarations.resolve_all();
-    let bodies = check::bodies(&mut declarations);
+    let bodies = check::bodies(&mut declarations, statements, bodies);
     let program = declarations.finish(bodies);
     diagnostics.append(&mut declarations.diagnostics);
     program
@@ -161,8 +163,8 @@ impl<'s> Declarations<'s> {
             options,
             dialects: Vec::new(),
             diagnostics: Vec::new(),
-            names: HashMap::new(),
-            enumerators: HashMap::new(),
+            names: FxHashMap::default(),
+            enumerators: FxHashMap::default(),
             types: Vec::new(),
             pous: Vec::new(),
             globals: Vec::new(),
@@ -172,8 +174,8 @@ impl<'s> Declarations<'s> {
             program: empty_program(files),
             elements: Vec::new(),
             sizes: Vec::new(),
-            anonymous_enumerators: HashMap::new(),
-            instances: HashMap::new(),
+            anonymous_enumerators: FxHashMap::default(),
+            instances: FxHashMap::default(),
             depth: 0,
             constants: 0,
             line_cache: LineCache::default(),
@@ -194,16 +196,20 @@ impl<'s> Declarations<'s> {
 
     /// Where `span` starts, for people.
     pub fn location(&mut self, span: Span) -> Location {
+        let source = self.sources.get(span.file);
         let cache = &self.line_cache;
         let cached = cache.file == span.file && (cache.start..cache.end).contains(&span.start);
         if !cached {
-            let source = self.sources.get(span.file);
-            let (line, _) = source.line_column(span.start);
+            let line = source.line(span.start);
             let (start, end) = source.line_bounds(line);
             self.line_cache = LineCache { file: span.file, line, start, end, counted_to: start, count: 0 };
         }
-        // A line may be long: what was counted is not counted again.
         let cache = &mut self.line_cache;
+        if source.is_ascii() {
+            let column = u16::try_from(span.start - cache.start + 1).unwrap_or(u16::MAX);
+            return Location { file: span.file, line: cache.line, column };
+        }
+        // A line may be long: what was counted is not counted again.
         if span.start < cache.counted_to {
             (cache.counted_to, cache.count) = (cache.start, 0);
         }
@@ -365,9 +371,9 @@ impl<'s> Declarations<'s> {
     }
 
     /// The global variable in slot `at`.
-    pub fn global(&mut self, at: usize) -> Option<Variable<'s>> {
+    pub fn global(&mut self, at: usize) -> Option<Rc<Variable<'s>>> {
         match &self.globals[at].slot {
-            Slot::Done(variable) => return Some(variable.clone()),
+            Slot::Done(variable) => return Some(Rc::clone(variable)),
             Slot::Failed => return None,
             Slot::Active => {
                 let name = self.globals[at].name;
@@ -378,7 +384,7 @@ impl<'s> Declarations<'s> {
         }
         self.globals[at].slot = Slot::Active;
         let GlobalSlot { name, block, decl, .. } = self.globals[at];
-        let variable = self.deeper(name, |this| this.global_variable(at, name, block, decl));
+        let variable = self.deeper(name, |this| this.global_variable(at, name, block, decl)).map(Rc::new);
         self.globals[at].slot = variable.clone().map_or(Slot::Failed, Slot::Done);
         variable
     }
@@ -398,7 +404,7 @@ impl<'s> Declarations<'s> {
         }
         self.check_retain(block, resolved.ty, name.span);
         let place = Place::root(Root::Globals, Type::Struct(GLOBALS)).field(staunch_ir::FieldId::next(at), resolved.ty);
-        Some(self.variable(name, block, resolved, place))
+        Some(self.variable(name, block, Rc::new(resolved), place))
     }
 
     /// Whether the structure is the state of a PROGRAM or FUNCTION_BLOCK.
@@ -469,8 +475,8 @@ impl<'s> Declarations<'s> {
 
     fn global_field(&mut self, at: usize) -> Option<staunch_ir::Field> {
         let variable = self.global(at)?;
-        let GlobalSlot { block, decl, .. } = self.globals[at];
-        Some(self.field(&variable, block, decl, staunch_ir::Section::Global))
+        let GlobalSlot { name, block, decl, .. } = self.globals[at];
+        Some(self.field(name, &variable.resolved, block, decl))
     }
 }
 

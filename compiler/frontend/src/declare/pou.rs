@@ -15,7 +15,7 @@ use std::rc::Rc;
 pub(crate) struct Formal<'s> {
     pub name: ast::Name<'s>,
     pub section: Section,
-    pub resolved: Resolved,
+    pub resolved: Rc<Resolved>,
     pub target: Target,
 }
 
@@ -131,10 +131,10 @@ impl<'s> Declarations<'s> {
                 let known = resolved.filter(|_| self.diagnostics.len() == reported);
                 let others = self.diagnostics.split_off(reported).into_iter().filter(|it| !within(it.span, decl.span));
                 self.diagnostics.extend(others);
-                let Some(resolved) = known else { return true };
+                let Some(resolved) = known.map(Rc::new) else { return true };
                 for name in &decl.names {
                     let place = Place::root(Root::Instance, resolved.ty);
-                    let variable = self.variable(*name, block, resolved.clone(), place);
+                    let variable = self.variable(*name, block, Rc::clone(&resolved), place);
                     let scope = Rc::get_mut(&mut scope).expect("no one else holds the scope between declarations");
                     let _ = scope.insert(variable);
                 }
@@ -228,7 +228,7 @@ impl<'s> Declarations<'s> {
         }
         let resolved = self.declared_type(decl, &scope, owner);
         drop(scope);
-        let Some(resolved) = resolved else {
+        let Some(resolved) = resolved.map(Rc::new) else {
             decl.names.iter().for_each(|name| builder.refuse(*name));
             return;
         };
@@ -244,7 +244,7 @@ impl<'s> Declarations<'s> {
                 builder.refuse(*name);
                 continue;
             };
-            let mut variable = self.variable(*name, block, resolved.clone(), place);
+            let mut variable = self.variable(*name, block, Rc::clone(&resolved), place);
             if let Some(early) = builder.scope.constants.as_ref().and_then(|it| it.get(name.text)) {
                 variable.used = Rc::clone(&early.used);
             }
@@ -275,7 +275,7 @@ impl<'s> Declarations<'s> {
                     .fix(decl.ty.span, found),
                 );
             }
-            let variable = Variable { name: *name, section: Section::External, ..global };
+            let variable = Variable { name: *name, section: Section::External, ..Variable::clone(&global) };
             let scope = Rc::get_mut(&mut builder.scope).expect("no one else holds the scope between declarations");
             self.enter_variable(scope, variable);
         }
@@ -288,7 +288,7 @@ impl<'s> Declarations<'s> {
         block: &'s ast::VarBlock<'s>,
         decl: &'s ast::VarDecl<'s>,
         name: ast::Name<'s>,
-        resolved: &Resolved,
+        resolved: &Rc<Resolved>,
         builder: &mut Builder<'s>,
     ) -> Option<Place> {
         if decl.address.is_some() && pou.kind != PouKind::Program {
@@ -298,7 +298,7 @@ impl<'s> Declarations<'s> {
             );
         }
         let section = super::scope::section(block.kind);
-        let formal = |target| Formal { name, section, resolved: resolved.clone(), target };
+        let formal = |target| Formal { name, section, resolved: Rc::clone(resolved), target };
         let place = match (pou.kind, block.kind) {
             // A program has one set of variables, so they last anyway.
             (PouKind::Function | PouKind::FunctionBlock, VarKind::Stat) => {
@@ -353,8 +353,7 @@ impl<'s> Declarations<'s> {
     ) -> Place {
         let id = FieldId::next(builder.fields.len());
         let place = Place::root(Root::Instance, resolved.ty).field(id, resolved.ty);
-        let variable = self.variable(name, block, resolved.clone(), place.clone());
-        let field = self.field(&variable, block, decl, super::scope::section(block.kind));
+        let field = self.field(name, resolved, block, decl);
         builder.fields.push(field);
         place
     }
@@ -368,9 +367,8 @@ impl<'s> Declarations<'s> {
         name: ast::Name<'s>,
         resolved: &Resolved,
     ) -> Place {
-        let variable = self.variable(name, block, resolved.clone(), Place::root(Root::Globals, resolved.ty));
-        let mut field = self.field(&variable, block, decl, Section::Global);
-        field.name = format!("{}_{}", pou.name.text, name.text);
+        let spelling = format!("{}_{}", pou.name.text, name.text);
+        let field = Field { name: spelling, section: Section::Global, ..self.field(name, resolved, block, decl) };
         let at = self.add_hidden(field, Some(name));
         self.hidden_place(at)
     }

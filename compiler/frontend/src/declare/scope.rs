@@ -2,9 +2,9 @@ use super::types::Resolved;
 use super::{Declarations, GlobalSlot};
 use crate::ast;
 use crate::key::Key;
+use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{Const, Field, Place, Section};
 use std::cell::Cell;
-use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
 /// A variable as a body knows it.
@@ -12,7 +12,7 @@ use std::rc::Rc;
 pub(crate) struct Variable<'s> {
     pub name: ast::Name<'s>,
     pub place: Place,
-    pub resolved: Resolved,
+    pub resolved: Rc<Resolved>,
     pub section: Section,
     pub constant: bool,
     pub retain: bool,
@@ -30,16 +30,16 @@ impl Variable<'_> {
 /// The variables a POU can name without a qualifier.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scope<'s> {
-    pub variables: Vec<Variable<'s>>,
-    index: HashMap<Key<'s>, usize>,
+    pub variables: Vec<Rc<Variable<'s>>>,
+    index: FxHashMap<Key<'s>, usize>,
     /// Names whose declarations were refused: what uses them is not reported again.
-    refused: HashSet<Key<'s>>,
+    refused: FxHashSet<Key<'s>>,
     /// The CONSTANTs of the POU, which size arrays wherever they are declared.
     pub constants: Option<Rc<Scope<'s>>>,
 }
 
 impl<'s> Scope<'s> {
-    pub fn get(&self, name: &str) -> Option<&Variable<'s>> {
+    pub fn get(&self, name: &str) -> Option<&Rc<Variable<'s>>> {
         let own = self.index.get(&Key(name)).map(|at| &self.variables[*at]);
         own.or_else(|| self.constants.as_ref()?.get(name))
     }
@@ -53,7 +53,8 @@ impl<'s> Scope<'s> {
     }
 
     /// The earlier variable of that name, if there is one.
-    pub fn insert(&mut self, variable: Variable<'s>) -> Result<(), ast::Name<'s>> {
+    pub fn insert(&mut self, variable: impl Into<Rc<Variable<'s>>>) -> Result<(), ast::Name<'s>> {
+        let variable = variable.into();
         let key = Key(variable.name.text);
         if let Some(at) = self.index.get(&key) {
             return Err(self.variables[*at].name);
@@ -86,7 +87,7 @@ impl<'s> Declarations<'s> {
         &self,
         name: ast::Name<'s>,
         block: &ast::VarBlock<'s>,
-        resolved: Resolved,
+        resolved: Rc<Resolved>,
         place: Place,
     ) -> Variable<'s> {
         Variable {
@@ -94,10 +95,15 @@ impl<'s> Declarations<'s> {
             place,
             section: section(block.kind),
             constant: block.constant.is_some(),
-            retain: (is_declared_retain(block) && !self.loses_its_count(resolved.ty)) || self.is_retentive(resolved.ty),
+            retain: self.is_kept(block, resolved.ty),
             resolved,
             used: Rc::new(Cell::new(false)),
         }
+    }
+
+    /// Whether a variable of the block keeps its value over a restart.
+    fn is_kept(&self, block: &ast::VarBlock<'s>, ty: staunch_ir::Type) -> bool {
+        (is_declared_retain(block) && !self.loses_its_count(ty)) || self.is_retentive(ty)
     }
 
     /// Whether RETAIN does not keep an instance: Cscape has R_CTU and R_CTD for that.
@@ -139,23 +145,23 @@ impl<'s> Declarations<'s> {
 
     pub fn field(
         &mut self,
-        variable: &Variable<'s>,
+        name: ast::Name<'s>,
+        resolved: &Resolved,
         block: &ast::VarBlock<'s>,
         decl: &ast::VarDecl<'s>,
-        section: Section,
     ) -> Field {
         let address = decl.address.and_then(|it| self.address(it));
         Field {
-            name: variable.name.text.to_owned(),
-            ty: variable.resolved.ty,
-            initial: variable.resolved.initial.clone(),
-            section,
-            retain: variable.retain,
+            name: name.text.to_owned(),
+            ty: resolved.ty,
+            initial: resolved.initial.clone(),
+            section: section(block.kind),
+            retain: self.is_kept(block, resolved.ty),
             constant: block.constant.is_some(),
             address,
-            range: variable.resolved.range,
+            range: resolved.range,
             doc: decl.doc.clone(),
-            location: self.location(variable.name.span),
+            location: self.location(name.span),
         }
     }
 
@@ -171,7 +177,7 @@ impl<'s> Declarations<'s> {
         }
     }
 
-    pub fn external(&mut self, name: ast::Name<'s>) -> Option<Variable<'s>> {
+    pub fn external(&mut self, name: ast::Name<'s>) -> Option<Rc<Variable<'s>>> {
         let Some(super::Entry::Global(at)) = self.names.get(&Key(name.text)).copied() else {
             let near = crate::key::nearest(name.text, self.globals.iter().map(|it: &GlobalSlot<'s>| it.name.text));
             let mut error = crate::Diagnostic::new(

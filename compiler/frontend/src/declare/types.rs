@@ -401,14 +401,14 @@ impl<'s> Declarations<'s> {
         let mut complete = true;
         for decl in members {
             let owner = decl.names.first().map_or(name, |it| it.text);
-            let Some(resolved) = self.declared_type(decl, scope, owner) else {
+            let Some(resolved) = self.declared_type(decl, scope, owner).map(Rc::new) else {
                 complete = false;
                 continue;
             };
             for member in &decl.names {
                 let place = staunch_ir::Place::root(staunch_ir::Root::Instance, resolved.ty);
-                let variable = self.variable(*member, &block, resolved.clone(), place);
-                fields.push(self.field(&variable, &block, decl, staunch_ir::Section::Internal));
+                let variable = self.variable(*member, &block, Rc::clone(&resolved), place);
+                fields.push(self.field(*member, &resolved, &block, decl));
                 self.enter_variable(&mut seen, variable);
             }
         }

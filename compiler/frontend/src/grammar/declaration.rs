@@ -102,6 +102,7 @@ pub fn list<'s>(input: &mut In<'_, '_, 's>, end: Kind, opened: Span) -> Vec<VarD
         }
     }
     input.state().open.pop();
+    vars.shrink_to_fit();
     vars
 }
 

@@ -221,6 +221,7 @@ pub fn arguments<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Vec<Argument<'s>>> {
     close(input, Kind::CloseParen, opened)?;
     input.leave();
     input.state().height = height;
+    arguments.shrink_to_fit();
     Ok(arguments)
 }
 

@@ -18,21 +18,21 @@ pub fn untyped<'s>(input: &mut In<'_, '_, 's>, prefix: Option<Name<'s>>) -> Opti
         Kind::True => LiteralValue::Bool(true),
         Kind::False => LiteralValue::Bool(false),
         Kind::Integer | Kind::Based => integer(input, span, text),
-        Kind::Real => LiteralValue::Real(lex::real(text)),
+        Kind::Real => LiteralValue::Real(lex::real(text).into()),
         Kind::Time => duration(input, span, text),
         Kind::Date => LiteralValue::Date(date_kind(text)),
         Kind::Text | Kind::WideText | Kind::OpenText => string(input, span, text),
         _ => return None,
     };
     input.take();
-    Some(Literal { prefix, value })
+    Some(Literal { prefix: prefix.map(Box::new), value })
 }
 
 /// What stands behind `INT#`.
 pub fn typed<'s>(input: &mut In<'_, '_, 's>, prefix: Name<'s>) -> Parsed<Literal<'s>> {
     if input.kind() == Kind::Name {
-        let value = LiteralValue::Enumerator(input.name()?);
-        return Ok(Literal { prefix: Some(prefix), value });
+        let value = LiteralValue::Enumerator(Box::new(input.name()?));
+        return Ok(Literal { prefix: Some(Box::new(prefix)), value });
     }
     match untyped(input, Some(prefix)) {
         Some(literal) => Ok(literal),
@@ -68,7 +68,7 @@ fn string<'s>(input: &mut In<'_, '_, '_>, span: Span, text: &str) -> LiteralValu
     for fault in faults {
         report(input, Code::E0007, span, fault);
     }
-    LiteralValue::String { bytes, wide }
+    LiteralValue::String { bytes: bytes.into(), wide }
 }
 
 /// The type that a date literal's prefix names.

@@ -18,6 +18,7 @@ use super::{
 pub fn statements<'s>(input: &mut In<'_, '_, 's>) -> Vec<Statement<'s>> {
     let mut statements = Vec::new();
     list(input, &mut statements, |_| false);
+    statements.shrink_to_fit();
     statements
 }
 
@@ -315,6 +316,7 @@ fn arm<'s>(input: &mut In<'_, '_, 's>) -> Option<Arm<'s>> {
     }
     let mut body = Vec::new();
     list(input, &mut body, at_label);
+    body.shrink_to_fit();
     Some(Arm { labels: labels.ok()?, body })
 }
 

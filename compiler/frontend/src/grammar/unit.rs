@@ -71,7 +71,12 @@ fn pou<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind) -> Item<'s> {
     input.state().open.push((end, opened));
     let mut pou = Pou { kind, name, result, blocks: Vec::new(), body: Vec::new(), doc, span };
     loop {
-        pou.body.append(&mut statements(input));
+        let mut more = statements(input);
+        if pou.body.is_empty() {
+            pou.body = more;
+        } else {
+            pou.body.append(&mut more);
+        }
         if !recover::opens_section(input.kind()) {
             break;
         }

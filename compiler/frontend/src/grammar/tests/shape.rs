@@ -110,11 +110,11 @@ fn argument(it: &Argument<'_>) -> String {
 }
 
 fn literal(it: &Literal<'_>) -> String {
-    let prefix = it.prefix.map_or(String::new(), |it| format!("{}#", it.text));
+    let prefix = it.prefix.as_ref().map_or(String::new(), |it| format!("{}#", it.text));
     let value = match &it.value {
         LiteralValue::Bool(it) => it.to_string(),
         LiteralValue::Integer { value, .. } => value.to_string(),
-        LiteralValue::Real(digits) => digits.clone(),
+        LiteralValue::Real(digits) => digits.to_string(),
         LiteralValue::Time { nanoseconds, long } => format!("{nanoseconds}{}ns", if *long { "l" } else { "" }),
         LiteralValue::String { bytes, .. } => format!("{:?}", String::from_utf8_lossy(bytes)),
         LiteralValue::Enumerator(name) => name.text.into(),
