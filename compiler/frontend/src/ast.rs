@@ -298,7 +298,7 @@ pub enum ExprKind<'s> {
     Call(Box<Expr<'s>>, Vec<Argument<'s>>),
     Unary(UnaryOp, Box<Expr<'s>>),
     /// The operator's own span is kept for messages.
-    Binary(Box<Expr<'s>>, BinaryOp, Span, Box<Expr<'s>>),
+    Binary(Box<[Expr<'s>; 2]>, BinaryOp, Span),
     /// `( … )`: kept, since it ends a chain.
     Paren(Box<Expr<'s>>),
 }
@@ -470,9 +470,14 @@ fn each_part<'a, 's>(expr: &'a Expr<'s>, visit: &mut dyn FnMut(&'a Expr<'s>)) {
                 }
             }
         }
-        ExprKind::Binary(left, _, _, right) => {
-            each_part(left, visit);
-            each_part(right, visit);
-        }
+        ExprKind::Binary(sides, ..) => sides.iter().for_each(|it| each_part(it, visit)),
     }
 }
+
+/// The trees of a large program fill a good part of the memory that checking takes.
+#[cfg(target_pointer_width = "64")]
+const _: () = {
+    assert!(size_of::<Expr<'_>>() <= 64);
+    assert!(size_of::<Statement<'_>>() <= 152);
+    assert!(size_of::<Argument<'_>>() <= 120);
+};

@@ -87,6 +87,13 @@ pub struct Arm {
     pub body: Block,
 }
 
+/// A program of a million lines has about as many of each.
+#[cfg(target_pointer_width = "64")]
+const _: () = {
+    assert!(size_of::<Statement>() <= 120);
+    assert!(size_of::<Expr>() <= 56);
+};
+
 impl Statement {
     pub fn new(kind: StatementKind, at: Location) -> Self {
         Self { kind, at }

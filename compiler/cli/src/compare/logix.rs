@@ -226,13 +226,12 @@ impl Writer<'_> {
                 indices.iter().for_each(|it| self.expr(it, true));
             }
             ExprKind::Call(_, arguments) => arguments.iter().for_each(|it| self.argument(it)),
-            ExprKind::Binary(left, op, _, right) => {
+            ExprKind::Binary(sides, op, _) => {
                 let compares = matches!(
                     op,
                     BinaryOp::Lt | BinaryOp::Gt | BinaryOp::Le | BinaryOp::Ge | BinaryOp::Eq | BinaryOp::Ne
                 );
-                self.expr(left, narrow && !compares);
-                self.expr(right, narrow && !compares);
+                sides.iter().for_each(|it| self.expr(it, narrow && !compares));
             }
         }
     }

@@ -23,7 +23,7 @@ impl<'s> Checker<'_, 's> {
         let mut tree = (*values.next()?).clone();
         for value in values {
             let span = tree.span.to(value.span);
-            let kind = ast::ExprKind::Binary(Box::new(tree), operator, name.span, Box::new((*value).clone()));
+            let kind = ast::ExprKind::Binary(Box::new([tree, (*value).clone()]), operator, name.span);
             tree = ast::Expr { kind, span };
         }
         self.operand(&tree, expected)

@@ -22,7 +22,7 @@ impl<'s> Checker<'_, 's> {
             }
             Ast::Call(callee, arguments) => self.call_value(expr, callee, arguments, expected),
             Ast::Unary(op, inner) => self.unary(*op, inner, expected, expr.span),
-            Ast::Binary(left, op, op_span, right) => self.binary(left, *op, *op_span, right, expected, expr.span),
+            Ast::Binary(sides, op, op_span) => self.binary(sides, *op, *op_span, expected, expr.span),
         }
     }
 

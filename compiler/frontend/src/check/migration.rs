@@ -136,8 +136,8 @@ impl<'s> Checker<'_, 's> {
         let mut comparisons = Vec::new();
         ast::each_expr(body, &mut |expr| match &expr.kind {
             Ast::Call(callee, arguments) => calls.extend(self.counter_call(callee, arguments)),
-            Ast::Binary(left, BinaryOp::Gt, span, right) => comparisons.push((&**left, &**right, *span)),
-            Ast::Binary(left, BinaryOp::Lt, span, right) => comparisons.push((&**right, &**left, *span)),
+            Ast::Binary(sides, BinaryOp::Gt, span) => comparisons.push((&sides[0], &sides[1], *span)),
+            Ast::Binary(sides, BinaryOp::Lt, span) => comparisons.push((&sides[1], &sides[0], *span)),
             _ => {}
         });
         let mut calls_of: FxHashMap<_, Vec<_>> = FxHashMap::default();

@@ -8,10 +8,9 @@ use staunch_ir::{Conversion, Elementary, Expr, ExprKind, Op, Statement, Statemen
 impl<'s> Checker<'_, 's> {
     pub(super) fn binary(
         &mut self,
-        left: &ast::Expr<'s>,
+        [left, right]: &[ast::Expr<'s>; 2],
         op: BinaryOp,
         op_span: Span,
-        right: &ast::Expr<'s>,
         expected: Option<Type>,
         span: Span,
     ) -> Option<Operand> {

@@ -103,13 +103,15 @@ impl<'s> Declarations<'s> {
         }
         let state = (pou.kind != PouKind::Function).then(|| {
             let location = self.location(pou.name.span);
-            let fields = std::mem::take(&mut builder.fields);
+            let mut fields = std::mem::take(&mut builder.fields);
+            fields.shrink_to_fit();
             let id =
                 self.push_struct(Struct { name: pou.name.text.to_owned(), doc: pou.doc.clone(), location, fields });
             self.instances.insert(id, slot);
             id
         });
-        let Builder { scope, formals, params, locals, edges, complete, .. } = builder;
+        let Builder { scope, mut formals, params, locals, edges, complete, .. } = builder;
+        formals.shrink_to_fit();
         complete.then_some(Signature { scope, state, formals, params, locals, result, edges })
     }
 

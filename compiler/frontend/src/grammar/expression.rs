@@ -96,7 +96,7 @@ fn assigned<'s>(input: &mut In<'_, '_, 's>, left: Expr<'s>) -> Parsed<Expr<'s>> 
 
 fn join<'s>(left: Expr<'s>, op: BinaryOp, sign: Span, right: Expr<'s>) -> Expr<'s> {
     let span = left.span.to(right.span);
-    Expr { kind: ExprKind::Binary(Box::new(left), op, sign, Box::new(right)), span }
+    Expr { kind: ExprKind::Binary(Box::new([left, right]), op, sign), span }
 }
 
 // The functions on the way around a pair of brackets are small: without optimisation, a frame has

@@ -93,7 +93,7 @@ pub fn expr(it: &Expr<'_>) -> String {
             format!("{}({})", expr(of), arguments.iter().map(argument).collect::<Vec<_>>().join(","))
         }
         ExprKind::Unary(op, of) => format!("{op:?}({})", expr(of)),
-        ExprKind::Binary(left, op, _, right) => format!("({} {} {})", expr(left), op.text(), expr(right)),
+        ExprKind::Binary(sides, op, _) => format!("({} {} {})", expr(&sides[0]), op.text(), expr(&sides[1])),
         ExprKind::Paren(inner) => format!("<{}>", expr(inner)),
     }
 }
