@@ -46,6 +46,17 @@ fn reading_stops_after_many_errors() {
     assert!(codes.contains(&Code::E0030) && codes.len() < 110, "{} diagnostics", codes.len());
 }
 
+/// To let go of what was checked changes nothing of what is said.
+#[test]
+fn check_says_what_compile_says() {
+    let (cases, _) = case::discover(&cases());
+    for case in &cases {
+        let (sources, compilation) = case.compile();
+        let checked = staunch_frontend::check(&sources, &case.settings().options);
+        assert_eq!(format!("{checked:?}"), format!("{:?}", compilation.diagnostics), "{}", case.name);
+    }
+}
+
 fn errors(case: &Case) -> String {
     case.pinned(Pin::Diagnostics)
 }

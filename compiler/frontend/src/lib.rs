@@ -54,9 +54,7 @@ pub fn compile(sources: &Sources, options: &Options) -> Compilation {
 
 /// What [`compile`] has to say, in less memory: each body is let go when it has been checked.
 pub fn check(sources: &Sources, options: &Options) -> Vec<Diagnostic> {
-    // A debug build verifies what was made.
-    let bodies = if cfg!(debug_assertions) { Bodies::Kept } else { Bodies::Dropped };
-    run(sources, options, bodies).diagnostics
+    run(sources, options, Bodies::Dropped).diagnostics
 }
 
 /// Whether the program that is made has the bodies of its POUs, or the calls in them alone.
@@ -78,7 +76,7 @@ fn run(sources: &Sources, options: &Options, bodies: Bodies) -> Compilation {
     let program = declare::declare(sources, &files, statements, options, bodies, &mut diagnostics);
     diagnostics.sort_by_key(|it| (it.span.file, it.span.start, it.span.end, it.code));
     let rejected = diagnostics.iter().any(|it| it.severity == Severity::Error);
-    let program = program.filter(|_| !rejected);
+    let program = program.filter(|_| !rejected && bodies == Bodies::Kept);
     if rejected {
         // What is unused or unreachable is not known before everything is understood.
         diagnostics.retain(|it| it.severity == Severity::Error || !it.code.is_of_the_flow());

@@ -25,8 +25,7 @@ impl<'s> Checker<'_, 's> {
             return None;
         };
         let right_hint = beside(&a, hint);
-        let mut done: Vec<_> = a.typed_mut().into_iter().collect();
-        let b = self.after(&mut done, |this| this.operand(right, right_hint))?;
+        let b = self.after(a.typed_mut().as_mut_slice(), |this| this.operand(right, right_hint))?;
         // A bare enumerator on the left listens to the right side.
         if let (Some(Type::Enum(x)), Some(Type::Enum(y))) = (a.ty(), b.ty())
             && x != y
