@@ -38,6 +38,10 @@ pub const FAULTED: u8 = 3;
 /// A mistake of the compiler's own.
 const INTERNAL: u8 = 101;
 
+/// A compilation is very many small trees: the system's allocator takes as long as the checks themselves.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 /// Deep enough for expressions and statements at the parser's nesting limit, also unoptimised.
 const STACK: usize = 256 << 20;
 
