@@ -37,7 +37,7 @@ pub fn lex(file: u16, text: &str) -> Tokens<'_> {
     // Real programs have a token for each ten bytes or more.
     let guess = text.len() / 10 + 16;
     let tokens = Tokens { kinds: Vec::with_capacity(guess), places: Vec::with_capacity(guess), ..Tokens::default() };
-    let mut reading = Reading { file, text, tokens };
+    let mut reading = Reading { file, text, tokens, told: Vec::new() };
     for (kind, range) in Kind::lexer(text).spanned() {
         let place = (offset(range.start), offset(range.end));
         reading.token(kind.unwrap_or(Kind::Unknown), place);
@@ -55,6 +55,8 @@ struct Reading<'s> {
     file: u16,
     text: &'s str,
     tokens: Tokens<'s>,
+    /// Names with letters that names cannot have: each is told once.
+    told: Vec<&'s str>,
 }
 
 impl<'s> Reading<'s> {
@@ -139,6 +141,11 @@ impl<'s> Reading<'s> {
             Some('“' | '”' | '„') => it.help("a string stands between two `'`, a WSTRING between two `\"`"),
             Some('–' | '—' | '−') => it.help("write `-`"),
             Some('\u{a0}') => it.help("write an ordinary space"),
+            Some('#') => it.help("a comment is written `// …` or `(* … *)`, a number of base 16 `16#FF`"),
+            Some('$') => it.help("a number of base 16 is written `16#FF`"),
+            Some('~') => it.help("write `NOT`"),
+            Some('?') => it.help("choose a value with `SEL(condition, value_if_false, value_if_true)`"),
+            Some('}') => it.help("a block is ended by its own word: `END_IF`, `END_FOR`, `END_WHILE`"),
             _ => it.label("delete this"),
         };
         self.tokens.diagnostics.push(it);
@@ -146,7 +153,8 @@ impl<'s> Reading<'s> {
 
     fn name(&mut self, place: (u32, u32)) {
         let name = self.slice(place);
-        if !name.is_ascii() {
+        if !name.is_ascii() && !self.told.contains(&name) {
+            self.told.push(name);
             let it = Diagnostic::new(
                 Code::E0002,
                 self.span(place),

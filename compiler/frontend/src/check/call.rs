@@ -129,6 +129,10 @@ impl<'s> Checker<'_, 's> {
                 Some(Callee::Instance)
             }
             Ast::Index(..) | Ast::Paren(_) => Some(Callee::Instance),
+            Ast::Error(_) => {
+                self.operand(callee, None);
+                None
+            }
             Ast::Deref(_)
             | Ast::Literal(_)
             | Ast::Address(_)

@@ -21,6 +21,10 @@ impl<'s> Checker<'_, 's> {
                 None
             }
             Ast::Call(callee, arguments) => self.call_value(expr, callee, arguments, expected),
+            Ast::Error(parts) => {
+                parts.iter().for_each(|it| drop(self.operand(it, None)));
+                None
+            }
             Ast::Unary(op, inner) => self.unary(*op, inner, expected, expr.span),
             Ast::Binary(left, op, op_span, right) => self.binary(left, *op, *op_span, right, expected, expr.span),
         }

@@ -49,6 +49,10 @@ impl<'s> Checker<'_, 's> {
                 self.decl.not_supported(expr.span, "dereferencing");
                 None
             }
+            Ast::Error(_) => {
+                self.operand(expr, None);
+                None
+            }
             Ast::Literal(_) | Ast::Part(..) | Ast::Call(..) | Ast::Unary(..) | Ast::Binary(..) => {
                 self.report(
                     Diagnostic::new(Code::E0306, expr.span, "a variable is expected here").label("this is a value"),

@@ -108,6 +108,9 @@ fn dialect_of(family: Family) -> Dialect {
 impl<'s> Checker<'_, 's> {
     /// Reports a name that means nothing here.
     pub(super) fn unknown_name(&mut self, name: ast::Name<'s>) {
+        if self.decl.unread.contains(&crate::key::Key(name.text)) {
+            return;
+        }
         if let Some(crate::declare::Entry::Type(_) | crate::declare::Entry::Pou(_)) =
             self.decl.names.get(&crate::key::Key(name.text))
         {

@@ -24,7 +24,7 @@ use crate::key::{Key, nearest};
 use crate::{Code, Diagnostic, Options, Sources, Span};
 use staunch_ir::layout::{Layout, TooLarge};
 use staunch_ir::{Location, Place, Program, Root, SourceFile, Struct, StructId, Type};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
 /// Stands for the globals' structure until it is made, when all globals are known.
@@ -98,6 +98,8 @@ pub(crate) struct Declarations<'s> {
     pub names: HashMap<Key<'s>, Entry>,
     /// The declarations in which a bare enumerator is named, with their type's slot.
     pub enumerators: HashMap<Key<'s>, Vec<usize>>,
+    /// Names in type declarations that did not parse: they may be enumerators.
+    pub unread: HashSet<Key<'s>>,
     pub types: Vec<TypeSlot<'s>>,
     pub pous: Vec<PouSlot<'s>>,
     pub globals: Vec<GlobalSlot<'s>>,
@@ -163,6 +165,7 @@ impl<'s> Declarations<'s> {
             diagnostics: Vec::new(),
             names: HashMap::new(),
             enumerators: HashMap::new(),
+            unread: HashSet::new(),
             types: Vec::new(),
             pous: Vec::new(),
             globals: Vec::new(),
@@ -280,6 +283,7 @@ impl<'s> Declarations<'s> {
     fn collect_type(&mut self, decl: &'s ast::TypeDecl<'s>) {
         let slot = self.types.len();
         self.enter(decl.name, Entry::Type(slot));
+        self.unread.extend(decl.unread.iter().map(|it| Key(it.text)));
         if let ast::TypeKind::Enum { values, .. } = &decl.ty.kind {
             for value in values {
                 self.enumerators.entry(Key(value.name.text)).or_default().push(slot);

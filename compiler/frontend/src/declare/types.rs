@@ -137,7 +137,7 @@ impl<'s> Declarations<'s> {
             TypeKind::Struct(members) => self.structure(members, scope, name, doc, spec.span),
             TypeKind::Enum { base, values } => self.enumeration(*base, values, scope, name, doc, spec.span),
             // The parser has said so.
-            TypeKind::Unsupported(_) => None,
+            TypeKind::Unsupported(_) | TypeKind::Error => None,
         }
     }
 

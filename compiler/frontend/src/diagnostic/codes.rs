@@ -206,6 +206,17 @@ E0019 Error "RETURN with a value"
         Twice := 2 * x;
     END_FUNCTION
 ";
+E0020 Error "a habit of another language"
+"Structured Text ends each block with a word of its own, and has neither braces nor BEGIN and END:
+
+    C, Pascal                       Structured Text
+    if (a) { x = 1; }               IF a THEN x := 1; END_IF
+    if a then begin x := 1; end;    IF a THEN x := 1; END_IF
+    for (i = 0; i < 10; i++) {…}    FOR i := 0 TO 9 DO … END_FOR
+    for i := 10 downto 1 do …       FOR i := 10 TO 1 BY -1 DO … END_FOR
+    function f(x : INT) : INT       FUNCTION f : INT
+                                    VAR_INPUT x : INT; END_VAR
+";
 E0030 Error "too many errors"
 "Reading stopped here: what follows was not looked at. Correct the errors above first.
 ";

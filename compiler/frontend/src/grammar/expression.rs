@@ -4,14 +4,14 @@
 //! levels behind each operand, and needs a stack frame for each, where a nesting limit counts.
 
 use crate::{
-    ast::{Argument, ArgumentKind, BinaryOp, Expr, ExprKind, Name, UnaryOp},
+    ast::{Argument, ArgumentKind, BinaryOp, Expr, ExprKind, Literal, LiteralValue, Name, UnaryOp},
     lex::Kind,
     source::Span,
 };
 
 use super::{
-    literal, mistake,
-    moves::{Expected, In, Moves, Parsed, Waiting},
+    habit, literal, mistake,
+    moves::{Expected, In, Moves, Parsed, Problem, Waiting},
 };
 
 /// Arguments of one call.
@@ -36,14 +36,30 @@ fn infix(kind: Kind) -> Option<(BinaryOp, u8)> {
         Kind::Star => (BinaryOp::Mul, 7),
         Kind::Slash => (BinaryOp::Div, 7),
         Kind::Mod | Kind::Percent => (BinaryOp::Mod, 7),
-        Kind::Power => (BinaryOp::Power, 8),
+        Kind::Power | Kind::Caret => (BinaryOp::Power, 8),
         _ => return None,
     })
 }
 
 /// Signs of other languages that are read as ours, and reported.
 fn is_foreign(kind: Kind) -> bool {
-    matches!(kind, Kind::EqualEqual | Kind::BangEqual | Kind::AndAnd | Kind::OrOr | Kind::Percent | Kind::Arrow)
+    matches!(
+        kind,
+        Kind::EqualEqual
+            | Kind::BangEqual
+            | Kind::AndAnd
+            | Kind::OrOr
+            | Kind::Percent
+            | Kind::Arrow
+            | Kind::Caret
+            | Kind::Name
+    )
+}
+
+/// `a DIV b`
+fn named_division(input: &mut In<'_, '_, '_>) -> Option<(BinaryOp, u8)> {
+    let divides = input.is_word("DIV") && matches!(input.kind_ahead(1), Kind::Name | Kind::Integer | Kind::OpenParen);
+    (divides && !input.on_new_line()).then_some((BinaryOp::Div, 7))
 }
 
 /// Operands and operators, joined by precedence, from the left. What waits for a right side is on
@@ -52,13 +68,17 @@ pub fn expression<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
     let mut left = unary(input)?;
     let base = input.state().waiting.len();
     loop {
-        let next = infix(input.kind());
+        let next = infix(input.kind()).or_else(|| named_division(input));
         left = reduce(input, left, base, next.map_or(0, |(_, power)| power))?;
         let Some((op, power)) = next else { return Ok(left) };
         let kind = input.kind();
-        let sign = input.take();
+        let mut sign = input.take();
+        let mut op = op;
         if is_foreign(kind) {
             mistake::foreign_operator(input, kind, op, sign);
+        } else if matches!(kind, Kind::Equal | Kind::Less | Kind::Greater) {
+            let Some(second) = habit::second_sign(input, kind, sign) else { return Err(Problem::REPORTED) };
+            (op, sign) = second.unwrap_or((op, sign));
         }
         let state = input.state();
         let height = state.height;
@@ -91,7 +111,9 @@ fn assigned<'s>(input: &mut In<'_, '_, 's>, left: Expr<'s>) -> Parsed<Expr<'s>> 
     let it = mistake::assign_for_equal(input.text(left.span), sign);
     input.report(it);
     let right = expression(input)?;
-    Ok(join(left, BinaryOp::Eq, sign, right))
+    let span = left.span.to(right.span);
+    // Whether a comparison or a value was meant is not known: no type is asked of it.
+    Ok(Expr { kind: ExprKind::Error(vec![left, right]), span })
 }
 
 fn join<'s>(left: Expr<'s>, op: BinaryOp, sign: Span, right: Expr<'s>) -> Expr<'s> {
@@ -135,6 +157,7 @@ pub fn postfix<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
     let expr = primary(input)?;
     match input.kind() {
         Kind::Dot | Kind::OpenBracket | Kind::OpenParen | Kind::Caret => suffixes(input, expr),
+        Kind::Minus if input.kind_ahead(1) == Kind::Greater => suffixes(input, expr),
         _ => Ok(expr),
     }
 }
@@ -149,6 +172,9 @@ fn suffixes<'s>(input: &mut In<'_, '_, 's>, mut expr: Expr<'s>) -> Parsed<Expr<'
             Kind::Dot => member(input, expr)?,
             Kind::OpenBracket => ExprKind::Index(Box::new(expr), indices(input)?),
             Kind::OpenParen => ExprKind::Call(Box::new(expr), arguments(input)?),
+            Kind::Minus if habit::arrow(input) => ExprKind::Member(Box::new(expr), input.name()?),
+            // Nothing is dereferenced before an operand.
+            Kind::Caret if matches!(input.kind_ahead(1), Kind::Integer | Kind::Real | Kind::Name) => break,
             Kind::Caret => {
                 input.take();
                 ExprKind::Deref(Box::new(expr))
@@ -171,7 +197,14 @@ fn member<'s>(input: &mut In<'_, '_, 's>, of: Expr<'s>) -> Parsed<ExprKind<'s>> 
             let span = input.take();
             Ok(ExprKind::Part(Box::new(of), Name { text: input.text(span), span }))
         }
-        _ => Ok(ExprKind::Member(Box::new(of), input.name()?)),
+        Kind::Name => Ok(ExprKind::Member(Box::new(of), input.name()?)),
+        _ => match of.kind {
+            ExprKind::Literal(Literal { value: LiteralValue::Integer { .. }, .. }) => {
+                habit::point_last(input, of.span);
+                Ok(ExprKind::Error(Vec::new()))
+            }
+            _ => Ok(ExprKind::Member(Box::new(of), input.name()?)),
+        },
     }
 }
 
@@ -215,13 +248,36 @@ pub fn arguments<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Vec<Argument<'s>>> {
         }
         height = height.max(input.state().height);
         if input.eat(Kind::Comma).is_none() {
-            break;
+            if !lacks_comma(input) {
+                break;
+            }
+            mistake::missing_comma(input);
         }
     }
     close(input, Kind::CloseParen, opened)?;
     input.leave();
     input.state().height = height;
     Ok(arguments)
+}
+
+/// Whether one more argument stands here, and only the `,` before it is missing: the call is
+/// closed before the statement ends.
+fn lacks_comma(input: &mut In<'_, '_, '_>) -> bool {
+    if !matches!(input.kind(), Kind::Name | Kind::Integer | Kind::Real | Kind::Time | Kind::True | Kind::False) {
+        return false;
+    }
+    let (mut depth, mut ahead) = (0usize, 0);
+    loop {
+        match input.kind_ahead(ahead) {
+            Kind::OpenParen => depth += 1,
+            Kind::CloseParen if depth == 0 => return true,
+            Kind::CloseParen => depth -= 1,
+            Kind::Semicolon | Kind::Then | Kind::Do | Kind::Of => return false,
+            kind if super::recover::ends_statements(kind) => return false,
+            _ => {}
+        }
+        ahead += 1;
+    }
 }
 
 /// None for `IN :=` without a value, which vendors' editors write for a pin that is left out.
@@ -295,8 +351,9 @@ fn atom<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
             input.take();
             ExprKind::Address(Name { text: input.text(span), span })
         }
+        Kind::Dot if habit::point_first(input) => ExprKind::Error(Vec::new()),
         _ => match literal::untyped(input, None) {
-            Some(literal) => ExprKind::Literal(literal),
+            Some(literal) => return Ok(Expr { kind: ExprKind::Literal(literal), span: span.to(input.last()) }),
             None => return Err(input.problem(Expected::Expression)),
         },
     };

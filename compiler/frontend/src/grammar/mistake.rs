@@ -16,8 +16,11 @@ use super::{
 pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
     let found = input.state().tokens.kinds.get(problem.at).copied().unwrap_or(Kind::End);
     // The lexer has spoken about those.
-    let known = matches!(found, Kind::Unknown) || (found == Kind::End && input.state().tokens.cut);
-    if problem.expected == Expected::Reported || known {
+    let known = matches!(found, Kind::Unknown | Kind::OpenText) || (found == Kind::End && input.state().tokens.cut);
+    if problem.expected == Expected::Reported || known || behind_text(input, problem.at) {
+        return;
+    }
+    if found == Kind::End && std::mem::replace(&mut input.state().ended, true) {
         return;
     }
     let mut span = input.state().place(problem.at);
@@ -27,9 +30,13 @@ pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
     let shown = shown(input, found, span);
     let it = match (problem.expected, found.keyword()) {
         (Expected::Name, Some(word)) if !recover::ends_statements(found) => {
-            Diagnostic::new(Code::E0016, span, format!("`{word}` is a reserved word and cannot be a name"))
-                .label("expected a name")
-                .help("choose another name")
+            let own = input.text(span);
+            super::names::reserved(span, word, own)
+        }
+        (Expected::Expression, Some(word)) if recover::opens_statement(found) => {
+            Diagnostic::new(Code::E0001, span, format!("{word} is a statement, and has no value"))
+                .label("expected an expression")
+                .help("assign in its branches, or choose a value with `SEL(condition, value_if_false, value_if_true)`")
         }
         (Expected::Block, _) => {
             Diagnostic::new(Code::E0001, span, format!("expected {}, found {shown}", said(problem.expected)))
@@ -40,6 +47,8 @@ pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
             Diagnostic::new(Code::E0001, span, format!("expected {}, found {shown}", said(problem.expected)))
                 .label(format!("expected {end} before this"))
                 .other(open, format!("this is closed by {end}"))
+                .help(format!("write {end} here"))
+                .fix(behind(input, problem.at), bracket(end))
         }
         (expected, _) => {
             let expected = said(expected);
@@ -48,6 +57,20 @@ pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
         }
     };
     input.report(it);
+}
+
+/// `'it's late'`: what follows the second quote is a part of the text, and the third has no partner.
+fn behind_text(input: &mut In<'_, '_, '_>, at: usize) -> bool {
+    let Some(before) = at.checked_sub(1) else { return false };
+    let state = input.state();
+    let text = state.tokens.kinds.get(before) == Some(&Kind::Text);
+    if !text || state.place(before).end != state.place(at).start {
+        return false;
+    }
+    let from = state.place(at).end;
+    let quotes = state.tokens.kinds.iter().zip(&state.tokens.places).skip(at);
+    let open = quotes.into_iter().find(|(kind, _)| matches!(kind, Kind::OpenText | Kind::Semicolon | Kind::End));
+    open.is_some_and(|(kind, place)| *kind == Kind::OpenText && !state.breaks(from, place.0))
 }
 
 fn said(expected: Expected) -> String {
@@ -84,6 +107,25 @@ fn shown(input: &mut In<'_, '_, '_>, kind: Kind, span: Span) -> String {
     if own && text.len() <= 40 { format!("`{text}`") } else { kind.to_string() }
 }
 
+/// The empty place behind the token before the one at `at`.
+fn behind(input: &mut In<'_, '_, '_>, at: usize) -> Span {
+    let last = input.state().place(at.saturating_sub(1));
+    Span { start: last.end, ..last }
+}
+
+fn bracket(end: Kind) -> &'static str {
+    if end == Kind::CloseBracket { "]" } else { ")" }
+}
+
+/// `word` with spaces where it would touch what stands beside `span`, which it replaces.
+fn padded(input: &mut In<'_, '_, '_>, span: Span, word: &str) -> String {
+    let text = input.state().text;
+    let before = text[..index(span.start)].chars().next_back();
+    let after = text[index(span.end)..].chars().next();
+    let space = |it: Option<char>| if it.is_some_and(|it| !it.is_whitespace()) { " " } else { "" };
+    format!("{}{word}{}", space(before), space(after))
+}
+
 /// Directly behind the token before the current one.
 fn behind_last(input: &mut In<'_, '_, '_>) -> Span {
     let last = input.last();
@@ -105,7 +147,8 @@ fn swallowed(input: &mut In<'_, '_, '_>) -> bool {
 }
 
 pub fn missing_semicolon(input: &mut In<'_, '_, '_>) {
-    if swallowed(input) {
+    // At the end of the file the block around is not closed either, which is said once.
+    if swallowed(input) || input.kind() == Kind::End {
         return;
     }
     let (span, place) = (behind_last(input), insertion(input));
@@ -122,8 +165,15 @@ pub fn missing_semicolon(input: &mut In<'_, '_, '_>) {
 
 /// THEN, DO or OF. Another of them in its place is taken for it.
 pub fn missing_word(input: &mut In<'_, '_, '_>, word: Kind, opened: Span) {
-    if swallowed(input) {
+    if swallowed(input) || input.kind() == Kind::End {
         return;
+    }
+    super::habit::extra_brackets(input, word);
+    if input.eat(word).is_some() {
+        return;
+    }
+    if input.kind() == Kind::Semicolon && input.kind_ahead(1) == word {
+        return extra_semicolon(input, word);
     }
     let opener = input.text(opened).to_ascii_uppercase();
     let kind = input.kind();
@@ -133,10 +183,11 @@ pub fn missing_word(input: &mut In<'_, '_, '_>, word: Kind, opened: Span) {
     let message = format!("expected {word}, found {found}");
     let it = if wrong {
         input.take();
+        let replacement = padded(input, here, word.keyword().unwrap_or_default());
         Diagnostic::new(Code::E0013, here, message)
             .label(format!("expected {word}"))
             .help(format!("write {word} here"))
-            .fix(here, word.keyword().unwrap_or_default())
+            .fix(here, replacement)
     } else {
         let (span, place) = (behind_last(input), insertion(input));
         Diagnostic::new(Code::E0013, span, message)
@@ -144,7 +195,20 @@ pub fn missing_word(input: &mut In<'_, '_, '_>, word: Kind, opened: Span) {
             .help(format!("write {word} here"))
             .fix(place, format!(" {}", word.keyword().unwrap_or_default()))
     };
-    input.report(it.other(opened, format!("this {opener} needs a {}", word.keyword().unwrap_or_default())));
+    let word = word.keyword().unwrap_or_default();
+    input.report(it.other(opened, format!("this {opener} needs {}", crate::key::article(word))));
+}
+
+/// `IF a; THEN`
+fn extra_semicolon(input: &mut In<'_, '_, '_>, word: Kind) {
+    let span = input.take();
+    input.take();
+    input.report(
+        Diagnostic::new(Code::E0013, span, format!("expected {word}, found `;`"))
+            .label("the condition goes on to the next word")
+            .help("delete this `;`")
+            .fix(span, ""),
+    );
 }
 
 pub fn missing_end(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
@@ -156,14 +220,37 @@ pub fn missing_end(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
     let mut here = input.here();
     let found = shown(input, kind, here);
     if kind == Kind::End {
+        if std::mem::replace(&mut input.state().ended, true) {
+            return;
+        }
         here = input.last();
     }
     let close = end.keyword().unwrap_or_default();
+    let outer: Vec<_> = input.state().open.iter().rev().map(|(end, _)| end.to_string()).collect();
+    let help = if kind == Kind::End && !outer.is_empty() {
+        format!("the file ends too early: write `{close}`, then {}", outer.join(", then "))
+    } else {
+        format!("write `{close}` where the {opener} ends")
+    };
     input.report(
         Diagnostic::new(Code::E0014, here, format!("expected {end}, found {found}"))
             .label(format!("expected {end} before this"))
             .other(opened, format!("this {opener} is not closed"))
-            .help(format!("write `{close}` where the {opener} ends")),
+            .help(help),
+    );
+}
+
+/// `WHILE … END_IF`
+pub fn wrong_end(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
+    let here = input.here();
+    let found = input.kind();
+    let opener = input.text(opened).to_ascii_uppercase();
+    input.report(
+        Diagnostic::new(Code::E0014, here, format!("expected {end}, found {found}"))
+            .label(format!("expected {end}"))
+            .other(opened, format!("this {opener} is closed by {end}"))
+            .help(format!("write {end}"))
+            .fix(here, end.keyword().unwrap_or_default()),
     );
 }
 
@@ -311,20 +398,6 @@ pub fn declaration_behind_statements(span: Span) -> Diagnostic {
         .help("move this block to the head of its PROGRAM, FUNCTION_BLOCK or FUNCTION")
 }
 
-/// A POU that is closed by another kind's keyword.
-pub fn wrong_pou_end(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
-    let here = input.here();
-    let found = input.kind();
-    let opener = input.text(opened).to_ascii_uppercase();
-    input.report(
-        Diagnostic::new(Code::E0014, here, format!("expected {end}, found {found}"))
-            .label(format!("expected {end}"))
-            .other(opened, format!("this {opener} is closed by {end}"))
-            .help(format!("write {end}"))
-            .fix(here, end.keyword().unwrap_or_default()),
-    );
-}
-
 pub fn unsupported(span: Span, what: &str) -> Diagnostic {
     Diagnostic::new(Code::E0090, span, format!("{what} is not supported yet"))
 }
@@ -358,20 +431,109 @@ fn misspelt_word(word: &str) -> Option<Kind> {
     WORDS.iter().find(|(it, _)| word.eq_ignore_ascii_case(it)).map(|(_, kind)| *kind)
 }
 
+/// The end that a name stands for, with the kind behind it, and how many tokens that takes:
+/// `ENDIF`, `END_FOOR`, `END IF`.
+pub fn misspelt_end(word: &str, next: Kind) -> Option<(Kind, usize)> {
+    if word.eq_ignore_ascii_case("END") {
+        return misspelt_word(&format!("END{}", next.keyword()?)).map(|kind| (kind, 2));
+    }
+    if let Some(kind) = misspelt_word(word) {
+        return Some((kind, 1));
+    }
+    let ends = word.get(..3).is_some_and(|it| it.eq_ignore_ascii_case("END")) && word.len() > 4;
+    ends.then(|| nearest_of(word, ENDS)).flatten().map(|kind| (kind, 1))
+}
+
+const ENDS: &[Kind] = &[
+    Kind::EndIf,
+    Kind::EndFor,
+    Kind::EndWhile,
+    Kind::EndCase,
+    Kind::EndRepeat,
+    Kind::EndVar,
+    Kind::EndStruct,
+    Kind::EndType,
+    Kind::EndProgram,
+    Kind::EndFunction,
+    Kind::EndFunctionBlock,
+];
+
+const SECTIONS: &[Kind] = &[
+    Kind::VarInput,
+    Kind::VarOutput,
+    Kind::VarInOut,
+    Kind::VarTemp,
+    Kind::VarStat,
+    Kind::VarGlobal,
+    Kind::VarExternal,
+];
+
+const OPENERS: &[Kind] = &[Kind::While, Kind::Repeat, Kind::Case, Kind::For, Kind::If, Kind::Elsif, Kind::Return];
+
+const ITEMS: &[Kind] =
+    &[Kind::Program, Kind::FunctionBlock, Kind::Function, Kind::Type, Kind::Configuration, Kind::VarGlobal];
+
+fn nearest_of(word: &str, kinds: &[Kind]) -> Option<Kind> {
+    let near = crate::key::nearest(word, kinds.iter().filter_map(|it| it.keyword()))?;
+    kinds.iter().copied().find(|it| it.keyword() == Some(near))
+}
+
 /// The misspelt keyword at the current place, and how many tokens it takes: `END IF` has two.
 pub fn misspelt(input: &mut In<'_, '_, '_>) -> Option<(Kind, usize)> {
-    if !input.is_word("END") {
-        let span = input.here();
-        return misspelt_word(input.text(span)).map(|kind| (kind, 1));
+    if input.kind() != Kind::Name {
+        return None;
     }
-    let second = input.kind_ahead(1).keyword()?;
-    misspelt_word(&format!("END{second}")).map(|kind| (kind, 2))
+    let span = input.here();
+    let (word, next) = (input.text(span), input.kind_ahead(1));
+    if let Some(found) = misspelt_end(word, next) {
+        return Some(found);
+    }
+    if word.eq_ignore_ascii_case("END") || (word.eq_ignore_ascii_case("NEXT") && waits_for(input, Kind::EndFor)) {
+        return innermost(input).map(|end| (end, 1));
+    }
+    let section = match word.to_ascii_uppercase().as_str() {
+        "VARIN" | "VAR_IN" | "VARINPUT" | "VAR_INPUTS" => Some(Kind::VarInput),
+        "VAROUT" | "VAR_OUT" | "VAROUTPUT" | "VAR_OUTPUTS" => Some(Kind::VarOutput),
+        "VARINOUT" | "VAR_INOUT" => Some(Kind::VarInOut),
+        "VARS" => Some(Kind::Var),
+        upper if upper.starts_with("VAR") && upper.len() > 4 => nearest_of(word, SECTIONS),
+        _ => None,
+    };
+    if let Some(section) = section.filter(|_| next == Kind::Name) {
+        return Some((section, 1));
+    }
+    let operand = matches!(next, Kind::Name | Kind::Integer | Kind::Not | Kind::True | Kind::False | Kind::OpenParen);
+    match word.to_ascii_uppercase().as_str() {
+        "SWITCH" | "SELECT" if operand => Some((Kind::Case, 1)),
+        _ if operand => nearest_of(word, OPENERS).map(|kind| (kind, 1)),
+        _ => None,
+    }
+}
+
+fn waits_for(input: &mut In<'_, '_, '_>, end: Kind) -> bool {
+    input.state().open.last().is_some_and(|(it, _)| *it == end)
+}
+
+/// The end of the innermost block of statements.
+fn innermost(input: &mut In<'_, '_, '_>) -> Option<Kind> {
+    input.state().open.last().map(|(end, _)| *end).filter(|it| !recover::is_pou_end(*it))
+}
+
+/// `PROGRM Main`, `FUNCTION BLOCK f`: the keyword that opens an item.
+pub fn misspelt_item(input: &mut In<'_, '_, '_>) -> Option<Kind> {
+    if input.kind() != Kind::Name || input.kind_ahead(1) != Kind::Name {
+        return None;
+    }
+    let span = input.here();
+    nearest_of(input.text(span), ITEMS)
 }
 
 /// Whether a name that stands alone is a misspelt keyword.
 pub fn is_misspelt(target: &Expr<'_>) -> bool {
     let ExprKind::Name(name) = &target.kind else { return false };
-    misspelt_word(name.text).is_some()
+    name.text.eq_ignore_ascii_case("END")
+        || name.text.eq_ignore_ascii_case("NEXT")
+        || misspelt_end(name.text, Kind::Semicolon).is_some()
 }
 
 pub fn misspelt_keyword(input: &mut In<'_, '_, '_>, kind: Kind, span: Span) {
@@ -397,4 +559,107 @@ pub fn missing_colon(input: &mut In<'_, '_, '_>) {
             .help("write `:` here")
             .fix(place, ":"),
     );
+}
+
+/// `w INT;` or `q = INT;` among declarations.
+pub fn missing_type_colon(input: &mut In<'_, '_, '_>) {
+    let found = input.kind();
+    let here = input.here();
+    let shown = shown(input, found, here);
+    let message = format!("expected `:`, found {shown}");
+    if matches!(found, Kind::Equal | Kind::Semicolon) {
+        input.take();
+        input
+            .report(Diagnostic::new(Code::E0001, here, message).label("expected `:`").help("write `:`").fix(here, ":"));
+        return;
+    }
+    let (span, place) = (behind_last(input), insertion(input));
+    input.report(
+        Diagnostic::new(Code::E0001, span, message)
+            .label("a `:` is missing behind this")
+            .help("write `:` here")
+            .fix(place, " :"),
+    );
+}
+
+/// `INT x;`
+pub fn type_first(input: &mut In<'_, '_, '_>, ty: Span, name: Span) {
+    let meant = format!("{} : {}", input.text(name), input.text(ty));
+    let whole = ty.to(name);
+    input.report(
+        Diagnostic::new(Code::E0001, whole, "the name stands before the type")
+            .label("expected a name, `:` and a type")
+            .help(format!("write `{meant}`"))
+            .fix(whole, meant),
+    );
+}
+
+/// `my var : INT;`
+pub fn name_of_two_words(input: &mut In<'_, '_, '_>, first: Span, second: Span) {
+    let meant = format!("{}_{}", input.text(first), input.text(second));
+    let whole = first.to(second);
+    input.report(
+        Diagnostic::new(Code::E0001, whole, "a name is one word")
+            .label("two words")
+            .help(format!("write `{meant}`"))
+            .fix(whole, meant),
+    );
+}
+
+/// `MAX(1 2)`
+pub fn missing_comma(input: &mut In<'_, '_, '_>) {
+    let (span, place) = (behind_last(input), insertion(input));
+    let kind = input.kind();
+    let here = input.here();
+    let found = shown(input, kind, here);
+    input.report(
+        Diagnostic::new(Code::E0001, span, format!("expected `,`, found {found}"))
+            .label("a `,` is missing behind this")
+            .help("write `,` here")
+            .fix(place, ","),
+    );
+}
+
+/// `a : INT;` among statements; `closed` where an END_VAR stands behind such declarations.
+pub fn stray_declaration(input: &mut In<'_, '_, '_>, span: Span, closed: bool) {
+    let it = Diagnostic::new(Code::E0017, span, "this declaration stands outside of VAR … END_VAR");
+    let text = input.text(span);
+    input.report(if closed {
+        it.label("expected `VAR` before this").help("write `VAR` here").fix(Span { end: span.start, ..span }, "VAR ")
+    } else {
+        it.label("only statements stand here").help(format!("write `VAR {text} END_VAR` before the first statement"))
+    });
+}
+
+/// A VAR block or a statement outside of all units.
+pub fn outside_of_units(span: Span, statements: bool) -> Diagnostic {
+    let it = Diagnostic::new(Code::E0001, span, "this belongs to no unit of the program")
+        .label("no PROGRAM, FUNCTION_BLOCK or FUNCTION is open here");
+    if statements {
+        it.help("write `PROGRAM Main` before it, and `END_PROGRAM` behind it")
+    } else {
+        it.help("write `VAR_GLOBAL` for global variables, or `PROGRAM Main` before it")
+    }
+}
+
+/// `FUNCTION f(x : INT) : INT`
+pub fn parameters_in_head(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0020, span, "parameters stand in VAR_INPUT, not in parentheses")
+        .label("expected no parentheses")
+        .help("write `VAR_INPUT x : INT; END_VAR` on the next line")
+}
+
+/// `else:`
+pub fn colon_behind_else(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, span, "no `:` stands behind the ELSE of an IF")
+        .label("delete this")
+        .help("delete it")
+        .fix(span, "")
+}
+
+/// `ARRAY[10]`, `ARRAY[1:3]`, `ARRAY(1..3)`, `INT[10]`.
+pub fn array_bounds(span: Span, found: &str) -> Diagnostic {
+    let it = Diagnostic::new(Code::E0001, span, "an array's bounds are its first and its last index")
+        .label(format!("expected `..`, found {found}"));
+    it.help("write `ARRAY[0..9] OF INT` for ten elements")
 }

@@ -7,10 +7,10 @@ use crate::{
 };
 
 use super::{
-    declaration, doc,
+    balance, declaration, doc,
     expression::{close, expression},
     mistake,
-    moves::{Expected, In, Moves, Parsed, Problem},
+    moves::{Expected, In, Moves, Parsed, Problem, Start},
     recover,
 };
 
@@ -32,7 +32,13 @@ pub fn type_spec<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeSpec<'s>> {
 fn array<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeKind<'s>> {
     let opened = input.take();
     let bracket = input.number();
-    input.expect(Kind::OpenBracket)?;
+    let round = input.kind() == Kind::OpenParen;
+    if round {
+        let span = input.take();
+        input.report(mistake::array_bounds(span, "`(`"));
+    } else {
+        input.expect(Kind::OpenBracket)?;
+    }
     let mut bounds = Vec::with_capacity(1);
     loop {
         bounds.push(bound(input)?);
@@ -40,29 +46,43 @@ fn array<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeKind<'s>> {
             break;
         }
     }
-    close(input, Kind::CloseBracket, bracket)?;
+    close(input, if round { Kind::CloseParen } else { Kind::CloseBracket }, bracket)?;
     if input.eat(Kind::Of).is_none() {
         mistake::missing_word(input, Kind::Of, opened);
     }
     let element = Box::new(type_spec(input)?);
-    Ok(TypeKind::Array { bounds, element })
+    // Bounds that did not parse make a type that is not known.
+    match bounds.into_iter().collect() {
+        Some(bounds) => Ok(TypeKind::Array { bounds, element }),
+        None => Ok(TypeKind::Error),
+    }
 }
 
-fn bound<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Bound<'s>> {
+/// None for `10` and `1:3`, which are reported.
+fn bound<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Bound<'s>>> {
     if let Some(span) = input.eat(Kind::Star) {
-        return Ok(Bound::Open(span));
+        return Ok(Some(Bound::Open(span)));
     }
     let low = expression(input)?;
-    input.expect(Kind::DotDot)?;
-    Ok(Bound::Range(low, expression(input)?))
+    let kind = input.kind();
+    if input.eat(Kind::DotDot).is_some() {
+        return Ok(Some(Bound::Range(low, expression(input)?)));
+    }
+    if !matches!(kind, Kind::Colon | Kind::Comma | Kind::CloseBracket | Kind::CloseParen) {
+        return Err(input.problem(Expected::Token(Kind::DotDot)));
+    }
+    let here = input.here();
+    input.report(mistake::array_bounds(if kind == Kind::Colon { here } else { low.span }, &kind.to_string()));
+    if input.eat(Kind::Colon).is_some() {
+        expression(input)?;
+    }
+    Ok(None)
 }
 
 fn structure<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeKind<'s>> {
     let opened = input.take();
     let fields = declaration::list(input, Kind::EndStruct, opened);
-    if input.eat(Kind::EndStruct).is_none() {
-        mistake::missing_end(input, Kind::EndStruct, opened);
-    }
+    balance::close_block(input, Kind::EndStruct, opened);
     Ok(TypeKind::Struct(fields))
 }
 
@@ -75,7 +95,11 @@ fn enumeration<'s>(input: &mut In<'_, '_, 's>, base: Option<Name<'s>>) -> Parsed
         let first = input.number();
         let name = input.name()?;
         let value = if assign(input) { Some(expression(input)?) } else { None };
-        let more = input.eat(Kind::Comma).is_some();
+        let mut more = input.eat(Kind::Comma).is_some();
+        if !more && input.kind() == Kind::Name {
+            mistake::missing_comma(input);
+            more = true;
+        }
         values.push(EnumValue { name, value, doc: doc::comment(input, first) });
         if !more {
             break;
@@ -102,11 +126,33 @@ fn named<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeKind<'s>> {
     if input.kind() == Kind::OpenParen {
         return refined(input, name);
     }
+    if input.kind() == Kind::OpenBracket && matches!(input.kind_ahead(1), Kind::Integer | Kind::Name) {
+        return sized(input, name);
+    }
     let mut path = vec![name];
     while input.eat(Kind::Dot).is_some() {
         path.push(input.name()?);
     }
     Ok(TypeKind::Named(path))
+}
+
+/// `INT[10]`, as other languages write an array.
+fn sized<'s>(input: &mut In<'_, '_, 's>, element: Name<'s>) -> Parsed<TypeKind<'s>> {
+    let opened = input.number();
+    input.take();
+    bound_or_length(input)?;
+    let end = close(input, Kind::CloseBracket, opened)?;
+    let it = mistake::array_bounds(element.span.to(end), "a length behind the type");
+    input.report(it);
+    Ok(TypeKind::Error)
+}
+
+fn bound_or_length(input: &mut In<'_, '_, '_>) -> Parsed<()> {
+    expression(input)?;
+    if input.eat(Kind::DotDot).is_some() {
+        expression(input)?;
+    }
+    Ok(())
 }
 
 /// REF_TO, POINTER TO, REFERENCE TO and UNION are words only here.
@@ -299,18 +345,33 @@ pub fn types<'s>(input: &mut In<'_, '_, 's>) -> Vec<TypeDecl<'s>> {
                     break;
                 }
             }
-            _ => match type_decl(input) {
-                Ok(it) => types.push(it),
-                Err(problem) => recover::declaration(input, problem, start),
-            },
+            _ => types.extend(type_decl_or_name(input, start)),
         }
     }
     input.state().open.pop();
-    if input.eat(Kind::EndType).is_none() {
-        mistake::missing_end(input, Kind::EndType, opened);
-    }
+    balance::close_block(input, Kind::EndType, opened);
     input.eat(Kind::Semicolon);
     types
+}
+
+/// A type, or the name of one that does not parse, with all names in it: they may be enumerators.
+fn type_decl_or_name<'t, 'p, 's>(input: &mut In<'t, 'p, 's>, start: Start<'t, 'p>) -> Option<TypeDecl<'s>> {
+    let (first, from) = (input.number(), input.here());
+    let named = input.kind() == Kind::Name;
+    let name = Name { text: input.text(from), span: from };
+    let problem = match type_decl(input) {
+        Ok(it) => return Some(it),
+        Err(problem) => problem,
+    };
+    if !recover::declaration(input, problem, start) || !named {
+        return None;
+    }
+    let ty = TypeSpec { kind: TypeKind::Error, span: from.to(input.last()) };
+    let last = input.number();
+    let state = input.state();
+    let names = (first + 1..last).filter(|at| state.tokens.kinds[*at] == Kind::Name).map(|at| state.place(at));
+    let unread = names.map(|span| Name { text: state.slice(span), span }).collect();
+    Some(TypeDecl { name, ty, initial: None, doc: None, unread })
 }
 
 fn type_decl<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeDecl<'s>> {
@@ -321,12 +382,17 @@ fn type_decl<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeDecl<'s>> {
         input.report(mistake::unsupported(span, "EXTENDS"));
         input.name()?;
     }
-    input.expect(Kind::Colon)?;
+    if input.eat(Kind::Colon).is_none() {
+        if !matches!(input.kind(), Kind::Struct | Kind::OpenParen | Kind::Array | Kind::Equal | Kind::Semicolon) {
+            return Err(input.problem(Expected::Token(Kind::Colon)));
+        }
+        mistake::missing_type_colon(input);
+    }
     let ty = type_spec(input)?;
     let initial = optional_initial(input)?;
     let closed = matches!(ty.kind, TypeKind::Struct(_) | TypeKind::Unsupported("UNION"));
     if !closed || input.kind() == Kind::Semicolon {
         declaration::end(input)?;
     }
-    Ok(TypeDecl { name, ty, initial, doc: doc::comment(input, first) })
+    Ok(TypeDecl { name, ty, initial, doc: doc::comment(input, first), unread: Vec::new() })
 }
