@@ -171,7 +171,9 @@ impl<'s> Reading<'s> {
         let quote = &self.slice(place)[..1];
         let it = Diagnostic::new(Code::E0004, self.span(place), "the string is not closed on its line")
             .label(format!("this {quote} has no partner"))
-            .help(format!("write {quote} where the string ends; a line break inside a string is `$N`"));
+            .help(format!(
+                "write {quote} where the string ends; inside a string `${quote}` is a quote, `$N` a line break"
+            ));
         self.tokens.diagnostics.push(it);
         self.push(Kind::OpenText, place);
     }

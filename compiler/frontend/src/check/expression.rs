@@ -42,6 +42,10 @@ impl<'s> Checker<'_, 's> {
                 .label("expected BOOL");
             if matches!(found, Type::Elementary(it) if it.lane().is_integer()) && !text.contains(' ') {
                 error = error.help(format!("compare it: `{text} <> 0`")).fix(expr.span, format!("{text} <> 0"));
+            } else if let Type::Block(id) = found
+                && id.info().pin("Q").is_some()
+            {
+                error = error.help(format!("ask its output: `{text}.Q`")).fix(expr.span, format!("{text}.Q"));
             }
             self.report(error);
             return None;

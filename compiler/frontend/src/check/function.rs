@@ -204,11 +204,12 @@ impl<'s> Checker<'_, 's> {
         }
         if values.len() < names.len() {
             let count = names.len();
+            let least = if shape.extensible { "at least " } else { "" };
             self.report(
                 Diagnostic::new(
                     Code::E0302,
                     span,
-                    format!("`{}` takes {}, {} given", name.text, super::call::plural(count), values.len()),
+                    format!("`{}` takes {}{}, {} given", name.text, least, super::call::plural(count), values.len()),
                 )
                 .label(format!("expected {}", names.join(", "))),
             );

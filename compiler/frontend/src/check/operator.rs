@@ -133,7 +133,9 @@ impl<'s> Checker<'_, 's> {
             .label(wants.to_owned())
             .other(sides.left, format!("this is {a}"))
             .other(sides.right, format!("this is {b}"));
-        if let (Some(Type::Elementary(a)), Some(Type::Elementary(b))) = (sides.a.ty(), sides.b.ty()) {
+        if let Some(help) = self.help_for_sides(sides) {
+            error = error.help(help);
+        } else if let (Some(Type::Elementary(a)), Some(Type::Elementary(b))) = (sides.a.ty(), sides.b.ty()) {
             let bits = [a, b].into_iter().find(|it| it.is_bits() && *it != Elementary::Bool);
             error = match bits {
                 Some(bits) => error.help(format!(
@@ -145,6 +147,29 @@ impl<'s> Checker<'_, 's> {
             };
         }
         self.report(error);
+    }
+
+    /// What to write instead of an operator that a type does not have.
+    fn help_for_sides(&self, sides: &Sides) -> Option<String> {
+        let text = |span| self.decl.sources.text(span);
+        let (a, b) = (text(sides.left), text(sides.right));
+        match (sides.a.ty(), sides.b.ty()) {
+            (Some(Type::String(_)), Some(Type::String(_))) if matches!(sides.op, BinaryOp::Add | BinaryOp::And) => {
+                Some(format!("write `CONCAT({a}, {b})`"))
+            }
+            (Some(ty @ Type::Enum(_)), None) | (None, Some(ty @ Type::Enum(_))) => {
+                Some(format!("name a member: {}", self.members(ty)?))
+            }
+            (Some(Type::Enum(_)), Some(Type::Elementary(it))) if it.is_integer() => {
+                Some(format!("write `TO_{}({a})`", it.name()))
+            }
+            (Some(Type::Elementary(it)), Some(Type::Enum(_))) if it.is_integer() => {
+                Some(format!("write `TO_{}({b})`", it.name()))
+            }
+            (Some(Type::Elementary(it)), None) if it.is_time() => Some(format!("write the unit: `T#{b}ms`")),
+            (None, Some(Type::Elementary(it))) if it.is_time() => Some(format!("write the unit: `T#{a}ms`")),
+            _ => None,
+        }
     }
 
     fn compare(&mut self, sides: Sides) -> Option<Expr> {

@@ -179,6 +179,16 @@ impl<'s> Checker<'_, 's> {
         if self.is_refused_member(id, name) {
             return None;
         }
+        if let Some(declared) = self.in_out_of(id, name) {
+            let owner = self.type_name(found.place.ty);
+            self.report(
+                Diagnostic::new(Code::E0109, name.span, format!("`{}` is a VAR_IN_OUT of `{owner}`", name.text))
+                    .label("it stands for a variable of the caller, during a call only")
+                    .other(declared, "declared here")
+                    .help(format!("use the variable that the call is given: `{} := variable`", name.text)),
+            );
+            return None;
+        }
         let fields = &self.decl.program.structure(id).fields;
         let at = fields.iter().position(|it| it.name.eq_ignore_ascii_case(name.text));
         let Some(at) = at else {
@@ -208,6 +218,16 @@ impl<'s> Checker<'_, 's> {
             _ => found.access,
         };
         Some(Found { place: found.place.field(FieldId::next(at), ty), range, access })
+    }
+
+    /// Where the VAR_IN_OUT `name` of an instance is declared.
+    fn in_out_of(&mut self, id: StructId, name: ast::Name<'s>) -> Option<Span> {
+        let slot = self.decl.slot_of_instance(id)?;
+        let signature = self.decl.signature(slot)?;
+        let is_meant = |it: &&crate::declare::Formal<'s>| {
+            it.section == Section::InOut && it.name.text.eq_ignore_ascii_case(name.text)
+        };
+        signature.formals.iter().find(is_meant).map(|it| it.name.span)
     }
 
     /// Whether the member was declared, but refused.

@@ -293,6 +293,7 @@ impl<'s> Declarations<'s> {
     }
 
     fn collect_globals(&mut self, block: &'s ast::VarBlock<'s>) {
+        self.check_retain_once(block);
         for decl in &block.vars {
             for name in &decl.names {
                 self.enter(*name, Entry::Global(self.globals.len()));

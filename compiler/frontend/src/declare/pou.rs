@@ -188,6 +188,7 @@ impl<'s> Declarations<'s> {
                     .help("declare the variable in VAR RETAIN"),
             );
         }
+        self.check_retain_once(block);
         if block.kind == VarKind::InOut && pou.kind == PouKind::Program {
             self.report(
                 Diagnostic::new(Code::E0403, block.span, "a PROGRAM has no VAR_IN_OUT")
@@ -201,13 +202,15 @@ impl<'s> Declarations<'s> {
             self.error(Code::E0403, span, "an output cannot be CONSTANT");
         }
         if block.kind == VarKind::Global {
+            let kind = match pou.kind {
+                PouKind::Program => "PROGRAM",
+                PouKind::Function => "FUNCTION",
+                PouKind::FunctionBlock => "FUNCTION_BLOCK",
+            };
             self.report(
-                Diagnostic::new(
-                    Code::E0403,
-                    block.span,
-                    "VAR_GLOBAL stands outside of PROGRAM, FUNCTION and FUNCTION_BLOCK",
-                )
-                .help("move the block to file level, or into a CONFIGURATION"),
+                Diagnostic::new(Code::E0403, block.span, format!("a {kind} has no VAR_GLOBAL"))
+                    .label(format!("expected VAR: its variables belong to the {kind} `{}`", pou.name.text))
+                    .help(format!("write `VAR`, or move the block above the {kind}, to where the file's units stand")),
             );
         }
     }
@@ -272,8 +275,12 @@ impl<'s> Declarations<'s> {
                     )
                     .label(format!("declared as {ours} here"))
                     .other(global.name.span, "the global variable")
+                    .help(format!("write `{} : {found}`", name.text))
                     .fix(decl.ty.span, found),
                 );
+                // Which of the two types is meant is not known: no use of it is judged.
+                builder.refuse(*name);
+                continue;
             }
             let variable = Variable { name: *name, section: Section::External, ..global };
             let scope = Rc::get_mut(&mut builder.scope).expect("no one else holds the scope between declarations");

@@ -443,6 +443,15 @@ this a lint, since real code does it.
     E0509 Error "FOR step is 0"
 "A FOR loop with the step 0 would never end.
 ";
+    E0510 Error "empty range of CASE labels"
+"A range of labels goes from its lower to its higher value; the other way round it holds none, and its branch is
+never chosen.
+
+    CASE step OF
+        5..3: next := 1;      (* before *)
+        3..5: next := 1;      (* after *)
+    END_CASE
+";
     E0901 Error "too large"
 "Variables are laid out in one block of memory, which may take 1 GiB. An array has at most 64 dimensions,
 and all initial values together hold at most 1048576 constants; a repeated one counts once.
