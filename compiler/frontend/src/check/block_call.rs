@@ -354,7 +354,7 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let found = self.place(expr)?;
-        self.writable(&found, expr.span).then_some(found)
+        self.may_be_given_away(&found, expr.span).then_some(found)
     }
 
     /// A Logix instruction on a structure: returns its rung-condition-out.

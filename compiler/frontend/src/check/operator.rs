@@ -196,6 +196,7 @@ impl<'s> Checker<'_, 's> {
             }
             _ => {
                 let equality = matches!(op, Op::Eq | Op::Ne);
+                self.always_the_same(&sides);
                 let (ty, a, b) = self.meet(sides, |_, _| true, "both sides need one type that can be compared")?;
                 if ty.is_real() && equality {
                     self.report(

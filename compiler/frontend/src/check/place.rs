@@ -5,7 +5,9 @@ use crate::declare::{Entry, Variable};
 use crate::key::{Key, nearest};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::ExprKind as Ast;
-use staunch_ir::{ArrayId, BlockId, Elementary, Expr, FieldId, Op, Place, Section, StructId, Type, Value};
+use staunch_ir::{
+    Address, Area, ArrayId, BlockId, Elementary, Expr, FieldId, Op, Place, Section, StructId, Type, Value,
+};
 use staunch_runtime::Direction;
 
 /// A place, and what may be done with it.
@@ -348,6 +350,37 @@ impl<'s> Checker<'_, 's> {
 
     /// Refuses a write where the place may not be written.
     pub(super) fn writable(&mut self, found: &Found<'s>, span: Span) -> bool {
+        self.may_be_given_away(found, span) && self.is_no_input_address(&found.place, span)
+    }
+
+    /// Reports an assignment to what the hardware sets before each scan.
+    fn is_no_input_address(&mut self, place: &Place, span: Span) -> bool {
+        let Some(address) = self.address_of(place).filter(|it| it.area == Area::Input) else { return true };
+        let refused = self.decl.dialect(span).protects_inputs();
+        let code = if refused { Code::E0511 } else { Code::W0509 };
+        self.report(
+            Diagnostic::new(code, span, format!("this assigns to the input address `{address}`"))
+                .label("the next scan's input overwrites it")
+                .help("assign to a variable without an address, or to an output, `%Q`"),
+        );
+        !refused
+    }
+
+    /// The direct address of the variable that a place is, or is a part of.
+    fn address_of(&self, place: &Place) -> Option<Address> {
+        let Some(staunch_ir::Projection::Field(field)) = place.projections.first() else { return None };
+        match place.root {
+            staunch_ir::Root::Globals => self.decl.address_of_global(*field),
+            staunch_ir::Root::Instance => {
+                let state = self.signature.as_ref()?.state?;
+                self.decl.program.structure(state).fields.get(field.index())?.address
+            }
+            staunch_ir::Root::Local(_) | staunch_ir::Root::Param(_) => None,
+        }
+    }
+
+    /// Whether a place may be given to a call that may write to it.
+    pub(super) fn may_be_given_away(&mut self, found: &Found<'s>, span: Span) -> bool {
         if self.is_counter(&found.place) {
             return self.report_counter(span);
         }

@@ -415,6 +415,14 @@ impl<'s> Declarations<'s> {
         self.instances.get(&id).copied()
     }
 
+    /// The direct address of a field of the globals.
+    pub fn address_of_global(&self, field: staunch_ir::FieldId) -> Option<staunch_ir::Address> {
+        match self.globals.get(field.index()) {
+            Some(global) => address::parse(global.decl.address?.text),
+            None => self.hidden.address_of(field.index() - self.globals.len()),
+        }
+    }
+
     /// The standard block that a bare `name` means where `span` stands.
     pub fn bare_block(&self, name: &str, span: Span) -> Option<staunch_ir::BlockId> {
         let dialect = self.dialect(span);

@@ -242,6 +242,10 @@ impl<'s> Declarations<'s> {
             );
         }
         self.check_retain(block, resolved.ty, decl.span);
+        let starts_anew = block.kind == VarKind::Temp || (pou.kind == PouKind::Function && block.kind == VarKind::Var);
+        if starts_anew && let Some(id) = self.remembers(resolved.ty) {
+            self.forgets(pou, decl, id);
+        }
         for name in &decl.names {
             let Some(place) = self.place_variable(pou, block, decl, *name, &resolved, builder) else {
                 builder.refuse(*name);
@@ -254,6 +258,40 @@ impl<'s> Declarations<'s> {
             let scope = Rc::get_mut(&mut builder.scope).expect("no one else holds the scope between declarations");
             self.enter_variable(scope, variable);
         }
+    }
+
+    /// The standard block in a type: it works with what it remembers of earlier calls.
+    fn remembers(&self, ty: Type) -> Option<BlockId> {
+        match ty {
+            Type::Block(id) => Some(id),
+            Type::Array(id) => self.remembers(self.program.array(id).element),
+            Type::Struct(id) => self.program.structure(id).fields.iter().find_map(|it| self.remembers(it.ty)),
+            Type::Elementary(_) | Type::String(_) | Type::Enum(_) => None,
+        }
+    }
+
+    /// Reports a block whose state does not outlive the call.
+    fn forgets(&mut self, pou: &ast::Pou<'s>, decl: &ast::VarDecl<'s>, id: BlockId) {
+        let info = id.info();
+        let what = if info.pin("PT").is_some() {
+            "its time never passes"
+        } else if info.pin("CV").is_some() || info.pin("ACC").is_some() {
+            "its count is lost"
+        } else if info.pin("CLK").is_some() {
+            "it takes every TRUE for an edge"
+        } else {
+            "its state is lost"
+        };
+        let (place, help) = match pou.kind {
+            PouKind::Function => ("a FUNCTION", "make this a FUNCTION_BLOCK, or take the block as a VAR_IN_OUT"),
+            PouKind::Program | PouKind::FunctionBlock => ("VAR_TEMP", "declare it in VAR"),
+        };
+        let block = crate::key::article(info.name);
+        self.report(
+            Diagnostic::new(Code::W0303, decl.span, format!("{block} in {place} starts anew at each call"))
+                .label(format!("so {what}"))
+                .help(help),
+        );
     }
 
     fn declare_externals(&mut self, decl: &'s ast::VarDecl<'s>, builder: &mut Builder<'s>) {
