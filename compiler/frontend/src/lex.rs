@@ -133,9 +133,13 @@ impl<'s> Reading<'s> {
         let (Some(Kind::Unknown), Some(place)) = (self.tokens.kinds.last(), self.tokens.places.last()) else {
             return;
         };
-        let shown: String = self.slice(*place).chars().take(20).flat_map(char::escape_debug).collect();
+        let place = *place;
+        if self.closes_text(place) {
+            return;
+        }
+        let shown: String = self.slice(place).chars().take(20).flat_map(char::escape_debug).collect();
         let mut it =
-            Diagnostic::new(Code::E0002, self.span(*place), format!("`{shown}` means nothing in Structured Text"));
+            Diagnostic::new(Code::E0002, self.span(place), format!("`{shown}` means nothing in Structured Text"));
         it = match shown.chars().next() {
             Some('‘' | '’' | '‚' | '`') => it.help("a string stands between two `'`"),
             Some('“' | '”' | '„') => it.help("a string stands between two `'`, a WSTRING between two `\"`"),
@@ -149,6 +153,27 @@ impl<'s> Reading<'s> {
             _ => it.label("delete this"),
         };
         self.tokens.diagnostics.push(it);
+    }
+
+    /// `’` behind `‘Mixer`: the pair is one mistake.
+    fn closes_text(&mut self, place: (u32, u32)) -> bool {
+        let Some(opened) = self.tokens.diagnostics.last().map(|it| it.span) else { return false };
+        let whole = (opened.start, place.1);
+        let (open, close) = (self.slice((opened.start, opened.end)), self.slice(place));
+        let pair = matches!((open, close), ("‘" | "‚", "’" | "‘") | ("“" | "„", "”" | "“"));
+        if !pair || self.slice(whole).contains('\n') {
+            return false;
+        }
+        let inner = &self.text[index(opened.end)..index(place.0)];
+        let meant = format!("'{inner}'");
+        self.tokens.diagnostics.pop();
+        self.tokens.diagnostics.push(
+            Diagnostic::new(Code::E0002, self.span(whole), format!("`{open}` and `{close}` mean nothing in Structured Text"))
+                .label("a string stands between two `'`")
+                .help(format!("write `{meant}`"))
+                .fix(self.span(whole), meant),
+        );
+        true
     }
 
     fn name(&mut self, place: (u32, u32)) {

@@ -22,6 +22,10 @@ impl<'s> Checker<'_, 's> {
         match found.place.ty {
             Type::Block(id) => self.standard_block(found, id, arguments, callee.span, span),
             Type::Struct(id) if self.decl.is_instance(id) => self.user_block(found, id, arguments, callee.span, span),
+            Type::Array(_) => {
+                self.report_array_called(callee, arguments);
+                None
+            }
             other => {
                 let ty = self.type_name(other);
                 self.report(

@@ -55,6 +55,10 @@ impl<'s> Checker<'_, 's> {
                 self.operand(expr, None);
                 None
             }
+            Ast::Call(callee, arguments) if self.is_array(callee) => {
+                self.report_array_called(callee, arguments);
+                None
+            }
             Ast::Literal(_) | Ast::Part(..) | Ast::Call(..) | Ast::Unary(..) | Ast::Binary(..) => {
                 self.report(
                     Diagnostic::new(Code::E0306, expr.span, "a variable is expected here").label("this is a value"),
@@ -62,6 +66,28 @@ impl<'s> Checker<'_, 's> {
                 None
             }
         }
+    }
+
+    /// Whether `callee` is the name of an array.
+    fn is_array(&self, callee: &ast::Expr<'s>) -> bool {
+        let Ast::Name(name) = &callee.kind else { return false };
+        self.scope.get(name.text).is_some_and(|it| matches!(it.place.ty, Type::Array(_)))
+    }
+
+    /// `a(1)` for `a[1]`
+    pub(super) fn report_array_called(&mut self, callee: &ast::Expr<'s>, arguments: &[ast::Argument<'s>]) {
+        let text = self.decl.sources.text(callee.span);
+        let index = match arguments {
+            [first, .., last] => self.decl.sources.text(first.span.to(last.span)),
+            [one] => self.decl.sources.text(one.span),
+            [] => "1",
+        };
+        let meant = format!("{text}[{index}]");
+        self.report(
+            Diagnostic::new(Code::E0305, callee.span, format!("the array `{text}` cannot be called"))
+                .label("an element is chosen in brackets")
+                .help(format!("write `{meant}`")),
+        );
     }
 
     /// The variable that a name means; the inner `None` says that it was reported.

@@ -309,7 +309,8 @@ pub fn assign_for_equal(left: &str, sign: Span) -> Diagnostic {
 pub fn foreign_operator(input: &mut In<'_, '_, '_>, kind: Kind, op: BinaryOp, sign: Span) {
     let ours = op.text();
     let replacement = spaced(input, ours, sign);
-    let mut it = Diagnostic::new(Code::E0010, sign, format!("Structured Text writes `{ours}` for {kind}"))
+    let theirs = if kind == Kind::Name { format!("`{}`", input.text(sign)) } else { kind.to_string() };
+    let mut it = Diagnostic::new(Code::E0010, sign, format!("Structured Text writes `{ours}` for {theirs}"))
         .label(format!("expected `{ours}`"))
         .help(format!("write `{ours}`"))
         .fix(sign, replacement);
@@ -657,9 +658,19 @@ pub fn colon_behind_else(span: Span) -> Diagnostic {
         .fix(span, "")
 }
 
-/// `ARRAY[10]`, `ARRAY[1:3]`, `ARRAY(1..3)`, `INT[10]`.
-pub fn array_bounds(span: Span, found: &str) -> Diagnostic {
-    let it = Diagnostic::new(Code::E0001, span, "an array's bounds are its first and its last index")
-        .label(format!("expected `..`, found {found}"));
-    it.help("write `ARRAY[0..9] OF INT` for ten elements")
+/// `ARRAY[10]`, `ARRAY[1:3]`, `ARRAY(1..3)`, `INT[10]`: what is wrong at `span`, and what is meant.
+pub fn array_bounds(span: Span, found: &str, meant: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0001, span, "an array is declared by its first and its last index")
+        .label(format!("expected `[first..last]`, found {found}"))
+        .help(format!("write `{meant}`"))
+}
+
+/// A name alone on its line.
+pub fn name_alone(input: &mut In<'_, '_, '_>, span: Span) {
+    let text = input.text(span);
+    input.report(
+        Diagnostic::new(Code::E0001, span, "expected `:=` or a call behind this")
+            .label("this alone is no statement")
+            .help(format!("to assign, write `{text} := …;`; to call, `{text}(…);`")),
+    );
 }

@@ -257,6 +257,11 @@ fn without_effect<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<St
     if mistake::increment(input, &target) {
         return Err(Problem::REPORTED);
     }
+    let alone = input.on_new_line() || recover::closes(input.kind()) || input.kind() == Kind::End;
+    if alone && !mistake::is_misspelt(&target) && input.text(target.span).len() <= 40 {
+        mistake::name_alone(input, target.span);
+        return Err(Problem::REPORTED);
+    }
     Err(input.problem(Expected::Action))
 }
 

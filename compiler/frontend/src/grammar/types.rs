@@ -35,7 +35,7 @@ fn array<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeKind<'s>> {
     let round = input.kind() == Kind::OpenParen;
     if round {
         let span = input.take();
-        input.report(mistake::array_bounds(span, "`(`"));
+        input.report(mistake::array_bounds(span, "`(`", "ARRAY[1..3] OF INT"));
     } else {
         input.expect(Kind::OpenBracket)?;
     }
@@ -71,11 +71,14 @@ fn bound<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Bound<'s>>> {
     if !matches!(kind, Kind::Colon | Kind::Comma | Kind::CloseBracket | Kind::CloseParen) {
         return Err(input.problem(Expected::Token(Kind::DotDot)));
     }
-    let here = input.here();
-    input.report(mistake::array_bounds(if kind == Kind::Colon { here } else { low.span }, &kind.to_string()));
-    if input.eat(Kind::Colon).is_some() {
-        expression(input)?;
-    }
+    let text = input.text(low.span);
+    let Some(colon) = input.eat(Kind::Colon) else {
+        input.report(mistake::array_bounds(low.span, "one number", &format!("1..{text}")).fix(low.span, format!("1..{text}")));
+        return Ok(None);
+    };
+    let high = expression(input)?;
+    let meant = format!("{text}..{}", input.text(high.span));
+    input.report(mistake::array_bounds(colon, "`:`", &meant).fix(colon, ".."));
     Ok(None)
 }
 
@@ -140,19 +143,17 @@ fn named<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeKind<'s>> {
 fn sized<'s>(input: &mut In<'_, '_, 's>, element: Name<'s>) -> Parsed<TypeKind<'s>> {
     let opened = input.number();
     input.take();
-    bound_or_length(input)?;
+    let length = expression(input)?;
+    let high = if input.eat(Kind::DotDot).is_some() { Some(expression(input)?) } else { None };
     let end = close(input, Kind::CloseBracket, opened)?;
-    let it = mistake::array_bounds(element.span.to(end), "a length behind the type");
-    input.report(it);
+    let bounds = match high {
+        Some(high) => input.text(length.span.to(high.span)).to_owned(),
+        None => format!("1..{}", input.text(length.span)),
+    };
+    let meant = format!("ARRAY[{bounds}] OF {}", element.text);
+    let whole = element.span.to(end);
+    input.report(mistake::array_bounds(whole, "a length behind the type", &meant).fix(whole, meant));
     Ok(TypeKind::Error)
-}
-
-fn bound_or_length(input: &mut In<'_, '_, '_>) -> Parsed<()> {
-    expression(input)?;
-    if input.eat(Kind::DotDot).is_some() {
-        expression(input)?;
-    }
-    Ok(())
 }
 
 /// REF_TO, POINTER TO, REFERENCE TO and UNION are words only here.
