@@ -58,6 +58,9 @@ pub fn parse<'s>(file: u16, text: &'s str, diagnostics: &mut Vec<Diagnostic>) ->
         braces: Vec::new(),
         strays: Vec::new(),
         told_at: None,
+        misaligned: None,
+        orphaned: false,
+        nested: Vec::new(),
         ended: false,
     };
     let items = parse_items(&mut state);

@@ -168,10 +168,14 @@ impl<'s> Reading<'s> {
         let meant = format!("'{inner}'");
         self.tokens.diagnostics.pop();
         self.tokens.diagnostics.push(
-            Diagnostic::new(Code::E0002, self.span(whole), format!("`{open}` and `{close}` mean nothing in Structured Text"))
-                .label("a string stands between two `'`")
-                .help(format!("write `{meant}`"))
-                .fix(self.span(whole), meant),
+            Diagnostic::new(
+                Code::E0002,
+                self.span(whole),
+                format!("`{open}` and `{close}` mean nothing in Structured Text"),
+            )
+            .label("a string stands between two `'`")
+            .help(format!("write `{meant}`"))
+            .fix(self.span(whole), meant),
         );
         true
     }

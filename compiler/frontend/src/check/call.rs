@@ -450,6 +450,7 @@ impl<'s> Checker<'_, 's> {
         match nearest(name.text, names.iter().copied()) {
             Some(near) => error.help(format!("did you mean `{near}`?")).fix(name.span, near),
             None if names.is_empty() => error,
+            None if names.len() == 1 => error.help(format!("its parameter is {}", list(&names))),
             None => error.help(format!("its parameters are {}", list(&names))),
         }
     }

@@ -166,6 +166,20 @@ impl<'s> Checker<'_, 's> {
             (Some(Type::Elementary(it)), Some(Type::Enum(_))) if it.is_integer() => {
                 Some(format!("write `TO_{}({b})`", it.name()))
             }
+            (Some(Type::BOOL), None) if is_junction(sides.op) => {
+                Some(format!("each side of {0} is a comparison of its own: `x = 1 {0} x = 2`", sides.op.text()))
+            }
+            (Some(Type::BOOL), None) if a.contains(['<', '>', '=']) => {
+                Some("join two comparisons: `low < x AND x < high`".to_owned())
+            }
+            (Some(Type::Elementary(it)), None) if it.is_bits() && it != Elementary::Bool && !is_junction(sides.op) => {
+                Some(format!("write `{}`", converted(sides, it, as_number(it).name(), a, b)))
+            }
+            (Some(Type::Elementary(it)), None) if it.is_integer() && is_junction(sides.op) => {
+                let bits = ["BYTE", "WORD", "DWORD", "LWORD"];
+                let bits = bits[usize::try_from(it.lane().size().trailing_zeros()).unwrap_or(0)];
+                Some(format!("write `{}`", converted(sides, it, bits, a, b)))
+            }
             (Some(Type::Elementary(it)), None) if it.is_time() => Some(format!("write the unit: `T#{b}ms`")),
             (None, Some(Type::Elementary(it))) if it.is_time() => Some(format!("write the unit: `T#{a}ms`")),
             _ => None,
@@ -441,4 +455,15 @@ fn arithmetic_op(op: BinaryOp) -> Op {
         BinaryOp::Div => Op::Div,
         _ => Op::Mod,
     }
+}
+
+fn is_junction(op: BinaryOp) -> bool {
+    matches!(op, BinaryOp::And | BinaryOp::Or | BinaryOp::Xor)
+}
+
+/// `INT_TO_WORD(a) AND 1`, and back where the place asks for the type of `a`.
+fn converted(sides: &Sides, ty: Elementary, into: &str, a: &str, b: &str) -> String {
+    let name = ty.name();
+    let value = format!("{name}_TO_{into}({a}) {} {b}", sides.op.text());
+    if sides.hint == Some(Type::Elementary(ty)) { format!("{into}_TO_{name}({value})") } else { value }
 }

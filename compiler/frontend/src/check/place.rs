@@ -60,9 +60,16 @@ impl<'s> Checker<'_, 's> {
                 None
             }
             Ast::Literal(_) | Ast::Part(..) | Ast::Call(..) | Ast::Unary(..) | Ast::Binary(..) => {
-                self.report(
-                    Diagnostic::new(Code::E0306, expr.span, "a variable is expected here").label("this is a value"),
-                );
+                let error =
+                    Diagnostic::new(Code::E0306, expr.span, "a variable is expected here").label("this is a value");
+                let text = self.decl.sources.text(expr.span);
+                let called = matches!(expr.kind, Ast::Call(..)).then(|| text.split('(').next()).flatten();
+                self.report(match called {
+                    Some(name) => {
+                        error.help(format!("call it before, `{name}(…);`, and read its output then: `{name}.…`"))
+                    }
+                    None => error,
+                });
                 None
             }
         }
@@ -283,10 +290,16 @@ impl<'s> Checker<'_, 's> {
         for index in indices {
             let Type::Array(id) = found.place.ty else {
                 let ty = self.type_name(found.place.ty);
-                self.report(
-                    Diagnostic::new(Code::E0302, index.span, format!("{ty} has no index here"))
-                        .label("one index too many, or not an array"),
-                );
+                let error = Diagnostic::new(Code::E0302, index.span, format!("{ty} has no index here"))
+                    .label("one index too many, or not an array");
+                let (text, at) = (self.decl.sources.text(base.span), self.decl.sources.text(index.span));
+                self.report(match found.place.ty {
+                    Type::String(_) => error.help(format!("write `MID({text}, 1, {at})` for one character")),
+                    Type::Elementary(it) if it.is_bits() && it != Elementary::Bool => {
+                        error.help(format!("a bit is written `{text}.{at}`"))
+                    }
+                    Type::Elementary(_) | Type::Enum(_) | Type::Struct(_) | Type::Block(_) | Type::Array(_) => error,
+                });
                 return None;
             };
             let Found { place, access, .. } = found;

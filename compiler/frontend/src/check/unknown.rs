@@ -131,7 +131,19 @@ impl<'s> Checker<'_, 's> {
     fn not_a_variable(&mut self, name: ast::Name<'s>) {
         let error = Diagnostic::new(Code::E0101, name.span, format!("`{}` is not a variable", name.text));
         if !self.lacks_result_type(name) {
-            self.report(error.label("a variable or a value is expected here"));
+            let error = error.label("a variable or a value is expected here");
+            let kind = match self.decl.names.get(&crate::key::Key(name.text)) {
+                Some(crate::declare::Entry::Pou(slot)) => Some(self.decl.pous[*slot].ast.kind),
+                Some(crate::declare::Entry::Type(_) | crate::declare::Entry::Global(_)) | None => None,
+            };
+            self.report(match kind {
+                Some(ast::PouKind::Function) => error.help(format!("call the FUNCTION: `{}(…)`", name.text)),
+                Some(ast::PouKind::FunctionBlock) => {
+                    error.help(format!("declare an instance: `VAR instance : {}; END_VAR`", name.text))
+                }
+                Some(ast::PouKind::Program) => error.help("share the value in a VAR_GLOBAL"),
+                None => error,
+            });
             return;
         }
         if self.signature.as_ref().is_some_and(|it| it.result.is_none() && it.state.is_none()) {

@@ -1,6 +1,9 @@
 //! Which block a closing keyword closes, when the innermost one waits for another.
 
-use crate::lex::{Kind, index};
+use crate::{
+    lex::{Kind, index},
+    source::Span,
+};
 
 use super::{
     mistake,
@@ -98,8 +101,12 @@ fn end_of(kind: Kind) -> Option<Kind> {
 }
 
 /// Takes the end of a block that was opened at `opened`, or reports what stands in its place.
-pub fn close_block(input: &mut In<'_, '_, '_>, end: Kind, opened: crate::source::Span) {
-    if input.eat(end).is_some() || input.state().braced.contains(&opened) {
+pub fn close_block(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
+    if let Some(closed) = input.eat(end) {
+        note_columns(input, opened, closed);
+        return;
+    }
+    if input.state().braced.contains(&opened) {
         return;
     }
     let kind = input.kind();
@@ -110,4 +117,23 @@ pub fn close_block(input: &mut In<'_, '_, '_>, end: Kind, opened: crate::source:
     } else {
         mistake::missing_end(input, end, opened);
     }
+}
+
+/// Keeps the first block whose end stands in another column: if an end is missing, it is there.
+fn note_columns(input: &mut In<'_, '_, '_>, opened: Span, closed: Span) {
+    let state = input.state();
+    if state.misaligned.is_none()
+        && let (Some(first), Some(last)) = (column(state.text, opened), column(state.text, closed))
+        && first != last
+        && state.breaks(opened.end, closed.start)
+    {
+        state.misaligned = Some(opened);
+    }
+}
+
+/// How far in a token stands that is the first on its line.
+fn column(text: &str, span: Span) -> Option<usize> {
+    let before = text.get(..index(span.start))?;
+    let line = &before[before.rfind('\n').map_or(0, |at| at + 1)..];
+    line.trim().is_empty().then_some(line.len())
 }

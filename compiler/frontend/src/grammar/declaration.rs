@@ -159,6 +159,11 @@ pub fn declaration<'s>(input: &mut In<'_, '_, 's>, names: &mut Vec<Name<'s>>) ->
     }
     let ty = type_spec(input)?;
     let edge = edge(input);
+    if input.kind() == Kind::At && input.kind_ahead(1) == Kind::Address {
+        let span = input.take();
+        let span = span.to(input.take());
+        input.report(mistake::address_behind_type(span));
+    }
     let initial = optional_initial(input)?;
     end(input)?;
     let span = start.to(input.last());
@@ -187,7 +192,8 @@ fn lacks_colon(input: &mut In<'_, '_, '_>) -> bool {
             !input.on_new_line() && matches!(next, Kind::Semicolon | Kind::Assign | Kind::OpenParen | Kind::OpenBracket)
         }
         Kind::Array | Kind::Struct => true,
-        Kind::Equal | Kind::Semicolon => matches!(next, Kind::Name | Kind::Array | Kind::Struct),
+        Kind::Equal => matches!(next, Kind::Name | Kind::Array | Kind::Struct),
+        Kind::Semicolon => next == Kind::Name && matches!(input.kind_ahead(2), Kind::Semicolon | Kind::Assign),
         _ => false,
     }
 }
@@ -213,6 +219,17 @@ fn type_before_name<'s>(input: &mut In<'_, '_, 's>, names: &mut Vec<Name<'s>>) -
 /// `AT %IX0.0`
 fn address<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Name<'s>>> {
     if input.eat(Kind::At).is_none() {
+        return Ok(None);
+    }
+    if input.kind() == Kind::Name {
+        let mut span = input.take();
+        while input.eat(Kind::Dot).is_some() || matches!(input.kind(), Kind::Integer | Kind::Real) {
+            let last =
+                if input.kind() == Kind::Integer || input.kind() == Kind::Real { input.take() } else { input.last() };
+            span = span.to(last);
+        }
+        let it = mistake::address_without_sign(span, input.text(span));
+        input.report(it);
         return Ok(None);
     }
     let span = input.expect(Kind::Address)?;

@@ -59,7 +59,22 @@ fn is_foreign(kind: Kind) -> bool {
 /// `a DIV b`
 fn named_division(input: &mut In<'_, '_, '_>) -> Option<(BinaryOp, u8)> {
     let divides = input.is_word("DIV") && matches!(input.kind_ahead(1), Kind::Name | Kind::Integer | Kind::OpenParen);
-    (divides && !input.on_new_line()).then_some((BinaryOp::Div, 7))
+    (divides && !input.on_new_line()).then_some((BinaryOp::Div, 7)).or_else(|| misspelt_operator(input))
+}
+
+/// `a ADN b`, `a ANDTHEN b`: two operands with a word between them that is nearly an operator.
+fn misspelt_operator(input: &mut In<'_, '_, '_>) -> Option<(BinaryOp, u8)> {
+    let operand = matches!(
+        input.kind_ahead(1),
+        Kind::Name | Kind::Integer | Kind::Real | Kind::OpenParen | Kind::Not | Kind::True | Kind::False
+    );
+    if input.kind() != Kind::Name || !operand || input.on_new_line() {
+        return None;
+    }
+    let span = input.here();
+    let words = [Kind::And, Kind::AndThen, Kind::Xor, Kind::OrElse, Kind::Mod];
+    let near = crate::key::nearest(input.text(span), words.iter().filter_map(|it| it.keyword()))?;
+    infix(words.into_iter().find(|it| it.keyword() == Some(near))?)
 }
 
 /// Operands and operators, joined by precedence, from the left. What waits for a right side is on
@@ -72,19 +87,24 @@ pub fn expression<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
         left = reduce(input, left, base, next.map_or(0, |(_, power)| power))?;
         let Some((op, power)) = next else { return Ok(left) };
         let kind = input.kind();
-        let mut sign = input.take();
-        let mut op = op;
-        if is_foreign(kind) {
-            mistake::foreign_operator(input, kind, op, sign);
-        } else if matches!(kind, Kind::Equal | Kind::Less | Kind::Greater) {
-            let Some(second) = habit::second_sign(input, kind, sign) else { return Err(Problem::REPORTED) };
-            (op, sign) = second.unwrap_or((op, sign));
-        }
+        let sign = input.take();
+        let (op, sign) = operator(input, kind, op, sign).inspect_err(|_| input.state().waiting.truncate(base))?;
         let state = input.state();
         let height = state.height;
         state.waiting.push(Waiting { left, height, op, power, sign });
         left = unary(input).inspect_err(|_| input.state().waiting.truncate(base))?;
     }
+}
+
+/// The operator that was taken; one of another language is read as ours, and reported.
+fn operator(input: &mut In<'_, '_, '_>, kind: Kind, op: BinaryOp, sign: Span) -> Parsed<(BinaryOp, Span)> {
+    if is_foreign(kind) {
+        mistake::foreign_operator(input, kind, op, sign);
+    } else if matches!(kind, Kind::Equal | Kind::Less | Kind::Greater) {
+        let Some(second) = habit::second_sign(input, kind, sign) else { return Err(Problem::REPORTED) };
+        return Ok(second.unwrap_or((op, sign)));
+    }
+    Ok((op, sign))
 }
 
 /// Joins what waits for `right` above `base` and binds at least as strongly as `power`.
@@ -172,7 +192,7 @@ fn suffixes<'s>(input: &mut In<'_, '_, 's>, mut expr: Expr<'s>) -> Parsed<Expr<'
             Kind::Dot => member(input, expr)?,
             Kind::OpenBracket => ExprKind::Index(Box::new(expr), indices(input)?),
             Kind::OpenParen => ExprKind::Call(Box::new(expr), arguments(input)?),
-            Kind::Minus if habit::arrow(input) => ExprKind::Member(Box::new(expr), input.name()?),
+            Kind::Minus if habit::arrow(input) => named_member(input, expr)?,
             // Nothing is dereferenced before an operand.
             Kind::Caret if matches!(input.kind_ahead(1), Kind::Integer | Kind::Real | Kind::Name) => break,
             Kind::Caret => {
@@ -197,15 +217,19 @@ fn member<'s>(input: &mut In<'_, '_, 's>, of: Expr<'s>) -> Parsed<ExprKind<'s>> 
             let span = input.take();
             Ok(ExprKind::Part(Box::new(of), Name { text: input.text(span), span }))
         }
-        Kind::Name => Ok(ExprKind::Member(Box::new(of), input.name()?)),
+        Kind::Name => named_member(input, of),
         _ => match of.kind {
             ExprKind::Literal(Literal { value: LiteralValue::Integer { .. }, .. }) => {
                 habit::point_last(input, of.span);
                 Ok(ExprKind::Error(Vec::new()))
             }
-            _ => Ok(ExprKind::Member(Box::new(of), input.name()?)),
+            _ => named_member(input, of),
         },
     }
+}
+
+fn named_member<'s>(input: &mut In<'_, '_, 's>, of: Expr<'s>) -> Parsed<ExprKind<'s>> {
+    Ok(ExprKind::Member(Box::new(of), input.name()?))
 }
 
 fn indices<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Vec<Expr<'s>>> {
@@ -248,10 +272,14 @@ pub fn arguments<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Vec<Argument<'s>>> {
         }
         height = height.max(input.state().height);
         if input.eat(Kind::Comma).is_none() {
-            if !lacks_comma(input) {
+            let semicolon = is_comma_like(input);
+            if !lacks_comma(input, usize::from(semicolon)) {
                 break;
             }
             mistake::missing_comma(input);
+            if semicolon {
+                input.take();
+            }
         }
     }
     close(input, Kind::CloseParen, opened)?;
@@ -260,13 +288,24 @@ pub fn arguments<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Vec<Argument<'s>>> {
     Ok(arguments)
 }
 
+/// `t(IN := x; PT := y)`: a `;` with more on its line.
+fn is_comma_like(input: &mut In<'_, '_, '_>) -> bool {
+    let at = input.number();
+    let state = input.state();
+    let (here, next) = (state.place(at), state.place(at + 1));
+    input.kind() == Kind::Semicolon && !input.state().breaks(here.end, next.start)
+}
+
 /// Whether one more argument stands here, and only the `,` before it is missing: the call is
 /// closed before the statement ends.
-fn lacks_comma(input: &mut In<'_, '_, '_>) -> bool {
-    if !matches!(input.kind(), Kind::Name | Kind::Integer | Kind::Real | Kind::Time | Kind::True | Kind::False) {
+fn lacks_comma(input: &mut In<'_, '_, '_>, from: usize) -> bool {
+    if !matches!(
+        input.kind_ahead(from),
+        Kind::Name | Kind::Integer | Kind::Real | Kind::Time | Kind::True | Kind::False
+    ) {
         return false;
     }
-    let (mut depth, mut ahead) = (0usize, 0);
+    let (mut depth, mut ahead) = (0usize, from);
     loop {
         match input.kind_ahead(ahead) {
             Kind::OpenParen => depth += 1,
@@ -284,10 +323,40 @@ fn lacks_comma(input: &mut In<'_, '_, '_>) -> bool {
 fn argument<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Argument<'s>>> {
     match (input.kind(), input.kind_ahead(1)) {
         (Kind::Name, Kind::Assign) => named(input),
+        (Kind::Name, Kind::Name | Kind::Integer | Kind::Time | Kind::True | Kind::False | Kind::Not)
+            if names_pin(input) =>
+        {
+            unassigned(input)
+        }
+        (Kind::Name, Kind::Colon) => with_colon(input),
         (Kind::Name, Kind::Arrow) => output(input).map(Some),
         (Kind::Not, Kind::Name) if input.kind_ahead(2) == Kind::Arrow => output(input).map(Some),
         _ => positional(input).map(Some),
     }
+}
+
+/// `IN x`
+fn unassigned<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Argument<'s>>> {
+    let name = input.name()?;
+    mistake::missing_assign(input);
+    let value = expression(input)?;
+    let span = name.span.to(value.span);
+    Ok(Some(Argument { kind: ArgumentKind::Input(name, value), span }))
+}
+
+/// `IN: x`
+fn with_colon<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Argument<'s>>> {
+    let at = input.number() + 1;
+    let sign = input.state().place(at);
+    mistake::colon_for_assign(input, sign);
+    named(input)
+}
+
+/// Whether a standard block has a pin of the current token's name.
+fn names_pin(input: &mut In<'_, '_, '_>) -> bool {
+    let span = input.here();
+    let text = input.text(span);
+    staunch_runtime::BLOCKS.iter().any(|it| it.pin(text).is_some())
 }
 
 fn positional<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Argument<'s>> {

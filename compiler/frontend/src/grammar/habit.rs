@@ -83,6 +83,24 @@ pub fn braces(input: &mut In<'_, '_, '_>, opened: Span) -> bool {
     true
 }
 
+/// `{1, 2}` or `{Red, Green}`, which the lexer took for a pragma, directly before the current token.
+pub fn brace_list(input: &mut In<'_, '_, '_>, open: &str, close: &str) -> bool {
+    let (last, here) = (input.last(), input.here());
+    let state = input.state();
+    let inside = |it: &Span| last.end <= it.start && it.end <= here.start;
+    let Some(list) = state.tokens.pragmas.iter().find(|it| inside(&it.span)).copied() else { return false };
+    state.braces.push(list.span);
+    let whole = Span { start: list.span.start - 1, end: list.span.end + 1, ..list.span };
+    let meant = format!("{open}{}{close}", list.text);
+    input.report(
+        Diagnostic::new(Code::E0020, whole, "Structured Text has no lists in braces")
+            .label("this is a pragma")
+            .help(format!("write `{meant}`"))
+            .fix(whole, meant),
+    );
+    true
+}
+
 /// `FOR (i = 0; i < 10; i++)`
 pub fn counting_loop(input: &mut In<'_, '_, '_>) -> bool {
     if input.kind() != Kind::OpenParen {

@@ -33,6 +33,11 @@ pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
             let own = input.text(span);
             super::names::reserved(span, word, own)
         }
+        (Expected::Expression, _) if is_comparison(found) && behind_junction(input, problem.at) => {
+            Diagnostic::new(Code::E0001, span, format!("expected an expression, found {shown}"))
+                .label("each side of AND and OR is a comparison of its own")
+                .help("name the variable again: `x > 1 AND x < 5`")
+        }
         (Expected::Expression, Some(word)) if recover::opens_statement(found) => {
             Diagnostic::new(Code::E0001, span, format!("{word} is a statement, and has no value"))
                 .label("expected an expression")
@@ -50,6 +55,13 @@ pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
                 .help(format!("write {end} here"))
                 .fix(behind(input, problem.at), bracket(end))
         }
+        (Expected::Token(Kind::Colon), _) if found == Kind::Semicolon => {
+            let behind = Span { end: span.start, ..span };
+            Diagnostic::new(Code::E0001, span, "expected `:` and a type, found `;`")
+                .label("a type is missing before this")
+                .help("write the type behind the name: ` : INT`")
+                .fix(behind, " : INT")
+        }
         (expected, _) => {
             let expected = said(expected);
             Diagnostic::new(Code::E0001, span, format!("expected {expected}, found {shown}"))
@@ -57,6 +69,15 @@ pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
         }
     };
     input.report(it);
+}
+
+fn is_comparison(kind: Kind) -> bool {
+    matches!(kind, Kind::Less | Kind::Greater | Kind::LessEqual | Kind::GreaterEqual | Kind::Equal | Kind::Unequal)
+}
+
+fn behind_junction(input: &mut In<'_, '_, '_>, at: usize) -> bool {
+    let before = at.checked_sub(1).and_then(|it| input.state().tokens.kinds.get(it).copied());
+    matches!(before, Some(Kind::And | Kind::Or | Kind::Xor | Kind::Ampersand | Kind::AndThen | Kind::OrElse))
 }
 
 /// `'it's late'`: what follows the second quote is a part of the text, and the third has no partner.
@@ -232,12 +253,15 @@ pub fn missing_end(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
     } else {
         format!("write `{close}` where the {opener} ends")
     };
-    input.report(
-        Diagnostic::new(Code::E0014, here, format!("expected {end}, found {found}"))
-            .label(format!("expected {end} before this"))
-            .other(opened, format!("this {opener} is not closed"))
-            .help(help),
-    );
+    let mut it = Diagnostic::new(Code::E0014, here, format!("expected {end}, found {found}"))
+        .label(format!("expected {end} before this"))
+        .other(opened, format!("this {opener} is not closed"));
+    let inner = input.state().misaligned.filter(|it| it.start > opened.start);
+    if let Some(inner) = inner {
+        let inner_opener = input.text(inner).to_ascii_uppercase();
+        it = it.other(inner, format!("or this {inner_opener} is not: the end behind it stands in another column"));
+    }
+    input.report(it.help(help));
 }
 
 /// `WHILE … END_IF`
@@ -496,7 +520,7 @@ pub fn misspelt(input: &mut In<'_, '_, '_>) -> Option<(Kind, usize)> {
         "VARIN" | "VAR_IN" | "VARINPUT" | "VAR_INPUTS" => Some(Kind::VarInput),
         "VAROUT" | "VAR_OUT" | "VAROUTPUT" | "VAR_OUTPUTS" => Some(Kind::VarOutput),
         "VARINOUT" | "VAR_INOUT" => Some(Kind::VarInOut),
-        "VARS" => Some(Kind::Var),
+        "VARS" | "VAR_RETAIN" | "VAR_CONSTANT" | "VAR_PERSISTENT" => Some(Kind::Var),
         upper if upper.starts_with("VAR") && upper.len() > 4 => nearest_of(word, SECTIONS),
         _ => None,
     };
@@ -530,20 +554,22 @@ pub fn misspelt_item(input: &mut In<'_, '_, '_>) -> Option<Kind> {
 }
 
 /// Whether a name that stands alone is a misspelt keyword.
-pub fn is_misspelt(target: &Expr<'_>) -> bool {
+pub fn is_misspelt(input: &mut In<'_, '_, '_>, target: &Expr<'_>) -> bool {
     let ExprKind::Name(name) = &target.kind else { return false };
-    name.text.eq_ignore_ascii_case("END")
-        || name.text.eq_ignore_ascii_case("NEXT")
+    (name.text.eq_ignore_ascii_case("END") && innermost(input).is_some())
+        || (name.text.eq_ignore_ascii_case("NEXT") && waits_for(input, Kind::EndFor))
         || misspelt_end(name.text, Kind::Semicolon).is_some()
 }
 
 pub fn misspelt_keyword(input: &mut In<'_, '_, '_>, kind: Kind, span: Span) {
     let found = input.text(span);
-    let word = kind.keyword().unwrap_or_default();
+    let qualified = found.to_ascii_uppercase().replace('_', " ");
+    let two_words = matches!(qualified.as_str(), "VAR RETAIN" | "VAR CONSTANT" | "VAR PERSISTENT");
+    let word = if two_words { qualified.as_str() } else { kind.keyword().unwrap_or_default() };
     input.report(
-        Diagnostic::new(Code::E0018, span, format!("`{found}` is written {kind}"))
-            .label(format!("expected {kind}"))
-            .help(format!("write {kind}"))
+        Diagnostic::new(Code::E0018, span, format!("`{found}` is written `{word}`"))
+            .label(format!("expected `{word}`"))
+            .help(format!("write `{word}`"))
             .fix(span, word),
     );
 }
@@ -613,6 +639,15 @@ pub fn missing_comma(input: &mut In<'_, '_, '_>) {
     let kind = input.kind();
     let here = input.here();
     let found = shown(input, kind, here);
+    if kind == Kind::Semicolon {
+        input.report(
+            Diagnostic::new(Code::E0001, here, "expected `,`, found `;`")
+                .label("the list goes on behind this")
+                .help("write `,`")
+                .fix(here, ","),
+        );
+        return;
+    }
     input.report(
         Diagnostic::new(Code::E0001, span, format!("expected `,`, found {found}"))
             .label("a `,` is missing behind this")
@@ -672,5 +707,66 @@ pub fn name_alone(input: &mut In<'_, '_, '_>, span: Span) {
         Diagnostic::new(Code::E0001, span, "expected `:=` or a call behind this")
             .label("this alone is no statement")
             .help(format!("to assign, write `{text} := …;`; to call, `{text}(…);`")),
+    );
+}
+
+/// `STRUCT Name` outside of TYPE.
+pub fn bare_structure(span: Span, name: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0001, span, "a structure is declared in TYPE … END_TYPE")
+        .label("expected `TYPE` before this")
+        .help(format!("write `TYPE {name} : STRUCT … END_STRUCT; END_TYPE`"))
+}
+
+/// TYPE or FUNCTION inside a PROGRAM.
+pub fn nested_unit(span: Span, kind: Kind, outer: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0001, span, format!("{kind} stands inside {}", crate::key::article(outer)))
+        .label("units of the program stand beside one another")
+        .help(format!("move it before the {outer}"))
+}
+
+/// `FUNCTION_BLOCK f : INT`
+pub fn no_result_type(span: Span, opener: &str) -> Diagnostic {
+    let opener = opener.to_ascii_uppercase();
+    Diagnostic::new(Code::E0001, span, format!("{} has no result type", crate::key::article(&opener)))
+        .label("delete this")
+        .help("delete it, and declare what it returns in VAR_OUTPUT")
+        .fix(span, "")
+}
+
+/// `x AT IX0.0`
+pub fn address_without_sign(span: Span, text: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0409, span, "a direct address starts with `%`")
+        .help(format!("write `%{text}`"))
+        .fix(span, format!("%{text}"))
+}
+
+/// `x : BOOL AT %QX0.0;`
+pub fn address_behind_type(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0409, span, "the address of a variable stands before its type")
+        .label("expected before the `:`")
+        .help("write `name AT %QX0.0 : BOOL;`")
+}
+
+/// `IN: x` among arguments.
+pub fn colon_for_assign(input: &mut In<'_, '_, '_>, sign: Span) {
+    let replacement = padded(input, sign, ":=");
+    input.report(
+        Diagnostic::new(Code::E0008, sign, "an argument is connected with `:=`")
+            .label("expected `:=`")
+            .help("write `:=`")
+            .fix(sign, replacement),
+    );
+}
+
+/// `IN x` among arguments.
+pub fn missing_assign(input: &mut In<'_, '_, '_>) {
+    let (span, place) = (input.last(), insertion(input));
+    let (kind, here) = (input.kind(), input.here());
+    let found = shown(input, kind, here);
+    input.report(
+        Diagnostic::new(Code::E0001, span, format!("expected `:=`, found {found}"))
+            .label("a `:=` is missing behind this")
+            .help("write `:=` here")
+            .fix(place, " :="),
     );
 }

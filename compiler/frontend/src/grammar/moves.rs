@@ -11,7 +11,7 @@ use chumsky::{
 };
 
 use crate::{
-    ast::{BinaryOp, Expr, MAX_CHAIN, MAX_DEPTH, Name, VarDecl},
+    ast::{BinaryOp, Expr, Item, MAX_CHAIN, MAX_DEPTH, Name, VarDecl},
     diagnostic::{Code, Diagnostic},
     lex::{Kind, MAX_REPORTS, Tokens, index},
     source::Span,
@@ -113,6 +113,12 @@ pub struct State<'t, 's> {
     pub strays: Vec<VarDecl<'s>>,
     /// Number of the token behind the last of them.
     pub told_at: Option<usize>,
+    /// What opened the first block of the POU whose end stands in another column.
+    pub misaligned: Option<Span>,
+    /// An ELSE without its IF has been reported: so is the END_IF behind it.
+    pub orphaned: bool,
+    /// Units inside a POU, reported.
+    pub nested: Vec<Item<'s>>,
     /// The user knows that the file ends too early.
     pub ended: bool,
 }

@@ -40,9 +40,12 @@ fn declarations(tokens: &Tokens<'_>, found: &mut Found<'_>) {
     let mut open: Vec<Kind> = Vec::new();
     // At the first name of a declaration, or behind the `,` of its names.
     let mut fresh = false;
+    // Since the declaration began, only names and `,` were seen.
+    let mut names = false;
     let mut at = 0;
     while at < tokens.kinds.len() {
         let kind = tokens.kinds[at];
+        names = fresh || (names && matches!(kind, Kind::Name | Kind::Comma));
         if fresh && let Some(count) = declared(tokens, at, found) {
             at += count;
             fresh = false;
@@ -76,26 +79,11 @@ fn declarations(tokens: &Tokens<'_>, found: &mut Found<'_>) {
             }
             Kind::Semicolon => fresh = !open.is_empty(),
             Kind::Constant | Kind::Retain | Kind::NonRetain | Kind::Persistent => {}
-            Kind::Comma => fresh = !open.is_empty() && names_end_in_colon(&tokens.kinds, at),
+            Kind::Comma => fresh = names,
             _ => fresh = false,
         }
         at += 1;
     }
-}
-
-/// Whether the `,` at `at` stands between the names of a declaration.
-fn names_end_in_colon(kinds: &[Kind], at: usize) -> bool {
-    let starts = |kind: Kind| {
-        matches!(kind, Kind::Struct | Kind::Constant | Kind::Retain | Kind::NonRetain | Kind::Persistent)
-            || opens_section(kind)
-    };
-    let item = |kind: Kind| {
-        let sign = matches!(kind, Kind::Name | Kind::Comma | Kind::Integer | Kind::Minus);
-        sign || (kind.keyword().is_some() && !starts(kind))
-    };
-    let before = kinds[..at].iter().rev().find(|it| !item(**it));
-    let behind = kinds[at..].iter().find(|it| !item(**it));
-    before.is_some_and(|it| *it == Kind::Semicolon || starts(*it)) && behind == Some(&Kind::Colon)
 }
 
 /// The number of tokens of a wrong name that is declared at `at`.

@@ -76,8 +76,12 @@ pub fn stray(input: &mut In<'_, '_, '_>) -> bool {
         return false;
     }
     let span = input.take();
-    let it = mistake::stray(span, kind);
-    input.report(it);
+    let told = kind == Kind::EndIf && std::mem::take(&mut input.state().orphaned);
+    if !told {
+        let it = mistake::stray(span, kind);
+        input.report(it);
+    }
+    input.state().orphaned |= matches!(kind, Kind::Else | Kind::Elsif);
     input.eat(Kind::Semicolon);
     true
 }

@@ -192,7 +192,7 @@ fn simple<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
             assignment(input, target)?
         }
         Kind::Name => latch(input, target)?,
-        Kind::Semicolon if mistake::is_misspelt(&target) => return Err(Problem::REPORTED),
+        Kind::Semicolon if mistake::is_misspelt(input, &target) => return Err(Problem::REPORTED),
         Kind::Semicolon => StatementKind::Expr(target),
         _ if matches!(target.kind, ExprKind::Call(..)) => StatementKind::Expr(target),
         _ => return without_effect(input, target),
@@ -258,7 +258,7 @@ fn without_effect<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<St
         return Err(Problem::REPORTED);
     }
     let alone = input.on_new_line() || recover::closes(input.kind()) || input.kind() == Kind::End;
-    if alone && !mistake::is_misspelt(&target) && input.text(target.span).len() <= 40 {
+    if alone && !mistake::is_misspelt(input, &target) && input.text(target.span).len() <= 40 {
         mistake::name_alone(input, target.span);
         return Err(Problem::REPORTED);
     }

@@ -1,7 +1,7 @@
 //! Types and initial values.
 
 use crate::{
-    ast::{Bound, Element, EnumValue, Expr, Initial, InitialKind, Name, TypeDecl, TypeKind, TypeSpec},
+    ast::{Bound, Element, EnumValue, Expr, ExprKind, Initial, InitialKind, Name, TypeDecl, TypeKind, TypeSpec},
     lex::Kind,
     source::Span,
 };
@@ -9,7 +9,7 @@ use crate::{
 use super::{
     balance, declaration, doc,
     expression::{close, expression},
-    mistake,
+    habit, mistake,
     moves::{Expected, In, Moves, Parsed, Problem, Start},
     recover,
 };
@@ -22,6 +22,7 @@ pub fn type_spec<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeSpec<'s>> {
         Kind::Struct => structure(input)?,
         Kind::OpenParen => enumeration(input, None)?,
         Kind::Name => named(input)?,
+        _ if habit::brace_list(input, "(", ")") => TypeKind::Error,
         _ => return Err(input.problem(Expected::Type)),
     };
     input.leave();
@@ -73,7 +74,9 @@ fn bound<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Bound<'s>>> {
     }
     let text = input.text(low.span);
     let Some(colon) = input.eat(Kind::Colon) else {
-        input.report(mistake::array_bounds(low.span, "one number", &format!("1..{text}")).fix(low.span, format!("1..{text}")));
+        input.report(
+            mistake::array_bounds(low.span, "one number", &format!("1..{text}")).fix(low.span, format!("1..{text}")),
+        );
         return Ok(None);
     };
     let high = expression(input)?;
@@ -84,9 +87,14 @@ fn bound<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Bound<'s>>> {
 
 fn structure<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeKind<'s>> {
     let opened = input.take();
+    Ok(structure_behind(input, opened).kind)
+}
+
+/// The members of a structure, and its end.
+pub fn structure_behind<'s>(input: &mut In<'_, '_, 's>, opened: Span) -> TypeSpec<'s> {
     let fields = declaration::list(input, Kind::EndStruct, opened);
     balance::close_block(input, Kind::EndStruct, opened);
-    Ok(TypeKind::Struct(fields))
+    TypeSpec { kind: TypeKind::Struct(fields), span: opened.to(input.last()) }
 }
 
 /// `(Red, Green := 5)`, and a base type behind it.
@@ -251,6 +259,9 @@ pub fn initial<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Initial<'s>> {
     let kind = match input.kind() {
         Kind::OpenBracket => bracketed(input)?,
         Kind::OpenParen if input.kind_ahead(1) == Kind::Name && input.kind_ahead(2) == Kind::Assign => fields(input)?,
+        Kind::Semicolon if habit::brace_list(input, "[", "]") => {
+            InitialKind::Value(Expr { kind: ExprKind::Error(Vec::new()), span: start })
+        }
         _ => InitialKind::Value(expression(input)?),
     };
     input.leave();
@@ -306,7 +317,7 @@ fn element<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Element<'s>> {
 fn count<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
     let span = input.here();
     match super::literal::untyped(input, None) {
-        Some(literal) => Ok(Expr { kind: crate::ast::ExprKind::Literal(literal), span }),
+        Some(literal) => Ok(Expr { kind: ExprKind::Literal(literal), span }),
         None => Err(Problem::REPORTED),
     }
 }

@@ -1,7 +1,7 @@
 //! What a file holds: POUs, TYPE blocks, global variables.
 
 use crate::{
-    ast::{Item, Name, Pou, PouKind, Statement, StatementKind, TypeSpec, VarBlock, VarDecl, VarKind},
+    ast::{Item, Name, Pou, PouKind, Statement, StatementKind, TypeDecl, TypeSpec, VarBlock, VarDecl, VarKind},
     lex::Kind,
 };
 
@@ -12,12 +12,13 @@ use super::{
     moves::{Expected, In, Moves, Parsed, Problem},
     recover,
     statement::statements,
-    types::{type_spec, types},
+    types::{structure_behind, type_spec, types},
 };
 
 pub fn items<'s>(input: &mut In<'_, '_, 's>) -> Vec<Item<'s>> {
     let mut items = Vec::new();
     loop {
+        items.append(&mut input.state().nested);
         match input.kind() {
             Kind::End => return items,
             Kind::Semicolon => {
@@ -29,6 +30,7 @@ pub fn items<'s>(input: &mut In<'_, '_, 's>) -> Vec<Item<'s>> {
                 items.push(pou(input, PouKind::FunctionBlock, Kind::EndFunctionBlock));
             }
             Kind::Type => items.push(Item::Types(types(input))),
+            Kind::Struct if input.kind_ahead(1) == Kind::Name => items.push(bare_structure(input)),
             Kind::Configuration => items.push(Item::Configuration(configuration(input))),
             Kind::VarGlobal => items.extend(section(input).map(Item::Globals)),
             kind if recover::opens_section(kind) => bare_unit(input, &mut items),
@@ -98,10 +100,68 @@ fn bare_unit<'s>(input: &mut In<'_, '_, 's>, items: &mut Vec<Item<'s>>) {
     }
 }
 
+/// `STRUCT Name … END_STRUCT` outside of TYPE.
+fn bare_structure<'s>(input: &mut In<'_, '_, 's>) -> Item<'s> {
+    let word = input.take();
+    let span = input.here();
+    let name = Name { text: input.text(span), span };
+    input.take();
+    input.report(mistake::bare_structure(word.to(span), name.text));
+    let ty = structure_behind(input, word);
+    input.eat(Kind::Semicolon);
+    Item::Types(vec![TypeDecl { name, ty, initial: None, doc: None, unread: Vec::new() }])
+}
+
+/// Takes a unit that stands inside another one, if the other one goes on behind it.
+fn nested_unit(input: &mut In<'_, '_, '_>) -> bool {
+    let Some((end, opened)) = input.state().open.last().copied() else { return false };
+    if !recover::opens_item(input.kind()) || !goes_on(input, end) {
+        return false;
+    }
+    let (kind, span) = (input.kind(), input.here());
+    let outer = input.text(opened).to_ascii_uppercase();
+    input.report(mistake::nested_unit(span, kind, &outer));
+    let item = match kind {
+        Kind::Type => Item::Types(types(input)),
+        Kind::Function => pou(input, PouKind::Function, Kind::EndFunction),
+        Kind::FunctionBlock => pou(input, PouKind::FunctionBlock, Kind::EndFunctionBlock),
+        Kind::Program => pou(input, PouKind::Program, Kind::EndProgram),
+        _ => Item::Configuration(configuration(input)),
+    };
+    input.state().nested.push(item);
+    true
+}
+
+/// Whether `end` comes once more than units that it ends are opened from here on, with all units
+/// from here on closed.
+fn goes_on(input: &mut In<'_, '_, '_>, end: Kind) -> bool {
+    let (mut open, mut ahead) = (Vec::new(), 0);
+    loop {
+        match input.kind_ahead(ahead) {
+            Kind::End => return false,
+            Kind::Program => open.push(Kind::EndProgram),
+            Kind::Function => open.push(Kind::EndFunction),
+            Kind::FunctionBlock => open.push(Kind::EndFunctionBlock),
+            kind if recover::is_pou_end(kind) => match open.pop() {
+                Some(wanted) if wanted == kind => {}
+                None => return kind == end,
+                Some(_) => return false,
+            },
+            _ => {}
+        }
+        ahead += 1;
+    }
+}
+
 /// VAR blocks, then statements.
 fn contents<'s>(input: &mut In<'_, '_, 's>, pou: &mut Pou<'s>) {
+    let outer = std::mem::take(&mut input.state().strays);
+    input.state().misaligned = None;
     loop {
         pou.body.append(&mut statements(input));
+        if nested_unit(input) {
+            continue;
+        }
         if !recover::opens_section(input.kind()) {
             break;
         }
@@ -112,7 +172,7 @@ fn contents<'s>(input: &mut In<'_, '_, 's>, pou: &mut Pou<'s>) {
         }
         pou.blocks.extend(section(input));
     }
-    let vars = std::mem::take(&mut input.state().strays);
+    let vars = std::mem::replace(&mut input.state().strays, outer);
     if !vars.is_empty() {
         let span = vars[0].span;
         pou.blocks.push(VarBlock {
@@ -145,6 +205,13 @@ fn pou<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind) -> Item<'s> {
         (Name { text: "", span: opened }, None)
     });
     let span = opened.to(name.span);
+    if kind != PouKind::Function && input.kind() == Kind::Colon {
+        let from = input.take();
+        let _ = type_spec(input);
+        let whole = from.to(input.last());
+        let it = mistake::no_result_type(whole, input.text(opened));
+        input.report(it);
+    }
     input.eat(Kind::Semicolon);
     input.state().open.push((end, opened));
     let mut pou = Pou { kind, name, result, blocks: Vec::new(), body: Vec::new(), doc, span };

@@ -244,11 +244,32 @@ fn habits_of_other_languages() {
            SWITCH x OF 1: ; END_CASE // E0018
            WHLIE x DO ; END_WHILE // E0018
            s := 'it's late'; // E0004
+           t(IN: x, PT: y); // E0008 E0008
+           t(IN x, PT := y); // E0001
+           t(IN := x; PT := y); // E0001
+           IF a ADN b THEN x := 1; END_IF // E0010
+           IF a > 1 AND < 5 THEN x := 1; END_IF // E0001
+           a // E0001
+           IF a THEN x := 1; END_IF;
+           ELSE x := 2; END_IF // E0015
+           s := ‘x’; // E0002
          END_PROGRAM
          FUNCTION f(x : INT; y : REAL) : INT // E0020
          END_FUNCTION
          FUNCTION g INT // E0001
          END_FUNCTION
+         FUNCTION_BLOCK h : INT // E0001
+         VAR a AT IX0.0 : BOOL; b : BOOL AT %QX0.0; c; d, e; END_VAR // E0409 E0409 E0001 E0001
+         VAR f : {A, B}; g : ARRAY[1..2] OF INT := {1, 2}; END_VAR // E0020 E0020
+         TYPE T : INT; END_TYPE // E0001
+         VAR_RETAIN i : INT; END_VAR // E0018
+         FUNCTION j : INT // E0001
+         END_FUNCTION
+           x := 1;
+         END_FUNCTION_BLOCK
+         STRUCT S // E0001
+           a : INT;
+         END_STRUCT
          PROGRM q // E0018
          VAR INPUT x : INT; END_VAR // E0018
          VAROUTPUT x : INT; END_VAR // E0018
@@ -329,6 +350,10 @@ fn fixes_make_the_text_right() {
         ("x := 1,5;", "x := 1.5;"),
         ("x := .5;", "x := 0.5;"),
         ("x := a->b;", "x := a.b;"),
+        ("t(IN: x);", "t(IN := x);"),
+        ("t(IN x);", "t(IN := x);"),
+        ("x := a ADN b;", "x := a AND b;"),
+        ("s := “x”;", "s := 'x';"),
         ("FOR i := 1 TO 9 STEP 2 DO ; END_FOR", "FOR i := 1 TO 9 BY 2 DO ; END_FOR"),
     ];
     for (wrong, right) in cases {
