@@ -145,6 +145,10 @@ impl<'s> Reading<'s> {
             Some('“' | '”' | '„') => it.help("a string stands between two `'`, a WSTRING between two `\"`"),
             Some('–' | '—' | '−') => it.help("write `-`"),
             Some('\u{a0}') => it.help("write an ordinary space"),
+            Some('#') if self.text[index(place.1)..].starts_with(|it: char| it.is_ascii_alphabetic()) => {
+                it.help("a variable is named without `#`").fix(self.span(place), "")
+            }
+            Some('|') => it.help("write `OR`"),
             Some('#') => it.help("a comment is written `// …` or `(* … *)`, a number of base 16 `16#FF`"),
             Some('$') => it.help("a number of base 16 is written `16#FF`"),
             Some('~') => it.help("write `NOT`"),

@@ -115,7 +115,7 @@ fn dialect_of(family: Family) -> Dialect {
 const CONSTANTS: [&str; 2] = ["TRUE", "FALSE"];
 
 /// Words that do something in other languages, or in other places.
-const FOREIGN: [(&str, &str); 9] = [
+const FOREIGN: [(&str, &str); 13] = [
     ("DEFAULT", "the branch of a CASE for all other values is written `ELSE`"),
     ("OTHERS", "the branch of a CASE for all other values is written `ELSE`"),
     ("OTHERWISE", "the branch of a CASE for all other values is written `ELSE`"),
@@ -125,6 +125,10 @@ const FOREIGN: [(&str, &str); 9] = [
     ("STOP", "a POU is left with `RETURN;`"),
     ("HIGH", "write `TRUE`"),
     ("LOW", "write `FALSE`"),
+    ("ON", "write `TRUE`"),
+    ("OFF", "write `FALSE`"),
+    ("YES", "write `TRUE`"),
+    ("NO", "write `FALSE`"),
 ];
 
 impl<'s> Checker<'_, 's> {

@@ -269,7 +269,9 @@ impl<'s> Declarations<'s> {
         let near = foreign.or(near);
         let mut error =
             Diagnostic::new(Code::E0102, name.span, format!("there is no type `{}`", name.text)).label("unknown type");
-        if let Some(near) = near {
+        if name.text.eq_ignore_ascii_case("VOID") {
+            error = error.help("a FUNCTION without a result has no `:` and no type behind its name");
+        } else if let Some(near) = near {
             error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
         }
         self.report(error);

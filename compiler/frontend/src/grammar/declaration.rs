@@ -7,7 +7,7 @@ use crate::{
 };
 
 use super::{
-    balance, doc, mistake,
+    balance, doc, habit, mistake,
     moves::{Expected, In, Moves, Parsed, Start},
     recover,
     types::{optional_initial, type_spec},
@@ -250,7 +250,7 @@ fn edge(input: &mut In<'_, '_, '_>) -> Option<(Edge, Span)> {
 
 /// The `;` of a declaration.
 pub fn end(input: &mut In<'_, '_, '_>) -> Parsed<()> {
-    if input.eat(Kind::Semicolon).is_some() {
+    if input.eat(Kind::Semicolon).is_some() || habit::wrong_terminator(input) {
         return Ok(());
     }
     let kind = input.kind();

@@ -189,6 +189,7 @@ fn suffixes<'s>(input: &mut In<'_, '_, 's>, mut expr: Expr<'s>) -> Parsed<Expr<'
         input.state().height = 0;
         let start = expr.span;
         let kind = match input.kind() {
+            Kind::Dot if is_number(&expr) && habit::ends_line(input) => break,
             Kind::Dot => member(input, expr)?,
             Kind::OpenBracket => ExprKind::Index(Box::new(expr), indices(input)?),
             Kind::OpenParen => ExprKind::Call(Box::new(expr), arguments(input)?),
@@ -217,15 +218,16 @@ fn member<'s>(input: &mut In<'_, '_, 's>, of: Expr<'s>) -> Parsed<ExprKind<'s>> 
             let span = input.take();
             Ok(ExprKind::Part(Box::new(of), Name { text: input.text(span), span }))
         }
-        Kind::Name => named_member(input, of),
-        _ => match of.kind {
-            ExprKind::Literal(Literal { value: LiteralValue::Integer { .. }, .. }) => {
-                habit::point_last(input, of.span);
-                Ok(ExprKind::Error(Vec::new()))
-            }
-            _ => named_member(input, of),
-        },
+        _ if is_number(&of) => {
+            habit::point_last(input, of.span);
+            Ok(ExprKind::Error(Vec::new()))
+        }
+        _ => named_member(input, of),
     }
+}
+
+fn is_number(expr: &Expr<'_>) -> bool {
+    matches!(&expr.kind, ExprKind::Literal(Literal { value: LiteralValue::Integer { .. }, .. }))
 }
 
 fn named_member<'s>(input: &mut In<'_, '_, 's>, of: Expr<'s>) -> Parsed<ExprKind<'s>> {

@@ -39,7 +39,9 @@ pub fn begin_or_end(input: &mut In<'_, '_, '_>) -> bool {
     if !matches!(input.kind(), Kind::Else | Kind::Elsif) {
         let _ = input.eat(Kind::Semicolon).or_else(|| input.eat(Kind::Dot));
         let end = input.state().open.last().map(|(end, _)| *end).filter(|it| body && !recover::is_pou_end(*it));
-        input.state().instead = end;
+        // The body's own end may follow all the same.
+        let kind = input.kind();
+        input.state().instead = end.filter(|it| *it != kind);
     }
     true
 }
@@ -266,6 +268,35 @@ pub fn decimal_comma(input: &mut In<'_, '_, '_>) -> bool {
         Diagnostic::new(Code::E0005, whole, "a number's fraction stands behind a point")
             .help(format!("write `{meant}`"))
             .fix(whole, meant),
+    );
+    true
+}
+
+/// Whether the current token is the last on its line.
+pub fn ends_line(input: &mut In<'_, '_, '_>) -> bool {
+    let at = input.number();
+    let state = input.state();
+    state.breaks(state.place(at).end, state.place(at + 1).start)
+}
+
+/// `,`, `.` or `:` at the end of a line, or between two declarations, in the place of `;`.
+pub fn wrong_terminator(input: &mut In<'_, '_, '_>) -> bool {
+    if !matches!(input.kind(), Kind::Comma | Kind::Dot | Kind::Colon) {
+        return false;
+    }
+    let (here, next) = (input.here(), input.kind_ahead(1));
+    let ends_line = ends_line(input);
+    let declared = next == Kind::Name && input.kind_ahead(2) == Kind::Colon && input.kind() == Kind::Comma;
+    if !ends_line && !declared && !recover::ends_statements(next) {
+        return false;
+    }
+    let kind = input.kind();
+    input.take();
+    input.report(
+        Diagnostic::new(Code::E0012, here, format!("expected `;`, found {kind}"))
+            .label("expected `;`")
+            .help("write `;`")
+            .fix(here, ";"),
     );
     true
 }

@@ -38,6 +38,11 @@ pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
                 .label("each side of AND and OR is a comparison of its own")
                 .help("name the variable again: `x > 1 AND x < 5`")
         }
+        (Expected::Expression, _) if found == Kind::OpenBracket => {
+            Diagnostic::new(Code::E0001, span, "a list of values stands only in a declaration")
+                .label("expected an expression")
+                .help("assign to one element after the other: `a[0] := 1;`")
+        }
         (Expected::Expression, Some(word)) if recover::opens_statement(found) => {
             Diagnostic::new(Code::E0001, span, format!("{word} is a statement, and has no value"))
                 .label("expected an expression")
@@ -196,6 +201,9 @@ pub fn missing_word(input: &mut In<'_, '_, '_>, word: Kind, opened: Span) {
     if input.kind() == Kind::Semicolon && input.kind_ahead(1) == word {
         return extra_semicolon(input, word);
     }
+    if let Some(ahead) = on_this_line(input, word) {
+        return missing_operator(input, word, ahead);
+    }
     let opener = input.text(opened).to_ascii_uppercase();
     let kind = input.kind();
     let here = input.here();
@@ -218,6 +226,37 @@ pub fn missing_word(input: &mut In<'_, '_, '_>, word: Kind, opened: Span) {
     };
     let word = word.keyword().unwrap_or_default();
     input.report(it.other(opened, format!("this {opener} needs {}", crate::key::article(word))));
+}
+
+/// How far ahead `word` stands on the current line, before the statement ends.
+fn on_this_line(input: &mut In<'_, '_, '_>, word: Kind) -> Option<usize> {
+    let mut ahead = 0;
+    while input.kind_ahead(ahead) != word {
+        let kind = input.kind_ahead(ahead);
+        let at = input.number() + ahead;
+        let state = input.state();
+        let (before, here) = (state.place(at.saturating_sub(1)), state.place(at));
+        let ends = matches!(kind, Kind::Semicolon | Kind::Assign | Kind::Colon) || recover::ends_statements(kind);
+        if ends || recover::opens_statement(kind) || state.breaks(before.end, here.start) {
+            return None;
+        }
+        ahead += 1;
+    }
+    (ahead > 0).then_some(ahead)
+}
+
+/// `IF a b THEN`
+fn missing_operator(input: &mut In<'_, '_, '_>, word: Kind, ahead: usize) {
+    let (kind, here) = (input.kind(), input.here());
+    let found = shown(input, kind, here);
+    input.report(
+        Diagnostic::new(Code::E0001, here, format!("expected an operator or {word}, found {found}"))
+            .label("expected an operator before this")
+            .help("write `AND` or `OR` between two conditions"),
+    );
+    for _ in 0..=ahead {
+        input.take();
+    }
 }
 
 /// `IF a; THEN`
@@ -513,6 +552,15 @@ pub fn misspelt(input: &mut In<'_, '_, '_>) -> Option<(Kind, usize)> {
     if let Some(found) = misspelt_end(word, next) {
         return Some(found);
     }
+    if word.eq_ignore_ascii_case("WEND") && waits_for(input, Kind::EndWhile) {
+        return Some((Kind::EndWhile, 1));
+    }
+    if word.eq_ignore_ascii_case("NEXT") && next == Kind::Name && waits_for(input, Kind::EndFor) {
+        let at = input.number();
+        let state = input.state();
+        let joined = !state.breaks(state.place(at).end, state.place(at + 1).start);
+        return Some((Kind::EndFor, if joined { 2 } else { 1 }));
+    }
     if word.eq_ignore_ascii_case("END") || (word.eq_ignore_ascii_case("NEXT") && waits_for(input, Kind::EndFor)) {
         return innermost(input).map(|end| (end, 1));
     }
@@ -558,6 +606,7 @@ pub fn is_misspelt(input: &mut In<'_, '_, '_>, target: &Expr<'_>) -> bool {
     let ExprKind::Name(name) = &target.kind else { return false };
     (name.text.eq_ignore_ascii_case("END") && innermost(input).is_some())
         || (name.text.eq_ignore_ascii_case("NEXT") && waits_for(input, Kind::EndFor))
+        || (name.text.eq_ignore_ascii_case("WEND") && waits_for(input, Kind::EndWhile))
         || misspelt_end(name.text, Kind::Semicolon).is_some()
 }
 
@@ -678,8 +727,14 @@ pub fn outside_of_units(span: Span, statements: bool) -> Diagnostic {
     }
 }
 
-/// `FUNCTION f(x : INT) : INT`
-pub fn parameters_in_head(span: Span) -> Diagnostic {
+/// `FUNCTION f(x : INT) : INT`, `PROGRAM p()`
+pub fn parameters_in_head(span: Span, empty: bool) -> Diagnostic {
+    if empty {
+        return Diagnostic::new(Code::E0020, span, "no parentheses stand behind the name of a unit")
+            .label("delete this")
+            .help("delete them")
+            .fix(span, "");
+    }
     Diagnostic::new(Code::E0020, span, "parameters stand in VAR_INPUT, not in parentheses")
         .label("expected no parentheses")
         .help("write `VAR_INPUT x : INT; END_VAR` on the next line")

@@ -150,6 +150,9 @@ fn is_closed(input: &mut In<'_, '_, '_>) -> bool {
 fn end(input: &mut In<'_, '_, '_>) -> Parsed<()> {
     habit::extra_brackets(input, Kind::Semicolon);
     habit::decimal_comma(input);
+    if habit::wrong_terminator(input) {
+        return Ok(());
+    }
     if input.eat(Kind::Semicolon).is_some() {
         return Ok(());
     }

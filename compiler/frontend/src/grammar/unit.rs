@@ -1,7 +1,9 @@
 //! What a file holds: POUs, TYPE blocks, global variables.
 
 use crate::{
-    ast::{Item, Name, Pou, PouKind, Statement, StatementKind, TypeDecl, TypeSpec, VarBlock, VarDecl, VarKind},
+    ast::{
+        Item, Name, Pou, PouKind, Statement, StatementKind, TypeDecl, TypeKind, TypeSpec, VarBlock, VarDecl, VarKind,
+    },
     lex::Kind,
 };
 
@@ -236,7 +238,17 @@ fn head<'s>(
     parameters: &mut Option<VarBlock<'s>>,
 ) -> Parsed<(Name<'s>, Option<TypeSpec<'s>>)> {
     modifiers(input);
-    let name = input.name()?;
+    let mut name = input.name()?;
+    if kind == PouKind::Function
+        && input.kind() == Kind::Name
+        && !input.on_new_line()
+        && staunch_ir::Elementary::named(name.text).is_some()
+    {
+        let ty = name;
+        name = input.name()?;
+        mistake::type_first(input, ty.span, name.span);
+        return Ok((name, Some(TypeSpec { kind: TypeKind::Named(vec![ty]), span: ty.span })));
+    }
     for word in ["EXTENDS", "IMPLEMENTS"] {
         bases(input, word)?;
     }
@@ -270,7 +282,7 @@ fn in_parentheses<'s>(input: &mut In<'_, '_, 's>) -> Parsed<VarBlock<'s>> {
         let _ = input.eat(Kind::Semicolon).or_else(|| input.eat(Kind::Comma));
     }
     let whole = span.to(input.expect(Kind::CloseParen)?);
-    input.report(mistake::parameters_in_head(whole));
+    input.report(mistake::parameters_in_head(whole, vars.is_empty()));
     let kind = VarKind::Input;
     Ok(VarBlock { kind, constant: None, retain: None, non_retain: None, persistent: None, vars, span })
 }

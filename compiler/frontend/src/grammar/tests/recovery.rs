@@ -244,6 +244,14 @@ fn habits_of_other_languages() {
            SWITCH x OF 1: ; END_CASE // E0018
            WHLIE x DO ; END_WHILE // E0018
            s := 'it's late'; // E0004
+           x := 1, // E0012
+           x := 3. // E0012
+           y := x: // E0012
+           IF a b THEN x := 1; END_IF // E0001
+           IF a THEN BEGIN x := 1; END; END_IF // E0020
+           WHILE a DO x := 1; WEND // E0018
+           FOR i := 1 TO 3 DO x := 1; NEXT i // E0018
+           x := [1, 2]; // E0001
            t(IN: x, PT: y); // E0008 E0008
            t(IN x, PT := y); // E0001
            t(IN := x; PT := y); // E0001
@@ -258,6 +266,11 @@ fn habits_of_other_languages() {
          END_FUNCTION
          FUNCTION g INT // E0001
          END_FUNCTION
+         FUNCTION INT g2 // E0001
+         VAR a : INT, b : INT; END_VAR // E0012
+         END_FUNCTION
+         PROGRAM g3() // E0020
+         END_PROGRAM
          FUNCTION_BLOCK h : INT // E0001
          VAR a AT IX0.0 : BOOL; b : BOOL AT %QX0.0; c; d, e; END_VAR // E0409 E0409 E0001 E0001
          VAR f : {A, B}; g : ARRAY[1..2] OF INT := {1, 2}; END_VAR // E0020 E0020
