@@ -1,11 +1,19 @@
 //! What is said about each mistake: one sentence, once, at the place, with what to write instead.
 
 use crate::{
-    ast::{BinaryOp, Expr, ExprKind, MAX_CHAIN, MAX_DEPTH},
+    ast::{MAX_CHAIN, MAX_DEPTH},
     diagnostic::{Code, Diagnostic},
     lex::{Kind, index},
     source::Span,
 };
+
+mod declared;
+mod misspelt;
+mod operator;
+
+pub use declared::*;
+pub use misspelt::*;
+pub use operator::*;
 
 use super::{
     moves::{Expected, In, Moves, Problem},
@@ -353,90 +361,6 @@ pub fn stray(span: Span, kind: Kind) -> Diagnostic {
         .help(help)
 }
 
-pub fn equal_for_assign(sign: Span, text: &str) -> Diagnostic {
-    let message = match text {
-        "=" | "==" => format!("`{text}` compares; an assignment is written `:=`"),
-        _ => "`:=` is written in one piece".into(),
-    };
-    Diagnostic::new(Code::E0008, sign, message).label("expected `:=`").help("write `:=`").fix(sign, ":=")
-}
-
-pub fn assign_for_equal(left: &str, sign: Span) -> Diagnostic {
-    let shown = if left.len() <= 40 { left } else { "a" };
-    Diagnostic::new(Code::E0009, sign, "`:=` assigns, and a condition cannot; a comparison is written `=`")
-        .label("expected `=`")
-        .help(format!("write `{shown} = …`"))
-        .fix(sign, "=")
-}
-
-pub fn foreign_operator(input: &mut In<'_, '_, '_>, kind: Kind, op: BinaryOp, sign: Span) {
-    let ours = op.text();
-    let replacement = spaced(input, ours, sign);
-    let theirs = if kind == Kind::Name { format!("`{}`", input.text(sign)) } else { kind.to_string() };
-    let mut it = Diagnostic::new(Code::E0010, sign, format!("Structured Text writes `{ours}` for {theirs}"))
-        .label(format!("expected `{ours}`"))
-        .help(format!("write `{ours}`"))
-        .fix(sign, replacement);
-    match op {
-        BinaryOp::And => it = it.note("`AND_THEN` evaluates its right side only when it is needed"),
-        BinaryOp::Or => it = it.note("`OR_ELSE` evaluates its right side only when it is needed"),
-        _ => {}
-    }
-    input.report(it);
-}
-
-/// A word keeps its distance from what stood directly beside the sign.
-fn spaced(input: &mut In<'_, '_, '_>, operator: &str, sign: Span) -> String {
-    if !operator.starts_with(|it: char| it.is_ascii_alphabetic()) {
-        return operator.into();
-    }
-    let bytes = input.state().text.as_bytes();
-    let beside = |at: usize| bytes.get(at).is_some_and(|it| !it.is_ascii_whitespace());
-    let before = if beside(index(sign.start).wrapping_sub(1)) { " " } else { "" };
-    let after = if beside(index(sign.end)) { " " } else { "" };
-    format!("{before}{operator}{after}")
-}
-
-pub fn foreign_not(sign: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0010, sign, "Structured Text writes `NOT` for `!`")
-        .label("expected `NOT`")
-        .help("write `NOT`")
-        .fix(sign, "NOT ")
-}
-
-/// `x += 1`
-pub fn compound_assignment(input: &mut In<'_, '_, '_>, target: &Expr<'_>) {
-    let sign = input.here();
-    let (text, target) = (input.text(sign), input.text(target.span));
-    let op = &text[..1];
-    input.report(
-        Diagnostic::new(Code::E0010, sign, format!("Structured Text has no `{text}`"))
-            .label("expected `:=`")
-            .help(format!("write `{target} := {target} {op} …`"))
-            .fix(sign, format!(":= {target} {op}")),
-    );
-}
-
-/// `x++;`
-pub fn increment(input: &mut In<'_, '_, '_>, target: &Expr<'_>) -> bool {
-    let kind = input.kind();
-    let doubled = matches!(kind, Kind::Plus | Kind::Minus) && input.kind_ahead(1) == kind;
-    if !doubled || input.kind_ahead(2) != Kind::Semicolon {
-        return false;
-    }
-    let sign = input.take();
-    let sign = sign.to(input.take());
-    let (text, name) = (input.text(sign), input.text(target.span));
-    let op = &text[..1];
-    input.report(
-        Diagnostic::new(Code::E0010, sign, format!("Structured Text has no `{text}`"))
-            .label("expected `:=`")
-            .help(format!("write `{name} := {name} {op} 1`"))
-            .fix(target.span.to(sign), format!("{name} := {name} {op} 1")),
-    );
-    true
-}
-
 /// `x := INT;` among declarations.
 pub fn assign_for_colon(sign: Span) -> Diagnostic {
     Diagnostic::new(Code::E0001, sign, "expected `:` and a type, found `:=`")
@@ -474,155 +398,6 @@ pub fn too_long() -> String {
     format!("this chain is longer than {MAX_CHAIN}")
 }
 
-/// `ENDIF`, `ELSEIF`: the keyword that a name at the start of a statement stands for.
-fn misspelt_word(word: &str) -> Option<Kind> {
-    const WORDS: [(&str, Kind); 14] = [
-        ("ELSEIF", Kind::Elsif),
-        ("ELSE_IF", Kind::Elsif),
-        ("ELIF", Kind::Elsif),
-        ("ENDIF", Kind::EndIf),
-        ("ENDFOR", Kind::EndFor),
-        ("ENDWHILE", Kind::EndWhile),
-        ("ENDCASE", Kind::EndCase),
-        ("ENDREPEAT", Kind::EndRepeat),
-        ("ENDVAR", Kind::EndVar),
-        ("ENDSTRUCT", Kind::EndStruct),
-        ("ENDTYPE", Kind::EndType),
-        ("ENDPROGRAM", Kind::EndProgram),
-        ("ENDFUNCTION", Kind::EndFunction),
-        ("ENDFUNCTION_BLOCK", Kind::EndFunctionBlock),
-    ];
-    WORDS.iter().find(|(it, _)| word.eq_ignore_ascii_case(it)).map(|(_, kind)| *kind)
-}
-
-/// The end that a name stands for, with the kind behind it, and how many tokens that takes:
-/// `ENDIF`, `END_FOOR`, `END IF`.
-pub fn misspelt_end(word: &str, next: Kind) -> Option<(Kind, usize)> {
-    if word.eq_ignore_ascii_case("END") {
-        return misspelt_word(&format!("END{}", next.keyword()?)).map(|kind| (kind, 2));
-    }
-    if let Some(kind) = misspelt_word(word) {
-        return Some((kind, 1));
-    }
-    let ends = word.get(..3).is_some_and(|it| it.eq_ignore_ascii_case("END")) && word.len() > 4;
-    ends.then(|| nearest_of(word, ENDS)).flatten().map(|kind| (kind, 1))
-}
-
-const ENDS: &[Kind] = &[
-    Kind::EndIf,
-    Kind::EndFor,
-    Kind::EndWhile,
-    Kind::EndCase,
-    Kind::EndRepeat,
-    Kind::EndVar,
-    Kind::EndStruct,
-    Kind::EndType,
-    Kind::EndProgram,
-    Kind::EndFunction,
-    Kind::EndFunctionBlock,
-];
-
-const SECTIONS: &[Kind] = &[
-    Kind::VarInput,
-    Kind::VarOutput,
-    Kind::VarInOut,
-    Kind::VarTemp,
-    Kind::VarStat,
-    Kind::VarGlobal,
-    Kind::VarExternal,
-];
-
-const OPENERS: &[Kind] = &[Kind::While, Kind::Repeat, Kind::Case, Kind::For, Kind::If, Kind::Elsif, Kind::Return];
-
-const ITEMS: &[Kind] =
-    &[Kind::Program, Kind::FunctionBlock, Kind::Function, Kind::Type, Kind::Configuration, Kind::VarGlobal];
-
-fn nearest_of(word: &str, kinds: &[Kind]) -> Option<Kind> {
-    let near = crate::key::nearest(word, kinds.iter().filter_map(|it| it.keyword()))?;
-    kinds.iter().copied().find(|it| it.keyword() == Some(near))
-}
-
-/// The misspelt keyword at the current place, and how many tokens it takes: `END IF` has two.
-pub fn misspelt(input: &mut In<'_, '_, '_>) -> Option<(Kind, usize)> {
-    if input.kind() != Kind::Name {
-        return None;
-    }
-    let span = input.here();
-    let (word, next) = (input.text(span), input.kind_ahead(1));
-    if let Some(found) = misspelt_end(word, next) {
-        return Some(found);
-    }
-    if word.eq_ignore_ascii_case("WEND") && waits_for(input, Kind::EndWhile) {
-        return Some((Kind::EndWhile, 1));
-    }
-    if word.eq_ignore_ascii_case("NEXT") && next == Kind::Name && waits_for(input, Kind::EndFor) {
-        let at = input.number();
-        let state = input.state();
-        let joined = !state.breaks(state.place(at).end, state.place(at + 1).start);
-        return Some((Kind::EndFor, if joined { 2 } else { 1 }));
-    }
-    if word.eq_ignore_ascii_case("END") || (word.eq_ignore_ascii_case("NEXT") && waits_for(input, Kind::EndFor)) {
-        return innermost(input).map(|end| (end, 1));
-    }
-    let section = match word.to_ascii_uppercase().as_str() {
-        "VARIN" | "VAR_IN" | "VARINPUT" | "VAR_INPUTS" => Some(Kind::VarInput),
-        "VAROUT" | "VAR_OUT" | "VAROUTPUT" | "VAR_OUTPUTS" => Some(Kind::VarOutput),
-        "VARINOUT" | "VAR_INOUT" => Some(Kind::VarInOut),
-        "VARS" | "VAR_RETAIN" | "VAR_CONSTANT" | "VAR_PERSISTENT" => Some(Kind::Var),
-        upper if upper.starts_with("VAR") && upper.len() > 4 => nearest_of(word, SECTIONS),
-        _ => None,
-    };
-    if let Some(section) = section.filter(|_| next == Kind::Name) {
-        return Some((section, 1));
-    }
-    let operand = matches!(next, Kind::Name | Kind::Integer | Kind::Not | Kind::True | Kind::False | Kind::OpenParen);
-    match word.to_ascii_uppercase().as_str() {
-        "SWITCH" | "SELECT" if operand => Some((Kind::Case, 1)),
-        _ if operand => nearest_of(word, OPENERS).map(|kind| (kind, 1)),
-        _ => None,
-    }
-}
-
-fn waits_for(input: &mut In<'_, '_, '_>, end: Kind) -> bool {
-    input.state().open.last().is_some_and(|(it, _)| *it == end)
-}
-
-/// The end of the innermost block of statements.
-fn innermost(input: &mut In<'_, '_, '_>) -> Option<Kind> {
-    input.state().open.last().map(|(end, _)| *end).filter(|it| !recover::is_pou_end(*it))
-}
-
-/// `PROGRM Main`, `FUNCTION BLOCK f`: the keyword that opens an item.
-pub fn misspelt_item(input: &mut In<'_, '_, '_>) -> Option<Kind> {
-    if input.kind() != Kind::Name || input.kind_ahead(1) != Kind::Name {
-        return None;
-    }
-    let span = input.here();
-    nearest_of(input.text(span), ITEMS)
-}
-
-/// Whether a name that stands alone is a misspelt keyword.
-pub fn is_misspelt(input: &mut In<'_, '_, '_>, target: &Expr<'_>) -> bool {
-    let ExprKind::Name(name) = &target.kind else { return false };
-    (name.text.eq_ignore_ascii_case("END") && innermost(input).is_some())
-        || (name.text.eq_ignore_ascii_case("NEXT") && waits_for(input, Kind::EndFor))
-        || (name.text.eq_ignore_ascii_case("WEND") && waits_for(input, Kind::EndWhile))
-        || misspelt_end(name.text, Kind::Semicolon).is_some()
-}
-
-pub fn misspelt_keyword(input: &mut In<'_, '_, '_>, kind: Kind, span: Span) {
-    let found = input.text(span);
-    let qualified = found.to_ascii_uppercase().replace('_', " ");
-    let two_words = matches!(qualified.as_str(), "VAR RETAIN" | "VAR CONSTANT" | "VAR PERSISTENT");
-    let word = if two_words { qualified.as_str() } else { kind.keyword().unwrap_or_default() };
-    input.report(
-        Diagnostic::new(Code::E0018, span, format!("`{found}` is written `{word}`"))
-            .label(format!("expected `{word}`"))
-            .help(format!("write `{word}`"))
-            .fix(span, word),
-    );
-}
-
 /// `5 y := 1;` among the arms of a CASE.
 pub fn missing_colon(input: &mut In<'_, '_, '_>) {
     let (span, place) = (behind_last(input), insertion(input));
@@ -634,51 +409,6 @@ pub fn missing_colon(input: &mut In<'_, '_, '_>) {
             .label("a `:` is missing behind this label")
             .help("write `:` here")
             .fix(place, ":"),
-    );
-}
-
-/// `w INT;` or `q = INT;` among declarations.
-pub fn missing_type_colon(input: &mut In<'_, '_, '_>) {
-    let found = input.kind();
-    let here = input.here();
-    let shown = shown(input, found, here);
-    let message = format!("expected `:`, found {shown}");
-    if matches!(found, Kind::Equal | Kind::Semicolon) {
-        input.take();
-        input
-            .report(Diagnostic::new(Code::E0001, here, message).label("expected `:`").help("write `:`").fix(here, ":"));
-        return;
-    }
-    let (span, place) = (behind_last(input), insertion(input));
-    input.report(
-        Diagnostic::new(Code::E0001, span, message)
-            .label("a `:` is missing behind this")
-            .help("write `:` here")
-            .fix(place, " :"),
-    );
-}
-
-/// `INT x;`
-pub fn type_first(input: &mut In<'_, '_, '_>, ty: Span, name: Span) {
-    let meant = format!("{} : {}", input.text(name), input.text(ty));
-    let whole = ty.to(name);
-    input.report(
-        Diagnostic::new(Code::E0001, whole, "the name stands before the type")
-            .label("expected a name, `:` and a type")
-            .help(format!("write `{meant}`"))
-            .fix(whole, meant),
-    );
-}
-
-/// `my var : INT;`
-pub fn name_of_two_words(input: &mut In<'_, '_, '_>, first: Span, second: Span) {
-    let meant = format!("{}_{}", input.text(first), input.text(second));
-    let whole = first.to(second);
-    input.report(
-        Diagnostic::new(Code::E0001, whole, "a name is one word")
-            .label("two words")
-            .help(format!("write `{meant}`"))
-            .fix(whole, meant),
     );
 }
 
@@ -705,54 +435,12 @@ pub fn missing_comma(input: &mut In<'_, '_, '_>) {
     );
 }
 
-/// `a : INT;` among statements; `closed` where an END_VAR stands behind such declarations.
-pub fn stray_declaration(input: &mut In<'_, '_, '_>, span: Span, closed: bool) {
-    let it = Diagnostic::new(Code::E0017, span, "this declaration stands outside of VAR … END_VAR");
-    let text = input.text(span);
-    input.report(if closed {
-        it.label("expected `VAR` before this").help("write `VAR` here").fix(Span { end: span.start, ..span }, "VAR ")
-    } else {
-        it.label("only statements stand here").help(format!("write `VAR {text} END_VAR` before the first statement"))
-    });
-}
-
-/// A VAR block or a statement outside of all units.
-pub fn outside_of_units(span: Span, statements: bool) -> Diagnostic {
-    let it = Diagnostic::new(Code::E0001, span, "this belongs to no unit of the program")
-        .label("no PROGRAM, FUNCTION_BLOCK or FUNCTION is open here");
-    if statements {
-        it.help("write `PROGRAM Main` before it, and `END_PROGRAM` behind it")
-    } else {
-        it.help("write `VAR_GLOBAL` for global variables, or `PROGRAM Main` before it")
-    }
-}
-
-/// `FUNCTION f(x : INT) : INT`, `PROGRAM p()`
-pub fn parameters_in_head(span: Span, empty: bool) -> Diagnostic {
-    if empty {
-        return Diagnostic::new(Code::E0020, span, "no parentheses stand behind the name of a unit")
-            .label("delete this")
-            .help("delete them")
-            .fix(span, "");
-    }
-    Diagnostic::new(Code::E0020, span, "parameters stand in VAR_INPUT, not in parentheses")
-        .label("expected no parentheses")
-        .help("write `VAR_INPUT x : INT; END_VAR` on the next line")
-}
-
 /// `else:`
 pub fn colon_behind_else(span: Span) -> Diagnostic {
     Diagnostic::new(Code::E0001, span, "no `:` stands behind the ELSE of an IF")
         .label("delete this")
         .help("delete it")
         .fix(span, "")
-}
-
-/// `ARRAY[10]`, `ARRAY[1:3]`, `ARRAY(1..3)`, `INT[10]`: what is wrong at `span`, and what is meant.
-pub fn array_bounds(span: Span, found: &str, meant: &str) -> Diagnostic {
-    Diagnostic::new(Code::E0001, span, "an array is declared by its first and its last index")
-        .label(format!("expected `[first..last]`, found {found}"))
-        .help(format!("write `{meant}`"))
 }
 
 /// A name alone on its line.
@@ -763,43 +451,6 @@ pub fn name_alone(input: &mut In<'_, '_, '_>, span: Span) {
             .label("this alone is no statement")
             .help(format!("to assign, write `{text} := …;`; to call, `{text}(…);`")),
     );
-}
-
-/// `STRUCT Name` outside of TYPE.
-pub fn bare_structure(span: Span, name: &str) -> Diagnostic {
-    Diagnostic::new(Code::E0001, span, "a structure is declared in TYPE … END_TYPE")
-        .label("expected `TYPE` before this")
-        .help(format!("write `TYPE {name} : STRUCT … END_STRUCT; END_TYPE`"))
-}
-
-/// TYPE or FUNCTION inside a PROGRAM.
-pub fn nested_unit(span: Span, kind: Kind, outer: &str) -> Diagnostic {
-    Diagnostic::new(Code::E0001, span, format!("{kind} stands inside {}", crate::key::article(outer)))
-        .label("units of the program stand beside one another")
-        .help(format!("move it before the {outer}"))
-}
-
-/// `FUNCTION_BLOCK f : INT`
-pub fn no_result_type(span: Span, opener: &str) -> Diagnostic {
-    let opener = opener.to_ascii_uppercase();
-    Diagnostic::new(Code::E0001, span, format!("{} has no result type", crate::key::article(&opener)))
-        .label("delete this")
-        .help("delete it, and declare what it returns in VAR_OUTPUT")
-        .fix(span, "")
-}
-
-/// `x AT IX0.0`
-pub fn address_without_sign(span: Span, text: &str) -> Diagnostic {
-    Diagnostic::new(Code::E0409, span, "a direct address starts with `%`")
-        .help(format!("write `%{text}`"))
-        .fix(span, format!("%{text}"))
-}
-
-/// `x : BOOL AT %QX0.0;`
-pub fn address_behind_type(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0409, span, "the address of a variable stands before its type")
-        .label("expected before the `:`")
-        .help("write `name AT %QX0.0 : BOOL;`")
 }
 
 /// `IN: x` among arguments.
