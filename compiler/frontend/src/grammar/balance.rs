@@ -45,13 +45,21 @@ pub fn judge(input: &mut In<'_, '_, '_>, innermost: Option<Kind>) -> Verdict {
     }
 }
 
+/// How far ahead the readings are compared: further on, one block more or less tells nothing.
+const HORIZON: usize = 2000;
+
+/// How many of the innermost blocks take part.
+const BLOCKS: usize = 16;
+
 /// How many ends are missing or too many from the token `at` to the end of the POU, if the blocks
 /// `open` are open there and `first` comes before it.
 fn mistakes(state: &State<'_, '_>, mut open: Vec<Kind>, first: Option<Kind>, mut at: usize) -> usize {
+    open.drain(..open.len().saturating_sub(BLOCKS));
     let mut found = first.map_or(0, |it| close(&mut open, it));
+    let horizon = at + HORIZON;
     loop {
         let (kind, count) = token(state, at);
-        if kind == Kind::End || recover::opens_item(kind) || recover::is_pou_end(kind) {
+        if at > horizon || kind == Kind::End || recover::opens_item(kind) || recover::is_pou_end(kind) {
             return found + open.len();
         }
         if let Some(end) = end_of(kind) {
@@ -76,8 +84,10 @@ fn token(state: &State<'_, '_>, at: usize) -> (Kind, usize) {
 }
 
 fn close(open: &mut Vec<Kind>, end: Kind) -> usize {
-    match open.iter().rposition(|it| *it == end) {
+    let near = open.len().saturating_sub(BLOCKS);
+    match open[near..].iter().rposition(|it| *it == end) {
         Some(place) => {
+            let place = place + near;
             let lost = open.len() - place - 1;
             open.truncate(place);
             lost
