@@ -129,6 +129,8 @@ pub enum TypeKind<'s> {
     Enum { base: Option<Name<'s>>, values: Vec<EnumValue<'s>> },
     /// A construct that is parsed to be refused by name: REF_TO, POINTER TO, REFERENCE TO, UNION.
     Unsupported(&'static str),
+    /// A type that did not parse, or is not told apart any further; reported.
+    Error,
 }
 
 #[derive(Clone, Debug)]
@@ -151,6 +153,8 @@ pub struct TypeDecl<'s> {
     pub ty: TypeSpec<'s>,
     pub initial: Option<Initial<'s>>,
     pub doc: Option<String>,
+    /// All names in a declaration that did not parse: they may be enumerators.
+    pub unread: Vec<Name<'s>>,
 }
 
 /// An initial value. `(a := 1)` is `Fields`; `[4(0), 1]` is `Elements`.
@@ -301,6 +305,9 @@ pub enum ExprKind<'s> {
     Binary(Box<[Expr<'s>; 2]>, BinaryOp, Span),
     /// `( … )`: kept, since it ends a chain.
     Paren(Box<Expr<'s>>),
+    /// What did not parse, or means nothing, and the parts of it that may hold more mistakes. It
+    /// has been reported.
+    Error(Vec<Expr<'s>>),
 }
 
 #[derive(Clone, Debug)]
@@ -404,6 +411,8 @@ pub enum LiteralValue<'s> {
     Enumerator(Box<Name<'s>>),
     /// D#, TOD#, DT# and their L forms: refused by name for now.
     Date(&'static str),
+    /// A literal that cannot be read; reported.
+    Error,
 }
 
 /// Calls `visit` with every expression in the statements, outer ones first.
@@ -461,6 +470,7 @@ fn each_part<'a, 's>(expr: &'a Expr<'s>, visit: &mut dyn FnMut(&'a Expr<'s>)) {
             each_part(base, visit);
             indices.iter().for_each(|it| each_part(it, visit));
         }
+        ExprKind::Error(parts) => parts.iter().for_each(|it| each_part(it, visit)),
         ExprKind::Call(callee, arguments) => {
             each_part(callee, visit);
             for argument in arguments {

@@ -47,6 +47,16 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
+    /// A call of a FUNCTION gives every input that has no default.
+    pub const fn wants_all_inputs(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
+    /// Nothing is assigned at an address of inputs, `%I`.
+    pub const fn protects_inputs(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
     /// Assigning an input from inside, or a FOR counter in its loop, is a lint, not an error.
     pub const fn assigns_inputs(self) -> bool {
         matches!(self, Self::Codesys)

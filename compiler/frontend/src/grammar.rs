@@ -3,14 +3,17 @@
 //! Productions decide by the tokens ahead and never go back, so that each mistake is told once,
 //! where it is, and reading goes on in the list it belongs to (`recover`).
 
+mod balance;
 mod configuration;
 mod declaration;
 mod doc;
 mod expression;
+mod habit;
 mod literal;
 mod member;
 mod mistake;
 mod moves;
+mod names;
 mod recover;
 mod statement;
 mod types;
@@ -38,6 +41,7 @@ pub fn parse<'s>(file: u16, text: &'s str, diagnostics: &mut Vec<Diagnostic>) ->
         return File::default();
     }
     let mut tokens = lex(file, text);
+    names::mend(&mut tokens, text, file);
     let mut state = State {
         file,
         text,
@@ -49,12 +53,22 @@ pub fn parse<'s>(file: u16, text: &'s str, diagnostics: &mut Vec<Diagnostic>) ->
         stopped: false,
         waiting: Vec::new(),
         instead: None,
+        begins: Vec::new(),
+        braced: Vec::new(),
+        braces: Vec::new(),
+        strays: Vec::new(),
+        told_at: None,
+        misaligned: None,
+        orphaned: false,
+        nested: Vec::new(),
+        ended: false,
     };
     let items = parse_items(&mut state);
-    let mut found = state.diagnostics;
+    let (mut found, braces) = (state.diagnostics, state.braces);
     found.append(&mut tokens.diagnostics);
     found.sort_by_key(|it| (it.span.start, it.span.end));
     diagnostics.append(&mut found);
+    tokens.pragmas.retain(|it| !braces.contains(&it.span));
     File { items, pragmas: tokens.pragmas }
 }
 

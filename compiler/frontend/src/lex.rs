@@ -37,7 +37,7 @@ pub fn lex(file: u16, text: &str) -> Tokens<'_> {
     // Real programs have a token for each five bytes or so.
     let guess = text.len() / 4 + 16;
     let tokens = Tokens { kinds: Vec::with_capacity(guess), places: Vec::with_capacity(guess), ..Tokens::default() };
-    let mut reading = Reading { file, text, tokens };
+    let mut reading = Reading { file, text, tokens, told: Vec::new() };
     for (kind, range) in Kind::lexer(text).spanned() {
         let place = (offset(range.start), offset(range.end));
         reading.token(kind.unwrap_or(Kind::Unknown), place);
@@ -55,6 +55,8 @@ struct Reading<'s> {
     file: u16,
     text: &'s str,
     tokens: Tokens<'s>,
+    /// Names with letters that names cannot have: each is told once.
+    told: Vec<&'s str>,
 }
 
 impl<'s> Reading<'s> {
@@ -131,22 +133,61 @@ impl<'s> Reading<'s> {
         let (Some(Kind::Unknown), Some(place)) = (self.tokens.kinds.last(), self.tokens.places.last()) else {
             return;
         };
-        let shown: String = self.slice(*place).chars().take(20).flat_map(char::escape_debug).collect();
+        let place = *place;
+        if self.closes_text(place) {
+            return;
+        }
+        let shown: String = self.slice(place).chars().take(20).flat_map(char::escape_debug).collect();
         let mut it =
-            Diagnostic::new(Code::E0002, self.span(*place), format!("`{shown}` means nothing in Structured Text"));
+            Diagnostic::new(Code::E0002, self.span(place), format!("`{shown}` means nothing in Structured Text"));
         it = match shown.chars().next() {
             Some('‘' | '’' | '‚' | '`') => it.help("a string stands between two `'`"),
             Some('“' | '”' | '„') => it.help("a string stands between two `'`, a WSTRING between two `\"`"),
             Some('–' | '—' | '−') => it.help("write `-`"),
             Some('\u{a0}') => it.help("write an ordinary space"),
+            Some('#') if self.text[index(place.1)..].starts_with(|it: char| it.is_ascii_alphabetic()) => {
+                it.help("a variable is named without `#`").fix(self.span(place), "")
+            }
+            Some('|') => it.help("write `OR`"),
+            Some('#') => it.help("a comment is written `// …` or `(* … *)`, a number of base 16 `16#FF`"),
+            Some('$') => it.help("a number of base 16 is written `16#FF`"),
+            Some('~') => it.help("write `NOT`"),
+            Some('?') => it.help("choose a value with `SEL(condition, value_if_false, value_if_true)`"),
+            Some('}') => it.help("a block is ended by its own word: `END_IF`, `END_FOR`, `END_WHILE`"),
             _ => it.label("delete this"),
         };
         self.tokens.diagnostics.push(it);
     }
 
+    /// `’` behind `‘Mixer`: the pair is one mistake.
+    fn closes_text(&mut self, place: (u32, u32)) -> bool {
+        let Some(opened) = self.tokens.diagnostics.last().map(|it| it.span) else { return false };
+        let whole = (opened.start, place.1);
+        let (open, close) = (self.slice((opened.start, opened.end)), self.slice(place));
+        let pair = matches!((open, close), ("‘" | "‚", "’" | "‘") | ("“" | "„", "”" | "“"));
+        if !pair || self.slice(whole).contains('\n') {
+            return false;
+        }
+        let inner = &self.text[index(opened.end)..index(place.0)];
+        let meant = format!("'{inner}'");
+        self.tokens.diagnostics.pop();
+        self.tokens.diagnostics.push(
+            Diagnostic::new(
+                Code::E0002,
+                self.span(whole),
+                format!("`{open}` and `{close}` mean nothing in Structured Text"),
+            )
+            .label("a string stands between two `'`")
+            .help(format!("write `{meant}`"))
+            .fix(self.span(whole), meant),
+        );
+        true
+    }
+
     fn name(&mut self, place: (u32, u32)) {
         let name = self.slice(place);
-        if !name.is_ascii() {
+        if !name.is_ascii() && !self.told.contains(&name) {
+            self.told.push(name);
             let it = Diagnostic::new(
                 Code::E0002,
                 self.span(place),
@@ -163,7 +204,9 @@ impl<'s> Reading<'s> {
         let quote = &self.slice(place)[..1];
         let it = Diagnostic::new(Code::E0004, self.span(place), "the string is not closed on its line")
             .label(format!("this {quote} has no partner"))
-            .help(format!("write {quote} where the string ends; a line break inside a string is `$N`"));
+            .help(format!(
+                "write {quote} where the string ends; inside a string `${quote}` is a quote, `$N` a line break"
+            ));
         self.tokens.diagnostics.push(it);
         self.push(Kind::OpenText, place);
     }

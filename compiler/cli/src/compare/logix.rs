@@ -225,6 +225,7 @@ impl Writer<'_> {
                 self.expr(base, narrow);
                 indices.iter().for_each(|it| self.expr(it, true));
             }
+            ExprKind::Error(parts) => parts.iter().for_each(|it| self.expr(it, narrow)),
             ExprKind::Call(_, arguments) => arguments.iter().for_each(|it| self.argument(it)),
             ExprKind::Binary(sides, op, _) => {
                 let compares = matches!(

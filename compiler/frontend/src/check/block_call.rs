@@ -22,6 +22,10 @@ impl<'s> Checker<'_, 's> {
         match found.place.ty {
             Type::Block(id) => self.standard_block(found, id, arguments, callee.span, span),
             Type::Struct(id) if self.decl.is_instance(id) => self.user_block(found, id, arguments, callee.span, span),
+            Type::Array(_) => {
+                self.report_array_called(callee, arguments);
+                None
+            }
             other => {
                 let ty = self.type_name(other);
                 self.report(
@@ -66,9 +70,13 @@ impl<'s> Checker<'_, 's> {
         if info.instructions.iter().any(|it| !it.name.is_empty()) {
             let names: Vec<_> = info.instructions.iter().map(|it| it.name).collect();
             self.report(
-                Diagnostic::new(Code::E0305, callee, format!("a {} is not called itself", info.name))
-                    .label(format!("it is worked on by {}", crate::key::list(&names)))
-                    .help(format!("write `{}({}, …)`", names[0], self.decl.sources.text(callee))),
+                Diagnostic::new(
+                    Code::E0305,
+                    callee,
+                    format!("{} is not called itself", crate::key::article(info.name)),
+                )
+                .label(format!("it is worked on by {}", crate::key::list(&names)))
+                .help(format!("write `{}({}, …)`", names[0], self.decl.sources.text(callee))),
             );
             return None;
         }
@@ -305,9 +313,13 @@ impl<'s> Checker<'_, 's> {
         if found.place.ty != formal.resolved.ty || found.range != formal.resolved.range {
             let (wants, has) = (self.type_name(formal.resolved.ty), self.type_name(found.place.ty));
             self.report(
-                Diagnostic::new(Code::E0201, expr.span, format!("`{name}` is a {wants}, found {has}"))
-                    .label("a VAR_IN_OUT takes a variable of exactly its own type")
-                    .other(formal.name.span, "declared here"),
+                Diagnostic::new(
+                    Code::E0201,
+                    expr.span,
+                    format!("`{name}` is {}, found {has}", crate::key::article(&wants)),
+                )
+                .label("a VAR_IN_OUT takes a variable of exactly its own type")
+                .other(formal.name.span, "declared here"),
             );
             return None;
         }
@@ -344,7 +356,7 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let found = self.place(expr)?;
-        self.writable(&found, expr.span).then_some(found)
+        self.may_be_given_away(&found, expr.span).then_some(found)
     }
 
     /// A Logix instruction on a structure: returns its rung-condition-out.
@@ -371,8 +383,12 @@ impl<'s> Checker<'_, 's> {
         })?;
         let Given::Value(tag) = given[0] else {
             self.report(
-                Diagnostic::new(Code::E0303, name.span, format!("`{}` needs a {}", name.text, info.name))
-                    .help(format!("write `{}(Counter := tag, RungIn := condition)`", name.text)),
+                Diagnostic::new(
+                    Code::E0303,
+                    name.span,
+                    format!("`{}` needs {}", name.text, crate::key::article(info.name)),
+                )
+                .help(format!("write `{}(Counter := tag, RungIn := condition)`", name.text)),
             );
             return None;
         };
@@ -383,9 +399,9 @@ impl<'s> Checker<'_, 's> {
                 Diagnostic::new(
                     Code::E0313,
                     tag.span,
-                    format!("`{}` works on a {}, found {has}", name.text, info.name),
+                    format!("`{}` works on {}, found {has}", name.text, crate::key::article(info.name)),
                 )
-                .label(format!("expected a {}", info.name)),
+                .label(format!("expected {}", crate::key::article(info.name))),
             );
             return None;
         }

@@ -47,7 +47,7 @@ impl<'s> Checker<'_, 's> {
         arguments: &[ast::Argument<'s>],
         expected: Option<Type>,
     ) -> Option<Operand> {
-        match self.callee(callee)? {
+        match self.checked_callee(callee, arguments)? {
             Callee::Standard(name) => self.standard_function(name, arguments, expected, expr.span),
             other => {
                 if self.signature.is_none() {
@@ -69,7 +69,7 @@ impl<'s> Checker<'_, 's> {
         callee: &ast::Expr<'s>,
         arguments: &[ast::Argument<'s>],
     ) {
-        match self.callee(callee) {
+        match self.checked_callee(callee, arguments) {
             Some(Callee::Standard(name)) => {
                 let value = self.standard_function(name, arguments, None, expr.span);
                 if value.is_none() {
@@ -104,6 +104,11 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn report_no_value(&mut self, callee: &ast::Expr<'s>, span: Span) {
+        if let Ast::Name(name) = &callee.kind
+            && self.lacks_result_type(*name)
+        {
+            return;
+        }
         let text = self.decl.sources.text(callee.span).to_owned();
         self.report(
             Diagnostic::new(Code::E0311, span, format!("a call of `{text}` has no value"))
@@ -112,9 +117,32 @@ impl<'s> Checker<'_, 's> {
         );
     }
 
-    fn callee(&mut self, callee: &ast::Expr<'s>) -> Option<Callee<'s>> {
+    /// What is called. Where that is not known, the arguments may hold mistakes of their own.
+    fn checked_callee(&mut self, callee: &ast::Expr<'s>, arguments: &[ast::Argument<'s>]) -> Option<Callee<'s>> {
+        let found = self.callee(callee, arguments);
+        if found.is_none() {
+            self.check_arguments(arguments);
+        }
+        found
+    }
+
+    /// Reports what is wrong inside the arguments of a call that is wrong itself.
+    fn check_arguments(&mut self, arguments: &[ast::Argument<'s>]) {
+        for argument in arguments {
+            match &argument.kind {
+                ArgumentKind::Positional(value) | ArgumentKind::Input(_, value) => drop(self.operand(value, None)),
+                ArgumentKind::Output { target, .. } => {
+                    if let Some(target) = target {
+                        self.place(target);
+                    }
+                }
+            }
+        }
+    }
+
+    fn callee(&mut self, callee: &ast::Expr<'s>, arguments: &[ast::Argument<'s>]) -> Option<Callee<'s>> {
         match &callee.kind {
-            Ast::Name(name) => self.named_callee(*name),
+            Ast::Name(name) => self.named_callee(*name, arguments),
             Ast::Member(base, name) => {
                 if let Ast::Name(family) = &base.kind
                     && self.scope.get(family.text).is_none()
@@ -129,6 +157,10 @@ impl<'s> Checker<'_, 's> {
                 Some(Callee::Instance)
             }
             Ast::Index(..) | Ast::Paren(_) => Some(Callee::Instance),
+            Ast::Error(_) => {
+                self.operand(callee, None);
+                None
+            }
             Ast::Deref(_)
             | Ast::Literal(_)
             | Ast::Address(_)
@@ -155,7 +187,7 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    fn named_callee(&mut self, name: ast::Name<'s>) -> Option<Callee<'s>> {
+    fn named_callee(&mut self, name: ast::Name<'s>, arguments: &[ast::Argument<'s>]) -> Option<Callee<'s>> {
         if let Some(variable) = self.scope.get(name.text) {
             // A variable that cannot be called does not hide a function of its name.
             let callable = matches!(variable.place.ty, Type::Block(_) | Type::Struct(_));
@@ -190,8 +222,39 @@ impl<'s> Checker<'_, 's> {
         if super::function::exists(name.text) {
             return Some(Callee::Standard(name));
         }
-        self.report_unknown_function(name);
+        if !self.is_logix_call(name, arguments) {
+            self.report_unknown_function(name);
+        }
         None
+    }
+
+    /// An instruction of Logix under another dialect, recognised by the tag that it works on.
+    fn is_logix_call(&mut self, name: ast::Name<'s>, arguments: &[ast::Argument<'s>]) -> bool {
+        if !is_instruction(staunch_runtime::Family::Logix, name.text) {
+            return false;
+        }
+        let tag = arguments.first().map(|it| &it.kind);
+        let Some(ArgumentKind::Positional(tag) | ArgumentKind::Input(_, tag)) = tag else { return false };
+        let Ast::Name(tag) = &tag.kind else { return false };
+        if self.scope.is_refused(tag.text) {
+            return true;
+        }
+        let Some(variable) = self.scope.get(tag.text) else { return false };
+        let logix = matches!(variable.place.ty, Type::Block(id) if id.info().family == staunch_runtime::Family::Logix);
+        if logix {
+            let text = name.text;
+            self.report(
+                Diagnostic::new(
+                    Code::E0309,
+                    name.span,
+                    format!("`{}` is a tag of Logix, a bare `{text}` here no instruction of it", tag.text),
+                )
+                .label("expected an instruction of Logix")
+                .help(format!("write `LOGIX.{text}(…)`, or start the file with `{{dialect 'logix'}}`"))
+                .fix(name.span, format!("LOGIX.{text}")),
+            );
+        }
+        logix
     }
 
     fn report_type_called(&mut self, name: ast::Name<'s>, kind: ast::PouKind) -> Option<Callee<'s>> {
@@ -239,7 +302,11 @@ impl<'s> Checker<'_, 's> {
         let mut error =
             Diagnostic::new(Code::E0307, name.span, format!("there is no function or instance `{}`", name.text))
                 .label("unknown name");
-        if let Some(near) = near {
+        if staunch_ir::Elementary::named(name.text).is_some() {
+            error = error.help(format!("a value is converted with `TO_{}(…)`", name.text.to_ascii_uppercase()));
+        } else if name.text.eq_ignore_ascii_case("POW") {
+            error = error.help("write `EXPT(base, exponent)`, or `base ** exponent`");
+        } else if let Some(near) = near {
             error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
         }
         self.report(error);
@@ -261,7 +328,17 @@ impl<'s> Checker<'_, 's> {
         };
         let order: Vec<_> = outputs_last(false).chain(outputs_last(true)).collect();
         let mut complete = true;
+        let mut compared = false;
         for argument in arguments {
+            if let ArgumentKind::Positional(value) = &argument.kind
+                && let Some((at, error)) = self.compared_parameter(parameters, value)
+            {
+                self.report(error);
+                let Ast::Binary(sides, ..) = &value.kind else { continue };
+                given[at] = Given::Value(&sides[1]);
+                compared = true;
+                continue;
+            }
             let slot = match &argument.kind {
                 ArgumentKind::Positional(value) => {
                     let free = order.iter().copied().find(|at| matches!(given[*at], Given::Nothing));
@@ -298,7 +375,31 @@ impl<'s> Checker<'_, 's> {
                 }
             }
         }
-        complete.then_some(given)
+        if !complete && !compared {
+            self.check_arguments(arguments);
+        }
+        (complete && !compared).then_some(given)
+    }
+
+    /// `t(IN = x)`: a comparison with what is a parameter's name, and nothing else's.
+    fn compared_parameter(
+        &mut self,
+        parameters: &[Parameter<'_>],
+        value: &ast::Expr<'s>,
+    ) -> Option<(usize, Diagnostic)> {
+        let Ast::Binary(sides, ast::BinaryOp::Eq, sign) = &value.kind else { return None };
+        let Ast::Name(name) = &sides[0].kind else { return None };
+        let at = parameters.iter().position(|it| it.name.eq_ignore_ascii_case(name.text))?;
+        if self.scope.get(name.text).is_some() || self.decl.names.contains_key(&Key(name.text)) {
+            return None;
+        }
+        let arrow = if parameters[at].section == Section::Output { "=>" } else { ":=" };
+        let error =
+            Diagnostic::new(Code::E0312, *sign, format!("`=` compares; an argument is connected with `{arrow}`"))
+                .label(format!("expected `{arrow}`"))
+                .help(format!("write `{} {arrow} …`", name.text))
+                .fix(*sign, arrow);
+        Some((at, error))
     }
 
     fn parameter(
@@ -335,7 +436,11 @@ impl<'s> Checker<'_, 's> {
         let count = names.len();
         let error =
             Diagnostic::new(Code::E0302, span, format!("`{owner}` takes {}", plural(count))).label("one too many");
-        if names.is_empty() { error } else { error.note(format!("they are {}", names.join(", "))) }
+        match names.as_slice() {
+            [] => error,
+            [one] => error.note(format!("it is {one}")),
+            names => error.note(format!("they are {}", names.join(", "))),
+        }
     }
 
     pub(super) fn unknown_formal(owner: &str, formals: &[Formal<'s>], name: ast::Name<'s>) -> Diagnostic {
@@ -345,6 +450,7 @@ impl<'s> Checker<'_, 's> {
         match nearest(name.text, names.iter().copied()) {
             Some(near) => error.help(format!("did you mean `{near}`?")).fix(name.span, near),
             None if names.is_empty() => error,
+            None if names.len() == 1 => error.help(format!("its parameter is {}", list(&names))),
             None => error.help(format!("its parameters are {}", list(&names))),
         }
     }

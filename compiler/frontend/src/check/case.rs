@@ -63,8 +63,10 @@ impl<'s> Checker<'_, 's> {
         };
         if low > high {
             self.report(
-                Diagnostic::new(Code::E0506, span, "this range of labels is empty")
-                    .label(format!("{low} is above {high}")),
+                Diagnostic::new(Code::E0510, span, "this range of labels is empty")
+                    .label(format!("{low} is above {high}"))
+                    .help(format!("write `{high}..{low}`"))
+                    .fix(span, format!("{high}..{low}")),
             );
             return None;
         }

@@ -45,10 +45,12 @@ impl<'s> Checker<'_, 's> {
             }
             (_, Type::String(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_)) => {
                 let expected = self.type_name(to);
-                self.report(
-                    Diagnostic::new(Code::E0201, span, format!("expected {expected}, found a number"))
-                        .label(format!("expected {expected}")),
-                );
+                let error = Diagnostic::new(Code::E0201, span, format!("expected {expected}, found a number"))
+                    .label(format!("expected {expected}"));
+                self.report(match self.members(to) {
+                    Some(members) => error.help(format!("name a member: {members}")),
+                    None => error,
+                });
                 None
             }
         }
@@ -83,13 +85,28 @@ impl<'s> Checker<'_, 's> {
             (Type::Struct(id), _) if self.decl.is_instance(id) => self.instance_is_no_value(&expr, span),
             _ => {
                 let (expected, found) = (self.type_name(to), self.type_name(expr.ty));
-                self.report(
-                    Diagnostic::new(Code::E0201, span, format!("expected {expected}, found {found}"))
-                        .label(format!("this is {found}")),
-                );
+                let error = Diagnostic::new(Code::E0201, span, format!("expected {expected}, found {found}"))
+                    .label(format!("this is {found}"));
+                let text = self.decl.sources.text(span);
+                let short = !text.is_empty() && text.len() < 60 && !text.contains('\n');
+                self.report(match (expr.ty, to, self.members(to)) {
+                    (Type::Enum(_), Type::Elementary(it), _) if it.is_integer() && short => {
+                        let meant = format!("TO_{}({text})", it.name());
+                        error.help(format!("write `{meant}`")).fix(span, meant)
+                    }
+                    (_, _, Some(members)) => error.help(format!("name a member: {members}")),
+                    _ => error,
+                });
                 None
             }
         }
+    }
+
+    /// The first members of an enumeration, for a message.
+    pub(super) fn members(&self, ty: Type) -> Option<String> {
+        let Type::Enum(id) = ty else { return None };
+        let names = self.decl.program.enumeration(id).values.iter().map(|it| it.name.as_str());
+        Some(crate::key::list(&names.take(4).collect::<Vec<_>>()))
     }
 
     fn instance_is_no_value(&mut self, expr: &Expr, span: Span) -> Option<Expr> {

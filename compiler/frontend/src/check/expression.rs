@@ -21,6 +21,10 @@ impl<'s> Checker<'_, 's> {
                 None
             }
             Ast::Call(callee, arguments) => self.call_value(expr, callee, arguments, expected),
+            Ast::Error(parts) => {
+                parts.iter().for_each(|it| drop(self.operand(it, None)));
+                None
+            }
             Ast::Unary(op, inner) => self.unary(*op, inner, expected, expr.span),
             Ast::Binary(sides, op, op_span) => self.binary(sides, *op, *op_span, expected, expr.span),
         }
@@ -38,6 +42,10 @@ impl<'s> Checker<'_, 's> {
                 .label("expected BOOL");
             if matches!(found, Type::Elementary(it) if it.lane().is_integer()) && !text.contains(' ') {
                 error = error.help(format!("compare it: `{text} <> 0`")).fix(expr.span, format!("{text} <> 0"));
+            } else if let Type::Block(id) = found
+                && id.info().pin("Q").is_some()
+            {
+                error = error.help(format!("ask its output: `{text}.Q`")).fix(expr.span, format!("{text}.Q"));
             }
             self.report(error);
             return None;

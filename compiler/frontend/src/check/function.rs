@@ -5,7 +5,7 @@ use super::call::{Given, Parameter};
 use super::coerce::{as_number, join};
 use super::conversion;
 use super::operand::Operand;
-use crate::declare::{Formal, Signature};
+use crate::declare::{Entry, Formal, Signature};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{
     Argument, Arm, Conversion, Elementary, Expr, ExprKind, FaultKind, Mode, Op, PouId, Section, Statement,
@@ -102,6 +102,7 @@ impl<'s> Checker<'_, 's> {
         match (signature.params[at].mode, formal.section) {
             (Mode::Value(_), _) => {
                 let Given::Value(expr) = given else {
+                    self.input_left_out(formal, owner, span)?;
                     return Some(Argument::Value(self.default_argument(formal, span)));
                 };
                 let mut done = expressions(passed);
@@ -124,6 +125,39 @@ impl<'s> Checker<'_, 's> {
                 place.map(Argument::Reference)
             }
         }
+    }
+
+    /// Reports an input without an initial value of its own that a call leaves out. CODESYS refuses it.
+    fn input_left_out(&mut self, formal: &Formal<'s>, owner: ast::Name<'s>, span: Span) -> Option<()> {
+        if self.has_initial(formal, owner) {
+            return Some(());
+        }
+        let (name, refused) = (formal.name.text, self.decl.dialect(span).wants_all_inputs());
+        let ty = self.type_name(formal.resolved.ty);
+        let code = if refused { Code::E0303 } else { Code::W0304 };
+        let message = format!("this call of `{}` leaves out the input `{name}`", owner.text);
+        self.report(
+            Diagnostic::new(code, span, message)
+                .label(if refused {
+                    "a FUNCTION keeps no value from its last call"
+                } else {
+                    "it is 0, FALSE or empty then"
+                })
+                .other(formal.name.span, "declared here, without an initial value")
+                .help(format!("write `{name} := …` in the call, or declare a default: `{name} : {ty} := …;`")),
+        );
+        (!refused).then_some(())
+    }
+
+    /// Whether a formal's declaration, or its type's, gives it a value.
+    fn has_initial(&self, formal: &Formal<'s>, owner: ast::Name<'s>) -> bool {
+        let Some(Entry::Pou(slot)) = self.decl.names.get(&crate::key::Key(owner.text)) else { return true };
+        let pou = self.decl.pous[*slot].ast;
+        let declared = pou.blocks.iter().flat_map(|it| &it.vars);
+        let given = declared
+            .filter(|it| it.names.iter().any(|name| name.span == formal.name.span))
+            .any(|it| it.initial.is_some());
+        given || !matches!(formal.resolved.initial, staunch_ir::Const::Zero)
     }
 
     /// An omitted input has its declared initial value.
@@ -204,11 +238,12 @@ impl<'s> Checker<'_, 's> {
         }
         if values.len() < names.len() {
             let count = names.len();
+            let least = if shape.extensible { "at least " } else { "" };
             self.report(
                 Diagnostic::new(
                     Code::E0302,
                     span,
-                    format!("`{}` takes {}, {} given", name.text, super::call::plural(count), values.len()),
+                    format!("`{}` takes {}{}, {} given", name.text, least, super::call::plural(count), values.len()),
                 )
                 .label(format!("expected {}", names.join(", "))),
             );

@@ -33,6 +33,7 @@ impl<'s> Checker<'_, 's> {
                 self.decl.not_supported(span, what);
                 None
             }
+            LiteralValue::Error => None,
             LiteralValue::Enumerator(name) => {
                 self.error(Code::E0101, name.span, format!("`{}` belongs to no enumeration here", name.text));
                 None
@@ -81,6 +82,7 @@ impl<'s> Checker<'_, 's> {
             | LiteralValue::Time { .. }
             | LiteralValue::String { .. }
             | LiteralValue::Enumerator(_)
+            | LiteralValue::Error
             | LiteralValue::Date(_) => {
                 let operand = self.plain_literal(value, span)?;
                 self.coerce(operand, Type::Elementary(ty), span)

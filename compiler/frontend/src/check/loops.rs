@@ -12,6 +12,15 @@ enum Step {
     Variable(Expr),
 }
 
+/// A FOR loop's head.
+struct Range {
+    place: Place,
+    ty: Elementary,
+    step: Step,
+    stay: Expr,
+    leave: Option<Expr>,
+}
+
 impl<'s> Checker<'_, 's> {
     pub(super) fn while_loop(&mut self, condition: &ast::Expr<'s>, body: &[ast::Statement<'s>], span: Span) {
         let mut holds = None;
@@ -74,10 +83,40 @@ impl<'s> Checker<'_, 's> {
         body: &[ast::Statement<'s>],
         span: Span,
     ) -> Option<()> {
-        let found = self.place(counter)?;
-        if !self.writable(&found, counter.span) {
+        let Some(Range { place, ty, step, stay, leave }) = self.range(counter, from, to, by, span) else {
+            // The body may hold mistakes of its own.
+            self.loop_body(body);
             return None;
-        }
+        };
+        self.counters.push(place.clone());
+        let mut inside = self.loop_body(body);
+        self.counters.pop();
+        let mut block = vec![self.exit_unless(stay, span)?];
+        block.append(&mut inside);
+        let next = self.next_value(&place, ty, &step, span)?;
+        let at = self.at(span);
+        let mut continuing: Vec<_> = leave.map(|leave| exit_if(leave, at)).into_iter().collect();
+        continuing.push(Statement::assign(place, next, at));
+        self.push(StatementKind::Loop { body: block, continuing }, span);
+        Some(())
+    }
+
+    /// Checks a FOR loop's head, and makes the statements before the loop.
+    fn range(
+        &mut self,
+        counter: &ast::Expr<'s>,
+        from: &ast::Expr<'s>,
+        to: &ast::Expr<'s>,
+        by: Option<&ast::Expr<'s>>,
+        span: Span,
+    ) -> Option<Range> {
+        let found = self.place(counter);
+        let Some(found) = found.filter(|it| self.writable(it, counter.span)) else {
+            for part in [from, to].into_iter().chain(by) {
+                self.operand(part, None);
+            }
+            return None;
+        };
         let place = found.place;
         let ty = match place.ty {
             Type::Elementary(it) if it.is_integer() || self.counts(it, counter.span) => it,
@@ -95,22 +134,16 @@ impl<'s> Checker<'_, 's> {
             }
         };
         self.note_assigned(&place, counter.span);
-        let first = self.value(from, place.ty, found.range)?;
-        self.assign(place.clone(), first, from.span);
-        let last = self.bound(to, ty)?;
-        let step = self.step(by, ty, span)?;
+        // Each part is checked, whatever is wrong with another.
+        let first = self.value(from, place.ty, found.range);
+        if let Some(first) = &first {
+            self.assign(place.clone(), first.clone(), from.span);
+        }
+        let last = self.bound(to, ty);
+        let step = self.step(by, ty, span);
+        let (_, last, step) = (first?, last?, step?);
         let (stay, leave) = self.loop_tests(&place, ty, &last, &step, span)?;
-        self.counters.push(place.clone());
-        let mut inside = self.loop_body(body);
-        self.counters.pop();
-        let mut block = vec![self.exit_unless(stay, span)?];
-        block.append(&mut inside);
-        let next = self.next_value(&place, ty, &step, span)?;
-        let at = self.at(span);
-        let mut continuing: Vec<_> = leave.map(|leave| exit_if(leave, at)).into_iter().collect();
-        continuing.push(Statement::assign(place, next, at));
-        self.push(StatementKind::Loop { body: block, continuing }, span);
-        Some(())
+        Some(Range { place, ty, step, stay, leave })
     }
 
     fn counts(&self, ty: Elementary, span: Span) -> bool {

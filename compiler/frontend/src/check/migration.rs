@@ -120,7 +120,7 @@ impl<'s> Checker<'_, 's> {
         };
         if unsigned {
             self.report(
-                Diagnostic::new(Code::W0608, span, format!("a {} is never below zero", ty.name()))
+                Diagnostic::new(Code::W0608, span, format!("{} is never below zero", crate::key::article(ty.name())))
                     .label(format!("this is always {outcome}"))
                     .help("compare with `= 0`, or count in a signed type"),
             );

@@ -12,6 +12,7 @@ mod function;
 mod literal;
 mod loops;
 mod migration;
+mod never;
 mod operand;
 mod operator;
 mod place;

@@ -79,9 +79,13 @@ impl<'s> Checker<'_, 's> {
         }
         if ty.is_time() {
             self.report(
-                Diagnostic::new(Code::E0201, span, format!("a {} is expected, not a number", ty.name()))
-                    .label(format!("expected {}", ty.name()))
-                    .help(format!("write the unit: `T#{value}ms`")),
+                Diagnostic::new(
+                    Code::E0201,
+                    span,
+                    format!("{} is expected, not a number", crate::key::article(ty.name())),
+                )
+                .label(format!("expected {}", ty.name()))
+                .help(format!("write the unit: `T#{value}ms`")),
             );
             return None;
         }

@@ -131,7 +131,9 @@ impl<'s> Checker<'_, 's> {
             .label(wants.to_owned())
             .other(sides.left, format!("this is {a}"))
             .other(sides.right, format!("this is {b}"));
-        if let (Some(Type::Elementary(a)), Some(Type::Elementary(b))) = (sides.a.ty(), sides.b.ty()) {
+        if let Some(help) = self.help_for_sides(sides) {
+            error = error.help(help);
+        } else if let (Some(Type::Elementary(a)), Some(Type::Elementary(b))) = (sides.a.ty(), sides.b.ty()) {
             let bits = [a, b].into_iter().find(|it| it.is_bits() && *it != Elementary::Bool);
             error = match bits {
                 Some(bits) => error.help(format!(
@@ -143,6 +145,43 @@ impl<'s> Checker<'_, 's> {
             };
         }
         self.report(error);
+    }
+
+    /// What to write instead of an operator that a type does not have.
+    fn help_for_sides(&self, sides: &Sides) -> Option<String> {
+        let text = |span| self.decl.sources.text(span);
+        let (a, b) = (text(sides.left), text(sides.right));
+        match (sides.a.ty(), sides.b.ty()) {
+            (Some(Type::String(_)), Some(Type::String(_))) if matches!(sides.op, BinaryOp::Add | BinaryOp::And) => {
+                Some(format!("write `CONCAT({a}, {b})`"))
+            }
+            (Some(ty @ Type::Enum(_)), None) | (None, Some(ty @ Type::Enum(_))) => {
+                Some(format!("name a member: {}", self.members(ty)?))
+            }
+            (Some(Type::Enum(_)), Some(Type::Elementary(it))) if it.is_integer() => {
+                Some(format!("write `TO_{}({a})`", it.name()))
+            }
+            (Some(Type::Elementary(it)), Some(Type::Enum(_))) if it.is_integer() => {
+                Some(format!("write `TO_{}({b})`", it.name()))
+            }
+            (Some(Type::BOOL), None) if is_junction(sides.op) => {
+                Some(format!("each side of {0} is a comparison of its own: `x = 1 {0} x = 2`", sides.op.text()))
+            }
+            (Some(Type::BOOL), None) if a.contains(['<', '>', '=']) => {
+                Some("join two comparisons: `low < x AND x < high`".to_owned())
+            }
+            (Some(Type::Elementary(it)), None) if it.is_bits() && it != Elementary::Bool && !is_junction(sides.op) => {
+                Some(format!("write `{}`", converted(sides, it, as_number(it).name(), a, b)))
+            }
+            (Some(Type::Elementary(it)), None) if it.is_integer() && is_junction(sides.op) => {
+                let bits = ["BYTE", "WORD", "DWORD", "LWORD"];
+                let bits = bits[usize::try_from(it.lane().size().trailing_zeros()).unwrap_or(0)];
+                Some(format!("write `{}`", converted(sides, it, bits, a, b)))
+            }
+            (Some(Type::Elementary(it)), None) if it.is_time() => Some(format!("write the unit: `T#{b}ms`")),
+            (None, Some(Type::Elementary(it))) if it.is_time() => Some(format!("write the unit: `T#{a}ms`")),
+            _ => None,
+        }
     }
 
     fn compare(&mut self, sides: Sides) -> Option<Expr> {
@@ -169,6 +208,7 @@ impl<'s> Checker<'_, 's> {
             }
             _ => {
                 let equality = matches!(op, Op::Eq | Op::Ne);
+                self.always_the_same(&sides);
                 let (ty, a, b) = self.meet(sides, |_, _| true, "both sides need one type that can be compared")?;
                 if ty.is_real() && equality {
                     self.report(
@@ -413,4 +453,15 @@ fn arithmetic_op(op: BinaryOp) -> Op {
         BinaryOp::Div => Op::Div,
         _ => Op::Mod,
     }
+}
+
+fn is_junction(op: BinaryOp) -> bool {
+    matches!(op, BinaryOp::And | BinaryOp::Or | BinaryOp::Xor)
+}
+
+/// `INT_TO_WORD(a) AND 1`, and back where the place asks for the type of `a`.
+fn converted(sides: &Sides, ty: Elementary, into: &str, a: &str, b: &str) -> String {
+    let name = ty.name();
+    let value = format!("{name}_TO_{into}({a}) {} {b}", sides.op.text());
+    if sides.hint == Some(Type::Elementary(ty)) { format!("{into}_TO_{name}({value})") } else { value }
 }

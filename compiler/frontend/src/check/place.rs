@@ -5,7 +5,9 @@ use crate::declare::{Entry, Variable};
 use crate::key::{Key, nearest};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::ExprKind as Ast;
-use staunch_ir::{ArrayId, BlockId, Elementary, Expr, FieldId, Op, Place, Section, StructId, Type, Value};
+use staunch_ir::{
+    Address, Area, ArrayId, BlockId, Elementary, Expr, FieldId, Op, Place, Section, StructId, Type, Value,
+};
 use staunch_runtime::Direction;
 use std::rc::Rc;
 
@@ -50,13 +52,50 @@ impl<'s> Checker<'_, 's> {
                 self.decl.not_supported(expr.span, "dereferencing");
                 None
             }
+            Ast::Error(_) => {
+                self.operand(expr, None);
+                None
+            }
+            Ast::Call(callee, arguments) if self.is_array(callee) => {
+                self.report_array_called(callee, arguments);
+                None
+            }
             Ast::Literal(_) | Ast::Part(..) | Ast::Call(..) | Ast::Unary(..) | Ast::Binary(..) => {
-                self.report(
-                    Diagnostic::new(Code::E0306, expr.span, "a variable is expected here").label("this is a value"),
-                );
+                let error =
+                    Diagnostic::new(Code::E0306, expr.span, "a variable is expected here").label("this is a value");
+                let text = self.decl.sources.text(expr.span);
+                let called = matches!(expr.kind, Ast::Call(..)).then(|| text.split('(').next()).flatten();
+                self.report(match called {
+                    Some(name) => {
+                        error.help(format!("call it before, `{name}(…);`, and read its output then: `{name}.…`"))
+                    }
+                    None => error,
+                });
                 None
             }
         }
+    }
+
+    /// Whether `callee` is the name of an array.
+    fn is_array(&self, callee: &ast::Expr<'s>) -> bool {
+        let Ast::Name(name) = &callee.kind else { return false };
+        self.scope.get(name.text).is_some_and(|it| matches!(it.place.ty, Type::Array(_)))
+    }
+
+    /// `a(1)` for `a[1]`
+    pub(super) fn report_array_called(&mut self, callee: &ast::Expr<'s>, arguments: &[ast::Argument<'s>]) {
+        let text = self.decl.sources.text(callee.span);
+        let index = match arguments {
+            [first, .., last] => self.decl.sources.text(first.span.to(last.span)),
+            [one] => self.decl.sources.text(one.span),
+            [] => "1",
+        };
+        let meant = format!("{text}[{index}]");
+        self.report(
+            Diagnostic::new(Code::E0305, callee.span, format!("the array `{text}` cannot be called"))
+                .label("an element is chosen in brackets")
+                .help(format!("write `{meant}`")),
+        );
     }
 
     /// The variable that a name means; the inner `None` says that it was reported.
@@ -176,6 +215,16 @@ impl<'s> Checker<'_, 's> {
         if self.is_refused_member(id, name) {
             return None;
         }
+        if let Some(declared) = self.in_out_of(id, name) {
+            let owner = self.type_name(found.place.ty);
+            self.report(
+                Diagnostic::new(Code::E0109, name.span, format!("`{}` is a VAR_IN_OUT of `{owner}`", name.text))
+                    .label("it stands for a variable of the caller, during a call only")
+                    .other(declared, "declared here")
+                    .help(format!("use the variable that the call is given: `{} := variable`", name.text)),
+            );
+            return None;
+        }
         let fields = &self.decl.program.structure(id).fields;
         let at = fields.iter().position(|it| it.name.eq_ignore_ascii_case(name.text));
         let Some(at) = at else {
@@ -207,6 +256,16 @@ impl<'s> Checker<'_, 's> {
         Some(Found { place: found.place.field(FieldId::next(at), ty), range, access })
     }
 
+    /// Where the VAR_IN_OUT `name` of an instance is declared.
+    fn in_out_of(&mut self, id: StructId, name: ast::Name<'s>) -> Option<Span> {
+        let slot = self.decl.slot_of_instance(id)?;
+        let signature = self.decl.signature(slot)?;
+        let is_meant = |it: &&crate::declare::Formal<'s>| {
+            it.section == Section::InOut && it.name.text.eq_ignore_ascii_case(name.text)
+        };
+        signature.formals.iter().find(is_meant).map(|it| it.name.span)
+    }
+
     /// Whether the member was declared, but refused.
     pub(super) fn is_refused_member(&mut self, id: StructId, name: ast::Name<'s>) -> bool {
         let signature = self.decl.slot_of_instance(id).and_then(|slot| self.decl.signature(slot));
@@ -232,10 +291,16 @@ impl<'s> Checker<'_, 's> {
         for index in indices {
             let Type::Array(id) = found.place.ty else {
                 let ty = self.type_name(found.place.ty);
-                self.report(
-                    Diagnostic::new(Code::E0302, index.span, format!("{ty} has no index here"))
-                        .label("one index too many, or not an array"),
-                );
+                let error = Diagnostic::new(Code::E0302, index.span, format!("{ty} has no index here"))
+                    .label("one index too many, or not an array");
+                let (text, at) = (self.decl.sources.text(base.span), self.decl.sources.text(index.span));
+                self.report(match found.place.ty {
+                    Type::String(_) => error.help(format!("write `MID({text}, 1, {at})` for one character")),
+                    Type::Elementary(it) if it.is_bits() && it != Elementary::Bool => {
+                        error.help(format!("a bit is written `{text}.{at}`"))
+                    }
+                    Type::Elementary(_) | Type::Enum(_) | Type::Struct(_) | Type::Block(_) | Type::Array(_) => error,
+                });
                 return None;
             };
             let Found { place, access, .. } = found;
@@ -325,6 +390,37 @@ impl<'s> Checker<'_, 's> {
 
     /// Refuses a write where the place may not be written.
     pub(super) fn writable(&mut self, found: &Found<'s>, span: Span) -> bool {
+        self.may_be_given_away(found, span) && self.is_no_input_address(&found.place, span)
+    }
+
+    /// Reports an assignment to what the hardware sets before each scan.
+    fn is_no_input_address(&mut self, place: &Place, span: Span) -> bool {
+        let Some(address) = self.address_of(place).filter(|it| it.area == Area::Input) else { return true };
+        let refused = self.decl.dialect(span).protects_inputs();
+        let code = if refused { Code::E0511 } else { Code::W0509 };
+        self.report(
+            Diagnostic::new(code, span, format!("this assigns to the input address `{address}`"))
+                .label("the next scan's input overwrites it")
+                .help("assign to a variable without an address, or to an output, `%Q`"),
+        );
+        !refused
+    }
+
+    /// The direct address of the variable that a place is, or is a part of.
+    fn address_of(&self, place: &Place) -> Option<Address> {
+        let Some(staunch_ir::Projection::Field(field)) = place.projections.first() else { return None };
+        match place.root {
+            staunch_ir::Root::Globals => self.decl.address_of_global(*field),
+            staunch_ir::Root::Instance => {
+                let state = self.signature.as_ref()?.state?;
+                self.decl.program.structure(state).fields.get(field.index())?.address
+            }
+            staunch_ir::Root::Local(_) | staunch_ir::Root::Param(_) => None,
+        }
+    }
+
+    /// Whether a place may be given to a call that may write to it.
+    pub(super) fn may_be_given_away(&mut self, found: &Found<'s>, span: Span) -> bool {
         if self.is_counter(&found.place) {
             return self.report_counter(span);
         }

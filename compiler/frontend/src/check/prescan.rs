@@ -106,6 +106,7 @@ impl<'s> Checker<'_, 's> {
             | ast::ExprKind::Address(_)
             | ast::ExprKind::Part(..)
             | ast::ExprKind::Deref(_)
+            | ast::ExprKind::Error(_)
             | ast::ExprKind::Call(..)
             | ast::ExprKind::Unary(..)
             | ast::ExprKind::Binary(..) => false,

@@ -72,6 +72,7 @@ impl<'s> Checker<'_, 's> {
         match &expr.kind {
             Ast::Call(callee, arguments) => self.call_statement(expr, callee, arguments),
             Ast::Paren(inner) => self.lone_expression(inner),
+            Ast::Error(_) => drop(self.operand(expr, None)),
             Ast::Name(_) | Ast::Member(..) | Ast::Index(..) => self.report_missing_call(expr),
             Ast::Literal(_) | Ast::Address(_) | Ast::Part(..) | Ast::Deref(_) | Ast::Unary(..) | Ast::Binary(..) => {
                 self.report(
@@ -151,10 +152,11 @@ impl<'s> Checker<'_, 's> {
         value: &ast::Expr<'s>,
         span: Span,
     ) -> Option<()> {
-        let found = self.place(base)?;
-        if !self.writable(&found, base.span) {
+        let found = self.place(base);
+        let Some(found) = found.filter(|it| self.writable(it, base.span)) else {
+            self.operand(value, None);
             return None;
-        }
+        };
         let mut place = found.place;
         let ty = place.ty;
         let selected = self.find_part(ty, part)?;
@@ -183,10 +185,11 @@ impl<'s> Checker<'_, 's> {
 
     /// `x S= c` sets, `x R= c` resets, while `c` is TRUE.
     fn set_reset(&mut self, target: &ast::Expr<'s>, value: &ast::Expr<'s>, set: bool, span: Span) -> Option<()> {
-        let found = self.place(target)?;
-        if !self.writable(&found, target.span) {
+        let found = self.place(target);
+        let Some(found) = found.filter(|it| self.writable(it, target.span)) else {
+            self.operand(value, None);
             return None;
-        }
+        };
         if found.place.ty != Type::BOOL {
             let ty = self.type_name(found.place.ty);
             let op = if set { "S=" } else { "R=" };

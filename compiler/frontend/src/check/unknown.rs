@@ -36,12 +36,18 @@ pub(crate) fn block_of_another_dialect(dialect: Dialect, name: ast::Name<'_>) ->
     let qualified: Vec<_> = owners.iter().map(|it| format!("{}.{}", family_name(*it), name.text)).collect();
     let qualified: Vec<_> = qualified.iter().map(String::as_str).collect();
     let others: Vec<_> = Dialect::ALL.iter().filter(|it| owners.contains(&it.family())).map(|it| it.name()).collect();
-    Some(
-        Diagnostic::new(Code::E0309, name.span, format!("{system} documents no `{}`", name.text))
-            .label(format!("under `--dialect {}` this name has no block", dialect.name()))
-            .note(format!("the dialect {} has it", list(&others)))
-            .help(format!("name the family: {}", list(&qualified))),
-    )
+    let error = Diagnostic::new(Code::E0309, name.span, format!("{system} documents no `{}`", name.text))
+        .label(format!("under `--dialect {}` this name has no block", dialect.name()))
+        .note(format!("the dialect {} has it", list(&others)));
+    // Who names a structure of Logix calls its instructions too, which a family's name has to precede as well.
+    Some(match (others.as_slice(), owners.as_slice()) {
+        ([one], [Family::Logix]) => error.help(format!(
+            "start the file with `{{dialect '{one}'}}`, or write `{}`, and `LOGIX.` before each instruction: `LOGIX.{}(…)`",
+            qualified[0],
+            if name.text.eq_ignore_ascii_case("FBD_COUNTER") { "CTUD" } else { "CTU" }
+        )),
+        _ => error.help(format!("name the family: {}", list(&qualified))),
+    })
 }
 
 /// `c.RST` or `c(RESET := …)` on a block that has no such pin.
@@ -105,27 +111,110 @@ fn dialect_of(family: Family) -> Dialect {
     Dialect::ALL.into_iter().find(|it| it.family() == family).unwrap_or_default()
 }
 
+/// Values that are no names, for suggestions.
+const CONSTANTS: [&str; 2] = ["TRUE", "FALSE"];
+
+/// Words that do something in other languages, or in other places.
+const FOREIGN: [(&str, &str); 13] = [
+    ("DEFAULT", "the branch of a CASE for all other values is written `ELSE`"),
+    ("OTHERS", "the branch of a CASE for all other values is written `ELSE`"),
+    ("OTHERWISE", "the branch of a CASE for all other values is written `ELSE`"),
+    ("BREAK", "a loop is left with `EXIT;`, and a branch of a CASE ends before the next label"),
+    ("PASS", "nothing to do is written `;`"),
+    ("NOP", "nothing to do is written `;`"),
+    ("STOP", "a POU is left with `RETURN;`"),
+    ("HIGH", "write `TRUE`"),
+    ("LOW", "write `FALSE`"),
+    ("ON", "write `TRUE`"),
+    ("OFF", "write `FALSE`"),
+    ("YES", "write `TRUE`"),
+    ("NO", "write `FALSE`"),
+];
+
 impl<'s> Checker<'_, 's> {
+    fn not_a_variable(&mut self, name: ast::Name<'s>) {
+        let error = Diagnostic::new(Code::E0101, name.span, format!("`{}` is not a variable", name.text));
+        if !self.lacks_result_type(name) {
+            let error = error.label("a variable or a value is expected here");
+            let kind = match self.decl.names.get(&crate::key::Key(name.text)) {
+                Some(crate::declare::Entry::Pou(slot)) => Some(self.decl.pous[*slot].ast.kind),
+                Some(crate::declare::Entry::Type(_) | crate::declare::Entry::Global(_)) | None => None,
+            };
+            self.report(match kind {
+                Some(ast::PouKind::Function) => error.help(format!("call the FUNCTION: `{}(…)`", name.text)),
+                Some(ast::PouKind::FunctionBlock) => {
+                    error.help(format!("declare an instance: `VAR instance : {}; END_VAR`", name.text))
+                }
+                Some(ast::PouKind::Program) => error.help("share the value in a VAR_GLOBAL"),
+                None => error,
+            });
+            return;
+        }
+        if self.signature.as_ref().is_some_and(|it| it.result.is_none() && it.state.is_none()) {
+            self.report(
+                error
+                    .label("this FUNCTION has no result type")
+                    .help(format!("write the type behind the function's name: `FUNCTION {} : INT`", name.text)),
+            );
+        }
+    }
+
+    /// Whether `name` is a FUNCTION that assigns to its own name, but has no result type.
+    pub(super) fn lacks_result_type(&self, name: ast::Name<'s>) -> bool {
+        let Some(crate::declare::Entry::Pou(slot)) = self.decl.names.get(&crate::key::Key(name.text)) else {
+            return false;
+        };
+        let pou = self.decl.pous[*slot].ast;
+        if pou.kind != ast::PouKind::Function || pou.result.is_some() {
+            return false;
+        }
+        let mut assigned = false;
+        ast::each_expr(&pou.body, &mut |it| {
+            let own = matches!(&it.kind, ast::ExprKind::Name(it) if it.text.eq_ignore_ascii_case(name.text));
+            assigned |= own;
+        });
+        assigned
+    }
+
     /// Reports a name that means nothing here.
     pub(super) fn unknown_name(&mut self, name: ast::Name<'s>) {
+        if self.decl.unread.contains(&crate::key::Key(name.text)) {
+            return;
+        }
         if let Some(crate::declare::Entry::Type(_) | crate::declare::Entry::Pou(_)) =
             self.decl.names.get(&crate::key::Key(name.text))
         {
+            self.not_a_variable(name);
+            return;
+        }
+        let block = self.decl.bare_block(name.text, name.span).is_some();
+        let message = if block {
+            format!("`{}` is a FUNCTION_BLOCK, not an instance of one", name.text)
+        } else if super::function::exists(name.text) {
+            format!("`{}` is a function, not a variable", name.text)
+        } else {
+            format!("`{}` is not declared", name.text)
+        };
+        let mut error = Diagnostic::new(Code::E0101, name.span, message).label("unknown name");
+        if block {
             self.report(
-                Diagnostic::new(Code::E0101, name.span, format!("`{}` is not a variable", name.text))
-                    .label("a variable or a value is expected here"),
+                error
+                    .label("only an instance has pins and can be called")
+                    .help(format!("declare one: `VAR instance : {}; END_VAR`", name.text)),
             );
             return;
         }
-        let mut error =
-            Diagnostic::new(Code::E0101, name.span, format!("`{}` is not declared", name.text)).label("unknown name");
         let own = self.scope.variables.iter().map(|it| it.name.text);
         let near = nearest(name.text, own.chain(self.decl.names.keys().map(|key| key.0)));
         let enumerators = self.decl.enumerators.keys().map(|key| key.0);
-        if let Some(near) = near.or_else(|| nearest(name.text, enumerators)) {
+        let near =
+            near.or_else(|| nearest(name.text, enumerators)).or_else(|| nearest(name.text, CONSTANTS.into_iter()));
+        if let Some((_, help)) = FOREIGN.iter().find(|(it, _)| it.eq_ignore_ascii_case(name.text)) {
+            error = error.help(*help);
+        } else if let Some(near) = near {
             error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
-        } else if dialect::bare_block(self.decl.dialect(name.span), name.text).is_some() {
-            error = error.help(format!("declare an instance: `VAR counter : {}; END_VAR`", name.text));
+        } else if super::function::exists(name.text) {
+            error = error.help(format!("call the function: `{}(…)`", name.text));
         }
         self.report(error);
     }

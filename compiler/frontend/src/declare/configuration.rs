@@ -101,7 +101,9 @@ impl<'s> Declarations<'s> {
             let value = check::constant(self, &scope, expr, None).and_then(|it| it.as_const());
             match (name.text.to_ascii_uppercase().as_str(), value) {
                 ("INTERVAL", Some(Value::I64(interval))) if interval > 0 => timing.interval = Some(interval),
-                ("INTERVAL", _) => self.report(
+                // What is no constant has been reported.
+                ("INTERVAL", None) => {}
+                ("INTERVAL", Some(_)) => self.report(
                     Diagnostic::new(Code::E0201, expr.span, "INTERVAL is a TIME above zero").help("write `T#10ms`"),
                 ),
                 ("PRIORITY", Some(value)) => match value.as_integer().and_then(|it| u32::try_from(it).ok()) {

@@ -20,6 +20,10 @@ impl<'s> Hidden<'s> {
         self.declared[at]
     }
 
+    pub fn address_of(&self, at: usize) -> Option<staunch_ir::Address> {
+        self.fields.get(at).and_then(|it| it.address)
+    }
+
     pub fn take_fields(&mut self) -> Vec<Field> {
         std::mem::take(&mut self.fields)
     }

@@ -259,8 +259,26 @@ impl<'s> Declarations<'s> {
             .label("unknown member");
         if let Some(near) = near {
             error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
+        } else if let Some(members) = self.member_names(ty) {
+            error = error.help(format!("it has {members}"));
         }
         self.report(error);
+    }
+
+    /// What can be named of a structure, enumeration or instance, for a message.
+    fn member_names(&self, ty: Type) -> Option<String> {
+        let names: Vec<&str> = match ty {
+            Type::Struct(id) => {
+                let instance = self.is_instance(id);
+                let pin = |it: &&staunch_ir::Field| {
+                    !instance || matches!(it.section, staunch_ir::Section::Input | staunch_ir::Section::Output)
+                };
+                self.program.structure(id).fields.iter().filter(pin).map(|it| it.name.as_str()).collect()
+            }
+            Type::Enum(id) => self.program.enumeration(id).values.iter().map(|it| it.name.as_str()).collect(),
+            Type::Elementary(_) | Type::String(_) | Type::Array(_) | Type::Block(_) => Vec::new(),
+        };
+        (1..=12).contains(&names.len()).then(|| crate::key::list(&names).replace(" or ", " and "))
     }
 }
 

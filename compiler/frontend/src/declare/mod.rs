@@ -22,7 +22,7 @@ use crate::check;
 use crate::dialect::{self, Dialect};
 use crate::key::{Key, nearest};
 use crate::{Bodies, Code, Diagnostic, Options, Sources, Span};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::layout::{Layout, TooLarge};
 use staunch_ir::{Location, Place, Program, Root, SourceFile, Struct, StructId, Type};
 use std::rc::Rc;
@@ -98,6 +98,8 @@ pub(crate) struct Declarations<'s> {
     pub names: FxHashMap<Key<'s>, Entry>,
     /// The declarations in which a bare enumerator is named, with their type's slot.
     pub enumerators: FxHashMap<Key<'s>, Vec<usize>>,
+    /// Names in type declarations that did not parse: they may be enumerators.
+    pub unread: FxHashSet<Key<'s>>,
     pub types: Vec<TypeSlot<'s>>,
     pub pous: Vec<PouSlot<'s>>,
     pub globals: Vec<GlobalSlot<'s>>,
@@ -165,6 +167,7 @@ impl<'s> Declarations<'s> {
             diagnostics: Vec::new(),
             names: FxHashMap::default(),
             enumerators: FxHashMap::default(),
+            unread: FxHashSet::default(),
             types: Vec::new(),
             pous: Vec::new(),
             globals: Vec::new(),
@@ -286,6 +289,7 @@ impl<'s> Declarations<'s> {
     fn collect_type(&mut self, decl: &'s ast::TypeDecl<'s>) {
         let slot = self.types.len();
         self.enter(decl.name, Entry::Type(slot));
+        self.unread.extend(decl.unread.iter().map(|it| Key(it.text)));
         if let ast::TypeKind::Enum { values, .. } = &decl.ty.kind {
             for value in values {
                 self.enumerators.entry(Key(value.name.text)).or_default().push(slot);
@@ -295,6 +299,7 @@ impl<'s> Declarations<'s> {
     }
 
     fn collect_globals(&mut self, block: &'s ast::VarBlock<'s>) {
+        self.check_retain_once(block);
         for decl in &block.vars {
             for name in &decl.names {
                 self.enter(*name, Entry::Global(self.globals.len()));
@@ -414,6 +419,14 @@ impl<'s> Declarations<'s> {
 
     pub fn slot_of_instance(&self, id: StructId) -> Option<usize> {
         self.instances.get(&id).copied()
+    }
+
+    /// The direct address of a field of the globals.
+    pub fn address_of_global(&self, field: staunch_ir::FieldId) -> Option<staunch_ir::Address> {
+        match self.globals.get(field.index()) {
+            Some(global) => address::parse(global.decl.address?.text),
+            None => self.hidden.address_of(field.index() - self.globals.len()),
+        }
     }
 
     /// The standard block that a bare `name` means where `span` stands.

@@ -190,6 +190,7 @@ impl<'s> Declarations<'s> {
                     .help("declare the variable in VAR RETAIN"),
             );
         }
+        self.check_retain_once(block);
         if block.kind == VarKind::InOut && pou.kind == PouKind::Program {
             self.report(
                 Diagnostic::new(Code::E0403, block.span, "a PROGRAM has no VAR_IN_OUT")
@@ -203,13 +204,15 @@ impl<'s> Declarations<'s> {
             self.error(Code::E0403, span, "an output cannot be CONSTANT");
         }
         if block.kind == VarKind::Global {
+            let kind = match pou.kind {
+                PouKind::Program => "PROGRAM",
+                PouKind::Function => "FUNCTION",
+                PouKind::FunctionBlock => "FUNCTION_BLOCK",
+            };
             self.report(
-                Diagnostic::new(
-                    Code::E0403,
-                    block.span,
-                    "VAR_GLOBAL stands outside of PROGRAM, FUNCTION and FUNCTION_BLOCK",
-                )
-                .help("move the block to file level, or into a CONFIGURATION"),
+                Diagnostic::new(Code::E0403, block.span, format!("a {kind} has no VAR_GLOBAL"))
+                    .label(format!("expected VAR: its variables belong to the {kind} `{}`", pou.name.text))
+                    .help(format!("write `VAR`, or move the block above the {kind}, to where the file's units stand")),
             );
         }
     }
@@ -241,6 +244,10 @@ impl<'s> Declarations<'s> {
             );
         }
         self.check_retain(block, resolved.ty, decl.span);
+        let starts_anew = block.kind == VarKind::Temp || (pou.kind == PouKind::Function && block.kind == VarKind::Var);
+        if starts_anew && let Some(id) = self.remembers(resolved.ty) {
+            self.forgets(pou, decl, id);
+        }
         for name in &decl.names {
             let Some(place) = self.place_variable(pou, block, decl, *name, &resolved, builder) else {
                 builder.refuse(*name);
@@ -253,6 +260,40 @@ impl<'s> Declarations<'s> {
             let scope = Rc::get_mut(&mut builder.scope).expect("no one else holds the scope between declarations");
             self.enter_variable(scope, variable);
         }
+    }
+
+    /// The standard block in a type: it works with what it remembers of earlier calls.
+    fn remembers(&self, ty: Type) -> Option<BlockId> {
+        match ty {
+            Type::Block(id) => Some(id),
+            Type::Array(id) => self.remembers(self.program.array(id).element),
+            Type::Struct(id) => self.program.structure(id).fields.iter().find_map(|it| self.remembers(it.ty)),
+            Type::Elementary(_) | Type::String(_) | Type::Enum(_) => None,
+        }
+    }
+
+    /// Reports a block whose state does not outlive the call.
+    fn forgets(&mut self, pou: &ast::Pou<'s>, decl: &ast::VarDecl<'s>, id: BlockId) {
+        let info = id.info();
+        let what = if info.pin("PT").is_some() {
+            "its time never passes"
+        } else if info.pin("CV").is_some() || info.pin("ACC").is_some() {
+            "its count is lost"
+        } else if info.pin("CLK").is_some() {
+            "it takes every TRUE for an edge"
+        } else {
+            "its state is lost"
+        };
+        let (place, help) = match pou.kind {
+            PouKind::Function => ("a FUNCTION", "make this a FUNCTION_BLOCK, or take the block as a VAR_IN_OUT"),
+            PouKind::Program | PouKind::FunctionBlock => ("VAR_TEMP", "declare it in VAR"),
+        };
+        let block = crate::key::article(info.name);
+        self.report(
+            Diagnostic::new(Code::W0303, decl.span, format!("{block} in {place} starts anew at each call"))
+                .label(format!("so {what}"))
+                .help(help),
+        );
     }
 
     fn declare_externals(&mut self, decl: &'s ast::VarDecl<'s>, builder: &mut Builder<'s>) {
@@ -274,8 +315,12 @@ impl<'s> Declarations<'s> {
                     )
                     .label(format!("declared as {ours} here"))
                     .other(global.name.span, "the global variable")
+                    .help(format!("write `{} : {found}`", name.text))
                     .fix(decl.ty.span, found),
                 );
+                // Which of the two types is meant is not known: no use of it is judged.
+                builder.refuse(*name);
+                continue;
             }
             let variable = Variable { name: *name, section: Section::External, ..Variable::clone(&global) };
             let scope = Rc::get_mut(&mut builder.scope).expect("no one else holds the scope between declarations");

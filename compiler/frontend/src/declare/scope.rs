@@ -120,6 +120,18 @@ impl<'s> Declarations<'s> {
         }
     }
 
+    /// Reports a block that is both RETAIN and NON_RETAIN.
+    pub fn check_retain_once(&mut self, block: &ast::VarBlock<'s>) {
+        if let (Some(kept), Some(not)) = (block.retain.or(block.persistent), block.non_retain) {
+            self.report(
+                crate::Diagnostic::new(crate::Code::E0403, not, "a variable is RETAIN or NON_RETAIN, not both")
+                    .label("this contradicts the other word")
+                    .other(kept, "this keeps the values over a restart")
+                    .help("delete one of the two"),
+            );
+        }
+    }
+
     /// Reports RETAIN where it keeps nothing.
     pub fn check_retain(&mut self, block: &ast::VarBlock<'s>, ty: staunch_ir::Type, span: crate::Span) {
         if is_declared_retain(block) && self.loses_its_count(ty) {

@@ -56,6 +56,34 @@ const NOT_YET: [&str; 19] = [
     "POINTER",
 ];
 
+/// What other languages call elementary types.
+const FOREIGN: [(&str, &str); 24] = [
+    ("INTEGER", "INT"),
+    ("SHORT", "INT"),
+    ("LONG", "DINT"),
+    ("BOOLEAN", "BOOL"),
+    ("BIT", "BOOL"),
+    ("FLOAT", "REAL"),
+    ("FLOAT32", "REAL"),
+    ("SINGLE", "REAL"),
+    ("DOUBLE", "LREAL"),
+    ("FLOAT64", "LREAL"),
+    ("INT8", "SINT"),
+    ("INT16", "INT"),
+    ("INT32", "DINT"),
+    ("INT64", "LINT"),
+    ("UINT8", "USINT"),
+    ("UINT16", "UINT"),
+    ("UINT32", "UDINT"),
+    ("UINT64", "ULINT"),
+    ("UNSIGNED", "UINT"),
+    ("STR", "STRING"),
+    ("TEXT", "STRING"),
+    ("TIMER", "TON"),
+    ("COUNT", "CTU"),
+    ("DURATION", "TIME"),
+];
+
 impl<'s> Declarations<'s> {
     /// The named type in slot `at`.
     pub fn resolve_type_slot(&mut self, at: usize) -> Option<Resolved> {
@@ -137,7 +165,7 @@ impl<'s> Declarations<'s> {
             TypeKind::Struct(members) => self.structure(members, scope, name, doc, spec.span),
             TypeKind::Enum { base, values } => self.enumeration(*base, values, scope, name, doc, spec.span),
             // The parser has said so.
-            TypeKind::Unsupported(_) => None,
+            TypeKind::Unsupported(_) | TypeKind::Error => None,
         }
     }
 
@@ -236,9 +264,14 @@ impl<'s> Declarations<'s> {
         let own = self.names.iter().filter(|(_, entry)| !matches!(entry, Entry::Global(_)));
         let candidates = own.map(|(key, _)| key.0).chain(elementary).chain(blocks).chain(["STRING"]);
         let near = nearest(name.text, candidates).map(str::to_owned);
+        let foreign =
+            FOREIGN.iter().find(|(it, _)| it.eq_ignore_ascii_case(name.text)).map(|(_, ours)| (*ours).to_owned());
+        let near = foreign.or(near);
         let mut error =
             Diagnostic::new(Code::E0102, name.span, format!("there is no type `{}`", name.text)).label("unknown type");
-        if let Some(near) = near {
+        if name.text.eq_ignore_ascii_case("VOID") {
+            error = error.help("a FUNCTION without a result has no `:` and no type behind its name");
+        } else if let Some(near) = near {
             error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
         }
         self.report(error);

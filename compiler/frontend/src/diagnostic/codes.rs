@@ -206,6 +206,17 @@ E0019 Error "RETURN with a value"
         Twice := 2 * x;
     END_FUNCTION
 ";
+E0020 Error "a habit of another language"
+"Structured Text ends each block with a word of its own, and has neither braces nor BEGIN and END:
+
+    C, Pascal                       Structured Text
+    if (a) { x = 1; }               IF a THEN x := 1; END_IF
+    if a then begin x := 1; end;    IF a THEN x := 1; END_IF
+    for (i = 0; i < 10; i++) {…}    FOR i := 0 TO 9 DO … END_FOR
+    for i := 10 downto 1 do …       FOR i := 10 TO 1 BY -1 DO … END_FOR
+    function f(x : INT) : INT       FUNCTION f : INT
+                                    VAR_INPUT x : INT; END_VAR
+";
 E0030 Error "too many errors"
 "Reading stopped here: what follows was not looked at. Correct the errors above first.
 ";
@@ -326,7 +337,8 @@ input is `LD` or `LOAD`. Positional arguments mean the same in all of them.
 has dimensions. A block's inputs may be omitted: they keep their values.
 ";
     E0303 Error "argument missing"
-"A VAR_IN_OUT works on the caller's variable, so each call names one.
+"A VAR_IN_OUT works on the caller's variable, so each call names one. In the codesys dialect a call of a FUNCTION
+also gives every input that has no default.
 ";
     E0304 Error "argument given twice"
 "A parameter was given by position and by name, or by name twice.
@@ -432,6 +444,19 @@ this a lint, since real code does it.
     E0509 Error "FOR step is 0"
 "A FOR loop with the step 0 would never end.
 ";
+    E0510 Error "empty range of CASE labels"
+"A range of labels goes from its lower to its higher value; the other way round it holds none, and its branch is
+never chosen.
+
+    CASE step OF
+        5..3: next := 1;      (* before *)
+        3..5: next := 1;      (* after *)
+    END_CASE
+";
+    E0511 Error "assignment to an input address"
+"Before each scan the hardware's inputs are copied to `%I`: what a program assigns there is overwritten. CODESYS
+refuses it, and so does the codesys dialect; the others have the lint W0509.
+";
     E0901 Error "too large"
 "Variables are laid out in one block of memory, which may take 1 GiB. An array has at most 64 dimensions,
 and all initial values together hold at most 1048576 constants; a repeated one counts once.
@@ -451,6 +476,21 @@ that is not RETAIN starts anew, and so does the count.
     W0302 Warning "RETAIN keeps nothing here"
 "Horner Cscape keeps the count of R_CTU and R_CTD over a restart, through a RETAIN variable given as
 RCV. Its CTU and CTD start at 0, however they are declared.
+";
+    W0303 Warning "a block that starts anew at each call"
+"VAR_TEMP and the variables of a FUNCTION start anew at each call. A timer, counter, edge or bistable there remembers
+nothing: a TON never expires, a CTU never passes 1, an R_TRIG takes every TRUE for an edge.
+
+    VAR_TEMP delay : TON; END_VAR      (* before *)
+    VAR delay : TON; END_VAR           (* after *)
+";
+    W0304 Warning "an input of a FUNCTION is left out"
+"A FUNCTION keeps nothing from call to call: an input that a call leaves out has its declared default, or 0, FALSE or an
+empty text where none is declared. That is rarely meant. CODESYS refuses it, and so does the codesys dialect.
+
+    FUNCTION Scale : REAL
+    VAR_INPUT raw : REAL; factor : REAL; END_VAR             (* before *)
+    VAR_INPUT raw : REAL; factor : REAL := 1.0; END_VAR      (* after *)
 ";
     W0410 Warning "overlapping addresses"
 "Two variables lie on addresses that share bits, such as %MW0 and %MB1. Staunch keeps them
@@ -482,6 +522,16 @@ never come to its end.
 ";
     W0506 Warning "sign may change"
 "The codesys dialect converts between signed and unsigned types of one size without being asked.
+";
+    W0509 Warning "assignment to an input address"
+"Before each scan the hardware's inputs are copied to `%I`: what a program assigns there is overwritten. The codesys
+dialect refuses it, as CODESYS does.
+";
+    W0510 Warning "a comparison that never changes"
+"An integer is compared with a value that its type does not reach, so the outcome is the same in every scan.
+
+    VAR level : INT; END_VAR
+    IF level > 40000 THEN alarm := TRUE; END_IF      (* never: an INT holds -32768 to 32767 *)
 ";
     W0602 Warning "a count is compared beyond its preset"
 "A CSCAPE counter stops at its preset, so its count is not above it. Elsewhere counting goes on, and programs

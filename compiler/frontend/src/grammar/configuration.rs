@@ -145,6 +145,9 @@ fn program_instance<'s>(input: &mut In<'_, '_, 's>) -> Parsed<ProgramInstance<'s
 
 fn finish<T>(input: &mut In<'_, '_, '_>, value: T) -> Result<T, Problem> {
     if input.eat(Kind::Semicolon).is_none() {
+        if !input.on_new_line() && !recover::ends_statements(input.kind()) {
+            return Err(input.problem(super::moves::Expected::Token(Kind::Semicolon)));
+        }
         mistake::missing_semicolon(input);
     }
     Ok(value)

@@ -1,14 +1,14 @@
 //! VAR blocks and the declarations in them and in structures.
 
 use crate::{
-    ast::{Edge, Name, VarBlock, VarDecl, VarKind},
+    ast::{Edge, Name, TypeKind, TypeSpec, VarBlock, VarDecl, VarKind},
     lex::Kind,
     source::Span,
 };
 
 use super::{
-    doc, mistake,
-    moves::{Expected, In, Moves, Parsed},
+    balance, doc, habit, mistake,
+    moves::{Expected, In, Moves, Parsed, Start},
     recover,
     types::{optional_initial, type_spec},
 };
@@ -29,8 +29,15 @@ fn section_kind(kind: Kind) -> Option<VarKind> {
 
 /// From VAR to END_VAR. None for a section that is refused.
 pub fn section<'s>(input: &mut In<'_, '_, 's>) -> Option<VarBlock<'s>> {
-    let kind = input.kind();
-    let span = input.take();
+    let mut kind = input.kind();
+    let mut span = input.take();
+    if kind == Kind::Var
+        && let Some(meant) = second_word(input)
+    {
+        kind = meant;
+        span = span.to(input.take());
+        mistake::misspelt_keyword(input, kind, span);
+    }
     let Some(kind) = section_kind(kind) else {
         let word = kind.keyword().unwrap_or_default();
         input.report(mistake::unsupported(span, word));
@@ -40,14 +47,19 @@ pub fn section<'s>(input: &mut In<'_, '_, 's>) -> Option<VarBlock<'s>> {
     let mut block =
         VarBlock { kind, constant: None, retain: None, non_retain: None, persistent: None, vars: Vec::new(), span };
     while qualifier(input, &mut block) {}
-    input.state().open.push((Kind::EndVar, span));
     block.vars = list(input, Kind::EndVar, span);
-    input.state().open.pop();
-    if input.eat(Kind::EndVar).is_none() {
-        mistake::missing_end(input, Kind::EndVar, span);
-    }
+    balance::close_block(input, Kind::EndVar, span);
     input.eat(Kind::Semicolon);
     Some(block)
+}
+
+/// `VAR INPUT`
+fn second_word(input: &mut In<'_, '_, '_>) -> Option<Kind> {
+    if input.kind() != Kind::Name || input.kind_ahead(1) != Kind::Name {
+        return None;
+    }
+    let kinds = [Kind::VarInput, Kind::VarOutput, Kind::VarInOut, Kind::VarTemp, Kind::VarGlobal, Kind::VarExternal];
+    kinds.into_iter().find(|it| it.keyword().is_some_and(|word| input.is_word(&word[4..])))
 }
 
 fn qualifier(input: &mut In<'_, '_, '_>, block: &mut VarBlock<'_>) -> bool {
@@ -95,10 +107,7 @@ pub fn list<'s>(input: &mut In<'_, '_, 's>, end: Kind, opened: Span) -> Vec<VarD
                 }
             }
             Kind::Name if recover::is_statement_in_section(input) => break,
-            _ => match declaration(input) {
-                Ok(it) => vars.push(it),
-                Err(problem) => recover::declaration(input, problem, start),
-            },
+            _ => vars.extend(declaration_or_names(input, start)),
         }
     }
     input.state().open.pop();
@@ -106,9 +115,27 @@ pub fn list<'s>(input: &mut In<'_, '_, 's>, end: Kind, opened: Span) -> Vec<VarD
     vars
 }
 
-fn declaration<'s>(input: &mut In<'_, '_, 's>) -> Parsed<VarDecl<'s>> {
+/// A declaration, or the names of one that does not parse: their uses are no further mistakes.
+fn declaration_or_names<'t, 'p, 's>(input: &mut In<'t, 'p, 's>, start: Start<'t, 'p>) -> Option<VarDecl<'s>> {
+    let from = input.here();
+    let mut names = Vec::new();
+    match declaration(input, &mut names) {
+        Ok(it) => return Some(it),
+        Err(problem) => {
+            if !recover::declaration(input, problem, start) || names.is_empty() {
+                return None;
+            }
+        }
+    }
+    let span = from.to(input.last());
+    let ty = TypeSpec { kind: TypeKind::Error, span };
+    Some(VarDecl { names, address: None, ty, edge: None, initial: None, doc: None, span })
+}
+
+/// `names` holds what was read of the names, also if the rest does not parse.
+pub fn declaration<'s>(input: &mut In<'_, '_, 's>, names: &mut Vec<Name<'s>>) -> Parsed<VarDecl<'s>> {
     let (first, start) = (input.number(), input.here());
-    let mut names = vec![input.name()?];
+    names.push(first_name(input)?);
     while input.eat(Kind::Comma).is_some() {
         names.push(input.name()?);
     }
@@ -118,18 +145,92 @@ fn declaration<'s>(input: &mut In<'_, '_, 's>) -> Parsed<VarDecl<'s>> {
         input.report(mistake::assign_for_colon(sign));
         return Err(super::moves::Problem::REPORTED);
     }
-    input.expect(Kind::Colon)?;
+    if let Some(ty) = type_before_name(input, names) {
+        let initial = optional_initial(input)?;
+        end(input)?;
+        let span = start.to(input.last());
+        let names = std::mem::take(names);
+        return Ok(VarDecl { names, address, ty, edge: None, initial, doc: doc::comment(input, first), span });
+    }
+    if input.eat(Kind::Colon).is_none() {
+        if !lacks_colon(input) {
+            return Err(input.problem(Expected::Token(Kind::Colon)));
+        }
+        mistake::missing_type_colon(input);
+    }
     let ty = type_spec(input)?;
     let edge = edge(input);
+    if input.kind() == Kind::At && input.kind_ahead(1) == Kind::Address {
+        let span = input.take();
+        let span = span.to(input.take());
+        input.report(mistake::address_behind_type(span));
+    }
     let initial = optional_initial(input)?;
     end(input)?;
     let span = start.to(input.last());
+    let names = std::mem::take(names);
     Ok(VarDecl { names, address, ty, edge, initial, doc: doc::comment(input, first), span })
+}
+
+/// A name, also one of two words: `my var : INT`.
+fn first_name<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Name<'s>> {
+    let name = input.name()?;
+    let second = input.kind() == Kind::Name && matches!(input.kind_ahead(1), Kind::Colon) && !input.on_new_line();
+    if !second || input.kind_ahead(2) == Kind::Assign {
+        return Ok(name);
+    }
+    let word = input.take();
+    mistake::name_of_two_words(input, name.span, word);
+    let span = name.span.to(word);
+    Ok(Name { text: input.text(span), span })
+}
+
+/// Whether only the `:` between name and type is missing.
+fn lacks_colon(input: &mut In<'_, '_, '_>) -> bool {
+    let next = input.kind_ahead(1);
+    match input.kind() {
+        Kind::Name => {
+            !input.on_new_line() && matches!(next, Kind::Semicolon | Kind::Assign | Kind::OpenParen | Kind::OpenBracket)
+        }
+        Kind::Array | Kind::Struct => true,
+        Kind::Equal => matches!(next, Kind::Name | Kind::Array | Kind::Struct),
+        Kind::Semicolon => next == Kind::Name && matches!(input.kind_ahead(2), Kind::Semicolon | Kind::Assign),
+        _ => false,
+    }
+}
+
+/// `INT x;`, as other languages write it: the first of `names` is the type.
+fn type_before_name<'s>(input: &mut In<'_, '_, 's>, names: &mut Vec<Name<'s>>) -> Option<TypeSpec<'s>> {
+    let [ty] = names.as_slice() else { return None };
+    let ty = *ty;
+    let next = input.kind_ahead(1);
+    let follows = matches!(next, Kind::Semicolon | Kind::Assign | Kind::Equal | Kind::Comma);
+    if input.kind() != Kind::Name || !follows || staunch_ir::Elementary::named(ty.text).is_none() {
+        return None;
+    }
+    names.clear();
+    names.push(input.name().ok()?);
+    mistake::type_first(input, ty.span, names[0].span);
+    while input.eat(Kind::Comma).is_some() {
+        names.push(input.name().ok()?);
+    }
+    Some(TypeSpec { kind: TypeKind::Named(vec![ty]), span: ty.span })
 }
 
 /// `AT %IX0.0`
 fn address<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Name<'s>>> {
     if input.eat(Kind::At).is_none() {
+        return Ok(None);
+    }
+    if input.kind() == Kind::Name {
+        let mut span = input.take();
+        while input.eat(Kind::Dot).is_some() || matches!(input.kind(), Kind::Integer | Kind::Real) {
+            let last =
+                if input.kind() == Kind::Integer || input.kind() == Kind::Real { input.take() } else { input.last() };
+            span = span.to(last);
+        }
+        let it = mistake::address_without_sign(span, input.text(span));
+        input.report(it);
         return Ok(None);
     }
     let span = input.expect(Kind::Address)?;
@@ -150,7 +251,7 @@ fn edge(input: &mut In<'_, '_, '_>) -> Option<(Edge, Span)> {
 
 /// The `;` of a declaration.
 pub fn end(input: &mut In<'_, '_, '_>) -> Parsed<()> {
-    if input.eat(Kind::Semicolon).is_some() {
+    if input.eat(Kind::Semicolon).is_some() || habit::wrong_terminator(input) {
         return Ok(());
     }
     let kind = input.kind();

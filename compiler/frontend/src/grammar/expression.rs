@@ -4,14 +4,14 @@
 //! levels behind each operand, and needs a stack frame for each, where a nesting limit counts.
 
 use crate::{
-    ast::{Argument, ArgumentKind, BinaryOp, Expr, ExprKind, Name, UnaryOp},
+    ast::{Argument, ArgumentKind, BinaryOp, Expr, ExprKind, Literal, LiteralValue, Name, UnaryOp},
     lex::Kind,
     source::Span,
 };
 
 use super::{
-    literal, mistake,
-    moves::{Expected, In, Moves, Parsed, Waiting},
+    habit, literal, mistake,
+    moves::{Expected, In, Moves, Parsed, Problem, Waiting},
 };
 
 /// Arguments of one call.
@@ -36,14 +36,45 @@ fn infix(kind: Kind) -> Option<(BinaryOp, u8)> {
         Kind::Star => (BinaryOp::Mul, 7),
         Kind::Slash => (BinaryOp::Div, 7),
         Kind::Mod | Kind::Percent => (BinaryOp::Mod, 7),
-        Kind::Power => (BinaryOp::Power, 8),
+        Kind::Power | Kind::Caret => (BinaryOp::Power, 8),
         _ => return None,
     })
 }
 
 /// Signs of other languages that are read as ours, and reported.
 fn is_foreign(kind: Kind) -> bool {
-    matches!(kind, Kind::EqualEqual | Kind::BangEqual | Kind::AndAnd | Kind::OrOr | Kind::Percent | Kind::Arrow)
+    matches!(
+        kind,
+        Kind::EqualEqual
+            | Kind::BangEqual
+            | Kind::AndAnd
+            | Kind::OrOr
+            | Kind::Percent
+            | Kind::Arrow
+            | Kind::Caret
+            | Kind::Name
+    )
+}
+
+/// `a DIV b`
+fn named_division(input: &mut In<'_, '_, '_>) -> Option<(BinaryOp, u8)> {
+    let divides = input.is_word("DIV") && matches!(input.kind_ahead(1), Kind::Name | Kind::Integer | Kind::OpenParen);
+    (divides && !input.on_new_line()).then_some((BinaryOp::Div, 7)).or_else(|| misspelt_operator(input))
+}
+
+/// `a ADN b`, `a ANDTHEN b`: two operands with a word between them that is nearly an operator.
+fn misspelt_operator(input: &mut In<'_, '_, '_>) -> Option<(BinaryOp, u8)> {
+    let operand = matches!(
+        input.kind_ahead(1),
+        Kind::Name | Kind::Integer | Kind::Real | Kind::OpenParen | Kind::Not | Kind::True | Kind::False
+    );
+    if input.kind() != Kind::Name || !operand || input.on_new_line() {
+        return None;
+    }
+    let span = input.here();
+    let words = [Kind::And, Kind::AndThen, Kind::Xor, Kind::OrElse, Kind::Mod];
+    let near = crate::key::nearest(input.text(span), words.iter().filter_map(|it| it.keyword()))?;
+    infix(words.into_iter().find(|it| it.keyword() == Some(near))?)
 }
 
 /// Operands and operators, joined by precedence, from the left. What waits for a right side is on
@@ -52,19 +83,28 @@ pub fn expression<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
     let mut left = unary(input)?;
     let base = input.state().waiting.len();
     loop {
-        let next = infix(input.kind());
+        let next = infix(input.kind()).or_else(|| named_division(input));
         left = reduce(input, left, base, next.map_or(0, |(_, power)| power))?;
         let Some((op, power)) = next else { return Ok(left) };
         let kind = input.kind();
         let sign = input.take();
-        if is_foreign(kind) {
-            mistake::foreign_operator(input, kind, op, sign);
-        }
+        let (op, sign) = operator(input, kind, op, sign).inspect_err(|_| input.state().waiting.truncate(base))?;
         let state = input.state();
         let height = state.height;
         state.waiting.push(Waiting { left, height, op, power, sign });
         left = unary(input).inspect_err(|_| input.state().waiting.truncate(base))?;
     }
+}
+
+/// The operator that was taken; one of another language is read as ours, and reported.
+fn operator(input: &mut In<'_, '_, '_>, kind: Kind, op: BinaryOp, sign: Span) -> Parsed<(BinaryOp, Span)> {
+    if is_foreign(kind) {
+        mistake::foreign_operator(input, kind, op, sign);
+    } else if matches!(kind, Kind::Equal | Kind::Less | Kind::Greater) {
+        let Some(second) = habit::second_sign(input, kind, sign) else { return Err(Problem::REPORTED) };
+        return Ok(second.unwrap_or((op, sign)));
+    }
+    Ok((op, sign))
 }
 
 /// Joins what waits for `right` above `base` and binds at least as strongly as `power`.
@@ -91,7 +131,9 @@ fn assigned<'s>(input: &mut In<'_, '_, 's>, left: Expr<'s>) -> Parsed<Expr<'s>> 
     let it = mistake::assign_for_equal(input.text(left.span), sign);
     input.report(it);
     let right = expression(input)?;
-    Ok(join(left, BinaryOp::Eq, sign, right))
+    let span = left.span.to(right.span);
+    // Whether a comparison or a value was meant is not known: no type is asked of it.
+    Ok(Expr { kind: ExprKind::Error(vec![left, right]), span })
 }
 
 fn join<'s>(left: Expr<'s>, op: BinaryOp, sign: Span, right: Expr<'s>) -> Expr<'s> {
@@ -135,6 +177,7 @@ pub fn postfix<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
     let expr = primary(input)?;
     match input.kind() {
         Kind::Dot | Kind::OpenBracket | Kind::OpenParen | Kind::Caret => suffixes(input, expr),
+        Kind::Minus if input.kind_ahead(1) == Kind::Greater => suffixes(input, expr),
         _ => Ok(expr),
     }
 }
@@ -146,9 +189,13 @@ fn suffixes<'s>(input: &mut In<'_, '_, 's>, mut expr: Expr<'s>) -> Parsed<Expr<'
         input.state().height = 0;
         let start = expr.span;
         let kind = match input.kind() {
+            Kind::Dot if is_number(&expr) && habit::ends_line(input) => break,
             Kind::Dot => member(input, expr)?,
             Kind::OpenBracket => ExprKind::Index(Box::new(expr), indices(input)?),
             Kind::OpenParen => ExprKind::Call(Box::new(expr), arguments(input)?),
+            Kind::Minus if habit::arrow(input) => named_member(input, expr)?,
+            // Nothing is dereferenced before an operand.
+            Kind::Caret if matches!(input.kind_ahead(1), Kind::Integer | Kind::Real | Kind::Name) => break,
             Kind::Caret => {
                 input.take();
                 ExprKind::Deref(Box::new(expr))
@@ -171,8 +218,20 @@ fn member<'s>(input: &mut In<'_, '_, 's>, of: Expr<'s>) -> Parsed<ExprKind<'s>> 
             let span = input.take();
             Ok(ExprKind::Part(Box::new(of), Name { text: input.text(span), span }))
         }
-        _ => Ok(ExprKind::Member(Box::new(of), input.name()?)),
+        _ if is_number(&of) => {
+            habit::point_last(input, of.span);
+            Ok(ExprKind::Error(Vec::new()))
+        }
+        _ => named_member(input, of),
     }
+}
+
+fn is_number(expr: &Expr<'_>) -> bool {
+    matches!(&expr.kind, ExprKind::Literal(Literal { value: LiteralValue::Integer { .. }, .. }))
+}
+
+fn named_member<'s>(input: &mut In<'_, '_, 's>, of: Expr<'s>) -> Parsed<ExprKind<'s>> {
+    Ok(ExprKind::Member(Box::new(of), input.name()?))
 }
 
 fn indices<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Vec<Expr<'s>>> {
@@ -215,7 +274,14 @@ pub fn arguments<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Vec<Argument<'s>>> {
         }
         height = height.max(input.state().height);
         if input.eat(Kind::Comma).is_none() {
-            break;
+            let semicolon = is_comma_like(input);
+            if !lacks_comma(input, usize::from(semicolon)) {
+                break;
+            }
+            mistake::missing_comma(input);
+            if semicolon {
+                input.take();
+            }
         }
     }
     close(input, Kind::CloseParen, opened)?;
@@ -225,14 +291,75 @@ pub fn arguments<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Vec<Argument<'s>>> {
     Ok(arguments)
 }
 
+/// `t(IN := x; PT := y)`: a `;` with more on its line.
+fn is_comma_like(input: &mut In<'_, '_, '_>) -> bool {
+    let at = input.number();
+    let state = input.state();
+    let (here, next) = (state.place(at), state.place(at + 1));
+    input.kind() == Kind::Semicolon && !input.state().breaks(here.end, next.start)
+}
+
+/// Whether one more argument stands here, and only the `,` before it is missing: the call is
+/// closed before the statement ends.
+fn lacks_comma(input: &mut In<'_, '_, '_>, from: usize) -> bool {
+    if !matches!(
+        input.kind_ahead(from),
+        Kind::Name | Kind::Integer | Kind::Real | Kind::Time | Kind::True | Kind::False
+    ) {
+        return false;
+    }
+    let (mut depth, mut ahead) = (0usize, from);
+    loop {
+        match input.kind_ahead(ahead) {
+            Kind::OpenParen => depth += 1,
+            Kind::CloseParen if depth == 0 => return true,
+            Kind::CloseParen => depth -= 1,
+            Kind::Semicolon | Kind::Then | Kind::Do | Kind::Of => return false,
+            kind if super::recover::ends_statements(kind) => return false,
+            _ => {}
+        }
+        ahead += 1;
+    }
+}
+
 /// None for `IN :=` without a value, which vendors' editors write for a pin that is left out.
 fn argument<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Argument<'s>>> {
     match (input.kind(), input.kind_ahead(1)) {
         (Kind::Name, Kind::Assign) => named(input),
+        (Kind::Name, Kind::Name | Kind::Integer | Kind::Time | Kind::True | Kind::False | Kind::Not)
+            if names_pin(input) =>
+        {
+            unassigned(input)
+        }
+        (Kind::Name, Kind::Colon) => with_colon(input),
         (Kind::Name, Kind::Arrow) => output(input).map(Some),
         (Kind::Not, Kind::Name) if input.kind_ahead(2) == Kind::Arrow => output(input).map(Some),
         _ => positional(input).map(Some),
     }
+}
+
+/// `IN x`
+fn unassigned<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Argument<'s>>> {
+    let name = input.name()?;
+    mistake::missing_assign(input);
+    let value = expression(input)?;
+    let span = name.span.to(value.span);
+    Ok(Some(Argument { kind: ArgumentKind::Input(name, value), span }))
+}
+
+/// `IN: x`
+fn with_colon<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Argument<'s>>> {
+    let at = input.number() + 1;
+    let sign = input.state().place(at);
+    mistake::colon_for_assign(input, sign);
+    named(input)
+}
+
+/// Whether a standard block has a pin of the current token's name.
+fn names_pin(input: &mut In<'_, '_, '_>) -> bool {
+    let span = input.here();
+    let text = input.text(span);
+    staunch_runtime::BLOCKS.iter().any(|it| it.pin(text).is_some())
 }
 
 fn positional<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Argument<'s>> {
@@ -296,8 +423,9 @@ fn atom<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
             input.take();
             ExprKind::Address(Name { text: input.text(span), span })
         }
+        Kind::Dot if habit::point_first(input) => ExprKind::Error(Vec::new()),
         _ => match literal::untyped(input, None) {
-            Some(literal) => ExprKind::Literal(literal),
+            Some(literal) => return Ok(Expr { kind: ExprKind::Literal(literal), span: span.to(input.last()) }),
             None => return Err(input.problem(Expected::Expression)),
         },
     };

@@ -7,7 +7,10 @@ use crate::{
     source::Span,
 };
 
-use super::moves::{Expected, In, Moves, Parsed};
+use super::{
+    habit,
+    moves::{Expected, In, Moves, Parsed},
+};
 
 /// A literal, if the current token is one.
 pub fn untyped<'s>(input: &mut In<'_, '_, 's>, prefix: Option<Name<'s>>) -> Option<Literal<'s>> {
@@ -25,7 +28,8 @@ pub fn untyped<'s>(input: &mut In<'_, '_, 's>, prefix: Option<Name<'s>>) -> Opti
         _ => return None,
     };
     input.take();
-    Some(Literal { prefix: prefix.map(Box::new), value })
+    let glued = if matches!(kind, Kind::Integer | Kind::Real) { habit::glued(input, span) } else { None };
+    Some(Literal { prefix: prefix.map(Box::new), value: glued.unwrap_or(value) })
 }
 
 /// What stands behind `INT#`.
@@ -47,19 +51,47 @@ fn report(input: &mut In<'_, '_, '_>, code: Code, span: Span, fault: Fault) {
 }
 
 fn integer<'s>(input: &mut In<'_, '_, '_>, span: Span, text: &str) -> LiteralValue<'s> {
-    let value = lex::integer(text).unwrap_or_else(|fault| {
+    let value = lex::integer(text).map(Some).unwrap_or_else(|fault| {
         report(input, Code::E0005, span, fault);
-        0
+        None
     });
-    LiteralValue::Integer { value, based: text.contains('#') }
+    match value {
+        Some(value) => LiteralValue::Integer { value, based: text.contains('#') },
+        None => LiteralValue::Error,
+    }
 }
 
 fn duration<'s>(input: &mut In<'_, '_, '_>, span: Span, text: &str) -> LiteralValue<'s> {
-    let (nanoseconds, long) = lex::duration(text).unwrap_or_else(|fault| {
-        report(input, Code::E0006, span, fault);
-        (0, false)
-    });
-    LiteralValue::Time { nanoseconds, long }
+    match lex::duration(text) {
+        Ok((nanoseconds, long)) => LiteralValue::Time { nanoseconds, long },
+        Err(fault) => {
+            if !split_unit(input, span) {
+                report(input, Code::E0006, span, fault);
+            }
+            LiteralValue::Error
+        }
+    }
+}
+
+/// `T#5 s`: leaves the unit as the current token.
+fn split_unit(input: &mut In<'_, '_, '_>, span: Span) -> bool {
+    let at = input.number() + 1;
+    let unit = input.state().place(at);
+    if input.kind_ahead(1) != Kind::Name
+        || !habit::is_unit(input.text(unit))
+        || input.state().breaks(span.end, unit.start)
+    {
+        return false;
+    }
+    let meant = format!("{}{}", input.text(span), input.text(unit));
+    let whole = span.to(unit);
+    input.report(
+        Diagnostic::new(Code::E0006, whole, "a duration is written in one piece")
+            .help(format!("write `{meant}`"))
+            .fix(whole, meant),
+    );
+    input.take();
+    true
 }
 
 fn string<'s>(input: &mut In<'_, '_, '_>, span: Span, text: &str) -> LiteralValue<'s> {

@@ -1,11 +1,19 @@
 //! What is said about each mistake: one sentence, once, at the place, with what to write instead.
 
 use crate::{
-    ast::{BinaryOp, Expr, ExprKind, MAX_CHAIN, MAX_DEPTH},
+    ast::{MAX_CHAIN, MAX_DEPTH},
     diagnostic::{Code, Diagnostic},
     lex::{Kind, index},
     source::Span,
 };
+
+mod declared;
+mod misspelt;
+mod operator;
+
+pub use declared::*;
+pub use misspelt::*;
+pub use operator::*;
 
 use super::{
     moves::{Expected, In, Moves, Problem},
@@ -16,8 +24,11 @@ use super::{
 pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
     let found = input.state().tokens.kinds.get(problem.at).copied().unwrap_or(Kind::End);
     // The lexer has spoken about those.
-    let known = matches!(found, Kind::Unknown) || (found == Kind::End && input.state().tokens.cut);
-    if problem.expected == Expected::Reported || known {
+    let known = matches!(found, Kind::Unknown | Kind::OpenText) || (found == Kind::End && input.state().tokens.cut);
+    if problem.expected == Expected::Reported || known || behind_text(input, problem.at) {
+        return;
+    }
+    if found == Kind::End && std::mem::replace(&mut input.state().ended, true) {
         return;
     }
     let mut span = input.state().place(problem.at);
@@ -27,9 +38,23 @@ pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
     let shown = shown(input, found, span);
     let it = match (problem.expected, found.keyword()) {
         (Expected::Name, Some(word)) if !recover::ends_statements(found) => {
-            Diagnostic::new(Code::E0016, span, format!("`{word}` is a reserved word and cannot be a name"))
-                .label("expected a name")
-                .help("choose another name")
+            let own = input.text(span);
+            super::names::reserved(span, word, own)
+        }
+        (Expected::Expression, _) if is_comparison(found) && behind_junction(input, problem.at) => {
+            Diagnostic::new(Code::E0001, span, format!("expected an expression, found {shown}"))
+                .label("each side of AND and OR is a comparison of its own")
+                .help("name the variable again: `x > 1 AND x < 5`")
+        }
+        (Expected::Expression, _) if found == Kind::OpenBracket => {
+            Diagnostic::new(Code::E0001, span, "a list of values stands only in a declaration")
+                .label("expected an expression")
+                .help("assign to one element after the other: `a[0] := 1;`")
+        }
+        (Expected::Expression, Some(word)) if recover::opens_statement(found) => {
+            Diagnostic::new(Code::E0001, span, format!("{word} is a statement, and has no value"))
+                .label("expected an expression")
+                .help("assign in its branches, or choose a value with `SEL(condition, value_if_false, value_if_true)`")
         }
         (Expected::Block, _) => {
             Diagnostic::new(Code::E0001, span, format!("expected {}, found {shown}", said(problem.expected)))
@@ -40,6 +65,15 @@ pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
             Diagnostic::new(Code::E0001, span, format!("expected {}, found {shown}", said(problem.expected)))
                 .label(format!("expected {end} before this"))
                 .other(open, format!("this is closed by {end}"))
+                .help(format!("write {end} here"))
+                .fix(behind(input, problem.at), bracket(end))
+        }
+        (Expected::Token(Kind::Colon), _) if found == Kind::Semicolon => {
+            let behind = Span { end: span.start, ..span };
+            Diagnostic::new(Code::E0001, span, "expected `:` and a type, found `;`")
+                .label("a type is missing before this")
+                .help("write the type behind the name: ` : INT`")
+                .fix(behind, " : INT")
         }
         (expected, _) => {
             let expected = said(expected);
@@ -48,6 +82,29 @@ pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
         }
     };
     input.report(it);
+}
+
+fn is_comparison(kind: Kind) -> bool {
+    matches!(kind, Kind::Less | Kind::Greater | Kind::LessEqual | Kind::GreaterEqual | Kind::Equal | Kind::Unequal)
+}
+
+fn behind_junction(input: &mut In<'_, '_, '_>, at: usize) -> bool {
+    let before = at.checked_sub(1).and_then(|it| input.state().tokens.kinds.get(it).copied());
+    matches!(before, Some(Kind::And | Kind::Or | Kind::Xor | Kind::Ampersand | Kind::AndThen | Kind::OrElse))
+}
+
+/// `'it's late'`: what follows the second quote is a part of the text, and the third has no partner.
+fn behind_text(input: &mut In<'_, '_, '_>, at: usize) -> bool {
+    let Some(before) = at.checked_sub(1) else { return false };
+    let state = input.state();
+    let text = state.tokens.kinds.get(before) == Some(&Kind::Text);
+    if !text || state.place(before).end != state.place(at).start {
+        return false;
+    }
+    let from = state.place(at).end;
+    let quotes = state.tokens.kinds.iter().zip(&state.tokens.places).skip(at);
+    let open = quotes.into_iter().find(|(kind, _)| matches!(kind, Kind::OpenText | Kind::Semicolon | Kind::End));
+    open.is_some_and(|(kind, place)| *kind == Kind::OpenText && !state.breaks(from, place.0))
 }
 
 fn said(expected: Expected) -> String {
@@ -84,6 +141,25 @@ fn shown(input: &mut In<'_, '_, '_>, kind: Kind, span: Span) -> String {
     if own && text.len() <= 40 { format!("`{text}`") } else { kind.to_string() }
 }
 
+/// The empty place behind the token before the one at `at`.
+fn behind(input: &mut In<'_, '_, '_>, at: usize) -> Span {
+    let last = input.state().place(at.saturating_sub(1));
+    Span { start: last.end, ..last }
+}
+
+fn bracket(end: Kind) -> &'static str {
+    if end == Kind::CloseBracket { "]" } else { ")" }
+}
+
+/// `word` with spaces where it would touch what stands beside `span`, which it replaces.
+fn padded(input: &mut In<'_, '_, '_>, span: Span, word: &str) -> String {
+    let text = input.state().text;
+    let before = text[..index(span.start)].chars().next_back();
+    let after = text[index(span.end)..].chars().next();
+    let space = |it: Option<char>| if it.is_some_and(|it| !it.is_whitespace()) { " " } else { "" };
+    format!("{}{word}{}", space(before), space(after))
+}
+
 /// Directly behind the token before the current one.
 fn behind_last(input: &mut In<'_, '_, '_>) -> Span {
     let last = input.last();
@@ -105,7 +181,8 @@ fn swallowed(input: &mut In<'_, '_, '_>) -> bool {
 }
 
 pub fn missing_semicolon(input: &mut In<'_, '_, '_>) {
-    if swallowed(input) {
+    // At the end of the file the block around is not closed either, which is said once.
+    if swallowed(input) || input.kind() == Kind::End {
         return;
     }
     let (span, place) = (behind_last(input), insertion(input));
@@ -122,8 +199,18 @@ pub fn missing_semicolon(input: &mut In<'_, '_, '_>) {
 
 /// THEN, DO or OF. Another of them in its place is taken for it.
 pub fn missing_word(input: &mut In<'_, '_, '_>, word: Kind, opened: Span) {
-    if swallowed(input) {
+    if swallowed(input) || input.kind() == Kind::End {
         return;
+    }
+    super::habit::extra_brackets(input, word);
+    if input.eat(word).is_some() {
+        return;
+    }
+    if input.kind() == Kind::Semicolon && input.kind_ahead(1) == word {
+        return extra_semicolon(input, word);
+    }
+    if let Some(ahead) = on_this_line(input, word) {
+        return missing_operator(input, word, ahead);
     }
     let opener = input.text(opened).to_ascii_uppercase();
     let kind = input.kind();
@@ -133,10 +220,11 @@ pub fn missing_word(input: &mut In<'_, '_, '_>, word: Kind, opened: Span) {
     let message = format!("expected {word}, found {found}");
     let it = if wrong {
         input.take();
+        let replacement = padded(input, here, word.keyword().unwrap_or_default());
         Diagnostic::new(Code::E0013, here, message)
             .label(format!("expected {word}"))
             .help(format!("write {word} here"))
-            .fix(here, word.keyword().unwrap_or_default())
+            .fix(here, replacement)
     } else {
         let (span, place) = (behind_last(input), insertion(input));
         Diagnostic::new(Code::E0013, span, message)
@@ -144,7 +232,51 @@ pub fn missing_word(input: &mut In<'_, '_, '_>, word: Kind, opened: Span) {
             .help(format!("write {word} here"))
             .fix(place, format!(" {}", word.keyword().unwrap_or_default()))
     };
-    input.report(it.other(opened, format!("this {opener} needs a {}", word.keyword().unwrap_or_default())));
+    let word = word.keyword().unwrap_or_default();
+    input.report(it.other(opened, format!("this {opener} needs {}", crate::key::article(word))));
+}
+
+/// How far ahead `word` stands on the current line, before the statement ends.
+fn on_this_line(input: &mut In<'_, '_, '_>, word: Kind) -> Option<usize> {
+    let mut ahead = 0;
+    while input.kind_ahead(ahead) != word {
+        let kind = input.kind_ahead(ahead);
+        let at = input.number() + ahead;
+        let state = input.state();
+        let (before, here) = (state.place(at.saturating_sub(1)), state.place(at));
+        let ends = matches!(kind, Kind::Semicolon | Kind::Assign | Kind::Colon) || recover::ends_statements(kind);
+        if ends || recover::opens_statement(kind) || state.breaks(before.end, here.start) {
+            return None;
+        }
+        ahead += 1;
+    }
+    (ahead > 0).then_some(ahead)
+}
+
+/// `IF a b THEN`
+fn missing_operator(input: &mut In<'_, '_, '_>, word: Kind, ahead: usize) {
+    let (kind, here) = (input.kind(), input.here());
+    let found = shown(input, kind, here);
+    input.report(
+        Diagnostic::new(Code::E0001, here, format!("expected an operator or {word}, found {found}"))
+            .label("expected an operator before this")
+            .help("write `AND` or `OR` between two conditions"),
+    );
+    for _ in 0..=ahead {
+        input.take();
+    }
+}
+
+/// `IF a; THEN`
+fn extra_semicolon(input: &mut In<'_, '_, '_>, word: Kind) {
+    let span = input.take();
+    input.take();
+    input.report(
+        Diagnostic::new(Code::E0013, span, format!("expected {word}, found `;`"))
+            .label("the condition goes on to the next word")
+            .help("delete this `;`")
+            .fix(span, ""),
+    );
 }
 
 pub fn missing_end(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
@@ -156,14 +288,40 @@ pub fn missing_end(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
     let mut here = input.here();
     let found = shown(input, kind, here);
     if kind == Kind::End {
+        if std::mem::replace(&mut input.state().ended, true) {
+            return;
+        }
         here = input.last();
     }
     let close = end.keyword().unwrap_or_default();
+    let outer: Vec<_> = input.state().open.iter().rev().map(|(end, _)| end.to_string()).collect();
+    let help = if kind == Kind::End && !outer.is_empty() {
+        format!("the file ends too early: write `{close}`, then {}", outer.join(", then "))
+    } else {
+        format!("write `{close}` where the {opener} ends")
+    };
+    let mut it = Diagnostic::new(Code::E0014, here, format!("expected {end}, found {found}"))
+        .label(format!("expected {end} before this"))
+        .other(opened, format!("this {opener} is not closed"));
+    let inner = input.state().misaligned.filter(|it| it.start > opened.start);
+    if let Some(inner) = inner {
+        let inner_opener = input.text(inner).to_ascii_uppercase();
+        it = it.other(inner, format!("or this {inner_opener} is not: the end behind it stands in another column"));
+    }
+    input.report(it.help(help));
+}
+
+/// `WHILE … END_IF`
+pub fn wrong_end(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
+    let here = input.here();
+    let found = input.kind();
+    let opener = input.text(opened).to_ascii_uppercase();
     input.report(
         Diagnostic::new(Code::E0014, here, format!("expected {end}, found {found}"))
-            .label(format!("expected {end} before this"))
-            .other(opened, format!("this {opener} is not closed"))
-            .help(format!("write `{close}` where the {opener} ends")),
+            .label(format!("expected {end}"))
+            .other(opened, format!("this {opener} is closed by {end}"))
+            .help(format!("write {end}"))
+            .fix(here, end.keyword().unwrap_or_default()),
     );
 }
 
@@ -203,89 +361,6 @@ pub fn stray(span: Span, kind: Kind) -> Diagnostic {
         .help(help)
 }
 
-pub fn equal_for_assign(sign: Span, text: &str) -> Diagnostic {
-    let message = match text {
-        "=" | "==" => format!("`{text}` compares; an assignment is written `:=`"),
-        _ => "`:=` is written in one piece".into(),
-    };
-    Diagnostic::new(Code::E0008, sign, message).label("expected `:=`").help("write `:=`").fix(sign, ":=")
-}
-
-pub fn assign_for_equal(left: &str, sign: Span) -> Diagnostic {
-    let shown = if left.len() <= 40 { left } else { "a" };
-    Diagnostic::new(Code::E0009, sign, "`:=` assigns, and a condition cannot; a comparison is written `=`")
-        .label("expected `=`")
-        .help(format!("write `{shown} = …`"))
-        .fix(sign, "=")
-}
-
-pub fn foreign_operator(input: &mut In<'_, '_, '_>, kind: Kind, op: BinaryOp, sign: Span) {
-    let ours = op.text();
-    let replacement = spaced(input, ours, sign);
-    let mut it = Diagnostic::new(Code::E0010, sign, format!("Structured Text writes `{ours}` for {kind}"))
-        .label(format!("expected `{ours}`"))
-        .help(format!("write `{ours}`"))
-        .fix(sign, replacement);
-    match op {
-        BinaryOp::And => it = it.note("`AND_THEN` evaluates its right side only when it is needed"),
-        BinaryOp::Or => it = it.note("`OR_ELSE` evaluates its right side only when it is needed"),
-        _ => {}
-    }
-    input.report(it);
-}
-
-/// A word keeps its distance from what stood directly beside the sign.
-fn spaced(input: &mut In<'_, '_, '_>, operator: &str, sign: Span) -> String {
-    if !operator.starts_with(|it: char| it.is_ascii_alphabetic()) {
-        return operator.into();
-    }
-    let bytes = input.state().text.as_bytes();
-    let beside = |at: usize| bytes.get(at).is_some_and(|it| !it.is_ascii_whitespace());
-    let before = if beside(index(sign.start).wrapping_sub(1)) { " " } else { "" };
-    let after = if beside(index(sign.end)) { " " } else { "" };
-    format!("{before}{operator}{after}")
-}
-
-pub fn foreign_not(sign: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0010, sign, "Structured Text writes `NOT` for `!`")
-        .label("expected `NOT`")
-        .help("write `NOT`")
-        .fix(sign, "NOT ")
-}
-
-/// `x += 1`
-pub fn compound_assignment(input: &mut In<'_, '_, '_>, target: &Expr<'_>) {
-    let sign = input.here();
-    let (text, target) = (input.text(sign), input.text(target.span));
-    let op = &text[..1];
-    input.report(
-        Diagnostic::new(Code::E0010, sign, format!("Structured Text has no `{text}`"))
-            .label("expected `:=`")
-            .help(format!("write `{target} := {target} {op} …`"))
-            .fix(sign, format!(":= {target} {op}")),
-    );
-}
-
-/// `x++;`
-pub fn increment(input: &mut In<'_, '_, '_>, target: &Expr<'_>) -> bool {
-    let kind = input.kind();
-    let doubled = matches!(kind, Kind::Plus | Kind::Minus) && input.kind_ahead(1) == kind;
-    if !doubled || input.kind_ahead(2) != Kind::Semicolon {
-        return false;
-    }
-    let sign = input.take();
-    let sign = sign.to(input.take());
-    let (text, name) = (input.text(sign), input.text(target.span));
-    let op = &text[..1];
-    input.report(
-        Diagnostic::new(Code::E0010, sign, format!("Structured Text has no `{text}`"))
-            .label("expected `:=`")
-            .help(format!("write `{name} := {name} {op} 1`"))
-            .fix(target.span.to(sign), format!("{name} := {name} {op} 1")),
-    );
-    true
-}
-
 /// `x := INT;` among declarations.
 pub fn assign_for_colon(sign: Span) -> Diagnostic {
     Diagnostic::new(Code::E0001, sign, "expected `:` and a type, found `:=`")
@@ -311,20 +386,6 @@ pub fn declaration_behind_statements(span: Span) -> Diagnostic {
         .help("move this block to the head of its PROGRAM, FUNCTION_BLOCK or FUNCTION")
 }
 
-/// A POU that is closed by another kind's keyword.
-pub fn wrong_pou_end(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
-    let here = input.here();
-    let found = input.kind();
-    let opener = input.text(opened).to_ascii_uppercase();
-    input.report(
-        Diagnostic::new(Code::E0014, here, format!("expected {end}, found {found}"))
-            .label(format!("expected {end}"))
-            .other(opened, format!("this {opener} is closed by {end}"))
-            .help(format!("write {end}"))
-            .fix(here, end.keyword().unwrap_or_default()),
-    );
-}
-
 pub fn unsupported(span: Span, what: &str) -> Diagnostic {
     Diagnostic::new(Code::E0090, span, format!("{what} is not supported yet"))
 }
@@ -335,54 +396,6 @@ pub fn too_deep() -> String {
 
 pub fn too_long() -> String {
     format!("this chain is longer than {MAX_CHAIN}")
-}
-
-/// `ENDIF`, `ELSEIF`: the keyword that a name at the start of a statement stands for.
-fn misspelt_word(word: &str) -> Option<Kind> {
-    const WORDS: [(&str, Kind); 14] = [
-        ("ELSEIF", Kind::Elsif),
-        ("ELSE_IF", Kind::Elsif),
-        ("ELIF", Kind::Elsif),
-        ("ENDIF", Kind::EndIf),
-        ("ENDFOR", Kind::EndFor),
-        ("ENDWHILE", Kind::EndWhile),
-        ("ENDCASE", Kind::EndCase),
-        ("ENDREPEAT", Kind::EndRepeat),
-        ("ENDVAR", Kind::EndVar),
-        ("ENDSTRUCT", Kind::EndStruct),
-        ("ENDTYPE", Kind::EndType),
-        ("ENDPROGRAM", Kind::EndProgram),
-        ("ENDFUNCTION", Kind::EndFunction),
-        ("ENDFUNCTION_BLOCK", Kind::EndFunctionBlock),
-    ];
-    WORDS.iter().find(|(it, _)| word.eq_ignore_ascii_case(it)).map(|(_, kind)| *kind)
-}
-
-/// The misspelt keyword at the current place, and how many tokens it takes: `END IF` has two.
-pub fn misspelt(input: &mut In<'_, '_, '_>) -> Option<(Kind, usize)> {
-    if !input.is_word("END") {
-        let span = input.here();
-        return misspelt_word(input.text(span)).map(|kind| (kind, 1));
-    }
-    let second = input.kind_ahead(1).keyword()?;
-    misspelt_word(&format!("END{second}")).map(|kind| (kind, 2))
-}
-
-/// Whether a name that stands alone is a misspelt keyword.
-pub fn is_misspelt(target: &Expr<'_>) -> bool {
-    let ExprKind::Name(name) = &target.kind else { return false };
-    misspelt_word(name.text).is_some()
-}
-
-pub fn misspelt_keyword(input: &mut In<'_, '_, '_>, kind: Kind, span: Span) {
-    let found = input.text(span);
-    let word = kind.keyword().unwrap_or_default();
-    input.report(
-        Diagnostic::new(Code::E0018, span, format!("`{found}` is written {kind}"))
-            .label(format!("expected {kind}"))
-            .help(format!("write {kind}"))
-            .fix(span, word),
-    );
 }
 
 /// `5 y := 1;` among the arms of a CASE.
@@ -396,5 +409,70 @@ pub fn missing_colon(input: &mut In<'_, '_, '_>) {
             .label("a `:` is missing behind this label")
             .help("write `:` here")
             .fix(place, ":"),
+    );
+}
+
+/// `MAX(1 2)`
+pub fn missing_comma(input: &mut In<'_, '_, '_>) {
+    let (span, place) = (behind_last(input), insertion(input));
+    let kind = input.kind();
+    let here = input.here();
+    let found = shown(input, kind, here);
+    if kind == Kind::Semicolon {
+        input.report(
+            Diagnostic::new(Code::E0001, here, "expected `,`, found `;`")
+                .label("the list goes on behind this")
+                .help("write `,`")
+                .fix(here, ","),
+        );
+        return;
+    }
+    input.report(
+        Diagnostic::new(Code::E0001, span, format!("expected `,`, found {found}"))
+            .label("a `,` is missing behind this")
+            .help("write `,` here")
+            .fix(place, ","),
+    );
+}
+
+/// `else:`
+pub fn colon_behind_else(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, span, "no `:` stands behind the ELSE of an IF")
+        .label("delete this")
+        .help("delete it")
+        .fix(span, "")
+}
+
+/// A name alone on its line.
+pub fn name_alone(input: &mut In<'_, '_, '_>, span: Span) {
+    let text = input.text(span);
+    input.report(
+        Diagnostic::new(Code::E0001, span, "expected `:=` or a call behind this")
+            .label("this alone is no statement")
+            .help(format!("to assign, write `{text} := …;`; to call, `{text}(…);`")),
+    );
+}
+
+/// `IN: x` among arguments.
+pub fn colon_for_assign(input: &mut In<'_, '_, '_>, sign: Span) {
+    let replacement = padded(input, sign, ":=");
+    input.report(
+        Diagnostic::new(Code::E0008, sign, "an argument is connected with `:=`")
+            .label("expected `:=`")
+            .help("write `:=`")
+            .fix(sign, replacement),
+    );
+}
+
+/// `IN x` among arguments.
+pub fn missing_assign(input: &mut In<'_, '_, '_>) {
+    let (span, place) = (input.last(), insertion(input));
+    let (kind, here) = (input.kind(), input.here());
+    let found = shown(input, kind, here);
+    input.report(
+        Diagnostic::new(Code::E0001, span, format!("expected `:=`, found {found}"))
+            .label("a `:=` is missing behind this")
+            .help("write `:=` here")
+            .fix(place, " :="),
     );
 }

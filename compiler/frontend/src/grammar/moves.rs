@@ -11,7 +11,7 @@ use chumsky::{
 };
 
 use crate::{
-    ast::{BinaryOp, Expr, MAX_CHAIN, MAX_DEPTH, Name},
+    ast::{BinaryOp, Expr, Item, MAX_CHAIN, MAX_DEPTH, Name, VarDecl},
     diagnostic::{Code, Diagnostic},
     lex::{Kind, MAX_REPORTS, Tokens, index},
     source::Span,
@@ -103,6 +103,24 @@ pub struct State<'t, 's> {
     pub waiting: Vec<Waiting<'s>>,
     /// A misspelt keyword that was taken, and is read as this one.
     pub instead: Option<Kind>,
+    /// For each Pascal BEGIN: how many blocks were open there, and whether it opened a body.
+    pub begins: Vec<(usize, bool)>,
+    /// What opened the blocks whose body stands in `{ … }`: they need no END_.
+    pub braced: Vec<Span>,
+    /// Pairs of braces that are no pragmas, and have been reported.
+    pub braces: Vec<Span>,
+    /// Declarations among the statements of the current POU, reported.
+    pub strays: Vec<VarDecl<'s>>,
+    /// Number of the token behind the last of them.
+    pub told_at: Option<usize>,
+    /// What opened the first block of the POU whose end stands in another column.
+    pub misaligned: Option<Span>,
+    /// An ELSE without its IF has been reported: so is the END_IF behind it.
+    pub orphaned: bool,
+    /// Units inside a POU, reported.
+    pub nested: Vec<Item<'s>>,
+    /// The user knows that the file ends too early.
+    pub ended: bool,
 }
 
 impl<'t, 's> Inspector<'t, &'t [Kind]> for State<'t, 's> {

@@ -4,7 +4,7 @@
 use crate::{lex::Kind, source::Span};
 
 use super::{
-    mistake,
+    balance, mistake,
     moves::{In, Moves, Problem, Start},
 };
 
@@ -65,12 +65,23 @@ pub fn stray(input: &mut In<'_, '_, '_>) -> bool {
         return false;
     }
     let partners = partners(kind);
-    if input.state().open.iter().any(|(end, _)| partners.contains(end)) {
+    let open = &input.state().open;
+    let ends = kind.keyword().is_some_and(|it| it.starts_with("END_"));
+    if ends {
+        let awaited = open.last().is_some_and(|(end, _)| *end == kind);
+        if awaited || balance::judge(input, None) != balance::Verdict::Stray {
+            return false;
+        }
+    } else if open.iter().any(|(end, _)| partners.contains(end)) {
         return false;
     }
     let span = input.take();
-    let it = mistake::stray(span, kind);
-    input.report(it);
+    let told = kind == Kind::EndIf && std::mem::take(&mut input.state().orphaned);
+    if !told {
+        let it = mistake::stray(span, kind);
+        input.report(it);
+    }
+    input.state().orphaned |= matches!(kind, Kind::Else | Kind::Elsif);
     input.eat(Kind::Semicolon);
     true
 }
@@ -96,20 +107,64 @@ fn starts_action(input: &mut In<'_, '_, '_>) -> bool {
 /// Reports what broke the statement that starts at `start`, and skips what is left of it.
 pub fn statement<'t, 'p>(input: &mut In<'t, 'p, '_>, problem: Problem, start: Start<'t, 'p>) {
     let first = *start.cursor().inner();
-    if !respell(input, start) {
-        mistake::report(input, problem);
-        let start = input.state().place(first);
-        skip_statement(input, start);
+    if respell(input, start) {
+        return;
+    }
+    mistake::report(input, problem);
+    let start = input.state().place(first);
+    let block_as_value = input.number() == problem.at && problem.at != first && !input.on_new_line();
+    if block_as_value && opens_statement(input.kind()) {
+        skip_block(input);
+    }
+    skip_statement(input, start);
+}
+
+/// Behind the END_ of the block that starts here.
+fn skip_block(input: &mut In<'_, '_, '_>) {
+    let mut depth = 0usize;
+    loop {
+        let kind = input.kind();
+        if kind == Kind::End || is_pou_end(kind) || opens_item(kind) {
+            return;
+        }
+        let opens = matches!(kind, Kind::If | Kind::Case | Kind::For | Kind::While | Kind::Repeat);
+        let ends = kind.keyword().is_some_and(|it| it.starts_with("END_"));
+        input.take();
+        depth += usize::from(opens);
+        depth = depth.saturating_sub(usize::from(ends));
+        if depth == 0 {
+            return;
+        }
     }
 }
 
-/// As [`statement`], for a declaration.
-pub fn declaration<'t, 'p>(input: &mut In<'t, 'p, '_>, problem: Problem, start: Start<'t, 'p>) {
+/// As [`statement`], for a declaration. Whether it was one at all, and no misspelt keyword.
+pub fn declaration<'t, 'p>(input: &mut In<'t, 'p, '_>, problem: Problem, start: Start<'t, 'p>) -> bool {
     let first = *start.cursor().inner();
-    if !respell(input, start) {
-        mistake::report(input, problem);
-        let start = input.state().place(first);
-        skip_declaration(input, start);
+    if respell(input, start) {
+        return false;
+    }
+    mistake::report(input, problem);
+    let start = input.state().place(first);
+    if input.kind() == Kind::Struct {
+        skip_structure(input);
+    }
+    skip_declaration(input, start);
+    true
+}
+
+/// Behind the END_STRUCT of a structure that is not read.
+fn skip_structure(input: &mut In<'_, '_, '_>) {
+    let mut ahead = 0;
+    while input.kind_ahead(ahead) != Kind::EndStruct {
+        let kind = input.kind_ahead(ahead);
+        if kind == Kind::End || kind == Kind::EndType || opens_item(kind) || is_pou_end(kind) {
+            return;
+        }
+        ahead += 1;
+    }
+    for _ in 0..=ahead {
+        input.take();
     }
 }
 

@@ -8,8 +8,9 @@ use crate::{
 };
 
 use super::{
+    balance, declaration,
     expression::{condition, expression, postfix},
-    member, mistake,
+    habit, member, mistake,
     moves::{Expected, In, Moves, Parsed, Problem},
     recover,
 };
@@ -42,7 +43,7 @@ fn list<'s>(
                 }
             }
             _ if ends(input) => return,
-            Kind::Name if member::skip(input) => {}
+            Kind::Name if member::skip(input) || habit::begin_or_end(input) => {}
             _ => statements.push(statement(input)),
         }
     }
@@ -70,6 +71,7 @@ fn statement_kind<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
         Kind::Exit => word(input, StatementKind::Exit),
         Kind::Continue => word(input, StatementKind::Continue),
         Kind::Return => return_statement(input),
+        Kind::Name if is_declaration(input) => stray_declaration(input),
         _ => simple(input),
     }
 }
@@ -90,8 +92,68 @@ fn return_statement<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>>
     Ok(StatementKind::Return)
 }
 
+/// Whether a declaration stands here: names, `:`, and what can only be a type.
+fn is_declaration(input: &mut In<'_, '_, '_>) -> bool {
+    let mut ahead = 1;
+    while input.kind_ahead(ahead) == Kind::Comma && input.kind_ahead(ahead + 1) == Kind::Name {
+        ahead += 2;
+    }
+    if input.kind_ahead(ahead) != Kind::Colon {
+        return false;
+    }
+    match input.kind_ahead(ahead + 1) {
+        Kind::Array | Kind::Struct => true,
+        Kind::Name => {
+            let at = input.number() + ahead + 1;
+            let span = input.state().place(at);
+            let word = input.text(span);
+            ["STRING", "WSTRING"].iter().any(|it| word.eq_ignore_ascii_case(it))
+                || staunch_ir::Elementary::named(word).is_some()
+                || (ahead > 1 && input.kind_ahead(ahead + 2) == Kind::Semicolon)
+        }
+        _ => false,
+    }
+}
+
+/// A declaration among statements. Those that follow one another are one mistake.
+fn stray_declaration<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
+    let at = input.number();
+    let told = input.state().told_at == Some(at);
+    let mut names = Vec::new();
+    let found = declaration::declaration(input, &mut names)?;
+    if !told {
+        let closed = is_closed(input);
+        mistake::stray_declaration(input, found.span, closed);
+    }
+    input.state().strays.push(found);
+    let behind = input.number();
+    input.state().told_at = Some(behind);
+    if input.kind() == Kind::EndVar {
+        input.take();
+        input.eat(Kind::Semicolon);
+    }
+    Ok(StatementKind::Error)
+}
+
+/// Whether an END_VAR follows before anything else is opened or assigned.
+fn is_closed(input: &mut In<'_, '_, '_>) -> bool {
+    let mut ahead = 0;
+    loop {
+        match input.kind_ahead(ahead) {
+            Kind::EndVar => return true,
+            kind if recover::ends_statements(kind) || recover::opens_statement(kind) => return false,
+            _ => ahead += 1,
+        }
+    }
+}
+
 /// The `;` of a statement, or a complaint that leaves what follows in place.
 fn end(input: &mut In<'_, '_, '_>) -> Parsed<()> {
+    habit::extra_brackets(input, Kind::Semicolon);
+    habit::decimal_comma(input);
+    if habit::wrong_terminator(input) {
+        return Ok(());
+    }
     if input.eat(Kind::Semicolon).is_some() {
         return Ok(());
     }
@@ -116,6 +178,8 @@ fn simple<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
         }
         Kind::Equal | Kind::EqualEqual => {
             let sign = input.take();
+            let reversed = input.kind() == Kind::Colon && input.here().start == sign.end;
+            let sign = if reversed { sign.to(input.take()) } else { sign };
             let it = mistake::equal_for_assign(sign, input.text(sign));
             input.report(it);
             assignment(input, target)?
@@ -132,7 +196,7 @@ fn simple<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
             assignment(input, target)?
         }
         Kind::Name => latch(input, target)?,
-        Kind::Semicolon if mistake::is_misspelt(&target) => return Err(Problem::REPORTED),
+        Kind::Semicolon if mistake::is_misspelt(input, &target) => return Err(Problem::REPORTED),
         Kind::Semicolon => StatementKind::Expr(target),
         _ if matches!(target.kind, ExprKind::Call(..)) => StatementKind::Expr(target),
         _ => return without_effect(input, target),
@@ -197,6 +261,11 @@ fn without_effect<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<St
     if mistake::increment(input, &target) {
         return Err(Problem::REPORTED);
     }
+    let alone = input.on_new_line() || recover::closes(input.kind()) || input.kind() == Kind::End;
+    if alone && !mistake::is_misspelt(input, &target) && input.text(target.span).len() <= 40 {
+        mistake::name_alone(input, target.span);
+        return Err(Problem::REPORTED);
+    }
     Err(input.problem(Expected::Action))
 }
 
@@ -210,6 +279,7 @@ fn header<'s, T>(
     let result = part(input);
     match &result {
         Ok(_) if input.eat(ends).is_some() => {}
+        _ if habit::braces(input, opened) => {}
         Ok(_) => mistake::missing_word(input, ends, opened),
         Err(problem) => {
             mistake::report(input, *problem);
@@ -223,14 +293,9 @@ fn if_statement<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
     let opened = input.take();
     input.state().open.push((Kind::EndIf, opened));
     let mut branches = Vec::with_capacity(1);
-    let mut broken = false;
     loop {
-        let condition = header(input, Kind::Then, condition);
-        let body = statements(input);
-        match condition {
-            Some(condition) => branches.push((condition, body)),
-            None => broken = true,
-        }
+        let condition = header(input, Kind::Then, condition).unwrap_or_else(|| unread(opened));
+        branches.push((condition, body(input, opened)));
         if branches.len() > MAX_CHAIN {
             return Err(input.state().stop(opened, mistake::too_long()));
         }
@@ -249,8 +314,13 @@ fn if_statement<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
             header(input, Kind::Then, condition);
         } else if input.kind() == Kind::If && !input.on_new_line() {
             nested_if = Some(word.to(input.here()));
+        } else if input.kind() == Kind::Colon {
+            let colon = input.take();
+            input.report(mistake::colon_behind_else(colon));
+        } else if input.state().braced.contains(&opened) {
+            habit::braces(input, opened);
         }
-        let body = statements(input);
+        let body = body(input, opened);
         otherwise.get_or_insert(body);
     }
     input.state().open.pop();
@@ -258,28 +328,36 @@ fn if_statement<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
         Some(words) if input.kind() != Kind::EndIf => mistake::else_if(input, words, opened),
         _ => close(input, Kind::EndIf, opened),
     }
-    Ok(if broken { StatementKind::Error } else { StatementKind::If { branches, otherwise } })
+    Ok(StatementKind::If { branches, otherwise })
+}
+
+/// Stands for an expression that did not parse: what is around it is still checked.
+fn unread<'s>(span: Span) -> Expr<'s> {
+    Expr { kind: ExprKind::Error(Vec::new()), span }
+}
+
+/// The statements of a body; one in braces has been passed over.
+fn body<'s>(input: &mut In<'_, '_, 's>, opened: Span) -> Vec<Statement<'s>> {
+    if input.state().braced.contains(&opened) { Vec::new() } else { statements(input) }
 }
 
 /// The END_ of a block, with the `;` that may follow it.
 fn close(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
-    if input.eat(end).is_none() {
-        mistake::missing_end(input, end, opened);
-    }
+    balance::close_block(input, end, opened);
     input.eat(Kind::Semicolon);
 }
 
 /// Statements of a block that `end` closes.
 fn block<'s>(input: &mut In<'_, '_, 's>, end: Kind, opened: Span) -> Vec<Statement<'s>> {
     input.state().open.push((end, opened));
-    let body = statements(input);
+    let body = body(input, opened);
     input.state().open.pop();
     body
 }
 
 fn case<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
     let opened = input.take();
-    let selector = header(input, Kind::Of, expression);
+    let selector = header(input, Kind::Of, expression).unwrap_or_else(|| unread(opened));
     input.state().open.push((Kind::EndCase, opened));
     let mut arms = Vec::new();
     loop {
@@ -301,10 +379,7 @@ fn case<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
     });
     input.state().open.pop();
     close(input, Kind::EndCase, opened);
-    Ok(match selector {
-        Some(selector) => StatementKind::Case { selector, arms, otherwise },
-        None => StatementKind::Error,
-    })
+    Ok(StatementKind::Case { selector, arms, otherwise })
 }
 
 fn arm<'s>(input: &mut In<'_, '_, 's>) -> Option<Arm<'s>> {
@@ -367,6 +442,9 @@ fn at_label(input: &mut In<'_, '_, '_>) -> bool {
 fn for_loop<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
     let opened = input.take();
     let range = header(input, Kind::Do, |input| {
+        if habit::counting_loop(input) {
+            return Err(Problem::REPORTED);
+        }
         let counter = postfix(input)?;
         if let Some(sign) = input.eat(Kind::Equal) {
             let it = mistake::equal_for_assign(sign, "=");
@@ -375,29 +453,29 @@ fn for_loop<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
             input.expect(Kind::Assign)?;
         }
         let from = expression(input)?;
-        input.expect(Kind::To)?;
+        if !habit::down_to(input) {
+            input.expect(Kind::To)?;
+        }
         let to = expression(input)?;
-        let by = if input.eat(Kind::By).is_some() { Some(expression(input)?) } else { None };
+        let by = if input.eat(Kind::By).is_some() || habit::step(input) { Some(expression(input)?) } else { None };
         let by = by.map(Box::new);
         Ok((Box::new(counter), Box::new(from), Box::new(to), by))
     });
     let body = block(input, Kind::EndFor, opened);
     close(input, Kind::EndFor, opened);
-    Ok(match range {
-        Some((counter, from, to, by)) => StatementKind::For { counter, from, to, by, body },
-        None => StatementKind::Error,
-    })
+    let (counter, from, to, by) = range.unwrap_or_else(|| {
+        let [counter, from, to] = [(); 3].map(|()| Box::new(unread(opened)));
+        (counter, from, to, None)
+    });
+    Ok(StatementKind::For { counter, from, to, by, body })
 }
 
 fn while_loop<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
     let opened = input.take();
-    let condition = header(input, Kind::Do, condition);
+    let condition = header(input, Kind::Do, condition).unwrap_or_else(|| unread(opened));
     let body = block(input, Kind::EndWhile, opened);
     close(input, Kind::EndWhile, opened);
-    Ok(match condition {
-        Some(condition) => StatementKind::While { condition, body },
-        None => StatementKind::Error,
-    })
+    Ok(StatementKind::While { condition, body })
 }
 
 fn repeat<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
@@ -409,7 +487,7 @@ fn repeat<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
             mistake::report(input, problem);
         }
         close(input, Kind::EndRepeat, opened);
-        return Ok(StatementKind::Error);
+        return Ok(StatementKind::Repeat { body, until: unread(opened) });
     };
     let until = condition(input);
     if let Err(problem) = until {
@@ -418,8 +496,5 @@ fn repeat<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
     }
     input.eat(Kind::Semicolon);
     close(input, Kind::EndRepeat, opened);
-    Ok(match until {
-        Ok(until) => StatementKind::Repeat { body, until },
-        Err(_) => StatementKind::Error,
-    })
+    Ok(StatementKind::Repeat { body, until: until.unwrap_or_else(|_| unread(opened)) })
 }

@@ -1,16 +1,16 @@
 //! Types and initial values.
 
 use crate::{
-    ast::{Bound, Element, EnumValue, Expr, Initial, InitialKind, Name, TypeDecl, TypeKind, TypeSpec},
+    ast::{Bound, Element, EnumValue, Expr, ExprKind, Initial, InitialKind, Name, TypeDecl, TypeKind, TypeSpec},
     lex::Kind,
     source::Span,
 };
 
 use super::{
-    declaration, doc,
+    balance, declaration, doc,
     expression::{close, expression},
-    mistake,
-    moves::{Expected, In, Moves, Parsed, Problem},
+    habit, mistake,
+    moves::{Expected, In, Moves, Parsed, Problem, Start},
     recover,
 };
 
@@ -22,6 +22,7 @@ pub fn type_spec<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeSpec<'s>> {
         Kind::Struct => structure(input)?,
         Kind::OpenParen => enumeration(input, None)?,
         Kind::Name => named(input)?,
+        _ if habit::brace_list(input, "(", ")") => TypeKind::Error,
         _ => return Err(input.problem(Expected::Type)),
     };
     input.leave();
@@ -32,7 +33,13 @@ pub fn type_spec<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeSpec<'s>> {
 fn array<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeKind<'s>> {
     let opened = input.take();
     let bracket = input.number();
-    input.expect(Kind::OpenBracket)?;
+    let round = input.kind() == Kind::OpenParen;
+    if round {
+        let span = input.take();
+        input.report(mistake::array_bounds(span, "`(`", "ARRAY[1..3] OF INT"));
+    } else {
+        input.expect(Kind::OpenBracket)?;
+    }
     let mut bounds = Vec::with_capacity(1);
     loop {
         bounds.push(bound(input)?);
@@ -40,30 +47,54 @@ fn array<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeKind<'s>> {
             break;
         }
     }
-    close(input, Kind::CloseBracket, bracket)?;
+    close(input, if round { Kind::CloseParen } else { Kind::CloseBracket }, bracket)?;
     if input.eat(Kind::Of).is_none() {
         mistake::missing_word(input, Kind::Of, opened);
     }
     let element = Box::new(type_spec(input)?);
-    Ok(TypeKind::Array { bounds, element })
+    // Bounds that did not parse make a type that is not known.
+    match bounds.into_iter().collect() {
+        Some(bounds) => Ok(TypeKind::Array { bounds, element }),
+        None => Ok(TypeKind::Error),
+    }
 }
 
-fn bound<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Bound<'s>> {
+/// None for `10` and `1:3`, which are reported.
+fn bound<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Bound<'s>>> {
     if let Some(span) = input.eat(Kind::Star) {
-        return Ok(Bound::Open(span));
+        return Ok(Some(Bound::Open(span)));
     }
     let low = expression(input)?;
-    input.expect(Kind::DotDot)?;
-    Ok(Bound::Range(low, expression(input)?))
+    let kind = input.kind();
+    if input.eat(Kind::DotDot).is_some() {
+        return Ok(Some(Bound::Range(low, expression(input)?)));
+    }
+    if !matches!(kind, Kind::Colon | Kind::Comma | Kind::CloseBracket | Kind::CloseParen) {
+        return Err(input.problem(Expected::Token(Kind::DotDot)));
+    }
+    let text = input.text(low.span);
+    let Some(colon) = input.eat(Kind::Colon) else {
+        input.report(
+            mistake::array_bounds(low.span, "one number", &format!("1..{text}")).fix(low.span, format!("1..{text}")),
+        );
+        return Ok(None);
+    };
+    let high = expression(input)?;
+    let meant = format!("{text}..{}", input.text(high.span));
+    input.report(mistake::array_bounds(colon, "`:`", &meant).fix(colon, ".."));
+    Ok(None)
 }
 
 fn structure<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeKind<'s>> {
     let opened = input.take();
+    Ok(structure_behind(input, opened).kind)
+}
+
+/// The members of a structure, and its end.
+pub fn structure_behind<'s>(input: &mut In<'_, '_, 's>, opened: Span) -> TypeSpec<'s> {
     let fields = declaration::list(input, Kind::EndStruct, opened);
-    if input.eat(Kind::EndStruct).is_none() {
-        mistake::missing_end(input, Kind::EndStruct, opened);
-    }
-    Ok(TypeKind::Struct(fields))
+    balance::close_block(input, Kind::EndStruct, opened);
+    TypeSpec { kind: TypeKind::Struct(fields), span: opened.to(input.last()) }
 }
 
 /// `(Red, Green := 5)`, and a base type behind it.
@@ -75,7 +106,11 @@ fn enumeration<'s>(input: &mut In<'_, '_, 's>, base: Option<Name<'s>>) -> Parsed
         let first = input.number();
         let name = input.name()?;
         let value = if assign(input) { Some(expression(input)?) } else { None };
-        let more = input.eat(Kind::Comma).is_some();
+        let mut more = input.eat(Kind::Comma).is_some();
+        if !more && input.kind() == Kind::Name {
+            mistake::missing_comma(input);
+            more = true;
+        }
         values.push(EnumValue { name, value, doc: doc::comment(input, first) });
         if !more {
             break;
@@ -102,11 +137,31 @@ fn named<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeKind<'s>> {
     if input.kind() == Kind::OpenParen {
         return refined(input, name);
     }
+    if input.kind() == Kind::OpenBracket && matches!(input.kind_ahead(1), Kind::Integer | Kind::Name) {
+        return sized(input, name);
+    }
     let mut path = vec![name];
     while input.eat(Kind::Dot).is_some() {
         path.push(input.name()?);
     }
     Ok(TypeKind::Named(path))
+}
+
+/// `INT[10]`, as other languages write an array.
+fn sized<'s>(input: &mut In<'_, '_, 's>, element: Name<'s>) -> Parsed<TypeKind<'s>> {
+    let opened = input.number();
+    input.take();
+    let length = expression(input)?;
+    let high = if input.eat(Kind::DotDot).is_some() { Some(expression(input)?) } else { None };
+    let end = close(input, Kind::CloseBracket, opened)?;
+    let bounds = match high {
+        Some(high) => input.text(length.span.to(high.span)).to_owned(),
+        None => format!("1..{}", input.text(length.span)),
+    };
+    let meant = format!("ARRAY[{bounds}] OF {}", element.text);
+    let whole = element.span.to(end);
+    input.report(mistake::array_bounds(whole, "a length behind the type", &meant).fix(whole, meant));
+    Ok(TypeKind::Error)
 }
 
 /// REF_TO, POINTER TO, REFERENCE TO and UNION are words only here.
@@ -204,6 +259,9 @@ pub fn initial<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Initial<'s>> {
     let kind = match input.kind() {
         Kind::OpenBracket => bracketed(input)?,
         Kind::OpenParen if input.kind_ahead(1) == Kind::Name && input.kind_ahead(2) == Kind::Assign => fields(input)?,
+        Kind::Semicolon if habit::brace_list(input, "[", "]") => {
+            InitialKind::Value(Expr { kind: ExprKind::Error(Vec::new()), span: start })
+        }
         _ => InitialKind::Value(expression(input)?),
     };
     input.leave();
@@ -259,7 +317,7 @@ fn element<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Element<'s>> {
 fn count<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
     let span = input.here();
     match super::literal::untyped(input, None) {
-        Some(literal) => Ok(Expr { kind: crate::ast::ExprKind::Literal(literal), span }),
+        Some(literal) => Ok(Expr { kind: ExprKind::Literal(literal), span }),
         None => Err(Problem::REPORTED),
     }
 }
@@ -299,18 +357,33 @@ pub fn types<'s>(input: &mut In<'_, '_, 's>) -> Vec<TypeDecl<'s>> {
                     break;
                 }
             }
-            _ => match type_decl(input) {
-                Ok(it) => types.push(it),
-                Err(problem) => recover::declaration(input, problem, start),
-            },
+            _ => types.extend(type_decl_or_name(input, start)),
         }
     }
     input.state().open.pop();
-    if input.eat(Kind::EndType).is_none() {
-        mistake::missing_end(input, Kind::EndType, opened);
-    }
+    balance::close_block(input, Kind::EndType, opened);
     input.eat(Kind::Semicolon);
     types
+}
+
+/// A type, or the name of one that does not parse, with all names in it: they may be enumerators.
+fn type_decl_or_name<'t, 'p, 's>(input: &mut In<'t, 'p, 's>, start: Start<'t, 'p>) -> Option<TypeDecl<'s>> {
+    let (first, from) = (input.number(), input.here());
+    let named = input.kind() == Kind::Name;
+    let name = Name { text: input.text(from), span: from };
+    let problem = match type_decl(input) {
+        Ok(it) => return Some(it),
+        Err(problem) => problem,
+    };
+    if !recover::declaration(input, problem, start) || !named {
+        return None;
+    }
+    let ty = TypeSpec { kind: TypeKind::Error, span: from.to(input.last()) };
+    let last = input.number();
+    let state = input.state();
+    let names = (first + 1..last).filter(|at| state.tokens.kinds[*at] == Kind::Name).map(|at| state.place(at));
+    let unread = names.map(|span| Name { text: state.slice(span), span }).collect();
+    Some(TypeDecl { name, ty, initial: None, doc: None, unread })
 }
 
 fn type_decl<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeDecl<'s>> {
@@ -321,12 +394,17 @@ fn type_decl<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeDecl<'s>> {
         input.report(mistake::unsupported(span, "EXTENDS"));
         input.name()?;
     }
-    input.expect(Kind::Colon)?;
+    if input.eat(Kind::Colon).is_none() {
+        if !matches!(input.kind(), Kind::Struct | Kind::OpenParen | Kind::Array | Kind::Equal | Kind::Semicolon) {
+            return Err(input.problem(Expected::Token(Kind::Colon)));
+        }
+        mistake::missing_type_colon(input);
+    }
     let ty = type_spec(input)?;
     let initial = optional_initial(input)?;
     let closed = matches!(ty.kind, TypeKind::Struct(_) | TypeKind::Unsupported("UNION"));
     if !closed || input.kind() == Kind::Semicolon {
         declaration::end(input)?;
     }
-    Ok(TypeDecl { name, ty, initial, doc: doc::comment(input, first) })
+    Ok(TypeDecl { name, ty, initial, doc: doc::comment(input, first), unread: Vec::new() })
 }

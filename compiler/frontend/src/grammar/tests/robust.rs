@@ -107,3 +107,12 @@ fn an_error_limit_ends_a_file_of_garbage() {
         assert!(diagnostics.len() <= 101, "{text}: {}", diagnostics.len());
     }
 }
+
+/// What a wrong end closes is weighed within a horizon: a long file of mistakes takes no longer.
+#[test]
+fn wrong_ends_in_a_long_file() {
+    let line = "IF a THEN b := MAX(a b; END_WHILE;\n";
+    let text = format!("PROGRAM p {}END_PROGRAM", line.repeat(20_000));
+    let (_, diagnostics) = parsed(&text);
+    assert!(diagnostics.iter().any(|it| it.code == Code::E0030));
+}

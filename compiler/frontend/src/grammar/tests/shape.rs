@@ -88,6 +88,7 @@ pub fn expr(it: &Expr<'_>) -> String {
         ExprKind::Index(of, indices) => {
             format!("{}[{}]", expr(of), indices.iter().map(expr).collect::<Vec<_>>().join(","))
         }
+        ExprKind::Error(parts) => format!("error({})", parts.iter().map(expr).collect::<Vec<_>>().join(",")),
         ExprKind::Deref(of) => format!("{}^", expr(of)),
         ExprKind::Call(of, arguments) => {
             format!("{}({})", expr(of), arguments.iter().map(argument).collect::<Vec<_>>().join(","))
@@ -119,6 +120,7 @@ fn literal(it: &Literal<'_>) -> String {
         LiteralValue::String { bytes, .. } => format!("{:?}", String::from_utf8_lossy(bytes)),
         LiteralValue::Enumerator(name) => name.text.into(),
         LiteralValue::Date(kind) => (*kind).into(),
+        LiteralValue::Error => "error".into(),
     };
     prefix + &value
 }
@@ -161,6 +163,7 @@ pub fn ty(it: &TypeSpec<'_>) -> String {
             format!("enum({}){}", values.join(","), base.map_or("", |it| it.text))
         }
         TypeKind::Unsupported(what) => (*what).into(),
+        TypeKind::Error => "error".into(),
     }
 }
 

@@ -1,0 +1,136 @@
+//! Declarations and units that are written as in another language, or in another place.
+
+use crate::{
+    diagnostic::{Code, Diagnostic},
+    lex::Kind,
+    source::Span,
+};
+
+use super::{
+    super::moves::{In, Moves},
+    behind_last, insertion, shown,
+};
+
+/// `w INT;` or `q = INT;` among declarations.
+pub fn missing_type_colon(input: &mut In<'_, '_, '_>) {
+    let found = input.kind();
+    let here = input.here();
+    let shown = shown(input, found, here);
+    let message = format!("expected `:`, found {shown}");
+    if matches!(found, Kind::Equal | Kind::Semicolon) {
+        input.take();
+        input
+            .report(Diagnostic::new(Code::E0001, here, message).label("expected `:`").help("write `:`").fix(here, ":"));
+        return;
+    }
+    let (span, place) = (behind_last(input), insertion(input));
+    input.report(
+        Diagnostic::new(Code::E0001, span, message)
+            .label("a `:` is missing behind this")
+            .help("write `:` here")
+            .fix(place, " :"),
+    );
+}
+
+/// `INT x;`
+pub fn type_first(input: &mut In<'_, '_, '_>, ty: Span, name: Span) {
+    let meant = format!("{} : {}", input.text(name), input.text(ty));
+    let whole = ty.to(name);
+    input.report(
+        Diagnostic::new(Code::E0001, whole, "the name stands before the type")
+            .label("expected a name, `:` and a type")
+            .help(format!("write `{meant}`"))
+            .fix(whole, meant),
+    );
+}
+
+/// `my var : INT;`
+pub fn name_of_two_words(input: &mut In<'_, '_, '_>, first: Span, second: Span) {
+    let meant = format!("{}_{}", input.text(first), input.text(second));
+    let whole = first.to(second);
+    input.report(
+        Diagnostic::new(Code::E0001, whole, "a name is one word")
+            .label("two words")
+            .help(format!("write `{meant}`"))
+            .fix(whole, meant),
+    );
+}
+
+/// `a : INT;` among statements; `closed` where an END_VAR stands behind such declarations.
+pub fn stray_declaration(input: &mut In<'_, '_, '_>, span: Span, closed: bool) {
+    let it = Diagnostic::new(Code::E0017, span, "this declaration stands outside of VAR … END_VAR");
+    let text = input.text(span);
+    input.report(if closed {
+        it.label("expected `VAR` before this").help("write `VAR` here").fix(Span { end: span.start, ..span }, "VAR ")
+    } else {
+        it.label("only statements stand here").help(format!("write `VAR {text} END_VAR` before the first statement"))
+    });
+}
+
+/// A VAR block or a statement outside of all units.
+pub fn outside_of_units(span: Span, statements: bool) -> Diagnostic {
+    let it = Diagnostic::new(Code::E0001, span, "this belongs to no unit of the program")
+        .label("no PROGRAM, FUNCTION_BLOCK or FUNCTION is open here");
+    if statements {
+        it.help("write `PROGRAM Main` before it, and `END_PROGRAM` behind it")
+    } else {
+        it.help("write `VAR_GLOBAL` for global variables, or `PROGRAM Main` before it")
+    }
+}
+
+/// `FUNCTION f(x : INT) : INT`, `PROGRAM p()`
+pub fn parameters_in_head(span: Span, empty: bool) -> Diagnostic {
+    if empty {
+        return Diagnostic::new(Code::E0020, span, "no parentheses stand behind the name of a unit")
+            .label("delete this")
+            .help("delete them")
+            .fix(span, "");
+    }
+    Diagnostic::new(Code::E0020, span, "parameters stand in VAR_INPUT, not in parentheses")
+        .label("expected no parentheses")
+        .help("write `VAR_INPUT x : INT; END_VAR` on the next line")
+}
+
+/// `ARRAY[10]`, `ARRAY[1:3]`, `ARRAY(1..3)`, `INT[10]`: what is wrong at `span`, and what is meant.
+pub fn array_bounds(span: Span, found: &str, meant: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0001, span, "an array is declared by its first and its last index")
+        .label(format!("expected `[first..last]`, found {found}"))
+        .help(format!("write `{meant}`"))
+}
+
+/// `STRUCT Name` outside of TYPE.
+pub fn bare_structure(span: Span, name: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0001, span, "a structure is declared in TYPE … END_TYPE")
+        .label("expected `TYPE` before this")
+        .help(format!("write `TYPE {name} : STRUCT … END_STRUCT; END_TYPE`"))
+}
+
+/// TYPE or FUNCTION inside a PROGRAM.
+pub fn nested_unit(span: Span, kind: Kind, outer: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0001, span, format!("{kind} stands inside {}", crate::key::article(outer)))
+        .label("units of the program stand beside one another")
+        .help(format!("move it before the {outer}"))
+}
+
+/// `FUNCTION_BLOCK f : INT`
+pub fn no_result_type(span: Span, opener: &str) -> Diagnostic {
+    let opener = opener.to_ascii_uppercase();
+    Diagnostic::new(Code::E0001, span, format!("{} has no result type", crate::key::article(&opener)))
+        .label("delete this")
+        .help("delete it, and declare what it returns in VAR_OUTPUT")
+        .fix(span, "")
+}
+
+/// `x AT IX0.0`
+pub fn address_without_sign(span: Span, text: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0409, span, "a direct address starts with `%`")
+        .help(format!("write `%{text}`"))
+        .fix(span, format!("%{text}"))
+}
+
+/// `x : BOOL AT %QX0.0;`
+pub fn address_behind_type(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0409, span, "the address of a variable stands before its type")
+        .label("expected before the `:`")
+        .help("write `name AT %QX0.0 : BOOL;`")
+}

@@ -1,0 +1,162 @@
+//! Keywords that are nearly written: `ENDIF`, `END_FOOR`, `VAR INPUT`, `SWITCH`.
+
+use crate::{
+    ast::{Expr, ExprKind},
+    diagnostic::{Code, Diagnostic},
+    lex::Kind,
+    source::Span,
+};
+
+use super::super::{
+    moves::{In, Moves},
+    recover,
+};
+
+/// `ENDIF`, `ELSEIF`: the keyword that a name at the start of a statement stands for.
+fn misspelt_word(word: &str) -> Option<Kind> {
+    const WORDS: [(&str, Kind); 14] = [
+        ("ELSEIF", Kind::Elsif),
+        ("ELSE_IF", Kind::Elsif),
+        ("ELIF", Kind::Elsif),
+        ("ENDIF", Kind::EndIf),
+        ("ENDFOR", Kind::EndFor),
+        ("ENDWHILE", Kind::EndWhile),
+        ("ENDCASE", Kind::EndCase),
+        ("ENDREPEAT", Kind::EndRepeat),
+        ("ENDVAR", Kind::EndVar),
+        ("ENDSTRUCT", Kind::EndStruct),
+        ("ENDTYPE", Kind::EndType),
+        ("ENDPROGRAM", Kind::EndProgram),
+        ("ENDFUNCTION", Kind::EndFunction),
+        ("ENDFUNCTION_BLOCK", Kind::EndFunctionBlock),
+    ];
+    WORDS.iter().find(|(it, _)| word.eq_ignore_ascii_case(it)).map(|(_, kind)| *kind)
+}
+
+/// The end that a name stands for, with the kind behind it, and how many tokens that takes:
+/// `ENDIF`, `END_FOOR`, `END IF`.
+pub fn misspelt_end(word: &str, next: Kind) -> Option<(Kind, usize)> {
+    if word.eq_ignore_ascii_case("END") {
+        return misspelt_word(&format!("END{}", next.keyword()?)).map(|kind| (kind, 2));
+    }
+    if let Some(kind) = misspelt_word(word) {
+        return Some((kind, 1));
+    }
+    let ends = word.get(..3).is_some_and(|it| it.eq_ignore_ascii_case("END")) && word.len() > 4;
+    ends.then(|| nearest_of(word, ENDS)).flatten().map(|kind| (kind, 1))
+}
+
+const ENDS: &[Kind] = &[
+    Kind::EndIf,
+    Kind::EndFor,
+    Kind::EndWhile,
+    Kind::EndCase,
+    Kind::EndRepeat,
+    Kind::EndVar,
+    Kind::EndStruct,
+    Kind::EndType,
+    Kind::EndProgram,
+    Kind::EndFunction,
+    Kind::EndFunctionBlock,
+];
+
+const SECTIONS: &[Kind] = &[
+    Kind::VarInput,
+    Kind::VarOutput,
+    Kind::VarInOut,
+    Kind::VarTemp,
+    Kind::VarStat,
+    Kind::VarGlobal,
+    Kind::VarExternal,
+];
+
+const OPENERS: &[Kind] = &[Kind::While, Kind::Repeat, Kind::Case, Kind::For, Kind::If, Kind::Elsif, Kind::Return];
+
+const ITEMS: &[Kind] =
+    &[Kind::Program, Kind::FunctionBlock, Kind::Function, Kind::Type, Kind::Configuration, Kind::VarGlobal];
+
+fn nearest_of(word: &str, kinds: &[Kind]) -> Option<Kind> {
+    let near = crate::key::nearest(word, kinds.iter().filter_map(|it| it.keyword()))?;
+    kinds.iter().copied().find(|it| it.keyword() == Some(near))
+}
+
+/// The misspelt keyword at the current place, and how many tokens it takes: `END IF` has two.
+pub fn misspelt(input: &mut In<'_, '_, '_>) -> Option<(Kind, usize)> {
+    if input.kind() != Kind::Name {
+        return None;
+    }
+    let span = input.here();
+    let (word, next) = (input.text(span), input.kind_ahead(1));
+    if let Some(found) = misspelt_end(word, next) {
+        return Some(found);
+    }
+    if word.eq_ignore_ascii_case("WEND") && waits_for(input, Kind::EndWhile) {
+        return Some((Kind::EndWhile, 1));
+    }
+    if word.eq_ignore_ascii_case("NEXT") && next == Kind::Name && waits_for(input, Kind::EndFor) {
+        let at = input.number();
+        let state = input.state();
+        let joined = !state.breaks(state.place(at).end, state.place(at + 1).start);
+        return Some((Kind::EndFor, if joined { 2 } else { 1 }));
+    }
+    if word.eq_ignore_ascii_case("END") || (word.eq_ignore_ascii_case("NEXT") && waits_for(input, Kind::EndFor)) {
+        return innermost(input).map(|end| (end, 1));
+    }
+    let section = match word.to_ascii_uppercase().as_str() {
+        "VARIN" | "VAR_IN" | "VARINPUT" | "VAR_INPUTS" => Some(Kind::VarInput),
+        "VAROUT" | "VAR_OUT" | "VAROUTPUT" | "VAR_OUTPUTS" => Some(Kind::VarOutput),
+        "VARINOUT" | "VAR_INOUT" => Some(Kind::VarInOut),
+        "VARS" | "VAR_RETAIN" | "VAR_CONSTANT" | "VAR_PERSISTENT" => Some(Kind::Var),
+        upper if upper.starts_with("VAR") && upper.len() > 4 => nearest_of(word, SECTIONS),
+        _ => None,
+    };
+    if let Some(section) = section.filter(|_| next == Kind::Name) {
+        return Some((section, 1));
+    }
+    let operand = matches!(next, Kind::Name | Kind::Integer | Kind::Not | Kind::True | Kind::False | Kind::OpenParen);
+    match word.to_ascii_uppercase().as_str() {
+        "SWITCH" | "SELECT" if operand => Some((Kind::Case, 1)),
+        _ if operand => nearest_of(word, OPENERS).map(|kind| (kind, 1)),
+        _ => None,
+    }
+}
+
+fn waits_for(input: &mut In<'_, '_, '_>, end: Kind) -> bool {
+    input.state().open.last().is_some_and(|(it, _)| *it == end)
+}
+
+/// The end of the innermost block of statements.
+fn innermost(input: &mut In<'_, '_, '_>) -> Option<Kind> {
+    input.state().open.last().map(|(end, _)| *end).filter(|it| !recover::is_pou_end(*it))
+}
+
+/// `PROGRM Main`, `FUNCTION BLOCK f`: the keyword that opens an item.
+pub fn misspelt_item(input: &mut In<'_, '_, '_>) -> Option<Kind> {
+    if input.kind() != Kind::Name || input.kind_ahead(1) != Kind::Name {
+        return None;
+    }
+    let span = input.here();
+    nearest_of(input.text(span), ITEMS)
+}
+
+/// Whether a name that stands alone is a misspelt keyword.
+pub fn is_misspelt(input: &mut In<'_, '_, '_>, target: &Expr<'_>) -> bool {
+    let ExprKind::Name(name) = &target.kind else { return false };
+    (name.text.eq_ignore_ascii_case("END") && innermost(input).is_some())
+        || (name.text.eq_ignore_ascii_case("NEXT") && waits_for(input, Kind::EndFor))
+        || (name.text.eq_ignore_ascii_case("WEND") && waits_for(input, Kind::EndWhile))
+        || misspelt_end(name.text, Kind::Semicolon).is_some()
+}
+
+pub fn misspelt_keyword(input: &mut In<'_, '_, '_>, kind: Kind, span: Span) {
+    let found = input.text(span);
+    let qualified = found.to_ascii_uppercase().replace('_', " ");
+    let two_words = matches!(qualified.as_str(), "VAR RETAIN" | "VAR CONSTANT" | "VAR PERSISTENT");
+    let word = if two_words { qualified.as_str() } else { kind.keyword().unwrap_or_default() };
+    input.report(
+        Diagnostic::new(Code::E0018, span, format!("`{found}` is written `{word}`"))
+            .label(format!("expected `{word}`"))
+            .help(format!("write `{word}`"))
+            .fix(span, word),
+    );
+}

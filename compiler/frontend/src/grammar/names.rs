@@ -1,0 +1,269 @@
+//! Names that cannot be names: reserved words, `my-name`, `2nd`. Each is reported where it is
+//! declared, and read as a name from there on, so that its uses are no further mistakes.
+
+use std::collections::HashSet;
+
+use crate::{
+    diagnostic::{Code, Diagnostic},
+    lex::{Kind, Tokens, index},
+    source::Span,
+};
+
+use super::recover::{opens_item, opens_section};
+
+/// What was declared under a name that cannot be one.
+#[derive(Default)]
+struct Found<'s> {
+    words: HashSet<Kind>,
+    /// In lower case.
+    pieces: HashSet<String>,
+    /// First token and number of tokens of each declaration.
+    declared: Vec<(usize, usize)>,
+    reports: Vec<Diagnostic>,
+    text: &'s str,
+    file: u16,
+}
+
+/// Reports such declarations, and makes one name of the tokens of each of them and of their uses.
+pub fn mend(tokens: &mut Tokens<'_>, text: &str, file: u16) {
+    let mut found = Found { text, file, ..Found::default() };
+    declarations(tokens, &mut found);
+    if found.declared.is_empty() {
+        return;
+    }
+    rewrite(tokens, &found);
+    tokens.diagnostics.append(&mut found.reports);
+}
+
+/// Walks over the places where a name is declared.
+fn declarations(tokens: &Tokens<'_>, found: &mut Found<'_>) {
+    let mut open: Vec<Kind> = Vec::new();
+    // At the first name of a declaration, or behind the `,` of its names.
+    let mut fresh = false;
+    // Since the declaration began, only names and `,` were seen.
+    let mut names = false;
+    let mut at = 0;
+    while at < tokens.kinds.len() {
+        let kind = tokens.kinds[at];
+        names = fresh || (names && matches!(kind, Kind::Name | Kind::Comma));
+        if fresh && let Some(count) = declared(tokens, at, found) {
+            at += count;
+            fresh = false;
+            continue;
+        }
+        match kind {
+            Kind::Program | Kind::Function | Kind::FunctionBlock => {
+                head(tokens, at + 1, found);
+                open.clear();
+                fresh = false;
+            }
+            Kind::Struct => {
+                open.push(Kind::EndStruct);
+                fresh = true;
+            }
+            Kind::Type => {
+                open = vec![Kind::EndType];
+                fresh = true;
+            }
+            kind if opens_section(kind) => {
+                open = vec![Kind::EndVar];
+                fresh = true;
+            }
+            Kind::EndVar | Kind::EndType => {
+                open.clear();
+                fresh = false;
+            }
+            Kind::EndStruct => {
+                open.pop();
+                fresh = !open.is_empty();
+            }
+            Kind::Semicolon => fresh = !open.is_empty(),
+            Kind::Constant | Kind::Retain | Kind::NonRetain | Kind::Persistent => {}
+            Kind::Comma => fresh = names,
+            _ => fresh = false,
+        }
+        at += 1;
+    }
+}
+
+/// The number of tokens of a wrong name that is declared at `at`.
+fn declared(tokens: &Tokens<'_>, at: usize, found: &mut Found<'_>) -> Option<usize> {
+    let count = pieces(tokens, at)?;
+    let next = tokens.kinds[at + count];
+    if !matches!(next, Kind::Colon | Kind::Comma | Kind::At) {
+        return None;
+    }
+    found.report(tokens, at, count);
+    Some(count)
+}
+
+/// A reserved word behind PROGRAM, FUNCTION or FUNCTION_BLOCK.
+fn head(tokens: &Tokens<'_>, at: usize, found: &mut Found<'_>) {
+    let kind = tokens.kinds[at];
+    let word = kind.keyword().is_some_and(|it| !it.starts_with("END_"));
+    if word && !opens_section(kind) && !opens_item(kind) {
+        found.report(tokens, at, 1);
+    }
+}
+
+/// How many tokens without space between them make a wrong name at `at`.
+fn pieces(tokens: &Tokens<'_>, at: usize) -> Option<usize> {
+    let is_piece = |kind: Kind| matches!(kind, Kind::Name | Kind::Integer | Kind::Minus) || kind.keyword().is_some();
+    let first = tokens.kinds[at];
+    if !is_piece(first) || first == Kind::Minus || first.keyword().is_some_and(|it| it.starts_with("END_")) {
+        return None;
+    }
+    let mut count = 1;
+    while is_piece(tokens.kinds[at + count]) && tokens.places[at + count - 1].1 == tokens.places[at + count].0 {
+        count += 1;
+    }
+    let wrong = count > 1 || first.keyword().is_some();
+    let whole = tokens.kinds[at + count - 1] != Kind::Minus;
+    (wrong && whole && first != Kind::Not).then_some(count)
+}
+
+impl Found<'_> {
+    fn spelled(&self, tokens: &Tokens<'_>, at: usize, count: usize) -> String {
+        let (start, end) = (tokens.places[at].0, tokens.places[at + count - 1].1);
+        self.text[index(start)..index(end)].to_ascii_lowercase()
+    }
+
+    fn report(&mut self, tokens: &Tokens<'_>, at: usize, count: usize) {
+        let spelled = self.spelled(tokens, at, count);
+        let (start, end) = (tokens.places[at].0, tokens.places[at + count - 1].1);
+        let span = Span { file: self.file, start, end };
+        let own = &self.text[index(start)..index(end)];
+        self.declared.push((at, count));
+        let known = match tokens.kinds[at].keyword() {
+            Some(_) if count == 1 => !self.words.insert(tokens.kinds[at]),
+            _ => !self.pieces.insert(spelled),
+        };
+        if known {
+            return;
+        }
+        self.reports.push(match tokens.kinds[at].keyword() {
+            Some(word) if count == 1 => reserved(span, word, own),
+            _ if tokens.kinds[at] == Kind::Integer => digits_first(span, own),
+            _ => hyphen(span, own),
+        });
+    }
+}
+
+pub fn reserved(span: Span, word: &str, own: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0016, span, format!("`{word}` is a reserved word and cannot be a name"))
+        .label("expected a name")
+        .help(format!("choose another name, say `{own}_1`"))
+}
+
+fn digits_first(span: Span, own: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0001, span, format!("`{own}` is not a name: a name cannot start with a digit"))
+        .label("expected a letter or `_` first")
+        .help(format!("write `_{own}`"))
+}
+
+fn hyphen(span: Span, own: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0001, span, format!("`{own}` is not a name: `-` subtracts"))
+        .label("expected only letters, digits and `_`")
+        .help(format!("write `{}`", own.replace('-', "_")))
+}
+
+fn rewrite(tokens: &mut Tokens<'_>, found: &Found<'_>) {
+    let (mut kinds, mut places) = (Vec::new(), Vec::new());
+    let mut declared = found.declared.iter().peekable();
+    let mut at = 0;
+    while at < tokens.kinds.len() {
+        let count = match declared.next_if(|it| it.0 == at) {
+            Some((_, count)) => Some(*count),
+            None => used(tokens, at, kinds.last().copied(), found),
+        };
+        kinds.push(if count.is_some() { Kind::Name } else { tokens.kinds[at] });
+        let count = count.unwrap_or(1);
+        places.push((tokens.places[at].0, tokens.places[at + count - 1].1));
+        at += count;
+    }
+    tokens.kinds = kinds;
+    tokens.places = places;
+}
+
+/// The number of tokens, where one of the wrong names is used at `at`.
+fn used(tokens: &Tokens<'_>, at: usize, before: Option<Kind>, found: &Found<'_>) -> Option<usize> {
+    if !found.pieces.is_empty()
+        && let Some(count) = pieces(tokens, at)
+        && found.pieces.contains(&found.spelled(tokens, at, count))
+    {
+        return Some(count);
+    }
+    let next = tokens.kinds.get(at + 1).copied().unwrap_or(Kind::End);
+    let word = tokens.kinds[at];
+    (found.words.contains(&word) && stands_for_name(before, word, next)).then_some(1)
+}
+
+/// Whether a reserved word stands where only a name can.
+fn stands_for_name(before: Option<Kind>, word: Kind, next: Kind) -> bool {
+    let operator = matches!(word, Kind::And | Kind::Or | Kind::Xor | Kind::Mod | Kind::Not);
+    if matches!(word, Kind::True | Kind::False) || (operator && next == Kind::OpenParen) {
+        return false;
+    }
+    let assigned = matches!(next, Kind::Assign | Kind::Dot | Kind::OpenBracket | Kind::Arrow);
+    let is_type = before == Some(Kind::Colon) && matches!(next, Kind::Semicolon | Kind::Assign);
+    let called = next == Kind::OpenParen && !may_precede_parenthesis(word);
+    assigned || is_type || called || before.is_some_and(wants_operand)
+}
+
+fn may_precede_parenthesis(word: Kind) -> bool {
+    matches!(
+        word,
+        Kind::If
+            | Kind::Elsif
+            | Kind::While
+            | Kind::Until
+            | Kind::Case
+            | Kind::For
+            | Kind::To
+            | Kind::By
+            | Kind::Return
+            | Kind::Of
+            | Kind::AndThen
+            | Kind::OrElse
+    )
+}
+
+/// Kinds behind which an operand stands.
+fn wants_operand(kind: Kind) -> bool {
+    matches!(
+        kind,
+        Kind::Assign
+            | Kind::Arrow
+            | Kind::Dot
+            | Kind::DotDot
+            | Kind::OpenParen
+            | Kind::OpenBracket
+            | Kind::Comma
+            | Kind::Plus
+            | Kind::Minus
+            | Kind::Star
+            | Kind::Slash
+            | Kind::Power
+            | Kind::Equal
+            | Kind::Unequal
+            | Kind::Less
+            | Kind::Greater
+            | Kind::LessEqual
+            | Kind::GreaterEqual
+            | Kind::Ampersand
+            | Kind::And
+            | Kind::AndThen
+            | Kind::Or
+            | Kind::OrElse
+            | Kind::Xor
+            | Kind::Mod
+            | Kind::Not
+            | Kind::If
+            | Kind::Elsif
+            | Kind::While
+            | Kind::Until
+            | Kind::Case
+            | Kind::To
+            | Kind::By
+    )
+}
