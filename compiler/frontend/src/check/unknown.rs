@@ -164,16 +164,7 @@ impl<'s> Checker<'_, 's> {
         let Some(crate::declare::Entry::Pou(slot)) = self.decl.names.get(&crate::key::Key(name.text)) else {
             return false;
         };
-        let pou = self.decl.pous[*slot].ast;
-        if pou.kind != ast::PouKind::Function || pou.result.is_some() {
-            return false;
-        }
-        let mut assigned = false;
-        ast::each_expr(&pou.body, &mut |it| {
-            let own = matches!(&it.kind, ast::ExprKind::Name(it) if it.text.eq_ignore_ascii_case(name.text));
-            assigned |= own;
-        });
-        assigned
+        self.decl.untyped.contains(slot)
     }
 
     /// Reports a name that means nothing here.

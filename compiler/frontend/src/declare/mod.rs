@@ -102,6 +102,8 @@ pub(crate) struct Declarations<'s> {
     pub unread: FxHashSet<Key<'s>>,
     pub types: Vec<TypeSlot<'s>>,
     pub pous: Vec<PouSlot<'s>>,
+    /// The slots of FUNCTIONs that have no result type, but name their result.
+    pub untyped: FxHashSet<usize>,
     pub globals: Vec<GlobalSlot<'s>>,
     pub configurations: Vec<&'s ast::Configuration<'s>>,
     pub addresses: address::Addresses,
@@ -151,10 +153,24 @@ pub(crate) fn declare<'s>(
     }
     declarations.addresses = address::collect(&mut declarations, &statements);
     declarations.resolve_all();
+    declarations.untyped = untyped(&declarations.pous, &statements);
     let bodies = check::bodies(&mut declarations, statements, bodies);
     let program = declarations.finish(bodies);
     diagnostics.append(&mut declarations.diagnostics);
     program
+}
+
+fn untyped(pous: &[PouSlot<'_>], statements: &[Vec<ast::Statement<'_>>]) -> FxHashSet<usize> {
+    let names_itself = |name: &str, body: &[ast::Statement<'_>]| {
+        let mut found = false;
+        ast::each_expr(body, &mut |it| {
+            found |= matches!(&it.kind, ast::ExprKind::Name(it) if it.text.eq_ignore_ascii_case(name));
+        });
+        found
+    };
+    let all = pous.iter().map(|it| it.ast).zip(statements).enumerate();
+    let untyped = all.filter(|(_, (pou, _))| pou.kind == ast::PouKind::Function && pou.result.is_none());
+    untyped.filter(|(_, (pou, body))| names_itself(pou.name.text, body)).map(|(slot, _)| slot).collect()
 }
 
 impl<'s> Declarations<'s> {
@@ -170,6 +186,7 @@ impl<'s> Declarations<'s> {
             unread: FxHashSet::default(),
             types: Vec::new(),
             pous: Vec::new(),
+            untyped: FxHashSet::default(),
             globals: Vec::new(),
             configurations: Vec::new(),
             addresses: address::Addresses::default(),
