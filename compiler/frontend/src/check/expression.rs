@@ -142,14 +142,18 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn unary(&mut self, op: UnaryOp, inner: &ast::Expr<'s>, expected: Option<Type>, span: Span) -> Option<Operand> {
+        // The sign of `INT#-5` stands inside the literal: it is of the value that has to fit.
+        if let (UnaryOp::Neg, Ast::Literal(literal)) = (op, &inner.kind)
+            && inner.span == span
+            && let Some(prefix) = &literal.prefix
+        {
+            return self.negative_literal(**prefix, &literal.value, span).map(Operand::Typed);
+        }
         let operand = self.operand(inner, expected)?;
         match (op, operand) {
             (UnaryOp::Plus, operand) => Some(operand),
-            (UnaryOp::Neg, Operand::Integer(value)) => Some(Operand::Integer(-value)),
-            (UnaryOp::Neg, Operand::Real { value, digits }) => {
-                Some(Operand::Real { value: -value, digits: digits.map(|it| format!("-{it}")) })
-            }
             (UnaryOp::Neg, Operand::Typed(value)) => self.negate(value, span).map(Operand::Typed),
+            (UnaryOp::Neg, number) => Some(number.negated()),
             (UnaryOp::Not, operand) => {
                 let value = self.materialise(operand, expected, inner.span)?;
                 self.not(value, inner.span).map(Operand::Typed)

@@ -9,7 +9,7 @@ impl<'s> Checker<'_, 's> {
     pub(super) fn literal(&mut self, literal: &ast::Literal<'s>, span: Span) -> Option<Operand> {
         match (&literal.prefix, &literal.value) {
             (Some(prefix), LiteralValue::Enumerator(name)) => self.enumerator(**prefix, **name).map(Operand::Typed),
-            (Some(prefix), value) => self.typed_literal(**prefix, value, span).map(Operand::Typed),
+            (Some(prefix), value) => self.typed_literal(**prefix, value, false, span).map(Operand::Typed),
             (None, value) => self.plain_literal(value, span),
         }
     }
@@ -55,39 +55,56 @@ impl<'s> Checker<'_, 's> {
         Some(Operand::Typed(Expr::new(Type::String(capacity), ExprKind::Text(bytes.to_vec()), at)))
     }
 
+    /// `INT#-5`, `REAL#-1.5`.
+    pub(super) fn negative_literal(
+        &mut self,
+        prefix: ast::Name<'s>,
+        value: &LiteralValue<'s>,
+        span: Span,
+    ) -> Option<Expr> {
+        self.typed_literal(prefix, value, true, span)
+    }
+
     /// `INT#5`, `BOOL#1`, `REAL#1.5`.
-    fn typed_literal(&mut self, prefix: ast::Name<'s>, value: &LiteralValue<'s>, span: Span) -> Option<Expr> {
-        let Some(ty) = Elementary::named(prefix.text) else {
-            if prefix.text.eq_ignore_ascii_case("STRING")
-                && let LiteralValue::String { .. } = value
-            {
-                return self.plain_literal(value, span)?.typed().cloned();
-            }
-            let near = crate::key::nearest(prefix.text, Elementary::ALL.iter().map(|it| it.name()));
-            let mut error = Diagnostic::new(Code::E0102, prefix.span, format!("there is no type `{}`", prefix.text))
-                .label("the type of a literal");
-            if let Some(near) = near {
-                error = error.help(format!("did you mean `{near}`?")).fix(prefix.span, near);
-            }
-            self.report(error);
-            return None;
+    fn typed_literal(
+        &mut self,
+        prefix: ast::Name<'s>,
+        value: &LiteralValue<'s>,
+        is_negative: bool,
+        span: Span,
+    ) -> Option<Expr> {
+        let Some(ty) = self.literal_type(prefix, value)? else {
+            return self.plain_literal(value, span)?.typed().cloned();
         };
-        match value {
-            LiteralValue::Integer { value, .. } => self.literal_as(&Operand::Integer(i128::from(*value)), ty, span),
-            LiteralValue::Real(digits) => {
-                let value = digits.parse().unwrap_or(f64::INFINITY);
-                self.literal_as(&Operand::Real { value, digits: Some(digits.to_string()) }, ty, span)
+        let operand = self.plain_literal(value, span)?;
+        match operand {
+            Operand::Typed(value) if is_negative => {
+                let found = self.type_name(value.ty);
+                self.error(Code::E0204, span, format!("`-` needs a number, this is {found}"));
+                None
             }
-            LiteralValue::Bool(_)
-            | LiteralValue::Time { .. }
-            | LiteralValue::String { .. }
-            | LiteralValue::Enumerator(_)
-            | LiteralValue::Error
-            | LiteralValue::Date(_) => {
-                let operand = self.plain_literal(value, span)?;
-                self.coerce(operand, Type::Elementary(ty), span)
-            }
+            Operand::Typed(_) => self.coerce(operand, Type::Elementary(ty), span),
+            number if is_negative => self.literal_as(&number.negated(), ty, span),
+            number => self.literal_as(&number, ty, span),
         }
+    }
+
+    /// The type that a literal's prefix names; `Some(None)` for the text behind `STRING#`.
+    fn literal_type(&mut self, prefix: ast::Name<'s>, value: &LiteralValue<'s>) -> Option<Option<Elementary>> {
+        if let Some(ty) = Elementary::named(prefix.text) {
+            return Some(Some(ty));
+        }
+        if prefix.text.eq_ignore_ascii_case("STRING") && matches!(value, LiteralValue::String { .. }) {
+            return Some(None);
+        }
+        let near = crate::key::nearest(prefix.text, Elementary::ALL.iter().map(|it| it.name()));
+        let mut error = Diagnostic::new(Code::E0102, prefix.span, format!("there is no type `{}`", prefix.text))
+            .label("the type of a literal");
+        if let Some(near) = near {
+            error = error.help(format!("did you mean `{near}`?")).fix(prefix.span, near);
+        }
+        self.report(error);
+        None
     }
 
     /// `Color#Red` or `Color.Red`.

@@ -17,6 +17,15 @@ pub(super) enum Operand {
 }
 
 impl Operand {
+    /// A number without a type, negated; another operand as it is.
+    pub fn negated(self) -> Self {
+        match self {
+            Self::Integer(value) => Self::Integer(-value),
+            Self::Real { value, digits } => Self::Real { value: -value, digits: digits.map(|it| format!("-{it}")) },
+            Self::Typed(value) => Self::Typed(value),
+        }
+    }
+
     pub(super) fn typed(&self) -> Option<&Expr> {
         match self {
             Self::Typed(expr) => Some(expr),
