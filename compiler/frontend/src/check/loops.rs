@@ -15,10 +15,18 @@ enum Step {
 /// A FOR loop's head.
 struct Range {
     place: Place,
+    running: Running,
     ty: Elementary,
     step: Step,
     stay: Expr,
     leave: Option<Expr>,
+}
+
+/// What a FOR loop counts in.
+struct Running {
+    place: Place,
+    /// What the counter becomes at the start of a turn, where it is not what runs.
+    enter: Option<Expr>,
 }
 
 impl<'s> Checker<'_, 's> {
@@ -83,7 +91,7 @@ impl<'s> Checker<'_, 's> {
         body: &[ast::Statement<'s>],
         span: Span,
     ) -> Option<()> {
-        let Some(Range { place, ty, step, stay, leave }) = self.range(counter, from, to, by, span) else {
+        let Some(Range { place, running, ty, step, stay, leave }) = self.range(counter, from, to, by, span) else {
             // The body may hold mistakes of its own.
             self.loop_body(body);
             return None;
@@ -91,12 +99,14 @@ impl<'s> Checker<'_, 's> {
         self.counters.push(place.clone());
         let mut inside = self.loop_body(body);
         self.counters.pop();
+        let at = self.at(counter.span);
         let mut block = vec![self.exit_unless(stay, span)?];
+        block.extend(running.enter.map(|value| Statement::assign(place, value, at)));
         block.append(&mut inside);
-        let next = self.next_value(&place, ty, &step, span)?;
+        let next = self.next_value(&running.place, ty, &step, span)?;
         let at = self.at(span);
         let mut continuing: Vec<_> = leave.map(|leave| exit_if(leave, at)).into_iter().collect();
-        continuing.push(Statement::assign(place, next, at));
+        continuing.push(Statement::assign(running.place, next, at));
         self.push(StatementKind::Loop { body: block, continuing }, span);
         Some(())
     }
@@ -142,8 +152,21 @@ impl<'s> Checker<'_, 's> {
         let last = self.bound(to, ty);
         let step = self.step(by, ty, span);
         let (_, last, step) = (first?, last?, step?);
-        let (stay, leave) = self.loop_tests(&place, ty, &last, &step, span)?;
-        Some(Range { place, ty, step, stay, leave })
+        let running = self.running(&place, found.range, counter.span)?;
+        let (stay, leave) = self.loop_tests(&running.place, ty, &last, &step, span)?;
+        Some(Range { place, running, ty, step, stay, leave })
+    }
+
+    /// A counter of a subrange cannot take the value that ends the loop, so another one runs.
+    fn running(&mut self, place: &Place, range: Option<(i128, i128)>, span: Span) -> Option<Running> {
+        if range.is_none() {
+            return Some(Running { place: place.clone(), enter: None });
+        }
+        let at = self.at(span);
+        let running = self.temporary("running", place.ty);
+        self.assign(running.clone(), Expr::load(place.clone(), at), span);
+        let enter = self.in_range(Expr::load(running.clone(), at), range, span)?;
+        Some(Running { place: running, enter: Some(enter) })
     }
 
     fn counts(&self, ty: Elementary, span: Span) -> bool {
