@@ -6,7 +6,7 @@
 use crate::layout::Layout;
 use crate::{Address, BlockId, Field, FieldId, Pou, PouKind, Program, Projection, Root, Section, Type, Variable};
 use core::fmt::{self, Write};
-use staunch_runtime::{Direction, Pin};
+use staunch_runtime::{Direction, Pin, Retention};
 use std::collections::BTreeSet;
 
 /// The map's version, in its first line.
@@ -45,6 +45,8 @@ struct Map<'a> {
 /// What a `field` or `variable` line says after its place.
 struct Attributes {
     retain: bool,
+    /// Starts anew, although what it is a part of is retained.
+    restarts: bool,
     constant: bool,
     address: Option<Address>,
     range: Option<(i128, i128)>,
@@ -132,7 +134,7 @@ impl Map<'_> {
             let ty = id.pin_type(FieldId::next(position)).expect("position of a pin");
             let Pin { name, offset, .. } = pin;
             write!(self.text, "field\t{name}\t{}\t{offset}\t{}", TypeName(ty), direction_name(pin.direction))?;
-            self.write_attributes(&Attributes::NONE)?;
+            self.write_attributes(&Attributes { restarts: info.retention.restarts(pin), ..Attributes::NONE })?;
         }
         Ok(())
     }
@@ -199,9 +201,10 @@ impl Map<'_> {
         while let Type::Array(id) = ty {
             ty = self.program.array(id).element;
         }
-        let retentive = block_of(ty).is_some_and(|block| block.info().retentive);
+        let retentive = block_of(ty).is_some_and(|block| block.info().retention == Retention::Always);
         Attributes {
             retain: field.retain || retentive,
+            restarts: false,
             constant: field.constant,
             address: field.address,
             range: field.range,
@@ -210,12 +213,10 @@ impl Map<'_> {
 
     /// `flags`, `address` and `range`, to the end of the line.
     fn write_attributes(&mut self, attributes: &Attributes) -> fmt::Result {
-        let flags = match (attributes.retain, attributes.constant) {
-            (false, false) => "-",
-            (true, false) => "retain",
-            (false, true) => "constant",
-            (true, true) => "retain,constant",
-        };
+        let flags =
+            [("retain", attributes.retain), ("restarts", attributes.restarts), ("constant", attributes.constant)];
+        let flags: Vec<_> = flags.into_iter().filter(|(_, is_set)| *is_set).map(|(name, _)| name).collect();
+        let flags = if flags.is_empty() { "-".to_owned() } else { flags.join(",") };
         write!(self.text, "\t{flags}\t")?;
         match attributes.address {
             Some(address) => write!(self.text, "{address}")?,
@@ -229,7 +230,7 @@ impl Map<'_> {
 }
 
 impl Attributes {
-    const NONE: Self = Self { retain: false, constant: false, address: None, range: None };
+    const NONE: Self = Self { retain: false, restarts: false, constant: false, address: None, range: None };
 }
 
 /// A type as the map writes it.

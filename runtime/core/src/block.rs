@@ -83,8 +83,28 @@ pub struct BlockInfo {
     /// Inputs first, in positional order, then outputs, then the rest.
     pub pins: &'static [Pin],
     pub instructions: &'static [Instruction],
-    /// TRUE when every instance is retentive, whatever its declaration says (Logix tags).
-    pub retentive: bool,
+    pub retention: Retention,
+}
+
+/// What a restart leaves of a block's instances.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Retention {
+    /// Those that are RETAIN stay as they are, the others start anew.
+    Declared,
+    /// All stay as they are, whatever their declaration says.
+    Always,
+    /// Those that are RETAIN keep their inputs; their counts and outputs start anew.
+    Inputs,
+}
+
+impl Retention {
+    /// Whether a pin starts anew although its instance is RETAIN.
+    pub fn restarts(self, pin: &Pin) -> bool {
+        match self {
+            Self::Declared | Self::Always => false,
+            Self::Inputs => pin.direction != Direction::Input,
+        }
+    }
 }
 
 /// A standard function block: a plain `repr(C)` struct whose all-zero state is its start state.

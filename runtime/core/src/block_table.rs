@@ -1,5 +1,5 @@
 use crate::block::renamed;
-use crate::{Block, BlockInfo, Family, Instruction, Pin, Prescan, codesys, cscape, iec, logix};
+use crate::{Block, BlockInfo, Family, Instruction, Pin, Prescan, Retention, codesys, cscape, iec, logix};
 
 /// Every standard function block, one row each.
 ///
@@ -120,7 +120,7 @@ macro_rules! declare_blocks {
                 },
                 prescan: prescan!($block $(, $prescan $prescan_symbol)?),
             }),*],
-            retentive: retentive!($family),
+            retention: retention!($family),
         }),*];
     };
 }
@@ -154,13 +154,17 @@ macro_rules! prescan {
     };
 }
 
-/// Logix keeps every tag over a restart; elsewhere the declaration decides.
-macro_rules! retentive {
+/// Logix keeps every tag over a restart, Cscape no count but what R_CTU and R_CTD have in RCV;
+/// elsewhere the declaration decides.
+macro_rules! retention {
     (Logix) => {
-        true
+        Retention::Always
+    };
+    (Cscape) => {
+        Retention::Inputs
     };
     ($family:ident) => {
-        false
+        Retention::Declared
     };
 }
 

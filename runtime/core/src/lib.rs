@@ -21,7 +21,7 @@ mod block;
 mod block_table;
 pub mod blocks;
 
-pub use block::{Block, BlockInfo, Direction, Family, Instruction, Pin, Prescan};
+pub use block::{Block, BlockInfo, Direction, Family, Instruction, Pin, Prescan, Retention};
 pub use block_table::BLOCKS;
 pub use blocks::{codesys, cscape, iec, logix};
 pub use context::Context;

@@ -128,6 +128,8 @@ pub struct Variable {
     pub offset: usize,
     pub section: Section,
     pub retain: bool,
+    /// Starts anew, although what it is a part of is retained.
+    pub restarts: bool,
     pub constant: bool,
     /// `%IX0.0`
     pub address: Option<String>,
@@ -313,7 +315,7 @@ impl Array {
 
 impl Variable {
     fn new(name: String, ty: Type, offset: usize, section: Section) -> Self {
-        Self { name, ty, offset, section, retain: false, constant: false, address: None, range: None }
+        Self { name, ty, offset, section, retain: false, restarts: false, constant: false, address: None, range: None }
     }
 
     /// TRUE for what the world outside writes: it holds its value over a restart.
@@ -398,6 +400,7 @@ impl<'a> Record<'a> {
         for flag in self.optional()?.into_iter().flat_map(|it| it.split(',')) {
             match flag {
                 "retain" => variable.retain = true,
+                "restarts" => variable.restarts = true,
                 "constant" => variable.constant = true,
                 _ => {}
             }

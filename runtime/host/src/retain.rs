@@ -252,7 +252,7 @@ struct Walk<'m> {
 impl Walk<'_> {
     fn variable(&mut self, scope: &str, base: usize, variable: &Variable, retained: bool) {
         let retained = retained || variable.retain;
-        if !variable.constant && (retained || self.holds(variable.ty)) {
+        if !variable.constant && !variable.restarts && (retained || self.holds(variable.ty)) {
             let path = format!("{scope}.{}", variable.name);
             self.part(path, variable.ty, variable.range, base + variable.offset, retained);
         }
@@ -261,12 +261,12 @@ impl Walk<'_> {
     fn part(&mut self, path: String, ty: Type, range: Option<(i128, i128)>, offset: usize, retained: bool) {
         let map = self.map;
         match (ty, map.array(ty)) {
-            (Type::Struct(_), _) => {
+            _ if self.is_in_parts(ty) => {
                 for member in map.structure(ty).map_or(&[][..], |it| &it.members) {
                     self.variable(&path, offset, member, retained);
                 }
             }
-            (_, Some(array)) if self.is_of_structures(array.element) => {
+            (_, Some(array)) if self.is_of_parts(array.element) => {
                 for (position, index) in (array.low..=array.high).enumerate() {
                     let element = offset + position * array.stride;
                     self.part(format!("{path}[{index}]"), array.element, None, element, retained);
@@ -279,10 +279,20 @@ impl Walk<'_> {
         }
     }
 
-    fn is_of_structures(&self, element: Type) -> bool {
+    fn is_of_parts(&self, element: Type) -> bool {
         match self.map.array(element) {
-            Some(inner) => self.is_of_structures(inner.element),
-            None => matches!(element, Type::Struct(_)),
+            Some(inner) => self.is_of_parts(inner.element),
+            None => self.is_in_parts(element),
+        }
+    }
+
+    /// Whether the members of the type are kept one by one.
+    fn is_in_parts(&self, ty: Type) -> bool {
+        let restarts = |it: &Structure| it.members.iter().any(|it| it.restarts);
+        match ty {
+            Type::Struct(_) => true,
+            Type::Block(_) => self.map.structure(ty).is_some_and(restarts),
+            Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) => false,
         }
     }
 

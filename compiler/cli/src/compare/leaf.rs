@@ -2,7 +2,7 @@
 
 use staunch_ir::layout::{Layout, usize_of};
 use staunch_ir::{ArrayId, BlockId, Elementary, FieldId, PouId, Program, Section, StructId, Type, Value};
-use staunch_runtime::{Direction, Family, Pin};
+use staunch_runtime::{Direction, Family, Pin, Retention};
 
 /// Further elements of an array are not compared.
 const MAX_ELEMENTS: u64 = 1024;
@@ -146,8 +146,8 @@ impl Walk<'_> {
         for (at, pin) in info.pins.iter().enumerate() {
             let Some(ty) = id.pin_type(FieldId::next(at)) else { continue };
             let role = if shows(info.family, pin) { Role::Output(number) } else { Role::Hidden };
-            // A CSCAPE counter keeps nothing but what R_CTU and R_CTD put into RCV.
-            let retain = info.retentive || whole.retain && info.family != Family::Cscape;
+            let always = info.retention == Retention::Always;
+            let retain = always || whole.retain && !info.retention.restarts(pin);
             let part = Whole { offset: whole.offset + pin.offset, role, retain };
             self.leaf(&format!("{path}.{}", pin.name), &format!("{key}.{}", common_name(id, pin.name)), ty, part);
         }

@@ -424,7 +424,7 @@ impl<'s> Declarations<'s> {
         {
             self.check_width(parsed, &resolved, address.span);
         }
-        self.check_retain(block, resolved.ty, name.span);
+        self.check_retain(block, resolved.ty, name);
         let place = Place::root(Root::Globals, Type::Struct(GLOBALS)).field(staunch_ir::FieldId::next(at), resolved.ty);
         Some(self.variable(name, block, Rc::new(resolved), place))
     }

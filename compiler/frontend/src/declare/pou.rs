@@ -243,7 +243,9 @@ impl<'s> Declarations<'s> {
                     .help("give it one: `name : TYPE := value;`"),
             );
         }
-        self.check_retain(block, resolved.ty, decl.span);
+        if let Some(first) = decl.names.first() {
+            self.check_retain(block, resolved.ty, *first);
+        }
         let starts_anew = block.kind == VarKind::Temp || (pou.kind == PouKind::Function && block.kind == VarKind::Var);
         if starts_anew && let Some(id) = self.remembers(resolved.ty) {
             self.forgets(pou, decl, id);

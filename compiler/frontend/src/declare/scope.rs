@@ -103,20 +103,23 @@ impl<'s> Declarations<'s> {
 
     /// Whether a variable of the block keeps its value over a restart.
     fn is_kept(&self, block: &ast::VarBlock<'s>, ty: staunch_ir::Type) -> bool {
-        (is_declared_retain(block) && !self.loses_its_count(ty)) || self.is_retentive(ty)
+        is_declared_retain(block) || self.is_retentive(ty)
     }
 
-    /// Whether RETAIN does not keep an instance: Cscape has R_CTU and R_CTD for that.
-    pub fn loses_its_count(&self, ty: staunch_ir::Type) -> bool {
+    /// The counter in a variable, by its path, that RETAIN does not keep: Cscape has R_CTU and R_CTD.
+    fn lost_counter(&self, path: String, ty: staunch_ir::Type) -> Option<String> {
         match ty {
             staunch_ir::Type::Block(id) => {
-                id.info().family == staunch_runtime::Family::Cscape && matches!(id.info().name, "CTU" | "CTD")
+                let info = id.info();
+                let is_lost = info.family == staunch_runtime::Family::Cscape && matches!(info.name, "CTU" | "CTD");
+                is_lost.then_some(path)
             }
-            staunch_ir::Type::Array(id) => self.loses_its_count(self.program.array(id).element),
-            staunch_ir::Type::Elementary(_)
-            | staunch_ir::Type::String(_)
-            | staunch_ir::Type::Enum(_)
-            | staunch_ir::Type::Struct(_) => false,
+            staunch_ir::Type::Array(id) => self.lost_counter(path, self.program.array(id).element),
+            staunch_ir::Type::Struct(id) => {
+                let mut fields = self.program.structure(id).fields.iter();
+                fields.find_map(|it| self.lost_counter(format!("{path}.{}", it.name), it.ty))
+            }
+            staunch_ir::Type::Elementary(_) | staunch_ir::Type::String(_) | staunch_ir::Type::Enum(_) => None,
         }
     }
 
@@ -133,12 +136,19 @@ impl<'s> Declarations<'s> {
     }
 
     /// Reports RETAIN where it keeps nothing.
-    pub fn check_retain(&mut self, block: &ast::VarBlock<'s>, ty: staunch_ir::Type, span: crate::Span) {
-        if is_declared_retain(block) && self.loses_its_count(ty) {
+    pub fn check_retain(&mut self, block: &ast::VarBlock<'s>, ty: staunch_ir::Type, name: ast::Name<'s>) {
+        if !is_declared_retain(block) {
+            return;
+        }
+        if let Some(path) = self.lost_counter(name.text.to_owned(), ty) {
             self.report(
-                crate::Diagnostic::new(crate::Code::W0302, span, "RETAIN does not keep the count of a Cscape counter")
-                    .label("it starts at 0 after a restart")
-                    .help("use R_CTU or R_CTD, with a RETAIN variable for RCV"),
+                crate::Diagnostic::new(
+                    crate::Code::W0302,
+                    name.span,
+                    format!("RETAIN does not keep the count of `{path}`, a Cscape counter"),
+                )
+                .label("it counts anew after a restart")
+                .help("use R_CTU or R_CTD, with a RETAIN variable for RCV"),
             );
         }
     }
@@ -146,7 +156,7 @@ impl<'s> Declarations<'s> {
     /// Whether every instance of the type is retentive (Logix tags).
     fn is_retentive(&self, ty: staunch_ir::Type) -> bool {
         match ty {
-            staunch_ir::Type::Block(id) => id.info().retentive,
+            staunch_ir::Type::Block(id) => id.info().retention == staunch_runtime::Retention::Always,
             staunch_ir::Type::Array(id) => self.is_retentive(self.program.array(id).element),
             staunch_ir::Type::Elementary(_)
             | staunch_ir::Type::String(_)

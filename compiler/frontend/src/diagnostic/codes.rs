@@ -473,9 +473,9 @@ all calls below it may take 1 MiB.
 "R_CTU and R_CTD restore their count from the variable given as RCV after a restart. A variable
 that is not RETAIN starts anew, and so does the count.
 ";
-    W0302 Warning "RETAIN keeps nothing here"
+    W0302 Warning "RETAIN does not keep this count"
 "Horner Cscape keeps the count of R_CTU and R_CTD over a restart, through a RETAIN variable given as
-RCV. Its CTU and CTD start at 0, however they are declared.
+RCV. Its CTU and CTD count anew, also where they or the instance around them are RETAIN; RETAIN keeps their inputs.
 ";
     W0303 Warning "a block that starts anew at each call"
 "VAR_TEMP and the variables of a FUNCTION start anew at each call. A timer, counter, edge or bistable there remembers
