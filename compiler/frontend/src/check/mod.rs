@@ -21,7 +21,10 @@ mod statement;
 mod unknown;
 
 pub(crate) use function::exists as is_function;
-pub(crate) use prescan::{Assigned, KeptCount, Uses, assigned_count, lost_count, same_storage, shared_count};
+pub(crate) use prescan::{
+    Assigned, KeptCount, Uses, assigned_count, holds_storage, is_element_by_element, lost_count, same_storage,
+    several_counts, shared_count,
+};
 pub(crate) use unknown::{block_of_another_dialect, no_such_block, not_constant};
 
 use crate::ast;

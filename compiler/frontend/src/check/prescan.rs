@@ -3,7 +3,7 @@
 use super::Checker;
 use super::call::Given;
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{Location, Place, Projection, Root, Type};
+use staunch_ir::{Expr, ExprKind, Location, Place, Projection, Root, Type};
 
 /// What a POU does with counters, in places of the POU's own.
 #[derive(Debug, Default)]
@@ -55,12 +55,19 @@ impl<'s> Checker<'_, 's> {
             return None;
         };
         let found = self.variable_argument(expr, "RCV")?;
-        if found.place.ty != Type::INT {
-            let ty = self.type_name(found.place.ty);
+        if found.place.ty != Type::INT || found.range.is_some() {
+            let ty = match found.range {
+                Some((low, high)) => format!("{}({low}..{high})", self.type_name(found.place.ty)),
+                None => self.type_name(found.place.ty),
+            };
             self.report(
                 Diagnostic::new(Code::E0201, expr.span, format!("`RCV` is an INT, found {ty}"))
                     .label("expected an INT variable"),
             );
+            return None;
+        }
+        if !is_element_by_element(counter, &found.place) {
+            self.report(several_counts(expr.span));
             return None;
         }
         // The variable behind an in-out, or an instance around this one, may still be RETAIN.
@@ -130,7 +137,7 @@ impl<'s> Checker<'_, 's> {
 
     fn refuse_assigned_counts(&mut self, uses: &Uses) {
         for count in &uses.counts {
-            if let Some(it) = uses.assigned.iter().find(|it| same_storage(&it.place, &count.kept)) {
+            if let Some(it) = uses.assigned.iter().find(|it| holds_storage(&it.place, &count.kept)) {
                 self.report(assigned_count(it.span, count.span));
             }
         }
@@ -157,8 +164,56 @@ pub(crate) fn shared_count(span: Span, other: Span) -> Diagnostic {
         .other(other, "the other counter's")
 }
 
+pub(crate) fn several_counts(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0314, span, "several counters may keep their count in one variable")
+        .label("each element of an array needs an RCV of its own")
+        .help("declare an array of counts, and give the element of the counter's index")
+}
+
+/// Whether elements of arrays are given the counts of the same indices.
+pub(crate) fn is_element_by_element(counter: &Place, kept: &Place) -> bool {
+    let (counters, counts) = (open_indices(counter), open_indices(kept));
+    counters.len() == counts.len() && counters.iter().zip(counts).all(|(a, b)| is_same_value(a, b))
+}
+
+/// The indices of a place that are known in the call only.
+fn open_indices(place: &Place) -> Vec<&Expr> {
+    let indices = place.projections.iter().filter_map(|it| match it {
+        Projection::Index { index, .. } => Some(&**index),
+        Projection::Field(_) => None,
+    });
+    indices.filter(|it| it.as_const().is_none()).collect()
+}
+
+/// Whether two expressions are one, but for where they stand.
+fn is_same_value(a: &Expr, b: &Expr) -> bool {
+    match (&a.kind, &b.kind) {
+        (ExprKind::Const(a), ExprKind::Const(b)) => a == b,
+        (ExprKind::Load(a), ExprKind::Load(b)) => is_same_place(a, b),
+        (ExprKind::Convert(how, a), ExprKind::Convert(other, b)) => how == other && is_same_value(a, b),
+        (ExprKind::Apply(op, a), ExprKind::Apply(other, b)) => {
+            op == other && a.len() == b.len() && a.iter().zip(b).all(|(a, b)| is_same_value(a, b))
+        }
+        _ => false,
+    }
+}
+
+fn is_same_place(a: &Place, b: &Place) -> bool {
+    let same = |(a, b): (&Projection, &Projection)| match (a, b) {
+        (Projection::Field(a), Projection::Field(b)) => a == b,
+        (Projection::Index { index: a, .. }, Projection::Index { index: b, .. }) => is_same_value(a, b),
+        (Projection::Field(_), Projection::Index { .. }) | (Projection::Index { .. }, Projection::Field(_)) => false,
+    };
+    a.root == b.root && a.projections.len() == b.projections.len() && a.projections.iter().zip(&b.projections).all(same)
+}
+
 /// Whether two places surely are, or by an index may be, the same.
 pub(crate) fn same_storage(a: &Place, b: &Place) -> bool {
+    a.projections.len() == b.projections.len() && holds_storage(a, b)
+}
+
+/// Whether `part` surely is, or by an index may be, `whole` or a part of it.
+pub(crate) fn holds_storage(whole: &Place, part: &Place) -> bool {
     let same = |(a, b): (&Projection, &Projection)| match (a, b) {
         (Projection::Field(a), Projection::Field(b)) => a == b,
         (Projection::Index { index: a, .. }, Projection::Index { index: b, .. }) => {
@@ -167,7 +222,9 @@ pub(crate) fn same_storage(a: &Place, b: &Place) -> bool {
                 _ => true,
             }
         }
-        _ => false,
+        (Projection::Field(_), Projection::Index { .. }) | (Projection::Index { .. }, Projection::Field(_)) => false,
     };
-    a.root == b.root && a.projections.len() == b.projections.len() && a.projections.iter().zip(&b.projections).all(same)
+    whole.root == part.root
+        && whole.projections.len() <= part.projections.len()
+        && whole.projections.iter().zip(&part.projections).all(same)
 }

@@ -41,13 +41,16 @@ impl<'p> Builder<'p> {
     pub fn restore(&mut self, counter: &Place, kept: &Place, retained: bool) {
         let Type::Block(id) = counter.ty else { return };
         let at = self.at;
+        let bounds = self.open_bounds(kept);
+        let needs_guard = bounds != self.open_bounds(counter);
         self.everywhere(counter, &mut |indices, counter| {
             let value = if retained {
                 Expr::load(at_indices(kept, indices), at)
             } else {
                 Expr::constant(Elementary::Int, Value::I16(0), at)
             };
-            vec![Statement::assign(pin_place(counter, id, "CV"), value, at)]
+            let restore = vec![Statement::assign(pin_place(counter, id, "CV"), value, at)];
+            if needs_guard { where_within(indices, &bounds, restore, at) } else { restore }
         });
     }
 
@@ -86,6 +89,12 @@ impl<'p> Builder<'p> {
         for_each(counter, index, (low, high), body, self.at)
     }
 
+    /// The bounds for the indices of a place that are known in the call only.
+    fn open_bounds(&self, place: &Place) -> Vec<(i64, i64)> {
+        let open = (0..place.projections.len()).filter(|position| is_open(&place.projections[*position]));
+        open.filter_map(|position| self.bounds_at(place, position)).collect()
+    }
+
     /// The bounds of the array that projection `position` indexes.
     fn bounds_at(&self, place: &Place, position: usize) -> Option<(i64, i64)> {
         let mut ty = self.program.root_type(&self.program.pous[self.pou], place.root)?;
@@ -115,6 +124,23 @@ fn at_indices(place: &Place, indices: &[Expr]) -> Place {
         }
     }
     place
+}
+
+/// `block`, where every index is within its bounds: of two arrays one may be the larger.
+fn where_within(indices: &[Expr], bounds: &[(i64, i64)], block: Block, at: Location) -> Block {
+    let lint = |value| Expr::constant(Elementary::Lint, Value::I64(value), at);
+    let test = |op, a: &Expr, b| Expr::apply(op, Type::BOOL, vec![a.clone(), b], at);
+    let tests = indices
+        .iter()
+        .zip(bounds)
+        .flat_map(|(index, (low, high))| [test(Op::Ge, index, lint(*low)), test(Op::Le, index, lint(*high))]);
+    let condition = tests.reduce(|a, b| Expr::apply(Op::And, Type::BOOL, vec![a, b], at));
+    match condition {
+        Some(condition) => {
+            vec![Statement::new(StatementKind::If { condition, then: block, otherwise: Vec::new() }, at)]
+        }
+        None => block,
+    }
 }
 
 fn for_each(counter: Place, index: Expr, (low, high): (i64, i64), mut body: Block, at: Location) -> Block {

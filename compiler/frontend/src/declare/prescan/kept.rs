@@ -4,7 +4,10 @@
 use super::build::is_retained;
 use super::nest::{OpenCounts, kept_from_outside};
 use crate::Span;
-use crate::check::{Assigned, KeptCount, Uses, assigned_count, lost_count, same_storage, shared_count};
+use crate::check::{
+    Assigned, KeptCount, Uses, assigned_count, holds_storage, is_element_by_element, lost_count, same_storage,
+    several_counts, shared_count,
+};
 use crate::declare::{Declarations, Slot, Target};
 use staunch_ir::Root;
 use std::collections::HashSet;
@@ -14,6 +17,9 @@ pub(super) fn check(declarations: &mut Declarations<'_>, uses: &[Uses], open: &O
     for (at, own) in uses.iter().enumerate() {
         for (number, count) in own.counts.iter().enumerate() {
             shared(declarations, count, &own.counts[..number]);
+            if count.through.is_some() && !is_element_by_element(&count.counter, &count.kept) {
+                declarations.report(several_counts(place_of(declarations, count)));
+            }
             assigned(declarations, count, at, uses, &keeping);
         }
     }
@@ -58,7 +64,7 @@ fn assigned(declarations: &mut Declarations<'_>, count: &KeptCount, at: usize, u
     let is_visible = |pou: usize| if pou == at { !is_own } else { count.kept.root == Root::Globals };
     let visible = uses.iter().enumerate().filter(|(pou, _)| is_visible(*pou)).flat_map(|(_, it)| &it.assigned);
     let writes = |it: &Assigned| !it.passed_for.is_some_and(|it| keeping.contains(&it));
-    let mut found = visible.filter(|it| writes(it) && same_storage(&it.place, &count.kept));
+    let mut found = visible.filter(|it| writes(it) && holds_storage(&it.place, &count.kept));
     if let Some(it) = found.next() {
         declarations.report(assigned_count(it.span, place_of(declarations, count)));
     }
