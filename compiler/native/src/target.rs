@@ -1,7 +1,7 @@
 //! The machines that code is made for, and Cranelift's settings for each.
 
 use crate::Error;
-use cranelift_codegen::isa::{self, OwnedTargetIsa};
+use cranelift_codegen::isa::{self, OwnedTargetIsa, TargetIsa};
 use cranelift_codegen::settings::{self, Configurable, Flags};
 use std::str::FromStr;
 use target_lexicon::{Aarch64Architecture, Architecture, BinaryFormat, Environment, PointerWidth, Triple};
@@ -96,6 +96,21 @@ pub(crate) fn native_isa() -> Result<OwnedTargetIsa, Error> {
     builder.finish(flags("false")).map_err(|error| Error::Output(error.to_string()))
 }
 
+/// The same machine and settings, but without optimisation.
+pub(crate) fn plain_isa(isa: &dyn TargetIsa) -> OwnedTargetIsa {
+    let known = "the settings are those of a target that is in use";
+    let mut builder = isa::lookup(isa.triple().clone()).expect(known);
+    for value in isa.isa_flags() {
+        builder.set(value.name, &value.value_string()).expect(known);
+    }
+    let mut flags = settings::builder();
+    for value in isa.flags().iter() {
+        flags.set(value.name, &value.value_string()).expect(known);
+    }
+    flags.set("opt_level", "none").expect(known);
+    builder.finish(Flags::new(flags)).expect(known)
+}
+
 fn flags(is_pic: &str) -> Flags {
     let verifier = if cfg!(debug_assertions) { "true" } else { "false" };
     let mut flags = settings::builder();
@@ -138,7 +153,8 @@ mod tests {
         let names = ["x86_64", "aarch64", "riscv64"].map(|name| Target::parse(name).unwrap().name());
         assert_eq!(names, Target::SUPPORTED);
         for name in Target::SUPPORTED {
-            Target::parse(name).unwrap().isa().unwrap();
+            let isa = Target::parse(name).unwrap().isa().unwrap();
+            assert_eq!(plain_isa(&*isa).flags().opt_level(), settings::OptLevel::None);
         }
         assert!(Target::parse("x86_64-unknown-linux-musl").unwrap().isa().is_ok());
         assert!(Target::host().is_ok());

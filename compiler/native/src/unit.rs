@@ -1,15 +1,20 @@
 //! One program on its way into a module: what is declared, and the data that code refers to.
 
 use crate::facts::{self, Facts, PouFacts};
-use crate::{Error, entry, function, signature};
+use crate::{Error, entry, function, signature, target};
 use cranelift_codegen::Context;
+use cranelift_codegen::control::ControlPlane;
 use cranelift_codegen::ir::Signature;
 use cranelift_frontend::FunctionBuilderContext;
-use cranelift_module::{DataDescription, DataId, FuncId, Linkage, Module};
+use cranelift_module::{DataDescription, DataId, FuncId, Linkage, Module, ModuleReloc};
 use staunch_ir::layout::Layout;
 use staunch_ir::{Pou, PouId, Program};
 use std::collections::HashMap;
 use std::fmt::Write;
+
+/// Functions of more instructions are not optimised: that takes time that grows faster than they do,
+/// to minutes for a hundred thousand statements.
+const LARGE: usize = 30_000;
 
 pub(crate) struct Unit<'p> {
     pub(crate) program: &'p Program,
@@ -163,9 +168,23 @@ impl<'p> Unit<'p> {
             let text = context.func.display();
             writeln!(listing, "; {name}\n{text}").expect("writing to a String does not fail");
         }
-        let defined = self.module.define_function(id, context);
+        let defined = if context.func.dfg.num_insts() > LARGE {
+            self.define_plainly(context, id)
+        } else {
+            self.module.define_function(id, context).map_err(|error| reason(&error))
+        };
         self.module.clear_context(context);
-        defined.map_err(|error| Error::Code { function: name.to_owned(), reason: reason(&error) })
+        defined.map_err(|reason| Error::Code { function: name.to_owned(), reason })
+    }
+
+    fn define_plainly(&mut self, context: &mut Context, id: FuncId) -> Result<(), String> {
+        let isa = target::plain_isa(self.module.isa());
+        let code = context.compile(&*isa, &mut ControlPlane::default()).map_err(|error| reason(&error.inner))?;
+        let (align, bytes) = (u64::from(code.buffer.alignment), code.code_buffer().to_vec());
+        let relocations = code.buffer.relocs().to_vec();
+        let relocations: Vec<_> =
+            relocations.iter().map(|it| ModuleReloc::from_mach_reloc(it, &context.func, id)).collect();
+        self.module.define_function_bytes(id, align, &bytes, &relocations).map_err(|error| reason(&error))
     }
 }
 

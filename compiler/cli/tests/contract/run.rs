@@ -116,3 +116,23 @@ fn bench_reports_one_object() {
         assert!(report[key].is_number(), "{key} in {report}");
     }
 }
+
+#[test]
+fn a_function_of_very_many_statements_does_what_a_small_one_does() {
+    let step = "IF a > 20000 THEN a := a - 30000; s := CONCAT(s, 'x'); END_IF\n\
+                a := a + 7; r := SIN(r) + 1.0; m[a MOD 4] := a; c(CU := ODD(a), R := FALSE, PV := 9);\n";
+    let program = |times| {
+        format!(
+            "FUNCTION ODD : BOOL VAR_INPUT x : INT; END_VAR ODD := x MOD 2 <> 0; END_FUNCTION\n\
+             PROGRAM Main VAR a : INT; r : LREAL; s : STRING[9]; m : ARRAY[-3..3] OF INT; c : CTU; END_VAR\n{}END_PROGRAM\n",
+            step.repeat(times)
+        )
+    };
+    let folder = Folder::with("large", &[("small.st", &program(1)), ("large.st", &program(2000))]);
+    let last = |arguments: &str| {
+        let out = folder.staunch(&format!("run {arguments} --trace - -q -A warnings")).out(0);
+        // Behind the scan's number and time.
+        out.lines().last().unwrap().splitn(3, ',').nth(2).unwrap().to_owned()
+    };
+    assert_eq!(last("large.st --scans 10"), last("small.st --scans 20000"));
+}
