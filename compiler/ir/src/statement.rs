@@ -94,6 +94,47 @@ const _: () = {
     assert!(size_of::<Expr>() <= 56);
 };
 
+impl StatementKind {
+    /// The statements inside, in the order in which they stand.
+    pub fn blocks(&self) -> Vec<&Block> {
+        match self {
+            Self::If { condition: _, then, otherwise } => vec![then, otherwise],
+            Self::Case { selector: _, arms, otherwise } => {
+                arms.iter().map(|arm| &arm.body).chain([otherwise]).collect()
+            }
+            Self::Loop { body, continuing } => vec![body, continuing],
+            Self::Assign { .. }
+            | Self::Exit
+            | Self::Continue
+            | Self::Return
+            | Self::Call { .. }
+            | Self::CallBlock { .. }
+            | Self::PrescanBlock { .. }
+            | Self::PrescanInstance { .. }
+            | Self::Fault(_) => Vec::new(),
+        }
+    }
+
+    pub fn blocks_mut(&mut self) -> Vec<&mut Block> {
+        match self {
+            Self::If { condition: _, then, otherwise } => vec![then, otherwise],
+            Self::Case { selector: _, arms, otherwise } => {
+                arms.iter_mut().map(|arm| &mut arm.body).chain([otherwise]).collect()
+            }
+            Self::Loop { body, continuing } => vec![body, continuing],
+            Self::Assign { .. }
+            | Self::Exit
+            | Self::Continue
+            | Self::Return
+            | Self::Call { .. }
+            | Self::CallBlock { .. }
+            | Self::PrescanBlock { .. }
+            | Self::PrescanInstance { .. }
+            | Self::Fault(_) => Vec::new(),
+        }
+    }
+}
+
 impl Statement {
     pub fn new(kind: StatementKind, at: Location) -> Self {
         Self { kind, at }

@@ -3,8 +3,8 @@
 //! follows from the loop's bounds needs no check.
 
 use staunch_ir::{
-    Argument, ArrayId, Block, Conversion, Expr, ExprKind, Lane, Op, Place, Pou, Program, Projection, Root, Section,
-    Statement, StatementKind, Value,
+    Argument, ArrayId, Conversion, Expr, ExprKind, Lane, Op, Place, Pou, Program, Projection, Root, Section, Statement,
+    StatementKind, Value,
 };
 
 /// A FOR loop with a constant step.
@@ -130,22 +130,23 @@ fn is_private(program: &Program, pou: &Pou, counter: &Place) -> bool {
 /// Whether a statement may write `place`, which is private.
 fn writes(block: &[Statement], place: &Place) -> bool {
     let touches = |it: &Place| overlaps(it, place);
-    let within = |block: &Block| writes(block, place);
-    block.iter().any(|statement| match &statement.kind {
+    let refers = |it: &Argument| matches!(it, Argument::Reference(it) if touches(it));
+    let directly = |kind: &StatementKind| match kind {
         StatementKind::Assign { target, value: _ } => touches(target),
-        StatementKind::If { condition: _, then, otherwise } => within(then) || within(otherwise),
-        StatementKind::Case { selector: _, arms, otherwise } => {
-            arms.iter().any(|arm| within(&arm.body)) || within(otherwise)
-        }
-        StatementKind::Loop { body, continuing } => within(body) || within(continuing),
         StatementKind::Call { callee: _, instance, arguments, result } => {
-            let refers = |it: &Argument| matches!(it, Argument::Reference(it) if touches(it));
             instance.iter().chain(result).any(touches) || arguments.iter().any(refers)
         }
         StatementKind::CallBlock { block, .. } | StatementKind::PrescanBlock { block, .. } => touches(block),
         StatementKind::PrescanInstance { callee: _, instance } => touches(instance),
-        StatementKind::Exit | StatementKind::Continue | StatementKind::Return | StatementKind::Fault(_) => false,
-    })
+        StatementKind::If { .. }
+        | StatementKind::Case { .. }
+        | StatementKind::Loop { .. }
+        | StatementKind::Exit
+        | StatementKind::Continue
+        | StatementKind::Return
+        | StatementKind::Fault(_) => false,
+    };
+    block.iter().any(|it| directly(&it.kind) || it.kind.blocks().into_iter().any(|inner| writes(inner, place)))
 }
 
 fn is_same(a: &Place, b: &Place) -> bool {

@@ -104,7 +104,7 @@ fn note_block(block: &Block, path: &mut Path, found: &mut HashMap<LocalId, Menti
                 note(found, id, path, statement, access, whole);
             }
         });
-        for (number, inner) in walk::blocks(statement).into_iter().enumerate() {
+        for (number, inner) in statement.kind.blocks().into_iter().enumerate() {
             path.push(number);
             note_block(inner, path, found);
             path.pop();

@@ -137,7 +137,7 @@ impl Function<'_> {
 fn uses(block: &[Statement], is: &dyn Fn(&StatementKind) -> bool) -> bool {
     block.iter().any(|statement| {
         let inner = !matches!(statement.kind, StatementKind::Loop { .. });
-        is(&statement.kind) || inner && walk::blocks(statement).into_iter().any(|it| uses(it, is))
+        is(&statement.kind) || inner && statement.kind.blocks().into_iter().any(|it| uses(it, is))
     })
 }
 

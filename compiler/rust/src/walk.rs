@@ -1,6 +1,6 @@
 //! Walks over statements and expressions, in the order of evaluation.
 
-use staunch_ir::{Argument, Block, Expr, ExprKind, Lane, Op, Place, Program, Projection, Statement, StatementKind};
+use staunch_ir::{Argument, Expr, ExprKind, Lane, Op, Place, Program, Projection, Statement, StatementKind};
 
 /// What a statement does with a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,29 +79,11 @@ fn borrow(place: &Place, see: &mut dyn FnMut(&Place, Access)) {
     see(place, Access::Borrow);
 }
 
-/// The blocks in a statement, in order.
-pub fn blocks(statement: &Statement) -> Vec<&Block> {
-    match &statement.kind {
-        StatementKind::If { then, otherwise, .. } => vec![then, otherwise],
-        StatementKind::Case { arms, otherwise, .. } => arms.iter().map(|arm| &arm.body).chain([otherwise]).collect(),
-        StatementKind::Loop { body, continuing } => vec![body, continuing],
-        StatementKind::Assign { .. }
-        | StatementKind::Exit
-        | StatementKind::Continue
-        | StatementKind::Return
-        | StatementKind::Call { .. }
-        | StatementKind::CallBlock { .. }
-        | StatementKind::PrescanBlock { .. }
-        | StatementKind::PrescanInstance { .. }
-        | StatementKind::Fault(_) => Vec::new(),
-    }
-}
-
 /// Calls `see` for each statement in `block`, at any depth.
 pub fn statements<'a>(block: &'a [Statement], see: &mut dyn FnMut(&'a Statement)) {
     for statement in block {
         see(statement);
-        blocks(statement).into_iter().for_each(|inner| statements(inner, see));
+        statement.kind.blocks().into_iter().for_each(|inner| statements(inner, see));
     }
 }
 

@@ -89,29 +89,11 @@ fn calls(block: Block) -> Block {
 }
 
 fn move_calls(block: Block, calls: &mut Block) {
-    for statement in block {
-        match statement.kind {
-            StatementKind::Call { .. } => calls.push(statement),
-            StatementKind::If { then, otherwise, .. } => {
-                move_calls(then, calls);
-                move_calls(otherwise, calls);
-            }
-            StatementKind::Case { arms, otherwise, .. } => {
-                arms.into_iter().for_each(|arm| move_calls(arm.body, calls));
-                move_calls(otherwise, calls);
-            }
-            StatementKind::Loop { body, continuing } => {
-                move_calls(body, calls);
-                move_calls(continuing, calls);
-            }
-            StatementKind::Assign { .. }
-            | StatementKind::Exit
-            | StatementKind::Continue
-            | StatementKind::Return
-            | StatementKind::CallBlock { .. }
-            | StatementKind::PrescanBlock { .. }
-            | StatementKind::PrescanInstance { .. }
-            | StatementKind::Fault(_) => {}
+    for mut statement in block {
+        let inner: Vec<_> = statement.kind.blocks_mut().into_iter().map(std::mem::take).collect();
+        inner.into_iter().for_each(|it| move_calls(it, calls));
+        if let StatementKind::Call { .. } = statement.kind {
+            calls.push(statement);
         }
     }
 }

@@ -141,27 +141,9 @@ fn callees(pou: &mut Pou) -> Vec<usize> {
 /// Calls `visit` with the id of every POU that the block calls.
 fn each_call(block: &mut Block, visit: &mut dyn FnMut(&mut PouId)) {
     for Statement { kind, .. } in block {
-        match kind {
-            StatementKind::Call { callee, .. } | StatementKind::PrescanInstance { callee, .. } => visit(callee),
-            StatementKind::If { then, otherwise, .. } => {
-                each_call(then, visit);
-                each_call(otherwise, visit);
-            }
-            StatementKind::Case { arms, otherwise, .. } => {
-                arms.iter_mut().for_each(|arm| each_call(&mut arm.body, visit));
-                each_call(otherwise, visit);
-            }
-            StatementKind::Loop { body, continuing } => {
-                each_call(body, visit);
-                each_call(continuing, visit);
-            }
-            StatementKind::Assign { .. }
-            | StatementKind::Exit
-            | StatementKind::Continue
-            | StatementKind::Return
-            | StatementKind::CallBlock { .. }
-            | StatementKind::PrescanBlock { .. }
-            | StatementKind::Fault(_) => {}
+        if let StatementKind::Call { callee, .. } | StatementKind::PrescanInstance { callee, .. } = kind {
+            visit(callee);
         }
+        kind.blocks_mut().into_iter().for_each(|inner| each_call(inner, visit));
     }
 }

@@ -79,30 +79,9 @@ fn add_count(uses: &mut Uses, count: KeptCount) {
 
 fn find<'p>(block: &'p Block, found: &mut Vec<Call<'p>>) {
     for Statement { kind, at } in block {
-        match kind {
-            StatementKind::Call { callee, instance, arguments, result: _ } => {
-                found.push(Call { callee: *callee, instance: instance.as_ref(), arguments, at: *at });
-            }
-            StatementKind::If { condition: _, then, otherwise } => {
-                find(then, found);
-                find(otherwise, found);
-            }
-            StatementKind::Case { selector: _, arms, otherwise } => {
-                arms.iter().for_each(|arm| find(&arm.body, found));
-                find(otherwise, found);
-            }
-            StatementKind::Loop { body, continuing } => {
-                find(body, found);
-                find(continuing, found);
-            }
-            StatementKind::Assign { .. }
-            | StatementKind::Exit
-            | StatementKind::Continue
-            | StatementKind::Return
-            | StatementKind::CallBlock { .. }
-            | StatementKind::PrescanBlock { .. }
-            | StatementKind::PrescanInstance { .. }
-            | StatementKind::Fault(_) => {}
+        if let StatementKind::Call { callee, instance, arguments, result: _ } = kind {
+            found.push(Call { callee: *callee, instance: instance.as_ref(), arguments, at: *at });
         }
+        kind.blocks().into_iter().for_each(|inner| find(inner, found));
     }
 }
