@@ -28,6 +28,7 @@ mod statement;
 mod print;
 pub mod verify;
 
+pub mod counted;
 pub mod interpret;
 pub mod layout;
 pub mod symbols;

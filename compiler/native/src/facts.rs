@@ -1,8 +1,8 @@
 //! What a block of a POU needs and may do, found before any code is made for it: its function
 //! takes no more than it needs, and a caller checks only calls that may fault.
 
-use crate::counted::{Counted, constant_position, is_within};
 use crate::{inline_block, inline_op};
+use staunch_ir::counted::{Counted, constant_position, is_within};
 use staunch_ir::{
     Argument, Expr, ExprKind, Place, Pou, PouId, Program, Projection, Root, Statement, StatementKind, Type,
 };

@@ -1,7 +1,6 @@
 //! The function of one block of a POU: what it starts and ends with.
 
 use crate::Error;
-use crate::counted::Counted;
 use crate::facts::Facts;
 use crate::fault::Faults;
 use crate::memory::{Address, Temporaries};
@@ -10,6 +9,7 @@ use crate::unit::{Part, Unit, Workspace};
 use cranelift_codegen::ir::{self as clif, InstBuilder, StackSlot, UserFuncName};
 use cranelift_frontend::{FuncInstBuilder, FunctionBuilder, Variable};
 use cranelift_module::{DataId, FuncId};
+use staunch_ir::counted::Counted;
 use staunch_ir::{Const, LocalId, Mode, Pou, PouId, Program, Type};
 use std::collections::HashMap;
 

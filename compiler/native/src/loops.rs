@@ -1,12 +1,12 @@
 //! Loops. What decides whether there is a further turn stands in front of the loop and again at
 //! its end, so that a turn costs one branch.
 
-use crate::counted::{Counted, exit_condition, running};
 use crate::function::{Function, Goes, Turn};
 use crate::place::Site;
 use crate::signature::clif_type;
 use cranelift_codegen::ir::{self as clif, InstBuilder, condcodes::IntCC, types};
 use cranelift_frontend::Variable;
+use staunch_ir::counted::{Counted, exit_condition, running};
 use staunch_ir::{Block, Expr, ExprKind, Lane, Statement, Value};
 
 /// Conditions of more operations than this stand once, and the loop's end jumps to them.

@@ -11,6 +11,7 @@ use crate::emitter::Emitter;
 use crate::names::{LocalNames, ident};
 use crate::needs::Needs;
 use crate::repeat::Loops;
+use crate::subscript::Subscript;
 
 /// One function being printed.
 pub struct Function<'a> {
@@ -25,6 +26,8 @@ pub struct Function<'a> {
     pub counters: Vec<(Place, Ident)>,
     /// The names of those copies, by what they copy.
     pub counter_names: HashMap<String, Ident>,
+    /// Subscripts that the loops around have found, innermost last.
+    pub subscripts: Vec<Subscript>,
     /// The line last marked.
     pub marked: Option<(u16, u32)>,
 }
@@ -88,6 +91,7 @@ impl<'a> Emitter<'a> {
             loops: Loops::default(),
             counters: Vec::new(),
             counter_names: HashMap::new(),
+            subscripts: Vec::new(),
             marked: None,
         }
     }

@@ -20,6 +20,7 @@ mod place;
 mod repeat;
 mod statement;
 mod string;
+mod subscript;
 
 mod check;
 mod glue;

@@ -8,6 +8,7 @@ use crate::code::{Code, Level};
 use crate::constant::{number, signed};
 use crate::function::Function;
 use crate::names::ident;
+use crate::walk;
 
 impl Function<'_> {
     /// The place, as what an assignment, a borrow or a method call takes. A parameter's own name
@@ -64,8 +65,12 @@ impl Function<'_> {
     }
 
     /// The 0-based position of an element.
-    fn position(&self, index: &Expr, ty: Type, at: Location) -> TokenStream {
+    pub fn position(&self, index: &Expr, ty: Type, at: Location) -> TokenStream {
         let Type::Array(id) = ty else { unreachable!("verified IR: only arrays have elements") };
+        if let Some(subscript) = self.subscript(index, id) {
+            let name = &subscript.name;
+            return quote!(#name);
+        }
         let array = self.emitter.program.array(id);
         if let Some(Value::I64(value)) = index.as_const()
             && (array.low..=array.high).contains(&value)
@@ -76,6 +81,16 @@ impl Function<'_> {
         let (low, high) = (signed(array.low.into(), "").tokens, signed(array.high.into(), "").tokens);
         let (index, at) = (self.expr(index).tokens, self.emitter.at(at));
         quote!(ops::index(#index, #low, #high) #at?)
+    }
+
+    /// Whether finding `place` can fault here, where loops have found some subscripts already.
+    pub fn place_faults(&self, place: &Place) -> bool {
+        let types = self.emitter.types_along(self.pou, place);
+        let mut found = place.projections.iter().zip(types).filter(|(projection, ty)| match (projection, ty) {
+            (Projection::Index { index, .. }, Type::Array(id)) => self.subscript(index, *id).is_none(),
+            _ => true,
+        });
+        found.any(|(projection, _)| walk::projection_faults(self.emitter.program, projection))
     }
 
     fn root(&self, root: Root) -> TokenStream {
@@ -111,7 +126,7 @@ impl Function<'_> {
 }
 
 /// Whether two places are one variable; places with subscripts are not compared.
-fn is_same(a: &Place, b: &Place) -> bool {
+pub fn is_same(a: &Place, b: &Place) -> bool {
     let field = |(a, b): (&Projection, &Projection)| match (a, b) {
         (Projection::Field(a), Projection::Field(b)) => a == b,
         (Projection::Index { .. }, _) | (_, Projection::Index { .. }) => false,

@@ -25,7 +25,7 @@ struct Labels {
 }
 
 impl Function<'_> {
-    pub fn repeat(&mut self, body: &Block, continuing: &Block) -> TokenStream {
+    pub fn repeat(&mut self, statements: &[Statement], at: usize, body: &Block, continuing: &Block) -> TokenStream {
         // A block around the body is what CONTINUE leaves when something follows the body.
         let labelled = !continuing.is_empty() && uses(body, &|it| matches!(it, StatementKind::Continue));
         let exits = uses(body, &|it| matches!(it, StatementKind::Exit));
@@ -43,7 +43,10 @@ impl Function<'_> {
         };
         self.loops.around.push(labels);
         let copy = counter.map(|place| self.copy_counter(place));
+        let outer = self.subscripts.len();
+        let subscripts = self.find_subscripts(statements, at);
         let body = self.statements(body);
+        self.subscripts.truncate(outer);
         self.loops.around.pop();
         self.loops.around.push(plain);
         let continuing = self.block(continuing);
@@ -54,8 +57,8 @@ impl Function<'_> {
         let label = exits.then(|| quote!(#loop_label:));
         let body = if labelled { quote!(#next_label: { #body }) } else { body };
         match condition {
-            Some(condition) => quote!(#label while #condition { #copy #body #continuing }),
-            None => quote!(#label loop { #copy #body #continuing }),
+            Some(condition) => quote!(#label while #condition { #copy #subscripts #body #continuing }),
+            None => quote!(#label loop { #copy #subscripts #body #continuing }),
         }
     }
 

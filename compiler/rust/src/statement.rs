@@ -30,7 +30,8 @@ impl Function<'_> {
                 rest = then;
                 printed.extend(joined);
             } else {
-                printed.extend(self.statement(statement));
+                let at = statements.len() - after.len() - 1;
+                printed.extend(self.statement(statements, at));
             }
         }
         printed
@@ -81,12 +82,13 @@ impl Function<'_> {
         Some((self.assigned(next, target, call), then))
     }
 
-    fn statement(&mut self, statement: &Statement) -> TokenStream {
+    fn statement(&mut self, statements: &[Statement], at: usize) -> TokenStream {
+        let statement = &statements[at];
         match &statement.kind {
             StatementKind::Assign { target, value } => self.assign(statement, target, value),
             StatementKind::If { condition, then, otherwise } => self.if_else(condition, then, otherwise),
             StatementKind::Case { selector, arms, otherwise } => self.case(selector, arms, otherwise),
-            StatementKind::Loop { body, continuing } => self.repeat(body, continuing),
+            StatementKind::Loop { body, continuing } => self.repeat(statements, at, body, continuing),
             StatementKind::Exit => self.leave(),
             StatementKind::Continue => self.next(),
             StatementKind::Return => {
@@ -113,7 +115,7 @@ impl Function<'_> {
     fn assign(&mut self, statement: &Statement, target: &Place, value: &Expr) -> TokenStream {
         let printed = self.expr(value).tokens;
         // Rust evaluates the value before the target's subscripts; the first fault wins here.
-        if walk::place_faults(self.emitter.program, target) && walk::expr_faults(self.emitter.program, value) {
+        if self.place_faults(target) && walk::expr_faults(self.emitter.program, value) {
             let mut before = Vec::new();
             let place = self.fixed_place(target, &mut before);
             return quote!(#(#before)* #place = #printed;);

@@ -106,10 +106,15 @@ pub fn op_faults(program: &Program, op: Op, operands: &[Expr]) -> bool {
     op.can_fault() && !(real && matches!(op, Op::Div))
 }
 
-/// Whether finding `place` can fault. An index that is a constant has been checked.
+/// Whether finding `place` can fault.
 pub fn place_faults(program: &Program, place: &Place) -> bool {
-    place.projections.iter().any(|projection| match projection {
+    place.projections.iter().any(|projection| projection_faults(program, projection))
+}
+
+/// An index that is a constant has been checked.
+pub fn projection_faults(program: &Program, projection: &Projection) -> bool {
+    match projection {
         Projection::Field(_) => false,
         Projection::Index { index, .. } => index.as_const().is_none() || expr_faults(program, index),
-    })
+    }
 }

@@ -1,34 +1,34 @@
 //! FOR loops whose body leaves the counter alone, read back from what the front end makes of
-//! them. The counter then runs in a register beside its storage, and an index whose range
-//! follows from the loop's bounds needs no check.
+//! them. A back end may then keep the counter in a register beside its storage, and an index
+//! whose range follows from the loop's bounds needs no check.
 
-use staunch_ir::{
+use crate::{
     Argument, ArrayId, Conversion, Expr, ExprKind, Lane, Op, Place, Pou, Program, Projection, Root, Section, Statement,
     StatementKind, Value,
 };
 
 /// A FOR loop with a constant step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Counted<'p> {
+pub struct Counted<'p> {
     /// A variable that no one outside the POU can write.
-    pub(crate) counter: &'p Place,
-    pub(crate) lane: Lane,
+    pub counter: &'p Place,
+    pub lane: Lane,
     /// The last value that the body runs for: a constant, or a local.
-    pub(crate) last: &'p Expr,
-    pub(crate) step: i64,
+    pub last: &'p Expr,
+    pub step: i64,
     /// Past this value the next step would leave the counter's type, so the loop ends first.
-    pub(crate) end: Option<i128>,
-    pub(crate) body: &'p [Statement],
+    pub end: Option<i128>,
+    pub body: &'p [Statement],
     /// What the counter may be in the body.
-    pub(crate) range: Range,
+    pub range: Range,
 }
 
 /// Inclusive.
-pub(crate) type Range = (i128, i128);
+pub type Range = (i128, i128);
 
 impl<'p> Counted<'p> {
     /// The loop at `block[at]`, if it is one.
-    pub(crate) fn find(program: &Program, pou: &Pou, block: &'p [Statement], at: usize) -> Option<Self> {
+    pub fn find(program: &Program, pou: &Pou, block: &'p [Statement], at: usize) -> Option<Self> {
         let StatementKind::Loop { body, continuing } = &block[at].kind else { return None };
         let (test, body) = body.split_first()?;
         let (next, end) = continuing.split_last()?;
@@ -70,7 +70,7 @@ fn stepped(statement: &Statement) -> Option<(&Place, i64)> {
 }
 
 /// The condition of `IF … THEN EXIT; END_IF`.
-pub(crate) fn exit_condition(statement: &Statement) -> Option<&Expr> {
+pub fn exit_condition(statement: &Statement) -> Option<&Expr> {
     let StatementKind::If { condition, then, otherwise } = &statement.kind else { return None };
     let exits = matches!(then.as_slice(), [only] if matches!(only.kind, StatementKind::Exit));
     (exits && otherwise.is_empty()).then_some(condition)
@@ -163,14 +163,14 @@ fn overlaps(place: &Place, private: &Place) -> bool {
 }
 
 /// The 0-based position of an index that is constant and within the bounds.
-pub(crate) fn constant_position(program: &Program, index: &Expr, array: ArrayId) -> Option<u64> {
+pub fn constant_position(program: &Program, index: &Expr, array: ArrayId) -> Option<u64> {
     let array = program.array(array);
     let Some(Value::I64(index)) = index.as_const() else { return None };
     (array.low..=array.high).contains(&index).then(|| index.abs_diff(array.low))
 }
 
 /// Whether an index needs no check.
-pub(crate) fn is_within(program: &Program, index: &Expr, array: ArrayId, counters: &[Counted<'_>]) -> bool {
+pub fn is_within(program: &Program, index: &Expr, array: ArrayId, counters: &[Counted<'_>]) -> bool {
     let array = program.array(array);
     let range = range(program, index, counters);
     range.is_some_and(|(least, most)| i128::from(array.low) <= least && most <= i128::from(array.high))
@@ -199,7 +199,7 @@ fn range(program: &Program, expr: &Expr, counters: &[Counted<'_>]) -> Option<Ran
 }
 
 /// Which of the counters is `place`.
-pub(crate) fn running(counters: &[Counted<'_>], place: &Place) -> Option<usize> {
+pub fn running(counters: &[Counted<'_>], place: &Place) -> Option<usize> {
     counters.iter().rposition(|it| is_same(place, it.counter))
 }
 
