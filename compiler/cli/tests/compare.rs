@@ -43,7 +43,8 @@ fn the_twelve_traps_are_found() {
         ("start_up.st --from iec --to logix", "5"),
         ("after_reset.st --from iec --to logix --vars parts.CV --stimulus after_reset.csv", "6"),
         ("after_reset.st --from iec --to cscape --stimulus after_reset.csv", "6"),
-        ("limit.st --from iec --to codesys", "7"),
+        ("wraps.st --from iec --to logix --vars parts.CV --stimulus wraps.csv", "7"),
+        ("limit.st --from iec --to codesys", "8"),
         ("widths.st --from iec --to codesys", "8"),
         ("preset_lowered.st --from iec --to cscape", "10"),
         ("restart.st --from iec --to logix", "11"),
@@ -53,6 +54,44 @@ fn the_twelve_traps_are_found() {
     ] {
         assert_eq!(trap(arguments), expected, "{arguments}\n{}", difference(arguments));
     }
+}
+
+#[test]
+fn an_input_is_held_for_as_long_as_it_takes() {
+    for (arguments, expected) in [
+        ("held_long.st --from iec --to cscape", "1"),
+        ("held_after.st --from iec --to cscape", "1"),
+        ("held_full.st --from iec --to cscape --vars full", "1"),
+        ("held_full.st --from iec --to cscape --vars parts.Q", "1"),
+        ("waves.st --from iec --to cscape", "2"),
+    ] {
+        assert_eq!(trap(arguments), expected, "{arguments}\n{}", difference(arguments));
+    }
+}
+
+#[test]
+fn a_long_trace_shows_the_scans_in_which_something_happens() {
+    let out = difference("held_after.st --from iec --to cscape");
+    let table = "iec and cscape differ after 53 scans:\n\
+         \n\
+         \x20 scan  start  sensor  parts.CV iec  parts.CV cscape\n\
+         \x20    1   TRUE   FALSE             0                0\n\
+         \x20    2  FALSE    TRUE             0                0\n\
+         \x20    …\n\
+         \x20   52  FALSE    TRUE             1                1\n\
+         \x20   53  FALSE    TRUE             1                2 ◀\n";
+    assert!(out.starts_with(table), "{out}");
+}
+
+#[test]
+fn initial_values_are_rewritten_for_logix() {
+    let out = difference("initial.st --from iec --to logix");
+    assert!(out.contains("c : COUNTER := (ACC := 32766, PRE := 3, DN := TRUE);"), "{out}");
+    assert!(out.contains("d : COUNTER := (CD := FALSE, ACC := 2, PRE := 3);"), "{out}");
+    assert!(out.contains("e : FBD_COUNTER := (ACC := 2, DN := FALSE, CUEnable := TRUE, Reset := TRUE);"), "{out}");
+    assert!(out.contains("f : COUNTER;"), "{out}");
+    assert!(out.contains("again := e.CUEnable;"), "{out}");
+    assert!(out.contains(" differ after "), "{out}");
 }
 
 #[test]

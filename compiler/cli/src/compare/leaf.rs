@@ -296,7 +296,15 @@ fn writes(
             Kind::If { .. } | Kind::Case { .. } | Kind::Loop { .. } => {}
         }
     }
-    let inner = block.iter().flat_map(|statement| match &statement.kind {
+    for block in block.iter().flat_map(inner_blocks) {
+        writes(program, pou, block, found);
+    }
+}
+
+/// The blocks of statements inside a statement.
+pub fn inner_blocks(statement: &staunch_ir::Statement) -> Vec<&staunch_ir::Block> {
+    use staunch_ir::StatementKind as Kind;
+    match &statement.kind {
         Kind::If { then, otherwise, .. } => vec![then, otherwise],
         Kind::Case { arms, otherwise, .. } => arms.iter().map(|it| &it.body).chain([otherwise]).collect(),
         Kind::Loop { body, continuing } => vec![body, continuing],
@@ -309,9 +317,6 @@ fn writes(
         | Kind::Continue
         | Kind::Return
         | Kind::Fault(_) => Vec::new(),
-    });
-    for block in inner {
-        writes(program, pou, block, found);
     }
 }
 

@@ -52,6 +52,32 @@ impl Counter {
         Some(Self { direction, keeps, narrow })
     }
 
+    /// The member of the COUNTER or FBD_COUNTER that stands for a pin, if one does.
+    fn tag(self, pin: &str) -> Option<&'static str> {
+        let both = self.direction == Direction::Both;
+        Some(match pin.to_ascii_uppercase().as_str() {
+            "PV" => "PRE",
+            "CV" => "ACC",
+            "Q" | "QU" => "DN",
+            "CU" => {
+                if both {
+                    "CUEnable"
+                } else {
+                    "CU"
+                }
+            }
+            "CD" => {
+                if both {
+                    "CDEnable"
+                } else {
+                    "CD"
+                }
+            }
+            "R" | "RESET" if both => "Reset",
+            _ => return None,
+        })
+    }
+
     fn pins(self) -> &'static [&'static str] {
         match (self.direction, self.keeps) {
             (Direction::Up, false) => &["CU", "R", "PV"],
@@ -142,10 +168,23 @@ impl Writer<'_> {
         for name in &decl.names {
             self.counters.insert(name.text.to_ascii_uppercase(), counter);
         }
-        if let Some(Initial { kind: InitialKind::Fields(fields), .. }) = &decl.initial {
-            for (name, _) in fields.iter().filter(|it| it.0.text.eq_ignore_ascii_case("PV")) {
-                self.edit(name.span, "PRE".to_owned());
-            }
+        if let Some(Initial { kind: InitialKind::Fields(fields), span }) = &decl.initial {
+            let kept: Vec<String> = fields.iter().filter_map(|it| self.field(counter, it)).collect();
+            let text = if kept.is_empty() { String::new() } else { format!(" := ({})", kept.join(", ")) };
+            self.edit(Span { start: decl.ty.span.end, ..*span }, text);
+        }
+    }
+
+    /// An initial value by its tag's name; none where the tag needs none.
+    fn field(&self, counter: Counter, (name, value): &(Name<'_>, Initial<'_>)) -> Option<String> {
+        let (start, end) = bounds(value.span);
+        let value = &self.text[start..end];
+        match counter.tag(name.text) {
+            Some(tag) => Some(format!("{tag} := {value}")),
+            // An input that is FALSE does nothing, and an output is computed anew by each call.
+            None if value.eq_ignore_ascii_case("FALSE") || name.text.eq_ignore_ascii_case("QD") => None,
+            // Nothing stands for it; the compiler says so at this place.
+            None => Some(format!("{} := {value}", name.text)),
         }
     }
 
@@ -247,15 +286,12 @@ impl Writer<'_> {
     fn member(&mut self, expr: &Expr<'_>, base: &Expr<'_>, name: Name<'_>, counter: Counter, narrow: bool) {
         let (start, end) = bounds(base.span);
         let owner = &self.text[start..end];
-        let text = match (name.text.to_ascii_uppercase().as_str(), counter.narrow) {
-            ("Q" | "QU", _) => format!("{owner}.DN"),
-            ("QD", _) => format!("({owner}.ACC <= 0)"),
-            ("CV", Some(conversion)) if narrow => format!("{conversion}({owner}.ACC)"),
-            ("CV", _) => format!("{owner}.ACC"),
-            ("PV", Some(conversion)) if narrow => format!("{conversion}({owner}.PRE)"),
-            ("PV", _) => format!("{owner}.PRE"),
+        let text = match (counter.tag(name.text), counter.narrow) {
+            (Some(tag @ ("ACC" | "PRE")), Some(conversion)) if narrow => format!("{conversion}({owner}.{tag})"),
+            (Some(tag), _) => format!("{owner}.{tag}"),
+            (None, _) if name.text.eq_ignore_ascii_case("QD") => format!("({owner}.ACC <= 0)"),
             // Nothing stands for it; the compiler says so at this place.
-            _ => return,
+            (None, _) => return,
         };
         self.edit(expr.span, text);
     }

@@ -4,7 +4,11 @@ mod leaf;
 mod pair;
 
 mod logix;
+
+mod duration;
+mod hold;
 mod search;
+mod shrink;
 mod stimulus;
 
 mod trap;
@@ -87,7 +91,7 @@ fn verdict(pair: &mut Pair, args: &Compare) -> Result<Verdict, String> {
             format!("every state that the inputs tried can reach is the same on both ({} scans)", outcome.scans)
         }
         (false, depth) => format!(
-            "every sequence of inputs over {depth} scans, then long pulses and random inputs, {} scans in all",
+            "every sequence of inputs over {depth} scans, then inputs that are held, long pulses and random inputs, {} scans in all",
             outcome.scans
         ),
     }))

@@ -55,7 +55,8 @@ pub struct Pair {
     runs: Vec<([usize; 2], usize)>,
     /// The others.
     singles: Vec<Matched>,
-    cycle: i64,
+    /// Nanoseconds from scan to scan.
+    pub cycle: i64,
 }
 
 impl Side {
@@ -182,6 +183,11 @@ impl Pair {
         found
     }
 
+    /// The inputs' values before anything sets them.
+    pub fn initial(&self) -> Vec<Value> {
+        self.inputs.iter().map(|it| it.values[0]).collect()
+    }
+
     /// Both sides as they start.
     pub fn init(&mut self) {
         self.sides.iter_mut().for_each(|it| it.machine.init());
@@ -237,8 +243,16 @@ impl Pair {
 
     /// What differs, in the order of the declarations.
     pub fn differences(&self, row: &Row) -> Vec<Matched> {
-        let states = row.states.each_ref().map(Vec::as_slice);
-        self.compared.iter().copied().filter(|it| !self.equal(*it, states)).collect()
+        self.compared.iter().copied().filter(|it| !self.same(*it, row)).collect()
+    }
+
+    /// The outputs of standard blocks, whether they are compared or not.
+    pub fn outputs(&self) -> Vec<Matched> {
+        self.matched(|it| matches!(it.role, Role::Output(_)))
+    }
+
+    pub fn same(&self, leaves: Matched, row: &Row) -> bool {
+        self.equal(leaves, row.states.each_ref().map(Vec::as_slice))
     }
 
     /// All rows of a run that starts anew, up to the first difference.

@@ -163,13 +163,13 @@ impl Report<'_> {
     /// The rows to show; `None` where some are left out.
     fn lines(&self, pair: &Pair, rows: &[Row], shown: &[Matched]) -> Vec<Option<Line>> {
         let mut lines = Vec::new();
-        for (at, row) in rows.iter().enumerate() {
-            let middle = at >= HEAD && at + TAIL < rows.len() && rows.len() > HEAD + TAIL + 1;
-            match middle {
-                false => lines.push(Some(Line::of(pair, row, at + 1, shown))),
-                true if at == HEAD => lines.push(None),
-                true => {}
+        let mut next = 0;
+        for at in telling(pair, rows) {
+            if at > next {
+                lines.push(None);
             }
+            lines.push(Some(Line::of(pair, &rows[at], at + 1, shown)));
+            next = at + 1;
         }
         lines
     }
@@ -219,6 +219,28 @@ impl Report<'_> {
         let _ = writeln!(text, "{}]}}", lines.join(","));
         text
     }
+}
+
+/// Which rows tell the story: all of a short trace; of a longer one those in which an input
+/// changes, and the two at its end.
+fn telling(pair: &Pair, rows: &[Row]) -> Vec<usize> {
+    if rows.len() <= HEAD + TAIL + 1 {
+        return (0..rows.len()).collect();
+    }
+    let inputs = |row: &Row| pair.inputs.iter().map(|it| pair.sides[0].show(it.leaves[0], &row.states[0])).collect();
+    let mut before: Vec<String> = Vec::new();
+    let mut told = Vec::new();
+    for (at, row) in rows.iter().enumerate() {
+        let now: Vec<String> = inputs(row);
+        if now != before || row.restart || at + 2 >= rows.len() {
+            told.push(at);
+        }
+        before = now;
+    }
+    if told.len() > HEAD + TAIL + 1 {
+        told.drain(HEAD..told.len() - TAIL);
+    }
+    told
 }
 
 impl Line {

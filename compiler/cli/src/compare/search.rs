@@ -1,7 +1,9 @@
 //! A search for the shortest inputs after which two systems differ: every sequence up to a depth,
-//! then long patterns, then random ones from a fixed seed. The same program gives the same answer.
+//! then inputs that are held, long patterns, and random ones from a fixed seed. The same program
+//! gives the same answer.
 
 use super::pair::{Pair, Step};
+use super::{hold, shrink};
 use staunch_ir::Value;
 use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -15,9 +17,7 @@ const MAX_COMPARED: usize = 4 << 30;
 /// Scans of a random sequence.
 const EPISODE: usize = 120;
 /// Enough scans to count past the limit of a WORD.
-const LONG: usize = 140_000;
-/// Longer sequences are not made shorter by trying.
-const MAX_SHRUNK: usize = 2_000;
+pub const LONG: usize = 140_000;
 
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
@@ -70,12 +70,9 @@ impl Search<'_> {
         if self.outcome.complete {
             return None;
         }
-        let found = self.patterns(limits.budget / 8).or_else(|| self.random());
-        found.map(|it| self.shrink(it))
-    }
-
-    fn initial(&self) -> Vec<Value> {
-        self.pair.inputs.iter().map(|it| it.values[0]).collect()
+        let found =
+            self.holds(limits.budget / 2).or_else(|| self.patterns(limits.budget / 8)).or_else(|| self.random());
+        found.map(|it| shrink::shrink(self.pair, it))
     }
 
     /// The input vectors, those that change little first.
@@ -177,14 +174,21 @@ impl Search<'_> {
         None
     }
 
+    /// Inputs that are TRUE for long; the first that makes a difference.
+    fn holds(&mut self, reserve: u64) -> Option<Vec<Step>> {
+        hold::sequences(self.pair).into_iter().find_map(|runs| {
+            let count = runs.iter().map(|it| it.scans).sum();
+            let mut steps = runs.iter().flat_map(|it| std::iter::repeat_n(&it.step, it.scans));
+            let last = runs.last().map(|it| &it.step)?;
+            self.drive(count, reserve, |_| steps.next().unwrap_or(last).clone())
+        })
+    }
+
     /// One input pulses in every second scan, long enough for a limit, while the others keep
     /// still: all at their start, then all TRUE.
     fn patterns(&mut self, reserve: u64) -> Option<Vec<Step>> {
-        let initial = self.initial();
-        let raised: Vec<_> = initial
-            .iter()
-            .map(|it| if it.lane() == staunch_ir::Lane::Bool { Value::Bool(true) } else { *it })
-            .collect();
+        let initial = self.pair.initial();
+        let raised = hold::raised(&initial);
         for still in [&initial, &raised] {
             for at in 0..initial.len() {
                 if initial[at].lane() != staunch_ir::Lane::Bool {
@@ -206,7 +210,7 @@ impl Search<'_> {
     /// Sequences in which inputs hold, change one at a time, and now and then all at once.
     fn random(&mut self) -> Option<Vec<Step>> {
         let mut dice = Dice(0x5EED);
-        let initial = self.initial();
+        let initial = self.pair.initial();
         let retains = self.pair.retains();
         let values: Vec<Vec<Value>> = self.pair.inputs.iter().map(|it| it.values.clone()).collect();
         if values.is_empty() && !retains {
@@ -232,45 +236,6 @@ impl Search<'_> {
             }
         }
         None
-    }
-
-    /// Leaves out what the difference does not need: runs of scans, restarts, changes of inputs.
-    fn shrink(&mut self, mut steps: Vec<Step>) -> Vec<Step> {
-        if steps.len() > MAX_SHRUNK {
-            let later = steps[1..].to_vec();
-            return if self.pair.differs_after(&later) == Some(later.len()) { later } else { steps };
-        }
-        let mut size = steps.len() / 2;
-        while size > 0 {
-            let mut at = 0;
-            while at < steps.len() {
-                let mut shorter = steps.clone();
-                shorter.drain(at..(at + size).min(steps.len()));
-                match self.pair.differs_after(&shorter) {
-                    Some(length) => {
-                        shorter.truncate(length);
-                        steps = shorter;
-                    }
-                    None => at += size,
-                }
-            }
-            size /= 2;
-        }
-        let initial = self.initial();
-        for at in 0..steps.len() {
-            for (input, start) in initial.iter().enumerate() {
-                let before = if at == 0 { *start } else { steps[at - 1].inputs[input] };
-                for simpler in [*start, before] {
-                    let mut calmer = steps.clone();
-                    calmer[at].inputs[input] = simpler;
-                    if calmer != steps && self.pair.differs_after(&calmer) == Some(steps.len()) {
-                        steps = calmer;
-                        break;
-                    }
-                }
-            }
-        }
-        steps
     }
 }
 

@@ -166,8 +166,10 @@ fn restarted(case: &Case) -> Option<usize> {
 
 fn counts(case: &Case) -> Option<usize> {
     let [a, b] = case.now;
+    let wider = case.kinds[0].lane != case.kinds[1].lane;
     if case.at_limit() {
-        return Some(7);
+        // What stops one side's count, or turns it round, is its width where the other's is wider.
+        return Some(if wider { 8 } else { 7 });
     }
     let before = case.before;
     let was_reset = before.is_some_and(|it| it.iter().any(|pins| pins.reset || pins.load));
@@ -194,9 +196,8 @@ fn counts(case: &Case) -> Option<usize> {
         }
         return Some(1);
     }
-    let narrow = case.kinds[0].lane != case.kinds[1].lane;
     let same_bits = (a.count - b.count).rem_euclid(1 << 16) == 0;
-    if narrow && same_bits {
+    if wider && same_bits {
         return Some(8);
     }
     // Two documents of one system: whether a CTU stops at its preset.
@@ -255,8 +256,36 @@ pub struct Cause {
     pub trap: Option<Trap>,
 }
 
-/// Looks at the counters whose outputs differ; without any, at the types.
+/// Looks at the counters whose outputs differ, also where they are not compared; without any, at
+/// the types.
 pub fn cause(pair: &Pair, rows: &[Row], differences: &[Matched], feeding: &[String]) -> Cause {
+    let Some(last) = rows.last() else { return Cause { counter: None, trap: None } };
+    let of_counters = counters(pair, rows, differences, feeding);
+    if of_counters.trap.is_some() {
+        return of_counters;
+    }
+    let outputs = pair.outputs();
+    let parted = rows.iter().position(|row| outputs.iter().any(|it| !pair.same(*it, row)));
+    if let Some(at) = parted.filter(|at| *at + 1 < rows.len()) {
+        let differing: Vec<Matched> = outputs.into_iter().filter(|it| !pair.same(*it, &rows[at])).collect();
+        let earlier = counters(pair, &rows[..=at], &differing, feeding);
+        if earlier.trap.is_some() {
+            return earlier;
+        }
+    }
+    let counter = of_counters.counter;
+    let kept = last.restart.then_some(Trap::numbered(11));
+    let widths = differences.iter().any(|[a, _]| {
+        let leaf = &pair.sides[0].leaves.all[*a];
+        let counts = leaf.ty.elementary().and_then(|it| it.lane().range()).is_some();
+        matches!(leaf.role, Role::Variable(_)) && counts
+    });
+    let trap = kept.or((counter.is_none() && widths).then_some(Trap::numbered(8)));
+    Cause { counter, trap }
+}
+
+/// The first counter in the last row that shows a trap, or else that differs.
+fn counters(pair: &Pair, rows: &[Row], differences: &[Matched], feeding: &[String]) -> Cause {
     let Some(last) = rows.last() else { return Cause { counter: None, trap: None } };
     let mut counter = None;
     for [a, b] in differences {
@@ -270,14 +299,7 @@ pub fn cause(pair: &Pair, rows: &[Row], differences: &[Matched], feeding: &[Stri
             return Cause { counter: Some(instances[0].path.clone()), trap: Some(trap) };
         }
     }
-    let kept = last.restart.then_some(Trap::numbered(11));
-    let widths = differences.iter().any(|[a, _]| {
-        let leaf = &pair.sides[0].leaves.all[*a];
-        let counts = leaf.ty.elementary().is_some_and(|it| !it.is_real() && !it.is_time());
-        matches!(leaf.role, Role::Variable(_)) && counts
-    });
-    let trap = kept.or((counter.is_none() && widths).then_some(Trap::numbered(8)));
-    Cause { counter, trap }
+    Cause { counter, trap: None }
 }
 
 fn case(instances: [&Instance; 2], before: Option<&Row>, last: &Row, feeding: &[String]) -> Option<Case> {

@@ -31,7 +31,11 @@ fn each_difference_has_its_trap() {
     assert_eq!(number(case(LOGIX, None, [count(up, 1), up])), Some(5));
     let reset = Some(Pins { reset: true, ..up });
     assert_eq!(number(case(LOGIX, reset, [up, count(up, 1)])), Some(6));
-    assert_eq!(number(case(CODESYS, Some(count(IDLE, 32767)), [count(up, 32767), count(up, 32768)])), Some(7));
+    assert_eq!(number(case(CODESYS, Some(count(IDLE, 32767)), [count(up, 32767), count(up, 32768)])), Some(8));
+    let last = i128::from(i32::MAX);
+    let wide = Kind { lane: Lane::I32, ..IEC };
+    let wraps = case(LOGIX, Some(count(IDLE, last)), [count(up, last), count(up, -last - 1)]);
+    assert_eq!(number(Case { kinds: [wide, LOGIX], ..wraps }), Some(7));
     let loaded = Pins { load: true, ..IDLE };
     assert_eq!(
         number(case(CODESYS, Some(IDLE), [Pins { preset: -1, ..loaded }, Pins { preset: 65535, ..loaded }])),
