@@ -26,9 +26,25 @@ pub struct Source {
     pub text: String,
     /// Byte offset at which each line starts.
     lines: Vec<u32>,
-    /// Whether each character is one byte.
-    ascii: bool,
+    /// The characters that start before each [`CHUNK`] of bytes; empty where each is one byte.
+    characters: Vec<u32>,
+    encoding: Encoding,
 }
+
+/// How a file's bytes hold its text.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Encoding {
+    /// Bytes of the byte order mark, which is no part of the text.
+    mark: u32,
+    /// Each character is one byte of the file.
+    windows_1252: bool,
+}
+
+/// Bytes of a text between two counts of its characters: a column is then found at once in a line
+/// of any length.
+const CHUNK: usize = 1024;
+/// The byte order mark of UTF-8.
+const MARK: &[u8] = b"\xEF\xBB\xBF";
 
 /// All files of one compilation; `Span::file` counts them.
 #[derive(Clone, Debug, Default)]
@@ -41,18 +57,36 @@ impl Source {
         let starts = text.match_indices('\n');
         let lines =
             core::iter::once(0).chain(starts.map(|(at, _)| u32::try_from(at + 1).unwrap_or(u32::MAX))).collect();
-        let ascii = text.is_ascii();
-        Self { path: path.into(), text, lines, ascii }
+        let characters = if text.is_ascii() { Vec::new() } else { counted(text.as_bytes()) };
+        Self { path: path.into(), text, lines, characters, encoding: Encoding::default() }
     }
 
     /// UTF-8, with or without a byte order mark; any other text is read as Windows-1252.
     pub fn decode(path: impl Into<String>, bytes: &[u8]) -> Self {
-        let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
-        let text = match core::str::from_utf8(bytes) {
+        let (mark, bytes) = bytes.strip_prefix(MARK).map_or((0, bytes), |it| (3, it));
+        let utf8 = core::str::from_utf8(bytes);
+        let encoding = Encoding { mark, windows_1252: utf8.is_err() };
+        let text = match utf8 {
             Ok(text) => text.to_owned(),
             Err(_) => bytes.iter().map(|it| windows_1252(*it)).collect(),
         };
-        Self::new(path, text)
+        Self { encoding, ..Self::new(path, text) }
+    }
+
+    /// Where a byte of the text stands in the file as it was read.
+    pub fn file_offset(&self, offset: u32) -> u32 {
+        let Encoding { mark, windows_1252 } = self.encoding;
+        mark + if windows_1252 { self.characters_before(offset) } else { offset }
+    }
+
+    /// The characters that start before a byte of the text.
+    fn characters_before(&self, offset: u32) -> u32 {
+        let end = usize::try_from(offset).unwrap_or(usize::MAX).min(self.text.len());
+        let chunk = end / CHUNK;
+        match self.characters.get(chunk) {
+            Some(before) => before + starts(&self.text.as_bytes()[chunk * CHUNK..end]),
+            None => u32::try_from(end).unwrap_or(u32::MAX),
+        }
     }
 
     /// Where a 1-based line starts and ends, without its line break; an empty range for a line
@@ -75,7 +109,7 @@ impl Source {
     }
 
     pub fn is_ascii(&self) -> bool {
-        self.ascii
+        self.characters.is_empty()
     }
 
     /// The 1-based line of a byte.
@@ -86,12 +120,25 @@ impl Source {
     /// 1-based line, and 1-based column in characters.
     pub fn line_column(&self, offset: u32) -> (u32, u32) {
         let line = self.lines.partition_point(|start| *start <= offset).max(1);
-        let start = usize::try_from(self.lines[line - 1]).unwrap_or(usize::MAX);
-        let offset = usize::try_from(offset).unwrap_or(usize::MAX).min(self.text.len());
-        let before = self.text.get(start.min(offset)..offset).unwrap_or_default();
-        let column = before.chars().count() + 1;
-        (u32::try_from(line).unwrap_or(u32::MAX), u32::try_from(column).unwrap_or(u32::MAX))
+        let column = self.characters_before(offset) - self.characters_before(self.lines[line - 1]) + 1;
+        (u32::try_from(line).unwrap_or(u32::MAX), column)
     }
+}
+
+/// The characters that start before each chunk of a text.
+fn counted(text: &[u8]) -> Vec<u32> {
+    let mut before = 0;
+    let count = |chunk: &[u8]| {
+        before += starts(chunk);
+        before
+    };
+    core::iter::once(0).chain(text.chunks(CHUNK).map(count)).collect()
+}
+
+/// The bytes that start a character.
+fn starts(bytes: &[u8]) -> u32 {
+    let count = bytes.iter().filter(|it| **it & 0b1100_0000 != 0b1000_0000).count();
+    u32::try_from(count).unwrap_or(u32::MAX)
 }
 
 /// A byte of Windows-1252; the five that it leaves open stay control characters, as browsers do.
@@ -132,3 +179,6 @@ impl Sources {
         Location { file: span.file, line, column: u16::try_from(column).unwrap_or(u16::MAX) }
     }
 }
+
+#[cfg(test)]
+mod tests;

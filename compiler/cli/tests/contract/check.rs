@@ -48,6 +48,36 @@ fn json_is_an_object_a_line() {
     assert_eq!((&span["line_start"], &span["column_start"]), (&4.into(), &1.into()));
 }
 
+/// What an editor does with the fix of the first diagnostic of a file.
+fn repaired(folder: &Folder, file: &str) -> Vec<u8> {
+    let out = folder.staunch(&format!("check {file} --message-format json")).out(1);
+    let diagnostic: serde_json::Value = serde_json::from_str(out.lines().next().unwrap()).unwrap();
+    let fix = &diagnostic["fix"];
+    let at = |key: &str| usize::try_from(fix[key].as_u64().unwrap()).unwrap();
+    let mut bytes = std::fs::read(folder.0.join(file)).unwrap();
+    bytes.splice(at("byte_start")..at("byte_end"), fix["replacement"].as_str().unwrap().bytes());
+    bytes
+}
+
+#[test]
+fn a_fix_counts_the_bytes_of_the_file() {
+    let (wrong, right) =
+        ("VAR x : INT; END_VAR\nx = 1;\nEND_PROGRAM\n", "VAR x : INT; END_VAR\nx := 1;\nEND_PROGRAM\n");
+    let head = "PROGRAM Main (* größe *) ";
+    let windows: Vec<u8> = head.chars().map(|it| u8::try_from(u32::from(it)).unwrap()).collect();
+    let heads = [
+        ("utf8.st", head.as_bytes().to_vec()),
+        ("marked.st", [b"\xEF\xBB\xBF", head.as_bytes()].concat()),
+        ("windows.st", windows.clone()),
+        ("both.st", [b"\xEF\xBB\xBF".to_vec(), windows].concat()),
+    ];
+    let folder = Folder::new("encodings");
+    for (file, head) in heads {
+        folder.write(file, [&head, wrong.as_bytes()].concat());
+        assert_eq!(repaired(&folder, file), [&head, right.as_bytes()].concat(), "{file}");
+    }
+}
+
 #[test]
 fn sources_are_files_folders_and_standard_input() {
     let folder = Folder::with("sources", &[]);

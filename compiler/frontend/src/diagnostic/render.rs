@@ -11,7 +11,7 @@ use crate::source::{Source, Sources, Span};
 pub enum Format {
     #[default]
     Human,
-    /// `path:line:col: error[E0308]: text`
+    /// `path:line:col: error[E0203]: text`
     Short,
     /// One object a line.
     Json,
@@ -239,8 +239,7 @@ fn json(diagnostic: &Diagnostic, sources: &Sources) -> String {
     out.push_str(",\"fix\":");
     match &diagnostic.fix {
         Some(fix) => {
-            let path = &sources.get(fix.span.file).path;
-            json_place(&mut out, path, fix.span);
+            json_place(&mut out, sources.get(fix.span.file), fix.span);
             field(&mut out, "replacement", &fix.replacement);
             out.push('}');
         }
@@ -251,16 +250,17 @@ fn json(diagnostic: &Diagnostic, sources: &Sources) -> String {
     out
 }
 
-fn json_place(out: &mut String, path: &str, span: Span) {
+/// Bytes of the file, for an editor that applies a fix to it.
+fn json_place(out: &mut String, source: &Source, span: Span) {
     out.push_str("{\"file\":");
-    quote(out, path);
-    number(out, "byte_start", span.start);
-    number(out, "byte_end", span.end);
+    quote(out, &source.path);
+    number(out, "byte_start", source.file_offset(span.start));
+    number(out, "byte_end", source.file_offset(span.end));
 }
 
 fn json_span(out: &mut String, sources: &Sources, span: Span, primary: bool, label: Option<&str>) {
     let source = sources.get(span.file);
-    json_place(out, &source.path, span);
+    json_place(out, source, span);
     let (line, column) = source.line_column(span.start);
     number(out, "line_start", line);
     number(out, "column_start", column);

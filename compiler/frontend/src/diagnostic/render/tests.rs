@@ -47,7 +47,7 @@ fn short_and_json_count_lines_and_characters_from_one() {
     let it = Diagnostic::new(Code::E0001, at(9, 10), "no \"x\"\n");
     assert_eq!(render(&it, &sources, Format::Short, Style::default()), "a.st:1:9: error[E0001]: no \"x\"\n\n");
     let json = render(&it, &sources, Format::Json, Style::default());
-    let expected = r#"{"reason":"diagnostic","code":"E0001","severity":"error","message":"no \"x\"\n","spans":[{"file":"a.st","byte_start":9,"byte_end":10,"line_start":1,"column_start":9,"line_end":1,"column_end":10,"is_primary":true,"label":null}],"notes":[],"help":null,"fix":null,"rendered":""#;
+    let expected = r#"{"reason":"diagnostic","code":"E0001","severity":"error","message":"no \"x\"\n","spans":[{"file":"a.st","byte_start":8,"byte_end":9,"line_start":1,"column_start":9,"line_end":1,"column_end":10,"is_primary":true,"label":null}],"notes":[],"help":null,"fix":null,"rendered":""#;
     assert!(json.starts_with(expected) && json.ends_with("\"}\n"), "{json}");
     assert_eq!(json.lines().count(), 1);
 }
