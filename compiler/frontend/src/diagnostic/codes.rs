@@ -71,14 +71,14 @@ E0004 Error "a string is not closed"
 ";
 E0005 Error "a number that cannot be read"
 "A number is decimal, or has one of the bases 2, 8 and 16. Its value fits 64 bits, and its digits belong to its
-base. `_` may stand between digits.
+base. `_` may stand between two digits, one at a time.
 
     mask := 2#1021;      (* before *)
     mask := 2#1011;      (* after *)
 ";
 E0006 Error "a duration that cannot be read"
 "A duration is a sequence of numbers with units, from the longest unit to the shortest: d, h, m, s, ms, us, ns.
-It is held as signed nanoseconds in 64 bits, so it reaches about 292 years.
+Only the last number may have a fraction. `_` may stand between two digits and between two units. A duration is held as signed nanoseconds in 64 bits, so it reaches about 292 years.
 
     delay := T#500;        (* before *)
     delay := T#500ms;      (* after *)

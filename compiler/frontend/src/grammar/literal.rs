@@ -21,7 +21,7 @@ pub fn untyped<'s>(input: &mut In<'_, '_, 's>, prefix: Option<Name<'s>>) -> Opti
         Kind::True => LiteralValue::Bool(true),
         Kind::False => LiteralValue::Bool(false),
         Kind::Integer | Kind::Based => integer(input, span, text),
-        Kind::Real => LiteralValue::Real(lex::real(text).into()),
+        Kind::Real => real(input, span, text),
         Kind::Time => duration(input, span, text),
         Kind::Date => LiteralValue::Date(date_kind(text)),
         Kind::Text | Kind::WideText | Kind::OpenText => string(input, span, text),
@@ -44,15 +44,38 @@ pub fn typed<'s>(input: &mut In<'_, '_, 's>, prefix: Name<'s>) -> Parsed<Literal
     }
 }
 
-fn report(input: &mut In<'_, '_, '_>, code: Code, span: Span, fault: Fault) {
-    let at = |place: usize| span.start + u32::try_from(place).unwrap_or(0);
-    let span = Span { start: at(fault.start), end: at(fault.end), ..span };
-    input.report(Diagnostic::new(code, span, fault.message));
+fn report(input: &mut In<'_, '_, '_>, code: Code, whole: Span, fault: Fault) {
+    let at = |place: usize| whole.start + u32::try_from(place).unwrap_or(0);
+    let span = Span { start: at(fault.start), end: at(fault.end), ..whole };
+    let it = Diagnostic::new(code, span, fault.message);
+    input.report(match fault.meant {
+        Some(meant) => it.help(format!("write `{meant}`")).fix(whole, meant),
+        None => it,
+    });
+}
+
+/// A number that cannot be read; where letters stand directly behind it, they are what is wrong.
+fn number_fault(input: &mut In<'_, '_, '_>, span: Span, fault: Fault) {
+    let at = input.number() + 1;
+    let next = input.state().place(at);
+    if input.kind_ahead(1) != Kind::Name || next.start != span.end {
+        report(input, Code::E0005, span, fault);
+    }
+}
+
+fn real<'s>(input: &mut In<'_, '_, '_>, span: Span, text: &str) -> LiteralValue<'s> {
+    match lex::real(text) {
+        Ok(digits) => LiteralValue::Real(digits.into()),
+        Err(fault) => {
+            number_fault(input, span, fault);
+            LiteralValue::Error
+        }
+    }
 }
 
 fn integer<'s>(input: &mut In<'_, '_, '_>, span: Span, text: &str) -> LiteralValue<'s> {
     let value = lex::integer(text).map(Some).unwrap_or_else(|fault| {
-        report(input, Code::E0005, span, fault);
+        number_fault(input, span, fault);
         None
     });
     match value {

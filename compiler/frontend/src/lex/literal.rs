@@ -6,13 +6,36 @@ pub struct Fault {
     pub start: usize,
     pub end: usize,
     pub message: String,
+    /// The whole literal as it is meant.
+    pub meant: Option<String>,
 }
 
 impl Fault {
     fn new(start: usize, end: usize, message: impl Into<String>) -> Self {
-        Self { start, end, message: message.into() }
+        Self { start, end, message: message.into(), meant: None }
     }
 }
+
+type IsByte = fn(&u8) -> bool;
+
+/// `text` holds no `_` but between a byte that may stand before it and one that may follow.
+fn strokes(text: &str, (before, behind): (IsByte, IsByte), message: &str) -> Result<(), Fault> {
+    let bytes = text.as_bytes();
+    let is = |at: Option<usize>, what: IsByte| at.and_then(|it| bytes.get(it)).is_some_and(what);
+    let loose = |at: &usize| bytes[*at] == b'_' && !(is(at.checked_sub(1), before) && is(Some(at + 1), behind));
+    let Some(start) = (0..bytes.len()).find(loose) else { return Ok(()) };
+    let end = start + bytes[start..].iter().take_while(|it| **it == b'_').count();
+    let mut meant = String::new();
+    for part in text.split('_').filter(|it| !it.is_empty()) {
+        if meant.as_bytes().last().is_some_and(before) && part.as_bytes().first().is_some_and(behind) {
+            meant.push('_');
+        }
+        meant.push_str(part);
+    }
+    Err(Fault { meant: Some(meant), ..Fault::new(start, end, message) })
+}
+
+const BETWEEN_DIGITS: &str = "`_` stands between two digits";
 
 /// `1_000`, `16#FF`: the magnitude.
 pub fn integer(text: &str) -> Result<u64, Fault> {
@@ -29,6 +52,8 @@ pub fn integer(text: &str) -> Result<u64, Fault> {
     if digits.bytes().all(|it| it == b'_') {
         return Err(Fault::new(0, text.len(), "the number has no digits"));
     }
+    let digit: IsByte = if radix == 16 { u8::is_ascii_hexdigit } else { u8::is_ascii_digit };
+    strokes(text, (digit, digit), BETWEEN_DIGITS)?;
     let mut value = 0_u64;
     for (place, digit) in digits.char_indices().filter(|(_, it)| *it != '_') {
         let Some(digit) = digit.to_digit(radix) else {
@@ -44,8 +69,9 @@ pub fn integer(text: &str) -> Result<u64, Fault> {
 }
 
 /// The digits of a real, without `_`.
-pub fn real(text: &str) -> String {
-    text.chars().filter(|it| *it != '_').collect()
+pub fn real(text: &str) -> Result<String, Fault> {
+    strokes(text, (u8::is_ascii_digit, u8::is_ascii_digit), BETWEEN_DIGITS)?;
+    Ok(text.chars().filter(|it| *it != '_').collect())
 }
 
 /// Units from the longest to the shortest, in nanoseconds.
@@ -68,6 +94,8 @@ pub fn duration(text: &str) -> Result<(i64, bool), Fault> {
     let mut total = 0_i128;
     // Index of the unit that the next part may have at most.
     let mut next_unit = 0;
+    // Where a part with a fraction stands, and its unit.
+    let mut fraction = None;
     while at < text.len() {
         let (unit, nanoseconds, end) = part(text, at)?;
         if unit < next_unit {
@@ -76,12 +104,34 @@ pub fn duration(text: &str) -> Result<(i64, bool), Fault> {
         }
         next_unit = unit + 1;
         total = total.saturating_add(nanoseconds);
+        fraction = fraction.or_else(|| text[at..end].contains('.').then_some((at, end, UNITS[unit].0)));
         at = end;
     }
+    if let Some((start, end, unit)) = fraction.filter(|it| it.1 < text.len()) {
+        let message = format!("only the last unit of a duration has a fraction, and `{unit}` is not the last");
+        let sign = if negative { "-" } else { "" };
+        let meant = format!("{prefix}#{sign}{}", spelled(total));
+        return Err(Fault { meant: Some(meant), ..Fault::new(start, end, message) });
+    }
+    let places: (IsByte, IsByte) = (u8::is_ascii_alphanumeric, u8::is_ascii_digit);
+    strokes(text, places, "`_` stands between two digits, or between two units")?;
     let total = if negative { -total } else { total };
     let nanoseconds = i64::try_from(total)
         .map_err(|_| Fault::new(0, text.len(), "the duration does not fit 64 bits of nanoseconds (about 292 years)"))?;
     Ok((nanoseconds, long))
+}
+
+/// Nanoseconds in units.
+fn spelled(mut nanoseconds: i128) -> String {
+    let mut out = String::new();
+    for (unit, scale) in UNITS {
+        let count = nanoseconds / scale;
+        nanoseconds -= count * scale;
+        if count > 0 || (out.is_empty() && scale == 1) {
+            out += &format!("{count}{unit}");
+        }
+    }
+    out
 }
 
 /// One number with its unit: index of the unit, nanoseconds, where it ends.

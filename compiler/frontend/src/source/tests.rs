@@ -1,3 +1,5 @@
+#![allow(clippy::unwrap_used)]
+
 use super::Source;
 use std::time::{Duration, Instant};
 
