@@ -311,7 +311,8 @@ impl<'s> Checker<'_, 's> {
             return Some(self.string_of_another_length(found.place, formal.resolved.ty, expr.span));
         }
         if found.place.ty != formal.resolved.ty || found.range != formal.resolved.range {
-            let (wants, has) = (self.type_name(formal.resolved.ty), self.type_name(found.place.ty));
+            let wants = self.ranged_name(formal.resolved.ty, formal.resolved.range);
+            let has = self.ranged_name(found.place.ty, found.range);
             self.report(
                 Diagnostic::new(
                     Code::E0201,
@@ -325,6 +326,12 @@ impl<'s> Checker<'_, 's> {
         }
         self.note_passed(&found.place, expr.span, formal.name.span);
         Some(found.place)
+    }
+
+    /// A type's name with the bounds of a subrange: `INT(0..3)`.
+    fn ranged_name(&self, ty: Type, range: Option<(i128, i128)>) -> String {
+        let bounds = range.map_or_else(String::new, |(low, high)| format!("({low}..{high})"));
+        self.type_name(ty) + &bounds
     }
 
     /// A string of another capacity goes in by a copy, cut where it is too long, and comes back so.

@@ -329,7 +329,7 @@ impl<'s> Checker<'_, 's> {
         let order: Vec<_> = outputs_last(false).chain(outputs_last(true)).collect();
         let mut complete = true;
         let mut compared = false;
-        for argument in arguments {
+        for (number, argument) in arguments.iter().enumerate() {
             if let ArgumentKind::Positional(value) = &argument.kind
                 && let Some((at, error)) = self.compared_parameter(parameters, value)
             {
@@ -343,6 +343,9 @@ impl<'s> Checker<'_, 's> {
                 ArgumentKind::Positional(value) => {
                     let free = order.iter().copied().find(|at| matches!(given[*at], Given::Nothing));
                     match free {
+                        Some(at) if parameters[at].section == Section::Output && is_value(value) => {
+                            Err(Box::new(value_for_output(owner, number + 1, parameters[at].name, value.span)))
+                        }
                         Some(at) if parameters[at].section == Section::Output => {
                             Ok((at, Given::Output { target: Some(value), negated: false }))
                         }
@@ -505,4 +508,27 @@ pub(super) fn instruction_in(family: staunch_runtime::Family, name: &str) -> Opt
 /// `1 argument`, `2 arguments`.
 pub(super) fn plural(count: usize) -> String {
     if count == 1 { "1 argument".to_owned() } else { format!("{count} arguments") }
+}
+
+/// Nothing that an output could be connected with.
+fn is_value(expr: &ast::Expr<'_>) -> bool {
+    match &expr.kind {
+        Ast::Literal(_) | Ast::Unary(..) | Ast::Binary(..) => true,
+        Ast::Paren(inner) => is_value(inner),
+        Ast::Name(_)
+        | Ast::Member(..)
+        | Ast::Index(..)
+        | Ast::Address(_)
+        | Ast::Part(..)
+        | Ast::Deref(_)
+        | Ast::Call(..)
+        | Ast::Error(_) => false,
+    }
+}
+
+fn value_for_output(owner: &str, number: usize, name: &str, span: Span) -> Diagnostic {
+    let message = format!("argument {number} of `{owner}` is its output `{name}`, which needs a variable");
+    Diagnostic::new(Code::E0306, span, message)
+        .label("this is a value")
+        .help(format!("outputs are connected as `{name} => variable`, or read after the call"))
 }
