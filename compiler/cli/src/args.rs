@@ -1,5 +1,6 @@
 //! The command line, as `docs/cli.md` promises it.
 
+use crate::project::Project;
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
 use staunch_frontend::Dialect;
 use std::ffi::OsString;
@@ -43,11 +44,11 @@ pub struct Common {
     #[arg(long, global = true, value_parser = dialect, value_name = "iec|cscape|codesys|logix")]
     pub dialect: Option<Dialect>,
     /// How diagnostics are written
-    #[arg(long, global = true, value_enum, default_value_t = MessageFormat::Human)]
-    pub message_format: MessageFormat,
+    #[arg(long, global = true, value_enum)]
+    pub message_format: Option<MessageFormat>,
     /// Colours in diagnostics
-    #[arg(long, global = true, value_enum, default_value_t = Color::Auto)]
-    pub color: Color,
+    #[arg(long, global = true, value_enum)]
+    pub color: Option<Color>,
     /// Warn about a lint
     #[arg(short = 'W', long = "warn", global = true, value_name = "CODE", action = ArgAction::Append)]
     pub warn: Vec<String>,
@@ -65,15 +66,39 @@ pub struct Common {
     pub verbose: u8,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+impl Common {
+    /// With what the project file says where the command line says nothing.
+    #[must_use]
+    pub fn with(&self, project: &Project) -> Self {
+        Self {
+            message_format: self.message_format.or(project.message_format),
+            color: self.color.or(project.color),
+            quiet: self.quiet || project.quiet && self.verbose == 0,
+            verbose: self.verbose.max(u8::from(project.verbose)),
+            ..self.clone()
+        }
+    }
+
+    pub fn format(&self) -> MessageFormat {
+        self.message_format.unwrap_or_default()
+    }
+
+    pub fn color(&self) -> Color {
+        self.color.unwrap_or_default()
+    }
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum MessageFormat {
+    #[default]
     Human,
     Short,
     Json,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Color {
+    #[default]
     Auto,
     Always,
     Never,

@@ -101,7 +101,7 @@ fn text(session: &Session, args: &Bench, program: &Program, figures: &Figures) -
     let Figures { timing: Timing { scans, min, median, p99 }, text, compile } = figures;
     let state = Layout::new(program).machine.size;
     let milliseconds = (session.compile_time + *compile).as_secs_f64() * 1e3;
-    if session.common.message_format == MessageFormat::Json {
+    if session.common.format() == MessageFormat::Json {
         return format!(
             "{{\"reason\":\"bench\",\"scans\":{scans},\"ns_min\":{min:.2},\"ns_median\":{median:.2},\"ns_p99\":{p99:.2},\
              \"text_bytes\":{text},\"state_bytes\":{state},\"compile_ms\":{milliseconds:.3}}}\n"

@@ -1,5 +1,7 @@
 //! `staunch.toml`: the settings of the command line, for the folder it lies in and those below.
 
+use crate::args::{Color, MessageFormat};
+use clap::ValueEnum;
 use std::path::{Path, PathBuf};
 
 /// What a project file says. Paths are relative to its folder.
@@ -14,6 +16,10 @@ pub struct Project {
     pub warn: Vec<String>,
     pub deny: Vec<String>,
     pub allow: Vec<String>,
+    pub message_format: Option<MessageFormat>,
+    pub color: Option<Color>,
+    pub quiet: bool,
+    pub verbose: bool,
 }
 
 /// The project file of `start` or of the nearest folder above it.
@@ -40,15 +46,17 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
         "files" => project.files = texts(key, value)?.into_iter().map(PathBuf::from).collect(),
         "program" => project.program = Some(text(key, value)?),
         "cycle" => project.cycle = Some(text(key, value)?),
-        "ctu-stop-at-pv" => {
-            project.ctu_stop_at_pv = value.as_bool().ok_or("`ctu-stop-at-pv` is true or false")?;
-        }
+        "ctu-stop-at-pv" => project.ctu_stop_at_pv = flag(key, value)?,
         "warn" => project.warn = texts(key, value)?,
         "deny" => project.deny = texts(key, value)?,
         "allow" => project.allow = texts(key, value)?,
+        "message-format" => project.message_format = Some(choice(key, value)?),
+        "color" => project.color = Some(choice(key, value)?),
+        "quiet" => project.quiet = flag(key, value)?,
+        "verbose" => project.verbose = flag(key, value)?,
         _ => {
             return Err(format!(
-                "there is no setting `{key}`; there are dialect, files, program, cycle, ctu-stop-at-pv, warn, deny and allow"
+                "there is no setting `{key}`; there are dialect, files, program, cycle, ctu-stop-at-pv, warn, deny, allow, message-format, color, quiet and verbose"
             ));
         }
     }
@@ -57,6 +65,18 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
 
 fn text(key: &str, value: &toml::Value) -> Result<String, String> {
     value.as_str().map(str::to_owned).ok_or_else(|| format!("`{key}` is a text in quotes"))
+}
+
+fn flag(key: &str, value: &toml::Value) -> Result<bool, String> {
+    value.as_bool().ok_or_else(|| format!("`{key}` is true or false"))
+}
+
+/// One of the words that the option of this name takes.
+fn choice<T: ValueEnum>(key: &str, value: &toml::Value) -> Result<T, String> {
+    let named = value.as_str().and_then(|it| T::from_str(it, false).ok());
+    let words =
+        || T::value_variants().iter().filter_map(T::to_possible_value).map(|it| format!("\"{}\"", it.get_name()));
+    named.ok_or_else(|| format!("`{key}` is one of {}", words().collect::<Vec<_>>().join(", ")))
 }
 
 fn texts(key: &str, value: &toml::Value) -> Result<Vec<String>, String> {

@@ -67,10 +67,22 @@ impl Session {
         let compile_time = start.elapsed();
         let first = PathBuf::from(&sources.files()[0].path);
         let diagnostics = Vec::new();
-        let common = common.clone();
+        let common = common.with(&project);
         let mut session = Self { common, project, first, sources, program: None, diagnostics, compile_time };
+        session.say_what_was_read();
         let errors = session.accept(compilation, &levels, &[])?;
         Ok((session, errors))
+    }
+
+    /// With `-v`: the project file and the sources.
+    fn say_what_was_read(&self) {
+        if self.common.verbose == 0 {
+            return;
+        }
+        if self.project.folder != Path::new("") {
+            self.say("Settings", &self.project.folder.join("staunch.toml"));
+        }
+        self.sources.files().iter().for_each(|it| self.say("Read", Path::new(&it.path)));
     }
 
     /// The same program, or `sources` in its place, as it moves to another dialect. What has been
@@ -110,7 +122,7 @@ impl Session {
     }
 
     fn print(&self, diagnostics: &[Diagnostic], errors: usize) -> Result<(), String> {
-        let format = match self.common.message_format {
+        let format = match self.common.format() {
             MessageFormat::Human => Format::Human,
             MessageFormat::Short => Format::Short,
             MessageFormat::Json => Format::Json,
@@ -136,7 +148,7 @@ impl Session {
     }
 
     fn color(&self) -> bool {
-        match self.common.color {
+        match self.common.color() {
             Color::Always => true,
             Color::Never => false,
             Color::Auto => {
@@ -196,7 +208,7 @@ impl Session {
 
     /// A line for people on standard error, as cargo prints them.
     pub fn say(&self, verb: &str, path: &Path) {
-        let silent = self.common.quiet || self.common.message_format != MessageFormat::Human;
+        let silent = self.common.quiet || self.common.format() != MessageFormat::Human;
         if !silent {
             let _ = writeln!(std::io::stderr(), "{verb:>12} {}", path.display());
         }

@@ -37,7 +37,7 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
     let common = Common { dialect: Some(args.from), ..common.clone() };
     let from = Session::start(&common, &args.files)?;
     let Some(program) = from.program_to_run(args.program.as_deref())? else {
-        if common.message_format == MessageFormat::Human {
+        if from.common.format() == MessageFormat::Human {
             eprintln!("the program is compared once `--from {}` accepts it", args.from.name());
         }
         return Ok(REJECTED);

@@ -36,7 +36,7 @@ struct Line {
 
 impl Report<'_> {
     fn json(&self) -> bool {
-        self.session.common.message_format == MessageFormat::Json
+        self.session.common.format() == MessageFormat::Json
     }
 
     fn names(&self) -> [&'static str; 2] {

@@ -121,6 +121,28 @@ fn a_dialect_is_a_flag_a_pragma_or_a_setting() {
 }
 
 #[test]
+fn a_project_file_holds_the_settings_of_the_command_line() {
+    let folder = Folder::with("settings", &[("bad.st", WRONG), ("good.st", COUNTER)]);
+    folder.write("staunch.toml", "message-format = \"short\"\n");
+    assert!(folder.staunch("check bad.st").err(1).starts_with("bad.st:3:9: error[E"));
+    has(&folder.staunch("check bad.st --message-format human").err(1), &["error: rejected with 2 errors"]);
+    folder.write("staunch.toml", "message-format = \"json\"\n");
+    has(&folder.staunch("check bad.st").out(1), &["\"reason\":\"diagnostic\""]);
+    folder.write("staunch.toml", "color = \"always\"\n");
+    has(&folder.staunch("check bad.st").err(1), &["\u{1b}["]);
+    assert!(!folder.staunch("check bad.st --color never").err(1).contains('\u{1b}'));
+    folder.write("staunch.toml", "quiet = true\n");
+    assert_eq!(folder.staunch("check good.st").err(0), "");
+    folder.write("staunch.toml", "verbose = true\n");
+    has(&folder.staunch("check good.st").err(0), &["Settings ", "staunch.toml", "Read good.st", "Checked good.st"]);
+    assert_eq!(folder.staunch("check good.st -q").err(0), "");
+    folder.write("staunch.toml", "color = \"pink\"\n");
+    has(&folder.staunch("check good.st").err(2), &["`color` is one of \"auto\", \"always\", \"never\""]);
+    folder.write("staunch.toml", "quiet = 1\n");
+    has(&folder.staunch("check good.st").err(2), &["`quiet` is true or false"]);
+}
+
+#[test]
 fn codes_are_explained() {
     let folder = Folder::new("explain");
     has(&folder.staunch("explain E0203").out(0), &["E0203"]);
