@@ -139,6 +139,28 @@ mod tests {
         String::from_utf8(bytes).unwrap()
     }
 
+    /// What a sink writes of scans in which `name` holds these texts.
+    pub(super) fn texts_written(
+        subject: &Subject<'_>,
+        texts: &[&str],
+        open: impl FnOnce(Box<dyn Write>) -> Box<dyn Sink>,
+    ) -> String {
+        let file = Shared::default();
+        let mut sink = open(Box::new(file.clone()));
+        let name = offset_of("name");
+        for (text, number) in texts.iter().zip(1_u32..) {
+            let mut state = vec![0; 128];
+            let length = u16::try_from(text.len()).unwrap();
+            state[name..name + 2].copy_from_slice(&length.to_ne_bytes());
+            state[name + 2..name + 2 + text.len()].copy_from_slice(text.as_bytes());
+            let row = Row { scan: u64::from(number), time: i64::from(number) * 10_000_000, state: &state };
+            sink.row(subject, row).unwrap();
+        }
+        sink.finish(subject).unwrap();
+        let bytes = file.0.borrow().clone();
+        String::from_utf8(bytes).unwrap()
+    }
+
     #[test]
     fn milliseconds_are_short() {
         assert_eq!(milliseconds(0), "0");

@@ -137,7 +137,24 @@ fn axis_label(time: Time, step: Time) -> String {
 }
 
 fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+    visible(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+/// Characters that cannot be seen, and those that XML cannot hold, as escapes of Structured Text.
+fn visible(text: &str) -> String {
+    let mut out = String::new();
+    for character in text.chars() {
+        let _ = match character {
+            '\n' => write!(out, "$N"),
+            '\r' => write!(out, "$R"),
+            '\t' => write!(out, "$T"),
+            '\u{c}' => write!(out, "$P"),
+            it if it.is_control() => write!(out, "${:02X}", u32::from(it)),
+            it @ '\u{fffe}'..='\u{ffff}' => write!(out, "${:04X}", u32::from(it)),
+            it => write!(out, "{it}"),
+        };
+    }
+    out
 }
 
 impl LaneOf {
@@ -200,10 +217,10 @@ impl LaneOf {
     fn labels(&self, svg: &mut String, scale: &Scale, y: impl Fn(&Change) -> f64) {
         for (from, to, change) in self.spans(scale) {
             let room = ((to - from - 6.0) / (CHARACTER * 0.92)) as usize;
-            if !change.text.is_empty() && change.text.chars().count() <= room {
+            let shown = visible(&change.text);
+            if !shown.is_empty() && shown.chars().count() <= room {
                 let (x, y) = (from + 5.0, y(change));
-                let _ =
-                    writeln!(svg, "<text class=\"value\" x=\"{x:.1}\" y=\"{y:.1}\">{}</text>", escape(&change.text));
+                let _ = writeln!(svg, "<text class=\"value\" x=\"{x:.1}\" y=\"{y:.1}\">{}</text>", escape(&shown));
             }
         }
     }
@@ -241,7 +258,7 @@ mod tests {
     use super::*;
     use crate::column::columns;
     use crate::fixture::map;
-    use crate::trace::tests::written;
+    use crate::trace::tests::{texts_written, written};
 
     #[test]
     fn every_variable_has_a_lane() {
@@ -258,5 +275,18 @@ mod tests {
         assert_eq!(svg.matches("class=\"number\"").count(), 2);
         assert!(svg.contains(">a,b</text>") || svg.contains("class=\"text\""), "{svg}");
         assert!(!svg.contains("NaN"), "{svg}");
+    }
+
+    #[test]
+    fn what_cannot_be_seen_is_escaped() {
+        let map = map();
+        let columns = columns(&map, &[0], Some("name")).unwrap();
+        let subject = Subject { map: &map, columns, title: "A\u{1}".to_owned() };
+        let texts = ["a\nb", "a\0<", "\u{ffff}", "\u{7f}\t"];
+        let svg = texts_written(&subject, &texts, |out| Box::new(Diagram::new(out, &subject)));
+        for shown in ["A$01", "a$Nb", "a$00&lt;", "$FFFF", "$7F$T"] {
+            assert!(svg.contains(&format!(">{shown}</text>")), "{shown}: {svg}");
+        }
+        assert!(svg.chars().all(|it| it == '\n' || !it.is_control() && it != '\u{ffff}'), "{svg}");
     }
 }

@@ -84,6 +84,22 @@ fn word(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join("_")
 }
 
+/// A string without what would end it. Viewers read the escapes of C.
+fn escaped(text: &str) -> String {
+    let mut out = String::new();
+    for character in text.chars() {
+        match character {
+            '\\' => out.push_str("\\\\"),
+            it if it.is_control() || it.is_whitespace() => {
+                let octal = |byte: &u8| format!("\\{byte:03o}");
+                out.extend(it.encode_utf8(&mut [0; 4]).as_bytes().iter().map(octal));
+            }
+            it => out.push(it),
+        }
+    }
+    out
+}
+
 /// The short name of a column: printable characters from `!` to `~`.
 fn code(mut number: usize) -> String {
     let mut code = String::new();
@@ -154,7 +170,7 @@ fn change(subject: &Subject<'_>, column: &Column, state: &[u8]) -> String {
         Kind::Text => {
             let mut text = String::new();
             subject.cell(column, state, &mut text);
-            format!("s{} ", word(&text))
+            format!("s{} ", escaped(&text))
         }
     }
 }
@@ -164,7 +180,7 @@ mod tests {
     use super::*;
     use crate::column::columns;
     use crate::fixture::map;
-    use crate::trace::tests::written;
+    use crate::trace::tests::{texts_written, written};
 
     #[test]
     fn only_changes_are_written() {
@@ -203,6 +219,18 @@ b1111111111111111 %
 r0.5 $
 "
         );
+    }
+
+    #[test]
+    fn different_texts_stay_different() {
+        let map = map();
+        let columns = columns(&map, &[0], Some("name")).unwrap();
+        let subject = Subject { map: &map, columns, title: "Garage".to_owned() };
+        let texts = ["a b", "a\nb", "a_b", "\0", "\\000", "ä", "\u{a0}"];
+        let vcd = texts_written(&subject, &texts, |out| Box::new(Waves::new(out, &subject).unwrap()));
+        let changes: Vec<_> = vcd.lines().filter_map(|it| it.strip_prefix('s')).collect();
+        let expected = ["a\\040b !", "a\\012b !", "a_b !", "\\000 !", "\\\\000 !", "ä !", "\\302\\240 !"];
+        assert_eq!(changes, expected);
     }
 
     #[test]
