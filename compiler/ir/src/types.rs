@@ -104,12 +104,14 @@ impl Elementary {
     }
 
     /// The type of a standard block's pin.
-    pub const fn of_pin(family: Family, pin: &Pin) -> Self {
+    pub const fn of_pin(info: &BlockInfo, pin: &Pin) -> Self {
+        let family = info.family;
         match pin.lane {
             Lane::Bool => Self::Bool,
             Lane::I8 => Self::Sint,
             Lane::I16 => Self::Int,
             Lane::I32 => Self::Dint,
+            Lane::I64 if pin.is_time && info.is_long() => Self::Ltime,
             Lane::I64 if pin.is_time => Self::Time,
             Lane::I64 => Self::Lint,
             Lane::U8 => Self::Usint,
@@ -199,7 +201,7 @@ impl BlockId {
     pub fn pin_type(self, pin: FieldId) -> Option<Type> {
         let info = self.info();
         let pin = info.pins.get(pin.index())?;
-        Some(Type::Elementary(Elementary::of_pin(info.family, pin)))
+        Some(Type::Elementary(Elementary::of_pin(info, pin)))
     }
 }
 

@@ -82,6 +82,7 @@ impl Function<'_> {
             | Op::Asin
             | Op::Acos
             | Op::Atan
+            | Op::Atan2
             | Op::Shl
             | Op::Shr
             | Op::Rol

@@ -116,6 +116,11 @@ pub trait Block: Copy + Default {
 }
 
 impl BlockInfo {
+    /// Whether it is another block's form for longer values, as LTON is TON's: its times are LTIMEs.
+    pub const fn is_long(&self) -> bool {
+        matches!(self.name.as_bytes(), [b'L', ..])
+    }
+
     pub fn pin(&self, name: &str) -> Option<&'static Pin> {
         self.pins.iter().find(|pin| pin.name.eq_ignore_ascii_case(name))
     }

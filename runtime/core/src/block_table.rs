@@ -37,6 +37,9 @@ macro_rules! for_each_block {
             Iec "TON" iec::Ton {} { timed "" call staunch_iec_ton; }
             Iec "TOF" iec::Tof {} { timed "" call staunch_iec_tof; }
             Iec "TP" iec::Tp {} { timed "" call staunch_iec_tp; }
+            Iec "LTON" iec::Ton {} { timed "" call staunch_iec_lton; }
+            Iec "LTOF" iec::Tof {} { timed "" call staunch_iec_ltof; }
+            Iec "LTP" iec::Tp {} { timed "" call staunch_iec_ltp; }
             Iec "R_TRIG" iec::RTrig {} { plain "" call staunch_iec_r_trig; }
             Iec "F_TRIG" iec::FTrig {} { plain "" call staunch_iec_f_trig; }
             Iec "SR" iec::Sr {} { plain "" call staunch_iec_sr; }

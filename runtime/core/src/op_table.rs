@@ -29,6 +29,7 @@ macro_rules! for_each_op {
             Asin        "ASIN"     asin           (value: T)                    T      [real]      total;
             Acos        "ACOS"     acos           (value: T)                    T      [real]      total;
             Atan        "ATAN"     atan           (value: T)                    T      [real]      total;
+            Atan2       "ATAN2"    atan2          (y: T, x: T)                  T      [real]      total;
             And         "AND"      and            (a: T, b: T)                  T      [bits]      total;
             Or          "OR"       or             (a: T, b: T)                  T      [bits]      total;
             Xor         "XOR"      xor            (a: T, b: T)                  T      [bits]      total;

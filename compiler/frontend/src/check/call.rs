@@ -468,7 +468,6 @@ fn not_yet(name: &str) -> bool {
     };
     let (from, to) = name.split_once("_TO_").or_else(|| Some(("", name.strip_prefix("TO_")?))).unwrap_or(("", ""));
     let others = [
-        "ATAN2",
         "ROUND",
         "CEIL",
         "FLOOR",
@@ -478,12 +477,6 @@ fn not_yet(name: &str) -> bool {
         "UPPER_BOUND",
         "ADR",
         "TIME",
-        "ADD_TIME",
-        "SUB_TIME",
-        "MUL_TIME",
-        "DIV_TIME",
-        "MULTIME",
-        "DIVTIME",
         "CONCAT_DATE_TOD",
         "CONCAT_TIME",
         "UPPER_CASE",

@@ -21,6 +21,7 @@ pub(crate) fn exists(name: &str) -> bool {
     Op::named(name).is_some_and(|op| !op.source_name().starts_with('_'))
         || TextOp::named(name).is_some_and(|op| !op.source_name().starts_with('_'))
         || OTHERS.iter().any(|it| it.eq_ignore_ascii_case(name))
+        || of_times(name).is_some()
         || conversion::parse(name).is_some()
 }
 
@@ -28,7 +29,25 @@ pub(crate) fn exists(name: &str) -> bool {
 pub(super) fn names() -> impl Iterator<Item = &'static str> {
     let ops = Op::ALL.iter().map(|op| op.source_name());
     let texts = TextOp::ALL.iter().map(|op| op.source_name());
-    ops.chain(texts).chain(OTHERS.iter().copied()).filter(|it| !it.starts_with('_'))
+    ops.chain(texts).chain(OTHERS.iter().copied()).chain(TIMES.iter().map(|it| it.0)).filter(|it| !it.starts_with('_'))
+}
+
+/// The functions of durations, which mean an operator: `ADD_TIME(a, b)` is `a + b`.
+const TIMES: [(&str, ast::BinaryOp, Elementary); 10] = [
+    ("ADD_TIME", ast::BinaryOp::Add, Elementary::Time),
+    ("SUB_TIME", ast::BinaryOp::Sub, Elementary::Time),
+    ("MUL_TIME", ast::BinaryOp::Mul, Elementary::Time),
+    ("DIV_TIME", ast::BinaryOp::Div, Elementary::Time),
+    ("MULTIME", ast::BinaryOp::Mul, Elementary::Time),
+    ("DIVTIME", ast::BinaryOp::Div, Elementary::Time),
+    ("ADD_LTIME", ast::BinaryOp::Add, Elementary::Ltime),
+    ("SUB_LTIME", ast::BinaryOp::Sub, Elementary::Ltime),
+    ("MUL_LTIME", ast::BinaryOp::Mul, Elementary::Ltime),
+    ("DIV_LTIME", ast::BinaryOp::Div, Elementary::Ltime),
+];
+
+fn of_times(name: &str) -> Option<(ast::BinaryOp, Elementary)> {
+    TIMES.iter().find(|it| it.0.eq_ignore_ascii_case(name)).map(|it| (it.1, it.2))
 }
 
 /// So many text functions may be nested in one expression of the program that is made.
@@ -188,6 +207,9 @@ impl<'s> Checker<'_, 's> {
         if let Some(op) = TextOp::named(name.text) {
             return self.text_function(op, name, arguments, span).map(Operand::Typed);
         }
+        if let Some((operator, ty)) = of_times(name.text) {
+            return self.time_function(operator, ty, name, arguments, span).map(Operand::Typed);
+        }
         match name.text.to_ascii_uppercase().as_str() {
             "MUX" => self.mux(name, arguments, expected, span).map(Operand::Typed),
             "MOVE" => {
@@ -278,12 +300,36 @@ impl<'s> Checker<'_, 's> {
                 let (ty, operands) = self.same_type(&values, expected, name)?;
                 self.fold(op, ty, operands, name.span).map(Operand::Typed)
             }
+            Op::Atan2 => self.angle(&values, expected, name).map(Operand::Typed),
             Op::Limit => {
                 let (ty, operands) = self.same_type(&values, expected, name)?;
                 self.apply(op, ty, operands, ty, name.span).map(Operand::Typed)
             }
             _ => self.numeric(op, &values, expected, name).map(Operand::Typed),
         }
+    }
+
+    /// `ADD_TIME(IN1, IN2)` and its kin: the operator, for durations alone.
+    fn time_function(
+        &mut self,
+        operator: ast::BinaryOp,
+        ty: Elementary,
+        name: ast::Name<'s>,
+        arguments: &[ast::Argument<'s>],
+        span: Span,
+    ) -> Option<Expr> {
+        let values = self.arguments(name, &shape(&["IN1", "IN2"]), arguments, span)?;
+        let result = self.chain(operator, &values, Some(Type::Elementary(ty)), name)?;
+        if result.ty() == Some(Type::Elementary(ty)) {
+            return result.typed().cloned();
+        }
+        let found = result.ty().map_or_else(|| "a number".to_owned(), |it| self.type_name(it));
+        let wants = crate::key::article(ty.name());
+        self.report(
+            Diagnostic::new(Code::E0204, name.span, format!("`{}` makes {wants}, this is {found}", name.text))
+                .label(format!("its first argument is {wants}")),
+        );
+        None
     }
 
     /// Operands of a function that takes them all at one type.
@@ -535,20 +581,47 @@ impl<'s> Checker<'_, 's> {
                 Type::Elementary(join(it, Elementary::Real).unwrap_or(Elementary::Lreal))
             }
             other => {
-                let found = self.type_name(other);
-                self.report(
-                    Diagnostic::new(
-                        Code::E0204,
-                        values[0].span,
-                        format!("`{}` takes a REAL or LREAL, this is {found}", name.text),
-                    )
-                    .label(format!("this is {found}")),
-                );
+                self.report_not_real(other, values[0].span, name);
                 return None;
             }
         };
         let value = self.convert(Conversion::Value, ty, value);
         self.apply(op, ty, vec![value], ty, name.span)
+    }
+
+    /// `ATAN2(Y, X)`, at the wider type of the two.
+    fn angle(&mut self, values: &[&ast::Expr<'s>], expected: Option<Type>, name: ast::Name<'s>) -> Option<Expr> {
+        let expected = expected.filter(|it| matches!(it, Type::Elementary(it) if it.is_real()));
+        let operands = self.in_order(values, expected)?;
+        let mut wide: Option<Elementary> = None;
+        for (operand, value) in operands.iter().zip(values) {
+            match operand.ty() {
+                None => {}
+                Some(Type::Elementary(it)) if it.is_integer() || it.is_real() => {
+                    let so_far = wide.unwrap_or(Elementary::Real);
+                    wide = Some(join(so_far, it).unwrap_or(Elementary::Lreal));
+                }
+                Some(other) => {
+                    self.report_not_real(other, value.span, name);
+                    return None;
+                }
+            }
+        }
+        let ty = wide.map(Type::Elementary).or(expected).unwrap_or(Type::LREAL);
+        let mut angle = Vec::new();
+        for (operand, value) in operands.into_iter().zip(values) {
+            angle.push(match operand {
+                Operand::Typed(expr) => self.convert(Conversion::Value, ty, expr),
+                literal => self.coerce(literal, ty, value.span)?,
+            });
+        }
+        self.apply(Op::Atan2, ty, angle, ty, name.span)
+    }
+
+    fn report_not_real(&mut self, found: Type, span: Span, name: ast::Name<'s>) {
+        let found = self.type_name(found);
+        let message = format!("`{}` takes a REAL or LREAL, this is {found}", name.text);
+        self.report(Diagnostic::new(Code::E0204, span, message).label(format!("this is {found}")));
     }
 
     fn text_function(
@@ -691,6 +764,7 @@ fn op_shape(op: Op) -> Shape {
         Op::Shl | Op::Shr | Op::Rol | Op::Ror => shape(&["IN", "N"]),
         Op::Limit | Op::InRange => shape(&["MN", "IN", "MX"]),
         Op::Sel => shape(&["G", "IN0", "IN1"]),
+        Op::Atan2 => shape(&["Y", "X"]),
         Op::Neg
         | Op::Abs
         | Op::Sqrt

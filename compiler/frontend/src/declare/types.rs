@@ -34,11 +34,8 @@ const MAX_DIMENSIONS: usize = 64;
 /// Longest string.
 const MAX_CAPACITY: i128 = 32767;
 
-const NOT_YET: [&str; 19] = [
+const NOT_YET: [&str; 16] = [
     "RTC",
-    "LTON",
-    "LTOF",
-    "LTP",
     "BLINK",
     "DATE",
     "LDATE",

@@ -42,6 +42,7 @@ pub trait Real: Number {
     fn arc_sine(self) -> Self;
     fn arc_cosine(self) -> Self;
     fn arc_tangent(self) -> Self;
+    fn arc_tangent_over(self, x: Self) -> Self;
 }
 
 /// A lane with bitwise operations; logical ones for BOOL.
@@ -114,7 +115,7 @@ integers! {
 
 macro_rules! reals {
     ($($rust:ident: $abs:ident $pow:ident $sqrt:ident $log:ident $log10:ident $exp:ident
-        $sin:ident $cos:ident $tan:ident $asin:ident $acos:ident $atan:ident;)*) => { $(
+        $sin:ident $cos:ident $tan:ident $asin:ident $acos:ident $atan:ident $atan2:ident;)*) => { $(
         impl Number for $rust {
             #[inline]
             fn plus(self, other: Self) -> Self { self + other }
@@ -153,11 +154,13 @@ macro_rules! reals {
             fn arc_cosine(self) -> Self { libm::$acos(self) }
             #[inline]
             fn arc_tangent(self) -> Self { libm::$atan(self) }
+            #[inline]
+            fn arc_tangent_over(self, x: Self) -> Self { libm::$atan2(self, x) }
         }
     )* };
 }
 
 reals! {
-    f32: fabsf powf sqrtf logf log10f expf sinf cosf tanf asinf acosf atanf;
-    f64: fabs pow sqrt log log10 exp sin cos tan asin acos atan;
+    f32: fabsf powf sqrtf logf log10f expf sinf cosf tanf asinf acosf atanf atan2f;
+    f64: fabs pow sqrt log log10 exp sin cos tan asin acos atan atan2;
 }

@@ -68,3 +68,10 @@ pub fn acos<T: Real>(value: T) -> T {
 pub fn atan<T: Real>(value: T) -> T {
     value.arc_tangent()
 }
+
+/// The angle in radians, `-pi..=pi`, between the positive x axis and the point `(x, y)`: IEEE
+/// `atan2`. With zeros, the signs decide: `atan2(0, -0)` is pi.
+#[inline]
+pub fn atan2<T: Real>(y: T, x: T) -> T {
+    y.arc_tangent_over(x)
+}
