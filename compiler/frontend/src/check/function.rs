@@ -303,7 +303,11 @@ impl<'s> Checker<'_, 's> {
             Op::Atan2 => self.angle(&values, expected, name).map(Operand::Typed),
             Op::Limit => {
                 let (ty, operands) = self.same_type(&values, expected, name)?;
-                self.apply(op, ty, operands, ty, name.span).map(Operand::Typed)
+                let limited = match ty {
+                    Type::String(_) => self.limited_text(ty, operands, name.span),
+                    _ => self.apply(op, ty, operands, ty, name.span),
+                };
+                limited.map(Operand::Typed)
             }
             _ => self.numeric(op, &values, expected, name).map(Operand::Typed),
         }
@@ -444,8 +448,7 @@ impl<'s> Checker<'_, 's> {
     /// An extensible function folds from the left.
     fn fold(&mut self, op: Op, ty: Type, operands: Vec<Expr>, span: Span) -> Option<Expr> {
         if let Type::String(_) = ty {
-            self.error(Code::E0204, span, format!("`{}` of strings is not supported yet", op.source_name()));
-            return None;
+            return self.extreme_text(op, ty, operands, span);
         }
         let mut operands = operands.into_iter();
         let mut result = operands.next()?;

@@ -18,6 +18,7 @@ mod operator;
 mod place;
 mod prescan;
 mod statement;
+mod text_order;
 mod unknown;
 
 pub(crate) use function::exists as is_function;

@@ -3,7 +3,7 @@ use super::coerce::{as_number, join};
 use super::operand::Operand;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::BinaryOp;
-use staunch_ir::{Conversion, Elementary, Expr, ExprKind, Op, Statement, StatementKind, TextOp, Type, Value};
+use staunch_ir::{Conversion, Elementary, Expr, Op, Statement, StatementKind, Type, Value};
 
 impl<'s> Checker<'_, 's> {
     pub(super) fn binary(
@@ -190,10 +190,7 @@ impl<'s> Checker<'_, 's> {
         match (sides.a.ty(), sides.b.ty()) {
             (Some(Type::String(_)), Some(Type::String(_))) => {
                 let (Operand::Typed(a), Operand::Typed(b)) = (sides.a, sides.b) else { return None };
-                let at = self.at(op_span);
-                let order = Expr::new(Type::INT, ExprKind::ApplyText(TextOp::Compare, vec![a, b]), at);
-                let zero = Expr::constant(Elementary::Int, Value::I16(0), at);
-                self.apply(op, Type::INT, vec![order, zero], Type::BOOL, op_span)
+                self.compare_texts(op, a, b, op_span)
             }
             (Some(Type::Enum(a)), Some(Type::Enum(b))) if a == b => {
                 let (Operand::Typed(a), Operand::Typed(b)) = (sides.a, sides.b) else { return None };
