@@ -64,6 +64,7 @@ fn an_input_is_held_for_as_long_as_it_takes() {
         ("held_full.st --from iec --to cscape --vars full", "1"),
         ("held_full.st --from iec --to cscape --vars parts.Q", "1"),
         ("waves.st --from iec --to cscape", "2"),
+        ("held_together.st --from iec --to cscape", "1"),
     ] {
         assert_eq!(trap(arguments), expected, "{arguments}\n{}", difference(arguments));
     }

@@ -30,9 +30,9 @@ pub fn raised(inputs: &[Value]) -> Vec<Value> {
     inputs.iter().map(|it| if it.lane() == Lane::Bool { Value::Bool(true) } else { *it }).collect()
 }
 
-/// The sequences to try, the simplest first: each input held, all of them, each after a pulse, and
-/// each in long waves.
-pub fn sequences(pair: &Pair) -> Vec<Vec<Run>> {
+/// The sequences to try, the simplest first: each input held, all of them, each of these vectors of
+/// inputs, each input after a pulse, and each in long waves.
+pub fn sequences(pair: &Pair, vectors: &[Step]) -> Vec<Vec<Run>> {
     let still = pair.initial();
     let bools: Vec<usize> = (0..still.len()).filter(|at| still[*at].lane() == Lane::Bool).collect();
     if bools.is_empty() {
@@ -40,8 +40,6 @@ pub fn sequences(pair: &Pair) -> Vec<Vec<Run>> {
     }
     let constants = duration::scans(&pair.sides[0].program, pair.cycle);
     let longest = constants.iter().copied().filter(|it| *it < LONG).max().unwrap_or(0);
-    // A preset is reached, and passed by a few.
-    let long = (longest + 100).max(HELD);
     let with = |at: usize, value: bool| {
         let mut inputs = still.clone();
         inputs[at] = Value::Bool(value);
@@ -49,16 +47,23 @@ pub fn sequences(pair: &Pair) -> Vec<Vec<Run>> {
     };
     let run = |inputs: Vec<Value>, scans: usize| Run { step: Step { restart: false, inputs }, scans };
     let all = raised(&still);
-    let mut found: Vec<Vec<Run>> = bools.iter().map(|at| vec![run(with(*at, true), long)]).collect();
-    if bools.len() > 1 {
-        found.push(vec![run(all.clone(), long)]);
-    }
+    let held_for = |long: usize| {
+        let each = bools.iter().map(move |at| with(*at, true));
+        let together = (bools.len() > 1).then(|| all.clone());
+        each.chain(together).map(move |it| vec![run(it, long)]).collect::<Vec<_>>()
+    };
+    let mut found = held_for(HELD);
+    let short = constants.range(..HELD).next_back().map_or(0, |it| it + 100).max(FIXED[2]);
+    let plain = vectors.iter().filter(|it| !it.restart);
+    found.extend(plain.map(|it| vec![run(it.inputs.clone(), short)]));
     for held in &bools {
         let pulses = bools.iter().filter(|it| *it == held || bools.len() <= MAX_PAIRED);
         for pulse in pulses {
-            found.push(vec![run(with(*pulse, true), 1), run(with(*pulse, false), 1), run(with(*held, true), long)]);
+            found.push(vec![run(with(*pulse, true), 1), run(with(*pulse, false), 1), run(with(*held, true), HELD)]);
         }
     }
+    // A preset is reached, and passed by a few.
+    found.extend(Some(longest + 100).filter(|it| *it > HELD).into_iter().flat_map(held_for));
     for half in waves(&constants) {
         for at in &bools {
             let wave = [run(with(*at, true), half), run(with(*at, false), half)];

@@ -176,7 +176,7 @@ impl Search<'_> {
 
     /// Inputs that are TRUE for long; the first that makes a difference.
     fn holds(&mut self, reserve: u64) -> Option<Vec<Step>> {
-        hold::sequences(self.pair).into_iter().find_map(|runs| {
+        hold::sequences(self.pair, &self.symbols()).into_iter().find_map(|runs| {
             let count = runs.iter().map(|it| it.scans).sum();
             let mut steps = runs.iter().flat_map(|it| std::iter::repeat_n(&it.step, it.scans));
             let last = runs.last().map(|it| &it.step)?;
