@@ -1,4 +1,4 @@
-//! Programs of unusual size compile, quickly enough, to code that agrees with the interpreter.
+//! Programs of unusual size compile to code that agrees with the interpreter.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod support;
@@ -6,7 +6,6 @@ mod support;
 use staunch_ir::interpret::Interpreter;
 use staunch_ir::*;
 use staunch_runtime::Context;
-use std::time::{Duration, Instant};
 use support::*;
 
 fn main_with(fields: Vec<Field>, locals: Vec<Local>, body: Block) -> Program {
@@ -18,10 +17,8 @@ fn field_place(at: usize) -> Place {
     member(StructId(0), at, Type::INT)
 }
 
-fn agree(program: &Program) -> Duration {
-    let start = Instant::now();
+fn agree(program: &Program) {
     let mut native = Native::new(program);
-    let elapsed = start.elapsed();
     let mut interpreter = Interpreter::new(program);
     assert_eq!(interpreter.state(), native.state.bytes());
     for scan in 0..3 {
@@ -29,7 +26,6 @@ fn agree(program: &Program) -> Duration {
         native.jit.scan(&mut native.state, 0, &Context::at(scan)).unwrap();
         assert_eq!(interpreter.state(), native.state.bytes());
     }
-    elapsed
 }
 
 fn add(a: Expr, b: Expr) -> Expr {
@@ -79,10 +75,7 @@ fn many_statements() {
         let then = vec![assign(field_place(at % 98), int(2))];
         stmt(StatementKind::If { condition, then, otherwise: Vec::new() })
     };
-    let elapsed = agree(&main_with(fields, Vec::new(), (0..count).map(statement).collect()));
-    println!("{count} statements: {elapsed:?}");
-    // An unoptimised code generator takes seconds; a quadratic one would take minutes.
-    assert!(elapsed < Duration::from_secs(60), "{elapsed:?}");
+    agree(&main_with(fields, Vec::new(), (0..count).map(statement).collect()));
 }
 
 #[test]

@@ -32,22 +32,40 @@ impl<'s> Checker<'_, 's> {
 
     fn statement(&mut self, statement: &ast::Statement<'s>) {
         let span = statement.span;
-        match &statement.kind {
-            Ast_::Empty | Ast_::Error => {}
-            Ast_::Assign { target, value } => {
-                self.assignment(target, value, span);
+        let made = match &statement.kind {
+            Ast_::Assign { target, value } => self.assignment(target, value, span),
+            Ast_::SetReset { target, value, set } => self.set_reset(target, value, *set, span),
+            Ast_::Case { selector, arms, otherwise } => self.case(selector, arms, otherwise.as_deref(), span),
+            Ast_::For { counter, from, to, by, body } => self.for_loop(counter, from, to, by.as_deref(), body, span),
+            Ast_::Empty
+            | Ast_::Error
+            | Ast_::Expr(_)
+            | Ast_::If { .. }
+            | Ast_::While { .. }
+            | Ast_::Repeat { .. }
+            | Ast_::Exit
+            | Ast_::Continue
+            | Ast_::Return => {
+                self.flow(&statement.kind, span);
+                Some(())
             }
-            Ast_::SetReset { target, value, set } => {
-                self.set_reset(target, value, *set, span);
-            }
+        };
+        if made.is_none() {
+            self.decl.left_out.get_or_insert(span);
+        }
+    }
+
+    /// Calls and control flow.
+    fn flow(&mut self, kind: &Ast_<'s>, span: Span) {
+        match kind {
+            Ast_::Empty
+            | Ast_::Error
+            | Ast_::Assign { .. }
+            | Ast_::SetReset { .. }
+            | Ast_::Case { .. }
+            | Ast_::For { .. } => {}
             Ast_::Expr(expr) => self.lone_expression(expr),
             Ast_::If { branches, otherwise } => self.branches(branches, otherwise.as_deref()),
-            Ast_::Case { selector, arms, otherwise } => {
-                self.case(selector, arms, otherwise.as_deref(), span);
-            }
-            Ast_::For { counter, from, to, by, body } => {
-                self.for_loop(counter, from, to, by.as_deref(), body, span);
-            }
             Ast_::While { condition, body } => self.while_loop(condition, body, span),
             Ast_::Repeat { body, until } => self.repeat_loop(body, until, span),
             Ast_::Exit => self.leave_loop("EXIT", StatementKind::Exit, span),

@@ -21,7 +21,7 @@ use crate::ast;
 use crate::check;
 use crate::dialect::{self, Dialect};
 use crate::key::{Key, nearest};
-use crate::{Bodies, Code, Diagnostic, Options, Sources, Span};
+use crate::{Bodies, Code, Diagnostic, Options, Severity, Sources, Span};
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::layout::{Layout, TooLarge};
 use staunch_ir::{Location, Place, Program, Root, SourceFile, Struct, StructId, Type};
@@ -105,6 +105,8 @@ pub(crate) struct Declarations<'s> {
     /// The slots of FUNCTIONs that have no result type, but name their result.
     pub untyped: FxHashSet<usize>,
     pub globals: Vec<GlobalSlot<'s>>,
+    /// The first statement that makes nothing, because something in it was refused.
+    pub left_out: Option<Span>,
     pub configurations: Vec<&'s ast::Configuration<'s>>,
     pub addresses: address::Addresses,
     pub hidden: hidden::Hidden<'s>,
@@ -157,6 +159,11 @@ pub(crate) fn declare<'s>(
     let bodies = check::bodies(&mut declarations, statements, bodies);
     let program = declarations.finish(bodies);
     diagnostics.append(&mut declarations.diagnostics);
+    // A program that is accepted has all its statements.
+    let is_rejected = diagnostics.iter().any(|it| it.severity == Severity::Error);
+    if let (Some(span), false) = (declarations.left_out, is_rejected) {
+        unreachable!("checked program: `{}` was left out without a word", sources.text(span));
+    }
     program
 }
 
@@ -188,6 +195,7 @@ impl<'s> Declarations<'s> {
             pous: Vec::new(),
             untyped: FxHashSet::default(),
             globals: Vec::new(),
+            left_out: None,
             configurations: Vec::new(),
             addresses: address::Addresses::default(),
             hidden: hidden::Hidden::default(),
