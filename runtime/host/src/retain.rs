@@ -8,6 +8,7 @@
 use crate::Error;
 use crate::map::{Map, Structure, Type, Variable};
 use crate::path;
+use staunch_runtime::Time;
 use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::fs::File;
@@ -26,6 +27,15 @@ pub(crate) struct Retained {
     regions: Vec<Region>,
     /// The PROGRAMs, by which a file is known to be of this program.
     programs: String,
+}
+
+/// What a file held beside the values.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Loaded {
+    /// Where the clock goes on, which retained timers measure by.
+    pub clock: Time,
+    /// For each variable of the file that the program no longer retains.
+    pub notes: Vec<String>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -68,12 +78,12 @@ impl Retained {
         }
     }
 
-    /// Reads the file into the state. Returns a note for each variable of the file that the
-    /// program no longer retains. A file that does not exist changes nothing: it is a first start.
-    pub fn load(&self, map: &Map, path: &Path, state: &mut [u8]) -> Result<Vec<String>, Error> {
+    /// Reads the file into the state. A file that does not exist changes nothing: it is a first
+    /// start.
+    pub fn load(&self, map: &Map, path: &Path, state: &mut [u8]) -> Result<Loaded, Error> {
         let bytes = match std::fs::read(path) {
             Ok(bytes) => bytes,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Loaded::default()),
             Err(error) => return Err(Error::file(path, "read", error)),
         };
         let damaged = |text: &str| Error::Retain {
@@ -96,7 +106,14 @@ impl Retained {
             let text = format!("it belongs to another program: to PROGRAM {theirs}, not {}", self.programs);
             return Err(damaged(&text));
         }
-        Ok(lines.filter_map(|line| self.load_line(map, line, state)).collect())
+        let mut loaded = Loaded::default();
+        for line in lines {
+            match line.strip_prefix("clock\t").map(str::parse) {
+                Some(clock) => loaded.clock = clock.map_err(|_| damaged("its clock is not a number"))?,
+                None => loaded.notes.extend(self.load_line(map, line, state)),
+            }
+        }
+        Ok(loaded)
     }
 
     /// A note if the line's variable cannot be carried over.
@@ -135,13 +152,13 @@ impl Retained {
     }
 
     /// Writes the file in one step: whatever happens, there is the old file or the new one.
-    pub fn save(&self, path: &Path, state: &[u8]) -> Result<(), Error> {
-        let text = self.text(state);
+    pub fn save(&self, path: &Path, clock: Time, state: &[u8]) -> Result<(), Error> {
+        let text = self.text(clock, state);
         write_aside(path, text.as_bytes()).map_err(|error| Error::file(path, "write", error))
     }
 
-    fn text(&self, state: &[u8]) -> String {
-        let mut text = format!("{TITLE}{VERSION}\nprogram\t{}\n", self.programs);
+    fn text(&self, clock: Time, state: &[u8]) -> String {
+        let mut text = format!("{TITLE}{VERSION}\nprogram\t{}\nclock\t{clock}\n", self.programs);
         for region in &self.regions {
             let _ = write!(text, "{}\t{}\t", region.path, region.ty);
             for byte in &state[region.offset..region.offset + region.size] {
@@ -341,11 +358,11 @@ mod tests {
     fn a_file_carries_values_over() {
         let (path, retained) = (file("values"), Retained::of(&map()));
         let mut state = vec![0; 128];
-        assert_eq!(retained.load(&map(), &path, &mut state).unwrap(), Vec::<String>::new());
+        assert_eq!(retained.load(&map(), &path, &mut state).unwrap().notes, Vec::<String>::new());
         state[offset_of("total")] = 42;
-        retained.save(&path, &state).unwrap();
+        retained.save(&path, 0, &state).unwrap();
         let mut state = vec![0; 128];
-        assert_eq!(retained.load(&map(), &path, &mut state).unwrap(), Vec::<String>::new());
+        assert_eq!(retained.load(&map(), &path, &mut state).unwrap().notes, Vec::<String>::new());
         assert_eq!(state[offset_of("total")], 42);
     }
 
@@ -353,14 +370,14 @@ mod tests {
     fn an_edited_program_keeps_what_still_fits() {
         let path = file("edited");
         let mut state = vec![3; 128];
-        Retained::of(&map()).save(&path, &state).unwrap();
+        Retained::of(&map()).save(&path, 0, &state).unwrap();
         let mut retained = Retained::of(&map());
         retained.regions[0].ty = "REAL".to_owned();
         let edited = Map::parse(&MAP.replace("field\tcount", "field\tcounter")).unwrap();
         retained.regions[1].path = "main.mixer.counter".to_owned();
         state.fill(0);
         assert_eq!(
-            retained.load(&edited, &path, &mut state).unwrap(),
+            retained.load(&edited, &path, &mut state).unwrap().notes,
             [
                 "dropped the retained value of `Globals.total`: it was DINT, and is REAL now",
                 "dropped the retained value of `main.mixer.count`: the program has no such variable",
@@ -387,9 +404,9 @@ mod tests {
         };
         let (old, new) = (of(before), of(after));
         let mut state = vec![1; 64];
-        Retained::of(&old).save(&path, &state).unwrap();
+        Retained::of(&old).save(&path, 0, &state).unwrap();
         state.fill(0);
-        let notes = Retained::of(&new).load(&new, &path, &mut state).unwrap();
+        let notes = Retained::of(&new).load(&new, &path, &mut state).unwrap().notes;
         assert_eq!(state[0] == 0, !notes.is_empty(), "{name}");
         notes
     }
@@ -441,7 +458,7 @@ mod tests {
     fn a_file_that_cannot_be_trusted_is_refused() {
         let (path, mut retained) = (file("damaged"), Retained::of(&map()));
         let mut state = vec![0; 128];
-        retained.save(&path, &state).unwrap();
+        retained.save(&path, 0, &state).unwrap();
         let good = std::fs::read_to_string(&path).unwrap();
         let mut error = |text: &str, retained: &Retained| {
             std::fs::write(&path, text).unwrap();

@@ -95,6 +95,7 @@ pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Su
         held: Vec::new(),
         fresh: vec![true; map.instances.len()],
         retained: Retained::of(map),
+        epoch: 0,
         out: Output { trace: None, table: Table::default() },
         clock: None,
         summary: Summary::default(),
@@ -157,6 +158,8 @@ struct Runner<'a> {
     /// Instances that have not run since the start.
     fresh: Vec<bool>,
     retained: Retained,
+    /// The program's clock at this run's time 0: a retained timer goes on where it stood.
+    epoch: Time,
     out: Output,
     clock: Option<Clock>,
     summary: Summary,
@@ -171,9 +174,11 @@ impl Runner<'_> {
     fn start(&mut self) -> Result<(), Error> {
         self.machine.init();
         if let Some(path) = &self.options.retain {
-            for note in self.retained.load(self.map, path, self.machine.state_mut())? {
+            let loaded = self.retained.load(self.map, path, self.machine.state_mut())?;
+            for note in loaded.notes {
                 eprintln!("note: {}: {note}", path.display());
             }
+            self.epoch = loaded.clock;
         }
         Ok(())
     }
@@ -225,7 +230,7 @@ impl Runner<'_> {
         let began = self.clock.as_ref().map(|_| Instant::now());
         for instance in self.schedule.advance(now, placed.is_some()) {
             let first_scan = std::mem::take(&mut self.fresh[*instance]);
-            let end = self.machine.scan(*instance, &Context { now, first_scan });
+            let end = self.machine.scan(*instance, &Context { now: self.epoch.saturating_add(now), first_scan });
             end.map_err(|fault| Error::Fault {
                 fault,
                 scan: number,
@@ -273,7 +278,10 @@ impl Runner<'_> {
     }
 
     fn save(&self) -> Result<(), Error> {
-        self.options.retain.as_ref().map_or(Ok(()), |path| self.retained.save(path, self.machine.state()))
+        let Some(path) = &self.options.retain else { return Ok(()) };
+        let ran = if self.summary.scans == 0 { 0 } else { self.schedule.next() };
+        let clock = self.epoch.saturating_add(ran);
+        self.retained.save(path, clock, self.machine.state())
     }
 
     fn record(&mut self, subject: &Subject<'_>, now: Time) -> Result<(), Error> {

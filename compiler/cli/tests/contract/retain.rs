@@ -62,3 +62,14 @@ fn a_file_of_another_program_is_refused() {
     folder.write("main.st", PROGRAM.replace("Main", "Other"));
     has(&folder.staunch(RUN).err(2), &["plant.retain", "Main"]);
 }
+
+#[test]
+fn a_retained_timer_goes_on_where_it_stood() {
+    let timer = "PROGRAM Main\nVAR_INPUT go : BOOL; END_VAR\nVAR RETAIN t : TON; END_VAR\nt(IN := go, PT := T#100ms);\nEND_PROGRAM\n";
+    let folder = Folder::with("timer", &[("main.st", timer), ("in.csv", "scan,go\n50,TRUE\n55,TRUE\n")]);
+    folder.staunch("run main.st --stimulus in.csv --retain plant.retain -q").out(0);
+    folder.write("in.csv", "scan,go\n1,TRUE\n7,TRUE\n");
+    let out = folder.staunch("run main.st --stimulus in.csv --retain plant.retain --trace - --vars t.ET,t.Q").out(0);
+    assert!(out.starts_with("scan,time_ms,t.ET,t.Q\n1,0,T#60ms,FALSE\n2,10,T#70ms,FALSE\n"), "{out}");
+    assert!(out.ends_with("5,40,T#100ms,TRUE\n6,50,T#100ms,TRUE\n7,60,T#100ms,TRUE\n"), "{out}");
+}
