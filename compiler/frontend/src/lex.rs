@@ -100,7 +100,14 @@ impl<'s> Reading<'s> {
 
     fn pragma(&mut self, place: (u32, u32)) {
         let text = self.slice(place);
-        if text.ends_with('}') {
+        if text.starts_with("{{") && text.ends_with("}}") {
+            let span = self.span((place.0, place.0 + 2));
+            self.tokens.diagnostics.push(
+                Diagnostic::new(Code::E0902, span, "code in C is not supported yet")
+                    .label("this version of Staunch cannot compile it")
+                    .help("write what it does in Structured Text"),
+            );
+        } else if text.ends_with('}') {
             let span = self.span((place.0 + 1, place.1 - 1));
             self.tokens.pragmas.push(Name { text: &text[1..text.len() - 1], span });
         } else {

@@ -51,7 +51,8 @@ fn space(text: &str) -> String {
         }
         spaced.push_str(line);
         spaced.push('\n');
-        ended = depth < 2 && (content == "}" || depth == 0 && content.ends_with([';', '}']));
+        let is_comment = content.starts_with("//");
+        ended = depth < 2 && !is_comment && (content == "}" || depth == 0 && content.ends_with([';', '}']));
     }
     spaced
 }

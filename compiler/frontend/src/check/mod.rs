@@ -221,6 +221,10 @@ impl<'s> Checker<'_, 's> {
         self.decl.error(code, span, message);
     }
 
+    fn is_function_body(&self) -> bool {
+        self.signature.as_ref().is_some_and(|it| it.state.is_none())
+    }
+
     fn is_function_block(&self) -> bool {
         let slot = self.signature.as_ref().and_then(|it| it.state).and_then(|it| self.decl.slot_of_instance(it));
         slot.is_some_and(|slot| self.decl.pous[slot].ast.kind == ast::PouKind::FunctionBlock)

@@ -207,7 +207,9 @@ impl<'s> Checker<'_, 's> {
                 let equality = matches!(op, Op::Eq | Op::Ne);
                 self.always_the_same(&sides);
                 let (ty, a, b) = self.meet(sides, |_, _| true, "both sides need one type that can be compared")?;
-                if ty.is_real() && equality {
+                // A real that was set to 0 is 0: what guards a division is right.
+                let has_zero = [&a, &b].into_iter().any(|it| is_zero(it.as_const()));
+                if ty.is_real() && equality && !has_zero {
                     self.report(
                         Diagnostic::new(Code::W0503, op_span, "REAL values are compared for equality")
                             .label("rounding makes equal results differ")
@@ -461,4 +463,12 @@ fn converted(sides: &Sides, ty: Elementary, into: &str, a: &str, b: &str) -> Str
     let name = ty.name();
     let value = format!("{name}_TO_{into}({a}) {} {b}", sides.op.text());
     if sides.hint == Some(Type::Elementary(ty)) { format!("{into}_TO_{name}({value})") } else { value }
+}
+
+fn is_zero(value: Option<Value>) -> bool {
+    match value {
+        Some(Value::F32(it)) => it == 0.0,
+        Some(Value::F64(it)) => it == 0.0,
+        Some(_) | None => false,
+    }
 }

@@ -433,6 +433,8 @@ impl<'s> Checker<'_, 's> {
                 );
                 false
             }
+            // A FUNCTION's input is a copy, and CODESYS code uses it as a variable.
+            Access::OwnInput(_) if self.decl.dialect(span).assigns_inputs() && self.is_function_body() => true,
             Access::OwnInput(name) if self.decl.dialect(span).assigns_inputs() => {
                 self.report(
                     Diagnostic::new(Code::W0504, span, format!("the input `{}` is assigned from inside", name.text))

@@ -144,12 +144,26 @@ pub(crate) fn parse(text: &str) -> Option<Address> {
 }
 
 impl<'s> Declarations<'s> {
+    /// Reports an address that a declaration gives to several names.
+    pub fn check_one_name(&mut self, decl: &ast::VarDecl<'s>) {
+        if let (Some(address), [_, second, ..]) = (decl.address, decl.names.as_slice()) {
+            self.report(
+                Diagnostic::new(Code::E0409, second.span, "one address has one variable")
+                    .label("a second name")
+                    .other(address.span, "for this address")
+                    .help("declare each name by itself: `a AT %IX0.0 : BOOL; b AT %IX0.1 : BOOL;`"),
+            );
+        }
+    }
+
     /// The address that a declaration names.
     pub fn address(&mut self, name: ast::Name<'s>) -> Option<Address> {
         let address = parse(name.text);
         if address.is_none() {
             let message = if name.text.ends_with('*') {
                 format!("`{}` is not bound to an address", name.text)
+            } else if is_hierarchical(name.text) {
+                format!("`{}` has more parts than are supported yet", name.text)
             } else {
                 format!("`{}` is not a direct address", name.text)
             };
@@ -259,4 +273,10 @@ impl<'s> Declarations<'s> {
         self.addresses.shared.insert(address, Storage::Hidden(Some(at)));
         self.hidden_place(at)
     }
+}
+
+/// `%IW0.1`, `%QX1.2.3`: an address through the parts of a station.
+fn is_hierarchical(text: &str) -> bool {
+    let bits = matches!(text.as_bytes().get(2), Some(b'X' | b'x' | b'0'..=b'9'));
+    text.matches('.').count() > usize::from(bits)
 }

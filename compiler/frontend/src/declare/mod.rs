@@ -326,6 +326,7 @@ impl<'s> Declarations<'s> {
     fn collect_globals(&mut self, block: &'s ast::VarBlock<'s>) {
         self.check_retain_once(block);
         for decl in &block.vars {
+            self.check_one_name(decl);
             for name in &decl.names {
                 self.enter(*name, Entry::Global(self.globals.len()));
                 self.globals.push(GlobalSlot { name: *name, block, decl, slot: Slot::Waiting });

@@ -231,6 +231,7 @@ impl<'s> Declarations<'s> {
             self.declare_externals(decl, builder);
             return;
         }
+        self.check_one_name(decl);
         let resolved = self.declared_type(decl, &scope, owner);
         drop(scope);
         let Some(resolved) = resolved.map(Rc::new) else {

@@ -503,10 +503,12 @@ apart: writing one does not change the other.
 "The statement stands behind EXIT, CONTINUE or RETURN.
 ";
     W0503 Warning "REAL compared for equality"
-"Rounding makes results differ that are equal on paper. Compare the distance.
+"Rounding makes results differ that are equal on paper. Compare the distance. A comparison with 0 is left alone: it
+guards a division, or asks whether a value was set.
 ";
     W0504 Warning "input assigned from inside"
-"The codesys dialect allows it; the caller's value is lost.
+"The codesys dialect allows it; the value that the caller gave the FUNCTION_BLOCK or PROGRAM is lost. A FUNCTION's
+input is a copy, and may be used as a variable.
 ";
     W0505 Warning "FOR counter assigned in its loop"
 "The codesys dialect allows it; the loop goes on from the new value.

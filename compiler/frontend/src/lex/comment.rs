@@ -33,9 +33,9 @@ pub fn plain(lexer: &mut Lexer<'_, Kind>) {
     until(lexer, "*/");
 }
 
-/// `{ … }`
+/// `{ … }`, or `{{ … }}` around code in C.
 pub fn pragma(lexer: &mut Lexer<'_, Kind>) {
-    until(lexer, "}");
+    until(lexer, if lexer.remainder().starts_with('{') { "}}" } else { "}" });
 }
 
 fn until(lexer: &mut Lexer<'_, Kind>, end: &str) {
