@@ -117,7 +117,7 @@ fn structure(task: Task) -> Struct {
         ty,
         initial: Const::Zero,
         section: Section::Internal,
-        retain: false,
+        retain: staunch_ir::Retain::Inherited,
         constant: false,
         address: None,
         range: None,

@@ -16,7 +16,7 @@ pub fn field(name: &str, ty: Type, initial: Const) -> Field {
         ty,
         initial,
         section: Section::Internal,
-        retain: false,
+        retain: Retain::Inherited,
         constant: false,
         address: None,
         range: None,

@@ -42,7 +42,7 @@ pub use place::{Place, Projection, Root};
 pub use print::print;
 pub use program::{
     Address, Area, Field, FieldId, Instance, Local, LocalId, Mode, Param, ParamId, Pou, PouId, PouKind, Program,
-    Section, SourceFile, Variable,
+    Retain, Section, SourceFile, Variable,
 };
 pub use statement::{Argument, Arm, Block, Statement, StatementKind};
 pub use types::{Array, ArrayId, BlockId, Const, Elementary, Enum, EnumId, Enumerator, Struct, StructId, Type};

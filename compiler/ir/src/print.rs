@@ -5,8 +5,8 @@
 mod statement;
 
 use crate::{
-    Const, Conversion, Expr, ExprKind, Field, Mode, Place, Pou, PouKind, Program, Projection, Root, Section, Type,
-    Value,
+    Const, Conversion, Expr, ExprKind, Field, Mode, Place, Pou, PouKind, Program, Projection, Retain, Root, Section,
+    Type, Value,
 };
 use core::fmt::{self, Display, Write};
 
@@ -66,7 +66,11 @@ impl Printer<'_> {
         let mut line = format!("  {} {}: ", section_word(field.section), field.name);
         line.push_str(&self.program.type_name(field.ty));
         self.initial(&mut line, &field.initial)?;
-        for (holds, word) in [(field.retain, " retain"), (field.constant, " constant")] {
+        for (holds, word) in [
+            (field.retain == Retain::Kept, " retain"),
+            (field.retain == Retain::Anew, " non_retain"),
+            (field.constant, " constant"),
+        ] {
             line.push_str(if holds { word } else { "" });
         }
         if let Some(address) = field.address {

@@ -107,8 +107,7 @@ pub struct Field {
     pub ty: Type,
     pub initial: Const,
     pub section: Section,
-    /// Kept over a restart.
-    pub retain: bool,
+    pub retain: Retain,
     /// Never written.
     pub constant: bool,
     pub address: Option<Address>,
@@ -116,6 +115,29 @@ pub struct Field {
     pub range: Option<(i128, i128)>,
     pub doc: Option<String>,
     pub location: Location,
+}
+
+/// What a declaration says of a restart.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Retain {
+    /// It goes as what it is a part of; alone it starts anew.
+    #[default]
+    Inherited,
+    /// RETAIN, or PERSISTENT: it is kept.
+    Kept,
+    /// NON_RETAIN: it starts anew, also inside of what is kept.
+    Anew,
+}
+
+impl Retain {
+    /// What holds for a part of something.
+    #[must_use]
+    pub fn within(self, whole: Self) -> Self {
+        match self {
+            Self::Inherited => whole,
+            Self::Kept | Self::Anew => self,
+        }
+    }
 }
 
 /// Where a variable was declared.

@@ -4,7 +4,9 @@
 //! array names its element's type), so the map grows with declarations, not with elements.
 
 use crate::layout::Layout;
-use crate::{Address, BlockId, Field, FieldId, Pou, PouKind, Program, Projection, Root, Section, Type, Variable};
+use crate::{
+    Address, BlockId, Field, FieldId, Pou, PouKind, Program, Projection, Retain, Root, Section, Type, Variable,
+};
 use core::fmt::{self, Write};
 use staunch_runtime::{Direction, Pin, Retention};
 use std::collections::BTreeSet;
@@ -203,8 +205,8 @@ impl Map<'_> {
         }
         let retentive = block_of(ty).is_some_and(|block| block.info().retention == Retention::Always);
         Attributes {
-            retain: field.retain || retentive,
-            restarts: false,
+            retain: field.retain == Retain::Kept || retentive,
+            restarts: field.retain == Retain::Anew && !retentive,
             constant: field.constant,
             address: field.address,
             range: field.range,

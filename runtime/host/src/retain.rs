@@ -268,8 +268,8 @@ struct Walk<'m> {
 
 impl Walk<'_> {
     fn variable(&mut self, scope: &str, base: usize, variable: &Variable, retained: bool) {
-        let retained = retained || variable.retain;
-        if !variable.constant && !variable.restarts && (retained || self.holds(variable.ty)) {
+        let retained = variable.retain || retained && !variable.restarts;
+        if !variable.constant && (retained || self.holds(variable.ty)) {
             let path = format!("{scope}.{}", variable.name);
             self.part(path, variable.ty, variable.range, base + variable.offset, retained);
         }

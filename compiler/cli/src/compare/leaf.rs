@@ -1,7 +1,7 @@
 //! The scalars of a program's state, by paths that two systems share.
 
 use staunch_ir::layout::{Layout, usize_of};
-use staunch_ir::{ArrayId, BlockId, Elementary, FieldId, PouId, Program, Section, StructId, Type, Value};
+use staunch_ir::{ArrayId, BlockId, Elementary, FieldId, PouId, Program, Retain, Section, StructId, Type, Value};
 use staunch_runtime::{Direction, Family, Pin, Retention};
 
 /// Further elements of an array are not compared.
@@ -96,7 +96,7 @@ impl Walk<'_> {
             };
             let offset = base + usize_of(self.layout.field(id, number));
             let path = format!("{prefix}{}", field.name);
-            self.part(&path, field.ty, Whole { offset, role, retain: field.retain });
+            self.part(&path, field.ty, Whole { offset, role, retain: field.retain == Retain::Kept });
         }
     }
 
@@ -134,7 +134,8 @@ impl Walk<'_> {
         for (at, field) in self.program.structure(id).fields.iter().enumerate() {
             let role = if field.constant { Role::Hidden } else { part_of(whole.role) };
             let offset = whole.offset + usize_of(self.layout.field(id, FieldId::next(at)));
-            let retain = whole.retain || field.retain;
+            let whole_retain = if whole.retain { Retain::Kept } else { Retain::Anew };
+            let retain = field.retain.within(whole_retain) == Retain::Kept;
             self.part(&format!("{path}.{}", field.name), field.ty, Whole { offset, role, retain });
         }
     }

@@ -262,7 +262,7 @@ impl<'s> Declarations<'s> {
             ty: resolved.ty,
             initial: resolved.initial.clone(),
             section: Section::Global,
-            retain: false,
+            retain: staunch_ir::Retain::Inherited,
             constant: false,
             address: Some(address),
             range: resolved.range,

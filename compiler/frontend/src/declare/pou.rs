@@ -446,7 +446,7 @@ impl<'s> Declarations<'s> {
             ty: Type::Block(block),
             initial: Const::Zero,
             section: Section::Internal,
-            retain: false,
+            retain: staunch_ir::Retain::Inherited,
             constant: false,
             address: None,
             range: None,

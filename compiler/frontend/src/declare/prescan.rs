@@ -13,7 +13,7 @@ mod reach;
 use super::Declarations;
 use crate::check::Uses;
 use build::Builder;
-use staunch_ir::{Place, PouKind, Root};
+use staunch_ir::{Place, PouKind, Retain, Root};
 
 /// Adds the prescans, given the slots of the POUs in an order in which a callee stands before its
 /// callers. `false` if there are none.
@@ -43,8 +43,8 @@ fn own(declarations: &mut Declarations<'_>, at: usize, uses: &Uses) {
         builder.instruction(place, *instruction);
     }
     for count in uses.counts.iter().filter(|it| lasts(&it.counter) && lasts(&it.kept)) {
-        let retained = build::is_retained(&declarations.program, at, &count.kept);
-        builder.restore(&count.counter, &count.kept, retained);
+        let retain = build::retention(&declarations.program, at, &count.kept);
+        builder.restore(&count.counter, &count.kept, retain == Retain::Kept);
     }
     let (block, locals) = builder.finish();
     let pou = &mut declarations.program.pous[at];

@@ -101,6 +101,14 @@ impl<'s> Declarations<'s> {
         }
     }
 
+    fn retention(&self, block: &ast::VarBlock<'s>, ty: staunch_ir::Type) -> staunch_ir::Retain {
+        match (self.is_kept(block, ty), block.non_retain) {
+            (true, _) => staunch_ir::Retain::Kept,
+            (false, Some(_)) => staunch_ir::Retain::Anew,
+            (false, None) => staunch_ir::Retain::Inherited,
+        }
+    }
+
     /// Whether a variable of the block keeps its value over a restart.
     fn is_kept(&self, block: &ast::VarBlock<'s>, ty: staunch_ir::Type) -> bool {
         is_declared_retain(block) || self.is_retentive(ty)
@@ -178,7 +186,7 @@ impl<'s> Declarations<'s> {
             ty: resolved.ty,
             initial: resolved.initial.clone(),
             section: section(block.kind),
-            retain: self.is_kept(block, resolved.ty),
+            retain: self.retention(block, resolved.ty),
             constant: block.constant.is_some(),
             address,
             range: resolved.range,

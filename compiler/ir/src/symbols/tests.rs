@@ -15,7 +15,7 @@ fn every_record_of_a_program() {
     program.instances[0].interval = Some(10_000_000);
     let fields = &mut program.structs[1].fields;
     fields[0].address = Some(Address { area: Area::Input, bit: 64, width: 16 });
-    fields[0].retain = true;
+    fields[0].retain = crate::Retain::Kept;
     fields[0].range = Some((-3, 7));
     program.structs[2].fields[0].section = Section::Global;
     let block = crate::fixture::ctu().0;

@@ -2,8 +2,8 @@
 
 use crate::declare::pin_place;
 use staunch_ir::{
-    Block, Const, Elementary, Expr, Local, LocalId, Location, Op, Place, Program, Projection, Statement, StatementKind,
-    Type, Value,
+    Block, Const, Elementary, Expr, Local, LocalId, Location, Op, Place, Program, Projection, Retain, Statement,
+    StatementKind, Type, Value,
 };
 
 /// Builds the prescan of one POU.
@@ -157,21 +157,21 @@ fn for_each(counter: Place, index: Expr, (low, high): (i64, i64), mut body: Bloc
     ]
 }
 
-/// Whether a restart keeps the place: it, or what it is a part of, is RETAIN.
-pub(super) fn is_retained(program: &Program, pou: usize, place: &Place) -> bool {
+/// What the declarations on the way to the place say of a restart.
+pub(super) fn retention(program: &Program, pou: usize, place: &Place) -> Retain {
     let mut ty = program.root_type(&program.pous[pou], place.root);
+    let mut retain = Retain::Inherited;
     for projection in &place.projections {
         ty = match (projection, ty) {
             (Projection::Field(field), Some(Type::Struct(id))) => {
                 let field = &program.structure(id).fields[field.index()];
-                if field.retain {
-                    return true;
-                }
+                retain = field.retain.within(retain);
                 Some(field.ty)
             }
             (Projection::Index { .. }, Some(Type::Array(id))) => Some(program.array(id).element),
-            (Projection::Field(_) | Projection::Index { .. }, _) => return false,
+            // A pin of a standard block.
+            (Projection::Field(_) | Projection::Index { .. }, _) => return retain,
         };
     }
-    false
+    retain
 }

@@ -1,7 +1,7 @@
 //! The rules on RCV, the variable that keeps a Cscape counter's count, where they span calls: it is
 //! one counter's alone, no one else writes it, and it is RETAIN.
 
-use super::build::is_retained;
+use super::build::retention;
 use super::nest::{OpenCounts, kept_from_outside};
 use crate::Span;
 use crate::check::{
@@ -9,7 +9,7 @@ use crate::check::{
     several_counts, shared_count,
 };
 use crate::declare::{Declarations, Slot, Target};
-use staunch_ir::Root;
+use staunch_ir::{Retain, Root};
 use std::collections::HashSet;
 
 pub(super) fn check(declarations: &mut Declarations<'_>, uses: &[Uses], open: &OpenCounts) {
@@ -74,7 +74,9 @@ fn assigned(declarations: &mut Declarations<'_>, count: &KeptCount, at: usize, u
 fn lost(declarations: &mut Declarations<'_>, uses: &[Uses], open: &OpenCounts) {
     let mut kept: HashSet<Span> = kept_from_outside(declarations, open).map(|it| it.span).collect();
     let all = || uses.iter().enumerate().flat_map(|(at, it)| it.counts.iter().map(move |count| (at, count)));
-    kept.extend(all().filter(|(at, it)| is_retained(&declarations.program, *at, &it.kept)).map(|(_, it)| it.span));
+    kept.extend(
+        all().filter(|(at, it)| retention(&declarations.program, *at, &it.kept) == Retain::Kept).map(|(_, it)| it.span),
+    );
     let mut told = HashSet::new();
     let lost: Vec<_> = all().filter(|(_, it)| !it.told && !kept.contains(&it.span)).map(|(_, it)| it.span).collect();
     for span in lost {

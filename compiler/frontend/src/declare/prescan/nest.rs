@@ -1,10 +1,10 @@
 //! A prescan reaches the instances inside: each POU's runs those of the instances it contains.
 
-use super::build::{Builder, is_retained};
+use super::build::{Builder, retention};
 use super::reach::joined;
 use crate::check::{KeptCount, Uses};
 use crate::declare::Declarations;
-use staunch_ir::{Elementary, Expr, FieldId, Location, Op, Place, PouId, Program, Root, StructId, Type, Value};
+use staunch_ir::{Elementary, Expr, FieldId, Location, Op, Place, PouId, Program, Retain, Root, StructId, Type, Value};
 
 /// The slots of the POUs that have instances, with their structures: parts before what they are
 /// parts of, as structures stand in that order.
@@ -33,12 +33,12 @@ fn extend(declarations: &mut Declarations<'_>, open: &OpenCounts, at: usize, roo
     }
     let program = &declarations.program;
     let mut builder = Builder::new(program, at);
-    for Inside { slot, place, retained } in instances {
+    for Inside { slot, place, retain } in instances {
         if !program.pous[slot].prescan.is_empty() {
             builder.instance(PouId::next(slot), &place);
         }
         // The block itself cannot know that its instance is RETAIN as a whole.
-        if retained {
+        if retain == Retain::Kept {
             for count in &open[slot] {
                 builder.restore(&joined(&place, &count.counter), &joined(&place, &count.kept), true);
             }
@@ -54,33 +54,33 @@ fn extend(declarations: &mut Declarations<'_>, open: &OpenCounts, at: usize, roo
 struct Inside {
     slot: usize,
     place: Place,
-    retained: bool,
+    retain: Retain,
 }
 
 /// The instances in a POU's state, or in the globals.
 fn instances(declarations: &Declarations<'_>, root: Root, state: StructId) -> Vec<Inside> {
     let mut found = Vec::new();
-    members(declarations, &Place::root(root, Type::Struct(state)), state, false, &mut found);
+    members(declarations, &Place::root(root, Type::Struct(state)), state, Retain::Inherited, &mut found);
     found
 }
 
-fn members(declarations: &Declarations<'_>, place: &Place, id: StructId, retained: bool, found: &mut Vec<Inside>) {
+fn members(declarations: &Declarations<'_>, place: &Place, id: StructId, retain: Retain, found: &mut Vec<Inside>) {
     for (at, field) in declarations.program.structure(id).fields.iter().enumerate() {
         let member = place.clone().field(FieldId::next(at), field.ty);
-        inside(declarations, member, retained || field.retain, found);
+        inside(declarations, member, field.retain.within(retain), found);
     }
 }
 
 /// The instances at `place`: itself, or its elements or members.
-fn inside(declarations: &Declarations<'_>, place: Place, retained: bool, found: &mut Vec<Inside>) {
+fn inside(declarations: &Declarations<'_>, place: Place, retain: Retain, found: &mut Vec<Inside>) {
     match place.ty {
         Type::Struct(id) => match declarations.slot_of_instance(id) {
-            Some(slot) => found.push(Inside { slot, place, retained }),
-            None => members(declarations, &place, id, retained, found),
+            Some(slot) => found.push(Inside { slot, place, retain }),
+            None => members(declarations, &place, id, retain, found),
         },
         Type::Array(id) => {
             let element = declarations.program.array(id).element;
-            inside(declarations, place.index(every(), element, Location::default()), retained, found);
+            inside(declarations, place.index(every(), element, Location::default()), retain, found);
         }
         Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Block(_) => {}
     }
@@ -102,9 +102,10 @@ pub(super) fn open_counts(declarations: &Declarations<'_>, uses: &[Uses]) -> Ope
     for (state, at) in owners(program) {
         let is_inside = |it: &&KeptCount| it.counter.root == Root::Instance && it.kept.root == Root::Instance;
         let own = uses[at].counts.iter().filter(is_inside);
-        let mut counts: Vec<_> = own.filter(|it| !is_retained(program, at, &it.kept)).cloned().collect();
-        for Inside { slot, place, retained } in instances(declarations, Root::Instance, state) {
-            if !retained {
+        let mut counts: Vec<_> =
+            own.filter(|it| retention(program, at, &it.kept) == Retain::Inherited).cloned().collect();
+        for Inside { slot, place, retain } in instances(declarations, Root::Instance, state) {
+            if retain == Retain::Inherited {
                 counts.extend(open[slot].iter().map(|it: &KeptCount| KeptCount {
                     counter: joined(&place, &it.counter),
                     kept: joined(&place, &it.kept),
@@ -126,5 +127,5 @@ pub(super) fn kept_from_outside<'o>(
     let states = owners(program).into_iter().map(|(state, _)| (Root::Instance, state));
     let all = states.chain([(Root::Globals, program.globals)]);
     let all: Vec<_> = all.flat_map(|(root, state)| instances(declarations, root, state)).collect();
-    all.into_iter().filter(|it| it.retained).flat_map(|it| &open[it.slot])
+    all.into_iter().filter(|it| it.retain == Retain::Kept).flat_map(|it| &open[it.slot])
 }
