@@ -139,7 +139,7 @@ impl<'s> Checker<'_, 's> {
         }
         let (low, high) = (from.lane().range(), to.lane().range());
         let (Some(from_range), Some(to_range)) = (low, high) else {
-            return widens(as_number(from), to);
+            return widens(as_number(from), to) || self.loses_precision(from, to, span);
         };
         if from == Elementary::Bool || to == Elementary::Bool || from.is_time() || to.is_time() {
             return false;
@@ -160,6 +160,24 @@ impl<'s> Checker<'_, 's> {
             );
         }
         sign_only
+    }
+
+    /// CODESYS makes a real of any integer, with a warning where that has more digits.
+    fn loses_precision(&mut self, from: Elementary, to: Elementary, span: Span) -> bool {
+        let from = as_number(from);
+        if !from.is_integer() || !to.is_real() {
+            return false;
+        }
+        self.report(
+            Diagnostic::new(
+                Code::W0511,
+                span,
+                format!("{} becomes {}: large values are rounded", from.name(), to.name()),
+            )
+            .label("implicit conversion")
+            .help(format!("say so: `{}_TO_{}(…)`", from.name(), to.name())),
+        );
+        true
     }
 
     fn report_narrowing(&mut self, from: Elementary, to: Elementary, span: Span) {

@@ -535,6 +535,10 @@ dialect refuses it, as CODESYS does.
     VAR level : INT; END_VAR
     IF level > 40000 THEN alarm := TRUE; END_IF      (* never: an INT holds -32768 to 32767 *)
 ";
+    W0511 Warning "an integer loses digits as a real"
+"CODESYS makes a REAL of a DINT without being asked, and an LREAL of a LINT. Above 16777216, or 9007199254740992, not
+every integer is a real, and the nearest one is taken. Write the conversion to say that this is meant.
+";
     W0602 Warning "a count is compared beyond its preset"
 "A CSCAPE counter stops at its preset, so its count is not above it. Elsewhere counting goes on, and programs
 that were written there wait for the count to pass PV. (Only after PV was lowered can CV lie above it.)
