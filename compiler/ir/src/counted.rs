@@ -94,7 +94,7 @@ fn limit(condition: &Expr, counter: &Place, step: i64) -> Option<i128> {
 }
 
 fn reads(expr: &Expr, place: &Place) -> bool {
-    matches!(&expr.kind, ExprKind::Load(it) if is_same(it, place))
+    matches!(&expr.kind, ExprKind::Load(it) if it.is_same_variable(place))
 }
 
 /// The value that the counter is given before the loop, if it is constant; the bound may be
@@ -102,7 +102,7 @@ fn reads(expr: &Expr, place: &Place) -> bool {
 fn first_value(before: &[Statement], counter: &Place) -> Option<i128> {
     for statement in before.iter().rev().take(2) {
         let StatementKind::Assign { target, value } = &statement.kind else { return None };
-        if is_same(target, counter) {
+        if target.is_same_variable(counter) {
             return value.as_const()?.as_integer();
         }
         if overlaps(target, counter) {
@@ -147,10 +147,6 @@ fn writes(block: &[Statement], place: &Place) -> bool {
         | StatementKind::Fault(_) => false,
     };
     block.iter().any(|it| directly(&it.kind) || it.kind.blocks().into_iter().any(|inner| writes(inner, place)))
-}
-
-fn is_same(a: &Place, b: &Place) -> bool {
-    a.projections.len() == b.projections.len() && overlaps(a, b)
 }
 
 /// Whether one place may hold the other; `private` is not reached through any other root.
@@ -200,7 +196,7 @@ fn range(program: &Program, expr: &Expr, counters: &[Counted<'_>]) -> Option<Ran
 
 /// Which of the counters is `place`.
 pub fn running(counters: &[Counted<'_>], place: &Place) -> Option<usize> {
-    counters.iter().rposition(|it| is_same(place, it.counter))
+    counters.iter().rposition(|it| place.is_same_variable(it.counter))
 }
 
 fn combined(op: Op, a: Range, b: Range) -> Option<Range> {

@@ -52,4 +52,16 @@ impl Place {
         self.ty = element;
         self
     }
+
+    /// Whether both are one variable, or one member of it. Places with subscripts are not compared.
+    pub fn is_same_variable(&self, other: &Self) -> bool {
+        let field = |it: &Projection| match it {
+            Projection::Field(id) => Some(*id),
+            Projection::Index { .. } => None,
+        };
+        let same = |(a, b)| field(a).is_some() && field(a) == field(b);
+        self.root == other.root
+            && self.projections.len() == other.projections.len()
+            && self.projections.iter().zip(&other.projections).all(same)
+    }
 }

@@ -14,7 +14,7 @@ impl Function<'_> {
     /// The place, as what an assignment, a borrow or a method call takes. A parameter's own name
     /// stands for the reference that it is.
     pub fn place(&self, place: &Place) -> TokenStream {
-        if let Some((_, copy)) = self.counters.iter().rev().find(|(counter, _)| is_same(counter, place)) {
+        if let Some((_, copy)) = self.counters.iter().rev().find(|(counter, _)| counter.is_same_variable(place)) {
             return quote!(#copy);
         }
         self.written_place(place)
@@ -123,15 +123,4 @@ impl Function<'_> {
         let tokens = self.place(place);
         if self.is_whole_param(place) { tokens } else { quote!(&mut #tokens) }
     }
-}
-
-/// Whether two places are one variable; places with subscripts are not compared.
-pub fn is_same(a: &Place, b: &Place) -> bool {
-    let field = |(a, b): (&Projection, &Projection)| match (a, b) {
-        (Projection::Field(a), Projection::Field(b)) => a == b,
-        (Projection::Index { .. }, _) | (_, Projection::Index { .. }) => false,
-    };
-    a.root == b.root
-        && a.projections.len() == b.projections.len()
-        && a.projections.iter().zip(&b.projections).all(field)
 }

@@ -3,6 +3,7 @@
 
 use proc_macro2::TokenStream;
 use quote::quote;
+use staunch_ir::counted::exit_condition;
 use staunch_ir::{Block, Place, Projection, Root, Statement, StatementKind, Value};
 
 use crate::alias::overlap;
@@ -112,13 +113,9 @@ impl Function<'_> {
 
     /// `while` where the loop starts by leaving on a condition.
     fn while_condition<'s>(&mut self, body: &'s [Statement]) -> (Option<TokenStream>, &'s [Statement]) {
-        let [Statement { kind: StatementKind::If { condition, then, otherwise }, .. }, rest @ ..] = body else {
-            return (None, body);
-        };
-        let leaves = matches!(then.as_slice(), [Statement { kind: StatementKind::Exit, .. }]) && otherwise.is_empty();
-        if !leaves || condition.as_const() == Some(Value::Bool(true)) {
-            return (None, body);
-        }
+        let Some((test, rest)) = body.split_first() else { return (None, body) };
+        let condition = exit_condition(test).filter(|it| it.as_const() != Some(Value::Bool(true)));
+        let Some(condition) = condition else { return (None, body) };
         if condition.as_const() == Some(Value::Bool(false)) {
             return (None, rest);
         }

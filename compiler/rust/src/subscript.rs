@@ -9,7 +9,6 @@ use staunch_ir::counted::{Counted, is_within};
 use staunch_ir::{ArrayId, Conversion, Expr, ExprKind, Location, Place, Projection, Statement, Type};
 
 use crate::function::Function;
-use crate::place::is_same;
 use crate::walk;
 
 /// A counter's position in arrays of certain bounds.
@@ -34,7 +33,8 @@ impl Function<'_> {
     pub fn subscript(&self, index: &Expr, array: ArrayId) -> Option<&Subscript> {
         let place = counter(index)?;
         let array = self.emitter.program.array(array);
-        let is_it = |it: &&Subscript| (it.low, it.high) == (array.low, array.high) && is_same(&it.counter, place);
+        let is_it =
+            |it: &&Subscript| (it.low, it.high) == (array.low, array.high) && it.counter.is_same_variable(place);
         self.subscripts.iter().rev().find(is_it)
     }
 
@@ -66,7 +66,7 @@ impl Function<'_> {
         let program = self.emitter.program;
         for (projection, ty) in place.projections.iter().zip(self.emitter.types_along(self.pou, place)) {
             let (Projection::Index { index, at }, Type::Array(array)) = (projection, ty) else { continue };
-            let is_counter = counter(index).is_some_and(|it| is_same(it, counted.counter));
+            let is_counter = counter(index).is_some_and(|it| it.is_same_variable(counted.counter));
             if is_counter && is_within(program, index, array, std::slice::from_ref(counted)) {
                 let bounds = program.array(array);
                 let new = || Use { index: (**index).clone(), array, at: *at, times: 0 };

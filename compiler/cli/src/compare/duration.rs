@@ -1,6 +1,5 @@
 //! For how long an input is worth holding: what the program's constants count and wait for.
 
-use super::leaf;
 use staunch_ir::{Argument, Block, Const, Expr, ExprKind, Program, Statement, StatementKind, Type, Value};
 use std::collections::BTreeSet;
 
@@ -60,7 +59,7 @@ impl Constants {
     fn block(&mut self, block: &Block) {
         for statement in block {
             self.statement(statement);
-            leaf::inner_blocks(statement).into_iter().for_each(|it| self.block(it));
+            statement.kind.blocks().into_iter().for_each(|it| self.block(it));
         }
     }
 

@@ -56,7 +56,7 @@ pub struct Leaves {
 struct Whole {
     offset: usize,
     role: Role,
-    retain: bool,
+    retain: Retain,
 }
 
 struct Walk<'p> {
@@ -96,7 +96,7 @@ impl Walk<'_> {
             };
             let offset = base + usize_of(self.layout.field(id, number));
             let path = format!("{prefix}{}", field.name);
-            self.part(&path, field.ty, Whole { offset, role, retain: field.retain == Retain::Kept });
+            self.part(&path, field.ty, Whole { offset, role, retain: field.retain });
         }
     }
 
@@ -115,7 +115,7 @@ impl Walk<'_> {
         }
         let Whole { offset, role, retain } = whole;
         let size = usize_of(self.layout.size(ty));
-        let (path, key) = (path.to_owned(), key.to_ascii_lowercase());
+        let (path, key, retain) = (path.to_owned(), key.to_ascii_lowercase(), retain == Retain::Kept);
         self.found.all.push(Leaf { path, key, ty, offset, size, role, retain });
     }
 
@@ -134,8 +134,7 @@ impl Walk<'_> {
         for (at, field) in self.program.structure(id).fields.iter().enumerate() {
             let role = if field.constant { Role::Hidden } else { part_of(whole.role) };
             let offset = whole.offset + usize_of(self.layout.field(id, FieldId::next(at)));
-            let whole_retain = if whole.retain { Retain::Kept } else { Retain::Anew };
-            let retain = field.retain.within(whole_retain) == Retain::Kept;
+            let retain = field.retain.within(whole.retain);
             self.part(&format!("{path}.{}", field.name), field.ty, Whole { offset, role, retain });
         }
     }
@@ -147,8 +146,11 @@ impl Walk<'_> {
         for (at, pin) in info.pins.iter().enumerate() {
             let Some(ty) = id.pin_type(FieldId::next(at)) else { continue };
             let role = if shows(info.family, pin) { Role::Output(number) } else { Role::Hidden };
-            let always = info.retention == Retention::Always;
-            let retain = always || whole.retain && !info.retention.restarts(pin);
+            let retain = match info.retention {
+                Retention::Always => Retain::Kept,
+                it if it.restarts(pin) => Retain::Anew,
+                Retention::Declared | Retention::Inputs => whole.retain,
+            };
             let part = Whole { offset: whole.offset + pin.offset, role, retain };
             self.leaf(&format!("{path}.{}", pin.name), &format!("{key}.{}", common_name(id, pin.name)), ty, part);
         }
@@ -297,27 +299,8 @@ fn writes(
             Kind::If { .. } | Kind::Case { .. } | Kind::Loop { .. } => {}
         }
     }
-    for block in block.iter().flat_map(inner_blocks) {
+    for block in block.iter().flat_map(|it| it.kind.blocks()) {
         writes(program, pou, block, found);
-    }
-}
-
-/// The blocks of statements inside a statement.
-pub fn inner_blocks(statement: &staunch_ir::Statement) -> Vec<&staunch_ir::Block> {
-    use staunch_ir::StatementKind as Kind;
-    match &statement.kind {
-        Kind::If { then, otherwise, .. } => vec![then, otherwise],
-        Kind::Case { arms, otherwise, .. } => arms.iter().map(|it| &it.body).chain([otherwise]).collect(),
-        Kind::Loop { body, continuing } => vec![body, continuing],
-        Kind::Assign { .. }
-        | Kind::CallBlock { .. }
-        | Kind::PrescanBlock { .. }
-        | Kind::PrescanInstance { .. }
-        | Kind::Call { .. }
-        | Kind::Exit
-        | Kind::Continue
-        | Kind::Return
-        | Kind::Fault(_) => Vec::new(),
     }
 }
 

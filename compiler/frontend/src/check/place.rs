@@ -462,7 +462,7 @@ impl<'s> Checker<'_, 's> {
 
     fn is_counter(&self, place: &Place) -> bool {
         place.projections.iter().all(|it| matches!(it, staunch_ir::Projection::Field(_)))
-            && self.counters.iter().any(|it| same_place(it, place))
+            && self.counters.iter().any(|it| it.is_same_variable(place))
     }
 
     fn report_counter(&mut self, span: Span) -> bool {
@@ -475,16 +475,6 @@ impl<'s> Checker<'_, 's> {
         );
         lint
     }
-}
-
-pub(super) fn same_place(a: &Place, b: &Place) -> bool {
-    let field = |it: &staunch_ir::Projection| match it {
-        staunch_ir::Projection::Field(id) => Some(*id),
-        staunch_ir::Projection::Index { .. } => None,
-    };
-    a.root == b.root
-        && a.projections.len() == b.projections.len()
-        && a.projections.iter().zip(&b.projections).all(|(a, b)| field(a).is_some() && field(a) == field(b))
 }
 
 fn is_pin(section: Section) -> bool {
