@@ -2,6 +2,7 @@
 
 mod codes;
 mod render;
+pub(crate) mod wording;
 
 pub use codes::Code;
 pub use render::{Format, Style, render};

@@ -5,18 +5,18 @@ mod diagnostic;
 mod source;
 
 pub mod ast;
-mod grammar;
 mod lex;
+mod names;
+mod syntax;
 
 mod check;
 mod declare;
 mod dialect;
-mod key;
 
 pub use diagnostic::{Code, Diagnostic, Fix, Format, Label, Severity, Style, render};
 pub use dialect::Dialect;
-pub use grammar::parse;
 pub use source::{Source, Sources, Span};
+pub use syntax::parse;
 
 use staunch_ir::Program;
 

@@ -73,9 +73,9 @@ impl<'s> Checker<'_, 's> {
                 Diagnostic::new(
                     Code::E0305,
                     callee,
-                    format!("{} is not called itself", crate::key::article(info.name)),
+                    format!("{} is not called itself", crate::diagnostic::wording::article(info.name)),
                 )
-                .label(format!("it is worked on by {}", crate::key::list(&names)))
+                .label(format!("it is worked on by {}", crate::diagnostic::wording::list(&names)))
                 .help(format!("write `{}({}, …)`", names[0], self.decl.sources.text(callee))),
             );
             return None;
@@ -317,7 +317,7 @@ impl<'s> Checker<'_, 's> {
                 Diagnostic::new(
                     Code::E0201,
                     expr.span,
-                    format!("`{name}` is {}, found {has}", crate::key::article(&wants)),
+                    format!("`{name}` is {}, found {has}", crate::diagnostic::wording::article(&wants)),
                 )
                 .label("a VAR_IN_OUT takes a variable of exactly its own type")
                 .other(formal.name.span, "declared here"),
@@ -386,14 +386,14 @@ impl<'s> Checker<'_, 's> {
         let given = self.bind(name.text, &parameters, arguments, |argument| {
             Diagnostic::new(Code::E0301, argument.span, format!("`{}` has no parameter `{}`", name.text, argument.text))
                 .label("unknown parameter")
-                .help(format!("its parameters are {}", crate::key::list(&names)))
+                .help(format!("its parameters are {}", crate::diagnostic::wording::list(&names)))
         })?;
         let Given::Value(tag) = given[0] else {
             self.report(
                 Diagnostic::new(
                     Code::E0303,
                     name.span,
-                    format!("`{}` needs {}", name.text, crate::key::article(info.name)),
+                    format!("`{}` needs {}", name.text, crate::diagnostic::wording::article(info.name)),
                 )
                 .help(format!("write `{}(Counter := tag, RungIn := condition)`", name.text)),
             );
@@ -406,9 +406,9 @@ impl<'s> Checker<'_, 's> {
                 Diagnostic::new(
                     Code::E0313,
                     tag.span,
-                    format!("`{}` works on {}, found {has}", name.text, crate::key::article(info.name)),
+                    format!("`{}` works on {}, found {has}", name.text, crate::diagnostic::wording::article(info.name)),
                 )
-                .label(format!("expected {}", crate::key::article(info.name))),
+                .label(format!("expected {}", crate::diagnostic::wording::article(info.name))),
             );
             return None;
         }

@@ -3,7 +3,8 @@
 use super::Checker;
 use super::operand::Operand;
 use crate::declare::{Entry, Formal};
-use crate::key::{Key, list, nearest};
+use crate::diagnostic::wording::list;
+use crate::names::{Key, nearest};
 use crate::{Code, Diagnostic, Span, ast, dialect};
 use ast::{ArgumentKind, ExprKind as Ast};
 use staunch_ir::{BlockId, Section, Type};

@@ -1,6 +1,6 @@
 use super::Checker;
 use super::operand::Operand;
-use crate::key::Key;
+use crate::names::Key;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, UnaryOp};
 use staunch_ir::{Conversion, Elementary, Expr, ExprKind, Op, Type, Value};

@@ -170,7 +170,7 @@ impl<'s> Checker<'_, 's> {
 
     /// Whether a formal's declaration, or its type's, gives it a value.
     fn has_initial(&self, formal: &Formal<'s>, owner: ast::Name<'s>) -> bool {
-        let Some(Entry::Pou(slot)) = self.decl.names.get(&crate::key::Key(owner.text)) else { return true };
+        let Some(Entry::Pou(slot)) = self.decl.names.get(&crate::names::Key(owner.text)) else { return true };
         let pou = self.decl.pous[*slot].ast;
         let declared = pou.blocks.iter().flat_map(|it| &it.vars);
         let given = declared
@@ -249,7 +249,7 @@ impl<'s> Checker<'_, 's> {
             let names: Vec<_> = names.iter().map(String::as_str).collect();
             Diagnostic::new(Code::E0301, argument.span, format!("`{}` has no parameter `{}`", name.text, argument.text))
                 .label("unknown parameter")
-                .help(format!("its parameters are {}", crate::key::list(&names)))
+                .help(format!("its parameters are {}", crate::diagnostic::wording::list(&names)))
         })?;
         let mut values = Vec::new();
         for given in &given {
@@ -328,7 +328,7 @@ impl<'s> Checker<'_, 's> {
             return result.typed().cloned();
         }
         let found = result.ty().map_or_else(|| "a number".to_owned(), |it| self.type_name(it));
-        let wants = crate::key::article(ty.name());
+        let wants = crate::diagnostic::wording::article(ty.name());
         self.report(
             Diagnostic::new(Code::E0204, name.span, format!("`{}` makes {wants}, this is {found}", name.text))
                 .label(format!("its first argument is {wants}")),

@@ -1,6 +1,6 @@
 use super::Checker;
 use super::operand::{Operand, to_f64};
-use crate::key::Key;
+use crate::names::Key;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::LiteralValue;
 use staunch_ir::{Elementary, Expr, ExprKind, Type, Value};
@@ -97,7 +97,7 @@ impl<'s> Checker<'_, 's> {
         if prefix.text.eq_ignore_ascii_case("STRING") && matches!(value, LiteralValue::String { .. }) {
             return Some(None);
         }
-        let near = crate::key::nearest(prefix.text, Elementary::ALL.iter().map(|it| it.name()));
+        let near = crate::names::nearest(prefix.text, Elementary::ALL.iter().map(|it| it.name()));
         let mut error = Diagnostic::new(Code::E0102, prefix.span, format!("there is no type `{}`", prefix.text))
             .label("the type of a literal");
         if let Some(near) = near {
@@ -121,7 +121,7 @@ impl<'s> Checker<'_, 's> {
         let values = &self.decl.program.enumeration(id).values;
         let found = values.iter().find(|it| it.name.eq_ignore_ascii_case(name.text)).map(|it| it.value);
         let Some(value) = found else {
-            let near = crate::key::nearest(name.text, values.iter().map(|it| it.name.as_str())).map(str::to_owned);
+            let near = crate::names::nearest(name.text, values.iter().map(|it| it.name.as_str())).map(str::to_owned);
             self.decl.unknown_member(name, resolved.ty, near.as_deref());
             return None;
         };
@@ -161,7 +161,7 @@ impl<'s> Checker<'_, 's> {
                         format!("several enumerations have a value `{}`", name.text),
                     )
                     .label("which one is meant?")
-                    .help(format!("write {}", crate::key::list(&names))),
+                    .help(format!("write {}", crate::diagnostic::wording::list(&names))),
                 );
                 Some(None)
             }

@@ -4,7 +4,7 @@
 use super::Checker;
 use super::unknown::other_dialects_pin;
 use crate::dialect::family_name;
-use crate::key::Key;
+use crate::names::Key;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ArgumentKind, BinaryOp, ExprKind as Ast, LiteralValue, StatementKind};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -120,9 +120,13 @@ impl<'s> Checker<'_, 's> {
         };
         if unsigned {
             self.report(
-                Diagnostic::new(Code::W0608, span, format!("{} is never below zero", crate::key::article(ty.name())))
-                    .label(format!("this is always {outcome}"))
-                    .help("compare with `= 0`, or count in a signed type"),
+                Diagnostic::new(
+                    Code::W0608,
+                    span,
+                    format!("{} is never below zero", crate::diagnostic::wording::article(ty.name())),
+                )
+                .label(format!("this is always {outcome}"))
+                .help("compare with `= 0`, or count in a signed type"),
             );
         }
     }

@@ -3,7 +3,7 @@
 use super::Checker;
 use super::operand::Operand;
 use super::operator::Sides;
-use crate::key::article;
+use crate::diagnostic::wording::article;
 use crate::{Code, Diagnostic};
 use ast::BinaryOp;
 use staunch_ir::{Elementary, Type, Value};

@@ -91,7 +91,7 @@ impl<'s> Checker<'_, 's> {
                 Diagnostic::new(
                     Code::E0201,
                     span,
-                    format!("{} is expected, not a number", crate::key::article(ty.name())),
+                    format!("{} is expected, not a number", crate::diagnostic::wording::article(ty.name())),
                 )
                 .label(format!("expected {}", ty.name()))
                 .help(format!("write the unit: `T#{value}ms`")),

@@ -2,7 +2,7 @@
 
 use super::Checker;
 use crate::declare::{Entry, Variable};
-use crate::key::{Key, nearest};
+use crate::names::{Key, nearest};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::ExprKind as Ast;
 use staunch_ir::{

@@ -1,8 +1,9 @@
 //! Names that are not there, and what was probably meant.
 
 use super::Checker;
+use crate::diagnostic::wording::list;
 use crate::dialect::{self, Dialect, family_name};
-use crate::key::{list, nearest};
+use crate::names::nearest;
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::BlockId;
 use staunch_runtime::{BLOCKS, Direction, Family};
@@ -136,7 +137,7 @@ impl<'s> Checker<'_, 's> {
         let error = Diagnostic::new(Code::E0101, name.span, format!("`{}` is not a variable", name.text));
         if !self.lacks_result_type(name) {
             let error = error.label("a variable or a value is expected here");
-            let kind = match self.decl.names.get(&crate::key::Key(name.text)) {
+            let kind = match self.decl.names.get(&crate::names::Key(name.text)) {
                 Some(crate::declare::Entry::Pou(slot)) => Some(self.decl.pous[*slot].ast.kind),
                 Some(crate::declare::Entry::Type(_) | crate::declare::Entry::Global(_)) | None => None,
             };
@@ -161,7 +162,7 @@ impl<'s> Checker<'_, 's> {
 
     /// Whether `name` is a FUNCTION that assigns to its own name, but has no result type.
     pub(super) fn lacks_result_type(&self, name: ast::Name<'s>) -> bool {
-        let Some(crate::declare::Entry::Pou(slot)) = self.decl.names.get(&crate::key::Key(name.text)) else {
+        let Some(crate::declare::Entry::Pou(slot)) = self.decl.names.get(&crate::names::Key(name.text)) else {
             return false;
         };
         self.decl.untyped.contains(slot)
@@ -169,11 +170,11 @@ impl<'s> Checker<'_, 's> {
 
     /// Reports a name that means nothing here.
     pub(super) fn unknown_name(&mut self, name: ast::Name<'s>) {
-        if self.decl.unread.contains(&crate::key::Key(name.text)) {
+        if self.decl.unread.contains(&crate::names::Key(name.text)) {
             return;
         }
         if let Some(crate::declare::Entry::Type(_) | crate::declare::Entry::Pou(_)) =
-            self.decl.names.get(&crate::key::Key(name.text))
+            self.decl.names.get(&crate::names::Key(name.text))
         {
             self.not_a_variable(name);
             return;

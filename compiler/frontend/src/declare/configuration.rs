@@ -3,7 +3,7 @@
 use super::{Declarations, Entry};
 use crate::ast;
 use crate::check;
-use crate::key::{Key, nearest};
+use crate::names::{Key, nearest};
 use crate::{Code, Diagnostic};
 use staunch_ir::{Instance, PouId, PouKind, Value};
 

@@ -4,7 +4,7 @@ use super::types::{Resolved, scalar_initial};
 use super::{Declarations, Scope};
 use crate::ast::{self, InitialKind};
 use crate::check;
-use crate::key::nearest;
+use crate::names::nearest;
 use crate::{Code, Diagnostic, Span};
 use staunch_ir::{Array, ArrayId, Const, ExprKind, StructId, Type};
 use std::rc::Rc;
@@ -278,7 +278,7 @@ impl<'s> Declarations<'s> {
             Type::Enum(id) => self.program.enumeration(id).values.iter().map(|it| it.name.as_str()).collect(),
             Type::Elementary(_) | Type::String(_) | Type::Array(_) | Type::Block(_) => Vec::new(),
         };
-        (1..=12).contains(&names.len()).then(|| crate::key::list(&names).replace(" or ", " and "))
+        (1..=12).contains(&names.len()).then(|| crate::diagnostic::wording::list(&names).replace(" or ", " and "))
     }
 }
 

@@ -20,7 +20,7 @@ pub(crate) use types::Resolved;
 use crate::ast;
 use crate::check;
 use crate::dialect::{self, Dialect};
-use crate::key::{Key, nearest};
+use crate::names::{Key, nearest};
 use crate::{Bodies, Code, Diagnostic, Options, Severity, Sources, Span};
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::layout::{Layout, TooLarge};
@@ -262,7 +262,7 @@ impl<'s> Declarations<'s> {
                 let near = nearest(name, names.iter().copied());
                 error = error.help(match near {
                     Some(near) => format!("did you mean `{{dialect '{near}'}}`?"),
-                    None => format!("the dialects are {}", crate::key::list(&names)),
+                    None => format!("the dialects are {}", crate::diagnostic::wording::list(&names)),
                 });
                 self.report(error);
                 continue;

@@ -291,7 +291,7 @@ impl<'s> Declarations<'s> {
             PouKind::Function => ("a FUNCTION", "make this a FUNCTION_BLOCK, or take the block as a VAR_IN_OUT"),
             PouKind::Program | PouKind::FunctionBlock => ("VAR_TEMP", "declare it in VAR"),
         };
-        let block = crate::key::article(info.name);
+        let block = crate::diagnostic::wording::article(info.name);
         self.report(
             Diagnostic::new(Code::W0303, decl.span, format!("{block} in {place} starts anew at each call"))
                 .label(format!("so {what}"))

@@ -1,7 +1,7 @@
 use super::types::Resolved;
 use super::{Declarations, GlobalSlot};
 use crate::ast;
-use crate::key::Key;
+use crate::names::Key;
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{Const, Field, Place, Section};
 use std::cell::Cell;
@@ -209,7 +209,7 @@ impl<'s> Declarations<'s> {
 
     pub fn external(&mut self, name: ast::Name<'s>) -> Option<Rc<Variable<'s>>> {
         let Some(super::Entry::Global(at)) = self.names.get(&Key(name.text)).copied() else {
-            let near = crate::key::nearest(name.text, self.globals.iter().map(|it: &GlobalSlot<'s>| it.name.text));
+            let near = crate::names::nearest(name.text, self.globals.iter().map(|it: &GlobalSlot<'s>| it.name.text));
             let mut error = crate::Diagnostic::new(
                 crate::Code::E0101,
                 name.span,

@@ -3,8 +3,9 @@
 use super::{Declarations, Entry, Scope, Slot};
 use crate::ast::{self, Bound, TypeKind};
 use crate::check;
+use crate::diagnostic::wording::list;
 use crate::dialect::{self, Dialect};
-use crate::key::{Key, list, nearest};
+use crate::names::{Key, nearest};
 use crate::{Code, Diagnostic, Span};
 use staunch_ir::{Array, ArrayId, Const, Elementary, Enum, EnumId, Enumerator, Struct, StructId, Type, Value};
 use std::rc::Rc;

@@ -16,7 +16,7 @@ pub use misspelt::*;
 pub use operator::*;
 
 use super::{
-    moves::{Expected, In, Moves, Problem},
+    parser::{Expected, In, Moves, Problem},
     recover,
 };
 
@@ -39,7 +39,7 @@ pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
     let it = match (problem.expected, found.keyword()) {
         (Expected::Name, Some(word)) if !recover::ends_statements(found) => {
             let own = input.text(span);
-            super::names::reserved(span, word, own)
+            super::invalid_names::reserved(span, word, own)
         }
         (Expected::Expression, _) if is_comparison(found) && behind_junction(input, problem.at) => {
             Diagnostic::new(Code::E0001, span, format!("expected an expression, found {shown}"))
@@ -202,7 +202,7 @@ pub fn missing_word(input: &mut In<'_, '_, '_>, word: Kind, opened: Span) {
     if swallowed(input) || input.kind() == Kind::End {
         return;
     }
-    super::habit::extra_brackets(input, word);
+    super::foreign_syntax::extra_brackets(input, word);
     if input.eat(word).is_some() {
         return;
     }
@@ -233,7 +233,7 @@ pub fn missing_word(input: &mut In<'_, '_, '_>, word: Kind, opened: Span) {
             .fix(place, format!(" {}", word.keyword().unwrap_or_default()))
     };
     let word = word.keyword().unwrap_or_default();
-    input.report(it.other(opened, format!("this {opener} needs {}", crate::key::article(word))));
+    input.report(it.other(opened, format!("this {opener} needs {}", crate::diagnostic::wording::article(word))));
 }
 
 /// How far ahead `word` stands on the current line, before the statement ends.

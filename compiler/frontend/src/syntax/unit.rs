@@ -10,11 +10,12 @@ use crate::{
 use super::{
     configuration::configuration,
     declaration::section,
-    doc, member, mistake,
-    moves::{Expected, In, Moves, Parsed, Problem},
+    diagnostics, doc,
+    parser::{Expected, In, Moves, Parsed, Problem},
     recover,
     statement::statements,
     types::{structure_behind, type_spec, types},
+    unsupported,
 };
 
 pub fn items<'s>(input: &mut In<'_, '_, 's>) -> Vec<Item<'s>> {
@@ -36,12 +37,12 @@ pub fn items<'s>(input: &mut In<'_, '_, 's>) -> Vec<Item<'s>> {
             Kind::Configuration => items.push(Item::Configuration(configuration(input))),
             Kind::VarGlobal => items.extend(section(input).map(Item::Globals)),
             kind if recover::opens_section(kind) => bare_unit(input, &mut items),
-            Kind::Name if member::skip(input) => {}
+            Kind::Name if unsupported::skip(input) => {}
             Kind::Name if misspelt_item(input) => {}
             kind if is_statement(input, kind) => bare_unit(input, &mut items),
             kind if recover::closes(kind) => {
                 let span = input.take();
-                let it = mistake::stray(span, kind);
+                let it = diagnostics::stray(span, kind);
                 input.report(it);
             }
             _ => outside(input),
@@ -52,16 +53,16 @@ pub fn items<'s>(input: &mut In<'_, '_, 's>) -> Vec<Item<'s>> {
 /// Something that stands between the items of a file.
 fn outside(input: &mut In<'_, '_, '_>) {
     let problem = input.problem(Expected::Block);
-    mistake::report(input, problem);
+    diagnostics::report(input, problem);
     input.take();
     recover::skip_to_item(input);
 }
 
 /// `PROGRM Main`: is read as the keyword that was meant.
 fn misspelt_item(input: &mut In<'_, '_, '_>) -> bool {
-    let Some(kind) = mistake::misspelt_item(input) else { return false };
+    let Some(kind) = diagnostics::misspelt_item(input) else { return false };
     let span = input.take();
-    mistake::misspelt_keyword(input, kind, span);
+    diagnostics::misspelt_keyword(input, kind, span);
     input.state().instead = Some(kind);
     true
 }
@@ -94,7 +95,7 @@ fn bare_unit<'s>(input: &mut In<'_, '_, 's>, items: &mut Vec<Item<'s>>) {
         input.take();
     }
     let statements = closed || !pou.body.is_empty();
-    input.report(mistake::outside_of_units(opened, statements));
+    input.report(diagnostics::outside_of_units(opened, statements));
     if statements {
         items.push(Item::Pou(pou));
     } else {
@@ -108,7 +109,7 @@ fn bare_structure<'s>(input: &mut In<'_, '_, 's>) -> Item<'s> {
     let span = input.here();
     let name = Name { text: input.text(span), span };
     input.take();
-    input.report(mistake::bare_structure(word.to(span), name.text));
+    input.report(diagnostics::bare_structure(word.to(span), name.text));
     let ty = structure_behind(input, word);
     input.eat(Kind::Semicolon);
     Item::Types(vec![TypeDecl { name, ty, initial: None, doc: None, unread: Vec::new() }])
@@ -122,7 +123,7 @@ fn nested_unit(input: &mut In<'_, '_, '_>) -> bool {
     }
     let (kind, span) = (input.kind(), input.here());
     let outer = input.text(opened).to_ascii_uppercase();
-    input.report(mistake::nested_unit(span, kind, &outer));
+    input.report(diagnostics::nested_unit(span, kind, &outer));
     let item = match kind {
         Kind::Type => Item::Types(types(input)),
         Kind::Function => pou(input, PouKind::Function, Kind::EndFunction),
@@ -175,7 +176,7 @@ fn contents<'s>(input: &mut In<'_, '_, 's>, pou: &mut Pou<'s>) {
         let read = |it: &Statement<'_>| !matches!(it.kind, StatementKind::Empty | StatementKind::Error);
         if pou.body.iter().any(read) {
             let span = input.here();
-            input.report(mistake::declaration_behind_statements(span));
+            input.report(diagnostics::declaration_behind_statements(span));
         }
         pou.blocks.extend(section(input));
     }
@@ -202,12 +203,12 @@ fn pou<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind) -> Item<'s> {
     let (mut kind, mut end) = (kind, end);
     if kind == PouKind::Function && input.is_word("BLOCK") && input.kind_ahead(1) == Kind::Name {
         let span = opened.to(input.take());
-        mistake::misspelt_keyword(input, Kind::FunctionBlock, span);
+        diagnostics::misspelt_keyword(input, Kind::FunctionBlock, span);
         (kind, end) = (PouKind::FunctionBlock, Kind::EndFunctionBlock);
     }
     let mut parameters = None;
     let (name, result) = head(input, kind, &mut parameters).unwrap_or_else(|problem| {
-        mistake::report(input, problem);
+        diagnostics::report(input, problem);
         recover::skip_head(input);
         (Name { text: "", span: opened }, None)
     });
@@ -216,7 +217,7 @@ fn pou<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind) -> Item<'s> {
         let from = input.take();
         let _ = type_spec(input);
         let whole = from.to(input.last());
-        let it = mistake::no_result_type(whole, input.text(opened));
+        let it = diagnostics::no_result_type(whole, input.text(opened));
         input.report(it);
     }
     input.eat(Kind::Semicolon);
@@ -227,10 +228,10 @@ fn pou<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind) -> Item<'s> {
     input.state().open.pop();
     if input.eat(end).is_none() {
         if recover::is_pou_end(input.kind()) {
-            mistake::wrong_end(input, end, opened);
+            diagnostics::wrong_end(input, end, opened);
             input.take();
         } else {
-            mistake::missing_end(input, end, opened);
+            diagnostics::missing_end(input, end, opened);
         }
     }
     Item::Pou(pou)
@@ -251,7 +252,7 @@ fn head<'s>(
     {
         let ty = name;
         name = input.name()?;
-        mistake::type_first(input, ty.span, name.span);
+        diagnostics::type_first(input, ty.span, name.span);
         return Ok((name, Some(TypeSpec { kind: TypeKind::Named(vec![ty]), span: ty.span })));
     }
     for word in ["EXTENDS", "IMPLEMENTS"] {
@@ -262,7 +263,7 @@ fn head<'s>(
     }
     let lacks_colon = matches!(input.kind(), Kind::Name | Kind::Array) && !input.on_new_line();
     if kind == PouKind::Function && lacks_colon {
-        mistake::missing_type_colon(input);
+        diagnostics::missing_type_colon(input);
         return Ok((name, Some(type_spec(input)?)));
     }
     let typed = kind == PouKind::Function && input.eat(Kind::Colon).is_some();
@@ -287,7 +288,7 @@ fn in_parentheses<'s>(input: &mut In<'_, '_, 's>) -> Parsed<VarBlock<'s>> {
         let _ = input.eat(Kind::Semicolon).or_else(|| input.eat(Kind::Comma));
     }
     let whole = span.to(input.expect(Kind::CloseParen)?);
-    input.report(mistake::parameters_in_head(whole, vars.is_empty()));
+    input.report(diagnostics::parameters_in_head(whole, vars.is_empty()));
     let kind = VarKind::Input;
     Ok(VarBlock { kind, constant: None, retain: None, non_retain: None, persistent: None, vars, span })
 }
@@ -298,7 +299,7 @@ fn modifiers(input: &mut In<'_, '_, '_>) {
         && let Some(word) = words.into_iter().find(|it| input.is_word(it))
     {
         let span = input.take();
-        input.report(mistake::unsupported(span, word));
+        input.report(diagnostics::unsupported(span, word));
     }
 }
 
@@ -308,7 +309,7 @@ fn bases(input: &mut In<'_, '_, '_>, word: &str) -> Result<(), Problem> {
         return Ok(());
     }
     let span = input.take();
-    input.report(mistake::unsupported(span, word));
+    input.report(diagnostics::unsupported(span, word));
     input.name()?;
     while input.kind() == Kind::Comma || input.kind() == Kind::Dot {
         input.take();

@@ -4,8 +4,8 @@
 use crate::{lex::Kind, source::Span};
 
 use super::{
-    balance, mistake,
-    moves::{In, Moves, Problem, Start},
+    block_ends, diagnostics,
+    parser::{In, Moves, Problem, Start},
 };
 
 /// Keywords that open a POU, a TYPE block or a configuration.
@@ -69,7 +69,7 @@ pub fn stray(input: &mut In<'_, '_, '_>) -> bool {
     let ends = kind.keyword().is_some_and(|it| it.starts_with("END_"));
     if ends {
         let awaited = open.last().is_some_and(|(end, _)| *end == kind);
-        if awaited || balance::judge(input, None) != balance::Verdict::Stray {
+        if awaited || block_ends::judge(input, None) != block_ends::Verdict::Stray {
             return false;
         }
     } else if open.iter().any(|(end, _)| partners.contains(end)) {
@@ -78,7 +78,7 @@ pub fn stray(input: &mut In<'_, '_, '_>) -> bool {
     let span = input.take();
     let told = kind == Kind::EndIf && std::mem::take(&mut input.state().orphaned);
     if !told {
-        let it = mistake::stray(span, kind);
+        let it = diagnostics::stray(span, kind);
         input.report(it);
     }
     input.state().orphaned |= matches!(kind, Kind::Else | Kind::Elsif);
@@ -110,7 +110,7 @@ pub fn statement<'t, 'p>(input: &mut In<'t, 'p, '_>, problem: Problem, start: St
     if respell(input, start) {
         return;
     }
-    mistake::report(input, problem);
+    diagnostics::report(input, problem);
     let start = input.state().place(first);
     let block_as_value = input.number() == problem.at && problem.at != first && !input.on_new_line();
     if block_as_value && opens_statement(input.kind()) {
@@ -144,7 +144,7 @@ pub fn declaration<'t, 'p>(input: &mut In<'t, 'p, '_>, problem: Problem, start: 
     if respell(input, start) {
         return false;
     }
-    mistake::report(input, problem);
+    diagnostics::report(input, problem);
     let start = input.state().place(first);
     if input.kind() == Kind::Struct {
         skip_structure(input);
@@ -172,7 +172,7 @@ fn skip_structure(input: &mut In<'_, '_, '_>) {
 fn respell<'t, 'p>(input: &mut In<'t, 'p, '_>, start: Start<'t, 'p>) -> bool {
     let now = input.save();
     input.rewind(start);
-    let Some((kind, words)) = mistake::misspelt(input) else {
+    let Some((kind, words)) = diagnostics::misspelt(input) else {
         input.rewind(now);
         return false;
     };
@@ -181,7 +181,7 @@ fn respell<'t, 'p>(input: &mut In<'t, 'p, '_>, start: Start<'t, 'p>) -> bool {
         input.take();
     }
     let span = span.to(input.last());
-    mistake::misspelt_keyword(input, kind, span);
+    diagnostics::misspelt_keyword(input, kind, span);
     input.state().instead = Some(kind);
     true
 }

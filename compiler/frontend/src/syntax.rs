@@ -3,21 +3,21 @@
 //! Productions decide by the tokens ahead and never go back, so that each mistake is told once,
 //! where it is, and reading goes on in the list it belongs to (`recover`).
 
-mod balance;
+mod block_ends;
 mod configuration;
 mod declaration;
+mod diagnostics;
 mod doc;
 mod expression;
-mod habit;
+mod foreign_syntax;
+mod invalid_names;
 mod literal;
-mod member;
-mod mistake;
-mod moves;
-mod names;
+mod parser;
 mod recover;
 mod statement;
 mod types;
 mod unit;
+mod unsupported;
 
 #[cfg(test)]
 mod tests;
@@ -31,7 +31,7 @@ use crate::{
     source::Span,
 };
 
-use moves::{Extra, State};
+use parser::{Extra, State};
 
 /// The tree of a file. What does not parse is reported, and left out of the tree.
 pub fn parse<'s>(file: u16, text: &'s str, diagnostics: &mut Vec<Diagnostic>) -> File<'s> {
@@ -41,7 +41,7 @@ pub fn parse<'s>(file: u16, text: &'s str, diagnostics: &mut Vec<Diagnostic>) ->
         return File::default();
     }
     let mut tokens = lex(file, text);
-    names::mend(&mut tokens, text, file);
+    invalid_names::mend(&mut tokens, text, file);
     let mut state = State {
         file,
         text,

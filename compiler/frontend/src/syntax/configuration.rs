@@ -9,9 +9,9 @@ use crate::{
 
 use super::{
     declaration::section,
+    diagnostics,
     expression::{self, arguments},
-    mistake,
-    moves::{Extra, In, Moves, Parsed, Problem},
+    parser::{Extra, In, Moves, Parsed, Problem},
     recover,
 };
 
@@ -55,7 +55,7 @@ pub fn configuration<'s>(input: &mut In<'_, '_, 's>) -> Configuration<'s> {
     let span = input.take();
     input.state().open.push((Kind::EndConfiguration, span));
     let name = input.name().unwrap_or_else(|problem| {
-        mistake::report(input, problem);
+        diagnostics::report(input, problem);
         Name { text: "", span }
     });
     let mut configuration =
@@ -74,7 +74,7 @@ pub fn configuration<'s>(input: &mut In<'_, '_, 's>) -> Configuration<'s> {
     }
     input.state().open.pop();
     if input.eat(Kind::EndConfiguration).is_none() {
-        mistake::missing_end(input, Kind::EndConfiguration, span);
+        diagnostics::missing_end(input, Kind::EndConfiguration, span);
     }
     configuration
 }
@@ -87,13 +87,13 @@ fn resource<'s>(input: &mut In<'_, '_, 's>) -> Resource<'s> {
     if input.is_word("ON") {
         input.take();
         if let Err(problem) = input.name() {
-            mistake::report(input, problem);
+            diagnostics::report(input, problem);
         }
     }
     while element(input, &mut resource, Kind::EndResource) {}
     input.state().open.pop();
     if input.eat(Kind::EndResource).is_none() {
-        mistake::missing_end(input, Kind::EndResource, opened);
+        diagnostics::missing_end(input, Kind::EndResource, opened);
     }
     input.eat(Kind::Semicolon);
     resource
@@ -119,11 +119,11 @@ fn element<'s>(input: &mut In<'_, '_, 's>, into: &mut Resource<'s>, end: Kind) -
             input.take();
             input.parse(task()).and_then(|it| finish(input, it)).map(|it| into.tasks.push(it))
         }
-        _ => Err(input.problem(super::moves::Expected::Token(end))),
+        _ => Err(input.problem(super::parser::Expected::Token(end))),
     };
     if let Err(problem) = result {
         input.state().depth = 0;
-        mistake::report(input, problem);
+        diagnostics::report(input, problem);
         if input.here().start == start.start {
             input.take();
         }
@@ -138,7 +138,7 @@ fn program_instance<'s>(input: &mut In<'_, '_, 's>) -> Parsed<ProgramInstance<'s
     if input.kind() == Kind::OpenParen {
         let span = input.here();
         arguments(input)?;
-        input.report(mistake::unsupported(span, "connecting a program's variables here"));
+        input.report(diagnostics::unsupported(span, "connecting a program's variables here"));
     }
     finish(input, instance)
 }
@@ -146,9 +146,9 @@ fn program_instance<'s>(input: &mut In<'_, '_, 's>) -> Parsed<ProgramInstance<'s
 fn finish<T>(input: &mut In<'_, '_, '_>, value: T) -> Result<T, Problem> {
     if input.eat(Kind::Semicolon).is_none() {
         if !input.on_new_line() && !recover::ends_statements(input.kind()) {
-            return Err(input.problem(super::moves::Expected::Token(Kind::Semicolon)));
+            return Err(input.problem(super::parser::Expected::Token(Kind::Semicolon)));
         }
-        mistake::missing_semicolon(input);
+        diagnostics::missing_semicolon(input);
     }
     Ok(value)
 }

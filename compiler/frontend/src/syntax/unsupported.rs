@@ -4,8 +4,8 @@
 use crate::lex::Kind;
 
 use super::{
-    mistake,
-    moves::{In, Moves},
+    diagnostics,
+    parser::{In, Moves},
     recover,
 };
 
@@ -26,13 +26,13 @@ pub fn skip(input: &mut In<'_, '_, '_>) -> bool {
     let span = input.here();
     let word = input.text(span);
     if let Some((name, end)) = CONSTRUCTS.iter().find(|(it, _)| word.eq_ignore_ascii_case(it)) {
-        input.report(mistake::unsupported(span, name));
+        input.report(diagnostics::unsupported(span, name));
         skip_construct(input, *end);
         return true;
     }
     let jump = ["JMP", "USING"].into_iter().find(|it| word.eq_ignore_ascii_case(it));
     if let Some(name) = jump {
-        input.report(mistake::unsupported(span, name));
+        input.report(diagnostics::unsupported(span, name));
         recover::skip_statement(input, span);
         return true;
     }

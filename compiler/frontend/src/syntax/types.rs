@@ -7,10 +7,10 @@ use crate::{
 };
 
 use super::{
-    balance, declaration, doc,
+    block_ends, declaration, diagnostics, doc,
     expression::{close, expression},
-    habit, mistake,
-    moves::{Expected, In, Moves, Parsed, Problem, Start},
+    foreign_syntax,
+    parser::{Expected, In, Moves, Parsed, Problem, Start},
     recover,
 };
 
@@ -22,7 +22,7 @@ pub fn type_spec<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeSpec<'s>> {
         Kind::Struct => structure(input)?,
         Kind::OpenParen => enumeration(input, None)?,
         Kind::Name => named(input)?,
-        _ if habit::brace_list(input, "(", ")") => TypeKind::Error,
+        _ if foreign_syntax::brace_list(input, "(", ")") => TypeKind::Error,
         _ => return Err(input.problem(Expected::Type)),
     };
     input.leave();
@@ -36,7 +36,7 @@ fn array<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeKind<'s>> {
     let round = input.kind() == Kind::OpenParen;
     if round {
         let span = input.take();
-        input.report(mistake::array_bounds(span, "`(`", "ARRAY[1..3] OF INT"));
+        input.report(diagnostics::array_bounds(span, "`(`", "ARRAY[1..3] OF INT"));
     } else {
         input.expect(Kind::OpenBracket)?;
     }
@@ -49,7 +49,7 @@ fn array<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeKind<'s>> {
     }
     close(input, if round { Kind::CloseParen } else { Kind::CloseBracket }, bracket)?;
     if input.eat(Kind::Of).is_none() {
-        mistake::missing_word(input, Kind::Of, opened);
+        diagnostics::missing_word(input, Kind::Of, opened);
     }
     let element = Box::new(type_spec(input)?);
     // Bounds that did not parse make a type that is not known.
@@ -75,13 +75,14 @@ fn bound<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Bound<'s>>> {
     let text = input.text(low.span);
     let Some(colon) = input.eat(Kind::Colon) else {
         input.report(
-            mistake::array_bounds(low.span, "one number", &format!("1..{text}")).fix(low.span, format!("1..{text}")),
+            diagnostics::array_bounds(low.span, "one number", &format!("1..{text}"))
+                .fix(low.span, format!("1..{text}")),
         );
         return Ok(None);
     };
     let high = expression(input)?;
     let meant = format!("{text}..{}", input.text(high.span));
-    input.report(mistake::array_bounds(colon, "`:`", &meant).fix(colon, ".."));
+    input.report(diagnostics::array_bounds(colon, "`:`", &meant).fix(colon, ".."));
     Ok(None)
 }
 
@@ -93,7 +94,7 @@ fn structure<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeKind<'s>> {
 /// The members of a structure, and its end.
 pub fn structure_behind<'s>(input: &mut In<'_, '_, 's>, opened: Span) -> TypeSpec<'s> {
     let fields = declaration::list(input, Kind::EndStruct, opened);
-    balance::close_block(input, Kind::EndStruct, opened);
+    block_ends::close_block(input, Kind::EndStruct, opened);
     TypeSpec { kind: TypeKind::Struct(fields), span: opened.to(input.last()) }
 }
 
@@ -108,7 +109,7 @@ fn enumeration<'s>(input: &mut In<'_, '_, 's>, base: Option<Name<'s>>) -> Parsed
         let value = if assign(input) { Some(expression(input)?) } else { None };
         let mut more = input.eat(Kind::Comma).is_some();
         if !more && input.kind() == Kind::Name {
-            mistake::missing_comma(input);
+            diagnostics::missing_comma(input);
             more = true;
         }
         values.push(EnumValue { name, value, doc: doc::comment(input, first) });
@@ -160,7 +161,7 @@ fn sized<'s>(input: &mut In<'_, '_, 's>, element: Name<'s>) -> Parsed<TypeKind<'
     };
     let meant = format!("ARRAY[{bounds}] OF {}", element.text);
     let whole = element.span.to(end);
-    input.report(mistake::array_bounds(whole, "a length behind the type", &meant).fix(whole, meant));
+    input.report(diagnostics::array_bounds(whole, "a length behind the type", &meant).fix(whole, meant));
     Ok(TypeKind::Error)
 }
 
@@ -182,7 +183,7 @@ fn reference<'s>(input: &mut In<'_, '_, 's>) -> Option<Parsed<TypeKind<'s>>> {
     input.take();
     input.eat(Kind::To);
     let whole = span.to(input.last());
-    input.report(mistake::unsupported(whole, what));
+    input.report(diagnostics::unsupported(whole, what));
     if what == "UNION" {
         declaration::list(input, Kind::EndUnion, span);
         input.eat(Kind::EndUnion);
@@ -243,7 +244,7 @@ pub fn optional_initial<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Initial
 /// `:=`, also as the `=` of other languages.
 fn assign(input: &mut In<'_, '_, '_>) -> bool {
     if let Some(sign) = input.eat(Kind::Equal) {
-        input.report(mistake::equal_for_assign(sign, "="));
+        input.report(diagnostics::equal_for_assign(sign, "="));
         return true;
     }
     input.eat(Kind::Assign).is_some()
@@ -259,7 +260,7 @@ pub fn initial<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Initial<'s>> {
     let kind = match input.kind() {
         Kind::OpenBracket => bracketed(input)?,
         Kind::OpenParen if input.kind_ahead(1) == Kind::Name && input.kind_ahead(2) == Kind::Assign => fields(input)?,
-        Kind::Semicolon if habit::brace_list(input, "[", "]") => {
+        Kind::Semicolon if foreign_syntax::brace_list(input, "[", "]") => {
             InitialKind::Value(Expr { kind: ExprKind::Error(Vec::new()), span: start })
         }
         _ => InitialKind::Value(expression(input)?),
@@ -361,7 +362,7 @@ pub fn types<'s>(input: &mut In<'_, '_, 's>) -> Vec<TypeDecl<'s>> {
         }
     }
     input.state().open.pop();
-    balance::close_block(input, Kind::EndType, opened);
+    block_ends::close_block(input, Kind::EndType, opened);
     input.eat(Kind::Semicolon);
     types
 }
@@ -391,14 +392,14 @@ fn type_decl<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeDecl<'s>> {
     let name = input.name()?;
     if input.is_word("EXTENDS") {
         let span = input.take();
-        input.report(mistake::unsupported(span, "EXTENDS"));
+        input.report(diagnostics::unsupported(span, "EXTENDS"));
         input.name()?;
     }
     if input.eat(Kind::Colon).is_none() {
         if !matches!(input.kind(), Kind::Struct | Kind::OpenParen | Kind::Array | Kind::Equal | Kind::Semicolon) {
             return Err(input.problem(Expected::Token(Kind::Colon)));
         }
-        mistake::missing_type_colon(input);
+        diagnostics::missing_type_colon(input);
     }
     let ty = type_spec(input)?;
     let initial = optional_initial(input)?;

@@ -2,7 +2,7 @@
 
 use crate::{lex::index, source::Span};
 
-use super::moves::{In, Moves, State};
+use super::parser::{In, Moves, State};
 
 /// For what starts at token number `first` and ends before the current token.
 pub fn comment(input: &mut In<'_, '_, '_>, first: usize) -> Option<String> {

@@ -8,11 +8,11 @@ use crate::{
 };
 
 use super::{
-    balance, declaration,
+    block_ends, declaration, diagnostics,
     expression::{condition, expression, postfix},
-    habit, member, mistake,
-    moves::{Expected, In, Moves, Parsed, Problem},
-    recover,
+    foreign_syntax,
+    parser::{Expected, In, Moves, Parsed, Problem},
+    recover, unsupported,
 };
 
 /// Statements up to a keyword that ends or continues the block around them.
@@ -43,7 +43,7 @@ fn list<'s>(
                 }
             }
             _ if ends(input) => return,
-            Kind::Name if member::skip(input) || habit::begin_or_end(input) => {}
+            Kind::Name if unsupported::skip(input) || foreign_syntax::begin_or_end(input) => {}
             _ => statements.push(statement(input)),
         }
     }
@@ -86,7 +86,7 @@ fn return_statement<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>>
     let word = input.take();
     if !recover::begins_statement(input) && input.kind() != Kind::Semicolon {
         let value = expression(input)?;
-        input.report(mistake::return_value(word.to(value.span), value.span));
+        input.report(diagnostics::return_value(word.to(value.span), value.span));
     }
     end(input)?;
     Ok(StatementKind::Return)
@@ -123,7 +123,7 @@ fn stray_declaration<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>
     let found = declaration::declaration(input, &mut names)?;
     if !told {
         let closed = is_closed(input);
-        mistake::stray_declaration(input, found.span, closed);
+        diagnostics::stray_declaration(input, found.span, closed);
     }
     input.state().strays.push(found);
     let behind = input.number();
@@ -149,16 +149,16 @@ fn is_closed(input: &mut In<'_, '_, '_>) -> bool {
 
 /// The `;` of a statement, or a complaint that leaves what follows in place.
 fn end(input: &mut In<'_, '_, '_>) -> Parsed<()> {
-    habit::extra_brackets(input, Kind::Semicolon);
-    habit::decimal_comma(input);
-    if habit::wrong_terminator(input) {
+    foreign_syntax::extra_brackets(input, Kind::Semicolon);
+    foreign_syntax::decimal_comma(input);
+    if foreign_syntax::wrong_terminator(input) {
         return Ok(());
     }
     if input.eat(Kind::Semicolon).is_some() {
         return Ok(());
     }
     if recover::begins_statement(input) {
-        mistake::missing_semicolon(input);
+        diagnostics::missing_semicolon(input);
         return Ok(());
     }
     Err(input.problem(Expected::Token(Kind::Semicolon)))
@@ -180,23 +180,23 @@ fn simple<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
             let sign = input.take();
             let reversed = input.kind() == Kind::Colon && input.here().start == sign.end;
             let sign = if reversed { sign.to(input.take()) } else { sign };
-            let it = mistake::equal_for_assign(sign, input.text(sign));
+            let it = diagnostics::equal_for_assign(sign, input.text(sign));
             input.report(it);
             assignment(input, target)?
         }
         Kind::Colon => return split_assign(input, target),
         Kind::PlusEqual | Kind::MinusEqual | Kind::StarEqual | Kind::SlashEqual => {
-            mistake::compound_assignment(input, &target);
+            diagnostics::compound_assignment(input, &target);
             input.take();
             assignment(input, target)?
         }
         Kind::Attempt => {
             let sign = input.take();
-            input.report(mistake::unsupported(sign, "the assignment attempt `?=`"));
+            input.report(diagnostics::unsupported(sign, "the assignment attempt `?=`"));
             assignment(input, target)?
         }
         Kind::Name => latch(input, target)?,
-        Kind::Semicolon if mistake::is_misspelt(input, &target) => return Err(Problem::REPORTED),
+        Kind::Semicolon if diagnostics::is_misspelt(input, &target) => return Err(Problem::REPORTED),
         Kind::Semicolon => StatementKind::Expr(target),
         _ if matches!(target.kind, ExprKind::Call(..)) => StatementKind::Expr(target),
         _ => return without_effect(input, target),
@@ -208,7 +208,7 @@ fn simple<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
 fn assignment<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<StatementKind<'s>> {
     let value = expression(input)?;
     while let Some(sign) = input.eat(Kind::Assign) {
-        input.report(mistake::unsupported(sign, "an assignment inside another one"));
+        input.report(diagnostics::unsupported(sign, "an assignment inside another one"));
         expression(input)?;
     }
     Ok(StatementKind::Assign { target, value })
@@ -219,7 +219,7 @@ fn split_assign<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<Stat
     if input.kind_ahead(1) == Kind::Equal {
         let sign = input.take().to(input.last());
         let sign = sign.to(input.take());
-        let it = mistake::equal_for_assign(sign, input.text(sign));
+        let it = diagnostics::equal_for_assign(sign, input.text(sign));
         input.report(it);
         let kind = assignment(input, target)?;
         end(input)?;
@@ -227,7 +227,7 @@ fn split_assign<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<Stat
     }
     if matches!(target.kind, ExprKind::Name(_)) && input.state().open.len() <= 1 {
         let colon = input.take();
-        input.report(mistake::unsupported(target.span.to(colon), "a label to jump to"));
+        input.report(diagnostics::unsupported(target.span.to(colon), "a label to jump to"));
         return Ok(StatementKind::Error);
     }
     Err(input.problem(Expected::Action))
@@ -244,7 +244,7 @@ fn latch<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<StatementKi
         "S" | "s" if joined => true,
         "R" | "r" if joined => false,
         text if joined && text.eq_ignore_ascii_case("REF") => {
-            input.report(mistake::unsupported(word, "the reference assignment `REF=`"));
+            input.report(diagnostics::unsupported(word, "the reference assignment `REF=`"));
             false
         }
         _ if matches!(target.kind, ExprKind::Call(..)) => return Ok(StatementKind::Expr(target)),
@@ -258,12 +258,12 @@ fn latch<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<StatementKi
 
 /// Something that is neither an assignment nor a call.
 fn without_effect<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<StatementKind<'s>> {
-    if mistake::increment(input, &target) {
+    if diagnostics::increment(input, &target) {
         return Err(Problem::REPORTED);
     }
     let alone = input.on_new_line() || recover::closes(input.kind()) || input.kind() == Kind::End;
-    if alone && !mistake::is_misspelt(input, &target) && input.text(target.span).len() <= 40 {
-        mistake::name_alone(input, target.span);
+    if alone && !diagnostics::is_misspelt(input, &target) && input.text(target.span).len() <= 40 {
+        diagnostics::name_alone(input, target.span);
         return Err(Problem::REPORTED);
     }
     Err(input.problem(Expected::Action))
@@ -279,10 +279,10 @@ fn header<'s, T>(
     let result = part(input);
     match &result {
         Ok(_) if input.eat(ends).is_some() => {}
-        _ if habit::braces(input, opened) => {}
-        Ok(_) => mistake::missing_word(input, ends, opened),
+        _ if foreign_syntax::braces(input, opened) => {}
+        Ok(_) => diagnostics::missing_word(input, ends, opened),
         Err(problem) => {
-            mistake::report(input, *problem);
+            diagnostics::report(input, *problem);
             recover::skip_header(input, ends, opened);
         }
     }
@@ -297,7 +297,7 @@ fn if_statement<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
         let condition = header(input, Kind::Then, condition).unwrap_or_else(|| unread(opened));
         branches.push((condition, body(input, opened)));
         if branches.len() > MAX_CHAIN {
-            return Err(input.state().stop(opened, mistake::too_long()));
+            return Err(input.state().stop(opened, diagnostics::too_long()));
         }
         if input.eat(Kind::Elsif).is_none() {
             break;
@@ -308,7 +308,7 @@ fn if_statement<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
     while let kind @ (Kind::Else | Kind::Elsif) = input.kind() {
         let word = input.take();
         if otherwise.is_some() {
-            input.report(mistake::behind_else(word, kind));
+            input.report(diagnostics::behind_else(word, kind));
         }
         if kind == Kind::Elsif {
             header(input, Kind::Then, condition);
@@ -316,16 +316,16 @@ fn if_statement<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
             nested_if = Some(word.to(input.here()));
         } else if input.kind() == Kind::Colon {
             let colon = input.take();
-            input.report(mistake::colon_behind_else(colon));
+            input.report(diagnostics::colon_behind_else(colon));
         } else if input.state().braced.contains(&opened) {
-            habit::braces(input, opened);
+            foreign_syntax::braces(input, opened);
         }
         let body = body(input, opened);
         otherwise.get_or_insert(body);
     }
     input.state().open.pop();
     match nested_if {
-        Some(words) if input.kind() != Kind::EndIf => mistake::else_if(input, words, opened),
+        Some(words) if input.kind() != Kind::EndIf => diagnostics::else_if(input, words, opened),
         _ => close(input, Kind::EndIf, opened),
     }
     Ok(StatementKind::If { branches, otherwise })
@@ -343,7 +343,7 @@ fn body<'s>(input: &mut In<'_, '_, 's>, opened: Span) -> Vec<Statement<'s>> {
 
 /// The END_ of a block, with the `;` that may follow it.
 fn close(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
-    balance::close_block(input, end, opened);
+    block_ends::close_block(input, end, opened);
     input.eat(Kind::Semicolon);
 }
 
@@ -386,7 +386,7 @@ fn arm<'s>(input: &mut In<'_, '_, 's>) -> Option<Arm<'s>> {
     let start = input.here();
     let labels = labels(input);
     if let Err(problem) = labels {
-        mistake::report(input, problem);
+        diagnostics::report(input, problem);
         recover::skip_label(input, start);
     }
     let mut body = Vec::new();
@@ -415,7 +415,7 @@ fn labels<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Vec<Label<'s>>> {
         if !recover::begins_statement(input) {
             return Err(input.problem(Expected::Token(Kind::Colon)));
         }
-        mistake::missing_colon(input);
+        diagnostics::missing_colon(input);
     }
     Ok(labels)
 }
@@ -442,22 +442,23 @@ fn at_label(input: &mut In<'_, '_, '_>) -> bool {
 fn for_loop<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
     let opened = input.take();
     let range = header(input, Kind::Do, |input| {
-        if habit::counting_loop(input) {
+        if foreign_syntax::counting_loop(input) {
             return Err(Problem::REPORTED);
         }
         let counter = postfix(input)?;
         if let Some(sign) = input.eat(Kind::Equal) {
-            let it = mistake::equal_for_assign(sign, "=");
+            let it = diagnostics::equal_for_assign(sign, "=");
             input.report(it);
         } else {
             input.expect(Kind::Assign)?;
         }
         let from = expression(input)?;
-        if !habit::down_to(input) {
+        if !foreign_syntax::down_to(input) {
             input.expect(Kind::To)?;
         }
         let to = expression(input)?;
-        let by = if input.eat(Kind::By).is_some() || habit::step(input) { Some(expression(input)?) } else { None };
+        let by =
+            if input.eat(Kind::By).is_some() || foreign_syntax::step(input) { Some(expression(input)?) } else { None };
         let by = by.map(Box::new);
         Ok((Box::new(counter), Box::new(from), Box::new(to), by))
     });
@@ -484,14 +485,14 @@ fn repeat<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
     let Some(_) = input.eat(Kind::Until) else {
         if input.kind() == Kind::EndRepeat {
             let problem = input.problem(Expected::Token(Kind::Until));
-            mistake::report(input, problem);
+            diagnostics::report(input, problem);
         }
         close(input, Kind::EndRepeat, opened);
         return Ok(StatementKind::Repeat { body, until: unread(opened) });
     };
     let until = condition(input);
     if let Err(problem) = until {
-        mistake::report(input, problem);
+        diagnostics::report(input, problem);
         recover::skip_header(input, Kind::Semicolon, opened);
     }
     input.eat(Kind::Semicolon);

@@ -7,7 +7,7 @@ use crate::{
     source::Span,
 };
 
-use super::super::moves::{In, Moves};
+use super::super::parser::{In, Moves};
 
 pub fn equal_for_assign(sign: Span, text: &str) -> Diagnostic {
     let message = match text {

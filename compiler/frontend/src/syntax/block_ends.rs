@@ -6,8 +6,8 @@ use crate::{
 };
 
 use super::{
-    mistake,
-    moves::{In, Moves, State},
+    diagnostics,
+    parser::{In, Moves, State},
     recover,
 };
 
@@ -80,7 +80,7 @@ fn token(state: &State<'_, '_>, at: usize) -> (Kind, usize) {
     let (start, end) = state.tokens.places[at];
     let word = state.text.get(index(start)..index(end)).unwrap_or_default();
     let next = state.tokens.kinds.get(at + 1).copied().unwrap_or(Kind::End);
-    mistake::misspelt_end(word, next).unwrap_or((kind, 1))
+    diagnostics::misspelt_end(word, next).unwrap_or((kind, 1))
 }
 
 fn close(open: &mut Vec<Kind>, end: Kind) -> usize {
@@ -122,10 +122,10 @@ pub fn close_block(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
     let kind = input.kind();
     let ends = kind.keyword().is_some_and(|it| it.starts_with("END_")) && !recover::is_pou_end(kind);
     if ends && judge(input, Some(end)) == Verdict::WrongWord {
-        mistake::wrong_end(input, end, opened);
+        diagnostics::wrong_end(input, end, opened);
         input.take();
     } else {
-        mistake::missing_end(input, end, opened);
+        diagnostics::missing_end(input, end, opened);
     }
 }
 

@@ -8,8 +8,8 @@ use crate::{
 };
 
 use super::{
-    habit,
-    moves::{Expected, In, Moves, Parsed},
+    foreign_syntax,
+    parser::{Expected, In, Moves, Parsed},
 };
 
 /// A literal, if the current token is one.
@@ -28,7 +28,7 @@ pub fn untyped<'s>(input: &mut In<'_, '_, 's>, prefix: Option<Name<'s>>) -> Opti
         _ => return None,
     };
     input.take();
-    let glued = if matches!(kind, Kind::Integer | Kind::Real) { habit::glued(input, span) } else { None };
+    let glued = if matches!(kind, Kind::Integer | Kind::Real) { foreign_syntax::glued(input, span) } else { None };
     Some(Literal { prefix: prefix.map(Box::new), value: glued.unwrap_or(value) })
 }
 
@@ -101,7 +101,7 @@ fn split_unit(input: &mut In<'_, '_, '_>, span: Span) -> bool {
     let at = input.number() + 1;
     let unit = input.state().place(at);
     if input.kind_ahead(1) != Kind::Name
-        || !habit::is_unit(input.text(unit))
+        || !foreign_syntax::is_unit(input.text(unit))
         || input.state().breaks(span.end, unit.start)
     {
         return false;

@@ -10,8 +10,8 @@ use crate::{
 };
 
 use super::{
-    habit, literal, mistake,
-    moves::{Expected, In, Moves, Parsed, Problem, Waiting},
+    diagnostics, foreign_syntax, literal,
+    parser::{Expected, In, Moves, Parsed, Problem, Waiting},
 };
 
 /// Arguments of one call.
@@ -73,7 +73,7 @@ fn misspelt_operator(input: &mut In<'_, '_, '_>) -> Option<(BinaryOp, u8)> {
     }
     let span = input.here();
     let words = [Kind::And, Kind::AndThen, Kind::Xor, Kind::OrElse, Kind::Mod];
-    let near = crate::key::nearest(input.text(span), words.iter().filter_map(|it| it.keyword()))?;
+    let near = crate::names::nearest(input.text(span), words.iter().filter_map(|it| it.keyword()))?;
     infix(words.into_iter().find(|it| it.keyword() == Some(near))?)
 }
 
@@ -99,9 +99,9 @@ pub fn expression<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
 /// The operator that was taken; one of another language is read as ours, and reported.
 fn operator(input: &mut In<'_, '_, '_>, kind: Kind, op: BinaryOp, sign: Span) -> Parsed<(BinaryOp, Span)> {
     if is_foreign(kind) {
-        mistake::foreign_operator(input, kind, op, sign);
+        diagnostics::foreign_operator(input, kind, op, sign);
     } else if matches!(kind, Kind::Equal | Kind::Less | Kind::Greater) {
-        let Some(second) = habit::second_sign(input, kind, sign) else { return Err(Problem::REPORTED) };
+        let Some(second) = foreign_syntax::second_sign(input, kind, sign) else { return Err(Problem::REPORTED) };
         return Ok(second.unwrap_or((op, sign)));
     }
     Ok((op, sign))
@@ -128,7 +128,7 @@ pub fn condition<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
 
 fn assigned<'s>(input: &mut In<'_, '_, 's>, left: Expr<'s>) -> Parsed<Expr<'s>> {
     let sign = input.take();
-    let it = mistake::assign_for_equal(input.text(left.span), sign);
+    let it = diagnostics::assign_for_equal(input.text(left.span), sign);
     input.report(it);
     let right = expression(input)?;
     let span = left.span.to(right.span);
@@ -156,7 +156,7 @@ fn unary<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
 fn signed<'s>(input: &mut In<'_, '_, 's>, op: UnaryOp) -> Parsed<Expr<'s>> {
     if input.kind() == Kind::Bang {
         let span = input.here();
-        input.report(mistake::foreign_not(span));
+        input.report(diagnostics::foreign_not(span));
     }
     let sign = input.take();
     input.enter()?;
@@ -189,11 +189,11 @@ fn suffixes<'s>(input: &mut In<'_, '_, 's>, mut expr: Expr<'s>) -> Parsed<Expr<'
         input.state().height = 0;
         let start = expr.span;
         let kind = match input.kind() {
-            Kind::Dot if is_number(&expr) && habit::ends_line(input) => break,
+            Kind::Dot if is_number(&expr) && foreign_syntax::ends_line(input) => break,
             Kind::Dot => member(input, expr)?,
             Kind::OpenBracket => ExprKind::Index(Box::new(expr), indices(input)?),
             Kind::OpenParen => ExprKind::Call(Box::new(expr), arguments(input)?),
-            Kind::Minus if habit::arrow(input) => named_member(input, expr)?,
+            Kind::Minus if foreign_syntax::arrow(input) => named_member(input, expr)?,
             // Nothing is dereferenced before an operand.
             Kind::Caret if matches!(input.kind_ahead(1), Kind::Integer | Kind::Real | Kind::Name) => break,
             Kind::Caret => {
@@ -219,7 +219,7 @@ fn member<'s>(input: &mut In<'_, '_, 's>, of: Expr<'s>) -> Parsed<ExprKind<'s>> 
             Ok(ExprKind::Part(Box::new(of), Name { text: input.text(span), span }))
         }
         _ if is_number(&of) => {
-            habit::point_last(input, of.span);
+            foreign_syntax::point_last(input, of.span);
             Ok(ExprKind::Error(Vec::new()))
         }
         _ => named_member(input, of),
@@ -269,7 +269,7 @@ pub fn arguments<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Vec<Argument<'s>>> {
             arguments.push(argument);
             if arguments.len() > MAX_ARGUMENTS {
                 let span = input.here();
-                return Err(input.state().stop(span, mistake::too_many(MAX_ARGUMENTS)));
+                return Err(input.state().stop(span, diagnostics::too_many(MAX_ARGUMENTS)));
             }
         }
         height = height.max(input.state().height);
@@ -278,7 +278,7 @@ pub fn arguments<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Vec<Argument<'s>>> {
             if !lacks_comma(input, usize::from(semicolon)) {
                 break;
             }
-            mistake::missing_comma(input);
+            diagnostics::missing_comma(input);
             if semicolon {
                 input.take();
             }
@@ -341,7 +341,7 @@ fn argument<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Argument<'s>>> {
 /// `IN x`
 fn unassigned<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Argument<'s>>> {
     let name = input.name()?;
-    mistake::missing_assign(input);
+    diagnostics::missing_assign(input);
     let value = expression(input)?;
     let span = name.span.to(value.span);
     Ok(Some(Argument { kind: ArgumentKind::Input(name, value), span }))
@@ -351,7 +351,7 @@ fn unassigned<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Argument<'s>>> {
 fn with_colon<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Argument<'s>>> {
     let at = input.number() + 1;
     let sign = input.state().place(at);
-    mistake::colon_for_assign(input, sign);
+    diagnostics::colon_for_assign(input, sign);
     named(input)
 }
 
@@ -423,7 +423,7 @@ fn atom<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
             input.take();
             ExprKind::Address(Name { text: input.text(span), span })
         }
-        Kind::Dot if habit::point_first(input) => ExprKind::Error(Vec::new()),
+        Kind::Dot if foreign_syntax::point_first(input) => ExprKind::Error(Vec::new()),
         _ => match literal::untyped(input, None) {
             Some(literal) => return Ok(Expr { kind: ExprKind::Literal(literal), span: span.to(input.last()) }),
             None => return Err(input.problem(Expected::Expression)),

@@ -7,7 +7,7 @@ use crate::{
 };
 
 use super::{
-    super::moves::{In, Moves},
+    super::parser::{In, Moves},
     behind_last, insertion, shown,
 };
 
@@ -107,7 +107,7 @@ pub fn bare_structure(span: Span, name: &str) -> Diagnostic {
 
 /// TYPE or FUNCTION inside a PROGRAM.
 pub fn nested_unit(span: Span, kind: Kind, outer: &str) -> Diagnostic {
-    Diagnostic::new(Code::E0001, span, format!("{kind} stands inside {}", crate::key::article(outer)))
+    Diagnostic::new(Code::E0001, span, format!("{kind} stands inside {}", crate::diagnostic::wording::article(outer)))
         .label("units of the program stand beside one another")
         .help(format!("move it before the {outer}"))
 }
@@ -115,7 +115,7 @@ pub fn nested_unit(span: Span, kind: Kind, outer: &str) -> Diagnostic {
 /// `FUNCTION_BLOCK f : INT`
 pub fn no_result_type(span: Span, opener: &str) -> Diagnostic {
     let opener = opener.to_ascii_uppercase();
-    Diagnostic::new(Code::E0001, span, format!("{} has no result type", crate::key::article(&opener)))
+    Diagnostic::new(Code::E0001, span, format!("{} has no result type", crate::diagnostic::wording::article(&opener)))
         .label("delete this")
         .help("delete it, and declare what it returns in VAR_OUTPUT")
         .fix(span, "")

@@ -7,8 +7,8 @@ use crate::{
 };
 
 use super::{
-    balance, doc, habit, mistake,
-    moves::{Expected, In, Moves, Parsed, Start},
+    block_ends, diagnostics, doc, foreign_syntax,
+    parser::{Expected, In, Moves, Parsed, Start},
     recover,
     types::{optional_initial, type_spec},
 };
@@ -36,11 +36,11 @@ pub fn section<'s>(input: &mut In<'_, '_, 's>) -> Option<VarBlock<'s>> {
     {
         kind = meant;
         span = span.to(input.take());
-        mistake::misspelt_keyword(input, kind, span);
+        diagnostics::misspelt_keyword(input, kind, span);
     }
     let Some(kind) = section_kind(kind) else {
         let word = kind.keyword().unwrap_or_default();
-        input.report(mistake::unsupported(span, word));
+        input.report(diagnostics::unsupported(span, word));
         recover::skip_section(input);
         return None;
     };
@@ -48,7 +48,7 @@ pub fn section<'s>(input: &mut In<'_, '_, 's>) -> Option<VarBlock<'s>> {
         VarBlock { kind, constant: None, retain: None, non_retain: None, persistent: None, vars: Vec::new(), span };
     while qualifier(input, &mut block) {}
     block.vars = list(input, Kind::EndVar, span);
-    balance::close_block(input, Kind::EndVar, span);
+    block_ends::close_block(input, Kind::EndVar, span);
     input.eat(Kind::Semicolon);
     Some(block)
 }
@@ -85,7 +85,7 @@ fn access(input: &mut In<'_, '_, '_>) -> bool {
         return false;
     }
     let span = input.take();
-    input.report(mistake::unsupported(span, word));
+    input.report(diagnostics::unsupported(span, word));
     true
 }
 
@@ -142,8 +142,8 @@ pub fn declaration<'s>(input: &mut In<'_, '_, 's>, names: &mut Vec<Name<'s>>) ->
     let address = address(input)?;
     if input.kind() == Kind::Assign {
         let sign = input.here();
-        input.report(mistake::assign_for_colon(sign));
-        return Err(super::moves::Problem::REPORTED);
+        input.report(diagnostics::assign_for_colon(sign));
+        return Err(super::parser::Problem::REPORTED);
     }
     if let Some(ty) = type_before_name(input, names) {
         let initial = optional_initial(input)?;
@@ -156,14 +156,14 @@ pub fn declaration<'s>(input: &mut In<'_, '_, 's>, names: &mut Vec<Name<'s>>) ->
         if !lacks_colon(input) {
             return Err(input.problem(Expected::Token(Kind::Colon)));
         }
-        mistake::missing_type_colon(input);
+        diagnostics::missing_type_colon(input);
     }
     let ty = type_spec(input)?;
     let edge = edge(input);
     if input.kind() == Kind::At && input.kind_ahead(1) == Kind::Address {
         let span = input.take();
         let span = span.to(input.take());
-        input.report(mistake::address_behind_type(span));
+        input.report(diagnostics::address_behind_type(span));
     }
     let initial = optional_initial(input)?;
     end(input)?;
@@ -180,7 +180,7 @@ fn first_name<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Name<'s>> {
         return Ok(name);
     }
     let word = input.take();
-    mistake::name_of_two_words(input, name.span, word);
+    diagnostics::name_of_two_words(input, name.span, word);
     let span = name.span.to(word);
     Ok(Name { text: input.text(span), span })
 }
@@ -210,7 +210,7 @@ fn type_before_name<'s>(input: &mut In<'_, '_, 's>, names: &mut Vec<Name<'s>>) -
     }
     names.clear();
     names.push(input.name().ok()?);
-    mistake::type_first(input, ty.span, names[0].span);
+    diagnostics::type_first(input, ty.span, names[0].span);
     while input.eat(Kind::Comma).is_some() {
         names.push(input.name().ok()?);
     }
@@ -229,7 +229,7 @@ fn address<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Name<'s>>> {
                 if input.kind() == Kind::Integer || input.kind() == Kind::Real { input.take() } else { input.last() };
             span = span.to(last);
         }
-        let it = mistake::address_without_sign(span, input.text(span));
+        let it = diagnostics::address_without_sign(span, input.text(span));
         input.report(it);
         return Ok(None);
     }
@@ -251,13 +251,13 @@ fn edge(input: &mut In<'_, '_, '_>) -> Option<(Edge, Span)> {
 
 /// The `;` of a declaration.
 pub fn end(input: &mut In<'_, '_, '_>) -> Parsed<()> {
-    if input.eat(Kind::Semicolon).is_some() || habit::wrong_terminator(input) {
+    if input.eat(Kind::Semicolon).is_some() || foreign_syntax::wrong_terminator(input) {
         return Ok(());
     }
     let kind = input.kind();
     let next = recover::ends_declarations(kind) || recover::starts_declaration(input);
     if next || (input.on_new_line() && kind == Kind::Name) {
-        mistake::missing_semicolon(input);
+        diagnostics::missing_semicolon(input);
         return Ok(());
     }
     Err(input.problem(Expected::Token(Kind::Semicolon)))

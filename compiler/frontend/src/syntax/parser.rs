@@ -1,4 +1,4 @@
-//! What productions stand on: the tokens, the state beside them, and the moves over them.
+//! What productions stand on: the tokens, the state beside them, and the parser over them.
 
 use chumsky::{
     DefaultExpected,
@@ -17,7 +17,7 @@ use crate::{
     source::Span,
 };
 
-use super::mistake;
+use super::diagnostics;
 
 pub type Extra<'t, 's> = extra::Full<Problem, State<'t, 's>, ()>;
 /// What a production reads from: `'t` are the tokens, `'s` is the text.
@@ -167,7 +167,7 @@ impl<'s> State<'_, 's> {
     }
 }
 
-/// The moves of a production over the tokens.
+/// The parser of a production over the tokens.
 pub trait Moves<'t, 's> {
     fn number(&self) -> usize;
     fn kind(&mut self) -> Kind;
@@ -282,7 +282,7 @@ impl<'t, 's> Moves<'t, 's> for In<'t, '_, 's> {
             return Ok(());
         }
         let span = self.here();
-        Err(self.state().stop(span, mistake::too_deep()))
+        Err(self.state().stop(span, diagnostics::too_deep()))
     }
 
     fn leave(&mut self) {
@@ -295,6 +295,6 @@ impl<'t, 's> Moves<'t, 's> for In<'t, '_, 's> {
             return Ok(());
         }
         let span = self.last();
-        Err(self.state().stop(span, mistake::too_long()))
+        Err(self.state().stop(span, diagnostics::too_long()))
     }
 }

@@ -9,8 +9,8 @@ use crate::{
 };
 
 use super::{
-    mistake,
-    moves::{In, Moves},
+    diagnostics,
+    parser::{In, Moves},
     recover,
 };
 
@@ -328,7 +328,7 @@ pub fn step(input: &mut In<'_, '_, '_>) -> bool {
         return false;
     }
     let span = input.take();
-    mistake::misspelt_keyword(input, Kind::By, span);
+    diagnostics::misspelt_keyword(input, Kind::By, span);
     true
 }
 
