@@ -71,10 +71,10 @@ impl Task {
         let operands = self.operands();
         let place = |at: usize, lane| {
             Place::root(Root::Instance, Type::Struct(state))
-                .field(FieldId::next(at), Type::Elementary(elementary(lane)))
+                .field(FieldId::next(at), Type::Elementary(Elementary::number(lane)))
         };
         let loads = operands.iter().enumerate().map(|(at, lane)| Expr::load(place(at, *lane), AT)).collect();
-        let ty = Type::Elementary(elementary(self.result()));
+        let ty = Type::Elementary(Elementary::number(self.result()));
         let value = match self {
             Self::Apply(op, _) => Expr::apply(op, ty, loads, AT),
             Self::NotApply(op, _) => Expr::apply(Op::Not, ty, vec![Expr::apply(op, ty, loads, AT)], AT),
@@ -106,8 +106,8 @@ pub fn program(tasks: &[Task]) -> Program {
 fn fields(task: Task) -> Vec<(String, Type)> {
     let names = ["a", "b", "c", "d"].into_iter().map(str::to_owned);
     let mut fields: Vec<_> =
-        names.zip(task.operands().into_iter().map(|it| Type::Elementary(elementary(it)))).collect();
-    fields.push(("result".to_owned(), Type::Elementary(elementary(task.result()))));
+        names.zip(task.operands().into_iter().map(|it| Type::Elementary(Elementary::number(it)))).collect();
+    fields.push(("result".to_owned(), Type::Elementary(Elementary::number(task.result()))));
     fields
 }
 
@@ -150,11 +150,6 @@ fn pou(task: Task, state: StructId) -> Pou {
 
 fn instance(task: Task, program: PouId) -> Instance {
     Instance { name: format!("run_{}", task.name().to_lowercase()), program, interval: None, priority: 0 }
-}
-
-/// A type that values of this lane have.
-fn elementary(lane: Lane) -> Elementary {
-    Elementary::ALL.into_iter().rev().find(|it| it.lane() == lane).expect("every lane has a type")
 }
 
 /// Values at which operations are likely to differ.

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value as Json};
 use staunch_frontend::{Dialect, Options};
-use staunch_runtime::{BLOCKS, BlockInfo, Direction, Family, Lane};
+use staunch_runtime::{BLOCKS, BlockInfo, Direction, Family};
 use std::fmt::Write;
 
 /// One table.
@@ -120,7 +120,7 @@ impl<'j> Table<'j> {
         let mut text = String::new();
         for pin in &self.pins {
             let info = self.block.pins.iter().find(|it| it.name == *pin).expect("a pin of the block");
-            let _ = writeln!(text, "    {pin} : {};", type_name(self.family, info.lane));
+            let _ = writeln!(text, "    {pin} : {};", info.ty.name());
         }
         text
     }
@@ -228,19 +228,6 @@ fn family_and_name(table: &Json) -> (Family, String) {
         (b'D', "CTUD (ST/FBD)") => (Family::Logix, "FBD_COUNTER".to_owned()),
         (b'D', _) => (Family::Logix, "COUNTER".to_owned()),
         (other, _) => panic!("no family {other}"),
-    }
-}
-
-fn type_name(family: Family, lane: Lane) -> &'static str {
-    match (family, lane) {
-        (_, Lane::Bool) => "BOOL",
-        (Family::Codesys, Lane::U16) => "WORD",
-        (_, Lane::I16) => "INT",
-        (_, Lane::I32) => "DINT",
-        (_, Lane::I64) => "LINT",
-        (_, Lane::U32) => "UDINT",
-        (_, Lane::U64) => "ULINT",
-        (_, other) => panic!("no counter has a pin of {other:?}"),
     }
 }
 

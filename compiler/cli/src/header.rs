@@ -93,7 +93,7 @@ impl Macros<'_> {
                     for (at, pin) in block.info().pins.iter().enumerate() {
                         let place = offset + layout.offset(field.ty, FieldId::next(at));
                         let name = self.claim(macro_name(&[owner, &field.name, pin.name]));
-                        variable(&name, pin.lane, place, &mut self.text);
+                        variable(&name, pin.lane(), place, &mut self.text);
                     }
                 }
                 Type::Elementary(_) | Type::Enum(_) => {

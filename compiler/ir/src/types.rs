@@ -1,5 +1,7 @@
 use crate::{Field, FieldId, Location};
-use staunch_runtime::{BLOCKS, BlockInfo, Family, Lane, Pin, Value};
+use staunch_runtime::{BLOCKS, BlockInfo, Value};
+
+pub use staunch_runtime::Elementary;
 
 /// The type of a variable or expression: small, copied freely, compared by identity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -13,134 +15,6 @@ pub enum Type {
     Struct(StructId),
     /// An instance of a standard function block, or a structure of the standard (COUNTER).
     Block(BlockId),
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Elementary {
-    Bool,
-    Byte,
-    Word,
-    Dword,
-    Lword,
-    Sint,
-    Int,
-    Dint,
-    Lint,
-    Usint,
-    Uint,
-    Udint,
-    Ulint,
-    Real,
-    Lreal,
-    /// Nanoseconds, signed 64-bit, as LTIME.
-    Time,
-    Ltime,
-}
-
-impl Elementary {
-    pub const ALL: [Self; 17] = [
-        Self::Bool,
-        Self::Byte,
-        Self::Word,
-        Self::Dword,
-        Self::Lword,
-        Self::Sint,
-        Self::Int,
-        Self::Dint,
-        Self::Lint,
-        Self::Usint,
-        Self::Uint,
-        Self::Udint,
-        Self::Ulint,
-        Self::Real,
-        Self::Lreal,
-        Self::Time,
-        Self::Ltime,
-    ];
-
-    /// The IEC keyword.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Bool => "BOOL",
-            Self::Byte => "BYTE",
-            Self::Word => "WORD",
-            Self::Dword => "DWORD",
-            Self::Lword => "LWORD",
-            Self::Sint => "SINT",
-            Self::Int => "INT",
-            Self::Dint => "DINT",
-            Self::Lint => "LINT",
-            Self::Usint => "USINT",
-            Self::Uint => "UINT",
-            Self::Udint => "UDINT",
-            Self::Ulint => "ULINT",
-            Self::Real => "REAL",
-            Self::Lreal => "LREAL",
-            Self::Time => "TIME",
-            Self::Ltime => "LTIME",
-        }
-    }
-
-    /// How its values are carried.
-    pub const fn lane(self) -> Lane {
-        match self {
-            Self::Bool => Lane::Bool,
-            Self::Sint => Lane::I8,
-            Self::Int => Lane::I16,
-            Self::Dint => Lane::I32,
-            Self::Lint | Self::Time | Self::Ltime => Lane::I64,
-            Self::Byte | Self::Usint => Lane::U8,
-            Self::Word | Self::Uint => Lane::U16,
-            Self::Dword | Self::Udint => Lane::U32,
-            Self::Lword | Self::Ulint => Lane::U64,
-            Self::Real => Lane::F32,
-            Self::Lreal => Lane::F64,
-        }
-    }
-
-    /// Finds a type by its keyword, in any case.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|it| it.name().eq_ignore_ascii_case(name))
-    }
-
-    /// The type of a standard block's pin.
-    pub const fn of_pin(info: &BlockInfo, pin: &Pin) -> Self {
-        let family = info.family;
-        match pin.lane {
-            Lane::Bool => Self::Bool,
-            Lane::I8 => Self::Sint,
-            Lane::I16 => Self::Int,
-            Lane::I32 => Self::Dint,
-            Lane::I64 if pin.is_time && info.is_long() => Self::Ltime,
-            Lane::I64 if pin.is_time => Self::Time,
-            Lane::I64 => Self::Lint,
-            Lane::U8 => Self::Usint,
-            // CODESYS documents its counts as bit strings.
-            Lane::U16 if matches!(family, Family::Codesys) => Self::Word,
-            Lane::U64 if matches!(family, Family::Codesys) => Self::Lword,
-            Lane::U16 => Self::Uint,
-            Lane::U32 => Self::Udint,
-            Lane::U64 => Self::Ulint,
-            Lane::F32 => Self::Real,
-            Lane::F64 => Self::Lreal,
-        }
-    }
-
-    pub const fn is_bits(self) -> bool {
-        matches!(self, Self::Bool | Self::Byte | Self::Word | Self::Dword | Self::Lword)
-    }
-
-    pub const fn is_time(self) -> bool {
-        matches!(self, Self::Time | Self::Ltime)
-    }
-
-    pub const fn is_integer(self) -> bool {
-        self.lane().is_integer() && !self.is_bits() && !self.is_time()
-    }
-
-    pub const fn is_real(self) -> bool {
-        self.lane().is_float()
-    }
 }
 
 impl Type {
@@ -199,9 +73,7 @@ impl BlockId {
 
     /// The type of a pin, by its position.
     pub fn pin_type(self, pin: FieldId) -> Option<Type> {
-        let info = self.info();
-        let pin = info.pins.get(pin.index())?;
-        Some(Type::Elementary(Elementary::of_pin(info, pin)))
+        Some(Type::Elementary(self.info().pins.get(pin.index())?.ty))
     }
 }
 

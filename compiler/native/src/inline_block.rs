@@ -143,7 +143,7 @@ impl Counter<'_, '_, '_> {
 
     fn load(&mut self, field: &str) -> Clif {
         let pin = self.pin(field);
-        self.f.load_as(clif_type(pin.lane), self.at.plus(offset(pin.offset)))
+        self.f.load_as(clif_type(pin.lane()), self.at.plus(offset(pin.offset)))
     }
 
     fn store(&mut self, field: &str, value: Clif) {
@@ -160,7 +160,7 @@ impl Counter<'_, '_, '_> {
     }
 
     fn lane(&self) -> Lane {
-        self.pin("cv").lane
+        self.pin("cv").lane()
     }
 
     /// Whether counts are computed at more bits than they have, where a step cannot overflow.

@@ -55,7 +55,7 @@ fn inputs(info: &BlockInfo, instruction: usize) -> Vec<Lane> {
     if info.instructions[instruction].takes_rung {
         return vec![Lane::Bool];
     }
-    info.inputs().map(|pin| pin.lane).collect()
+    info.inputs().map(|pin| pin.lane()).collect()
 }
 
 fn drive(id: BlockId, instruction: usize, is_prescan: bool, random: &mut Random) {
@@ -68,7 +68,7 @@ fn drive(id: BlockId, instruction: usize, is_prescan: bool, random: &mut Random)
         // Now and then from anywhere; mostly on from where it is.
         if turn % 7 == 0 {
             for pin in info.pins {
-                random.value(pin.lane).write(&mut expected[pin.offset..]);
+                random.value(pin.lane()).write(&mut expected[pin.offset..]);
             }
             native.state.bytes_mut()[start..start + info.size].copy_from_slice(&expected);
         }
@@ -82,8 +82,8 @@ fn drive(id: BlockId, instruction: usize, is_prescan: bool, random: &mut Random)
         native.jit.scan(&mut native.state, 0, &cx).unwrap();
         run(info, instruction, is_prescan, &mut expected, &cx, &values);
         for pin in info.pins {
-            let found = Value::read(pin.lane, &native.state.bytes()[start + pin.offset..]);
-            let wanted = Value::read(pin.lane, &expected[pin.offset..]);
+            let found = Value::read(pin.lane(), &native.state.bytes()[start + pin.offset..]);
+            let wanted = Value::read(pin.lane(), &expected[pin.offset..]);
             assert_eq!(found, wanted, "{info:?}.{} after {values:?} from {before:?}", pin.name);
         }
     }

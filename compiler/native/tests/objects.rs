@@ -55,7 +55,7 @@ fn everything() -> Program {
         for (instruction, info) in id.info().instructions.iter().enumerate() {
             let inputs = match info.takes_rung {
                 true => vec![load(value(Lane::Bool))],
-                false => id.info().inputs().map(|pin| load(value(pin.lane))).collect(),
+                false => id.info().inputs().map(|pin| load(value(pin.lane()))).collect(),
             };
             body.push(stmt(StatementKind::CallBlock { block: block(), instruction, inputs }));
             if info.prescan.is_some() {

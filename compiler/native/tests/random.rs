@@ -542,7 +542,7 @@ impl Maker {
         let inputs = if info.instructions[instruction].takes_rung {
             vec![self.expr(Type::BOOL, 2)]
         } else {
-            info.inputs().map(|pin| self.expr(elementary(pin.lane), 2)).collect()
+            info.inputs().map(|pin| self.expr(elementary(pin.lane()), 2)).collect()
         };
         Some(StatementKind::CallBlock { block, instruction, inputs })
     }

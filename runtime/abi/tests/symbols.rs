@@ -116,7 +116,7 @@ fn instructions_do_what_the_interpreter_does() {
                 shim(native.bytes().as_mut_ptr(), &now, rung);
                 (instruction.run)(interpreted.bytes(), &now, rung);
                 for pin in block.pins {
-                    let read = |instance: &mut Instance| Value::read(pin.lane, &instance.bytes()[pin.offset..]);
+                    let read = |instance: &mut Instance| Value::read(pin.lane(), &instance.bytes()[pin.offset..]);
                     assert_eq!(read(&mut native), read(&mut interpreted), "{block:?}.{}", pin.name);
                 }
             }
@@ -128,7 +128,7 @@ fn instructions_do_what_the_interpreter_does() {
 fn set_inputs(block: &BlockInfo, random: &mut u32, native: &mut [u8], interpreted: &mut [u8]) {
     let is_set = |direction| matches!(direction, Direction::Input | Direction::Member);
     for pin in block.pins.iter().filter(|pin| is_set(pin.direction) && pin.name != "ACC") {
-        let value = pin.lane.integer(i128::from(next(random) % 2)).unwrap();
+        let value = pin.lane().integer(i128::from(next(random) % 2)).unwrap();
         value.write(&mut native[pin.offset..]);
         value.write(&mut interpreted[pin.offset..]);
     }

@@ -1,4 +1,4 @@
-use crate::{Context, Lane, Scalar, Time, Value};
+use crate::{Context, Elementary, Lane, Scalar, Time, Value};
 
 /// Which way a member of a block faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,9 +21,7 @@ pub struct Pin {
     /// The Rust field.
     pub field: &'static str,
     pub direction: Direction,
-    pub lane: Lane,
-    /// TRUE for a TIME: it shares its lane with LINT.
-    pub is_time: bool,
+    pub ty: Elementary,
     /// TRUE for a BOOL whose initial value the vendor gives as TRUE. The all-zero start state
     /// cannot say it, so the compiler does: it puts TRUE into the instance's initial value.
     pub starts_true: bool,
@@ -115,12 +113,14 @@ pub trait Block: Copy + Default {
     fn store(&self, bytes: &mut [u8]);
 }
 
-impl BlockInfo {
-    /// Whether it is another block's form for longer values, as LTON is TON's: its times are LTIMEs.
-    pub const fn is_long(&self) -> bool {
-        matches!(self.name.as_bytes(), [b'L', ..])
+impl Pin {
+    /// How its values are carried.
+    pub const fn lane(&self) -> Lane {
+        self.ty.lane()
     }
+}
 
+impl BlockInfo {
     pub fn pin(&self, name: &str) -> Option<&'static Pin> {
         self.pins.iter().find(|pin| pin.name.eq_ignore_ascii_case(name))
     }
@@ -164,7 +164,9 @@ pub(crate) fn store_field<T: Scalar>(value: T, bytes: &mut [u8], offset: usize) 
 /// Declares a block's members once, in the order of its struct: the [`Block`] implementation
 /// and a `const fn new`. A member that is left out does not compile.
 ///
-/// A row is `field: type = "name in Structured Text"`, and `true` behind it if it starts TRUE.
+/// A row is `field: TYPE = "name in Structured Text"`, and `true` after it if it starts TRUE.
+/// The type is IEC's; `T` is the block's own parameter, and means the type that counts in it
+/// (INT for `i16`), unless the block's row in the table says another.
 macro_rules! pins {
     ([$($generics:tt)*] $block:ty {
         $($direction:ident { $($field:ident: $ty:ident = $name:literal $($initial:literal)?),* $(,)? })*
@@ -173,7 +175,7 @@ macro_rules! pins {
             /// The start state: all zero.
             #[inline]
             pub const fn new() -> Self {
-                Self { $($($field: <$ty as $crate::Scalar>::ZERO,)*)* }
+                Self { $($($field: <$crate::block::pin_type!($ty) as $crate::Scalar>::ZERO,)*)* }
             }
         }
 
@@ -182,8 +184,7 @@ macro_rules! pins {
                 name: $name,
                 field: stringify!($field),
                 direction: $crate::Direction::$direction,
-                lane: <$ty as $crate::Scalar>::LANE,
-                is_time: $crate::block::is_time!($ty),
+                ty: $crate::block::pin_elementary!($ty),
                 starts_true: false $(|| $initial)?,
                 offset: core::mem::offset_of!($block, $field),
             },)*)*];
@@ -200,15 +201,52 @@ macro_rules! pins {
 }
 pub(crate) use pins;
 
-macro_rules! is_time {
-    (Time) => {
-        true
+/// The Rust primitive of a pin.
+macro_rules! pin_type {
+    (T) => {
+        T
     };
-    ($other:ident) => {
-        false
+    ($keyword:ident) => {
+        $crate::elementary::keyword::$keyword
     };
 }
-pub(crate) use is_time;
+pub(crate) use pin_type;
+
+/// The IEC type of a pin.
+macro_rules! pin_elementary {
+    (T) => {
+        $crate::Elementary::number(<T as $crate::Scalar>::LANE)
+    };
+    ($keyword:ident) => {
+        $crate::elementary::keyword::$keyword
+    };
+}
+pub(crate) use pin_elementary;
+
+/// `pins` with all that are of a type made another that is carried alike: a UINT that a vendor
+/// documents as WORD. `N` is their number.
+pub(crate) const fn retyped<const N: usize>(pins: &[Pin], types: &[(Elementary, Elementary)]) -> [Pin; N] {
+    assert!(pins.len() == N);
+    let mut retyped = [pins[0]; N];
+    let mut used = 0;
+    let mut at = 0;
+    while at < N {
+        retyped[at] = pins[at];
+        let mut row = 0;
+        while row < types.len() {
+            let (from, to) = types[row];
+            assert!(from.lane() as u8 == to.lane() as u8, "a type is carried otherwise");
+            if pins[at].ty as u8 == from as u8 {
+                retyped[at].ty = to;
+                used += 1;
+            }
+            row += 1;
+        }
+        at += 1;
+    }
+    assert!(used >= types.len(), "no pin is of that type");
+    retyped
+}
 
 /// `pins` with other names in Structured Text. `N` is their number.
 pub(crate) const fn renamed<const N: usize>(pins: &[Pin], names: &[(&str, &'static str)]) -> [Pin; N] {

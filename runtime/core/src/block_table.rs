@@ -1,5 +1,6 @@
-use crate::block::renamed;
-use crate::{Block, BlockInfo, Family, Instruction, Pin, Prescan, Retention, codesys, cscape, iec, logix};
+use crate::block::{renamed, retyped};
+use crate::elementary::keyword;
+use crate::{Block, BlockInfo, Elementary, Family, Instruction, Pin, Prescan, Retention, codesys, cscape, iec, logix};
 
 /// Every standard function block, one row each.
 ///
@@ -13,7 +14,7 @@ use crate::{Block, BlockInfo, Family, Instruction, Pin, Prescan, Retention, code
 macro_rules! for_each_block {
     ($expand:ident) => {
         $expand! {
-            // family, name in ST, Rust type, renamed pins, { how, name, method, symbol }
+            // family, name in ST, Rust type, renamed pins, [a type documented as another], { how, name, method, symbol }
             Iec "CTU" iec::Ctu<i16> {} { plain "" call staunch_iec_ctu; }
             Iec "CTD" iec::Ctd<i16> {} { plain "" call staunch_iec_ctd; }
             Iec "CTUD" iec::Ctud<i16> {} { plain "" call staunch_iec_ctud; }
@@ -37,9 +38,9 @@ macro_rules! for_each_block {
             Iec "TON" iec::Ton {} { timed "" call staunch_iec_ton; }
             Iec "TOF" iec::Tof {} { timed "" call staunch_iec_tof; }
             Iec "TP" iec::Tp {} { timed "" call staunch_iec_tp; }
-            Iec "LTON" iec::Ton {} { timed "" call staunch_iec_lton; }
-            Iec "LTOF" iec::Tof {} { timed "" call staunch_iec_ltof; }
-            Iec "LTP" iec::Tp {} { timed "" call staunch_iec_ltp; }
+            Iec "LTON" iec::Ton {} [TIME => LTIME] { timed "" call staunch_iec_lton; }
+            Iec "LTOF" iec::Tof {} [TIME => LTIME] { timed "" call staunch_iec_ltof; }
+            Iec "LTP" iec::Tp {} [TIME => LTIME] { timed "" call staunch_iec_ltp; }
             Iec "R_TRIG" iec::RTrig {} { plain "" call staunch_iec_r_trig; }
             Iec "F_TRIG" iec::FTrig {} { plain "" call staunch_iec_f_trig; }
             Iec "SR" iec::Sr {} { plain "" call staunch_iec_sr; }
@@ -51,17 +52,17 @@ macro_rules! for_each_block {
             Cscape "R_CTU" cscape::RCtu {} { plain "" call staunch_cscape_r_ctu; }
             Cscape "R_CTD" cscape::RCtd {} { plain "" call staunch_cscape_r_ctd; }
 
-            Codesys "CTU" codesys::Ctu { "R" => "RESET" } { plain "" call staunch_codesys_ctu; }
-            Codesys "CTD" codesys::Ctd { "LD" => "LOAD" } { plain "" call staunch_codesys_ctd; }
-            Codesys "CTUD" codesys::Ctud { "R" => "RESET", "LD" => "LOAD" } { plain "" call staunch_codesys_ctud; }
-            Codesys "LCTU" codesys::Lctu { "R" => "RESET" } { plain "" call staunch_codesys_lctu; }
-            Codesys "LCTD" codesys::Lctd { "LD" => "LOAD" } { plain "" call staunch_codesys_lctd; }
-            Codesys "LCTUD" codesys::Lctud { "R" => "RESET", "LD" => "LOAD" } { plain "" call staunch_codesys_lctud; }
+            Codesys "CTU" codesys::Ctu { "R" => "RESET" } [UINT => WORD] { plain "" call staunch_codesys_ctu; }
+            Codesys "CTD" codesys::Ctd { "LD" => "LOAD" } [UINT => WORD] { plain "" call staunch_codesys_ctd; }
+            Codesys "CTUD" codesys::Ctud { "R" => "RESET", "LD" => "LOAD" } [UINT => WORD] { plain "" call staunch_codesys_ctud; }
+            Codesys "LCTU" codesys::Lctu { "R" => "RESET" } [ULINT => LWORD] { plain "" call staunch_codesys_lctu; }
+            Codesys "LCTD" codesys::Lctd { "LD" => "LOAD" } [ULINT => LWORD] { plain "" call staunch_codesys_lctd; }
+            Codesys "LCTUD" codesys::Lctud { "R" => "RESET", "LD" => "LOAD" } [ULINT => LWORD] { plain "" call staunch_codesys_lctud; }
             Codesys "SR" codesys::Sr { "S1" => "SET1", "R" => "RESET" } { plain "" call staunch_codesys_sr; }
             Codesys "RS" codesys::Rs { "S" => "SET", "R1" => "RESET1" } { plain "" call staunch_codesys_rs; }
             // What CTU and LCTU mean under the option `ctu-stop-at-pv`.
-            Codesys "CTU_STOP_AT_PV" codesys::CtuStopAtPv<u16> {} { plain "" call staunch_codesys_ctu_stop_at_pv; }
-            Codesys "LCTU_STOP_AT_PV" codesys::CtuStopAtPv<u64> {} { plain "" call staunch_codesys_lctu_stop_at_pv; }
+            Codesys "CTU_STOP_AT_PV" codesys::CtuStopAtPv<u16> {} [UINT => WORD] { plain "" call staunch_codesys_ctu_stop_at_pv; }
+            Codesys "LCTU_STOP_AT_PV" codesys::CtuStopAtPv<u64> {} [ULINT => LWORD] { plain "" call staunch_codesys_lctu_stop_at_pv; }
 
             Logix "COUNTER" logix::Counter {} {
                 rung "CTU" ctu staunch_logix_counter_ctu, prescan prescan_ctu staunch_logix_counter_prescan_ctu;
@@ -94,7 +95,7 @@ macro_rules! run_instruction {
 }
 
 macro_rules! declare_blocks {
-    ($($family:ident $name:literal $block:ty { $($pin:literal => $renamed:literal),* } {
+    ($($family:ident $name:literal $block:ty { $($pin:literal => $renamed:literal),* } $([$ty:ident => $retyped:ident])? {
         $($how:ident $instruction:literal $method:ident $symbol:ident
             $(, prescan $prescan:ident $prescan_symbol:ident)?;)*
     })*) => {
@@ -108,7 +109,9 @@ macro_rules! declare_blocks {
             pins: {
                 const PINS: &[Pin] = <$block as Block>::PINS;
                 const RENAMED: &[Pin] = &renamed::<{ PINS.len() }>(PINS, &[$(($pin, $renamed)),*]);
-                RENAMED
+                const TYPES: &[(Elementary, Elementary)] = &[$((keyword::$ty, keyword::$retyped))?];
+                const RETYPED: &[Pin] = &retyped::<{ PINS.len() }>(RENAMED, TYPES);
+                RETYPED
             },
             instructions: &[$(Instruction {
                 name: $instruction,

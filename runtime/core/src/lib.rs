@@ -8,6 +8,7 @@
 #![forbid(unsafe_code)]
 
 mod context;
+mod elementary;
 mod fault;
 mod lane;
 
@@ -25,6 +26,7 @@ pub use block::{Block, BlockInfo, Direction, Family, Instruction, Pin, Prescan, 
 pub use block_table::BLOCKS;
 pub use blocks::{codesys, cscape, iec, logix};
 pub use context::Context;
+pub use elementary::{Class, Elementary};
 pub use fault::{Fault, FaultKind, Location, OrFault, Outcome};
 pub use lane::{Lane, Scalar, Value};
 pub use text::Text;

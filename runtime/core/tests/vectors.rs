@@ -124,7 +124,7 @@ impl<'a> Table<'a> {
     fn set_all(&mut self, pins: &Map<String, Json>) {
         for (name, json) in pins {
             if !["ctu", "ctd", "res", "prescan", "firstscan"].contains(&name.as_str()) {
-                let lane = self.block.pin(name).unwrap_or_else(|| panic!("no pin {name}")).lane;
+                let lane = self.block.pin(name).unwrap_or_else(|| panic!("no pin {name}")).lane();
                 self.put(name, value(lane, json));
             }
         }
@@ -137,7 +137,7 @@ impl<'a> Table<'a> {
 
     fn get(&self, pin: &str) -> Value {
         let pin = self.block.pin(pin).unwrap();
-        Value::read(pin.lane, &self.instance[pin.offset..])
+        Value::read(pin.lane(), &self.instance[pin.offset..])
     }
 }
 
@@ -184,8 +184,8 @@ fn pins_lie_as_the_struct_does() {
         let mut end = 0;
         for pin in block.pins {
             assert!(pin.offset >= end, "{block:?}.{} overlaps", pin.name);
-            assert_eq!(pin.offset % pin.lane.size() as usize, 0, "{block:?}.{}", pin.name);
-            end = pin.offset + pin.lane.size() as usize;
+            assert_eq!(pin.offset % pin.lane().size() as usize, 0, "{block:?}.{}", pin.name);
+            end = pin.offset + pin.lane().size() as usize;
         }
         assert!(end <= block.size, "{block:?}");
         let inputs_come_first = block.pins.iter().map(|pin| pin.direction != Direction::Input).is_sorted();

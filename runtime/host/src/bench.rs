@@ -1,12 +1,12 @@
 //! How long a scan takes.
 
-use crate::map::{Elementary, Map, Type, Variable};
+use crate::map::{Map, Type, Variable};
 use crate::path::Place;
 use crate::run::running;
 use crate::schedule::Schedule;
 use crate::stimulus::{Stimulus, Write};
 use crate::{Error, Machine};
-use staunch_runtime::{Context, Lane, Time};
+use staunch_runtime::{Context, Elementary, Time};
 use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -125,7 +125,7 @@ impl Inputs {
 
 fn bool_inputs(map: &Map, running: &[usize]) -> Vec<usize> {
     let is_input = |it: &&Variable| {
-        let is_bool = matches!(it.ty, Type::Elementary(Elementary { lane: Lane::Bool, .. }));
+        let is_bool = matches!(it.ty, Type::Elementary(Elementary::Bool));
         it.is_input() && is_bool && !it.constant
     };
     let (globals, base) = map.globals();

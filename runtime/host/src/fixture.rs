@@ -77,7 +77,7 @@ impl Garage {
     pub fn read(&self, path: &str) -> Value {
         let place = path::resolve(&map(), &[0], path).unwrap();
         let crate::Type::Elementary(it) = place.ty else { panic!("{path}") };
-        Value::read(it.lane, &self.state[place.offset..])
+        Value::read(it.lane(), &self.state[place.offset..])
     }
 
     fn add(&mut self, path: &str) -> i128 {

@@ -33,10 +33,12 @@ pub use args::{Wish, parse_duration, parse_options};
 pub use bench::{BenchOptions, Timing, bench};
 pub use compiled::{Code, Compiled, Init, Scan, main, main_with};
 pub use error::Error;
-pub use map::{Elementary, Instance, Map, Section, Structure, StructureKind, Type, Variable};
+pub use map::{Instance, Map, Section, Structure, StructureKind, Type, Variable};
 pub use path::Place;
 pub use run::{Options, RealTime, Summary, run};
 pub use value::format_time;
+
+pub use staunch_runtime::Elementary;
 
 use staunch_runtime::{Context, Fault};
 

@@ -3,16 +3,16 @@
 use crate::map::{Enum, Map, Type};
 use crate::path::{Place, nearest, same};
 use crate::value::parse_duration_text;
-use staunch_runtime::{Lane, Value};
+use staunch_runtime::{Elementary, Lane, Value};
 
 /// The bytes that `text` stands for in a variable; the error is a sentence without a full stop.
 pub(crate) fn parse(map: &Map, place: Place, text: &str) -> Result<Vec<u8>, String> {
     let value = match place.ty {
         Type::String(capacity) => return string(text, capacity),
         Type::Elementary(it) if it.is_time() => Value::I64(time(text)?),
-        Type::Elementary(it) if it.lane == Lane::Bool => Value::Bool(boolean(text)?),
-        Type::Elementary(it) if it.lane.is_float() => float(text, it.name, it.lane)?,
-        Type::Elementary(it) => integer(text, it.name, it.lane)?,
+        Type::Elementary(Elementary::Bool) => Value::Bool(boolean(text)?),
+        Type::Elementary(it) if it.lane().is_float() => float(text, it.name(), it.lane())?,
+        Type::Elementary(it) => integer(text, it.name(), it.lane())?,
         Type::Enum(id) => {
             let found = map.enums.get(&id).map(|it| enumerator(text, it));
             found.unwrap_or_else(|| Err("the type is not in the map".to_owned()))?

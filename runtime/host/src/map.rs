@@ -1,7 +1,7 @@
 //! The map: which variable lies where. The compiler writes it as text, one record a line.
 
 use crate::Error;
-use staunch_runtime::Lane;
+use staunch_runtime::{Elementary, Lane};
 use std::collections::BTreeMap;
 
 /// The version of the text that this host reads.
@@ -33,39 +33,6 @@ pub enum Type {
     Array(u32),
     Struct(u32),
     Block(u32),
-}
-
-/// An elementary type: its lane, and how its values read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Elementary {
-    pub name: &'static str,
-    pub lane: Lane,
-}
-
-const ELEMENTARY: [Elementary; 17] = [
-    Elementary { name: "BOOL", lane: Lane::Bool },
-    Elementary { name: "BYTE", lane: Lane::U8 },
-    Elementary { name: "WORD", lane: Lane::U16 },
-    Elementary { name: "DWORD", lane: Lane::U32 },
-    Elementary { name: "LWORD", lane: Lane::U64 },
-    Elementary { name: "SINT", lane: Lane::I8 },
-    Elementary { name: "INT", lane: Lane::I16 },
-    Elementary { name: "DINT", lane: Lane::I32 },
-    Elementary { name: "LINT", lane: Lane::I64 },
-    Elementary { name: "USINT", lane: Lane::U8 },
-    Elementary { name: "UINT", lane: Lane::U16 },
-    Elementary { name: "UDINT", lane: Lane::U32 },
-    Elementary { name: "ULINT", lane: Lane::U64 },
-    Elementary { name: "REAL", lane: Lane::F32 },
-    Elementary { name: "LREAL", lane: Lane::F64 },
-    Elementary { name: "TIME", lane: Lane::I64 },
-    Elementary { name: "LTIME", lane: Lane::I64 },
-];
-
-impl Elementary {
-    pub fn is_time(self) -> bool {
-        matches!(self.name, "TIME" | "LTIME")
-    }
 }
 
 #[derive(Clone, Debug)]
@@ -280,7 +247,7 @@ impl Map {
     /// Size in bytes.
     pub fn size_of(&self, ty: Type) -> usize {
         match ty {
-            Type::Elementary(it) => it.lane.size() as usize,
+            Type::Elementary(it) => it.lane().size() as usize,
             Type::String(capacity) => 2 + usize::from(capacity).next_multiple_of(2),
             Type::Enum(id) => self.enums.get(&id).map_or(0, |it| it.lane.size() as usize),
             Type::Array(_) => self.array(ty).map_or(0, |it| it.stride * it.len()),
@@ -291,7 +258,7 @@ impl Map {
     /// The type's name as a user writes it.
     pub fn type_name(&self, ty: Type) -> String {
         match ty {
-            Type::Elementary(it) => it.name.to_owned(),
+            Type::Elementary(it) => it.name().to_owned(),
             Type::String(capacity) => format!("STRING[{capacity}]"),
             Type::Enum(id) => self.enums.get(&id).map_or_else(String::new, |it| it.name.clone()),
             Type::Array(_) => self.array(ty).map_or_else(String::new, |it| {
@@ -444,6 +411,6 @@ fn type_named(text: &str) -> Option<Type> {
         Some(("struct", id)) => Some(Type::Struct(id.parse().ok()?)),
         Some(("block", id)) => Some(Type::Block(id.parse().ok()?)),
         Some(_) => None,
-        None => ELEMENTARY.into_iter().find(|it| it.name == text).map(Type::Elementary),
+        None => Elementary::named(text).map(Type::Elementary),
     }
 }

@@ -1,17 +1,17 @@
 //! How values read: the cells of a trace.
 
 use crate::map::{Map, Type};
-use staunch_runtime::{Time, Value};
+use staunch_runtime::{Elementary, Time, Value};
 use std::fmt::Write;
 
 /// Appends the value of type `ty` at the start of `bytes`; nothing for a composite type.
 pub(crate) fn format(map: &Map, ty: Type, bytes: &[u8], out: &mut String) {
     match ty {
         Type::Elementary(it) => {
-            let value = Value::read(it.lane, bytes);
+            let value = Value::read(it.lane(), bytes);
             match (it.is_time(), value) {
                 (true, Value::I64(time)) => {
-                    out.push_str(if it.name == "LTIME" { "LTIME#" } else { "T#" });
+                    out.push_str(if it == Elementary::Ltime { "LTIME#" } else { "T#" });
                     write_duration(time, out);
                 }
                 _ => format_scalar(value, out),
@@ -50,7 +50,7 @@ fn format_scalar(value: Value, out: &mut String) {
 /// The value as a number, for diagrams; `None` for a string.
 pub(crate) fn number(map: &Map, ty: Type, bytes: &[u8]) -> Option<f64> {
     let lane = match ty {
-        Type::Elementary(it) => it.lane,
+        Type::Elementary(it) => it.lane(),
         Type::Enum(id) => map.enums.get(&id)?.lane,
         Type::String(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => return None,
     };

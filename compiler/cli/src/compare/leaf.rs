@@ -197,7 +197,7 @@ impl Instance {
     /// The value of the pin that the systems' counterparts call `name`.
     pub fn pin(&self, name: &str, state: &[u8]) -> Option<i128> {
         let pin = self.block.info().pins.iter().find(|it| common_name(self.block, it.name) == name)?;
-        number(Value::read(pin.lane, &state[self.offset + pin.offset..]))
+        number(Value::read(pin.lane(), &state[self.offset + pin.offset..]))
     }
 }
 

@@ -306,7 +306,7 @@ fn case(instances: [&Instance; 2], before: Option<&Row>, last: &Row, feeding: &[
     let kind = |it: &Instance| {
         let info = it.block.info();
         let count = info.pins.iter().find(|pin| super::leaf::common_name(it.block, pin.name) == "CV")?;
-        Some(Kind { family: info.family, lane: count.lane })
+        Some(Kind { family: info.family, lane: count.lane() })
     };
     let of = |row: &Row| [0, 1].map(|side| pins(instances[side], &row.states[side]));
     let name = instances[0].key.rsplit(['.', ']']).next().unwrap_or_default();

@@ -210,7 +210,7 @@ fn logix_instructions_take_a_rung_and_have_a_prescan() {
         contexts.iter().for_each(|cx| interpreter.scan(0, cx).unwrap());
         let offset = usize_of(interpreter.layout.machine.instances[0])
             + usize_of(interpreter.layout.field(crate::StructId(1), FieldId(5)));
-        Value::read(acc.lane, &interpreter.state()[offset + acc.offset..]).as_integer()
+        Value::read(acc.lane(), &interpreter.state()[offset + acc.offset..]).as_integer()
     };
     assert_eq!(count(&[Context::at(0)]), Some(1));
     assert_eq!(count(&[Context::first(0)]), Some(0), "the prescan uses up an edge");

@@ -164,7 +164,7 @@ fn blocks_have_the_size_of_their_rust_type() {
         let shape = block_shape(id);
         assert_eq!((usize_of(shape.size), usize_of(shape.align)), (info.size, info.align), "{info:?}");
         for pin in info.pins {
-            assert!(pin.offset + usize_of(u64::from(pin.lane.size())) <= info.size, "{info:?}.{}", pin.name);
+            assert!(pin.offset + usize_of(u64::from(pin.lane().size())) <= info.size, "{info:?}.{}", pin.name);
         }
     }
 }

@@ -188,7 +188,7 @@ impl<'p> Verifier<'p> {
         let wanted: Vec<_> = if instruction.takes_rung {
             vec![Some(crate::Lane::Bool)]
         } else {
-            info.inputs().map(|pin| Some(pin.lane)).collect()
+            info.inputs().map(|pin| Some(pin.lane())).collect()
         };
         self.require(found == wanted, at, format_args!("{}: inputs in {found:?}", info.name));
     }

@@ -11,16 +11,9 @@ pub fn line(line: u32) -> Location {
     Location { line, ..AT }
 }
 
-/// The first IEC type that a lane carries.
-pub fn of_lane(lane: Lane) -> Elementary {
-    Elementary::ALL
-        .into_iter()
-        .find(|it| it.lane() == lane && !it.is_bits() || it.lane() == lane && lane == Lane::Bool)
-        .unwrap()
-}
-
+/// The IEC type that counts in a lane.
 pub fn elementary(lane: Lane) -> Type {
-    Type::Elementary(of_lane(lane))
+    Type::Elementary(Elementary::number(lane))
 }
 
 pub fn field(name: &str, ty: Type, initial: Const) -> Field {
@@ -100,7 +93,7 @@ pub fn load(place: Place) -> Expr {
 }
 
 pub fn constant(value: Value) -> Expr {
-    Expr::constant(of_lane(value.lane()), value, AT)
+    Expr::constant(Elementary::number(value.lane()), value, AT)
 }
 
 pub fn int(value: i16) -> Expr {

@@ -58,7 +58,7 @@ impl<T: Count> CtuStopAtPv<T> {
 }
 
 pins!([T: Count] CtuStopAtPv<T> {
-    Input { cu: bool = "CU", reset: bool = "RESET", pv: T = "PV" }
-    Output { q: bool = "Q", cv: T = "CV" }
-    Memory { cu_before: bool = "cu_before" }
+    Input { cu: BOOL = "CU", reset: BOOL = "RESET", pv: T = "PV" }
+    Output { q: BOOL = "Q", cv: T = "CV" }
+    Memory { cu_before: BOOL = "cu_before" }
 });

@@ -35,8 +35,8 @@ impl Ctu {
 }
 
 pins!([] Ctu {
-    Input { cu: bool = "CU", reset: bool = "RESET", pv: i16 = "PV" }
-    Output { q: bool = "Q", cv: i16 = "CV" }
+    Input { cu: BOOL = "CU", reset: BOOL = "RESET", pv: INT = "PV" }
+    Output { q: BOOL = "Q", cv: INT = "CV" }
 });
 
 /// `CTD`: while `cd`, each call counts down until `cv` reaches 0; `q` while `cv = 0`. While
@@ -69,8 +69,8 @@ impl Ctd {
 }
 
 pins!([] Ctd {
-    Input { cd: bool = "CD", load: bool = "LOAD", pv: i16 = "PV" }
-    Output { q: bool = "Q", cv: i16 = "CV" }
+    Input { cd: BOOL = "CD", load: BOOL = "LOAD", pv: INT = "PV" }
+    Output { q: BOOL = "Q", cv: INT = "CV" }
 });
 
 /// `R_CTU`: a [`Ctu`]. Its fourth pin RCV is a variable of the caller, which the compiler sets to

@@ -29,9 +29,9 @@ impl RTrig {
 }
 
 pins!([] RTrig {
-    Input { clk: bool = "CLK" }
-    Output { q: bool = "Q" }
-    Memory { clk_before: bool = "clk_before" }
+    Input { clk: BOOL = "CLK" }
+    Output { q: BOOL = "Q" }
+    Memory { clk_before: BOOL = "clk_before" }
 });
 
 /// `F_TRIG`: `q` in the call in which `clk` becomes FALSE; a `clk` that is FALSE in the first
@@ -62,7 +62,7 @@ impl FTrig {
 }
 
 pins!([] FTrig {
-    Input { clk: bool = "CLK" }
-    Output { q: bool = "Q" }
-    Memory { clk_before: bool = "clk_before" }
+    Input { clk: BOOL = "CLK" }
+    Output { q: BOOL = "Q" }
+    Memory { clk_before: BOOL = "clk_before" }
 });

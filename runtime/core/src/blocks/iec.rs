@@ -74,9 +74,9 @@ impl<T: Count> Ctu<T> {
 }
 
 pins!([T: Count] Ctu<T> {
-    Input { cu: bool = "CU", r: bool = "R", pv: T = "PV" }
-    Output { q: bool = "Q", cv: T = "CV" }
-    Memory { cu_before: bool = "cu_before" }
+    Input { cu: BOOL = "CU", r: BOOL = "R", pv: T = "PV" }
+    Output { q: BOOL = "Q", cv: T = "CV" }
+    Memory { cu_before: BOOL = "cu_before" }
 });
 
 /// `CTD`: counts down on each rising edge of `cd`; `q` while `cv <= 0`. While `ld`, `cv` is `pv`:
@@ -114,9 +114,9 @@ impl<T: Count> Ctd<T> {
 }
 
 pins!([T: Count] Ctd<T> {
-    Input { cd: bool = "CD", ld: bool = "LD", pv: T = "PV" }
-    Output { q: bool = "Q", cv: T = "CV" }
-    Memory { cd_before: bool = "cd_before" }
+    Input { cd: BOOL = "CD", ld: BOOL = "LD", pv: T = "PV" }
+    Output { q: BOOL = "Q", cv: T = "CV" }
+    Memory { cd_before: BOOL = "cd_before" }
 });
 
 /// `CTUD`: counts up on each rising edge of `cu` and down on each of `cd`; both in one call
@@ -164,9 +164,9 @@ impl<T: Count> Ctud<T> {
 }
 
 pins!([T: Count] Ctud<T> {
-    Input { cu: bool = "CU", cd: bool = "CD", r: bool = "R", ld: bool = "LD", pv: T = "PV" }
-    Output { qu: bool = "QU", qd: bool = "QD", cv: T = "CV" }
-    Memory { cu_before: bool = "cu_before", cd_before: bool = "cd_before" }
+    Input { cu: BOOL = "CU", cd: BOOL = "CD", r: BOOL = "R", ld: BOOL = "LD", pv: T = "PV" }
+    Output { qu: BOOL = "QU", qd: BOOL = "QD", cv: T = "CV" }
+    Memory { cu_before: BOOL = "cu_before", cd_before: BOOL = "cd_before" }
 });
 
 // Controllers hold thousands of these.

@@ -76,8 +76,8 @@ impl Counter {
 
 pins!([] Counter {
     Member {
-        cu: bool = "CU", cd: bool = "CD", dn: bool = "DN", ov: bool = "OV", un: bool = "UN",
-        pre: i32 = "PRE", acc: i32 = "ACC",
+        cu: BOOL = "CU", cd: BOOL = "CD", dn: BOOL = "DN", ov: BOOL = "OV", un: BOOL = "UN",
+        pre: DINT = "PRE", acc: DINT = "ACC",
     }
 });
 
@@ -145,12 +145,12 @@ impl FbdCounter {
 
 pins!([] FbdCounter {
     Member {
-        enable_in: bool = "EnableIn" true,
-        cu_enable: bool = "CUEnable", cd_enable: bool = "CDEnable", pre: i32 = "PRE", reset: bool = "Reset",
-        enable_out: bool = "EnableOut", acc: i32 = "ACC",
-        cu: bool = "CU", cd: bool = "CD", dn: bool = "DN", ov: bool = "OV", un: bool = "UN",
+        enable_in: BOOL = "EnableIn" true,
+        cu_enable: BOOL = "CUEnable", cd_enable: BOOL = "CDEnable", pre: DINT = "PRE", reset: BOOL = "Reset",
+        enable_out: BOOL = "EnableOut", acc: DINT = "ACC",
+        cu: BOOL = "CU", cd: BOOL = "CD", dn: BOOL = "DN", ov: BOOL = "OV", un: BOOL = "UN",
     }
-    Memory { cu_enable_before: bool = "cu_enable_before", cd_enable_before: bool = "cd_enable_before" }
+    Memory { cu_enable_before: BOOL = "cu_enable_before", cd_enable_before: BOOL = "cd_enable_before" }
 });
 
 /// A count with the flags that say which limit it has wrapped past.

@@ -43,9 +43,9 @@ impl Ton {
 }
 
 pins!([] Ton {
-    Input { in_: bool = "IN", pt: Time = "PT" }
-    Output { q: bool = "Q", et: Time = "ET" }
-    Memory { in_before: bool = "in_before", start: Time = "start" }
+    Input { in_: BOOL = "IN", pt: TIME = "PT" }
+    Output { q: BOOL = "Q", et: TIME = "ET" }
+    Memory { in_before: BOOL = "in_before", start: TIME = "start" }
 });
 
 /// `TOF`: `q` while `in_`, and for `pt` after it falls; FALSE until `in_` is first TRUE. `et` is
@@ -86,9 +86,9 @@ impl Tof {
 }
 
 pins!([] Tof {
-    Input { in_: bool = "IN", pt: Time = "PT" }
-    Output { q: bool = "Q", et: Time = "ET" }
-    Memory { in_before: bool = "in_before", start: Time = "start" }
+    Input { in_: BOOL = "IN", pt: TIME = "PT" }
+    Output { q: BOOL = "Q", et: TIME = "ET" }
+    Memory { in_before: BOOL = "in_before", start: TIME = "start" }
 });
 
 /// `TP`: a rising `in_` gives a pulse of `q` that lasts `pt`, whatever `in_` does meanwhile;
@@ -131,9 +131,9 @@ impl Tp {
 }
 
 pins!([] Tp {
-    Input { in_: bool = "IN", pt: Time = "PT" }
-    Output { q: bool = "Q", et: Time = "ET" }
-    Memory { in_before: bool = "in_before", start: Time = "start" }
+    Input { in_: BOOL = "IN", pt: TIME = "PT" }
+    Output { q: BOOL = "Q", et: TIME = "ET" }
+    Memory { in_before: BOOL = "in_before", start: TIME = "start" }
 });
 
 /// How far a delay has run.

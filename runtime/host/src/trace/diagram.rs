@@ -3,7 +3,7 @@
 use super::{Row, Sink, Subject, milliseconds};
 use crate::map::Type;
 use crate::value;
-use staunch_runtime::{Lane, Time};
+use staunch_runtime::{Elementary, Time};
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
@@ -89,7 +89,7 @@ impl Diagram {
             let right = scale.left + scale.width;
             let _ = writeln!(svg, "<path class=\"base\" d=\"M{:.1} {base:.1}H{right:.1}\"/>", scale.left);
             match column.place.ty {
-                Type::Elementary(it) if it.lane == Lane::Bool => lane.draw_bool(&mut svg, &scale, y, height),
+                Type::Elementary(Elementary::Bool) => lane.draw_bool(&mut svg, &scale, y, height),
                 Type::Elementary(_) => lane.draw_number(&mut svg, &scale, y, height),
                 Type::String(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
                     lane.draw_text(&mut svg, &scale, y, height);
@@ -104,7 +104,7 @@ impl Diagram {
 
 fn height(ty: Type) -> f64 {
     match ty {
-        Type::Elementary(it) if it.lane != Lane::Bool => 40.0,
+        Type::Elementary(it) if it != Elementary::Bool => 40.0,
         _ => 20.0,
     }
 }

@@ -3,7 +3,7 @@
 use super::{Row, Subject};
 use crate::format_time;
 use crate::map::Type;
-use staunch_runtime::{Lane, Time};
+use staunch_runtime::{Elementary, Time};
 use std::collections::VecDeque;
 use std::io::{self, Write};
 
@@ -114,7 +114,7 @@ fn line(out: &mut dyn Write, cells: impl Iterator<Item = String>) -> io::Result<
 }
 
 fn is_number(ty: Type) -> bool {
-    matches!(ty, Type::Elementary(it) if it.lane != Lane::Bool)
+    matches!(ty, Type::Elementary(it) if it != Elementary::Bool)
 }
 
 /// A duration without the prefix that every cell would have.
