@@ -95,6 +95,7 @@ pub fn program(tasks: &[Task]) -> Program {
     Program {
         files: vec![SourceFile { path: "operations.st".to_owned() }],
         enums: Vec::new(),
+        bounds: Vec::new(),
         arrays: Vec::new(),
         globals: StructId::next(tasks.len()),
         structs,
@@ -120,7 +121,6 @@ fn structure(task: Task) -> Struct {
         retain: staunch_ir::Retain::Inherited,
         constant: false,
         address: None,
-        range: None,
         doc: None,
         location: AT,
     };

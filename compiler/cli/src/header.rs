@@ -80,7 +80,9 @@ impl Macros<'_> {
             .iter()
             .map(|field| match field.ty {
                 Type::Block(_) => String::new(),
-                Type::Elementary(_) | Type::Enum(_) => self.claim(macro_name(&[owner, &field.name])),
+                Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) => {
+                    self.claim(macro_name(&[owner, &field.name]))
+                }
                 Type::String(_) | Type::Array(_) | Type::Struct(_) => {
                     self.claim(macro_name(&["OFFSET", owner, &field.name]))
                 }
@@ -96,7 +98,7 @@ impl Macros<'_> {
                         variable(&name, pin.lane(), place, &mut self.text);
                     }
                 }
-                Type::Elementary(_) | Type::Enum(_) => {
+                Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) => {
                     if let Some(lane) = program.lane(field.ty) {
                         variable(&name, lane, offset, &mut self.text);
                     }

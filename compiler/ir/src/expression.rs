@@ -17,7 +17,7 @@ pub enum ExprKind {
     Text(Vec<u8>),
     /// An array or structure constant.
     Aggregate(Const),
-    /// Reads a place of the expression's type.
+    /// Reads a place of the expression's type, or of a subrange that is made of it.
     Load(Place),
     /// An operation at `lane`: that of each operand and the result which the operation's row
     /// calls `T`. Operands of a comparison may be enumerations; both then have one type.
@@ -58,12 +58,31 @@ impl Expr {
         Self::new(place.ty, ExprKind::Load(place), at)
     }
 
+    /// The same value, of the type that its subrange is made of.
+    #[must_use]
+    pub fn read(self) -> Self {
+        Self { ty: self.ty.read(), ..self }
+    }
+
     pub fn apply(op: Op, ty: Type, operands: Vec<Self>, at: Location) -> Self {
         Self::new(ty, ExprKind::Apply(op, operands), at)
     }
 
     pub fn convert(how: Conversion, ty: Type, value: Self, at: Location) -> Self {
         Self::new(ty, ExprKind::Convert(how, Box::new(value)), at)
+    }
+
+    /// The type of the variable that is read, where the expression is nothing more; else its own.
+    pub fn declared(&self) -> Type {
+        match &self.kind {
+            ExprKind::Load(place) => place.ty,
+            ExprKind::Const(_)
+            | ExprKind::Text(_)
+            | ExprKind::Aggregate(_)
+            | ExprKind::Apply(..)
+            | ExprKind::ApplyText(..)
+            | ExprKind::Convert(..) => self.ty,
+        }
     }
 
     /// The value, when the expression is an elementary or enumeration constant.

@@ -19,7 +19,6 @@ pub fn field(name: &str, ty: Type, initial: Const) -> Field {
         retain: Retain::Inherited,
         constant: false,
         address: None,
-        range: None,
         doc: None,
         location: AT,
     }
@@ -58,6 +57,7 @@ pub fn program(arrays: Vec<Array>, structs: Vec<Struct>, pous: Vec<Pou>) -> Prog
     Program {
         files: vec![SourceFile { path: "main.st".to_owned() }],
         enums: vec![color()],
+        bounds: vec![(-3, 7), (1, 9)],
         arrays,
         globals: StructId::next(structs.len() - 1),
         structs,

@@ -145,7 +145,7 @@ impl Layout {
 
     pub fn shape(&self, ty: Type) -> Shape {
         match ty {
-            Type::Elementary(it) => lane_shape(it.lane()),
+            Type::Elementary(it) | Type::Subrange(it, _) => lane_shape(it.lane()),
             Type::String(capacity) => text_shape(capacity),
             Type::Enum(id) => lane_shape(self.enums[id.index()]),
             Type::Array(id) => self.arrays[id.index()].expect("every array has been measured"),
@@ -179,7 +179,7 @@ impl Layout {
         match ty {
             Type::Struct(id) => self.field(id, field),
             Type::Block(id) => pin_offset(id, field),
-            Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) => {
+            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Array(_) => {
                 unreachable!("verified IR: only structures and blocks have fields")
             }
         }

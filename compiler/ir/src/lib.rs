@@ -45,6 +45,8 @@ pub use program::{
     Retain, Section, SourceFile, Variable,
 };
 pub use statement::{Argument, Arm, Block, Statement, StatementKind};
-pub use types::{Array, ArrayId, BlockId, Const, Elementary, Enum, EnumId, Enumerator, Struct, StructId, Type};
+pub use types::{
+    Array, ArrayId, BlockId, BoundsId, Const, Elementary, Enum, EnumId, Enumerator, Struct, StructId, Type,
+};
 
 pub use staunch_runtime::{FaultKind, Lane, Location, Value};

@@ -76,9 +76,6 @@ impl Printer<'_> {
         if let Some(address) = field.address {
             write!(line, " at {address}")?;
         }
-        if let Some((low, high)) = field.range {
-            write!(line, " in {low}..{high}")?;
-        }
         self.line(format_args!("{line}"))
     }
 
@@ -165,7 +162,8 @@ impl Printer<'_> {
         match ty {
             Some(Type::Struct(id)) => self.program.structure(id).fields[field.index()].name.clone(),
             Some(Type::Block(id)) => id.info().pins[field.index()].name.to_owned(),
-            Some(Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_)) | None => {
+            Some(Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Array(_))
+            | None => {
                 format!("?{}", field.0)
             }
         }
@@ -174,9 +172,15 @@ impl Printer<'_> {
     fn element(&self, ty: Option<Type>) -> Option<Type> {
         match ty {
             Some(Type::Array(id)) => Some(self.program.array(id).element),
-            Some(Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Struct(_) | Type::Block(_)) | None => {
-                None
-            }
+            Some(
+                Type::Elementary(_)
+                | Type::Subrange(..)
+                | Type::String(_)
+                | Type::Enum(_)
+                | Type::Struct(_)
+                | Type::Block(_),
+            )
+            | None => None,
         }
     }
 

@@ -1,5 +1,5 @@
 use crate::types::ids;
-use crate::{Array, ArrayId, Block, Const, Enum, EnumId, Location, Place, Root, Struct, StructId, Type};
+use crate::{Array, ArrayId, Block, BoundsId, Const, Enum, EnumId, Location, Place, Root, Struct, StructId, Type};
 use core::fmt;
 
 ids! {
@@ -16,6 +16,8 @@ pub struct Program {
     /// What `Location::file` counts.
     pub files: Vec<SourceFile>,
     pub enums: Vec<Enum>,
+    /// The lower and upper limits of subranges, each pair once.
+    pub bounds: Vec<(i128, i128)>,
     pub arrays: Vec<Array>,
     /// A structure stands after those it contains.
     pub structs: Vec<Struct>,
@@ -111,8 +113,6 @@ pub struct Field {
     /// Never written.
     pub constant: bool,
     pub address: Option<Address>,
-    /// The bounds of a subrange type.
-    pub range: Option<(i128, i128)>,
     pub doc: Option<String>,
     pub location: Location,
 }
@@ -183,6 +183,23 @@ impl Program {
         &self.enums[id.index()]
     }
 
+    pub fn bounds(&self, id: BoundsId) -> (i128, i128) {
+        self.bounds[id.index()]
+    }
+
+    /// The limits of a subrange.
+    pub fn range(&self, ty: Type) -> Option<(i128, i128)> {
+        match ty {
+            Type::Subrange(_, id) => Some(self.bounds(id)),
+            Type::Elementary(_)
+            | Type::String(_)
+            | Type::Enum(_)
+            | Type::Array(_)
+            | Type::Struct(_)
+            | Type::Block(_) => None,
+        }
+    }
+
     pub fn array(&self, id: ArrayId) -> Array {
         self.arrays[id.index()]
     }
@@ -217,7 +234,7 @@ impl Program {
         match ty {
             Type::Struct(structure) => self.structure(structure).fields.get(id.index()).map(|field| field.ty),
             Type::Block(block) => block.pin_type(id),
-            Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) => None,
+            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Array(_) => None,
         }
     }
 
@@ -227,6 +244,10 @@ impl Program {
             Type::Elementary(it) => it.name().to_owned(),
             Type::String(capacity) => format!("STRING[{capacity}]"),
             Type::Enum(id) => self.enumeration(id).name.clone(),
+            Type::Subrange(base, id) => {
+                let (low, high) = self.bounds(id);
+                format!("{}({low}..{high})", base.name())
+            }
             Type::Struct(id) => self.structure(id).name.clone(),
             Type::Block(id) => id.info().name.to_owned(),
             Type::Array(id) => self.array_name(id),
@@ -244,10 +265,10 @@ impl Program {
         format!("ARRAY[{}] OF {}", bounds.join(", "), self.type_name(ty))
     }
 
-    /// The lane of an elementary or enumeration type.
+    /// The lane of an elementary, enumeration or subrange type.
     pub fn lane(&self, ty: Type) -> Option<staunch_runtime::Lane> {
         match ty {
-            Type::Elementary(it) => Some(it.lane()),
+            Type::Elementary(it) | Type::Subrange(it, _) => Some(it.lane()),
             Type::Enum(id) => Some(self.enumeration(id).base.lane()),
             Type::String(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => None,
         }

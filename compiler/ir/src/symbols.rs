@@ -193,7 +193,7 @@ impl Map<'_> {
                 Some((field.ty, self.attributes_of(field)))
             }
             Type::Block(block) => Some((block.pin_type(id)?, Attributes::NONE)),
-            Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) => None,
+            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Array(_) => None,
         }
     }
 
@@ -209,7 +209,7 @@ impl Map<'_> {
             restarts: field.retain == Retain::Anew && !retentive,
             constant: field.constant,
             address: field.address,
-            range: field.range,
+            range: self.program.range(field.ty),
         }
     }
 
@@ -241,7 +241,7 @@ struct TypeName(Type);
 impl fmt::Display for TypeName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0 {
-            Type::Elementary(it) => f.write_str(it.name()),
+            Type::Elementary(it) | Type::Subrange(it, _) => f.write_str(it.name()),
             Type::String(capacity) => write!(f, "STRING[{capacity}]"),
             Type::Enum(id) => write!(f, "enum:{}", id.0),
             Type::Array(id) => write!(f, "array:{}", id.0),
@@ -254,7 +254,12 @@ impl fmt::Display for TypeName {
 fn block_of(ty: Type) -> Option<BlockId> {
     match ty {
         Type::Block(id) => Some(id),
-        Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) => None,
+        Type::Elementary(_)
+        | Type::String(_)
+        | Type::Enum(_)
+        | Type::Subrange(..)
+        | Type::Array(_)
+        | Type::Struct(_) => None,
     }
 }
 

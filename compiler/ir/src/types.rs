@@ -10,6 +10,8 @@ pub enum Type {
     /// A string of at most this many bytes.
     String(u16),
     Enum(EnumId),
+    /// An integer type within limits. What is written to such a variable is checked, or constant.
+    Subrange(Elementary, BoundsId),
     Array(ArrayId),
     /// A user's structure, or the state of a PROGRAM or FUNCTION_BLOCK, or the globals.
     Struct(StructId),
@@ -25,10 +27,25 @@ impl Type {
     pub const LREAL: Self = Self::Elementary(Elementary::Lreal);
     pub const TIME: Self = Self::Elementary(Elementary::Time);
 
+    /// The elementary type of its values: a subrange's is the type that it is made of.
     pub const fn elementary(self) -> Option<Elementary> {
         match self {
-            Self::Elementary(it) => Some(it),
+            Self::Elementary(it) | Self::Subrange(it, _) => Some(it),
             Self::String(_) | Self::Enum(_) | Self::Array(_) | Self::Struct(_) | Self::Block(_) => None,
+        }
+    }
+
+    /// The type of the values of a variable of this type: a subrange's is the one that it is made of.
+    #[must_use]
+    pub const fn read(self) -> Self {
+        match self {
+            Self::Subrange(it, _) => Self::Elementary(it),
+            Self::Elementary(_)
+            | Self::String(_)
+            | Self::Enum(_)
+            | Self::Array(_)
+            | Self::Struct(_)
+            | Self::Block(_) => self,
         }
     }
 }
@@ -60,6 +77,8 @@ pub(crate) use ids;
 
 ids! {
     EnumId;
+    /// Bounds of subranges; equal bounds have one id.
+    BoundsId;
     ArrayId;
     StructId;
     /// Index into the runtime's table of standard blocks.

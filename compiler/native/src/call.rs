@@ -77,7 +77,7 @@ impl Function<'_, '_> {
     /// An argument that the callee copies, if it is not elementary.
     fn argument(&mut self, value: &Expr) -> clif::Value {
         match value.ty {
-            Type::Elementary(_) | Type::Enum(_) => self.scalar(value),
+            Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) => self.scalar(value),
             Type::String(_) => self.text_pointer(value),
             Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
                 let address = self.aggregate(value);
@@ -142,7 +142,12 @@ impl Function<'_, '_> {
 pub(crate) fn block_info(place: &Place) -> &'static BlockInfo {
     match place.ty {
         Type::Block(id) => id.info(),
-        Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) => {
+        Type::Elementary(_)
+        | Type::Subrange(..)
+        | Type::String(_)
+        | Type::Enum(_)
+        | Type::Array(_)
+        | Type::Struct(_) => {
             unreachable!("verified IR: an instance of a standard block")
         }
     }

@@ -64,7 +64,7 @@ impl<'p> Function<'_, 'p> {
 
     fn assign_to(&mut self, value: &Expr, target: Address) {
         match value.ty {
-            Type::Elementary(_) | Type::Enum(_) => {
+            Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) => {
                 let value = self.scalar(value);
                 self.store(value, target);
             }

@@ -127,7 +127,12 @@ fn symbol(op: TextOp) -> String {
 fn capacity(ty: Type) -> u16 {
     match ty {
         Type::String(capacity) => capacity,
-        Type::Elementary(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
+        Type::Elementary(_)
+        | Type::Subrange(..)
+        | Type::Enum(_)
+        | Type::Array(_)
+        | Type::Struct(_)
+        | Type::Block(_) => {
             unreachable!("verified IR: an expression of a string type")
         }
     }

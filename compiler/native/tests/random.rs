@@ -61,6 +61,8 @@ struct Maker {
     plain: bool,
 }
 
+/// Of the one subrange; every integer type holds them.
+const LIMITS: (i128, i128) = (3, 100);
 const STRINGS: [Type; 3] = [Type::String(4), Type::String(9), Type::String(80)];
 
 impl Maker {
@@ -91,6 +93,7 @@ impl Maker {
         let instances = (0..maker.pous.len()).filter(is_program).map(|at| instance(PouId::next(at)));
         Program {
             files: vec![SourceFile { path: "random.st".to_owned() }],
+            bounds: vec![LIMITS],
             enums: vec![Enum {
                 name: "Color".to_owned(),
                 doc: None,
@@ -120,7 +123,8 @@ impl Maker {
     fn part(&mut self) -> Type {
         match self.random.below(12) {
             0 => self.random.of(&STRINGS),
-            1 => Type::Enum(EnumId(0)),
+            1 if self.random.one_in(2) => Type::Enum(EnumId(0)),
+            1 => Type::Subrange(Elementary::Int, BoundsId(0)),
             2 if !self.arrays.is_empty() => Type::Array(ArrayId::next(self.random.below(self.arrays.len()))),
             3 if !self.structs.is_empty() => Type::Struct(StructId::next(self.random.below(2.min(self.structs.len())))),
             4 => self.block(),
@@ -145,6 +149,7 @@ impl Maker {
     fn initial(&mut self, ty: Type) -> Const {
         match ty {
             Type::Elementary(it) => Const::Scalar(self.value(it.lane())),
+            Type::Subrange(it, _) => it.lane().integer(LIMITS.0).map_or(Const::Zero, Const::Scalar),
             Type::Enum(_) => Const::Scalar(Value::I8(-3)),
             Type::String(capacity) => Const::Text(self.bytes(capacity)),
             Type::Array(id) if self.random.one_in(2) => {
@@ -312,7 +317,7 @@ impl Maker {
                 let index = self.index(array, depth);
                 Some(place.index(index, array.element, at))
             }
-            Type::Elementary(_) | Type::String(_) | Type::Enum(_) => None,
+            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => None,
         }
     }
 
@@ -343,6 +348,11 @@ impl Maker {
             Type::Elementary(it) => {
                 let value = self.value(it.lane());
                 Expr::constant(it, value, AT)
+            }
+            Type::Subrange(it, _) => {
+                let limit = |it: Elementary, number| Expr::constant(it, it.lane().integer(number).unwrap(), AT);
+                let value = self.expr(Type::Elementary(it), depth.saturating_sub(1));
+                Expr::apply(Op::InRange, ty, vec![limit(it, LIMITS.0), value, limit(it, LIMITS.1)], AT)
             }
             Type::Enum(_) => Expr::new(ty, ExprKind::Const(Value::I8(-3)), AT),
             Type::String(capacity) => self.text(capacity, depth),
@@ -586,7 +596,7 @@ fn mark(program: &Program, layout: &Layout, ty: Type, offset: u64, counts: &mut 
             return;
         }
         Type::String(capacity) => return counts[usize_of(offset)..][..2 + usize::from(capacity)].fill(true),
-        Type::Elementary(_) | Type::Enum(_) => {
+        Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) => {
             return counts[usize_of(offset)..][..usize_of(layout.size(ty))].fill(true);
         }
     };

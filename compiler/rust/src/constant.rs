@@ -15,8 +15,8 @@ impl Emitter<'_> {
     /// A constant where its type is known from the surroundings.
     pub fn constant(&self, ty: Type, value: &Const) -> Code {
         match (ty, value) {
-            (Type::Elementary(it), Const::Zero) => literal(it, it.lane().zero(), false),
-            (Type::Elementary(it), Const::Scalar(value)) => literal(it, *value, false),
+            (Type::Elementary(it) | Type::Subrange(it, _), Const::Zero) => literal(it, it.lane().zero(), false),
+            (Type::Elementary(it) | Type::Subrange(it, _), Const::Scalar(value)) => literal(it, *value, false),
             (Type::Enum(id), Const::Zero) => self.enum_value(id, self.program.enumeration(id).base.lane().zero()),
             (Type::Enum(id), Const::Scalar(value)) => self.enum_value(id, *value),
             (Type::String(_), Const::Text(text)) => Code::postfix(text_new(text)),
@@ -24,7 +24,7 @@ impl Emitter<'_> {
             (Type::Array(id), _) => self.array(id, value),
             (Type::Struct(id), _) => self.aggregate(id, value),
             (Type::Block(id), _) => Code::postfix(block(id, value)),
-            (Type::Elementary(_) | Type::Enum(_) | Type::String(_), _) => {
+            (Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) | Type::String(_), _) => {
                 unreachable!("verified IR: constants match their types")
             }
         }

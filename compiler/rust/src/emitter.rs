@@ -27,7 +27,7 @@ impl<'p> Emitter<'p> {
     pub fn ty(&self, ty: Type) -> TokenStream {
         match ty {
             Type::Elementary(it) if it.is_time() => quote!(Time),
-            Type::Elementary(it) => {
+            Type::Elementary(it) | Type::Subrange(it, _) => {
                 let lane = ident(it.lane().rust_name());
                 quote!(#lane)
             }

@@ -40,7 +40,7 @@ impl Function<'_> {
 
     fn scalar(&self, ty: Type, value: Value, suffixed: bool) -> Code {
         match ty {
-            Type::Elementary(it) => literal(it, value, suffixed),
+            Type::Elementary(it) | Type::Subrange(it, _) => literal(it, value, suffixed),
             Type::Enum(id) => self.emitter.enum_value(id, value),
             Type::String(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
                 unreachable!("verified IR: a scalar has a scalar's type")
@@ -192,7 +192,12 @@ impl Function<'_> {
                 let code = code.at_least(Level::Postfix);
                 quote!(#code.0)
             }
-            Type::Elementary(_) | Type::String(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => code.tokens,
+            Type::Elementary(_)
+            | Type::Subrange(..)
+            | Type::String(_)
+            | Type::Array(_)
+            | Type::Struct(_)
+            | Type::Block(_) => code.tokens,
         });
         let call = quote!(ops::#function(#(#arguments),*));
         let call = if op.can_fault() {
@@ -241,7 +246,12 @@ impl Function<'_> {
                     let code = code.at_least(Level::Postfix);
                     Code::postfix(quote!(#code.0))
                 }
-                Type::Elementary(_) | Type::String(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => code,
+                Type::Elementary(_)
+                | Type::Subrange(..)
+                | Type::String(_)
+                | Type::Array(_)
+                | Type::Struct(_)
+                | Type::Block(_) => code,
             }
         };
         let (to_name, from_name) = (ident(to.rust_name()), ident(from.rust_name()));

@@ -49,7 +49,7 @@ impl Function<'_> {
                     let name = match ty {
                         Type::Struct(id) => self.emitter.names.field(id, *field).clone(),
                         Type::Block(id) => ident(id.info().pins[field.index()].field),
-                        Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) => {
+                        Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Array(_) => {
                             unreachable!("verified IR: only structures and blocks have fields")
                         }
                     };

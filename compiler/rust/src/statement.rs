@@ -154,7 +154,12 @@ impl Function<'_> {
         let lane = self.lane(selector.ty);
         let named = match selector.ty {
             Type::Enum(_) => arms.iter().flat_map(|arm| &arm.labels).all(|(first, last)| first == last),
-            Type::Elementary(_) | Type::String(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => false,
+            Type::Elementary(_)
+            | Type::Subrange(..)
+            | Type::String(_)
+            | Type::Array(_)
+            | Type::Struct(_)
+            | Type::Block(_) => false,
         };
         let labelled = if named { Some(selector.ty) } else { None };
         let on = if let (Type::Enum(_), false) = (selector.ty, named) {

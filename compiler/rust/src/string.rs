@@ -78,9 +78,12 @@ impl Function<'_> {
         let function = ident(op.function());
         let print = |it: &Expr| match it.ty {
             Type::String(_) => self.bytes(it),
-            Type::Elementary(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
-                self.expr(it).tokens
-            }
+            Type::Elementary(_)
+            | Type::Subrange(..)
+            | Type::Enum(_)
+            | Type::Array(_)
+            | Type::Struct(_)
+            | Type::Block(_) => self.expr(it).tokens,
         };
         if op.result().is_some() {
             let arguments = operands.iter().map(print);

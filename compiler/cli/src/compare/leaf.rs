@@ -102,7 +102,9 @@ impl Walk<'_> {
 
     fn part(&mut self, path: &str, ty: Type, whole: Whole) {
         match ty {
-            Type::Elementary(_) | Type::String(_) | Type::Enum(_) => self.leaf(path, path, ty, whole),
+            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => {
+                self.leaf(path, path, ty, whole)
+            }
             Type::Array(id) => self.array(path, id, whole),
             Type::Struct(id) => self.members(path, id, whole),
             Type::Block(id) => self.block(path, id, whole),
@@ -237,7 +239,7 @@ pub fn show(program: &Program, leaf: &Leaf, state: &[u8]) -> String {
             let named = program.enumeration(id).values.iter().find(|it| it.value == value);
             named.map_or_else(|| spell(value), |it| it.name.clone())
         }
-        (Type::Elementary(it), Some(lane)) => match Value::read(lane, bytes) {
+        (Type::Elementary(it) | Type::Subrange(it, _), Some(lane)) => match Value::read(lane, bytes) {
             Value::I64(time) if it.is_time() => staunch_host::format_time(time),
             value => spell(value),
         },
@@ -313,9 +315,10 @@ pub fn interesting(program: &Program, leaf: &Leaf, initial: Value) -> Vec<Value>
         (Type::Elementary(it), _) if it.is_time() => [0, 10_000_000, 1_000_000_000].map(Value::I64).to_vec(),
         (Type::Elementary(Elementary::Real), _) => [0.0, 1.0, -1.0].map(Value::F32).to_vec(),
         (Type::Elementary(Elementary::Lreal), _) => [0.0, 1.0, -1.0].map(Value::F64).to_vec(),
-        (Type::Elementary(_), Some(lane)) => {
-            let (low, high) = lane.range().unwrap_or((0, 0));
-            [1, 2, 3, 0, -1, high, low].into_iter().filter_map(|it| lane.integer(it)).collect()
+        (Type::Elementary(_) | Type::Subrange(..), Some(lane)) => {
+            let (low, high) = program.range(leaf.ty).or(lane.range()).unwrap_or((0, 0));
+            let inside = [1, 2, 3, 0, -1, high, low].into_iter().filter(|it| (low..=high).contains(it));
+            inside.filter_map(|it| lane.integer(it)).collect()
         }
         _ => Vec::new(),
     };

@@ -155,7 +155,7 @@ impl<'s> Checker<'_, 's> {
                     }
                 }
                 done.extend(before.iter_mut());
-                self.after(&mut done, |this| this.value(expr, ty, None))
+                self.after(&mut done, |this| this.value(expr, ty))
             }
             Given::Nothing | Given::Output { .. } => {
                 let at_location = self.at(span);
@@ -171,12 +171,11 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let at = self.at(target.span);
-        let mut value = Expr::load(source, at);
+        let mut value = Expr::load(source, at).read();
         if negated {
             value = self.not(value, target.span)?;
         }
         let value = self.coerce(super::operand::Operand::Typed(value), found.place.ty, target.span)?;
-        let value = self.in_range(value, found.range, target.span)?;
         self.note_assigned(&found.place, target.span);
         self.assign(found.place, value, target.span);
         Some(())
@@ -217,10 +216,10 @@ impl<'s> Checker<'_, 's> {
                     None => complete = false,
                 },
                 (_, Given::Value(expr)) => {
-                    let (ty, range) = (formal.resolved.ty, formal.resolved.range);
+                    let ty = formal.resolved.ty;
                     let mut done: Vec<&mut Expr> = index_exprs(&mut place);
                     done.extend(inputs.iter_mut());
-                    match self.after(&mut done, |this| this.value(expr, ty, range)) {
+                    match self.after(&mut done, |this| this.value(expr, ty)) {
                         Some(value) => {
                             inputs.push(value);
                             assigned.push((formal, expr.span));
@@ -310,9 +309,9 @@ impl<'s> Checker<'_, 's> {
         {
             return Some(self.string_of_another_length(found.place, formal.resolved.ty, expr.span));
         }
-        if found.place.ty != formal.resolved.ty || found.range != formal.resolved.range {
-            let wants = self.ranged_name(formal.resolved.ty, formal.resolved.range);
-            let has = self.ranged_name(found.place.ty, found.range);
+        if found.place.ty != formal.resolved.ty {
+            let wants = self.type_name(formal.resolved.ty);
+            let has = self.type_name(found.place.ty);
             self.report(
                 Diagnostic::new(
                     Code::E0201,
@@ -326,12 +325,6 @@ impl<'s> Checker<'_, 's> {
         }
         self.note_passed(&found.place, expr.span, formal.name.span);
         Some(found.place)
-    }
-
-    /// A type's name with the bounds of a subrange: `INT(0..3)`.
-    fn ranged_name(&self, ty: Type, range: Option<(i128, i128)>) -> String {
-        let bounds = range.map_or_else(String::new, |(low, high)| format!("({low}..{high})"));
-        self.type_name(ty) + &bounds
     }
 
     /// A string of another capacity goes in by a copy, cut where it is too long, and comes back so.
@@ -416,7 +409,7 @@ impl<'s> Checker<'_, 's> {
             None => None,
             Some(Given::Value(rung)) => {
                 let mut done = index_exprs(&mut found.place);
-                Some(self.after(&mut done, |this| this.value(rung, Type::BOOL, None))?)
+                Some(self.after(&mut done, |this| this.value(rung, Type::BOOL))?)
             }
             Some(Given::Nothing | Given::Output { .. }) => {
                 self.report(

@@ -16,7 +16,7 @@ impl<'s> Checker<'_, 's> {
         let value = self.typed(selector, None);
         let value = value.and_then(|value| {
             let allowed = match value.ty {
-                Type::Elementary(it) => it.lane().is_integer() && !it.is_time(),
+                Type::Elementary(it) | Type::Subrange(it, _) => it.lane().is_integer() && !it.is_time(),
                 Type::Enum(_) => true,
                 Type::String(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => false,
             };
@@ -84,7 +84,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn label_value(&mut self, expr: &ast::Expr<'s>, ty: Type) -> Option<i128> {
-        let value = self.value(expr, ty, None)?;
+        let value = self.value(expr, ty)?;
         let number = value.as_const().and_then(Value::as_integer);
         if number.is_none() {
             self.report(super::not_constant(expr.span));

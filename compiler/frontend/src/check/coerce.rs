@@ -3,23 +3,22 @@
 use super::Checker;
 use super::operand::Operand;
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{Conversion, Elementary, Expr, ExprKind, Lane, Op, Type, Value};
+use staunch_ir::{BoundsId, Conversion, Elementary, Expr, ExprKind, Lane, Op, Type, Value};
 
 impl<'s> Checker<'_, 's> {
-    /// The value of `expr`, to be stored where `ty` (and a subrange) is declared.
-    pub(super) fn value(&mut self, expr: &ast::Expr<'s>, ty: Type, range: Option<(i128, i128)>) -> Option<Expr> {
-        let operand = self.operand(expr, Some(ty))?;
-        let value = self.coerce(operand, ty, expr.span)?;
-        self.in_range(value, range, expr.span)
+    /// The value of `expr`, to be stored where `ty` is declared.
+    pub(super) fn value(&mut self, expr: &ast::Expr<'s>, ty: Type) -> Option<Expr> {
+        let operand = self.operand(expr, Some(ty.read()))?;
+        self.coerce(operand, ty, expr.span)
     }
 
-    /// Adds the check of a subrange; a constant is checked now.
-    pub(super) fn in_range(&mut self, value: Expr, range: Option<(i128, i128)>, span: Span) -> Option<Expr> {
-        let Some((low, high)) = range else { return Some(value) };
-        let Type::Elementary(ty) = value.ty else { return Some(value) };
+    /// A value of `made_of` as one of its subrange with these limits; a constant is checked now.
+    fn in_range(&mut self, value: Expr, made_of: Elementary, id: BoundsId, span: Span) -> Option<Expr> {
+        let (low, high) = self.decl.program.bounds(id);
+        let to = Type::Subrange(made_of, id);
         if let Some(number) = value.as_const().and_then(Value::as_integer) {
             if (low..=high).contains(&number) {
-                return Some(value);
+                return Some(Expr { ty: to, ..value });
             }
             self.report(
                 Diagnostic::new(Code::E0202, span, format!("{number} lies outside the subrange {low}..{high}"))
@@ -28,15 +27,19 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let at = self.at(span);
-        let bound = |number| Some(Expr::constant(ty, ty.lane().integer(number)?, at));
-        let operands = vec![bound(low)?, value, bound(high)?];
-        Some(Expr::apply(Op::InRange, Type::Elementary(ty), operands, at))
+        let limit = |number| Some(Expr::constant(made_of, made_of.lane().integer(number)?, at));
+        let operands = vec![limit(low)?, value, limit(high)?];
+        Some(Expr::apply(Op::InRange, to, operands, at))
     }
 
     /// Converts implicitly to `to`, or says why that is not done.
     pub(super) fn coerce(&mut self, operand: Operand, to: Type, span: Span) -> Option<Expr> {
         match (operand, to) {
-            (Operand::Typed(expr), _) => self.coerce_typed(expr, to, span),
+            (operand, Type::Subrange(made_of, id)) => {
+                let value = self.coerce(operand, Type::Elementary(made_of), span)?;
+                self.in_range(value, made_of, id, span)
+            }
+            (Operand::Typed(expr), _) => self.coerce_typed(expr.read(), to, span),
             (literal, Type::Elementary(ty)) => self.literal_as(&literal, ty, span),
             (literal, Type::Enum(id)) if self.decl.dialect(span).mixes_bits_and_integers() => {
                 let base = self.decl.program.enumeration(id).base;
@@ -118,7 +121,7 @@ impl<'s> Checker<'_, 's> {
                 let outputs = fields.iter().filter(|it| it.section == staunch_ir::Section::Output);
                 outputs.map(|it| it.name.clone()).collect()
             }
-            Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) => Vec::new(),
+            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Array(_) => Vec::new(),
         };
         let text = self.decl.sources.text(span);
         let mut error = Diagnostic::new(Code::E0210, span, format!("an instance of {ty} is not a value"))

@@ -36,7 +36,7 @@ pub(super) fn parse(name: &str) -> Option<Parsed> {
 impl<'s> Checker<'_, 's> {
     pub(super) fn conversion(&mut self, parsed: Parsed, value: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<Expr> {
         let value_expr = match parsed.from {
-            Some(from) => self.value(value, Type::Elementary(from), None)?,
+            Some(from) => self.value(value, Type::Elementary(from))?,
             None => self.typed(value, None)?,
         };
         if parsed.truncates {

@@ -9,7 +9,7 @@ impl<'s> Checker<'_, 's> {
     /// Types an expression. `expected` is what its place asks for; only literals, bare
     /// enumerators and overloaded functions listen to it.
     pub(super) fn operand(&mut self, expr: &ast::Expr<'s>, expected: Option<Type>) -> Option<Operand> {
-        match &expr.kind {
+        let operand = match &expr.kind {
             Ast::Literal(literal) => self.literal(literal, expr.span),
             Ast::Paren(inner) => self.operand(inner, expected),
             Ast::Name(name) => self.name(*name, expected).map(Operand::Typed),
@@ -27,7 +27,8 @@ impl<'s> Checker<'_, 's> {
             }
             Ast::Unary(op, inner) => self.unary(*op, inner, expected, expr.span),
             Ast::Binary(sides, op, op_span) => self.binary(sides, *op, *op_span, expected, expr.span),
-        }
+        }?;
+        Some(operand.read())
     }
 
     /// A BOOL, for IF, WHILE, UNTIL.
@@ -90,7 +91,7 @@ impl<'s> Checker<'_, 's> {
     ) -> Option<Expr> {
         use staunch_ir::Const;
         let at = self.at(span);
-        let ty = variable.resolved.ty;
+        let ty = variable.resolved.ty.read();
         let kind = match (value, self.decl.program.lane(ty), ty) {
             (Const::Scalar(value), _, _) => ExprKind::Const(value),
             (Const::Zero, Some(lane), _) => ExprKind::Const(lane.zero()),

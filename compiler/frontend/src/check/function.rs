@@ -117,7 +117,7 @@ impl<'s> Checker<'_, 's> {
         passed: &mut [Argument],
         outputs: &mut Vec<(staunch_ir::Place, &'a ast::Expr<'s>, bool)>,
     ) -> Option<Argument> {
-        let (ty, range) = (formal.resolved.ty, formal.resolved.range);
+        let ty = formal.resolved.ty;
         match (signature.params[at].mode, formal.section) {
             (Mode::Value(_), _) => {
                 let Given::Value(expr) = given else {
@@ -125,7 +125,7 @@ impl<'s> Checker<'_, 's> {
                     return Some(Argument::Value(self.default_argument(formal, span)));
                 };
                 let mut done = expressions(passed);
-                self.after(&mut done, |this| this.value(expr, ty, range)).map(Argument::Value)
+                self.after(&mut done, |this| this.value(expr, ty)).map(Argument::Value)
             }
             (Mode::Reference, Section::Output) => {
                 let place = self.temporary(formal.name.text, ty);
@@ -482,13 +482,13 @@ impl<'s> Checker<'_, 's> {
             );
             return None;
         }
-        let count = self.after(&mut [&mut value], |this| this.value(values[1], Type::LINT, None))?;
+        let count = self.after(&mut [&mut value], |this| this.value(values[1], Type::LINT))?;
         self.apply(op, ty, vec![value, count], ty, name.span)
     }
 
     /// `SEL(G, IN0, IN1)`: both inputs are evaluated.
     fn select(&mut self, values: &[&ast::Expr<'s>], expected: Option<Type>, name: ast::Name<'s>) -> Option<Expr> {
-        let mut selector = self.value(values[0], Type::BOOL, None)?;
+        let mut selector = self.value(values[0], Type::BOOL)?;
         let mark = self.block.len();
         let (ty, mut inputs) = self.same_type(&values[1..], expected, name)?;
         if self.block.len() > mark {
@@ -641,7 +641,7 @@ impl<'s> Checker<'_, 's> {
             let lane = op.operands().get(at).copied().unwrap_or(None);
             let mut done: Vec<_> = operands.iter_mut().collect();
             let operand = self.after(&mut done, |this| match lane {
-                Some(_) => this.value(value, Type::LINT, None),
+                Some(_) => this.value(value, Type::LINT),
                 None => this.text(value, name).map(|it| this.shallow(it)),
             })?;
             operands.push(operand);
@@ -706,7 +706,12 @@ fn text_depth(expr: &Expr) -> usize {
 fn capacity(expr: &Expr) -> u16 {
     match expr.ty {
         Type::String(capacity) => capacity,
-        Type::Elementary(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => 0,
+        Type::Elementary(_)
+        | Type::Subrange(..)
+        | Type::Enum(_)
+        | Type::Array(_)
+        | Type::Struct(_)
+        | Type::Block(_) => 0,
     }
 }
 

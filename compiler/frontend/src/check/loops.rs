@@ -1,6 +1,7 @@
 //! WHILE, REPEAT and FOR, as the one loop of the IR.
 
 use super::Checker;
+use super::operand::Operand;
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Block, Elementary, Expr, FaultKind, Location, Op, Place, Statement, StatementKind, Type, Value};
 
@@ -128,7 +129,7 @@ impl<'s> Checker<'_, 's> {
             return None;
         };
         let place = found.place;
-        let ty = match place.ty {
+        let ty = match place.ty.read() {
             Type::Elementary(it) if it.is_integer() || self.counts(it, counter.span) => it,
             other => {
                 let name = self.type_name(other);
@@ -145,27 +146,27 @@ impl<'s> Checker<'_, 's> {
         };
         self.note_assigned(&place, counter.span);
         // Each part is checked, whatever is wrong with another.
-        let first = self.value(from, place.ty, found.range);
+        let first = self.value(from, place.ty);
         if let Some(first) = &first {
             self.assign(place.clone(), first.clone(), from.span);
         }
         let last = self.bound(to, ty);
         let step = self.step(by, ty, span);
         let (_, last, step) = (first?, last?, step?);
-        let running = self.running(&place, found.range, counter.span)?;
+        let running = self.running(&place, counter.span)?;
         let (stay, leave) = self.loop_tests(&running.place, ty, &last, &step, span)?;
         Some(Range { place, running, ty, step, stay, leave })
     }
 
     /// A counter of a subrange cannot take the value that ends the loop, so another one runs.
-    fn running(&mut self, place: &Place, range: Option<(i128, i128)>, span: Span) -> Option<Running> {
-        if range.is_none() {
+    fn running(&mut self, place: &Place, span: Span) -> Option<Running> {
+        if place.ty == place.ty.read() {
             return Some(Running { place: place.clone(), enter: None });
         }
         let at = self.at(span);
-        let running = self.temporary("running", place.ty);
-        self.assign(running.clone(), Expr::load(place.clone(), at), span);
-        let enter = self.in_range(Expr::load(running.clone(), at), range, span)?;
+        let running = self.temporary("running", place.ty.read());
+        self.assign(running.clone(), Expr::load(place.clone(), at).read(), span);
+        let enter = self.coerce(Operand::Typed(Expr::load(running.clone(), at)), place.ty, span)?;
         Some(Running { place: running, enter: Some(enter) })
     }
 
@@ -175,7 +176,7 @@ impl<'s> Checker<'_, 's> {
 
     /// A bound is evaluated once, before the loop.
     fn bound(&mut self, expr: &ast::Expr<'s>, ty: Elementary) -> Option<Expr> {
-        let value = self.value(expr, Type::Elementary(ty), None)?;
+        let value = self.value(expr, Type::Elementary(ty))?;
         Some(self.once("last", value, expr.span))
     }
 
@@ -194,9 +195,9 @@ impl<'s> Checker<'_, 's> {
         // A negative constant steps down, also for an unsigned counter.
         let operand = self.operand(by, Some(Type::Elementary(ty)))?;
         let constant = match &operand {
-            super::operand::Operand::Integer(value) => Some(*value),
-            super::operand::Operand::Typed(expr) => expr.as_const().and_then(Value::as_integer),
-            super::operand::Operand::Real { .. } => None,
+            Operand::Integer(value) => Some(*value),
+            Operand::Typed(expr) => expr.as_const().and_then(Value::as_integer),
+            Operand::Real { .. } => None,
         };
         let (_, most) = ty.lane().range()?;
         match constant {

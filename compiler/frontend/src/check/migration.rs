@@ -62,7 +62,12 @@ pub(super) fn only_resets(arguments: &[ast::Argument<'_>]) -> bool {
 fn counts(ty: Type) -> bool {
     match ty {
         Type::Block(block) => block.info().pin("CV").is_some_and(|it| it.direction == Direction::Output),
-        Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) => false,
+        Type::Elementary(_)
+        | Type::Subrange(..)
+        | Type::String(_)
+        | Type::Enum(_)
+        | Type::Array(_)
+        | Type::Struct(_) => false,
     }
 }
 

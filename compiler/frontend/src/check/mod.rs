@@ -178,7 +178,7 @@ pub(crate) fn constant<'s>(
         context: if target.is_some() { Context::Initial } else { Context::Constant },
     };
     let value = match target {
-        Some(target) => checker.value(expr, target.ty, target.range)?,
+        Some(target) => checker.value(expr, target.ty)?,
         None => checker.typed(expr, None)?,
     };
     if !is_constant(&value) {
@@ -256,7 +256,8 @@ impl<'s> Checker<'_, 's> {
 
     /// A local that the source does not name.
     fn temporary(&mut self, name: &str, ty: Type) -> Place {
-        self.temporary_with(name, ty, Const::Zero)
+        let initial = self.decl.least(ty);
+        self.temporary_with(name, ty, initial)
     }
 
     fn temporary_with(&mut self, name: &str, ty: Type, initial: Const) -> Place {

@@ -18,28 +18,38 @@ impl Checker<'_, '_> {
             _ => variable(&sides.b).zip(constant(&sides.a)).map(|(ty, limit)| (ty, turned(sides.op), limit)),
         };
         let Some((ty, op, limit)) = found else { return };
-        let Some((low, high)) = ty.lane().range() else { return };
+        let range = self.decl.program.range(ty).or_else(|| ty.elementary()?.lane().range());
+        let Some((low, high)) = range else { return };
         // Traps of a move between systems have a lint of their own.
         if low == 0 && limit == 0 {
             return;
         }
         let Some(outcome) = outcome(op, (low, high), limit) else { return };
         self.report(
-            Diagnostic::new(Code::W0510, sides.op_span, format!("{} holds {low} to {high}", article(ty.name())))
-                .label(format!("so this is always {}", if outcome { "TRUE" } else { "FALSE" }))
-                .help("compare with a value that the type reaches, or declare the variable of a wider type"),
+            Diagnostic::new(
+                Code::W0510,
+                sides.op_span,
+                format!("{} holds {low} to {high}", article(&self.type_name(ty))),
+            )
+            .label(format!("so this is always {}", if outcome { "TRUE" } else { "FALSE" }))
+            .help("compare with a value that the type reaches, or declare the variable of a wider type"),
         );
     }
 }
 
 /// The type of an integer or bit string whose value is not known.
-fn variable(operand: &Operand) -> Option<Elementary> {
+fn variable(operand: &Operand) -> Option<Type> {
     let expr = operand.typed().filter(|it| it.as_const().is_none())?;
+    let declared = expr.declared();
     match expr.ty {
-        Type::Elementary(it) if it.lane().is_integer() && !it.is_time() && it != Elementary::Bool => Some(it),
-        Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
-            None
-        }
+        Type::Elementary(it) if it.lane().is_integer() && !it.is_time() && it != Elementary::Bool => Some(declared),
+        Type::Elementary(_)
+        | Type::Subrange(..)
+        | Type::String(_)
+        | Type::Enum(_)
+        | Type::Array(_)
+        | Type::Struct(_)
+        | Type::Block(_) => None,
     }
 }
 

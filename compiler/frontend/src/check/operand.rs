@@ -26,6 +26,14 @@ impl Operand {
         }
     }
 
+    /// A subrange's value counts as one of the type that it is made of.
+    pub fn read(self) -> Self {
+        match self {
+            Self::Typed(value) => Self::Typed(value.read()),
+            Self::Integer(_) | Self::Real { .. } => self,
+        }
+    }
+
     pub(super) fn typed(&self) -> Option<&Expr> {
         match self {
             Self::Typed(expr) => Some(expr),

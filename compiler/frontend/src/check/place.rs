@@ -6,7 +6,7 @@ use crate::names::{Key, nearest};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::ExprKind as Ast;
 use staunch_ir::{
-    Address, Area, ArrayId, BlockId, Elementary, Expr, FieldId, Op, Place, Section, StructId, Type, Value,
+    Address, Area, Array, ArrayId, BlockId, Elementary, Expr, FieldId, Op, Place, Section, StructId, Type, Value,
 };
 use staunch_runtime::Direction;
 use std::rc::Rc;
@@ -15,7 +15,6 @@ use std::rc::Rc;
 #[derive(Clone, Debug)]
 pub(super) struct Found<'s> {
     pub place: Place,
-    pub range: Option<(i128, i128)>,
     pub access: Access<'s>,
 }
 
@@ -44,7 +43,7 @@ impl<'s> Checker<'_, 's> {
             Ast::Paren(inner) => self.place(inner),
             Ast::Address(name) => {
                 let place = self.decl.direct_address(*name)?;
-                Some(Found { place, range: None, access: Access::Write })
+                Some(Found { place, access: Access::Write })
             }
             Ast::Member(base, name) => self.member(base, *name),
             Ast::Index(base, indices) => self.index(base, indices),
@@ -174,7 +173,7 @@ impl<'s> Checker<'_, 's> {
             | Section::Global
             | Section::External => Access::Write,
         };
-        Some(Found { place: variable.place.clone(), range: variable.resolved.range, access })
+        Some(Found { place: variable.place.clone(), access })
     }
 
     fn member(&mut self, base: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<Found<'s>> {
@@ -187,7 +186,7 @@ impl<'s> Checker<'_, 's> {
         match found.place.ty {
             Type::Struct(id) => self.struct_member(found, id, name),
             Type::Block(id) => self.pin(found, id, name),
-            Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) => {
+            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Array(_) => {
                 let ty = self.type_name(found.place.ty);
                 self.report(
                     Diagnostic::new(Code::E0107, name.span, format!("{ty} has no members"))
@@ -233,7 +232,7 @@ impl<'s> Checker<'_, 's> {
             self.decl.unknown_member(name, found.place.ty, near.as_deref());
             return None;
         };
-        let (ty, range, section, constant) = (fields[at].ty, fields[at].range, fields[at].section, fields[at].constant);
+        let (ty, section, constant) = (fields[at].ty, fields[at].section, fields[at].constant);
         if instance && !is_pin(section) {
             let owner = self.type_name(found.place.ty);
             self.report(
@@ -253,7 +252,7 @@ impl<'s> Checker<'_, 's> {
             _ if instance => Access::Write,
             _ => found.access,
         };
-        Some(Found { place: found.place.field(FieldId::next(at), ty), range, access })
+        Some(Found { place: found.place.field(FieldId::next(at), ty), access })
     }
 
     /// Where the VAR_IN_OUT `name` of an instance is declared.
@@ -283,7 +282,7 @@ impl<'s> Checker<'_, 's> {
         };
         let access = if pins[at].direction == Direction::Output { Access::Output(name) } else { Access::Write };
         let field = FieldId::next(at);
-        Some(Found { place: found.place.field(field, id.pin_type(field)?), range: None, access })
+        Some(Found { place: found.place.field(field, id.pin_type(field)?), access })
     }
 
     fn index(&mut self, base: &ast::Expr<'s>, indices: &[ast::Expr<'s>]) -> Option<Found<'s>> {
@@ -299,7 +298,12 @@ impl<'s> Checker<'_, 's> {
                     Type::Elementary(it) if it.is_bits() && it != Elementary::Bool => {
                         error.help(format!("a bit is written `{text}.{at}`"))
                     }
-                    Type::Elementary(_) | Type::Enum(_) | Type::Struct(_) | Type::Block(_) | Type::Array(_) => error,
+                    Type::Elementary(_)
+                    | Type::Subrange(..)
+                    | Type::Enum(_)
+                    | Type::Struct(_)
+                    | Type::Block(_)
+                    | Type::Array(_) => error,
                 });
                 return None;
             };
@@ -308,8 +312,7 @@ impl<'s> Checker<'_, 's> {
             let index_value = self.after_place(&mut place, |this| this.index_value(index, id))?;
             let at = self.at(index.span);
             let element = self.decl.program.array(id).element;
-            let range = self.decl.elements[id.index()].range;
-            found = Found { place: place.index(index_value, element, at), range, access };
+            found = Found { place: place.index(index_value, element, at), access };
         }
         Some(found)
     }
@@ -338,7 +341,22 @@ impl<'s> Checker<'_, 's> {
             );
             return None;
         }
+        self.index_of_subrange(&value, array, index.span);
         self.as_lint(value, index.span)
+    }
+
+    /// Reports an index whose subrange holds values that the array has not.
+    fn index_of_subrange(&mut self, index: &Expr, array: Array, span: Span) {
+        let Some((low, high)) = self.decl.program.range(index.declared()) else { return };
+        if i128::from(array.low) <= low && high <= i128::from(array.high) {
+            return;
+        }
+        let ty = self.type_name(index.declared());
+        self.report(
+            Diagnostic::new(Code::W0515, span, format!("the index is {}", crate::diagnostic::wording::article(&ty)))
+                .label(format!("the array goes from {} to {}: beyond it is a fault", array.low, array.high))
+                .help("give the subrange and the array the same limits"),
+        );
     }
 
     /// Any integer as LINT; a ULINT beyond LINT becomes the largest LINT, which no array holds.

@@ -55,11 +55,8 @@ impl<'s> Checker<'_, 's> {
             return None;
         };
         let found = self.variable_argument(expr, "RCV")?;
-        if found.place.ty != Type::INT || found.range.is_some() {
-            let ty = match found.range {
-                Some((low, high)) => format!("{}({low}..{high})", self.type_name(found.place.ty)),
-                None => self.type_name(found.place.ty),
-            };
+        if found.place.ty != Type::INT {
+            let ty = self.type_name(found.place.ty);
             self.report(
                 Diagnostic::new(Code::E0201, expr.span, format!("`RCV` is an INT, found {ty}"))
                     .label("expected an INT variable"),

@@ -1,5 +1,6 @@
 use super::Checker;
 use super::called::Instance;
+use super::operand::Operand;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, StatementKind as Ast_};
 use staunch_ir::{Block, Conversion, Elementary, Expr, Op, Place, StatementKind, Type, Value};
@@ -107,7 +108,7 @@ impl<'s> Checker<'_, 's> {
         let instance = match found.place.ty {
             Type::Block(_) => true,
             Type::Struct(id) => self.decl.is_instance(id),
-            Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) => false,
+            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Array(_) => false,
         };
         let error = Diagnostic::new(Code::E0508, expr.span, "this statement has no effect");
         self.report(if instance {
@@ -134,8 +135,8 @@ impl<'s> Checker<'_, 's> {
         }
         let writable = self.writable(&found, target.span);
         let mut place = found.place;
-        let (ty, range) = (place.ty, found.range);
-        let value = self.after_place(&mut place, |this| this.value(value, ty, range))?;
+        let ty = place.ty;
+        let value = self.after_place(&mut place, |this| this.value(value, ty))?;
         if writable {
             self.note_assigned(&place, target.span);
             self.assign(place, value, span);
@@ -148,7 +149,7 @@ impl<'s> Checker<'_, 's> {
         let instance = match place.ty {
             Type::Struct(id) => self.decl.is_instance(id),
             Type::Block(id) => id.info().instructions.iter().any(|it| it.name.is_empty()),
-            Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) => false,
+            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Array(_) => false,
         };
         if !instance {
             return None;
@@ -176,10 +177,10 @@ impl<'s> Checker<'_, 's> {
             return None;
         };
         let mut place = found.place;
-        let ty = place.ty;
+        let ty = place.ty.read();
         let selected = self.find_part(ty, part)?;
         let of = Type::Elementary(selected.ty);
-        let value = self.after_place(&mut place, |this| this.value(value, of, None))?;
+        let value = self.after_place(&mut place, |this| this.value(value, of))?;
         let Type::Elementary(whole) = ty else { return None };
         let at = self.at(span);
         let width = if selected.ty == Elementary::Bool { 1 } else { selected.ty.lane().size() * 8 };
@@ -195,7 +196,7 @@ impl<'s> Checker<'_, 's> {
         // A signed part's sign bits do not spill over its neighbours.
         let shifted = self.apply(Op::And, ty, vec![shifted, mask], ty, span)?;
         let merged = self.apply(Op::Or, ty, vec![cleared, shifted], ty, span)?;
-        let merged = self.in_range(merged, found.range, span)?;
+        let merged = self.coerce(Operand::Typed(merged), place.ty, span)?;
         self.note_assigned(&place, base.span);
         self.assign(place, merged, span);
         Some(())

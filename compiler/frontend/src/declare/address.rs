@@ -265,7 +265,6 @@ impl<'s> Declarations<'s> {
             retain: staunch_ir::Retain::Inherited,
             constant: false,
             address: Some(address),
-            range: resolved.range,
             doc: None,
             location,
         };

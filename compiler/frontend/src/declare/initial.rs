@@ -216,7 +216,7 @@ impl<'s> Declarations<'s> {
                 continue;
             }
             let field = &fields[at];
-            let resolved = Resolved { ty: field.ty, range: field.range, initial: field.initial.clone() };
+            let resolved = Resolved { ty: field.ty, initial: field.initial.clone() };
             values[at] = self.initial(initial, &resolved, scope)?;
         }
         Some(collapse(values))
@@ -276,7 +276,7 @@ impl<'s> Declarations<'s> {
                 self.program.structure(id).fields.iter().filter(pin).map(|it| it.name.as_str()).collect()
             }
             Type::Enum(id) => self.program.enumeration(id).values.iter().map(|it| it.name.as_str()).collect(),
-            Type::Elementary(_) | Type::String(_) | Type::Array(_) | Type::Block(_) => Vec::new(),
+            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Array(_) | Type::Block(_) => Vec::new(),
         };
         (1..=12).contains(&names.len()).then(|| crate::diagnostic::wording::list(&names).replace(" or ", " and "))
     }

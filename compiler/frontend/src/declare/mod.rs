@@ -523,6 +523,7 @@ fn empty_program(files: Vec<SourceFile>) -> Program {
     Program {
         files,
         enums: Vec::new(),
+        bounds: Vec::new(),
         arrays: Vec::new(),
         structs: Vec::new(),
         globals: StructId(0),

@@ -271,7 +271,7 @@ impl<'s> Declarations<'s> {
             Type::Block(id) => Some(id),
             Type::Array(id) => self.remembers(self.program.array(id).element),
             Type::Struct(id) => self.program.structure(id).fields.iter().find_map(|it| self.remembers(it.ty)),
-            Type::Elementary(_) | Type::String(_) | Type::Enum(_) => None,
+            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => None,
         }
     }
 
@@ -449,7 +449,6 @@ impl<'s> Declarations<'s> {
             retain: staunch_ir::Retain::Inherited,
             constant: false,
             address: None,
-            range: None,
             doc: Some(format!("Edge memory of `{}`", name.text)),
             location: self.location(name.span),
         });

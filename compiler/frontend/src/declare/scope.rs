@@ -127,7 +127,10 @@ impl<'s> Declarations<'s> {
                 let mut fields = self.program.structure(id).fields.iter();
                 fields.find_map(|it| self.lost_counter(format!("{path}.{}", it.name), it.ty))
             }
-            staunch_ir::Type::Elementary(_) | staunch_ir::Type::String(_) | staunch_ir::Type::Enum(_) => None,
+            staunch_ir::Type::Elementary(_)
+            | staunch_ir::Type::Subrange(..)
+            | staunch_ir::Type::String(_)
+            | staunch_ir::Type::Enum(_) => None,
         }
     }
 
@@ -167,6 +170,7 @@ impl<'s> Declarations<'s> {
             staunch_ir::Type::Block(id) => id.info().retention == staunch_runtime::Retention::Always,
             staunch_ir::Type::Array(id) => self.is_retentive(self.program.array(id).element),
             staunch_ir::Type::Elementary(_)
+            | staunch_ir::Type::Subrange(..)
             | staunch_ir::Type::String(_)
             | staunch_ir::Type::Enum(_)
             | staunch_ir::Type::Struct(_) => false,
@@ -189,7 +193,6 @@ impl<'s> Declarations<'s> {
             retain: self.retention(block, resolved.ty),
             constant: block.constant.is_some(),
             address,
-            range: resolved.range,
             doc: decl.doc.clone(),
             location: self.location(name.span),
         }

@@ -7,22 +7,22 @@ use crate::diagnostic::wording::list;
 use crate::dialect::{self, Dialect};
 use crate::names::{Key, nearest};
 use crate::{Code, Diagnostic, Span};
-use staunch_ir::{Array, ArrayId, Const, Elementary, Enum, EnumId, Enumerator, Struct, StructId, Type, Value};
+use staunch_ir::{
+    Array, ArrayId, BoundsId, Const, Elementary, Enum, EnumId, Enumerator, Struct, StructId, Type, Value,
+};
 use std::rc::Rc;
 
 /// What a type specification means for a variable declared with it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Resolved {
     pub ty: Type,
-    /// The bounds of a subrange.
-    pub range: Option<(i128, i128)>,
     /// The initial value of a variable that is declared without one.
     pub initial: Const,
 }
 
 impl Resolved {
     pub fn plain(ty: Type) -> Self {
-        Self { ty, range: None, initial: Const::Zero }
+        Self { ty, initial: Const::Zero }
     }
 }
 
@@ -239,11 +239,7 @@ impl<'s> Declarations<'s> {
         }
         let signature = self.signature(at)?;
         let state = signature.state?;
-        Some(Resolved {
-            ty: Type::Struct(state),
-            range: None,
-            initial: struct_initial(&self.program.structure(state).fields),
-        })
+        Some(Resolved { ty: Type::Struct(state), initial: struct_initial(&self.program.structure(state).fields) })
     }
 
     fn report_unknown_type(&mut self, name: ast::Name<'s>) {
@@ -297,9 +293,9 @@ impl<'s> Declarations<'s> {
         scope: &Rc<Scope<'s>>,
     ) -> Option<Resolved> {
         let resolved = self.resolve_name(base)?;
-        let lane = match resolved.ty {
-            Type::Elementary(it) if it.is_integer() => it.lane(),
-            _ => {
+        let made_of = match resolved.ty.elementary().filter(|it| it.is_integer()) {
+            Some(it) => it,
+            None => {
                 self.report(
                     Diagnostic::new(Code::E0407, base.span, "a subrange is made of an integer type")
                         .label(format!("this is {}", self.program.type_name(resolved.ty))),
@@ -308,7 +304,7 @@ impl<'s> Declarations<'s> {
             }
         };
         let bounds = (self.constant_integer(low, scope)?, self.constant_integer(high, scope)?);
-        let whole = resolved.range.or(lane.range())?;
+        let whole = self.program.range(resolved.ty).or(made_of.lane().range())?;
         if bounds.0 > bounds.1 || bounds.0 < whole.0 || bounds.1 > whole.1 {
             self.report(
                 Diagnostic::new(
@@ -323,9 +319,23 @@ impl<'s> Declarations<'s> {
             );
             return None;
         }
-        let zero_fits = (bounds.0..=bounds.1).contains(&0);
-        let initial = if zero_fits { Const::Zero } else { Const::Scalar(lane.integer(bounds.0)?) };
-        Some(Resolved { ty: resolved.ty, range: Some(bounds), initial })
+        let ty = Type::Subrange(made_of, self.intern_bounds(bounds));
+        let initial = self.least(ty);
+        Some(Resolved { ty, initial })
+    }
+
+    /// What a variable starts at that nobody gives a value: a subrange at its lower limit.
+    pub fn least(&self, ty: Type) -> Const {
+        let low = self.program.range(ty).map_or(0, |(low, _)| low);
+        ty.elementary().and_then(|it| it.lane().integer(low)).map_or(Const::Zero, scalar_initial)
+    }
+
+    fn intern_bounds(&mut self, bounds: (i128, i128)) -> BoundsId {
+        let known = self.program.bounds.iter().position(|it| *it == bounds);
+        BoundsId::next(known.unwrap_or_else(|| {
+            self.program.bounds.push(bounds);
+            self.program.bounds.len() - 1
+        }))
     }
 
     fn array_type(
@@ -386,7 +396,7 @@ impl<'s> Declarations<'s> {
             Const::Zero => Const::Zero,
             other => Const::Array(vec![(count, other.clone())]),
         };
-        Some(Resolved { ty: self.intern_array(low, high, element), range: None, initial })
+        Some(Resolved { ty: self.intern_array(low, high, element), initial })
     }
 
     fn dimensions(&self, mut ty: Type) -> usize {
@@ -450,7 +460,7 @@ impl<'s> Declarations<'s> {
         let initial = struct_initial(&fields);
         let location = self.location(span);
         let id = self.push_struct(Struct { name: name.to_owned(), doc, location, fields });
-        complete.then_some(Resolved { ty: Type::Struct(id), range: None, initial })
+        complete.then_some(Resolved { ty: Type::Struct(id), initial })
     }
 
     pub fn push_struct(&mut self, structure: Struct) -> StructId {
@@ -464,7 +474,7 @@ impl<'s> Declarations<'s> {
     /// About how many bytes a value of the type takes: alignment may add some.
     pub fn size_of(&self, ty: Type) -> u64 {
         match ty {
-            Type::Elementary(it) => u64::from(it.lane().size()),
+            Type::Elementary(it) | Type::Subrange(it, _) => u64::from(it.lane().size()),
             Type::String(capacity) => u64::from(capacity) + 2,
             Type::Enum(id) => u64::from(self.program.enumeration(id).base.lane().size()),
             Type::Struct(id) => self.sizes[id.index()],
@@ -527,7 +537,7 @@ impl<'s> Declarations<'s> {
         }
         let location = self.location(span);
         self.program.enums.push(Enum { name: name.to_owned(), doc, location, base, values: enumerators });
-        Some(Resolved { ty: Type::Enum(id), range: None, initial: scalar_initial(first) })
+        Some(Resolved { ty: Type::Enum(id), initial: scalar_initial(first) })
     }
 }
 
@@ -569,5 +579,5 @@ fn block_type(block: staunch_ir::BlockId) -> Resolved {
     } else {
         Const::Zero
     };
-    Resolved { ty: Type::Block(block), range: None, initial }
+    Resolved { ty: Type::Block(block), initial }
 }

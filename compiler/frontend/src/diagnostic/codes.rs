@@ -539,6 +539,13 @@ dialect refuses it, as CODESYS does.
 "CODESYS makes a REAL of a DINT without being asked, and an LREAL of a LINT. Above 16777216, or 9007199254740992, not
 every integer is a real, and the nearest one is taken. Write the conversion to say that this is meant.
 ";
+    W0515 Warning "a subrange wider than the array that it indexes"
+"The index is a variable of a subrange, which is checked when it is assigned. But the subrange holds values that the
+array has no element for, so the index can still fault.
+
+    VAR i : INT(0..5); levels : ARRAY[0..3] OF INT; END_VAR      (* before *)
+    VAR i : INT(0..3); levels : ARRAY[0..3] OF INT; END_VAR      (* after *)
+";
     W0602 Warning "a count is compared beyond its preset"
 "A CSCAPE counter stops at its preset, so its count is not above it. Elsewhere counting goes on, and programs
 that were written there wait for the count to pass PV. (Only after PV was lowered can CV lie above it.)

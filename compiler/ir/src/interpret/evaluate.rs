@@ -76,7 +76,7 @@ fn text_operation(storage: &impl Storage, op: TextOp, operands: &[Expr], capacit
         .iter()
         .map(|operand| match operand.ty {
             Type::String(_) => text(storage, operand).map(TextValue::Text),
-            Type::Elementary(_) | Type::Enum(_) => scalar(storage, operand).map(TextValue::Scalar),
+            Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) => scalar(storage, operand).map(TextValue::Scalar),
             Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
                 unreachable!("verified IR: operands of a text operation")
             }
@@ -100,7 +100,12 @@ fn elementary_lane(ty: Type) -> Lane {
 fn capacity(ty: Type) -> u16 {
     match ty {
         Type::String(capacity) => capacity,
-        Type::Elementary(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
+        Type::Elementary(_)
+        | Type::Subrange(..)
+        | Type::Enum(_)
+        | Type::Array(_)
+        | Type::Struct(_)
+        | Type::Block(_) => {
             unreachable!("verified IR: an expression of a string type")
         }
     }

@@ -115,7 +115,7 @@ impl<'p> Interpreter<'p> {
     /// Writes the value of an expression to an offset in memory.
     fn store(&mut self, frame: &Frame, value: &Expr, offset: usize) -> Result<(), Fault> {
         match value.ty {
-            Type::Elementary(_) | Type::Enum(_) => {
+            Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) => {
                 let value = scalar(&self.scope(frame), value)?;
                 value.write(&mut self.memory[offset..]);
             }
@@ -242,7 +242,12 @@ impl<'p> Interpreter<'p> {
 fn block_id(place: &Place) -> BlockId {
     match place.ty {
         Type::Block(id) => id,
-        Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) => {
+        Type::Elementary(_)
+        | Type::Subrange(..)
+        | Type::String(_)
+        | Type::Enum(_)
+        | Type::Array(_)
+        | Type::Struct(_) => {
             unreachable!("verified IR: an instance of a standard block")
         }
     }

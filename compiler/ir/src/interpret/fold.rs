@@ -11,7 +11,7 @@ pub fn fold(expr: &Expr) -> Option<Result<Const, Fault>> {
 
 fn constant(expr: &Expr) -> Result<Const, Fault> {
     match expr.ty {
-        Type::Elementary(_) | Type::Enum(_) => scalar(&NoStorage, expr).map(Const::Scalar),
+        Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) => scalar(&NoStorage, expr).map(Const::Scalar),
         Type::String(_) => text(&NoStorage, expr).map(Const::Text),
         Type::Array(_) | Type::Struct(_) | Type::Block(_) => Ok(aggregate(expr)),
     }

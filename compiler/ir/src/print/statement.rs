@@ -111,7 +111,12 @@ impl Printer<'_> {
                 "" => id.info().name,
                 name => name,
             },
-            Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) => "?",
+            Type::Elementary(_)
+            | Type::Subrange(..)
+            | Type::String(_)
+            | Type::Enum(_)
+            | Type::Array(_)
+            | Type::Struct(_) => "?",
         };
         format!("{name} {}({})", self.place(pou, block), self.exprs(pou, inputs))
     }

@@ -16,7 +16,8 @@ fn every_record_of_a_program() {
     let fields = &mut program.structs[1].fields;
     fields[0].address = Some(Address { area: Area::Input, bit: 64, width: 16 });
     fields[0].retain = crate::Retain::Kept;
-    fields[0].range = Some((-3, 7));
+    fields[0].ty = Type::Subrange(Elementary::Int, crate::BoundsId(0));
+    program.pous[2].variables[0].place.ty = Type::Subrange(Elementary::Int, crate::BoundsId(0));
     program.structs[2].fields[0].section = Section::Global;
     let block = crate::fixture::ctu().0;
     let expected = format!(

@@ -22,7 +22,7 @@ impl Verifier<'_> {
             }
             ExprKind::Load(place) => {
                 self.place(body, place, expr.at);
-                self.require(place.ty == expr.ty, expr.at, "a read of another type");
+                self.require(place.ty == expr.ty || place.ty.read() == expr.ty, expr.at, "a read of another type");
             }
             ExprKind::Apply(op, operands) => {
                 operands.iter().for_each(|operand| self.expr(body, operand));
@@ -47,8 +47,8 @@ impl Verifier<'_> {
     }
 
     fn const_expr(&mut self, expr: &Expr, value: Value) {
-        let lane = self.lane(expr.ty);
-        self.require(lane == Some(value.lane()), expr.at, "a constant in the wrong lane");
+        let fits = self.scalar_fits(expr.ty, value);
+        self.require(fits, expr.at, "a constant that is not of its type");
     }
 
     /// The lane of an elementary or enumeration type that exists.
@@ -73,8 +73,15 @@ impl Verifier<'_> {
         };
         self.require(op.allows(lane), at, format_args!("{name} does not exist at {lane:?}"));
         let expected = op.result().unwrap_or(lane);
-        let holds = Self::elementary_lane(result) == Some(expected);
+        let holds = Self::elementary_lane(result) == Some(expected) && self.is_checked(op, operands, result);
         self.require(holds, at, format_args!("{name}: a result of {result:?}"));
+    }
+
+    /// Only the check of its own limits makes a value of a subrange.
+    fn is_checked(&self, op: Op, operands: &[Expr], result: Type) -> bool {
+        let Some((low, high)) = self.program.range(result) else { return true };
+        let limit = |at: usize| operands.get(at).and_then(Expr::as_const).and_then(Value::as_integer);
+        op == Op::InRange && limit(0) == Some(low) && limit(2) == Some(high)
     }
 
     /// The lane of operands that share one. Enumerations have a lane only in a comparison of
@@ -111,6 +118,7 @@ impl Verifier<'_> {
             }
             (Conversion::Same, _, _) => self.lane(from).is_some() && self.lane(from) == self.lane(to),
         };
+        let holds = holds && self.program.range(to).is_none();
         self.require(holds, at, format_args!("no conversion {how:?} from {from:?} to {to:?}"));
     }
 }

@@ -166,7 +166,12 @@ impl<'p> Verifier<'p> {
     fn block_info(&mut self, place: &Place, at: Location) -> Option<&'static BlockInfo> {
         match place.ty {
             Type::Block(id) => Some(id.info()),
-            Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) => {
+            Type::Elementary(_)
+            | Type::Subrange(..)
+            | Type::String(_)
+            | Type::Enum(_)
+            | Type::Array(_)
+            | Type::Struct(_) => {
                 self.report(at, "not a standard block");
                 None
             }

@@ -1,6 +1,6 @@
 //! Each invariant is broken once.
 
-use super::verify;
+use super::{Violation, verify};
 use crate::fixture::*;
 use crate::*;
 
@@ -30,6 +30,8 @@ fn bad_expr(expected: &str, expr: Expr) {
 fn good(statement: Statement) {
     verify(&sample(vec![statement])).unwrap();
 }
+
+const SUBRANGE: Type = Type::Subrange(Elementary::Int, BoundsId(0));
 
 fn elementary(it: Elementary) -> Type {
     Type::Elementary(it)
@@ -66,8 +68,12 @@ fn arrays_and_structures() {
         program.structs[0].fields[0].ty = Type::Array(ArrayId(0));
     });
     broken("no such structure", |program| program.globals = StructId(9));
-    broken("subrange", |program| program.structs[0].fields[0].range = Some((0, 40_000)));
-    broken("subrange", |program| program.structs[1].fields[4].range = Some((0, 1)));
+    broken("subrange", |program| {
+        program.bounds[0].1 = 40_000;
+        program.structs[0].fields[0].ty = SUBRANGE;
+    });
+    broken("subrange", |program| program.structs[0].fields[0].ty = Type::Subrange(Elementary::Real, BoundsId(0)));
+    broken("subrange", |program| program.structs[0].fields[0].ty = Type::Subrange(Elementary::Int, BoundsId(7)));
 }
 
 #[test]
@@ -190,8 +196,8 @@ fn constants_are_not_written() {
 
 #[test]
 fn constant_expressions() {
-    bad_expr("wrong lane", Expr::new(Type::INT, ExprKind::Const(Value::I32(1)), AT));
-    bad_expr("wrong lane", Expr::new(Type::Enum(EnumId(7)), ExprKind::Const(Value::I16(1)), AT));
+    bad_expr("not of its type", Expr::new(Type::INT, ExprKind::Const(Value::I32(1)), AT));
+    bad_expr("not of its type", Expr::new(Type::Enum(EnumId(7)), ExprKind::Const(Value::I16(1)), AT));
     bad("longer than its type", assign(name(), string(b"123456789", 8)));
     bad_expr("longer than its type", Expr::new(Type::INT, ExprKind::Text(Vec::new()), AT));
     bad_expr("aggregate of a simple", Expr::new(Type::INT, ExprKind::Aggregate(Const::Zero), AT));
@@ -214,6 +220,36 @@ fn operations() {
     good(assign(flag(), apply(Op::Lt, Type::BOOL, vec![green(), load(color_place())])));
     bad_expr("expected Elementary(Int)", lint(1));
     bad_expr("file that does not exist", Expr { at: Location { file: 1, ..AT }, ..int(1) });
+}
+
+/// A write to a local of `-3..7`.
+#[track_caller]
+fn written_to_subrange(value: Expr) -> Result<(), Vec<Violation>> {
+    let mut program = sample(Vec::new());
+    let id = LocalId::next(program.pous[2].locals.len());
+    program.pous[2].locals.push(local("small", SUBRANGE, Const::Zero));
+    program.pous[2].body.push(assign(Place::local(id, SUBRANGE), value));
+    verify(&program)
+}
+
+#[test]
+fn subranges() {
+    let checked = |low, high| apply(Op::InRange, SUBRANGE, vec![int(low), load(count()), int(high)]);
+    let constant = |value| Expr::new(SUBRANGE, ExprKind::Const(Value::I16(value)), AT);
+    for value in [checked(-3, 7), constant(7), constant(-3)] {
+        written_to_subrange(value).unwrap();
+    }
+    for value in [load(count()), int(0), checked(-3, 8), checked(-4, 7), constant(8), constant(-4)] {
+        written_to_subrange(value).unwrap_err();
+    }
+    let sum = apply(Op::Add, SUBRANGE, vec![int(1), load(count())]);
+    let same = Expr::convert(Conversion::Same, SUBRANGE, load(count()), AT);
+    for value in [sum, same] {
+        written_to_subrange(value).unwrap_err();
+    }
+    broken("a constant that is not of type INT(1..9)", |program| {
+        program.pous[2].locals.push(local("small", Type::Subrange(Elementary::Int, BoundsId(1)), Const::Zero));
+    });
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::Verifier;
 use crate::layout::Layout;
-use crate::{Array, Const, Field, FieldId, Lane, Location, Struct, Type, Value};
+use crate::{Array, BoundsId, Const, Elementary, FieldId, Lane, Location, Struct, Type, Value};
 
 /// What may be part of a type that is being declared: ids below these.
 #[derive(Clone, Copy)]
@@ -57,22 +57,22 @@ impl Verifier<'_> {
         for field in &structure.fields {
             self.location(field.location);
             self.part(field.ty, known, field.location);
-            self.range(field);
         }
     }
 
-    fn range(&mut self, field: &Field) {
-        let Some((low, high)) = field.range else { return };
-        let integer = field.ty.elementary().filter(|it| it.lane().is_integer());
-        let holds = integer.and_then(|it| it.lane().range());
-        let inside = holds.is_some_and(|(min, max)| min <= low && low <= high && high <= max);
-        self.require(inside, field.location, format_args!("the subrange of {} does not fit", field.name));
+    fn subrange(&mut self, base: Elementary, id: BoundsId, at: Location) {
+        let bounds = self.program.bounds.get(id.index());
+        let holds = base.lane().range().filter(|_| base.is_integer());
+        let inside =
+            bounds.zip(holds).is_some_and(|((low, high), (min, max))| min <= *low && low <= high && *high <= max);
+        self.require(inside, at, "a subrange that does not fit what it is made of");
     }
 
     /// A type that is part of another: declared before it, also where an array is in between.
     fn part(&mut self, ty: Type, known: Known, at: Location) {
         let declared = match ty {
             Type::Elementary(_) | Type::String(_) => true,
+            Type::Subrange(base, id) => return self.subrange(base, id, at),
             Type::Enum(id) => id.index() < self.program.enums.len(),
             Type::Block(id) => id.index() < staunch_runtime::BLOCKS.len(),
             Type::Struct(id) => id.index() < known.structs,
@@ -104,7 +104,7 @@ impl Verifier<'_> {
     /// `value` has the shape of `ty`.
     pub(super) fn constant(&mut self, ty: Type, value: &Const, at: Location) {
         let fits = match value {
-            Const::Zero => true,
+            Const::Zero => self.program.range(ty).is_none_or(|(low, high)| (low..=high).contains(&0)),
             Const::Scalar(value) => self.scalar_fits(ty, *value),
             Const::Text(bytes) => {
                 matches!(ty, Type::String(capacity) if bytes.len() <= capacity.into())
@@ -118,8 +118,10 @@ impl Verifier<'_> {
         }
     }
 
-    fn scalar_fits(&self, ty: Type, value: Value) -> bool {
-        self.program.lane(ty) == Some(value.lane())
+    /// A value in the type's lane, and within the limits of a subrange.
+    pub(super) fn scalar_fits(&self, ty: Type, value: Value) -> bool {
+        let inside = |(low, high): (i128, i128)| value.as_integer().is_some_and(|it| (low..=high).contains(&it));
+        self.lane(ty) == Some(value.lane()) && self.program.range(ty).is_none_or(inside)
     }
 
     fn array_constant(&mut self, ty: Type, runs: &[(u64, Const)], at: Location) {
@@ -138,7 +140,7 @@ impl Verifier<'_> {
         let expected = match ty {
             Type::Struct(id) => self.program.structure(id).fields.len(),
             Type::Block(id) => id.info().pins.len(),
-            Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) => {
+            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Array(_) => {
                 return self.report(at, "a structure constant of another type");
             }
         };
@@ -158,6 +160,6 @@ impl Verifier<'_> {
 
     /// The lane of an elementary type; any other type is none.
     pub(super) fn elementary_lane(ty: Type) -> Option<Lane> {
-        ty.elementary().map(crate::Elementary::lane)
+        ty.elementary().map(Elementary::lane)
     }
 }

@@ -25,7 +25,6 @@ pub fn field(name: &str, ty: Type, initial: Const) -> Field {
         retain: Retain::Inherited,
         constant: false,
         address: None,
-        range: None,
         doc: None,
         location: AT,
     }
@@ -75,6 +74,7 @@ pub fn program(arrays: Vec<Array>, mut structs: Vec<Struct>, pous: Vec<Pou>) -> 
     Program {
         files: vec![SourceFile { path: "main.st".to_owned() }],
         enums: Vec::new(),
+        bounds: Vec::new(),
         arrays,
         globals: StructId::next(structs.len() - 1),
         instances: instances.collect(),

@@ -118,7 +118,9 @@ fn mark(program: &Program, layout: &Layout, ty: Type, offset: u64, mask: &mut [u
                 mark(program, layout, ty, offset + layout.offset(Type::Block(id), pin), mask);
             }
         }
-        Type::Elementary(_) | Type::Enum(_) => mask[usize_of(offset)..][..usize_of(layout.size(ty))].fill(1),
+        Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) => {
+            mask[usize_of(offset)..][..usize_of(layout.size(ty))].fill(1)
+        }
         // Bytes behind a string's end mean nothing.
         Type::String(capacity) => {
             let at = usize_of(offset);

@@ -82,7 +82,7 @@ fn inside(declarations: &Declarations<'_>, place: Place, retain: Retain, found: 
             let element = declarations.program.array(id).element;
             inside(declarations, place.index(every(), element, Location::default()), retain, found);
         }
-        Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Block(_) => {}
+        Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Block(_) => {}
     }
 }
 
