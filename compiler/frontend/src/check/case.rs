@@ -1,9 +1,22 @@
+//! CASE: its selector, and labels that are constants and cover each value once.
+
+use std::collections::BTreeMap;
+
 use super::Checker;
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Arm, StatementKind, Type, Value};
 
-/// A label that has been seen, for the report of a second one.
-type Seen = Vec<((i128, i128), Span)>;
+/// The labels so far, by their lowest value, with their highest: none of them overlap.
+#[derive(Default)]
+struct Seen(BTreeMap<i128, (i128, Span)>);
+
+impl Seen {
+    /// The label with the lowest values that shares one with `low..=high`.
+    fn overlapping(&self, low: i128, high: i128) -> Option<Span> {
+        let below = self.0.range(..=low).next_back().filter(|(_, (to, _))| low <= *to);
+        below.or_else(|| self.0.range(low..=high).next()).map(|(_, (_, span))| *span)
+    }
+}
 
 impl<'s> Checker<'_, 's> {
     pub(super) fn case(
@@ -34,7 +47,7 @@ impl<'s> Checker<'_, 's> {
             allowed.then_some(value)
         });
         let ty = value.as_ref().map(|it| it.ty);
-        let mut seen = Seen::new();
+        let mut seen = Seen::default();
         let mut built = Vec::new();
         let mut called = Vec::new();
         for arm in arms {
@@ -70,8 +83,7 @@ impl<'s> Checker<'_, 's> {
             );
             return None;
         }
-        if let Some((_, first)) = seen.iter().find(|((from, to), _)| low <= *to && *from <= high) {
-            let first = *first;
+        if let Some(first) = seen.overlapping(low, high) {
             self.report(
                 Diagnostic::new(Code::E0506, span, "this CASE label stands twice")
                     .label("never chosen: the first one is")
@@ -79,7 +91,7 @@ impl<'s> Checker<'_, 's> {
             );
             return None;
         }
-        seen.push(((low, high), span));
+        seen.0.insert(low, (high, span));
         Some((low, high))
     }
 

@@ -149,11 +149,17 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn declared_but_refused(&self, name: ast::Name<'s>) -> bool {
-        self.signature.is_none()
-            && self.decl.pous.iter().any(|pou| {
-                let mut names = pou.ast.blocks.iter().flat_map(|it| &it.vars).flat_map(|it| &it.names);
-                names.any(|it| it.span == name.span)
+        // POUs, and the variables of a block, are in the order of the source.
+        let place = |span: Span| (span.file, span.start);
+        let after = self.decl.pous.partition_point(|it| place(it.ast.span) <= place(name.span));
+        let pou = after.checked_sub(1).filter(|_| self.signature.is_none()).map(|at| &self.decl.pous[at]);
+        pou.is_some_and(|pou| {
+            pou.ast.blocks.iter().any(|block| {
+                let after = block.vars.partition_point(|it| place(it.span) <= place(name.span));
+                let variable = after.checked_sub(1).map(|at| &block.vars[at]);
+                variable.is_some_and(|it| it.names.iter().any(|it| it.span == name.span))
             })
+        })
     }
 
     fn variable_place(&mut self, name: ast::Name<'s>) -> Option<Found<'s>> {

@@ -141,9 +141,9 @@ fn note_columns(input: &mut In<'_, '_, '_>, opened: Span, closed: Span) {
     }
 }
 
-/// How far in a token stands that is the first on its line.
+/// How far in a token is that is the first on its line.
 fn column(text: &str, span: Span) -> Option<usize> {
     let before = text.get(..index(span.start))?;
-    let line = &before[before.rfind('\n').map_or(0, |at| at + 1)..];
-    line.trim().is_empty().then_some(line.len())
+    let line = before.trim_end_matches([' ', '\t']);
+    (line.is_empty() || line.ends_with('\n')).then_some(before.len() - line.len())
 }
