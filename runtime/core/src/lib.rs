@@ -15,6 +15,7 @@ mod lane;
 mod op_table;
 pub mod ops;
 
+pub mod literal;
 pub mod text;
 pub mod time;
 

@@ -4,8 +4,8 @@ use crate::bench::BenchOptions;
 use crate::literal;
 use crate::path::nearest;
 use crate::run::Options;
-use crate::value::parse_duration_text;
 use staunch_runtime::Time;
+use staunch_runtime::literal::duration;
 use std::ffi::OsString;
 
 /// What the user of an executable wants.
@@ -83,7 +83,7 @@ fn count(text: &str) -> Result<u64, String> {
 pub fn parse_duration(text: &str) -> Result<Time, String> {
     let time = match text.contains('#') {
         true => literal::time(text).ok(),
-        false => parse_duration_text(text),
+        false => duration(text).ok(),
     };
     time.filter(|it| *it > 0).ok_or_else(|| format!("`{text}` is not a time above zero: write `10ms`"))
 }

@@ -2,7 +2,7 @@
 
 use crate::map::{Enum, Map, Type};
 use crate::path::{Place, nearest, same};
-use crate::value::parse_duration_text;
+use staunch_runtime::literal::{self, LiteralErrorKind, check_real, duration};
 use staunch_runtime::{Elementary, Lane, Value};
 
 /// The bytes that `text` stands for in a variable; the error is a sentence without a full stop.
@@ -65,17 +65,24 @@ pub(crate) fn time(text: &str) -> Result<i64, String> {
     let Some((prefix, rest)) = text.split_once('#') else {
         return Err(format!("`{text}` is not a TIME: write `T#500ms`"));
     };
-    let known = ["T", "TIME", "LT", "LTIME"].iter().any(|it| same(it, prefix));
-    let value = if known { parse_duration_text(rest) } else { None };
-    value.ok_or_else(|| format!("`{text}` is not a TIME that fits: write `T#1s500ms`"))
+    if !["T", "TIME", "LT", "LTIME"].iter().any(|it| same(it, prefix)) {
+        return Err(format!("`{text}` is not a TIME: write `T#500ms`"));
+    }
+    duration(rest).map_err(|error| format!("`{text}` is not a TIME: {}", error.kind.text()))
 }
 
 fn float(text: &str, name: &str, lane: Lane) -> Result<Value, String> {
-    let digits = untyped(text, &[name]).replace('_', "");
-    let number = digits.parse::<f64>().map_err(|_| format!("`{text}` is not a {name}"))?;
+    let wrong = || format!("`{text}` is not {} {name}", article(name));
+    let spelled = untyped(text, &[name]);
+    // A trace can hold these; no literal has such a value.
+    if !["NaN", "inf", "-inf"].iter().any(|it| same(it, spelled)) {
+        check_real(spelled).map_err(|error| because(wrong(), error.kind))?;
+    }
+    let digits = spelled.replace('_', "");
+    let number = digits.parse::<f64>().map_err(|_| wrong())?;
     let value = match lane {
         // Read as an f32 at once: by way of an f64 it could be rounded twice.
-        Lane::F32 => Value::F32(digits.parse().map_err(|_| format!("`{text}` is not a {name}"))?),
+        Lane::F32 => Value::F32(digits.parse().map_err(|_| wrong())?),
         _ => Value::F64(number),
     };
     let infinite =
@@ -87,7 +94,8 @@ fn float(text: &str, name: &str, lane: Lane) -> Result<Value, String> {
 }
 
 fn integer(text: &str, name: &str, lane: Lane) -> Result<Value, String> {
-    let number = number(untyped(text, &[name])).ok_or_else(|| format!("`{text}` is not {} {name}", article(name)))?;
+    let number = number(untyped(text, &[name]))
+        .map_err(|kind| because(format!("`{text}` is not {} {name}", article(name)), kind))?;
     lane.integer(number).ok_or_else(|| match lane.range() {
         Some((low, high)) => format!("`{text}` does not fit {name}, which holds {low} to {high}"),
         None => format!("`{text}` does not fit {name}"),
@@ -95,34 +103,29 @@ fn integer(text: &str, name: &str, lane: Lane) -> Result<Value, String> {
 }
 
 fn article(name: &str) -> &'static str {
-    if name.starts_with('I') { "an" } else { "a" }
+    if name.starts_with(['I', 'L']) { "an" } else { "a" }
+}
+
+/// `message`, with the reason where that is not seen at once.
+fn because(message: String, kind: LiteralErrorKind) -> String {
+    let telling = matches!(kind, LiteralErrorKind::UnderscoreInNumber | LiteralErrorKind::NumberTooLarge);
+    if telling { format!("{message}: {}", kind.text()) } else { message }
 }
 
 /// `-12`, `1_000`, `16#FF`, `2#1010`.
-fn number(text: &str) -> Option<i128> {
+fn number(text: &str) -> Result<i128, LiteralErrorKind> {
     let (negative, digits) = match text.strip_prefix('-') {
         Some(rest) => (true, rest),
         None => (false, text.strip_prefix('+').unwrap_or(text)),
     };
-    let (base, digits) = match digits.split_once('#') {
-        Some(("2", digits)) => (2, digits),
-        Some(("8", digits)) => (8, digits),
-        Some(("16", digits)) => (16, digits),
-        Some(_) => return None,
-        None => (10, digits),
-    };
-    let digits = digits.replace('_', "");
-    if !digits.starts_with(|it: char| it.is_digit(base)) {
-        return None;
-    }
-    let number = i128::from_str_radix(&digits, base).ok()?;
-    Some(if negative { -number } else { number })
+    let number = i128::from(literal::integer(digits).map_err(|error| error.kind)?);
+    Ok(if negative { -number } else { number })
 }
 
 fn enumerator(text: &str, enumeration: &Enum) -> Result<Value, String> {
     let name = untyped(text, &[&enumeration.name]);
     let found = enumeration.values.iter().find(|(it, _)| same(it, name));
-    let by_number = || number(name).and_then(|number| enumeration.values.iter().find(|(_, it)| *it == number));
+    let by_number = || number(name).ok().and_then(|number| enumeration.values.iter().find(|(_, it)| *it == number));
     let value = found.or_else(by_number).and_then(|(_, number)| enumeration.lane.integer(*number));
     value.ok_or_else(|| {
         let near = nearest(name, enumeration.values.iter().map(|(it, _)| it.as_str()));
@@ -170,6 +173,17 @@ mod tests {
         assert_eq!(error("c.CV", "UINT#5"), "`UINT#5` is not an INT");
         assert_eq!(error("level", "11"), "`11` is outside the subrange 0..10");
         assert_eq!(error("speed", "1e99"), "`1e99` does not fit REAL");
+        assert_eq!(error("c.CV", "1__0"), "`1__0` is not an INT: `_` is only between two digits");
+        assert_eq!(error("speed", "1_.5"), "`1_.5` is not a REAL: `_` is only between two digits");
+        assert_eq!(error("speed", "infinity"), "`infinity` is not a REAL");
+        assert_eq!(
+            error("pause", "T#1_s"),
+            "`T#1_s` is not a TIME: `_` is only between two digits, or between two units"
+        );
+        assert_eq!(
+            error("pause", "T#1.5s200ms"),
+            "`T#1.5s200ms` is not a TIME: only the last unit of a duration has a fraction"
+        );
         assert_eq!(error("pause", "5"), "`5` is not a TIME: write `T#500ms`");
         assert_eq!(error("colour", "Gren"), "Color has no value `Gren`; did you mean `Green`?");
         assert_eq!(error("name", "abcde"), "the text has 5 bytes, a STRING[4] holds 4");

@@ -1,6 +1,7 @@
 //! How values read: the cells of a trace.
 
 use crate::map::{Map, Type};
+use staunch_runtime::literal::UNITS;
 use staunch_runtime::{Elementary, Time, Value};
 use std::fmt::Write;
 
@@ -72,16 +73,6 @@ fn text(bytes: &[u8]) -> String {
     }
 }
 
-const UNITS: [(&str, u64); 7] = [
-    ("d", 86_400_000_000_000),
-    ("h", 3_600_000_000_000),
-    ("m", 60_000_000_000),
-    ("s", 1_000_000_000),
-    ("ms", 1_000_000),
-    ("us", 1_000),
-    ("ns", 1),
-];
-
 /// `T#1s500ms`
 pub fn format_time(time: Time) -> String {
     let mut out = String::from("T#");
@@ -98,6 +89,7 @@ fn write_duration(time: Time, out: &mut String) {
         out.push_str("0s");
     }
     for (unit, size) in UNITS {
+        let size = size.unsigned_abs();
         if rest >= size {
             let _ = write!(out, "{}{unit}", rest / size);
             rest %= size;
@@ -105,49 +97,12 @@ fn write_duration(time: Time, out: &mut String) {
     }
 }
 
-/// Nanoseconds of `1d2h3m4s5ms6us7ns`, in any case, with fractions and underscores; `None` if it
-/// does not read so, or does not fit.
-pub(crate) fn parse_duration_text(text: &str) -> Option<Time> {
-    let text = text.replace('_', "").to_ascii_lowercase();
-    let (negative, mut rest) = match text.strip_prefix('-') {
-        Some(rest) => (true, rest),
-        None => (false, text.strip_prefix('+').unwrap_or(&text)),
-    };
-    let mut total: i128 = 0;
-    let mut finest = u64::MAX;
-    while !rest.is_empty() {
-        let end = rest.find(|it: char| !it.is_ascii_digit() && it != '.')?;
-        let unit_end = rest[end..].find(|it: char| !it.is_ascii_alphabetic()).map_or(rest.len(), |at| end + at);
-        let (_, size) = UNITS.into_iter().find(|(name, _)| *name == &rest[end..unit_end])?;
-        // From the longest unit to the shortest, each at most once.
-        if size >= finest {
-            return None;
-        }
-        finest = size;
-        total = total.checked_add(scaled(&rest[..end], size)?)?;
-        rest = &rest[unit_end..];
-    }
-    if finest == u64::MAX {
-        return None;
-    }
-    i64::try_from(if negative { -total } else { total }).ok()
-}
-
-/// A decimal number times `size`, rounded down.
-fn scaled(digits: &str, size: u64) -> Option<i128> {
-    let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));
-    let fraction = fraction.get(..fraction.len().min(18))?;
-    let power = 10_i128.checked_pow(u32::try_from(fraction.len()).ok()?)?;
-    let part = if fraction.is_empty() { 0 } else { fraction.parse::<i128>().ok()? };
-    let number = whole.parse::<i128>().ok()?.checked_mul(power)?.checked_add(part)?;
-    Some(number.checked_mul(i128::from(size))? / power)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::fixture::map;
     use crate::path::resolve;
+    use staunch_runtime::literal::duration;
 
     fn shown(name: &str, value: Value) -> String {
         let map = map();
@@ -176,14 +131,9 @@ mod tests {
     fn durations_read_back() {
         for time in [0, 1, -1, 1_500_000_000, 90_061_001_001_001, i64::MAX, i64::MIN + 1] {
             let text = format_time(time);
-            assert_eq!(parse_duration_text(&text[2..]), Some(time), "{text}");
+            assert_eq!(duration(&text[2..]), Ok(time), "{text}");
         }
         assert_eq!(format_time(0), "T#0s");
-        assert_eq!(parse_duration_text("1.5s"), Some(1_500_000_000));
-        assert_eq!(parse_duration_text("0.25MS"), Some(250_000));
-        for wrong in ["", "5", "1s1s", "1ms1s", "s", "1.2.3s", "1x", "999999999d"] {
-            assert_eq!(parse_duration_text(wrong), None, "{wrong}");
-        }
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! Values of literals, read from the text of their tokens.
 
+use staunch_runtime::literal::{self, LiteralError, LiteralErrorKind as Kind, UNITS};
+
 /// Why a literal has no value: a range of its text, and a sentence.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Fault {
@@ -16,159 +18,99 @@ impl Fault {
     }
 }
 
-type IsByte = fn(&u8) -> bool;
-
-/// `text` holds no `_` but between a byte that may stand before it and one that may follow.
-fn strokes(text: &str, (before, behind): (IsByte, IsByte), message: &str) -> Result<(), Fault> {
-    let bytes = text.as_bytes();
-    let is = |at: Option<usize>, what: IsByte| at.and_then(|it| bytes.get(it)).is_some_and(what);
-    let loose = |at: &usize| bytes[*at] == b'_' && !(is(at.checked_sub(1), before) && is(Some(at + 1), behind));
-    let Some(start) = (0..bytes.len()).find(loose) else { return Ok(()) };
-    let end = start + bytes[start..].iter().take_while(|it| **it == b'_').count();
-    let mut meant = String::new();
-    for part in text.split('_').filter(|it| !it.is_empty()) {
-        if meant.as_bytes().last().is_some_and(before) && part.as_bytes().first().is_some_and(behind) {
-            meant.push('_');
-        }
-        meant.push_str(part);
-    }
-    Err(Fault { meant: Some(meant), ..Fault::new(start, end, message) })
-}
-
-const BETWEEN_DIGITS: &str = "`_` stands between two digits";
-
 /// `1_000`, `16#FF`: the magnitude.
 pub fn integer(text: &str) -> Result<u64, Fault> {
-    let (radix, digits, at) = match text.split_once('#') {
-        None => (10, text, 0),
-        Some(("2", digits)) => (2, digits, 2),
-        Some(("8", digits)) => (8, digits, 2),
-        Some(("16", digits)) => (16, digits, 3),
-        Some((base, _)) => {
-            let message = format!("a number's base is 2, 8 or 16, not {base}");
-            return Err(Fault::new(0, base.len(), message));
-        }
-    };
-    if digits.bytes().all(|it| it == b'_') {
-        return Err(Fault::new(0, text.len(), "the number has no digits"));
-    }
-    let digit: IsByte = if radix == 16 { u8::is_ascii_hexdigit } else { u8::is_ascii_digit };
-    strokes(text, (digit, digit), BETWEEN_DIGITS)?;
-    let mut value = 0_u64;
-    for (place, digit) in digits.char_indices().filter(|(_, it)| *it != '_') {
-        let Some(digit) = digit.to_digit(radix) else {
-            let message = format!("`{digit}` is no digit of base {radix}");
-            return Err(Fault::new(at + place, at + place + 1, message));
-        };
-        value = value
-            .checked_mul(u64::from(radix))
-            .and_then(|it| it.checked_add(u64::from(digit)))
-            .ok_or_else(|| Fault::new(0, text.len(), "the number does not fit 64 bits"))?;
-    }
-    Ok(value)
+    literal::integer(text).map_err(|error| fault(text, 0, error))
 }
 
 /// The digits of a real, without `_`.
 pub fn real(text: &str) -> Result<String, Fault> {
-    strokes(text, (u8::is_ascii_digit, u8::is_ascii_digit), BETWEEN_DIGITS)?;
+    literal::check_real(text).map_err(|error| fault(text, 0, error))?;
     Ok(text.chars().filter(|it| *it != '_').collect())
 }
-
-/// Units from the longest to the shortest, in nanoseconds.
-const UNITS: [(&str, i128); 7] = [
-    ("d", 86_400_000_000_000),
-    ("h", 3_600_000_000_000),
-    ("m", 60_000_000_000),
-    ("s", 1_000_000_000),
-    ("ms", 1_000_000),
-    ("us", 1_000),
-    ("ns", 1),
-];
 
 /// `T#-1h30m`, `LTIME#1.5s`: signed nanoseconds, and whether it is an LTIME.
 pub fn duration(text: &str) -> Result<(i64, bool), Fault> {
     let (prefix, value) = text.split_once('#').unwrap_or(("", text));
     let long = prefix.starts_with(['l', 'L']);
-    let negative = value.starts_with('-');
-    let mut at = text.len() - value.trim_start_matches(['-', '+']).len();
-    let mut total = 0_i128;
-    // Index of the unit that the next part may have at most.
-    let mut next_unit = 0;
-    // Where a part with a fraction stands, and its unit.
-    let mut fraction = None;
-    while at < text.len() {
-        let (unit, nanoseconds, end) = part(text, at)?;
-        if unit < next_unit {
-            let message = format!("`{}` stands behind a shorter or the same unit", UNITS[unit].0);
-            return Err(Fault::new(at, end, message));
+    let first = text.len() - value.len();
+    literal::duration(value).map(|it| (it, long)).map_err(|error| fault(text, first, error))
+}
+
+/// The sentence about what is wrong in `text`, in the part of it that starts at `first`.
+fn fault(text: &str, first: usize, error: LiteralError) -> Fault {
+    let (start, end) = (first + error.start, first + error.end);
+    let wrong = &text[start..end];
+    let message = match error.kind {
+        Kind::Base => format!("{}, not {wrong}", error.kind.text()),
+        Kind::Digit { base } => format!("`{wrong}` is no digit of base {base}"),
+        Kind::UnknownUnit => format!("`{}` is no unit of time: expected d, h, m, s, ms, us or ns", unit(wrong)),
+        Kind::UnitOrder => format!("`{}` is after a shorter or the same unit", unit(wrong)),
+        Kind::InnerFraction { .. } => format!("{}, and `{}` is not the last", error.kind.text(), unit(wrong)),
+        Kind::NoDigits
+        | Kind::UnderscoreInNumber
+        | Kind::UnderscoreInDuration
+        | Kind::NumberTooLarge
+        | Kind::NoNumber
+        | Kind::NoUnit
+        | Kind::DurationTooLong => error.kind.text().to_owned(),
+    };
+    let (start, end) = if error.kind == Kind::DurationTooLong { (0, text.len()) } else { (start, end) };
+    Fault { start, end, message, meant: meant(text, first, error.kind) }
+}
+
+/// The letters of a part of a duration.
+fn unit(part: &str) -> String {
+    part.chars().filter(char::is_ascii_alphabetic).map(|it| it.to_ascii_lowercase()).collect()
+}
+
+/// The whole literal as it is meant, where that is known.
+fn meant(text: &str, first: usize, kind: Kind) -> Option<String> {
+    match kind {
+        Kind::UnderscoreInNumber if text.contains('#') => {
+            Some(respaced(text, u8::is_ascii_hexdigit, u8::is_ascii_hexdigit))
         }
-        next_unit = unit + 1;
-        total = total.saturating_add(nanoseconds);
-        fraction = fraction.or_else(|| text[at..end].contains('.').then_some((at, end, UNITS[unit].0)));
-        at = end;
+        Kind::UnderscoreInNumber => Some(respaced(text, u8::is_ascii_digit, u8::is_ascii_digit)),
+        Kind::UnderscoreInDuration => Some(respaced(text, u8::is_ascii_alphanumeric, u8::is_ascii_digit)),
+        Kind::InnerFraction { total } => {
+            let sign = if text[first..].starts_with('-') { "-" } else { "" };
+            Some(format!("{}{sign}{}", &text[..first], spelled(total)))
+        }
+        Kind::Base
+        | Kind::NoDigits
+        | Kind::Digit { .. }
+        | Kind::NumberTooLarge
+        | Kind::NoNumber
+        | Kind::NoUnit
+        | Kind::UnknownUnit
+        | Kind::UnitOrder
+        | Kind::DurationTooLong => None,
     }
-    if let Some((start, end, unit)) = fraction.filter(|it| it.1 < text.len()) {
-        let message = format!("only the last unit of a duration has a fraction, and `{unit}` is not the last");
-        let sign = if negative { "-" } else { "" };
-        let meant = format!("{prefix}#{sign}{}", spelled(total));
-        return Err(Fault { meant: Some(meant), ..Fault::new(start, end, message) });
+}
+
+/// `text` with a `_` only after a byte that is `before` one and before a byte that is `after` one.
+fn respaced(text: &str, before: fn(&u8) -> bool, after: fn(&u8) -> bool) -> String {
+    let mut meant = String::new();
+    for part in text.split('_').filter(|it| !it.is_empty()) {
+        if meant.as_bytes().last().is_some_and(before) && part.as_bytes().first().is_some_and(after) {
+            meant.push('_');
+        }
+        meant.push_str(part);
     }
-    let places: (IsByte, IsByte) = (u8::is_ascii_alphanumeric, u8::is_ascii_digit);
-    strokes(text, places, "`_` stands between two digits, or between two units")?;
-    let total = if negative { -total } else { total };
-    let nanoseconds = i64::try_from(total)
-        .map_err(|_| Fault::new(0, text.len(), "the duration does not fit 64 bits of nanoseconds (about 292 years)"))?;
-    Ok((nanoseconds, long))
+    meant
 }
 
 /// Nanoseconds in units.
 fn spelled(mut nanoseconds: i128) -> String {
     let mut out = String::new();
     for (unit, scale) in UNITS {
-        let count = nanoseconds / scale;
-        nanoseconds -= count * scale;
+        let count = nanoseconds / i128::from(scale);
+        nanoseconds -= count * i128::from(scale);
         if count > 0 || (out.is_empty() && scale == 1) {
             out += &format!("{count}{unit}");
         }
     }
     out
-}
-
-/// One number with its unit: index of the unit, nanoseconds, where it ends.
-fn part(text: &str, start: usize) -> Result<(usize, i128, usize), Fault> {
-    let rest = &text[start..];
-    let number = rest.find(|it: char| it.is_ascii_alphabetic()).unwrap_or(rest.len());
-    let after = &rest[number..];
-    let letters = after.find(|it: char| !it.is_ascii_alphabetic()).unwrap_or(after.len());
-    // `1h_30m`: the stroke belongs to nobody.
-    let strokes = after[letters..].len() - after[letters..].trim_start_matches('_').len();
-    let end = start + number + letters + strokes;
-    let name = after[..letters].to_ascii_lowercase();
-    let Some(unit) = UNITS.iter().position(|(it, _)| *it == name) else {
-        let message = if name.is_empty() {
-            "a duration needs a unit: d, h, m, s, ms, us or ns".into()
-        } else {
-            format!("`{name}` is no unit of time: expected d, h, m, s, ms, us or ns")
-        };
-        return Err(Fault::new(start, end.max(start + 1).min(text.len()), message));
-    };
-    let digits: String = rest[..number].chars().filter(|it| *it != '_').collect();
-    let (whole, fraction) = digits.split_once('.').unwrap_or((&digits, ""));
-    if whole.is_empty() || fraction.contains('.') {
-        return Err(Fault::new(start, end, "expected a number before the unit"));
-    }
-    let nanoseconds = scaled(whole, fraction, UNITS[unit].1);
-    Ok((unit, nanoseconds, end))
-}
-
-/// `whole.fraction` times `scale`, saturating, cut to whole nanoseconds.
-fn scaled(whole: &str, fraction: &str, scale: i128) -> i128 {
-    let whole = whole.parse::<i128>().map_or(i128::MAX, |it| it.saturating_mul(scale));
-    // No unit has more than 14 decimal digits of nanoseconds.
-    let fraction = &fraction[..fraction.len().min(15)];
-    let tenths = 10_i128.pow(u32::try_from(fraction.len()).unwrap_or(0));
-    let part = fraction.parse::<i128>().unwrap_or(0) * scale / tenths;
-    whole.saturating_add(part)
 }
 
 /// `'…'` or `"…"`, escapes resolved; the second value names those that mean nothing.
