@@ -28,7 +28,7 @@ macro_rules! elementary {
         }
 
         /// The types and their Rust primitives, by keyword: what a block's pins are declared with.
-        #[allow(dead_code, reason = "some types are the type of no pin")]
+        #[allow(dead_code, clippy::upper_case_acronyms, reason = "keywords, some of which are the type of no pin")]
         pub(crate) mod keyword {
             use super::Elementary;
             $(
