@@ -1,7 +1,9 @@
-use staunch_runtime::{FaultKind, Lane, Outcome, Scalar, Value, for_each_op, for_each_text_op, ops, text, with_lane};
+use staunch_runtime::{FaultKind, Lane, Outcome, Scalar, Signature, Value};
+use staunch_runtime::{carried, for_each_op, for_each_text_op, kind, ops, signature, text, with_lane};
 
 macro_rules! declare_ops {
-    ($($op:ident $source:literal $function:ident ($($arg:ident: $ty:ident),*) $result:ident [$class:ident] $outcome:ident;)*) => {
+    ($($op:ident $source:literal $function:ident ($($arg:ident: $ty:ident),*) -> $result:ident
+        [$class:ident as $lanes:ident] $outcome:ident $($extensible:ident)?;)*) => {
         /// An operator or standard function on elementary values. What each one does stands in
         /// [`staunch_runtime::ops`], under its [`function`](Op::function) name.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -10,9 +12,13 @@ macro_rules! declare_ops {
         impl Op {
             pub const ALL: &'static [Self] = &[$(Self::$op),*];
 
-            /// The name it is called by in Structured Text; starts with `_` if it cannot be.
-            pub const fn source_name(self) -> &'static str {
-                match self { $(Self::$op => $source),* }
+            /// What it is called in Structured Text, and what it takes and gives.
+            pub const fn signature(self) -> &'static Signature {
+                match self {
+                    $(Self::$op => const {
+                        &signature!($source ($($arg: $ty),*) -> $result [$class] $($extensible)?)
+                    },)*
+                }
             }
 
             /// The runtime function, below `staunch_runtime::ops`.
@@ -22,12 +28,12 @@ macro_rules! declare_ops {
 
             /// For each operand, the lane it must have when it is not the operation's own `T`.
             pub const fn operands(self) -> &'static [Option<Lane>] {
-                match self { $(Self::$op => &[$(fixed_lane!($ty)),*]),* }
+                match self { $(Self::$op => const { &[$(kind!($ty).lane()),*] }),* }
             }
 
             /// The result's lane when it is not the operation's own `T`.
             pub const fn result(self) -> Option<Lane> {
-                match self { $(Self::$op => fixed_lane!($result)),* }
+                self.signature().result.lane()
             }
 
             pub const fn can_fault(self) -> bool {
@@ -36,34 +42,23 @@ macro_rules! declare_ops {
 
             /// Whether the operation exists at `lane`.
             pub const fn allows(self, lane: Lane) -> bool {
-                match self { $(Self::$op => with_lane!($class lane, T => { let _: Option<T> = None; true }, false)),* }
+                match self { $(Self::$op => with_lane!($lanes lane, T => { let _: Option<T> = None; true }, false)),* }
             }
         }
 
         /// Applies `op` at `lane` with the runtime's own function. `None` when an operand is of
         /// the wrong lane, which verified IR excludes.
+        #[allow(non_snake_case, reason = "operands have the standard's names")]
         pub fn apply(op: Op, lane: Lane, operands: &[Value]) -> Option<Result<Value, FaultKind>> {
             let mut operands = operands.iter().copied();
             match op {
-                $(Op::$op => with_lane!($class lane, T => {
-                    $(let $arg = <$ty as Scalar>::from_value(operands.next()?)?;)*
+                $(Op::$op => with_lane!($lanes lane, T => {
+                    $(let $arg = <carried!($ty) as Scalar>::from_value(operands.next()?)?;)*
                     let _: Option<T> = None;
                     Some(ops::$function($($arg),*).outcome().map(Scalar::into_value))
                 }, None),)*
             }
         }
-    };
-}
-
-macro_rules! fixed_lane {
-    (T) => {
-        None
-    };
-    (bool) => {
-        Some(Lane::Bool)
-    };
-    (i64) => {
-        Some(Lane::I64)
     };
 }
 
@@ -79,6 +74,11 @@ macro_rules! outcome {
 for_each_op!(declare_ops);
 
 impl Op {
+    /// The name it is called by in Structured Text; starts with `_` if it cannot be.
+    pub const fn source_name(self) -> &'static str {
+        self.signature().name
+    }
+
     /// Finds an operation by the name it is called by, in any case.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|op| op.source_name().eq_ignore_ascii_case(name))
@@ -97,7 +97,7 @@ pub enum TextValue {
 }
 
 macro_rules! declare_text_ops {
-    ($($op:ident $source:literal $function:ident ($($arg:ident: $ty:ident),*) $result:ident;)*) => {
+    ($($op:ident $source:literal $function:ident ($($arg:ident: $ty:ident),*) -> $result:ident $($extensible:ident)?;)*) => {
         /// A function on character strings; see [`staunch_runtime::text`].
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum TextOp { $($op),* }
@@ -105,8 +105,13 @@ macro_rules! declare_text_ops {
         impl TextOp {
             pub const ALL: &'static [Self] = &[$(Self::$op),*];
 
-            pub const fn source_name(self) -> &'static str {
-                match self { $(Self::$op => $source),* }
+            /// What it is called in Structured Text, and what it takes and gives.
+            pub const fn signature(self) -> &'static Signature {
+                match self {
+                    $(Self::$op => const {
+                        &signature!($source ($($arg: $ty),*) -> $result [ANY_STRING] $($extensible)?)
+                    },)*
+                }
             }
 
             /// The runtime function, below `staunch_runtime::text`.
@@ -116,17 +121,18 @@ macro_rules! declare_text_ops {
 
             /// For each operand, its lane, or `None` for a string.
             pub const fn operands(self) -> &'static [Option<Lane>] {
-                match self { $(Self::$op => &[$(text_lane!($ty)),*]),* }
+                match self { $(Self::$op => const { &[$(kind!($ty).lane()),*] }),* }
             }
 
             /// The result's lane, or `None` for a string.
             pub const fn result(self) -> Option<Lane> {
-                match self { $(Self::$op => text_lane!($result)),* }
+                self.signature().result.lane()
             }
         }
 
         /// Applies `op` with the runtime's own function; a string result is cut at `capacity`.
         /// `None` when an operand is of the wrong kind, which verified IR excludes.
+        #[allow(non_snake_case, reason = "operands have the standard's names")]
         pub fn apply_text(op: TextOp, operands: &[TextValue], capacity: u16) -> Option<TextValue> {
             let mut operands = operands.iter();
             match op {
@@ -139,31 +145,19 @@ macro_rules! declare_text_ops {
     };
 }
 
-macro_rules! text_lane {
-    (text) => {
-        None
-    };
-    (i16) => {
-        Some(Lane::I16)
-    };
-    (i64) => {
-        Some(Lane::I64)
-    };
-}
-
 macro_rules! text_operand {
-    (text $operand:expr) => {{
+    (STRING $operand:expr) => {{
         let TextValue::Text(bytes) = $operand else { return None };
         bytes.as_slice()
     }};
     ($ty:ident $operand:expr) => {{
         let TextValue::Scalar(value) = $operand else { return None };
-        <$ty as Scalar>::from_value(*value)?
+        <carried!($ty) as Scalar>::from_value(*value)?
     }};
 }
 
 macro_rules! text_result {
-    (text $capacity:expr, $function:ident ($($arg:ident),*)) => {{
+    (STRING $capacity:expr, $function:ident ($($arg:ident),*)) => {{
         let mut bytes = vec![0; usize::from($capacity)];
         let mut length = 0;
         text::$function($($arg,)* &mut text::Destination::new(&mut length, &mut bytes));
@@ -178,6 +172,10 @@ macro_rules! text_result {
 for_each_text_op!(declare_text_ops);
 
 impl TextOp {
+    pub const fn source_name(self) -> &'static str {
+        self.signature().name
+    }
+
     /// Finds a function by the name it is called by, in any case.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|op| op.source_name().eq_ignore_ascii_case(name))

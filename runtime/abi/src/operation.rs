@@ -1,11 +1,13 @@
 //! A shim for each row of the operation table, at each of its lanes.
 
-use staunch_runtime::{for_each_op, ops};
+use staunch_runtime::{carried, for_each_op, ops};
 
 macro_rules! shims {
-    ($($op:ident $source:literal $function:ident ($($arg:ident: $ty:ident),*) $result:ident [$class:ident] $outcome:ident;)*) => {
+    ($($op:ident $source:literal $function:ident ($($arg:ident: $ty:ident),*) -> $result:ident
+        [$class:ident as $lanes:ident] $outcome:ident $($extensible:ident)?;)*) => {
+        #[allow(non_snake_case, reason = "operands have the standard's names")]
         pub(crate) fn for_each_symbol(each: &mut dyn FnMut(&'static str, *const u8)) {
-            $(at_lanes!($class each { $outcome $function ($($arg: $ty),*) $result });)*
+            $(at_lanes!($lanes each { $outcome $function ($($arg: $ty),*) $result });)*
         }
     };
 }
@@ -39,7 +41,7 @@ macro_rules! shim {
 
         // SAFETY: the prefix belongs to this crate, and a function and a lane meet in one row.
         #[unsafe(export_name = concat!("staunch_", stringify!($function), "_", stringify!($lane)))]
-        extern "C" fn shim($($arg: $ty),*) -> $result {
+        extern "C" fn shim($($arg: carried!($ty)),*) -> carried!($result) {
             ops::$function($($arg),*)
         }
         $each(concat!("staunch_", stringify!($function), "_", stringify!($lane)), shim as *const u8);
@@ -51,7 +53,7 @@ macro_rules! shim {
         /// `out` is writable and aligned for the result.
         // SAFETY (the symbol): as for the total rows.
         #[unsafe(export_name = concat!("staunch_", stringify!($function), "_", stringify!($lane)))]
-        unsafe extern "C" fn shim($($arg: $ty,)* out: *mut $result) -> u8 {
+        unsafe extern "C" fn shim($($arg: carried!($ty),)* out: *mut carried!($result)) -> u8 {
             match ops::$function($($arg),*) {
                 Ok(result) => {
                     // SAFETY: the caller's promise.

@@ -4,7 +4,7 @@
 
 use core::slice;
 
-use staunch_runtime::{for_each_text_op, text};
+use staunch_runtime::{carried, for_each_text_op, text};
 
 /// Offset of the first byte of a string from its header.
 const BYTES: usize = size_of::<u16>();
@@ -47,7 +47,8 @@ unsafe extern "C" fn staunch_text_copy(from: *const u8, out: *mut u8, capacity: 
 }
 
 macro_rules! shims {
-    ($($op:ident $source:literal $function:ident ($($arg:ident: $ty:ident),*) $result:ident;)*) => {
+    ($($op:ident $source:literal $function:ident ($($arg:ident: $ty:ident),*) -> $result:ident $($extensible:ident)?;)*) => {
+        #[allow(non_snake_case, reason = "operands have the standard's names")]
         pub(crate) fn for_each_symbol(each: &mut dyn FnMut(&'static str, *const u8)) {
             each("staunch_text_copy", staunch_text_copy as *const u8);
             $(shim!($result each $function ($($arg: $ty),*));)*
@@ -56,7 +57,7 @@ macro_rules! shims {
 }
 
 macro_rules! shim {
-    (text $each:ident $function:ident ($($arg:ident: $ty:ident),*)) => {{
+    (STRING $each:ident $function:ident ($($arg:ident: $ty:ident),*)) => {{
         /// # Safety
         /// Operands point to strings, `out` to a string of `capacity` bytes that is none of them.
         // SAFETY (the symbol): the prefix belongs to this module, and a function has one row.
@@ -72,7 +73,7 @@ macro_rules! shim {
         /// Operands point to strings.
         // SAFETY (the symbol): as for the functions with a string result.
         #[unsafe(export_name = concat!("staunch_text_", stringify!($function)))]
-        unsafe extern "C" fn shim($($arg: operand_type!($ty)),*) -> $result {
+        unsafe extern "C" fn shim($($arg: operand_type!($ty)),*) -> carried!($result) {
             // SAFETY: the caller's promise.
             unsafe { text::$function($(operand!($ty $arg)),*) }
         }
@@ -81,12 +82,12 @@ macro_rules! shim {
 }
 
 macro_rules! operand_type {
-    (text) => { *const u8 };
-    ($ty:ident) => { $ty };
+    (STRING) => { *const u8 };
+    ($ty:ident) => { carried!($ty) };
 }
 
 macro_rules! operand {
-    (text $arg:ident) => {
+    (STRING $arg:ident) => {
         bytes($arg)
     };
     ($ty:ident $arg:ident) => {

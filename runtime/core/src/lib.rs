@@ -14,6 +14,7 @@ mod lane;
 
 mod op_table;
 pub mod ops;
+mod signature;
 
 pub mod literal;
 pub mod text;
@@ -30,6 +31,7 @@ pub use context::Context;
 pub use elementary::{Class, Elementary};
 pub use fault::{Fault, FaultKind, Location, OrFault, Outcome};
 pub use lane::{Lane, Scalar, Value};
+pub use signature::{Kind, Parameter, Signature};
 pub use text::Text;
 pub use time::Time;
 

@@ -3,53 +3,55 @@
 /// The compiler expands the table into its `Op` enum and the interpreter's dispatch;
 /// `staunch-runtime-abi` expands it into the C symbols that native code calls.
 ///
-/// `T` is the lane an operation is instantiated at; the class in brackets says which lanes
-/// those are (`with_lane!` lists them). `faults` marks a function that returns
-/// `Result<_, FaultKind>`; a `total` one returns its value.
+/// The parameters are named as in the standard's tables. `T` is the one type of all operands that
+/// are `T`: in brackets stands its class, and the lanes that the operation exists at (`with_lane!`
+/// lists them; they reach beyond the class where a dialect does). `faults` marks a function that
+/// returns `Result<_, FaultKind>`; a `total` one returns its value. An `extensible` one takes more
+/// operands of its last parameter's kind.
 #[macro_export]
 macro_rules! for_each_op {
     ($expand:ident) => {
         $expand! {
-            // IR name  source     function       operands                     result  lanes       outcome
-            Add         "ADD"      add            (a: T, b: T)                  T      [number]    total;
-            Sub         "SUB"      sub            (a: T, b: T)                  T      [number]    total;
-            Mul         "MUL"      mul            (a: T, b: T)                  T      [number]    total;
-            Div         "DIV"      div            (a: T, b: T)                  T      [number]    faults;
-            Mod         "MOD"      modulo         (a: T, b: T)                  T      [integer]   faults;
-            Neg         "NEG"      neg            (value: T)                    T      [number]    total;
-            Abs         "ABS"      abs            (value: T)                    T      [number]    total;
-            Expt        "EXPT"     expt           (base: T, exponent: T)        T      [real]      total;
-            Sqrt        "SQRT"     sqrt           (value: T)                    T      [real]      total;
-            Ln          "LN"       ln             (value: T)                    T      [real]      total;
-            Log         "LOG"      log            (value: T)                    T      [real]      total;
-            Exp         "EXP"      exp            (value: T)                    T      [real]      total;
-            Sin         "SIN"      sin            (value: T)                    T      [real]      total;
-            Cos         "COS"      cos            (value: T)                    T      [real]      total;
-            Tan         "TAN"      tan            (value: T)                    T      [real]      total;
-            Asin        "ASIN"     asin           (value: T)                    T      [real]      total;
-            Acos        "ACOS"     acos           (value: T)                    T      [real]      total;
-            Atan        "ATAN"     atan           (value: T)                    T      [real]      total;
-            Atan2       "ATAN2"    atan2          (y: T, x: T)                  T      [real]      total;
-            And         "AND"      and            (a: T, b: T)                  T      [bits]      total;
-            Or          "OR"       or             (a: T, b: T)                  T      [bits]      total;
-            Xor         "XOR"      xor            (a: T, b: T)                  T      [bits]      total;
-            Not         "NOT"      not            (value: T)                    T      [bits]      total;
-            Shl         "SHL"      shl            (value: T, count: i64)        T      [integer]   total;
-            Shr         "SHR"      shr            (value: T, count: i64)        T      [integer]   total;
-            Rol         "ROL"      rol            (value: T, count: i64)        T      [integer]   total;
-            Ror         "ROR"      ror            (value: T, count: i64)        T      [integer]   total;
-            Eq          "EQ"       eq             (a: T, b: T)                  bool   [any]       total;
-            Ne          "NE"       ne             (a: T, b: T)                  bool   [any]       total;
-            Lt          "LT"       lt             (a: T, b: T)                  bool   [any]       total;
-            Le          "LE"       le             (a: T, b: T)                  bool   [any]       total;
-            Gt          "GT"       gt             (a: T, b: T)                  bool   [any]       total;
-            Ge          "GE"       ge             (a: T, b: T)                  bool   [any]       total;
-            Max         "MAX"      max            (a: T, b: T)                  T      [any]       total;
-            Min         "MIN"      min            (a: T, b: T)                  T      [any]       total;
-            Limit       "LIMIT"    limit          (min: T, value: T, max: T)    T      [any]       total;
-            Sel         "SEL"      sel            (g: bool, in0: T, in1: T)     T      [any]       total;
-            // A subrange check: `value` if it lies in `min..=max`, else a fault.
-            InRange     "_RANGE"   in_range       (min: T, value: T, max: T)    T      [integer]   faults;
+            // IR name  source     function       parameters                   result  T at lanes                 outcome
+            Add         "ADD"      add        (IN1: T, IN2: T) -> T                  [ANY_MAGNITUDE as number]    total extensible;
+            Sub         "SUB"      sub        (IN1: T, IN2: T) -> T                  [ANY_MAGNITUDE as number]    total;
+            Mul         "MUL"      mul        (IN1: T, IN2: T) -> T                  [ANY_MAGNITUDE as number]    total extensible;
+            Div         "DIV"      div        (IN1: T, IN2: T) -> T                  [ANY_MAGNITUDE as number]    faults;
+            Mod         "MOD"      modulo     (IN1: T, IN2: T) -> T                  [ANY_INT as integer]         faults;
+            Neg         "NEG"      neg        (IN: T) -> T                           [ANY_MAGNITUDE as number]    total;
+            Abs         "ABS"      abs        (IN: T) -> T                           [ANY_NUM as number]          total;
+            Expt        "EXPT"     expt       (IN1: T, IN2: T) -> T                  [ANY_REAL as real]           total;
+            Sqrt        "SQRT"     sqrt       (IN: T) -> T                           [ANY_REAL as real]           total;
+            Ln          "LN"       ln         (IN: T) -> T                           [ANY_REAL as real]           total;
+            Log         "LOG"      log        (IN: T) -> T                           [ANY_REAL as real]           total;
+            Exp         "EXP"      exp        (IN: T) -> T                           [ANY_REAL as real]           total;
+            Sin         "SIN"      sin        (IN: T) -> T                           [ANY_REAL as real]           total;
+            Cos         "COS"      cos        (IN: T) -> T                           [ANY_REAL as real]           total;
+            Tan         "TAN"      tan        (IN: T) -> T                           [ANY_REAL as real]           total;
+            Asin        "ASIN"     asin       (IN: T) -> T                           [ANY_REAL as real]           total;
+            Acos        "ACOS"     acos       (IN: T) -> T                           [ANY_REAL as real]           total;
+            Atan        "ATAN"     atan       (IN: T) -> T                           [ANY_REAL as real]           total;
+            Atan2       "ATAN2"    atan2      (Y: T, X: T) -> T                      [ANY_REAL as real]           total;
+            And         "AND"      and        (IN1: T, IN2: T) -> T                  [ANY_BIT as bits]            total extensible;
+            Or          "OR"       or         (IN1: T, IN2: T) -> T                  [ANY_BIT as bits]            total extensible;
+            Xor         "XOR"      xor        (IN1: T, IN2: T) -> T                  [ANY_BIT as bits]            total extensible;
+            Not         "NOT"      not        (IN: T) -> T                           [ANY_BIT as bits]            total;
+            Shl         "SHL"      shl        (IN: T, N: ANY_INT) -> T               [ANY_BIT as integer]         total;
+            Shr         "SHR"      shr        (IN: T, N: ANY_INT) -> T               [ANY_BIT as integer]         total;
+            Rol         "ROL"      rol        (IN: T, N: ANY_INT) -> T               [ANY_BIT as integer]         total;
+            Ror         "ROR"      ror        (IN: T, N: ANY_INT) -> T               [ANY_BIT as integer]         total;
+            Eq          "EQ"       eq         (IN1: T, IN2: T) -> BOOL               [ANY_ELEMENTARY as any]      total extensible;
+            Ne          "NE"       ne         (IN1: T, IN2: T) -> BOOL               [ANY_ELEMENTARY as any]      total;
+            Lt          "LT"       lt         (IN1: T, IN2: T) -> BOOL               [ANY_ELEMENTARY as any]      total extensible;
+            Le          "LE"       le         (IN1: T, IN2: T) -> BOOL               [ANY_ELEMENTARY as any]      total extensible;
+            Gt          "GT"       gt         (IN1: T, IN2: T) -> BOOL               [ANY_ELEMENTARY as any]      total extensible;
+            Ge          "GE"       ge         (IN1: T, IN2: T) -> BOOL               [ANY_ELEMENTARY as any]      total extensible;
+            Max         "MAX"      max        (IN1: T, IN2: T) -> T                  [ANY_ELEMENTARY as any]      total extensible;
+            Min         "MIN"      min        (IN1: T, IN2: T) -> T                  [ANY_ELEMENTARY as any]      total extensible;
+            Limit       "LIMIT"    limit      (MN: T, IN: T, MX: T) -> T             [ANY_ELEMENTARY as any]      total;
+            Sel         "SEL"      sel        (G: BOOL, IN0: T, IN1: T) -> T         [ANY as any]                 total;
+            // A subrange check: IN if it lies in MN..MX, else a fault.
+            InRange     "_RANGE"   in_range   (MN: T, IN: T, MX: T) -> T             [ANY_INT as integer]         faults;
         }
     };
 }
@@ -86,23 +88,23 @@ macro_rules! with_lane {
     };
 }
 
-/// Every function on character strings, one row each. A `text` operand is a byte slice; a `text`
-/// result is written to a destination that cuts it at its capacity.
+/// Every function on character strings, one row each, as in [`for_each_op!`]. A STRING operand is a
+/// byte slice; a STRING result is written to a destination that cuts it at its capacity.
 #[macro_export]
 macro_rules! for_each_text_op {
     ($expand:ident) => {
         $expand! {
-            // IR name   source      function   operands                                  result
-            Compare      "_COMPARE"  compare    (a: text, b: text)                        i16;
-            Len          "LEN"       len        (text: text)                              i16;
-            Find         "FIND"      find       (text: text, pattern: text)               i16;
-            Left         "LEFT"      left       (text: text, count: i64)                  text;
-            Right        "RIGHT"     right      (text: text, count: i64)                  text;
-            Mid          "MID"       mid        (text: text, count: i64, position: i64)   text;
-            Concat       "CONCAT"    concat     (a: text, b: text)                        text;
-            Insert       "INSERT"    insert     (text: text, inserted: text, position: i64) text;
-            Delete       "DELETE"    delete     (text: text, count: i64, position: i64)   text;
-            Replace      "REPLACE"   replace    (text: text, by: text, count: i64, position: i64) text;
+            // IR name   source      function   parameters                                            result
+            Compare      "_COMPARE"  compare    (IN1: STRING, IN2: STRING) -> INT;
+            Len          "LEN"       len        (IN: STRING) -> INT;
+            Find         "FIND"      find       (IN1: STRING, IN2: STRING) -> INT;
+            Left         "LEFT"      left       (IN: STRING, L: ANY_INT) -> STRING;
+            Right        "RIGHT"     right      (IN: STRING, L: ANY_INT) -> STRING;
+            Mid          "MID"       mid        (IN: STRING, L: ANY_INT, P: ANY_INT) -> STRING;
+            Concat       "CONCAT"    concat     (IN1: STRING, IN2: STRING) -> STRING extensible;
+            Insert       "INSERT"    insert     (IN1: STRING, IN2: STRING, P: ANY_INT) -> STRING;
+            Delete       "DELETE"    delete     (IN: STRING, L: ANY_INT, P: ANY_INT) -> STRING;
+            Replace      "REPLACE"   replace    (IN1: STRING, IN2: STRING, L: ANY_INT, P: ANY_INT) -> STRING;
         }
     };
 }

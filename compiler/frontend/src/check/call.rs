@@ -192,7 +192,7 @@ impl<'s> Checker<'_, 's> {
         if let Some(variable) = self.scope.get(name.text) {
             // A variable that cannot be called does not hide a function of its name.
             let callable = matches!(variable.place.ty, Type::Block(_) | Type::Struct(_));
-            let function = super::function::exists(name.text)
+            let function = super::standard::exists(name.text)
                 || matches!(self.decl.names.get(&Key(name.text)), Some(Entry::Pou(_)));
             if callable || !function {
                 return Some(Callee::Instance);
@@ -220,7 +220,7 @@ impl<'s> Checker<'_, 's> {
         if is_instruction(own.family(), name.text) {
             return Some(Callee::Instruction(name));
         }
-        if super::function::exists(name.text) {
+        if super::standard::exists(name.text) {
             return Some(Callee::Standard(name));
         }
         if !self.is_logix_call(name, arguments) {
@@ -297,7 +297,7 @@ impl<'s> Checker<'_, 's> {
         let own = self.decl.pous.iter().filter(|it| it.ast.kind == ast::PouKind::Function).map(|it| it.ast.name.text);
         let instances =
             self.scope.variables.iter().filter(|it| matches!(it.place.ty, Type::Block(_) | Type::Struct(_)));
-        let standard = super::function::names().map(|it| -> &str { it });
+        let standard = super::standard::names().map(|it| -> &str { it });
         let candidates = own.chain(instances.map(|it| it.name.text)).chain(standard);
         let near = nearest(name.text, candidates).map(str::to_owned);
         let mut error =

@@ -3,7 +3,7 @@
 
 use super::Checker;
 use super::operand::Operand;
-use super::operator::{Sides, beside, compares};
+use super::operator::{Sides, compares};
 use crate::{Span, ast};
 use ast::BinaryOp;
 use staunch_ir::{Expr, ExprKind, Projection, Statement, Type};
@@ -19,6 +19,9 @@ impl<'s> Checker<'_, 's> {
         if compares(operator) && values.len() > 2 {
             return self.comparisons(operator, values, name);
         }
+        if !values.is_sorted_by_key(|it| it.span.start) {
+            return self.folded(operator, values, expected, name);
+        }
         let mut values = values.iter();
         let mut tree = (*values.next()?).clone();
         for value in values {
@@ -29,32 +32,38 @@ impl<'s> Checker<'_, 's> {
         self.operand(&tree, expected)
     }
 
+    /// Operands that are not written in the order of their parameters: `SUB(IN2 := b, IN1 := a)`.
+    fn folded(
+        &mut self,
+        op: BinaryOp,
+        values: &[&ast::Expr<'s>],
+        expected: Option<Type>,
+        name: ast::Name<'s>,
+    ) -> Option<Operand> {
+        let hint = expected.filter(|_| !compares(op));
+        let operands = self.as_written(values, |this, at, side| this.operand(values[at], hint.or(side)))?;
+        let mut operands = operands.into_iter().zip(values).map(|(operand, value)| (operand, value.span));
+        let mut result = operands.next()?;
+        for right in operands {
+            let span = right.1;
+            result = (self.joined(op, name.span, hint, result, right)?, span);
+        }
+        Some(result.0)
+    }
+
     fn comparisons(&mut self, op: BinaryOp, values: &[&ast::Expr<'s>], name: ast::Name<'s>) -> Option<Operand> {
-        let mut operands: Vec<Operand> = Vec::new();
-        let mut complete = true;
-        for (at, value) in values.iter().enumerate() {
-            let hint = operands.last().and_then(|it| beside(it, None));
+        let operands = self.as_written(values, |this, at, side| {
+            let operand = this.operand(values[at], side)?;
             let read_twice = at > 0 && at + 1 < values.len();
-            let mut done: Vec<_> = operands.iter_mut().filter_map(Operand::typed_mut).collect();
-            let operand = self.after(&mut done, |this| {
-                let operand = this.operand(value, hint)?;
-                Some(if read_twice { this.kept(operand) } else { operand })
-            });
-            match operand {
-                Some(operand) => operands.push(operand),
-                None => complete = false,
-            }
-        }
-        if !complete {
-            return None;
-        }
+            Some(if read_twice { this.kept(operand) } else { operand })
+        })?;
         let mut all: Option<Operand> = None;
         for (at, pair) in operands.windows(2).enumerate() {
             let (left, right) = (values[at].span, values[at + 1].span);
-            let one = self.joined(op, name.span, (pair[0].clone(), left), (pair[1].clone(), right))?;
+            let one = self.joined(op, name.span, None, (pair[0].clone(), left), (pair[1].clone(), right))?;
             all = Some(match all {
                 None => one,
-                Some(before) => self.joined(BinaryOp::And, name.span, (before, values[0].span), (one, right))?,
+                Some(before) => self.joined(BinaryOp::And, name.span, None, (before, values[0].span), (one, right))?,
             });
         }
         all
@@ -64,10 +73,11 @@ impl<'s> Checker<'_, 's> {
         &mut self,
         op: BinaryOp,
         op_span: Span,
+        hint: Option<Type>,
         (a, left): (Operand, Span),
         (b, right): (Operand, Span),
     ) -> Option<Operand> {
-        self.combine(Sides { a, b, left, right, op, op_span, span: left.to(right), hint: None })
+        self.combine(Sides { a, b, left, right, op, op_span, span: left.to(right), hint })
     }
 
     /// The operand for reading it twice: what is more than a variable is computed once.

@@ -15,17 +15,19 @@ mod migration;
 mod never;
 mod operand;
 mod operator;
+mod overload;
 mod place;
 mod prescan;
+mod standard;
 mod statement;
 mod text_order;
 mod unknown;
 
-pub(crate) use function::exists as is_function;
 pub(crate) use prescan::{
     Assigned, KeptCount, Uses, assigned_count, holds_storage, is_element_by_element, lost_count, same_storage,
     several_counts, shared_count,
 };
+pub(crate) use standard::exists as is_function;
 pub(crate) use unknown::{block_of_another_dialect, no_such_block, not_constant};
 
 use crate::ast;

@@ -182,7 +182,7 @@ impl<'s> Checker<'_, 's> {
         let block = self.decl.bare_block(name.text, name.span).is_some();
         let message = if block {
             format!("`{}` is a FUNCTION_BLOCK, not an instance of one", name.text)
-        } else if super::function::exists(name.text) {
+        } else if super::standard::exists(name.text) {
             format!("`{}` is a function, not a variable", name.text)
         } else {
             format!("`{}` is not declared", name.text)
@@ -205,7 +205,7 @@ impl<'s> Checker<'_, 's> {
             error = error.help(*help);
         } else if let Some(near) = near {
             error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
-        } else if super::function::exists(name.text) {
+        } else if super::standard::exists(name.text) {
             error = error.help(format!("call the function: `{}(…)`", name.text));
         }
         self.report(error);

@@ -1,0 +1,151 @@
+//! What a standard function takes and gives, as the standard's tables write it.
+
+use crate::{Class, Elementary, Lane};
+
+/// The signature of a standard function.
+#[derive(Clone, Copy, Debug)]
+pub struct Signature {
+    /// The name it is called by; one that starts with `_` is the compiler's own.
+    pub name: &'static str,
+    pub parameters: &'static [Parameter],
+    /// Whether IN3, IN4, … may follow the last parameter.
+    pub extensible: bool,
+    pub result: Kind,
+    /// What `T` may be.
+    pub class: Class,
+}
+
+/// One parameter: its name in the standard's tables, and what it takes.
+#[derive(Clone, Copy, Debug)]
+pub struct Parameter {
+    pub name: &'static str,
+    pub kind: Kind,
+}
+
+/// The type of a parameter or a result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// The one type of all that are `T` in a call.
+    T,
+    /// Any type of the class, whatever the other operands are.
+    Any(Class),
+    Is(Elementary),
+    /// A character string of any length.
+    String,
+}
+
+impl Kind {
+    /// The lane of what is not `T` and not a string. Where any integer is taken, a LINT comes in.
+    pub const fn lane(self) -> Option<Lane> {
+        match self {
+            Self::Is(ty) => Some(ty.lane()),
+            Self::Any(_) => Some(Lane::I64),
+            Self::T | Self::String => None,
+        }
+    }
+}
+
+/// A signature as the rows of the tables write it.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! signature {
+    ($name:literal ($($parameter:ident: $kind:ident),*) -> $result:ident $([$class:ident])? $($extensible:ident)?) => {
+        $crate::Signature {
+            name: $name,
+            parameters: &[$($crate::Parameter {
+                name: stringify!($parameter),
+                kind: $crate::kind!($kind),
+            }),*],
+            extensible: $crate::signature!(@extensible $($extensible)?),
+            result: $crate::kind!($result),
+            class: $crate::signature!(@class $($class)?),
+        }
+    };
+    (@class) => {
+        $crate::Class::Any
+    };
+    (@class $class:ident) => {
+        $crate::class!($class)
+    };
+    (@extensible) => {
+        false
+    };
+    (@extensible extensible) => {
+        true
+    };
+}
+
+/// The kind that a row's word means.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! kind {
+    (T) => {
+        $crate::Kind::T
+    };
+    (STRING) => {
+        $crate::Kind::String
+    };
+    (BOOL) => {
+        $crate::Kind::Is($crate::Elementary::Bool)
+    };
+    (INT) => {
+        $crate::Kind::Is($crate::Elementary::Int)
+    };
+    (TIME) => {
+        $crate::Kind::Is($crate::Elementary::Time)
+    };
+    (LTIME) => {
+        $crate::Kind::Is($crate::Elementary::Ltime)
+    };
+    ($class:ident) => {
+        $crate::Kind::Any($crate::class!($class))
+    };
+}
+
+/// The class that a row's word means.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! class {
+    (ANY) => {
+        $crate::Class::Any
+    };
+    (ANY_ELEMENTARY) => {
+        $crate::Class::Elementary
+    };
+    (ANY_MAGNITUDE) => {
+        $crate::Class::Magnitude
+    };
+    (ANY_NUM) => {
+        $crate::Class::Num
+    };
+    (ANY_INT) => {
+        $crate::Class::Int
+    };
+    (ANY_REAL) => {
+        $crate::Class::Real
+    };
+    (ANY_BIT) => {
+        $crate::Class::Bit
+    };
+    (ANY_STRING) => {
+        $crate::Class::String
+    };
+}
+
+/// The Rust type that carries a word of a row: in a shim, or in the interpreter.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! carried {
+    (T) => {
+        T
+    };
+    (BOOL) => {
+        bool
+    };
+    (INT) => {
+        i16
+    };
+    (ANY_INT) => {
+        i64
+    };
+}
