@@ -98,6 +98,7 @@ pub fn program(tasks: &[Task]) -> Program {
         bounds: Vec::new(),
         arrays: Vec::new(),
         globals: StructId::next(tasks.len()),
+        aliases: Vec::new(),
         structs,
         pous: tasks.iter().enumerate().map(|(at, task)| pou(*task, StructId::next(at))).collect(),
         instances: tasks.iter().enumerate().map(|(at, task)| instance(*task, PouId::next(at))).collect(),

@@ -60,6 +60,7 @@ pub fn program(arrays: Vec<Array>, structs: Vec<Struct>, pous: Vec<Pou>) -> Prog
         bounds: vec![(-3, 7), (1, 9)],
         arrays,
         globals: StructId::next(structs.len() - 1),
+        aliases: Vec::new(),
         structs,
         instances: vec![Instance {
             name: "main".to_owned(),

@@ -23,6 +23,8 @@ pub struct Program {
     pub structs: Vec<Struct>,
     /// The structure that holds the global variables; it may be empty.
     pub globals: StructId,
+    /// Other names of global variables: a direct address that is declared again.
+    pub aliases: Vec<Variable>,
     /// In an order in which a callee stands before its callers.
     pub pous: Vec<Pou>,
     /// The programs that run, in order.

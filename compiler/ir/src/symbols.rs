@@ -5,7 +5,8 @@
 
 use crate::layout::Layout;
 use crate::{
-    Address, BlockId, Field, FieldId, Pou, PouKind, Program, Projection, Retain, Root, Section, Type, Variable,
+    Address, BlockId, Field, FieldId, Pou, PouKind, Program, Projection, Retain, Root, Section, StructId, Type,
+    Variable,
 };
 use core::fmt::{self, Write};
 use staunch_runtime::{Direction, Pin, Retention};
@@ -93,19 +94,34 @@ impl Map<'_> {
 
     fn structs(&mut self) -> fmt::Result {
         for (id, structure) in self.program.structs.iter().enumerate() {
-            let ty = Type::Struct(crate::StructId::next(id));
-            let (name, size, kind) = (&structure.name, self.layout.size(ty), self.kind(crate::StructId::next(id)));
+            let ty = Type::Struct(StructId::next(id));
+            let (name, size, kind) = (&structure.name, self.layout.size(ty), self.kind(StructId::next(id)));
             writeln!(self.text, "struct\t{id}\t{name}\t{size}\t{kind}")?;
             for (position, field) in structure.fields.iter().enumerate() {
                 let offset = self.layout.offset(ty, FieldId::next(position));
                 self.field(field, offset)?;
             }
+            if id == self.program.globals.index() {
+                self.aliases()?;
+            }
+        }
+        Ok(())
+    }
+
+    /// A field of the globals under its other names.
+    fn aliases(&mut self) -> fmt::Result {
+        for alias in &self.program.aliases {
+            let Some((offset, attributes)) = self.storage(None, alias, 0) else { continue };
+            let offset = offset - self.layout.machine.globals;
+            let (section, ty) = (section_name(alias.section), TypeName(alias.place.ty));
+            write!(self.text, "field\t{}\t{ty}\t{offset}\t{section}", alias.name)?;
+            self.write_attributes(&attributes)?;
         }
         Ok(())
     }
 
     /// A structure's members are all for users; an instance's inputs and outputs are.
-    fn kind(&self, id: crate::StructId) -> &'static str {
+    fn kind(&self, id: StructId) -> &'static str {
         match self.program.pou_of_state(id).map(|it| self.program.pou(it).kind) {
             Some(PouKind::Program) => "program",
             Some(PouKind::FunctionBlock | PouKind::Function) => "function_block",
@@ -159,7 +175,7 @@ impl Map<'_> {
 
     fn variables(&mut self, instance: usize, pou: &Pou, base: u64) -> fmt::Result {
         for variable in &pou.variables {
-            let Some((offset, attributes)) = self.storage(pou, variable, base) else { continue };
+            let Some((offset, attributes)) = self.storage(pou.state, variable, base) else { continue };
             let section = section_name(variable.section);
             let ty = TypeName(variable.place.ty);
             write!(self.text, "variable\t{instance}\t{}\t{section}\t{ty}\t{offset}", variable.name)?;
@@ -170,9 +186,9 @@ impl Map<'_> {
 
     /// Where a variable lies in the machine, and the attributes of the field it is; `None` for
     /// one that lives for a call.
-    fn storage(&self, pou: &Pou, variable: &Variable, base: u64) -> Option<(u64, Attributes)> {
+    fn storage(&self, state: Option<StructId>, variable: &Variable, base: u64) -> Option<(u64, Attributes)> {
         let (mut offset, structure) = match variable.place.root {
-            Root::Instance => (base, pou.state?),
+            Root::Instance => (base, state?),
             Root::Globals => (self.layout.machine.globals, self.program.globals),
             Root::Local(_) | Root::Param(_) => return None,
         };

@@ -194,7 +194,7 @@ impl<'s> Checker<'_, 's> {
         let signature = self.decl.signature(slot)?;
         let owner = self.decl.pous[slot].ast.name.text;
         let formals = &signature.formals;
-        let arguments = &Self::accepted(&signature, arguments);
+        let arguments = &self.accepted(&signature, arguments)?;
         let parameters: Vec<_> =
             formals.iter().map(|it| Parameter { name: it.name.text, section: it.section }).collect();
         let given = self.bind(owner, &parameters, arguments, |name| Self::unknown_formal(owner, formals, name))?;
@@ -247,11 +247,18 @@ impl<'s> Checker<'_, 's> {
         Some(())
     }
 
-    /// The arguments but those for parameters whose declarations were refused.
+    /// The arguments but those for parameters whose declarations were refused; `None` where it is not
+    /// known which those are.
     pub(super) fn accepted<'a>(
+        &mut self,
         signature: &crate::declare::Signature<'s>,
         arguments: &'a [ast::Argument<'s>],
-    ) -> std::borrow::Cow<'a, [ast::Argument<'s>]> {
+    ) -> Option<std::borrow::Cow<'a, [ast::Argument<'s>]>> {
+        let positional = |it: &ast::Argument<'s>| matches!(it.kind, ast::ArgumentKind::Positional(_));
+        if signature.scope.has_refused() && arguments.iter().any(positional) {
+            self.check_arguments(arguments);
+            return None;
+        }
         let refused = |it: &ast::Argument<'s>| match &it.kind {
             ast::ArgumentKind::Positional(_) => false,
             ast::ArgumentKind::Input(name, _) | ast::ArgumentKind::Output { name, .. } => {
@@ -259,9 +266,9 @@ impl<'s> Checker<'_, 's> {
             }
         };
         if arguments.iter().any(refused) {
-            arguments.iter().filter(|it| !refused(it)).cloned().collect::<Vec<_>>().into()
+            Some(arguments.iter().filter(|it| !refused(it)).cloned().collect::<Vec<_>>().into())
         } else {
-            arguments.into()
+            Some(arguments.into())
         }
     }
 

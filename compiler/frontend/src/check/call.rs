@@ -128,7 +128,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// Reports what is wrong inside the arguments of a call that is wrong itself.
-    fn check_arguments(&mut self, arguments: &[ast::Argument<'s>]) {
+    pub(super) fn check_arguments(&mut self, arguments: &[ast::Argument<'s>]) {
         for argument in arguments {
             match &argument.kind {
                 ArgumentKind::Positional(value) | ArgumentKind::Input(_, value) => drop(self.operand(value, None)),

@@ -75,7 +75,10 @@ impl<'s> Checker<'_, 's> {
                 self.report_narrowing(from, into, span);
                 None
             }
-            (Type::String(_), Type::String(_)) => Some(self.convert(Conversion::Value, to, expr)),
+            (Type::String(_), Type::String(capacity)) => {
+                self.warn_of_cut(&expr, capacity, span);
+                Some(self.convert(Conversion::Value, to, expr))
+            }
             (Type::Enum(id), Type::Elementary(into))
                 if self.decl.dialect(span).mixes_bits_and_integers()
                     && widens(self.decl.program.enumeration(id).base, into) =>
@@ -195,6 +198,14 @@ impl<'s> Checker<'_, 's> {
             error.help(format!("convert it with `{function}(…)`"))
         };
         self.report(error);
+    }
+
+    fn warn_of_cut(&mut self, value: &Expr, capacity: u16, span: Span) {
+        let ExprKind::Text(bytes) = &value.kind else { return };
+        if bytes.len() > usize::from(capacity) {
+            let message = format!("this text has {} characters, and STRING[{capacity}] keeps {capacity}", bytes.len());
+            self.report(Diagnostic::new(Code::W0202, span, message).label("the rest is cut off"));
+        }
     }
 
     /// A conversion node, folded where the value is constant.

@@ -1,6 +1,5 @@
 use super::Checker;
 use super::operand::Operand;
-use crate::names::Key;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, UnaryOp};
 use staunch_ir::{Conversion, Elementary, Expr, ExprKind, Op, Type, Value};
@@ -107,12 +106,17 @@ impl<'s> Checker<'_, 's> {
     /// enumeration, which has no members: `state := State.Idle`.
     fn member_value(&mut self, expr: &ast::Expr<'s>, base: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<Expr> {
         if let Ast::Name(ty) = &base.kind
-            && self.scope.get(ty.text).is_none_or(|it| matches!(it.place.ty, Type::Enum(_)))
-            && let Some(crate::declare::Entry::Type(_)) = self.decl.names.get(&Key(ty.text))
+            && self.type_of_variable(*ty).is_none_or(|it| matches!(it, Type::Enum(_)))
+            && let Some(crate::declare::Entry::Type(_)) = self.decl.type_named(ty.text)
         {
             return self.enumerator(*ty, name);
         }
         self.load(expr)
+    }
+
+    fn type_of_variable(&mut self, name: ast::Name<'s>) -> Option<Type> {
+        let own = self.scope.get(name.text).map(|it| it.place.ty);
+        own.or_else(|| self.decl.type_of_global(name.text))
     }
 
     fn load(&mut self, expr: &ast::Expr<'s>) -> Option<Expr> {

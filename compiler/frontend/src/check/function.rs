@@ -17,7 +17,7 @@ impl<'s> Checker<'_, 's> {
         let signature = self.decl.signature(slot)?;
         let owner = self.decl.pous[slot].ast.name;
         let formals = &signature.formals;
-        let arguments = &Self::accepted(&signature, arguments);
+        let arguments = &self.accepted(&signature, arguments)?;
         let parameters: Vec<_> =
             formals.iter().map(|it| Parameter { name: it.name.text, section: it.section }).collect();
         let given =

@@ -109,7 +109,7 @@ impl<'s> Checker<'_, 's> {
 
     /// `Color#Red` or `Color.Red`.
     pub(super) fn enumerator(&mut self, ty: ast::Name<'s>, name: ast::Name<'s>) -> Option<Expr> {
-        let Some(crate::declare::Entry::Type(slot)) = self.decl.names.get(&Key(ty.text)).copied() else {
+        let Some(crate::declare::Entry::Type(slot)) = self.decl.type_named(ty.text) else {
             self.error(Code::E0102, ty.span, format!("there is no enumeration `{}`", ty.text));
             return None;
         };

@@ -300,7 +300,7 @@ impl<'s> Checker<'_, 's> {
         for variable in &signature.scope.variables {
             use staunch_ir::Section;
             let internal = matches!(variable.section, Section::Internal | Section::Temp | Section::External);
-            if internal && !variable.used.get() && !variable.name.text.starts_with('_') {
+            if internal && !variable.used.get() && !variable.name.text.starts_with(['_', '%']) {
                 self.decl.report(
                     Diagnostic::new(Code::W0501, variable.name.span, format!("`{}` is never used", variable.name.text))
                         .label("declared here, read and written nowhere"),

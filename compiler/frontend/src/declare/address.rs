@@ -1,118 +1,164 @@
-//! Direct addresses. A variable with an address of its own is an ordinary variable that the map
-//! lists with it; an address that several places name is one shared variable among the globals.
+//! Direct addresses. What lies at an address is one field of the globals, whoever declares it:
+//! a global, several PROGRAMs, the instances of one PROGRAM, or a body that names the address.
 
 use super::types::Resolved;
 use super::{Declarations, GlobalSlot};
-use crate::ast;
+use crate::ast::{self, PouKind, VarKind};
 use crate::dialect::Dialect;
 use crate::{Code, Diagnostic, Span};
 use rustc_hash::FxHashMap;
-use staunch_ir::{Address, Area, Elementary, Field, Place, Section, Type};
+use staunch_ir::{Address, Area, Const, Elementary, Field, Place, Retain, Section, Type};
 
 #[derive(Clone, Copy, Debug)]
 enum Storage {
     /// A declared global variable.
     Global(usize),
-    /// A hidden field of the globals; `None` until its type is known.
-    Hidden(Option<usize>),
+    /// A hidden field of the globals.
+    Hidden(usize),
 }
 
-/// Where the shared addresses are kept.
+/// What the declarations of one address say together of its start.
+#[derive(Debug, Default)]
+struct Start {
+    initial: Option<(Const, Span)>,
+    kept: bool,
+}
+
+/// A declaration of an address, or its use in a body.
+#[derive(Clone, Copy, Debug)]
+struct Use {
+    address: Address,
+    /// All bits, also those of an array's other elements.
+    bits: u64,
+    span: Span,
+    /// The scope in which a name is declared: a POU's span, or that of nothing for the globals.
+    scope: Option<Span>,
+}
+
+/// Where the addresses are kept.
 #[derive(Debug, Default)]
 pub(crate) struct Addresses {
-    shared: FxHashMap<Address, Storage>,
+    storage: FxHashMap<Address, Storage>,
+    starts: FxHashMap<Address, Start>,
+    uses: Vec<Use>,
+    /// The slots of the globals that have a field of their own: not a second name of an address.
+    own_fields: Vec<usize>,
 }
 
-#[derive(Clone, Copy)]
-enum Use {
-    Global(usize),
-    Local,
-    Direct,
+impl Addresses {
+    /// The field of the global in slot `at`, unless it is another name of an earlier one.
+    pub fn field_of_global(&self, at: usize) -> Option<usize> {
+        self.own_fields.binary_search(&at).ok()
+    }
+
+    pub fn global_of_field(&self, field: usize) -> Option<usize> {
+        self.own_fields.get(field).copied()
+    }
+
+    /// The globals with a field of their own.
+    pub fn own_fields(&self) -> &[usize] {
+        &self.own_fields
+    }
+
+    /// What lies at an address starts with the value that one of its declarations gives it.
+    pub fn complete(&self, field: &mut Field) {
+        let Some(start) = field.address.and_then(|it| self.starts.get(&it)) else { return };
+        if let Some((initial, _)) = &start.initial {
+            field.initial = initial.clone();
+        }
+        if start.kept {
+            field.retain = Retain::Kept;
+        }
+    }
 }
 
-/// Finds which addresses are shared; `bodies` are those of the POUs.
+/// Finds the globals at addresses, and the addresses that `bodies`, those of the POUs, name.
 pub(super) fn collect<'s>(declarations: &mut Declarations<'s>, bodies: &[Vec<ast::Statement<'s>>]) -> Addresses {
-    let mut uses: Vec<(Address, Span, Use)> = Vec::new();
-    for at in 0..declarations.globals.len() {
-        let GlobalSlot { decl, .. } = declarations.globals[at];
-        let Some(name) = decl.address else { continue };
-        if let Some(address) = parse(name.text) {
-            uses.push((address, name.span, Use::Global(at)));
+    let mut addresses = Addresses::default();
+    for (at, GlobalSlot { decl, .. }) in declarations.globals.iter().enumerate() {
+        let first = decl.address.and_then(|it| parse(it.text)).map(|it| addresses.storage.entry(it));
+        let is_own = match first {
+            Some(entry) => matches!(entry.or_insert(Storage::Global(at)), Storage::Global(first) if *first == at),
+            None => true,
+        };
+        if is_own {
+            addresses.own_fields.push(at);
         }
     }
     let has_addresses: Vec<_> = declarations.sources.files().iter().map(|it| it.text.contains('%')).collect();
     for (pou, body) in declarations.pous.iter().zip(bodies) {
         if has_addresses[usize::from(pou.ast.span.file)] {
-            collect_pou(pou.ast, body, &mut uses);
+            collect_body(body, &mut addresses.uses);
         }
     }
-    uses.sort_by_key(|(address, span, _)| (*address, span.file, span.start));
-    report_overlaps(declarations, &uses);
-    let mut shared = FxHashMap::default();
-    for group in uses.chunk_by(|a, b| a.0 == b.0) {
-        if let Some(storage) = storage_of(group) {
-            shared.insert(group[0].0, storage);
-        }
-    }
-    Addresses { shared }
+    addresses
 }
 
-fn storage_of(group: &[(Address, Span, Use)]) -> Option<Storage> {
-    let global = group.iter().find_map(|(_, _, it)| match it {
-        Use::Global(at) => Some(*at),
-        Use::Local | Use::Direct => None,
-    });
-    let direct = group.iter().any(|(_, _, it)| matches!(it, Use::Direct));
-    match global {
-        Some(at) => Some(Storage::Global(at)),
-        None if direct || group.len() > 1 => Some(Storage::Hidden(None)),
-        None => None,
-    }
-}
-
-/// One area is addressed in several sizes, so that `%MB1` is a part of `%MW0`.
-fn report_overlaps(declarations: &mut Declarations<'_>, uses: &[(Address, Span, Use)]) {
-    let mut widest: Option<(Address, Span)> = None;
-    for (address, span, _) in uses {
-        let before = widest.filter(|(it, _)| it.area == address.area && address.bit < it.bit + u64::from(it.width));
-        if let Some((other, first)) = before
-            && other != *address
-            && share_memory(declarations.dialect(*span), other, *address)
-        {
-            // A CODESYS program counts on the shared bits.
-            let counted_on = declarations.dialect(*span) == Dialect::Codesys;
-            let code = if counted_on { Code::E0410 } else { Code::W0410 };
-            declarations.report(
-                Diagnostic::new(code, *span, "two variables lie on overlapping addresses")
-                    .label("this address shares bits with another one, but is kept apart from it")
-                    .other(first, "the other address"),
-            );
-        }
-        let reaches = |it: &Address| (it.area, it.bit + u64::from(it.width));
-        if widest.is_none_or(|(it, _)| reaches(&it) < reaches(address)) {
-            widest = Some((*address, *span));
-        }
-    }
-}
-
-/// OpenPLC keeps inputs and outputs of each size apart, so that %IX0.0 and %IW0 are two registers.
-fn share_memory(dialect: Dialect, a: Address, b: Address) -> bool {
-    dialect != Dialect::Iec || a.area == Area::Memory || a.width == b.width
-}
-
-fn collect_pou(pou: &ast::Pou<'_>, body: &[ast::Statement<'_>], uses: &mut Vec<(Address, Span, Use)>) {
-    for name in pou.blocks.iter().flat_map(|it| &it.vars).filter_map(|it| it.address) {
-        if let Some(address) = parse(name.text) {
-            uses.push((address, name.span, Use::Local));
-        }
-    }
+fn collect_body(body: &[ast::Statement<'_>], uses: &mut Vec<Use>) {
     ast::each_expr(body, &mut |expr| {
         if let ast::ExprKind::Address(name) = &expr.kind
             && let Some(address) = parse(name.text)
         {
-            uses.push((address, name.span, Use::Direct));
+            uses.push(Use { address, bits: u64::from(address.width), span: name.span, scope: None });
         }
     });
+}
+
+/// Reports what shares bits, when all declarations are known. One area is addressed in several sizes,
+/// so that `%MB1` is a part of `%MW0`.
+pub(super) fn report_overlaps(declarations: &mut Declarations<'_>) {
+    let mut uses = std::mem::take(&mut declarations.addresses.uses);
+    uses.sort_by_key(|it| (it.address, it.span.file, it.span.start));
+    report_second_names(declarations, &uses);
+    let mut widest: Option<Use> = None;
+    for it in uses {
+        let end = it.address.bit + it.bits;
+        let before = widest.filter(|w| w.address.area == it.address.area && it.address.bit < w.address.bit + w.bits);
+        if let Some(other) = before
+            && other.address != it.address
+        {
+            report_overlap(declarations, &it, &other);
+        }
+        if widest.is_none_or(|w| (w.address.area, w.address.bit + w.bits) < (it.address.area, end)) {
+            widest = Some(it);
+        }
+    }
+}
+
+fn report_overlap(declarations: &mut Declarations<'_>, it: &Use, other: &Use) {
+    let error = |code| Diagnostic::new(code, it.span, "two variables lie on overlapping addresses");
+    let diagnostic = if !are_registers(declarations.dialect(it.span), other.address, it.address) {
+        error(Code::E0410).label("this address shares bits with another one, which is not supported yet")
+    } else if it.address.area == Area::Memory {
+        error(Code::W0410).label("this address shares bits with another one, but is kept apart from it")
+    } else {
+        return;
+    };
+    declarations.report(diagnostic.other(other.span, "the other address"));
+}
+
+/// Reports two names that one scope has for one address.
+fn report_second_names(declarations: &mut Declarations<'_>, uses: &[Use]) {
+    let mut declared: FxHashMap<(Address, Span), Span> = FxHashMap::default();
+    for it in uses {
+        let Some(first) = it.scope.and_then(|scope| declared.insert((it.address, scope), it.span)) else { continue };
+        // Two names in one declaration are refused by themselves.
+        if first == it.span {
+            continue;
+        }
+        let text = declarations.sources.text(it.span);
+        declarations.report(
+            Diagnostic::new(Code::W0411, it.span, format!("`{text}` has two names"))
+                .label("what is assigned to one of them is read from the other")
+                .other(first, "the other one")
+                .help("give this variable an address of its own, or use one name"),
+        );
+    }
+}
+
+/// OpenPLC keeps each size apart, so that %IX0.0 and %IW0 are two registers.
+fn are_registers(dialect: Dialect, a: Address, b: Address) -> bool {
+    dialect == Dialect::Iec && a.width != b.width
 }
 
 /// `%IX1.3`, `%QW10`, `%M5.1`. `None` for `%I*` and for what is no address.
@@ -175,33 +221,92 @@ impl<'s> Declarations<'s> {
         address
     }
 
-    /// The shared variable at the address of a declaration, if other places name the address too.
-    pub fn shared_address(
-        &mut self,
-        name: ast::Name<'s>,
-        resolved: &Resolved,
-        variable: ast::Name<'s>,
-    ) -> Option<Place> {
-        let address = parse(name.text)?;
-        self.check_width(address, resolved, name.span);
-        match self.addresses.shared.get(&address).copied()? {
-            Storage::Global(at) => {
-                let global = self.global(at)?;
-                self.same_type(resolved.ty, global.resolved.ty, name, Some(global.name));
-                Some(global.place.clone())
+    /// Reports an address where a declaration has none.
+    pub fn check_address_here(&mut self, kind: Option<PouKind>, block: &ast::VarBlock<'s>, decl: &ast::VarDecl<'s>) {
+        let Some(address) = decl.address else { return };
+        let in_blocks = self.dialect(address.span) == Dialect::Codesys;
+        let global = "declare it in VAR_GLOBAL and name it in VAR_EXTERNAL here";
+        let (message, help) = match (kind, block.kind) {
+            (_, VarKind::Temp) => ("a VAR_TEMP has no address", "declare it in VAR"),
+            (_, VarKind::InOut) => {
+                ("a VAR_IN_OUT has no address", "it stands for a variable of the caller: delete `AT`")
             }
-            Storage::Hidden(Some(at)) => {
-                let (ty, first) = (self.hidden.field_type(at), self.hidden.declared(at));
-                self.same_type(resolved.ty, ty, name, first);
-                Some(self.hidden_place(at))
+            (_, VarKind::External) => ("the address belongs to the global variable", "delete `AT` here"),
+            _ if block.constant.is_some() => ("a CONSTANT has no address", "delete CONSTANT, or the address"),
+            (Some(PouKind::Program) | None, _) => return,
+            (Some(PouKind::FunctionBlock), VarKind::Var | VarKind::Stat) if in_blocks => return,
+            (Some(PouKind::FunctionBlock | PouKind::Function), _) => {
+                ("only a PROGRAM's variables and globals have an address", global)
             }
-            Storage::Hidden(None) => Some(self.share_address(address, resolved, variable.text, Some(variable))),
-        }
+        };
+        self.report(Diagnostic::new(Code::E0409, address.span, message).help(help));
     }
 
-    fn same_type(&mut self, ours: Type, theirs: Type, name: ast::Name<'s>, first: Option<ast::Name<'s>>) {
-        if ours == theirs {
+    /// The variable at the address of a declaration; the inner `None` says that it was refused.
+    pub fn located(
+        &mut self,
+        pou: Option<ast::Name<'s>>,
+        block: &ast::VarBlock<'s>,
+        decl: &ast::VarDecl<'s>,
+        name: ast::Name<'s>,
+        resolved: &Resolved,
+    ) -> Option<Option<Place>> {
+        let declared = decl.address?;
+        let address = parse(declared.text);
+        let found = address.and_then(|it| self.addresses.storage.get(&it).copied());
+        let place = match found {
+            Some(Storage::Global(at)) => {
+                let Some(global) = self.global(at) else { return Some(None) };
+                self.same_type(resolved.ty, global.resolved.ty, declared, Some(global.name))
+                    .then(|| global.place.clone())
+            }
+            Some(Storage::Hidden(at)) => {
+                let (ty, first) = (self.hidden.field_type(at), self.hidden.declared(at));
+                self.same_type(resolved.ty, ty, declared, first).then(|| self.hidden_place(at))
+            }
+            None => {
+                let address = self.address(declared)?;
+                Some(self.new_storage(address, resolved, pou.map_or("Globals", |it| it.text), name))
+            }
+        };
+        if place.is_some() {
+            self.register_address(pou, block, decl, resolved);
+        }
+        Some(place)
+    }
+
+    /// Takes note of a declaration at an address; `pou` is `None` for a global.
+    pub fn register_address(
+        &mut self,
+        pou: Option<ast::Name<'s>>,
+        block: &ast::VarBlock<'s>,
+        decl: &ast::VarDecl<'s>,
+        resolved: &Resolved,
+    ) {
+        let Some(name) = decl.address else { return };
+        let Some(address) = self.address(name) else { return };
+        let bits = self.check_width(address, resolved, name.span);
+        let scope = Some(pou.map_or_else(Span::default, |it| it.span));
+        let start = self.addresses.starts.entry(address).or_default();
+        start.kept |= super::scope::is_declared_retain(block);
+        let given = decl.initial.as_ref().map(|it| (resolved.initial.clone(), it.span));
+        if let (Some((first, other)), Some((value, span))) = (&start.initial, &given)
+            && first != value
+        {
+            let error = Diagnostic::new(Code::E0409, *span, format!("`{}` has two initial values", name.text))
+                .label("another value for the same address")
+                .other(*other, "the first one")
+                .help("give the value in one of the declarations");
+            self.report(error);
             return;
+        }
+        start.initial = start.initial.take().or(given);
+        self.addresses.uses.push(Use { address, bits, span: name.span, scope });
+    }
+
+    fn same_type(&mut self, ours: Type, theirs: Type, name: ast::Name<'s>, first: Option<ast::Name<'s>>) -> bool {
+        if ours == theirs {
+            return true;
         }
         let (ours, theirs) = (self.program.type_name(ours), self.program.type_name(theirs));
         let mut error = Diagnostic::new(Code::E0409, name.span, format!("`{}` has two types", name.text))
@@ -210,9 +315,10 @@ impl<'s> Declarations<'s> {
             error = error.other(first.span, format!("{theirs} here"));
         }
         self.report(error);
+        false
     }
 
-    pub fn check_width(&mut self, address: Address, resolved: &Resolved, span: Span) {
+    fn check_width(&mut self, address: Address, resolved: &Resolved, span: Span) -> u64 {
         let bits = match resolved.ty {
             Type::Elementary(Elementary::Bool) => 1,
             other => self.size_of(other).saturating_mul(8),
@@ -225,16 +331,18 @@ impl<'s> Declarations<'s> {
                 Diagnostic::new(Code::E0409, span, format!("{ty} does not fit this address"))
                     .label(format!("the address is {} bits wide, {ty} is {bits}", address.width)),
             );
+            return u64::from(address.width);
         }
+        bits
     }
 
     /// The variable at an address that a body names directly.
     pub fn direct_address(&mut self, name: ast::Name<'s>) -> Option<Place> {
         let address = self.address(name)?;
-        match self.addresses.shared.get(&address).copied() {
+        match self.addresses.storage.get(&address).copied() {
             Some(Storage::Global(at)) => Some(self.global(at)?.place.clone()),
-            Some(Storage::Hidden(Some(at))) => Some(self.hidden_place(at)),
-            Some(Storage::Hidden(None)) | None => {
+            Some(Storage::Hidden(at)) => Some(self.hidden_place(at)),
+            None => {
                 let elementary = match address.width {
                     1 => Elementary::Bool,
                     8 => Elementary::Byte,
@@ -243,35 +351,37 @@ impl<'s> Declarations<'s> {
                     _ => Elementary::Lword,
                 };
                 let resolved = Resolved::plain(Type::Elementary(elementary));
-                let text = name.text.trim_start_matches('%').replace('.', "_");
-                Some(self.share_address(address, &resolved, &text, None))
+                Some(self.new_storage(address, &resolved, "Globals", name))
             }
         }
     }
 
-    fn share_address(
-        &mut self,
-        address: Address,
-        resolved: &Resolved,
-        name: &str,
-        declared: Option<ast::Name<'s>>,
-    ) -> Place {
-        let location = declared.map(|it| self.location(it.span)).unwrap_or_default();
+    fn new_storage(&mut self, address: Address, resolved: &Resolved, owner: &str, name: ast::Name<'s>) -> Place {
+        let is_named = !name.text.starts_with('%');
+        let mut spelling = field_name(name.text);
+        if self.is_global_name(&spelling) {
+            spelling = format!("{owner}_{spelling}");
+        }
         let field = Field {
-            name: name.to_owned(),
+            name: spelling,
             ty: resolved.ty,
             initial: resolved.initial.clone(),
             section: Section::Global,
-            retain: staunch_ir::Retain::Inherited,
+            retain: Retain::Inherited,
             constant: false,
             address: Some(address),
             doc: None,
-            location,
+            location: if is_named { self.location(name.span) } else { staunch_ir::Location::default() },
         };
-        let at = self.add_hidden(field, declared);
-        self.addresses.shared.insert(address, Storage::Hidden(Some(at)));
+        let at = self.add_hidden(field, is_named.then_some(name));
+        self.addresses.storage.insert(address, Storage::Hidden(at));
         self.hidden_place(at)
     }
+}
+
+/// The name of a field: an address that has no other name is called by its letters and digits.
+pub(super) fn field_name(name: &str) -> String {
+    name.trim_start_matches('%').replace('.', "_")
 }
 
 /// `%IW0.1`, `%QX1.2.3`: an address through the parts of a station.

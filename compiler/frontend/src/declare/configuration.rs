@@ -4,7 +4,8 @@ use super::{Declarations, Entry};
 use crate::ast;
 use crate::check;
 use crate::names::{Key, nearest};
-use crate::{Code, Diagnostic};
+use crate::{Code, Diagnostic, Span};
+use rustc_hash::FxHashMap;
 use staunch_ir::{Instance, PouId, PouKind, Value};
 
 const LOWEST_PRIORITY: u32 = 65535;
@@ -12,6 +13,7 @@ const LOWEST_PRIORITY: u32 = 65535;
 /// Fills the program's instances: those of the configurations, or else one of each PROGRAM.
 pub(super) fn instances(declarations: &mut Declarations<'_>) {
     let configurations = declarations.configurations.clone();
+    declarations.check_configurations(&configurations);
     for resource in configurations.iter().flat_map(|it| &it.resources) {
         declarations.resource(resource);
     }
@@ -37,6 +39,37 @@ struct Timing {
 }
 
 impl<'s> Declarations<'s> {
+    fn check_configurations(&mut self, configurations: &[&'s ast::Configuration<'s>]) {
+        if let [first, second, ..] = configurations {
+            self.report(
+                Diagnostic::new(Code::E0902, second.name.span, "a second CONFIGURATION is not supported yet")
+                    .label("a program has one, with one or more RESOURCEs")
+                    .other(first.name.span, "the first one"),
+            );
+        }
+        for configuration in configurations {
+            self.names_once(configuration.resources.iter().filter_map(|it| it.name));
+        }
+        let resources = configurations.iter().flat_map(|it| &it.resources);
+        for resource in resources.clone() {
+            self.names_once(resource.tasks.iter().map(|it| it.name));
+        }
+        self.names_once(resources.flat_map(|it| &it.programs).map(|it| it.name));
+    }
+
+    /// Reports a name that stands twice among `names`.
+    fn names_once(&mut self, names: impl Iterator<Item = ast::Name<'s>>) {
+        let mut seen: FxHashMap<Key<'s>, Span> = FxHashMap::default();
+        for name in names {
+            let Some(first) = seen.insert(Key(name.text), name.span) else { continue };
+            self.report(
+                Diagnostic::new(Code::E0103, name.span, format!("`{}` is declared twice", name.text))
+                    .label("declared again here")
+                    .other(first, "first declared here"),
+            );
+        }
+    }
+
     fn resource(&mut self, resource: &'s ast::Resource<'s>) {
         let tasks: Vec<_> = resource.tasks.iter().map(|task| (task.name, self.task(task))).collect();
         for instance in &resource.programs {
@@ -80,11 +113,6 @@ impl<'s> Declarations<'s> {
                 return;
             }
         };
-        let known = self.program.instances.iter().any(|it| it.name.eq_ignore_ascii_case(instance.name.text));
-        if known {
-            self.error(Code::E0103, instance.name.span, format!("`{}` is declared twice", instance.name.text));
-            return;
-        }
         self.program.instances.push(Instance {
             name: instance.name.text.to_owned(),
             program: PouId::next(program),
@@ -96,6 +124,14 @@ impl<'s> Declarations<'s> {
 
     fn task(&mut self, task: &'s ast::Task<'s>) -> Timing {
         let mut timing = Timing { interval: None, priority: LOWEST_PRIORITY };
+        self.names_once(task.properties.iter().map(|(name, _)| *name));
+        if !task.properties.iter().any(|(name, _)| name.text.eq_ignore_ascii_case("PRIORITY")) {
+            self.report(
+                Diagnostic::new(Code::W0412, task.name.span, format!("the TASK `{}` has no PRIORITY", task.name.text))
+                    .label("it runs after all tasks that have one")
+                    .help("give it one, 0 is the most urgent: `PRIORITY := 1`"),
+            );
+        }
         for (name, expr) in &task.properties {
             let scope = std::rc::Rc::default();
             let value = check::constant(self, &scope, expr, None).and_then(|it| it.as_const());

@@ -32,11 +32,7 @@ impl<'s> Hidden<'s> {
 impl<'s> Declarations<'s> {
     /// Adds a field to the globals, under `field.name` or, where that is taken, one like it.
     pub fn add_hidden(&mut self, mut field: Field, declared: Option<ast::Name<'s>>) -> usize {
-        let taken = |name: &str| {
-            self.hidden.fields.iter().any(|it| it.name.eq_ignore_ascii_case(name))
-                || self.globals.iter().any(|it| it.name.text.eq_ignore_ascii_case(name))
-        };
-        while taken(&field.name) {
+        while self.is_global_name(&field.name) {
             field.name.push('_');
         }
         field.section = Section::Global;
@@ -45,8 +41,14 @@ impl<'s> Declarations<'s> {
         self.hidden.fields.len() - 1
     }
 
+    /// Whether a field of the globals has the name.
+    pub fn is_global_name(&self, name: &str) -> bool {
+        self.hidden.fields.iter().any(|it| it.name.eq_ignore_ascii_case(name))
+            || self.globals.iter().any(|it| super::address::field_name(it.name.text).eq_ignore_ascii_case(name))
+    }
+
     pub fn hidden_place(&self, at: usize) -> Place {
-        let id = FieldId::next(self.globals.len() + at);
+        let id = FieldId::next(self.addresses.own_fields().len() + at);
         Place::root(Root::Globals, Type::Struct(super::GLOBALS)).field(id, self.hidden.fields[at].ty)
     }
 }

@@ -96,6 +96,9 @@ pub(crate) struct Declarations<'s> {
     pub dialects: Vec<Dialect>,
     pub diagnostics: Vec<Diagnostic>,
     pub names: FxHashMap<Key<'s>, Entry>,
+    /// The types and FUNCTION_BLOCKs whose name is a global's too: they are meant where a type is
+    /// expected, the variable elsewhere.
+    hidden_types: FxHashMap<Key<'s>, Entry>,
     /// The declarations in which a bare enumerator is named, with their type's slot.
     pub enumerators: FxHashMap<Key<'s>, Vec<usize>>,
     /// Names in type declarations that did not parse: they may be enumerators.
@@ -156,11 +159,15 @@ pub(crate) fn declare<'s>(
     declarations.addresses = address::collect(&mut declarations, &statements);
     declarations.resolve_all();
     declarations.untyped = untyped(&declarations.pous, &statements);
+    let unassigned = unassigned_results(&declarations.pous, &statements);
     let bodies = check::bodies(&mut declarations, statements, bodies);
     let program = declarations.finish(bodies);
     diagnostics.append(&mut declarations.diagnostics);
     // A program that is accepted has all its statements.
     let is_rejected = diagnostics.iter().any(|it| it.severity == Severity::Error);
+    if !is_rejected {
+        diagnostics.extend(unassigned);
+    }
     if let (Some(span), false) = (declarations.left_out, is_rejected) {
         unreachable!("checked program: `{}` was left out without a word", sources.text(span));
     }
@@ -168,16 +175,30 @@ pub(crate) fn declare<'s>(
 }
 
 fn untyped(pous: &[PouSlot<'_>], statements: &[Vec<ast::Statement<'_>>]) -> FxHashSet<usize> {
-    let names_itself = |name: &str, body: &[ast::Statement<'_>]| {
-        let mut found = false;
-        ast::each_expr(body, &mut |it| {
-            found |= matches!(&it.kind, ast::ExprKind::Name(it) if it.text.eq_ignore_ascii_case(name));
-        });
-        found
-    };
     let all = pous.iter().map(|it| it.ast).zip(statements).enumerate();
     let untyped = all.filter(|(_, (pou, _))| pou.kind == ast::PouKind::Function && pou.result.is_none());
-    untyped.filter(|(_, (pou, body))| names_itself(pou.name.text, body)).map(|(slot, _)| slot).collect()
+    untyped.filter(|(_, (pou, body))| mentions(body, pou.name.text)).map(|(slot, _)| slot).collect()
+}
+
+/// The FUNCTIONs whose bodies do not name their result. What was refused may have assigned it.
+fn unassigned_results(pous: &[PouSlot<'_>], statements: &[Vec<ast::Statement<'_>>]) -> Vec<Diagnostic> {
+    let typed = pous.iter().map(|it| it.ast).zip(statements).filter(|(pou, _)| pou.result.is_some());
+    let unassigned = typed.filter(|(pou, body)| !mentions(body, pou.name.text)).map(|(pou, _)| pou.name);
+    let lint = |name: ast::Name<'_>| {
+        Diagnostic::new(Code::W0516, name.span, format!("the result of `{}` is never assigned", name.text))
+            .label("each call gives its type's initial value")
+            .help(format!("assign it, `{} := …;`", name.text))
+    };
+    unassigned.map(lint).collect()
+}
+
+/// Whether the statements name something `name`.
+fn mentions(body: &[ast::Statement<'_>], name: &str) -> bool {
+    let mut found = false;
+    ast::each_expr(body, &mut |it| {
+        found |= matches!(&it.kind, ast::ExprKind::Name(it) if it.text.eq_ignore_ascii_case(name));
+    });
+    found
 }
 
 impl<'s> Declarations<'s> {
@@ -189,6 +210,7 @@ impl<'s> Declarations<'s> {
             dialects: Vec::new(),
             diagnostics: Vec::new(),
             names: FxHashMap::default(),
+            hidden_types: FxHashMap::default(),
             enumerators: FxHashMap::default(),
             unread: FxHashSet::default(),
             types: Vec::new(),
@@ -302,8 +324,8 @@ impl<'s> Declarations<'s> {
             match item {
                 ast::Item::Types(decls) => decls.iter().for_each(|decl| self.collect_type(decl)),
                 ast::Item::Pou(pou) => {
-                    self.enter(pou.name, Entry::Pou(self.pous.len()));
                     self.pous.push(PouSlot { ast: pou, slot: Slot::Waiting });
+                    self.enter(pou.name, Entry::Pou(self.pous.len() - 1));
                 }
                 ast::Item::Globals(block) => self.collect_globals(block),
                 ast::Item::Configuration(it) => self.collect_configuration(it),
@@ -352,7 +374,11 @@ impl<'s> Declarations<'s> {
         if name.text.is_empty() {
             return;
         }
+        self.check_spelling(name);
         if let Some(first) = self.names.get(&Key(name.text)).copied() {
+            if self.enter_beside(name, first, entry) {
+                return;
+            }
             let first = self.span_of(first);
             self.report(
                 Diagnostic::new(Code::E0103, name.span, format!("`{}` is declared twice", name.text))
@@ -362,6 +388,66 @@ impl<'s> Declarations<'s> {
             return;
         }
         self.names.insert(Key(name.text), entry);
+    }
+
+    /// Reports a name with underlines where the standard has none.
+    pub fn check_spelling(&mut self, name: ast::Name<'s>) {
+        let wrong = if name.text.contains("__") {
+            "two underlines in a row"
+        } else if name.text.ends_with('_') && self.dialect(name.span) != Dialect::Codesys {
+            "an underline at the end"
+        } else {
+            return;
+        };
+        self.report(
+            Diagnostic::new(Code::W0101, name.span, format!("the name `{}` has {wrong}", name.text))
+                .label("the standard has no such names, and other systems refuse them"),
+        );
+    }
+
+    /// A global may have the name of a type: `motor : Motor`. FALSE for any other pair of equal names.
+    fn enter_beside(&mut self, name: ast::Name<'s>, first: Entry, second: Entry) -> bool {
+        let key = Key(name.text);
+        let (global, ty) = match (first, second) {
+            (global @ Entry::Global(_), ty) if self.is_type(ty) => (global, ty),
+            (ty, global @ Entry::Global(_)) if self.is_type(ty) => (global, ty),
+            _ => return false,
+        };
+        if self.hidden_types.contains_key(&key) {
+            return false;
+        }
+        self.hidden_types.insert(key, ty);
+        self.names.insert(key, global);
+        true
+    }
+
+    fn is_type(&self, entry: Entry) -> bool {
+        match entry {
+            Entry::Type(_) => true,
+            Entry::Pou(at) => self.pous.get(at).is_some_and(|it| it.ast.kind == ast::PouKind::FunctionBlock),
+            Entry::Global(_) => false,
+        }
+    }
+
+    /// What a name means where a type is expected.
+    pub fn type_named(&self, name: &str) -> Option<Entry> {
+        let hidden = self.hidden_types.get(&Key(name));
+        hidden.or_else(|| self.names.get(&Key(name))).copied().filter(|it| !matches!(it, Entry::Global(_)))
+    }
+
+    /// The names of all types and POUs.
+    pub fn type_names(&self) -> impl Iterator<Item = &'s str> {
+        let own = self.names.iter().filter(|(_, entry)| !matches!(entry, Entry::Global(_)));
+        own.chain(&self.hidden_types).map(|(key, _)| key.0)
+    }
+
+    /// The type of the global variable of that name; in its own declaration it is not known yet.
+    pub fn type_of_global(&mut self, name: &str) -> Option<Type> {
+        let Some(Entry::Global(at)) = self.names.get(&Key(name)).copied() else { return None };
+        if matches!(self.globals[at].slot, Slot::Active) {
+            return None;
+        }
+        self.global(at).map(|it| it.resolved.ty)
     }
 
     pub fn span_of(&self, entry: Entry) -> Span {
@@ -382,6 +468,7 @@ impl<'s> Declarations<'s> {
         for at in 0..self.pous.len() {
             self.signature(at);
         }
+        address::report_overlaps(self);
     }
 
     /// Resolves a declaration that others may wait for, unless too many do.
@@ -428,13 +515,16 @@ impl<'s> Declarations<'s> {
         decl: &'s ast::VarDecl<'s>,
     ) -> Option<Variable<'s>> {
         let resolved = self.declared_type(decl, &Rc::new(Scope::default()), name.text)?;
-        if let Some(address) = decl.address
-            && let Some(parsed) = self.address(address)
-        {
-            self.check_width(parsed, &resolved, address.span);
-        }
         self.check_retain(block, resolved.ty, name);
-        let place = Place::root(Root::Globals, Type::Struct(GLOBALS)).field(staunch_ir::FieldId::next(at), resolved.ty);
+        let place = match self.addresses.field_of_global(at) {
+            Some(field) => {
+                self.check_address_here(None, block, decl);
+                self.register_address(None, block, decl, &resolved);
+                let field = staunch_ir::FieldId::next(field);
+                Place::root(Root::Globals, Type::Struct(GLOBALS)).field(field, resolved.ty)
+            }
+            None => self.located(None, block, decl, name, &resolved)??,
+        };
         Some(self.variable(name, block, Rc::new(resolved), place))
     }
 
@@ -449,9 +539,9 @@ impl<'s> Declarations<'s> {
 
     /// The direct address of a field of the globals.
     pub fn address_of_global(&self, field: staunch_ir::FieldId) -> Option<staunch_ir::Address> {
-        match self.globals.get(field.index()) {
-            Some(global) => address::parse(global.decl.address?.text),
-            None => self.hidden.address_of(field.index() - self.globals.len()),
+        match self.addresses.global_of_field(field.index()) {
+            Some(at) => address::parse(self.globals[at].decl.address?.text),
+            None => self.hidden.address_of(field.index() - self.addresses.own_fields().len()),
         }
     }
 
@@ -470,16 +560,14 @@ impl<'s> Declarations<'s> {
 
     /// Puts the parts together: the globals' structure, the instances, the order of the POUs.
     fn finish(&mut self, bodies: Vec<Option<(staunch_ir::Pou, check::Uses)>>) -> Option<Program> {
-        let fields = (0..self.globals.len()).map(|at| self.global_field(at)).collect::<Vec<_>>();
+        let fields: Vec<_> = (0..self.globals.len()).filter_map(|at| self.global_field(at)).collect();
         let hidden = self.hidden.take_fields();
+        let mut fields: Vec<_> = fields.into_iter().chain(hidden).collect();
+        fields.iter_mut().for_each(|it| self.addresses.complete(it));
+        self.program.aliases = (0..self.globals.len()).filter_map(|at| self.alias(at)).collect();
         self.program.globals = StructId::next(self.program.structs.len());
         let location = Location::default();
-        self.program.structs.push(Struct {
-            name: "Globals".to_owned(),
-            doc: None,
-            location,
-            fields: fields.into_iter().flatten().chain(hidden).collect(),
-        });
+        self.program.structs.push(Struct { name: "Globals".to_owned(), doc: None, location, fields });
         let (pous, uses) = bodies.into_iter().collect::<Option<Vec<_>>>()?.into_iter().unzip();
         self.program.pous = pous;
         configuration::instances(self);
@@ -514,8 +602,22 @@ impl<'s> Declarations<'s> {
 
     fn global_field(&mut self, at: usize) -> Option<staunch_ir::Field> {
         let variable = self.global(at)?;
+        self.addresses.field_of_global(at)?;
         let GlobalSlot { name, block, decl, .. } = self.globals[at];
         Some(self.field(name, &variable.resolved, block, decl))
+    }
+
+    /// The global in slot `at`, if it is another name of an earlier one's address.
+    fn alias(&mut self, at: usize) -> Option<staunch_ir::Variable> {
+        if self.addresses.field_of_global(at).is_some() {
+            return None;
+        }
+        let variable = self.global(at)?;
+        Some(staunch_ir::Variable {
+            name: address::field_name(variable.name.text),
+            section: variable.section,
+            place: variable.place.clone(),
+        })
     }
 }
 
@@ -528,6 +630,7 @@ fn empty_program(files: Vec<SourceFile>) -> Program {
         structs: Vec::new(),
         globals: StructId(0),
         pous: Vec::new(),
+        aliases: Vec::new(),
         instances: Vec::new(),
     }
 }

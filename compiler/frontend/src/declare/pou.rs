@@ -198,10 +198,8 @@ impl<'s> Declarations<'s> {
                     .help("use VAR_INPUT and VAR_OUTPUT, or VAR_EXTERNAL for a global variable"),
             );
         }
-        if let Some(span) = block.constant
-            && matches!(block.kind, VarKind::Output | VarKind::InOut)
-        {
-            self.error(Code::E0403, span, "an output cannot be CONSTANT");
+        if let Some(span) = block.constant {
+            self.check_constant_section(block.kind, span);
         }
         if block.kind == VarKind::Global {
             let kind = match pou.kind {
@@ -217,6 +215,20 @@ impl<'s> Declarations<'s> {
         }
     }
 
+    fn check_constant_section(&mut self, kind: VarKind, span: Span) {
+        let (message, help) = match kind {
+            VarKind::Output => ("a VAR_OUTPUT cannot be CONSTANT", "declare it in VAR CONSTANT"),
+            VarKind::InOut if self.dialect(span) == dialect::Dialect::Codesys => {
+                self.not_supported(span, "VAR_IN_OUT CONSTANT");
+                return;
+            }
+            VarKind::InOut => ("a VAR_IN_OUT cannot be CONSTANT", "declare what is only read in VAR_INPUT"),
+            VarKind::Temp => ("a VAR_TEMP cannot be CONSTANT", "declare it in VAR CONSTANT"),
+            VarKind::Var | VarKind::Input | VarKind::Stat | VarKind::Global | VarKind::External => return,
+        };
+        self.report(Diagnostic::new(Code::E0403, span, message).help(help));
+    }
+
     fn declare_variables(
         &mut self,
         pou: &'s ast::Pou<'s>,
@@ -226,9 +238,10 @@ impl<'s> Declarations<'s> {
     ) {
         let scope = Rc::clone(&builder.scope);
         let owner = decl.names.first().map_or(pou.name.text, |it| it.text);
+        self.check_address_here(Some(pou.kind), block, decl);
         if block.kind == VarKind::External {
             drop(scope);
-            self.declare_externals(decl, builder);
+            self.declare_externals(block, decl, builder);
             return;
         }
         self.check_one_name(decl);
@@ -238,9 +251,11 @@ impl<'s> Declarations<'s> {
             decl.names.iter().for_each(|name| builder.refuse(*name));
             return;
         };
-        if block.constant.is_some() && decl.initial.is_none() && block.kind == VarKind::Var {
+        let is_plain = matches!(resolved.ty, Type::Elementary(_) | Type::String(_));
+        if block.constant.is_some() && decl.initial.is_none() && block.kind == VarKind::Var && is_plain {
             self.report(
-                Diagnostic::new(Code::E0404, decl.span, format!("the CONSTANT `{owner}` has no value"))
+                Diagnostic::new(Code::W0404, decl.span, format!("the CONSTANT `{owner}` has no value"))
+                    .label("it keeps its type's initial value")
                     .help("give it one: `name : TYPE := value;`"),
             );
         }
@@ -299,7 +314,30 @@ impl<'s> Declarations<'s> {
         );
     }
 
-    fn declare_externals(&mut self, decl: &'s ast::VarDecl<'s>, builder: &mut Builder<'s>) {
+    /// Reports what only the declaration of a global says: its value, and that it is no constant.
+    fn check_external(&mut self, block: &ast::VarBlock<'s>, decl: &ast::VarDecl<'s>, global: &Variable<'s>) {
+        if let Some(initial) = &decl.initial {
+            let whole = Span { start: decl.ty.span.end, ..initial.span };
+            self.report(
+                Diagnostic::new(Code::E0405, initial.span, "a VAR_EXTERNAL has no initial value")
+                    .label("the value belongs to the global variable")
+                    .other(global.name.span, "the global variable")
+                    .help("delete it here")
+                    .fix(whole, ""),
+            );
+        }
+        if let (Some(constant), false) = (block.constant, global.constant) {
+            let message = format!("the global `{}` is not CONSTANT", global.name.text);
+            self.report(
+                Diagnostic::new(Code::E0405, constant, message)
+                    .label("this says that it never changes")
+                    .other(global.name.span, "the global variable")
+                    .help("delete CONSTANT here, or declare it in VAR_GLOBAL CONSTANT"),
+            );
+        }
+    }
+
+    fn declare_externals(&mut self, block: &ast::VarBlock<'s>, decl: &'s ast::VarDecl<'s>, builder: &mut Builder<'s>) {
         let wanted = self.resolve_spec(&decl.ty, &Rc::new(Scope::default()), "external");
         for name in &decl.names {
             let Some(global) = self.external(*name) else {
@@ -325,6 +363,7 @@ impl<'s> Declarations<'s> {
                 builder.refuse(*name);
                 continue;
             }
+            self.check_external(block, decl, &global);
             let variable = Variable { name: *name, section: Section::External, ..Variable::clone(&global) };
             let scope = Rc::get_mut(&mut builder.scope).expect("no one else holds the scope between declarations");
             self.enter_variable(scope, variable);
@@ -341,12 +380,6 @@ impl<'s> Declarations<'s> {
         resolved: &Rc<Resolved>,
         builder: &mut Builder<'s>,
     ) -> Option<Place> {
-        if decl.address.is_some() && pou.kind != PouKind::Program {
-            self.report(
-                Diagnostic::new(Code::E0409, name.span, "only a PROGRAM's variables and globals have an address")
-                    .help("declare it in VAR_GLOBAL and name it in VAR_EXTERNAL here"),
-            );
-        }
         let section = super::scope::section(block.kind);
         let formal = |target| Formal { name, section, resolved: Rc::clone(resolved), target };
         let place = match (pou.kind, block.kind) {
@@ -374,13 +407,16 @@ impl<'s> Declarations<'s> {
                 Place::local(builder.local(name.text, resolved, decl.doc.clone()), resolved.ty)
             }
             (PouKind::Program | PouKind::FunctionBlock, _) => {
-                if let Some(place) = decl.address.and_then(|it| self.shared_address(it, resolved, name)) {
-                    return Some(place);
-                }
-                let place = self.push_field(block, decl, name, resolved, builder);
-                if matches!(block.kind, VarKind::Input | VarKind::Output) {
-                    builder.formals.push(formal(Target::Field(FieldId::next(builder.fields.len() - 1))));
-                }
+                let place = match self.located(Some(pou.name), block, decl, name, resolved) {
+                    Some(place) => place?,
+                    None => {
+                        let place = self.push_field(block, decl, name, resolved, builder);
+                        if matches!(block.kind, VarKind::Input | VarKind::Output) {
+                            builder.formals.push(formal(Target::Field(FieldId::next(builder.fields.len() - 1))));
+                        }
+                        place
+                    }
+                };
                 match decl.edge {
                     Some((edge, span)) => self.edge_input(edge, span, name, place, builder)?,
                     None => place,

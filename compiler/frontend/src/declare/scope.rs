@@ -52,6 +52,10 @@ impl<'s> Scope<'s> {
         self.refused.contains(&Key(name))
     }
 
+    pub fn has_refused(&self) -> bool {
+        !self.refused.is_empty()
+    }
+
     /// The earlier variable of that name, if there is one.
     pub fn insert(&mut self, variable: impl Into<Rc<Variable<'s>>>) -> Result<(), ast::Name<'s>> {
         let variable = variable.into();
@@ -78,7 +82,7 @@ pub(crate) fn section(kind: ast::VarKind) -> Section {
 }
 
 /// RETAIN, or its synonym PERSISTENT.
-fn is_declared_retain(block: &ast::VarBlock<'_>) -> bool {
+pub fn is_declared_retain(block: &ast::VarBlock<'_>) -> bool {
     block.retain.is_some() || block.persistent.is_some()
 }
 
@@ -134,8 +138,20 @@ impl<'s> Declarations<'s> {
         }
     }
 
-    /// Reports a block that is both RETAIN and NON_RETAIN.
+    /// Reports a block that is both RETAIN and NON_RETAIN, or CONSTANT and one of them.
     pub fn check_retain_once(&mut self, block: &ast::VarBlock<'s>) {
+        if let (Some(constant), Some(retain)) = (block.constant, block.retain.or(block.persistent).or(block.non_retain))
+        {
+            let word = self.sources.text(retain);
+            let message = format!("a variable is CONSTANT or {word}, not both");
+            self.report(
+                crate::Diagnostic::new(crate::Code::E0403, retain, message)
+                    .label("a CONSTANT has its value at each start")
+                    .other(constant, "CONSTANT here")
+                    .help(format!("delete {word}"))
+                    .fix(retain, ""),
+            );
+        }
         if let (Some(kept), Some(not)) = (block.retain.or(block.persistent), block.non_retain) {
             self.report(
                 crate::Diagnostic::new(crate::Code::E0403, not, "a variable is RETAIN or NON_RETAIN, not both")
@@ -184,9 +200,9 @@ impl<'s> Declarations<'s> {
         block: &ast::VarBlock<'s>,
         decl: &ast::VarDecl<'s>,
     ) -> Field {
-        let address = decl.address.and_then(|it| self.address(it));
+        let address = decl.address.and_then(|it| super::address::parse(it.text));
         Field {
-            name: name.text.to_owned(),
+            name: super::address::field_name(name.text),
             ty: resolved.ty,
             initial: resolved.initial.clone(),
             section: section(block.kind),
@@ -201,6 +217,9 @@ impl<'s> Declarations<'s> {
     /// Reports a second variable of the same name in one scope.
     pub fn enter_variable(&mut self, scope: &mut Scope<'s>, variable: Variable<'s>) {
         let name = variable.name;
+        if variable.section != Section::External {
+            self.check_spelling(name);
+        }
         if let Err(first) = scope.insert(variable) {
             self.report(
                 crate::Diagnostic::new(crate::Code::E0103, name.span, format!("`{}` is declared twice", name.text))

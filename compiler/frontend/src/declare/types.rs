@@ -213,7 +213,7 @@ impl<'s> Declarations<'s> {
         if let Some(elementary) = Elementary::named(name.text) {
             return Some(Resolved::plain(Type::Elementary(elementary)));
         }
-        match self.names.get(&Key(name.text)).copied() {
+        match self.type_named(name.text) {
             Some(Entry::Type(at)) => return self.resolve_type_slot(at),
             Some(Entry::Pou(at)) => return self.instance_type(at, name),
             Some(Entry::Global(_)) | None => {}
@@ -255,8 +255,7 @@ impl<'s> Declarations<'s> {
         let blocks = staunch_runtime::BLOCKS.iter().map(|it| it.name);
         let blocks = blocks.filter(|it| dialect::bare_block(dialect, it).is_some());
         let elementary = Elementary::ALL.iter().map(|it| it.name());
-        let own = self.names.iter().filter(|(_, entry)| !matches!(entry, Entry::Global(_)));
-        let candidates = own.map(|(key, _)| key.0).chain(elementary).chain(blocks).chain(["STRING"]);
+        let candidates = self.type_names().chain(elementary).chain(blocks).chain(["STRING"]);
         let near = nearest(name.text, candidates).map(str::to_owned);
         let foreign =
             FOREIGN.iter().find(|(it, _)| it.eq_ignore_ascii_case(name.text)).map(|(_, ours)| (*ours).to_owned());

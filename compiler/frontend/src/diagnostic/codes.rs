@@ -240,6 +240,10 @@ message offers the nearest declared name, where there is one.
     VAR count : INT; END_VAR
     cuont := 1;      (* did you mean `count`? *)
 ";
+    W0101 Warning "underlines in a name"
+"In the standard a name has no two underlines in a row and none at its end, so that other systems may refuse
+it. CODESYS keeps names with two underlines for itself.
+";
     E0102 Error "unknown type"
 "A declaration names a type that is neither elementary, nor declared in a TYPE block, nor a
 FUNCTION_BLOCK of the program, nor a standard block of the dialect in force.
@@ -327,6 +331,12 @@ outputs are read. It cannot be copied or computed with.
     VAR parts : CTU; count : INT; END_VAR
     count := parts.CV;      (* not `count := parts;` *)
 ";
+    W0202 Warning "a text is cut"
+"A text is longer than the STRING that it goes into, which keeps its first characters.
+
+    VAR name : STRING[3] := 'pump'; END_VAR      (* before *)
+    VAR name : STRING[4] := 'pump'; END_VAR      (* after *)
+";
     E0301 Error "unknown pin or parameter"
 "A call names a parameter that the block or function does not have. Systems disagree on pin
 names: the reset of a counter is `R` in IEC 61131-3, `RESET` in CODESYS and Cscape; the load
@@ -391,9 +401,6 @@ defined by itself: its size or value would have no end.
 "RETAIN, CONSTANT, R_EDGE and F_EDGE each have sections to which they belong. A VAR_TEMP or a
 function's variable has no value from one call to the next, so there is nothing to retain.
 ";
-    E0404 Error "a constant without a value"
-"A CONSTANT never changes, so its declaration gives the value.
-";
     E0405 Error "VAR_EXTERNAL differs from its global"
 "VAR_EXTERNAL names a global variable, with the type of its declaration.
 ";
@@ -408,13 +415,13 @@ function's variable has no value from one call to the next, so there is nothing 
 ";
     E0409 Error "direct address"
 "A direct address is an area (I inputs, Q outputs, M memory), a size (X bit, B byte, W 16, D 32,
-L 64 bits) and a place: `%IX0.3`, `%QW2`. Its variable has just that many bits. It belongs to a
-PROGRAM or to the globals.
+L 64 bits) and a place: `%IX0.3`, `%QW2`. Its variable has just that many bits. It is declared in a
+PROGRAM or among the globals, in codesys also in a FUNCTION_BLOCK, and is one variable wherever it
+is declared: its declarations agree in the type and in the initial value.
 ";
     E0410 Error "overlapping addresses"
-"In CODESYS memory is addressed in several sizes, so that %MB1 is a part of %MW0. Staunch keeps such
-variables apart, and refuses a program that may count on the shared bits. Declare the larger one, and
-take its parts: `word.%B1`, `word.3`.
+"One area is addressed in several sizes, so that %MB1 is a part of %MW0. Such variables would share
+their bits, which is not supported yet. Declare the larger one, and take its parts: `word.%B1`, `word.3`.
 ";
     E0501 Error "assignment to a constant"
 "A variable declared CONSTANT keeps its value.
@@ -492,9 +499,29 @@ empty text where none is declared. That is rarely meant. CODESYS refuses it, and
     VAR_INPUT raw : REAL; factor : REAL; END_VAR             (* before *)
     VAR_INPUT raw : REAL; factor : REAL := 1.0; END_VAR      (* after *)
 ";
+    W0404 Warning "a constant without a value"
+"A CONSTANT without a value keeps its type's initial value: 0, FALSE or an empty text. Write the value, also
+where it is that.
+
+    VAR CONSTANT limit : INT; END_VAR             (* before *)
+    VAR CONSTANT limit : INT := 100; END_VAR      (* after *)
+";
     W0410 Warning "overlapping addresses"
-"Two variables lie on addresses that share bits, such as %MW0 and %MB1. Staunch keeps them
-apart: writing one does not change the other.
+"Two variables lie on addresses that share bits, such as %MW0 and %MB1. In the iec dialect each size
+has registers of its own, as in OpenPLC: writing one does not change the other.
+";
+    W0411 Warning "one address under two names"
+"Two variables of one scope lie on the same direct address, so they are one variable: what is assigned
+to one of them is read from the other.
+
+    VAR start AT %IX0.0 : BOOL; stop AT %IX0.0 : BOOL; END_VAR      (* before *)
+    VAR start AT %IX0.0 : BOOL; stop AT %IX0.1 : BOOL; END_VAR      (* after *)
+";
+    W0412 Warning "a task without a priority"
+"The standard has a PRIORITY in each TASK, 0 the most urgent. A task without one runs after the others.
+
+    TASK fast(INTERVAL := T#10ms);                    (* before *)
+    TASK fast(INTERVAL := T#10ms, PRIORITY := 1);     (* after *)
 ";
     W0501 Warning "unused variable"
 "A variable is declared but never read or written. Start its name with `_` to keep it.
@@ -545,6 +572,13 @@ array has no element for, so the index can still fault.
 
     VAR i : INT(0..5); levels : ARRAY[0..3] OF INT; END_VAR      (* before *)
     VAR i : INT(0..3); levels : ARRAY[0..3] OF INT; END_VAR      (* after *)
+";
+    W0516 Warning "a result that is never assigned"
+"A FUNCTION's result is what was last assigned to its name. Where nothing is, each call gives the type's initial
+value.
+
+    FUNCTION Twice : INT VAR_INPUT a : INT; END_VAR b := 2 * a; END_FUNCTION          (* before *)
+    FUNCTION Twice : INT VAR_INPUT a : INT; END_VAR Twice := 2 * a; END_FUNCTION      (* after *)
 ";
     W0602 Warning "a count is compared beyond its preset"
 "A CSCAPE counter stops at its preset, so its count is not above it. Elsewhere counting goes on, and programs

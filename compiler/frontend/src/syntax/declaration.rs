@@ -135,11 +135,18 @@ fn declaration_or_names<'t, 'p, 's>(input: &mut In<'t, 'p, 's>, start: Start<'t,
 /// `names` holds what was read of the names, also if the rest does not parse.
 pub fn declaration<'s>(input: &mut In<'_, '_, 's>, names: &mut Vec<Name<'s>>) -> Parsed<VarDecl<'s>> {
     let (first, start) = (input.number(), input.here());
-    names.push(first_name(input)?);
-    while input.eat(Kind::Comma).is_some() {
-        names.push(input.name()?);
+    // What lies at an address needs no other name.
+    let mut address = address(input)?;
+    match address {
+        Some(address) => names.push(address),
+        None => {
+            names.push(first_name(input)?);
+            while input.eat(Kind::Comma).is_some() {
+                names.push(input.name()?);
+            }
+            address = self::address(input)?;
+        }
     }
-    let address = address(input)?;
     if input.kind() == Kind::Assign {
         let sign = input.here();
         input.report(diagnostics::assign_for_colon(sign));

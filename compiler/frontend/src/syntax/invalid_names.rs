@@ -90,7 +90,9 @@ fn declarations(tokens: &Tokens<'_>, found: &mut Found<'_>) {
 fn declared(tokens: &Tokens<'_>, at: usize, found: &mut Found<'_>) -> Option<usize> {
     let count = pieces(tokens, at)?;
     let next = tokens.kinds[at + count];
-    if !matches!(next, Kind::Colon | Kind::Comma | Kind::At) {
+    // `VAR RETAIN AT %QW5 : WORD;` declares no name.
+    let qualifies = matches!(tokens.kinds[at], Kind::Constant | Kind::Retain | Kind::NonRetain | Kind::Persistent);
+    if !matches!(next, Kind::Colon | Kind::Comma | Kind::At) || (qualifies && next == Kind::At) {
         return None;
     }
     found.report(tokens, at, count);

@@ -244,8 +244,11 @@ fn latch<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<StatementKi
         "S" | "s" if joined => true,
         "R" | "r" if joined => false,
         text if joined && text.eq_ignore_ascii_case("REF") => {
+            input.take();
+            input.take();
+            expression(input)?;
             input.report(diagnostics::unsupported(word, "the reference assignment `REF=`"));
-            false
+            return Ok(StatementKind::Error);
         }
         _ if matches!(target.kind, ExprKind::Call(..)) => return Ok(StatementKind::Expr(target)),
         _ => return without_effect(input, target),

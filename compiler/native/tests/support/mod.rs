@@ -77,6 +77,7 @@ pub fn program(arrays: Vec<Array>, mut structs: Vec<Struct>, pous: Vec<Pou>) -> 
         bounds: Vec::new(),
         arrays,
         globals: StructId::next(structs.len() - 1),
+        aliases: Vec::new(),
         instances: instances.collect(),
         structs,
         pous,
