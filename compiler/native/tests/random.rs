@@ -104,6 +104,7 @@ impl Maker {
             instances: instances.collect(),
             arrays: maker.arrays,
             globals,
+            aliases: Vec::new(),
             structs: maker.structs,
             pous: maker.pous,
         }
