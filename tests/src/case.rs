@@ -49,6 +49,8 @@ pub struct Settings {
     pub options: Options,
     /// `// cycle: 20ms`, in the command's own words.
     pub cycle: Option<String>,
+    /// `// loop-budget: 1000`.
+    pub loop_budget: Option<u64>,
 }
 
 impl Case {
@@ -87,6 +89,7 @@ impl Case {
                 ("dialect", name) => settings.options.dialect = dialect(name),
                 ("moved-from", name) => settings.options.moved_from = Some(dialect(name)),
                 ("ctu-stop-at-pv", value) => settings.options.ctu_stop_at_pv = value == "on",
+                ("loop-budget", value) => settings.loop_budget = value.parse().ok(),
                 ("cycle", value) => settings.cycle = Some(value.to_owned()),
                 _ => {}
             }

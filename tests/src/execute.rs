@@ -106,6 +106,7 @@ pub struct Outcome {
 pub struct Settings {
     /// As `--cycle` takes it.
     pub cycle: Option<String>,
+    pub loop_budget: Option<u64>,
     /// For each scan, whether the program is told that it is the first; else the host decides.
     pub first: Option<Vec<bool>>,
 }
@@ -127,6 +128,7 @@ pub fn run(
     let options = Options {
         scans: table.scans().last().copied(),
         cycle,
+        loop_budget: settings.loop_budget,
         stimulus: Some(stimulus),
         trace: Some(trace.clone()),
         vars: Some(table.variables().join(",")),
@@ -203,7 +205,7 @@ impl Machine for Recorder<'_> {
 
     fn scan(&mut self, instance: usize, cx: &Context) -> Result<(), staunch_runtime::Fault> {
         let told = self.first.and_then(|it| it.get(self.states.len()).copied());
-        let cx = Context { first_scan: told.unwrap_or(cx.first_scan), ..*cx };
+        let cx = told.map_or_else(|| cx.clone(), |first_scan| Context::new(cx.now, first_scan));
         let end = self.machine.scan(instance, &cx);
         self.states.push(self.leaves.of(self.machine.state()));
         end

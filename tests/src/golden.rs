@@ -85,7 +85,8 @@ fn clif(program: &Program) -> Result<String, String> {
 fn scan(case: &Case, program: &Program) -> Result<String, String> {
     let pinned = case.pinned(Pin::Scan);
     let table = Table::parse(&pinned).map_err(|it| format!("{}.scan: {it}", case.name))?;
-    let settings = Settings { cycle: case.settings().cycle, first: None };
+    let case_settings = case.settings();
+    let settings = Settings { cycle: case_settings.cycle, loop_budget: case_settings.loop_budget, first: None };
     let outcome = agree(program, &case.module(), &table, &settings)?.table;
     // How cells are spaced is not what is pinned.
     Ok(if outcome == table { pinned } else { outcome.to_string() })

@@ -51,7 +51,7 @@ fn agree(seed: u64, executor: Executor) -> bool {
     let leaves = Leaves::new(program);
     let mut machines = [Executor::Interpreter, executor].map(|it| it.machine(program, &random::module(seed)).unwrap());
     for scan in 0..SCANS {
-        let cx = Context { now: scan * 10_000_000, first_scan: scan == 0 };
+        let cx = Context::new(scan * 10_000_000, scan == 0);
         let ends = machines.each_mut().map(|it: &mut Box<dyn Machine + '_>| it.scan(0, &cx));
         let [a, b] = machines.each_ref().map(|it| leaves.of(it.state()));
         let different = a.iter().zip(&b).find(|(a, b)| a != b);

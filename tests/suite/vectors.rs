@@ -35,7 +35,7 @@ fn run(vector: &Vector) -> Result<(), String> {
     let program = compilation.program.as_ref().ok_or_else(messages)?;
     let table = table(vector)?;
     let first = Some(vector.scans.iter().map(|it| it.first).collect());
-    let outcome = agree(program, &vector.module(), &table, &Settings { cycle: None, first })?;
+    let outcome = agree(program, &vector.module(), &table, &Settings { first, ..Settings::default() })?;
     for (number, (row, scan)) in outcome.table.rows.iter().zip(&vector.scans).enumerate() {
         let found = table.outputs.iter().zip(&row.outputs);
         for (path, value) in found {

@@ -168,6 +168,9 @@ pub struct Run {
     /// Time from scan to scan: 10ms, T#1s
     #[arg(long, value_name = "TIME")]
     pub cycle: Option<String>,
+    /// Turns that the loops of one scan may take together [default: 10000000]
+    #[arg(long, value_name = "N")]
+    pub loop_budget: Option<u64>,
     /// Inputs over time
     #[arg(long, value_name = "IN.csv")]
     pub stimulus: Option<PathBuf>,
@@ -204,6 +207,9 @@ pub struct Bench {
     /// Time from scan to scan on the program's clock
     #[arg(long, value_name = "TIME")]
     pub cycle: Option<String>,
+    /// Turns that the loops of one scan may take together [default: 10000000]
+    #[arg(long, value_name = "N")]
+    pub loop_budget: Option<u64>,
     /// What runs it
     #[arg(long, value_enum, default_value_t = BuildBackend::Native)]
     pub backend: BuildBackend,

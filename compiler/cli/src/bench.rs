@@ -41,6 +41,7 @@ pub fn bench(session: &Session, args: &Bench) -> Result<u8, String> {
         program: None,
         scans: args.scans,
         cycle: cycle(session, args.cycle.as_deref())?,
+        loop_budget: args.loop_budget.or(session.project.loop_budget),
         stimulus: args.stimulus.clone(),
     };
     let measured = match args.backend {
@@ -82,6 +83,7 @@ fn rust(program: &Program, options: &BenchOptions) -> Result<Figures, Stop> {
     let mut command = Command::new(&executable);
     command.arg("--bench").stdout(Stdio::piped());
     options.scans.map(|it| command.arg("--scans").arg(it.to_string()));
+    options.loop_budget.map(|it| command.arg("--loop-budget").arg(it.to_string()));
     options.cycle.map(|it| command.arg("--cycle").arg(format!("{it}ns")));
     options.stimulus.as_ref().map(|it| command.arg("--stimulus").arg(it));
     let ran = command.spawn().and_then(std::process::Child::wait_with_output);

@@ -12,6 +12,7 @@ pub struct Project {
     pub files: Vec<PathBuf>,
     pub program: Option<String>,
     pub cycle: Option<String>,
+    pub loop_budget: Option<u64>,
     pub ctu_stop_at_pv: bool,
     pub warn: Vec<String>,
     pub deny: Vec<String>,
@@ -46,6 +47,7 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
         "files" => project.files = texts(key, value)?.into_iter().map(PathBuf::from).collect(),
         "program" => project.program = Some(text(key, value)?),
         "cycle" => project.cycle = Some(text(key, value)?),
+        "loop-budget" => project.loop_budget = Some(number(key, value)?),
         "ctu-stop-at-pv" => project.ctu_stop_at_pv = flag(key, value)?,
         "warn" => project.warn = texts(key, value)?,
         "deny" => project.deny = texts(key, value)?,
@@ -56,7 +58,7 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
         "verbose" => project.verbose = flag(key, value)?,
         _ => {
             return Err(format!(
-                "there is no setting `{key}`; there are dialect, files, program, cycle, ctu-stop-at-pv, warn, deny, allow, message-format, color, quiet and verbose"
+                "there is no setting `{key}`; there are dialect, files, program, cycle, loop-budget, ctu-stop-at-pv, warn, deny, allow, message-format, color, quiet and verbose"
             ));
         }
     }
@@ -65,6 +67,11 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
 
 fn text(key: &str, value: &toml::Value) -> Result<String, String> {
     value.as_str().map(str::to_owned).ok_or_else(|| format!("`{key}` is a text in quotes"))
+}
+
+fn number(key: &str, value: &toml::Value) -> Result<u64, String> {
+    let number = value.as_integer().and_then(|it| u64::try_from(it).ok());
+    number.ok_or_else(|| format!("`{key}` is a whole number, 0 or more"))
 }
 
 fn flag(key: &str, value: &toml::Value) -> Result<bool, String> {

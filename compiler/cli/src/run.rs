@@ -56,6 +56,7 @@ fn options(session: &Session, args: &Run) -> Result<Options, String> {
         program: None,
         scans: args.scans,
         cycle: cycle(session, args.cycle.as_deref())?,
+        loop_budget: args.loop_budget.or(session.project.loop_budget),
         stimulus: args.stimulus.clone(),
         trace: args.trace.clone(),
         vars: args.vars.clone(),
@@ -74,6 +75,7 @@ fn execute(session: &Session, args: &Run, program: &Program) -> Result<u8, Strin
     let texts = [
         ("--scans", args.scans.map(|it| it.to_string())),
         ("--cycle", cycle(session, args.cycle.as_deref())?.map(|it| format!("{it}ns"))),
+        ("--loop-budget", args.loop_budget.or(session.project.loop_budget).map(|it| it.to_string())),
         ("--vars", args.vars.clone()),
     ];
     for (flag, value) in texts {

@@ -9,7 +9,7 @@
 //! 3. Ids, never names. Names are kept for people: messages, traces, emitted code.
 //! 4. Expressions are pure: they read, compute or fault. A call is a statement.
 //! 5. Evaluation goes left to right, and the first fault wins.
-//! 6. WHILE, REPEAT and FOR are one [`StatementKind::Loop`].
+//! 6. WHILE and REPEAT are one [`StatementKind::Loop`]; a [`For`] goes by its variable.
 //! 7. Calls carry every argument, in declaration order.
 //! 8. A [`Place`] is a root and projections; an index outside its bounds faults.
 //! 9. A fault is the only unexpected exit, and has a location.
@@ -24,13 +24,14 @@ mod expression;
 mod op;
 mod place;
 mod statement;
+pub mod visit;
 
 mod print;
 pub mod verify;
 
-pub mod counted;
 pub mod interpret;
 pub mod layout;
+pub mod loops;
 pub mod symbols;
 
 #[cfg(test)]
@@ -44,7 +45,7 @@ pub use program::{
     Address, Area, Field, FieldId, Instance, Local, LocalId, Mode, Param, ParamId, Pou, PouId, PouKind, Program,
     Retain, Section, SourceFile, Variable,
 };
-pub use statement::{Argument, Arm, Block, Statement, StatementKind};
+pub use statement::{Argument, Arm, Block, For, Statement, StatementKind, Step};
 pub use types::{
     Array, ArrayId, BlockId, BoundsId, Const, Elementary, Enum, EnumId, Enumerator, Struct, StructId, Type,
 };

@@ -1,4 +1,4 @@
-use crate::{Expr, FaultKind, Location, Place, PouId};
+use crate::{Expr, FaultKind, Location, Place, PouId, Value};
 
 pub type Block = Vec<Statement>;
 
@@ -27,12 +27,16 @@ pub enum StatementKind {
         arms: Vec<Arm>,
         otherwise: Block,
     },
-    /// Runs `body` and then `continuing`, forever. `Exit` leaves it; `Continue` goes on with
-    /// `continuing`, which itself holds `Exit` but no `Continue`.
+    /// WHILE and REPEAT: runs `body` and then `continuing`, forever. `Exit` leaves it; `Continue`
+    /// goes on with `continuing`, which itself holds `Exit` but no `Continue`. Each turn takes one
+    /// of the scan's turns: `body` holds a `Turn` outside of inner blocks.
     Loop {
         body: Block,
         continuing: Block,
     },
+    For(Box<For>),
+    /// Takes one of the turns that the loops of a scan have; faults when none is left.
+    Turn,
     /// Leaves the innermost loop.
     Exit,
     /// Goes on with the innermost loop's `continuing`.
@@ -72,6 +76,82 @@ pub enum StatementKind {
     Fault(FaultKind),
 }
 
+/// A FOR loop goes by its variable: `counter` is given `first`, then `last` and `step` are evaluated,
+/// once. Before each turn the counter is compared with `last`; after it, it is stepped. What a body,
+/// a callee or an alias writes to the counter, the loop goes on from.
+///
+/// A step out of the counter's `range` ends the loop, with the counter as it is, if it is past `last`;
+/// else it faults with SubrangeViolated. A variable step of 0 faults with ZeroStep before the first turn.
+#[derive(Clone, Debug)]
+pub struct For {
+    /// An integer or bit string; its indices do not change while the loop runs.
+    pub counter: Place,
+    /// Of the counter's type, and within `range`.
+    pub first: Expr,
+    /// Of the counter's type.
+    pub last: Expr,
+    pub step: Step,
+    /// The values that the counter may take: those of its type, or of its subrange.
+    pub range: (i128, i128),
+    /// Nothing but the loop itself writes the counter while the loop runs.
+    pub is_private: bool,
+    /// Begins with a `Turn`, unless the loop [is short](For::is_short).
+    pub body: Block,
+    /// Where the step is written, for its faults.
+    pub step_at: Location,
+}
+
+/// By how much a FOR loop's counter changes.
+#[derive(Clone, Debug)]
+pub enum Step {
+    /// Not 0, and no further than from 0 to the greatest value of the counter's type.
+    Constant(i128),
+    /// Of the counter's type.
+    Variable(Expr),
+}
+
+impl For {
+    /// Turns that a loop may have without taking any of the scan's.
+    pub const FREE_TURNS: i128 = 1024;
+
+    /// What the counter may be in the body, as far as constants say it. It holds for a private counter.
+    pub fn bounds(&self) -> (i128, i128) {
+        let constant = |it: &Expr| it.as_const().and_then(Value::as_integer);
+        let (least, most) = self.range;
+        let (first, last) = (constant(&self.first), constant(&self.last));
+        match self.step {
+            Step::Constant(step) if step > 0 => (first.unwrap_or(least), last.unwrap_or(most)),
+            Step::Constant(_) => (last.unwrap_or(least), first.unwrap_or(most)),
+            Step::Variable(_) => self.range,
+        }
+    }
+
+    /// Whether a step may lead out of the counter's range.
+    pub fn may_leave_range(&self) -> bool {
+        let last = self.last.as_const().and_then(Value::as_integer);
+        match (&self.step, last) {
+            (Step::Constant(step), Some(last)) if self.is_private => {
+                !(self.range.0..=self.range.1).contains(&(last + step))
+            }
+            (Step::Constant(_) | Step::Variable(_), _) => true,
+        }
+    }
+
+    /// Whether a step may fault, where `whole` are the values of the counter's elementary type: a
+    /// step out of those is always past `last`.
+    pub fn step_may_fault(&self, whole: Option<(i128, i128)>) -> bool {
+        let zero = matches!(self.step, Step::Variable(_));
+        zero || self.may_leave_range() && whole != Some(self.range)
+    }
+
+    /// Whether constants show that the loop ends after few turns.
+    pub fn is_short(&self) -> bool {
+        let Step::Constant(step) = self.step else { return false };
+        let (least, most) = self.bounds();
+        self.is_private && (most - least) / step.abs() < Self::FREE_TURNS
+    }
+}
+
 #[derive(Clone, Debug)]
 pub enum Argument {
     /// For a parameter that is passed by value.
@@ -103,7 +183,9 @@ impl StatementKind {
                 arms.iter().map(|arm| &arm.body).chain([otherwise]).collect()
             }
             Self::Loop { body, continuing } => vec![body, continuing],
+            Self::For(it) => vec![&it.body],
             Self::Assign { .. }
+            | Self::Turn
             | Self::Exit
             | Self::Continue
             | Self::Return
@@ -122,7 +204,9 @@ impl StatementKind {
                 arms.iter_mut().map(|arm| &mut arm.body).chain([otherwise]).collect()
             }
             Self::Loop { body, continuing } => vec![body, continuing],
+            Self::For(it) => vec![&mut it.body],
             Self::Assign { .. }
+            | Self::Turn
             | Self::Exit
             | Self::Continue
             | Self::Return

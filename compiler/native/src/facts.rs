@@ -2,9 +2,9 @@
 //! takes no more than it needs, and a caller checks only calls that may fault.
 
 use crate::{inline_block, inline_op};
-use staunch_ir::counted::{Counted, constant_position, is_within};
+use staunch_ir::loops::{constant_position, is_within};
 use staunch_ir::{
-    Argument, Expr, ExprKind, Place, Pou, PouId, Program, Projection, Root, Statement, StatementKind, Type,
+    Argument, Expr, ExprKind, For, Place, Pou, PouId, Program, Projection, Root, Statement, StatementKind, Step, Type,
 };
 
 #[derive(Clone, Debug, Default)]
@@ -45,18 +45,18 @@ struct Finder<'a> {
     program: &'a Program,
     known: &'a [PouFacts],
     pou: &'a Pou,
-    /// Of the loops around.
-    counters: Vec<Counted<'a>>,
+    /// The loops around whose counters are in registers.
+    counters: Vec<&'a For>,
     facts: Facts,
 }
 
 impl<'a> Finder<'a> {
     fn block(&mut self, block: &'a [Statement]) {
-        (0..block.len()).for_each(|at| self.statement(block, at));
+        block.iter().for_each(|it| self.statement(it));
     }
 
-    fn statement(&mut self, block: &'a [Statement], at: usize) {
-        match &block[at].kind {
+    fn statement(&mut self, statement: &'a Statement) {
+        match &statement.kind {
             StatementKind::Assign { target, value } => {
                 self.place(target);
                 self.expr(value);
@@ -71,13 +71,15 @@ impl<'a> Finder<'a> {
                 arms.iter().for_each(|arm| self.block(&arm.body));
                 self.block(otherwise);
             }
-            StatementKind::Loop { body, continuing } => match Counted::find(self.program, self.pou, block, at) {
-                Some(counted) => self.turns(counted),
-                None => {
-                    self.block(body);
-                    self.block(continuing);
-                }
-            },
+            StatementKind::Loop { body, continuing } => {
+                self.block(body);
+                self.block(continuing);
+            }
+            StatementKind::For(it) => self.for_loop(it),
+            StatementKind::Turn => {
+                self.facts.may_fault = true;
+                self.facts.uses_context = true;
+            }
             StatementKind::Exit | StatementKind::Continue | StatementKind::Return => {}
             StatementKind::Call { callee, instance, arguments, result: _ } => {
                 self.instance(instance.as_ref());
@@ -98,12 +100,18 @@ impl<'a> Finder<'a> {
         }
     }
 
-    /// The steps of a counter cannot fault.
-    fn turns(&mut self, counted: Counted<'a>) {
-        self.expr(counted.last);
-        self.counters.push(counted);
-        self.block(counted.body);
-        self.counters.pop();
+    fn for_loop(&mut self, it: &'a For) {
+        self.place(&it.counter);
+        self.expr(&it.first);
+        self.expr(&it.last);
+        if let Step::Variable(step) = &it.step {
+            self.expr(step);
+        }
+        let lane = self.program.lane(it.counter.ty);
+        self.facts.may_fault |= it.step_may_fault(lane.and_then(|lane| lane.range()));
+        self.counters.extend(it.is_private.then_some(it));
+        self.block(&it.body);
+        self.counters.truncate(self.counters.len() - usize::from(it.is_private));
     }
 
     fn callee(&mut self, callee: PouId, part: fn(&PouFacts) -> &Facts) {

@@ -9,8 +9,7 @@ use crate::unit::{Part, Unit, Workspace};
 use cranelift_codegen::ir::{self as clif, InstBuilder, StackSlot, UserFuncName};
 use cranelift_frontend::{FuncInstBuilder, FunctionBuilder, Variable};
 use cranelift_module::{DataId, FuncId};
-use staunch_ir::counted::Counted;
-use staunch_ir::{Const, LocalId, Mode, Pou, PouId, Program, Type};
+use staunch_ir::{Const, For, LocalId, Mode, Pou, PouId, Program, Type};
 use std::collections::HashMap;
 
 /// More variables than this make the construction of SSA form slow; the rest live in the frame.
@@ -26,7 +25,7 @@ pub(crate) struct Function<'a, 'p> {
     /// The innermost loop is the last.
     pub(crate) loops: Vec<Turn>,
     /// The FOR loops among them whose counters are in registers.
-    pub(crate) counters: Vec<Counted<'p>>,
+    pub(crate) counters: Vec<&'p For>,
     /// One for each of `counters`: its value, extended to 64 bits.
     pub(crate) registers: Vec<Variable>,
     /// Where RETURN goes.

@@ -4,39 +4,102 @@
 use crate::function::{Function, Goes, Turn};
 use crate::place::Site;
 use crate::signature::clif_type;
-use cranelift_codegen::ir::{self as clif, InstBuilder, condcodes::IntCC, types};
+use cranelift_codegen::ir::{self as clif, InstBuilder, MemFlagsData, condcodes::IntCC, types};
 use cranelift_frontend::Variable;
-use staunch_ir::counted::{Counted, exit_condition, running};
-use staunch_ir::{Block, Expr, ExprKind, Lane, Statement, Value};
+use staunch_ir::loops::{exit_condition, running};
+use staunch_ir::{Block, Expr, ExprKind, FaultKind, For, Lane, Location, Statement, Step, Value};
+use staunch_runtime::Context;
 
 /// Conditions of more operations than this stand once, and the loop's end jumps to them.
 const SMALL: usize = 8;
 
 /// What leads to a further turn.
 enum Control<'p> {
-    /// The counter, also in a register of 64 bits.
-    Count(Counted<'p>, Variable),
+    Count(Running<'p>),
     /// It leaves the loop.
     Unless(&'p Expr),
     Always,
 }
 
+/// A FOR loop that is being emitted. Values are of 64 bits.
+#[derive(Clone, Copy)]
+struct Running<'p> {
+    it: &'p For,
+    lane: Lane,
+    at: Location,
+    /// The counter, beside its storage, where nothing but the loop writes it.
+    register: Option<Variable>,
+    /// What is not constant.
+    last: Option<clif::Value>,
+    step: Option<clif::Value>,
+}
+
 impl<'p> Function<'_, 'p> {
-    pub(crate) fn turns(&mut self, block: &'p [Statement], at: usize, body: &'p Block, continuing: &'p Block) -> Goes {
-        if let Some(counted) = Counted::find(self.unit.program, self.pou, block, at) {
-            let register = self.counter_register(&counted);
-            self.counters.push(counted);
-            self.registers.push(register);
-            let goes = self.turns_under(&Control::Count(counted, register), counted.body, &[]);
-            self.registers.pop();
-            self.counters.pop();
-            return goes;
-        }
+    pub(crate) fn turns(&mut self, body: &'p Block, continuing: &'p Block) -> Goes {
         match body.split_first() {
             Some((test, rest)) if let Some(leave) = exit_condition(test).filter(|it| is_small(it)) => {
                 self.turns_under(&Control::Unless(leave), rest, continuing)
             }
             _ => self.turns_under(&Control::Always, body, continuing),
+        }
+    }
+
+    pub(crate) fn for_loop(&mut self, it: &'p For, at: Location) -> Goes {
+        let running = self.start_for(it, at);
+        if let Some(register) = running.register {
+            self.counters.push(it);
+            self.registers.push(register);
+        }
+        let goes = self.turns_under(&Control::Count(running), &it.body, &[]);
+        if running.register.is_some() {
+            self.registers.pop();
+            self.counters.pop();
+        }
+        goes
+    }
+
+    fn start_for(&mut self, it: &'p For, at: Location) -> Running<'p> {
+        let lane = self.unit.program.lane(it.counter.ty).expect("verified IR: an integer counter");
+        self.assign(&it.counter, &it.first);
+        let last = it.last.as_const().is_none().then(|| self.wide_scalar(lane, &it.last));
+        let step = match &it.step {
+            Step::Constant(_) => None,
+            Step::Variable(step) => Some(self.wide_scalar(lane, step)),
+        };
+        if let Some(step) = step {
+            let is_zero = self.ins().icmp_imm_u(IntCC::Equal, step, 0);
+            self.fault_if(is_zero, FaultKind::ZeroStep, it.step_at);
+        }
+        let mut running = Running { it, lane, at, register: None, last, step };
+        if it.is_private {
+            let value = self.counter_value(&running);
+            let register = self.builder.declare_var(types::I64);
+            self.builder.def_var(register, value);
+            running.register = Some(register);
+        }
+        running
+    }
+
+    fn wide_scalar(&mut self, lane: Lane, value: &Expr) -> clif::Value {
+        let value = self.scalar(value);
+        self.widened(lane, value)
+    }
+
+    fn counter_value(&mut self, running: &Running<'p>) -> clif::Value {
+        match running.register {
+            Some(register) => self.builder.use_var(register),
+            None => {
+                let value = self.load_place(&running.it.counter);
+                self.widened(running.lane, value)
+            }
+        }
+    }
+
+    fn last(&mut self, running: &Running<'p>) -> clif::Value {
+        match (running.last, running.it.last.as_const().and_then(Value::as_integer)) {
+            (Some(last), _) => last,
+            (None, Some(last)) => self.integer(types::I64, last),
+            (None, None) => unreachable!("verified IR: an integer"),
         }
     }
 
@@ -62,9 +125,10 @@ impl<'p> Function<'_, 'p> {
 
     fn further_turn(&mut self, control: &Control<'p>, turn: clif::Block, after: clif::Block) {
         match control {
-            Control::Count(counted, register) => {
-                let last = self.last(counted);
-                self.unless_past(counted, *register, last, turn, after);
+            Control::Count(running) => {
+                let (counter, last) = (self.counter_value(running), self.last(running));
+                let past = self.is_past(running, running.lane == Lane::U64, counter, last);
+                self.ins().brif(past, after, &[], turn, &[]);
             }
             Control::Unless(leave) => self.test(leave, after, turn),
             Control::Always => {
@@ -75,70 +139,139 @@ impl<'p> Function<'_, 'p> {
 
     fn end_of_turn(&mut self, control: &Control<'p>, continuing: &'p [Statement]) -> Goes {
         match control {
-            Control::Count(counted, register) => {
-                self.step(counted, *register);
+            Control::Count(running) => {
+                self.step(running);
                 Goes::On
             }
             Control::Unless(_) | Control::Always => self.block(continuing),
         }
     }
 
-    fn counter_register(&mut self, counted: &Counted<'p>) -> Variable {
-        let value = self.load_place(counted.counter);
-        let value = self.widened(counted.lane, value);
-        let register = self.builder.declare_var(types::I64);
-        self.builder.def_var(register, value);
-        register
+    /// Whether `value` is on the other side of `last`, in the direction of the step.
+    fn is_past(&mut self, running: &Running<'p>, unsigned: bool, value: clif::Value, last: clif::Value) -> clif::Value {
+        let (above, below) = if unsigned {
+            (IntCC::UnsignedGreaterThan, IntCC::UnsignedLessThan)
+        } else {
+            (IntCC::SignedGreaterThan, IntCC::SignedLessThan)
+        };
+        match (&running.it.step, running.step) {
+            (Step::Constant(step), _) => self.ins().icmp(if *step > 0 { above } else { below }, value, last),
+            (Step::Variable(_), None) => unreachable!("a variable step is evaluated before the loop"),
+            // An unsigned step leads up.
+            (Step::Variable(_), Some(_)) if !running.lane.is_signed() => self.ins().icmp(above, value, last),
+            (Step::Variable(_), Some(step)) => {
+                let down = self.ins().icmp_imm_s(IntCC::SignedLessThan, step, 0);
+                let (is_above, is_below) = (self.ins().icmp(above, value, last), self.ins().icmp(below, value, last));
+                self.ins().select(down, is_below, is_above)
+            }
+        }
     }
 
     /// The counter's next value, in its register and in its storage.
-    fn step(&mut self, counted: &Counted<'p>, register: Variable) {
-        if let Some(end) = counted.end {
-            let end = self.integer(types::I64, end);
-            let step = self.builder.create_block();
-            let after = self.turn_end();
-            self.unless_past(counted, register, end, step, after);
-            self.go_on_in(step);
+    fn step(&mut self, running: &Running<'p>) {
+        let counter = self.counter_value(running);
+        if running.it.may_leave_range() {
+            self.unless_out_of_range(running, counter);
         }
-        let value = self.builder.use_var(register);
-        let value = self.ins().iadd_imm_s(value, counted.step);
-        self.builder.def_var(register, value);
-        match self.site(counted.counter) {
+        let value = match (&running.it.step, running.step) {
+            (_, Some(step)) => self.ins().iadd(counter, step),
+            (Step::Constant(step), None) => {
+                let step = self.integer(types::I64, *step);
+                self.ins().iadd(counter, step)
+            }
+            (Step::Variable(_), None) => unreachable!("a variable step is evaluated before the loop"),
+        };
+        if let Some(register) = running.register {
+            self.builder.def_var(register, value);
+        }
+        match self.site(&running.it.counter) {
             Site::Variable(variable) => {
-                let value = self.narrowed(counted.lane, value);
+                let value = self.narrowed(running.lane, value);
                 self.builder.def_var(variable, value);
             }
-            Site::Memory(address) => self.store_low(counted.lane, value, address),
+            Site::Memory(address) => self.store_low(running.lane, value, address),
         }
     }
 
-    fn last(&mut self, counted: &Counted<'p>) -> clif::Value {
-        match counted.last.as_const().and_then(Value::as_integer) {
-            Some(last) => self.integer(types::I64, last),
-            None => {
-                let last = self.scalar(counted.last);
-                self.widened(counted.lane, last)
+    /// Ends the loop, or faults, where the step would lead out of the counter's range; else goes on.
+    fn unless_out_of_range(&mut self, running: &Running<'p>, counter: clif::Value) {
+        let (it, lane) = (running.it, running.lane);
+        let is_out = match &it.step {
+            // From some value on, the step leads out; where that is not one of the range, always.
+            Step::Constant(step) => {
+                let edge = if *step > 0 { it.range.1 - step } else { it.range.0 - step };
+                if (it.range.0..=it.range.1).contains(&edge) {
+                    let edge = self.integer(types::I64, edge);
+                    self.is_past(running, lane == Lane::U64, counter, edge)
+                } else {
+                    self.integer(types::I8, 1)
+                }
+            }
+            Step::Variable(_) => {
+                let next = self.exact_next(running, counter);
+                let (least, most) = (self.exact(it.range.0), self.exact(it.range.1));
+                let below = self.ins().icmp(IntCC::SignedLessThan, next, least);
+                let above = self.ins().icmp(IntCC::SignedGreaterThan, next, most);
+                self.ins().bor(below, above)
+            }
+        };
+        let (out, stay) = (self.builder.create_block(), self.builder.create_block());
+        let after = self.turn_end();
+        if lane.range() == Some(it.range) {
+            self.ins().brif(is_out, after, &[], stay, &[]);
+        } else {
+            self.ins().brif(is_out, out, &[], stay, &[]);
+            self.go_on_in(out);
+            let (next, last) = (self.exact_next(running, counter), self.last(running));
+            let last = self.exactly(lane, last);
+            let past = self.is_past(running, false, next, last);
+            let fault = self.builder.create_block();
+            self.ins().brif(past, after, &[], fault, &[]);
+            self.go_on_in(fault);
+            self.fault(FaultKind::SubrangeViolated, running.at);
+        }
+        self.go_on_in(stay);
+    }
+
+    /// The counter after the step, wide enough for any.
+    fn exact_next(&mut self, running: &Running<'p>, counter: clif::Value) -> clif::Value {
+        let counter = self.exactly(running.lane, counter);
+        let step = match (&running.it.step, running.step) {
+            (_, Some(step)) => self.exactly(running.lane, step),
+            (Step::Constant(step), None) => self.exact(*step),
+            (Step::Variable(_), None) => unreachable!("a variable step is evaluated before the loop"),
+        };
+        self.ins().iadd(counter, step)
+    }
+
+    fn exact(&mut self, value: i128) -> clif::Value {
+        // What reaches beyond 64 bits is an unsigned number.
+        match i64::try_from(value) {
+            Ok(value) => {
+                let value = self.ins().iconst(types::I64, value);
+                self.ins().sextend(types::I128, value)
+            }
+            Err(_) => {
+                let value = self.integer(types::I64, value);
+                self.ins().uextend(types::I128, value)
             }
         }
     }
 
-    fn unless_past(
-        &mut self,
-        counted: &Counted<'p>,
-        register: Variable,
-        last: clif::Value,
-        stay: clif::Block,
-        past: clif::Block,
-    ) {
-        let counter = self.builder.use_var(register);
-        let condition = match (counted.step > 0, counted.lane) {
-            (true, Lane::U64) => IntCC::UnsignedLessThanOrEqual,
-            (true, _) => IntCC::SignedLessThanOrEqual,
-            (false, Lane::U64) => IntCC::UnsignedGreaterThanOrEqual,
-            (false, _) => IntCC::SignedGreaterThanOrEqual,
-        };
-        let stays = self.ins().icmp(condition, counter, last);
-        self.ins().brif(stays, stay, &[], past, &[]);
+    fn exactly(&mut self, lane: Lane, value: clif::Value) -> clif::Value {
+        if lane == Lane::U64 { self.ins().uextend(types::I128, value) } else { self.ins().sextend(types::I128, value) }
+    }
+
+    /// Takes one of the scan's turns.
+    pub(crate) fn take_turn(&mut self, at: Location) {
+        let context = self.start.context.expect("a function that takes turns gets the context");
+        let offset = i32::try_from(Context::TURNS_OFFSET).expect("a context is small");
+        let flags = MemFlagsData::trusted();
+        let left = self.ins().load(types::I64, flags, context, offset);
+        let is_none = self.ins().icmp_imm_u(IntCC::Equal, left, 0);
+        self.fault_if(is_none, FaultKind::LoopBudget, at);
+        let left = self.ins().iadd_imm_s(left, -1);
+        self.ins().store(flags, left, context, offset);
     }
 
     /// The counter of a loop that is running, at 64 bits, if `expr` is one.

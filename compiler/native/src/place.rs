@@ -4,7 +4,7 @@ use crate::function::{Function, Home};
 use crate::memory::Address;
 use cranelift_codegen::ir::{InstBuilder, condcodes::IntCC};
 use cranelift_frontend::Variable;
-use staunch_ir::counted::{constant_position, is_within};
+use staunch_ir::loops::{constant_position, is_within};
 use staunch_ir::{ArrayId, Expr, FaultKind, Location, Place, Projection, Root, Type};
 
 /// Where the value of a place is.

@@ -9,16 +9,15 @@ use staunch_ir::{Block, Expr, ExprKind, Op, Place, Statement, StatementKind, Typ
 impl<'p> Function<'_, 'p> {
     /// What stands behind a statement that control does not pass is left out.
     pub(crate) fn block(&mut self, block: &'p [Statement]) -> Goes {
-        for at in 0..block.len() {
-            if self.statement(block, at) == Goes::Away {
+        for statement in block {
+            if self.statement(statement) == Goes::Away {
                 return Goes::Away;
             }
         }
         Goes::On
     }
 
-    fn statement(&mut self, block: &'p [Statement], at: usize) -> Goes {
-        let statement = &block[at];
+    fn statement(&mut self, statement: &'p Statement) -> Goes {
         self.release_temporaries();
         match &statement.kind {
             StatementKind::Assign { target, value } => self.assign(target, value),
@@ -28,7 +27,9 @@ impl<'p> Function<'_, 'p> {
             StatementKind::Case { selector, arms, otherwise } => {
                 return self.case(selector, arms, otherwise);
             }
-            StatementKind::Loop { body, continuing } => return self.turns(block, at, body, continuing),
+            StatementKind::Loop { body, continuing } => return self.turns(body, continuing),
+            StatementKind::For(it) => return self.for_loop(it, statement.at),
+            StatementKind::Turn => self.take_turn(statement.at),
             StatementKind::Exit => return self.leave_loop(),
             StatementKind::Continue => return self.continue_loop(),
             StatementKind::Return => return self.go(self.exit),
@@ -52,7 +53,7 @@ impl<'p> Function<'_, 'p> {
         Goes::On
     }
 
-    fn assign(&mut self, target: &Place, value: &Expr) {
+    pub(crate) fn assign(&mut self, target: &Place, value: &Expr) {
         match self.site(target) {
             Site::Variable(variable) => {
                 let value = self.scalar(value);

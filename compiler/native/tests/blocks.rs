@@ -72,7 +72,7 @@ fn drive(id: BlockId, instruction: usize, is_prescan: bool, random: &mut Random)
             }
             native.state.bytes_mut()[start..start + info.size].copy_from_slice(&expected);
         }
-        let cx = Context { now: i64::from(turn) * 1_000_000, first_scan: random.next().is_multiple_of(5) };
+        let cx = Context::new(i64::from(turn) * 1_000_000, random.next().is_multiple_of(5));
         let values: Vec<_> = inputs(info, instruction).into_iter().map(|lane| random.value(lane)).collect();
         for (at, value) in values.iter().enumerate() {
             let offset = native.offset(&program, 0, at + 1);

@@ -495,7 +495,8 @@ impl Maker {
         let counter = Place::local(LocalId::next(self.locals.len()), Type::INT);
         self.locals.push(local("counter", Type::INT, Const::Zero));
         self.loops += 1;
-        let body = self.statements(4, depth - 1);
+        let mut body = self.statements(4, depth - 1);
+        body.insert(0, stmt(StatementKind::Turn));
         let plain = core::mem::replace(&mut self.plain, true);
         let reached = Expr::apply(Op::Ge, Type::BOOL, vec![load(counter.clone()), int(4)], AT);
         let exit =
@@ -625,7 +626,7 @@ fn check(seed: u64, tally: &mut Tally) {
     let counts = meaningful(&program, &native.layout);
     for scan in 0..SCANS {
         for instance in 0..program.instances.len() {
-            let cx = Context { now: scan * 10_000_000, first_scan: scan == 0 };
+            let cx = Context::new(scan * 10_000_000, scan == 0);
             let expected = interpreter.scan(instance, &cx);
             if expected == Err(Stop::OutOfSteps) {
                 tally.endless += 1;

@@ -14,13 +14,12 @@ mod rewrite;
 use std::collections::HashMap;
 
 use staunch_ir::{
-    Argument, Block, FieldId, Mode, Param, Place, Pou, PouId, PouKind, Program, Projection, Root, Statement,
+    Argument, Block, FieldId, For, Mode, Param, Place, Pou, PouId, PouKind, Program, Projection, Root, Statement,
     StatementKind, Type,
 };
 
 use call::Call;
 use naming::{copy_name, group_name};
-pub use overlap::overlap;
 use rewrite::Body;
 
 /// A program without aliases in its calls.
@@ -115,8 +114,8 @@ fn globals_used(program: &Program) -> Vec<UsesGlobals> {
 
 fn block_uses(block: &Block, known: &[UsesGlobals]) -> bool {
     let mut uses = false;
-    crate::walk::statements(block, &mut |statement| {
-        crate::walk::accesses(statement, &mut |place, _| uses |= place.root == Root::Globals);
+    staunch_ir::visit::statements(block, &mut |statement| {
+        staunch_ir::visit::accesses(statement, &mut |place, _| uses |= place.root == Root::Globals);
         if let StatementKind::Call { callee, .. } = statement.kind {
             uses |= known[callee.index()].body;
         }
@@ -225,6 +224,18 @@ impl Separator<'_> {
             StatementKind::Loop { body: inner, continuing } => {
                 StatementKind::Loop { body: self.block(body, inner), continuing: self.block(body, continuing) }
             }
+            StatementKind::For(it) => StatementKind::For(Box::new(For {
+                counter: body.place(&it.counter),
+                first: body.expr(&it.first),
+                last: body.expr(&it.last),
+                step: match &it.step {
+                    staunch_ir::Step::Constant(step) => staunch_ir::Step::Constant(*step),
+                    staunch_ir::Step::Variable(step) => staunch_ir::Step::Variable(body.expr(step)),
+                },
+                body: self.block(body, &it.body),
+                ..(**it).clone()
+            })),
+            StatementKind::Turn => StatementKind::Turn,
             StatementKind::Call { callee, instance, arguments, result } => {
                 let instance = instance.as_ref().map(|it| body.place(it));
                 let arguments = arguments.iter().map(|it| body.argument(it)).collect();

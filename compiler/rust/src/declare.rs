@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use staunch_ir::{Block, LocalId, Place, Pou, Root, Statement, StatementKind};
 
 use crate::names::by_value_param;
-use crate::walk::{self, Access};
+use staunch_ir::visit::{self, Access};
 
 /// How a local is declared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,7 +66,7 @@ pub fn plan(pou: &Pou, body: &Block) -> Plan {
     let mut found = HashMap::new();
     note_block(body, &mut Vec::new(), &mut found);
     let mut returns = false;
-    walk::statements(body, &mut |it| returns |= matches!(it.kind, StatementKind::Return));
+    visit::statements(body, &mut |it| returns |= matches!(it.kind, StatementKind::Return));
     let locals = (0..pou.locals.len()).map(|at| declare(pou, LocalId::next(at), &found, returns)).collect();
     Plan { locals }
 }
@@ -98,7 +98,7 @@ fn declare(pou: &Pou, id: LocalId, found: &HashMap<LocalId, Mentions>, returns: 
 fn note_block(block: &Block, path: &mut Path, found: &mut HashMap<LocalId, Mentions>) {
     for (at, statement) in block.iter().enumerate() {
         path.push(at);
-        walk::accesses(statement, &mut |place, access| {
+        visit::accesses(statement, &mut |place, access| {
             if let Root::Local(id) = place.root {
                 let whole = access == Access::Write && place.projections.is_empty();
                 note(found, id, path, statement, access, whole);

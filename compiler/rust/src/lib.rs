@@ -3,7 +3,6 @@
 #![forbid(unsafe_code)]
 
 mod names;
-mod walk;
 
 mod alias;
 mod needs;

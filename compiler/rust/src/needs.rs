@@ -1,8 +1,8 @@
 //! What each function of the emitted text has to be handed, and whether it can fault.
 
-use staunch_ir::{Argument, Block, Expr, Place, PouKind, Program, Root, Statement, StatementKind};
+use staunch_ir::{Argument, Block, Expr, Place, PouKind, Program, Root, Statement, StatementKind, Step};
 
-use crate::walk;
+use staunch_ir::visit;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Needs {
@@ -37,8 +37,8 @@ pub fn needs(program: &Program) -> Vec<PouNeeds> {
 
 fn of_block(program: &Program, block: &Block, known: &[PouNeeds]) -> Needs {
     let mut needs = Needs::default();
-    walk::statements(block, &mut |statement| {
-        walk::accesses(statement, &mut |place, _| needs.globals |= place.root == Root::Globals);
+    visit::statements(block, &mut |statement| {
+        visit::accesses(statement, &mut |place, _| needs.globals |= place.root == Root::Globals);
         needs.faults |= faults(program, statement);
         let callee = match &statement.kind {
             StatementKind::Call { callee, instance: None, .. } => known[callee.index()].body,
@@ -50,10 +50,12 @@ fn of_block(program: &Program, block: &Block, known: &[PouNeeds]) -> Needs {
             StatementKind::CallBlock { block, instruction, .. } => {
                 Needs { context: needs_context(block, *instruction), ..Needs::default() }
             }
+            StatementKind::Turn => Needs { context: true, faults: true, ..Needs::default() },
             StatementKind::Assign { .. }
             | StatementKind::If { .. }
             | StatementKind::Case { .. }
             | StatementKind::Loop { .. }
+            | StatementKind::For(_)
             | StatementKind::Exit
             | StatementKind::Continue
             | StatementKind::Return
@@ -74,8 +76,8 @@ fn needs_context(block: &Place, instruction: usize) -> bool {
 
 /// Whether the statement's own expressions and places can fault.
 fn faults(program: &Program, statement: &Statement) -> bool {
-    let expr = |it: &Expr| walk::expr_faults(program, it);
-    let place = |it: &Place| walk::place_faults(program, it);
+    let expr = |it: &Expr| visit::expr_faults(program, it);
+    let place = |it: &Place| visit::place_faults(program, it);
     match &statement.kind {
         StatementKind::Assign { target, value } => place(target) || expr(value),
         StatementKind::If { condition: value, .. } | StatementKind::Case { selector: value, .. } => expr(value),
@@ -90,7 +92,16 @@ fn faults(program: &Program, statement: &Statement) -> bool {
         StatementKind::PrescanBlock { block: it, .. } | StatementKind::PrescanInstance { instance: it, .. } => {
             place(it)
         }
-        StatementKind::Fault(_) => true,
+        StatementKind::For(it) => {
+            let step = match &it.step {
+                Step::Constant(_) => false,
+                Step::Variable(step) => expr(step),
+            };
+            let lane = program.lane(it.counter.ty);
+            let stepping = it.step_may_fault(lane.and_then(|lane| lane.range()));
+            place(&it.counter) || expr(&it.first) || expr(&it.last) || step || stepping
+        }
+        StatementKind::Fault(_) | StatementKind::Turn => true,
         StatementKind::Loop { .. } | StatementKind::Exit | StatementKind::Continue | StatementKind::Return => false,
     }
 }

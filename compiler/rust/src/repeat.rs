@@ -1,14 +1,15 @@
 //! Loops: WHILE where the shape allows, labels only where CONTINUE needs them, and counters kept
 //! where the optimiser sees them.
 
-use proc_macro2::TokenStream;
-use quote::quote;
-use staunch_ir::counted::exit_condition;
-use staunch_ir::{Block, Place, Projection, Root, Statement, StatementKind, Value};
+use proc_macro2::{Literal, TokenStream};
+use quote::{ToTokens, quote};
+use staunch_ir::loops::exit_condition;
+use staunch_ir::visit::{self, Access};
+use staunch_ir::{Block, Expr, For, Location, Place, Root, Statement, StatementKind, Step, Value};
 
-use crate::alias::overlap;
+use crate::code::Level;
 use crate::function::Function;
-use crate::walk::{self, Access};
+use crate::names::ident;
 
 /// The labels of the loops around a statement, innermost last.
 #[derive(Debug, Default)]
@@ -19,82 +20,146 @@ pub struct Loops {
 
 #[derive(Clone, Debug)]
 struct Labels {
-    /// `Exit` inside the labelled block of the body.
+    /// `Exit` inside of the body.
     leave: TokenStream,
     /// `Continue`.
     next: TokenStream,
+    /// Before the loop, where something names it.
+    label: Option<TokenStream>,
+    /// Of the block around the body.
+    body: Option<TokenStream>,
+}
+
+/// A value, and the statement that finds it.
+struct Once {
+    value: TokenStream,
+    before: Option<TokenStream>,
 }
 
 impl Function<'_> {
-    pub fn repeat(&mut self, statements: &[Statement], at: usize, body: &Block, continuing: &Block) -> TokenStream {
-        // A block around the body is what CONTINUE leaves when something follows the body.
-        let labelled = !continuing.is_empty() && uses(body, &|it| matches!(it, StatementKind::Continue));
-        let exits = uses(body, &|it| matches!(it, StatementKind::Exit));
+    pub fn repeat(&mut self, body: &Block, continuing: &Block) -> TokenStream {
         let (condition, body) = self.while_condition(body);
-        let counter = self.counter(body, continuing);
-        let exits = exits && labelled && uses(body, &|it| matches!(it, StatementKind::Exit));
-        self.loops.made += usize::from(labelled);
-        let loop_label = lifetime(&format!("loop_{}", self.loops.made));
-        let next_label = lifetime(&format!("next_{}", self.loops.made));
-        let plain = Labels { leave: quote!(break;), next: quote!(continue;) };
-        let labels = if labelled {
-            Labels { leave: quote!(break #loop_label;), next: quote!(break #next_label;) }
-        } else {
-            plain.clone()
-        };
-        self.loops.around.push(labels);
-        let copy = counter.map(|place| self.copy_counter(place));
-        let outer = self.subscripts.len();
-        let subscripts = self.find_subscripts(statements, at);
-        let body = self.statements(body);
-        self.subscripts.truncate(outer);
-        self.loops.around.pop();
-        self.loops.around.push(plain);
-        let continuing = self.block(continuing);
-        self.loops.around.pop();
-        if copy.is_some() {
-            self.counters.pop();
-        }
-        let label = exits.then(|| quote!(#loop_label:));
-        let body = if labelled { quote!(#next_label: { #body }) } else { body };
+        let labels = self.labels(body, !continuing.is_empty());
+        let body = self.turn(&labels, body, |this| this.block(continuing));
+        let label = &labels.label;
         match condition {
-            Some(condition) => quote!(#label while #condition { #copy #subscripts #body #continuing }),
-            None => quote!(#label loop { #copy #subscripts #body #continuing }),
+            Some(condition) => quote!(#label while #condition { #body }),
+            None => quote!(#label loop { #body }),
         }
     }
 
-    /// The variable that counts a loop's turns, if the body reads it and nothing changes it but
-    /// the end of a turn.
-    fn counter<'s>(&self, body: &[Statement], continuing: &'s Block) -> Option<&'s Place> {
-        let [before @ .., Statement { kind: StatementKind::Assign { target: counter, .. }, .. }] =
-            continuing.as_slice()
-        else {
-            return None;
+    pub fn for_loop(&mut self, statement: &Statement, it: &For) -> TokenStream {
+        let first = self.expr(&it.first).tokens;
+        let first = self.assigned(statement, &it.counter, first);
+        let last = self.once("last", &it.last);
+        let step = match &it.step {
+            Step::Constant(_) => Once { value: TokenStream::new(), before: None },
+            Step::Variable(step) => self.once("step", step),
         };
-        let fields = counter.projections.iter().all(|it| matches!(it, Projection::Field(_)));
-        if !fields || matches!(counter.root, Root::Local(_) | Root::Param(_)) {
-            return None;
-        }
-        let (mut read, mut changed) = (false, false);
-        let mut see = |statement: &Statement| {
-            changed |= counter.root == Root::Globals && self.touches_globals(statement);
-            walk::accesses(statement, &mut |place, access| {
-                let same = overlap(place, counter);
-                read |= same && access == Access::Read;
-                changed |= same && access != Access::Read;
-            });
-        };
-        walk::statements(body, &mut see);
-        walk::statements(before, &mut see);
-        (read && !changed).then_some(counter)
+        let zero = matches!(it.step, Step::Variable(_)).then(|| {
+            let (step, at) = (&step.value, self.emitter.at(it.step_at));
+            quote!(if #step == 0 { return Err(FaultKind::ZeroStep)#at; })
+        });
+        let condition = self.further_turn(it, &last.value, &step.value);
+        let labels = self.labels(&it.body, true);
+        let reads = it.is_private && !matches!(it.counter.root, Root::Local(_)) && mentions(&it.body, &it.counter);
+        let copy = reads.then(|| self.copy_counter(&it.counter));
+        let outer = self.subscripts.len();
+        let subscripts = if it.is_private { self.find_subscripts(it) } else { TokenStream::new() };
+        let body = self.turn(&labels, &it.body, |this| {
+            this.subscripts.truncate(outer);
+            if reads {
+                this.counters.pop();
+            }
+            this.step(it, &last.value, &step.value, statement.at)
+        });
+        let (label, before, step_before) = (&labels.label, last.before, step.before);
+        quote!(#first #before #step_before #zero #label while #condition { #copy #subscripts #body })
     }
 
-    fn touches_globals(&self, statement: &Statement) -> bool {
-        match statement.kind {
-            StatementKind::Call { callee, .. } => self.emitter.needs[callee.index()].body.globals,
-            StatementKind::PrescanInstance { callee, .. } => self.emitter.needs[callee.index()].prescan.globals,
-            _ => false,
+    /// What a loop's body and its end need of labels. A block around the body is what CONTINUE
+    /// leaves when something follows the body.
+    fn labels(&mut self, body: &[Statement], has_end: bool) -> Labels {
+        let labelled = has_end && uses(body, &|it| matches!(it, StatementKind::Continue));
+        if !labelled {
+            return Labels { leave: quote!(break;), next: quote!(continue;), label: None, body: None };
         }
+        self.loops.made += 1;
+        let number = self.loops.made;
+        let (loop_label, body_label) = (lifetime(&format!("loop_{number}")), lifetime(&format!("next_{number}")));
+        let exits = uses(body, &|it| matches!(it, StatementKind::Exit));
+        Labels {
+            leave: quote!(break #loop_label;),
+            next: quote!(break #body_label;),
+            label: exits.then(|| quote!(#loop_label:)),
+            body: Some(body_label),
+        }
+    }
+
+    /// The body, and what follows it at the end of each turn.
+    fn turn(&mut self, labels: &Labels, body: &[Statement], end: impl FnOnce(&mut Self) -> TokenStream) -> TokenStream {
+        self.loops.around.push(labels.clone());
+        let body = self.statements(body);
+        self.loops.around.pop();
+        self.loops.around.push(Labels { leave: quote!(break;), next: quote!(continue;), label: None, body: None });
+        let end = end(self);
+        self.loops.around.pop();
+        match &labels.body {
+            Some(label) => quote!(#label: { #body } #end),
+            None => quote!(#body #end),
+        }
+    }
+
+    /// A value that the turns of a loop read, found before it.
+    fn once(&self, name: &str, value: &Expr) -> Once {
+        let printed = self.expr(value).tokens;
+        if value.as_const().is_some() {
+            return Once { value: printed, before: None };
+        }
+        let (name, ty) = (self.made_up(name, self.loops.around.len()), self.emitter.ty(value.ty));
+        Once { value: quote!(#name), before: Some(quote!(let #name: #ty = #printed;)) }
+    }
+
+    fn further_turn(&self, it: &For, last: &TokenStream, step: &TokenStream) -> TokenStream {
+        let counter = self.load(&it.counter).at_least(Level::Postfix);
+        match &it.step {
+            Step::Constant(step) if *step > 0 => quote!(#counter <= #last),
+            Step::Constant(_) => quote!(#counter >= #last),
+            Step::Variable(_) if !self.lane(it.counter.ty).is_signed() => quote!(#counter <= #last),
+            Step::Variable(_) => quote!(if #step > 0 { #counter <= #last } else { #counter >= #last }),
+        }
+    }
+
+    /// Steps the counter at the end of a turn, or leaves the loop.
+    fn step(&self, it: &For, last: &TokenStream, step: &TokenStream, at: Location) -> TokenStream {
+        let lane = self.lane(it.counter.ty);
+        let (target, counter) = (self.target(&it.counter, self.written_place(&it.counter)), self.load(&it.counter));
+        let counter = counter.at_least(Level::Postfix);
+        if lane.range() != Some(it.range) && it.may_leave_range() {
+            let step = match &it.step {
+                Step::Constant(step) => Literal::i128_unsuffixed(*step).into_token_stream(),
+                Step::Variable(_) => quote!(i128::from(#step)),
+            };
+            let (least, most) = (Literal::i128_unsuffixed(it.range.0), Literal::i128_unsuffixed(it.range.1));
+            let (next, at) = (self.made_up("next", self.loops.around.len()), self.emitter.at(at));
+            return quote! {
+                let Some(#next) = ops::step(#counter, #step, #last, (#least, #most)) #at? else { break };
+                #target = #next;
+            };
+        }
+        let (verb, step) = match &it.step {
+            Step::Constant(step) => {
+                let size = Literal::u128_unsuffixed(step.unsigned_abs());
+                (if *step > 0 { "add" } else { "sub" }, quote!(#size))
+            }
+            Step::Variable(_) => ("add", step.clone()),
+        };
+        if it.may_leave_range() {
+            let (next, checked) = (self.made_up("next", self.loops.around.len()), ident(&format!("checked_{verb}")));
+            return quote!(let Some(#next) = #counter.#checked(#step) else { break }; #target = #next;);
+        }
+        let wrapping = ident(&format!("wrapping_{verb}"));
+        quote!(#target = #counter.#wrapping(#step);)
     }
 
     /// `let i = self.i;`: a copy that the optimiser sees unchanged through the body, so that a
@@ -136,9 +201,20 @@ impl Function<'_> {
 /// Whether a statement of the loop itself, not of one inside it, is what `is` asks for.
 fn uses(block: &[Statement], is: &dyn Fn(&StatementKind) -> bool) -> bool {
     block.iter().any(|statement| {
-        let inner = !matches!(statement.kind, StatementKind::Loop { .. });
+        let inner = !matches!(statement.kind, StatementKind::Loop { .. } | StatementKind::For(_));
         is(&statement.kind) || inner && statement.kind.blocks().into_iter().any(|it| uses(it, is))
     })
+}
+
+/// Whether the statements read the counter, whole.
+fn mentions(body: &[Statement], counter: &Place) -> bool {
+    let mut found = false;
+    visit::statements(body, &mut |statement| {
+        visit::accesses(statement, &mut |place, access| {
+            found |= access == Access::Read && place.is_same_variable(counter);
+        });
+    });
+    found
 }
 
 fn lifetime(name: &str) -> TokenStream {

@@ -10,7 +10,7 @@ use crate::code::Level;
 use crate::constant::{literal, plain};
 use crate::function::Function;
 use crate::names::ident;
-use crate::walk;
+use staunch_ir::visit;
 
 impl Function<'_> {
     pub fn block(&mut self, block: &Block) -> TokenStream {
@@ -30,8 +30,7 @@ impl Function<'_> {
                 rest = then;
                 printed.extend(joined);
             } else {
-                let at = statements.len() - after.len() - 1;
-                printed.extend(self.statement(statements, at));
+                printed.extend(self.statement(statement));
             }
         }
         printed
@@ -44,6 +43,8 @@ impl Function<'_> {
             | StatementKind::Assign { .. }
             | StatementKind::Case { .. }
             | StatementKind::Loop { .. }
+            | StatementKind::For(_)
+            | StatementKind::Turn
             | StatementKind::Exit
             | StatementKind::Continue
             | StatementKind::Return
@@ -82,13 +83,17 @@ impl Function<'_> {
         Some((self.assigned(next, target, call), then))
     }
 
-    fn statement(&mut self, statements: &[Statement], at: usize) -> TokenStream {
-        let statement = &statements[at];
+    fn statement(&mut self, statement: &Statement) -> TokenStream {
         match &statement.kind {
             StatementKind::Assign { target, value } => self.assign(statement, target, value),
             StatementKind::If { condition, then, otherwise } => self.if_else(condition, then, otherwise),
             StatementKind::Case { selector, arms, otherwise } => self.case(selector, arms, otherwise),
-            StatementKind::Loop { body, continuing } => self.repeat(statements, at, body, continuing),
+            StatementKind::Loop { body, continuing } => self.repeat(body, continuing),
+            StatementKind::For(it) => self.for_loop(statement, it),
+            StatementKind::Turn => {
+                let at = self.emitter.at(statement.at);
+                quote!(cx.take_turn()#at?;)
+            }
             StatementKind::Exit => self.leave(),
             StatementKind::Continue => self.next(),
             StatementKind::Return => {
@@ -115,7 +120,7 @@ impl Function<'_> {
     fn assign(&mut self, statement: &Statement, target: &Place, value: &Expr) -> TokenStream {
         let printed = self.expr(value).tokens;
         // Rust evaluates the value before the target's subscripts; the first fault wins here.
-        if self.place_faults(target) && walk::expr_faults(self.emitter.program, value) {
+        if self.place_faults(target) && visit::expr_faults(self.emitter.program, value) {
             let mut before = Vec::new();
             let place = self.fixed_place(target, &mut before);
             return quote!(#(#before)* #place = #printed;);
@@ -124,7 +129,7 @@ impl Function<'_> {
     }
 
     /// `target = value;`, which may declare the target.
-    fn assigned(&self, statement: &Statement, target: &Place, value: TokenStream) -> TokenStream {
+    pub fn assigned(&self, statement: &Statement, target: &Place, value: TokenStream) -> TokenStream {
         if let Some(local) = self.plan.declares(statement, target) {
             let left = self.let_local(local);
             return quote!(#left = #value;);

@@ -8,7 +8,7 @@ use crate::code::{Code, Level};
 use crate::constant::number;
 use crate::function::Function;
 use crate::names::ident;
-use crate::walk;
+use staunch_ir::visit;
 
 impl Function<'_> {
     /// A string as `&Text`.
@@ -93,7 +93,7 @@ impl Function<'_> {
         let (mut before, mut arguments) = (Vec::new(), Vec::new());
         for operand in operands {
             // Each is printed once, or a long nest of them would be printed without end.
-            if !walk::expr_faults(self.emitter.program, operand) {
+            if !visit::expr_faults(self.emitter.program, operand) {
                 arguments.push(print(operand));
                 continue;
             }

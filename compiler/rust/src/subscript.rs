@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
-use staunch_ir::counted::{Counted, is_within};
-use staunch_ir::{ArrayId, Conversion, Expr, ExprKind, Location, Place, Projection, Statement, Type};
+use staunch_ir::loops::is_within;
+use staunch_ir::{ArrayId, Conversion, Expr, ExprKind, For, Location, Place, Projection, Type};
 
 use crate::function::Function;
-use crate::walk;
+use staunch_ir::visit;
 
 /// A counter's position in arrays of certain bounds.
 #[derive(Clone, Debug)]
@@ -40,34 +40,31 @@ impl Function<'_> {
 
     /// The statements at the start of a turn that find the subscripts which its body needs more
     /// than once. They cannot fault: the loop's bounds are known to lie within the arrays'.
-    pub fn find_subscripts(&mut self, statements: &[Statement], at: usize) -> TokenStream {
-        let Some(counted) = Counted::find(self.emitter.program, self.pou, statements, at) else {
-            return TokenStream::new();
-        };
+    pub fn find_subscripts(&mut self, counted: &For) -> TokenStream {
         let mut found = TokenStream::new();
-        for ((low, high), it) in self.uses(&counted).into_iter().filter(|(_, it)| it.times > 1) {
+        for ((low, high), it) in self.uses(counted).into_iter().filter(|(_, it)| it.times > 1) {
             let position = self.position(&it.index, Type::Array(it.array), it.at);
-            let name = self.subscript_name(counted.counter, low, high);
+            let name = self.subscript_name(&counted.counter, low, high);
             found.extend(quote!(let #name = #position;));
             self.subscripts.push(Subscript { counter: counted.counter.clone(), low, high, name });
         }
         found
     }
 
-    fn uses(&self, counted: &Counted<'_>) -> BTreeMap<(i64, i64), Use> {
+    fn uses(&self, counted: &For) -> BTreeMap<(i64, i64), Use> {
         let mut uses = BTreeMap::new();
-        walk::statements(counted.body, &mut |statement| {
-            walk::accesses(statement, &mut |place, _| self.uses_in(place, counted, &mut uses));
+        visit::statements(&counted.body, &mut |statement| {
+            visit::accesses(statement, &mut |place, _| self.uses_in(place, counted, &mut uses));
         });
         uses
     }
 
-    fn uses_in(&self, place: &Place, counted: &Counted<'_>, uses: &mut BTreeMap<(i64, i64), Use>) {
+    fn uses_in(&self, place: &Place, counted: &For, uses: &mut BTreeMap<(i64, i64), Use>) {
         let program = self.emitter.program;
         for (projection, ty) in place.projections.iter().zip(self.emitter.types_along(self.pou, place)) {
             let (Projection::Index { index, at }, Type::Array(array)) = (projection, ty) else { continue };
-            let is_counter = counter(index).is_some_and(|it| it.is_same_variable(counted.counter));
-            if is_counter && is_within(program, index, array, std::slice::from_ref(counted)) {
+            let is_counter = counter(index).is_some_and(|it| it.is_same_variable(&counted.counter));
+            if is_counter && is_within(program, index, array, &[counted]) {
                 let bounds = program.array(array);
                 let new = || Use { index: (**index).clone(), array, at: *at, times: 0 };
                 uses.entry((bounds.low, bounds.high)).or_insert_with(new).times += 1;

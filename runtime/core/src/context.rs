@@ -1,25 +1,60 @@
-use crate::Time;
+use crate::{FaultKind, Time};
+use core::cell::Cell;
 
 /// What a scan is told about the world: the runtime has no clock of its own.
 ///
 /// Native code reads this struct by offset, so its layout is part of the ABI.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Context {
     /// Time since start at the beginning of this scan, in nanoseconds; never goes back.
     pub now: Time,
     /// TRUE in the first scan after a start, a restart, or a change from IDLE to RUN.
     pub first_scan: bool,
+    /// The turns that the loops of this scan have left.
+    turns: Cell<u64>,
 }
 
 impl Context {
+    /// The turns that the loops of one scan have together, unless it is said otherwise. Loops
+    /// whose constants show that they end after few turns take none.
+    pub const TURNS: u64 = 10_000_000;
+
+    /// Where native code finds the turns that are left: a `u64`.
+    pub const TURNS_OFFSET: usize = core::mem::offset_of!(Self, turns);
+
+    /// A scan at `now` nanoseconds.
+    pub const fn new(now: Time, first_scan: bool) -> Self {
+        Self { now, first_scan, turns: Cell::new(Self::TURNS) }
+    }
+
     /// A scan at `now` nanoseconds that is not the first.
     pub const fn at(now: Time) -> Self {
-        Self { now, first_scan: false }
+        Self::new(now, false)
     }
 
     /// The first scan, at `now` nanoseconds.
     pub const fn first(now: Time) -> Self {
-        Self { now, first_scan: true }
+        Self::new(now, true)
+    }
+
+    /// The same with another number of turns for its loops.
+    #[must_use]
+    pub fn with_turns(self, turns: u64) -> Self {
+        Self { turns: Cell::new(turns), ..self }
+    }
+
+    /// Takes one turn of a loop; [`FaultKind::LoopBudget`] if none is left.
+    #[inline]
+    pub fn take_turn(&self) -> Result<(), FaultKind> {
+        let left = self.turns.get();
+        self.turns.set(left.wrapping_sub(1));
+        if left == 0 { Err(FaultKind::LoopBudget) } else { Ok(()) }
+    }
+}
+
+impl Default for Context {
+    fn default() -> Self {
+        Self::at(0)
     }
 }

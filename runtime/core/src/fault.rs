@@ -13,10 +13,13 @@ pub enum FaultKind {
     SubrangeViolated = 3,
     /// The step of a FOR loop is zero.
     ZeroStep = 4,
+    /// The loops of a scan took more turns than it has: one of them may have no end.
+    LoopBudget = 5,
 }
 
 impl FaultKind {
-    pub const ALL: [Self; 4] = [Self::DivideByZero, Self::IndexOutOfRange, Self::SubrangeViolated, Self::ZeroStep];
+    pub const ALL: [Self; 5] =
+        [Self::DivideByZero, Self::IndexOutOfRange, Self::SubrangeViolated, Self::ZeroStep, Self::LoopBudget];
 
     /// The fault with this code, as native code returns it.
     pub fn from_code(code: u8) -> Option<Self> {
@@ -30,6 +33,7 @@ impl FaultKind {
             Self::IndexOutOfRange => "index out of range",
             Self::SubrangeViolated => "value outside its subrange",
             Self::ZeroStep => "the step of a FOR loop is 0",
+            Self::LoopBudget => "a loop went on past the scan's budget of turns",
         }
     }
 }

@@ -16,10 +16,11 @@ pub enum Wish {
     Help(String),
 }
 
-const FLAGS: [(&str, &str, &str); 12] = [
+const FLAGS: [(&str, &str, &str); 13] = [
     ("--program", "NAME", "Run this program only"),
     ("--scans", "N", "End after N scans"),
     ("--cycle", "TIME", "Time between two scans, as 10ms"),
+    ("--loop-budget", "N", "Turns that the loops of one scan may take together"),
     ("--stimulus", "FILE", "Inputs, from a CSV file"),
     ("--trace", "FILE", "Write a row a scan, as .csv, .vcd or .svg; - for standard output"),
     ("--vars", "NAMES", "Variables to show, apart by commas"),
@@ -49,6 +50,7 @@ pub fn parse_options(mut arguments: impl Iterator<Item = OsString>) -> Result<Wi
             "--program" => options.program = Some(utf8(value()?)?),
             "--scans" => options.scans = Some(count(&utf8(value()?)?)?),
             "--cycle" => options.cycle = Some(parse_duration(&utf8(value()?)?)?),
+            "--loop-budget" => options.loop_budget = Some(count(&utf8(value()?)?)?),
             "--stimulus" => options.stimulus = Some(value()?.into()),
             "--trace" => options.trace = Some(value()?.into()),
             "--vars" => options.vars = Some(utf8(value()?)?),
@@ -64,10 +66,10 @@ pub fn parse_options(mut arguments: impl Iterator<Item = OsString>) -> Result<Wi
             }
         }
     }
-    let Options { program, scans, cycle, stimulus, .. } = options;
+    let Options { program, scans, cycle, loop_budget, stimulus, .. } = options;
     Ok(match bench {
-        true => Wish::Bench(BenchOptions { program, scans, cycle, stimulus }),
-        false => Wish::Run(Options { program, scans, cycle, stimulus, ..options }),
+        true => Wish::Bench(BenchOptions { program, scans, cycle, loop_budget, stimulus }),
+        false => Wish::Run(Options { program, scans, cycle, loop_budget, stimulus, ..options }),
     })
 }
 

@@ -25,6 +25,8 @@ pub struct BenchOptions {
     /// Scans to measure, after the warm-up.
     pub scans: Option<u64>,
     pub cycle: Option<Time>,
+    /// Turns that the loops of one scan may take together; [`Context::TURNS`].
+    pub loop_budget: Option<u64>,
     /// Its rows repeat. Without one, every BOOL input changes in each scan.
     pub stimulus: Option<PathBuf>,
 }
@@ -71,7 +73,16 @@ pub fn bench(machine: &mut dyn Machine, map: &Map, options: &BenchOptions) -> Re
     machine.init();
     let schedule = Schedule::new(map, &running, options.cycle);
     let fresh = vec![true; map.instances.len()];
-    let mut bench = Bench { machine, map, inputs, schedule, fresh, number: 0, now: 0 };
+    let mut bench = Bench {
+        machine,
+        map,
+        inputs,
+        schedule,
+        fresh,
+        turns: options.loop_budget.unwrap_or(Context::TURNS),
+        number: 0,
+        now: 0,
+    };
     let batch = bench.warm_up()?;
     let mut samples = Vec::with_capacity(1 << 16);
     let (began, mut scans) = (Instant::now(), 0);
@@ -143,6 +154,7 @@ struct Bench<'a> {
     inputs: Inputs,
     schedule: Schedule,
     fresh: Vec<bool>,
+    turns: u64,
     number: u64,
     now: Time,
 }
@@ -200,7 +212,8 @@ impl Bench<'_> {
     #[inline]
     fn scan(&mut self, instance: usize, now: Time) -> Result<(), Error> {
         let first_scan = std::mem::take(&mut self.fresh[instance]);
-        self.machine.scan(instance, &Context { now, first_scan }).map_err(|fault| Error::Fault {
+        let cx = Context::new(now, first_scan).with_turns(self.turns);
+        self.machine.scan(instance, &cx).map_err(|fault| Error::Fault {
             fault,
             scan: self.number,
             instance: self.map.instances[instance].name.clone(),

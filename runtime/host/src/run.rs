@@ -27,6 +27,8 @@ pub struct Options {
     pub scans: Option<u64>,
     /// Nanoseconds between two scans, above zero; 10 ms, or the TASKs' intervals.
     pub cycle: Option<Time>,
+    /// Turns that the loops of one scan may take together; [`Context::TURNS`].
+    pub loop_budget: Option<u64>,
     pub stimulus: Option<PathBuf>,
     /// CSV, VCD or SVG by its ending; `-` is standard output.
     pub trace: Option<PathBuf>,
@@ -230,7 +232,9 @@ impl Runner<'_> {
         let began = self.clock.as_ref().map(|_| Instant::now());
         for instance in self.schedule.advance(now, placed.is_some()) {
             let first_scan = std::mem::take(&mut self.fresh[*instance]);
-            let end = self.machine.scan(*instance, &Context { now: self.epoch.saturating_add(now), first_scan });
+            let turns = self.options.loop_budget.unwrap_or(Context::TURNS);
+            let cx = Context::new(self.epoch.saturating_add(now), first_scan).with_turns(turns);
+            let end = self.machine.scan(*instance, &cx);
             end.map_err(|fault| Error::Fault {
                 fault,
                 scan: number,

@@ -51,7 +51,7 @@ fn follow_stimulus() -> Result<(), Fault> {
         counter.arrives = inputs.arrives;
         counter.leaves = inputs.leaves;
         counter.new_shift = inputs.new_shift;
-        counter.scan(&Context { now, first_scan: now == 0 })?;
+        counter.scan(&Context::new(now, now == 0))?;
         row(scan, now, &counter);
         now += CYCLE;
     }

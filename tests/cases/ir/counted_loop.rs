@@ -71,7 +71,7 @@ impl Main {
             let i_index = ops::index(i64::from(i), 1, 8).at(COUNTED_LOOP_ST, 11, 11)?;
             self.parts[i_index].call(self.pulse, self.reset, 10); // :11
             self.total = self.total.wrapping_add(self.parts[i_index].cv); // :12
-            self.i = i.wrapping_add(1); // :10
+            self.i = self.i.wrapping_add(1);
         }
         Ok(())
     }

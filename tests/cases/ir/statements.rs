@@ -111,15 +111,17 @@ impl Main {
                 .wrapping_add(
                     self.a[ops::index(i64::from(i), 1, 3).at(STATEMENTS_ST, 17, 35)?],
                 );
-            self.i = i.wrapping_add(1);
+            self.i = self.i.wrapping_add(1);
         }
         while self.sum > 100 { // :18
+            cx.take_turn().at(STATEMENTS_ST, 18, 1)?;
             self.sum = ops::div(self.sum, 2).at(STATEMENTS_ST, 18, 31)?;
             if self.sum == 60 {
                 break;
             }
         }
         loop { // :19
+            cx.take_turn().at(STATEMENTS_ST, 19, 1)?;
             self.sum = self.sum.wrapping_add(1);
             if self.sum > 3 {
                 break;

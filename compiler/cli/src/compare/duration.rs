@@ -1,6 +1,6 @@
 //! For how long an input is worth holding: what the program's constants count and wait for.
 
-use staunch_ir::{Argument, Block, Const, Expr, ExprKind, Program, Statement, StatementKind, Type, Value};
+use staunch_ir::{Block, Const, Expr, ExprKind, Program, Type, Value, visit};
 use std::collections::BTreeSet;
 
 /// Scans that each of a program's constants stands for: a TIME as the scans that pass in it, a
@@ -57,33 +57,6 @@ impl Constants {
     }
 
     fn block(&mut self, block: &Block) {
-        for statement in block {
-            self.statement(statement);
-            statement.kind.blocks().into_iter().for_each(|it| self.block(it));
-        }
-    }
-
-    fn statement(&mut self, statement: &Statement) {
-        match &statement.kind {
-            StatementKind::Assign { value, .. } => self.expr(value),
-            StatementKind::If { condition, .. } => self.expr(condition),
-            StatementKind::Case { selector, .. } => self.expr(selector),
-            StatementKind::CallBlock { inputs, .. } => inputs.iter().for_each(|it| self.expr(it)),
-            StatementKind::Call { arguments, .. } => {
-                for argument in arguments {
-                    match argument {
-                        Argument::Value(it) => self.expr(it),
-                        Argument::Reference(_) => {}
-                    }
-                }
-            }
-            StatementKind::Loop { .. }
-            | StatementKind::Exit
-            | StatementKind::Continue
-            | StatementKind::Return
-            | StatementKind::PrescanBlock { .. }
-            | StatementKind::PrescanInstance { .. }
-            | StatementKind::Fault(_) => {}
-        }
+        visit::statements(block, &mut |statement| visit::values(statement, &mut |it| self.expr(it)));
     }
 }

@@ -1,6 +1,7 @@
 //! The scalars of a program's state, by paths that two systems share.
 
 use staunch_ir::layout::{Layout, usize_of};
+use staunch_ir::visit::{self, Access};
 use staunch_ir::{ArrayId, BlockId, Elementary, FieldId, PouId, Program, Retain, Section, StructId, Type, Value};
 use staunch_runtime::{Direction, Family, Pin, Retention};
 
@@ -272,38 +273,20 @@ fn writes(
     block: &[staunch_ir::Statement],
     found: &mut Vec<(StructId, FieldId)>,
 ) {
-    use staunch_ir::StatementKind as Kind;
-    let mut target = |place: &staunch_ir::Place| {
-        let owner = match place.root {
-            staunch_ir::Root::Instance => pou.state,
-            staunch_ir::Root::Globals => Some(program.globals),
-            staunch_ir::Root::Local(_) | staunch_ir::Root::Param(_) => None,
-        };
-        if let (Some(owner), Some(staunch_ir::Projection::Field(field))) = (owner, place.projections.first()) {
-            found.push((owner, *field));
-        }
-    };
-    for statement in block {
-        match &statement.kind {
-            Kind::Assign { target: place, .. }
-            | Kind::CallBlock { block: place, .. }
-            | Kind::PrescanBlock { block: place, .. }
-            | Kind::PrescanInstance { instance: place, .. } => target(place),
-            Kind::Call { instance, arguments, result, .. } => {
-                instance.iter().chain(result).for_each(&mut target);
-                for argument in arguments {
-                    if let staunch_ir::Argument::Reference(place) = argument {
-                        target(place);
-                    }
-                }
+    visit::statements(block, &mut |statement| {
+        visit::accesses(statement, &mut |place, access| {
+            let owner = match place.root {
+                staunch_ir::Root::Instance => pou.state,
+                staunch_ir::Root::Globals => Some(program.globals),
+                staunch_ir::Root::Local(_) | staunch_ir::Root::Param(_) => None,
+            };
+            if let (Access::Write | Access::Borrow, Some(owner), Some(staunch_ir::Projection::Field(field))) =
+                (access, owner, place.projections.first())
+            {
+                found.push((owner, *field));
             }
-            Kind::Exit | Kind::Continue | Kind::Return | Kind::Fault(_) => {}
-            Kind::If { .. } | Kind::Case { .. } | Kind::Loop { .. } => {}
-        }
-    }
-    for block in block.iter().flat_map(|it| it.kind.blocks()) {
-        writes(program, pou, block, found);
-    }
+        });
+    });
 }
 
 /// Values of an input that are worth trying, the initial one first.

@@ -211,7 +211,7 @@ impl Pair {
     /// Scan `number`, counted from 1, on both sides.
     pub fn scan(&mut self, number: usize, step: &Step) -> [Option<Fault>; 2] {
         let elapsed = i64::try_from(number - 1).unwrap_or(i64::MAX);
-        let cx = Context { now: elapsed.saturating_mul(self.cycle), first_scan: number == 1 || step.restart };
+        let cx = Context::new(elapsed.saturating_mul(self.cycle), number == 1 || step.restart);
         let inputs = &self.inputs;
         let mut at = 0;
         self.sides.each_mut().map(|side| {

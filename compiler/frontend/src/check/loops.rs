@@ -1,34 +1,12 @@
-//! WHILE, REPEAT and FOR, as the one loop of the IR.
+//! WHILE and REPEAT, which are one loop in the IR, and FOR.
 
 use super::Checker;
 use super::operand::Operand;
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{Block, Elementary, Expr, FaultKind, Location, Op, Place, Statement, StatementKind, Type, Value};
-
-/// A FOR loop's step.
-enum Step {
-    /// Known now, and not 0.
-    Constant(i128),
-    /// In a temporary, tested for 0 before the loop.
-    Variable(Expr),
-}
-
-/// A FOR loop's head.
-struct Range {
-    place: Place,
-    running: Running,
-    ty: Elementary,
-    step: Step,
-    stay: Expr,
-    leave: Option<Expr>,
-}
-
-/// What a FOR loop counts in.
-struct Running {
-    place: Place,
-    /// What the counter becomes at the start of a turn, where it is not what runs.
-    enter: Option<Expr>,
-}
+use staunch_ir::{
+    Block, Elementary, Expr, For, Location, Op, Place, Projection, Root, Statement, StatementKind, Step, Type, Value,
+    loops,
+};
 
 impl<'s> Checker<'_, 's> {
     pub(super) fn while_loop(&mut self, condition: &ast::Expr<'s>, body: &[ast::Statement<'s>], span: Span) {
@@ -41,13 +19,15 @@ impl<'s> Checker<'_, 's> {
         }
         let Some(leave) = self.exit_unless(holds, condition.span) else { return };
         block.push(leave);
+        block.push(Statement::new(StatementKind::Turn, self.at(span)));
         block.append(&mut inside);
         self.push(StatementKind::Loop { body: block, continuing: Vec::new() }, span);
     }
 
     pub(super) fn repeat_loop(&mut self, body: &[ast::Statement<'s>], until: &ast::Expr<'s>, span: Span) {
         let statements = body;
-        let body = self.loop_body(body);
+        let mut body = self.loop_body(body);
+        body.insert(0, Statement::new(StatementKind::Turn, self.at(span)));
         let mut done = None;
         let mut continuing = self.nested(|this| done = this.condition(until));
         let Some(done) = done else { return };
@@ -92,35 +72,31 @@ impl<'s> Checker<'_, 's> {
         body: &[ast::Statement<'s>],
         span: Span,
     ) -> Option<()> {
-        let Some(Range { place, running, ty, step, stay, leave }) = self.range(counter, from, to, by, span) else {
+        let Some(mut head) = self.for_head(counter, from, to, by) else {
             // The body may hold mistakes of its own.
             self.loop_body(body);
             return None;
         };
-        self.counters.push(place.clone());
-        let mut inside = self.loop_body(body);
+        self.counters.push(head.counter.clone());
+        head.body = self.loop_body(body);
         self.counters.pop();
-        let at = self.at(counter.span);
-        let mut block = vec![self.exit_unless(stay, span)?];
-        block.extend(running.enter.map(|value| Statement::assign(place, value, at)));
-        block.append(&mut inside);
-        let next = self.next_value(&running.place, ty, &step, span)?;
-        let at = self.at(span);
-        let mut continuing: Vec<_> = leave.map(|leave| exit_if(leave, at)).into_iter().collect();
-        continuing.push(Statement::assign(running.place, next, at));
-        self.push(StatementKind::Loop { body: block, continuing }, span);
+        let state = self.signature.as_ref().and_then(|it| it.state).filter(|_| head.counter.root == Root::Instance);
+        head.is_private = loops::is_private(&self.decl.program, state.map(Type::Struct), &head.counter, &head.body);
+        if !head.is_short() {
+            head.body.insert(0, Statement::new(StatementKind::Turn, self.at(span)));
+        }
+        self.push(StatementKind::For(Box::new(head)), span);
         Some(())
     }
 
-    /// Checks a FOR loop's head, and makes the statements before the loop.
-    fn range(
+    /// Checks a FOR loop's head; the loop has no body yet.
+    fn for_head(
         &mut self,
         counter: &ast::Expr<'s>,
         from: &ast::Expr<'s>,
         to: &ast::Expr<'s>,
         by: Option<&ast::Expr<'s>>,
-        span: Span,
-    ) -> Option<Range> {
+    ) -> Option<For> {
         let found = self.place(counter);
         let Some(found) = found.filter(|it| self.writable(it, counter.span)) else {
             for part in [from, to].into_iter().chain(by) {
@@ -128,69 +104,66 @@ impl<'s> Checker<'_, 's> {
             }
             return None;
         };
-        let place = found.place;
-        let ty = match place.ty.read() {
-            Type::Elementary(it) if it.is_integer() || self.counts(it, counter.span) => it,
+        let mut place = found.place;
+        let ty = self.counter_type(place.ty.read(), counter.span)?;
+        self.note_assigned(&place, counter.span);
+        self.fix_indices(&mut place, counter.span);
+        // Each part is checked, whatever is wrong with another.
+        let first = self.value(from, place.ty);
+        let mark = self.block.len();
+        let mut last = self.value(to, Type::Elementary(ty));
+        let mut done: Vec<_> = last.iter_mut().collect();
+        let step = self.after(&mut done, |this| this.step(by, ty));
+        let (mut first, last, step) = (first?, last?, step?);
+        if self.block.len() > mark {
+            // The counter has its first value when the calls in the other parts are made.
+            let at = first.at;
+            let start = Statement::assign(place.clone(), first, at);
+            self.block.insert(mark, start);
+            first = Expr::load(place.clone(), at);
+        }
+        let range = self.decl.program.range(place.ty).or(ty.lane().range())?;
+        let step_at = self.at(by.unwrap_or(counter).span);
+        Some(For { counter: place, first, last, step, range, is_private: false, body: Block::new(), step_at })
+    }
+
+    fn counter_type(&mut self, ty: Type, span: Span) -> Option<Elementary> {
+        match ty {
+            Type::Elementary(it) if it.is_integer() || self.counts(it, span) => Some(it),
             other => {
                 let name = self.type_name(other);
                 self.report(
                     Diagnostic::new(
                         Code::E0201,
-                        counter.span,
+                        span,
                         format!("the counter of a FOR loop is an integer, this is {name}"),
                     )
                     .label("expected an integer"),
                 );
-                return None;
+                None
             }
-        };
-        self.note_assigned(&place, counter.span);
-        // Each part is checked, whatever is wrong with another.
-        let first = self.value(from, place.ty);
-        if let Some(first) = &first {
-            self.assign(place.clone(), first.clone(), from.span);
         }
-        let last = self.bound(to, ty);
-        let step = self.step(by, ty, span);
-        let (_, last, step) = (first?, last?, step?);
-        let running = self.running(&place, counter.span)?;
-        let (stay, leave) = self.loop_tests(&running.place, ty, &last, &step, span)?;
-        Some(Range { place, running, ty, step, stay, leave })
-    }
-
-    /// A counter of a subrange cannot take the value that ends the loop, so another one runs.
-    fn running(&mut self, place: &Place, span: Span) -> Option<Running> {
-        if place.ty == place.ty.read() {
-            return Some(Running { place: place.clone(), enter: None });
-        }
-        let at = self.at(span);
-        let running = self.temporary("running", place.ty.read());
-        self.assign(running.clone(), Expr::load(place.clone(), at).read(), span);
-        let enter = self.coerce(Operand::Typed(Expr::load(running.clone(), at)), place.ty, span)?;
-        Some(Running { place: running, enter: Some(enter) })
     }
 
     fn counts(&self, ty: Elementary, span: Span) -> bool {
         ty.is_bits() && ty != Elementary::Bool && self.decl.dialect(span).mixes_bits_and_integers()
     }
 
-    /// A bound is evaluated once, before the loop.
-    fn bound(&mut self, expr: &ast::Expr<'s>, ty: Elementary) -> Option<Expr> {
-        let value = self.value(expr, Type::Elementary(ty))?;
-        Some(self.once("last", value, expr.span))
-    }
-
-    fn once(&mut self, name: &str, value: Expr, span: Span) -> Expr {
-        if value.as_const().is_some() {
-            return value;
+    /// The loop goes by one variable: what its indices are made of may change in the body.
+    fn fix_indices(&mut self, place: &mut Place, span: Span) {
+        for projection in &mut place.projections {
+            if let Projection::Index { index, .. } = projection {
+                if index.as_const().is_none() {
+                    let (value, at) = ((**index).clone(), index.at);
+                    let saved = self.temporary("index", value.ty);
+                    self.assign(saved.clone(), value, span);
+                    **index = Expr::load(saved, at);
+                }
+            }
         }
-        let at = value.at;
-        let place = self.temporary(name, value.ty);
-        self.assign(place.clone(), value, span);
-        Expr::load(place, at)
     }
 
-    fn step(&mut self, by: Option<&ast::Expr<'s>>, ty: Elementary, span: Span) -> Option<Step> {
+    fn step(&mut self, by: Option<&ast::Expr<'s>>, ty: Elementary) -> Option<Step> {
         let Some(by) = by else { return Some(Step::Constant(1)) };
         // A negative constant steps down, also for an unsigned counter.
         let operand = self.operand(by, Some(Type::Elementary(ty)))?;
@@ -209,86 +182,7 @@ impl<'s> Checker<'_, 's> {
                 None
             }
             Some(step) if step.abs() <= most => Some(Step::Constant(step)),
-            Some(_) | None => {
-                let value = self.coerce(operand, Type::Elementary(ty), by.span)?;
-                let step = self.once("step", value, by.span);
-                let zero = self.number(0, ty, by.span)?;
-                let at = self.at(by.span);
-                let is_zero = self.apply(Op::Eq, step.ty, vec![step.clone(), zero], Type::BOOL, span)?;
-                let fault = Statement::new(StatementKind::Fault(FaultKind::ZeroStep), at);
-                self.push(StatementKind::If { condition: is_zero, then: vec![fault], otherwise: Vec::new() }, by.span);
-                Some(Step::Variable(step))
-            }
-        }
-    }
-
-    fn number(&mut self, value: i128, ty: Elementary, span: Span) -> Option<Expr> {
-        let at = self.at(span);
-        Some(Expr::constant(ty, ty.lane().integer(value)?, at))
-    }
-
-    /// Whether to go on, and whether the next step would leave the counter's type.
-    fn loop_tests(
-        &mut self,
-        place: &Place,
-        ty: Elementary,
-        last: &Expr,
-        step: &Step,
-        span: Span,
-    ) -> Option<(Expr, Option<Expr>)> {
-        let at = self.at(span);
-        let counter = Expr::load(place.clone(), at);
-        let (least, most) = ty.lane().range()?;
-        let whole = Type::Elementary(ty);
-        let test = |this: &mut Self, op, a: Expr, b: Expr| this.apply(op, whole, vec![a, b], Type::BOOL, span);
-        match step {
-            Step::Constant(step) if *step > 0 => {
-                let stay = test(self, Op::Le, counter.clone(), last.clone())?;
-                let never = last.as_const().and_then(Value::as_integer).is_some_and(|last| last + step <= most);
-                let highest = self.number(most - step, ty, span)?;
-                let leave = if never { None } else { Some(test(self, Op::Gt, counter, highest)?) };
-                Some((stay, leave))
-            }
-            Step::Constant(step) => {
-                let stay = test(self, Op::Ge, counter.clone(), last.clone())?;
-                let never = last.as_const().and_then(Value::as_integer).is_some_and(|last| last + step >= least);
-                let lowest = self.number(least - step, ty, span)?;
-                let leave = if never { None } else { Some(test(self, Op::Lt, counter, lowest)?) };
-                Some((stay, leave))
-            }
-            Step::Variable(step) => {
-                let zero = self.number(0, ty, span)?;
-                let (most, least) = (self.number(most, ty, span)?, self.number(least, ty, span)?);
-                let up = test(self, Op::Gt, step.clone(), zero)?;
-                let below = test(self, Op::Le, counter.clone(), last.clone())?;
-                let above = test(self, Op::Ge, counter.clone(), last.clone())?;
-                let stay = self.pick(&up, below, above, span)?;
-                let highest = self.apply(Op::Sub, whole, vec![most, step.clone()], whole, span)?;
-                let lowest = self.apply(Op::Sub, whole, vec![least, step.clone()], whole, span)?;
-                let over = test(self, Op::Gt, counter.clone(), highest)?;
-                let under = test(self, Op::Lt, counter, lowest)?;
-                let leave = self.pick(&up, over, under, span)?;
-                Some((stay, Some(leave)))
-            }
-        }
-    }
-
-    /// `up ? when_up : when_down`
-    fn pick(&mut self, up: &Expr, when_up: Expr, when_down: Expr, span: Span) -> Option<Expr> {
-        self.apply(Op::Sel, Type::BOOL, vec![up.clone(), when_down, when_up], Type::BOOL, span)
-    }
-
-    fn next_value(&mut self, place: &Place, ty: Elementary, step: &Step, span: Span) -> Option<Expr> {
-        let at = self.at(span);
-        let counter = Expr::load(place.clone(), at);
-        let whole = Type::Elementary(ty);
-        match step {
-            Step::Constant(step) => {
-                let op = if *step > 0 { Op::Add } else { Op::Sub };
-                let distance = self.number(step.abs(), ty, span)?;
-                self.apply(op, whole, vec![counter, distance], whole, span)
-            }
-            Step::Variable(step) => self.apply(Op::Add, whole, vec![counter, step.clone()], whole, span),
+            Some(_) | None => self.coerce(operand, Type::Elementary(ty), by.span).map(Step::Variable),
         }
     }
 }

@@ -3,8 +3,11 @@
 use super::evaluate::{scalar, text};
 use super::{Frame, Interpreter, Stop};
 use crate::layout::usize_of;
-use crate::{Argument, Arm, BlockId, Expr, ExprKind, Mode, Place, Pou, PouId, Statement, StatementKind, Type, Value};
-use staunch_runtime::{Context, Fault, Instruction};
+use crate::{
+    Argument, Arm, BlockId, Expr, ExprKind, For, Location, Mode, Place, Pou, PouId, Statement, StatementKind, Step,
+    Type, Value,
+};
+use staunch_runtime::{Context, Fault, FaultKind, Instruction, ops};
 
 /// How a statement ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,6 +44,8 @@ impl<'p> Interpreter<'p> {
             StatementKind::Loop { body, continuing } => {
                 return self.turns(frame, body, continuing, cx);
             }
+            StatementKind::For(it) => return self.for_loop(frame, it, statement.at, cx),
+            StatementKind::Turn => cx.take_turn().map_err(|kind| Fault { kind, at: statement.at })?,
             StatementKind::Exit => return Ok(Flow::Exit),
             StatementKind::Continue => return Ok(Flow::Continue),
             StatementKind::Return => return Ok(Flow::Return),
@@ -105,6 +110,43 @@ impl<'p> Interpreter<'p> {
                 }
             }
         }
+    }
+
+    fn for_loop(&mut self, frame: &Frame, it: &'p For, at: Location, cx: &Context) -> Result<Flow, Stop> {
+        self.assign(frame, &it.counter, &it.first)?;
+        let last = scalar(&self.scope(frame), &it.last)?;
+        let step = match &it.step {
+            Step::Constant(step) => *step,
+            Step::Variable(step) => integer(scalar(&self.scope(frame), step)?),
+        };
+        if step == 0 {
+            return Err(Fault { kind: FaultKind::ZeroStep, at: it.step_at }.into());
+        }
+        loop {
+            self.step()?;
+            let (_, value) = self.counter(frame, it)?;
+            let (value, last_turn) = (integer(value), integer(last));
+            if if step > 0 { value > last_turn } else { value < last_turn } {
+                return Ok(Flow::Next);
+            }
+            match self.block(frame, &it.body, cx)? {
+                Flow::Next | Flow::Continue => {}
+                Flow::Exit => return Ok(Flow::Next),
+                Flow::Return => return Ok(Flow::Return),
+            }
+            let (offset, value) = self.counter(frame, it)?;
+            match ops::step_value(value, step, last, it.range).map_err(|kind| Fault { kind, at })? {
+                Some(next) => next.write(&mut self.memory[offset..]),
+                None => return Ok(Flow::Next),
+            }
+        }
+    }
+
+    /// Where a loop's counter is, and its value.
+    fn counter(&self, frame: &Frame, it: &For) -> Result<(usize, Value), Fault> {
+        let offset = self.resolve(frame, &it.counter)?;
+        let lane = self.program.lane(it.counter.ty).expect("verified IR: an integer counter");
+        Ok((offset, Value::read(lane, &self.memory[offset..])))
     }
 
     fn assign(&mut self, frame: &Frame, target: &Place, value: &Expr) -> Result<(), Fault> {
@@ -251,6 +293,10 @@ fn block_id(place: &Place) -> BlockId {
             unreachable!("verified IR: an instance of a standard block")
         }
     }
+}
+
+fn integer(value: Value) -> i128 {
+    value.as_integer().expect("verified IR: an integer")
 }
 
 fn as_bool(value: Value) -> bool {

@@ -1,7 +1,7 @@
 //! Statements, each with the line and column it comes from.
 
 use super::Printer;
-use crate::{Argument, Arm, Block, Expr, Place, Pou, PouId, Statement, StatementKind, Type};
+use crate::{Argument, Arm, Block, Expr, For, Place, Pou, PouId, Statement, StatementKind, Step, Type};
 use core::fmt;
 
 impl Printer<'_> {
@@ -29,7 +29,9 @@ impl Printer<'_> {
                 self.block(pou, body)?;
                 self.tail(pou, "continuing", continuing)
             }
+            StatementKind::For(it) => self.block(pou, &it.body),
             StatementKind::Assign { .. }
+            | StatementKind::Turn
             | StatementKind::Exit
             | StatementKind::Continue
             | StatementKind::Return
@@ -64,6 +66,8 @@ impl Printer<'_> {
             StatementKind::If { condition, .. } => format!("if {}", self.expr(pou, condition)),
             StatementKind::Case { selector, .. } => format!("case {}", self.expr(pou, selector)),
             StatementKind::Loop { .. } => "loop".to_owned(),
+            StatementKind::For(it) => self.for_head(pou, it),
+            StatementKind::Turn => "turn".to_owned(),
             StatementKind::Exit => "exit".to_owned(),
             StatementKind::Continue => "continue".to_owned(),
             StatementKind::Return => "return".to_owned(),
@@ -81,6 +85,18 @@ impl Printer<'_> {
             }
             StatementKind::Fault(kind) => format!("fault {kind:?}"),
         }
+    }
+
+    fn for_head(&self, pou: &Pou, it: &For) -> String {
+        let step = match &it.step {
+            Step::Constant(step) => step.to_string(),
+            Step::Variable(step) => self.expr(pou, step),
+        };
+        let (counter, first, last) =
+            (self.place(pou, &it.counter), self.expr(pou, &it.first), self.expr(pou, &it.last));
+        let (least, most) = it.range;
+        let private = if it.is_private { " private" } else { "" };
+        format!("for{private} {counter} in {least}..{most} := {first} to {last} by {step}")
     }
 
     fn call_head(

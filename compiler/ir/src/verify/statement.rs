@@ -1,8 +1,10 @@
 //! Statements: control flow that leads somewhere, and calls that fit what they call.
 
 use super::Verifier;
+use crate::loops;
 use crate::{
-    Argument, Arm, Block, Expr, Location, Mode, Param, Place, Pou, PouId, PouKind, Root, Statement, StatementKind, Type,
+    Argument, Arm, Block, Expr, For, Location, Mode, Param, Place, Pou, PouId, PouKind, Root, Statement, StatementKind,
+    Step, Type,
 };
 use staunch_runtime::BlockInfo;
 
@@ -68,10 +70,12 @@ impl<'p> Verifier<'p> {
                 self.block(body, otherwise);
             }
             StatementKind::Loop { body: block, continuing } => {
+                self.require(block.iter().any(is_turn), at, "a loop that takes no turns");
                 let inside = Body { in_loop: true, in_continuing: false, ..*body };
                 self.block(&inside, block);
                 self.block(&Body { in_continuing: true, ..inside }, continuing);
             }
+            StatementKind::For(it) => self.for_loop(body, it, at),
             StatementKind::Exit => {
                 self.require(body.in_loop, at, "EXIT outside of a loop");
             }
@@ -79,7 +83,7 @@ impl<'p> Verifier<'p> {
                 let holds = body.in_loop && !body.in_continuing;
                 self.require(holds, at, "CONTINUE outside of a loop's body");
             }
-            StatementKind::Return | StatementKind::Fault(_) => {}
+            StatementKind::Return | StatementKind::Turn | StatementKind::Fault(_) => {}
             StatementKind::Call { callee, instance, arguments, result } => {
                 self.call(body, *callee, instance.as_ref(), arguments, at);
                 self.call_result(body, *callee, result.as_ref(), at);
@@ -96,6 +100,35 @@ impl<'p> Verifier<'p> {
                 }
             }
         }
+    }
+
+    fn for_loop(&mut self, body: &Body<'p>, it: &For, at: Location) {
+        let ty = it.counter.ty;
+        self.writable(body, &it.counter, at);
+        self.expr_of(body, &it.first, ty);
+        self.expr_of(body, &it.last, ty.read());
+        self.location(it.step_at);
+        let lane = self.lane(ty).filter(|lane| lane.is_integer());
+        let Some((min, max)) = lane.and_then(|lane| lane.range()) else {
+            return self.report(at, "a counter that is not an integer");
+        };
+        let range = self.program.range(ty).unwrap_or((min, max));
+        self.require(it.range == range, at, "a counter's range that is not of its type");
+        match &it.step {
+            Step::Constant(step) => {
+                self.require(
+                    *step != 0 && step.abs() <= max,
+                    at,
+                    "a step that is 0, or greater than the counter's type",
+                );
+            }
+            Step::Variable(step) => self.expr_of(body, step, ty.read()),
+        }
+        let root = self.program.root_type(body.pou, it.counter.root);
+        let private = !it.is_private || loops::is_private(self.program, root, &it.counter, &it.body);
+        self.require(private, at, "a counter that others write is called private");
+        self.require(it.is_short() || it.body.first().is_some_and(is_turn), at, "a loop that takes no turns");
+        self.block(&Body { in_loop: true, in_continuing: false, ..*body }, &it.body);
     }
 
     fn case(&mut self, body: &Body<'p>, selector: &Expr, arms: &[Arm], at: Location) {
@@ -208,4 +241,8 @@ impl<'p> Verifier<'p> {
         let prescan = info.instructions.get(instruction).and_then(|it| it.prescan);
         self.require(prescan.is_some(), at, format_args!("{} has no such prescan", info.name));
     }
+}
+
+fn is_turn(statement: &Statement) -> bool {
+    matches!(statement.kind, StatementKind::Turn)
 }

@@ -279,7 +279,11 @@ fn control_flow() {
     let block = |kind| vec![stmt(kind)];
     bad("EXIT outside", stmt(StatementKind::Exit));
     bad("CONTINUE outside", stmt(StatementKind::Continue));
-    let turn = |body, continuing| stmt(StatementKind::Loop { body, continuing });
+    let turn = |inside: Vec<Statement>, continuing| {
+        let body = [vec![stmt(StatementKind::Turn)], inside].concat();
+        stmt(StatementKind::Loop { body, continuing })
+    };
+    bad("takes no turns", stmt(StatementKind::Loop { body: Vec::new(), continuing: block(StatementKind::Exit) }));
     bad("CONTINUE outside", turn(Vec::new(), block(StatementKind::Continue)));
     good(turn(block(StatementKind::Continue), block(StatementKind::Exit)));
     good(turn(Vec::new(), vec![turn(block(StatementKind::Continue), Vec::new())]));

@@ -34,9 +34,9 @@ impl Call {
         for argument in &self.arguments {
             let mut see = |read: &Place| conflict |= borrowed.iter().any(|it| overlap(it, read));
             match argument {
-                Argument::Value(value) => crate::walk::reads(value, &mut see),
+                Argument::Value(value) => staunch_ir::visit::reads(value, &mut see),
                 Argument::Reference(place) => {
-                    crate::walk::index_reads(place, &mut see);
+                    staunch_ir::visit::index_reads(place, &mut see);
                     borrowed.push(place);
                 }
             }

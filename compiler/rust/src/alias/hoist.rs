@@ -12,7 +12,7 @@ impl Body {
     /// Reads `value` now if reading it at the call could fault, or read what is borrowed then.
     pub fn fix_value(&mut self, value: Expr, out: &mut Block) -> Expr {
         let mut reads = false;
-        crate::walk::reads(&value, &mut |_| reads = true);
+        staunch_ir::visit::reads(&value, &mut |_| reads = true);
         if reads { self.hoist("value", value, out) } else { value }
     }
 

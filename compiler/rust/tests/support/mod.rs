@@ -69,7 +69,7 @@ fn main() {
     unsafe { glue::staunch_init(at) };
     print(at, 0);
     for scan in 0..SCANS {
-        let cx = Context { now: scan * 10_000_000, first_scan: scan == 0 };
+        let cx = Context::new(scan * 10_000_000, scan == 0);
         let fault = unsafe { glue::staunch_scan(at, &cx, 0) };
         print(at, fault);
     }
@@ -148,7 +148,7 @@ fn run_interpreter(program: &Program) -> String {
     };
     print(0, interpreter.state());
     for scan in 0..SCANS {
-        let cx = Context { now: scan * 10_000_000, first_scan: scan == 0 };
+        let cx = Context::new(scan * 10_000_000, scan == 0);
         let fault = match interpreter.scan(0, &cx) {
             Ok(()) => 0,
             Err(Stop::Fault(fault)) => fault.code(),

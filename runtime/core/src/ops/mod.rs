@@ -12,6 +12,7 @@ mod select;
 
 mod convert;
 mod index;
+mod step;
 
 pub use arithmetic::{abs, add, div, modulo, mul, neg, sub};
 pub use bits::{and, not, or, rol, ror, shl, shr, xor};
@@ -19,5 +20,7 @@ pub use class::{Bits, Integer, Number, Real};
 pub use compare::{eq, ge, gt, le, lt, ne};
 pub use convert::{ConvertTo, TruncateTo, convert, convert_value, trunc, trunc_value};
 pub use index::index;
+
 pub use math::{acos, asin, atan, atan2, cos, exp, expt, ln, log, sin, sqrt, tan};
 pub use select::{in_range, limit, max, min, sel};
+pub use step::{step, step_value};

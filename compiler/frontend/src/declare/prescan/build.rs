@@ -2,8 +2,8 @@
 
 use crate::declare::pin_place;
 use staunch_ir::{
-    Block, Const, Elementary, Expr, Local, LocalId, Location, Op, Place, Program, Projection, Retain, Statement,
-    StatementKind, Type, Value,
+    Block, Const, Elementary, Expr, For, Local, LocalId, Location, Op, Place, Program, Projection, Retain, Statement,
+    StatementKind, Step, Type, Value,
 };
 
 /// Builds the prescan of one POU.
@@ -86,7 +86,7 @@ impl<'p> Builder<'p> {
         indices.push(index.clone());
         let body = self.elements(place, position + 1, indices, make);
         indices.pop();
-        for_each(counter, index, (low, high), body, self.at)
+        for_each(counter, (low, high), body, self.at)
     }
 
     /// The bounds for the indices of a place that are known in the call only.
@@ -143,18 +143,23 @@ fn where_within(indices: &[Expr], bounds: &[(i64, i64)], block: Block, at: Locat
     }
 }
 
-fn for_each(counter: Place, index: Expr, (low, high): (i64, i64), mut body: Block, at: Location) -> Block {
+/// Runs `body` with each index from `low` to `high` in a local that it does not write.
+fn for_each(counter: Place, (low, high): (i64, i64), body: Block, at: Location) -> Block {
     let lint = |value| Expr::constant(Elementary::Lint, Value::I64(value), at);
-    let over = Expr::apply(Op::Gt, Type::BOOL, vec![index.clone(), lint(high)], at);
-    let exit = vec![Statement::new(StatementKind::Exit, at)];
-    let mut inside = vec![Statement::new(StatementKind::If { condition: over, then: exit, otherwise: Vec::new() }, at)];
-    inside.append(&mut body);
-    let next = Expr::apply(Op::Add, Type::LINT, vec![index, lint(1)], at);
-    let continuing = vec![Statement::assign(counter.clone(), next, at)];
-    vec![
-        Statement::assign(counter, lint(low), at),
-        Statement::new(StatementKind::Loop { body: inside, continuing }, at),
-    ]
+    let mut turns = For {
+        counter,
+        first: lint(low),
+        last: lint(high),
+        step: Step::Constant(1),
+        range: (i64::MIN.into(), i64::MAX.into()),
+        is_private: true,
+        body,
+        step_at: at,
+    };
+    if !turns.is_short() {
+        turns.body.insert(0, Statement::new(StatementKind::Turn, at));
+    }
+    vec![Statement::new(StatementKind::For(Box::new(turns)), at)]
 }
 
 /// What the declarations on the way to the place say of a restart.

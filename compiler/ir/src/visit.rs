@@ -1,6 +1,6 @@
-//! Walks over statements and expressions, in the order of evaluation.
+//! The one walk over statements, places and expressions, in the order of evaluation.
 
-use staunch_ir::{Argument, Expr, ExprKind, Lane, Op, Place, Program, Projection, Statement, StatementKind};
+use crate::{Argument, Expr, ExprKind, Lane, Op, Place, Program, Projection, Statement, StatementKind, Step};
 
 /// What a statement does with a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,7 +59,19 @@ pub fn accesses(statement: &Statement, see: &mut dyn FnMut(&Place, Access)) {
         StatementKind::PrescanBlock { block: place, .. } | StatementKind::PrescanInstance { instance: place, .. } => {
             borrow(place, see);
         }
+        StatementKind::For(it) => {
+            index_reads(&it.counter, &mut |place| see(place, Access::Read));
+            reads(&it.first, &mut |place| see(place, Access::Read));
+            see(&it.counter, Access::Write);
+            reads(&it.last, &mut |place| see(place, Access::Read));
+            if let Step::Variable(step) = &it.step {
+                reads(step, &mut |place| see(place, Access::Read));
+            }
+            see(&it.counter, Access::Read);
+            see(&it.counter, Access::Write);
+        }
         StatementKind::Loop { .. }
+        | StatementKind::Turn
         | StatementKind::Exit
         | StatementKind::Continue
         | StatementKind::Return
@@ -77,6 +89,39 @@ fn argument_accesses(argument: &Argument, see: &mut dyn FnMut(&Place, Access)) {
 fn borrow(place: &Place, see: &mut dyn FnMut(&Place, Access)) {
     index_reads(place, &mut |it| see(it, Access::Read));
     see(place, Access::Borrow);
+}
+
+/// Calls `see` for each expression that the statement itself, without the blocks in it, evaluates, but
+/// for the indices of its places.
+pub fn values<'a>(statement: &'a Statement, see: &mut dyn FnMut(&'a Expr)) {
+    match &statement.kind {
+        StatementKind::Assign { target: _, value } => see(value),
+        StatementKind::If { condition: value, .. } | StatementKind::Case { selector: value, .. } => see(value),
+        StatementKind::For(it) => {
+            see(&it.first);
+            see(&it.last);
+            if let Step::Variable(step) = &it.step {
+                see(step);
+            }
+        }
+        StatementKind::Call { arguments, .. } => {
+            for argument in arguments {
+                match argument {
+                    Argument::Value(value) => see(value),
+                    Argument::Reference(_) => {}
+                }
+            }
+        }
+        StatementKind::CallBlock { inputs, .. } => inputs.iter().for_each(see),
+        StatementKind::Loop { .. }
+        | StatementKind::Turn
+        | StatementKind::Exit
+        | StatementKind::Continue
+        | StatementKind::Return
+        | StatementKind::PrescanBlock { .. }
+        | StatementKind::PrescanInstance { .. }
+        | StatementKind::Fault(_) => {}
+    }
 }
 
 /// Calls `see` for each statement in `block`, at any depth.

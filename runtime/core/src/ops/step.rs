@@ -1,0 +1,32 @@
+use crate::{FaultKind, Scalar, Value};
+
+/// The counter of a FOR loop after one more `step`, where its type has the values `low..=high`.
+/// `None`, which ends the loop, when the step leads out of them and past `last`; out of them but
+/// not past `last`, [`FaultKind::SubrangeViolated`].
+///
+/// ```
+/// use staunch_runtime::{FaultKind, ops::step};
+/// assert_eq!(step(4_i16, 1, 5, (0, 5)), Ok(Some(5)));
+/// assert_eq!(step(5_i16, 1, 5, (0, 5)), Ok(None));
+/// assert_eq!(step(5_i16, 1, 9, (0, 5)), Err(FaultKind::SubrangeViolated));
+/// ```
+pub fn step<T: Scalar>(counter: T, step: i128, last: T, range: (i128, i128)) -> Result<Option<T>, FaultKind> {
+    let next = step_value(counter.into_value(), step, last.into_value(), range)?;
+    Ok(next.and_then(T::from_value))
+}
+
+/// [`step`] for an executor that learns the type at run time.
+pub fn step_value(
+    counter: Value,
+    step: i128,
+    last: Value,
+    (low, high): (i128, i128),
+) -> Result<Option<Value>, FaultKind> {
+    let number = |it: Value| it.as_integer().unwrap_or(0);
+    let (next, last) = (number(counter).saturating_add(step), number(last));
+    if low <= next && next <= high {
+        return Ok(counter.lane().integer(next));
+    }
+    let is_past = if step > 0 { next > last } else { next < last };
+    if is_past { Ok(None) } else { Err(FaultKind::SubrangeViolated) }
+}
