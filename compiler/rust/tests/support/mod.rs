@@ -204,7 +204,7 @@ static mut MACHINE: glue::Machine = glue::Machine::new();
 #[unsafe(no_mangle)]
 extern "C" fn main(count: i32, time: i64) -> i32 {
     let at = (&raw mut MACHINE).cast::<u8>();
-    let cx = staunch_runtime::Context { now: time, first_scan: count == 1 };
+    let cx = staunch_runtime::Context::new(time, count == 1);
     unsafe { i32::from(glue::staunch_scan(at, &cx, count.unsigned_abs() / 2) != 0) }
 }
 
