@@ -57,6 +57,11 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
+    /// SHR of a signed integer keeps its sign.
+    pub const fn keeps_sign(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
     /// Assigning an input from inside, or a FOR counter in its loop, is a lint, not an error.
     pub const fn assigns_inputs(self) -> bool {
         matches!(self, Self::Codesys)

@@ -240,6 +240,25 @@ impl Program {
         }
     }
 
+    /// The first instance of a block that a variable of type `ty` is or holds, with the way to it:
+    /// `.motor`, `[…].timer`. What holds an instance is never copied. `is_state` tells the states of
+    /// POUs from structures.
+    pub fn instance_in(&self, ty: Type, is_state: &impl Fn(StructId) -> bool) -> Option<(String, Type)> {
+        match ty {
+            Type::Block(_) => Some((String::new(), ty)),
+            Type::Struct(id) if is_state(id) => Some((String::new(), ty)),
+            Type::Struct(id) => self.structure(id).fields.iter().find_map(|field| {
+                let (way, instance) = self.instance_in(field.ty, is_state)?;
+                Some((format!(".{}{way}", field.name), instance))
+            }),
+            Type::Array(id) => {
+                let (way, instance) = self.instance_in(self.array(id).element, is_state)?;
+                Some((format!("[…]{way}"), instance))
+            }
+            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => None,
+        }
+    }
+
     /// The type's name as a user writes it.
     pub fn type_name(&self, ty: Type) -> String {
         match ty {

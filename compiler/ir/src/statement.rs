@@ -21,7 +21,7 @@ pub enum StatementKind {
         otherwise: Block,
     },
     /// The first arm with a label that holds `selector` runs, else `otherwise`. The selector is
-    /// an integer, bit string or enumeration; labels do not overlap.
+    /// an integer, bit string or enumeration. Labels do not overlap: the front end cuts them.
     Case {
         selector: Expr,
         arms: Vec<Arm>,

@@ -85,6 +85,7 @@ impl Function<'_> {
             | Op::Atan2
             | Op::Shl
             | Op::Shr
+            | Op::Sar
             | Op::Rol
             | Op::Ror
             | Op::Max

@@ -38,6 +38,8 @@ macro_rules! for_each_op {
             Not         "NOT"      not        (IN: T) -> T                           [ANY_BIT as bits]            total;
             Shl         "SHL"      shl        (IN: T, N: ANY_INT) -> T               [ANY_BIT as integer]         total;
             Shr         "SHR"      shr        (IN: T, N: ANY_INT) -> T               [ANY_BIT as integer]         total;
+            // SHR of a signed integer in CODESYS.
+            Sar         "_SAR"     sar        (IN: T, N: ANY_INT) -> T               [ANY_BIT as integer]         total;
             Rol         "ROL"      rol        (IN: T, N: ANY_INT) -> T               [ANY_BIT as integer]         total;
             Ror         "ROR"      ror        (IN: T, N: ANY_INT) -> T               [ANY_BIT as integer]         total;
             Eq          "EQ"       eq         (IN1: T, IN2: T) -> BOOL               [ANY_ELEMENTARY as any]      total extensible;

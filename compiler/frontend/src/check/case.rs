@@ -1,20 +1,39 @@
-//! CASE: its selector, and labels that are constants and cover each value once.
-
-use std::collections::BTreeMap;
+//! CASE: of labels that overlap, the first in the text that holds the value is chosen. The IR gets
+//! labels that do not, cut to what is left of them.
 
 use super::Checker;
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Arm, StatementKind, Type, Value};
+use std::collections::{BTreeMap, HashMap};
 
-/// The labels so far, by their lowest value, with their highest: none of them overlap.
+/// The labels that have been seen.
 #[derive(Default)]
-struct Seen(BTreeMap<i128, (i128, Span)>);
+struct Seen {
+    /// As they are written.
+    labels: HashMap<(i128, i128), Span>,
+    /// What they hold, in ranges that do not overlap: by its lower end the upper one, and whose it is.
+    held: BTreeMap<i128, (i128, Span)>,
+}
 
 impl Seen {
-    /// The label with the lowest values that shares one with `low..=high`.
-    fn overlapping(&self, low: i128, high: i128) -> Option<Span> {
-        let below = self.0.range(..=low).next_back().filter(|(_, (to, _))| low <= *to);
-        below.or_else(|| self.0.range(low..=high).next()).map(|(_, (_, span))| *span)
+    /// The parts of a range that no label holds, and the first label that holds another part.
+    fn rest(&self, (low, high): (i128, i128)) -> (Vec<(i128, i128)>, Option<Span>) {
+        let (mut rest, mut from, mut first) = (Vec::new(), low, None);
+        let start = self.held.range(..=low).next_back().map_or(low, |(start, _)| *start);
+        for (start, (end, span)) in self.held.range(start..=high) {
+            if *end < from {
+                continue;
+            }
+            first.get_or_insert(*span);
+            if from < *start {
+                rest.push((from, *start - 1));
+            }
+            from = *end + 1;
+        }
+        if from <= high {
+            rest.push((from, high));
+        }
+        (rest, first)
     }
 }
 
@@ -52,7 +71,7 @@ impl<'s> Checker<'_, 's> {
         let mut called = Vec::new();
         for arm in arms {
             let labels: Vec<_> = match ty {
-                Some(ty) => arm.labels.iter().filter_map(|it| self.label(it, ty, &mut seen)).collect(),
+                Some(ty) => arm.labels.iter().flat_map(|it| self.label(it, ty, &mut seen)).collect(),
                 None => Vec::new(),
             };
             let before = self.called.len();
@@ -68,12 +87,40 @@ impl<'s> Checker<'_, 's> {
         Some(())
     }
 
-    fn label(&mut self, label: &ast::Label<'s>, ty: Type, seen: &mut Seen) -> Option<(i128, i128)> {
-        let low = self.label_value(&label.low, ty)?;
-        let (high, span) = match &label.high {
-            Some(high) => (self.label_value(high, ty)?, label.low.span.to(high.span)),
-            None => (low, label.low.span),
+    /// What a label holds of the values that the ones before it leave.
+    fn label(&mut self, label: &ast::Label<'s>, ty: Type, seen: &mut Seen) -> Vec<(i128, i128)> {
+        let span = label.high.as_ref().map_or(label.low.span, |high| label.low.span.to(high.span));
+        let Some(range) = self.label_range(label, ty, span) else { return Vec::new() };
+        if let Some(first) = seen.labels.insert(range, span) {
+            self.report(
+                Diagnostic::new(Code::E0506, span, "this CASE label stands twice")
+                    .label("never chosen: the first one is")
+                    .other(first, "first here"),
+            );
+            return Vec::new();
+        }
+        let (rest, first) = seen.rest(range);
+        if let Some(first) = first {
+            self.report_overlap(rest.is_empty(), first, span);
+        }
+        seen.held.extend(rest.iter().map(|(low, high)| (*low, (*high, span))));
+        rest
+    }
+
+    fn report_overlap(&mut self, never: bool, first: Span, span: Span) {
+        let lint = if never {
+            Diagnostic::new(Code::W0512, span, "this CASE label is never chosen")
+                .label("labels before it hold all of its values")
+        } else {
+            Diagnostic::new(Code::W0512, span, "this CASE label overlaps another")
+                .label("where both hold the value, the first one is chosen")
         };
+        self.report(lint.other(first, "first here"));
+    }
+
+    fn label_range(&mut self, label: &ast::Label<'s>, ty: Type, span: Span) -> Option<(i128, i128)> {
+        let low = self.label_value(&label.low, ty)?;
+        let high = label.high.as_ref().map_or(Some(low), |high| self.label_value(high, ty))?;
         if low > high {
             self.report(
                 Diagnostic::new(Code::E0510, span, "this range of labels is empty")
@@ -83,15 +130,6 @@ impl<'s> Checker<'_, 's> {
             );
             return None;
         }
-        if let Some(first) = seen.overlapping(low, high) {
-            self.report(
-                Diagnostic::new(Code::E0506, span, "this CASE label stands twice")
-                    .label("never chosen: the first one is")
-                    .other(first, "first here"),
-            );
-            return None;
-        }
-        seen.0.insert(low, (high, span));
         Some((low, high))
     }
 

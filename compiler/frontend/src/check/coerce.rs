@@ -61,10 +61,9 @@ impl<'s> Checker<'_, 's> {
 
     fn coerce_typed(&mut self, expr: Expr, to: Type, span: Span) -> Option<Expr> {
         if expr.ty == to {
-            return match to {
-                Type::Block(_) => self.instance_is_no_value(&expr, span),
-                Type::Struct(id) if self.decl.is_instance(id) => self.instance_is_no_value(&expr, span),
-                _ => Some(expr),
+            return match self.decl.held_instance(to) {
+                Some(message) => self.instance_is_no_value(&expr, message, span),
+                None => Some(expr),
             };
         }
         match (expr.ty, to) {
@@ -87,9 +86,10 @@ impl<'s> Checker<'_, 's> {
                 let number = self.convert(Conversion::Same, base, expr);
                 Some(self.convert(Conversion::Value, to, number))
             }
-            (Type::Block(_), _) => self.instance_is_no_value(&expr, span),
-            (Type::Struct(id), _) if self.decl.is_instance(id) => self.instance_is_no_value(&expr, span),
             _ => {
+                if let Some(message) = self.decl.held_instance(expr.ty) {
+                    return self.instance_is_no_value(&expr, message, span);
+                }
                 let (expected, found) = (self.type_name(to), self.type_name(expr.ty));
                 let error = Diagnostic::new(Code::E0201, span, format!("expected {expected}, found {found}"))
                     .label(format!("this is {found}"));
@@ -115,20 +115,26 @@ impl<'s> Checker<'_, 's> {
         Some(crate::diagnostic::wording::list(&names.take(4).collect::<Vec<_>>()))
     }
 
-    fn instance_is_no_value(&mut self, expr: &Expr, span: Span) -> Option<Expr> {
-        let ty = self.type_name(expr.ty);
+    fn instance_is_no_value(&mut self, expr: &Expr, message: String, span: Span) -> Option<Expr> {
         let outputs: Vec<String> = match expr.ty {
             Type::Block(id) => id.info().outputs().map(|it| it.name.to_owned()).collect(),
-            Type::Struct(id) => {
+            Type::Struct(id) if self.decl.is_instance(id) => {
                 let fields = &self.decl.program.structure(id).fields;
                 let outputs = fields.iter().filter(|it| it.section == staunch_ir::Section::Output);
                 outputs.map(|it| it.name.clone()).collect()
             }
-            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Array(_) => Vec::new(),
+            Type::Elementary(_)
+            | Type::Subrange(..)
+            | Type::String(_)
+            | Type::Enum(_)
+            | Type::Array(_)
+            | Type::Struct(_) => Vec::new(),
         };
         let text = self.decl.sources.text(span);
-        let mut error = Diagnostic::new(Code::E0210, span, format!("an instance of {ty} is not a value"))
-            .label("this is the block itself");
+        let whole =
+            matches!(expr.ty, Type::Block(_)) || matches!(expr.ty, Type::Struct(id) if self.decl.is_instance(id));
+        let label = if whole { "this is the block itself" } else { "this would copy the block itself" };
+        let mut error = Diagnostic::new(Code::E0210, span, message).label(label);
         if !outputs.is_empty() && !text.contains(char::is_whitespace) {
             let names: Vec<_> = outputs.iter().map(|it| format!("{text}.{it}")).collect();
             let names: Vec<_> = names.iter().map(String::as_str).collect();

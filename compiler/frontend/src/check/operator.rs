@@ -118,9 +118,8 @@ impl<'s> Checker<'_, 's> {
         let (a, b) = (name(self, &sides.a), name(self, &sides.b));
         if let Some(side) = [(&sides.a, sides.left), (&sides.b, sides.right)]
             .into_iter()
-            .find(|(operand, _)| matches!(operand.ty(), Some(Type::Block(_) | Type::Struct(_))))
+            .find(|(operand, _)| operand.ty().is_some_and(|ty| self.decl.instance_in(ty).is_some()))
             && let Some(expr) = side.0.typed()
-            && (matches!(expr.ty, Type::Block(_)) || matches!(expr.ty, Type::Struct(id) if self.decl.is_instance(id)))
         {
             let expr = expr.clone();
             let _ = self.coerce(Operand::Typed(expr), Type::BOOL, side.1);

@@ -204,6 +204,9 @@ impl<'s> Checker<'_, 's> {
             Op::Rol | Op::Ror => self.convert(Conversion::Value, Type::LINT, count),
             _ => self.count(count)?,
         };
+        let signed = ty.elementary().is_some_and(|it| it.is_integer() && !it.lane().is_unsigned());
+        let keeps_sign = op == Op::Shr && signed && self.decl.dialect(span).keeps_sign();
+        let op = if keeps_sign { Op::Sar } else { op };
         self.apply(op, ty, vec![value, count], ty, span)
     }
 

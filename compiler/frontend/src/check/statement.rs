@@ -146,20 +146,15 @@ impl<'s> Checker<'_, 's> {
 
     /// A block's state is not copied over another's.
     fn refuse_instance(&mut self, place: &Place, span: Span) -> Option<()> {
-        let instance = match place.ty {
-            Type::Struct(id) => self.decl.is_instance(id),
-            Type::Block(id) => id.info().instructions.iter().any(|it| it.name.is_empty()),
-            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Array(_) => false,
+        let (way, instance) = self.decl.instance_in(place.ty)?;
+        let (ty, instance) = (self.type_name(place.ty), self.type_name(instance));
+        let error = match way.as_str() {
+            "" => Diagnostic::new(Code::E0210, span, format!("an instance of {instance} cannot be assigned to"))
+                .label("this is the block itself"),
+            way => Diagnostic::new(Code::E0210, span, format!("{ty} cannot be assigned to as a whole"))
+                .label(format!("it holds an instance of {instance}, at `{way}`, which is never copied")),
         };
-        if !instance {
-            return None;
-        }
-        let ty = self.type_name(place.ty);
-        self.report(
-            Diagnostic::new(Code::E0210, span, format!("an instance of {ty} cannot be assigned to"))
-                .label("this is the block itself")
-                .help("assign to its inputs, or call it"),
-        );
+        self.report(error.help("assign to its inputs, or call it"));
         Some(())
     }
 

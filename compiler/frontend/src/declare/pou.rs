@@ -161,6 +161,9 @@ impl<'s> Declarations<'s> {
             builder.complete = false;
             return None;
         };
+        if self.refuse_copy(resolved.ty, pou.name, "pass the instance in VAR_IN_OUT").is_none() {
+            builder.complete = false;
+        }
         let id = builder.local(pou.name.text, &resolved, None);
         Some((id, resolved))
     }
@@ -393,6 +396,7 @@ impl<'s> Declarations<'s> {
                 Place::root(Root::Param(ParamId::next(at)), resolved.ty)
             }
             (PouKind::Function, VarKind::Input) => {
+                self.refuse_copy(resolved.ty, name, "declare it in VAR_IN_OUT")?;
                 let local = builder.local(name.text, resolved, decl.doc.clone());
                 let at = builder.param(name.text, resolved, decl, Mode::Value(local));
                 builder.formals.push(formal(Target::Param(at)));

@@ -470,6 +470,30 @@ impl<'s> Declarations<'s> {
         id
     }
 
+    /// The instance of a block that a variable of type `ty` is or holds, and the way to it.
+    pub fn instance_in(&self, ty: Type) -> Option<(String, Type)> {
+        self.program.instance_in(ty, &|id| self.is_instance(id))
+    }
+
+    /// What `ty` holds that is never copied, in a sentence.
+    pub fn held_instance(&self, ty: Type) -> Option<String> {
+        let (way, instance) = self.instance_in(ty)?;
+        let (name, instance) = (self.program.type_name(ty), self.program.type_name(instance));
+        Some(match way.as_str() {
+            "" => format!("an instance of {instance} is not a value"),
+            way => format!("{name} holds an instance of {instance}, at `{way}`, which is never copied"),
+        })
+    }
+
+    /// Refuses what a call would have to copy.
+    pub fn refuse_copy(&mut self, ty: Type, name: ast::Name<'s>, help: &str) -> Option<()> {
+        let Some(message) = self.held_instance(ty) else { return Some(()) };
+        self.report(
+            Diagnostic::new(Code::E0210, name.span, message).label("a call would copy it").help(help.to_owned()),
+        );
+        None
+    }
+
     /// About how many bytes a value of the type takes: alignment may add some.
     pub fn size_of(&self, ty: Type) -> u64 {
         match ty {

@@ -326,7 +326,8 @@ value. An index that is not known is checked in every scan, and faults.
 ";
     E0210 Error "an instance is not a value"
 "A counter, timer or other block instance is storage with behaviour; it is called, and its
-outputs are read. It cannot be copied or computed with.
+outputs are read. It cannot be copied or computed with, nor can what holds it: a
+structure, an array, a parameter that is passed by value, a result.
 
     VAR parts : CTU; count : INT; END_VAR
     count := parts.CV;      (* not `count := parts;` *)
@@ -565,6 +566,16 @@ dialect refuses it, as CODESYS does.
     W0511 Warning "an integer loses digits as a real"
 "CODESYS makes a REAL of a DINT without being asked, and an LREAL of a LINT. Above 16777216, or 9007199254740992, not
 every integer is a real, and the nearest one is taken. Write the conversion to say that this is meant.
+";
+    W0512 Warning "CASE labels that overlap"
+"Of the labels that hold the value, the first in the text is chosen. A label whose values all belong to labels before it
+is never chosen.
+
+    CASE level OF
+    0..9:  state := 1;
+    5..20: state := 2;      (* 10..20 *)
+    7:     state := 3;      (* never *)
+    END_CASE
 ";
     W0515 Warning "a subrange wider than the array that it indexes"
 "The index is a variable of a subrange, which is checked when it is assigned. But the subrange holds values that the

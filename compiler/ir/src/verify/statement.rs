@@ -59,6 +59,7 @@ impl<'p> Verifier<'p> {
             StatementKind::Assign { target, value } => {
                 self.writable(body, target, at);
                 self.expr_of(body, value, target.ty);
+                self.copied(value.ty, at);
             }
             StatementKind::If { condition, then, otherwise } => {
                 self.expr_of(body, condition, Type::BOOL);
@@ -174,7 +175,10 @@ impl<'p> Verifier<'p> {
 
     fn argument(&mut self, body: &Body<'p>, param: &Param, argument: &Argument, at: Location) {
         match (param.mode, argument) {
-            (Mode::Value(_), Argument::Value(value)) => self.expr_of(body, value, param.ty),
+            (Mode::Value(_), Argument::Value(value)) => {
+                self.expr_of(body, value, param.ty);
+                self.copied(value.ty, at);
+            }
             (Mode::Reference, Argument::Reference(place)) => {
                 self.writable(body, place, at);
                 self.require(place.ty == param.ty, at, format_args!("{}: a place of another type", param.name));
@@ -182,6 +186,14 @@ impl<'p> Verifier<'p> {
             (Mode::Value(_), Argument::Reference(_)) | (Mode::Reference, Argument::Value(_)) => {
                 self.report(at, format_args!("{}: passed the wrong way", param.name));
             }
+        }
+    }
+
+    /// What holds an instance of a block is not copied.
+    fn copied(&mut self, ty: Type, at: Location) {
+        let program = self.program;
+        if let Some((way, _)) = program.instance_in(ty, &|id| program.pou_of_state(id).is_some()) {
+            self.report(at, format_args!("{} is copied with the instance at {way:?}", program.type_name(ty)));
         }
     }
 

@@ -51,6 +51,20 @@ pub fn shr<T: Integer>(value: T, count: i64) -> T {
     shift(value, count, T::shifted_right)
 }
 
+/// Moves the bits of `value` right by `count`, and keeps the sign: copies of it come in. A negative
+/// `count` moves nothing.
+///
+/// ```
+/// use staunch_runtime::ops::sar;
+/// assert_eq!(sar(-4_i8, 1), -2);
+/// assert_eq!(sar(-4_i8, 9), -1);
+/// assert_eq!(sar(0x81_u8, 1), 0x40);
+/// ```
+#[inline]
+pub fn sar<T: Integer + Bits>(value: T, count: i64) -> T {
+    if value < T::ZERO { !shr(!value, count) } else { shr(value, count) }
+}
+
 #[inline]
 fn shift<T: Integer>(value: T, count: i64, by: fn(T, u32) -> T) -> T {
     if count >= i64::from(T::BITS) { T::ZERO } else { by(value, count.max(0) as u32) }

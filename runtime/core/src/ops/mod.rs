@@ -15,7 +15,7 @@ mod index;
 mod step;
 
 pub use arithmetic::{abs, add, div, modulo, mul, neg, sub};
-pub use bits::{and, not, or, rol, ror, shl, shr, xor};
+pub use bits::{and, not, or, rol, ror, sar, shl, shr, xor};
 pub use class::{Bits, Integer, Number, Real};
 pub use compare::{eq, ge, gt, le, lt, ne};
 pub use convert::{ConvertTo, TruncateTo, convert, convert_value, trunc, trunc_value};
