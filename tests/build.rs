@@ -90,7 +90,7 @@ impl Generated {
         );
         let _ = writeln!(
             self.entries,
-            "    Entry {{\n        name: {module:?},\n        size: size_of::<{module}::glue::Machine>(),\n        \
+            "    Entry {{\n        name: {module:?},\n        \
              map: &{module}::glue::staunch_map,\n        map_len: {module}::glue::staunch_map_len,\n        \
              init: {module}::glue::staunch_init,\n        scan: {module}::glue::staunch_scan,\n    }},"
         );

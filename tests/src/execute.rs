@@ -1,13 +1,13 @@
 //! A run of a program on each executor, by the product's own scan loop.
 
-use crate::generated::Generated;
+use crate::generated;
 use crate::leaf::Leaves;
 use crate::scan::{Fault, Table};
-use staunch_host::{Error, Machine, Map, Options, run as host_run};
+use staunch_host::{Compiled, Domain, Error, Machine, Map, Options, run as host_run};
 use staunch_ir::Program;
 use staunch_ir::interpret::{Interpreter, Stop};
 use staunch_ir::symbols::map_text;
-use staunch_native::{Jit, State};
+use staunch_native::Jit;
 use staunch_runtime::Context;
 use std::fs;
 use std::path::PathBuf;
@@ -28,41 +28,54 @@ impl Executor {
     /// The program in its initial state. `module` is its name among the generated modules.
     pub fn machine<'p>(self, program: &'p Program, module: &str) -> Result<Box<dyn Machine + 'p>, String> {
         Ok(match self {
-            Self::Interpreter => Box::new(Interpreted(Interpreter::new(program))),
+            Self::Interpreter => {
+                let domain = Domain::of(&map(program)?);
+                Box::new(Interpreted { interpreter: Interpreter::new(program), domain })
+            }
             Self::Rust => {
-                let map = map_text(program, Leaves::new(program).layout());
-                let machine = Generated::new(module).filter(|it| it.has_map(&map));
+                let text = map_text(program, Leaves::new(program).layout());
+                let machine = generated::machine(module, &text);
                 Box::new(machine.ok_or("there is no generated Rust of this program: is the build up to date?")?)
             }
             Self::Native => {
                 let jit = Jit::new(program).map_err(|error| error.to_string())?;
-                Box::new(Native { state: jit.state(), jit })
+                // SAFETY: the code was made of the program that the map describes, and is kept as
+                // long as the machine that calls it.
+                let compiled = unsafe { Compiled::new(&map(program)?, jit.init, jit.scan) };
+                Box::new(Native { compiled, _jit: jit })
             }
         })
     }
 }
 
-struct Interpreted<'p>(Interpreter<'p>);
+fn map(program: &Program) -> Result<Map, String> {
+    Map::parse(&map_text(program, Leaves::new(program).layout())).map_err(|it| it.to_string())
+}
+
+struct Interpreted<'p> {
+    interpreter: Interpreter<'p>,
+    domain: Domain,
+}
 
 /// Statements and turns of loops that a scan may take: a case that hangs fails instead.
 const STEPS: u64 = 50_000_000;
 
 impl Machine for Interpreted<'_> {
     fn state(&self) -> &[u8] {
-        self.0.state()
+        self.interpreter.state()
     }
 
-    fn state_mut(&mut self) -> &mut [u8] {
-        self.0.state_mut()
+    fn write(&mut self, offset: usize, bytes: &[u8]) {
+        self.domain.write(self.interpreter.state_mut(), offset, bytes);
     }
 
     fn init(&mut self) {
-        self.0.init();
+        self.interpreter.init();
     }
 
     fn scan(&mut self, instance: usize, cx: &Context) -> Result<(), staunch_runtime::Fault> {
-        self.0.set_budget(Some(STEPS));
-        self.0.scan(instance, cx).map_err(|stop| match stop {
+        self.interpreter.set_budget(Some(STEPS));
+        self.interpreter.scan(instance, cx).map_err(|stop| match stop {
             Stop::Fault(fault) => fault,
             Stop::OutOfSteps => panic!("the scan does not end"),
         })
@@ -70,25 +83,26 @@ impl Machine for Interpreted<'_> {
 }
 
 struct Native {
-    state: State,
-    jit: Jit,
+    /// Before the code that it calls: it goes first.
+    compiled: Compiled,
+    _jit: Jit,
 }
 
 impl Machine for Native {
     fn state(&self) -> &[u8] {
-        self.state.bytes()
+        self.compiled.state()
     }
 
-    fn state_mut(&mut self) -> &mut [u8] {
-        self.state.bytes_mut()
+    fn write(&mut self, offset: usize, bytes: &[u8]) {
+        self.compiled.write(offset, bytes);
     }
 
     fn init(&mut self) {
-        self.jit.init(&mut self.state);
+        self.compiled.init();
     }
 
     fn scan(&mut self, instance: usize, cx: &Context) -> Result<(), staunch_runtime::Fault> {
-        self.jit.scan(&mut self.state, instance, cx)
+        self.compiled.scan(instance, cx)
     }
 }
 
@@ -120,7 +134,7 @@ pub fn run(
     settings: &Settings,
 ) -> Result<Outcome, String> {
     let mut machine = executor.machine(program, module)?;
-    let map = Map::parse(&map_text(program, Leaves::new(program).layout())).map_err(|it| it.to_string())?;
+    let map = map(program)?;
     let folder = Folder::new()?;
     let (stimulus, trace) = (folder.0.join("stimulus.csv"), folder.0.join("trace.csv"));
     fs::write(&stimulus, table.stimulus()).map_err(|it| it.to_string())?;
@@ -195,8 +209,8 @@ impl Machine for Recorder<'_> {
         self.machine.state()
     }
 
-    fn state_mut(&mut self) -> &mut [u8] {
-        self.machine.state_mut()
+    fn write(&mut self, offset: usize, bytes: &[u8]) {
+        self.machine.write(offset, bytes);
     }
 
     fn init(&mut self) {

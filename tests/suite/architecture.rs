@@ -31,12 +31,14 @@ const UNSAFE: &[&str] = &[
     "runtime/host/src/compiled.rs",
     "runtime/host/src/signal.rs",
     "compiler/native/src/jit.rs",
+    "compiler/cli/src/machine.rs",
     "compiler/rust/src/glue.rs",
     // Texts of entry points, compiled on their own.
     "compiler/cli/src/toolchain.rs",
     "compiler/cli/src/rustc.rs",
     "compiler/rust/tests/",
     "tests/src/generated.rs",
+    "tests/src/execute.rs",
 ];
 
 fn metadata() -> Json {

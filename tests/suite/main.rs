@@ -6,6 +6,7 @@ mod vectors;
 
 mod operations;
 mod programs;
+mod state;
 
 mod architecture;
 mod documents;

@@ -31,7 +31,9 @@ fn compare(executor: Executor) {
         let at = |field: usize| base + usize_of(layout.offset(ty, FieldId::next(field)));
         for operands in combinations(&task.operands()) {
             for (field, value) in operands.iter().enumerate() {
-                value.write(&mut machine.state_mut()[at(field)..]);
+                let mut bytes = [0; 8];
+                value.write(&mut bytes);
+                machine.write(at(field), &bytes[..value.lane().size() as usize]);
             }
             let end = machine.scan(number, &Context::at(0));
             let result = Value::read(task.result(), &machine.state()[at(operands.len())..]);

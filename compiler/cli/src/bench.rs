@@ -2,7 +2,7 @@
 
 use crate::args::{Bench, BuildBackend, MessageFormat};
 use crate::machine::Native;
-use crate::run::{cycle, map};
+use crate::run::cycle;
 use crate::rustc::{self, Kind};
 use crate::session::Session;
 use crate::{REJECTED, output};
@@ -60,9 +60,9 @@ pub fn bench(session: &Session, args: &Bench) -> Result<u8, String> {
 
 fn native(program: &Program, options: &BenchOptions) -> Result<Figures, Stop> {
     let start = Instant::now();
-    let mut machine = Native::new(program)?;
+    let (mut machine, map) = Native::new(program)?;
     let compile = start.elapsed();
-    let timing = staunch_host::bench(&mut machine, &map(program)?, options).map_err(stop)?;
+    let timing = staunch_host::bench(machine.compiled(), &map, options).map_err(stop)?;
     let target = Target::host().map_err(|it| it.to_string())?;
     let object = staunch_native::object(program, &target).map_err(|it| it.to_string())?;
     Ok(Figures { timing, text: text_bytes(&object), compile })

@@ -24,7 +24,8 @@ pub fn header(program: &Program, out: &Path, source: &Path) -> String {
             its loops may take, which the scan counts down. */\n\
          #define STAUNCH_TURNS {}u\n\
          typedef struct {{ int64_t now; bool first_scan; uint64_t turns; }} staunch_context;\n\n\
-         /* The whole state; reserve this much, aligned so. */\n\
+         /* The whole state; reserve this much, aligned so. What you write into it are values of the variables' types:\n\
+            a BOOL is 0 or 1, and a STRING's length is within its capacity. */\n\
          #define STAUNCH_STATE_SIZE {}u\n#define STAUNCH_STATE_ALIGN {}u\n\n\
          /* Writes the initial values. */\n\
          void staunch_init(uint8_t *state);\n\

@@ -1,61 +1,89 @@
 //! The executors that run in this process, as the host sees them.
 
-use staunch_host::Machine;
+use crate::run::map;
+use staunch_host::{Compiled, Domain, Machine, Map};
 use staunch_ir::interpret::{Interpreter, Stop};
-use staunch_native::{Jit, State};
+use staunch_ir::{Program, Value};
+use staunch_native::Jit;
 use staunch_runtime::{Context, Fault};
 
 /// Native code in memory.
 #[derive(Debug)]
 pub struct Native {
-    jit: Jit,
-    state: State,
+    /// Before the code that it calls: it goes first.
+    compiled: Compiled,
+    _jit: Jit,
 }
 
 impl Native {
-    pub fn new(program: &staunch_ir::Program) -> Result<Self, String> {
-        let jit = Jit::new(program).map_err(|it| it.to_string())?;
-        let state = jit.state();
-        Ok(Self { jit, state })
+    /// The machine, and the map of its state.
+    pub fn new(program: &Program) -> Result<(Self, Map), String> {
+        let (jit, map) = (Jit::new(program).map_err(|it| it.to_string())?, map(program)?);
+        // SAFETY: the code was made of the program that the map describes, and is kept as long as
+        // the machine that calls it.
+        let compiled = unsafe { Compiled::new(&map, jit.init, jit.scan) };
+        Ok((Self { compiled, _jit: jit }, map))
+    }
+
+    pub fn compiled(&mut self) -> &mut Compiled {
+        &mut self.compiled
+    }
+
+    pub fn write_value(&mut self, offset: usize, value: Value) {
+        let mut bytes = [0; 8];
+        value.write(&mut bytes);
+        let size = usize::try_from(value.lane().size()).expect("lanes are small");
+        self.write(offset, &bytes[..size]);
     }
 }
 
 impl Machine for Native {
     fn state(&self) -> &[u8] {
-        self.state.bytes()
+        self.compiled.state()
     }
 
-    fn state_mut(&mut self) -> &mut [u8] {
-        self.state.bytes_mut()
+    fn write(&mut self, offset: usize, bytes: &[u8]) {
+        self.compiled.write(offset, bytes);
     }
 
     fn init(&mut self) {
-        self.jit.init(&mut self.state);
+        self.compiled.init();
     }
 
     fn scan(&mut self, instance: usize, cx: &Context) -> Result<(), Fault> {
-        self.jit.scan(&mut self.state, instance, cx)
+        self.compiled.scan(instance, cx)
     }
 }
 
 /// The reference interpreter.
-pub struct Interpreted<'p>(pub Interpreter<'p>);
+pub struct Interpreted<'p> {
+    interpreter: Interpreter<'p>,
+    domain: Domain,
+}
+
+impl<'p> Interpreted<'p> {
+    /// The machine, and the map of its state.
+    pub fn new(program: &'p Program) -> Result<(Self, Map), String> {
+        let map = map(program)?;
+        Ok((Self { interpreter: Interpreter::new(program), domain: Domain::of(&map) }, map))
+    }
+}
 
 impl Machine for Interpreted<'_> {
     fn state(&self) -> &[u8] {
-        self.0.state()
+        self.interpreter.state()
     }
 
-    fn state_mut(&mut self) -> &mut [u8] {
-        self.0.state_mut()
+    fn write(&mut self, offset: usize, bytes: &[u8]) {
+        self.domain.write(self.interpreter.state_mut(), offset, bytes);
     }
 
     fn init(&mut self) {
-        self.0.init();
+        self.interpreter.init();
     }
 
     fn scan(&mut self, instance: usize, cx: &Context) -> Result<(), Fault> {
-        match self.0.scan(instance, cx) {
+        match self.interpreter.scan(instance, cx) {
             Ok(()) => Ok(()),
             Err(Stop::Fault(fault)) => Err(fault),
             Err(Stop::OutOfSteps) => unreachable!("the interpreter has no budget here"),

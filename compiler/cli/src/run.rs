@@ -7,7 +7,6 @@ use crate::rustc::{self, Kind};
 use crate::session::Session;
 use staunch_host::{Error, Machine, Map, Options};
 use staunch_ir::Program;
-use staunch_ir::interpret::Interpreter;
 use staunch_ir::layout::Layout;
 use std::process::Command;
 
@@ -15,21 +14,20 @@ pub fn run(session: &Session, args: &Run) -> Result<u8, String> {
     let Some(program) = session.program_to_run(args.program.as_deref())? else { return Ok(REJECTED) };
     match args.backend {
         Backend::Native => {
-            let mut machine = Native::new(&program)?;
-            scans(session, args, &program, &mut machine)
+            let (mut machine, map) = Native::new(&program)?;
+            scans(session, args, &map, &mut machine)
         }
         Backend::Interpret => {
-            let mut machine = Interpreted(Interpreter::new(&program));
-            scans(session, args, &program, &mut machine)
+            let (mut machine, map) = Interpreted::new(&program)?;
+            scans(session, args, &map, &mut machine)
         }
         Backend::Rust => execute(session, args, &program),
     }
 }
 
-fn scans(session: &Session, args: &Run, program: &Program, machine: &mut dyn Machine) -> Result<u8, String> {
-    let map = map(program)?;
+fn scans(session: &Session, args: &Run, map: &Map, machine: &mut dyn Machine) -> Result<u8, String> {
     let options = options(session, args)?;
-    match staunch_host::run(machine, &map, &options) {
+    match staunch_host::run(machine, map, &options) {
         Ok(_) => Ok(0),
         Err(Error::ClosedPipe) => Ok(0),
         Err(error) => {

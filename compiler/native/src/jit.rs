@@ -6,30 +6,25 @@ use core::fmt;
 use cranelift_jit::{ArenaMemoryProvider, JITBuilder, JITModule};
 use cranelift_module::default_libcall_names;
 use staunch_ir::Program;
-use staunch_ir::layout::{Layout, usize_of};
-use staunch_runtime::{Context, Fault};
+use staunch_runtime::Context;
 
 /// Addresses set aside for code and data; only what is used becomes memory.
 const RESERVED: usize = 1 << 30;
 
-type Init = unsafe extern "C" fn(state: *mut u8);
-type Scan = unsafe extern "C" fn(state: *mut u8, cx: *const Context, instance: u32) -> u64;
+/// Writes the initial values over all of the state.
+pub type Init = unsafe extern "C" fn(state: *mut u8);
 
-/// A program's code in memory.
+/// One scan of an instance; 0, or a fault's code. Every variable of the state has a value of its
+/// type, before and after: a BOOL is 0 or 1, and a string's length within its capacity.
+pub type Scan = unsafe extern "C" fn(state: *mut u8, cx: *const Context, instance: u32) -> u64;
+
+/// A program's code in memory. Its functions can be called as long as this value lives; they work on
+/// a state of the size and alignment that the program's [`Layout`](staunch_ir::layout::Layout) gives.
 pub struct Jit {
     /// Taken only when dropped.
     module: Option<JITModule>,
-    init: Init,
-    scan: Scan,
-    size: usize,
-    instances: usize,
-}
-
-/// The state of a program: bytes that are aligned for every value.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct State {
-    words: Vec<u64>,
-    size: usize,
+    pub init: Init,
+    pub scan: Scan,
 }
 
 impl Jit {
@@ -49,10 +44,10 @@ impl Jit {
         let mut module = JITModule::new(builder);
         let (entry_points, _) = unit::emit(program, &mut module, None)?;
         module.finalize_definitions()?;
-        Ok(Self::of_module(module, entry_points, program))
+        Ok(Self::of_module(module, entry_points))
     }
 
-    fn of_module(module: JITModule, entry_points: EntryPoints, program: &Program) -> Self {
+    fn of_module(module: JITModule, entry_points: EntryPoints) -> Self {
         let init = module.get_finalized_function(entry_points.init);
         let scan = module.get_finalized_function(entry_points.scan);
         Self {
@@ -62,45 +57,6 @@ impl Jit {
             // SAFETY: as above.
             scan: unsafe { core::mem::transmute::<*const u8, Scan>(scan) },
             module: Some(module),
-            size: usize_of(Layout::new(program).machine.size),
-            instances: program.instances.len(),
-        }
-    }
-
-    /// A new state, in which every variable has its initial value.
-    pub fn state(&self) -> State {
-        let mut state = State { words: vec![0; self.size.div_ceil(8)], size: self.size };
-        self.init(&mut state);
-        state
-    }
-
-    /// Gives every variable its initial value.
-    ///
-    /// # Panics
-    /// If `state` is another program's and of another size.
-    pub fn init(&self, state: &mut State) {
-        assert_eq!(state.size, self.size, "the state of another program");
-        // SAFETY: the code writes `size` bytes, which `words` has.
-        unsafe { (self.init)(state.words.as_mut_ptr().cast()) }
-    }
-
-    /// One scan of an instance. After a fault the state stays as it was at that point.
-    ///
-    /// # Errors
-    /// The fault that stopped it.
-    ///
-    /// # Panics
-    /// If there is no such instance, or `state` is another program's and of another size.
-    pub fn scan(&self, state: &mut State, instance: usize, cx: &Context) -> Result<(), Fault> {
-        assert_eq!(state.size, self.size, "the state of another program");
-        assert!(instance < self.instances, "no such instance");
-        let instance = u32::try_from(instance).expect("instances are counted in 32 bits");
-        // SAFETY: verified code stays within `size` bytes, which are aligned for every value and
-        // nobody else's during the call; `cx` outlives it.
-        let code = unsafe { (self.scan)(state.words.as_mut_ptr().cast(), cx, instance) };
-        match Fault::from_code(code) {
-            Some(fault) => Err(fault),
-            None => Ok(()),
         }
     }
 }
@@ -108,8 +64,7 @@ impl Jit {
 impl Drop for Jit {
     fn drop(&mut self) {
         if let Some(module) = self.module.take() {
-            // SAFETY: `self` has the only pointers to the code, and none of it runs: a scan
-            // borrows `self`.
+            // SAFETY: who calls the code has promised that this value lives meanwhile.
             unsafe { module.free_memory() }
         }
     }
@@ -117,20 +72,6 @@ impl Drop for Jit {
 
 impl fmt::Debug for Jit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { size, instances, .. } = self;
-        f.debug_struct("Jit").field("size", size).field("instances", instances).finish_non_exhaustive()
-    }
-}
-
-impl State {
-    pub fn bytes(&self) -> &[u8] {
-        // SAFETY: the words are initialised, and have at least `size` bytes.
-        unsafe { core::slice::from_raw_parts(self.words.as_ptr().cast(), self.size) }
-    }
-
-    /// A BOOL must stay 0 or 1, and a string's length within its capacity.
-    pub fn bytes_mut(&mut self) -> &mut [u8] {
-        // SAFETY: as in `bytes`, and any bytes make words.
-        unsafe { core::slice::from_raw_parts_mut(self.words.as_mut_ptr().cast(), self.size) }
+        f.debug_struct("Jit").finish_non_exhaustive()
     }
 }

@@ -38,7 +38,7 @@ mod listing;
 mod object;
 
 pub use error::Error;
-pub use jit::{Jit, State};
+pub use jit::{Init, Jit, Scan};
 pub use listing::clif;
 pub use object::object;
 pub use target::Target;

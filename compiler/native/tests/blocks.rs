@@ -70,19 +70,19 @@ fn drive(id: BlockId, instruction: usize, is_prescan: bool, random: &mut Random)
             for pin in info.pins {
                 random.value(pin.lane()).write(&mut expected[pin.offset..]);
             }
-            native.state.bytes_mut()[start..start + info.size].copy_from_slice(&expected);
+            native.write(start, &expected);
         }
         let cx = Context::new(i64::from(turn) * 1_000_000, random.next().is_multiple_of(5));
         let values: Vec<_> = inputs(info, instruction).into_iter().map(|lane| random.value(lane)).collect();
         for (at, value) in values.iter().enumerate() {
             let offset = native.offset(&program, 0, at + 1);
-            value.write(&mut native.state.bytes_mut()[offset..]);
+            native.write_value(offset, *value);
         }
         let before = expected.clone();
-        native.jit.scan(&mut native.state, 0, &cx).unwrap();
+        native.scan(0, &cx).unwrap();
         run(info, instruction, is_prescan, &mut expected, &cx, &values);
         for pin in info.pins {
-            let found = Value::read(pin.lane(), &native.state.bytes()[start + pin.offset..]);
+            let found = Value::read(pin.lane(), &native.state()[start + pin.offset..]);
             let wanted = Value::read(pin.lane(), &expected[pin.offset..]);
             assert_eq!(found, wanted, "{info:?}.{} after {values:?} from {before:?}", pin.name);
         }

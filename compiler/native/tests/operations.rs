@@ -67,10 +67,10 @@ fn check_one(program: &Program, native: &mut Native, number: usize, case: &Case,
     let before = case.result.zero();
     for (at, value) in operands.iter().chain([&before]).enumerate() {
         let offset = native.offset(program, number, at);
-        value.write(&mut native.state.bytes_mut()[offset..]);
+        native.write_value(offset, *value);
     }
-    let end = native.jit.scan(&mut native.state, number, &Context::at(0));
-    let found = Value::read(case.result, &native.state.bytes()[native.offset(program, number, operands.len())..]);
+    let end = native.scan(number, &Context::at(0));
+    let found = Value::read(case.result, &native.state()[native.offset(program, number, operands.len())..]);
     let expected = (case.expected)(operands);
     let holds = match (expected, end) {
         (Ok(expected), Ok(())) => same(expected, found),

@@ -622,7 +622,7 @@ fn check(seed: u64, tally: &mut Tally) {
     let mut native = Native::new(&program);
     let mut interpreter = Interpreter::new(&program);
     interpreter.set_budget(Some(BUDGET));
-    assert_eq!(interpreter.state(), native.state.bytes(), "initial state, seed {seed}");
+    assert_eq!(interpreter.state(), native.state(), "initial state, seed {seed}");
     let counts = meaningful(&program, &native.layout);
     for scan in 0..SCANS {
         for instance in 0..program.instances.len() {
@@ -637,9 +637,9 @@ fn check(seed: u64, tally: &mut Tally) {
             } else {
                 tally.faulted += 1
             }
-            let found = native.jit.scan(&mut native.state, instance, &cx);
+            let found = native.scan(instance, &cx);
             assert_eq!(expected, found.map_err(Stop::Fault), "seed {seed}, scan {scan}\n{}", print(&program));
-            let pairs = interpreter.state().iter().zip(native.state.bytes()).zip(&counts);
+            let pairs = interpreter.state().iter().zip(native.state()).zip(&counts);
             if let Some(at) = pairs.into_iter().position(|((a, b), counts)| *counts && a != b) {
                 panic!("seed {seed}, scan {scan}, byte {at} of {:?}\n{}", native.layout.machine, print(&program));
             }

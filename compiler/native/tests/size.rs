@@ -20,11 +20,11 @@ fn field_place(at: usize) -> Place {
 fn agree(program: &Program) {
     let mut native = Native::new(program);
     let mut interpreter = Interpreter::new(program);
-    assert_eq!(interpreter.state(), native.state.bytes());
+    assert_eq!(interpreter.state(), native.state());
     for scan in 0..3 {
         interpreter.scan(0, &Context::at(scan)).unwrap();
-        native.jit.scan(&mut native.state, 0, &Context::at(scan)).unwrap();
-        assert_eq!(interpreter.state(), native.state.bytes());
+        native.scan(0, &Context::at(scan)).unwrap();
+        assert_eq!(interpreter.state(), native.state());
     }
 }
 
@@ -93,10 +93,10 @@ fn a_large_state_is_zeroed_and_then_written() {
     let program = Program { arrays: vec![array], ..main_with(fields, Vec::new(), Vec::new()) };
     agree(&program);
     let mut native = Native::new(&program);
-    let start = native.state.clone();
-    native.state.bytes_mut().fill(1);
-    native.jit.init(&mut native.state);
-    assert!(native.state == start);
+    let start = native.state().to_vec();
+    native.write(0, &vec![1; start.len()]);
+    native.init();
+    assert!(native.state() == start);
 }
 
 #[test]
@@ -120,9 +120,9 @@ fn labels_at_the_ends_of_every_lane() {
             let expected =
                 labels.iter().position(|(low, high)| (*low..=*high).contains(&number)).map_or(9, |at| at + 1);
             let offset = native.offset(&program, 0, 1);
-            lane.integer(number).unwrap().write(&mut native.state.bytes_mut()[offset..]);
-            native.jit.scan(&mut native.state, 0, &Context::at(0)).unwrap();
-            let found = Value::read(Lane::I16, &native.state.bytes()[native.offset(&program, 0, 0)..]);
+            native.write_value(offset, lane.integer(number).unwrap());
+            native.scan(0, &Context::at(0)).unwrap();
+            let found = Value::read(Lane::I16, &native.state()[native.offset(&program, 0, 0)..]);
             assert_eq!(found.as_integer(), Some(i128::try_from(expected).unwrap()), "{lane:?} {number}");
         }
     }

@@ -1,14 +1,17 @@
 //! The C entry points over emitted Rust: what an executable, a library or a test links against.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
+use std::iter;
 
-use proc_macro2::Literal;
+use proc_macro2::{Literal, TokenStream};
 use quote::quote;
-use staunch_ir::{PouId, Program};
+use staunch_ir::layout::usize_of;
+use staunch_ir::{PouId, Program, Type};
 
 use crate::alias;
 use crate::emitter::Emitter;
-use crate::names::Names;
+use crate::names::{Names, ident};
 use crate::{Options, polish};
 
 /// The text of a module that exports `staunch_map`, `staunch_init` and `staunch_scan` for the
@@ -25,10 +28,6 @@ pub fn emit_glue(program: &Program, code: &str, map: &str, options: &Options) ->
         let (name, ty) = (names.instance(at), state(program, names, instance.program));
         quote!(pub #name: #code::#ty)
     });
-    let values = program.instances.iter().enumerate().map(|(at, instance)| {
-        let (name, ty) = (names.instance(at), state(program, names, instance.program));
-        quote!(#name: #code::#ty::new())
-    });
     let scans = program.instances.iter().enumerate().map(|(at, instance)| {
         let (name, number) = (names.instance(at), Literal::usize_unsuffixed(at));
         let globals = emitter.needs[instance.program.index()].body.globals.then(|| quote!(, &mut self.globals));
@@ -40,6 +39,8 @@ pub fn emit_glue(program: &Program, code: &str, map: &str, options: &Options) ->
         let (name, offset) = (names.instance(at), Literal::u64_unsuffixed(emitter.layout.machine.instances[at]));
         quote!(assert!(core::mem::offset_of!(Machine, #name) == #offset);)
     });
+    let (starts, copies) = starts(&emitter, &code);
+    let machine = (!copies.is_empty()).then(|| quote!(let machine = state.cast::<Machine>();));
     let items = quote! {
         use #runtime::{Context, Fault};
 
@@ -49,9 +50,6 @@ pub fn emit_glue(program: &Program, code: &str, map: &str, options: &Options) ->
         pub struct Machine { pub globals: #code::#globals, #(#members),* }
 
         impl Machine {
-            /// With initial values.
-            pub const fn new() -> Self { Self { globals: #code::#globals::new(), #(#values),* } }
-
             /// One scan of an instance.
             pub fn scan(&mut self, cx: &Context, instance: u32) -> Result<(), Fault> {
                 match instance { #(#scans,)* _ => Ok(()) }
@@ -70,24 +68,28 @@ pub fn emit_glue(program: &Program, code: &str, map: &str, options: &Options) ->
         #[unsafe(no_mangle)]
         pub static staunch_map_len: usize = #length;
 
-        /// Writes the initial state.
+        #(#starts)*
+
+        /// Writes the initial state, in place: it may be larger than the stack.
         ///
         /// # Safety
         /// `state` points to writable memory of the machine's size and alignment.
         #[unsafe(no_mangle)]
         pub unsafe extern "C" fn staunch_init(state: *mut u8) {
-            st_mark!("SAFETY: as the caller promises; padding is cleared first.");
+            st_mark!("SAFETY: as the caller promises; a static is no part of the state.");
             unsafe {
                 state.write_bytes(0, size_of::<Machine>());
-                state.cast::<Machine>().write(Machine::new());
+                #machine
+                #(#copies)*
             }
         }
 
         /// One scan; 0, or the code of a fault.
         ///
         /// # Safety
-        /// `state` has been initialised by `staunch_init` and nobody else uses it meanwhile;
-        /// `cx` points to a context.
+        /// `state` has been initialised by `staunch_init` and nobody else uses it meanwhile; what was
+        /// written to it since are values of the variables' types (a BOOL is 0 or 1). `cx` points to
+        /// a context.
         #[unsafe(no_mangle)]
         pub unsafe extern "C" fn staunch_scan(state: *mut u8, cx: *const Context, instance: u32) -> u64 {
             st_mark!("SAFETY: as the caller promises.");
@@ -99,6 +101,29 @@ pub fn emit_glue(program: &Program, code: &str, map: &str, options: &Options) ->
     text.push_str("#![allow(non_upper_case_globals, reason = \"the symbols are C's\")]\n\n");
     write!(text, "{}", polish::format(items)).expect("writing to a String does not fail");
     text
+}
+
+/// For each structure that does not start with zeros alone, a static with its initial values; and
+/// the copies of them into the state.
+fn starts(emitter: &Emitter<'_>, code: &syn::Path) -> (Vec<TokenStream>, Vec<TokenStream>) {
+    let (program, names, layout) = (emitter.program, &emitter.names, &emitter.layout);
+    let image = layout.image(program);
+    let instances = program.instances.iter().enumerate().map(|(at, instance)| {
+        let state = program.pou(instance.program).state.expect("verified IR: a PROGRAM has a state");
+        (names.instance(at).clone(), state, layout.machine.instances[at])
+    });
+    let globals = (ident("globals"), program.globals, layout.machine.globals);
+    let (mut statics, mut copies) = (BTreeMap::new(), Vec::new());
+    for (member, id, offset) in iter::once(globals).chain(instances) {
+        let start = usize_of(offset);
+        let bytes = &image[start..start + usize_of(layout.size(Type::Struct(id)))];
+        if bytes.iter().any(|byte| *byte != 0) {
+            let (ty, name) = (names.structure(id), ident(&format!("START_{}", id.0)));
+            copies.push(quote!((&raw mut (*machine).#member).copy_from_nonoverlapping(&raw const #name, 1);));
+            statics.insert(id, quote!(static #name: #code::#ty = #code::#ty::new();));
+        }
+    }
+    (statics.into_values().collect(), copies)
 }
 
 fn state<'n>(program: &Program, names: &'n Names, id: PouId) -> &'n proc_macro2::Ident {

@@ -1,10 +1,11 @@
 //! How long a scan takes.
 
+use crate::compiled::Compiled;
 use crate::map::{Map, Type, Variable};
 use crate::path::Place;
 use crate::run::running;
 use crate::schedule::Schedule;
-use crate::stimulus::{Stimulus, Write};
+use crate::stimulus::Stimulus;
 use crate::{Error, Machine};
 use staunch_runtime::{Context, Elementary, Time};
 use std::fmt;
@@ -64,19 +65,21 @@ impl FromStr for Timing {
 }
 
 /// Times scans alone, on the monotonic clock.
-pub fn bench(machine: &mut dyn Machine, map: &Map, options: &BenchOptions) -> Result<Timing, Error> {
+pub fn bench(machine: &mut Compiled, map: &Map, options: &BenchOptions) -> Result<Timing, Error> {
     let running = running(map, options.program.as_deref())?;
-    let inputs = match &options.stimulus {
-        Some(path) => Inputs::of_stimulus(&Stimulus::read(path, map, &running)?),
-        None => Inputs::Toggled(bool_inputs(map, &running)),
-    };
     machine.init();
+    let lists = match &options.stimulus {
+        Some(path) => repeated(&Stimulus::read(path, map, &running)?),
+        None => toggled(&bool_inputs(map, &running), machine.state()),
+    };
+    machine.prepare(&lists);
     let schedule = Schedule::new(map, &running, options.cycle);
     let fresh = vec![true; map.instances.len()];
     let mut bench = Bench {
         machine,
         map,
-        inputs,
+        lists: lists.len(),
+        next: 0,
         schedule,
         fresh,
         turns: options.loop_budget.unwrap_or(Context::TURNS),
@@ -96,42 +99,29 @@ pub fn bench(machine: &mut dyn Machine, map: &Map, options: &BenchOptions) -> Re
     Ok(Timing { scans, min: at(0.0), median: at(0.5), p99: at(0.99) })
 }
 
-/// What changes from scan to scan.
-enum Inputs {
-    /// Offsets of BOOLs.
-    Toggled(Vec<usize>),
-    /// Writes before each scan of a stimulus.
-    Repeated(Vec<Vec<Write>>),
+/// What is written before each scan; the lists repeat.
+type Lists = Vec<Vec<(usize, Vec<u8>)>>;
+
+/// Rows as scans; a row that is placed by time alone counts as one scan.
+fn repeated(stimulus: &Stimulus) -> Lists {
+    let mut scans = Lists::new();
+    for row in &stimulus.rows {
+        let number = row.scan.and_then(|it| usize::try_from(it).ok()).unwrap_or(scans.len() + 1);
+        // A row far ahead would only repeat the one before it.
+        if number > scans.len() && number < scans.len() + (1 << 20) {
+            scans.resize_with(number, Vec::new);
+        }
+        if let Some(last) = scans.last_mut() {
+            last.extend(row.writes.iter().map(|it| (it.offset, it.bytes.clone())));
+        }
+    }
+    scans
 }
 
-impl Inputs {
-    /// Rows as scans; a row that is placed by time alone counts as one scan.
-    fn of_stimulus(stimulus: &Stimulus) -> Self {
-        let mut scans: Vec<Vec<Write>> = Vec::new();
-        for row in &stimulus.rows {
-            let number = row.scan.and_then(|it| usize::try_from(it).ok()).unwrap_or(scans.len() + 1);
-            // A row far ahead would only repeat the one before it.
-            if number > scans.len() && number < scans.len() + (1 << 20) {
-                scans.resize_with(number, Vec::new);
-            }
-            if let Some(last) = scans.last_mut() {
-                last.extend(row.writes.iter().cloned());
-            }
-        }
-        Self::Repeated(scans)
-    }
-
-    fn apply(&self, number: u64, state: &mut [u8]) {
-        match self {
-            Self::Toggled(offsets) => offsets.iter().for_each(|at| state[*at] ^= 1),
-            Self::Repeated(scans) if scans.is_empty() => {}
-            Self::Repeated(scans) => {
-                for write in &scans[(number % scans.len() as u64) as usize] {
-                    state[write.offset..write.offset + write.bytes.len()].copy_from_slice(&write.bytes);
-                }
-            }
-        }
-    }
+/// Every BOOL input changes in each scan.
+fn toggled(offsets: &[usize], state: &[u8]) -> Lists {
+    let with = |change: u8| offsets.iter().map(|at| (*at, vec![state[*at] ^ change])).collect();
+    if offsets.is_empty() { Lists::new() } else { vec![with(1), with(0)] }
 }
 
 fn bool_inputs(map: &Map, running: &[usize]) -> Vec<usize> {
@@ -149,9 +139,11 @@ fn bool_inputs(map: &Map, running: &[usize]) -> Vec<usize> {
 }
 
 struct Bench<'a> {
-    machine: &'a mut dyn Machine,
+    machine: &'a mut Compiled,
     map: &'a Map,
-    inputs: Inputs,
+    /// How many lists of writes the machine keeps, and which comes before the next scan.
+    lists: usize,
+    next: usize,
     schedule: Schedule,
     fresh: Vec<bool>,
     turns: u64,
@@ -187,7 +179,7 @@ impl Bench<'_> {
     /// Scans of one program: as little as can be stands between them.
     fn only(&mut self, count: u64, instance: usize, period: Time) -> Result<(), Error> {
         for _ in 0..count {
-            self.inputs.apply(self.number, self.machine.state_mut());
+            self.write();
             let now = self.now;
             self.number += 1;
             self.now += period;
@@ -198,7 +190,7 @@ impl Bench<'_> {
 
     fn scheduled(&mut self, count: u64) -> Result<(), Error> {
         for _ in 0..count {
-            self.inputs.apply(self.number, self.machine.state_mut());
+            self.write();
             self.number += 1;
             self.now = self.schedule.next();
             self.schedule.advance(self.now, false);
@@ -207,6 +199,14 @@ impl Bench<'_> {
             }
         }
         Ok(())
+    }
+
+    #[inline]
+    fn write(&mut self) {
+        if self.lists > 0 {
+            self.machine.apply(self.next);
+            self.next = if self.next + 1 < self.lists { self.next + 1 } else { 0 };
+        }
     }
 
     #[inline]
@@ -225,12 +225,31 @@ impl Bench<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixture::{Garage, map, offset_of};
+    use crate::fixture::{map, offset_of};
+
+    unsafe extern "C" fn init(state: *mut u8) {
+        // SAFETY: the machines below have the state of the fixture's map.
+        unsafe { state.write_bytes(0, 128) }
+    }
+
+    unsafe extern "C" fn scan(_: *mut u8, _: *const Context, _: u32) -> u64 {
+        0
+    }
+
+    unsafe extern "C" fn faulting(_: *mut u8, cx: *const Context, _: u32) -> u64 {
+        // SAFETY: a machine gives it a context.
+        if unsafe { (*cx).now } >= 30_000_000 { 1 | 5 << 24 | 9 << 40 } else { 0 }
+    }
+
+    fn machine(scan: crate::Scan) -> Compiled {
+        // SAFETY: the functions above stay within the state of the fixture's map.
+        unsafe { Compiled::new(&map(), init, scan) }
+    }
 
     #[test]
     fn a_given_number_of_scans_is_measured() {
         let options = BenchOptions { scans: Some(500), ..BenchOptions::default() };
-        let timing = bench(&mut Garage::new(), &map(), &options).unwrap();
+        let timing = bench(&mut machine(scan), &map(), &options).unwrap();
         assert_eq!(timing.scans, 500);
         assert!(0.0 < timing.min && timing.min <= timing.median && timing.median <= timing.p99, "{timing:?}");
     }
@@ -245,22 +264,33 @@ mod tests {
 
     #[test]
     fn a_fault_ends_it() {
-        let mut machine = Garage::new();
-        machine.fault_at = 3;
-        let error = bench(&mut machine, &map(), &BenchOptions::default()).unwrap_err();
+        let error = bench(&mut machine(faulting), &map(), &BenchOptions::default()).unwrap_err();
         assert_eq!(error.exit_code(), 3);
+    }
+
+    /// The values of `up` that six scans see.
+    fn seen(lists: &Lists) -> Vec<u8> {
+        let mut machine = machine(scan);
+        machine.prepare(lists);
+        let mut see = |number: usize| {
+            machine.apply(number % lists.len());
+            machine.state()[offset_of("up")]
+        };
+        (0..6).map(&mut see).collect()
     }
 
     #[test]
     fn inputs_toggle_or_repeat() {
-        assert_eq!(bool_inputs(&map(), &[0]), [offset_of("up")]);
+        let inputs = bool_inputs(&map(), &[0]);
+        assert_eq!(inputs, [offset_of("up")]);
+        assert_eq!(seen(&toggled(&inputs, &[0; 128])), [1, 0, 1, 0, 1, 0]);
         let stimulus = Stimulus::parse("s.csv".as_ref(), "scan,up\n1,1\n3,0\n", &map(), &[0]).unwrap();
-        let inputs = Inputs::of_stimulus(&stimulus);
-        let mut state = vec![0; 128];
-        let seen = (0..6).map(|number| {
-            inputs.apply(number, &mut state);
-            state[offset_of("up")]
-        });
-        assert_eq!(seen.collect::<Vec<_>>(), [1, 1, 0, 1, 1, 0]);
+        assert_eq!(seen(&repeated(&stimulus)), [1, 1, 0, 1, 1, 0]);
+    }
+
+    #[test]
+    #[should_panic(expected = "a part of a value")]
+    fn only_whole_values_are_prepared() {
+        machine(scan).prepare(&[vec![(offset_of("name"), vec![9])]]);
     }
 }

@@ -1,5 +1,6 @@
 //! A map and a machine written by hand, for the tests of this crate.
 
+use crate::domain::Domain;
 use crate::map::Map;
 use crate::{Machine, path};
 use staunch_runtime::{Context, Fault, FaultKind, Location, Value};
@@ -93,8 +94,8 @@ impl Machine for Garage {
         &self.state
     }
 
-    fn state_mut(&mut self) -> &mut [u8] {
-        &mut self.state
+    fn write(&mut self, offset: usize, bytes: &[u8]) {
+        Domain::of(&map()).write(&mut self.state, offset, bytes);
     }
 
     fn init(&mut self) {
@@ -118,6 +119,37 @@ impl Machine for Garage {
             }
         }
         up.write(&mut self.state[offset_of("c.m")..]);
+        Ok(())
+    }
+}
+
+/// A state alone, of the size of `map`.
+#[derive(Debug)]
+pub struct Bytes {
+    pub state: Vec<u8>,
+    domain: Domain,
+}
+
+impl Bytes {
+    pub fn new(map: &Map) -> Self {
+        Self { state: vec![0; map.size], domain: Domain::of(map) }
+    }
+}
+
+impl Machine for Bytes {
+    fn state(&self) -> &[u8] {
+        &self.state
+    }
+
+    fn write(&mut self, offset: usize, bytes: &[u8]) {
+        self.domain.write(&mut self.state, offset, bytes);
+    }
+
+    fn init(&mut self) {
+        self.state.fill(0);
+    }
+
+    fn scan(&mut self, _instance: usize, _cx: &Context) -> Result<(), Fault> {
         Ok(())
     }
 }

@@ -9,6 +9,8 @@ mod error;
 mod map;
 mod path;
 
+mod domain;
+
 mod csv;
 mod literal;
 mod value;
@@ -32,6 +34,7 @@ mod fixture;
 pub use args::{Wish, parse_duration, parse_options};
 pub use bench::{BenchOptions, Timing, bench};
 pub use compiled::{Code, Compiled, Init, Scan, main, main_with};
+pub use domain::Domain;
 pub use error::Error;
 pub use map::{Instance, Map, Section, Structure, StructureKind, Type, Variable};
 pub use path::Place;
@@ -45,7 +48,12 @@ use staunch_runtime::{Context, Fault};
 /// A program that can be scanned: its state as bytes, laid out as its map says.
 pub trait Machine {
     fn state(&self) -> &[u8];
-    fn state_mut(&mut self) -> &mut [u8];
+    /// Writes bytes into the state, as its [`Domain`] does: whatever they are, each variable then
+    /// has a value of its type.
+    ///
+    /// # Panics
+    /// If the state ends before the bytes do.
+    fn write(&mut self, offset: usize, bytes: &[u8]);
     /// Writes the initial values over all of the state.
     fn init(&mut self);
     /// One scan of an instance. After a fault the state stays as it was at that point.

@@ -24,7 +24,7 @@ pub struct Map {
     pub instances: Vec<Instance>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Type {
     Elementary(Elementary),
     /// A string of at most this many bytes.

@@ -229,6 +229,10 @@ fn unknown(map: &Map, running: &[usize], name: &str) -> String {
 
 /// `; did you mean …?` for the name that is most like `wanted`, or nothing.
 pub fn nearest<'n>(wanted: &str, names: impl Iterator<Item = &'n str>) -> String {
+    // A name may come out of a file; nobody means one that is so long.
+    if wanted.len() > 256 {
+        return String::new();
+    }
     let wanted = wanted.to_lowercase();
     let limit = wanted.chars().count() / 3 + 1;
     let ranked = names.map(|name| (distance(&wanted, &name.to_lowercase()), name));

@@ -5,14 +5,14 @@
 //! A type is written with all that its bytes mean: an enumeration with its values, a subrange
 //! with its bounds, a standard block with its pins.
 
-use crate::Error;
 use crate::map::{Map, Structure, Type, Variable};
 use crate::path;
+use crate::{Error, Machine};
 use staunch_runtime::Time;
 use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::fs::File;
-use std::io::{self, Write as _};
+use std::io::{self, Read as _, Write as _};
 use std::path::Path;
 
 /// The first line, before the version.
@@ -20,6 +20,9 @@ const TITLE: &str = "staunch retained variables ";
 
 /// Version 1 named types without what they mean.
 const VERSION: &str = "2";
+
+/// A file may be as long as this, and longer for a large state, of which each byte takes two.
+const LONGEST: u64 = 16 << 20;
 
 /// The retained variables of a program, as parts that a file can carry over one by one.
 #[derive(Clone, Debug)]
@@ -70,26 +73,32 @@ impl Retained {
         self.regions.iter().flat_map(|it| &state[it.offset..it.offset + it.size]).copied().collect()
     }
 
-    pub fn restore(&self, mut snapshot: &[u8], state: &mut [u8]) {
+    pub fn restore(&self, mut snapshot: &[u8], machine: &mut dyn Machine) {
         for region in &self.regions {
             let (bytes, rest) = snapshot.split_at(region.size);
-            state[region.offset..region.offset + region.size].copy_from_slice(bytes);
+            machine.write(region.offset, bytes);
             snapshot = rest;
         }
     }
 
     /// Reads the file into the state. A file that does not exist changes nothing: it is a first
-    /// start.
-    pub fn load(&self, map: &Map, path: &Path, state: &mut [u8]) -> Result<Loaded, Error> {
-        let bytes = match std::fs::read(path) {
-            Ok(bytes) => bytes,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Loaded::default()),
-            Err(error) => return Err(Error::file(path, "read", error)),
-        };
+    /// start. Its bytes are anybody's, also with a right checksum: they become values of the
+    /// variables' types.
+    pub fn load(&self, map: &Map, path: &Path, machine: &mut dyn Machine) -> Result<Loaded, Error> {
         let damaged = |text: &str| Error::Retain {
             path: path.to_owned(),
             text: format!("{text}; move it away to start with initial values"),
         };
+        let limit = LONGEST + 8 * map.size as u64;
+        let mut bytes = Vec::new();
+        match File::open(path).and_then(|file| file.take(limit + 1).read_to_end(&mut bytes)) {
+            Ok(_) => {}
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Loaded::default()),
+            Err(error) => return Err(Error::file(path, "read", error)),
+        }
+        if bytes.len() as u64 > limit {
+            return Err(damaged(&format!("it is longer than {limit} bytes")));
+        }
         let title = String::from_utf8_lossy(bytes.split(|it| *it == b'\n').next().unwrap_or_default());
         match title.strip_prefix(TITLE).map(str::trim_end) {
             Some(VERSION) => {}
@@ -110,14 +119,14 @@ impl Retained {
         for line in lines {
             match line.strip_prefix("clock\t").map(str::parse) {
                 Some(clock) => loaded.clock = clock.map_err(|_| damaged("its clock is not a number"))?,
-                None => loaded.notes.extend(self.load_line(map, line, state)),
+                None => loaded.notes.extend(self.load_line(map, line, machine)),
             }
         }
         Ok(loaded)
     }
 
     /// A note if the line's variable cannot be carried over.
-    fn load_line(&self, map: &Map, line: &str, state: &mut [u8]) -> Option<String> {
+    fn load_line(&self, map: &Map, line: &str, machine: &mut dyn Machine) -> Option<String> {
         let mut cells = line.split('\t');
         let (path, ty, hex) = (cells.next()?, cells.next()?, cells.next()?);
         let Some(region) = self.regions.iter().find(|it| it.path.eq_ignore_ascii_case(path)) else {
@@ -128,7 +137,7 @@ impl Retained {
         let bytes = from_hex(hex).filter(fits);
         match bytes {
             Some(bytes) => {
-                state[region.offset..region.offset + region.size].copy_from_slice(&bytes);
+                machine.write(region.offset, &bytes);
                 None
             }
             None => Some(format!("dropped the retained value of `{path}`: {}", difference(ty, &region.ty))),
@@ -333,7 +342,7 @@ impl Walk<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixture::{MAP, map, offset_of};
+    use crate::fixture::{Bytes, MAP, map, offset_of};
 
     fn file(name: &str) -> std::path::PathBuf {
         let folder = std::env::temp_dir().join(format!("staunch-retain-{}", std::process::id()));
@@ -346,44 +355,42 @@ mod tests {
         let retained = Retained::of(&map());
         let paths: Vec<&str> = retained.regions.iter().map(|it| it.path.as_str()).collect();
         assert_eq!(paths, ["Globals.total", "main.mixer.count"]);
-        let mut state = vec![1; 128];
-        let snapshot = retained.snapshot(&state);
-        state.fill(0);
-        retained.restore(&snapshot, &mut state);
-        assert_eq!(state.iter().filter(|it| **it == 1).count(), 6);
-        assert_eq!(state[offset_of("total")], 1);
+        let snapshot = retained.snapshot(&[1; 128]);
+        let mut machine = Bytes::new(&map());
+        retained.restore(&snapshot, &mut machine);
+        assert_eq!(machine.state.iter().filter(|it| **it == 1).count(), 6);
+        assert_eq!(machine.state[offset_of("total")], 1);
     }
 
     #[test]
     fn a_file_carries_values_over() {
         let (path, retained) = (file("values"), Retained::of(&map()));
-        let mut state = vec![0; 128];
-        assert_eq!(retained.load(&map(), &path, &mut state).unwrap().notes, Vec::<String>::new());
-        state[offset_of("total")] = 42;
-        retained.save(&path, 0, &state).unwrap();
-        let mut state = vec![0; 128];
-        assert_eq!(retained.load(&map(), &path, &mut state).unwrap().notes, Vec::<String>::new());
-        assert_eq!(state[offset_of("total")], 42);
+        let mut machine = Bytes::new(&map());
+        assert_eq!(retained.load(&map(), &path, &mut machine).unwrap().notes, Vec::<String>::new());
+        machine.state[offset_of("total")] = 42;
+        retained.save(&path, 0, &machine.state).unwrap();
+        machine.init();
+        assert_eq!(retained.load(&map(), &path, &mut machine).unwrap().notes, Vec::<String>::new());
+        assert_eq!(machine.state[offset_of("total")], 42);
     }
 
     #[test]
     fn an_edited_program_keeps_what_still_fits() {
         let path = file("edited");
-        let mut state = vec![3; 128];
-        Retained::of(&map()).save(&path, 0, &state).unwrap();
+        Retained::of(&map()).save(&path, 0, &[3; 128]).unwrap();
         let mut retained = Retained::of(&map());
         retained.regions[0].ty = "REAL".to_owned();
         let edited = Map::parse(&MAP.replace("field\tcount", "field\tcounter")).unwrap();
         retained.regions[1].path = "main.mixer.counter".to_owned();
-        state.fill(0);
+        let mut machine = Bytes::new(&map());
         assert_eq!(
-            retained.load(&edited, &path, &mut state).unwrap().notes,
+            retained.load(&edited, &path, &mut machine).unwrap().notes,
             [
                 "dropped the retained value of `Globals.total`: it was DINT, and is REAL now",
                 "dropped the retained value of `main.mixer.count`: the program has no such variable",
             ]
         );
-        assert!(state.iter().all(|it| *it == 0));
+        assert!(machine.state.iter().all(|it| *it == 0));
     }
 
     /// The notes when a program with the one variable `v` is edited.
@@ -403,11 +410,10 @@ mod tests {
             .unwrap()
         };
         let (old, new) = (of(before), of(after));
-        let mut state = vec![1; 64];
-        Retained::of(&old).save(&path, 0, &state).unwrap();
-        state.fill(0);
-        let notes = Retained::of(&new).load(&new, &path, &mut state).unwrap().notes;
-        assert_eq!(state[0] == 0, !notes.is_empty(), "{name}");
+        Retained::of(&old).save(&path, 0, &[1; 64]).unwrap();
+        let mut machine = Bytes::new(&new);
+        let notes = Retained::of(&new).load(&new, &path, &mut machine).unwrap().notes;
+        assert_eq!(machine.state[0] == 0, !notes.is_empty(), "{name}");
         notes
     }
 
@@ -457,12 +463,12 @@ mod tests {
     #[test]
     fn a_file_that_cannot_be_trusted_is_refused() {
         let (path, mut retained) = (file("damaged"), Retained::of(&map()));
-        let mut state = vec![0; 128];
-        retained.save(&path, 0, &state).unwrap();
+        let mut machine = Bytes::new(&map());
+        retained.save(&path, 0, &machine.state).unwrap();
         let good = std::fs::read_to_string(&path).unwrap();
         let mut error = |text: &str, retained: &Retained| {
             std::fs::write(&path, text).unwrap();
-            retained.load(&map(), &path, &mut state).unwrap_err().to_string()
+            retained.load(&map(), &path, &mut machine).unwrap_err().to_string()
         };
         assert!(error(&good.replace("00", "01"), &retained).contains("checksum"));
         assert!(error(&good[..good.len() - 3], &retained).contains("checksum"));
@@ -473,6 +479,58 @@ mod tests {
         assert!(error("hello", &retained).contains("does not hold retained"));
         retained.programs = "Mixer".to_owned();
         assert!(error(&good, &retained).contains("another program: to PROGRAM Garage, not Mixer"));
+    }
+
+    /// Loads a file with this text and a right checksum; the state after it.
+    fn forged(name: &str, text: &str) -> (Result<Loaded, Error>, Vec<u8>) {
+        let path = file(name);
+        std::fs::write(&path, format!("{text}crc32\t{:08x}\n", crc32(text.as_bytes()))).unwrap();
+        let mut machine = Bytes::new(&map());
+        let loaded = Retained::of(&map()).load(&map(), &path, &mut machine);
+        (loaded, machine.state)
+    }
+
+    #[test]
+    fn a_forged_file_is_refused_or_made_into_values() {
+        let head = "staunch retained variables 2\nprogram\tGarage\n";
+        let long = "x".repeat(1 << 20);
+        for (line, note) in [
+            ("Globals.total\tDINT\t2a000000", None),
+            ("Globals.total\tDINT\t2a0000", Some("it was another DINT")),
+            ("Globals.total\tDINT\t2a000000000000000000", Some("it was another DINT")),
+            ("Globals.total\tDINT\tzz000000", Some("it was another DINT")),
+            ("Globals.total\tDINT\t", Some("it was another DINT")),
+            ("Globals.total\tSTRING[65535]\t2a000000", Some("it was STRING[65535], and is DINT now")),
+            ("Globals.total[9223372036854775807]\tDINT\t2a000000", Some("the program has no such variable")),
+            ("main.m[-1,99999999999999999999]\tINT\t2a00", Some("the program has no such variable")),
+            ("main.name\tSTRING[4]\tffff01020304", Some("but does not retain it")),
+            ("%IX0.0\tBOOL\tff", Some("but does not retain it")),
+            (&long, None),
+            (&format!("{long}\tDINT\t00"), Some("the program has no such variable")),
+        ] {
+            let (loaded, state) = forged("forged", &format!("{head}{line}\n"));
+            let notes = loaded.unwrap().notes;
+            assert_eq!(notes.is_empty(), note.is_none(), "{line}");
+            assert!(notes.iter().zip(note).all(|(found, wanted)| found.contains(wanted)), "{line}: {notes:?}");
+            assert_eq!(state.iter().any(|it| *it != 0), line.contains("DINT\t2a000000") && note.is_none(), "{line}");
+        }
+        for (line, problem) in [
+            ("clock\t99999999999999999999\n", "its clock is not a number"),
+            ("clock\tsoon\n", "its clock is not a number"),
+        ] {
+            let error = forged("clock", &format!("{head}{line}")).0.unwrap_err().to_string();
+            assert!(error.contains(problem), "{error}");
+        }
+        assert_eq!(forged("past", &format!("{head}clock\t{}\n", i64::MIN)).0.unwrap().clock, i64::MIN);
+    }
+
+    #[test]
+    fn a_file_without_an_end_is_refused() {
+        let path = file("huge");
+        File::create(&path).unwrap().set_len(1 << 40).unwrap();
+        let error = Retained::of(&map()).load(&map(), &path, &mut Bytes::new(&map())).unwrap_err();
+        assert!(error.to_string().contains("it is longer than 16778240 bytes"), "{error}");
+        std::fs::remove_file(&path).unwrap();
     }
 
     #[test]

@@ -176,7 +176,7 @@ impl Runner<'_> {
     fn start(&mut self) -> Result<(), Error> {
         self.machine.init();
         if let Some(path) = &self.options.retain {
-            let loaded = self.retained.load(self.map, path, self.machine.state_mut())?;
+            let loaded = self.retained.load(self.map, path, self.machine)?;
             for note in loaded.notes {
                 eprintln!("note: {}: {note}", path.display());
             }
@@ -256,9 +256,8 @@ impl Runner<'_> {
             if self.stimulus.rows[self.next_row].restart {
                 self.restart()?;
             }
-            let state = self.machine.state_mut();
             for write in &self.stimulus.rows[self.next_row].writes {
-                put(write, state);
+                self.machine.write(write.offset, &write.bytes);
                 if write.input {
                     self.held.retain(|it| it.offset != write.offset);
                     self.held.push(write.clone());
@@ -274,9 +273,8 @@ impl Runner<'_> {
         let kept = self.retained.snapshot(self.machine.state());
         self.save()?;
         self.machine.init();
-        let state = self.machine.state_mut();
-        self.retained.restore(&kept, state);
-        self.held.iter().for_each(|it| put(it, state));
+        self.retained.restore(&kept, self.machine);
+        self.held.iter().for_each(|it| self.machine.write(it.offset, &it.bytes));
         self.fresh.fill(true);
         Ok(())
     }
@@ -336,10 +334,6 @@ impl Runner<'_> {
         )?;
         writeln!(out, "{mean} on average, {max} at most")
     }
-}
-
-fn put(write: &Write, state: &mut [u8]) {
-    state[write.offset..write.offset + write.bytes.len()].copy_from_slice(&write.bytes);
 }
 
 /// `2 s`, `1 min 30 s`: a time for a sentence.

@@ -61,7 +61,7 @@ pub struct Pair {
 
 impl Side {
     pub fn new(dialect: Dialect, program: Program) -> Result<Self, String> {
-        let machine = Native::new(&program)?;
+        let (machine, _) = Native::new(&program)?;
         let leaves = Leaves::of(&program);
         let mut order: Vec<usize> = (0..program.instances.len()).collect();
         order.sort_by_key(|it| program.instances[*it].priority);
@@ -89,8 +89,8 @@ impl Side {
         let kept: Vec<Vec<u8>> =
             self.kept.iter().map(|(offset, size)| self.state()[*offset..offset + size].to_vec()).collect();
         self.machine.init();
-        for ((offset, size), bytes) in self.kept.iter().zip(kept) {
-            self.machine.state_mut()[*offset..offset + size].copy_from_slice(&bytes);
+        for ((offset, _), bytes) in self.kept.iter().zip(kept) {
+            self.machine.write(*offset, &bytes);
         }
     }
 
@@ -195,7 +195,7 @@ impl Pair {
 
     pub fn restore(&mut self, states: &[Vec<u8>; 2]) {
         for (side, state) in self.sides.iter_mut().zip(states) {
-            side.machine.state_mut().copy_from_slice(state);
+            side.machine.write(0, state);
         }
     }
 
@@ -220,7 +220,7 @@ impl Pair {
             }
             for (input, value) in inputs.iter().zip(&step.inputs) {
                 let offset = side.leaves.all[input.leaves[at]].offset;
-                value.write(&mut side.machine.state_mut()[offset..]);
+                side.machine.write_value(offset, *value);
             }
             at += 1;
             side.scan(&cx)

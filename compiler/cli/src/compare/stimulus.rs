@@ -28,8 +28,8 @@ impl Machine for Recorder<'_> {
         self.machine.state()
     }
 
-    fn state_mut(&mut self) -> &mut [u8] {
-        self.machine.state_mut()
+    fn write(&mut self, offset: usize, bytes: &[u8]) {
+        self.machine.write(offset, bytes);
     }
 
     fn init(&mut self) {
@@ -39,7 +39,7 @@ impl Machine for Recorder<'_> {
 
     fn scan(&mut self, instance: usize, cx: &Context) -> Result<(), Fault> {
         for (offset, bytes) in self.forgotten.iter().filter(|_| self.restarted) {
-            self.machine.state_mut()[*offset..offset + bytes.len()].copy_from_slice(bytes);
+            self.machine.write(*offset, bytes);
         }
         let result = self.machine.scan(instance, cx);
         // Programs that run at one time make one scan.

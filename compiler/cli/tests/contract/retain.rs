@@ -73,3 +73,53 @@ fn a_retained_timer_goes_on_where_it_stood() {
     assert!(out.starts_with("scan,time_ms,t.ET,t.Q\n1,0,T#60ms,FALSE\n2,10,T#70ms,FALSE\n"), "{out}");
     assert!(out.ends_with("5,40,T#100ms,TRUE\n6,50,T#100ms,TRUE\n7,60,T#100ms,TRUE\n"), "{out}");
 }
+
+/// CRC-32 (IEEE 802.3), as the file ends with.
+fn checksum(text: &str) -> u32 {
+    !text.bytes().fold(u32::MAX, |crc, byte| {
+        (0..8).fold(crc ^ u32::from(byte), |crc, _| crc >> 1 ^ 0xEDB8_8320 & (crc & 1).wrapping_neg())
+    })
+}
+
+const TYPES: &str = "TYPE Color : (Red, Green); END_TYPE
+PROGRAM Main
+VAR RETAIN
+    on : BOOL; text : STRING[4]; level : INT(0..10); color : Color; list : ARRAY[0..10] OF INT; timer : TON;
+END_VAR
+VAR copy : STRING[20]; length, chosen, element : INT; neither : BOOL; END_VAR
+timer(IN := on, PT := T#5ms);
+copy := CONCAT(text, '!'); length := LEN(text); element := list[level];
+neither := NOT on AND NOT timer.Q;
+CASE color OF Red: chosen := 1; Green: chosen := 2; END_CASE
+END_PROGRAM
+";
+
+#[test]
+fn any_bytes_of_a_file_are_the_same_values_on_every_back_end() {
+    let folder = Folder::with("forged", &[("main.st", TYPES)]);
+    folder.staunch("run main.st --scans 1 --retain good --quiet").out(0);
+    let forge = |line: &str| {
+        let mut cells: Vec<&str> = line.split('\t').collect();
+        let forged = cells.last().unwrap().replace(|it: char| it.is_ascii_hexdigit(), "f");
+        if let (3, Some(last)) = (cells.len(), cells.last_mut()) {
+            *last = &forged;
+        }
+        cells.join("\t") + "\n"
+    };
+    let good = folder.read("good");
+    let text: String = good.lines().filter(|it| !it.starts_with("crc32")).map(forge).collect();
+    let forged = format!("{text}crc32\t{:08x}\n", checksum(&text));
+    assert!(good.lines().count() > 8 && forged.contains("STRING[4]\tffffffff"), "{forged}");
+    let run = |backend| {
+        folder.write("plant.retain", &forged);
+        folder.staunch(&format!(
+            "run main.st --scans 2 --trace - --retain plant.retain --backend {backend} \
+             --vars on,level,color,length,chosen,element,neither,timer.Q,timer.in_before"
+        ))
+    };
+    let expected = "scan,time_ms,on,level,color,length,chosen,element,neither,timer.Q,timer.in_before\n\
+                    1,0,TRUE,0,-1,4,0,-1,FALSE,TRUE,TRUE\n2,10,TRUE,0,-1,4,0,-1,FALSE,TRUE,TRUE\n";
+    for backend in ["interpret", "native", "rust"] {
+        assert_eq!(run(backend).out(0), expected, "{backend}");
+    }
+}

@@ -136,3 +136,28 @@ fn a_function_of_very_many_statements_does_what_a_small_one_does() {
     };
     assert_eq!(last("large.st --scans 10"), last("small.st --scans 20000"));
 }
+
+const LARGE: &str = "TYPE Row : STRUCT on : BOOL := TRUE; x : LREAL; END_STRUCT; END_TYPE
+VAR_GLOBAL total : DINT := 40; plain : ARRAY[1..1200000] OF LREAL; END_VAR
+PROGRAM Main
+VAR started : ARRAY[0..1100000] OF LREAL := [1100001(1.5)]; rows : ARRAY[1..600000] OF Row; r : LREAL; END_VAR
+total := total + 2;
+r := r + started[1100000]; plain[1200000] := r;
+IF rows[600000].on THEN rows[1].x := plain[1200000]; END_IF
+END_PROGRAM
+";
+
+#[test]
+fn a_state_larger_than_the_stack_starts() {
+    let folder = Folder::with("large", &[("main.st", LARGE)]);
+    let shown = "--scans 2 --trace - --vars total,r,rows[1].x,started[7],plain[1]";
+    let expected =
+        "scan,time_ms,total,r,rows[1].x,started[7],plain[1]\n1,0,42,1.5,1.5,1.5,0.0\n2,10,44,3.0,3.0,1.5,0.0\n";
+    for backend in ["interpret", "native", "rust"] {
+        assert_eq!(folder.staunch(&format!("run main.st --backend {backend} {shown}")).out(0), expected, "{backend}");
+    }
+    folder.staunch("build main.st --backend rust -o large -q").out(0);
+    let mut built = std::process::Command::new(folder.0.join("large"));
+    let ran = super::Ran::of(built.args(shown.split(' ')).output().unwrap());
+    assert_eq!(ran.out(0), expected);
+}

@@ -1,9 +1,11 @@
 //! Programs made by hand, and how to run them on the interpreter and as native code.
 #![allow(dead_code, reason = "each test uses a part")]
 
+use staunch_host::{Compiled, Machine, Map};
 use staunch_ir::layout::{Layout, usize_of};
 use staunch_ir::*;
-use staunch_native::{Jit, State};
+use staunch_native::Jit;
+use staunch_runtime::{Context, Fault};
 
 pub const AT: Location = Location { file: 0, column: 3, line: 7 };
 
@@ -119,9 +121,10 @@ pub fn assign(target: Place, value: Expr) -> Statement {
 
 /// A program as native code, with its state.
 pub struct Native {
-    pub jit: Jit,
+    /// Before the code that it calls: it goes first.
+    machine: Compiled,
+    _jit: Jit,
     pub layout: Layout,
-    pub state: State,
 }
 
 impl Native {
@@ -129,8 +132,33 @@ impl Native {
         if let Err(violations) = verify::verify(program) {
             panic!("{violations:#?}");
         }
-        let jit = Jit::new(program).unwrap();
-        Self { state: jit.state(), jit, layout: Layout::new(program) }
+        let (jit, layout) = (Jit::new(program).unwrap(), Layout::new(program));
+        let map = Map::parse(&symbols::map_text(program, &layout)).unwrap();
+        // SAFETY: the code was made of the program that the map describes, and is kept beside it.
+        let machine = unsafe { Compiled::new(&map, jit.init, jit.scan) };
+        Self { machine, _jit: jit, layout }
+    }
+
+    pub fn init(&mut self) {
+        self.machine.init();
+    }
+
+    pub fn scan(&mut self, instance: usize, cx: &Context) -> Result<(), Fault> {
+        self.machine.scan(instance, cx)
+    }
+
+    pub fn state(&self) -> &[u8] {
+        self.machine.state()
+    }
+
+    pub fn write(&mut self, offset: usize, bytes: &[u8]) {
+        self.machine.write(offset, bytes);
+    }
+
+    pub fn write_value(&mut self, offset: usize, value: Value) {
+        let mut bytes = [0; 8];
+        value.write(&mut bytes);
+        self.machine.write(offset, &bytes[..usize::try_from(value.lane().size()).unwrap()]);
     }
 
     /// Offset of a field of an instance's state.

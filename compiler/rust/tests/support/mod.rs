@@ -199,13 +199,16 @@ const PROBE: &str = r#"#![no_std]
 mod code;
 mod glue;
 
-static mut MACHINE: glue::Machine = glue::Machine::new();
+static mut MACHINE: core::mem::MaybeUninit<glue::Machine> = core::mem::MaybeUninit::zeroed();
 
 #[unsafe(no_mangle)]
 extern "C" fn main(count: i32, time: i64) -> i32 {
     let at = (&raw mut MACHINE).cast::<u8>();
     let cx = staunch_runtime::Context::new(time, count == 1);
-    unsafe { i32::from(glue::staunch_scan(at, &cx, count.unsigned_abs() / 2) != 0) }
+    unsafe {
+        glue::staunch_init(at);
+        i32::from(glue::staunch_scan(at, &cx, count.unsigned_abs() / 2) != 0)
+    }
 }
 
 #[panic_handler]
