@@ -225,7 +225,8 @@ impl Map<'_> {
             restarts: field.retain == Retain::Anew && !retentive,
             constant: field.constant,
             address: field.address,
-            range: self.program.range(field.ty),
+            // A subrange of elements stands at their array.
+            range: self.program.range(ty),
         }
     }
 

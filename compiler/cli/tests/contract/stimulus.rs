@@ -5,7 +5,9 @@ use super::{Folder, has};
 const PROGRAM: &str = "VAR_GLOBAL total : DINT; END_VAR
 PROGRAM Main
 VAR_INPUT a : INT; on : BOOL; span : TIME; END_VAR
-VAR input AT %IW1 : INT; bit AT %IX0.3 : BOOL; list : ARRAY[1..2] OF INT; n : INT; END_VAR
+VAR input AT %IW1 : INT; bit AT %IX0.3 : BOOL; list : ARRAY[1..2] OF INT; n : INT;
+    levels : ARRAY[0..1, 0..1] OF INT(0..9);
+END_VAR
 n := n + 1;
 END_PROGRAM
 ";
@@ -65,6 +67,7 @@ fn what_is_wrong_is_named_with_its_place() {
         ("a\n1\n", "in.csv:1:1", "scan"),
         ("", "in.csv:1:1", "scan"),
         ("scan,span\n1,5\n", "in.csv:2:3", "5"),
+        ("scan,\"levels[1,1]\"\n1,10\n", "in.csv:2:3", "0..9"),
     ]
     .into_iter()
     .enumerate()
