@@ -4,7 +4,7 @@
 
 use crate::source::Span;
 
-/// Nesting of expressions, statements, types and initial values.
+/// Nesting of expressions and statements; types and initial values nest a quarter as deep.
 pub const MAX_DEPTH: usize = 256;
 /// Operands of one chain of binary operators, and branches of one IF.
 pub const MAX_CHAIN: usize = 1000;
@@ -85,6 +85,13 @@ pub struct VarBlock<'s> {
     pub vars: Vec<VarDecl<'s>>,
     /// The keyword that opens the block.
     pub span: Span,
+}
+
+impl VarBlock<'_> {
+    /// One without qualifiers and variables.
+    pub fn new(kind: VarKind, span: Span) -> Self {
+        Self { kind, constant: None, retain: None, non_retain: None, persistent: None, vars: Vec::new(), span }
+    }
 }
 
 /// `a, b AT %IX0.0 : BOOL R_EDGE := TRUE;`

@@ -3,21 +3,35 @@
 //! Productions decide by the tokens ahead and never go back, so that each mistake is told once,
 //! where it is, and reading goes on in the list it belongs to (`recover`).
 
-mod block_ends;
-mod configuration;
-mod declaration;
-mod diagnostics;
+mod token_class;
+
+mod combinator;
 mod doc;
-mod expression;
+mod parser;
+
+mod diagnostics;
+mod misspelt;
+
+mod block_ends;
 mod foreign_syntax;
 mod invalid_names;
-mod literal;
-mod parser;
-mod recover;
-mod statement;
-mod types;
-mod unit;
+mod recovery;
 mod unsupported;
+
+mod expression;
+mod literal;
+
+mod foreign_types;
+mod initial;
+mod types;
+
+mod declaration;
+mod type_block;
+
+mod statement;
+
+mod configuration;
+mod unit;
 
 #[cfg(test)]
 mod tests;

@@ -6,9 +6,9 @@ use crate::{
 };
 
 use super::{
-    diagnostics,
-    parser::{In, Moves, State},
-    recover,
+    diagnostics, misspelt,
+    parser::{In, State, TokenReader},
+    token_class::{end_of, is_end, is_pou_end, opens_item},
 };
 
 /// What a closing keyword is that the innermost block does not wait for.
@@ -29,7 +29,7 @@ pub fn judge(input: &mut In<'_, '_, '_>, innermost: Option<Kind>) -> Verdict {
     let own = usize::from(input.state().instead.is_none());
     let here = input.kind();
     let state = input.state();
-    let mut open: Vec<Kind> = state.open.iter().map(|(end, _)| *end).filter(|it| !recover::is_pou_end(*it)).collect();
+    let mut open: Vec<Kind> = state.open.iter().map(|(end, _)| *end).filter(|it| !is_pou_end(*it)).collect();
     open.extend(innermost);
     let Some((_, outer)) = open.split_last() else { return Verdict::Stray };
     let rest = at + own;
@@ -59,12 +59,12 @@ fn mistakes(state: &State<'_, '_>, mut open: Vec<Kind>, first: Option<Kind>, mut
     let horizon = at + HORIZON;
     loop {
         let (kind, count) = token(state, at);
-        if at > horizon || kind == Kind::End || recover::opens_item(kind) || recover::is_pou_end(kind) {
+        if at > horizon || kind == Kind::End || opens_item(kind) || is_pou_end(kind) {
             return found + open.len();
         }
         if let Some(end) = end_of(kind) {
             open.push(end);
-        } else if kind.keyword().is_some_and(|it| it.starts_with("END_")) {
+        } else if is_end(kind) {
             found += close(&mut open, kind);
         }
         at += count;
@@ -80,7 +80,7 @@ fn token(state: &State<'_, '_>, at: usize) -> (Kind, usize) {
     let (start, end) = state.tokens.places[at];
     let word = state.text.get(index(start)..index(end)).unwrap_or_default();
     let next = state.tokens.kinds.get(at + 1).copied().unwrap_or(Kind::End);
-    diagnostics::misspelt_end(word, next).unwrap_or((kind, 1))
+    misspelt::misspelt_end(word, next).unwrap_or((kind, 1))
 }
 
 fn close(open: &mut Vec<Kind>, end: Kind) -> usize {
@@ -96,20 +96,6 @@ fn close(open: &mut Vec<Kind>, end: Kind) -> usize {
     }
 }
 
-/// What closes the block that a keyword opens.
-fn end_of(kind: Kind) -> Option<Kind> {
-    Some(match kind {
-        Kind::If => Kind::EndIf,
-        Kind::Case => Kind::EndCase,
-        Kind::For => Kind::EndFor,
-        Kind::While => Kind::EndWhile,
-        Kind::Repeat => Kind::EndRepeat,
-        Kind::Struct => Kind::EndStruct,
-        kind if recover::opens_section(kind) => Kind::EndVar,
-        _ => return None,
-    })
-}
-
 /// Takes the end of a block that was opened at `opened`, or reports what stands in its place.
 pub fn close_block(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
     if let Some(closed) = input.eat(end) {
@@ -120,7 +106,7 @@ pub fn close_block(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
         return;
     }
     let kind = input.kind();
-    let ends = kind.keyword().is_some_and(|it| it.starts_with("END_")) && !recover::is_pou_end(kind);
+    let ends = is_end(kind) && !is_pou_end(kind);
     if ends && judge(input, Some(end)) == Verdict::WrongWord {
         diagnostics::wrong_end(input, end, opened);
         input.take();

@@ -1,54 +1,60 @@
 //! CONFIGURATION, RESOURCE, TASK and the programs in them.
 
-use chumsky::{input::InputRef, prelude::*};
+use chumsky::prelude::*;
 
 use crate::{
-    ast::{Configuration, Expr, Name, ProgramInstance, Resource, Task},
+    ast::{Configuration, Name, ProgramInstance, Resource, Task},
     lex::Kind,
 };
 
 use super::{
+    combinator::{Rule, list, name, rule, token, word},
     declaration::section,
     diagnostics,
-    expression::{self, arguments},
-    parser::{Extra, In, Moves, Parsed, Problem},
-    recover,
+    expression::{arguments, expr},
+    parser::{Expected, In, TokenReader},
+    recovery,
+    token_class::{ends_statements, opens_section},
 };
 
-/// The parts of a configuration have no statements to recover between, so they are combinators.
-trait Part<'t, 's: 't, T>: Parser<'t, &'t [Kind], T, Extra<'t, 's>> + Clone {}
-impl<'t, 's: 't, T, P: Parser<'t, &'t [Kind], T, Extra<'t, 's>> + Clone> Part<'t, 's, T> for P {}
-
-fn name<'t, 's: 't>() -> impl Part<'t, 's, Name<'s>> {
-    custom(|input: &mut InputRef<'t, '_, &'t [Kind], Extra<'t, 's>>| input.name())
+/// `TASK t (INTERVAL := T#20ms, PRIORITY := 1);`
+fn task<'t, 's: 't>() -> impl Rule<'t, 's, Task<'s>> {
+    let property = name().then_ignore(token(Kind::Assign)).then(expr());
+    let properties = list(property).delimited_by(token(Kind::OpenParen), token(Kind::CloseParen));
+    let task = word("TASK").ignore_then(name()).then(properties.or_not()).then_ignore(end());
+    task.map(|(name, properties)| Task { name, properties: properties.unwrap_or_default() })
 }
 
-/// `t (INTERVAL := T#20ms, PRIORITY := 1)`
-fn task<'t, 's: 't>() -> impl Part<'t, 's, Task<'s>> {
-    let value = custom(|input: &mut InputRef<'t, '_, &'t [Kind], Extra<'t, 's>>| expression::expression(input));
-    let property = name().then_ignore(just(Kind::Assign)).then(value);
-    let properties = property
-        .separated_by(just(Kind::Comma))
-        .collect::<Vec<(Name<'s>, Expr<'s>)>>()
-        .delimited_by(just(Kind::OpenParen), just(Kind::CloseParen));
-    name().then(properties.or_not()).map(|(name, properties)| Task { name, properties: properties.unwrap_or_default() })
-}
-
-/// `main WITH t : Main`; WITH is a name elsewhere.
-fn program<'t, 's: 't>() -> impl Part<'t, 's, ProgramInstance<'s>> {
-    let with = custom(|input: &mut InputRef<'t, '_, &'t [Kind], Extra<'t, 's>>| {
-        if input.is_word("WITH") {
-            input.take();
-            input.name().map(Some)
-        } else {
-            Ok(None)
+/// `PROGRAM main WITH t : Main;`
+fn program<'t, 's: 't>() -> impl Rule<'t, 's, ProgramInstance<'s>> {
+    let task = word("WITH").ignore_then(name()).or_not();
+    let connections = rule(|input| {
+        let span = input.here();
+        if input.kind() == Kind::OpenParen {
+            arguments(input)?;
+            input.report(diagnostics::unsupported(span, "connecting a program's variables here"));
         }
+        Ok(())
     });
-    name().then(with).then_ignore(just(Kind::Colon)).then(name()).map(|((name, task), program)| ProgramInstance {
-        name,
-        task,
-        program,
-    })
+    let program = token(Kind::Program).ignore_then(name()).then(task).then_ignore(token(Kind::Colon)).then(name());
+    let program = program.then_ignore(connections).then_ignore(end());
+    program.map(|((name, task), program)| ProgramInstance { name, task, program })
+}
+
+/// `RESOURCE name ON machine`
+fn resource_head<'t, 's: 't>() -> impl Rule<'t, 's, Name<'s>> {
+    word("RESOURCE").ignore_then(name()).then_ignore(word("ON").ignore_then(name()).or_not())
+}
+
+fn end<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
+    let missing = rule(|input| {
+        if !input.on_new_line() && !ends_statements(input.kind()) {
+            return Err(input.problem(Expected::Token(Kind::Semicolon)));
+        }
+        diagnostics::missing_semicolon(input);
+        Ok(())
+    });
+    token(Kind::Semicolon).ignored().or(missing)
 }
 
 pub fn configuration<'s>(input: &mut In<'_, '_, 's>) -> Configuration<'s> {
@@ -79,15 +85,16 @@ pub fn configuration<'s>(input: &mut In<'_, '_, 's>) -> Configuration<'s> {
     configuration
 }
 
-/// `RESOURCE name ON machine … END_RESOURCE`
+/// RESOURCE … END_RESOURCE
 fn resource<'s>(input: &mut In<'_, '_, 's>) -> Resource<'s> {
-    let opened = input.take();
+    let opened = input.here();
     input.state().open.push((Kind::EndResource, opened));
-    let mut resource = Resource { name: input.name().ok(), ..Resource::default() };
-    if input.is_word("ON") {
-        input.take();
-        if let Err(problem) = input.name() {
+    let mut resource = Resource::default();
+    match input.parse(resource_head()) {
+        Ok(name) => resource.name = Some(name),
+        Err(problem) => {
             diagnostics::report(input, problem);
+            recovery::go_to(input, problem);
         }
     }
     while element(input, &mut resource, Kind::EndResource) {}
@@ -107,48 +114,25 @@ fn element<'s>(input: &mut In<'_, '_, 's>, into: &mut Resource<'s>, end: Kind) -
             input.take();
             return true;
         }
-        Kind::Program => program_instance(input).map(|it| into.programs.push(it)),
-        kind if recover::opens_section(kind) => {
+        Kind::Program => input.parse(program()).map(|it| into.programs.push(it)),
+        kind if opens_section(kind) => {
             into.globals.extend(section(input));
             return true;
         }
-        kind if kind == end || recover::ends_statements(kind) => {
-            return kind != end && recover::stray(input);
+        kind if kind == end || ends_statements(kind) => {
+            return kind != end && recovery::stray(input);
         }
-        _ if input.is_word("TASK") => {
-            input.take();
-            input.parse(task()).and_then(|it| finish(input, it)).map(|it| into.tasks.push(it))
-        }
-        _ => Err(input.problem(super::parser::Expected::Token(end))),
+        _ if input.is_word("TASK") => input.parse(task()).map(|it| into.tasks.push(it)),
+        _ => Err(input.problem(Expected::Token(end))),
     };
     if let Err(problem) = result {
         input.state().depth = 0;
         diagnostics::report(input, problem);
+        recovery::go_to(input, problem);
         if input.here().start == start.start {
             input.take();
         }
-        recover::skip_statement(input, start);
+        recovery::skip_statement(input, start);
     }
     true
-}
-
-fn program_instance<'s>(input: &mut In<'_, '_, 's>) -> Parsed<ProgramInstance<'s>> {
-    input.take();
-    let instance = input.parse(program())?;
-    if input.kind() == Kind::OpenParen {
-        let span = input.here();
-        arguments(input)?;
-        input.report(diagnostics::unsupported(span, "connecting a program's variables here"));
-    }
-    finish(input, instance)
-}
-
-fn finish<T>(input: &mut In<'_, '_, '_>, value: T) -> Result<T, Problem> {
-    if input.eat(Kind::Semicolon).is_none() {
-        if !input.on_new_line() && !recover::ends_statements(input.kind()) {
-            return Err(input.problem(super::parser::Expected::Token(Kind::Semicolon)));
-        }
-        diagnostics::missing_semicolon(input);
-    }
-    Ok(value)
 }

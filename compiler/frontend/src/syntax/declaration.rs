@@ -1,5 +1,7 @@
 //! VAR blocks and the declarations in them and in structures.
 
+use chumsky::prelude::*;
+
 use crate::{
     ast::{Edge, Name, TypeKind, TypeSpec, VarBlock, VarDecl, VarKind},
     lex::Kind,
@@ -7,86 +9,113 @@ use crate::{
 };
 
 use super::{
-    block_ends, diagnostics, doc, foreign_syntax,
-    parser::{Expected, In, Moves, Parsed, Start},
-    recover,
-    types::{optional_initial, type_spec},
+    block_ends,
+    combinator::{Rule, name, nested, rule, token, word},
+    diagnostics, foreign_types,
+    initial::optional_initial,
+    parser::{Expected, In, Parsed, Start, TokenReader},
+    recovery,
+    token_class::ends_declarations,
+    types::type_kind,
+    unsupported,
 };
-
-fn section_kind(kind: Kind) -> Option<VarKind> {
-    Some(match kind {
-        Kind::Var => VarKind::Var,
-        Kind::VarInput => VarKind::Input,
-        Kind::VarOutput => VarKind::Output,
-        Kind::VarInOut => VarKind::InOut,
-        Kind::VarTemp => VarKind::Temp,
-        Kind::VarStat => VarKind::Stat,
-        Kind::VarGlobal => VarKind::Global,
-        Kind::VarExternal => VarKind::External,
-        _ => return None,
-    })
-}
 
 /// From VAR to END_VAR. None for a section that is refused.
 pub fn section<'s>(input: &mut In<'_, '_, 's>) -> Option<VarBlock<'s>> {
-    let mut kind = input.kind();
-    let mut span = input.take();
-    if kind == Kind::Var
-        && let Some(meant) = second_word(input)
-    {
-        kind = meant;
-        span = span.to(input.take());
-        diagnostics::misspelt_keyword(input, kind, span);
+    let (kind, opened) = (input.kind(), input.here());
+    match input.parse(section_head()) {
+        Ok(mut block) => {
+            block.vars = list(input, Kind::EndVar, block.span);
+            block_ends::close_block(input, Kind::EndVar, block.span);
+            input.eat(Kind::Semicolon);
+            Some(block)
+        }
+        Err(_) => {
+            input.take();
+            input.report(diagnostics::unsupported(opened, kind.keyword().unwrap_or_default()));
+            recovery::skip_section(input);
+            None
+        }
     }
-    let Some(kind) = section_kind(kind) else {
-        let word = kind.keyword().unwrap_or_default();
-        input.report(diagnostics::unsupported(span, word));
-        recover::skip_section(input);
-        return None;
-    };
-    let mut block =
-        VarBlock { kind, constant: None, retain: None, non_retain: None, persistent: None, vars: Vec::new(), span };
-    while qualifier(input, &mut block) {}
-    block.vars = list(input, Kind::EndVar, span);
-    block_ends::close_block(input, Kind::EndVar, span);
-    input.eat(Kind::Semicolon);
-    Some(block)
 }
 
-/// `VAR INPUT`
-fn second_word(input: &mut In<'_, '_, '_>) -> Option<Kind> {
-    if input.kind() != Kind::Name || input.kind_ahead(1) != Kind::Name {
-        return None;
-    }
-    let kinds = [Kind::VarInput, Kind::VarOutput, Kind::VarInOut, Kind::VarTemp, Kind::VarGlobal, Kind::VarExternal];
-    kinds.into_iter().find(|it| it.keyword().is_some_and(|word| input.is_word(&word[4..])))
+#[derive(Clone, Copy)]
+enum Qualifier {
+    Constant,
+    Retain,
+    NonRetain,
+    Persistent,
+    /// Refused and reported.
+    Access,
 }
 
-fn qualifier(input: &mut In<'_, '_, '_>, block: &mut VarBlock<'_>) -> bool {
-    let place = match input.kind() {
-        Kind::Constant => &mut block.constant,
-        Kind::Retain => &mut block.retain,
-        Kind::NonRetain => &mut block.non_retain,
-        Kind::Persistent => &mut block.persistent,
-        Kind::Name => return access(input),
-        _ => return false,
-    };
-    *place = Some(input.take());
-    true
+/// `VAR_GLOBAL CONSTANT`
+fn section_head<'t, 's: 't>() -> impl Rule<'t, 's, VarBlock<'s>> {
+    let kinds = [
+        (Kind::Var, VarKind::Var),
+        (Kind::VarInput, VarKind::Input),
+        (Kind::VarOutput, VarKind::Output),
+        (Kind::VarInOut, VarKind::InOut),
+        (Kind::VarTemp, VarKind::Temp),
+        (Kind::VarStat, VarKind::Stat),
+        (Kind::VarGlobal, VarKind::Global),
+        (Kind::VarExternal, VarKind::External),
+    ];
+    let kind = choice(kinds.map(|(keyword, kind)| token(keyword).map(move |span| (kind, span))));
+    let qualifier = choice((
+        token(Kind::Constant).map(|span| (Qualifier::Constant, span)),
+        token(Kind::Retain).map(|span| (Qualifier::Retain, span)),
+        token(Kind::NonRetain).map(|span| (Qualifier::NonRetain, span)),
+        token(Kind::Persistent).map(|span| (Qualifier::Persistent, span)),
+        unsupported::access().map(|span| (Qualifier::Access, span)),
+    ));
+    let opened = foreign_types::section_of_two_words().or(kind).map(|(kind, span)| VarBlock::new(kind, span));
+    opened.foldl(qualifier.repeated(), |mut block, (qualifier, span)| {
+        match qualifier {
+            Qualifier::Constant => block.constant = Some(span),
+            Qualifier::Retain => block.retain = Some(span),
+            Qualifier::NonRetain => block.non_retain = Some(span),
+            Qualifier::Persistent => block.persistent = Some(span),
+            Qualifier::Access => {}
+        }
+        block
+    })
 }
 
-/// `VAR PUBLIC x : INT;`
-fn access(input: &mut In<'_, '_, '_>) -> bool {
-    let words = ["PUBLIC", "PRIVATE", "PROTECTED", "INTERNAL"];
-    let Some(word) = words.into_iter().find(|it| input.is_word(it)) else {
-        return false;
-    };
-    if input.kind_ahead(1) != Kind::Name {
-        return false;
-    }
-    let span = input.take();
-    input.report(diagnostics::unsupported(span, word));
-    true
+/// What follows the `:` of a declaration.
+pub fn type_spec<'t, 's: 't>() -> impl Rule<'t, 's, TypeSpec<'s>> {
+    rule(read_type)
+}
+
+fn read_type<'t, 's: 't>(input: &mut In<'t, '_, 's>) -> Parsed<TypeSpec<'s>> {
+    let structure = token(Kind::Struct).then(rule(|input| Ok(structure_members(input)))).map(|(_, it)| it);
+    let kind = choice((structure, union(), type_kind(type_spec())));
+    input.parse(nested(kind).map_with(|kind, extra| {
+        let tokens = extra.span();
+        TypeSpec { kind, span: extra.state().span(tokens) }
+    }))
+}
+
+/// The members of a structure after its keyword, and its end.
+pub fn structure_members<'s>(input: &mut In<'_, '_, 's>) -> TypeKind<'s> {
+    let opened = input.last();
+    let fields = list(input, Kind::EndStruct, opened);
+    block_ends::close_block(input, Kind::EndStruct, opened);
+    TypeKind::Struct(fields)
+}
+
+/// UNION is read to be refused by name.
+fn union<'t, 's: 't>() -> impl Rule<'t, 's, TypeKind<'s>> {
+    rule(|input| {
+        if !input.is_word("UNION") || input.kind_ahead(1) != Kind::Name {
+            return Err(input.problem(Expected::Type));
+        }
+        let span = input.take();
+        input.report(diagnostics::unsupported(span, "UNION"));
+        list(input, Kind::EndUnion, span);
+        input.eat(Kind::EndUnion);
+        Ok(TypeKind::Unsupported("UNION"))
+    })
 }
 
 /// Declarations up to `end`, which is left for the caller.
@@ -101,12 +130,12 @@ pub fn list<'s>(input: &mut In<'_, '_, 's>, end: Kind, opened: Span) -> Vec<VarD
             Kind::Semicolon => {
                 input.take();
             }
-            kind if recover::ends_declarations(kind) => {
-                if kind == end || !recover::stray(input) {
+            kind if ends_declarations(kind) => {
+                if kind == end || !recovery::stray(input) {
                     break;
                 }
             }
-            Kind::Name if recover::is_statement_in_section(input) => break,
+            Kind::Name if recovery::is_statement_in_section(input) => break,
             _ => vars.extend(declaration_or_names(input, start)),
         }
     }
@@ -122,7 +151,7 @@ fn declaration_or_names<'t, 'p, 's>(input: &mut In<'t, 'p, 's>, start: Start<'t,
     match declaration(input, &mut names) {
         Ok(it) => return Some(it),
         Err(problem) => {
-            if !recover::declaration(input, problem, start) || names.is_empty() {
+            if !recovery::declaration(input, problem, start) || names.is_empty() {
                 return None;
             }
         }
@@ -135,137 +164,52 @@ fn declaration_or_names<'t, 'p, 's>(input: &mut In<'t, 'p, 's>, start: Start<'t,
 /// `names` holds what was read of the names, also if the rest does not parse.
 pub fn declaration<'s>(input: &mut In<'_, '_, 's>, names: &mut Vec<Name<'s>>) -> Parsed<VarDecl<'s>> {
     let (first, start) = (input.number(), input.here());
-    // What lies at an address needs no other name.
-    let mut address = address(input)?;
-    match address {
-        Some(address) => names.push(address),
-        None => {
-            names.push(first_name(input)?);
-            while input.eat(Kind::Comma).is_some() {
-                names.push(input.name()?);
-            }
-            address = self::address(input)?;
+    // What is at an address needs no other name.
+    let nameless = input.kind() == Kind::At;
+    if !nameless {
+        let (name, more) = input.parse(declared_names())?;
+        names.push(name);
+        names.extend(more);
+    }
+    let (address, swapped) = input.parse(address().then(foreign_types::type_before_name(names)))?;
+    if nameless {
+        names.extend(address);
+    }
+    let ((ty, edge), initial) = match swapped {
+        Some(named) => {
+            *names = named.names;
+            ((named.ty, None), input.parse(optional_initial().then_ignore(end()))?)
         }
-    }
-    if input.kind() == Kind::Assign {
-        let sign = input.here();
-        input.report(diagnostics::assign_for_colon(sign));
-        return Err(super::parser::Problem::REPORTED);
-    }
-    if let Some(ty) = type_before_name(input, names) {
-        let initial = optional_initial(input)?;
-        end(input)?;
-        let span = start.to(input.last());
-        let names = std::mem::take(names);
-        return Ok(VarDecl { names, address, ty, edge: None, initial, doc: doc::comment(input, first), span });
-    }
-    if input.eat(Kind::Colon).is_none() {
-        if !lacks_colon(input) {
-            return Err(input.problem(Expected::Token(Kind::Colon)));
-        }
-        diagnostics::missing_type_colon(input);
-    }
-    let ty = type_spec(input)?;
-    let edge = edge(input);
-    if input.kind() == Kind::At && input.kind_ahead(1) == Kind::Address {
-        let span = input.take();
-        let span = span.to(input.take());
-        input.report(diagnostics::address_behind_type(span));
-    }
-    let initial = optional_initial(input)?;
-    end(input)?;
-    let span = start.to(input.last());
-    let names = std::mem::take(names);
-    Ok(VarDecl { names, address, ty, edge, initial, doc: doc::comment(input, first), span })
+        None => input.parse(typed().then(optional_initial()).then_ignore(end()))?,
+    };
+    let doc = input.doc(first);
+    Ok(VarDecl { names: std::mem::take(names), address, ty, edge, initial, doc, span: start.to(input.last()) })
 }
 
-/// A name, also one of two words: `my var : INT`.
-fn first_name<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Name<'s>> {
-    let name = input.name()?;
-    let second = input.kind() == Kind::Name && matches!(input.kind_ahead(1), Kind::Colon) && !input.on_new_line();
-    if !second || input.kind_ahead(2) == Kind::Assign {
-        return Ok(name);
-    }
-    let word = input.take();
-    diagnostics::name_of_two_words(input, name.span, word);
-    let span = name.span.to(word);
-    Ok(Name { text: input.text(span), span })
+/// `a, b`
+fn declared_names<'t, 's: 't>() -> impl Rule<'t, 's, (Name<'s>, Vec<Name<'s>>)> {
+    let first = foreign_types::name_of_two_words().or(name());
+    first.then(token(Kind::Comma).ignore_then(name()).repeated().collect())
 }
 
-/// Whether only the `:` between name and type is missing.
-fn lacks_colon(input: &mut In<'_, '_, '_>) -> bool {
-    let next = input.kind_ahead(1);
-    match input.kind() {
-        Kind::Name => {
-            !input.on_new_line() && matches!(next, Kind::Semicolon | Kind::Assign | Kind::OpenParen | Kind::OpenBracket)
-        }
-        Kind::Array | Kind::Struct => true,
-        Kind::Equal => matches!(next, Kind::Name | Kind::Array | Kind::Struct),
-        Kind::Semicolon => next == Kind::Name && matches!(input.kind_ahead(2), Kind::Semicolon | Kind::Assign),
-        _ => false,
-    }
-}
-
-/// `INT x;`, as other languages write it: the first of `names` is the type.
-fn type_before_name<'s>(input: &mut In<'_, '_, 's>, names: &mut Vec<Name<'s>>) -> Option<TypeSpec<'s>> {
-    let [ty] = names.as_slice() else { return None };
-    let ty = *ty;
-    let next = input.kind_ahead(1);
-    let follows = matches!(next, Kind::Semicolon | Kind::Assign | Kind::Equal | Kind::Comma);
-    if input.kind() != Kind::Name || !follows || staunch_ir::Elementary::named(ty.text).is_none() {
-        return None;
-    }
-    names.clear();
-    names.push(input.name().ok()?);
-    diagnostics::type_first(input, ty.span, names[0].span);
-    while input.eat(Kind::Comma).is_some() {
-        names.push(input.name().ok()?);
-    }
-    Some(TypeSpec { kind: TypeKind::Named(vec![ty]), span: ty.span })
+/// `: BOOL R_EDGE`
+fn typed<'t, 's: 't>() -> impl Rule<'t, 's, (TypeSpec<'s>, Option<(Edge, Span)>)> {
+    // These two are names everywhere else.
+    let rising = word("R_EDGE").map(|span| (Edge::Rising, span));
+    let falling = word("F_EDGE").map(|span| (Edge::Falling, span));
+    let colon = token(Kind::Colon).ignored().or(foreign_types::no_colon_in_declaration());
+    let ty = colon.ignore_then(type_spec()).then(rising.or(falling).or_not());
+    ty.then_ignore(foreign_types::address_after_type().or_not())
 }
 
 /// `AT %IX0.0`
-fn address<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Name<'s>>> {
-    if input.eat(Kind::At).is_none() {
-        return Ok(None);
-    }
-    if input.kind() == Kind::Name {
-        let mut span = input.take();
-        while input.eat(Kind::Dot).is_some() || matches!(input.kind(), Kind::Integer | Kind::Real) {
-            let last =
-                if input.kind() == Kind::Integer || input.kind() == Kind::Real { input.take() } else { input.last() };
-            span = span.to(last);
-        }
-        let it = diagnostics::address_without_sign(span, input.text(span));
-        input.report(it);
-        return Ok(None);
-    }
-    let span = input.expect(Kind::Address)?;
-    Ok(Some(Name { text: input.text(span), span }))
+fn address<'t, 's: 't>() -> impl Rule<'t, 's, Option<Name<'s>>> {
+    let direct = token(Kind::Address).map_with(|span, extra| Some(Name { text: extra.state().slice(span), span }));
+    let unsigned = foreign_types::address_without_sign().to(None);
+    token(Kind::At).ignore_then(unsigned.or(direct)).or_not().map(Option::flatten)
 }
 
-/// These two are names everywhere else.
-fn edge(input: &mut In<'_, '_, '_>) -> Option<(Edge, Span)> {
-    let edge = if input.is_word("R_EDGE") {
-        Edge::Rising
-    } else if input.is_word("F_EDGE") {
-        Edge::Falling
-    } else {
-        return None;
-    };
-    Some((edge, input.take()))
-}
-
-/// The `;` of a declaration.
-pub fn end(input: &mut In<'_, '_, '_>) -> Parsed<()> {
-    if input.eat(Kind::Semicolon).is_some() || foreign_syntax::wrong_terminator(input) {
-        return Ok(());
-    }
-    let kind = input.kind();
-    let next = recover::ends_declarations(kind) || recover::starts_declaration(input);
-    if next || (input.on_new_line() && kind == Kind::Name) {
-        diagnostics::missing_semicolon(input);
-        return Ok(());
-    }
-    Err(input.problem(Expected::Token(Kind::Semicolon)))
+/// The `;` of a declaration, or what is taken for it.
+pub fn end<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
+    token(Kind::Semicolon).ignored().or(rule(recovery::end_of_declaration))
 }

@@ -1,23 +1,20 @@
 //! What is said about each mistake: one sentence, once, at the place, with what to write instead.
 
 use crate::{
-    ast::{MAX_CHAIN, MAX_DEPTH},
     diagnostic::{Code, Diagnostic},
     lex::{Kind, index},
     source::Span,
 };
 
 mod declared;
-mod misspelt;
 mod operator;
 
 pub use declared::*;
-pub use misspelt::*;
 pub use operator::*;
 
 use super::{
-    parser::{Expected, In, Moves, Problem},
-    recover,
+    parser::{Expected, In, Problem, TokenReader},
+    token_class::{ends_statements, opens_statement},
 };
 
 /// The general sentence: what was expected, and what stands there.
@@ -37,9 +34,9 @@ pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
     }
     let shown = shown(input, found, span);
     let it = match (problem.expected, found.keyword()) {
-        (Expected::Name, Some(word)) if !recover::ends_statements(found) => {
+        (Expected::Name, Some(word)) if !ends_statements(found) => {
             let own = input.text(span);
-            super::invalid_names::reserved(span, word, own)
+            reserved(span, word, own)
         }
         (Expected::Expression, _) if is_comparison(found) && behind_junction(input, problem.at) => {
             Diagnostic::new(Code::E0001, span, format!("expected an expression, found {shown}"))
@@ -51,7 +48,7 @@ pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
                 .label("expected an expression")
                 .help("assign to one element after the other: `a[0] := 1;`")
         }
-        (Expected::Expression, Some(word)) if recover::opens_statement(found) => {
+        (Expected::Expression, Some(word)) if opens_statement(found) => {
             Diagnostic::new(Code::E0001, span, format!("{word} is a statement, and has no value"))
                 .label("expected an expression")
                 .help("assign in its branches, or choose a value with `SEL(condition, value_if_false, value_if_true)`")
@@ -124,7 +121,7 @@ fn said(expected: Expected) -> String {
 }
 
 /// A token as a message names it: names and literals by their own text.
-fn shown(input: &mut In<'_, '_, '_>, kind: Kind, span: Span) -> String {
+pub fn shown(input: &mut In<'_, '_, '_>, kind: Kind, span: Span) -> String {
     let text = input.text(span);
     let own = matches!(
         kind,
@@ -152,7 +149,7 @@ fn bracket(end: Kind) -> &'static str {
 }
 
 /// `word` with spaces where it would touch what stands beside `span`, which it replaces.
-fn padded(input: &mut In<'_, '_, '_>, span: Span, word: &str) -> String {
+pub fn padded(input: &mut In<'_, '_, '_>, span: Span, word: &str) -> String {
     let text = input.state().text;
     let before = text[..index(span.start)].chars().next_back();
     let after = text[index(span.end)..].chars().next();
@@ -161,19 +158,19 @@ fn padded(input: &mut In<'_, '_, '_>, span: Span, word: &str) -> String {
 }
 
 /// Directly behind the token before the current one.
-fn behind_last(input: &mut In<'_, '_, '_>) -> Span {
+pub fn behind_last(input: &mut In<'_, '_, '_>) -> Span {
     let last = input.last();
     let len = input.text(last).chars().next_back().map_or(0, char::len_utf8);
     Span { start: last.end - u32::try_from(len).unwrap_or(0), ..last }
 }
 
-fn insertion(input: &mut In<'_, '_, '_>) -> Span {
+pub fn insertion(input: &mut In<'_, '_, '_>) -> Span {
     let last = input.last();
     Span { start: last.end, ..last }
 }
 
 /// Whether something before this place was already said to reach over its end.
-fn swallowed(input: &mut In<'_, '_, '_>) -> bool {
+pub fn swallowed(input: &mut In<'_, '_, '_>) -> bool {
     let at = input.number().saturating_sub(1);
     let state = input.state();
     let last = state.tokens.kinds.get(at).copied();
@@ -194,88 +191,6 @@ pub fn missing_semicolon(input: &mut In<'_, '_, '_>) {
             .label("a `;` is missing behind this")
             .help("write `;` here")
             .fix(place, ";"),
-    );
-}
-
-/// THEN, DO or OF. Another of them in its place is taken for it.
-pub fn missing_word(input: &mut In<'_, '_, '_>, word: Kind, opened: Span) {
-    if swallowed(input) || input.kind() == Kind::End {
-        return;
-    }
-    super::foreign_syntax::extra_brackets(input, word);
-    if input.eat(word).is_some() {
-        return;
-    }
-    if input.kind() == Kind::Semicolon && input.kind_ahead(1) == word {
-        return extra_semicolon(input, word);
-    }
-    if let Some(ahead) = on_this_line(input, word) {
-        return missing_operator(input, word, ahead);
-    }
-    let opener = input.text(opened).to_ascii_uppercase();
-    let kind = input.kind();
-    let here = input.here();
-    let found = shown(input, kind, here);
-    let wrong = matches!(kind, Kind::Then | Kind::Do | Kind::Of | Kind::Semicolon | Kind::Colon);
-    let message = format!("expected {word}, found {found}");
-    let it = if wrong {
-        input.take();
-        let replacement = padded(input, here, word.keyword().unwrap_or_default());
-        Diagnostic::new(Code::E0013, here, message)
-            .label(format!("expected {word}"))
-            .help(format!("write {word} here"))
-            .fix(here, replacement)
-    } else {
-        let (span, place) = (behind_last(input), insertion(input));
-        Diagnostic::new(Code::E0013, span, message)
-            .label(format!("{word} is missing behind this"))
-            .help(format!("write {word} here"))
-            .fix(place, format!(" {}", word.keyword().unwrap_or_default()))
-    };
-    let word = word.keyword().unwrap_or_default();
-    input.report(it.other(opened, format!("this {opener} needs {}", crate::diagnostic::wording::article(word))));
-}
-
-/// How far ahead `word` stands on the current line, before the statement ends.
-fn on_this_line(input: &mut In<'_, '_, '_>, word: Kind) -> Option<usize> {
-    let mut ahead = 0;
-    while input.kind_ahead(ahead) != word {
-        let kind = input.kind_ahead(ahead);
-        let at = input.number() + ahead;
-        let state = input.state();
-        let (before, here) = (state.place(at.saturating_sub(1)), state.place(at));
-        let ends = matches!(kind, Kind::Semicolon | Kind::Assign | Kind::Colon) || recover::ends_statements(kind);
-        if ends || recover::opens_statement(kind) || state.breaks(before.end, here.start) {
-            return None;
-        }
-        ahead += 1;
-    }
-    (ahead > 0).then_some(ahead)
-}
-
-/// `IF a b THEN`
-fn missing_operator(input: &mut In<'_, '_, '_>, word: Kind, ahead: usize) {
-    let (kind, here) = (input.kind(), input.here());
-    let found = shown(input, kind, here);
-    input.report(
-        Diagnostic::new(Code::E0001, here, format!("expected an operator or {word}, found {found}"))
-            .label("expected an operator before this")
-            .help("write `AND` or `OR` between two conditions"),
-    );
-    for _ in 0..=ahead {
-        input.take();
-    }
-}
-
-/// `IF a; THEN`
-fn extra_semicolon(input: &mut In<'_, '_, '_>, word: Kind) {
-    let span = input.take();
-    input.take();
-    input.report(
-        Diagnostic::new(Code::E0013, span, format!("expected {word}, found `;`"))
-            .label("the condition goes on to the next word")
-            .help("delete this `;`")
-            .fix(span, ""),
     );
 }
 
@@ -390,14 +305,6 @@ pub fn unsupported(span: Span, what: &str) -> Diagnostic {
     Diagnostic::new(Code::E0090, span, format!("{what} is not supported yet"))
 }
 
-pub fn too_deep() -> String {
-    format!("this is nested more than {MAX_DEPTH} levels deep")
-}
-
-pub fn too_long() -> String {
-    format!("this chain is longer than {MAX_CHAIN}")
-}
-
 /// `5 y := 1;` among the arms of a CASE.
 pub fn missing_colon(input: &mut In<'_, '_, '_>) {
     let (span, place) = (behind_last(input), insertion(input));
@@ -475,4 +382,24 @@ pub fn missing_assign(input: &mut In<'_, '_, '_>) {
             .help("write `:=` here")
             .fix(place, " :="),
     );
+}
+
+/// `ENDIF`, `VAR INPUT`: what is written for a keyword.
+pub fn misspelt_keyword(input: &mut In<'_, '_, '_>, kind: Kind, span: Span) {
+    let found = input.text(span);
+    let qualified = found.to_ascii_uppercase().replace('_', " ");
+    let two_words = matches!(qualified.as_str(), "VAR RETAIN" | "VAR CONSTANT" | "VAR PERSISTENT");
+    let word = if two_words { qualified.as_str() } else { kind.keyword().unwrap_or_default() };
+    input.report(
+        Diagnostic::new(Code::E0018, span, format!("`{found}` is written `{word}`"))
+            .label(format!("expected `{word}`"))
+            .help(format!("write `{word}`"))
+            .fix(span, word),
+    );
+}
+
+pub fn reserved(span: Span, word: &str, own: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0016, span, format!("`{word}` is a reserved word and cannot be a name"))
+        .label("expected a name")
+        .help(format!("choose another name, say `{own}_1`"))
 }

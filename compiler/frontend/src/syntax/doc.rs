@@ -1,14 +1,20 @@
 //! Comments that document a declaration: the one on its line, else those directly before it.
 
-use crate::{lex::index, source::Span};
+use chumsky::prelude::SimpleSpan;
 
-use super::parser::{In, Moves, State};
+use crate::{
+    lex::{Kind, index},
+    source::Span,
+};
 
-/// For what starts at token number `first` and ends before the current token.
-pub fn comment(input: &mut In<'_, '_, '_>, first: usize) -> Option<String> {
-    let (last, next) = (input.last(), input.here());
-    let state = input.state();
-    trailing(state, last, next).or_else(|| before(state, first))
+use super::parser::State;
+
+/// For what these tokens are, and the `,` after them.
+pub fn comment(state: &State<'_, '_>, tokens: SimpleSpan) -> Option<String> {
+    let comma = state.tokens.kinds.get(tokens.end) == Some(&Kind::Comma);
+    let end = tokens.end + usize::from(comma);
+    let (last, next) = (state.place(end.saturating_sub(1)), state.place(end));
+    trailing(state, last, next).or_else(|| before(state, tokens.start))
 }
 
 /// For a POU: only what stands before it.

@@ -10,8 +10,10 @@ use crate::{
 };
 
 use super::{
+    combinator::{Rule, rule},
     diagnostics, foreign_syntax, literal,
-    parser::{Expected, In, Moves, Parsed, Problem, Waiting},
+    parser::{Expected, In, Parsed, Problem, TokenReader, Waiting},
+    token_class::ends_statements,
 };
 
 /// Arguments of one call.
@@ -75,6 +77,11 @@ fn misspelt_operator(input: &mut In<'_, '_, '_>) -> Option<(BinaryOp, u8)> {
     let words = [Kind::And, Kind::AndThen, Kind::Xor, Kind::OrElse, Kind::Mod];
     let near = crate::names::nearest(input.text(span), words.iter().filter_map(|it| it.keyword()))?;
     infix(words.into_iter().find(|it| it.keyword() == Some(near))?)
+}
+
+/// An expression as a part of other rules.
+pub fn expr<'t, 's: 't>() -> impl Rule<'t, 's, Expr<'s>> {
+    rule(|input| expression(input))
 }
 
 /// Operands and operators, joined by precedence, from the left. What waits for a right side is on
@@ -159,9 +166,9 @@ fn signed<'s>(input: &mut In<'_, '_, 's>, op: UnaryOp) -> Parsed<Expr<'s>> {
         input.report(diagnostics::foreign_not(span));
     }
     let sign = input.take();
-    input.enter()?;
+    input.enter(1)?;
     let operand = unary(input)?;
-    input.leave();
+    input.leave(1);
     let height = input.state().height;
     input.grow(height)?;
     Ok(negated(op, sign, operand))
@@ -239,7 +246,7 @@ fn indices<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Vec<Expr<'s>>> {
     input.take();
     let mut indices = Vec::with_capacity(1);
     let mut height = 0;
-    input.enter()?;
+    input.enter(1)?;
     loop {
         indices.push(expression(input)?);
         height = height.max(input.state().height);
@@ -248,7 +255,7 @@ fn indices<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Vec<Expr<'s>>> {
         }
     }
     close(input, Kind::CloseBracket, opened)?;
-    input.leave();
+    input.leave(1);
     input.state().height = height;
     Ok(indices)
 }
@@ -262,7 +269,7 @@ pub fn arguments<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Vec<Argument<'s>>> {
     if input.eat(Kind::CloseParen).is_some() {
         return Ok(arguments);
     }
-    input.enter()?;
+    input.enter(1)?;
     loop {
         input.state().height = 0;
         if let Some(argument) = argument(input)? {
@@ -285,7 +292,7 @@ pub fn arguments<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Vec<Argument<'s>>> {
         }
     }
     close(input, Kind::CloseParen, opened)?;
-    input.leave();
+    input.leave(1);
     input.state().height = height;
     arguments.shrink_to_fit();
     Ok(arguments)
@@ -315,7 +322,7 @@ fn lacks_comma(input: &mut In<'_, '_, '_>, from: usize) -> bool {
             Kind::CloseParen if depth == 0 => return true,
             Kind::CloseParen => depth -= 1,
             Kind::Semicolon | Kind::Then | Kind::Do | Kind::Of => return false,
-            kind if super::recover::ends_statements(kind) => return false,
+            kind if ends_statements(kind) => return false,
             _ => {}
         }
         ahead += 1;
@@ -424,21 +431,27 @@ fn atom<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
             ExprKind::Address(Name { text: input.text(span), span })
         }
         Kind::Dot if foreign_syntax::point_first(input) => ExprKind::Error(Vec::new()),
-        _ => match literal::untyped(input, None) {
-            Some(literal) => return Ok(Expr { kind: ExprKind::Literal(literal), span: span.to(input.last()) }),
-            None => return Err(input.problem(Expected::Expression)),
-        },
+        kind if !is_literal(kind) => return Err(input.problem(Expected::Expression)),
+        _ => {
+            let literal = input.parse(literal::literal(None))?;
+            return Ok(Expr { kind: ExprKind::Literal(literal), span: span.to(input.last()) });
+        }
     };
     Ok(Expr { kind, span })
+}
+
+fn is_literal(kind: Kind) -> bool {
+    matches!(kind, Kind::True | Kind::False | Kind::Integer | Kind::Based | Kind::Real | Kind::Time | Kind::Date)
+        || matches!(kind, Kind::Text | Kind::WideText | Kind::OpenText)
 }
 
 fn parenthesis<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
     let opened = input.number();
     let start = input.take();
-    input.enter()?;
+    input.enter(1)?;
     let inner = Box::new(expression(input)?);
     let inner = if input.kind() == Kind::Assign { Box::new(assigned(input, *inner)?) } else { inner };
-    input.leave();
+    input.leave(1);
     if input.eat(Kind::CloseParen).is_none() {
         return Err(input.problem(Expected::Closing(Kind::CloseParen, opened)));
     }
@@ -457,7 +470,7 @@ fn typed<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
         Kind::Plus => Some((UnaryOp::Plus, input.take())),
         _ => None,
     };
-    let literal = literal::typed(input, prefix)?;
+    let literal = input.parse(literal::typed(prefix))?;
     let mut expr = Expr { kind: ExprKind::Literal(literal), span: span.to(input.last()) };
     if let Some((op, at)) = sign {
         input.state().height = 1;

@@ -2,7 +2,7 @@
 //! counting loops of C, BEGIN and END of Pascal, numbers as other compilers spell them.
 
 use crate::{
-    ast::{BinaryOp, LiteralValue},
+    ast::BinaryOp,
     diagnostic::{Code, Diagnostic},
     lex::Kind,
     source::Span,
@@ -10,8 +10,8 @@ use crate::{
 
 use super::{
     diagnostics,
-    parser::{In, Moves},
-    recover,
+    parser::{In, TokenReader},
+    token_class::{ends_statements, is_pou_end},
 };
 
 /// Takes and reports a BEGIN, or the END that belongs to one.
@@ -38,7 +38,7 @@ pub fn begin_or_end(input: &mut In<'_, '_, '_>) -> bool {
     input.take();
     if !matches!(input.kind(), Kind::Else | Kind::Elsif) {
         let _ = input.eat(Kind::Semicolon).or_else(|| input.eat(Kind::Dot));
-        let end = input.state().open.last().map(|(end, _)| *end).filter(|it| body && !recover::is_pou_end(*it));
+        let end = input.state().open.last().map(|(end, _)| *end).filter(|it| body && !is_pou_end(*it));
         // The body's own end may follow all the same.
         let kind = input.kind();
         input.state().instead = end.filter(|it| *it != kind);
@@ -85,24 +85,6 @@ pub fn braces(input: &mut In<'_, '_, '_>, opened: Span) -> bool {
     true
 }
 
-/// `{1, 2}` or `{Red, Green}`, which the lexer took for a pragma, directly before the current token.
-pub fn brace_list(input: &mut In<'_, '_, '_>, open: &str, close: &str) -> bool {
-    let (last, here) = (input.last(), input.here());
-    let state = input.state();
-    let inside = |it: &Span| last.end <= it.start && it.end <= here.start;
-    let Some(list) = state.tokens.pragmas.iter().find(|it| inside(&it.span)).copied() else { return false };
-    state.braces.push(list.span);
-    let whole = Span { start: list.span.start - 1, end: list.span.end + 1, ..list.span };
-    let meant = format!("{open}{}{close}", list.text);
-    input.report(
-        Diagnostic::new(Code::E0020, whole, "Structured Text has no lists in braces")
-            .label("this is a pragma")
-            .help(format!("write `{meant}`"))
-            .fix(whole, meant),
-    );
-    true
-}
-
 /// `FOR (i = 0; i < 10; i++)`
 pub fn counting_loop(input: &mut In<'_, '_, '_>) -> bool {
     if input.kind() != Kind::OpenParen {
@@ -115,7 +97,7 @@ pub fn counting_loop(input: &mut In<'_, '_, '_>) -> bool {
             Kind::CloseParen => depth -= 1,
             Kind::Semicolon => semicolon = true,
             Kind::Do | Kind::To => return false,
-            kind if recover::ends_statements(kind) => return false,
+            kind if ends_statements(kind) => return false,
             _ => {}
         }
         ahead += 1;
@@ -193,10 +175,10 @@ pub fn arrow(input: &mut In<'_, '_, '_>) -> bool {
     true
 }
 
-/// A number with letters directly behind it, such as `0xFF` or `5s`, and what is meant.
-pub fn glued<'s>(input: &mut In<'_, '_, '_>, number: Span) -> Option<LiteralValue<'s>> {
-    if !matches!(input.kind(), Kind::Name) || input.here().start != number.end {
-        return None;
+/// A number with letters directly after it, such as `0xFF` or `5s`, and what is meant.
+pub fn glued(input: &mut In<'_, '_, '_>, number: Span) -> bool {
+    if input.kind() != Kind::Name || input.here().start != number.end {
+        return false;
     }
     let letters = input.take();
     let (digits, word, whole) = (input.text(number), input.text(letters), number.to(letters));
@@ -216,7 +198,7 @@ pub fn glued<'s>(input: &mut In<'_, '_, '_>, number: Span) -> Option<LiteralValu
         Some(meant) => it.help(format!("write `{meant}`")).fix(whole, meant),
         None => it.help("write an operator between the number and the name"),
     });
-    Some(LiteralValue::Error)
+    true
 }
 
 pub fn is_unit(word: &str) -> bool {
@@ -287,7 +269,7 @@ pub fn wrong_terminator(input: &mut In<'_, '_, '_>) -> bool {
     let (here, next) = (input.here(), input.kind_ahead(1));
     let ends_line = ends_line(input);
     let declared = next == Kind::Name && input.kind_ahead(2) == Kind::Colon && input.kind() == Kind::Comma;
-    if !ends_line && !declared && !recover::ends_statements(next) {
+    if !ends_line && !declared && !ends_statements(next) {
         return false;
     }
     let kind = input.kind();

@@ -9,7 +9,10 @@ use crate::{
     source::Span,
 };
 
-use super::recover::{opens_item, opens_section};
+use super::{
+    diagnostics::reserved,
+    token_class::{is_end, opens_item, opens_section},
+};
 
 /// What was declared under a name that cannot be one.
 #[derive(Default)]
@@ -112,7 +115,7 @@ fn head(tokens: &Tokens<'_>, at: usize, found: &mut Found<'_>) {
 fn pieces(tokens: &Tokens<'_>, at: usize) -> Option<usize> {
     let is_piece = |kind: Kind| matches!(kind, Kind::Name | Kind::Integer | Kind::Minus) || kind.keyword().is_some();
     let first = tokens.kinds[at];
-    if !is_piece(first) || first == Kind::Minus || first.keyword().is_some_and(|it| it.starts_with("END_")) {
+    if !is_piece(first) || first == Kind::Minus || is_end(first) {
         return None;
     }
     let mut count = 1;
@@ -149,12 +152,6 @@ impl Found<'_> {
             _ => hyphen(span, own),
         });
     }
-}
-
-pub fn reserved(span: Span, word: &str, own: &str) -> Diagnostic {
-    Diagnostic::new(Code::E0016, span, format!("`{word}` is a reserved word and cannot be a name"))
-        .label("expected a name")
-        .help(format!("choose another name, say `{own}_1`"))
 }
 
 fn digits_first(span: Span, own: &str) -> Diagnostic {

@@ -1,5 +1,7 @@
 //! Literals: their tokens' values, with what is wrong in them reported at the place.
 
+use chumsky::prelude::*;
+
 use crate::{
     ast::{Literal, LiteralValue, Name},
     diagnostic::{Code, Diagnostic},
@@ -8,133 +10,147 @@ use crate::{
 };
 
 use super::{
+    combinator::{Rule, name, rule},
     foreign_syntax,
-    parser::{Expected, In, Moves, Parsed},
+    parser::{In, State, TokenReader},
 };
 
-/// A literal, if the current token is one.
-pub fn untyped<'s>(input: &mut In<'_, '_, 's>, prefix: Option<Name<'s>>) -> Option<Literal<'s>> {
-    let kind = input.kind();
-    let span = input.here();
-    let text = input.text(span);
-    let value = match kind {
-        Kind::True => LiteralValue::Bool(true),
-        Kind::False => LiteralValue::Bool(false),
-        Kind::Integer | Kind::Based => integer(input, span, text),
-        Kind::Real => real(input, span, text),
-        Kind::Time => duration(input, span, text),
-        Kind::Date => LiteralValue::Date(date_kind(text)),
-        Kind::Text | Kind::WideText | Kind::OpenText => string(input, span, text),
-        _ => return None,
+/// Reads the value of the literal at a token number.
+type Read<'t, 's> = fn(&mut State<'t, 's>, usize) -> LiteralValue<'s>;
+
+/// A literal; `prefix` is the type before its `#`.
+pub fn literal<'t, 's: 't>(prefix: Option<Name<'s>>) -> impl Rule<'t, 's, Literal<'s>> {
+    let read = select! {
+        Kind::True | Kind::False => boolean as Read<'t, 's>,
+        Kind::Integer | Kind::Based => integer,
+        Kind::Real => real,
+        Kind::Time => duration,
+        Kind::Date => date,
+        Kind::Text | Kind::WideText | Kind::OpenText => string,
     };
-    input.take();
-    let glued = if matches!(kind, Kind::Integer | Kind::Real) { foreign_syntax::glued(input, span) } else { None };
-    Some(Literal { prefix: prefix.map(Box::new), value: glued.unwrap_or(value) })
+    let value = read.map_with(|read, extra| {
+        let token: SimpleSpan = extra.span();
+        read(extra.state(), token.start)
+    });
+    value.then(rule(|input| Ok(has_letters(input)))).map(move |(value, letters)| {
+        let value = if letters { LiteralValue::Error } else { value };
+        Literal { prefix: prefix.map(Box::new), value }
+    })
 }
 
-/// What stands behind `INT#`.
-pub fn typed<'s>(input: &mut In<'_, '_, 's>, prefix: Name<'s>) -> Parsed<Literal<'s>> {
-    if input.kind() == Kind::Name {
-        let value = LiteralValue::Enumerator(Box::new(input.name()?));
-        return Ok(Literal { prefix: Some(Box::new(prefix)), value });
+/// What follows `INT#` or `Color#`.
+pub fn typed<'t, 's: 't>(prefix: Name<'s>) -> impl Rule<'t, 's, Literal<'s>> {
+    let enumerator = name().map(move |name| {
+        let value = LiteralValue::Enumerator(Box::new(name));
+        Literal { prefix: Some(Box::new(prefix)), value }
+    });
+    enumerator.or(literal(Some(prefix)))
+}
+
+/// Letters after a number or a duration that make another literal of it, taken and reported.
+fn has_letters(input: &mut In<'_, '_, '_>) -> bool {
+    if input.kind() != Kind::Name {
+        return false;
     }
-    match untyped(input, Some(prefix)) {
-        Some(literal) => Ok(literal),
-        None => Err(input.problem(Expected::Expression)),
+    let (literal, at) = (input.last(), input.number().saturating_sub(1));
+    match input.state().tokens.kinds.get(at) {
+        Some(Kind::Integer | Kind::Real) => foreign_syntax::glued(input, literal),
+        Some(Kind::Time) if lacks_unit(input.state(), at) => {
+            input.take();
+            true
+        }
+        _ => false,
     }
 }
 
-fn report(input: &mut In<'_, '_, '_>, code: Code, whole: Span, fault: Fault) {
+/// `T#5 s`: a duration that lacks the unit that follows it.
+fn lacks_unit(state: &State<'_, '_>, at: usize) -> bool {
+    let (duration, unit) = (state.place(at), state.place(at + 1));
+    state.tokens.kinds.get(at + 1) == Some(&Kind::Name)
+        && foreign_syntax::is_unit(state.slice(unit))
+        && !state.breaks(duration.end, unit.start)
+        && lex::duration(state.slice(duration)).is_err()
+}
+
+fn report(state: &mut State<'_, '_>, code: Code, whole: Span, fault: Fault) {
     let at = |place: usize| whole.start + u32::try_from(place).unwrap_or(0);
     let span = Span { start: at(fault.start), end: at(fault.end), ..whole };
     let it = Diagnostic::new(code, span, fault.message);
-    input.report(match fault.meant {
+    state.report(match fault.meant {
         Some(meant) => it.help(format!("write `{meant}`")).fix(whole, meant),
         None => it,
     });
 }
 
-/// A number that cannot be read; where letters stand directly behind it, they are what is wrong.
-fn number_fault(input: &mut In<'_, '_, '_>, span: Span, fault: Fault) {
-    let at = input.number() + 1;
-    let next = input.state().place(at);
-    if input.kind_ahead(1) != Kind::Name || next.start != span.end {
-        report(input, Code::E0005, span, fault);
+/// A number that cannot be read; where letters directly follow it, they are what is wrong.
+fn number_fault<'s>(state: &mut State<'_, '_>, at: usize, fault: Fault) -> LiteralValue<'s> {
+    let (span, next) = (state.place(at), state.place(at + 1));
+    if state.tokens.kinds.get(at + 1) != Some(&Kind::Name) || next.start != span.end {
+        report(state, Code::E0005, span, fault);
     }
+    LiteralValue::Error
 }
 
-fn real<'s>(input: &mut In<'_, '_, '_>, span: Span, text: &str) -> LiteralValue<'s> {
-    match lex::real(text) {
+fn boolean<'s>(state: &mut State<'_, 's>, at: usize) -> LiteralValue<'s> {
+    LiteralValue::Bool(state.tokens.kinds.get(at) == Some(&Kind::True))
+}
+
+fn real<'s>(state: &mut State<'_, 's>, at: usize) -> LiteralValue<'s> {
+    match lex::real(state.slice(state.place(at))) {
         Ok(digits) => LiteralValue::Real(digits.into()),
-        Err(fault) => {
-            number_fault(input, span, fault);
-            LiteralValue::Error
-        }
+        Err(fault) => number_fault(state, at, fault),
     }
 }
 
-fn integer<'s>(input: &mut In<'_, '_, '_>, span: Span, text: &str) -> LiteralValue<'s> {
-    let value = lex::integer(text).map(Some).unwrap_or_else(|fault| {
-        number_fault(input, span, fault);
-        None
-    });
-    match value {
-        Some(value) => LiteralValue::Integer { value, based: text.contains('#') },
-        None => LiteralValue::Error,
+fn integer<'s>(state: &mut State<'_, 's>, at: usize) -> LiteralValue<'s> {
+    let text = state.slice(state.place(at));
+    match lex::integer(text) {
+        Ok(value) => LiteralValue::Integer { value, based: text.contains('#') },
+        Err(fault) => number_fault(state, at, fault),
     }
 }
 
-fn duration<'s>(input: &mut In<'_, '_, '_>, span: Span, text: &str) -> LiteralValue<'s> {
-    match lex::duration(text) {
-        Ok((nanoseconds, long)) => LiteralValue::Time { nanoseconds, long },
-        Err(fault) => {
-            if !split_unit(input, span) {
-                report(input, Code::E0006, span, fault);
-            }
-            LiteralValue::Error
-        }
+fn duration<'s>(state: &mut State<'_, 's>, at: usize) -> LiteralValue<'s> {
+    let span = state.place(at);
+    let fault = match lex::duration(state.slice(span)) {
+        Ok((nanoseconds, long)) => return LiteralValue::Time { nanoseconds, long },
+        Err(fault) => fault,
+    };
+    if !lacks_unit(state, at) {
+        report(state, Code::E0006, span, fault);
+        return LiteralValue::Error;
     }
-}
-
-/// `T#5 s`: leaves the unit as the current token.
-fn split_unit(input: &mut In<'_, '_, '_>, span: Span) -> bool {
-    let at = input.number() + 1;
-    let unit = input.state().place(at);
-    if input.kind_ahead(1) != Kind::Name
-        || !foreign_syntax::is_unit(input.text(unit))
-        || input.state().breaks(span.end, unit.start)
-    {
-        return false;
-    }
-    let meant = format!("{}{}", input.text(span), input.text(unit));
-    let whole = span.to(unit);
-    input.report(
+    let unit = state.place(at + 1);
+    let (meant, whole) = (format!("{}{}", state.slice(span), state.slice(unit)), span.to(unit));
+    state.report(
         Diagnostic::new(Code::E0006, whole, "a duration is written in one piece")
             .help(format!("write `{meant}`"))
             .fix(whole, meant),
     );
-    input.take();
-    true
+    LiteralValue::Error
 }
 
-fn string<'s>(input: &mut In<'_, '_, '_>, span: Span, text: &str) -> LiteralValue<'s> {
+fn string<'s>(state: &mut State<'_, 's>, at: usize) -> LiteralValue<'s> {
+    let span = state.place(at);
+    let text = state.slice(span);
     let wide = text.starts_with('"');
     let (bytes, faults) = lex::string(text, wide);
     for fault in faults {
-        report(input, Code::E0007, span, fault);
+        report(state, Code::E0007, span, fault);
     }
     LiteralValue::String { bytes: bytes.into(), wide }
 }
 
-/// The type that a date literal's prefix names.
-fn date_kind(text: &str) -> &'static str {
+/// A date, by the type that its prefix names.
+fn date<'s>(state: &mut State<'_, 's>, at: usize) -> LiteralValue<'s> {
+    let text = state.slice(state.place(at));
     let prefix = text.split('#').next().unwrap_or_default().to_ascii_uppercase();
-    match prefix.as_str() {
+    LiteralValue::Date(match prefix.as_str() {
         "D" | "DATE" => "DATE",
         "LD" | "LDATE" => "LDATE",
         "TOD" | "TIME_OF_DAY" => "TIME_OF_DAY",
         "LTOD" | "LTIME_OF_DAY" => "LTIME_OF_DAY",
         "DT" | "DATE_AND_TIME" => "DATE_AND_TIME",
         _ => "LDATE_AND_TIME",
-    }
+    })
 }

@@ -6,7 +6,7 @@ use chumsky::{
     extra,
     input::{Checkpoint, Cursor, InputRef},
     inspector::Inspector,
-    prelude::SimpleSpan,
+    prelude::{SimpleSpan, custom},
     util::MaybeRef,
 };
 
@@ -17,7 +17,7 @@ use crate::{
     source::Span,
 };
 
-use super::diagnostics;
+use super::doc;
 
 pub type Extra<'t, 's> = extra::Full<Problem, State<'t, 's>, ()>;
 /// What a production reads from: `'t` are the tokens, `'s` is the text.
@@ -57,7 +57,13 @@ impl Problem {
     pub const REPORTED: Self = Self { at: 0, expected: Expected::Reported };
 }
 
-impl<'t> Error<'t, &'t [Kind]> for Problem {}
+impl<'t> Error<'t, &'t [Kind]> for Problem {
+    /// Of the problems of two rules that start at one token: what was reported, else the farther one.
+    fn merge(self, other: Self) -> Self {
+        let first = self == Self::REPORTED || (other != Self::REPORTED && self.at > other.at);
+        if first { self } else { other }
+    }
+}
 
 impl<'t> LabelError<'t, &'t [Kind], DefaultExpected<'t, Kind>> for Problem {
     fn expected_found<E: IntoIterator<Item = DefaultExpected<'t, Kind>>>(
@@ -140,7 +146,12 @@ impl<'s> State<'_, 's> {
         self.text.get(index(span.start)..index(span.end)).unwrap_or_default()
     }
 
-    /// Whether a line break stands between two offsets.
+    /// From the first to the last of some tokens.
+    pub fn span(&self, tokens: SimpleSpan) -> Span {
+        self.place(tokens.start).to(self.place(tokens.end.max(tokens.start + 1) - 1))
+    }
+
+    /// Whether a line break is between two offsets.
     pub fn breaks(&self, from: u32, to: u32) -> bool {
         self.text.get(index(from)..index(to)).is_some_and(|it| it.contains('\n'))
     }
@@ -159,7 +170,7 @@ impl<'s> State<'_, 's> {
         self.diagnostics.push(Diagnostic::new(Code::E0030, diagnostic.span, text));
     }
 
-    /// A limit was reached: one error, and nothing behind it is read.
+    /// A limit was reached: one error, and nothing after it is read.
     pub fn stop(&mut self, span: Span, message: String) -> Problem {
         self.report(Diagnostic::new(Code::E0091, span, message));
         self.stopped = true;
@@ -168,7 +179,7 @@ impl<'s> State<'_, 's> {
 }
 
 /// The parser of a production over the tokens.
-pub trait Moves<'t, 's> {
+pub trait TokenReader<'t, 's> {
     fn number(&self) -> usize;
     fn kind(&mut self) -> Kind;
     /// The kind of the token `ahead` places behind the current one.
@@ -188,14 +199,19 @@ pub trait Moves<'t, 's> {
     fn problem(&mut self, expected: Expected) -> Problem;
     fn name(&mut self) -> Parsed<Name<'s>>;
     fn report(&mut self, diagnostic: Diagnostic);
-    /// One level deeper, unless that is too deep. Who recovers from a problem restores the depth.
-    fn enter(&mut self) -> Parsed<()>;
-    fn leave(&mut self);
+    /// Deeper by a number of levels, unless that is too deep. Who recovers from a problem restores
+    /// the depth.
+    fn enter(&mut self, levels: usize) -> Parsed<()>;
+    fn leave(&mut self, levels: usize);
     /// The tree that is being made is one higher than its parts.
     fn grow(&mut self, parts: usize) -> Parsed<()>;
+    /// The comment that documents what starts at token number `first` and ends here.
+    fn doc(&mut self, first: usize) -> Option<String>;
+    /// Lets go of problems that lie after the current token: it was gone back to.
+    fn forget(&mut self);
 }
 
-impl<'t, 's> Moves<'t, 's> for In<'t, '_, 's> {
+impl<'t, 's> TokenReader<'t, 's> for In<'t, '_, 's> {
     fn number(&self) -> usize {
         *self.cursor().inner()
     }
@@ -276,17 +292,17 @@ impl<'t, 's> Moves<'t, 's> for In<'t, '_, 's> {
         self.state().report(diagnostic);
     }
 
-    fn enter(&mut self) -> Parsed<()> {
-        self.state().depth += 1;
+    fn enter(&mut self, levels: usize) -> Parsed<()> {
+        self.state().depth += levels;
         if self.state().depth <= MAX_DEPTH {
             return Ok(());
         }
         let span = self.here();
-        Err(self.state().stop(span, diagnostics::too_deep()))
+        Err(self.state().stop(span, too_deep(MAX_DEPTH / levels)))
     }
 
-    fn leave(&mut self) {
-        self.state().depth -= 1;
+    fn leave(&mut self, levels: usize) {
+        self.state().depth -= levels;
     }
 
     fn grow(&mut self, parts: usize) -> Parsed<()> {
@@ -295,6 +311,24 @@ impl<'t, 's> Moves<'t, 's> for In<'t, '_, 's> {
             return Ok(());
         }
         let span = self.last();
-        Err(self.state().stop(span, diagnostics::too_long()))
+        Err(self.state().stop(span, too_long()))
     }
+
+    fn doc(&mut self, first: usize) -> Option<String> {
+        let tokens = SimpleSpan::from(first..self.number());
+        doc::comment(self.state(), tokens)
+    }
+
+    fn forget(&mut self) {
+        let fails = custom(|_: &mut In<'t, '_, 's>| Err::<(), _>(Problem::REPORTED));
+        let _ = self.parse(fails);
+    }
+}
+
+fn too_deep(limit: usize) -> String {
+    format!("this is nested more than {limit} levels deep")
+}
+
+pub fn too_long() -> String {
+    format!("this chain is longer than {MAX_CHAIN}")
 }

@@ -10,9 +10,11 @@ use crate::{
 use super::{
     block_ends, declaration, diagnostics,
     expression::{condition, expression, postfix},
-    foreign_syntax,
-    parser::{Expected, In, Moves, Parsed, Problem},
-    recover, unsupported,
+    foreign_syntax, misspelt,
+    parser::{Expected, In, Parsed, Problem, TokenReader, too_long},
+    recovery,
+    token_class::{closes, ends_statements, opens_statement},
+    unsupported,
 };
 
 /// Statements up to a keyword that ends or continues the block around them.
@@ -37,8 +39,8 @@ fn list<'s>(
                     statements.push(Statement { kind: StatementKind::Empty, span });
                 }
             }
-            kind if recover::ends_statements(kind) => {
-                if !recover::stray(input) {
+            kind if ends_statements(kind) => {
+                if !recovery::stray(input) {
                     return;
                 }
             }
@@ -52,10 +54,10 @@ fn list<'s>(
 fn statement<'s>(input: &mut In<'_, '_, 's>) -> Statement<'s> {
     let (before, start) = (input.save(), input.here());
     let depth = input.state().depth;
-    let result = input.enter().and_then(|()| statement_kind(input));
+    let result = input.enter(1).and_then(|()| statement_kind(input));
     input.state().depth = depth;
     let kind = result.unwrap_or_else(|problem| {
-        recover::statement(input, problem, before);
+        recovery::statement(input, problem, before);
         StatementKind::Error
     });
     Statement { kind, span: start.to(input.last()) }
@@ -84,7 +86,7 @@ fn word<'s>(input: &mut In<'_, '_, 's>, kind: StatementKind<'s>) -> Parsed<State
 
 fn return_statement<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
     let word = input.take();
-    if !recover::begins_statement(input) && input.kind() != Kind::Semicolon {
+    if !recovery::begins_statement(input) && input.kind() != Kind::Semicolon {
         let value = expression(input)?;
         input.report(diagnostics::return_value(word.to(value.span), value.span));
     }
@@ -141,7 +143,7 @@ fn is_closed(input: &mut In<'_, '_, '_>) -> bool {
     loop {
         match input.kind_ahead(ahead) {
             Kind::EndVar => return true,
-            kind if recover::ends_statements(kind) || recover::opens_statement(kind) => return false,
+            kind if ends_statements(kind) || opens_statement(kind) => return false,
             _ => ahead += 1,
         }
     }
@@ -157,7 +159,7 @@ fn end(input: &mut In<'_, '_, '_>) -> Parsed<()> {
     if input.eat(Kind::Semicolon).is_some() {
         return Ok(());
     }
-    if recover::begins_statement(input) {
+    if recovery::begins_statement(input) {
         diagnostics::missing_semicolon(input);
         return Ok(());
     }
@@ -196,7 +198,7 @@ fn simple<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
             assignment(input, target)?
         }
         Kind::Name => latch(input, target)?,
-        Kind::Semicolon if diagnostics::is_misspelt(input, &target) => return Err(Problem::REPORTED),
+        Kind::Semicolon if misspelt::is_misspelt(input, &target) => return Err(Problem::REPORTED),
         Kind::Semicolon => StatementKind::Expr(target),
         _ if matches!(target.kind, ExprKind::Call(..)) => StatementKind::Expr(target),
         _ => return without_effect(input, target),
@@ -264,8 +266,8 @@ fn without_effect<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<St
     if diagnostics::increment(input, &target) {
         return Err(Problem::REPORTED);
     }
-    let alone = input.on_new_line() || recover::closes(input.kind()) || input.kind() == Kind::End;
-    if alone && !diagnostics::is_misspelt(input, &target) && input.text(target.span).len() <= 40 {
+    let alone = input.on_new_line() || closes(input.kind()) || input.kind() == Kind::End;
+    if alone && !misspelt::is_misspelt(input, &target) && input.text(target.span).len() <= 40 {
         diagnostics::name_alone(input, target.span);
         return Err(Problem::REPORTED);
     }
@@ -283,10 +285,10 @@ fn header<'s, T>(
     match &result {
         Ok(_) if input.eat(ends).is_some() => {}
         _ if foreign_syntax::braces(input, opened) => {}
-        Ok(_) => diagnostics::missing_word(input, ends, opened),
+        Ok(_) => recovery::missing_word(input, ends, opened),
         Err(problem) => {
             diagnostics::report(input, *problem);
-            recover::skip_header(input, ends, opened);
+            recovery::skip_header(input, ends, opened);
         }
     }
     result.ok()
@@ -300,7 +302,7 @@ fn if_statement<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
         let condition = header(input, Kind::Then, condition).unwrap_or_else(|| unread(opened));
         branches.push((condition, body(input, opened)));
         if branches.len() > MAX_CHAIN {
-            return Err(input.state().stop(opened, diagnostics::too_long()));
+            return Err(input.state().stop(opened, too_long()));
         }
         if input.eat(Kind::Elsif).is_none() {
             break;
@@ -368,8 +370,8 @@ fn case<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
             Kind::Semicolon => {
                 input.take();
             }
-            kind if recover::ends_statements(kind) => {
-                if !recover::stray(input) {
+            kind if ends_statements(kind) => {
+                if !recovery::stray(input) {
                     break;
                 }
             }
@@ -390,7 +392,7 @@ fn arm<'s>(input: &mut In<'_, '_, 's>) -> Option<Arm<'s>> {
     let labels = labels(input);
     if let Err(problem) = labels {
         diagnostics::report(input, problem);
-        recover::skip_label(input, start);
+        recovery::skip_label(input, start);
     }
     let mut body = Vec::new();
     list(input, &mut body, at_label);
@@ -415,7 +417,7 @@ fn labels<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Vec<Label<'s>>> {
         }
     }
     if input.eat(Kind::Colon).is_none() {
-        if !recover::begins_statement(input) {
+        if !recovery::begins_statement(input) {
             return Err(input.problem(Expected::Token(Kind::Colon)));
         }
         diagnostics::missing_colon(input);
@@ -496,7 +498,7 @@ fn repeat<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
     let until = condition(input);
     if let Err(problem) = until {
         diagnostics::report(input, problem);
-        recover::skip_header(input, Kind::Semicolon, opened);
+        recovery::skip_header(input, Kind::Semicolon, opened);
     }
     input.eat(Kind::Semicolon);
     close(input, Kind::EndRepeat, opened);

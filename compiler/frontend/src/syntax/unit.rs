@@ -1,20 +1,22 @@
 //! What a file holds: POUs, TYPE blocks, global variables.
 
+use chumsky::prelude::*;
+
 use crate::{
-    ast::{
-        Item, Name, Pou, PouKind, Statement, StatementKind, TypeDecl, TypeKind, TypeSpec, VarBlock, VarDecl, VarKind,
-    },
+    ast::{Item, Name, Pou, PouKind, Statement, StatementKind, TypeDecl, TypeSpec, VarBlock, VarDecl, VarKind},
     lex::Kind,
 };
 
 use super::{
+    combinator::{Rule, ahead, name, reported, token},
     configuration::configuration,
-    declaration::section,
-    diagnostics, doc,
-    parser::{Expected, In, Moves, Parsed, Problem},
-    recover,
+    declaration::{section, structure_members, type_spec},
+    diagnostics, doc, foreign_types, misspelt,
+    parser::{Expected, In, TokenReader},
+    recovery,
     statement::statements,
-    types::{structure_behind, type_spec, types},
+    token_class::{closes, is_pou_end, opens_item, opens_section, opens_statement},
+    type_block::types,
     unsupported,
 };
 
@@ -36,11 +38,11 @@ pub fn items<'s>(input: &mut In<'_, '_, 's>) -> Vec<Item<'s>> {
             Kind::Struct if input.kind_ahead(1) == Kind::Name => items.push(bare_structure(input)),
             Kind::Configuration => items.push(Item::Configuration(configuration(input))),
             Kind::VarGlobal => items.extend(section(input).map(Item::Globals)),
-            kind if recover::opens_section(kind) => bare_unit(input, &mut items),
+            kind if opens_section(kind) => bare_unit(input, &mut items),
             Kind::Name if unsupported::skip(input) => {}
             Kind::Name if misspelt_item(input) => {}
             kind if is_statement(input, kind) => bare_unit(input, &mut items),
-            kind if recover::closes(kind) => {
+            kind if closes(kind) => {
                 let span = input.take();
                 let it = diagnostics::stray(span, kind);
                 input.report(it);
@@ -55,12 +57,12 @@ fn outside(input: &mut In<'_, '_, '_>) {
     let problem = input.problem(Expected::Block);
     diagnostics::report(input, problem);
     input.take();
-    recover::skip_to_item(input);
+    recovery::skip_to_item(input);
 }
 
 /// `PROGRM Main`: is read as the keyword that was meant.
 fn misspelt_item(input: &mut In<'_, '_, '_>) -> bool {
-    let Some(kind) = diagnostics::misspelt_item(input) else { return false };
+    let Some(kind) = misspelt::misspelt_item(input) else { return false };
     let span = input.take();
     diagnostics::misspelt_keyword(input, kind, span);
     input.state().instead = Some(kind);
@@ -70,7 +72,7 @@ fn misspelt_item(input: &mut In<'_, '_, '_>) -> bool {
 fn is_statement(input: &mut In<'_, '_, '_>, kind: Kind) -> bool {
     let next = input.kind_ahead(1);
     let used = matches!(next, Kind::Assign | Kind::OpenParen | Kind::Dot | Kind::OpenBracket | Kind::Colon);
-    recover::opens_statement(kind) || (kind == Kind::Name && used)
+    opens_statement(kind) || (kind == Kind::Name && used)
 }
 
 /// VAR blocks and statements without the PROGRAM around them: they are read as a unit without a
@@ -90,7 +92,7 @@ fn bare_unit<'s>(input: &mut In<'_, '_, 's>, items: &mut Vec<Item<'s>>) {
     input.state().open.push((Kind::EndProgram, opened));
     contents(input, &mut pou);
     input.state().open.pop();
-    let closed = recover::is_pou_end(input.kind());
+    let closed = is_pou_end(input.kind());
     if closed {
         input.take();
     }
@@ -110,7 +112,8 @@ fn bare_structure<'s>(input: &mut In<'_, '_, 's>) -> Item<'s> {
     let name = Name { text: input.text(span), span };
     input.take();
     input.report(diagnostics::bare_structure(word.to(span), name.text));
-    let ty = structure_behind(input, word);
+    let kind = structure_members(input);
+    let ty = TypeSpec { kind, span: word.to(input.last()) };
     input.eat(Kind::Semicolon);
     Item::Types(vec![TypeDecl { name, ty, initial: None, doc: None, unread: Vec::new() }])
 }
@@ -118,7 +121,7 @@ fn bare_structure<'s>(input: &mut In<'_, '_, 's>) -> Item<'s> {
 /// Takes a unit that stands inside another one, if the other one goes on behind it.
 fn nested_unit(input: &mut In<'_, '_, '_>) -> bool {
     let Some((end, opened)) = input.state().open.last().copied() else { return false };
-    if !recover::opens_item(input.kind()) || !goes_on(input, end) {
+    if !opens_item(input.kind()) || !goes_on(input, end) {
         return false;
     }
     let (kind, span) = (input.kind(), input.here());
@@ -145,7 +148,7 @@ fn goes_on(input: &mut In<'_, '_, '_>, end: Kind) -> bool {
             Kind::Program => open.push(Kind::EndProgram),
             Kind::Function => open.push(Kind::EndFunction),
             Kind::FunctionBlock => open.push(Kind::EndFunctionBlock),
-            kind if recover::is_pou_end(kind) => match open.pop() {
+            kind if is_pou_end(kind) => match open.pop() {
                 Some(wanted) if wanted == kind => {}
                 None => return kind == end,
                 Some(_) => return false,
@@ -170,7 +173,7 @@ fn contents<'s>(input: &mut In<'_, '_, 's>, pou: &mut Pou<'s>) {
         if nested_unit(input) {
             continue;
         }
-        if !recover::opens_section(input.kind()) {
+        if !opens_section(input.kind()) {
             break;
         }
         let read = |it: &Statement<'_>| !matches!(it.kind, StatementKind::Empty | StatementKind::Error);
@@ -183,15 +186,7 @@ fn contents<'s>(input: &mut In<'_, '_, 's>, pou: &mut Pou<'s>) {
     let vars = std::mem::replace(&mut input.state().strays, outer);
     if !vars.is_empty() {
         let span = vars[0].span;
-        pou.blocks.push(VarBlock {
-            kind: VarKind::Var,
-            constant: None,
-            retain: None,
-            non_retain: None,
-            persistent: None,
-            vars,
-            span,
-        });
+        pou.blocks.push(VarBlock { vars, ..VarBlock::new(VarKind::Var, span) });
     }
     input.state().begins.clear();
 }
@@ -206,16 +201,16 @@ fn pou<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind) -> Item<'s> {
         diagnostics::misspelt_keyword(input, Kind::FunctionBlock, span);
         (kind, end) = (PouKind::FunctionBlock, Kind::EndFunctionBlock);
     }
-    let mut parameters = None;
-    let (name, result) = head(input, kind, &mut parameters).unwrap_or_else(|problem| {
+    let (name, parameters, result) = input.parse(head(kind)).unwrap_or_else(|problem| {
         diagnostics::report(input, problem);
-        recover::skip_head(input);
-        (Name { text: "", span: opened }, None)
+        recovery::go_to(input, problem);
+        recovery::skip_head(input);
+        (Name { text: "", span: opened }, None, None)
     });
     let span = opened.to(name.span);
     if kind != PouKind::Function && input.kind() == Kind::Colon {
         let from = input.take();
-        let _ = type_spec(input);
+        let _ = input.parse(type_spec());
         let whole = from.to(input.last());
         let it = diagnostics::no_result_type(whole, input.text(opened));
         input.report(it);
@@ -227,7 +222,7 @@ fn pou<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind) -> Item<'s> {
     contents(input, &mut pou);
     input.state().open.pop();
     if input.eat(end).is_none() {
-        if recover::is_pou_end(input.kind()) {
+        if is_pou_end(input.kind()) {
             diagnostics::wrong_end(input, end, opened);
             input.take();
         } else {
@@ -237,83 +232,35 @@ fn pou<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind) -> Item<'s> {
     Item::Pou(pou)
 }
 
-/// The name, and a function's result type.
-fn head<'s>(
-    input: &mut In<'_, '_, 's>,
-    kind: PouKind,
-    parameters: &mut Option<VarBlock<'s>>,
-) -> Parsed<(Name<'s>, Option<TypeSpec<'s>>)> {
-    modifiers(input);
-    let mut name = input.name()?;
-    if kind == PouKind::Function
-        && input.kind() == Kind::Name
-        && !input.on_new_line()
-        && staunch_ir::Elementary::named(name.text).is_some()
-    {
-        let ty = name;
-        name = input.name()?;
-        diagnostics::type_first(input, ty.span, name.span);
-        return Ok((name, Some(TypeSpec { kind: TypeKind::Named(vec![ty]), span: ty.span })));
-    }
-    for word in ["EXTENDS", "IMPLEMENTS"] {
-        bases(input, word)?;
-    }
-    if input.kind() == Kind::OpenParen {
-        *parameters = Some(in_parentheses(input)?);
-    }
-    let lacks_colon = matches!(input.kind(), Kind::Name | Kind::Array) && !input.on_new_line();
-    if kind == PouKind::Function && lacks_colon {
-        diagnostics::missing_type_colon(input);
-        return Ok((name, Some(type_spec(input)?)));
-    }
-    let typed = kind == PouKind::Function && input.eat(Kind::Colon).is_some();
-    let result = if typed { Some(type_spec(input)?) } else { None };
-    Ok((name, result))
+/// A unit's name, what follows it in parentheses, and a function's result type.
+type Head<'s> = (Name<'s>, Option<VarBlock<'s>>, Option<TypeSpec<'s>>);
+
+fn head<'t, 's: 't>(kind: PouKind) -> impl Rule<'t, 's, Head<'s>> {
+    let function = ahead(move |_| kind == PouKind::Function);
+    let bases = unsupported::bases("EXTENDS").then(unsupported::bases("IMPLEMENTS"));
+    let colon = token(Kind::Colon).ignored().or(foreign_types::no_colon_in_head());
+    let result = function.clone().ignore_then(colon).ignore_then(type_spec());
+    let no_result = ahead(move |input| kind != PouKind::Function || input.kind() != Kind::Colon).to(None);
+    let usual = name().then_ignore(bases).then(parameters().or_not()).then(result.map(Some).or(no_result));
+    let swapped = function.ignore_then(foreign_types::result_before_name());
+    let head = swapped.map(|(name, ty)| (name, None, Some(ty))).or(usual.map(|((name, vars), ty)| (name, vars, ty)));
+    unsupported::modifiers().ignore_then(head)
 }
 
-/// `(x : INT; y : REAL)` behind a function's name, as other languages have it.
-fn in_parentheses<'s>(input: &mut In<'_, '_, 's>) -> Parsed<VarBlock<'s>> {
-    let span = input.take();
-    let mut vars = Vec::new();
-    while input.kind() == Kind::Name {
-        let from = input.here();
-        let mut names = vec![input.name()?];
-        while input.eat(Kind::Comma).is_some() {
-            names.push(input.name()?);
-        }
-        input.expect(Kind::Colon)?;
-        let ty = type_spec(input)?;
-        let (address, edge, initial, doc) = (None, None, None, None);
-        vars.push(VarDecl { names, address, ty, edge, initial, doc, span: from.to(input.last()) });
-        let _ = input.eat(Kind::Semicolon).or_else(|| input.eat(Kind::Comma));
-    }
-    let whole = span.to(input.expect(Kind::CloseParen)?);
-    input.report(diagnostics::parameters_in_head(whole, vars.is_empty()));
-    let kind = VarKind::Input;
-    Ok(VarBlock { kind, constant: None, retain: None, non_retain: None, persistent: None, vars, span })
-}
-
-fn modifiers(input: &mut In<'_, '_, '_>) {
-    let words = ["ABSTRACT", "FINAL", "PUBLIC", "PRIVATE", "PROTECTED", "INTERNAL"];
-    while input.kind_ahead(1) == Kind::Name
-        && let Some(word) = words.into_iter().find(|it| input.is_word(it))
-    {
-        let span = input.take();
-        input.report(diagnostics::unsupported(span, word));
-    }
-}
-
-/// `EXTENDS a, b`
-fn bases(input: &mut In<'_, '_, '_>, word: &str) -> Result<(), Problem> {
-    if !input.is_word(word) {
-        return Ok(());
-    }
-    let span = input.take();
-    input.report(diagnostics::unsupported(span, word));
-    input.name()?;
-    while input.kind() == Kind::Comma || input.kind() == Kind::Dot {
-        input.take();
-        input.name()?;
-    }
-    Ok(())
+/// `(x : INT; y : REAL)` after a function's name, as other languages have it.
+fn parameters<'t, 's: 't>() -> impl Rule<'t, 's, VarBlock<'s>> {
+    let names = name().separated_by(token(Kind::Comma)).at_least(1).collect::<Vec<_>>();
+    let vars = names.then_ignore(token(Kind::Colon)).then(type_spec()).map_with(|(names, ty), extra| {
+        let tokens = extra.span();
+        let span = extra.state().span(tokens);
+        VarDecl { names, address: None, ty, edge: None, initial: None, doc: None, span }
+    });
+    let separator = token(Kind::Semicolon).or(token(Kind::Comma)).or_not();
+    let vars = vars.then_ignore(separator).repeated().collect::<Vec<_>>();
+    let vars = vars.delimited_by(token(Kind::OpenParen), token(Kind::CloseParen));
+    reported(vars, |vars: Vec<VarDecl<'s>>, state, tokens| {
+        let (opened, whole) = (state.place(tokens.start), state.span(tokens));
+        state.report(diagnostics::parameters_in_head(whole, vars.is_empty()));
+        VarBlock { vars, ..VarBlock::new(VarKind::Input, opened) }
+    })
 }

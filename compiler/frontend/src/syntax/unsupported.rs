@@ -1,12 +1,16 @@
 //! Constructs that are known and refused by name: METHOD, INTERFACE, NAMESPACE and the like.
 //! Their words are names everywhere else.
 
-use crate::lex::Kind;
+use chumsky::prelude::*;
+
+use crate::{lex::Kind, source::Span};
 
 use super::{
+    combinator::{Rule, ahead, name, reported, token, word},
     diagnostics,
-    parser::{In, Moves},
-    recover,
+    parser::{In, TokenReader},
+    recovery,
+    token_class::{is_pou_end, opens_item},
 };
 
 const CONSTRUCTS: [(&str, Kind); 6] = [
@@ -33,7 +37,7 @@ pub fn skip(input: &mut In<'_, '_, '_>) -> bool {
     let jump = ["JMP", "USING"].into_iter().find(|it| word.eq_ignore_ascii_case(it));
     if let Some(name) = jump {
         input.report(diagnostics::unsupported(span, name));
-        recover::skip_statement(input, span);
+        recovery::skip_statement(input, span);
         return true;
     }
     false
@@ -44,7 +48,7 @@ fn skip_construct(input: &mut In<'_, '_, '_>, end: Kind) {
     let holds_units = end == Kind::EndNamespace;
     loop {
         let kind = input.kind();
-        let leaves = recover::opens_item(kind) || recover::is_pou_end(kind);
+        let leaves = opens_item(kind) || is_pou_end(kind);
         if kind == Kind::End || (leaves && !holds_units) {
             return;
         }
@@ -54,4 +58,32 @@ fn skip_construct(input: &mut In<'_, '_, '_>, end: Kind) {
             return;
         }
     }
+}
+
+/// `EXTENDS a, b`, if it is there.
+pub fn bases<'t, 's: 't>(keyword: &'static str) -> impl Rule<'t, 's, ()> {
+    let refused = reported(word(keyword), move |span, state, _| state.report(diagnostics::unsupported(span, keyword)));
+    let separator = token(Kind::Comma).or(token(Kind::Dot));
+    let bases = refused.ignore_then(name().separated_by(separator).at_least(1));
+    ahead(move |input| !input.is_word(keyword)).or(bases)
+}
+
+/// `ABSTRACT`, `PUBLIC` and the like before a unit's name.
+pub fn modifiers<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
+    let word = choice(["ABSTRACT", "FINAL", "PUBLIC", "PRIVATE", "PROTECTED", "INTERNAL"].map(refused_word));
+    word.repeated()
+}
+
+/// `PUBLIC` and the like after VAR.
+pub fn access<'t, 's: 't>() -> impl Rule<'t, 's, Span> {
+    choice(["PUBLIC", "PRIVATE", "PROTECTED", "INTERNAL"].map(refused_word))
+}
+
+/// A word before a name.
+fn refused_word<'t, 's: 't>(text: &'static str) -> impl Rule<'t, 's, Span> {
+    let before_name = ahead(|input| input.kind_ahead(1) == Kind::Name);
+    reported(before_name.ignore_then(word(text)), move |span, state, _| {
+        state.report(diagnostics::unsupported(span, text));
+        span
+    })
 }

@@ -7,7 +7,7 @@ use crate::{
 };
 
 use super::{
-    super::parser::{In, Moves},
+    super::parser::{In, State, TokenReader},
     behind_last, insertion, shown,
 };
 
@@ -33,15 +33,13 @@ pub fn missing_type_colon(input: &mut In<'_, '_, '_>) {
 }
 
 /// `INT x;`
-pub fn type_first(input: &mut In<'_, '_, '_>, ty: Span, name: Span) {
-    let meant = format!("{} : {}", input.text(name), input.text(ty));
+pub fn type_first(state: &State<'_, '_>, ty: Span, name: Span) -> Diagnostic {
+    let meant = format!("{} : {}", state.slice(name), state.slice(ty));
     let whole = ty.to(name);
-    input.report(
-        Diagnostic::new(Code::E0001, whole, "the name stands before the type")
-            .label("expected a name, `:` and a type")
-            .help(format!("write `{meant}`"))
-            .fix(whole, meant),
-    );
+    Diagnostic::new(Code::E0001, whole, "the name is before the type")
+        .label("expected a name, `:` and a type")
+        .help(format!("write `{meant}`"))
+        .fix(whole, meant)
 }
 
 /// `my var : INT;`
@@ -129,7 +127,7 @@ pub fn address_without_sign(span: Span, text: &str) -> Diagnostic {
 }
 
 /// `x : BOOL AT %QX0.0;`
-pub fn address_behind_type(span: Span) -> Diagnostic {
+pub fn address_after_type(span: Span) -> Diagnostic {
     Diagnostic::new(Code::E0409, span, "the address of a variable stands before its type")
         .label("expected before the `:`")
         .help("write `name AT %QX0.0 : BOOL;`")

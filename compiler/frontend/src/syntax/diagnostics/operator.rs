@@ -7,7 +7,7 @@ use crate::{
     source::Span,
 };
 
-use super::super::parser::{In, Moves};
+use super::super::parser::{In, TokenReader};
 
 pub fn equal_for_assign(sign: Span, text: &str) -> Diagnostic {
     let message = match text {

@@ -1,62 +1,19 @@
 //! Where reading goes on after a mistake. Each list skips to its own next item, and never over a
 //! keyword that an enclosing list waits for.
 
-use crate::{lex::Kind, source::Span};
-
-use super::{
-    block_ends, diagnostics,
-    parser::{In, Moves, Problem, Start},
+use crate::{
+    diagnostic::{Code, Diagnostic},
+    lex::Kind,
+    source::Span,
 };
 
-/// Keywords that open a POU, a TYPE block or a configuration.
-pub fn opens_item(kind: Kind) -> bool {
-    matches!(kind, Kind::Program | Kind::Function | Kind::FunctionBlock | Kind::Type | Kind::Configuration)
-}
-
-/// VAR and its relatives.
-pub fn opens_section(kind: Kind) -> bool {
-    matches!(
-        kind,
-        Kind::Var
-            | Kind::VarInput
-            | Kind::VarOutput
-            | Kind::VarInOut
-            | Kind::VarTemp
-            | Kind::VarStat
-            | Kind::VarGlobal
-            | Kind::VarExternal
-            | Kind::VarConfig
-            | Kind::VarAccess
-            | Kind::VarInst
-    )
-}
-
-/// Keywords that open a statement.
-pub fn opens_statement(kind: Kind) -> bool {
-    matches!(
-        kind,
-        Kind::If | Kind::Case | Kind::For | Kind::While | Kind::Repeat | Kind::Exit | Kind::Continue | Kind::Return
-    )
-}
-
-/// Keywords that close or continue a block.
-pub fn closes(kind: Kind) -> bool {
-    matches!(kind, Kind::Else | Kind::Elsif | Kind::Until) || kind.keyword().is_some_and(|it| it.starts_with("END_"))
-}
-
-pub fn ends_statements(kind: Kind) -> bool {
-    kind == Kind::End || closes(kind) || opens_section(kind) || opens_item(kind)
-}
-
-/// The ends of the blocks that a keyword closes or continues.
-fn partners(kind: Kind) -> [Kind; 2] {
-    match kind {
-        Kind::Else => [Kind::EndIf, Kind::EndCase],
-        Kind::Elsif => [Kind::EndIf; 2],
-        Kind::Until => [Kind::EndRepeat; 2],
-        kind => [kind; 2],
-    }
-}
+use super::{
+    block_ends, diagnostics, foreign_syntax, misspelt,
+    parser::{Expected, In, Parsed, Problem, Start, TokenReader},
+    token_class::{
+        closes, ends_declarations, ends_statements, is_end, is_pou_end, opens_item, opens_statement, partners,
+    },
+};
 
 /// Takes and reports a closing keyword that no open block waits for.
 pub fn stray(input: &mut In<'_, '_, '_>) -> bool {
@@ -66,7 +23,7 @@ pub fn stray(input: &mut In<'_, '_, '_>) -> bool {
     }
     let partners = partners(kind);
     let open = &input.state().open;
-    let ends = kind.keyword().is_some_and(|it| it.starts_with("END_"));
+    let ends = is_end(kind);
     if ends {
         let awaited = open.last().is_some_and(|(end, _)| *end == kind);
         if awaited || block_ends::judge(input, None) != block_ends::Verdict::Stray {
@@ -84,10 +41,6 @@ pub fn stray(input: &mut In<'_, '_, '_>) -> bool {
     input.state().orphaned |= matches!(kind, Kind::Else | Kind::Elsif);
     input.eat(Kind::Semicolon);
     true
-}
-
-pub fn is_pou_end(kind: Kind) -> bool {
-    matches!(kind, Kind::EndProgram | Kind::EndFunction | Kind::EndFunctionBlock)
 }
 
 /// Whether the next token starts a statement of its own, so that only a `;` is missing.
@@ -128,7 +81,7 @@ fn skip_block(input: &mut In<'_, '_, '_>) {
             return;
         }
         let opens = matches!(kind, Kind::If | Kind::Case | Kind::For | Kind::While | Kind::Repeat);
-        let ends = kind.keyword().is_some_and(|it| it.starts_with("END_"));
+        let ends = is_end(kind);
         input.take();
         depth += usize::from(opens);
         depth = depth.saturating_sub(usize::from(ends));
@@ -145,6 +98,7 @@ pub fn declaration<'t, 'p>(input: &mut In<'t, 'p, '_>, problem: Problem, start: 
         return false;
     }
     diagnostics::report(input, problem);
+    go_to(input, problem);
     let start = input.state().place(first);
     if input.kind() == Kind::Struct {
         skip_structure(input);
@@ -172,7 +126,8 @@ fn skip_structure(input: &mut In<'_, '_, '_>) {
 fn respell<'t, 'p>(input: &mut In<'t, 'p, '_>, start: Start<'t, 'p>) -> bool {
     let now = input.save();
     input.rewind(start);
-    let Some((kind, words)) = diagnostics::misspelt(input) else {
+    input.forget();
+    let Some((kind, words)) = misspelt::misspelt(input) else {
         input.rewind(now);
         return false;
     };
@@ -257,10 +212,6 @@ pub fn skip_declaration(input: &mut In<'_, '_, '_>, start: Span) {
     }
 }
 
-pub fn ends_declarations(kind: Kind) -> bool {
-    ends_statements(kind) || opens_statement(kind)
-}
-
 pub fn starts_declaration(input: &mut In<'_, '_, '_>) -> bool {
     input.kind() == Kind::Name && matches!(input.kind_ahead(1), Kind::Colon | Kind::Comma | Kind::At)
 }
@@ -308,6 +259,109 @@ pub fn skip_to_item(input: &mut In<'_, '_, '_>) {
 /// Behind the first line of a POU whose head does not parse.
 pub fn skip_head(input: &mut In<'_, '_, '_>) {
     while !ends_statements(input.kind()) && !input.on_new_line() {
+        input.take();
+    }
+}
+
+/// THEN, DO or OF. Another of them in its place is taken for it.
+pub fn missing_word(input: &mut In<'_, '_, '_>, word: Kind, opened: Span) {
+    if diagnostics::swallowed(input) || input.kind() == Kind::End {
+        return;
+    }
+    foreign_syntax::extra_brackets(input, word);
+    if input.eat(word).is_some() {
+        return;
+    }
+    if input.kind() == Kind::Semicolon && input.kind_ahead(1) == word {
+        return extra_semicolon(input, word);
+    }
+    if let Some(ahead) = on_this_line(input, word) {
+        return missing_operator(input, word, ahead);
+    }
+    let opener = input.text(opened).to_ascii_uppercase();
+    let kind = input.kind();
+    let here = input.here();
+    let found = diagnostics::shown(input, kind, here);
+    let wrong = matches!(kind, Kind::Then | Kind::Do | Kind::Of | Kind::Semicolon | Kind::Colon);
+    let message = format!("expected {word}, found {found}");
+    let it = if wrong {
+        input.take();
+        let replacement = diagnostics::padded(input, here, word.keyword().unwrap_or_default());
+        Diagnostic::new(Code::E0013, here, message)
+            .label(format!("expected {word}"))
+            .help(format!("write {word} here"))
+            .fix(here, replacement)
+    } else {
+        let (span, place) = (diagnostics::behind_last(input), diagnostics::insertion(input));
+        Diagnostic::new(Code::E0013, span, message)
+            .label(format!("{word} is missing behind this"))
+            .help(format!("write {word} here"))
+            .fix(place, format!(" {}", word.keyword().unwrap_or_default()))
+    };
+    let word = word.keyword().unwrap_or_default();
+    input.report(it.other(opened, format!("this {opener} needs {}", crate::diagnostic::wording::article(word))));
+}
+
+/// How far ahead `word` stands on the current line, before the statement ends.
+fn on_this_line(input: &mut In<'_, '_, '_>, word: Kind) -> Option<usize> {
+    let mut ahead = 0;
+    while input.kind_ahead(ahead) != word {
+        let kind = input.kind_ahead(ahead);
+        let at = input.number() + ahead;
+        let state = input.state();
+        let (before, here) = (state.place(at.saturating_sub(1)), state.place(at));
+        let ends = matches!(kind, Kind::Semicolon | Kind::Assign | Kind::Colon) || ends_statements(kind);
+        if ends || opens_statement(kind) || state.breaks(before.end, here.start) {
+            return None;
+        }
+        ahead += 1;
+    }
+    (ahead > 0).then_some(ahead)
+}
+
+/// `IF a b THEN`
+fn missing_operator(input: &mut In<'_, '_, '_>, word: Kind, ahead: usize) {
+    let (kind, here) = (input.kind(), input.here());
+    let found = diagnostics::shown(input, kind, here);
+    input.report(
+        Diagnostic::new(Code::E0001, here, format!("expected an operator or {word}, found {found}"))
+            .label("expected an operator before this")
+            .help("write `AND` or `OR` between two conditions"),
+    );
+    for _ in 0..=ahead {
+        input.take();
+    }
+}
+
+/// `IF a; THEN`
+fn extra_semicolon(input: &mut In<'_, '_, '_>, word: Kind) {
+    let span = input.take();
+    input.take();
+    input.report(
+        Diagnostic::new(Code::E0013, span, format!("expected {word}, found `;`"))
+            .label("the condition goes on to the next word")
+            .help("delete this `;`")
+            .fix(span, ""),
+    );
+}
+
+/// What stands for the `;` of a declaration, or a complaint that leaves what follows in place.
+pub fn end_of_declaration(input: &mut In<'_, '_, '_>) -> Parsed<()> {
+    if foreign_syntax::wrong_terminator(input) {
+        return Ok(());
+    }
+    let kind = input.kind();
+    let next = ends_declarations(kind) || starts_declaration(input);
+    if next || (input.on_new_line() && kind == Kind::Name) {
+        diagnostics::missing_semicolon(input);
+        return Ok(());
+    }
+    Err(input.problem(Expected::Token(Kind::Semicolon)))
+}
+
+/// Forward to where a problem is: rules may have gone back over what they read.
+pub fn go_to(input: &mut In<'_, '_, '_>, problem: Problem) {
+    while input.number() < problem.at && input.kind() != Kind::End {
         input.take();
     }
 }

@@ -2,14 +2,12 @@
 
 use crate::{
     ast::{Expr, ExprKind},
-    diagnostic::{Code, Diagnostic},
     lex::Kind,
-    source::Span,
 };
 
-use super::super::{
-    parser::{In, Moves},
-    recover,
+use super::{
+    parser::{In, TokenReader},
+    token_class::is_pou_end,
 };
 
 /// `ENDIF`, `ELSEIF`: the keyword that a name at the start of a statement stands for.
@@ -127,7 +125,7 @@ fn waits_for(input: &mut In<'_, '_, '_>, end: Kind) -> bool {
 
 /// The end of the innermost block of statements.
 fn innermost(input: &mut In<'_, '_, '_>) -> Option<Kind> {
-    input.state().open.last().map(|(end, _)| *end).filter(|it| !recover::is_pou_end(*it))
+    input.state().open.last().map(|(end, _)| *end).filter(|it| !is_pou_end(*it))
 }
 
 /// `PROGRM Main`, `FUNCTION BLOCK f`: the keyword that opens an item.
@@ -146,17 +144,4 @@ pub fn is_misspelt(input: &mut In<'_, '_, '_>, target: &Expr<'_>) -> bool {
         || (name.text.eq_ignore_ascii_case("NEXT") && waits_for(input, Kind::EndFor))
         || (name.text.eq_ignore_ascii_case("WEND") && waits_for(input, Kind::EndWhile))
         || misspelt_end(name.text, Kind::Semicolon).is_some()
-}
-
-pub fn misspelt_keyword(input: &mut In<'_, '_, '_>, kind: Kind, span: Span) {
-    let found = input.text(span);
-    let qualified = found.to_ascii_uppercase().replace('_', " ");
-    let two_words = matches!(qualified.as_str(), "VAR RETAIN" | "VAR CONSTANT" | "VAR PERSISTENT");
-    let word = if two_words { qualified.as_str() } else { kind.keyword().unwrap_or_default() };
-    input.report(
-        Diagnostic::new(Code::E0018, span, format!("`{found}` is written `{word}`"))
-            .label(format!("expected `{word}`"))
-            .help(format!("write `{word}`"))
-            .fix(span, word),
-    );
 }

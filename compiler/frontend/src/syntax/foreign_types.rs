@@ -1,0 +1,269 @@
+//! Declarations and types as other languages write them: each is reported, and read as what is meant.
+
+use chumsky::prelude::*;
+
+use crate::{
+    ast::{BinaryOp, Expr, ExprKind, Name, TypeKind, TypeSpec, VarKind},
+    diagnostic::{Code, Diagnostic},
+    lex::Kind,
+    source::Span,
+};
+
+use super::{
+    combinator::{Rule, ahead, delimited, name, reported, rule, token},
+    diagnostics,
+    expression::expr,
+    parser::{Expected, In, Problem, State, TokenReader},
+};
+
+/// `{1, 2}` or `{Red, Green}`, which the lexer took for a pragma, before the current token.
+pub fn brace_list<'t, 's: 't>(open: &'static str, close: &'static str) -> impl Rule<'t, 's, Span> {
+    rule(move |input| {
+        let (last, here) = (input.last(), input.here());
+        let state = input.state();
+        let from = state.tokens.pragmas.partition_point(|it| it.span.start < last.end);
+        let list = state.tokens.pragmas.get(from).copied().filter(|it| it.span.end <= here.start);
+        let Some(list) = list else { return Err(input.problem(Expected::Reported)) };
+        state.braces.push(list.span);
+        let whole = Span { start: list.span.start - 1, end: list.span.end + 1, ..list.span };
+        let meant = format!("{open}{}{close}", list.text);
+        input.report(
+            Diagnostic::new(Code::E0020, whole, "Structured Text has no lists in braces")
+                .label("this is a pragma")
+                .help(format!("write `{meant}`"))
+                .fix(whole, meant),
+        );
+        Ok(here)
+    })
+}
+
+/// `=` before an initial value.
+pub fn equal_for_assign<'t, 's: 't>() -> impl Rule<'t, 's, Span> {
+    reported(token(Kind::Equal), |sign, state, _| {
+        state.report(diagnostics::equal_for_assign(sign, "="));
+        sign
+    })
+}
+
+/// Before the `(` of `ARRAY(1..3)`.
+pub fn bounds_in_parentheses<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
+    let parenthesis = ahead(|input| input.kind() == Kind::OpenParen);
+    reported(parenthesis, |(), state, tokens| {
+        let span = state.span(tokens);
+        state.report(diagnostics::array_bounds(span, "`(`", "ARRAY[1..3] OF INT"));
+    })
+}
+
+/// What is between a first bound and the next `,` or bracket, where it is no `..` and a last bound.
+pub fn other_bound<'t, 's: 't>() -> impl Rule<'t, 's, Option<(Span, Expr<'s>)>> {
+    let colon = token(Kind::Colon).then(expr()).map(Some);
+    let ends = |kind| matches!(kind, Kind::Comma | Kind::CloseBracket | Kind::CloseParen);
+    let nothing = rule(move |input| {
+        let kind = input.kind();
+        if ends(kind) { Ok(None) } else { Err(input.problem(Expected::Token(Kind::DotDot))) }
+    });
+    colon.or(nothing)
+}
+
+/// `10`, `1:10` and `1-10` as the bounds of an array.
+pub fn report_bound<'s>(state: &mut State<'_, 's>, low: &Expr<'s>, high: Option<(Span, Expr<'s>)>) {
+    let text = state.slice(low.span);
+    let it = match (high, &low.kind) {
+        (Some((colon, high)), _) => {
+            let meant = format!("{text}..{}", state.slice(high.span));
+            diagnostics::array_bounds(colon, "`:`", &meant).fix(colon, "..")
+        }
+        (None, ExprKind::Binary(_, BinaryOp::Sub, sign)) => {
+            let (before, after) = (Span { end: sign.start, ..low.span }, Span { start: sign.end, ..low.span });
+            let meant = format!("{}..{}", state.slice(before).trim_end(), state.slice(after).trim_start());
+            diagnostics::array_bounds(low.span, "`-`", &meant).fix(low.span, meant)
+        }
+        (None, _) => {
+            let meant = format!("1..{text}");
+            diagnostics::array_bounds(low.span, "one number", &meant).fix(low.span, meant)
+        }
+    };
+    state.report(it);
+}
+
+/// No `,` between two enumerators.
+pub fn missing_comma<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
+    rule(|input| {
+        if input.kind() != Kind::Name {
+            return Err(input.problem(Expected::Token(Kind::Comma)));
+        }
+        diagnostics::missing_comma(input);
+        Ok(())
+    })
+}
+
+/// `INT[10]`, as other languages write an array, behind its `INT`.
+pub fn length<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
+    let starts =
+        ahead(|input| input.kind() == Kind::OpenBracket && matches!(input.kind_ahead(1), Kind::Integer | Kind::Name));
+    let bounds = expr().then(token(Kind::DotDot).ignore_then(expr()).or_not());
+    let brackets = delimited(Kind::OpenBracket, bounds, Kind::CloseBracket);
+    reported(starts.ignore_then(brackets), |(length, high), state, tokens| {
+        let element = state.place(tokens.start - 1);
+        let bounds = match high {
+            Some(high) => state.slice(length.span.to(high.span)).to_owned(),
+            None => format!("1..{}", state.slice(length.span)),
+        };
+        let meant = format!("ARRAY[{bounds}] OF {}", state.slice(element));
+        let whole = element.to(state.span(tokens));
+        state.report(diagnostics::array_bounds(whole, "a length after the type", &meant).fix(whole, meant));
+    })
+}
+
+/// `VAR INPUT`
+pub fn section_of_two_words<'t, 's: 't>() -> impl Rule<'t, 's, (VarKind, Span)> {
+    const SECTIONS: [(&str, VarKind, Kind); 6] = [
+        ("INPUT", VarKind::Input, Kind::VarInput),
+        ("OUTPUT", VarKind::Output, Kind::VarOutput),
+        ("IN_OUT", VarKind::InOut, Kind::VarInOut),
+        ("TEMP", VarKind::Temp, Kind::VarTemp),
+        ("GLOBAL", VarKind::Global, Kind::VarGlobal),
+        ("EXTERNAL", VarKind::External, Kind::VarExternal),
+    ];
+    let second = rule(|input| {
+        let found = SECTIONS.into_iter().find(|(word, ..)| input.is_word(word));
+        let Some((_, section, kind)) = found.filter(|_| input.kind_ahead(1) == Kind::Name) else {
+            return Err(input.problem(Expected::Name));
+        };
+        let span = input.last().to(input.take());
+        diagnostics::misspelt_keyword(input, kind, span);
+        Ok((section, span))
+    });
+    // A keyword that is read for a misspelt one is not in the tokens, so nothing goes back over it.
+    let word = ahead(|input| input.state().instead.is_none() && input.kind_ahead(1) == Kind::Name);
+    word.ignore_then(token(Kind::Var)).ignore_then(second)
+}
+
+/// `my var : INT`
+pub fn name_of_two_words<'t, 's: 't>() -> impl Rule<'t, 's, Name<'s>> {
+    let two = ahead(|input| {
+        let names = input.kind() == Kind::Name && input.kind_ahead(1) == Kind::Name;
+        let at = input.number();
+        let joined = |state: &State<'_, '_>| !state.breaks(state.place(at).end, state.place(at + 1).start);
+        names && input.kind_ahead(2) == Kind::Colon && input.kind_ahead(3) != Kind::Assign && joined(input.state())
+    });
+    two.ignore_then(rule(|input| {
+        let (first, second) = (input.take(), input.take());
+        diagnostics::name_of_two_words(input, first, second);
+        let span = first.to(second);
+        Ok(Name { text: input.text(span), span })
+    }))
+}
+
+/// Names and their type, read in the other order.
+#[derive(Clone)]
+pub struct Swapped<'s> {
+    pub names: Vec<Name<'s>>,
+    pub ty: TypeSpec<'s>,
+}
+
+/// `INT x;`: what was read as the one name is the type.
+pub fn type_before_name<'t, 's: 't>(names: &[Name<'s>]) -> impl Rule<'t, 's, Option<Swapped<'s>>> {
+    let ty = match names {
+        [ty] if staunch_ir::Elementary::named(ty.text).is_some() => Some(*ty),
+        _ => None,
+    };
+    let swapped = ahead(move |input| {
+        let follows = matches!(input.kind_ahead(1), Kind::Semicolon | Kind::Assign | Kind::Equal | Kind::Comma);
+        ty.is_some() && input.kind() == Kind::Name && follows
+    });
+    let first = reported(name(), move |name, state, _| {
+        if let Some(ty) = ty {
+            state.report(diagnostics::type_first(state, ty.span, name.span));
+        }
+        name
+    });
+    let names = first.then(token(Kind::Comma).ignore_then(name()).repeated().collect::<Vec<_>>());
+    swapped.ignore_then(names).or_not().map(move |found| {
+        let (ty, (first, more)) = ty.zip(found)?;
+        let names = std::iter::once(first).chain(more).collect();
+        Some(Swapped { names, ty: TypeSpec { kind: TypeKind::Named(vec![ty]), span: ty.span } })
+    })
+}
+
+/// A declaration without its `:`, where nothing else is missing; `:=` in its place is refused.
+pub fn no_colon_in_declaration<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
+    rule(|input| {
+        if input.kind() == Kind::Assign {
+            let sign = input.here();
+            input.report(diagnostics::assign_for_colon(sign));
+            return Err(Problem::REPORTED);
+        }
+        if !lacks_colon(input) {
+            return Err(input.problem(Expected::Token(Kind::Colon)));
+        }
+        diagnostics::missing_type_colon(input);
+        Ok(())
+    })
+}
+
+fn lacks_colon(input: &mut In<'_, '_, '_>) -> bool {
+    let next = input.kind_ahead(1);
+    match input.kind() {
+        Kind::Name => {
+            !input.on_new_line() && matches!(next, Kind::Semicolon | Kind::Assign | Kind::OpenParen | Kind::OpenBracket)
+        }
+        Kind::Array | Kind::Struct => true,
+        Kind::Equal => matches!(next, Kind::Name | Kind::Array | Kind::Struct),
+        Kind::Semicolon => next == Kind::Name && matches!(input.kind_ahead(2), Kind::Semicolon | Kind::Assign),
+        _ => false,
+    }
+}
+
+/// A type's declaration without its `:`.
+pub fn no_colon_in_type<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
+    rule(|input| {
+        if !matches!(input.kind(), Kind::Struct | Kind::OpenParen | Kind::Array | Kind::Equal | Kind::Semicolon) {
+            return Err(input.problem(Expected::Token(Kind::Colon)));
+        }
+        diagnostics::missing_type_colon(input);
+        Ok(())
+    })
+}
+
+/// `AT IX0.0`, behind its AT.
+pub fn address_without_sign<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
+    let number = token(Kind::Integer).or(token(Kind::Real));
+    let more = token(Kind::Dot).ignore_then(number.clone().or_not()).ignored().or(number.ignored());
+    reported(name().then(more.repeated()), |_, state, tokens| {
+        let span = state.span(tokens);
+        state.report(diagnostics::address_without_sign(span, state.slice(span)));
+    })
+}
+
+/// `x : BOOL AT %QX0.0;`
+pub fn address_after_type<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
+    reported(token(Kind::At).then(token(Kind::Address)), |(at, address), state, _| {
+        state.report(diagnostics::address_after_type(at.to(address)));
+    })
+}
+
+/// `FUNCTION f INT`: a result type without its `:`.
+pub fn no_colon_in_head<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
+    rule(|input| {
+        if !matches!(input.kind(), Kind::Name | Kind::Array) || input.on_new_line() {
+            return Err(input.problem(Expected::Token(Kind::Colon)));
+        }
+        diagnostics::missing_type_colon(input);
+        Ok(())
+    })
+}
+
+/// `FUNCTION INT f`
+pub fn result_before_name<'t, 's: 't>() -> impl Rule<'t, 's, (Name<'s>, TypeSpec<'s>)> {
+    let swapped = ahead(|input| {
+        let at = input.number();
+        let (ty, name) = (input.here(), input.state().place(at + 1));
+        let names = input.kind() == Kind::Name && input.kind_ahead(1) == Kind::Name;
+        names && !input.state().breaks(ty.end, name.start) && staunch_ir::Elementary::named(input.text(ty)).is_some()
+    });
+    reported(swapped.ignore_then(name()).then(name()), |(ty, name), state, _| {
+        state.report(diagnostics::type_first(state, ty.span, name.span));
+        (name, TypeSpec { kind: TypeKind::Named(vec![ty]), span: ty.span })
+    })
+}

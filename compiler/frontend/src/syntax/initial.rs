@@ -1,0 +1,82 @@
+//! Initial values, behind `:=`.
+
+use chumsky::prelude::*;
+
+use crate::{
+    ast::{Element, Expr, ExprKind, Initial, InitialKind},
+    lex::Kind,
+    source::Span,
+};
+
+use super::{
+    combinator::{Rule, ahead, delimited, list, list_before, name, nested, rule, token},
+    expression::expr,
+    foreign_types, literal,
+    parser::{In, Parsed, TokenReader},
+};
+
+/// `:= value`, if it is there.
+pub fn optional_initial<'t, 's: 't>() -> impl Rule<'t, 's, Option<Initial<'s>>> {
+    let none = ahead(|input| !matches!(input.kind(), Kind::Assign | Kind::Equal)).to(None);
+    none.or(assign().ignore_then(value_or_elements()).map(Some))
+}
+
+/// `:=`, also as the `=` of other languages.
+pub fn assign<'t, 's: 't>() -> impl Rule<'t, 's, Span> {
+    token(Kind::Assign).or(foreign_types::equal_for_assign())
+}
+
+/// One value, or an array without its brackets, as older code writes it: `:= 1, 2, 3(0)`.
+fn value_or_elements<'t, 's: 't>() -> impl Rule<'t, 's, Initial<'s>> {
+    list(element()).map_with(|mut elements, extra| match (elements.pop(), elements.is_empty()) {
+        (Some(Element { count: None, mut values }), true) if values.len() == 1 => values.remove(0),
+        (last, _) => {
+            elements.extend(last);
+            let tokens = extra.span();
+            Initial { kind: InitialKind::Elements(elements), span: extra.state().span(tokens) }
+        }
+    })
+}
+
+/// A rule for what is inside of itself ends in a function: its type would have no end.
+fn initial<'t, 's: 't>() -> impl Rule<'t, 's, Initial<'s>> {
+    rule(read_initial)
+}
+
+fn read_initial<'t, 's: 't>(input: &mut In<'t, '_, 's>) -> Parsed<Initial<'s>> {
+    let elements = delimited(Kind::OpenBracket, list_before(Kind::CloseBracket, element()), Kind::CloseBracket);
+    let field = name().then_ignore(token(Kind::Assign)).then(initial());
+    let fields = delimited(Kind::OpenParen, list(field), Kind::CloseParen);
+    let unread = |span| Expr { kind: ExprKind::Error(Vec::new()), span };
+    let kind = choice((
+        elements.map(InitialKind::Elements),
+        ahead(opens_fields).ignore_then(fields).map(InitialKind::Fields),
+        foreign_types::brace_list("[", "]").map(unread).map(InitialKind::Value),
+        ahead(|input| !opens_fields(input)).ignore_then(expr()).map(InitialKind::Value),
+    ));
+    input.parse(nested(kind).map_with(|kind, extra| {
+        let tokens = extra.span();
+        Initial { kind, span: extra.state().span(tokens) }
+    }))
+}
+
+fn opens_fields(input: &mut In<'_, '_, '_>) -> bool {
+    input.kind() == Kind::OpenParen && input.kind_ahead(1) == Kind::Name && input.kind_ahead(2) == Kind::Assign
+}
+
+fn is_repeat(input: &mut In<'_, '_, '_>) -> bool {
+    matches!(input.kind(), Kind::Integer | Kind::Based) && input.kind_ahead(1) == Kind::OpenParen
+}
+
+/// `x`, or `4(x, y)`.
+fn element<'t, 's: 't>() -> impl Rule<'t, 's, Element<'s>> {
+    // The number before `(` must not be read as a call.
+    let count = literal::literal(None).map_with(|literal, extra| {
+        let tokens = extra.span();
+        Expr { kind: ExprKind::Literal(literal), span: extra.state().span(tokens) }
+    });
+    let values = delimited(Kind::OpenParen, list_before(Kind::CloseParen, initial()), Kind::CloseParen);
+    let repeated = count.then(values).map(|(count, values)| Element { count: Some(count), values });
+    let single = initial().map(|it| Element { count: None, values: vec![it] });
+    ahead(is_repeat).ignore_then(repeated).or(ahead(|input| !is_repeat(input)).ignore_then(single))
+}

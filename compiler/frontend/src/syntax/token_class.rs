@@ -1,0 +1,80 @@
+//! Classes of tokens: what opens, continues and closes the parts of a file.
+
+use crate::lex::Kind;
+
+/// Keywords that open a POU, a TYPE block or a configuration.
+pub fn opens_item(kind: Kind) -> bool {
+    matches!(kind, Kind::Program | Kind::Function | Kind::FunctionBlock | Kind::Type | Kind::Configuration)
+}
+
+/// VAR and its relatives.
+pub fn opens_section(kind: Kind) -> bool {
+    matches!(
+        kind,
+        Kind::Var
+            | Kind::VarInput
+            | Kind::VarOutput
+            | Kind::VarInOut
+            | Kind::VarTemp
+            | Kind::VarStat
+            | Kind::VarGlobal
+            | Kind::VarExternal
+            | Kind::VarConfig
+            | Kind::VarAccess
+            | Kind::VarInst
+    )
+}
+
+/// Keywords that open a statement.
+pub fn opens_statement(kind: Kind) -> bool {
+    matches!(
+        kind,
+        Kind::If | Kind::Case | Kind::For | Kind::While | Kind::Repeat | Kind::Exit | Kind::Continue | Kind::Return
+    )
+}
+
+/// END_IF and the like.
+pub fn is_end(kind: Kind) -> bool {
+    kind.keyword().is_some_and(|it| it.starts_with("END_"))
+}
+
+pub fn is_pou_end(kind: Kind) -> bool {
+    matches!(kind, Kind::EndProgram | Kind::EndFunction | Kind::EndFunctionBlock)
+}
+
+/// Keywords that close or continue a block.
+pub fn closes(kind: Kind) -> bool {
+    matches!(kind, Kind::Else | Kind::Elsif | Kind::Until) || is_end(kind)
+}
+
+pub fn ends_statements(kind: Kind) -> bool {
+    kind == Kind::End || closes(kind) || opens_section(kind) || opens_item(kind)
+}
+
+pub fn ends_declarations(kind: Kind) -> bool {
+    ends_statements(kind) || opens_statement(kind)
+}
+
+/// The ends of the blocks that a keyword closes or continues.
+pub fn partners(kind: Kind) -> [Kind; 2] {
+    match kind {
+        Kind::Else => [Kind::EndIf, Kind::EndCase],
+        Kind::Elsif => [Kind::EndIf; 2],
+        Kind::Until => [Kind::EndRepeat; 2],
+        kind => [kind; 2],
+    }
+}
+
+/// What closes the block that a keyword opens.
+pub fn end_of(kind: Kind) -> Option<Kind> {
+    Some(match kind {
+        Kind::If => Kind::EndIf,
+        Kind::Case => Kind::EndCase,
+        Kind::For => Kind::EndFor,
+        Kind::While => Kind::EndWhile,
+        Kind::Repeat => Kind::EndRepeat,
+        Kind::Struct => Kind::EndStruct,
+        kind if opens_section(kind) => Kind::EndVar,
+        _ => return None,
+    })
+}
