@@ -37,7 +37,7 @@ pub fn lex(file: u16, text: &str) -> Tokens<'_> {
     // Real programs have a token for each five bytes or so.
     let guess = text.len() / 4 + 16;
     let tokens = Tokens { kinds: Vec::with_capacity(guess), places: Vec::with_capacity(guess), ..Tokens::default() };
-    let mut reading = Reading { file, text, tokens, told: Vec::new() };
+    let mut reading = Reading { file, text, tokens, named: Vec::new(), unknown: false };
     for (kind, range) in Kind::lexer(text).spanned() {
         let place = (offset(range.start), offset(range.end));
         reading.token(kind.unwrap_or(Kind::Unknown), place);
@@ -55,8 +55,10 @@ struct Reading<'s> {
     file: u16,
     text: &'s str,
     tokens: Tokens<'s>,
-    /// Names with letters that names cannot have: each is told once.
-    told: Vec<&'s str>,
+    /// Names with letters that names cannot have: each is reported once.
+    named: Vec<&'s str>,
+    /// The last token is a run of unknown characters.
+    unknown: bool,
 }
 
 impl<'s> Reading<'s> {
@@ -72,7 +74,9 @@ impl<'s> Reading<'s> {
     }
 
     fn push(&mut self, kind: Kind, place: (u32, u32)) {
-        self.report_unknown();
+        if std::mem::take(&mut self.unknown) {
+            self.report_unknown();
+        }
         self.tokens.kinds.push(kind);
         self.tokens.places.push(place);
     }
@@ -133,6 +137,7 @@ impl<'s> Reading<'s> {
         } else {
             self.push(Kind::Unknown, place);
         }
+        self.unknown = true;
     }
 
     /// Reports a run of unknown characters once it has ended.
@@ -193,8 +198,8 @@ impl<'s> Reading<'s> {
 
     fn name(&mut self, place: (u32, u32)) {
         let name = self.slice(place);
-        if !name.is_ascii() && !self.told.contains(&name) {
-            self.told.push(name);
+        if !name.is_ascii() && !self.named.contains(&name) {
+            self.named.push(name);
             let it = Diagnostic::new(
                 Code::E0002,
                 self.span(place),

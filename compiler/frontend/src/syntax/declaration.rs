@@ -10,7 +10,7 @@ use crate::{
 
 use super::{
     block_ends,
-    combinator::{Rule, name, nested, rule, token, word},
+    combinator::{Rule, ahead, name, nested, rule, token, word},
     diagnostics, foreign_types,
     initial::optional_initial,
     parser::{Expected, In, Parsed, Start, TokenReader},
@@ -198,8 +198,9 @@ fn typed<'t, 's: 't>() -> impl Rule<'t, 's, (TypeSpec<'s>, Option<(Edge, Span)>)
     let rising = word("R_EDGE").map(|span| (Edge::Rising, span));
     let falling = word("F_EDGE").map(|span| (Edge::Falling, span));
     let colon = token(Kind::Colon).ignored().or(foreign_types::no_colon_in_declaration());
-    let ty = colon.ignore_then(type_spec()).then(rising.or(falling).or_not());
-    ty.then_ignore(foreign_types::address_after_type().or_not())
+    let edge = rising.or(falling).or_not().then_ignore(foreign_types::address_after_type().or_not());
+    let usual = ahead(|input| matches!(input.kind(), Kind::Semicolon | Kind::Assign)).to(None);
+    colon.ignore_then(type_spec()).then(usual.or(edge))
 }
 
 /// `AT %IX0.0`

@@ -35,7 +35,29 @@ pub fn opens_statement(kind: Kind) -> bool {
 
 /// END_IF and the like.
 pub fn is_end(kind: Kind) -> bool {
-    kind.keyword().is_some_and(|it| it.starts_with("END_"))
+    matches!(
+        kind,
+        Kind::EndProgram
+            | Kind::EndFunction
+            | Kind::EndFunctionBlock
+            | Kind::EndType
+            | Kind::EndStruct
+            | Kind::EndConfiguration
+            | Kind::EndResource
+            | Kind::EndVar
+            | Kind::EndIf
+            | Kind::EndCase
+            | Kind::EndFor
+            | Kind::EndWhile
+            | Kind::EndRepeat
+            | Kind::EndMethod
+            | Kind::EndProperty
+            | Kind::EndAction
+            | Kind::EndInterface
+            | Kind::EndClass
+            | Kind::EndNamespace
+            | Kind::EndUnion
+    )
 }
 
 pub fn is_pou_end(kind: Kind) -> bool {
@@ -77,4 +99,20 @@ pub fn end_of(kind: Kind) -> Option<Kind> {
         kind if opens_section(kind) => Kind::EndVar,
         _ => return None,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Kind, is_end};
+    use logos::Logos;
+
+    #[test]
+    fn ends_are_those_words() {
+        let words = "IF THEN END_IF END_CASE END_FOR END_WHILE END_REPEAT END_VAR END_STRUCT END_TYPE END_PROGRAM \
+                     END_FUNCTION END_FUNCTION_BLOCK END_CONFIGURATION END_RESOURCE END_METHOD END_PROPERTY END_ACTION \
+                     END_INTERFACE END_CLASS END_NAMESPACE END_UNION END ELSE";
+        for (kind, word) in Kind::lexer(words).zip(words.split_whitespace()) {
+            assert_eq!(kind.map(is_end), Ok(word.starts_with("END_")), "{word}");
+        }
+    }
 }
