@@ -1,6 +1,7 @@
 //! Implicit conversions: they only widen. What needs a function, the message names.
 
 use super::Checker;
+use super::expression::constant;
 use super::operand::Operand;
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{BoundsId, Conversion, Elementary, Expr, ExprKind, Lane, Op, Type, Value};
@@ -224,21 +225,10 @@ impl<'s> Checker<'_, 's> {
             Conversion::Value if self.same_lane(value.ty, ty) => Conversion::Same,
             other => other,
         };
-        match (&value.kind, ty, self.decl.program.lane(ty)) {
-            (ExprKind::Const(it), _, Some(lane)) => {
-                let converted = match how {
-                    Conversion::Same => *it,
-                    Conversion::Value => staunch_runtime::ops::convert_value(*it, lane),
-                    Conversion::Truncate => staunch_runtime::ops::trunc_value(*it, lane),
-                };
-                Expr::new(ty, ExprKind::Const(converted), at)
-            }
-            (ExprKind::Text(bytes), Type::String(capacity), _) => {
-                let mut bytes = bytes.clone();
-                bytes.truncate(usize::from(capacity));
-                Expr::new(ty, ExprKind::Text(bytes), at)
-            }
-            _ => Expr::convert(how, ty, value, at),
+        let expr = Expr::convert(how, ty, value, at);
+        match staunch_ir::interpret::fold(&expr) {
+            Some(Ok(value)) => constant(expr, value),
+            Some(Err(_)) | None => expr,
         }
     }
 

@@ -2,7 +2,7 @@ use super::Checker;
 use super::operand::Operand;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, UnaryOp};
-use staunch_ir::{Conversion, Elementary, Expr, ExprKind, Op, Type, Value};
+use staunch_ir::{Const, Conversion, Elementary, Expr, ExprKind, Op, Type, Value};
 
 impl<'s> Checker<'_, 's> {
     /// Types an expression. `expected` is what its place asks for; only literals, bare
@@ -82,13 +82,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// Reads a CONSTANT: a scalar is its value, so that it can size an array or label a CASE.
-    fn constant_variable(
-        &mut self,
-        variable: &crate::declare::Variable<'s>,
-        value: staunch_ir::Const,
-        span: Span,
-    ) -> Option<Expr> {
-        use staunch_ir::Const;
+    fn constant_variable(&mut self, variable: &crate::declare::Variable<'s>, value: Const, span: Span) -> Option<Expr> {
         let at = self.at(span);
         let ty = variable.resolved.ty.read();
         let kind = match (value, self.decl.program.lane(ty), ty) {
@@ -221,20 +215,27 @@ impl<'s> Checker<'_, 's> {
         }
         let at = self.at(span);
         let lane = self.decl.program.lane(operands)?;
-        let constants: Option<Vec<_>> = values.iter().map(Expr::as_const).collect();
-        match constants.and_then(|it| staunch_ir::apply(op, lane, &it)) {
-            Some(Ok(value)) => Some(Expr::new(result, ExprKind::Const(value), at)),
+        if !op.allows(lane) {
+            return None;
+        }
+        if values.iter().any(|it| it.as_const().is_none()) {
+            self.constant_zero_divisor(op, &values, span);
+        }
+        self.evaluated(Expr::apply(op, result, values, at), span)
+    }
+
+    /// An operation on constants as its value: what it gives at run time.
+    pub(super) fn evaluated(&mut self, expr: Expr, span: Span) -> Option<Expr> {
+        match staunch_ir::interpret::fold(&expr) {
+            Some(Ok(value)) => Some(constant(expr, value)),
             Some(Err(fault)) => {
                 self.report(
-                    Diagnostic::new(Code::E0207, span, format!("{fault} in a constant expression"))
+                    Diagnostic::new(Code::E0207, span, format!("{} in a constant expression", fault.kind))
                         .label("this would fault in every scan"),
                 );
                 None
             }
-            None => {
-                self.constant_zero_divisor(op, &values, span);
-                Some(Expr::apply(op, result, values, at))
-            }
+            None => Some(expr),
         }
     }
 
@@ -265,4 +266,14 @@ impl<'s> Checker<'_, 's> {
             self.report(Diagnostic::new(Code::E0207, span, "division by zero").label("the divisor is the constant 0"));
         }
     }
+}
+
+/// The expression with its value in its place.
+pub(super) fn constant(expr: Expr, value: Const) -> Expr {
+    let kind = match value {
+        Const::Scalar(value) => ExprKind::Const(value),
+        Const::Text(bytes) => ExprKind::Text(bytes),
+        aggregate @ (Const::Zero | Const::Array(_) | Const::Struct(_)) => ExprKind::Aggregate(aggregate),
+    };
+    Expr { kind, ..expr }
 }

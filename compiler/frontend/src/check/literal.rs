@@ -1,9 +1,10 @@
 use super::Checker;
-use super::operand::{Operand, to_f64};
+use super::operand::Operand;
+use super::real::Real;
 use crate::names::Key;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::LiteralValue;
-use staunch_ir::{Elementary, Expr, ExprKind, Type, Value};
+use staunch_ir::{Elementary, Expr, ExprKind, Op, Type, Value};
 
 impl<'s> Checker<'_, 's> {
     pub(super) fn literal(&mut self, literal: &ast::Literal<'s>, span: Span) -> Option<Operand> {
@@ -20,10 +21,7 @@ impl<'s> Checker<'_, 's> {
         match value {
             LiteralValue::Bool(it) => typed(Elementary::Bool, Value::Bool(*it)),
             LiteralValue::Integer { value, .. } => Some(Operand::Integer(i128::from(*value))),
-            LiteralValue::Real(digits) => {
-                let value = digits.parse().unwrap_or(f64::INFINITY);
-                Some(Operand::Real { value, digits: Some(digits.to_string()) })
-            }
+            LiteralValue::Real(digits) => Some(Operand::Real { number: Real::Literal(digits.to_string()) }),
             LiteralValue::Time { nanoseconds, long } => {
                 let ty = if *long { Elementary::Ltime } else { Elementary::Time };
                 typed(ty, Value::I64(*nanoseconds))
@@ -168,20 +166,19 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    /// Arithmetic on untyped numbers is exact.
+    /// Arithmetic on integers without a type is exact; with a fraction it waits for its type.
     pub(super) fn fold_untyped(&mut self, op: ast::BinaryOp, a: &Operand, b: &Operand, span: Span) -> Option<Operand> {
         if let (Operand::Integer(a), Operand::Integer(b)) = (a, b) {
             return self.fold_integers(op, *a, *b, span);
         }
-        let (a, b) = (number(a)?, number(b)?);
-        let value = match op {
-            ast::BinaryOp::Add => a + b,
-            ast::BinaryOp::Sub => a - b,
-            ast::BinaryOp::Mul => a * b,
-            ast::BinaryOp::Div => a / b,
+        let op = match op {
+            ast::BinaryOp::Add => Op::Add,
+            ast::BinaryOp::Sub => Op::Sub,
+            ast::BinaryOp::Mul => Op::Mul,
+            ast::BinaryOp::Div => Op::Div,
             _ => return None,
         };
-        Some(Operand::Real { value, digits: None })
+        Some(Operand::Real { number: Real::Apply(op, vec![number(a)?, number(b)?]) })
     }
 
     fn fold_integers(&mut self, op: ast::BinaryOp, a: i128, b: i128, span: Span) -> Option<Operand> {
@@ -205,10 +202,10 @@ impl<'s> Checker<'_, 's> {
     }
 }
 
-fn number(operand: &Operand) -> Option<f64> {
+fn number(operand: &Operand) -> Option<Real> {
     match operand {
         Operand::Typed(_) => None,
-        Operand::Integer(value) => Some(to_f64(*value)),
-        Operand::Real { value, .. } => Some(*value),
+        Operand::Integer(value) => Some(Real::Literal(value.to_string())),
+        Operand::Real { number } => Some(number.clone()),
     }
 }

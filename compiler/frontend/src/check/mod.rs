@@ -18,6 +18,7 @@ mod operator;
 mod overload;
 mod place;
 mod prescan;
+mod real;
 mod standard;
 mod statement;
 mod text_order;

@@ -1,18 +1,18 @@
 //! Operands: typed expressions, and literals that take the type of their place.
 
 use super::Checker;
+use super::real::Real;
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{Elementary, Expr, Type, Value};
+use staunch_ir::{Elementary, Expr, Op, Type, Value};
 
 /// A checked expression, or a number that no type has been asked of yet.
 #[derive(Clone, Debug)]
 pub(super) enum Operand {
     Typed(Expr),
     Integer(i128),
-    /// The digits as spelled are kept, so that a REAL is rounded once.
+    /// With a fraction.
     Real {
-        value: f64,
-        digits: Option<String>,
+        number: Real,
     },
 }
 
@@ -21,7 +21,7 @@ impl Operand {
     pub fn negated(self) -> Self {
         match self {
             Self::Integer(value) => Self::Integer(-value),
-            Self::Real { value, digits } => Self::Real { value: -value, digits: digits.map(|it| format!("-{it}")) },
+            Self::Real { number } => Self::Real { number: Real::Apply(Op::Neg, vec![number]) },
             Self::Typed(value) => Self::Typed(value),
         }
     }
@@ -85,14 +85,14 @@ impl<'s> Checker<'_, 's> {
         let value = match operand {
             Operand::Typed(expr) => return Some(expr.clone()),
             Operand::Integer(value) => self.integer_as(*value, ty, span)?,
-            Operand::Real { value, digits } => self.real_as(*value, digits.as_deref(), ty, span)?,
+            Operand::Real { number } => self.real_as(number, ty, span)?,
         };
         Some(Expr::constant(ty, value, at))
     }
 
     fn integer_as(&mut self, value: i128, ty: Elementary, span: Span) -> Option<Value> {
         if ty.is_real() {
-            return self.real_as(to_f64(value), Some(&value.to_string()), ty, span);
+            return self.real_as(&Real::Literal(value.to_string()), ty, span);
         }
         if ty.is_time() {
             self.report(
@@ -134,48 +134,21 @@ impl<'s> Checker<'_, 's> {
         ty.lane().integer(value + high + 1)
     }
 
-    fn real_as(&mut self, value: f64, digits: Option<&str>, ty: Elementary, span: Span) -> Option<Value> {
-        let value = match ty {
-            Elementary::Lreal => Value::F64(value),
-            Elementary::Real => {
-                let short = match digits.and_then(|it| it.parse::<f32>().ok()) {
-                    Some(it) => it,
-                    None => narrow(value),
-                };
-                Value::F32(short)
-            }
-            other => {
-                self.report(
-                    Diagnostic::new(
-                        Code::E0203,
-                        span,
-                        format!("a number with a fraction does not fit {}", other.name()),
-                    )
-                    .label(format!("expected {}", other.name()))
-                    .help(format!("round it with `REAL_TO_{}(…)`, or cut it with `TRUNC(…)`", other.name())),
-                );
-                return None;
-            }
-        };
-        let infinite = match value {
-            Value::F32(it) => it.is_infinite(),
-            Value::F64(it) => it.is_infinite(),
-            _ => false,
-        };
-        if infinite && digits.is_some() {
+    fn real_as(&mut self, number: &Real, ty: Elementary, span: Span) -> Option<Value> {
+        if !ty.is_real() {
+            self.report(
+                Diagnostic::new(Code::E0203, span, format!("a number with a fraction does not fit {}", ty.name()))
+                    .label(format!("expected {}", ty.name()))
+                    .help(format!("round it with `REAL_TO_{}(…)`, or cut it with `TRUNC(…)`", ty.name())),
+            );
+            return None;
+        }
+        if !number.fits(ty.lane()) {
             self.error(Code::E0202, span, format!("this number is too large for {}", ty.name()));
             return None;
         }
-        Some(value)
+        number.value(ty.lane())
     }
-}
-
-fn narrow(value: f64) -> f32 {
-    staunch_runtime::ops::convert::<f64, f32>(value)
-}
-
-pub(super) fn to_f64(value: i128) -> f64 {
-    value.to_string().parse().unwrap_or(f64::INFINITY)
 }
 
 /// The expected type where the value fits it, else the smallest of INT, DINT, LINT, ULINT.

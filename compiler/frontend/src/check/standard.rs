@@ -266,7 +266,7 @@ impl<'s> Checker<'_, 's> {
             None => Type::String(text_capacity(op, &ready)),
         };
         let at = self.at(span);
-        Some(Expr::new(ty, ExprKind::ApplyText(op, ready), at))
+        self.evaluated(Expr::new(ty, ExprKind::ApplyText(op, ready), at), span)
     }
 
     fn concat(&mut self, operands: Vec<Expr>, span: Span) -> Option<Expr> {
@@ -276,6 +276,7 @@ impl<'s> Checker<'_, 's> {
         for operand in operands {
             let ty = Type::String(capacity(&result).saturating_add(capacity(&operand)).min(32767));
             let joined = Expr::new(ty, ExprKind::ApplyText(TextOp::Concat, vec![result, operand]), at);
+            let joined = self.evaluated(joined, span)?;
             result = self.shallow(joined);
         }
         Some(result)

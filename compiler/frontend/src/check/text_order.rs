@@ -9,6 +9,7 @@ impl Checker<'_, '_> {
     pub(super) fn compare_texts(&mut self, op: Op, a: Expr, b: Expr, span: Span) -> Option<Expr> {
         let at = self.at(span);
         let order = Expr::new(Type::INT, ExprKind::ApplyText(TextOp::Compare, vec![a, b]), at);
+        let order = self.evaluated(order, span)?;
         let zero = Expr::constant(Elementary::Int, Value::I16(0), at);
         self.apply(op, Type::INT, vec![order, zero], Type::BOOL, span)
     }

@@ -4,9 +4,14 @@ use super::evaluate::{Storage, scalar, text};
 use crate::{Const, Expr, ExprKind, Place, Type, Value};
 use staunch_runtime::Fault;
 
-/// The value of an expression that reads no place; `None` if it reads one.
+/// The value of a constant, or of an operation on constants; `None` for what is more than that.
 pub fn fold(expr: &Expr) -> Option<Result<Const, Fault>> {
-    reads_nothing(expr).then(|| constant(expr))
+    let known = match &expr.kind {
+        ExprKind::Apply(_, operands) | ExprKind::ApplyText(_, operands) => operands.iter().all(is_constant),
+        ExprKind::Convert(_, operand) => is_constant(operand),
+        ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) | ExprKind::Load(_) => is_constant(expr),
+    };
+    known.then(|| constant(expr))
 }
 
 fn constant(expr: &Expr) -> Result<Const, Fault> {
@@ -29,12 +34,10 @@ fn aggregate(expr: &Expr) -> Const {
     }
 }
 
-fn reads_nothing(expr: &Expr) -> bool {
+fn is_constant(expr: &Expr) -> bool {
     match &expr.kind {
         ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => true,
-        ExprKind::Load(_) => false,
-        ExprKind::Apply(_, operands) | ExprKind::ApplyText(_, operands) => operands.iter().all(reads_nothing),
-        ExprKind::Convert(_, operand) => reads_nothing(operand),
+        ExprKind::Load(_) | ExprKind::Apply(..) | ExprKind::ApplyText(..) | ExprKind::Convert(..) => false,
     }
 }
 
