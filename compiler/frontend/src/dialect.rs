@@ -62,6 +62,11 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
+    /// A POU's own EN and ENO are inputs and outputs like any other.
+    pub const fn declares_plain_enable(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
     /// Assigning an input from inside, or a FOR counter in its loop, is a lint, not an error.
     pub const fn assigns_inputs(self) -> bool {
         matches!(self, Self::Codesys)

@@ -29,6 +29,7 @@ pub mod visit;
 mod print;
 pub mod verify;
 
+pub mod alias;
 pub mod interpret;
 pub mod layout;
 pub mod loops;

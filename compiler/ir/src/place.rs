@@ -53,6 +53,14 @@ impl Place {
         self
     }
 
+    /// The indices on the way, from left to right.
+    pub fn indices(&self) -> impl Iterator<Item = &Expr> {
+        self.projections.iter().filter_map(|it| match it {
+            Projection::Index { index, .. } => Some(&**index),
+            Projection::Field(_) => None,
+        })
+    }
+
     /// Whether both are one variable, or one member of it. Places with subscripts are not compared.
     pub fn is_same_variable(&self, other: &Self) -> bool {
         let field = |it: &Projection| match it {

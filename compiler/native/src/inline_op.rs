@@ -38,7 +38,8 @@ const INLINE: &[(Op, Emit)] = &[
     (Op::Min, min),
     (Op::Limit, limit),
     (Op::Sel, |f, o| f.ins().select(o.values[0], o.values[2], o.values[1])),
-    (Op::InRange, in_range),
+    (Op::InRange, |f, o| within(f, o, FaultKind::SubrangeViolated)),
+    (Op::CheckIndex, |f, o| within(f, o, FaultKind::IndexOutOfRange)),
 ];
 
 /// What emits `op` in place.
@@ -264,11 +265,11 @@ fn limit(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
     f.ins().select(is_below, min, lowered)
 }
 
-fn in_range(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
+fn within(f: &mut Function<'_, '_>, o: &Operands, fault: FaultKind) -> Clif {
     let (min, value, max) = (o.values[0], o.values[1], o.values[2]);
     let is_below = less(f, o.lane, value, min);
     let is_above = less(f, o.lane, max, value);
     let is_outside = f.ins().bor(is_below, is_above);
-    f.fault_if(is_outside, FaultKind::SubrangeViolated, o.at);
+    f.fault_if(is_outside, fault, o.at);
     value
 }

@@ -92,7 +92,8 @@ impl Function<'_> {
             | Op::Min
             | Op::Limit
             | Op::Sel
-            | Op::InRange => self.call_op(expr, op, operands),
+            | Op::InRange
+            | Op::CheckIndex => self.call_op(expr, op, operands),
         }
     }
 

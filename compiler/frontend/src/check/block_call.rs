@@ -1,11 +1,14 @@
 //! Calls of instances: standard blocks, a user's FUNCTION_BLOCKs, and Logix instructions.
 
 use super::Checker;
+use super::argument::{Parts, Role, Source, as_written};
 use super::call::{Given, Parameter};
+use super::order::{Held, Written};
 use super::place::Found;
-use crate::declare::{Formal, Target, pin_place};
+use crate::declare::{Target, pin_place};
+use crate::diagnostic::wording::article;
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{Argument, BlockId, Expr, FieldId, Place, PouId, Section, StatementKind, StructId, Type};
+use staunch_ir::{BlockId, Expr, FieldId, Place, PouId, Section, StatementKind, StructId, Type};
 use staunch_runtime::{Direction, Family};
 
 impl<'s> Checker<'_, 's> {
@@ -70,13 +73,9 @@ impl<'s> Checker<'_, 's> {
         if info.instructions.iter().any(|it| !it.name.is_empty()) {
             let names: Vec<_> = info.instructions.iter().map(|it| it.name).collect();
             self.report(
-                Diagnostic::new(
-                    Code::E0305,
-                    callee,
-                    format!("{} is not called itself", crate::diagnostic::wording::article(info.name)),
-                )
-                .label(format!("it is worked on by {}", crate::diagnostic::wording::list(&names)))
-                .help(format!("write `{}({}, …)`", names[0], self.decl.sources.text(callee))),
+                Diagnostic::new(Code::E0305, callee, format!("{} is not called itself", article(info.name)))
+                    .label(format!("it is worked on by {}", crate::diagnostic::wording::list(&names)))
+                    .help(format!("write `{}({}, …)`", names[0], self.decl.sources.text(callee))),
             );
             return None;
         }
@@ -94,90 +93,61 @@ impl<'s> Checker<'_, 's> {
         let moved = self.arguments_by_own_names(id, arguments);
         let arguments = moved.as_deref().unwrap_or(arguments);
         let given = self.bind(info.name, &parameters, arguments, |name| super::unknown::unknown_pin(id, name))?;
-        let mut place = found.place;
-        let mut inputs: Vec<Expr> = Vec::new();
-        let mut outputs = Vec::new();
-        let mut rcv = None;
+        let mut parts = Parts::default();
+        let place = found.place;
+        parts.push(Held::Place(place.clone()), Role::Instance, callee);
         let mut complete = true;
-        for (parameter, given) in parameters.iter().zip(given) {
-            match (parameter.section, given) {
-                (Section::InOut, given) => rcv = Some(given),
-                (Section::Output, Given::Output { target: Some(target), negated }) => {
-                    outputs.push((parameter.name, target, negated));
+        let mut inputs = vec![None; info.inputs().count()];
+        for at in as_written(&given) {
+            let parameter = &parameters[at];
+            let made = match given[at] {
+                Given::Value(expr) if parameter.section == Section::InOut => {
+                    self.count_part(&mut parts, &place, id, expr)
                 }
-                (Section::Output, _) => {}
-                (_, given) => match self.pin_input(&mut place, &mut inputs, id, parameter.name, given, span) {
-                    Some(value) => inputs.push(value),
-                    None => complete = false,
-                },
-            }
+                Given::Value(expr) => {
+                    let number = info.inputs().position(|it| it.name == parameter.name)?;
+                    inputs[number] = Some(parts.written.len());
+                    let (_, ty) = pin(id, parameter.name)?;
+                    self.value_part(&mut parts, expr, ty, Role::Passed(1 + number))
+                }
+                Given::Output { target: Some(target), negated } => {
+                    let (field, ty) = pin(id, parameter.name)?;
+                    self.target_part(&mut parts, target, negated, Source::Field(field, ty))
+                }
+                Given::Nothing | Given::Output { target: None, .. } => Some(()),
+            };
+            complete &= made.is_some();
+        }
+        if keeps_count && !parameters.iter().zip(&given).any(|(it, given)| is_given(it, given)) {
+            self.report_no_count(callee);
+            return None;
         }
         if !complete {
             return None;
         }
-        let kept = match rcv {
-            Some(given) => Some(self.retained_count(&place, given, callee)?),
-            None => None,
+        let at = self.at(span);
+        // What is left out holds what it was given last.
+        let kept = |place: &Place, pin: usize| {
+            let name = info.inputs().nth(pin).map(|it| it.name)?;
+            Some(Expr::load(pin_place(place.clone(), id, name), at))
         };
-        self.push(StatementKind::CallBlock { block: place.clone(), instruction: 0, inputs }, span);
-        if let Some(kept) = kept {
-            let count = pin_place(place.clone(), id, "CV");
-            let at = self.at(span);
-            self.assign(kept, Expr::load(count, at), span);
-        }
-        for (name, target, negated) in outputs {
-            let at = info.pins.iter().position(|it| it.name == name)?;
-            let source = pin_place(place.clone(), id, info.pins[at].name);
-            self.connect_output(source, target, negated)?;
-        }
-        Some(())
+        let call = |parts: &Parts| {
+            let block = parts.instance()?.clone();
+            let value = |(pin, part): (usize, &Option<usize>)| match part {
+                Some(at) => parts.written[*at].value().cloned(),
+                None => kept(&block, pin),
+            };
+            let inputs = inputs.iter().enumerate().map(value).collect::<Option<_>>()?;
+            Some(StatementKind::CallBlock { block, instruction: 0, inputs })
+        };
+        self.perform(parts, &call, span).map(drop)
     }
 
-    /// The value for one input pin: the argument, or what the pin holds from the last call.
-    fn pin_input(
-        &mut self,
-        place: &mut Place,
-        before: &mut [Expr],
-        id: BlockId,
-        name: &str,
-        given: Given<'_, 's>,
-        span: Span,
-    ) -> Option<Expr> {
-        let pins = id.info().pins;
-        let at = pins.iter().position(|it| it.name == name)?;
-        let ty = id.pin_type(FieldId::next(at))?;
-        match given {
-            Given::Value(expr) => {
-                let mut done: Vec<&mut Expr> = Vec::new();
-                for projection in &mut place.projections {
-                    if let staunch_ir::Projection::Index { index, .. } = projection {
-                        done.push(index);
-                    }
-                }
-                done.extend(before.iter_mut());
-                self.after(&mut done, |this| this.value(expr, ty))
-            }
-            Given::Nothing | Given::Output { .. } => {
-                let at_location = self.at(span);
-                Some(Expr::load(place.clone().field(FieldId::next(at), ty), at_location))
-            }
-        }
-    }
-
-    /// `OUT => target`, after the call.
-    pub(super) fn connect_output(&mut self, source: Place, target: &ast::Expr<'s>, negated: bool) -> Option<()> {
-        let found = self.place(target)?;
-        if !self.writable(&found, target.span) {
-            return None;
-        }
-        let at = self.at(target.span);
-        let mut value = Expr::load(source, at).read();
-        if negated {
-            value = self.not(value, target.span)?;
-        }
-        let value = self.coerce(super::operand::Operand::Typed(value), found.place.ty, target.span)?;
-        self.note_assigned(&found.place, target.span);
-        self.assign(found.place, value, target.span);
+    /// Evaluates the next part, the variable that keeps a counter's count.
+    fn count_part(&mut self, parts: &mut Parts, counter: &Place, id: BlockId, expr: &ast::Expr<'s>) -> Option<()> {
+        let kept = self.after_parts(&mut parts.written, |this| this.retained_count(counter, expr))?;
+        let (field, ty) = pin(id, "CV")?;
+        parts.push(Held::Place(kept), Role::Count(field, ty), expr.span);
         Some(())
     }
 
@@ -198,53 +168,42 @@ impl<'s> Checker<'_, 's> {
         let parameters: Vec<_> =
             formals.iter().map(|it| Parameter { name: it.name.text, section: it.section }).collect();
         let given = self.bind(owner, &parameters, arguments, |name| Self::unknown_formal(owner, formals, name))?;
-        let mut place = found.place;
-        let mut inputs: Vec<Expr> = Vec::new();
-        let mut assigned = Vec::new();
-        let mut references = Vec::new();
-        let copies = self.copies_back.len();
-        let mut outputs = Vec::new();
+        let mut parts = Parts::default();
+        parts.push(Held::Place(found.place), Role::Instance, callee);
+        let mut references = vec![None; formals.len()];
         let mut complete = true;
-        for (formal, given) in formals.iter().zip(given) {
-            match (formal.section, given) {
-                (Section::Output, Given::Output { target: Some(target), negated }) => {
-                    outputs.push((formal, target, negated))
+        for at in as_written(&given) {
+            let formal = &formals[at];
+            let ty = formal.resolved.ty;
+            let made = match (formal.target, given[at]) {
+                (Target::Field(field), Given::Output { target: Some(target), negated }) => {
+                    self.target_part(&mut parts, target, negated, Source::Field(field, ty))
                 }
-                (Section::Output, _) => {}
-                (Section::InOut, given) => match self.in_out(formal, owner, given, callee) {
-                    Some(place) => references.push(Argument::Reference(place)),
-                    None => complete = false,
-                },
-                (_, Given::Value(expr)) => {
-                    let ty = formal.resolved.ty;
-                    let mut done: Vec<&mut Expr> = index_exprs(&mut place);
-                    done.extend(inputs.iter_mut());
-                    match self.after(&mut done, |this| this.value(expr, ty)) {
-                        Some(value) => {
-                            inputs.push(value);
-                            assigned.push((formal, expr.span));
-                        }
-                        None => complete = false,
-                    }
+                (Target::Field(field), Given::Value(expr)) => {
+                    self.value_part(&mut parts, expr, ty, Role::Stored(field, ty))
                 }
-                (_, Given::Nothing | Given::Output { .. }) => {}
-            }
+                (Target::Param(_), Given::Value(expr)) => {
+                    references[at] = Some(parts.written.len());
+                    self.in_out_part(&mut parts, formal, 1 + at, expr)
+                }
+                (_, Given::Nothing | Given::Output { .. }) => Some(()),
+            };
+            complete &= made.is_some();
+        }
+        let in_outs = || (0..formals.len()).filter(|it| formals[*it].section == Section::InOut);
+        for at in in_outs().filter(|it| matches!(given[*it], Given::Nothing)) {
+            self.report_no_variable(&formals[at], owner, callee);
+            complete = false;
         }
         if !complete {
             return None;
         }
-        self.assign_inputs(&place, inputs, &assigned);
-        let instance = Some(place.clone());
-        self.push(
-            StatementKind::Call { callee: PouId::next(slot), instance, arguments: references, result: None },
-            span,
-        );
-        self.block.extend(self.copies_back.split_off(copies));
-        for (formal, target, negated) in outputs {
-            let Target::Field(field) = formal.target else { continue };
-            self.connect_output(place.clone().field(field, formal.resolved.ty), target, negated)?;
-        }
-        Some(())
+        let call = |parts: &Parts| {
+            let arguments = in_outs().map(|it| Some(parts.argument(references[it]?))).collect::<Option<_>>()?;
+            let instance = Some(parts.instance()?.clone());
+            Some(StatementKind::Call { callee: PouId::next(slot), instance, arguments, result: None })
+        };
+        self.perform(parts, &call, span).map(drop)
     }
 
     /// The arguments but those for parameters whose declarations were refused; `None` where it is not
@@ -272,100 +231,6 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    /// All arguments are evaluated before the first is assigned: one may read the instance.
-    fn assign_inputs(&mut self, place: &Place, inputs: Vec<Expr>, formals: &[(&Formal<'s>, Span)]) {
-        let several = inputs.len() > 1;
-        let mut ready = Vec::new();
-        for (value, (_, span)) in inputs.into_iter().zip(formals) {
-            if several && reads(&value, place) {
-                let saved = self.temporary("argument", value.ty);
-                let at = value.at;
-                self.assign(saved.clone(), value, *span);
-                ready.push(Expr::load(saved, at));
-            } else {
-                ready.push(value);
-            }
-        }
-        for (value, (formal, span)) in ready.into_iter().zip(formals) {
-            let Target::Field(field) = formal.target else { continue };
-            self.assign(place.clone().field(field, formal.resolved.ty), value, *span);
-        }
-    }
-
-    /// The variable given for a VAR_IN_OUT.
-    pub(super) fn in_out(
-        &mut self,
-        formal: &Formal<'s>,
-        owner: &str,
-        given: Given<'_, 's>,
-        span: Span,
-    ) -> Option<Place> {
-        let name = formal.name.text;
-        let Given::Value(expr) = given else {
-            self.report(
-                Diagnostic::new(Code::E0303, span, format!("`{owner}` needs a variable for `{name}`"))
-                    .label("a VAR_IN_OUT is given at every call")
-                    .other(formal.name.span, "declared here")
-                    .help(format!("write `{name} := variable`")),
-            );
-            return None;
-        };
-        let found = self.variable_argument(expr, name)?;
-        if let (Type::String(_), Type::String(_)) = (found.place.ty, formal.resolved.ty)
-            && found.place.ty != formal.resolved.ty
-        {
-            return Some(self.string_of_another_length(found.place, formal.resolved.ty, expr.span));
-        }
-        if found.place.ty != formal.resolved.ty {
-            let wants = self.type_name(formal.resolved.ty);
-            let has = self.type_name(found.place.ty);
-            self.report(
-                Diagnostic::new(
-                    Code::E0201,
-                    expr.span,
-                    format!("`{name}` is {}, found {has}", crate::diagnostic::wording::article(&wants)),
-                )
-                .label("a VAR_IN_OUT takes a variable of exactly its own type")
-                .other(formal.name.span, "declared here"),
-            );
-            return None;
-        }
-        self.note_passed(&found.place, expr.span, formal.name.span);
-        Some(found.place)
-    }
-
-    /// A string of another capacity goes in by a copy, cut where it is too long, and comes back so.
-    fn string_of_another_length(&mut self, place: Place, ty: Type, span: Span) -> Place {
-        self.note_assigned(&place, span);
-        let at = self.at(span);
-        let copy = self.temporary("text", ty);
-        let value = Expr::load(place.clone(), at);
-        let value = self.convert(staunch_ir::Conversion::Value, ty, value);
-        self.assign(copy.clone(), value, span);
-        let back = Expr::load(copy.clone(), at);
-        let back = self.convert(staunch_ir::Conversion::Value, place.ty, back);
-        self.copies_back.push(staunch_ir::Statement::assign(place, back, at));
-        copy
-    }
-
-    /// An argument that must be a variable which may be written.
-    pub(super) fn variable_argument(&mut self, expr: &ast::Expr<'s>, name: &str) -> Option<Found<'s>> {
-        use ast::ExprKind as Ast;
-        let names_storage = matches!(
-            expr.kind,
-            Ast::Name(_) | Ast::Member(..) | Ast::Index(..) | Ast::Address(_) | Ast::Paren(_) | Ast::Deref(_)
-        );
-        if !names_storage {
-            self.report(
-                Diagnostic::new(Code::E0306, expr.span, format!("`{name}` needs a variable"))
-                    .label("this is a value; the call writes to what is given here"),
-            );
-            return None;
-        }
-        let found = self.place(expr)?;
-        self.may_be_given_away(&found, expr.span).then_some(found)
-    }
-
     /// A Logix instruction on a structure: returns its rung-condition-out.
     pub(super) fn instruction(
         &mut self,
@@ -390,59 +255,91 @@ impl<'s> Checker<'_, 's> {
         })?;
         let Given::Value(tag) = given[0] else {
             self.report(
-                Diagnostic::new(
-                    Code::E0303,
-                    name.span,
-                    format!("`{}` needs {}", name.text, crate::diagnostic::wording::article(info.name)),
-                )
-                .help(format!("write `{}(Counter := tag, RungIn := condition)`", name.text)),
+                Diagnostic::new(Code::E0303, name.span, format!("`{}` needs {}", name.text, article(info.name)))
+                    .help(format!("write `{}(Counter := tag, RungIn := condition)`", name.text)),
             );
             return None;
         };
-        let mut found = self.variable_argument(tag, names[0])?;
-        if found.place.ty != Type::Block(id) {
-            let has = self.type_name(found.place.ty);
+        let mut parts = Parts::default();
+        let mut complete = true;
+        for at in as_written(&given) {
+            let made = match given[at] {
+                Given::Value(_) if at == 0 => self.tag_part(&mut parts, tag, id, name, names[0]),
+                Given::Value(rung) => self.value_part(&mut parts, rung, Type::BOOL, Role::Passed(1)),
+                Given::Nothing | Given::Output { .. } => Some(()),
+            };
+            complete &= made.is_some();
+        }
+        if let Some(Given::Nothing | Given::Output { .. }) = given.get(1) {
             self.report(
-                Diagnostic::new(
-                    Code::E0313,
-                    tag.span,
-                    format!("`{}` works on {}, found {has}", name.text, crate::diagnostic::wording::article(info.name)),
-                )
-                .label(format!("expected {}", crate::diagnostic::wording::article(info.name))),
+                Diagnostic::new(Code::E0303, name.span, format!("`{}` needs its rung condition", name.text))
+                    .help("write `RungIn := condition`; `RungIn := TRUE` for an unconditional rung"),
             );
             return None;
         }
-        let rung = match given.get(1) {
-            None => None,
-            Some(Given::Value(rung)) => {
-                let mut done = index_exprs(&mut found.place);
-                Some(self.after(&mut done, |this| this.value(rung, Type::BOOL))?)
-            }
-            Some(Given::Nothing | Given::Output { .. }) => {
-                self.report(
-                    Diagnostic::new(Code::E0303, name.span, format!("`{}` needs its rung condition", name.text))
-                        .help("write `RungIn := condition`; `RungIn := TRUE` for an unconditional rung"),
-                );
-                return None;
-            }
-        };
-        self.used_instruction(&found.place, instruction);
+        if !complete {
+            return None;
+        }
+        let tag = parts.written.iter().find_map(Written::place)?;
+        self.used_instruction(tag, instruction);
         let at = self.at(span);
-        let Some(rung) = rung else {
-            let enabled = pin_place(found.place.clone(), id, "EnableOut");
-            self.push(StatementKind::CallBlock { block: found.place, instruction, inputs: Vec::new() }, span);
-            return Some(Expr::load(enabled, at));
+        if takes_rung {
+            self.keep_rung(&mut parts, span);
+        }
+        let call = |parts: &Parts| {
+            let block = parts.written.iter().find_map(Written::place)?.clone();
+            let inputs = parts.written.iter().filter_map(Written::value).cloned().collect();
+            Some(StatementKind::CallBlock { block, instruction, inputs })
         };
-        // The rung condition is read again as the call's value.
-        let condition = if rung.as_const().is_some() {
-            rung
-        } else {
-            let saved = self.temporary("rung", Type::BOOL);
-            self.assign(saved.clone(), rung, span);
-            Expr::load(saved, at)
-        };
-        self.push(StatementKind::CallBlock { block: found.place, instruction, inputs: vec![condition.clone()] }, span);
-        Some(condition)
+        let parts = self.perform(parts, &call, span)?;
+        match parts.written.iter().find_map(Written::value) {
+            Some(rung) => Some(rung.clone()),
+            None => {
+                let tag = parts.written.iter().find_map(Written::place)?;
+                Some(Expr::load(pin_place(tag.clone(), id, "EnableOut"), at))
+            }
+        }
+    }
+
+    /// Evaluates the next part, the structure that an instruction works on.
+    fn tag_part(
+        &mut self,
+        parts: &mut Parts,
+        tag: &ast::Expr<'s>,
+        id: BlockId,
+        name: ast::Name<'s>,
+        parameter: &str,
+    ) -> Option<()> {
+        let found = self.after_parts(&mut parts.written, |this| this.variable_argument(tag, parameter))?;
+        if found.place.ty != Type::Block(id) {
+            let has = self.type_name(found.place.ty);
+            let wants = article(id.info().name);
+            self.report(
+                Diagnostic::new(Code::E0313, tag.span, format!("`{}` works on {wants}, found {has}", name.text))
+                    .label(format!("expected {wants}")),
+            );
+            return None;
+        }
+        parts.push(Held::Place(found.place), Role::Instance, tag.span);
+        Some(())
+    }
+
+    /// The rung condition is read again as the call's value.
+    fn keep_rung(&mut self, parts: &mut Parts, span: Span) {
+        let rung = parts.written.iter().position(|it| it.value().is_some_and(|it| it.as_const().is_none()));
+        let Some(rung) = rung else { return };
+        let (before, rest) = parts.written.split_at_mut(rung);
+        let [written, ..] = rest else { return };
+        let Held::Value(value) = &mut written.held else { return };
+        let saved = self.temporary("rung", Type::BOOL);
+        let at = value.at;
+        let value = std::mem::replace(value, Expr::load(saved.clone(), at));
+        // A tag that is written before it is evaluated before it.
+        let fault_first = self.can_fault(&value);
+        for part in before {
+            self.hold(&mut part.held, &[], fault_first);
+        }
+        self.assign(saved, value, span);
     }
 
     /// The statements that feed the triggers of R_EDGE and F_EDGE inputs.
@@ -469,30 +366,13 @@ fn section(direction: Direction) -> Section {
     }
 }
 
-fn index_exprs(place: &mut Place) -> Vec<&mut Expr> {
-    let mut found = Vec::new();
-    for projection in &mut place.projections {
-        if let staunch_ir::Projection::Index { index, .. } = projection {
-            found.push(index.as_mut());
-        }
-    }
-    found
+/// A pin of a standard block.
+fn pin(id: BlockId, name: &str) -> Option<(FieldId, Type)> {
+    let field = FieldId::next(id.info().pins.iter().position(|it| it.name == name)?);
+    Some((field, id.pin_type(field)?))
 }
 
-/// Whether `expr` may read the instance at `place`.
-fn reads(expr: &Expr, place: &Place) -> bool {
-    use staunch_ir::ExprKind;
-    match &expr.kind {
-        ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => false,
-        ExprKind::Load(it) => it.root == place.root && may_overlap(it, place),
-        ExprKind::Apply(_, operands) | ExprKind::ApplyText(_, operands) => operands.iter().any(|it| reads(it, place)),
-        ExprKind::Convert(_, inner) => reads(inner, place),
-    }
-}
-
-fn may_overlap(a: &Place, b: &Place) -> bool {
-    use staunch_ir::Projection;
-    let differs =
-        |pair: (&Projection, &Projection)| matches!(pair, (Projection::Field(x), Projection::Field(y)) if x != y);
-    !a.projections.iter().zip(&b.projections).any(differs)
+/// Whether a call gives the variable for a count.
+fn is_given(parameter: &Parameter<'_>, given: &Given<'_, '_>) -> bool {
+    parameter.section == Section::InOut && matches!(given, Given::Value(_))
 }

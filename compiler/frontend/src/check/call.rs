@@ -1,6 +1,7 @@
 //! Calls: what is called, and which argument goes to which parameter.
 
 use super::Checker;
+use super::enable::Enable;
 use super::operand::Operand;
 use crate::declare::{Entry, Formal};
 use crate::diagnostic::wording::list;
@@ -10,6 +11,7 @@ use ast::{ArgumentKind, ExprKind as Ast};
 use staunch_ir::{BlockId, Section, Type};
 
 /// What stands before the parentheses.
+#[derive(Clone, Copy)]
 pub(super) enum Callee<'s> {
     /// A user's FUNCTION, by its slot.
     Function(usize),
@@ -48,7 +50,15 @@ impl<'s> Checker<'_, 's> {
         arguments: &[ast::Argument<'s>],
         expected: Option<Type>,
     ) -> Option<Operand> {
-        match self.checked_callee(callee, arguments)? {
+        let what = self.checked_callee(callee, arguments)?;
+        if let Some((enable, rest)) = self.enable(&what, callee, arguments) {
+            let value = self.call_if_enabled(what, enable, callee, &rest, expected, expr.span)?;
+            if value.is_none() {
+                self.report_no_value(callee, expr.span);
+            }
+            return value.map(Operand::Typed);
+        }
+        match what {
             Callee::Standard(name) => self.standard_function(name, arguments, expected, expr.span),
             other => {
                 if self.signature.is_none() {
@@ -70,7 +80,15 @@ impl<'s> Checker<'_, 's> {
         callee: &ast::Expr<'s>,
         arguments: &[ast::Argument<'s>],
     ) {
-        match self.checked_callee(callee, arguments) {
+        let what = self.checked_callee(callee, arguments);
+        if let Some(what) = &what
+            && !matches!(what, Callee::Standard(_))
+            && let Some((enable, rest)) = self.enable(what, callee, arguments)
+        {
+            self.call_if_enabled(*what, enable, callee, &rest, None, expr.span);
+            return;
+        }
+        match what {
             Some(Callee::Standard(name)) => {
                 let value = self.standard_function(name, arguments, None, expr.span);
                 if value.is_none() {
@@ -87,6 +105,33 @@ impl<'s> Checker<'_, 's> {
             }
             None => {}
         }
+    }
+
+    /// A call with EN or ENO.
+    fn call_if_enabled(
+        &mut self,
+        what: Callee<'s>,
+        enable: Enable<'_, 's>,
+        callee: &ast::Expr<'s>,
+        arguments: &[ast::Argument<'s>],
+        expected: Option<Type>,
+        span: Span,
+    ) -> Option<Option<staunch_ir::Expr>> {
+        if self.signature.is_none() {
+            self.report(super::not_constant(span));
+            return None;
+        }
+        let initial = match what {
+            Callee::Function(slot) => self.initial_result(slot, span),
+            Callee::Standard(_) | Callee::Instruction(_) | Callee::Instance => None,
+        };
+        self.enabled_call(enable, initial, span, |this| match what {
+            Callee::Standard(name) => {
+                let value = this.standard_function(name, arguments, expected, span)?;
+                this.materialise(value, expected, span).map(Some)
+            }
+            Callee::Function(_) | Callee::Instruction(_) | Callee::Instance => this.call(what, callee, arguments, span),
+        })
     }
 
     fn call(

@@ -1,11 +1,21 @@
 //! Calls of a user's own functions.
 
 use super::Checker;
+use super::argument::{Parts, Role, Source, as_written};
 use super::call::{Given, Parameter};
-use crate::declare::{Entry, Formal, Signature};
+use crate::declare::{Entry, Formal, Resolved, Signature, Target};
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{Argument, Expr, ExprKind, Mode, PouId, Section, StatementKind, Type};
-use std::rc::Rc;
+use staunch_ir::{Argument, Expr, ExprKind, Mode, ParamId, Place, PouId, Root, Section, StatementKind};
+
+/// What is passed for one parameter.
+enum Passed {
+    /// What the call writes for it.
+    Part(usize),
+    /// The initial value of an input that is left out.
+    Default(Expr),
+    /// Storage for an output; the FUNCTION gives it its initial value.
+    Output(Place),
+}
 
 impl<'s> Checker<'_, 's> {
     pub(super) fn user_function(
@@ -22,74 +32,94 @@ impl<'s> Checker<'_, 's> {
             formals.iter().map(|it| Parameter { name: it.name.text, section: it.section }).collect();
         let given =
             self.bind(owner.text, &parameters, arguments, |name| Self::unknown_formal(owner.text, formals, name))?;
-        let mut passed: Vec<Argument> = Vec::new();
-        let copies = self.copies_back.len();
-        let mut outputs = Vec::new();
-        let mut complete = true;
-        for (at, (formal, given)) in formals.iter().zip(given).enumerate() {
-            match self.function_argument(&signature, at, formal, owner, given, span, &mut passed, &mut outputs) {
-                Some(argument) => passed.push(argument),
-                None => complete = false,
+        let mut parts = Parts::default();
+        let mut passed: Vec<Option<Passed>> = Vec::new();
+        passed.resize_with(formals.len(), || None);
+        for at in as_written(&given) {
+            let number = parts.written.len();
+            let made = match given[at] {
+                Given::Value(expr) => self.given_part(&mut parts, &signature, at, expr),
+                Given::Output { target: Some(target), negated } => {
+                    let place = self.temporary(formals[at].name.text, formals[at].resolved.ty);
+                    passed[at] = Some(Passed::Output(place.clone()));
+                    self.target_part(&mut parts, target, negated, Source::Variable(place))
+                }
+                Given::Nothing | Given::Output { target: None, .. } => None,
+            };
+            if made.is_some() && passed[at].is_none() {
+                passed[at] = Some(Passed::Part(number));
+            } else if made.is_none() {
+                passed[at] = None;
             }
+        }
+        let mut complete = true;
+        for at in 0..formals.len() {
+            if let Given::Nothing | Given::Output { target: None, .. } = given[at] {
+                passed[at] = self.left_out(&signature, at, owner, span);
+            }
+            complete &= passed[at].is_some();
         }
         if !complete {
             return None;
         }
         let result = signature.result.as_ref().map(|(_, resolved)| self.temporary(owner.text, resolved.ty));
-        self.push(
-            StatementKind::Call {
-                callee: PouId::next(slot),
-                instance: None,
-                arguments: passed,
-                result: result.clone(),
-            },
-            span,
-        );
-        self.block.extend(self.copies_back.split_off(copies));
-        for (source, target, negated) in outputs {
-            self.connect_output(source, target, negated)?;
-        }
+        let call = |parts: &Parts| {
+            let argument = |it: &Option<Passed>| {
+                Some(match it.as_ref()? {
+                    Passed::Part(at) => parts.argument(*at),
+                    Passed::Default(value) => Argument::Value(value.clone()),
+                    Passed::Output(place) => Argument::Reference(place.clone()),
+                })
+            };
+            let arguments = passed.iter().map(argument).collect::<Option<_>>()?;
+            let result = result.clone();
+            Some(StatementKind::Call { callee: PouId::next(slot), instance: None, arguments, result })
+        };
+        self.perform(parts, &call, span)?;
         let at = self.at(span);
         Some(result.map(|place| Expr::load(place, at)))
     }
 
-    #[expect(clippy::too_many_arguments, reason = "one step of a loop, named for its length")]
-    fn function_argument<'a>(
+    /// The statements that give a FUNCTION's outputs their initial values: it keeps none from its last call.
+    pub(super) fn initial_outputs(&mut self, signature: &Signature<'s>) {
+        for formal in signature.formals.iter().filter(|it| it.section == Section::Output) {
+            if let Target::Param(at) = formal.target {
+                let target = Place::root(Root::Param(ParamId::next(at)), formal.resolved.ty);
+                let value = self.initial_value(&formal.resolved, formal.name.span);
+                self.assign(target, value, formal.name.span);
+            }
+        }
+    }
+
+    /// Evaluates the next part, what is given for an input or a VAR_IN_OUT.
+    fn given_part(
         &mut self,
-        signature: &Rc<Signature<'s>>,
+        parts: &mut Parts,
+        signature: &Signature<'s>,
         at: usize,
-        formal: &Formal<'s>,
-        owner: ast::Name<'s>,
-        given: Given<'a, 's>,
-        span: Span,
-        passed: &mut [Argument],
-        outputs: &mut Vec<(staunch_ir::Place, &'a ast::Expr<'s>, bool)>,
-    ) -> Option<Argument> {
-        let ty = formal.resolved.ty;
+        expr: &ast::Expr<'s>,
+    ) -> Option<()> {
+        let formal = &signature.formals[at];
+        match signature.params[at].mode {
+            Mode::Value(_) => self.value_part(parts, expr, formal.resolved.ty, Role::Passed(1 + at)),
+            Mode::Reference => self.in_out_part(parts, formal, 1 + at, expr),
+        }
+    }
+
+    /// What is passed for a parameter that a call does not name.
+    fn left_out(&mut self, signature: &Signature<'s>, at: usize, owner: ast::Name<'s>, span: Span) -> Option<Passed> {
+        let formal = &signature.formals[at];
         match (signature.params[at].mode, formal.section) {
             (Mode::Value(_), _) => {
-                let Given::Value(expr) = given else {
-                    self.input_left_out(formal, owner, span)?;
-                    return Some(Argument::Value(self.default_argument(formal, span)));
-                };
-                let mut done = expressions(passed);
-                self.after(&mut done, |this| this.value(expr, ty)).map(Argument::Value)
+                self.input_left_out(formal, owner, span)?;
+                Some(Passed::Default(self.initial_value(&formal.resolved, span)))
             }
             (Mode::Reference, Section::Output) => {
-                let place = self.temporary(formal.name.text, ty);
-                if let Given::Output { target: Some(target), negated } = given {
-                    outputs.push((place.clone(), target, negated));
-                }
-                Some(Argument::Reference(place))
+                Some(Passed::Output(self.temporary(formal.name.text, formal.resolved.ty)))
             }
             (Mode::Reference, _) => {
-                let mut place = None;
-                let mut done = expressions(passed);
-                self.after(&mut done, |this| {
-                    place = this.in_out(formal, owner.text, given, span);
-                    Some(())
-                })?;
-                place.map(Argument::Reference)
+                self.report_no_variable(formal, owner.text, span);
+                None
             }
         }
     }
@@ -127,35 +157,25 @@ impl<'s> Checker<'_, 's> {
         given || !matches!(formal.resolved.initial, staunch_ir::Const::Zero)
     }
 
-    /// An omitted input has its declared initial value.
-    fn default_argument(&mut self, formal: &Formal<'s>, span: Span) -> Expr {
+    /// What a FUNCTION's result starts with.
+    pub(super) fn initial_result(&mut self, slot: usize, span: Span) -> Option<Expr> {
+        let signature = self.decl.signature(slot)?;
+        let (_, resolved) = signature.result.as_ref()?;
+        Some(self.initial_value(resolved, span))
+    }
+
+    /// What a variable starts with.
+    pub(super) fn initial_value(&mut self, resolved: &Resolved, span: Span) -> Expr {
         use staunch_ir::Const;
         let at = self.at(span);
-        let ty = formal.resolved.ty;
-        let kind = match (&formal.resolved.initial, self.decl.program.lane(ty), ty) {
+        let ty = resolved.ty;
+        let kind = match (&resolved.initial, self.decl.program.lane(ty), ty) {
             (Const::Scalar(value), _, _) => ExprKind::Const(*value),
             (Const::Zero, Some(lane), _) => ExprKind::Const(lane.zero()),
             (Const::Text(bytes), _, _) => ExprKind::Text(bytes.clone()),
-            (Const::Zero, None, Type::String(_)) => ExprKind::Text(Vec::new()),
+            (Const::Zero, None, staunch_ir::Type::String(_)) => ExprKind::Text(Vec::new()),
             (other, _, _) => ExprKind::Aggregate(other.clone()),
         };
         Expr::new(ty, kind, at)
     }
-}
-
-fn expressions(arguments: &mut [Argument]) -> Vec<&mut Expr> {
-    let mut found = Vec::new();
-    for argument in arguments {
-        match argument {
-            Argument::Value(expr) => found.push(expr),
-            Argument::Reference(place) => {
-                for projection in &mut place.projections {
-                    if let staunch_ir::Projection::Index { index, .. } = projection {
-                        found.push(index);
-                    }
-                }
-            }
-        }
-    }
-    found
 }

@@ -77,7 +77,7 @@ impl<'s> Checker<'_, 's> {
             self.loop_body(body);
             return None;
         };
-        self.counters.push(head.counter.clone());
+        self.counters.push(head.clone());
         head.body = self.loop_body(body);
         self.counters.pop();
         let state = self.signature.as_ref().and_then(|it| it.state).filter(|_| head.counter.root == Root::Instance);

@@ -1,5 +1,6 @@
 //! One pass that types each expression and builds its IR node.
 
+mod argument;
 mod block_call;
 mod call;
 mod called;
@@ -7,6 +8,7 @@ mod case;
 mod chain;
 mod coerce;
 mod conversion;
+mod enable;
 mod expression;
 mod function;
 mod literal;
@@ -15,6 +17,7 @@ mod migration;
 mod never;
 mod operand;
 mod operator;
+mod order;
 mod overload;
 mod place;
 mod prescan;
@@ -34,9 +37,7 @@ pub(crate) use unknown::{block_of_another_dialect, no_such_block, not_constant};
 use crate::ast;
 use crate::declare::{Declarations, Resolved, Scope, Signature};
 use crate::{Bodies, Code, Diagnostic, Span};
-use staunch_ir::{
-    Block, Const, Expr, Local, LocalId, Location, Place, Pou, PouKind, Statement, StatementKind, Type, Variable,
-};
+use staunch_ir::{Block, Expr, For, Local, Location, Place, Pou, PouKind, Statement, StatementKind, Type, Variable};
 use std::rc::Rc;
 
 /// Checks the body of one POU, or one constant expression.
@@ -47,15 +48,13 @@ pub(crate) struct Checker<'d, 's> {
     /// The statements made so far for the innermost list; hoisted calls go to its end.
     block: Block,
     locals: Vec<Local>,
-    /// The counters of the FOR loops around the statement.
-    counters: Vec<Place>,
+    /// The FOR loops around the statement.
+    counters: Vec<For>,
     loops: usize,
     uses: Uses,
     context: Context,
     /// Instances called so far on the way to this statement.
     called: called::Called,
-    /// What is copied back behind the call that is being made.
-    copies_back: Block,
 }
 
 /// What a name of a variable stands for.
@@ -115,14 +114,15 @@ fn body<'s>(decl: &mut Declarations<'s>, at: usize, statements: &[ast::Statement
         uses: Uses::default(),
         context: Context::Body,
         called: called::Called::default(),
-        copies_back: Block::new(),
         decl,
     };
+    checker.initial_outputs(&signature);
+    checker.own_enable(&signature, pou.name.span);
     checker.edge_inputs(&signature, pou.name.span);
     let mut body = checker.block_of(statements);
     checker.migration_lints(statements);
-    let mut edges = std::mem::take(&mut checker.block);
-    edges.append(&mut body);
+    let mut whole = std::mem::take(&mut checker.block);
+    whole.append(&mut body);
     let uses = checker.finish_uses();
     let locals = std::mem::take(&mut checker.locals);
     checker.report_unused(&signature);
@@ -137,7 +137,7 @@ fn body<'s>(decl: &mut Declarations<'s>, at: usize, statements: &[ast::Statement
         locals,
         result: signature.result.as_ref().map(|(id, _)| *id),
         variables: variables(&signature),
-        body: edges,
+        body: whole,
         prescan: Block::new(),
     };
     Some((body, uses))
@@ -177,7 +177,6 @@ pub(crate) fn constant<'s>(
         loops: 0,
         uses: Uses::default(),
         called: called::Called::default(),
-        copies_back: Block::new(),
         context: if target.is_some() { Context::Initial } else { Context::Constant },
     };
     let value = match target {
@@ -255,46 +254,6 @@ impl<'s> Checker<'_, 's> {
         let outer = std::mem::take(&mut self.block);
         make(self);
         std::mem::replace(&mut self.block, outer)
-    }
-
-    /// A local that the source does not name.
-    fn temporary(&mut self, name: &str, ty: Type) -> Place {
-        let initial = self.decl.least(ty);
-        self.temporary_with(name, ty, initial)
-    }
-
-    fn temporary_with(&mut self, name: &str, ty: Type, initial: Const) -> Place {
-        let id = LocalId::next(self.locals.len());
-        self.locals.push(Local { name: name.to_owned(), ty, initial, doc: None });
-        Place::local(id, ty)
-    }
-
-    /// Runs `next`; if it hoisted a call, what was evaluated before it is saved first, so that
-    /// evaluation goes left to right.
-    fn after<T>(&mut self, done: &mut [&mut Expr], next: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
-        let mark = self.block.len();
-        let result = next(self);
-        if self.block.len() > mark {
-            let mut saved = Vec::new();
-            for expr in done.iter_mut().filter(|it| !is_constant(it)) {
-                let place = self.temporary("saved", expr.ty);
-                let at = expr.at;
-                let value = std::mem::replace(*expr, Expr::load(place.clone(), at));
-                saved.push(Statement::assign(place, value, at));
-            }
-            self.block.splice(mark..mark, saved);
-        }
-        result
-    }
-
-    /// As [`after`](Self::after), for the indices of a place that was evaluated before.
-    fn after_place<T>(&mut self, place: &mut Place, next: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
-        let indices = place.projections.iter_mut().filter_map(|it| match it {
-            staunch_ir::Projection::Index { index, .. } => Some(index.as_mut()),
-            staunch_ir::Projection::Field(_) => None,
-        });
-        let mut indices: Vec<_> = indices.collect();
-        self.after(&mut indices, next)
     }
 
     fn report_unused(&mut self, signature: &Signature<'s>) {

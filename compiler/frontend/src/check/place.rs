@@ -6,7 +6,7 @@ use crate::names::{Key, nearest};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::ExprKind as Ast;
 use staunch_ir::{
-    Address, Area, Array, ArrayId, BlockId, Elementary, Expr, FieldId, Op, Place, Section, StructId, Type, Value,
+    Address, Area, Array, ArrayId, BlockId, Elementary, Expr, FieldId, Op, Place, Section, StructId, Type, Value, alias,
 };
 use staunch_runtime::Direction;
 use std::rc::Rc;
@@ -485,8 +485,8 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn is_counter(&self, place: &Place) -> bool {
-        place.projections.iter().all(|it| matches!(it, staunch_ir::Projection::Field(_)))
-            && self.counters.iter().any(|it| it.is_same_variable(place))
+        let frame = self.frame();
+        self.counters.iter().any(|it| alias::alias(&frame, &it.counter, place) == alias::Alias::Must)
     }
 
     fn report_counter(&mut self, span: Span) -> bool {

@@ -1,7 +1,6 @@
 //! Notes which counters the first scan after a start, a restart or IDLE -> RUN prepares.
 
 use super::Checker;
-use super::call::Given;
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Expr, ExprKind, Location, Place, Projection, Root, Type};
 
@@ -44,16 +43,16 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
+    pub(super) fn report_no_count(&mut self, callee: Span) {
+        self.report(
+            Diagnostic::new(Code::E0303, callee, "a retentive counter needs a variable for `RCV`")
+                .label("it keeps the count there")
+                .help("declare `VAR RETAIN count : INT; END_VAR` and write `RCV := count`"),
+        );
+    }
+
     /// Checks the actual of RCV: a variable of its own, kept by RETAIN.
-    pub(super) fn retained_count(&mut self, counter: &Place, given: Given<'_, 's>, callee: Span) -> Option<Place> {
-        let Given::Value(expr) = given else {
-            self.report(
-                Diagnostic::new(Code::E0303, callee, "a retentive counter needs a variable for `RCV`")
-                    .label("it keeps the count there")
-                    .help("declare `VAR RETAIN count : INT; END_VAR` and write `RCV := count`"),
-            );
-            return None;
-        };
+    pub(super) fn retained_count(&mut self, counter: &Place, expr: &ast::Expr<'s>) -> Option<Place> {
         let found = self.variable_argument(expr, "RCV")?;
         if found.place.ty != Type::INT {
             let ty = self.type_name(found.place.ty);

@@ -212,6 +212,8 @@ impl<'s> Checker<'_, 's> {
         }
         let mut place = found.place;
         self.note_assigned(&place, target.span);
+        // The target is found first, as in an assignment, whether it is then written or not.
+        self.freeze(&mut place, &[], true);
         let condition = self.after_place(&mut place, |this| this.condition(value))?;
         let then = self.nested(|this| {
             let at = this.at(span);

@@ -1,3 +1,4 @@
+use super::Integer;
 use crate::FaultKind;
 
 /// The 0-based position of element `value` in an array whose subscripts are `low..=high`, else
@@ -16,4 +17,11 @@ pub fn index(value: i64, low: i64, high: i64) -> Result<usize, FaultKind> {
         // An array that fits the memory has no more elements than a `usize` counts.
         Ok(value.wrapping_sub(low) as usize)
     }
+}
+
+/// `value` if it lies in `low..=high`, else [`FaultKind::IndexOutOfRange`]: an index that is checked
+/// before its element is read or written.
+#[inline]
+pub fn checked_index<T: Integer>(low: T, value: T, high: T) -> Result<T, FaultKind> {
+    if value < low || value > high { Err(FaultKind::IndexOutOfRange) } else { Ok(value) }
 }

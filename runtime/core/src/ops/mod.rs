@@ -19,7 +19,7 @@ pub use bits::{and, not, or, rol, ror, sar, shl, shr, xor};
 pub use class::{Bits, Integer, Number, Real};
 pub use compare::{eq, ge, gt, le, lt, ne};
 pub use convert::{ConvertTo, TruncateTo, convert, convert_value, trunc, trunc_value};
-pub use index::index;
+pub use index::{checked_index, index};
 
 pub use math::{acos, asin, atan, atan2, cos, exp, expt, ln, log, sin, sqrt, tan};
 pub use select::{in_range, limit, max, min, sel};

@@ -1,0 +1,166 @@
+//! Whether two places name the same storage, and what follows from it: the one answer to the
+//! questions "may this write change what that reads" and "is this the same variable".
+//!
+//! Roots of one body keep apart, but for these: a by-reference parameter may stand for a global, for
+//! a part of the instance that its callers can name, and for what another parameter stands for; and
+//! the instance may itself lie in a global. Types decide those: what can be a part of what.
+
+use crate::visit::{self, Access};
+use crate::{Expr, Param, Place, Pou, Program, Projection, Root, Section, Statement, StatementKind, StructId, Type};
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Alias {
+    /// They share no byte, whatever the indices and parameters are.
+    No,
+    /// It depends on an index or on what a parameter stands for.
+    May,
+    /// One is the other or a part of it, whatever the indices are.
+    Must,
+}
+
+/// What a body's places are places of.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame<'p> {
+    pub program: &'p Program,
+    pub state: Option<StructId>,
+    pub params: &'p [Param],
+}
+
+impl<'p> Frame<'p> {
+    pub fn of(program: &'p Program, pou: &'p Pou) -> Self {
+        Self { program, state: pou.state, params: &pou.params }
+    }
+
+    /// The type of a root that other roots' storage may be a part of, or hold.
+    pub fn root_type(&self, root: Root) -> Option<Type> {
+        match root {
+            Root::Instance => self.state.map(Type::Struct),
+            Root::Globals => Some(Type::Struct(self.program.globals)),
+            Root::Param(id) => self.params.get(id.index()).map(|it| it.ty),
+            // A local is no part of anything else.
+            Root::Local(_) => None,
+        }
+    }
+
+    /// Whether only this body, and what it passes the place to, can write it: no POU calls itself.
+    pub fn is_private(&self, place: &Place) -> bool {
+        match (place.root, place.projections.first()) {
+            (Root::Local(_), _) => true,
+            (Root::Instance, Some(Projection::Field(id))) => self.state.is_some_and(|state| {
+                let field = &self.program.structure(state).fields[id.index()];
+                field.section == Section::Internal && field.address.is_none()
+            }),
+            (Root::Instance | Root::Globals | Root::Param(_), _) => false,
+        }
+    }
+
+    fn globals(&self) -> Place {
+        Place::root(Root::Globals, Type::Struct(self.program.globals))
+    }
+}
+
+/// How the storage of two places of one body relates.
+pub fn alias(frame: &Frame<'_>, a: &Place, b: &Place) -> Alias {
+    if a.root == b.root {
+        return paths(&a.projections, &b.projections);
+    }
+    let meet = match (frame.is_private(a), frame.is_private(b)) {
+        // No one else names a part of it.
+        (true, _) => lies_in(frame, a, b),
+        (_, true) => lies_in(frame, b, a),
+        (false, false) => lies_in(frame, a, b) || lies_in(frame, b, a),
+    };
+    if meet { Alias::May } else { Alias::No }
+}
+
+/// Whether the root of `a` may be an object on the way to `b`, or a part of it, so that they meet.
+fn lies_in(frame: &Frame<'_>, a: &Place, b: &Place) -> bool {
+    let (Some(root), Some(mut ty)) = (frame.root_type(a.root), frame.root_type(b.root)) else { return false };
+    for (at, projection) in b.projections.iter().enumerate() {
+        if is_same(frame.program, ty, root) && paths(&a.projections, &b.projections[at..]) != Alias::No {
+            return true;
+        }
+        match part_of(frame.program, ty, projection) {
+            Some(part) => ty = part,
+            None => return false,
+        }
+    }
+    holds(frame.program, ty, root)
+}
+
+fn part_of(program: &Program, ty: Type, projection: &Projection) -> Option<Type> {
+    match (projection, ty) {
+        (Projection::Field(field), ty) => program.member(ty, *field),
+        (Projection::Index { .. }, Type::Array(id)) => Some(program.array(id).element),
+        (Projection::Index { .. }, _) => None,
+    }
+}
+
+/// Two ways from one root.
+fn paths(a: &[Projection], b: &[Projection]) -> Alias {
+    let mut found = Alias::Must;
+    for pair in a.iter().zip(b) {
+        match pair {
+            (Projection::Field(a), Projection::Field(b)) if a == b => {}
+            (Projection::Index { index: a, .. }, Projection::Index { index: b, .. }) => {
+                match (a.as_const(), b.as_const()) {
+                    (Some(a), Some(b)) if a == b => {}
+                    (Some(_), Some(_)) => return Alias::No,
+                    (Some(_) | None, None) | (None, Some(_)) => found = Alias::May,
+                }
+            }
+            (Projection::Field(_), Projection::Field(_) | Projection::Index { .. })
+            | (Projection::Index { .. }, Projection::Field(_)) => return Alias::No,
+        }
+    }
+    found
+}
+
+/// Whether storage of one type is storage of the other. A pin's type may be said as another of its lane.
+fn is_same(program: &Program, a: Type, b: Type) -> bool {
+    a == b || program.lane(a).is_some_and(|lane| program.lane(b) == Some(lane))
+}
+
+/// Whether storage of a type is, or has in it, storage of another.
+fn holds(program: &Program, whole: Type, part: Type) -> bool {
+    let same = is_same(program, whole, part);
+    same || match whole {
+        Type::Array(id) => holds(program, program.array(id).element, part),
+        Type::Struct(id) => program.structure(id).fields.iter().any(|it| holds(program, it.ty, part)),
+        Type::Block(id) => {
+            let lane = program.lane(part);
+            id.info().pins.iter().any(|pin| Some(pin.ty.lane()) == lane)
+        }
+        Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => false,
+    }
+}
+
+/// Whether the value of `expr` may depend on what lies at `place`.
+pub fn reads(frame: &Frame<'_>, expr: &Expr, place: &Place) -> bool {
+    let mut found = false;
+    visit::reads(expr, &mut |it| found |= alias(frame, it, place) != Alias::No);
+    found
+}
+
+/// Whether the value of `expr` may depend on what a callee writes that is passed nothing.
+fn reads_shared(frame: &Frame<'_>, expr: &Expr) -> bool {
+    let globals = frame.globals();
+    let mut found = false;
+    visit::reads(expr, &mut |it| found |= !frame.is_private(it) && alias(frame, it, &globals) != Alias::No);
+    found
+}
+
+/// Whether running `block` may change the value of `expr`. A callee may write what it is passed and
+/// all that is global.
+pub fn changes(frame: &Frame<'_>, block: &[Statement], expr: &Expr) -> bool {
+    let mut found = false;
+    visit::statements(block, &mut |statement| {
+        let calls = matches!(statement.kind, StatementKind::Call { .. } | StatementKind::PrescanInstance { .. });
+        found |= calls && reads_shared(frame, expr);
+        visit::accesses(statement, &mut |place, access| found |= access != Access::Read && reads(frame, expr, place));
+    });
+    found
+}
+
+#[cfg(test)]
+mod tests;
