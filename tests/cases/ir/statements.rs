@@ -165,6 +165,7 @@ impl Default for Globals {
 
 /// FUNCTION Twice (statements.st:3)
 pub fn twice(x: i32, half: &mut i32, calls: &mut u16) -> Result<i32, Fault> {
+    *half = 0; // :5
     let result: i32 = x.wrapping_mul(2); // :7
     *half = ops::div(x, 2).at(STATEMENTS_ST, 8, 11)?; // :8
     *calls = calls.wrapping_add(1); // :9
