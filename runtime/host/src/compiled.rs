@@ -226,6 +226,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(miri, ignore = "it measures time")]
     fn an_executable_reports_as_the_command_does() {
         // SAFETY: as above.
         let code = unsafe { Code::new(MAP, init, scan) };

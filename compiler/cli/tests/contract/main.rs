@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used)]
 
 mod build;
+#[cfg(unix)]
+mod cache;
 mod check;
 mod retain;
 mod run;

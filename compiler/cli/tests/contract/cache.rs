@@ -1,0 +1,71 @@
+//! The folder of compiled programs: its user's alone, and no larger than it has to be.
+
+use super::{COUNTER, Folder, Ran, has};
+use std::fs;
+use std::os::unix::fs::{MetadataExt, PermissionsExt};
+use std::path::Path;
+use std::time::{Duration, SystemTime};
+
+const DAY: Duration = Duration::from_secs(24 * 60 * 60);
+
+fn run(folder: &Folder) -> Ran {
+    let mut command = folder.command("run main.st --scans 1 --quiet --backend rust");
+    Ran::of(command.env("STAUNCH_CACHE", folder.0.join("cache")).output().unwrap())
+}
+
+fn make(cache: &Path, mode: u32) {
+    let _ = fs::remove_dir_all(cache);
+    fs::create_dir(cache).unwrap();
+    fs::set_permissions(cache, fs::Permissions::from_mode(mode)).unwrap();
+}
+
+#[test]
+fn a_folder_that_others_may_write_is_refused() {
+    let folder = Folder::with("cache_shared", &[("main.st", COUNTER)]);
+    let cache = folder.0.join("cache");
+    for mode in [0o777, 0o770, 0o707, 0o1777, 0o722] {
+        make(&cache, mode);
+        has(&run(&folder).err(2), &["cache: other users may write to it", "set STAUNCH_CACHE"]);
+        assert_eq!(fs::read_dir(&cache).unwrap().count(), 0, "{mode:o}");
+    }
+    make(&cache, 0o700);
+    // Only the system's administrator can give a folder away, to show this.
+    if std::os::unix::fs::chown(&cache, Some(54321), None).is_ok() {
+        has(&run(&folder).err(2), &["it belongs to another user"]);
+    }
+}
+
+/// An entry of so many bytes that was last used so long ago.
+fn entry(cache: &Path, name: &str, size: u64, unused: Duration) {
+    let folder = cache.join(name);
+    fs::create_dir(&folder).unwrap();
+    fs::File::create(folder.join("program")).unwrap().set_len(size).unwrap();
+    fs::File::open(&folder).unwrap().set_modified(SystemTime::now() - unused).unwrap();
+}
+
+#[test]
+fn it_is_private_and_what_is_old_goes() {
+    let folder = Folder::with("cache_old", &[("main.st", COUNTER)]);
+    let cache = folder.0.join("cache");
+    make(&cache, 0o755);
+    let name = |kind: &str, digit: &str| format!("{kind}-{}", digit.repeat(32));
+    entry(&cache, &name("program", "a"), 1, 31 * DAY);
+    entry(&cache, &format!(".{}.77.0", name("program", "b")), 1, 31 * DAY);
+    entry(&cache, &name("program", "c"), 1, 29 * DAY);
+    entry(&cache, &name("program", "d"), 3 << 30, 2 * DAY);
+    entry(&cache, &name("program", "e"), 1 << 29, DAY);
+    entry(&cache, "program-of-mine", 3 << 30, 31 * DAY);
+    run(&folder).out(0);
+    assert_eq!(fs::metadata(&cache).unwrap().mode() & 0o777, 0o700);
+    let is_there = |name: &str| cache.join(name).is_dir();
+    assert!(!is_there(&name("program", "a")) && !is_there(&format!(".{}.77.0", name("program", "b"))));
+    // Too large together: what was used last stays.
+    assert!(is_there(&name("program", "e")) && !is_there(&name("program", "d")) && !is_there(&name("program", "c")));
+    assert!(is_there("program-of-mine"), "it is none of ours");
+    let of_kind = |kind: &str| {
+        let names = fs::read_dir(&cache).unwrap().map(|it| it.unwrap().file_name().into_string().unwrap());
+        names.filter(|it| it.starts_with(kind)).count()
+    };
+    assert_eq!((of_kind("runtime-"), of_kind("program-")), (1, 3));
+    run(&folder).out(0);
+}
