@@ -69,7 +69,7 @@ impl<'s> Checker<'_, 's> {
         all
     }
 
-    fn joined(
+    pub(super) fn joined(
         &mut self,
         op: BinaryOp,
         op_span: Span,

@@ -47,7 +47,7 @@ impl<'s> Checker<'_, 's> {
             Type::Enum(id) => {
                 let base = self.decl.program.enumeration(id).base;
                 let number = self.convert(Conversion::Same, Type::Elementary(base), value_expr);
-                return Some(self.convert(Conversion::Value, Type::Elementary(parsed.to), number));
+                return self.between(number, base, parsed.to, name.span);
             }
             other => {
                 let found = self.type_name(other);
@@ -66,6 +66,7 @@ impl<'s> Checker<'_, 's> {
         let target = Type::Elementary(to);
         match (from.is_time(), to.is_time()) {
             (true, true) => Some(self.convert(Conversion::Same, target, value)),
+            (false, false) if to == Elementary::Bool => self.to_bool(value, from, span),
             (false, false) => Some(self.convert(Conversion::Value, target, value)),
             (true, false) => {
                 let nanoseconds = self.convert(Conversion::Same, Type::LINT, value);
@@ -80,6 +81,20 @@ impl<'s> Checker<'_, 's> {
                 Some(self.convert(Conversion::Same, target, count))
             }
         }
+    }
+
+    /// The rightmost bit of a bit string or an integer; where those mix, and of a real, whether it is
+    /// `<> 0`.
+    fn to_bool(&mut self, value: Expr, from: Elementary, span: Span) -> Option<Expr> {
+        let whole = from.lane().integer(1).filter(|_| !self.decl.dialect(span).mixes_bits_and_integers());
+        let rightmost = match whole {
+            Some(one) if from != Elementary::Bool => {
+                let (ty, one) = (value.ty, Expr::constant(from, one, value.at));
+                self.apply(Op::And, ty, vec![value, one], ty, span)?
+            }
+            _ => value,
+        };
+        Some(self.convert(Conversion::Value, Type::BOOL, rightmost))
     }
 
     /// Nanoseconds to milliseconds or back, in LREAL where fractions matter, else in LINT.

@@ -130,10 +130,12 @@ impl<'s> Checker<'_, 's> {
         signature: &Signature,
         name: ast::Name<'s>,
     ) -> Option<Expr> {
-        let hint = if class == Class::Int { Type::LINT } else { Type::LREAL };
-        let expr = match self.operand(value, Some(hint))? {
+        let expr = match self.operand(value, None)? {
             Operand::Typed(expr) => expr,
-            literal => return self.coerce(literal, hint, value.span),
+            literal @ Operand::Real { .. } if class != Class::Int => {
+                return self.coerce(literal, Type::LREAL, value.span);
+            }
+            literal => return self.coerce(literal, Type::LINT, value.span),
         };
         if self.admits(class, expr.ty, value.span) {
             return Some(expr);

@@ -9,7 +9,7 @@ use crate::dialect::Dialect;
 use crate::{Span, ast};
 use ast::BinaryOp;
 use staunch_ir::{Arm, Conversion, Elementary, Expr, ExprKind, FaultKind, Op, Statement, StatementKind, TextOp, Type};
-use staunch_runtime::{Kind, Signature, signature};
+use staunch_runtime::{Class, Kind, Signature, signature};
 
 /// What a standard function means.
 #[derive(Clone, Copy)]
@@ -138,7 +138,7 @@ impl<'s> Checker<'_, 's> {
         fitting.or_else(|| forms().next()).map(|(_, signature, meaning)| (signature, meaning))
     }
 
-    /// The operator; a function of durations makes one, and nothing else.
+    /// The operator at its operands' types; for a function of one type's own, on operands of that.
     fn operator_function(
         &mut self,
         signature: &Signature,
@@ -147,25 +147,12 @@ impl<'s> Checker<'_, 's> {
         expected: Option<Type>,
         name: ast::Name<'s>,
     ) -> Option<Operand> {
-        let Kind::Is(ty) = signature.result else { return self.chain(operator, values, expected, name) };
-        if ty == Elementary::Bool {
+        if signature.parameters.iter().any(|it| it.kind == Kind::T) {
             return self.chain(operator, values, expected, name);
         }
-        let result = self.chain(operator, values, Some(Type::Elementary(ty)), name)?;
-        if result.ty() == Some(Type::Elementary(ty)) {
-            return Some(result);
-        }
-        let found = result.ty().map_or_else(|| "a number".to_owned(), |it| self.type_name(it));
-        let wants = crate::diagnostic::wording::article(ty.name());
-        self.report(
-            crate::Diagnostic::new(
-                crate::Code::E0204,
-                name.span,
-                format!("`{}` makes {wants}, this is {found}", name.text),
-            )
-            .label(format!("its first argument is {wants}")),
-        );
-        None
+        let [a, b] = <[Expr; 2]>::try_from(self.resolve(signature, values, expected, name)?.operands).ok()?;
+        let side = |expr: Expr, at: usize| (Operand::Typed(expr), values[at].span);
+        self.joined(operator, name.span, None, side(a, 0), side(b, 1))
     }
 
     /// An operation of the table on operands of its type.
@@ -195,19 +182,30 @@ impl<'s> Checker<'_, 's> {
 
     fn shift(&mut self, op: Op, ty: Type, value: Expr, count: Expr, span: Span) -> Option<Expr> {
         if ty == Type::BOOL {
-            let message = format!("`{}` shifts a bit string, this is BOOL", op.source_name());
-            self.report(crate::Diagnostic::new(crate::Code::E0204, span, message).label("a BOOL has one bit"));
-            return None;
+            return self.shift_one_bit(op, value, count, span);
         }
         let count = match op {
             // The low bits of a count turn as far as all of it: every width divides 2^64.
             Op::Rol | Op::Ror => self.convert(Conversion::Value, Type::LINT, count),
             _ => self.count(count)?,
         };
-        let signed = ty.elementary().is_some_and(|it| it.is_integer() && !it.lane().is_unsigned());
+        let signed = ty.elementary().is_some_and(|it| it.is(Class::Signed));
         let keeps_sign = op == Op::Shr && signed && self.decl.dialect(span).keeps_sign();
         let op = if keeps_sign { Op::Sar } else { op };
         self.apply(op, ty, vec![value, count], ty, span)
+    }
+
+    /// A BOOL has one bit: turning leaves it, and a shift by more than 0 makes it FALSE.
+    fn shift_one_bit(&mut self, op: Op, mut value: Expr, mut count: Expr, span: Span) -> Option<Expr> {
+        if matches!(op, Op::Rol | Op::Ror) {
+            self.fault_in_order([&mut value, &mut count].into_iter());
+            return Some(value);
+        }
+        let byte = Type::Elementary(Elementary::Byte);
+        let bits = self.convert(Conversion::Value, byte, value);
+        // To the right, so that what leaves the one bit is gone.
+        let shifted = self.shift(Op::Shr, byte, bits, count, span)?;
+        Some(self.convert(Conversion::Value, Type::BOOL, shifted))
     }
 
     /// A count or position as a LINT; what is more than a LINT holds is its greatest value.
