@@ -66,7 +66,7 @@ impl<'s> Checker<'_, 's> {
         let target = Type::Elementary(to);
         match (from.is_time(), to.is_time()) {
             (true, true) => Some(self.convert(Conversion::Same, target, value)),
-            (false, false) if to == Elementary::Bool => self.to_bool(value, from, span),
+            (false, false) if to == Elementary::Bool => self.rightmost_bit(value, from, span),
             (false, false) => Some(self.convert(Conversion::Value, target, value)),
             (true, false) => {
                 let nanoseconds = self.convert(Conversion::Same, Type::LINT, value);
@@ -85,7 +85,7 @@ impl<'s> Checker<'_, 's> {
 
     /// The rightmost bit of a bit string or an integer; where those mix, and of a real, whether it is
     /// `<> 0`.
-    fn to_bool(&mut self, value: Expr, from: Elementary, span: Span) -> Option<Expr> {
+    fn rightmost_bit(&mut self, value: Expr, from: Elementary, span: Span) -> Option<Expr> {
         let whole = from.lane().integer(1).filter(|_| !self.decl.dialect(span).mixes_bits_and_integers());
         let rightmost = match whole {
             Some(one) if from != Elementary::Bool => {

@@ -155,9 +155,20 @@ fn unary<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
     match input.kind() {
         Kind::Minus => signed(input, UnaryOp::Neg),
         Kind::Plus => signed(input, UnaryOp::Plus),
+        Kind::Not if names_its_operand(input) => postfix(input),
         Kind::Not | Kind::Bang => signed(input, UnaryOp::Not),
         _ => postfix(input),
     }
+}
+
+/// `NOT(IN := x)`, the function.
+fn names_its_operand(input: &mut In<'_, '_, '_>) -> bool {
+    let named = input.kind_ahead(1) == Kind::OpenParen
+        && input.kind_ahead(2) == Kind::Name
+        && input.kind_ahead(3) == Kind::Assign;
+    let at = input.number() + 2;
+    let name = input.state().place(at);
+    named && input.text(name).eq_ignore_ascii_case("IN")
 }
 
 fn signed<'s>(input: &mut In<'_, '_, 's>, op: UnaryOp) -> Parsed<Expr<'s>> {
@@ -422,7 +433,7 @@ fn atom<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
     let kind = match input.kind() {
         Kind::Name => ExprKind::Name(input.name()?),
         // The functions of these names: `AND(a, b, c)`.
-        Kind::And | Kind::Or | Kind::Xor | Kind::Mod if input.kind_ahead(1) == Kind::OpenParen => {
+        Kind::And | Kind::Or | Kind::Xor | Kind::Mod | Kind::Not if input.kind_ahead(1) == Kind::OpenParen => {
             input.take();
             ExprKind::Name(Name { text: input.text(span), span })
         }
