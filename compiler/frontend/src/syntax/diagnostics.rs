@@ -305,6 +305,14 @@ pub fn unsupported(span: Span, what: &str) -> Diagnostic {
     Diagnostic::new(Code::E0090, span, format!("{what} is not supported yet"))
 }
 
+/// `5; y := 1;` among the arms of a CASE.
+pub fn semicolon_for_colon(sign: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, sign, "expected `:` after a CASE label, found `;`")
+        .label("expected `:`")
+        .help("write `:`")
+        .fix(sign, ":")
+}
+
 /// `5 y := 1;` among the arms of a CASE.
 pub fn missing_colon(input: &mut In<'_, '_, '_>) {
     let (span, place) = (behind_last(input), insertion(input));

@@ -476,6 +476,10 @@ fn typed<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
     let span = input.take();
     let name = Span { end: span.end - 1, ..span };
     let prefix = Name { text: input.text(name), span: name };
+    if foreign_syntax::step7_duration(input, span) {
+        let literal = Literal { prefix: None, value: LiteralValue::Error };
+        return Ok(Expr { kind: ExprKind::Literal(literal), span: span.to(input.last()) });
+    }
     let sign = match input.kind() {
         Kind::Minus => Some((UnaryOp::Neg, input.take())),
         Kind::Plus => Some((UnaryOp::Plus, input.take())),

@@ -201,6 +201,26 @@ pub fn glued(input: &mut In<'_, '_, '_>, number: Span) -> bool {
     true
 }
 
+/// `S5T#5s`, `S5TIME#1h30m`: a duration of STEP 7, at what follows its prefix.
+pub fn step7_duration(input: &mut In<'_, '_, '_>, prefix: Span) -> bool {
+    let text = input.text(prefix);
+    let known = ["S5T#", "S5TIME#"].iter().any(|it| text.eq_ignore_ascii_case(it));
+    if !known || !matches!(input.kind(), Kind::Integer | Kind::Real) {
+        return false;
+    }
+    let number = input.take();
+    if input.kind() == Kind::Name && input.here().start == number.end {
+        input.take();
+    }
+    input.report(
+        Diagnostic::new(Code::E0006, prefix, format!("Structured Text writes `T#` for `{text}`"))
+            .label("expected `T#`")
+            .help("write `T#`")
+            .fix(prefix, "T#"),
+    );
+    true
+}
+
 pub fn is_unit(word: &str) -> bool {
     let letters = word.split(|it: char| it.is_ascii_digit() || it == '_').filter(|it| !it.is_empty());
     let units = ["d", "h", "m", "s", "ms", "us", "ns"];

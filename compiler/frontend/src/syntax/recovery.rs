@@ -272,6 +272,10 @@ pub fn missing_word(input: &mut In<'_, '_, '_>, word: Kind, opened: Span) {
     if input.eat(word).is_some() {
         return;
     }
+    if is_nearly(input, word) {
+        let span = input.take();
+        return diagnostics::misspelt_keyword(input, word, span);
+    }
     if input.kind() == Kind::Semicolon && input.kind_ahead(1) == word {
         return extra_semicolon(input, word);
     }
@@ -302,7 +306,17 @@ pub fn missing_word(input: &mut In<'_, '_, '_>, word: Kind, opened: Span) {
     input.report(it.other(opened, format!("this {opener} needs {}", crate::diagnostic::wording::article(word))));
 }
 
-/// How far ahead `word` stands on the current line, before the statement ends.
+/// Whether the current token is `word` with a slip: `THNE`.
+fn is_nearly(input: &mut In<'_, '_, '_>, word: Kind) -> bool {
+    let used = matches!(input.kind_ahead(1), Kind::Assign | Kind::Dot | Kind::OpenBracket | Kind::OpenParen);
+    if input.kind() != Kind::Name || used || input.on_new_line() {
+        return false;
+    }
+    let span = input.here();
+    crate::names::nearest(input.text(span), word.keyword().into_iter()).is_some()
+}
+
+/// How far ahead `word` is on the current line, before the statement ends.
 fn on_this_line(input: &mut In<'_, '_, '_>, word: Kind) -> Option<usize> {
     let mut ahead = 0;
     while input.kind_ahead(ahead) != word {

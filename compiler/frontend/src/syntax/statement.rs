@@ -416,7 +416,9 @@ fn labels<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Vec<Label<'s>>> {
             break;
         }
     }
-    if input.eat(Kind::Colon).is_none() {
+    if let Some(sign) = input.eat(Kind::Semicolon) {
+        input.report(diagnostics::semicolon_for_colon(sign));
+    } else if input.eat(Kind::Colon).is_none() {
         if !recovery::begins_statement(input) {
             return Err(input.problem(Expected::Token(Kind::Colon)));
         }
