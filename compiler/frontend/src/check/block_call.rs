@@ -92,7 +92,7 @@ impl<'s> Checker<'_, 's> {
         }
         let moved = self.arguments_by_own_names(id, arguments);
         let arguments = moved.as_deref().unwrap_or(arguments);
-        let given = self.bind(info.name, &parameters, arguments, |name| super::unknown::unknown_pin(id, name))?;
+        let given = self.bind(info.name, &parameters, arguments, |name| super::unresolved::unknown_pin(id, name))?;
         let mut parts = Parts::default();
         let place = found.place;
         parts.push(Held::Place(place.clone()), Role::Instance, callee);

@@ -2,7 +2,7 @@
 //! numbers of the traps in `docs/compare.md`.
 
 use super::Checker;
-use super::unknown::other_dialects_pin;
+use super::unresolved::other_dialects_pin;
 use crate::dialect::family_name;
 use crate::names::Key;
 use crate::{Code, Diagnostic, Span, ast};

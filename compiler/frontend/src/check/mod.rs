@@ -3,10 +3,10 @@
 mod argument;
 mod block_call;
 mod call;
-mod called;
+mod call_tracking;
 mod case;
-mod chain;
 mod coerce;
+mod constant_comparison;
 mod conversion;
 mod enable;
 mod expression;
@@ -14,7 +14,6 @@ mod function;
 mod literal;
 mod loops;
 mod migration;
-mod never;
 mod operand;
 mod operator;
 mod order;
@@ -24,15 +23,16 @@ mod prescan;
 mod real;
 mod standard;
 mod statement;
-mod text_order;
-mod unknown;
+mod string_compare;
+mod unresolved;
+mod variadic;
 
 pub(crate) use prescan::{
     Assigned, KeptCount, Uses, assigned_count, holds_storage, is_element_by_element, lost_count, same_storage,
     several_counts, shared_count,
 };
 pub(crate) use standard::exists as is_function;
-pub(crate) use unknown::{block_of_another_dialect, no_such_block, not_constant};
+pub(crate) use unresolved::{block_of_another_dialect, no_such_block, not_constant};
 
 use crate::ast;
 use crate::declare::{Declarations, Resolved, Scope, Signature};
@@ -54,7 +54,7 @@ pub(crate) struct Checker<'d, 's> {
     uses: Uses,
     context: Context,
     /// Instances called so far on the way to this statement.
-    called: called::Called,
+    called: call_tracking::Called,
 }
 
 /// What a name of a variable stands for.
@@ -113,7 +113,7 @@ fn body<'s>(decl: &mut Declarations<'s>, at: usize, statements: &[ast::Statement
         loops: 0,
         uses: Uses::default(),
         context: Context::Body,
-        called: called::Called::default(),
+        called: call_tracking::Called::default(),
         decl,
     };
     checker.initial_outputs(&signature);
@@ -176,7 +176,7 @@ pub(crate) fn constant<'s>(
         counters: Vec::new(),
         loops: 0,
         uses: Uses::default(),
-        called: called::Called::default(),
+        called: call_tracking::Called::default(),
         context: if target.is_some() { Context::Initial } else { Context::Constant },
     };
     let value = match target {

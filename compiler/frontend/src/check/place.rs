@@ -283,7 +283,7 @@ impl<'s> Checker<'_, 's> {
         let own = self.own_pin_name(id, name);
         let at = pins.iter().position(|it| visible(&it) && it.name.eq_ignore_ascii_case(own.text));
         let Some(at) = at else {
-            self.report(super::unknown::unknown_pin(id, name));
+            self.report(super::unresolved::unknown_pin(id, name));
             return None;
         };
         let access = if pins[at].direction == Direction::Output { Access::Output(name) } else { Access::Write };

@@ -1,5 +1,5 @@
 use super::Checker;
-use super::called::Instance;
+use super::call_tracking::Instance;
 use super::operand::Operand;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, StatementKind as Ast_};

@@ -5,12 +5,12 @@
 
 mod address;
 mod configuration;
-mod hidden;
 mod initial;
 mod order;
 mod pou;
 mod prescan;
 mod scope;
+mod synthetic;
 mod types;
 
 pub(crate) use pou::{Formal, Signature, Target, pin_place};
@@ -112,7 +112,7 @@ pub(crate) struct Declarations<'s> {
     pub left_out: Option<Span>,
     pub configurations: Vec<&'s ast::Configuration<'s>>,
     pub addresses: address::Addresses,
-    pub hidden: hidden::Hidden<'s>,
+    pub hidden: synthetic::Hidden<'s>,
     pub program: Program,
     /// For each array of `program`, what its elements are.
     pub elements: Vec<Resolved>,
@@ -220,7 +220,7 @@ impl<'s> Declarations<'s> {
             left_out: None,
             configurations: Vec::new(),
             addresses: address::Addresses::default(),
-            hidden: hidden::Hidden::default(),
+            hidden: synthetic::Hidden::default(),
             program: empty_program(files),
             elements: Vec::new(),
             sizes: Vec::new(),

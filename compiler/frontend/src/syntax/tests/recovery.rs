@@ -368,6 +368,13 @@ fn fixes_make_the_text_right() {
         ("x := a ADN b;", "x := a AND b;"),
         ("s := “x”;", "s := 'x';"),
         ("FOR i := 1 TO 9 STEP 2 DO ; END_FOR", "FOR i := 1 TO 9 BY 2 DO ; END_FOR"),
+        ("IF a THNE x := 1; END_IF", "IF a THEN x := 1; END_IF"),
+        ("IF a THE\n x := 1; END_IF", "IF a THEN\n x := 1; END_IF"),
+        ("x := S5T#5s;", "x := T#5s;"),
+        ("x := s5time#1h30m;", "x := T#1h30m;"),
+        ("CASE x OF 0; y := 1; 1: y := 2; END_CASE", "CASE x OF 0: y := 1; 1: y := 2; END_CASE"),
+        ("VAR a : ARRAY[1-10] OF INT; END_VAR", "VAR a : ARRAY[1..10] OF INT; END_VAR"),
+        ("VAR a : ARRAY[0 - N] OF INT; END_VAR", "VAR a : ARRAY[0..N] OF INT; END_VAR"),
     ];
     for (wrong, right) in cases {
         let (before, after) = ("PROGRAM p ", " END_PROGRAM");
