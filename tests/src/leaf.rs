@@ -26,7 +26,7 @@ impl<'p> Leaves<'p> {
         let machine = &self.layout.machine;
         self.read("Globals", Type::Struct(self.program.globals), &state[usize_of(machine.globals)..], &mut leaves);
         for (instance, offset) in self.program.instances.iter().zip(&machine.instances) {
-            let ty = self.program.pou(instance.program).state.expect("a PROGRAM has a state");
+            let ty = self.program.class(instance.program).state;
             self.read(&instance.name, Type::Struct(ty), &state[usize_of(*offset)..], &mut leaves);
         }
         leaves

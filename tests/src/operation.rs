@@ -2,8 +2,9 @@
 //! the IR as the front end would build it, without the front end.
 
 use staunch_ir::{
-    Const, Conversion, Elementary, Expr, Field, FieldId, Instance, Lane, Location, Op, Place, Pou, PouId, PouKind,
-    Program, Root, Section, SourceFile, Statement, Struct, StructId, Type, Value, Variable,
+    Class, ClassId, ClassKind, Const, Conversion, Elementary, Expr, Field, FieldId, Instance, Lane, Location, Op,
+    Place, Program, Root, Routine, RoutineId, RoutineKind, Section, SourceFile, Statement, Struct, StructId, Type,
+    Value, Variable,
 };
 
 /// What one instance of the program computes from its operands.
@@ -100,8 +101,13 @@ pub fn program(tasks: &[Task]) -> Program {
         globals: StructId::next(tasks.len()),
         aliases: Vec::new(),
         structs,
-        pous: tasks.iter().enumerate().map(|(at, task)| pou(*task, StructId::next(at))).collect(),
-        instances: tasks.iter().enumerate().map(|(at, task)| instance(*task, PouId::next(at))).collect(),
+        classes: tasks
+            .iter()
+            .enumerate()
+            .map(|(at, task)| class(*task, StructId::next(at), RoutineId::next(at)))
+            .collect(),
+        routines: tasks.iter().enumerate().map(|(at, task)| routine(*task, StructId::next(at))).collect(),
+        instances: tasks.iter().enumerate().map(|(at, task)| instance(*task, ClassId::next(at))).collect(),
     }
 }
 
@@ -128,14 +134,9 @@ fn structure(task: Task) -> Struct {
     Struct { name: task.name(), doc: None, location: AT, fields: fields(task).into_iter().map(field).collect() }
 }
 
-fn pou(task: Task, state: StructId) -> Pou {
-    let variable = |(at, (name, ty))| Variable {
-        name,
-        section: Section::Internal,
-        place: Place::root(Root::Instance, Type::Struct(state)).field(FieldId::next(at), ty),
-    };
-    Pou {
-        kind: PouKind::Program,
+fn routine(task: Task, state: StructId) -> Routine {
+    Routine {
+        kind: RoutineKind::Body,
         name: task.name(),
         doc: None,
         location: AT,
@@ -143,13 +144,29 @@ fn pou(task: Task, state: StructId) -> Pou {
         params: Vec::new(),
         locals: Vec::new(),
         result: None,
-        variables: fields(task).into_iter().enumerate().map(variable).collect(),
         body: vec![task.statement(state)],
-        prescan: Vec::new(),
     }
 }
 
-fn instance(task: Task, program: PouId) -> Instance {
+fn class(task: Task, state: StructId, body: RoutineId) -> Class {
+    let variable = |(at, (name, ty))| Variable {
+        name,
+        section: Section::Internal,
+        place: Place::root(Root::Instance, Type::Struct(state)).field(FieldId::next(at), ty),
+    };
+    Class {
+        kind: ClassKind::Program,
+        name: task.name(),
+        doc: None,
+        location: AT,
+        state,
+        variables: fields(task).into_iter().enumerate().map(variable).collect(),
+        body,
+        prescan: None,
+    }
+}
+
+fn instance(task: Task, program: ClassId) -> Instance {
     Instance { name: format!("run_{}", task.name().to_lowercase()), program, interval: None, priority: 0 }
 }
 

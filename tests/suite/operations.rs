@@ -27,7 +27,7 @@ fn compare(executor: Executor) {
     let (mut failures, mut compared) = (Vec::new(), 0_u64);
     for (number, task) in tasks.iter().enumerate() {
         let base = usize_of(layout.machine.instances[number]);
-        let ty = Type::Struct(program.pous[number].state.unwrap());
+        let ty = Type::Struct(program.routines[number].state.unwrap());
         let at = |field: usize| base + usize_of(layout.offset(ty, FieldId::next(field)));
         for operands in combinations(&task.operands()) {
             for (field, value) in operands.iter().enumerate() {

@@ -65,12 +65,11 @@ impl Macros<'_> {
     fn instances(&mut self) {
         let (program, layout) = (self.program, self.layout);
         for (number, instance) in program.instances.iter().enumerate() {
-            let pou = program.pou(instance.program);
-            let _ = write!(self.text, "\n/* Instance {number}: {} of PROGRAM {} */\n", instance.name, pou.name);
+            let class = program.class(instance.program);
+            let _ = write!(self.text, "\n/* Instance {number}: {} of PROGRAM {} */\n", instance.name, class.name);
             let name = self.claim(macro_name(&[&instance.name]));
             let _ = writeln!(self.text, "#define STAUNCH_{name} {number}u");
-            let Some(state) = pou.state else { continue };
-            self.structure(state, layout.machine.instances[number], &instance.name);
+            self.structure(class.state, layout.machine.instances[number], &instance.name);
         }
         if !program.structure(program.globals).fields.is_empty() {
             self.text.push_str("\n/* Global variables */\n");

@@ -172,7 +172,8 @@ impl Session {
         let names: Vec<_> = program.instances.iter().map(|it| it.name.clone()).collect();
         match asked {
             Some(asked) => {
-                let of = |it: &staunch_ir::Instance| program.pous[it.program.index()].name.eq_ignore_ascii_case(asked);
+                let of =
+                    |it: &staunch_ir::Instance| program.routines[it.program.index()].name.eq_ignore_ascii_case(asked);
                 let wanted: Vec<_> = program
                     .instances
                     .iter()
@@ -202,7 +203,7 @@ impl Session {
     /// the source has a TASK.
     fn configured(&self, program: &Program) -> bool {
         let plain =
-            |it: &staunch_ir::Instance| it.interval.is_none() && it.name == program.pous[it.program.index()].name;
+            |it: &staunch_ir::Instance| it.interval.is_none() && it.name == program.routines[it.program.index()].name;
         !program.instances.iter().all(plain)
     }
 

@@ -6,7 +6,9 @@
 //! the instance may itself lie in a global. Types decide those: what can be a part of what.
 
 use crate::visit::{self, Access};
-use crate::{Expr, Param, Place, Pou, Program, Projection, Root, Section, Statement, StatementKind, StructId, Type};
+use crate::{
+    Expr, Param, Place, Program, Projection, Root, Routine, Section, Statement, StatementKind, StructId, Type,
+};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Alias {
@@ -27,8 +29,8 @@ pub struct Frame<'p> {
 }
 
 impl<'p> Frame<'p> {
-    pub fn of(program: &'p Program, pou: &'p Pou) -> Self {
-        Self { program, state: pou.state, params: &pou.params }
+    pub fn of(program: &'p Program, routine: &'p Routine) -> Self {
+        Self { program, state: routine.state, params: &routine.params }
     }
 
     /// The type of a root that other roots' storage may be a part of, or hold.
@@ -155,7 +157,7 @@ fn reads_shared(frame: &Frame<'_>, expr: &Expr) -> bool {
 pub fn changes(frame: &Frame<'_>, block: &[Statement], expr: &Expr) -> bool {
     let mut found = false;
     visit::statements(block, &mut |statement| {
-        let calls = matches!(statement.kind, StatementKind::Call { .. } | StatementKind::PrescanInstance { .. });
+        let calls = matches!(statement.kind, StatementKind::Call { .. });
         found |= calls && reads_shared(frame, expr);
         visit::accesses(statement, &mut |place, access| found |= access != Access::Read && reads(frame, expr, place));
     });

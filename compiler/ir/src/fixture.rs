@@ -36,8 +36,8 @@ pub fn param(name: &str, ty: Type, mode: Mode) -> Param {
     Param { name: name.to_owned(), ty, doc: None, mode }
 }
 
-pub fn pou(kind: PouKind, name: &str, state: Option<StructId>) -> Pou {
-    Pou {
+pub fn routine(kind: RoutineKind, name: &str, state: Option<StructId>) -> Routine {
+    Routine {
         kind,
         name: name.to_owned(),
         doc: None,
@@ -46,14 +46,12 @@ pub fn pou(kind: PouKind, name: &str, state: Option<StructId>) -> Pou {
         params: Vec::new(),
         locals: Vec::new(),
         result: None,
-        variables: Vec::new(),
         body: Vec::new(),
-        prescan: Vec::new(),
     }
 }
 
-/// A program that runs `pous`' last, a PROGRAM, as `main`; the globals are the last of `structs`.
-pub fn program(arrays: Vec<Array>, structs: Vec<Struct>, pous: Vec<Pou>) -> Program {
+/// A program that runs `routines`' last, a PROGRAM, as `main`; the globals are the last of `structs`.
+pub fn program(arrays: Vec<Array>, structs: Vec<Struct>, routines: Vec<Routine>) -> Program {
     Program {
         files: vec![SourceFile { path: "main.st".to_owned() }],
         enums: vec![color()],
@@ -64,12 +62,33 @@ pub fn program(arrays: Vec<Array>, structs: Vec<Struct>, pous: Vec<Pou>) -> Prog
         structs,
         instances: vec![Instance {
             name: "main".to_owned(),
-            program: PouId::next(pous.len() - 1),
+            program: ClassId::next(classes(&routines).len() - 1),
             interval: None,
             priority: 0,
         }],
-        pous,
+        classes: classes(&routines),
+        routines,
     }
+}
+
+/// A class for each body; the last is a PROGRAM.
+fn classes(routines: &[Routine]) -> Vec<Class> {
+    let find = |kind, state| routines.iter().position(|it| it.kind == kind && it.state == state).map(RoutineId::next);
+    let bodies = routines.iter().filter(|it| it.kind == RoutineKind::Body);
+    let mut classes: Vec<_> = bodies
+        .map(|it| Class {
+            kind: ClassKind::FunctionBlock,
+            name: it.name.clone(),
+            doc: None,
+            location: AT,
+            state: it.state.unwrap(),
+            variables: Vec::new(),
+            body: find(RoutineKind::Body, it.state).unwrap(),
+            prescan: find(RoutineKind::Prescan, it.state),
+        })
+        .collect();
+    classes.last_mut().unwrap().kind = ClassKind::Program;
+    classes
 }
 
 fn color() -> Enum {
@@ -95,9 +114,10 @@ pub const COLOR: Type = Type::Enum(EnumId(0));
 /// struct 1 Main      count: INT, wide: DINT, values: ARRAY, adder: Adder, name: STRING[8],
 ///                    counter: CTU, color: Color, limit: INT CONSTANT := 3, flag: BOOL
 /// struct 2 globals   total: DINT
-/// FUNCTION Double(x: INT): INT, VAR_OUTPUT remainder: INT      pou 0
-/// FUNCTION_BLOCK Adder  VAR_IN_OUT amount: INT                  pou 1
-/// PROGRAM Main, VAR_TEMP temp: INT := 4                         pou 2
+/// FUNCTION Double(x: INT): INT, VAR_OUTPUT remainder: INT      routine 0
+/// FUNCTION_BLOCK Adder  VAR_IN_OUT amount: INT                  routine 1
+///     its prescan                                               routine 2
+/// PROGRAM Main, VAR_TEMP temp: INT := 4                         routine 3
 /// ```
 pub fn sample(body: Block) -> Program {
     let values = Type::Array(ArrayId(0));
@@ -119,7 +139,16 @@ pub fn sample(body: Block) -> Program {
     let adder = structure("Adder", vec![field("sum", Type::INT, int_const(10))]);
     let globals = structure("globals", vec![field("total", Type::DINT, Const::Zero)]);
     let arrays = vec![Array { low: 1, high: 3, element: Type::INT }];
-    program(arrays, vec![adder, main, globals], vec![double(), adder_pou(), main_pou(body)])
+    let routines = vec![double(), adder_routine(), adder_prescan(), main_routine(body)];
+    let mut program = program(arrays, vec![adder, main, globals], routines);
+    let variable = |name: &str, place| Variable { name: name.to_owned(), section: Section::Internal, place };
+    program.classes[1].variables = vec![
+        variable("count", count()),
+        variable("temp", temp()),
+        Variable { section: Section::External, ..variable("total", total()) },
+        variable("counter", counter()),
+    ];
+    program
 }
 
 pub fn int_const(value: i16) -> Const {
@@ -127,10 +156,10 @@ pub fn int_const(value: i16) -> Const {
 }
 
 /// `Double := x * 2; remainder := x;`
-fn double() -> Pou {
+fn double() -> Routine {
     let x = || Place::local(LocalId(0), Type::INT);
     let product = Expr::apply(Op::Mul, Type::INT, vec![load(x()), int(2)], AT);
-    Pou {
+    Routine {
         params: vec![param("x", Type::INT, Mode::Value(LocalId(0))), param("remainder", Type::INT, Mode::Reference)],
         locals: vec![local("x", Type::INT, Const::Zero), local("Double", Type::INT, Const::Zero)],
         result: Some(LocalId(1)),
@@ -138,38 +167,41 @@ fn double() -> Pou {
             Statement::assign(Place::local(LocalId(1), Type::INT), product, AT),
             Statement::assign(Place::root(Root::Param(ParamId(1)), Type::INT), load(x()), AT),
         ],
-        ..pou(PouKind::Function, "Double", None)
+        ..routine(RoutineKind::Function, "Double", None)
     }
 }
 
-/// `amount := amount + 1; sum := sum + amount;` and `sum := 100;` as its prescan.
-fn adder_pou() -> Pou {
-    let sum = || Place::root(Root::Instance, Type::Struct(StructId(0))).field(FieldId(0), Type::INT);
+fn sum() -> Place {
+    Place::root(Root::Instance, Type::Struct(StructId(0))).field(FieldId(0), Type::INT)
+}
+
+/// `amount := amount + 1; sum := sum + amount;`
+fn adder_routine() -> Routine {
     let amount = || Place::root(Root::Param(ParamId(0)), Type::INT);
-    Pou {
+    Routine {
         params: vec![param("amount", Type::INT, Mode::Reference)],
         body: vec![
             Statement::assign(amount(), add(load(amount()), int(1)), AT),
             Statement::assign(sum(), add(load(sum()), load(amount())), AT),
         ],
-        prescan: vec![Statement::assign(sum(), int(100), AT)],
-        ..pou(PouKind::FunctionBlock, "Adder", Some(StructId(0)))
+        ..routine(RoutineKind::Body, "Adder", Some(StructId(0)))
     }
 }
 
-fn main_pou(body: Block) -> Pou {
-    let variable = |name: &str, place| Variable { name: name.to_owned(), section: Section::Internal, place };
-    Pou {
-        locals: vec![local("temp", Type::INT, int_const(4))],
-        variables: vec![
-            variable("count", count()),
-            variable("temp", temp()),
-            Variable { section: Section::External, ..variable("total", total()) },
-            variable("counter", counter()),
-        ],
-        body,
-        ..pou(PouKind::Program, "Main", Some(StructId(1)))
-    }
+/// `sum := 100;`
+fn adder_prescan() -> Routine {
+    let body = vec![Statement::assign(sum(), int(100), AT)];
+    Routine { body, ..routine(RoutineKind::Prescan, "Adder", Some(StructId(0))) }
+}
+
+fn main_routine(body: Block) -> Routine {
+    let locals = vec![local("temp", Type::INT, int_const(4))];
+    Routine { locals, body, ..routine(RoutineKind::Body, "Main", Some(StructId(1))) }
+}
+
+/// Runs a routine of the adder on its instance.
+pub fn prescan_adder(callee: RoutineId, instance: Place) -> Statement {
+    stmt(StatementKind::Call { callee, instance: Some(instance), arguments: Vec::new(), result: None })
 }
 
 /// The IEC counter of INT.
@@ -261,13 +293,13 @@ pub fn stmt(kind: StatementKind) -> Statement {
 /// `result := Double(x, remainder => remainder)`.
 pub fn call_double(x: Expr, remainder: Place, result: Option<Place>) -> Statement {
     let arguments = vec![Argument::Value(x), Argument::Reference(remainder)];
-    stmt(StatementKind::Call { callee: PouId(0), instance: None, arguments, result })
+    stmt(StatementKind::Call { callee: RoutineId(0), instance: None, arguments, result })
 }
 
 /// `adder(amount := amount)`.
 pub fn call_adder(amount: Place) -> Statement {
     let arguments = vec![Argument::Reference(amount)];
-    stmt(StatementKind::Call { callee: PouId(1), instance: Some(adder()), arguments, result: None })
+    stmt(StatementKind::Call { callee: RoutineId(1), instance: Some(adder()), arguments, result: None })
 }
 
 /// `counter(cu, FALSE, pv)`.

@@ -8,7 +8,7 @@ mod fold;
 pub use fold::fold;
 
 use crate::layout::{Layout, usize_of};
-use crate::{Place, Pou, PouId, Program, Statement, Value};
+use crate::{Place, Program, Routine, RoutineId, Value};
 use core::fmt;
 use evaluate::Scope;
 use staunch_runtime::{Context, Fault};
@@ -29,9 +29,9 @@ pub struct Interpreter<'p> {
     layout: Layout,
     frames: Vec<FrameImage>,
     initial: Vec<u8>,
-    /// The state, and behind it the locals of the POUs that are running, callee after caller.
+    /// The state, and behind it the locals of the routines that are running, callee after caller.
     memory: Vec<u8>,
-    /// Where the by-reference parameters of the running POUs refer to: offsets in `memory`.
+    /// Where the by-reference parameters of the running routines refer to: offsets in `memory`.
     references: Vec<usize>,
     /// The inputs of a standard block between their evaluation and the call.
     inputs: Vec<Value>,
@@ -39,17 +39,17 @@ pub struct Interpreter<'p> {
     steps_left: Option<u64>,
 }
 
-/// A POU's locals at the start of a call.
+/// A routine's locals at the start of a call.
 #[derive(Debug)]
 struct FrameImage {
     bytes: Vec<u8>,
     offsets: Vec<usize>,
 }
 
-/// A POU that is running. Positions are offsets in `Interpreter::memory`.
+/// A routine that is running. Positions are offsets in `Interpreter::memory`.
 #[derive(Clone, Copy, Debug)]
 struct Frame {
-    pou: PouId,
+    routine: RoutineId,
     instance: usize,
     locals: usize,
     /// Offset in `Interpreter::references` of its first parameter.
@@ -66,7 +66,7 @@ impl<'p> Interpreter<'p> {
         let initial = layout.image(program);
         Self {
             program,
-            frames: program.pous.iter().map(|pou| FrameImage::new(program, &layout, pou)).collect(),
+            frames: program.routines.iter().map(|routine| FrameImage::new(program, &layout, routine)).collect(),
             memory: initial.clone(),
             initial,
             layout,
@@ -90,13 +90,12 @@ impl<'p> Interpreter<'p> {
     /// One scan of an instance. After an early end the state stays as it was at that point.
     pub fn scan(&mut self, instance: usize, cx: &Context) -> Result<(), Stop> {
         self.steps_left = self.budget;
-        let id = self.program.instances[instance].program;
+        let class = self.program.class(self.program.instances[instance].program);
         let state = usize_of(self.layout.machine.instances[instance]);
-        let pou = self.program.pou(id);
-        if cx.first_scan {
-            self.run(id, state, &pou.prescan, cx)?;
+        if let Some(prescan) = class.prescan.filter(|_| cx.first_scan) {
+            self.run(prescan, state, cx)?;
         }
-        self.run(id, state, &pou.body, cx)
+        self.run(class.body, state, cx)
     }
 
     pub fn state(&self) -> &[u8] {
@@ -115,19 +114,19 @@ impl<'p> Interpreter<'p> {
         self.program
     }
 
-    /// Runs a block of a PROGRAM with nothing below it on the stack.
-    fn run(&mut self, pou: PouId, instance: usize, block: &'p [Statement], cx: &Context) -> Result<(), Stop> {
-        let frame = self.enter(pou, instance);
-        let end = self.block(&frame, block, cx);
+    /// Runs a routine of a PROGRAM with nothing below it on the stack.
+    fn run(&mut self, routine: RoutineId, instance: usize, cx: &Context) -> Result<(), Stop> {
+        let frame = self.enter(routine, instance);
+        let end = self.block(&frame, &self.program.routine(routine).body, cx);
         self.memory.truncate(self.initial.len());
         self.references.clear();
         end.map(|_| ())
     }
 
     /// Opens a frame with the locals at their initial values.
-    fn enter(&mut self, pou: PouId, instance: usize) -> Frame {
-        let frame = Frame { pou, instance, locals: self.memory.len(), references: self.references.len() };
-        self.memory.extend_from_slice(&self.frames[pou.index()].bytes);
+    fn enter(&mut self, routine: RoutineId, instance: usize) -> Frame {
+        let frame = Frame { routine, instance, locals: self.memory.len(), references: self.references.len() };
+        self.memory.extend_from_slice(&self.frames[routine.index()].bytes);
         frame
     }
 
@@ -146,11 +145,11 @@ impl<'p> Interpreter<'p> {
 }
 
 impl FrameImage {
-    fn new(program: &Program, layout: &Layout, pou: &Pou) -> Self {
-        let frame = layout.frame(&pou.locals);
+    fn new(program: &Program, layout: &Layout, routine: &Routine) -> Self {
+        let frame = layout.frame(&routine.locals);
         let mut bytes = vec![0; usize_of(frame.size)];
         let offsets: Vec<usize> = frame.offsets.into_iter().map(usize_of).collect();
-        for (local, offset) in pou.locals.iter().zip(&offsets) {
+        for (local, offset) in routine.locals.iter().zip(&offsets) {
             layout.write_const(program, local.ty, &local.initial, &mut bytes[*offset..]);
         }
         Self { bytes, offsets }

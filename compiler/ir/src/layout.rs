@@ -21,7 +21,7 @@ pub struct Shape {
 pub struct TooLarge {
     /// `None` when no single type is to blame, but the sum.
     pub ty: Option<Type>,
-    /// The field, structure or POU where it was noticed.
+    /// The field, structure or routine where it was noticed.
     pub at: Option<Location>,
 }
 
@@ -59,7 +59,7 @@ struct Sequence {
     align: u64,
 }
 
-/// The variables that live for one call of a POU, as the interpreter keeps them.
+/// The variables that live for one call of a routine, as the interpreter keeps them.
 #[derive(Clone, Debug)]
 pub struct FrameLayout {
     pub size: u64,
@@ -77,16 +77,16 @@ impl Layout {
     /// The layout of a program whose ids are sound.
     pub fn try_new(program: &Program) -> Result<Self, TooLarge> {
         let mut layout = Self::try_types(program)?;
-        for pou in &program.pous {
-            let at = Some(pou.location);
-            layout.try_frame(&pou.locals).map_err(|ty| TooLarge { ty, at })?;
+        for routine in &program.routines {
+            let at = Some(routine.location);
+            layout.try_frame(&routine.locals).map_err(|ty| TooLarge { ty, at })?;
         }
         layout.machine = layout.lay_machine(program)?;
         Ok(layout)
     }
 
     /// The layout of a program's types alone, with an empty `machine`. It relies on the order
-    /// of structures and arrays (a part stands before what it is a part of) and on no POU.
+    /// of structures and arrays (a part stands before what it is a part of) and on no routine.
     pub fn try_types(program: &Program) -> Result<Self, TooLarge> {
         let mut layout = Self {
             enums: program.enums.iter().map(|it| it.base.lane()).collect(),
@@ -185,7 +185,7 @@ impl Layout {
         }
     }
 
-    /// The layout of a POU's locals, one after the other.
+    /// The layout of a routine's locals, one after the other.
     pub fn frame(&self, locals: &[Local]) -> FrameLayout {
         self.try_frame(locals).expect("verified IR: sizes are within the limit")
     }
@@ -300,7 +300,7 @@ fn write_text(text: &[u8], bytes: &mut [u8]) {
 }
 
 fn state_of(program: &Program, instance: &crate::Instance) -> StructId {
-    program.pou(instance.program).state.expect("verified IR: a PROGRAM has a state")
+    program.class(instance.program).state
 }
 
 fn lane_shape(lane: Lane) -> Shape {

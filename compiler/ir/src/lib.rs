@@ -30,6 +30,7 @@ mod print;
 pub mod verify;
 
 pub mod alias;
+pub mod effects;
 pub mod interpret;
 pub mod layout;
 pub mod loops;
@@ -43,8 +44,8 @@ pub use op::{Op, TextOp, apply, apply_text};
 pub use place::{Place, Projection, Root};
 pub use print::print;
 pub use program::{
-    Address, Area, Field, FieldId, Instance, Local, LocalId, Mode, Param, ParamId, Pou, PouId, PouKind, Program,
-    Retain, Section, SourceFile, Variable,
+    Address, Area, Class, ClassId, ClassKind, Field, FieldId, Instance, Local, LocalId, Mode, Param, ParamId, Program,
+    Retain, Routine, RoutineId, RoutineKind, Section, SourceFile, Variable,
 };
 pub use statement::{Argument, Arm, Block, For, Statement, StatementKind, Step};
 pub use types::{

@@ -32,7 +32,7 @@ fn is_out_of_reach(program: &Program, root: Option<Type>, counter: &Place) -> bo
     for projection in &counter.projections {
         let (Projection::Field(id), Some(whole)) = (projection, ty) else { return false };
         if let Type::Struct(structure) = whole
-            && (counter.root == Root::Instance || program.pou_of_state(structure).is_some())
+            && (counter.root == Root::Instance || program.class_of_state(structure).is_some())
         {
             let field = &program.structure(structure).fields[id.index()];
             is_internal |= field.section == Section::Internal && field.address.is_none();

@@ -5,8 +5,8 @@
 mod statement;
 
 use crate::{
-    Const, Conversion, Expr, ExprKind, Field, Mode, Place, Pou, PouKind, Program, Projection, Retain, Root, Section,
-    Type, Value,
+    ClassKind, Const, Conversion, Expr, ExprKind, Field, Mode, Place, Program, Projection, Retain, Root, Routine,
+    RoutineKind, Section, Type, Value,
 };
 use core::fmt::{self, Display, Write};
 
@@ -49,8 +49,8 @@ impl Printer<'_> {
             self.line(format_args!("\nstruct {}", structure.name))?;
             structure.fields.iter().try_for_each(|field| self.field(field))?;
         }
-        for pou in &program.pous {
-            self.pou(pou)?;
+        for routine in &program.routines {
+            self.routine(routine)?;
         }
         self.instances()
     }
@@ -89,43 +89,40 @@ impl Printer<'_> {
         }
     }
 
-    fn pou(&mut self, pou: &Pou) -> fmt::Result {
-        let kind = match pou.kind {
-            PouKind::Program => "program",
-            PouKind::FunctionBlock => "function_block",
-            PouKind::Function => "function",
+    fn routine(&mut self, routine: &Routine) -> fmt::Result {
+        let class = routine.state.and_then(|it| self.program.class_of_state(it)).map(|it| it.kind);
+        let kind = match (routine.kind, class) {
+            (RoutineKind::Prescan, _) => "prescan",
+            (RoutineKind::Body, Some(ClassKind::Program)) => "program",
+            (RoutineKind::Body, Some(ClassKind::FunctionBlock) | None) => "function_block",
+            (RoutineKind::Function, _) => "function",
         };
-        let result = pou.result.map(|id| &pou.locals[id.index()]);
+        let result = routine.result.map(|id| &routine.locals[id.index()]);
         let result = result.map(|local| format!(": {}", self.program.type_name(local.ty))).unwrap_or_default();
-        self.line(format_args!("\n{kind} {}{result}", pou.name))?;
-        for (id, param) in pou.params.iter().enumerate() {
+        self.line(format_args!("\n{kind} {}{result}", routine.name))?;
+        for (id, param) in routine.params.iter().enumerate() {
             let ty = self.program.type_name(param.ty);
             match param.mode {
                 Mode::Value(local) => self.line(format_args!("  param {}%{}: {ty}", param.name, local.0))?,
                 Mode::Reference => self.line(format_args!("  param {}&{id}: {ty}", param.name))?,
             }
         }
-        for (id, local) in pou.locals.iter().enumerate() {
+        for (id, local) in routine.locals.iter().enumerate() {
             let mut line = format!("  local {}%{id}: {}", local.name, self.program.type_name(local.ty));
             self.initial(&mut line, &local.initial)?;
             self.line(format_args!("{line}"))?;
         }
-        self.section("prescan", pou, &pou.prescan)?;
-        self.section("body", pou, &pou.body)
-    }
-
-    fn section(&mut self, name: &str, pou: &Pou, block: &crate::Block) -> fmt::Result {
-        if block.is_empty() {
+        if routine.body.is_empty() {
             return Ok(());
         }
-        self.line(format_args!("{name}"))?;
-        self.block(pou, block)
+        self.line(format_args!("body"))?;
+        self.block(routine, &routine.body)
     }
 
     fn instances(&mut self) -> fmt::Result {
         for instance in &self.program.instances {
             let mut line = format!("\ninstance {}: ", instance.name);
-            line.push_str(&self.program.pou(instance.program).name);
+            line.push_str(&self.program.class(instance.program).name);
             if let Some(interval) = instance.interval {
                 write!(line, " every {interval}ns")?;
             }
@@ -134,13 +131,13 @@ impl Printer<'_> {
         Ok(())
     }
 
-    fn place(&self, pou: &Pou, place: &Place) -> String {
-        let mut ty = self.program.root_type(pou, place.root);
+    fn place(&self, routine: &Routine, place: &Place) -> String {
+        let mut ty = self.program.root_type(routine, place.root);
         let mut text = match place.root {
             Root::Instance => "self".to_owned(),
             Root::Globals => "global".to_owned(),
-            Root::Local(id) => format!("{}%{}", pou.locals[id.index()].name, id.0),
-            Root::Param(id) => format!("{}&{}", pou.params[id.index()].name, id.0),
+            Root::Local(id) => format!("{}%{}", routine.locals[id.index()].name, id.0),
+            Root::Param(id) => format!("{}&{}", routine.params[id.index()].name, id.0),
         };
         for projection in &place.projections {
             match projection {
@@ -150,7 +147,7 @@ impl Printer<'_> {
                     ty = ty.and_then(|ty| self.program.member(ty, *field));
                 }
                 Projection::Index { index, .. } => {
-                    text.push_str(&format!("[{}]", self.expr(pou, index)));
+                    text.push_str(&format!("[{}]", self.expr(routine, index)));
                     ty = self.element(ty);
                 }
             }
@@ -184,33 +181,33 @@ impl Printer<'_> {
         }
     }
 
-    fn expr(&self, pou: &Pou, expr: &Expr) -> String {
+    fn expr(&self, routine: &Routine, expr: &Expr) -> String {
         let ty = || self.program.type_name(expr.ty);
         match &expr.kind {
             ExprKind::Const(Value::Bool(value)) if expr.ty == Type::BOOL => value_text(Value::Bool(*value)),
             ExprKind::Const(value) => format!("{}#{}", ty(), value_text(*value)),
             ExprKind::Text(bytes) => quoted(bytes),
             ExprKind::Aggregate(value) => format!("{}{}", ty(), constant_text(value)),
-            ExprKind::Load(place) => self.place(pou, place),
-            ExprKind::Apply(op, operands) => self.call(pou, op.source_name(), operands),
-            ExprKind::ApplyText(op, operands) => self.call(pou, op.source_name(), operands),
+            ExprKind::Load(place) => self.place(routine, place),
+            ExprKind::Apply(op, operands) => self.call(routine, op.source_name(), operands),
+            ExprKind::ApplyText(op, operands) => self.call(routine, op.source_name(), operands),
             ExprKind::Convert(how, operand) => {
                 let word = match how {
                     Conversion::Value => "TO",
                     Conversion::Truncate => "TRUNC",
                     Conversion::Same => "AS",
                 };
-                format!("{word} {}({})", ty(), self.expr(pou, operand))
+                format!("{word} {}({})", ty(), self.expr(routine, operand))
             }
         }
     }
 
-    fn call(&self, pou: &Pou, name: &str, operands: &[Expr]) -> String {
-        format!("{name}({})", self.exprs(pou, operands))
+    fn call(&self, routine: &Routine, name: &str, operands: &[Expr]) -> String {
+        format!("{name}({})", self.exprs(routine, operands))
     }
 
-    fn exprs(&self, pou: &Pou, exprs: &[Expr]) -> String {
-        let texts: Vec<String> = exprs.iter().map(|expr| self.expr(pou, expr)).collect();
+    fn exprs(&self, routine: &Routine, exprs: &[Expr]) -> String {
+        let texts: Vec<String> = exprs.iter().map(|expr| self.expr(routine, expr)).collect();
         texts.join(", ")
     }
 }

@@ -3,7 +3,8 @@ use crate::{Array, ArrayId, Block, BoundsId, Const, Enum, EnumId, Location, Plac
 use core::fmt;
 
 ids! {
-    PouId;
+    ClassId;
+    RoutineId;
     LocalId;
     ParamId;
     /// Position of a field in its structure, or of a pin in its standard block.
@@ -25,8 +26,9 @@ pub struct Program {
     pub globals: StructId,
     /// Other names of global variables: a direct address that is declared again.
     pub aliases: Vec<Variable>,
+    pub classes: Vec<Class>,
     /// In an order in which a callee stands before its callers.
-    pub pous: Vec<Pou>,
+    pub routines: Vec<Routine>,
     /// The programs that run, in order.
     pub instances: Vec<Instance>,
 }
@@ -41,7 +43,7 @@ pub struct SourceFile {
 #[derive(Clone, Debug)]
 pub struct Instance {
     pub name: String,
-    pub program: PouId,
+    pub program: ClassId,
     /// Nanoseconds between two scans, where the source has a TASK that says so.
     pub interval: Option<i64>,
     /// Lower runs first among instances that are due together.
@@ -49,33 +51,55 @@ pub struct Instance {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum PouKind {
+pub enum ClassKind {
     Program,
     FunctionBlock,
-    Function,
 }
 
+/// A PROGRAM or FUNCTION_BLOCK: the state that its instances have, and the routines that work on it.
 #[derive(Clone, Debug)]
-pub struct Pou {
-    pub kind: PouKind,
+pub struct Class {
+    pub kind: ClassKind,
     pub name: String,
     pub doc: Option<String>,
     pub location: Location,
-    /// The instance's state, for a PROGRAM or FUNCTION_BLOCK.
+    pub state: StructId,
+    /// Every declared variable, in declaration order, for traces and emitted documentation.
+    pub variables: Vec<Variable>,
+    /// What a call of an instance runs.
+    pub body: RoutineId,
+    /// Runs at the start of the first scan, before the body of a PROGRAM: what some systems do to
+    /// counters at a restart. It covers the instances that the state contains.
+    pub prescan: Option<RoutineId>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum RoutineKind {
+    Function,
+    /// The body of a PROGRAM or FUNCTION_BLOCK.
+    Body,
+    /// The prescan of a class; it has no parameters.
+    Prescan,
+}
+
+/// Something that is called: parameters, variables that live for one call, and statements.
+#[derive(Clone, Debug)]
+pub struct Routine {
+    pub kind: RoutineKind,
+    /// Of the FUNCTION, or of the class.
+    pub name: String,
+    pub doc: Option<String>,
+    pub location: Location,
+    /// The state of the instance that it works on; a FUNCTION has none.
     pub state: Option<StructId>,
     /// What a caller passes at each call: a FUNCTION's inputs, outputs and in-outs, a
     /// FUNCTION_BLOCK's in-outs.
     pub params: Vec<Param>,
-    /// Variables that live for one call; they start at their initial values.
+    /// They start at their initial values.
     pub locals: Vec<Local>,
     /// A FUNCTION's result: one of `locals`.
     pub result: Option<LocalId>,
-    /// Every declared variable, in declaration order, for traces and emitted documentation.
-    pub variables: Vec<Variable>,
     pub body: Block,
-    /// Runs at the start of the first scan, before `body`: what some systems do to counters
-    /// at a restart. For a FUNCTION_BLOCK it covers the instances it contains.
-    pub prescan: Block,
 }
 
 #[derive(Clone, Debug)]
@@ -155,7 +179,7 @@ pub enum Section {
     External,
 }
 
-/// A name under which a POU knows some storage.
+/// A name under which a routine knows some storage.
 #[derive(Clone, Debug)]
 pub struct Variable {
     pub name: String,
@@ -210,23 +234,26 @@ impl Program {
         &self.structs[id.index()]
     }
 
-    pub fn pou(&self, id: PouId) -> &Pou {
-        &self.pous[id.index()]
+    pub fn routine(&self, id: RoutineId) -> &Routine {
+        &self.routines[id.index()]
     }
 
-    /// The POU whose instances have the state `id`, if it is not a user's structure.
-    pub fn pou_of_state(&self, id: StructId) -> Option<PouId> {
-        let at = self.pous.iter().position(|pou| pou.state == Some(id))?;
-        Some(PouId::next(at))
+    pub fn class(&self, id: ClassId) -> &Class {
+        &self.classes[id.index()]
     }
 
-    /// The type of a place's root in a POU; `None` when the POU has no such storage.
-    pub fn root_type(&self, pou: &Pou, root: Root) -> Option<Type> {
+    /// The class whose instances have the state `id`, if it is not a user's structure.
+    pub fn class_of_state(&self, id: StructId) -> Option<&Class> {
+        self.classes.iter().find(|class| class.state == id)
+    }
+
+    /// The type of a place's root in a routine; `None` when the routine has no such storage.
+    pub fn root_type(&self, routine: &Routine, root: Root) -> Option<Type> {
         match root {
-            Root::Instance => pou.state.map(Type::Struct),
+            Root::Instance => routine.state.map(Type::Struct),
             Root::Globals => Some(Type::Struct(self.globals)),
-            Root::Local(id) => pou.locals.get(id.index()).map(|local| local.ty),
-            Root::Param(id) => pou.params.get(id.index()).map(|param| param.ty),
+            Root::Local(id) => routine.locals.get(id.index()).map(|local| local.ty),
+            Root::Param(id) => routine.params.get(id.index()).map(|param| param.ty),
         }
     }
 

@@ -1,4 +1,4 @@
-use crate::{Expr, FaultKind, Location, Place, PouId, Value};
+use crate::{Expr, FaultKind, Location, Place, RoutineId, Value};
 
 pub type Block = Vec<Statement>;
 
@@ -41,14 +41,14 @@ pub enum StatementKind {
     Exit,
     /// Goes on with the innermost loop's `continuing`.
     Continue,
-    /// Leaves the POU.
+    /// Leaves the routine.
     Return,
-    /// Calls a user's POU. A FUNCTION_BLOCK's inputs have been assigned to its instance before;
+    /// Calls a routine. A FUNCTION_BLOCK's inputs have been assigned to its instance before;
     /// `arguments` holds its VAR_IN_OUTs. A FUNCTION's `arguments` are its parameters, in
     /// declaration order. Places and values are evaluated left to right, before the call.
     Call {
-        callee: PouId,
-        /// The instance, for a FUNCTION_BLOCK.
+        callee: RoutineId,
+        /// The instance, for a body or prescan.
         instance: Option<Place>,
         arguments: Vec<Argument>,
         /// Where a FUNCTION's result goes: a local of the result's type.
@@ -66,11 +66,6 @@ pub enum StatementKind {
     PrescanBlock {
         block: Place,
         instruction: usize,
-    },
-    /// Runs the prescan of a user's FUNCTION_BLOCK instance; its body has none of its in-outs.
-    PrescanInstance {
-        callee: PouId,
-        instance: Place,
     },
     /// Stops the scan.
     Fault(FaultKind),
@@ -192,7 +187,6 @@ impl StatementKind {
             | Self::Call { .. }
             | Self::CallBlock { .. }
             | Self::PrescanBlock { .. }
-            | Self::PrescanInstance { .. }
             | Self::Fault(_) => Vec::new(),
         }
     }
@@ -213,7 +207,6 @@ impl StatementKind {
             | Self::Call { .. }
             | Self::CallBlock { .. }
             | Self::PrescanBlock { .. }
-            | Self::PrescanInstance { .. }
             | Self::Fault(_) => Vec::new(),
         }
     }

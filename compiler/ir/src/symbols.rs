@@ -5,7 +5,7 @@
 
 use crate::layout::Layout;
 use crate::{
-    Address, BlockId, Field, FieldId, Pou, PouKind, Program, Projection, Retain, Root, Section, StructId, Type,
+    Address, BlockId, Class, ClassKind, Field, FieldId, Program, Projection, Retain, Root, Section, StructId, Type,
     Variable,
 };
 use core::fmt::{self, Write};
@@ -122,9 +122,9 @@ impl Map<'_> {
 
     /// A structure's members are all for users; an instance's inputs and outputs are.
     fn kind(&self, id: StructId) -> &'static str {
-        match self.program.pou_of_state(id).map(|it| self.program.pou(it).kind) {
-            Some(PouKind::Program) => "program",
-            Some(PouKind::FunctionBlock | PouKind::Function) => "function_block",
+        match self.program.class_of_state(id).map(|it| it.kind) {
+            Some(ClassKind::Program) => "program",
+            Some(ClassKind::FunctionBlock) => "function_block",
             None if id == self.program.globals => "globals",
             None => "structure",
         }
@@ -160,22 +160,22 @@ impl Map<'_> {
     fn instances(&mut self) -> fmt::Result {
         let offsets = self.layout.machine.instances.iter();
         for (number, (instance, offset)) in self.program.instances.iter().zip(offsets).enumerate() {
-            let pou = self.program.pou(instance.program);
-            let state = pou.state.expect("verified IR: a PROGRAM has a state").0;
-            write!(self.text, "instance\t{number}\t{}\t{}\tstruct:{state}\t{offset}\t", instance.name, pou.name)?;
+            let class = self.program.class(instance.program);
+            let state = class.state.0;
+            write!(self.text, "instance\t{number}\t{}\t{}\tstruct:{state}\t{offset}\t", instance.name, class.name)?;
             match instance.interval {
                 Some(nanoseconds) => write!(self.text, "{nanoseconds}")?,
                 None => self.text.push('-'),
             }
             writeln!(self.text, "\t{}", instance.priority)?;
-            self.variables(number, pou, *offset)?;
+            self.variables(number, class, *offset)?;
         }
         Ok(())
     }
 
-    fn variables(&mut self, instance: usize, pou: &Pou, base: u64) -> fmt::Result {
-        for variable in &pou.variables {
-            let Some((offset, attributes)) = self.storage(pou.state, variable, base) else { continue };
+    fn variables(&mut self, instance: usize, class: &Class, base: u64) -> fmt::Result {
+        for variable in &class.variables {
+            let Some((offset, attributes)) = self.storage(Some(class.state), variable, base) else { continue };
             let section = section_name(variable.section);
             let ty = TypeName(variable.place.ty);
             write!(self.text, "variable\t{instance}\t{}\t{section}\t{ty}\t{offset}", variable.name)?;

@@ -8,7 +8,7 @@
 
 mod expression;
 mod place;
-mod pou;
+mod routine;
 mod statement;
 mod types;
 
@@ -18,7 +18,7 @@ use core::fmt::{self, Display};
 /// An invariant that does not hold: a bug in the front end.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Violation {
-    /// The type, POU or instance that it is in.
+    /// The type, routine or instance that it is in.
     pub within: String,
     pub at: Location,
     pub message: String,
@@ -28,7 +28,7 @@ pub struct Violation {
 pub fn verify(program: &Program) -> Result<(), Vec<Violation>> {
     let mut verifier = Verifier { program, within: String::new(), violations: Vec::new() };
     // Later steps rely on ids and types that the earlier ones found sound.
-    for step in [Verifier::types, Verifier::pous, Verifier::bodies] {
+    for step in [Verifier::types, Verifier::routines, Verifier::bodies] {
         step(&mut verifier);
         if !verifier.violations.is_empty() {
             return Err(verifier.violations);

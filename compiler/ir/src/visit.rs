@@ -56,9 +56,7 @@ pub fn accesses(statement: &Statement, see: &mut dyn FnMut(&Place, Access)) {
             borrow(block, see);
             inputs.iter().for_each(|it| reads(it, &mut |place| see(place, Access::Read)));
         }
-        StatementKind::PrescanBlock { block: place, .. } | StatementKind::PrescanInstance { instance: place, .. } => {
-            borrow(place, see);
-        }
+        StatementKind::PrescanBlock { block, .. } => borrow(block, see),
         StatementKind::For(it) => {
             index_reads(&it.counter, &mut |place| see(place, Access::Read));
             reads(&it.first, &mut |place| see(place, Access::Read));
@@ -119,7 +117,33 @@ pub fn values<'a>(statement: &'a Statement, see: &mut dyn FnMut(&'a Expr)) {
         | StatementKind::Continue
         | StatementKind::Return
         | StatementKind::PrescanBlock { .. }
-        | StatementKind::PrescanInstance { .. }
+        | StatementKind::Fault(_) => {}
+    }
+}
+
+/// Calls `see` for each place that the statement itself writes or hands on.
+pub fn targets<'a>(statement: &'a Statement, see: &mut dyn FnMut(&'a Place)) {
+    match &statement.kind {
+        StatementKind::Assign { target, .. } => see(target),
+        StatementKind::For(it) => see(&it.counter),
+        StatementKind::Call { instance, arguments, result, .. } => {
+            instance.iter().for_each(&mut *see);
+            for argument in arguments {
+                match argument {
+                    Argument::Value(_) => {}
+                    Argument::Reference(place) => see(place),
+                }
+            }
+            result.iter().for_each(see);
+        }
+        StatementKind::CallBlock { block, .. } | StatementKind::PrescanBlock { block, .. } => see(block),
+        StatementKind::If { .. }
+        | StatementKind::Case { .. }
+        | StatementKind::Loop { .. }
+        | StatementKind::Turn
+        | StatementKind::Exit
+        | StatementKind::Continue
+        | StatementKind::Return
         | StatementKind::Fault(_) => {}
     }
 }

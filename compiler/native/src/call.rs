@@ -1,4 +1,4 @@
-//! Calls of POUs and of standard blocks.
+//! Calls of routines and of standard blocks.
 
 use crate::function::Function;
 use crate::inline_block;
@@ -6,21 +6,20 @@ use crate::memory::Address;
 use crate::place::Site;
 use crate::shim::by_pointer;
 use crate::signature::result_type;
-use crate::unit::Part;
 use cranelift_codegen::ir::{self as clif, InstBuilder};
-use staunch_ir::{Argument, Expr, Lane, Place, PouId, Type};
+use staunch_ir::{Argument, Expr, Lane, Place, RoutineId, Type};
 use staunch_runtime::{BlockInfo, Instruction};
 
 impl Function<'_, '_> {
     pub(crate) fn call(
         &mut self,
-        callee: PouId,
+        callee: RoutineId,
         instance: Option<&Place>,
         arguments: &[Argument],
         result: Option<&Place>,
     ) {
         let instance = instance.map(|place| self.reference(place));
-        let mut values = self.start_of_call(callee, Part::Body, instance);
+        let mut values = self.start_of_call(callee, instance);
         for argument in arguments {
             let value = match argument {
                 Argument::Value(value) => self.argument(value),
@@ -30,7 +29,7 @@ impl Function<'_, '_> {
         }
         let out = self.result_pointer(callee, result);
         values.extend(out);
-        let returned = self.call_part(callee, Part::Body, &values);
+        let returned = self.call_routine(callee, &values);
         if let (Some(returned), Some(target)) = (returned, result) {
             match self.site(target) {
                 Site::Variable(variable) => self.builder.def_var(variable, returned),
@@ -39,30 +38,21 @@ impl Function<'_, '_> {
         }
     }
 
-    /// Runs the prescan of an instance; an empty one has no function.
-    pub(crate) fn prescan_instance(&mut self, callee: PouId, instance: &Place) {
-        let instance = self.reference(instance);
-        if self.unit.function(callee, Part::Prescan).is_some() {
-            let values = self.start_of_call(callee, Part::Prescan, Some(instance));
-            self.call_part(callee, Part::Prescan, &values);
-        }
-    }
-
     /// What every function takes first.
-    fn start_of_call(&self, callee: PouId, part: Part, instance: Option<clif::Value>) -> Vec<clif::Value> {
-        let facts = self.unit.facts(callee, part);
-        let context = self.start.context.filter(|_| facts.uses_context);
-        let globals = self.start.globals.filter(|_| facts.uses_globals);
+    fn start_of_call(&self, callee: RoutineId, instance: Option<clif::Value>) -> Vec<clif::Value> {
+        let effects = self.unit.effects(callee);
+        let context = self.start.context.filter(|_| effects.context);
+        let globals = self.start.globals.filter(|_| effects.globals);
         [context, globals, instance].into_iter().flatten().collect()
     }
 
     /// Calls a function, passes its fault on, and gives an elementary result.
-    fn call_part(&mut self, callee: PouId, part: Part, values: &[clif::Value]) -> Option<clif::Value> {
-        let function = self.unit.function(callee, part).expect("a part that has a function");
+    fn call_routine(&mut self, callee: RoutineId, values: &[clif::Value]) -> Option<clif::Value> {
+        let function = self.unit.function(callee);
         let function = self.function_ref(function);
         let call = self.ins().call(function, values);
         let results = self.builder.inst_results(call).to_vec();
-        if !self.unit.facts(callee, part).may_fault {
+        if !self.unit.effects(callee).faults {
             return results.first().copied();
         }
         self.pass_fault(results[0]);
@@ -87,9 +77,9 @@ impl Function<'_, '_> {
     }
 
     /// Where a callee puts a result that is not elementary, whether it is wanted or not.
-    fn result_pointer(&mut self, callee: PouId, result: Option<&Place>) -> Option<clif::Value> {
+    fn result_pointer(&mut self, callee: RoutineId, result: Option<&Place>) -> Option<clif::Value> {
         let program = self.unit.program;
-        let ty = result_type(program.pou(callee)).filter(|ty| program.lane(*ty).is_none())?;
+        let ty = result_type(program.routine(callee)).filter(|ty| program.lane(*ty).is_none())?;
         let address = match result {
             Some(place) => self.address(place),
             None => {

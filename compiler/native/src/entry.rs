@@ -4,11 +4,11 @@
 use crate::Error;
 use crate::memory::Address;
 use crate::signature::{CODE, POINTER};
-use crate::unit::{EntryPoints, Part, Unit, Workspace, define_data};
+use crate::unit::{EntryPoints, Unit, Workspace, define_data};
 use cranelift_codegen::ir::{self as clif, AbiParam, BlockArg, InstBuilder, MemFlagsData, UserFuncName, types};
 use cranelift_frontend::{FunctionBuilder, Switch};
 use cranelift_module::{FuncId, Linkage, Module};
-use staunch_ir::PouId;
+use staunch_ir::RoutineId;
 use staunch_runtime::Context;
 
 /// Runs of zeros in the initial image that are at least this long are not kept as data.
@@ -115,17 +115,17 @@ struct Scan<'s, 'p, 'b> {
 
 impl Scan<'_, '_, '_> {
     fn instance(&mut self, number: usize) {
-        let pou = self.unit.program.instances[number].program;
+        let class = self.unit.program.class(self.unit.program.instances[number].program);
         let at = Address::at(self.state).plus(self.unit.layout.machine.instances[number]);
-        if self.unit.function(pou, Part::Prescan).is_some() {
-            self.prescan(pou, at);
+        if let Some(prescan) = class.prescan {
+            self.prescan(prescan, at);
         }
-        let code = self.call(pou, Part::Body, at);
+        let code = self.call(class.body, at);
         self.builder.ins().jump(self.done, &[BlockArg::Value(code)]);
     }
 
     /// In the first scan, and only on if it does not fault.
-    fn prescan(&mut self, pou: PouId, at: Address) {
+    fn prescan(&mut self, routine: RoutineId, at: Address) {
         let offset = core::mem::offset_of!(Context, first_scan);
         let offset = i32::try_from(offset).expect("a context is small");
         let flags = MemFlagsData::trusted();
@@ -133,21 +133,20 @@ impl Scan<'_, '_, '_> {
         let [prescan, body] = [(); 2].map(|()| self.builder.create_block());
         self.builder.ins().brif(first_scan, prescan, &[], body, &[]);
         self.builder.switch_to_block(prescan);
-        let code = self.call(pou, Part::Prescan, at);
+        let code = self.call(routine, at);
         self.builder.ins().brif(code, self.done, &[BlockArg::Value(code)], body, &[]);
         self.builder.switch_to_block(body);
     }
 
-    /// Calls a PROGRAM's function; gives the code that it returned, or 0.
-    fn call(&mut self, pou: PouId, part: Part, instance: Address) -> clif::Value {
-        let facts = self.unit.facts(pou, part).clone();
-        let id = self.unit.function(pou, part).expect("a part that has a function");
-        let function = self.unit.module.declare_func_in_func(id, self.builder.func);
+    /// Calls a routine of a PROGRAM; gives the code that it returned, or 0.
+    fn call(&mut self, routine: RoutineId, instance: Address) -> clif::Value {
+        let effects = self.unit.effects(routine).clone();
+        let function = self.unit.module.declare_func_in_func(self.unit.function(routine), self.builder.func);
         let mut values = Vec::new();
-        if facts.uses_context {
+        if effects.context {
             values.push(self.context);
         }
-        if facts.uses_globals {
+        if effects.globals {
             values.push(self.pointer(Address::at(self.state).plus(self.unit.layout.machine.globals)));
         }
         values.push(self.pointer(instance));

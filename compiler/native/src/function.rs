@@ -1,15 +1,15 @@
-//! The function of one block of a POU: what it starts and ends with.
+//! The function of a routine: what it starts and ends with.
 
 use crate::Error;
-use crate::facts::Facts;
 use crate::fault::Faults;
 use crate::memory::{Address, Temporaries};
 use crate::signature::{POINTER, clif_type, result_type};
-use crate::unit::{Part, Unit, Workspace};
+use crate::unit::{Unit, Workspace};
 use cranelift_codegen::ir::{self as clif, InstBuilder, StackSlot, UserFuncName};
 use cranelift_frontend::{FuncInstBuilder, FunctionBuilder, Variable};
 use cranelift_module::{DataId, FuncId};
-use staunch_ir::{Const, For, LocalId, Mode, Pou, PouId, Program, Type};
+use staunch_ir::effects::Effects;
+use staunch_ir::{Const, For, LocalId, Mode, Program, Routine, RoutineId, RoutineKind, Type};
 use std::collections::HashMap;
 
 /// More variables than this make the construction of SSA form slow; the rest live in the frame.
@@ -19,7 +19,7 @@ const MAX_VARIABLES: usize = 1000;
 pub(crate) struct Function<'a, 'p> {
     pub(crate) unit: &'a mut Unit<'p>,
     pub(crate) builder: FunctionBuilder<'a>,
-    pub(crate) pou: &'p Pou,
+    pub(crate) routine: &'p Routine,
     pub(crate) start: Start,
     pub(crate) locals: Vec<Home>,
     /// The innermost loop is the last.
@@ -43,7 +43,7 @@ pub(crate) struct Start {
     pub(crate) context: Option<clif::Value>,
     pub(crate) globals: Option<clif::Value>,
     pub(crate) instance: Option<clif::Value>,
-    /// One for each parameter; in a prescan there are none.
+    /// One for each parameter.
     pub(crate) params: Vec<clif::Value>,
     /// Where a result goes that is not elementary.
     pub(crate) result: Option<clif::Value>,
@@ -66,42 +66,38 @@ pub(crate) struct Turn {
     pub(crate) is_left: bool,
 }
 
-pub(crate) fn emit(unit: &mut Unit<'_>, workspace: &mut Workspace, id: PouId, part: Part) -> Result<(), Error> {
-    let pou = unit.program.pou(id);
-    let function = unit.function(id, part).expect("a part with statements has a function");
+pub(crate) fn emit(unit: &mut Unit<'_>, workspace: &mut Workspace, id: RoutineId) -> Result<(), Error> {
+    let routine = unit.program.routine(id);
+    let function = unit.function(id);
     let context = &mut workspace.context;
-    context.func.signature = unit.signature(id, part);
+    context.func.signature = unit.signature(id);
     context.func.name = UserFuncName::user(0, function.as_u32());
     let builder = FunctionBuilder::new(&mut context.func, &mut workspace.builder);
-    let block = match part {
-        Part::Body => &pou.body,
-        Part::Prescan => &pou.prescan,
-    };
-    let facts = unit.facts(id, part).clone();
-    let mut function_of_part = Function::open(unit, builder, pou, part, &facts);
-    let goes = function_of_part.block(block);
-    function_of_part.close(goes, &facts);
-    let name = match part {
-        Part::Body => pou.name.clone(),
-        Part::Prescan => format!("{} (prescan)", pou.name),
+    let effects = unit.effects(id).clone();
+    let mut open = Function::open(unit, builder, routine, &effects);
+    let goes = open.block(&routine.body);
+    open.close(goes, &effects);
+    let name = match routine.kind {
+        RoutineKind::Function | RoutineKind::Body => routine.name.clone(),
+        RoutineKind::Prescan => format!("{} (prescan)", routine.name),
     };
     unit.define(context, function, &name)
 }
 
 impl<'a, 'p> Function<'a, 'p> {
-    fn open(unit: &'a mut Unit<'p>, mut builder: FunctionBuilder<'a>, pou: &'p Pou, part: Part, facts: &Facts) -> Self {
+    fn open(unit: &'a mut Unit<'p>, mut builder: FunctionBuilder<'a>, routine: &'p Routine, effects: &Effects) -> Self {
         let entry = builder.create_block();
         builder.append_block_params_for_function_params(entry);
         builder.switch_to_block(entry);
         builder.seal_block(entry);
-        let start = Start::new(builder.block_params(entry), unit.program, pou, part, facts);
+        let start = Start::new(builder.block_params(entry), unit.program, routine, effects);
         let exit = builder.create_block();
         let mut function = Self {
             unit,
             builder,
-            pou,
+            routine,
             start,
-            locals: Vec::with_capacity(pou.locals.len()),
+            locals: Vec::with_capacity(routine.locals.len()),
             loops: Vec::new(),
             counters: Vec::new(),
             registers: Vec::new(),
@@ -110,16 +106,16 @@ impl<'a, 'p> Function<'a, 'p> {
             temporaries: Temporaries::default(),
             functions: HashMap::new(),
             data: HashMap::new(),
-            result: pou.result.filter(|_| part == Part::Body).zip(result_type(pou)),
+            result: routine.result.zip(result_type(routine)),
         };
-        function.place_locals(facts);
+        function.place_locals(effects);
         function.start_locals();
         function
     }
 
-    fn place_locals(&mut self, facts: &Facts) {
+    fn place_locals(&mut self, effects: &Effects) {
         let mut variables = 0;
-        for (local, is_referred) in self.pou.locals.iter().zip(&facts.referred) {
+        for (local, is_referred) in self.routine.locals.iter().zip(&effects.borrowed) {
             let lane = self.unit.program.lane(local.ty).filter(|_| !is_referred);
             let home = match lane {
                 Some(lane) if variables < MAX_VARIABLES => {
@@ -137,15 +133,15 @@ impl<'a, 'p> Function<'a, 'p> {
 
     /// Every call starts with arguments and initial values.
     fn start_locals(&mut self) {
-        let pou = self.pou;
-        let mut arguments = vec![None; pou.locals.len()];
-        for (param, value) in pou.params.iter().zip(&self.start.params) {
+        let routine = self.routine;
+        let mut arguments = vec![None; routine.locals.len()];
+        for (param, value) in routine.params.iter().zip(&self.start.params) {
             if let Mode::Value(local) = param.mode {
                 arguments[local.index()] = Some(*value);
             }
         }
         for (at, argument) in arguments.into_iter().enumerate() {
-            let (home, local) = (self.locals[at], &pou.locals[at]);
+            let (home, local) = (self.locals[at], &routine.locals[at]);
             match argument {
                 Some(value) => self.start_with_argument(home, local.ty, value),
                 None => self.start_with_constant(home, local.ty, &local.initial),
@@ -187,7 +183,7 @@ impl<'a, 'p> Function<'a, 'p> {
         }
     }
 
-    fn close(mut self, goes: Goes, facts: &Facts) {
+    fn close(mut self, goes: Goes, effects: &Effects) {
         if goes == Goes::On {
             let exit = self.exit;
             self.ins().jump(exit, &[]);
@@ -196,7 +192,7 @@ impl<'a, 'p> Function<'a, 'p> {
         self.builder.seal_block(self.exit);
         let result = self.result();
         let mut values = Vec::new();
-        if facts.may_fault {
+        if effects.faults {
             values.push(self.code(0));
         }
         values.extend(result);
@@ -262,20 +258,15 @@ pub(crate) enum Goes {
 }
 
 impl Start {
-    fn new(values: &[clif::Value], program: &Program, pou: &Pou, part: Part, facts: &Facts) -> Self {
+    fn new(values: &[clif::Value], program: &Program, routine: &Routine, effects: &Effects) -> Self {
         let mut values = values.iter().copied();
         let mut next_if = |needed: bool| if needed { values.next() } else { None };
-        let context = next_if(facts.uses_context);
-        let globals = next_if(facts.uses_globals);
-        let instance = next_if(pou.state.is_some());
-        let (params, result) = match part {
-            Part::Prescan => (Vec::new(), None),
-            Part::Body => {
-                let params = values.by_ref().take(pou.params.len()).collect();
-                let by_pointer = result_type(pou).is_some_and(|ty| program.lane(ty).is_none());
-                (params, values.next().filter(|_| by_pointer))
-            }
-        };
+        let context = next_if(effects.context);
+        let globals = next_if(effects.globals);
+        let instance = next_if(routine.state.is_some());
+        let params = values.by_ref().take(routine.params.len()).collect();
+        let by_pointer = result_type(routine).is_some_and(|ty| program.lane(ty).is_none());
+        let result = values.next().filter(|_| by_pointer);
         Self { context, globals, instance, params, result }
     }
 }

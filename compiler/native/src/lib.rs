@@ -9,7 +9,6 @@
 mod error;
 mod target;
 
-mod facts;
 mod signature;
 mod unit;
 

@@ -27,7 +27,7 @@ impl Function<'_, '_> {
     /// The address of a place that is not a variable of the code generator's.
     pub(crate) fn address(&mut self, place: &Place) -> Address {
         let mut address = self.root(place.root);
-        let root_type = self.unit.program.root_type(self.pou, place.root);
+        let root_type = self.unit.program.root_type(self.routine, place.root);
         let mut ty = root_type.expect("verified IR: a root that the POU has");
         for projection in &place.projections {
             (address, ty) = match projection {

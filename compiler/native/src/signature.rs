@@ -1,13 +1,13 @@
-//! How values pass between functions: those of POUs, of the runtime, and the entry points.
+//! How values pass between functions: those of routines, of the runtime, and the entry points.
 //!
-//! A POU's function takes the context and the globals if it uses them, its instance, its
+//! A routine's function takes the context and the globals if it uses them, its instance, its
 //! parameters in order (elementary values by value, all else and references as pointers), and a
 //! pointer for a result that is not elementary. It returns a fault's code (0 for none) if it may
 //! fault, and then an elementary result.
 
-use crate::facts::Facts;
 use cranelift_codegen::ir::{AbiParam, Signature, Type as Clif, types};
-use staunch_ir::{Lane, Mode, Pou, Program, Type};
+use staunch_ir::effects::Effects;
+use staunch_ir::{Lane, Mode, Program, Routine, Type};
 use target_lexicon::{Architecture, Triple};
 
 /// All targets are 64-bit.
@@ -27,23 +27,19 @@ pub(crate) fn clif_type(lane: Lane) -> Clif {
     }
 }
 
-/// Fills the signature of a POU's function.
-pub(crate) fn of_pou(program: &Program, pou: &Pou, facts: &Facts, is_prescan: bool, signature: &mut Signature) {
-    let pointers = [facts.uses_context, facts.uses_globals, pou.state.is_some()];
+/// Fills the signature of a routine's function.
+pub(crate) fn of_routine(program: &Program, routine: &Routine, effects: &Effects, signature: &mut Signature) {
+    let pointers = [effects.context, effects.globals, routine.state.is_some()];
     for _ in pointers.into_iter().filter(|needed| *needed) {
         signature.params.push(AbiParam::new(POINTER));
     }
-    if facts.may_fault {
+    if effects.faults {
         signature.returns.push(AbiParam::new(CODE));
     }
-    // A prescan has none of the parameters, and no result.
-    if is_prescan {
-        return;
-    }
-    for param in &pou.params {
+    for param in &routine.params {
         signature.params.push(AbiParam::new(param_type(program, param.ty, param.mode)));
     }
-    match result_type(pou).map(|ty| program.lane(ty)) {
+    match result_type(routine).map(|ty| program.lane(ty)) {
         Some(Some(lane)) => signature.returns.push(AbiParam::new(clif_type(lane))),
         Some(None) => signature.params.push(AbiParam::new(POINTER)),
         None => {}
@@ -58,8 +54,8 @@ pub(crate) fn param_type(program: &Program, ty: Type, mode: Mode) -> Clif {
 }
 
 /// The type of a FUNCTION's result.
-pub(crate) fn result_type(pou: &Pou) -> Option<Type> {
-    pou.result.map(|id| pou.locals[id.index()].ty)
+pub(crate) fn result_type(routine: &Routine) -> Option<Type> {
+    routine.result.map(|id| routine.locals[id.index()].ty)
 }
 
 /// How a C function of the target takes and returns a lane: small integers are extended by who

@@ -42,9 +42,6 @@ impl<'p> Function<'_, 'p> {
             StatementKind::PrescanBlock { block, instruction } => {
                 self.prescan_block(block, *instruction);
             }
-            StatementKind::PrescanInstance { callee, instance } => {
-                self.prescan_instance(*callee, instance);
-            }
             StatementKind::Fault(kind) => {
                 self.fault(*kind, statement.at);
                 return Goes::Away;

@@ -1,14 +1,14 @@
 //! One program on its way into a module: what is declared, and the data that code refers to.
 
-use crate::facts::{self, Facts, PouFacts};
-use crate::{Error, entry, function, signature, target};
+use crate::{Error, entry, function, inline_block, inline_op, signature, target};
 use cranelift_codegen::Context;
 use cranelift_codegen::control::ControlPlane;
 use cranelift_codegen::ir::Signature;
 use cranelift_frontend::FunctionBuilderContext;
 use cranelift_module::{DataDescription, DataId, FuncId, Linkage, Module, ModuleReloc};
+use staunch_ir::effects::{Effects, Rules, effects};
 use staunch_ir::layout::Layout;
-use staunch_ir::{Pou, PouId, Program};
+use staunch_ir::{Program, Routine, RoutineId, RoutineKind};
 use std::collections::HashMap;
 use std::fmt::Write;
 
@@ -16,12 +16,20 @@ use std::fmt::Write;
 /// to minutes for a hundred thousand statements.
 const LARGE: usize = 30_000;
 
+/// What the code for blocks and operations needs.
+const RULES: Rules = Rules {
+    block_takes_context: |block, instruction| inline_block::find(block, instruction).is_none(),
+    operation_faults: inline_op::may_fault,
+    drops_checks: true,
+    scans_take_all: false,
+};
+
 pub(crate) struct Unit<'p> {
     pub(crate) program: &'p Program,
     pub(crate) layout: Layout,
-    pub(crate) facts: Vec<PouFacts>,
+    pub(crate) effects: Vec<Effects>,
     pub(crate) module: &'p mut dyn Module,
-    functions: Vec<PouFunctions>,
+    functions: Vec<FuncId>,
     imports: HashMap<String, FuncId>,
     /// Read-only data, defined when all code is made.
     constants: HashMap<Vec<u8>, DataId>,
@@ -29,24 +37,10 @@ pub(crate) struct Unit<'p> {
     pub(crate) listing: Option<String>,
 }
 
-#[derive(Clone, Copy, Debug)]
-struct PouFunctions {
-    body: FuncId,
-    /// There is none for an empty prescan.
-    prescan: Option<FuncId>,
-}
-
 /// Working memory of the code generator, kept from function to function.
 pub(crate) struct Workspace {
     pub(crate) context: Context,
     pub(crate) builder: FunctionBuilderContext,
-}
-
-/// Which of a POU's blocks a function runs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Part {
-    Body,
-    Prescan,
 }
 
 /// The functions that a program consists of.
@@ -65,21 +59,17 @@ pub(crate) fn emit(
     let mut unit = Unit {
         program,
         layout: Layout::new(program),
-        facts: facts::of_program(program),
+        effects: effects(program, &RULES),
         module,
-        functions: Vec::with_capacity(program.pous.len()),
+        functions: Vec::with_capacity(program.routines.len()),
         imports: HashMap::new(),
         constants: HashMap::new(),
         listing,
     };
     unit.declare()?;
     let mut workspace = Workspace { context: unit.module.make_context(), builder: FunctionBuilderContext::new() };
-    for at in 0..program.pous.len() {
-        let id = PouId::next(at);
-        function::emit(&mut unit, &mut workspace, id, Part::Body)?;
-        if !program.pou(id).prescan.is_empty() {
-            function::emit(&mut unit, &mut workspace, id, Part::Prescan)?;
-        }
+    for at in 0..program.routines.len() {
+        function::emit(&mut unit, &mut workspace, RoutineId::next(at))?;
     }
     let entry_points = entry::emit(&mut unit, &mut workspace)?;
     unit.define_constants()?;
@@ -89,44 +79,27 @@ pub(crate) fn emit(
 impl<'p> Unit<'p> {
     fn declare(&mut self) -> Result<(), Error> {
         let program = self.program;
-        for (at, pou) in program.pous.iter().enumerate() {
-            let id = PouId::next(at);
-            let body = self.declare_pou(id, pou, Part::Body)?;
-            let prescan = if pou.prescan.is_empty() { None } else { Some(self.declare_pou(id, pou, Part::Prescan)?) };
-            self.functions.push(PouFunctions { body, prescan });
+        for (at, routine) in program.routines.iter().enumerate() {
+            let id = RoutineId::next(at);
+            let signature = self.signature(id);
+            let function = self.module.declare_function(&symbol(id, routine), Linkage::Local, &signature)?;
+            self.functions.push(function);
         }
         Ok(())
     }
 
-    fn declare_pou(&mut self, id: PouId, pou: &Pou, part: Part) -> Result<FuncId, Error> {
-        let signature = self.signature(id, part);
-        let name = symbol(id, pou, part);
-        Ok(self.module.declare_function(&name, Linkage::Local, &signature)?)
-    }
-
-    pub(crate) fn signature(&self, id: PouId, part: Part) -> Signature {
+    pub(crate) fn signature(&self, id: RoutineId) -> Signature {
         let mut signature = self.module.make_signature();
-        let pou = self.program.pou(id);
-        let is_prescan = part == Part::Prescan;
-        signature::of_pou(self.program, pou, self.facts(id, part), is_prescan, &mut signature);
+        signature::of_routine(self.program, self.program.routine(id), self.effects(id), &mut signature);
         signature
     }
 
-    pub(crate) fn facts(&self, id: PouId, part: Part) -> &Facts {
-        let facts = &self.facts[id.index()];
-        match part {
-            Part::Body => &facts.body,
-            Part::Prescan => &facts.prescan,
-        }
+    pub(crate) fn effects(&self, id: RoutineId) -> &Effects {
+        &self.effects[id.index()]
     }
 
-    /// The function of a POU's part; `None` for an empty prescan.
-    pub(crate) fn function(&self, id: PouId, part: Part) -> Option<FuncId> {
-        let functions = self.functions[id.index()];
-        match part {
-            Part::Body => Some(functions.body),
-            Part::Prescan => functions.prescan,
-        }
+    pub(crate) fn function(&self, id: RoutineId) -> FuncId {
+        self.functions[id.index()]
     }
 
     /// A function of the runtime.
@@ -208,10 +181,10 @@ fn reason(error: &dyn core::error::Error) -> String {
 }
 
 /// A local symbol, for debuggers and disassemblers; the number keeps names apart.
-fn symbol(id: PouId, pou: &Pou, part: Part) -> String {
-    let name = pou.name.replace(|c: char| !c.is_ascii_alphanumeric(), "_");
-    match part {
-        Part::Body => format!("st{}_{name}", id.0),
-        Part::Prescan => format!("st{}_{name}_prescan", id.0),
+fn symbol(id: RoutineId, routine: &Routine) -> String {
+    let name = routine.name.replace(|c: char| !c.is_ascii_alphanumeric(), "_");
+    match routine.kind {
+        RoutineKind::Function | RoutineKind::Body => format!("st{}_{name}", id.0),
+        RoutineKind::Prescan => format!("st{}_{name}_prescan", id.0),
     }
 }

@@ -47,7 +47,7 @@ fn program_of(id: BlockId, instruction: usize, is_prescan: bool) -> Program {
         let inputs = lanes.iter().enumerate().map(input).collect();
         StatementKind::CallBlock { block: block(), instruction, inputs }
     };
-    let main = Pou { body: vec![stmt(kind)], ..pou(PouKind::Program, "Main", Some(StructId(0))) };
+    let main = Routine { body: vec![stmt(kind)], ..routine(RoutineKind::Body, "Main", Some(StructId(0))) };
     program(Vec::new(), vec![structure("Main", fields)], vec![main])
 }
 

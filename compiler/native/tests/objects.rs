@@ -63,7 +63,7 @@ fn everything() -> Program {
             }
         }
     }
-    let main = Pou { body, ..pou(PouKind::Program, "Main", Some(StructId(0))) };
+    let main = Routine { body, ..routine(RoutineKind::Body, "Main", Some(StructId(0))) };
     program(vec![Array { low: 0, high: 99, element: Type::LREAL }], vec![structure("Main", fields)], vec![main])
 }
 

@@ -23,7 +23,7 @@ struct Case {
 
 fn program_of(cases: &[Case]) -> Program {
     let mut structs = Vec::new();
-    let mut pous = Vec::new();
+    let mut routines = Vec::new();
     for case in cases {
         let id = StructId::next(structs.len());
         let lanes = case.operands.iter().chain([&case.result]);
@@ -31,12 +31,12 @@ fn program_of(cases: &[Case]) -> Program {
         let operand = |(at, lane): (usize, &Lane)| load(member(id, at, elementary(*lane)));
         let operands = case.operands.iter().enumerate().map(operand).collect();
         let target = member(id, case.operands.len(), elementary(case.result));
-        pous.push(Pou {
+        routines.push(Routine {
             body: vec![assign(target, (case.value)(operands))],
-            ..pou(PouKind::Program, &case.name, Some(id))
+            ..routine(RoutineKind::Body, &case.name, Some(id))
         });
     }
-    program(Vec::new(), structs, pous)
+    program(Vec::new(), structs, routines)
 }
 
 /// Runs every case with all combinations of its operands' edge values.

@@ -52,8 +52,9 @@ struct Maker {
     line: u32,
     arrays: Vec<Array>,
     structs: Vec<Struct>,
-    pous: Vec<Pou>,
-    /// What the POU being made can use.
+    routines: Vec<Routine>,
+    classes: Vec<Class>,
+    /// What the routine being made can use.
     known: Vec<Known>,
     locals: Vec<Local>,
     loops: usize,
@@ -72,7 +73,8 @@ impl Maker {
             line: 10,
             arrays: Vec::new(),
             structs: Vec::new(),
-            pous: Vec::new(),
+            routines: Vec::new(),
+            classes: Vec::new(),
             known: Vec::new(),
             locals: Vec::new(),
             loops: 0,
@@ -84,13 +86,13 @@ impl Maker {
             maker.function(globals);
         }
         for _ in 0..2 {
-            maker.instance_pou(PouKind::FunctionBlock, globals);
+            maker.class(ClassKind::FunctionBlock, globals);
         }
         for _ in 0..2 {
-            maker.instance_pou(PouKind::Program, globals);
+            maker.class(ClassKind::Program, globals);
         }
-        let is_program = |at: &usize| maker.pous[*at].kind == PouKind::Program;
-        let instances = (0..maker.pous.len()).filter(is_program).map(|at| instance(PouId::next(at)));
+        let is_program = |at: &usize| maker.classes[*at].kind == ClassKind::Program;
+        let instances = (0..maker.classes.len()).filter(is_program).map(|at| instance(ClassId::next(at)));
         Program {
             files: vec![SourceFile { path: "random.st".to_owned() }],
             bounds: vec![LIMITS],
@@ -106,7 +108,8 @@ impl Maker {
             globals,
             aliases: Vec::new(),
             structs: maker.structs,
-            pous: maker.pous,
+            classes: maker.classes,
+            routines: maker.routines,
         }
     }
 
@@ -194,7 +197,7 @@ impl Maker {
         line(self.line)
     }
 
-    // POUs.
+    // routines.
 
     fn function(&mut self, globals: StructId) {
         self.open(globals);
@@ -214,31 +217,28 @@ impl Maker {
         let result = self.local(ty);
         self.more_locals();
         let body = self.statements(5, 2);
-        let pou = pou(PouKind::Function, "Function", None);
-        self.close(Pou { params, result: Some(result), body, ..pou });
+        let routine = routine(RoutineKind::Function, "Function", None);
+        self.close(Routine { params, result: Some(result), body, ..routine });
     }
 
-    fn instance_pou(&mut self, kind: PouKind, globals: StructId) {
-        let name = if kind == PouKind::Program { "Main" } else { "Fb" };
+    fn class(&mut self, kind: ClassKind, globals: StructId) {
+        let name = if kind == ClassKind::Program { "Main" } else { "Fb" };
         let state = self.state(name, 7);
         // Instances of the function blocks that there are, and of standard blocks.
-        let blocks: Vec<_> =
-            self.pous.iter().filter(|pou| pou.kind == PouKind::FunctionBlock).filter_map(|pou| pou.state).collect();
-        for id in blocks {
+        let blocks: Vec<_> = self.classes.iter().filter(|it| it.kind == ClassKind::FunctionBlock).collect();
+        for id in blocks.into_iter().map(|it| it.state) {
             self.structs[state.index()].fields.push(zero("fb", Type::Struct(id)));
         }
         for _ in 0..3 {
             let ty = self.block();
             self.structs[state.index()].fields.push(zero("block", ty));
         }
+        let prescan = self.random.one_in(2).then(|| self.prescan(name, state, globals));
         self.open(globals);
         self.know(Place::root(Root::Instance, Type::Struct(state)), true);
         self.more_locals();
-        self.plain = true;
-        let prescan = if self.random.one_in(2) { self.statements(3, 1) } else { Vec::new() };
-        self.plain = false;
         let mut params = Vec::new();
-        if kind == PouKind::FunctionBlock {
+        if kind == ClassKind::FunctionBlock {
             for _ in 0..2 {
                 let ty = self.part();
                 self.know(Place::root(Root::Param(ParamId::next(params.len())), ty), true);
@@ -246,7 +246,20 @@ impl Maker {
             }
         }
         let body = self.statements(12, 3);
-        self.close(Pou { params, prescan, body, ..pou(kind, name, Some(state)) });
+        self.close(Routine { params, body, ..routine(RoutineKind::Body, name, Some(state)) });
+        let body = RoutineId::next(self.routines.len() - 1);
+        self.classes.push(class(kind, &self.routines, body, prescan));
+    }
+
+    fn prescan(&mut self, name: &str, state: StructId, globals: StructId) -> RoutineId {
+        self.open(globals);
+        self.know(Place::root(Root::Instance, Type::Struct(state)), true);
+        self.more_locals();
+        self.plain = true;
+        let body = self.statements(3, 1);
+        self.plain = false;
+        self.close(Routine { body, ..routine(RoutineKind::Prescan, name, Some(state)) });
+        RoutineId::next(self.routines.len() - 1)
     }
 
     fn open(&mut self, globals: StructId) {
@@ -255,9 +268,9 @@ impl Maker {
         self.know(Place::root(Root::Globals, Type::Struct(globals)), true);
     }
 
-    fn close(&mut self, pou: Pou) {
+    fn close(&mut self, routine: Routine) {
         let locals = core::mem::take(&mut self.locals);
-        self.pous.push(Pou { locals, ..pou });
+        self.routines.push(Routine { locals, ..routine });
     }
 
     fn more_locals(&mut self) {
@@ -448,7 +461,10 @@ impl Maker {
                 otherwise: if self.random.one_in(2) { Vec::new() } else { self.statements(4, depth - 1) },
             },
             2 if depth > 0 => self.case(depth),
-            3 if depth > 0 && self.loops < 2 => self.repetition(depth),
+            3 if depth > 0 && self.loops < 2 => match self.random.one_in(2) {
+                true => self.counted(depth).unwrap_or_else(|| self.assignment()),
+                false => self.repetition(depth),
+            },
             4 if self.loops > 0 => StatementKind::Exit,
             5 if self.loops > 0 && !self.plain => StatementKind::Continue,
             6 if self.random.one_in(6) => StatementKind::Return,
@@ -490,6 +506,41 @@ impl Maker {
         StatementKind::Case { selector, arms, otherwise: self.statements(2, depth - 1) }
     }
 
+    /// A FOR loop, also over a variable that its body may write.
+    fn counted(&mut self, depth: usize) -> Option<StatementKind> {
+        let is_counter = |ty: Type| match ty {
+            Type::Elementary(it) => it.is_integer() || it.is_bits() && it != Elementary::Bool,
+            _ => false,
+        };
+        // What nobody else knows is private.
+        let is_private = self.random.one_in(2);
+        let counter = if is_private {
+            let lanes =
+                [Type::INT, Type::LINT, Type::Elementary(Elementary::Usint), Type::Elementary(Elementary::Ulint)];
+            let ty = self.random.of(&lanes);
+            self.locals.push(local("counter", ty, Const::Zero));
+            Place::local(LocalId::next(self.locals.len() - 1), ty)
+        } else {
+            self.place(0, is_counter)?
+        };
+        if counter.projections.iter().any(|it| matches!(it, Projection::Index { .. })) {
+            return None;
+        }
+        let Type::Elementary(ty) = counter.ty else { return None };
+        let range = ty.lane().range()?;
+        let step = self.random.of(&[1, 1, -1, 3, -7, 100]);
+        let step = match self.random.one_in(3) {
+            true => Step::Variable(self.expr(counter.ty, 1)),
+            false => Step::Constant(step),
+        };
+        let (first, last) = (self.expr(counter.ty, 1), self.expr(counter.ty, 1));
+        self.loops += 1;
+        let mut body = self.statements(4, depth - 1);
+        self.loops -= 1;
+        body.insert(0, stmt(StatementKind::Turn));
+        Some(StatementKind::For(Box::new(For { counter, first, last, step, range, is_private, body, step_at: AT })))
+    }
+
     /// `LOOP … IF counter >= n THEN EXIT; counter := counter + 1`, where the counter is new.
     fn repetition(&mut self, depth: usize) -> StatementKind {
         let counter = Place::local(LocalId::next(self.locals.len()), Type::INT);
@@ -510,30 +561,28 @@ impl Maker {
     }
 
     fn call(&mut self) -> Option<StatementKind> {
-        let callees: Vec<_> = (0..self.pous.len()).filter(|at| self.pous[*at].kind != PouKind::Program).collect();
+        // A PROGRAM's routines stand last, and nobody's calls reach them: their state is nowhere.
+        let callees: Vec<_> = (0..self.routines.len()).collect();
         if callees.is_empty() {
             return None;
         }
         let callee = self.random.of(&callees);
-        let pou = self.pous[callee].clone();
-        let callee = PouId::next(callee);
-        let instance = match pou.state {
+        let routine = self.routines[callee].clone();
+        let callee = RoutineId::next(callee);
+        let instance = match routine.state {
             Some(id) => Some(self.place(1, |ty| ty == Type::Struct(id))?),
             None => None,
         };
-        if pou.state.is_some() && self.random.one_in(4) {
-            return Some(StatementKind::PrescanInstance { callee, instance: instance? });
-        }
         let mut arguments = Vec::new();
-        for param in &pou.params {
+        for param in &routine.params {
             arguments.push(match param.mode {
                 Mode::Value(_) => Argument::Value(self.expr(param.ty, 2)),
                 Mode::Reference => Argument::Reference(self.place(2, |ty| ty == param.ty)?),
             });
         }
-        let result = match pou.result {
+        let result = match routine.result {
             Some(id) if self.random.one_in(2) => {
-                let wanted = pou.locals[id.index()].ty;
+                let wanted = routine.locals[id.index()].ty;
                 (0..self.locals.len())
                     .find(|at| self.locals[*at].ty == wanted)
                     .map(|at| Place::local(LocalId::next(at), wanted))
@@ -582,7 +631,7 @@ fn meaningful(program: &Program, layout: &Layout) -> Vec<bool> {
     let mut counts = vec![false; usize_of(layout.machine.size)];
     mark(program, layout, Type::Struct(program.globals), layout.machine.globals, &mut counts);
     for (instance, offset) in program.instances.iter().zip(&layout.machine.instances) {
-        mark(program, layout, Type::Struct(program.pou(instance.program).state.unwrap()), *offset, &mut counts);
+        mark(program, layout, Type::Struct(program.class(instance.program).state), *offset, &mut counts);
     }
     counts
 }

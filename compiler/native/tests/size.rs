@@ -9,7 +9,7 @@ use staunch_runtime::Context;
 use support::*;
 
 fn main_with(fields: Vec<Field>, locals: Vec<Local>, body: Block) -> Program {
-    let main = Pou { locals, body, ..pou(PouKind::Program, "Main", Some(StructId(0))) };
+    let main = Routine { locals, body, ..routine(RoutineKind::Body, "Main", Some(StructId(0))) };
     program(Vec::new(), vec![structure("Main", fields)], vec![main])
 }
 

@@ -13,8 +13,9 @@ mod rewrite;
 
 use std::collections::HashMap;
 
+use staunch_ir::effects::{Effects, Rules, effects};
 use staunch_ir::{
-    Argument, Block, FieldId, For, Mode, Param, Place, Pou, PouId, PouKind, Program, Projection, Root, Statement,
+    Argument, Block, FieldId, For, Mode, Param, Place, Program, Projection, Routine, RoutineId, RoutineKind, Statement,
     StatementKind, Type,
 };
 
@@ -26,7 +27,7 @@ use rewrite::Body;
 #[derive(Debug)]
 pub struct Separated {
     pub program: Program,
-    /// For each of its POUs.
+    /// For each of its routines.
     pub origins: Vec<Origin>,
 }
 
@@ -37,17 +38,10 @@ pub enum Origin {
     Copy,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum Part {
-    Body,
-    Prescan,
-}
-
 /// A callee, and what of it shares storage with what.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 struct Key {
-    pou: PouId,
-    part: Part,
+    routine: RoutineId,
     /// For the instance, then for each parameter.
     bindings: Vec<Binding>,
     /// The types of the parameters that a copy gets for shared storage.
@@ -76,88 +70,58 @@ enum Step {
     Index,
 }
 
-/// Whether a POU touches the globals, itself or through a callee.
-#[derive(Clone, Copy, Debug, Default)]
-struct UsesGlobals {
-    body: bool,
-    prescan: bool,
-}
-
 struct Separator<'p> {
     source: &'p Program,
-    globals: Vec<UsesGlobals>,
-    known: HashMap<Key, PouId>,
-    pous: Vec<Pou>,
+    effects: Vec<Effects>,
+    known: HashMap<Key, RoutineId>,
+    routines: Vec<Routine>,
     origins: Vec<Origin>,
 }
 
 /// Rewrites every call that Rust's rules on `&mut` would refuse.
 pub fn separate(source: &Program) -> Separated {
-    let globals = globals_used(source);
-    let mut separator = Separator { source, globals, known: HashMap::new(), pous: Vec::new(), origins: Vec::new() };
-    let ids: Vec<PouId> = (0..source.pous.len()).map(|at| separator.declared(PouId::next(at))).collect();
-    let mut program = Program { pous: separator.pous, ..source.clone() };
-    for instance in &mut program.instances {
-        instance.program = ids[instance.program.index()];
+    let effects = effects(source, &Rules::PLAIN);
+    let mut separator = Separator { source, effects, known: HashMap::new(), routines: Vec::new(), origins: Vec::new() };
+    let ids: Vec<RoutineId> = (0..source.routines.len()).map(|at| separator.declared(RoutineId::next(at))).collect();
+    let mut program = Program { routines: separator.routines, ..source.clone() };
+    for class in &mut program.classes {
+        class.body = ids[class.body.index()];
+        class.prescan = class.prescan.map(|it| ids[it.index()]);
     }
     Separated { program, origins: separator.origins }
 }
 
-fn globals_used(program: &Program) -> Vec<UsesGlobals> {
-    let mut known: Vec<UsesGlobals> = Vec::with_capacity(program.pous.len());
-    for pou in &program.pous {
-        let uses = UsesGlobals { body: block_uses(&pou.body, &known), prescan: block_uses(&pou.prescan, &known) };
-        known.push(uses);
-    }
-    known
-}
-
-fn block_uses(block: &Block, known: &[UsesGlobals]) -> bool {
-    let mut uses = false;
-    staunch_ir::visit::statements(block, &mut |statement| {
-        staunch_ir::visit::accesses(statement, &mut |place, _| uses |= place.root == Root::Globals);
-        if let StatementKind::Call { callee, .. } = statement.kind {
-            uses |= known[callee.index()].body;
-        }
-        if let StatementKind::PrescanInstance { callee, .. } = statement.kind {
-            uses |= known[callee.index()].prescan;
-        }
-    });
-    uses
-}
-
 impl Separator<'_> {
     /// The POU as declared, with its calls rewritten.
-    fn declared(&mut self, id: PouId) -> PouId {
-        let params = self.source.pou(id).params.len();
+    fn declared(&mut self, id: RoutineId) -> RoutineId {
+        let params = self.source.routine(id).params.len();
         let bindings = vec![Binding::Own; params + 1];
-        self.resolve(Key { pou: id, part: Part::Body, bindings, groups: Vec::new() })
+        self.resolve(Key { routine: id, bindings, groups: Vec::new() })
     }
 
-    fn resolve(&mut self, key: Key) -> PouId {
+    fn resolve(&mut self, key: Key) -> RoutineId {
         if let Some(known) = self.known.get(&key) {
             return *known;
         }
-        let declared = key.part == Part::Body && key.bindings.iter().all(|it| *it == Binding::Own);
-        let pou = if declared { self.rewrite_declared(key.pou) } else { self.copy(&key) };
+        let declared = key.bindings.iter().all(|it| *it == Binding::Own);
+        let routine = if declared { self.rewrite_declared(key.routine) } else { self.copy(&key) };
         // Its callees have taken their places meanwhile, so they stand before it.
-        let id = PouId::next(self.pous.len());
-        self.pous.push(pou);
+        let id = RoutineId::next(self.routines.len());
+        self.routines.push(routine);
         self.origins.push(if declared { Origin::Declared } else { Origin::Copy });
         self.known.insert(key, id);
         id
     }
 
-    fn rewrite_declared(&mut self, id: PouId) -> Pou {
-        let source = self.source.pou(id);
+    fn rewrite_declared(&mut self, id: RoutineId) -> Routine {
+        let source = self.source.routine(id);
         let mut body = Body::declared(source);
         let rewritten = self.block(&mut body, &source.body);
-        let prescan = self.block(&mut body, &source.prescan);
-        Pou { locals: body.locals, body: rewritten, prescan, ..source.clone() }
+        Routine { locals: body.locals, body: rewritten, ..source.clone() }
     }
 
-    fn copy(&mut self, key: &Key) -> Pou {
-        let source = self.source.pou(key.pou);
+    fn copy(&mut self, key: &Key) -> Routine {
+        let source = self.source.routine(key.routine);
         let mut body = Body { params: Vec::new(), ..Body::declared(source) };
         body.instance = body.bind(&key.bindings[0], "instance", source.location);
         body.bases = Vec::new();
@@ -174,13 +138,10 @@ impl Separator<'_> {
             body.params.push(Param { name, ty: *ty, doc: None, mode: Mode::Reference });
         }
         body.place_groups(first_group);
-        let statements = match key.part {
-            Part::Body => self.block(&mut body, &source.body),
-            Part::Prescan => self.block(&mut body, &source.prescan),
-        };
+        let statements = self.block(&mut body, &source.body);
         let detached = key.bindings[0] != Binding::Own;
-        Pou {
-            kind: if detached { PouKind::Function } else { source.kind },
+        Routine {
+            kind: if detached { RoutineKind::Function } else { source.kind },
             name: copy_name(self.source, source, key),
             doc: source.doc.clone(),
             location: source.location,
@@ -188,9 +149,7 @@ impl Separator<'_> {
             params: body.params,
             locals: body.locals,
             result: source.result,
-            variables: Vec::new(),
             body: statements,
-            prescan: Block::new(),
         }
     }
 
@@ -240,13 +199,7 @@ impl Separator<'_> {
                 let instance = instance.as_ref().map(|it| body.place(it));
                 let arguments = arguments.iter().map(|it| body.argument(it)).collect();
                 let result = result.as_ref().map(|it| body.place(it));
-                let call = Call { callee: *callee, part: Part::Body, instance, arguments, result, at };
-                return self.call(body, call, out);
-            }
-            StatementKind::PrescanInstance { callee, instance } => {
-                let instance = Some(body.place(instance));
-                let arguments = Vec::new();
-                let call = Call { callee: *callee, part: Part::Prescan, instance, arguments, result: None, at };
+                let call = Call { callee: *callee, instance, arguments, result, at };
                 return self.call(body, call, out);
             }
             StatementKind::CallBlock { block, instruction, inputs } => StatementKind::CallBlock {
@@ -267,16 +220,12 @@ impl Separator<'_> {
 
     /// Emits a call whose places and values are already the caller's.
     fn call(&mut self, body: &mut Body, call: Call, out: &mut Block) {
-        let uses = self.globals[call.callee.index()];
-        let uses_globals = match call.part {
-            Part::Body => uses.body,
-            Part::Prescan => uses.prescan,
-        };
+        let uses_globals = self.effects[call.callee.index()].globals;
         let ancestors = overlap::ancestors(&call.references(), uses_globals);
         if ancestors.is_empty() {
             return self.plain_call(body, call, out);
         }
-        let (key, groups) = call.key(self.source.pou(call.callee), &ancestors, body, self.source);
+        let (key, groups) = call.key(self.source.routine(call.callee), &ancestors, body, self.source);
         let callee = self.resolve(key.clone());
         let (instance, arguments) = self.hand_over(body, call.clone(), &key, groups, out);
         let kind = StatementKind::Call { callee, instance, arguments, result: call.result };
@@ -298,12 +247,8 @@ impl Separator<'_> {
             }
             call.arguments = arguments;
         }
-        let kind = match (call.part, call.instance) {
-            (Part::Prescan, Some(instance)) => StatementKind::PrescanInstance { callee, instance },
-            (Part::Body | Part::Prescan, instance) => {
-                StatementKind::Call { callee, instance, arguments: call.arguments, result: call.result }
-            }
-        };
+        let kind =
+            StatementKind::Call { callee, instance: call.instance, arguments: call.arguments, result: call.result };
         out.push(Statement::new(kind, call.at));
     }
 

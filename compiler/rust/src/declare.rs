@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use staunch_ir::{Block, LocalId, Place, Pou, Root, Statement, StatementKind};
+use staunch_ir::{Block, LocalId, Place, Root, Routine, Statement, StatementKind};
 
 use crate::names::by_value_param;
 use staunch_ir::visit::{self, Access};
@@ -62,25 +62,25 @@ struct Mentions {
     count: usize,
 }
 
-pub fn plan(pou: &Pou, body: &Block) -> Plan {
+pub fn plan(routine: &Routine, body: &Block) -> Plan {
     let mut found = HashMap::new();
     note_block(body, &mut Vec::new(), &mut found);
     let mut returns = false;
     visit::statements(body, &mut |it| returns |= matches!(it.kind, StatementKind::Return));
-    let locals = (0..pou.locals.len()).map(|at| declare(pou, LocalId::next(at), &found, returns)).collect();
+    let locals = (0..routine.locals.len()).map(|at| declare(routine, LocalId::next(at), &found, returns)).collect();
     Plan { locals }
 }
 
-fn declare(pou: &Pou, id: LocalId, found: &HashMap<LocalId, Mentions>, returns: bool) -> Declared {
+fn declare(routine: &Routine, id: LocalId, found: &HashMap<LocalId, Mentions>, returns: bool) -> Declared {
     let none = Declared { how: Declaration::Absent, mutable: false, mentions: 0, first: core::ptr::null() };
     let mentions = found.get(&id);
     let changes = mentions.map_or(0, |it| it.changes);
     let count = mentions.map_or(0, |it| it.count);
-    if by_value_param(pou, id).is_some() {
+    if by_value_param(routine, id).is_some() {
         return Declared { how: Declaration::Param, mutable: changes > 0, mentions: count, ..none };
     }
     // A result is read where the function ends.
-    let is_result = pou.result == Some(id);
+    let is_result = routine.result == Some(id);
     let Some(mentions) = mentions else {
         let how = if is_result { Declaration::Top } else { Declaration::Absent };
         return Declared { how, ..none };

@@ -2,26 +2,27 @@
 
 use proc_macro2::TokenStream;
 use quote::quote;
+use staunch_ir::effects::{Effects, Rules, effects};
 use staunch_ir::layout::Layout;
-use staunch_ir::{Location, Place, Pou, Program, Root, Type};
+use staunch_ir::{Location, Place, Program, Root, Routine, Type};
 
 use crate::alias::{Origin, element};
 use crate::constant::{number, rust_path};
 use crate::names::{Names, ident};
-use crate::needs::{PouNeeds, needs};
 
 pub struct Emitter<'p> {
     pub program: &'p Program,
     pub origins: &'p [Origin],
     pub names: Names,
-    pub needs: Vec<PouNeeds>,
+    pub effects: Vec<Effects>,
     pub layout: Layout,
 }
 
 impl<'p> Emitter<'p> {
     pub fn new(program: &'p Program, origins: &'p [Origin]) -> Self {
-        let (names, needs) = (Names::new(program, origins), needs(program));
-        Self { program, origins, names, needs, layout: Layout::new(program) }
+        let names = Names::new(program, origins);
+        let effects = effects(program, &Rules { scans_take_all: true, ..Rules::PLAIN });
+        Self { program, origins, names, effects, layout: Layout::new(program) }
     }
 
     pub fn ty(&self, ty: Type) -> TokenStream {
@@ -58,18 +59,18 @@ impl<'p> Emitter<'p> {
         quote!(.at(#file, #line, #column))
     }
 
-    pub fn root_type(&self, pou: &Pou, root: Root) -> Type {
+    pub fn root_type(&self, routine: &Routine, root: Root) -> Type {
         match root {
-            Root::Instance => Type::Struct(pou.state.expect("verified IR: an instance has a state")),
+            Root::Instance => Type::Struct(routine.state.expect("verified IR: an instance has a state")),
             Root::Globals => Type::Struct(self.program.globals),
-            Root::Local(id) => pou.locals[id.index()].ty,
-            Root::Param(id) => pou.params[id.index()].ty,
+            Root::Local(id) => routine.locals[id.index()].ty,
+            Root::Param(id) => routine.params[id.index()].ty,
         }
     }
 
     /// The type before each projection of a place.
-    pub fn types_along(&self, pou: &Pou, place: &Place) -> Vec<Type> {
-        let mut ty = self.root_type(pou, place.root);
+    pub fn types_along(&self, routine: &Routine, place: &Place) -> Vec<Type> {
+        let mut ty = self.root_type(routine, place.root);
         let mut types = Vec::with_capacity(place.projections.len());
         for projection in &place.projections {
             types.push(ty);

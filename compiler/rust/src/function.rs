@@ -4,19 +4,19 @@ use std::collections::HashMap;
 
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
-use staunch_ir::{Block, LocalId, Mode, Place, Pou, PouId, PouKind, StatementKind};
+use staunch_ir::effects::Effects;
+use staunch_ir::{Block, Class, ClassKind, LocalId, Mode, Place, Routine, RoutineId, RoutineKind, StatementKind};
 
 use crate::declare::{Declaration, Plan, plan};
 use crate::emitter::Emitter;
 use crate::names::{LocalNames, ident};
-use crate::needs::Needs;
 use crate::repeat::Loops;
 use crate::subscript::Subscript;
 
 /// One function being printed.
 pub struct Function<'a> {
     pub emitter: &'a Emitter<'a>,
-    pub pou: &'a Pou,
+    pub routine: &'a Routine,
     pub names: LocalNames,
     pub plan: Plan,
     /// It returns a `Result`.
@@ -42,49 +42,38 @@ pub enum Role {
 }
 
 impl<'a> Emitter<'a> {
-    /// The method or function with the POU's body.
-    pub fn scan(&self, id: PouId) -> TokenStream {
-        let pou = self.program.pou(id);
-        let needs = self.needs[id.index()].body;
-        let role = if pou.kind == PouKind::Function { Role::Free } else { Role::Scan };
-        let name = self.names.pou(id);
-        let mut function = self.function(pou, &pou.body, role == Role::Scan || needs.faults);
-        let before = (pou.kind == PouKind::Program).then(|| self.first_scan(id)).flatten();
-        let body = function.body(&pou.body);
-        let signature = function.signature(name, needs, role);
+    /// The method or function of a routine.
+    pub fn routine(&self, id: RoutineId) -> TokenStream {
+        let routine = self.program.routine(id);
+        let needs = &self.effects[id.index()];
+        let role = match routine.kind {
+            RoutineKind::Function => Role::Free,
+            RoutineKind::Body => Role::Scan,
+            RoutineKind::Prescan => Role::Prescan,
+        };
+        let mut function = self.function(routine, role == Role::Scan || needs.faults);
+        let before = self.first_scan(id);
+        let body = function.body(&routine.body);
+        let signature = function.signature(self.names.routine(id), needs, role);
         let docs = self.scan_docs(id, role);
         quote!(#docs #signature { #before #body })
     }
 
-    /// The method with the POU's prescan, if it has one.
-    pub fn prescan(&self, id: PouId) -> Option<TokenStream> {
-        let pou = self.program.pou(id);
-        if pou.prescan.is_empty() {
-            return None;
-        }
-        let needs = self.needs[id.index()].prescan;
-        let mut function = self.function(pou, &pou.prescan, needs.faults);
-        let body = function.body(&pou.prescan);
-        let signature = function.signature(&ident("prescan"), needs, Role::Prescan);
-        Some(quote! {
-            /// What counters need before the first scan.
-            #signature { #body }
-        })
-    }
-
-    fn first_scan(&self, id: PouId) -> Option<TokenStream> {
-        let pou = self.program.pou(id);
-        let needs = self.needs[id.index()].prescan;
+    /// The start of a PROGRAM's scan, where it has a prescan.
+    fn first_scan(&self, id: RoutineId) -> Option<TokenStream> {
+        let is_it = |it: &&Class| it.body == id && it.kind == ClassKind::Program;
+        let prescan = self.program.classes.iter().find(is_it)?.prescan?;
+        let (needs, name) = (&self.effects[prescan.index()], self.names.routine(prescan));
         let arguments = extra_arguments(needs);
         let propagate = needs.faults.then(|| quote!(?));
-        (!pou.prescan.is_empty()).then(|| quote!(if cx.first_scan { self.prescan(#(#arguments),*) #propagate; }))
+        Some(quote!(if cx.first_scan { self.#name(#(#arguments),*) #propagate; }))
     }
 
-    fn function<'b>(&'b self, pou: &'b Pou, body: &Block, faults: bool) -> Function<'b> {
-        let (names, plan) = (self.names.locals(pou), plan(pou, body));
+    fn function<'b>(&'b self, routine: &'b Routine, faults: bool) -> Function<'b> {
+        let (names, plan) = (self.names.locals(routine), plan(routine, &routine.body));
         Function {
             emitter: self,
-            pou,
+            routine,
             names,
             plan,
             faults,
@@ -98,7 +87,7 @@ impl<'a> Emitter<'a> {
 }
 
 /// The context and the globals, where a callee wants them.
-fn extra_arguments(needs: Needs) -> Vec<TokenStream> {
+fn extra_arguments(needs: &Effects) -> Vec<TokenStream> {
     let context = needs.context.then(|| quote!(cx));
     let globals = needs.globals.then(|| quote!(globals));
     context.into_iter().chain(globals).collect()
@@ -106,14 +95,14 @@ fn extra_arguments(needs: Needs) -> Vec<TokenStream> {
 
 impl Function<'_> {
     /// The context comes first and the globals last, so that arguments may read globals.
-    fn signature(&self, name: &Ident, needs: Needs, role: Role) -> TokenStream {
-        let receiver = (self.pou.kind != PouKind::Function).then(|| quote!(&mut self));
+    fn signature(&self, name: &Ident, needs: &Effects, role: Role) -> TokenStream {
+        let receiver = (self.routine.kind != RoutineKind::Function).then(|| quote!(&mut self));
         let context = match (needs.context, role) {
             (true, _) => Some(quote!(cx: &Context)),
             (false, Role::Scan) => Some(quote!(_cx: &Context)),
             (false, Role::Prescan | Role::Free) => None,
         };
-        let params = if role == Role::Prescan { Vec::new() } else { self.params() };
+        let params = self.params();
         let globals_type = self.emitter.ty(staunch_ir::Type::Struct(self.emitter.program.globals));
         let globals = needs.globals.then(|| quote!(globals: &mut #globals_type));
         let all = receiver.into_iter().chain(context).chain(params).chain(globals);
@@ -122,7 +111,7 @@ impl Function<'_> {
     }
 
     fn params(&self) -> Vec<TokenStream> {
-        let params = self.pou.params.iter().zip(&self.names.params);
+        let params = self.routine.params.iter().zip(&self.names.params);
         params
             .map(|(param, name)| {
                 let ty = self.emitter.ty(param.ty);
@@ -136,7 +125,7 @@ impl Function<'_> {
     }
 
     fn result_type(&self) -> Option<TokenStream> {
-        let value = self.pou.result.map(|it| self.emitter.ty(self.pou.locals[it.index()].ty));
+        let value = self.routine.result.map(|it| self.emitter.ty(self.routine.locals[it.index()].ty));
         match (value, self.faults) {
             (Some(ty), true) => Some(quote!(-> Result<#ty, Fault>)),
             (None, true) => Some(quote!(-> Result<(), Fault>)),
@@ -165,7 +154,7 @@ impl Function<'_> {
 
     /// A last assignment to the result needs no variable, where nothing else mentions it.
     fn tail<'s>(&self, block: &'s [staunch_ir::Statement]) -> (&'s [staunch_ir::Statement], Option<TokenStream>) {
-        if let (Some(result), [before @ .., last]) = (self.pou.result, block)
+        if let (Some(result), [before @ .., last]) = (self.routine.result, block)
             && let StatementKind::Assign { target, value } = &last.kind
             && self.plan.locals[result.index()].mentions == 1
             && self.plan.declares(last, target) == Some(result)
@@ -176,10 +165,10 @@ impl Function<'_> {
     }
 
     fn top_locals(&self) -> Vec<TokenStream> {
-        let locals = (0..self.pou.locals.len()).map(LocalId::next);
+        let locals = (0..self.routine.locals.len()).map(LocalId::next);
         let top = locals.filter(|it| self.plan.locals[it.index()].how == Declaration::Top);
         top.map(|it| {
-            let local = &self.pou.locals[it.index()];
+            let local = &self.routine.locals[it.index()];
             let value = self.emitter.constant(local.ty, &local.initial).tokens;
             let left = self.let_local(it);
             quote!(#left = #value;)
@@ -189,14 +178,14 @@ impl Function<'_> {
 
     /// `let mut name: type`.
     pub fn let_local(&self, id: LocalId) -> TokenStream {
-        let (name, ty) = (&self.names.locals[id.index()], self.emitter.ty(self.pou.locals[id.index()].ty));
+        let (name, ty) = (&self.names.locals[id.index()], self.emitter.ty(self.routine.locals[id.index()].ty));
         let mutable = self.plan.locals[id.index()].mutable.then(|| quote!(mut));
         quote!(let #mutable #name: #ty)
     }
 
     /// What a `return` hands back.
     pub fn returned(&self) -> Option<TokenStream> {
-        let value = self.pou.result.map(|it| &self.names.locals[it.index()]);
+        let value = self.routine.result.map(|it| &self.names.locals[it.index()]);
         match (value, self.faults) {
             (Some(value), true) => Some(quote!(Ok(#value))),
             (None, true) => Some(quote!(Ok(()))),

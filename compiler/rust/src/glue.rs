@@ -7,7 +7,7 @@ use std::iter;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 use staunch_ir::layout::usize_of;
-use staunch_ir::{PouId, Program, Type};
+use staunch_ir::{ClassId, Program, Type};
 
 use crate::alias;
 use crate::emitter::Emitter;
@@ -30,7 +30,8 @@ pub fn emit_glue(program: &Program, code: &str, map: &str, options: &Options) ->
     });
     let scans = program.instances.iter().enumerate().map(|(at, instance)| {
         let (name, number) = (names.instance(at), Literal::usize_unsuffixed(at));
-        let globals = emitter.needs[instance.program.index()].body.globals.then(|| quote!(, &mut self.globals));
+        let globals =
+            emitter.effects[program.class(instance.program).body.index()].globals.then(|| quote!(, &mut self.globals));
         quote!(#number => self.#name.scan(cx #globals))
     });
     let (bytes, length) = (Literal::byte_string(map.as_bytes()), Literal::usize_unsuffixed(map.len()));
@@ -109,7 +110,7 @@ fn starts(emitter: &Emitter<'_>, code: &syn::Path) -> (Vec<TokenStream>, Vec<Tok
     let (program, names, layout) = (emitter.program, &emitter.names, &emitter.layout);
     let image = layout.image(program);
     let instances = program.instances.iter().enumerate().map(|(at, instance)| {
-        let state = program.pou(instance.program).state.expect("verified IR: a PROGRAM has a state");
+        let state = program.class(instance.program).state;
         (names.instance(at).clone(), state, layout.machine.instances[at])
     });
     let globals = (ident("globals"), program.globals, layout.machine.globals);
@@ -126,6 +127,6 @@ fn starts(emitter: &Emitter<'_>, code: &syn::Path) -> (Vec<TokenStream>, Vec<Tok
     (statics.into_values().collect(), copies)
 }
 
-fn state<'n>(program: &Program, names: &'n Names, id: PouId) -> &'n proc_macro2::Ident {
-    names.structure(program.pou(id).state.expect("verified IR: a PROGRAM has a state"))
+fn state<'n>(program: &Program, names: &'n Names, id: ClassId) -> &'n proc_macro2::Ident {
+    names.structure(program.class(id).state)
 }

@@ -2,7 +2,7 @@
 
 use proc_macro2::TokenStream;
 use quote::quote;
-use staunch_ir::{EnumId, FieldId, Pou, PouId, PouKind, StructId, Type};
+use staunch_ir::{ClassKind, EnumId, FieldId, RoutineId, RoutineKind, StructId, Type};
 
 use crate::alias::Origin;
 use crate::constant::literal;
@@ -14,10 +14,10 @@ impl Emitter<'_> {
         let files = self.files();
         let enums = (0..self.program.enums.len()).map(|at| self.enumeration(EnumId::next(at)));
         let structs = (0..self.program.structs.len()).map(|at| self.structure(StructId::next(at)));
-        let functions = (0..self.program.pous.len())
-            .map(PouId::next)
-            .filter(|id| self.program.pou(*id).kind == PouKind::Function)
-            .map(|id| self.scan(id));
+        let functions = (0..self.program.routines.len())
+            .map(RoutineId::next)
+            .filter(|id| self.program.routine(*id).kind == RoutineKind::Function)
+            .map(|id| self.routine(id));
         quote!(#files #(#enums)* #(#structs)* #(#functions)*)
     }
 
@@ -86,14 +86,10 @@ impl Emitter<'_> {
         }
     }
 
-    /// The scan, its copies and the prescan of the POU whose state the structure is.
+    /// The routines that work on the structure, as an instance's state.
     fn methods(&self, id: StructId) -> TokenStream {
-        let of_state = |pou: &Pou| pou.state == Some(id) && pou.kind != PouKind::Function;
-        let ids = (0..self.program.pous.len()).map(PouId::next);
-        let methods = ids.filter(|id| of_state(self.program.pou(*id))).map(|id| {
-            let (scan, prescan) = (self.scan(id), self.prescan(id));
-            quote!(#scan #prescan)
-        });
+        let ids = (0..self.program.routines.len()).map(RoutineId::next);
+        let methods = ids.filter(|it| self.program.routine(*it).state == Some(id)).map(|it| self.routine(it));
         quote!(#(#methods)*)
     }
 
@@ -102,9 +98,8 @@ impl Emitter<'_> {
         if id == self.program.globals {
             return self.docs(structure.doc.as_deref(), "The global variables.");
         }
-        let pou = self.program.pou_of_state(id).map(|it| self.program.pou(it));
-        let (keyword, doc) = match pou {
-            Some(pou) => (keyword(pou.kind), pou.doc.as_ref().or(structure.doc.as_ref())),
+        let (keyword, doc) = match self.program.class_of_state(id) {
+            Some(class) => (keyword(class.kind), class.doc.as_ref().or(structure.doc.as_ref())),
             None => ("TYPE", structure.doc.as_ref()),
         };
         let title = format!("{keyword} {} ({})", structure.name, self.source(structure.location));
@@ -112,19 +107,23 @@ impl Emitter<'_> {
     }
 
     /// What a function says of itself.
-    pub fn scan_docs(&self, id: PouId, role: Role) -> TokenStream {
-        let pou = self.program.pou(id);
+    pub fn scan_docs(&self, id: RoutineId, role: Role) -> TokenStream {
+        let routine = self.program.routine(id);
         let copy = self.origins[id.index()] == Origin::Copy;
         match role {
             Role::Scan if copy => doc_line("One scan, for calls whose arguments share storage."),
             Role::Scan => doc_line("One scan."),
             Role::Free if copy => {
-                let source = self.source(pou.location);
-                self.docs(pou.doc.as_deref(), &format!("A copy of {source}, for calls whose arguments share storage."))
+                let source = self.source(routine.location);
+                self.docs(
+                    routine.doc.as_deref(),
+                    &format!("A copy of {source}, for calls whose arguments share storage."),
+                )
             }
-            Role::Free | Role::Prescan => {
-                let title = format!("FUNCTION {} ({})", pou.name, self.source(pou.location));
-                self.docs(pou.doc.as_deref(), &title)
+            Role::Prescan => doc_line("What counters need before the first scan."),
+            Role::Free => {
+                let title = format!("FUNCTION {} ({})", routine.name, self.source(routine.location));
+                self.docs(routine.doc.as_deref(), &title)
             }
         }
     }
@@ -142,11 +141,10 @@ impl Emitter<'_> {
     }
 }
 
-fn keyword(kind: PouKind) -> &'static str {
+fn keyword(kind: ClassKind) -> &'static str {
     match kind {
-        PouKind::Program => "PROGRAM",
-        PouKind::FunctionBlock => "FUNCTION_BLOCK",
-        PouKind::Function => "FUNCTION",
+        ClassKind::Program => "PROGRAM",
+        ClassKind::FunctionBlock => "FUNCTION_BLOCK",
     }
 }
 

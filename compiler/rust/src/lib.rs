@@ -5,7 +5,6 @@
 mod names;
 
 mod alias;
-mod needs;
 
 mod code;
 mod declare;

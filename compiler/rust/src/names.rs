@@ -4,7 +4,7 @@
 use std::collections::HashSet;
 
 use proc_macro2::{Ident, Span};
-use staunch_ir::{FieldId, LocalId, ParamId, Pou, PouId, PouKind, Program, StructId};
+use staunch_ir::{FieldId, LocalId, ParamId, Program, Routine, RoutineId, RoutineKind, StructId};
 
 use crate::alias::Origin;
 
@@ -105,7 +105,7 @@ pub struct Names {
     enumerators: Vec<Vec<Ident>>,
     structs: Vec<Ident>,
     fields: Vec<Vec<Ident>>,
-    pous: Vec<Ident>,
+    routines: Vec<Ident>,
     files: Vec<Ident>,
     instances: Vec<Ident>,
     /// What a local may not be called.
@@ -125,9 +125,9 @@ impl Names {
         let mut types = Scope::with(TYPES);
         let structs = program.structs.iter().map(|it| types.claim_type(&camel(&it.name))).collect();
         let enums = program.enums.iter().map(|it| types.claim_type(&camel(&it.name))).collect();
-        let pous = pou_names(program, origins);
+        let routines = routine_names(program, origins);
         let mut locals = Scope::with(LOCALS);
-        locals.taken.extend(pous.iter().map(Ident::to_string));
+        locals.taken.extend(routines.iter().map(Ident::to_string));
         Self {
             enums,
             enumerators: program
@@ -141,7 +141,7 @@ impl Names {
                 .iter()
                 .map(|it| claim_all(Scope::default(), it.fields.iter().map(|field| snake(&field.name))))
                 .collect(),
-            pous,
+            routines,
             files: claim_all(Scope::with(&["FILES"]), program.files.iter().map(|it| screaming(base_name(&it.path)))),
             instances: claim_all(Scope::with(&["globals"]), program.instances.iter().map(|it| snake(&it.name))),
             locals,
@@ -165,8 +165,8 @@ impl Names {
     }
 
     /// The function's name, or the method's.
-    pub fn pou(&self, id: PouId) -> &Ident {
-        &self.pous[id.index()]
+    pub fn routine(&self, id: RoutineId) -> &Ident {
+        &self.routines[id.index()]
     }
 
     pub fn file(&self, file: u16) -> &Ident {
@@ -178,15 +178,15 @@ impl Names {
         &self.instances[position]
     }
 
-    pub fn locals(&self, pou: &Pou) -> LocalNames {
+    pub fn locals(&self, routine: &Routine) -> LocalNames {
         let mut scope = self.locals.clone();
-        let params: Vec<_> = pou.params.iter().map(|it| scope.claim(&snake(&it.name))).collect();
-        let mut locals = Vec::with_capacity(pou.locals.len());
-        for (position, local) in pou.locals.iter().enumerate() {
+        let params: Vec<_> = routine.params.iter().map(|it| scope.claim(&snake(&it.name))).collect();
+        let mut locals = Vec::with_capacity(routine.locals.len());
+        for (position, local) in routine.locals.iter().enumerate() {
             let id = LocalId::next(position);
-            let name = match by_value_param(pou, id) {
+            let name = match by_value_param(routine, id) {
                 Some(param) => params[param.index()].clone(),
-                None if pou.result == Some(id) => scope.claim("result"),
+                None if routine.result == Some(id) => scope.claim("result"),
                 None => scope.claim(&snake(&local.name)),
             };
             locals.push(name);
@@ -196,25 +196,25 @@ impl Names {
 }
 
 /// The parameter whose value arrives in `local`.
-pub fn by_value_param(pou: &Pou, local: LocalId) -> Option<ParamId> {
+pub fn by_value_param(routine: &Routine, local: LocalId) -> Option<ParamId> {
     let holds = |param: &staunch_ir::Param| matches!(param.mode, staunch_ir::Mode::Value(it) if it == local);
-    pou.params.iter().position(holds).map(ParamId::next)
+    routine.params.iter().position(holds).map(ParamId::next)
 }
 
-/// Free functions share one scope; the methods of a structure share another. Declared POUs come
+/// Free functions share one scope; the methods of a structure share another. Declared routines come
 /// first, so that copies made for aliasing never change their names.
-fn pou_names(program: &Program, origins: &[Origin]) -> Vec<Ident> {
+fn routine_names(program: &Program, origins: &[Origin]) -> Vec<Ident> {
     let mut functions = Scope::default();
-    let mut names = vec![ident("scan"); program.pous.len()];
+    let mut names = vec![ident("scan"); program.routines.len()];
     let declared = |at: &usize| matches!(origins[*at], Origin::Declared);
-    let (first, then): (Vec<_>, Vec<_>) = (0..program.pous.len()).partition(declared);
+    let (first, then): (Vec<_>, Vec<_>) = (0..program.routines.len()).partition(declared);
     for at in first.into_iter().chain(then) {
-        let pou = &program.pous[at];
-        if let PouKind::Function = pou.kind {
-            names[at] = functions.claim(&snake(&pou.name));
-        } else if let Origin::Copy = origins[at] {
-            names[at] = functions.claim(&snake(&pou.name));
-        }
+        let routine = &program.routines[at];
+        names[at] = match (routine.kind, origins[at]) {
+            (RoutineKind::Function, _) | (_, Origin::Copy) => functions.claim(&snake(&routine.name)),
+            (RoutineKind::Body, Origin::Declared) => ident("scan"),
+            (RoutineKind::Prescan, Origin::Declared) => ident("prescan"),
+        };
     }
     names
 }

@@ -42,7 +42,7 @@ impl Function<'_> {
 
     fn place_with(&self, place: &Place, position: &mut dyn FnMut(&Expr, Type, Location) -> TokenStream) -> TokenStream {
         let mut tokens = self.root(place.root);
-        let types = self.emitter.types_along(self.pou, place);
+        let types = self.emitter.types_along(self.routine, place);
         for (projection, ty) in place.projections.iter().zip(types) {
             tokens = match projection {
                 Projection::Field(field) => {
@@ -85,7 +85,7 @@ impl Function<'_> {
 
     /// Whether finding `place` can fault here, where loops have found some subscripts already.
     pub fn place_faults(&self, place: &Place) -> bool {
-        let types = self.emitter.types_along(self.pou, place);
+        let types = self.emitter.types_along(self.routine, place);
         let mut found = place.projections.iter().zip(types).filter(|(projection, ty)| match (projection, ty) {
             (Projection::Index { index, .. }, Type::Array(id)) => self.subscript(index, *id).is_none(),
             _ => true,

@@ -3,7 +3,8 @@
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 use staunch_ir::{
-    Argument, Arm, Block, Expr, ExprKind, Lane, Location, Place, PouId, Root, Statement, StatementKind, Type,
+    Argument, Arm, Block, Expr, ExprKind, Lane, Location, Place, Root, RoutineId, RoutineKind, Statement,
+    StatementKind, Type,
 };
 
 use crate::code::Level;
@@ -22,9 +23,6 @@ impl Function<'_> {
         let mut rest = statements;
         while let [statement, after @ ..] = rest {
             rest = after;
-            if !self.prints(statement) {
-                continue;
-            }
             printed.extend(self.mark(statement.at));
             if let Some((joined, then)) = self.joined(statement, after) {
                 rest = then;
@@ -36,32 +34,14 @@ impl Function<'_> {
         printed
     }
 
-    fn prints(&self, statement: &Statement) -> bool {
-        match &statement.kind {
-            StatementKind::PrescanInstance { callee, .. } => !self.emitter.program.pou(*callee).prescan.is_empty(),
-            StatementKind::If { .. }
-            | StatementKind::Assign { .. }
-            | StatementKind::Case { .. }
-            | StatementKind::Loop { .. }
-            | StatementKind::For(_)
-            | StatementKind::Turn
-            | StatementKind::Exit
-            | StatementKind::Continue
-            | StatementKind::Return
-            | StatementKind::Call { .. }
-            | StatementKind::CallBlock { .. }
-            | StatementKind::PrescanBlock { .. }
-            | StatementKind::Fault(_) => true,
-        }
-    }
-
     fn mark(&mut self, at: Location) -> Option<TokenStream> {
         let line = Some((at.file, at.line));
         if line == self.marked || at.line == 0 {
             return None;
         }
         self.marked = line;
-        let text = if at.file == self.pou.location.file { format!(":{}", at.line) } else { self.emitter.source(at) };
+        let text =
+            if at.file == self.routine.location.file { format!(":{}", at.line) } else { self.emitter.source(at) };
         Some(quote!(st_mark!(#text);))
     }
 
@@ -75,7 +55,7 @@ impl Function<'_> {
             && place.projections.is_empty()
             && result.projections.is_empty()
             && self.plan.locals[id.index()].mentions == 2
-            && self.pou.result != Some(id);
+            && self.routine.result != Some(id);
         if !only {
             return None;
         }
@@ -104,7 +84,7 @@ impl Function<'_> {
                 let call = self.call(&statement.kind);
                 self.assigned(statement, result, call)
             }
-            StatementKind::Call { result: None, .. } | StatementKind::PrescanInstance { .. } => {
+            StatementKind::Call { result: None, .. } => {
                 let call = self.call(&statement.kind);
                 quote!(#call;)
             }
@@ -218,29 +198,24 @@ impl Function<'_> {
         quote!(#(#labels)|*)
     }
 
-    /// A call of a user's POU, as an expression.
+    /// A call of a routine, as an expression.
     fn call(&self, call: &StatementKind) -> TokenStream {
-        let (callee, instance, arguments, is_prescan) = match call {
-            StatementKind::Call { callee, instance, arguments, .. } => {
-                (*callee, instance.as_ref(), arguments.as_slice(), false)
-            }
-            StatementKind::PrescanInstance { callee, instance } => (*callee, Some(instance), [].as_slice(), true),
-            _ => unreachable!("only calls are printed as calls"),
+        let StatementKind::Call { callee, instance, arguments, .. } = call else {
+            unreachable!("only calls are printed as calls")
         };
-        let needs = self.emitter.needs[callee.index()];
-        let needs = if is_prescan { needs.prescan } else { needs.body };
-        let method = instance.is_some();
-        let context = (needs.context || method && !is_prescan).then(|| quote!(cx));
+        let needs = &self.emitter.effects[callee.index()];
+        let is_scan = self.emitter.program.routine(*callee).kind == RoutineKind::Body;
+        let context = (needs.context || is_scan).then(|| quote!(cx));
         let globals = needs.globals.then(|| quote!(globals));
         let arguments = arguments.iter().map(|it| self.argument(it));
         let all = context.into_iter().chain(arguments).chain(globals);
-        let head = self.call_head(callee, instance, is_prescan);
-        let propagate = (needs.faults || method && !is_prescan).then(|| quote!(?));
+        let head = self.call_head(*callee, instance.as_ref());
+        let propagate = (needs.faults || is_scan).then(|| quote!(?));
         quote!(#head(#(#all),*) #propagate)
     }
 
-    fn call_head(&self, callee: PouId, instance: Option<&Place>, is_prescan: bool) -> TokenStream {
-        let name = if is_prescan { ident("prescan") } else { self.emitter.names.pou(callee).clone() };
+    fn call_head(&self, callee: RoutineId, instance: Option<&Place>) -> TokenStream {
+        let name = self.emitter.names.routine(callee);
         match instance {
             Some(place) => {
                 let place = self.place(place);

@@ -61,7 +61,7 @@ impl Function<'_> {
 
     fn uses_in(&self, place: &Place, counted: &For, uses: &mut BTreeMap<(i64, i64), Use>) {
         let program = self.emitter.program;
-        for (projection, ty) in place.projections.iter().zip(self.emitter.types_along(self.pou, place)) {
+        for (projection, ty) in place.projections.iter().zip(self.emitter.types_along(self.routine, place)) {
             let (Projection::Index { index, at }, Type::Array(array)) = (projection, ty) else { continue };
             let is_counter = counter(index).is_some_and(|it| it.is_same_variable(&counted.counter));
             if is_counter && is_within(program, index, array, &[counted]) {

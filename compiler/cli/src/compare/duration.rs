@@ -7,9 +7,9 @@ use std::collections::BTreeSet;
 /// number as that many.
 pub fn scans(program: &Program, cycle: i64) -> BTreeSet<usize> {
     let mut constants = Constants { cycle: cycle.max(1), found: BTreeSet::new() };
-    for pou in &program.pous {
-        constants.block(&pou.body);
-        pou.locals.iter().for_each(|it| constants.initial(Some(it.ty), &it.initial));
+    for routine in &program.routines {
+        constants.block(&routine.body);
+        routine.locals.iter().for_each(|it| constants.initial(Some(it.ty), &it.initial));
     }
     let fields = program.structs.iter().flat_map(|it| &it.fields);
     fields.for_each(|it| constants.initial(Some(it.ty), &it.initial));

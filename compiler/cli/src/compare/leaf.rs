@@ -2,7 +2,7 @@
 
 use staunch_ir::layout::{Layout, usize_of};
 use staunch_ir::visit::{self, Access};
-use staunch_ir::{ArrayId, BlockId, Elementary, FieldId, PouId, Program, Retain, Section, StructId, Type, Value};
+use staunch_ir::{ArrayId, BlockId, Elementary, FieldId, Program, Retain, Section, StructId, Type, Value};
 use staunch_runtime::{Direction, Family, Pin, Retention};
 
 /// Further elements of an array are not compared.
@@ -74,9 +74,7 @@ impl Leaves {
         let mut walk = Walk { program, layout, found: Self::default() };
         for (instance, offset) in program.instances.iter().zip(&machine.instances) {
             let prefix = if program.instances.len() > 1 { format!("{}.", instance.name) } else { String::new() };
-            if let Some(state) = program.pou(instance.program).state {
-                walk.structure(&prefix, state, usize_of(*offset));
-            }
+            walk.structure(&prefix, program.class(instance.program).state, usize_of(*offset));
         }
         walk.structure("", program.globals, usize_of(machine.globals));
         walk.found
@@ -260,23 +258,22 @@ fn spell(value: Value) -> String {
 /// The PROGRAMs' and globals' variables that some statement writes.
 pub fn written(program: &Program) -> Vec<(StructId, FieldId)> {
     let mut found = Vec::new();
-    for pou in 0..program.pous.len() {
-        let pou = program.pou(PouId::next(pou));
-        writes(program, pou, &pou.body, &mut found);
+    for routine in &program.routines {
+        writes(program, routine, &routine.body, &mut found);
     }
     found
 }
 
 fn writes(
     program: &Program,
-    pou: &staunch_ir::Pou,
+    routine: &staunch_ir::Routine,
     block: &[staunch_ir::Statement],
     found: &mut Vec<(StructId, FieldId)>,
 ) {
     visit::statements(block, &mut |statement| {
         visit::accesses(statement, &mut |place, access| {
             let owner = match place.root {
-                staunch_ir::Root::Instance => pou.state,
+                staunch_ir::Root::Instance => routine.state,
                 staunch_ir::Root::Globals => Some(program.globals),
                 staunch_ir::Root::Local(_) | staunch_ir::Root::Param(_) => None,
             };

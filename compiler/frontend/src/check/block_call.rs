@@ -8,7 +8,7 @@ use super::place::Found;
 use crate::declare::{Target, pin_place};
 use crate::diagnostic::wording::article;
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{BlockId, Expr, FieldId, Place, PouId, Section, StatementKind, StructId, Type};
+use staunch_ir::{BlockId, Expr, FieldId, Place, RoutineId, Section, StatementKind, StructId, Type};
 use staunch_runtime::{Direction, Family};
 
 impl<'s> Checker<'_, 's> {
@@ -201,7 +201,7 @@ impl<'s> Checker<'_, 's> {
         let call = |parts: &Parts| {
             let arguments = in_outs().map(|it| Some(parts.argument(references[it]?))).collect::<Option<_>>()?;
             let instance = Some(parts.instance()?.clone());
-            Some(StatementKind::Call { callee: PouId::next(slot), instance, arguments, result: None })
+            Some(StatementKind::Call { callee: RoutineId::next(slot), instance, arguments, result: None })
         };
         self.perform(parts, &call, span).map(drop)
     }

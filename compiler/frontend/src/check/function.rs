@@ -5,7 +5,7 @@ use super::argument::{Parts, Role, Source, as_written};
 use super::call::{Given, Parameter};
 use crate::declare::{Entry, Formal, Resolved, Signature, Target};
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{Argument, Expr, ExprKind, Mode, ParamId, Place, PouId, Root, Section, StatementKind};
+use staunch_ir::{Argument, Expr, ExprKind, Mode, ParamId, Place, Root, RoutineId, Section, StatementKind};
 
 /// What is passed for one parameter.
 enum Passed {
@@ -73,7 +73,7 @@ impl<'s> Checker<'_, 's> {
             };
             let arguments = passed.iter().map(argument).collect::<Option<_>>()?;
             let result = result.clone();
-            Some(StatementKind::Call { callee: PouId::next(slot), instance: None, arguments, result })
+            Some(StatementKind::Call { callee: RoutineId::next(slot), instance: None, arguments, result })
         };
         self.perform(parts, &call, span)?;
         let at = self.at(span);

@@ -37,7 +37,7 @@ pub(crate) use unresolved::{block_of_another_dialect, no_such_block, not_constan
 use crate::ast;
 use crate::declare::{Declarations, Resolved, Scope, Signature};
 use crate::{Bodies, Code, Diagnostic, Span};
-use staunch_ir::{Block, Expr, For, Local, Location, Place, Pou, PouKind, Statement, StatementKind, Type, Variable};
+use staunch_ir::{Block, Expr, For, Local, Location, Place, Routine, RoutineKind, Statement, StatementKind, Type};
 use std::rc::Rc;
 
 /// Checks the body of one POU, or one constant expression.
@@ -73,13 +73,13 @@ pub(crate) fn bodies<'s>(
     decl: &mut Declarations<'s>,
     statements: Vec<Vec<ast::Statement<'s>>>,
     bodies: Bodies,
-) -> Vec<Option<(Pou, Uses)>> {
+) -> Vec<Option<(Routine, Uses)>> {
     let checked = |(at, statements): (usize, Vec<_>)| {
-        let (mut pou, uses) = body(decl, at, &statements)?;
+        let (mut routine, uses) = body(decl, at, &statements)?;
         if bodies == Bodies::Dropped {
-            pou.body = calls(pou.body);
+            routine.body = calls(routine.body);
         }
-        Some((pou, uses))
+        Some((routine, uses))
     };
     statements.into_iter().enumerate().map(checked).collect()
 }
@@ -101,7 +101,7 @@ fn move_calls(block: Block, calls: &mut Block) {
     }
 }
 
-fn body<'s>(decl: &mut Declarations<'s>, at: usize, statements: &[ast::Statement<'s>]) -> Option<(Pou, Uses)> {
+fn body<'s>(decl: &mut Declarations<'s>, at: usize, statements: &[ast::Statement<'s>]) -> Option<(Routine, Uses)> {
     let pou = decl.pous[at].ast;
     let signature = decl.signature(at)?;
     let mut checker = Checker {
@@ -127,8 +127,9 @@ fn body<'s>(decl: &mut Declarations<'s>, at: usize, statements: &[ast::Statement
     let locals = std::mem::take(&mut checker.locals);
     checker.report_unused(&signature);
     let location = decl.location(pou.name.span);
-    let body = Pou {
-        kind: kind(pou.kind),
+    let kind = if pou.kind == ast::PouKind::Function { RoutineKind::Function } else { RoutineKind::Body };
+    let body = Routine {
+        kind,
         name: pou.name.text.to_owned(),
         doc: pou.doc.clone(),
         location,
@@ -136,28 +137,9 @@ fn body<'s>(decl: &mut Declarations<'s>, at: usize, statements: &[ast::Statement
         params: signature.params.clone(),
         locals,
         result: signature.result.as_ref().map(|(id, _)| *id),
-        variables: variables(&signature),
         body: whole,
-        prescan: Block::new(),
     };
     Some((body, uses))
-}
-
-fn kind(kind: ast::PouKind) -> PouKind {
-    match kind {
-        ast::PouKind::Program => PouKind::Program,
-        ast::PouKind::FunctionBlock => PouKind::FunctionBlock,
-        ast::PouKind::Function => PouKind::Function,
-    }
-}
-
-fn variables(signature: &Signature<'_>) -> Vec<Variable> {
-    let variable = |it: &Rc<crate::declare::Variable<'_>>| Variable {
-        name: it.name.text.to_owned(),
-        section: it.section,
-        place: it.place.clone(),
-    };
-    signature.scope.variables.iter().map(variable).collect()
 }
 
 /// The constant `expr`, converted to `target` where there is one; other expressions are refused.

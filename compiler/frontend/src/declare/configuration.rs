@@ -6,7 +6,7 @@ use crate::check;
 use crate::names::{Key, nearest};
 use crate::{Code, Diagnostic, Span};
 use rustc_hash::FxHashMap;
-use staunch_ir::{Instance, PouId, PouKind, Value};
+use staunch_ir::{Instance, Value};
 
 const LOWEST_PRIORITY: u32 = 65535;
 
@@ -23,9 +23,10 @@ pub(super) fn instances(declarations: &mut Declarations<'_>) {
     let programs: Vec<_> =
         (0..declarations.pous.len()).filter(|at| declarations.pous[*at].ast.kind == ast::PouKind::Program).collect();
     for at in programs {
+        let Some(program) = declarations.class_of_slot(at) else { continue };
         declarations.program.instances.push(Instance {
             name: declarations.pous[at].ast.name.text.to_owned(),
-            program: PouId::next(at),
+            program,
             interval: None,
             priority: LOWEST_PRIORITY,
         });
@@ -113,13 +114,13 @@ impl<'s> Declarations<'s> {
                 return;
             }
         };
+        let Some(program) = self.class_of_slot(program) else { return };
         self.program.instances.push(Instance {
             name: instance.name.text.to_owned(),
-            program: PouId::next(program),
+            program,
             interval: timing.interval,
             priority: timing.priority,
         });
-        debug_assert!(self.program.pous.get(program).is_none_or(|it| it.kind == PouKind::Program));
     }
 
     fn task(&mut self, task: &'s ast::Task<'s>) -> Timing {

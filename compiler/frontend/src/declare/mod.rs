@@ -24,7 +24,9 @@ use crate::names::{Key, nearest};
 use crate::{Bodies, Code, Diagnostic, Options, Severity, Sources, Span};
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::layout::{Layout, TooLarge};
-use staunch_ir::{Location, Place, Program, Root, SourceFile, Struct, StructId, Type};
+use staunch_ir::{
+    Class, ClassId, ClassKind, Location, Place, Program, Root, RoutineId, SourceFile, Struct, StructId, Type,
+};
 use std::rc::Rc;
 
 /// Stands for the globals' structure until it is made, when all globals are known.
@@ -559,7 +561,7 @@ impl<'s> Declarations<'s> {
     }
 
     /// Puts the parts together: the globals' structure, the instances, the order of the POUs.
-    fn finish(&mut self, bodies: Vec<Option<(staunch_ir::Pou, check::Uses)>>) -> Option<Program> {
+    fn finish(&mut self, bodies: Vec<Option<(staunch_ir::Routine, check::Uses)>>) -> Option<Program> {
         let fields: Vec<_> = (0..self.globals.len()).filter_map(|at| self.global_field(at)).collect();
         let hidden = self.hidden.take_fields();
         let mut fields: Vec<_> = fields.into_iter().chain(hidden).collect();
@@ -568,18 +570,51 @@ impl<'s> Declarations<'s> {
         self.program.globals = StructId::next(self.program.structs.len());
         let location = Location::default();
         self.program.structs.push(Struct { name: "Globals".to_owned(), doc: None, location, fields });
-        let (pous, uses) = bodies.into_iter().collect::<Option<Vec<_>>>()?.into_iter().unzip();
-        self.program.pous = pous;
+        let (routines, uses) = bodies.into_iter().collect::<Option<Vec<_>>>()?.into_iter().unzip();
+        self.program.routines = routines;
+        self.program.classes = (0..self.pous.len()).filter_map(|slot| self.class(slot)).collect();
         configuration::instances(self);
         order::order(self, uses)?;
         self.check_size()?;
         Some(std::mem::replace(&mut self.program, empty_program(Vec::new())))
     }
 
+    /// The PROGRAM or FUNCTION_BLOCK in a slot. Its body has the slot's number until routines are put in order.
+    fn class(&mut self, slot: usize) -> Option<Class> {
+        let pou = self.pous[slot].ast;
+        let kind = match pou.kind {
+            ast::PouKind::Program => ClassKind::Program,
+            ast::PouKind::FunctionBlock => ClassKind::FunctionBlock,
+            ast::PouKind::Function => return None,
+        };
+        let signature = self.signature(slot)?;
+        let variable = |it: &Rc<Variable<'_>>| staunch_ir::Variable {
+            name: it.name.text.to_owned(),
+            section: it.section,
+            place: it.place.clone(),
+        };
+        Some(Class {
+            kind,
+            name: pou.name.text.to_owned(),
+            doc: pou.doc.clone(),
+            location: self.location(pou.name.span),
+            state: signature.state?,
+            variables: signature.scope.variables.iter().map(variable).collect(),
+            body: RoutineId::next(slot),
+            prescan: None,
+        })
+    }
+
+    /// The class of the PROGRAM or FUNCTION_BLOCK in a slot, while bodies have their slots' numbers.
+    fn class_of_slot(&self, slot: usize) -> Option<ClassId> {
+        let body = RoutineId::next(slot);
+        self.program.classes.iter().position(|it| it.body == body).map(ClassId::next)
+    }
+
     /// Whether all variables together, and each type, fit into memory.
     fn check_size(&mut self) -> Option<()> {
         let Err(TooLarge { at, .. }) = Layout::try_new(&self.program) else { return Some(()) };
-        let program = self.program.instances.last().map(|it| self.program.pou(it.program).location);
+        let program = self.program.instances.last().map(|it| self.program.class(it.program).location);
         let span = self.name_at(at.or(program).unwrap_or_default());
         self.report(
             Diagnostic::new(Code::E0901, span, "the variables up to this one take more than 1 GiB")
@@ -629,7 +664,8 @@ fn empty_program(files: Vec<SourceFile>) -> Program {
         arrays: Vec::new(),
         structs: Vec::new(),
         globals: StructId(0),
-        pous: Vec::new(),
+        classes: Vec::new(),
+        routines: Vec::new(),
         aliases: Vec::new(),
         instances: Vec::new(),
     }

@@ -1,9 +1,9 @@
-//! The order of POUs: a callee before its callers. Recursion ends here.
+//! The order of routines: a callee before its callers. Recursion ends here.
 
 use super::Declarations;
 use crate::check::Uses;
 use crate::{Code, Diagnostic};
-use staunch_ir::{Block, Pou, PouId, Statement, StatementKind};
+use staunch_ir::{Block, Routine, RoutineId, RoutineKind, Statement, StatementKind};
 
 /// Bytes that the variables of one call chain may take: they live on the stack.
 const MAX_STACK: u64 = 1 << 20;
@@ -17,13 +17,15 @@ pub(super) fn order(declarations: &mut Declarations<'_>, uses: Vec<Uses>) -> Opt
         calls = all_callees(declarations);
         order = sorted(declarations, &calls)?;
     }
+    let is_empty = |it: &Routine| it.kind == RoutineKind::Prescan && it.body.is_empty();
+    order.retain(|at| !is_empty(&declarations.program.routines[*at]));
     check_stack(declarations, &calls, &order);
     renumber(declarations, &order);
     Some(())
 }
 
 fn all_callees(declarations: &mut Declarations<'_>) -> Vec<Vec<usize>> {
-    declarations.program.pous.iter_mut().map(callees).collect()
+    declarations.program.routines.iter_mut().map(callees).collect()
 }
 
 /// The slots of the POUs, a callee before its callers.
@@ -77,7 +79,7 @@ fn visit(start: usize, calls: &[Vec<usize>], marks: &mut [Mark], order: &mut Vec
 }
 
 fn report_recursion(declarations: &mut Declarations<'_>, cycle: &[usize]) {
-    let name = |at: usize| declarations.pous[at].ast.name;
+    let name = |at: usize| declarations.pous[slot(declarations, at)].ast.name;
     let first = name(cycle[0]);
     let way: Vec<_> = cycle.iter().chain(&cycle[..1]).map(|at| name(*at).text).collect();
     declarations.report(
@@ -92,12 +94,12 @@ fn report_recursion(declarations: &mut Declarations<'_>, cycle: &[usize]) {
 fn check_stack(declarations: &mut Declarations<'_>, calls: &[Vec<usize>], order: &[usize]) {
     let mut depth = vec![0u64; calls.len()];
     for at in order.iter().copied() {
-        let locals = &declarations.program.pous[at].locals;
+        let locals = &declarations.program.routines[at].locals;
         let own = locals.iter().map(|it| declarations.size_of(it.ty)).fold(0, u64::saturating_add);
         let below = calls[at].iter().map(|callee| depth[*callee]).max().unwrap_or(0);
         depth[at] = own.saturating_add(below);
         if depth[at] > MAX_STACK && below <= MAX_STACK {
-            let name = declarations.pous[at].ast.name;
+            let name = declarations.pous[slot(declarations, at)].ast.name;
             declarations.report(
                 Diagnostic::new(
                     Code::E0903,
@@ -111,37 +113,42 @@ fn check_stack(declarations: &mut Declarations<'_>, calls: &[Vec<usize>], order:
     }
 }
 
+/// The slot of a routine: a body has its number, a prescan follows behind all bodies.
+fn slot(declarations: &Declarations<'_>, routine: usize) -> usize {
+    routine % declarations.pous.len()
+}
+
 fn renumber(declarations: &mut Declarations<'_>, order: &[usize]) {
-    let mut new = vec![PouId(0); order.len()];
-    for (position, at) in order.iter().enumerate() {
-        new[*at] = PouId::next(position);
-    }
+    let slots = declarations.pous.len();
     let program = &mut declarations.program;
-    let mut pous: Vec<_> = std::mem::take(&mut program.pous).into_iter().map(Some).collect();
-    program.pous = order.iter().filter_map(|at| pous[*at].take()).collect();
-    for pou in &mut program.pous {
-        each_call(&mut pou.body, &mut |id| *id = new[id.index()]);
-        each_call(&mut pou.prescan, &mut |id| *id = new[id.index()]);
+    let mut new = vec![None; program.routines.len()];
+    for (position, at) in order.iter().enumerate() {
+        new[*at] = Some(RoutineId::next(position));
     }
-    for instance in &mut program.instances {
-        instance.program = new[instance.program.index()];
+    let mut routines: Vec<_> = std::mem::take(&mut program.routines).into_iter().map(Some).collect();
+    program.routines = order.iter().filter_map(|at| routines[*at].take()).collect();
+    let renamed = |id: RoutineId| new[id.index()].expect("what is called is not empty");
+    for routine in &mut program.routines {
+        each_call(&mut routine.body, &mut |id| *id = renamed(*id));
+    }
+    for class in &mut program.classes {
+        class.prescan = new.get(slots + class.body.index()).copied().flatten();
+        class.body = renamed(class.body);
     }
 }
 
-fn callees(pou: &mut Pou) -> Vec<usize> {
+fn callees(routine: &mut Routine) -> Vec<usize> {
     let mut found = Vec::new();
-
-    each_call(&mut pou.body, &mut |id| found.push(id.index()));
-    each_call(&mut pou.prescan, &mut |id| found.push(id.index()));
+    each_call(&mut routine.body, &mut |id| found.push(id.index()));
     found.sort_unstable();
     found.dedup();
     found
 }
 
-/// Calls `visit` with the id of every POU that the block calls.
-fn each_call(block: &mut Block, visit: &mut dyn FnMut(&mut PouId)) {
+/// Calls `visit` with the id of every routine that the block calls.
+fn each_call(block: &mut Block, visit: &mut dyn FnMut(&mut RoutineId)) {
     for Statement { kind, .. } in block {
-        if let StatementKind::Call { callee, .. } | StatementKind::PrescanInstance { callee, .. } = kind {
+        if let StatementKind::Call { callee, .. } = kind {
             visit(callee);
         }
         kind.blocks_mut().into_iter().for_each(|inner| each_call(inner, visit));

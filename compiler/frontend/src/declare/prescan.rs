@@ -13,7 +13,7 @@ mod reach;
 use super::Declarations;
 use crate::check::Uses;
 use build::Builder;
-use staunch_ir::{Place, PouKind, Retain, Root};
+use staunch_ir::{Place, Retain, Root, Routine, RoutineId, RoutineKind};
 
 /// Adds the prescans, given the slots of the POUs in an order in which a callee stands before its
 /// callers. `false` if there are none.
@@ -24,6 +24,7 @@ pub(super) fn add(declarations: &mut Declarations<'_>, mut uses: Vec<Uses>, orde
     for at in order {
         reach::through_calls(&declarations.program, *at, &mut uses);
     }
+    make_room(declarations);
     let open = nest::open_counts(declarations, &uses);
     kept::check(declarations, &uses, &open);
     for (at, uses) in uses.iter().enumerate() {
@@ -33,12 +34,34 @@ pub(super) fn add(declarations: &mut Declarations<'_>, mut uses: Vec<Uses>, orde
     true
 }
 
+/// The routine of the prescan of the POU in a slot, until routines are put in order.
+pub(super) fn routine_of(declarations: &Declarations<'_>, slot: usize) -> RoutineId {
+    RoutineId::next(declarations.pous.len() + slot)
+}
+
+/// Gives each slot an empty prescan.
+fn make_room(declarations: &mut Declarations<'_>) {
+    let routines = &mut declarations.program.routines;
+    let prescan = |it: &Routine| Routine {
+        kind: RoutineKind::Prescan,
+        doc: None,
+        params: Vec::new(),
+        locals: Vec::new(),
+        result: None,
+        body: Vec::new(),
+        name: it.name.clone(),
+        ..*it
+    };
+    let prescans: Vec<_> = routines.iter().map(prescan).collect();
+    routines.extend(prescans);
+}
+
 /// The prescan of what is a POU's own, or global.
 fn own(declarations: &mut Declarations<'_>, at: usize, uses: &Uses) {
-    if declarations.program.pous[at].kind == PouKind::Function {
+    if declarations.program.routines[at].kind == RoutineKind::Function {
         return;
     }
-    let mut builder = Builder::new(&declarations.program, at);
+    let mut builder = Builder::new(declarations, at);
     for (place, instruction) in uses.instructions.iter().filter(|(place, _)| lasts(place)) {
         builder.instruction(place, *instruction);
     }
@@ -46,10 +69,7 @@ fn own(declarations: &mut Declarations<'_>, at: usize, uses: &Uses) {
         let retain = build::retention(&declarations.program, at, &count.kept);
         builder.restore(&count.counter, &count.kept, retain == Retain::Kept);
     }
-    let (block, locals) = builder.finish();
-    let pou = &mut declarations.program.pous[at];
-    pou.prescan = block;
-    pou.locals = locals;
+    builder.finish().add_to(declarations);
 }
 
 /// Whether the place is storage that lasts from scan to scan and has one name.

@@ -1,6 +1,6 @@
 use super::*;
-use crate::fixture::{AT, assign, field, int, lint, load, local, param, pou, program, structure};
-use crate::{Argument, Array, ArrayId, Const, Field, FieldId, LocalId, Mode, ParamId, Pou, PouKind};
+use crate::fixture::{AT, assign, field, int, lint, load, local, param, program, routine, structure};
+use crate::{Argument, Array, ArrayId, Const, Field, FieldId, LocalId, Mode, ParamId, Routine, RoutineKind};
 
 const PART: Type = Type::Struct(StructId(0));
 const STATE: Type = Type::Struct(StructId(1));
@@ -27,10 +27,10 @@ fn small() -> Program {
             field("instance", STATE, Const::Zero),
         ],
     );
-    let body = Pou {
+    let body = Routine {
         params: vec![param("number", Type::INT, Mode::Reference), param("part", PART, Mode::Reference)],
         locals: vec![local("i", Type::LINT, Const::Zero), local("number", Type::INT, Const::Zero)],
-        ..pou(PouKind::FunctionBlock, "Block", Some(StructId(1)))
+        ..routine(RoutineKind::Body, "Block", Some(StructId(1)))
     };
     let arrays = vec![Array { low: 0, high: 1, element: Type::INT }, Array { low: 0, high: 1, element: PART }];
     program(arrays, vec![part, state, globals], vec![body])
@@ -141,7 +141,7 @@ fn root_at(layout: &[usize; 5], root: Root) -> (usize, Type) {
 #[test]
 fn agrees_with_storage() {
     let program = small();
-    let frame = Frame::of(&program, &program.pous[0]);
+    let frame = Frame::of(&program, &program.routines[0]);
     let places = every_place(&program);
     let layouts = layouts(&program);
     for a in &places {
@@ -172,7 +172,7 @@ fn agrees_with_storage() {
 #[test]
 fn types_and_names_keep_roots_apart() {
     let program = small();
-    let frame = Frame::of(&program, &program.pous[0]);
+    let frame = Frame::of(&program, &program.routines[0]);
     let own = Place::root(Root::Instance, STATE).field(FieldId(1), Type::INT);
     let given = Place::root(Root::Instance, STATE).field(FieldId(0), Type::INT);
     let k = Place::root(Root::Globals, GLOBALS).field(FieldId(0), Type::INT);
@@ -189,7 +189,7 @@ fn types_and_names_keep_roots_apart() {
 #[test]
 fn a_call_changes_what_it_is_passed_and_what_is_global() {
     let program = small();
-    let frame = Frame::of(&program, &program.pous[0]);
+    let frame = Frame::of(&program, &program.routines[0]);
     let own = || Place::root(Root::Instance, STATE).field(FieldId(1), Type::INT);
     let given = || Place::root(Root::Instance, STATE).field(FieldId(0), Type::INT);
     let k = || Place::root(Root::Globals, GLOBALS).field(FieldId(0), Type::INT);
@@ -197,7 +197,7 @@ fn a_call_changes_what_it_is_passed_and_what_is_global() {
     let temp = || Place::local(LocalId(1), Type::INT);
     let call = |passed: Place| {
         let arguments = vec![Argument::Reference(passed)];
-        let callee = crate::PouId(0);
+        let callee = crate::RoutineId(0);
         [Statement::new(StatementKind::Call { callee, instance: None, arguments, result: None }, AT)]
     };
     let changed =
@@ -211,7 +211,7 @@ fn a_call_changes_what_it_is_passed_and_what_is_global() {
 #[test]
 fn an_index_is_read() {
     let program = small();
-    let frame = Frame::of(&program, &program.pous[0]);
+    let frame = Frame::of(&program, &program.routines[0]);
     let index = || Place::local(LocalId(0), Type::LINT);
     let parts = Place::root(Root::Globals, GLOBALS).field(FieldId(1), PARTS);
     let a = parts.index(load(index()), PART, AT).field(FieldId(0), Type::INT);

@@ -111,7 +111,7 @@ fn capacity(ty: Type) -> u16 {
     }
 }
 
-/// The storage that a running POU sees.
+/// The storage that a running routine sees.
 pub(super) struct Scope<'a> {
     pub(super) interpreter: &'a Interpreter<'a>,
     pub(super) frame: &'a Frame,
@@ -152,20 +152,20 @@ impl Scope<'_> {
     fn root(&self, root: Root) -> (usize, Type) {
         let Self { interpreter, frame } = self;
         let program = interpreter.program;
-        let pou = program.pou(frame.pou);
+        let routine = program.routine(frame.routine);
         match root {
             Root::Instance => {
-                let state = pou.state.expect("verified IR: a POU with an instance");
+                let state = routine.state.expect("verified IR: a routine with an instance");
                 (frame.instance, Type::Struct(state))
             }
             Root::Globals => (usize_of(interpreter.layout.machine.globals), Type::Struct(program.globals)),
             Root::Local(id) => {
-                let offset = interpreter.frames[frame.pou.index()].offsets[id.index()];
-                (frame.locals + offset, pou.locals[id.index()].ty)
+                let offset = interpreter.frames[frame.routine.index()].offsets[id.index()];
+                (frame.locals + offset, routine.locals[id.index()].ty)
             }
             Root::Param(id) => {
                 let offset = interpreter.references[frame.references + id.index()];
-                (offset, pou.params[id.index()].ty)
+                (offset, routine.params[id.index()].ty)
             }
         }
     }

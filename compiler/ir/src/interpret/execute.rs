@@ -4,8 +4,8 @@ use super::evaluate::{scalar, text};
 use super::{Frame, Interpreter, Stop};
 use crate::layout::usize_of;
 use crate::{
-    Argument, Arm, BlockId, Expr, ExprKind, For, Location, Mode, Place, Pou, PouId, Statement, StatementKind, Step,
-    Type, Value,
+    Argument, Arm, BlockId, Expr, ExprKind, For, Location, Mode, Place, Routine, RoutineId, Statement, StatementKind,
+    Step, Type, Value,
 };
 use staunch_runtime::{Context, Fault, FaultKind, Instruction, ops};
 
@@ -52,7 +52,7 @@ impl<'p> Interpreter<'p> {
             StatementKind::Call { callee, instance, arguments, result } => {
                 let instance = instance.as_ref().map(|place| self.resolve(frame, place)).transpose()?;
                 let inner = self.open(frame, *callee, instance, arguments)?;
-                self.block(&inner, &self.program.pou(*callee).body, cx)?;
+                self.block(&inner, &self.program.routine(*callee).body, cx)?;
                 self.close(frame, &inner, result.as_ref())?;
             }
             StatementKind::CallBlock { block, instruction, inputs } => {
@@ -60,12 +60,6 @@ impl<'p> Interpreter<'p> {
             }
             StatementKind::PrescanBlock { block, instruction } => {
                 self.prescan_block(frame, block, *instruction)?;
-            }
-            StatementKind::PrescanInstance { callee, instance } => {
-                let instance = self.resolve(frame, instance)?;
-                let inner = self.enter(*callee, instance);
-                self.block(&inner, &self.program.pou(*callee).prescan, cx)?;
-                self.leave(&inner);
             }
             StatementKind::Fault(kind) => {
                 return Err(Fault { kind: *kind, at: statement.at }.into());
@@ -209,12 +203,12 @@ impl<'p> Interpreter<'p> {
     fn open(
         &mut self,
         caller: &Frame,
-        callee: PouId,
+        callee: RoutineId,
         instance: Option<usize>,
         arguments: &'p [Argument],
     ) -> Result<Frame, Fault> {
         let frame = self.enter(callee, instance.unwrap_or_default());
-        for (param, argument) in self.program.pou(callee).params.iter().zip(arguments) {
+        for (param, argument) in self.program.routine(callee).params.iter().zip(arguments) {
             let reference = match argument {
                 Argument::Reference(place) => self.resolve(caller, place)?,
                 Argument::Value(value) => {
@@ -232,9 +226,9 @@ impl<'p> Interpreter<'p> {
     /// Hands a FUNCTION's result to its caller and drops its frame.
     fn close(&mut self, caller: &Frame, callee: &Frame, result: Option<&Place>) -> Result<(), Fault> {
         if let Some(target) = result {
-            let pou: &Pou = self.program.pou(callee.pou);
-            let local = pou.result.expect("verified IR: a FUNCTION with a result");
-            let from = callee.locals + self.frames[callee.pou.index()].offsets[local.index()];
+            let routine: &Routine = self.program.routine(callee.routine);
+            let local = routine.result.expect("verified IR: a FUNCTION with a result");
+            let from = callee.locals + self.frames[callee.routine.index()].offsets[local.index()];
             let to = self.resolve(caller, target)?;
             self.copy(from, to, target.ty);
         }

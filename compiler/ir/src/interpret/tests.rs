@@ -1,8 +1,8 @@
 use super::*;
 use crate::fixture::*;
 use crate::{
-    Arm, Const, Conversion, Elementary, Expr, ExprKind, FaultKind, FieldId, Lane, LocalId, Op, StatementKind, TextOp,
-    Type,
+    Arm, Const, Conversion, Elementary, Expr, ExprKind, FaultKind, FieldId, Lane, LocalId, Op, Statement,
+    StatementKind, TextOp, Type,
 };
 
 struct Run {
@@ -29,7 +29,7 @@ fn scans(body: Vec<Statement>, contexts: &[Context], budget: Option<u64>) -> Run
     for cx in contexts {
         end = interpreter.scan(0, cx);
     }
-    let frame = interpreter.enter(PouId(2), usize_of(interpreter.layout.machine.instances[0]));
+    let frame = interpreter.enter(RoutineId(3), usize_of(interpreter.layout.machine.instances[0]));
     let read = |place: &Place| {
         let at = interpreter.resolve(&frame, place).unwrap();
         let lane = program.lane(place.ty).unwrap();
@@ -174,15 +174,22 @@ fn an_in_out_may_alias_the_instance() {
 
 #[test]
 fn a_function_block_runs_its_prescan_when_told() {
-    let prescan = stmt(StatementKind::PrescanInstance { callee: PouId(1), instance: adder() });
+    let prescan = prescan_adder(RoutineId(2), adder());
     assert_eq!(run(vec![prescan]).sum, 100);
+}
+
+/// Gives the PROGRAM a prescan of one statement.
+fn add_prescan(program: &mut Program, statement: Statement) {
+    let prescan =
+        Routine { body: vec![statement], ..routine(crate::RoutineKind::Prescan, "Main", Some(crate::StructId(1))) };
+    program.classes[1].prescan = Some(RoutineId::next(program.routines.len()));
+    program.routines.push(prescan);
 }
 
 #[test]
 fn a_program_runs_its_prescan_in_the_first_scan_only() {
     let mut program = sample(vec![call_adder(count())]);
-    let prescan = StatementKind::PrescanInstance { callee: PouId(1), instance: adder() };
-    program.pous[2].prescan = vec![stmt(prescan)];
+    add_prescan(&mut program, prescan_adder(RoutineId(2), adder()));
     let mut interpreter = Interpreter::new(&program);
     let sum = usize_of(interpreter.layout.machine.instances[0])
         + usize_of(interpreter.layout.field(crate::StructId(1), FieldId(3)));
@@ -208,9 +215,9 @@ fn logix_instructions_take_a_rung_and_have_a_prescan() {
     program.structs[1].fields[5].ty = Type::Block(id);
     let tag = || Place { ty: Type::Block(id), ..counter() };
     let inputs = vec![Expr::bool(true, AT)];
-    program.pous[2].variables.clear();
-    program.pous[2].prescan = vec![stmt(StatementKind::PrescanBlock { block: tag(), instruction: 0 })];
-    program.pous[2].body = vec![stmt(StatementKind::CallBlock { block: tag(), instruction: 0, inputs })];
+    program.classes[1].variables.clear();
+    add_prescan(&mut program, stmt(StatementKind::PrescanBlock { block: tag(), instruction: 0 }));
+    program.routines[3].body = vec![stmt(StatementKind::CallBlock { block: tag(), instruction: 0, inputs })];
     crate::verify::verify(&program).unwrap();
     let acc = id.info().pin("ACC").unwrap();
     let count = |contexts: &[Context]| {

@@ -1,6 +1,6 @@
 use super::*;
-use crate::fixture::{self, AT, COLOR, field, pou, structure};
-use crate::{Elementary, PouKind, Struct};
+use crate::fixture::{self, AT, COLOR, field, routine, structure};
+use crate::{Elementary, RoutineKind, Struct};
 use core::mem::{align_of, offset_of, size_of};
 
 /// A program with two instances of one PROGRAM, whose state is the last of `structs`.
@@ -8,7 +8,7 @@ fn program(arrays: Vec<Array>, mut structs: Vec<Struct>) -> Program {
     let state = StructId::next(structs.len() - 1);
     let global = field("g", Type::BOOL, Const::Scalar(Value::Bool(true)));
     structs.push(structure("globals", vec![global]));
-    let main = pou(PouKind::Program, "Main", Some(state));
+    let main = routine(RoutineKind::Body, "Main", Some(state));
     let mut program = fixture::program(arrays, structs, vec![main]);
     program.instances.push(program.instances[0].clone());
     program

@@ -1,35 +1,37 @@
 //! Statements, each with the line and column it comes from.
 
 use super::Printer;
-use crate::{Argument, Arm, Block, Expr, For, Place, Pou, PouId, Statement, StatementKind, Step, Type};
+use crate::{
+    Argument, Arm, Block, Expr, For, Place, Routine, RoutineId, RoutineKind, Statement, StatementKind, Step, Type,
+};
 use core::fmt;
 
 impl Printer<'_> {
-    pub(super) fn block(&mut self, pou: &Pou, block: &Block) -> fmt::Result {
+    pub(super) fn block(&mut self, routine: &Routine, block: &Block) -> fmt::Result {
         self.depth += 1;
-        block.iter().try_for_each(|statement| self.statement(pou, statement))?;
+        block.iter().try_for_each(|statement| self.statement(routine, statement))?;
         self.depth -= 1;
         Ok(())
     }
 
-    fn statement(&mut self, pou: &Pou, statement: &Statement) -> fmt::Result {
-        let head = self.head(pou, &statement.kind);
+    fn statement(&mut self, routine: &Routine, statement: &Statement) -> fmt::Result {
+        let head = self.head(routine, &statement.kind);
         let at = statement.at;
         self.line(format_args!("{head} @{}:{}", at.line, at.column))?;
         match &statement.kind {
             StatementKind::If { then, otherwise, .. } => {
-                self.block(pou, then)?;
-                self.tail(pou, "else", otherwise)
+                self.block(routine, then)?;
+                self.tail(routine, "else", otherwise)
             }
             StatementKind::Case { arms, otherwise, .. } => {
-                arms.iter().try_for_each(|arm| self.arm(pou, arm))?;
-                self.tail(pou, "else", otherwise)
+                arms.iter().try_for_each(|arm| self.arm(routine, arm))?;
+                self.tail(routine, "else", otherwise)
             }
             StatementKind::Loop { body, continuing } => {
-                self.block(pou, body)?;
-                self.tail(pou, "continuing", continuing)
+                self.block(routine, body)?;
+                self.tail(routine, "continuing", continuing)
             }
-            StatementKind::For(it) => self.block(pou, &it.body),
+            StatementKind::For(it) => self.block(routine, &it.body),
             StatementKind::Assign { .. }
             | StatementKind::Turn
             | StatementKind::Exit
@@ -38,62 +40,58 @@ impl Printer<'_> {
             | StatementKind::Call { .. }
             | StatementKind::CallBlock { .. }
             | StatementKind::PrescanBlock { .. }
-            | StatementKind::PrescanInstance { .. }
             | StatementKind::Fault(_) => Ok(()),
         }
     }
 
-    fn tail(&mut self, pou: &Pou, word: &str, block: &Block) -> fmt::Result {
+    fn tail(&mut self, routine: &Routine, word: &str, block: &Block) -> fmt::Result {
         if block.is_empty() {
             return Ok(());
         }
         self.line(format_args!("{word}"))?;
-        self.block(pou, block)
+        self.block(routine, block)
     }
 
-    fn arm(&mut self, pou: &Pou, arm: &Arm) -> fmt::Result {
+    fn arm(&mut self, routine: &Routine, arm: &Arm) -> fmt::Result {
         let labels: Vec<String> = arm.labels.iter().map(|label| label_text(*label)).collect();
         self.line(format_args!("{}:", labels.join(", ")))?;
-        self.block(pou, &arm.body)
+        self.block(routine, &arm.body)
     }
 
     /// The statement's own line.
-    fn head(&self, pou: &Pou, kind: &StatementKind) -> String {
+    fn head(&self, routine: &Routine, kind: &StatementKind) -> String {
         match kind {
             StatementKind::Assign { target, value } => {
-                format!("{} := {}", self.place(pou, target), self.expr(pou, value))
+                format!("{} := {}", self.place(routine, target), self.expr(routine, value))
             }
-            StatementKind::If { condition, .. } => format!("if {}", self.expr(pou, condition)),
-            StatementKind::Case { selector, .. } => format!("case {}", self.expr(pou, selector)),
+            StatementKind::If { condition, .. } => format!("if {}", self.expr(routine, condition)),
+            StatementKind::Case { selector, .. } => format!("case {}", self.expr(routine, selector)),
             StatementKind::Loop { .. } => "loop".to_owned(),
-            StatementKind::For(it) => self.for_head(pou, it),
+            StatementKind::For(it) => self.for_head(routine, it),
             StatementKind::Turn => "turn".to_owned(),
             StatementKind::Exit => "exit".to_owned(),
             StatementKind::Continue => "continue".to_owned(),
             StatementKind::Return => "return".to_owned(),
             StatementKind::Call { callee, instance, arguments, result } => {
-                self.call_head(pou, *callee, instance.as_ref(), arguments, result.as_ref())
+                self.call_head(routine, *callee, instance.as_ref(), arguments, result.as_ref())
             }
             StatementKind::CallBlock { block, instruction, inputs } => {
-                self.block_head(pou, block, *instruction, inputs)
+                self.block_head(routine, block, *instruction, inputs)
             }
             StatementKind::PrescanBlock { block, instruction } => {
-                format!("prescan {}", self.block_head(pou, block, *instruction, &[]))
-            }
-            StatementKind::PrescanInstance { callee, instance } => {
-                format!("prescan {} {}", self.program.pou(*callee).name, self.place(pou, instance))
+                format!("prescan {}", self.block_head(routine, block, *instruction, &[]))
             }
             StatementKind::Fault(kind) => format!("fault {kind:?}"),
         }
     }
 
-    fn for_head(&self, pou: &Pou, it: &For) -> String {
+    fn for_head(&self, routine: &Routine, it: &For) -> String {
         let step = match &it.step {
             Step::Constant(step) => step.to_string(),
-            Step::Variable(step) => self.expr(pou, step),
+            Step::Variable(step) => self.expr(routine, step),
         };
         let (counter, first, last) =
-            (self.place(pou, &it.counter), self.expr(pou, &it.first), self.expr(pou, &it.last));
+            (self.place(routine, &it.counter), self.expr(routine, &it.first), self.expr(routine, &it.last));
         let (least, most) = it.range;
         let private = if it.is_private { " private" } else { "" };
         format!("for{private} {counter} in {least}..{most} := {first} to {last} by {step}")
@@ -101,27 +99,29 @@ impl Printer<'_> {
 
     fn call_head(
         &self,
-        pou: &Pou,
-        callee: PouId,
+        routine: &Routine,
+        callee: RoutineId,
         instance: Option<&Place>,
         arguments: &[Argument],
         result: Option<&Place>,
     ) -> String {
-        let target = result.map(|place| format!("{} := ", self.place(pou, place))).unwrap_or_default();
-        let instance = instance.map(|place| format!(" {}", self.place(pou, place))).unwrap_or_default();
-        let arguments: Vec<String> = arguments.iter().map(|it| self.argument(pou, it)).collect();
-        let name = &self.program.pou(callee).name;
-        format!("{target}call {name}{instance}({})", arguments.join(", "))
+        let target = result.map(|place| format!("{} := ", self.place(routine, place))).unwrap_or_default();
+        let instance = instance.map(|place| format!(" {}", self.place(routine, place))).unwrap_or_default();
+        let arguments: Vec<String> = arguments.iter().map(|it| self.argument(routine, it)).collect();
+        let callee = self.program.routine(callee);
+        let prescan = if callee.kind == RoutineKind::Prescan { ".prescan" } else { "" };
+        let name = &callee.name;
+        format!("{target}call {name}{prescan}{instance}({})", arguments.join(", "))
     }
 
-    fn argument(&self, pou: &Pou, argument: &Argument) -> String {
+    fn argument(&self, routine: &Routine, argument: &Argument) -> String {
         match argument {
-            Argument::Value(value) => self.expr(pou, value),
-            Argument::Reference(place) => format!("ref {}", self.place(pou, place)),
+            Argument::Value(value) => self.expr(routine, value),
+            Argument::Reference(place) => format!("ref {}", self.place(routine, place)),
         }
     }
 
-    fn block_head(&self, pou: &Pou, block: &Place, instruction: usize, inputs: &[Expr]) -> String {
+    fn block_head(&self, routine: &Routine, block: &Place, instruction: usize, inputs: &[Expr]) -> String {
         let name = match block.ty {
             Type::Block(id) => match id.info().instructions[instruction].name {
                 "" => id.info().name,
@@ -134,7 +134,7 @@ impl Printer<'_> {
             | Type::Array(_)
             | Type::Struct(_) => "?",
         };
-        format!("{name} {}({})", self.place(pou, block), self.exprs(pou, inputs))
+        format!("{name} {}({})", self.place(routine, block), self.exprs(routine, inputs))
     }
 }
 

@@ -1,7 +1,8 @@
 use super::print;
 use crate::fixture::*;
 use crate::{
-    Arm, Conversion, Elementary, Expr, ExprKind, FaultKind, Op, PouId, Statement, StatementKind, TextOp, Type, Value,
+    Arm, Conversion, Elementary, Expr, ExprKind, FaultKind, Op, RoutineId, Statement, StatementKind, TextOp, Type,
+    Value,
 };
 
 fn body_text(body: Vec<Statement>) -> String {
@@ -80,7 +81,7 @@ fn statements() {
             })],
             continuing: vec![call_counter(Expr::bool(true, AT), 5)],
         }),
-        stmt(StatementKind::PrescanInstance { callee: PouId(1), instance: adder() }),
+        prescan_adder(RoutineId(2), adder()),
         stmt(StatementKind::Fault(FaultKind::ZeroStep)),
     ];
     let expected = "  if LT(self.count, INT#3) @7:3
@@ -95,7 +96,7 @@ fn statements() {
       continue @7:3
   continuing
     CTU self.counter(TRUE, FALSE, INT#5) @7:3
-  prescan Adder self.adder @7:3
+  call Adder.prescan self.adder() @7:3
   fault ZeroStep @7:3";
     assert_eq!(body_text(body), expected);
 }

@@ -17,7 +17,7 @@ fn every_record_of_a_program() {
     fields[0].address = Some(Address { area: Area::Input, bit: 64, width: 16 });
     fields[0].retain = crate::Retain::Kept;
     fields[0].ty = Type::Subrange(Elementary::Int, crate::BoundsId(0));
-    program.pous[2].variables[0].place.ty = Type::Subrange(Elementary::Int, crate::BoundsId(0));
+    program.classes[1].variables[0].place.ty = Type::Subrange(Elementary::Int, crate::BoundsId(0));
     program.structs[2].fields[0].section = Section::Global;
     let block = crate::fixture::ctu().0;
     let expected = format!(
@@ -68,7 +68,7 @@ fn a_retentive_block_marks_its_variable() {
     program.structs[1].fields[5].ty = Type::Block(counter);
     program.arrays[0].element = Type::Block(counter);
     program.structs[1].fields[2].initial = crate::Const::Zero;
-    program.pous[2].variables.clear();
+    program.classes[1].variables.clear();
     let text = map(&program);
     for name in ["values", "counter"] {
         let line = text.lines().find(|line| line.starts_with(&format!("field\t{name}\t")));

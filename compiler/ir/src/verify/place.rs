@@ -32,7 +32,7 @@ impl Verifier<'_> {
     }
 
     fn root(&mut self, body: &Body, root: Root, at: Location) -> Option<Type> {
-        let ty = self.program.root_type(body.pou, root).filter(|_| body.refers(root));
+        let ty = self.program.root_type(body.routine, root).filter(|_| body.refers(root));
         self.require(ty.is_some(), at, format_args!("no such storage: {root:?}"));
         ty
     }

@@ -3,18 +3,16 @@
 use super::Verifier;
 use crate::loops;
 use crate::{
-    Argument, Arm, Block, Expr, For, Location, Mode, Param, Place, Pou, PouId, PouKind, Root, Statement, StatementKind,
-    Step, Type,
+    Argument, Arm, Block, ClassKind, Expr, For, Location, Mode, Param, Place, Root, Routine, RoutineId, Statement,
+    StatementKind, Step, Type,
 };
 use staunch_runtime::BlockInfo;
 
 /// The block that is being checked, and where in it.
 #[derive(Clone, Copy)]
 pub(super) struct Body<'p> {
-    pub(super) pou: &'p Pou,
-    id: PouId,
-    /// In a prescan, in-outs do not exist.
-    is_prescan: bool,
+    pub(super) routine: &'p Routine,
+    id: RoutineId,
     in_loop: bool,
     in_continuing: bool,
 }
@@ -24,8 +22,8 @@ impl Body<'_> {
     pub(super) fn refers(&self, root: Root) -> bool {
         match root {
             Root::Param(id) => {
-                let mode = self.pou.params.get(id.index()).map(|param| param.mode);
-                mode == Some(Mode::Reference) && !self.is_prescan
+                let mode = self.routine.params.get(id.index()).map(|param| param.mode);
+                mode == Some(Mode::Reference)
             }
             Root::Instance | Root::Globals | Root::Local(_) => true,
         }
@@ -34,15 +32,16 @@ impl Body<'_> {
 
 impl<'p> Verifier<'p> {
     pub(super) fn bodies(&mut self) {
-        for (id, pou) in self.program.pous.iter().enumerate() {
-            self.within.clone_from(&pou.name);
-            for variable in &pou.variables {
-                self.variable(pou, variable);
-            }
-            let id = PouId::next(id);
-            let body = Body { pou, id, is_prescan: false, in_loop: false, in_continuing: false };
-            self.block(&body, &pou.body);
-            self.block(&Body { is_prescan: true, ..body }, &pou.prescan);
+        for class in &self.program.classes {
+            self.within.clone_from(&class.name);
+            let body = self.program.routine(class.body);
+            class.variables.iter().for_each(|it| self.variable(body, it));
+        }
+        for (id, routine) in self.program.routines.iter().enumerate() {
+            self.within.clone_from(&routine.name);
+            let id = RoutineId::next(id);
+            let body = Body { routine, id, in_loop: false, in_continuing: false };
+            self.block(&body, &routine.body);
         }
     }
 
@@ -95,11 +94,6 @@ impl<'p> Verifier<'p> {
             StatementKind::PrescanBlock { block, instruction } => {
                 self.prescan_block(body, block, *instruction, at);
             }
-            StatementKind::PrescanInstance { callee, instance } => {
-                if self.callee(body, *callee, Some(instance), at).is_some() {
-                    self.writable(body, instance, at);
-                }
-            }
         }
     }
 
@@ -125,7 +119,7 @@ impl<'p> Verifier<'p> {
             }
             Step::Variable(step) => self.expr_of(body, step, ty.read()),
         }
-        let root = self.program.root_type(body.pou, it.counter.root);
+        let root = self.program.root_type(body.routine, it.counter.root);
         let private = !it.is_private || loops::is_private(self.program, root, &it.counter, &it.body);
         self.require(private, at, "a counter that others write is called private");
         self.require(it.is_short() || it.body.first().is_some_and(is_turn), at, "a loop that takes no turns");
@@ -151,24 +145,35 @@ impl<'p> Verifier<'p> {
     }
 
     /// The callee, if it may be called here with this instance.
-    fn callee(&mut self, body: &Body<'p>, callee: PouId, instance: Option<&Place>, at: Location) -> Option<&'p Pou> {
+    fn callee(
+        &mut self,
+        body: &Body<'p>,
+        callee: RoutineId,
+        instance: Option<&Place>,
+        at: Location,
+    ) -> Option<&'p Routine> {
         let before = self.require(callee < body.id, at, "a callee that does not stand before its caller");
-        let pou = before.then(|| self.program.pou(callee))?;
-        let fits = match (pou.kind, instance) {
-            (PouKind::Function, None) => true,
-            (PouKind::FunctionBlock, Some(place)) => Some(place.ty) == pou.state.map(Type::Struct),
-            (PouKind::Function, Some(_)) | (PouKind::FunctionBlock, None) | (PouKind::Program, _) => false,
-        };
-        self.require(fits, at, format_args!("{} is not called on what it wants", pou.name)).then_some(pou)
+        let routine = before.then(|| self.program.routine(callee))?;
+        let fits = instance.map(|it| it.ty) == routine.state.map(Type::Struct);
+        let is_program = self.program.classes.iter().any(|it| it.kind == ClassKind::Program && it.body == callee);
+        self.require(!is_program, at, "a PROGRAM is called");
+        self.require(fits, at, format_args!("{} is not called on what it wants", routine.name)).then_some(routine)
     }
 
-    fn call(&mut self, body: &Body<'p>, callee: PouId, instance: Option<&Place>, arguments: &[Argument], at: Location) {
-        let Some(pou) = self.callee(body, callee, instance, at) else { return };
+    fn call(
+        &mut self,
+        body: &Body<'p>,
+        callee: RoutineId,
+        instance: Option<&Place>,
+        arguments: &[Argument],
+        at: Location,
+    ) {
+        let Some(routine) = self.callee(body, callee, instance, at) else { return };
         if let Some(instance) = instance {
             self.writable(body, instance, at);
         }
-        self.require(arguments.len() == pou.params.len(), at, format_args!("{}: argument count", pou.name));
-        for (param, argument) in pou.params.iter().zip(arguments) {
+        self.require(arguments.len() == routine.params.len(), at, format_args!("{}: argument count", routine.name));
+        for (param, argument) in routine.params.iter().zip(arguments) {
             self.argument(body, param, argument, at);
         }
     }
@@ -192,19 +197,19 @@ impl<'p> Verifier<'p> {
     /// What holds an instance of a block is not copied.
     fn copied(&mut self, ty: Type, at: Location) {
         let program = self.program;
-        if let Some((way, _)) = program.instance_in(ty, &|id| program.pou_of_state(id).is_some()) {
+        if let Some((way, _)) = program.instance_in(ty, &|id| program.class_of_state(id).is_some()) {
             self.report(at, format_args!("{} is copied with the instance at {way:?}", program.type_name(ty)));
         }
     }
 
     /// A result goes to a local as a whole.
-    fn call_result(&mut self, body: &Body<'p>, callee: PouId, result: Option<&Place>, at: Location) {
+    fn call_result(&mut self, body: &Body<'p>, callee: RoutineId, result: Option<&Place>, at: Location) {
         let Some(target) = result else { return };
         self.place(body, target, at);
         let local = matches!(target.root, Root::Local(_)) && target.projections.is_empty();
         self.require(local, at, "a result that does not go to a local");
-        let pou = self.program.pous.get(callee.index());
-        let ty = pou.and_then(|pou| Some(pou.locals.get(pou.result?.index())?.ty));
+        let routine = self.program.routines.get(callee.index());
+        let ty = routine.and_then(|routine| Some(routine.locals.get(routine.result?.index())?.ty));
         self.require(ty == Some(target.ty), at, "a result of another type");
     }
 

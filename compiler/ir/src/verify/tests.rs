@@ -18,7 +18,7 @@ fn broken(expected: &str, damage: impl FnOnce(&mut Program)) {
 
 #[track_caller]
 fn bad(expected: &str, statement: Statement) {
-    broken(expected, |program| program.pous[2].body.push(statement));
+    broken(expected, |program| program.routines[3].body.push(statement));
 }
 
 #[track_caller]
@@ -86,7 +86,7 @@ fn sizes() {
     broken("larger than the limit", |program| {
         program.arrays.push(Array { low: 1, high: 1 << 29, element: Type::BOOL });
         let big = || local("big", Type::Array(ArrayId(1)), Const::Zero);
-        program.pous[0].locals.extend([big(), big(), big()]);
+        program.routines[0].locals.extend([big(), big(), big()]);
     });
 }
 
@@ -106,45 +106,48 @@ fn constants() {
     broken("not of type INT", main(3, Const::Struct(vec![Const::Scalar(Value::U8(0))])));
     broken("wrong length", main(5, Const::Struct(Vec::new())));
     broken("structure constant of another type", main(0, Const::Struct(Vec::new())));
-    broken("not of type INT", |program| program.pous[0].locals[0].initial = Const::Text(Vec::new()));
+    broken("not of type INT", |program| program.routines[0].locals[0].initial = Const::Text(Vec::new()));
 }
 
 #[test]
-fn pous() {
-    broken("no such state", |program| program.pous[1].state = Some(StructId(9)));
-    broken("belongs to another", |program| program.pous[1].state = Some(StructId(1)));
-    broken("belongs to another", |program| program.pous[1].state = Some(program.globals));
-    broken("no state", |program| program.pous[1].state = None);
-    broken("a FUNCTION has no state", |program| program.pous[0].state = Some(StructId(0)));
-    broken("has no prescan", |program| program.pous[0].prescan = vec![stmt(StatementKind::Return)]);
-    broken("not declared before", |program| program.pous[0].locals[0].ty = Type::Struct(StructId(9)));
+fn routines() {
+    broken("no such state", |program| program.classes[0].state = StructId(9));
+    broken("belongs to another", |program| program.classes[0].state = StructId(1));
+    broken("belongs to another", |program| program.classes[0].state = program.globals);
+    broken("its Body is none", |program| program.routines[1].state = None);
+    broken("a prescan has no parameters", |program| {
+        program.routines[2].params.push(param("p", Type::INT, Mode::Reference));
+    });
+    broken("a FUNCTION has no state", |program| program.routines[0].state = Some(StructId(0)));
+    broken("its Prescan is none", |program| program.classes[0].prescan = Some(RoutineId(0)));
+    broken("not declared before", |program| program.routines[0].locals[0].ty = Type::Struct(StructId(9)));
     broken("a PROGRAM has no parameters", |program| {
-        program.pous[2].params.push(param("p", Type::INT, Mode::Reference));
+        program.routines[3].params.push(param("p", Type::INT, Mode::Reference));
     });
-    broken("by value to an instance", |program| program.pous[1].params[0].mode = Mode::Value(LocalId(0)));
-    broken("no local of its own", |program| program.pous[0].params[0].mode = Mode::Value(LocalId(7)));
-    broken("no local of its own", |program| program.pous[0].params[0].ty = Type::DINT);
+    broken("by value to an instance", |program| program.routines[1].params[0].mode = Mode::Value(LocalId(0)));
+    broken("no local of its own", |program| program.routines[0].params[0].mode = Mode::Value(LocalId(7)));
+    broken("no local of its own", |program| program.routines[0].params[0].ty = Type::DINT);
     broken("no local of its own", |program| {
-        program.pous[0].params[1].mode = Mode::Value(LocalId(0));
+        program.routines[0].params[1].mode = Mode::Value(LocalId(0));
     });
-    broken("a result that is not", |program| program.pous[0].result = Some(LocalId(5)));
-    broken("a result that is not", |program| program.pous[2].result = Some(LocalId(0)));
-    broken("file that does not exist", |program| program.pous[0].location.file = 1);
+    broken("a result that is not", |program| program.routines[0].result = Some(LocalId(5)));
+    broken("a result that is not", |program| program.routines[3].result = Some(LocalId(0)));
+    broken("file that does not exist", |program| program.routines[0].location.file = 1);
 }
 
 #[test]
 fn instances() {
-    broken("not a PROGRAM", |program| program.instances[0].program = PouId(1));
-    broken("not a PROGRAM", |program| program.instances[0].program = PouId(9));
+    broken("not a PROGRAM", |program| program.instances[0].program = ClassId(0));
+    broken("not a PROGRAM", |program| program.instances[0].program = ClassId(9));
     broken("not above 0", |program| program.instances[0].interval = Some(0));
 }
 
 #[test]
 fn variables() {
-    broken("is not a field", |program| program.pous[2].variables[0].place = value(lint(1), 1));
-    broken("of another type", |program| program.pous[2].variables[0].place.ty = Type::BOOL);
+    broken("is not a field", |program| program.classes[1].variables[0].place = value(lint(1), 1));
+    broken("of another type", |program| program.classes[1].variables[0].place.ty = Type::BOOL);
     broken("of another type", |program| {
-        program.pous[2].variables[0].place = Place::root(Root::Param(ParamId(0)), Type::INT);
+        program.classes[1].variables[0].place = Place::root(Root::Param(ParamId(0)), Type::INT);
     });
 }
 
@@ -154,15 +157,15 @@ fn places() {
     bad("no such storage", assign(Place::root(Root::Param(ParamId(0)), Type::INT), int(1)));
     broken("no such storage", |program| {
         let place = Place::root(Root::Instance, Type::Struct(StructId(0)));
-        program.pous[0].body.push(assign(place.field(FieldId(0), Type::INT), int(1)));
+        program.routines[0].body.push(assign(place.field(FieldId(0), Type::INT), int(1)));
     });
     broken("no such storage: Param", |program| {
         let value_param = Place::root(Root::Param(ParamId(0)), Type::INT);
-        program.pous[0].body.push(assign(value_param, int(1)));
+        program.routines[0].body.push(assign(value_param, int(1)));
     });
     broken("no such storage: Param", |program| {
         let in_out = Place::root(Root::Param(ParamId(0)), Type::INT);
-        program.pous[1].prescan.push(assign(in_out, int(1)));
+        program.routines[2].body.push(assign(in_out, int(1)));
     });
     bad("has no member", assign(count().field(FieldId(0), Type::INT), int(1)));
     bad("has no member", assign(adder().field(FieldId(4), Type::INT), int(1)));
@@ -189,7 +192,7 @@ fn constants_are_not_written() {
     {
         broken("a write to a constant", |program| {
             program.structs[1].fields[field].constant = true;
-            program.pous[2].body.push(statement);
+            program.routines[3].body.push(statement);
         });
     }
 }
@@ -226,9 +229,9 @@ fn operations() {
 #[track_caller]
 fn written_to_subrange(value: Expr) -> Result<(), Vec<Violation>> {
     let mut program = sample(Vec::new());
-    let id = LocalId::next(program.pous[2].locals.len());
-    program.pous[2].locals.push(local("small", SUBRANGE, Const::Zero));
-    program.pous[2].body.push(assign(Place::local(id, SUBRANGE), value));
+    let id = LocalId::next(program.routines[3].locals.len());
+    program.routines[3].locals.push(local("small", SUBRANGE, Const::Zero));
+    program.routines[3].body.push(assign(Place::local(id, SUBRANGE), value));
     verify(&program)
 }
 
@@ -248,7 +251,7 @@ fn subranges() {
         written_to_subrange(value).unwrap_err();
     }
     broken("a constant that is not of type INT(1..9)", |program| {
-        program.pous[2].locals.push(local("small", Type::Subrange(Elementary::Int, BoundsId(1)), Const::Zero));
+        program.routines[3].locals.push(local("small", Type::Subrange(Elementary::Int, BoundsId(1)), Const::Zero));
     });
 }
 
@@ -310,7 +313,7 @@ fn case_labels() {
 #[test]
 fn calls() {
     let call = |callee: u32, instance, arguments, result| {
-        stmt(StatementKind::Call { callee: PouId(callee), instance, arguments, result })
+        stmt(StatementKind::Call { callee: RoutineId(callee), instance, arguments, result })
     };
     let by_value = || Argument::Value(int(1));
     let by_reference = || Argument::Reference(count());
@@ -320,7 +323,7 @@ fn calls() {
     bad("not called on", call(1, Some(count()), vec![by_reference()], None));
     bad("not called on", call(0, Some(adder()), vec![by_value(), by_reference()], None));
     broken("not called on", |program| {
-        program.pous.push(Pou { body: vec![call(2, None, Vec::new(), None)], ..program.pous[0].clone() });
+        program.routines.push(Routine { body: vec![call(2, None, Vec::new(), None)], ..program.routines[0].clone() });
     });
     bad("argument count", call(0, None, vec![by_value()], None));
     bad("passed the wrong way", call(0, None, vec![by_reference(), by_reference()], None));
@@ -330,9 +333,9 @@ fn calls() {
     bad("does not go to a local", call_double(int(1), count(), Some(count())));
     bad("result of another type", call(1, Some(adder()), vec![by_reference()], Some(temp())));
     broken("result of another type", |program| {
-        program.pous[2].locals.push(local("wide", Type::DINT, Const::Zero));
+        program.routines[3].locals.push(local("wide", Type::DINT, Const::Zero));
         let target = Place::local(LocalId(1), Type::DINT);
-        program.pous[2].body.push(call_double(int(1), count(), Some(target)));
+        program.routines[3].body.push(call_double(int(1), count(), Some(target)));
     });
     good(call_double(int(1), count(), None));
 }
@@ -347,9 +350,9 @@ fn blocks() {
     bad("CTU: inputs in", call(counter(), 0, vec![on(), on(), lint(1)]));
     bad("no such prescan", stmt(StatementKind::PrescanBlock { block: counter(), instruction: 0 }));
     bad("not a standard block", stmt(StatementKind::PrescanBlock { block: count(), instruction: 0 }));
-    let prescan = |callee, instance| stmt(StatementKind::PrescanInstance { callee, instance });
-    bad("not called on", prescan(PouId(0), adder()));
-    bad("not called on", prescan(PouId(1), count()));
-    bad("before its caller", prescan(PouId(2), adder()));
-    good(prescan(PouId(1), adder()));
+    let prescan = prescan_adder;
+    bad("not called on", prescan(RoutineId(0), adder()));
+    bad("not called on", prescan(RoutineId(2), count()));
+    bad("before its caller", prescan(RoutineId(3), adder()));
+    good(prescan(RoutineId(2), adder()));
 }

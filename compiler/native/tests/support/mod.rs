@@ -48,8 +48,8 @@ pub fn param(name: &str, ty: Type, mode: Mode) -> Param {
     Param { name: name.to_owned(), ty, doc: None, mode }
 }
 
-pub fn pou(kind: PouKind, name: &str, state: Option<StructId>) -> Pou {
-    Pou {
+pub fn routine(kind: RoutineKind, name: &str, state: Option<StructId>) -> Routine {
+    Routine {
         kind,
         name: name.to_owned(),
         doc: None,
@@ -58,21 +58,26 @@ pub fn pou(kind: PouKind, name: &str, state: Option<StructId>) -> Pou {
         params: Vec::new(),
         locals: Vec::new(),
         result: None,
-        variables: Vec::new(),
         body: Vec::new(),
-        prescan: Vec::new(),
     }
 }
 
-pub fn instance(program: PouId) -> Instance {
+pub fn instance(program: ClassId) -> Instance {
     Instance { name: format!("i{}", program.0), program, interval: None, priority: 0 }
 }
 
-/// A program whose PROGRAMs each have one instance, in order.
-pub fn program(arrays: Vec<Array>, mut structs: Vec<Struct>, pous: Vec<Pou>) -> Program {
+/// The class of a body.
+pub fn class(kind: ClassKind, routines: &[Routine], body: RoutineId, prescan: Option<RoutineId>) -> Class {
+    let routine = &routines[body.index()];
+    let (name, state) = (routine.name.clone(), routine.state.unwrap());
+    Class { kind, name, doc: None, location: AT, state, variables: Vec::new(), body, prescan }
+}
+
+/// A program of PROGRAMs that have one instance each, in order.
+pub fn program(arrays: Vec<Array>, mut structs: Vec<Struct>, routines: Vec<Routine>) -> Program {
     structs.push(structure("globals", Vec::new()));
-    let is_program = |at: &usize| pous[*at].kind == PouKind::Program;
-    let instances = (0..pous.len()).filter(is_program).map(|at| instance(PouId::next(at)));
+    let bodies = (0..routines.len()).filter(|at| routines[*at].kind == RoutineKind::Body).map(RoutineId::next);
+    let classes: Vec<_> = bodies.map(|it| class(ClassKind::Program, &routines, it, None)).collect();
     Program {
         files: vec![SourceFile { path: "main.st".to_owned() }],
         enums: Vec::new(),
@@ -80,9 +85,10 @@ pub fn program(arrays: Vec<Array>, mut structs: Vec<Struct>, pous: Vec<Pou>) -> 
         arrays,
         globals: StructId::next(structs.len() - 1),
         aliases: Vec::new(),
-        instances: instances.collect(),
+        instances: (0..classes.len()).map(|at| instance(ClassId::next(at))).collect(),
+        classes,
         structs,
-        pous,
+        routines,
     }
 }
 
@@ -163,7 +169,7 @@ impl Native {
 
     /// Offset of a field of an instance's state.
     pub fn offset(&self, program: &Program, instance: usize, at: usize) -> usize {
-        let state = program.pou(program.instances[instance].program).state.unwrap();
+        let state = program.class(program.instances[instance].program).state;
         usize_of(self.layout.machine.instances[instance] + self.layout.field(state, FieldId::next(at)))
     }
 }

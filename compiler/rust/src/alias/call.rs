@@ -1,15 +1,14 @@
 //! A call and the references it hands over; which copy of its callee it needs.
 
-use staunch_ir::{Argument, Location, Place, Pou, PouId, Program, Projection};
+use staunch_ir::{Argument, Location, Place, Program, Projection, Routine, RoutineId};
 
 use super::overlap::{Ancestor, Slot, overlap};
 use super::rewrite::Body;
-use super::{Binding, Key, Part, SharedRoot, Step};
+use super::{Binding, Key, SharedRoot, Step};
 
 #[derive(Clone)]
 pub struct Call {
-    pub callee: PouId,
-    pub part: Part,
+    pub callee: RoutineId,
     pub instance: Option<Place>,
     pub arguments: Vec<Argument>,
     pub result: Option<Place>,
@@ -45,11 +44,8 @@ impl Call {
     }
 
     /// The copy this call needs, and what is handed to the copy's shared parameters.
-    pub fn key(&self, callee: &Pou, ancestors: &[Ancestor], body: &Body, program: &Program) -> (Key, Vec<Place>) {
+    pub fn key(&self, callee: &Routine, ancestors: &[Ancestor], body: &Body, program: &Program) -> (Key, Vec<Place>) {
         let mut bindings = vec![Binding::Own; callee.params.len() + 1];
-        if let Part::Prescan = self.part {
-            bindings.truncate(1);
-        }
         let (mut types, mut groups) = (Vec::new(), Vec::new());
         let references = self.references();
         for ancestor in ancestors {
@@ -70,7 +66,7 @@ impl Call {
                 }
             }
         }
-        (Key { pou: self.callee, part: self.part, bindings, groups: types }, groups)
+        (Key { routine: self.callee, bindings, groups: types }, groups)
     }
 }
 

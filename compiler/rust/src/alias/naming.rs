@@ -1,11 +1,11 @@
 //! What copies and their parameters are called: what is copied, and what is special about it.
 
-use staunch_ir::{Pou, PouKind, Program, Type};
+use staunch_ir::{Program, Routine, RoutineKind, Type};
 
-use super::{Binding, Key, Part, SharedRoot, Step};
+use super::{Binding, Key, SharedRoot, Step};
 
 /// The names of the parameters that share storage, `a_b`.
-fn sharing(source: &Pou, key: &Key, with: SharedRoot) -> String {
+fn sharing(source: &Routine, key: &Key, with: SharedRoot) -> String {
     let bound = key.bindings[1..].iter().zip(&source.params);
     let names = bound.filter_map(|(binding, param)| match binding {
         Binding::Within { root, .. } if *root == with => Some(param.name.clone()),
@@ -14,18 +14,18 @@ fn sharing(source: &Pou, key: &Key, with: SharedRoot) -> String {
     names.collect::<Vec<_>>().join("_")
 }
 
-pub fn group_name(source: &Pou, key: &Key, number: usize) -> String {
+pub fn group_name(source: &Routine, key: &Key, number: usize) -> String {
     format!("shared_{}", sharing(source, key, SharedRoot::Group(number)))
 }
 
 /// `Motor_scan_on_pump`, `Swap_sharing_a_b`: what is copied, and what is special about the copy.
-pub fn copy_name(program: &Program, source: &Pou, key: &Key) -> String {
-    let verb = match (source.kind, key.part) {
-        (PouKind::Function, _) => String::new(),
-        (PouKind::Program | PouKind::FunctionBlock, Part::Body) => "_scan".to_owned(),
-        (PouKind::Program | PouKind::FunctionBlock, Part::Prescan) => "_prescan".to_owned(),
+pub fn copy_name(program: &Program, source: &Routine, key: &Key) -> String {
+    let verb = match source.kind {
+        RoutineKind::Function => String::new(),
+        RoutineKind::Body => "_scan".to_owned(),
+        RoutineKind::Prescan => "_prescan".to_owned(),
     };
-    let own = key.bindings[0] == Binding::Own && source.kind != PouKind::Function;
+    let own = key.bindings[0] == Binding::Own && source.kind != RoutineKind::Function;
     let mut name = if own { verb.trim_start_matches('_').to_owned() } else { format!("{}{verb}", source.name) };
     let mut roots = vec![SharedRoot::Instance];
     roots.extend((0..key.groups.len()).map(SharedRoot::Group));

@@ -1,7 +1,7 @@
 //! A body whose places move to other roots.
 
 use staunch_ir::{
-    Argument, Expr, ExprKind, Local, LocalId, Param, ParamId, Place, Pou, Program, Projection, Root, StructId, Type,
+    Argument, Expr, ExprKind, Local, LocalId, Param, ParamId, Place, Program, Projection, Root, Routine, StructId, Type,
 };
 
 /// What stands for a root of the source's.
@@ -28,7 +28,7 @@ pub struct Body {
 
 impl Body {
     /// Every root stays what it is.
-    pub fn declared(source: &Pou) -> Self {
+    pub fn declared(source: &Routine) -> Self {
         let same = |root| Base { root, projections: Vec::new(), group: None };
         Self {
             params: source.params.clone(),

@@ -21,8 +21,8 @@ fn copies(st: &str) -> Vec<String> {
         assert_eq!(a.scan(0, &Context::at(scan)), b.scan(0, &Context::at(scan)));
         assert_eq!(a.state(), b.state());
     }
-    let copies = separated.program.pous.iter().zip(&separated.origins);
-    copies.filter(|(_, origin)| **origin == Origin::Copy).map(|(pou, _)| pou.name.clone()).collect()
+    let copies = separated.program.routines.iter().zip(&separated.origins);
+    copies.filter(|(_, origin)| **origin == Origin::Copy).map(|(routine, _)| routine.name.clone()).collect()
 }
 
 const SWAP: &str = "

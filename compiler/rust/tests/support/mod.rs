@@ -96,7 +96,7 @@ fn mask(program: &Program, layout: &Layout) -> Vec<u8> {
     let mut mask = vec![0; usize_of(layout.machine.size)];
     mark(program, layout, Type::Struct(program.globals), layout.machine.globals, &mut mask);
     for (instance, offset) in program.instances.iter().zip(&layout.machine.instances) {
-        let state = program.pou(instance.program).state.expect("a PROGRAM has a state");
+        let state = program.class(instance.program).state;
         mark(program, layout, Type::Struct(state), *offset, &mut mask);
     }
     mask

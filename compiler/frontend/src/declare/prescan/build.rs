@@ -1,28 +1,47 @@
 //! The statements of a prescan.
 
-use crate::declare::pin_place;
+use super::routine_of;
+use crate::declare::{Declarations, pin_place};
 use staunch_ir::{
-    Block, Const, Elementary, Expr, For, Local, LocalId, Location, Op, Place, Program, Projection, Retain, Statement,
-    StatementKind, Step, Type, Value,
+    Block, Const, Elementary, Expr, For, Local, LocalId, Location, Op, Place, Program, Projection, Retain, RoutineId,
+    Statement, StatementKind, Step, Type, Value,
 };
 
 /// Builds the prescan of one POU.
 pub(super) struct Builder<'p> {
     program: &'p Program,
     pou: usize,
+    prescan: RoutineId,
     locals: Vec<Local>,
     block: Block,
     at: Location,
 }
 
+/// What is added to a prescan.
+pub(super) struct Addition {
+    prescan: RoutineId,
+    locals: Vec<Local>,
+    block: Block,
+}
+
+impl Addition {
+    pub fn add_to(mut self, declarations: &mut Declarations<'_>) {
+        let routine = &mut declarations.program.routines[self.prescan.index()];
+        routine.body.append(&mut self.block);
+        routine.locals = self.locals;
+    }
+}
+
 impl<'p> Builder<'p> {
-    pub fn new(program: &'p Program, pou: usize) -> Self {
-        let it = &program.pous[pou];
-        Self { program, pou, locals: it.locals.clone(), block: Block::new(), at: it.location }
+    /// Goes on with the prescan of the POU in slot `pou`.
+    pub fn new(declarations: &'p Declarations<'_>, pou: usize) -> Self {
+        let (program, prescan) = (&declarations.program, routine_of(declarations, pou));
+        let it = program.routine(prescan);
+        Self { program, pou, prescan, locals: it.locals.clone(), block: Block::new(), at: it.location }
     }
 
-    pub fn finish(self) -> (Block, Vec<Local>) {
-        (self.block, self.locals)
+    pub fn finish(self) -> Addition {
+        Addition { prescan: self.prescan, locals: self.locals, block: self.block }
     }
 
     /// What an instruction does to the structures that it works on.
@@ -55,10 +74,11 @@ impl<'p> Builder<'p> {
     }
 
     /// Runs another POU's prescan on its instance.
-    pub fn instance(&mut self, callee: staunch_ir::PouId, place: &Place) {
+    pub fn instance(&mut self, callee: RoutineId, place: &Place) {
         let at = self.at;
         self.everywhere(place, &mut |_, instance| {
-            vec![Statement::new(StatementKind::PrescanInstance { callee, instance }, at)]
+            let kind = StatementKind::Call { callee, instance: Some(instance), arguments: Vec::new(), result: None };
+            vec![Statement::new(kind, at)]
         });
     }
 
@@ -97,7 +117,7 @@ impl<'p> Builder<'p> {
 
     /// The bounds of the array that projection `position` indexes.
     fn bounds_at(&self, place: &Place, position: usize) -> Option<(i64, i64)> {
-        let mut ty = self.program.root_type(&self.program.pous[self.pou], place.root)?;
+        let mut ty = self.program.root_type(&self.program.routines[self.pou], place.root)?;
         for projection in &place.projections[..position] {
             ty = match (projection, ty) {
                 (Projection::Field(field), _) => self.program.member(ty, *field)?,
@@ -164,7 +184,7 @@ fn for_each(counter: Place, (low, high): (i64, i64), body: Block, at: Location) 
 
 /// What the declarations on the way to the place say of a restart.
 pub(super) fn retention(program: &Program, pou: usize, place: &Place) -> Retain {
-    let mut ty = program.root_type(&program.pous[pou], place.root);
+    let mut ty = program.root_type(&program.routines[pou], place.root);
     let mut retain = Retain::Inherited;
     for projection in &place.projections {
         ty = match (projection, ty) {

@@ -2,15 +2,18 @@
 
 use super::build::{Builder, retention};
 use super::reach::joined;
+use super::routine_of;
 use crate::check::{KeptCount, Uses};
 use crate::declare::Declarations;
-use staunch_ir::{Elementary, Expr, FieldId, Location, Op, Place, PouId, Program, Retain, Root, StructId, Type, Value};
+use staunch_ir::{
+    Elementary, Expr, FieldId, Location, Op, Place, Program, Retain, Root, RoutineId, StructId, Type, Value,
+};
 
 /// The slots of the POUs that have instances, with their structures: parts before what they are
 /// parts of, as structures stand in that order.
 fn owners(program: &Program) -> Vec<(StructId, usize)> {
-    let pous = program.pous.iter().enumerate();
-    let mut owners: Vec<_> = pous.filter_map(|(at, pou)| Some((pou.state?, at))).collect();
+    let classes = program.classes.iter();
+    let mut owners: Vec<_> = classes.map(|it| (it.state, it.body.index())).collect();
     owners.sort_unstable();
     owners
 }
@@ -20,8 +23,8 @@ pub(super) fn nest(declarations: &mut Declarations<'_>, open: &OpenCounts) {
     for (state, at) in owners(&declarations.program) {
         extend(declarations, open, at, Root::Instance, state);
     }
-    let first = declarations.program.instances.first().map(|it| it.program.index());
-    if let Some(at) = first {
+    let first = declarations.program.instances.first().map(|it| declarations.program.class(it.program).body);
+    if let Some(at) = first.map(RoutineId::index) {
         extend(declarations, open, at, Root::Globals, declarations.program.globals);
     }
 }
@@ -31,11 +34,11 @@ fn extend(declarations: &mut Declarations<'_>, open: &OpenCounts, at: usize, roo
     if instances.is_empty() {
         return;
     }
-    let program = &declarations.program;
-    let mut builder = Builder::new(program, at);
+    let mut builder = Builder::new(declarations, at);
     for Inside { slot, place, retain } in instances {
-        if !program.pous[slot].prescan.is_empty() {
-            builder.instance(PouId::next(slot), &place);
+        let prescan = routine_of(declarations, slot);
+        if !declarations.program.routine(prescan).body.is_empty() {
+            builder.instance(prescan, &place);
         }
         // The block itself cannot know that its instance is RETAIN as a whole.
         if retain == Retain::Kept {
@@ -44,10 +47,7 @@ fn extend(declarations: &mut Declarations<'_>, open: &OpenCounts, at: usize, roo
             }
         }
     }
-    let (mut block, locals) = builder.finish();
-    let pou = &mut declarations.program.pous[at];
-    pou.prescan.append(&mut block);
-    pou.locals = locals;
+    builder.finish().add_to(declarations);
 }
 
 /// An instance of a user's FUNCTION_BLOCK.

@@ -1,10 +1,10 @@
 //! Uses of counters that reach a POU through its calls.
 
 use crate::check::{KeptCount, Uses, same_storage};
-use staunch_ir::{Argument, Block, Location, Place, PouId, PouKind, Program, Root, Statement, StatementKind};
+use staunch_ir::{Argument, Block, Location, Place, Program, Root, RoutineId, RoutineKind, Statement, StatementKind};
 
 struct Call<'p> {
-    callee: PouId,
+    callee: RoutineId,
     instance: Option<&'p Place>,
     arguments: &'p [Argument],
     at: Location,
@@ -14,13 +14,13 @@ struct Call<'p> {
 /// all those of FUNCTIONs, which have no prescan of their own.
 pub(super) fn through_calls(program: &Program, at: usize, uses: &mut [Uses]) {
     let mut calls = Vec::new();
-    find(&program.pous[at].body, &mut calls);
+    find(&program.routines[at].body, &mut calls);
     for call in calls {
         let callee = call.callee.index();
         if uses[callee].instructions.is_empty() && uses[callee].counts.is_empty() {
             continue;
         }
-        let is_function = program.pous[callee].kind == PouKind::Function;
+        let is_function = program.routines[callee].kind == RoutineKind::Function;
         for (place, instruction) in uses[callee].instructions.clone() {
             if (is_function || is_passed(&place))
                 && let Some(place) = call.carried(&place)

@@ -1,0 +1,173 @@
+//! What each routine does, itself or through what it calls: whether it touches the globals, takes
+//! turns or runs blocks that want the context, and whether it may fault. Found in one walk, since
+//! a callee stands before its callers.
+//!
+//! A back end says by its [`Rules`] what its code for operations and blocks needs; what follows from
+//! that for routines stands here alone.
+
+use crate::loops::{constant_position, is_within};
+use crate::visit::{self, Access};
+use crate::{
+    Class, ClassKind, Expr, ExprKind, For, Op, Place, Program, Projection, Root, Routine, RoutineId, RoutineKind,
+    Statement, StatementKind, Type,
+};
+
+/// What the code of a back end needs.
+#[derive(Clone, Copy, Debug)]
+pub struct Rules {
+    /// Whether the code for an instruction of a standard block takes the context.
+    pub block_takes_context: fn(&Place, usize) -> bool,
+    /// Whether the code for an operation on these operands has a way to a fault.
+    pub operation_faults: fn(&Program, Op, &[Expr]) -> bool,
+    /// Whether an index has no check where loops show that it lies within its bounds.
+    pub drops_checks: bool,
+    /// Whether the body of a PROGRAM or FUNCTION_BLOCK takes the context and returns a fault
+    /// whatever it does, and a PROGRAM's runs its prescan.
+    pub scans_take_all: bool,
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Effects {
+    pub faults: bool,
+    pub context: bool,
+    pub globals: bool,
+    /// For each local, whether a call gets a reference to it.
+    pub borrowed: Vec<bool>,
+}
+
+/// For each routine of a verified program.
+pub fn effects(program: &Program, rules: &Rules) -> Vec<Effects> {
+    let mut known: Vec<Effects> = Vec::with_capacity(program.routines.len());
+    for routine in &program.routines {
+        let effects = Effects { borrowed: vec![false; routine.locals.len()], ..Effects::default() };
+        let mut finder = Finder { program, rules, known: &known, routine, loops: Vec::new(), effects };
+        finder.block(&routine.body);
+        let effects = finder.effects;
+        known.push(effects);
+    }
+    if rules.scans_take_all {
+        program.classes.iter().for_each(|class| scan_takes_all(class, &mut known));
+    }
+    known
+}
+
+/// No routine calls a PROGRAM's body, so that its prescan adds to nothing else.
+fn scan_takes_all(class: &Class, known: &mut [Effects]) {
+    let prescan = class.prescan.filter(|_| class.kind == ClassKind::Program);
+    let globals = prescan.is_some_and(|it| known[it.index()].globals);
+    let body = &mut known[class.body.index()];
+    body.globals |= globals;
+    body.context |= prescan.is_some();
+}
+
+struct Finder<'a> {
+    program: &'a Program,
+    rules: &'a Rules,
+    known: &'a [Effects],
+    routine: &'a Routine,
+    /// The loops around, with private counters.
+    loops: Vec<&'a For>,
+    effects: Effects,
+}
+
+impl<'a> Finder<'a> {
+    fn block(&mut self, block: &'a [Statement]) {
+        block.iter().for_each(|it| self.statement(it));
+    }
+
+    fn statement(&mut self, statement: &'a Statement) {
+        visit::values(statement, &mut |it| self.expr(it));
+        visit::accesses(statement, &mut |place, access| self.touches(place, access));
+        visit::targets(statement, &mut |it| self.place(it));
+        match &statement.kind {
+            StatementKind::Call { callee, .. } => self.callee(*callee),
+            StatementKind::CallBlock { block, instruction, .. } => {
+                self.effects.context |= (self.rules.block_takes_context)(block, *instruction);
+            }
+            StatementKind::Turn => {
+                self.effects.faults = true;
+                self.effects.context = true;
+            }
+            StatementKind::Fault(_) => self.effects.faults = true,
+            StatementKind::For(it) => {
+                let lane = self.program.lane(it.counter.ty);
+                self.effects.faults |= it.step_may_fault(lane.and_then(|lane| lane.range()));
+            }
+            StatementKind::Assign { .. }
+            | StatementKind::If { .. }
+            | StatementKind::Case { .. }
+            | StatementKind::Loop { .. }
+            | StatementKind::Exit
+            | StatementKind::Continue
+            | StatementKind::Return
+            | StatementKind::PrescanBlock { .. } => {}
+        }
+        let counted = match &statement.kind {
+            StatementKind::For(it) if it.is_private => Some(&**it),
+            _ => None,
+        };
+        self.loops.extend(counted);
+        statement.kind.blocks().into_iter().for_each(|it| self.block(it));
+        self.loops.truncate(self.loops.len() - usize::from(counted.is_some()));
+    }
+
+    fn callee(&mut self, callee: RoutineId) {
+        let known = &self.known[callee.index()];
+        let takes_all = self.rules.scans_take_all && self.program.routine(callee).kind == RoutineKind::Body;
+        self.effects.faults |= known.faults || takes_all;
+        self.effects.context |= known.context || takes_all;
+        self.effects.globals |= known.globals;
+    }
+
+    fn touches(&mut self, place: &Place, access: Access) {
+        match (place.root, access) {
+            (Root::Globals, _) => self.effects.globals = true,
+            (Root::Local(id), Access::Borrow) => self.effects.borrowed[id.index()] = true,
+            (Root::Local(_) | Root::Instance | Root::Param(_), _) => {}
+        }
+    }
+
+    fn expr(&mut self, expr: &Expr) {
+        match &expr.kind {
+            ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => {}
+            ExprKind::Load(place) => self.place(place),
+            ExprKind::Apply(op, operands) => {
+                operands.iter().for_each(|it| self.expr(it));
+                self.effects.faults |= (self.rules.operation_faults)(self.program, *op, operands);
+            }
+            ExprKind::ApplyText(_, operands) => operands.iter().for_each(|it| self.expr(it)),
+            ExprKind::Convert(_, operand) => self.expr(operand),
+        }
+    }
+
+    /// Finding a place may fault at each of its indices.
+    fn place(&mut self, place: &Place) {
+        let mut ty = self.program.root_type(self.routine, place.root);
+        for projection in &place.projections {
+            ty = match (projection, ty) {
+                (Projection::Field(field), Some(whole)) => self.program.member(whole, *field),
+                (Projection::Index { index, .. }, Some(Type::Array(id))) => {
+                    self.expr(index);
+                    let constant = constant_position(self.program, index, id).is_some();
+                    let dropped = self.rules.drops_checks && is_within(self.program, index, id, &self.loops);
+                    self.effects.faults |= !constant && !dropped;
+                    Some(self.program.array(id).element)
+                }
+                (Projection::Field(_) | Projection::Index { .. }, _) => None,
+            };
+        }
+    }
+}
+
+impl Rules {
+    /// Nothing is proven, and blocks take the context where their row says so.
+    pub const PLAIN: Self = Self {
+        block_takes_context: |block, instruction| {
+            let Type::Block(id) = block.ty else { unreachable!("verified IR: a block is called") };
+            id.info().instructions[instruction].needs_context
+        },
+        operation_faults: visit::op_faults,
+        drops_checks: false,
+        scans_take_all: false,
+    };
+}
