@@ -1,6 +1,7 @@
 //! All tests of this crate: one program, so that the executors are linked once.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod fixes;
 mod golden;
 mod vectors;
 

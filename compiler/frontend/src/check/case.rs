@@ -133,8 +133,24 @@ impl<'s> Checker<'_, 's> {
         Some((low, high))
     }
 
+    /// A label is not converted by a call, as other values are.
+    fn label_of_another_type(&mut self, reported: usize, ty: Type) {
+        let wanted = self.type_name(ty);
+        for it in self.decl.diagnostics[reported..].iter_mut() {
+            let names_members = it.help.is_some() && it.fix.is_none();
+            if matches!(it.code, Code::E0201 | Code::E0203) && !names_members {
+                it.fix = None;
+                it.help = Some(format!("a label is a constant of the selector's type, {wanted}"));
+            }
+        }
+    }
+
     fn label_value(&mut self, expr: &ast::Expr<'s>, ty: Type) -> Option<i128> {
-        let value = self.value(expr, ty)?;
+        let reported = self.decl.diagnostics.len();
+        let Some(value) = self.value(expr, ty) else {
+            self.label_of_another_type(reported, ty);
+            return None;
+        };
         let number = value.as_const().and_then(Value::as_integer);
         if number.is_none() {
             self.report(super::not_constant(expr.span));

@@ -15,10 +15,7 @@ impl<'s> Checker<'_, 's> {
             Ast::Member(base, name) => self.member_value(expr, base, *name).map(Operand::Typed),
             Ast::Address(_) | Ast::Index(..) => self.load(expr).map(Operand::Typed),
             Ast::Part(base, part) => self.part(base, *part).map(Operand::Typed),
-            Ast::Deref(_) => {
-                self.decl.not_supported(expr.span, "dereferencing");
-                None
-            }
+            Ast::Deref(_) => self.load(expr).map(Operand::Typed),
             Ast::Call(callee, arguments) => self.call_value(expr, callee, arguments, expected),
             Ast::Error(parts) => {
                 parts.iter().for_each(|it| drop(self.operand(it, None)));

@@ -232,16 +232,16 @@ impl<'s> Checker<'_, 's> {
             };
             if own {
                 let (counter, pin) = (call.name, own_name(call.block, pin));
+                let has = |it: &&&str| call.block.info().pin(it).is_some();
+                let output = outputs.iter().find(has).unwrap_or(&"Q");
+                let given = self.decl.sources.text(bare(given).span);
                 self.report(
                     Diagnostic::new(Code::W0612, at, format!("`{counter}` feeds its own {pin}"))
                         .label("an edge that arrives in this scan is not counted")
                         .other(call.span, "the counter")
                         .help(format!(
-                            "after the call, write `IF {counter}.{} THEN {counter}({pin} := TRUE); END_IF`",
-                            {
-                                let has = |it: &&&str| call.block.info().pin(it).is_some();
-                                outputs.iter().find(has).unwrap_or(&"Q")
-                            }
+                            "pass `{pin} := FALSE` here, and behind the statements that read `{counter}.{output}` write \
+                             `IF {given} THEN {counter}({pin} := TRUE); END_IF`"
                         )),
                 );
             }

@@ -140,6 +140,7 @@ impl<'s> Checker<'_, 's> {
                     bits.name(),
                     as_number(bits).name()
                 )),
+                None if a == b => error,
                 None => error.help("convert one side, so that both have one type"),
             };
         }
@@ -162,6 +163,14 @@ impl<'s> Checker<'_, 's> {
             }
             (Some(Type::Elementary(it)), Some(Type::Enum(_))) if it.is_integer() => {
                 Some(format!("write `TO_{}({b})`", it.name()))
+            }
+            (Some(Type::Elementary(x)), Some(Type::Elementary(y))) if x.is_time() && y.is_time() => {
+                let (a, b) = (format!("{}_TO_LINT({a})", x.name()), format!("{}_TO_LINT({b})", y.name()));
+                match sides.op {
+                    BinaryOp::Div => Some(format!("divide their milliseconds: `{a} / {b}`")),
+                    BinaryOp::Mod => Some(format!("take their milliseconds: `LINT_TO_{}({a} MOD {b})`", x.name())),
+                    _ => None,
+                }
             }
             (Some(Type::BOOL), None) if is_junction(sides.op) => {
                 Some(format!("each side of {0} is a comparison of its own: `x = 1 {0} x = 2`", sides.op.text()))

@@ -2,6 +2,7 @@
 
 use super::Checker;
 use crate::declare::{Entry, Variable};
+use crate::dialect::Dialect;
 use crate::names::{Key, nearest};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::ExprKind as Ast;
@@ -47,7 +48,8 @@ impl<'s> Checker<'_, 's> {
             }
             Ast::Member(base, name) => self.member(base, *name),
             Ast::Index(base, indices) => self.index(base, indices),
-            Ast::Deref(_) => {
+            Ast::Deref(inner) => {
+                self.place(inner)?;
                 self.decl.not_supported(expr.span, "dereferencing");
                 None
             }
@@ -300,7 +302,11 @@ impl<'s> Checker<'_, 's> {
                     .label("one index too many, or not an array");
                 let (text, at) = (self.decl.sources.text(base.span), self.decl.sources.text(index.span));
                 self.report(match found.place.ty {
-                    Type::String(_) => error.help(format!("write `MID({text}, 1, {at})` for one character")),
+                    Type::String(_) => {
+                        let at = character(at, self.decl.dialect(index.span));
+                        let reads = format!("read one character with `MID({text}, 1, {at})`");
+                        error.help(format!("{reads}, change it with `{text} := REPLACE({text}, 'x', 1, {at})`"))
+                    }
                     Type::Elementary(it) if it.is_bits() && it != Elementary::Bool => {
                         error.help(format!("a bit is written `{text}.{at}`"))
                     }
@@ -503,4 +509,14 @@ impl<'s> Checker<'_, 's> {
 
 fn is_pin(section: Section) -> bool {
     matches!(section, Section::Input | Section::Output)
+}
+
+/// The place that functions on text count from 1, for an index. CODESYS counts its indices from 0; in the
+/// standard 0 is no index, and stands for the first character.
+fn character(index: &str, dialect: Dialect) -> String {
+    match index.trim().parse::<u32>() {
+        Ok(number) if number == 0 || dialect == Dialect::Codesys => format!("{}", number.saturating_add(1)),
+        Err(_) if dialect == Dialect::Codesys => format!("{index} + 1"),
+        Ok(_) | Err(_) => index.to_owned(),
+    }
 }

@@ -100,6 +100,9 @@ impl<'s> Declarations<'s> {
         let program = match found {
             Some(Entry::Pou(at)) if self.pous[at].ast.kind == ast::PouKind::Program => at,
             _ => {
+                if let Some(Entry::Pou(at)) = found {
+                    return self.not_a_program(instance.program, at);
+                }
                 let programs = self.pous.iter().filter(|it| it.ast.kind == ast::PouKind::Program);
                 let near = nearest(instance.program.text, programs.map(|it| it.ast.name.text));
                 let mut error = Diagnostic::new(
@@ -123,6 +126,16 @@ impl<'s> Declarations<'s> {
         });
     }
 
+    fn not_a_program(&mut self, name: ast::Name<'s>, at: usize) {
+        let pou = self.pous[at].ast;
+        let kind = if pou.kind == ast::PouKind::Function { "FUNCTION" } else { "FUNCTION_BLOCK" };
+        self.report(
+            Diagnostic::new(Code::E0102, name.span, format!("`{}` is a {kind}, not a PROGRAM", name.text))
+                .label("a PROGRAM is expected here")
+                .other(pou.name.span, "declared here"),
+        );
+    }
+
     fn task(&mut self, task: &'s ast::Task<'s>) -> Timing {
         let mut timing = Timing { interval: None, priority: LOWEST_PRIORITY };
         self.names_once(task.properties.iter().map(|(name, _)| *name));
@@ -134,6 +147,10 @@ impl<'s> Declarations<'s> {
             );
         }
         for (name, expr) in &task.properties {
+            if name.text.eq_ignore_ascii_case("SINGLE") {
+                self.not_supported(name.span, "SINGLE");
+                continue;
+            }
             let scope = std::rc::Rc::default();
             let value = check::constant(self, &scope, expr, None).and_then(|it| it.as_const());
             match (name.text.to_ascii_uppercase().as_str(), value) {
@@ -148,7 +165,6 @@ impl<'s> Declarations<'s> {
                     None => self.error(Code::E0201, expr.span, "PRIORITY is a whole number from 0"),
                 },
                 ("PRIORITY", None) => {}
-                ("SINGLE", _) => self.not_supported(name.span, "SINGLE"),
                 _ => self.report(
                     Diagnostic::new(Code::E0107, name.span, format!("a TASK has no `{}`", name.text))
                         .help("it has INTERVAL, PRIORITY and SINGLE"),

@@ -242,6 +242,11 @@ impl<'s> Declarations<'s> {
         self.report(Diagnostic::new(code, span, message));
     }
 
+    /// Whether errors were reported since there were `reported` diagnostics.
+    fn has_errors_since(&self, reported: usize) -> bool {
+        self.diagnostics[reported..].iter().any(|it| it.severity == Severity::Error)
+    }
+
     pub fn dialect(&self, span: Span) -> Dialect {
         self.dialects.get(usize::from(span.file)).copied().unwrap_or(self.options.dialect)
     }
@@ -516,7 +521,11 @@ impl<'s> Declarations<'s> {
         block: &'s ast::VarBlock<'s>,
         decl: &'s ast::VarDecl<'s>,
     ) -> Option<Variable<'s>> {
+        let reported = self.diagnostics.len();
         let resolved = self.declared_type(decl, &Rc::new(Scope::default()), name.text)?;
+        if block.constant.is_some() && self.has_errors_since(reported) {
+            return None;
+        }
         self.check_retain(block, resolved.ty, name);
         let place = match self.addresses.field_of_global(at) {
             Some(field) => {

@@ -248,8 +248,20 @@ impl<'s> Declarations<'s> {
             return;
         }
         self.check_one_name(decl);
+        if let (VarKind::InOut, Some(initial)) = (block.kind, &decl.initial) {
+            let whole = Span { start: decl.ty.span.end, ..initial.span };
+            self.report(
+                Diagnostic::new(Code::E0403, initial.span, "a VAR_IN_OUT has no initial value")
+                    .label("it stands for a variable of the caller")
+                    .help("delete it")
+                    .fix(whole, ""),
+            );
+        }
+        let reported = self.diagnostics.len();
         let resolved = self.declared_type(decl, &scope, owner);
         drop(scope);
+        // What needs the value of a CONSTANT knows none where that was refused.
+        let resolved = resolved.filter(|_| block.constant.is_none() || !self.has_errors_since(reported));
         let Some(resolved) = resolved.map(Rc::new) else {
             decl.names.iter().for_each(|name| builder.refuse(*name));
             return;
@@ -270,6 +282,15 @@ impl<'s> Declarations<'s> {
             self.forgets(pou, decl, id);
         }
         for name in &decl.names {
+            if pou.kind == PouKind::Function && name.text.eq_ignore_ascii_case(pou.name.text) {
+                self.report(
+                    Diagnostic::new(Code::E0103, name.span, format!("`{}` is declared twice", name.text))
+                        .label("inside the FUNCTION its name is its result")
+                        .other(pou.name.span, "first declared here"),
+                );
+                builder.refuse(*name);
+                continue;
+            }
             let Some(place) = self.place_variable(pou, block, decl, *name, &resolved, builder) else {
                 builder.refuse(*name);
                 continue;
@@ -359,8 +380,7 @@ impl<'s> Declarations<'s> {
                     )
                     .label(format!("declared as {ours} here"))
                     .other(global.name.span, "the global variable")
-                    .help(format!("write `{} : {found}`", name.text))
-                    .fix(decl.ty.span, found),
+                    .help(format!("write `{} : {found}` here, or change the global variable", name.text)),
                 );
                 // Which of the two types is meant is not known: no use of it is judged.
                 builder.refuse(*name);
@@ -411,7 +431,9 @@ impl<'s> Declarations<'s> {
                 Place::local(builder.local(name.text, resolved, decl.doc.clone()), resolved.ty)
             }
             (PouKind::Program | PouKind::FunctionBlock, _) => {
-                let place = match self.located(Some(pou.name), block, decl, name, resolved) {
+                let has_place = pou.kind == PouKind::Program || matches!(block.kind, VarKind::Var | VarKind::Stat);
+                let located = has_place.then(|| self.located(Some(pou.name), block, decl, name, resolved));
+                let place = match located.flatten() {
                     Some(place) => place?,
                     None => {
                         let place = self.push_field(block, decl, name, resolved, builder);

@@ -160,7 +160,12 @@ impl<'s> Declarations<'s> {
             TypeKind::String { wide: false, capacity } => self.string(capacity.as_deref(), scope, spec.span),
             TypeKind::Subrange { base, low, high } => self.subrange(*base, low, high, scope),
             TypeKind::Array { bounds, element } => self.array_type(bounds, element, scope, name, spec.span),
-            TypeKind::Struct(members) => self.structure(members, scope, name, doc, spec.span),
+            TypeKind::Struct(members) => {
+                for address in members.iter().filter_map(|it| it.address) {
+                    self.not_supported(address.span, "the address of a structure's member");
+                }
+                self.structure(members, scope, name, doc, spec.span)
+            }
             TypeKind::Enum { base, values } => self.enumeration(*base, values, scope, name, doc, spec.span),
             // The parser has said so.
             TypeKind::Unsupported(_) | TypeKind::Error => None,

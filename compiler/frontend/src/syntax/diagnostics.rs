@@ -65,6 +65,12 @@ pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
                 .help(format!("write {end} here"))
                 .fix(behind(input, problem.at), bracket(end))
         }
+        (Expected::Token(Kind::Colon), _) if found == Kind::Semicolon && in_case(input) => {
+            Diagnostic::new(Code::E0001, span, "a CASE label ends with `:`, not with `;`")
+                .label("expected `:`")
+                .help("write `:`")
+                .fix(span, ":")
+        }
         (Expected::Token(Kind::Colon), _) if found == Kind::Semicolon => {
             let behind = Span { end: span.start, ..span };
             Diagnostic::new(Code::E0001, span, "expected `:` and a type, found `;`")
@@ -192,6 +198,10 @@ pub fn missing_semicolon(input: &mut In<'_, '_, '_>) {
             .help("write `;` here")
             .fix(place, ";"),
     );
+}
+
+fn in_case(input: &mut In<'_, '_, '_>) -> bool {
+    input.state().open.last().is_some_and(|(end, _)| *end == Kind::EndCase)
 }
 
 pub fn missing_end(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {

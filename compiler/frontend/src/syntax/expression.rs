@@ -476,9 +476,8 @@ fn typed<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
     let span = input.take();
     let name = Span { end: span.end - 1, ..span };
     let prefix = Name { text: input.text(name), span: name };
-    if foreign_syntax::step7_duration(input, span) {
-        let literal = Literal { prefix: None, value: LiteralValue::Error };
-        return Ok(Expr { kind: ExprKind::Literal(literal), span: span.to(input.last()) });
+    if foreign_syntax::step_time(input, prefix) {
+        return Ok(Expr { kind: ExprKind::Error(Vec::new()), span: span.to(input.last()) });
     }
     let sign = match input.kind() {
         Kind::Minus => Some((UnaryOp::Neg, input.take())),

@@ -201,26 +201,6 @@ pub fn glued(input: &mut In<'_, '_, '_>, number: Span) -> bool {
     true
 }
 
-/// `S5T#5s`, `S5TIME#1h30m`: a duration of STEP 7, at what follows its prefix.
-pub fn step7_duration(input: &mut In<'_, '_, '_>, prefix: Span) -> bool {
-    let text = input.text(prefix);
-    let known = ["S5T#", "S5TIME#"].iter().any(|it| text.eq_ignore_ascii_case(it));
-    if !known || !matches!(input.kind(), Kind::Integer | Kind::Real) {
-        return false;
-    }
-    let number = input.take();
-    if input.kind() == Kind::Name && input.here().start == number.end {
-        input.take();
-    }
-    input.report(
-        Diagnostic::new(Code::E0006, prefix, format!("Structured Text writes `T#` for `{text}`"))
-            .label("expected `T#`")
-            .help("write `T#`")
-            .fix(prefix, "T#"),
-    );
-    true
-}
-
 pub fn is_unit(word: &str) -> bool {
     let letters = word.split(|it: char| it.is_ascii_digit() || it == '_').filter(|it| !it.is_empty());
     let units = ["d", "h", "m", "s", "ms", "us", "ns"];
@@ -344,6 +324,26 @@ pub fn down_to(input: &mut In<'_, '_, '_>) -> bool {
         Diagnostic::new(Code::E0020, span, "a FOR loop counts down with a negative step")
             .label("expected `TO`")
             .help("write `FOR i := 10 TO 1 BY -1 DO`"),
+    );
+    true
+}
+
+/// `S5T#5s`, a duration of Siemens STEP 7.
+pub fn step_time(input: &mut In<'_, '_, '_>, prefix: crate::ast::Name<'_>) -> bool {
+    if !["S5T", "S5TIME"].iter().any(|it| prefix.text.eq_ignore_ascii_case(it)) {
+        return false;
+    }
+    let mut whole = Span { end: prefix.span.end + 1, ..prefix.span };
+    let head = whole;
+    while matches!(input.kind(), Kind::Name | Kind::Integer | Kind::Real) && input.here().start == whole.end {
+        whole = whole.to(input.take());
+    }
+    let meant = input.text(whole).replacen(input.text(head), "T#", 1);
+    input.report(
+        Diagnostic::new(Code::E0020, whole, format!("`{}#` is a duration of STEP 7", prefix.text))
+            .label("expected a TIME, `T#`")
+            .help(format!("write `{meant}`"))
+            .fix(head, "T#"),
     );
     true
 }

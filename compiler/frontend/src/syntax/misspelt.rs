@@ -119,6 +119,19 @@ pub fn misspelt(input: &mut In<'_, '_, '_>) -> Option<(Kind, usize)> {
     }
 }
 
+/// `THNE` where a THEN is expected, and no assignment or call begins. DO and OF are too short to tell.
+pub fn is_misspelt_then(input: &mut In<'_, '_, '_>, word: Kind) -> bool {
+    let begins = matches!(
+        input.kind_ahead(1),
+        Kind::Assign | Kind::Equal | Kind::Dot | Kind::OpenParen | Kind::OpenBracket | Kind::Semicolon | Kind::Colon
+    );
+    if word != Kind::Then || input.kind() != Kind::Name || begins {
+        return false;
+    }
+    let span = input.here();
+    nearest_of(input.text(span), &[word]).is_some()
+}
+
 fn waits_for(input: &mut In<'_, '_, '_>, end: Kind) -> bool {
     input.state().open.last().is_some_and(|(it, _)| *it == end)
 }

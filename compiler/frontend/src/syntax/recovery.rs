@@ -279,6 +279,10 @@ pub fn missing_word(input: &mut In<'_, '_, '_>, word: Kind, opened: Span) {
     if input.kind() == Kind::Semicolon && input.kind_ahead(1) == word {
         return extra_semicolon(input, word);
     }
+    if misspelt::is_misspelt_then(input, word) {
+        let span = input.take();
+        return diagnostics::misspelt_keyword(input, word, span);
+    }
     if let Some(ahead) = on_this_line(input, word) {
         return missing_operator(input, word, ahead);
     }
