@@ -97,6 +97,7 @@ impl<'s> Checker<'_, 's> {
     /// enumeration, which has no members: `state := State.Idle`.
     fn member_value(&mut self, expr: &ast::Expr<'s>, base: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<Expr> {
         if let Ast::Name(ty) = &base.kind
+            && !self.scope.is_refused(ty.text)
             && self.type_of_variable(*ty).is_none_or(|it| matches!(it, Type::Enum(_)))
             && let Some(crate::declare::Entry::Type(_)) = self.decl.type_named(ty.text)
         {

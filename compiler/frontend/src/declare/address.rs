@@ -286,7 +286,9 @@ impl<'s> Declarations<'s> {
         let Some(name) = decl.address else { return };
         let Some(address) = self.address(name) else { return };
         let bits = self.check_width(address, resolved, name.span);
-        let scope = Some(pou.map_or_else(Span::default, |it| it.span));
+        // What has no other name than its address is not one more name for it.
+        let is_named = decl.names.iter().all(|it| !it.text.starts_with('%'));
+        let scope = is_named.then(|| pou.map_or_else(Span::default, |it| it.span));
         let start = self.addresses.starts.entry(address).or_default();
         start.kept |= super::scope::is_declared_retain(block);
         let given = decl.initial.as_ref().map(|it| (resolved.initial.clone(), it.span));
