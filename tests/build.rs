@@ -10,6 +10,7 @@ mod case;
 #[allow(dead_code, reason = "the crate uses more of it")]
 mod operation;
 #[path = "src/random.rs"]
+#[allow(dead_code, reason = "the crate uses more of it")]
 mod random;
 #[path = "src/vector.rs"]
 #[allow(dead_code, reason = "the crate uses more of it")]
@@ -33,8 +34,7 @@ fn main() {
     let _ = fs::remove_dir_all(&generated.folder);
     cases.iter().for_each(|it| generated.case(it));
     generated.vectors();
-    (0..random::PRINTED)
-        .for_each(|seed| generated.text(&random::module(seed), random::program(seed), &Options::default()));
+    random::seeds().for_each(|seed| generated.text(&random::module(seed), random::program(seed), &Options::default()));
     generated.add("operations", &operation::program(&operation::Task::all()));
     generated.write(&out.join("generated.rs"));
     fs::write(out.join("golden_tests.rs"), golden_tests(&cases)).expect("the list of cases is written");

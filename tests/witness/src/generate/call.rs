@@ -1,0 +1,169 @@
+//! Calls: arguments by name, by position and mixed, in any order.
+
+use super::Writer;
+use super::types::{Ty, pins, standard_blocks};
+
+#[derive(Clone, Debug)]
+pub struct Routine {
+    pub name: String,
+    pub result: Option<Ty>,
+    pub parameters: Vec<Parameter>,
+}
+
+#[derive(Clone, Debug)]
+pub struct Parameter {
+    pub name: String,
+    pub ty: Ty,
+    pub section: Section,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Section {
+    Input,
+    Output,
+    InOut,
+}
+
+impl Section {
+    pub fn letter(self) -> &'static str {
+        match self {
+            Self::Input => "i",
+            Self::Output => "o",
+            Self::InOut => "io",
+        }
+    }
+}
+
+impl Writer {
+    pub(super) fn standard_type(&mut self) -> Ty {
+        Ty::Standard(*self.random.one_of(&standard_blocks()))
+    }
+
+    /// A call of a function whose result fits.
+    pub(super) fn function_call(&mut self, depth: usize, fits: impl Fn(&Ty) -> bool) -> Option<String> {
+        if self.fuel == 0 {
+            return None;
+        }
+        let fitting: Vec<_> =
+            self.functions.iter().filter(|it| it.result.as_ref().is_some_and(&fits)).cloned().collect();
+        if fitting.is_empty() {
+            return None;
+        }
+        self.fuel -= 1;
+        let routine = self.random.one_of(&fitting).clone();
+        let arguments = self.arguments(&routine.parameters, depth, true)?;
+        Some(format!("{}({arguments})", routine.name))
+    }
+
+    /// A call of an instance, as a statement.
+    pub(super) fn block_call(&mut self) -> Option<String> {
+        let (place, ty) = self.some_place(true, 2, |_, it| matches!(it, Ty::Instance(_) | Ty::Standard(_)))?;
+        let parameters = match &ty {
+            // A block that is being written cannot hold or be given itself.
+            Ty::Instance(at) => self.blocks.get(*at)?.parameters.clone(),
+            Ty::Standard(at) if pins(*at).is_empty() => return Some(self.instruction(&place)),
+            Ty::Standard(at) => pins(*at)
+                .into_iter()
+                .map(|(name, ty, is_input)| Parameter {
+                    name,
+                    ty,
+                    section: if is_input { Section::Input } else { Section::Output },
+                })
+                .collect(),
+            _ => return None,
+        };
+        let arguments = self.arguments(&parameters, 2, false)?;
+        Some(format!("{place}({arguments})"))
+    }
+
+    /// An instruction of Logix on a tag.
+    pub(super) fn instruction(&mut self, tag: &str) -> String {
+        let name = *self.random.one_of(&["CTU", "CTU", "CTD", "RES"]);
+        format!("LOGIX.{name}(Counter := {tag}, RungIn := {})", self.expression(&Ty::Bool, 1))
+    }
+
+    /// `None` where there is nothing to give to an in-out.
+    fn arguments(&mut self, parameters: &[Parameter], depth: usize, of_function: bool) -> Option<String> {
+        let depth = depth.saturating_sub(1);
+        let mut order: Vec<&Parameter> = parameters.iter().filter(|it| it.section != Section::Output).collect();
+        order.extend(parameters.iter().filter(|it| it.section == Section::Output));
+        // So many come first and without names; the others follow in any order.
+        let positional = if self.random.once_in(2) { self.random.below(order.len() + 1) } else { 0 };
+        let mut named: Vec<&Parameter> = order.split_off(positional);
+        self.shuffle(&mut named);
+        let mut arguments = Vec::new();
+        for parameter in order {
+            arguments.push(self.argument(parameter, depth)?.1);
+        }
+        for parameter in named {
+            let left_out = match parameter.section {
+                Section::Input => self.random.once_in(if of_function { 6 } else { 3 }),
+                Section::Output => self.random.once_in(3),
+                Section::InOut => false,
+            };
+            if left_out {
+                continue;
+            }
+            let (negated, value) = self.argument(parameter, depth)?;
+            let name = &parameter.name;
+            arguments.push(match parameter.section {
+                Section::Output if negated => format!("NOT {name} => {value}"),
+                Section::Output => format!("{name} => {value}"),
+                Section::Input | Section::InOut => format!("{name} := {value}"),
+            });
+        }
+        if self.random.once_in(12) {
+            arguments.push(format!("EN := {}", self.expression(&Ty::Bool, depth)));
+        }
+        if self.random.once_in(12)
+            && let Some(place) = self.place_of(&Ty::Bool, true, depth)
+        {
+            arguments.push(format!("ENO => {place}"));
+        }
+        Some(arguments.join(", "))
+    }
+
+    /// Whether an output is negated, and the argument.
+    fn argument(&mut self, parameter: &Parameter, depth: usize) -> Option<(bool, String)> {
+        let ty = &parameter.ty;
+        match parameter.section {
+            Section::Input => match ty {
+                Ty::Array(_) | Ty::Record(_) => Some((false, self.place_of(ty, false, depth)?)),
+                _ => Some((false, self.expression(ty, depth))),
+            },
+            Section::InOut => {
+                let place = match ty {
+                    Ty::Text(_) if self.random.once_in(3) => {
+                        self.some_place(true, depth, |_, it| matches!(it, Ty::Text(_))).map(|it| it.0)
+                    }
+                    _ => self.place_of(ty, true, depth),
+                };
+                Some((false, place?))
+            }
+            Section::Output => {
+                let negated = *ty == Ty::Bool && self.random.once_in(4);
+                let from = ty.elementary();
+                let place = self.some_place(true, depth, |this, it| {
+                    it == ty
+                        || (this.widens(from, it) && !negated)
+                        || (matches!(ty, Ty::Text(_)) && matches!(it, Ty::Text(_)))
+                });
+                Some((negated, place?.0))
+            }
+        }
+    }
+
+    fn widens(&self, from: Option<crate::types::Elementary>, to: &Ty) -> bool {
+        let to = match to {
+            Ty::Level(at) => Ty::Number(self.types.levels[*at].0).elementary(),
+            other => other.elementary(),
+        };
+        matches!((from, to), (Some(from), Some(to)) if from.widens_to(to))
+    }
+
+    fn shuffle<T>(&mut self, list: &mut [T]) {
+        for at in (1..list.len()).rev() {
+            list.swap(at, self.random.below(at + 1));
+        }
+    }
+}

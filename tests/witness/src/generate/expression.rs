@@ -1,0 +1,325 @@
+//! Expressions of a type that is asked for.
+
+use super::Writer;
+use super::types::{BITS, NUMBERS, Ty, pins};
+
+impl Writer {
+    /// A value of the type, or of one that widens to it.
+    pub(super) fn expression(&mut self, ty: &Ty, depth: usize) -> String {
+        if depth == 0 {
+            return self.leaf(ty);
+        }
+        if self.random.once_in(6)
+            && let Some(call) = self.function_call(depth, |it| it == ty)
+        {
+            return call;
+        }
+        match ty {
+            Ty::Bool => self.condition(depth),
+            Ty::Number(at) if ty.is_real() => self.real(*at, depth),
+            Ty::Number(at) => self.integer(*at, depth),
+            Ty::Bits(at) => self.bits(*at, depth),
+            Ty::Time => self.time(depth),
+            Ty::Text(_) => self.string(depth),
+            Ty::Level(at) => self.level(*at, depth),
+            Ty::Color => self.color(depth),
+            Ty::Array(_) | Ty::Record(_) => self.leaf(ty),
+            Ty::Instance(_) | Ty::Standard(_) => unreachable!("an instance is no value"),
+        }
+    }
+
+    /// A value with a type of its own, so that literals have something to meet.
+    pub(super) fn operand(&mut self, ty: &Ty, depth: usize) -> String {
+        if depth == 0 { self.variable(ty, 0) } else { self.expression_of_own_type(ty, depth) }
+    }
+
+    fn expression_of_own_type(&mut self, ty: &Ty, depth: usize) -> String {
+        match self.random.below(3) {
+            0 => self.variable(ty, depth),
+            1 => match self.function_call(depth, |it| it == ty) {
+                Some(call) => call,
+                None => self.variable(ty, depth),
+            },
+            _ => self.expression(ty, depth),
+        }
+    }
+
+    fn leaf(&mut self, ty: &Ty) -> String {
+        if self.random.once_in(4) && !matches!(ty, Ty::Array(_) | Ty::Record(_)) {
+            return self.literal(ty);
+        }
+        self.variable(ty, 0)
+    }
+
+    /// A variable of the type, now and then of one that widens to it.
+    fn variable(&mut self, ty: &Ty, depth: usize) -> String {
+        if self.random.once_in(12)
+            && let Ty::Number(_) = ty
+            && let Some((place, found)) = self.some_place(false, depth, |_, it| widens(it, ty))
+        {
+            // In a REAL's place a whole number would be computed as one.
+            return if ty.is_real() && found.is_integer() {
+                format!("TO_{}({place})", self.types.name(ty))
+            } else {
+                place
+            };
+        }
+        match self.place_of(ty, false, depth) {
+            Some(place) => place,
+            None => self.typed_literal(ty),
+        }
+    }
+
+    pub(super) fn literal(&mut self, ty: &Ty) -> String {
+        match ty {
+            Ty::Bool => (*self.random.one_of(&["TRUE", "FALSE"])).to_owned(),
+            Ty::Number(at) => (*self.random.one_of(&NUMBERS[*at].literals)).to_owned(),
+            Ty::Bits(_) => (*self.random.one_of(&["16#0F", "16#FF", "16#81", "1", "0"])).to_owned(),
+            Ty::Time => (*self.random.one_of(&["T#0s", "T#15ms", "T#20ms", "T#1s500ms", "T#-5ms"])).to_owned(),
+            Ty::Text(_) => (*self.random.one_of(&["''", "'a'", "'bc'", "'xyz12'", "'hello world'"])).to_owned(),
+            Ty::Color => (*self.random.one_of(&["Color#Red", "Color.Green", "Color#Blue"])).to_owned(),
+            Ty::Level(at) => {
+                let (_, low, high) = self.types.levels[*at];
+                self.random.one_of(&[low, low + 1, high]).to_string()
+            }
+            Ty::Array(_) | Ty::Record(_) | Ty::Instance(_) | Ty::Standard(_) => unreachable!("no literal of this type"),
+        }
+    }
+
+    fn typed_literal(&mut self, ty: &Ty) -> String {
+        let literal = self.literal(ty);
+        match ty {
+            Ty::Number(at) => format!("{}#{literal}", NUMBERS[*at].name),
+            Ty::Bits(at) => format!("{}#{literal}", BITS[*at]),
+            Ty::Level(at) => format!("{}#{literal}", NUMBERS[self.types.levels[*at].0].name),
+            Ty::Bool | Ty::Time | Ty::Text(_) | Ty::Color => literal,
+            Ty::Array(_) | Ty::Record(_) | Ty::Instance(_) | Ty::Standard(_) => unreachable!("no literal of this type"),
+        }
+    }
+
+    fn number_type(&mut self) -> Ty {
+        Ty::Number(*self.random.one_of(&[0, 1, 1, 2, 2, 4, 5, 8]))
+    }
+
+    fn integer(&mut self, at: usize, depth: usize) -> String {
+        let ty = &Ty::Number(at);
+        let a = self.operand(ty, depth - 1);
+        match self.random.below(20) {
+            0..=4 => {
+                let sign = *self.random.one_of(&["+", "-", "*"]);
+                format!("({a} {sign} {})", self.expression(ty, depth - 1))
+            }
+            // What is written first may be a number too.
+            5 => format!("({} + {a})", self.literal(ty)),
+            6 => {
+                let sign = *self.random.one_of(&["/", "MOD"]);
+                match self.random.below(8) {
+                    0 => format!("({a} {sign} {})", self.variable(ty, depth - 1)),
+                    _ => format!("({a} {sign} MAX({}, 1))", self.operand(ty, depth - 1)),
+                }
+            }
+            7 => format!("({a} MOD 7)"),
+            8 => self.function_of_three("LIMIT", ["MN", "IN", "MX"], ty, depth),
+            9 => {
+                let name = *self.random.one_of(&["MAX", "MIN"]);
+                format!("{name}({a}, {})", self.expression(ty, depth - 1))
+            }
+            10 => self.sel(ty, depth),
+            11 => self.mux(ty, depth),
+            12 if ty.is_signed() => format!("-({a})"),
+            13 => format!("ABS({a})"),
+            14..=16 => {
+                let from = self.number_type();
+                let value = self.operand(&from, depth - 1);
+                format!("{}_TO_{}({value})", self.types.name(&from), self.types.name(ty))
+            }
+            17 => match self.random.below(4) {
+                0 => {
+                    format!("LEN({})", self.string(depth - 1))
+                        .replace("LEN", &format!("INT_TO_{}(LEN", NUMBERS[at].name))
+                        + ")"
+                }
+                1 => format!("TO_{}({})", NUMBERS[at].name, self.operand(&Ty::Color, depth - 1)),
+                2 => format!("TIME_TO_{}({})", NUMBERS[at].name, self.operand(&Ty::Time, depth - 1)),
+                _ => format!("REAL_TRUNC_{}({})", NUMBERS[at].name, self.operand(&Ty::Number(8), depth - 1)),
+            },
+            _ => a,
+        }
+    }
+
+    fn real(&mut self, at: usize, depth: usize) -> String {
+        let ty = &Ty::Number(at);
+        let a = self.operand(ty, depth - 1);
+        let b = self.expression(ty, depth - 1);
+        match self.random.below(12) {
+            0..=2 => format!("({a} {} {b})", self.random.one_of(&["+", "-", "*"])),
+            3 => format!("({a} / {})", self.operand(ty, depth - 1)),
+            4 => format!("SQRT(ABS({a}))"),
+            5 => format!("MIN({a}, {b})"),
+            6 => self.sel(ty, depth),
+            7 | 8 => {
+                let from = self.number_type();
+                let value = self.operand(&from, depth - 1);
+                format!("{}_TO_{}({value})", self.types.name(&from), self.types.name(ty))
+            }
+            9 => format!("({} + 1.0 + {a})", self.literal(ty)),
+            _ => a,
+        }
+    }
+
+    fn condition(&mut self, depth: usize) -> String {
+        match self.random.below(15) {
+            14 => match self.some_place(true, depth, |_, it| matches!(it, Ty::Standard(at) if pins(*at).is_empty())) {
+                Some((tag, _)) => self.instruction(&tag),
+                None => self.variable(&Ty::Bool, depth),
+            },
+            0 => self.junction("AND", depth),
+            1 => self.junction("OR", depth),
+            2 => self.junction("XOR", depth),
+            3 => self.junction("AND_THEN", depth),
+            4 => self.junction("OR_ELSE", depth),
+            5 => format!("NOT {}", self.operand(&Ty::Bool, depth - 1)),
+            6 => {
+                let (a, b) = (self.operand(&Ty::Color, depth - 1), self.expression(&Ty::Color, depth - 1));
+                format!("({a} {} {b})", self.random.one_of(&["=", "<>"]))
+            }
+            7 => {
+                let (a, b) = (self.string(depth - 1), self.string(depth - 1));
+                format!("({a} {} {b})", self.random.one_of(&["=", "<", ">="]))
+            }
+            8 => format!("(tick MOD {} = {})", self.random.below(3) + 2, self.random.below(2))
+                .replace("tick", &self.tick()),
+            9 => self.sel(&Ty::Bool, depth),
+            10 => {
+                let (ty, name) = (self.number_type(), *self.random.one_of(&["GT", "LE", "EQ"]));
+                let (a, b) = (self.operand(&ty, depth - 1), self.operand(&ty, depth - 1));
+                format!("{name}({a}, {b})")
+            }
+            11 => match self.some_place(false, depth, |_, it| matches!(it, Ty::Bits(_))) {
+                Some((place, _)) => format!("{place}.{}", self.random.below(8)),
+                None => self.variable(&Ty::Bool, depth),
+            },
+            _ => {
+                let ty = self.number_type();
+                let (a, b) = (self.operand(&ty, depth - 1), self.expression(&ty, depth - 1));
+                format!("({a} {} {b})", self.random.one_of(&["<", "<=", ">", ">=", "=", "<>"]))
+            }
+        }
+    }
+
+    /// What changes from scan to scan.
+    fn tick(&mut self) -> String {
+        self.variable(&Ty::Number(2), 0)
+    }
+
+    fn junction(&mut self, operator: &str, depth: usize) -> String {
+        let a = self.operand(&Ty::Bool, depth - 1);
+        let b = self.expression(&Ty::Bool, depth - 1);
+        format!("({a} {operator} {b})")
+    }
+
+    fn bits(&mut self, at: usize, depth: usize) -> String {
+        let ty = &Ty::Bits(at);
+        let a = self.operand(ty, depth - 1);
+        match self.random.below(6) {
+            0 | 1 => {
+                let operator = *self.random.one_of(&["AND", "OR", "XOR"]);
+                format!("({a} {operator} {})", self.operand(ty, depth - 1))
+            }
+            2 => {
+                let name = *self.random.one_of(&["SHL", "SHR", "ROL", "ROR"]);
+                format!("{name}({a}, {})", self.operand(&Ty::Number(1), depth - 1))
+            }
+            3 => format!("NOT {a}"),
+            4 => {
+                let from = self.number_type();
+                let value = self.operand(&from, depth - 1);
+                format!("{}_TO_{}({value})", self.types.name(&from), BITS[at])
+            }
+            _ => a,
+        }
+    }
+
+    fn time(&mut self, depth: usize) -> String {
+        let a = self.operand(&Ty::Time, depth - 1);
+        match self.random.below(6) {
+            0 => format!("({a} {} {})", self.random.one_of(&["+", "-"]), self.operand(&Ty::Time, depth - 1)),
+            1 => format!("({a} * {})", self.operand(&Ty::Number(1), depth - 1)),
+            2 => format!("({a} / MAX({}, 1))", self.operand(&Ty::Number(1), depth - 1)),
+            3 => format!("DINT_TO_TIME({})", self.operand(&Ty::Number(2), depth - 1)),
+            _ => a,
+        }
+    }
+
+    pub(super) fn string(&mut self, depth: usize) -> String {
+        if depth == 0 {
+            let place = self.some_place(false, 0, |_, it| matches!(it, Ty::Text(_)));
+            return place.map_or_else(|| self.literal(&Ty::Text(8)), |it| it.0);
+        }
+        let count = |this: &mut Self| this.expression(&Ty::Number(1), depth - 1);
+        let a = self.string(depth - 1);
+        match self.random.below(9) {
+            0 | 1 => format!("CONCAT({a}, {})", self.string(depth - 1)),
+            2 => format!("LEFT({a}, {})", count(self)),
+            3 => format!("MID({a}, 2, {})", count(self)),
+            4 => format!("INSERT({a}, {}, {})", self.string(depth - 1), count(self)),
+            5 => self.function_call(depth, |it| matches!(it, Ty::Text(_))).unwrap_or(a),
+            6 => self.literal(&Ty::Text(8)),
+            7 => format!("MAX({a}, {})", self.string(depth - 1)),
+            _ => a,
+        }
+    }
+
+    fn color(&mut self, depth: usize) -> String {
+        match self.random.below(4) {
+            0 => self.sel(&Ty::Color, depth),
+            1 => self.literal(&Ty::Color),
+            2 => (*self.random.one_of(&["Red", "Green", "Blue"])).to_owned(),
+            _ => self.variable(&Ty::Color, depth),
+        }
+    }
+
+    /// A value for a subrange: outside of it now and then.
+    fn level(&mut self, at: usize, depth: usize) -> String {
+        let (base, low, high) = self.types.levels[at];
+        let ty = Ty::Number(base);
+        let value = self.operand(&ty, depth - 1);
+        match self.random.below(8) {
+            0 => self.variable(&Ty::Level(at), depth),
+            1 if self.random.once_in(3) => value,
+            _ => format!("LIMIT({low}, {value}, {high})"),
+        }
+    }
+
+    fn sel(&mut self, ty: &Ty, depth: usize) -> String {
+        let g = self.expression(&Ty::Bool, depth - 1);
+        let (a, b) = (self.operand(ty, depth - 1), self.expression(ty, depth - 1));
+        match self.random.below(4) {
+            0 => format!("SEL(IN1 := {a}, G := {g}, IN0 := {b})"),
+            _ => format!("SEL({g}, {a}, {b})"),
+        }
+    }
+
+    fn mux(&mut self, ty: &Ty, depth: usize) -> String {
+        let k = self.operand(&Ty::Number(1), depth - 1);
+        let k = if self.random.once_in(8) { k } else { format!("LIMIT(0, {k}, 2)") };
+        let values = [self.operand(ty, depth - 1), self.operand(ty, depth - 1), self.operand(ty, depth - 1)];
+        format!("MUX({k}, {})", values.join(", "))
+    }
+
+    fn function_of_three(&mut self, name: &str, names: [&str; 3], ty: &Ty, depth: usize) -> String {
+        let values = [self.operand(ty, depth - 1), self.operand(ty, depth - 1), self.operand(ty, depth - 1)];
+        let [a, b, c] = &values;
+        match self.random.below(3) {
+            0 => format!("{name}({0} := {c}, {1} := {a}, {2} := {b})", names[2], names[0], names[1]),
+            _ => format!("{name}({a}, {b}, {c})"),
+        }
+    }
+}
+
+fn widens(from: &Ty, to: &Ty) -> bool {
+    match (from.elementary(), to.elementary()) {
+        (Some(from), Some(to)) => from != to && from.widens_to(to),
+        _ => false,
+    }
+}

@@ -1,0 +1,395 @@
+//! Random programs, the same for the same seed, that `check` accepts.
+//!
+//! They are made to meet what is hard: calls in every position, in-outs that overlap, counters that
+//! callees write, indices that depend on what a call changes, and faults in the midst of it all.
+
+mod call;
+mod expression;
+mod scope;
+mod statement;
+mod types;
+
+use crate::random::Random;
+use call::{Parameter, Routine, Section};
+use scope::{Scope, Variable};
+use std::fmt::Write;
+use types::{Catalogue, NUMBERS, Ty};
+
+/// A program as Structured Text.
+pub fn program(seed: u64) -> String {
+    let mut writer = Writer::new(seed);
+    writer.whole();
+    writer.text
+}
+
+struct Writer {
+    random: Random,
+    text: String,
+    depth: usize,
+    types: Catalogue,
+    /// Functions and blocks that have been written: what comes later may call them.
+    functions: Vec<Routine>,
+    blocks: Vec<Routine>,
+    globals: Vec<Variable>,
+    scope: Scope,
+    /// Statements and calls that may still be written in this body.
+    fuel: usize,
+    /// Variables of the loops around: they are not assigned inside.
+    counters: Vec<String>,
+    /// The counters themselves, and whether they can be below 0.
+    counting: Vec<(String, bool)>,
+    loops: usize,
+    whiles: usize,
+}
+
+impl Writer {
+    fn new(seed: u64) -> Self {
+        Self {
+            random: Random::new(seed),
+            text: String::new(),
+            depth: 0,
+            types: Catalogue::default(),
+            functions: Vec::new(),
+            blocks: Vec::new(),
+            globals: Vec::new(),
+            scope: Scope::default(),
+            fuel: 0,
+            counters: Vec::new(),
+            counting: Vec::new(),
+            loops: 0,
+            whiles: 0,
+        }
+    }
+
+    fn whole(&mut self) {
+        self.declare_types();
+        self.declare_globals();
+        // Functions and blocks in turn: each calls those before it.
+        for _ in 0..2 + self.random.below(2) {
+            self.function();
+        }
+        for _ in 0..1 + self.random.below(2) {
+            self.block_type();
+            self.function();
+        }
+        self.declare_composites_of_blocks();
+        self.main();
+    }
+
+    fn line(&mut self, text: &str) {
+        let _ = writeln!(self.text, "{:1$}{text}", "", self.depth * 4);
+    }
+
+    fn inside(&mut self, write: impl FnOnce(&mut Self)) {
+        self.depth += 1;
+        write(self);
+        self.depth -= 1;
+    }
+
+    fn declare_types(&mut self) {
+        self.line("TYPE");
+        self.depth += 1;
+        self.line("Color : (Red := 3, Green, Blue := 10);");
+        for number in 0..2 {
+            let base = *self.random.one_of(&[1, 1, 2, 4]);
+            let low = *self.random.one_of(&[0, 0, 1, 2]);
+            let high = low + 2 + i64::try_from(self.random.below(4)).unwrap_or(0);
+            self.line(&format!("Level{number} : {}({low}..{high});", NUMBERS[base].name));
+            self.types.levels.push((base, low, high));
+        }
+        for _ in 0..2 {
+            self.declare_array(None);
+        }
+        for _ in 0..2 {
+            self.declare_record(None);
+        }
+        self.declare_array(Some(Ty::Record(0)));
+        self.depth -= 1;
+        self.line("END_TYPE");
+    }
+
+    fn declare_array(&mut self, element: Option<Ty>) {
+        let element = element.unwrap_or_else(|| self.plain_type());
+        let count = if self.random.once_in(4) { 2 } else { 1 };
+        let mut bounds = Vec::new();
+        for _ in 0..count {
+            let low = *self.random.one_of(&[0, 0, 1, -1]);
+            bounds.push((low, low + 1 + i64::try_from(self.random.below(3)).unwrap_or(0)));
+        }
+        let shown: Vec<_> = bounds.iter().map(|(low, high)| format!("{low}..{high}")).collect();
+        let name = self.types.name(&element);
+        let number = self.types.arrays.len();
+        self.line(&format!("List{number} : ARRAY[{}] OF {name};", shown.join(", ")));
+        self.types.arrays.push((bounds, element));
+    }
+
+    fn declare_record(&mut self, extra: Option<Ty>) {
+        let number = self.types.records.len();
+        let mut fields: Vec<(String, Ty)> = extra.into_iter().map(|it| ("m".to_owned(), it)).collect();
+        for at in 0..2 + self.random.below(3) {
+            let ty = if self.random.once_in(5) { Ty::Array(0) } else { self.plain_type() };
+            fields.push((format!("f{at}"), ty));
+        }
+        self.line(&format!("Rec{number} : STRUCT"));
+        for (name, ty) in &fields {
+            let initial = self.initial(ty);
+            let ty = self.types.name(ty);
+            self.line(&format!("    {name} : {ty}{initial};"));
+        }
+        self.line("END_STRUCT;");
+        self.types.records.push(fields);
+    }
+
+    /// Arrays and structures that hold blocks: they are declared when the blocks are known.
+    fn declare_composites_of_blocks(&mut self) {
+        self.line("TYPE");
+        self.depth += 1;
+        let block = Ty::Instance(self.random.below(self.blocks.len()));
+        self.declare_array(Some(block.clone()));
+        self.declare_record(Some(block));
+        let standard = self.standard_type();
+        let holder = Ty::Record(self.types.records.len() - 1);
+        let element = if self.random.once_in(2) { standard } else { holder };
+        self.declare_array(Some(element));
+        self.depth -= 1;
+        self.line("END_TYPE");
+    }
+
+    fn declare_globals(&mut self) {
+        self.line("VAR_GLOBAL");
+        for number in 0..7 {
+            let ty = match number {
+                0 | 1 => Ty::Number(*self.random.one_of(&[0, 1, 2, 4])),
+                2 => Ty::Array(self.random.below(self.types.arrays.len())),
+                3 => Ty::Record(self.random.below(self.types.records.len())),
+                _ => self.any_type(),
+            };
+            let variable = self.declare(&format!("g{number}"), ty);
+            self.globals.push(variable);
+        }
+        self.line("END_VAR");
+        self.line("VAR_GLOBAL CONSTANT");
+        for (number, ty, value) in [(0, 2, "7"), (1, 1, "3"), (2, 8, "16777216.0"), (3, 0, "100")] {
+            let name = format!("k{number}");
+            self.line(&format!("    {name} : {} := {value};", NUMBERS[ty].name));
+            self.globals.push(Variable { name, ty: Ty::Number(ty), writable: false });
+        }
+        self.line("END_VAR");
+    }
+
+    /// Writes a declaration with, perhaps, an initial value.
+    fn declare(&mut self, name: &str, ty: Ty) -> Variable {
+        let initial = self.initial(&ty);
+        self.inside(|this| {
+            let shown = this.types.name(&ty);
+            this.line(&format!("{name} : {shown}{initial};"));
+        });
+        Variable { name: name.to_owned(), ty, writable: true }
+    }
+
+    fn initial(&mut self, ty: &Ty) -> String {
+        let scalar =
+            matches!(ty, Ty::Bool | Ty::Number(_) | Ty::Bits(_) | Ty::Time | Ty::Text(_) | Ty::Color | Ty::Level(_));
+        match ty {
+            _ if self.random.once_in(2) => String::new(),
+            _ if scalar => format!(" := {}", self.literal(ty)),
+            Ty::Array(at) => {
+                let (bounds, element) = self.types.arrays[*at].clone();
+                let scalar = matches!(element, Ty::Number(_) | Ty::Bits(_) | Ty::Text(_) | Ty::Color);
+                if bounds.len() > 1 || !scalar {
+                    return String::new();
+                }
+                format!(" := [{}, {}]", self.literal(&element), self.literal(&element))
+            }
+            _ => String::new(),
+        }
+    }
+
+    fn function(&mut self) {
+        let number = self.functions.len();
+        let name = format!("Fun{number}");
+        let result = self.result_type();
+        self.blank();
+        let shown = self.types.name(&result);
+        self.line(&format!("FUNCTION {name} : {shown}"));
+        let parameters = self.parameters(false);
+        self.locals("VAR", "l", 2);
+        if self.random.once_in(4) {
+            self.locals("VAR_STAT", "s", 2);
+        }
+        // A function's result is a variable in its body.
+        self.scope.add(Variable { name: name.clone(), ty: result.clone(), writable: true });
+        self.body(3);
+        let value = self.expression(&result, 2);
+        self.line(&format!("{name} := {value};"));
+        self.line("END_FUNCTION");
+        self.functions.push(Routine { name, result: Some(result), parameters });
+    }
+
+    fn block_type(&mut self) {
+        let number = self.blocks.len();
+        let name = format!("Blk{number}");
+        self.blank();
+        self.line(&format!("FUNCTION_BLOCK {name}"));
+        let parameters = self.parameters(true);
+        self.locals("VAR", "l", 2);
+        self.line("VAR");
+        for at in 0..self.random.below(3) {
+            let ty = if number > 0 && self.random.once_in(2) { Ty::Instance(0) } else { self.standard_type() };
+            let variable = self.declare(&format!("b{at}"), ty);
+            self.scope.add(variable);
+        }
+        self.line("END_VAR");
+        if self.random.once_in(3) {
+            self.locals("VAR_TEMP", "t", 1);
+        }
+        self.body(4);
+        self.line("END_FUNCTION_BLOCK");
+        let pins = parameters.iter().filter(|it| it.section != Section::InOut);
+        let pins = pins.map(|it| (it.name.clone(), it.ty.clone(), it.section == Section::Input));
+        self.types.blocks.push(pins.collect());
+        self.blocks.push(Routine { name, result: None, parameters });
+    }
+
+    fn main(&mut self) {
+        self.blank();
+        self.line("PROGRAM Main");
+        self.line("VAR");
+        self.inside(|this| {
+            this.line("tick : DINT;");
+        });
+        self.scope.add(Variable { name: "tick".to_owned(), ty: Ty::Number(2), writable: false });
+        let (arrays, records) = (self.types.arrays.len(), self.types.records.len());
+        for at in 0..12 {
+            let ty = match at {
+                0 => Ty::Instance(self.random.below(self.blocks.len())),
+                1 => Ty::Array(arrays - 1),
+                2 => Ty::Array(arrays - 2),
+                3 => Ty::Record(records - 1),
+                4 => Ty::Array(self.random.below(arrays)),
+                5 => self.standard_type(),
+                6 | 7 => Ty::Number(*self.random.one_of(&[0, 1, 2, 4])),
+                _ => self.any_type(),
+            };
+            let variable = self.declare(&format!("v{at}"), ty);
+            self.scope.add(variable);
+        }
+        self.line("END_VAR");
+        if self.random.once_in(4) {
+            self.locals("VAR_TEMP", "t", 1);
+        }
+        self.loop_variables();
+        self.line("tick := tick + 1;");
+        self.statements(9);
+        self.line("END_PROGRAM");
+    }
+
+    fn blank(&mut self) {
+        self.text.push('\n');
+        self.scope = Scope::new(&self.globals);
+        self.counters.clear();
+        self.counting.clear();
+        self.loops = 0;
+        self.whiles = 0;
+    }
+
+    fn parameters(&mut self, of_block: bool) -> Vec<Parameter> {
+        let mut parameters = Vec::new();
+        for (section, keyword, most) in
+            [(Section::Input, "VAR_INPUT", 3), (Section::Output, "VAR_OUTPUT", 2), (Section::InOut, "VAR_IN_OUT", 2)]
+        {
+            let count = self.random.below(most + 1);
+            if count == 0 {
+                continue;
+            }
+            self.line(keyword);
+            for at in 0..count {
+                let name = format!("{}{at}", section.letter());
+                let ty = match section {
+                    Section::Input | Section::Output => self.any_type(),
+                    Section::InOut => self.in_out_type(of_block),
+                };
+                if section == Section::InOut {
+                    let shown = self.types.name(&ty);
+                    self.inside(|this| this.line(&format!("{name} : {shown};")));
+                } else {
+                    self.declare(&name, ty.clone());
+                }
+                self.scope.add(Variable { name: name.clone(), ty: ty.clone(), writable: section != Section::Input });
+                parameters.push(Parameter { name, ty, section });
+            }
+            self.line("END_VAR");
+        }
+        parameters
+    }
+
+    fn locals(&mut self, keyword: &str, letter: &str, count: usize) {
+        self.line(keyword);
+        for at in 0..count {
+            let ty = if at == 0 { Ty::Number(*self.random.one_of(&[0, 1, 2, 4])) } else { self.any_type() };
+            let variable = self.declare(&format!("{letter}{at}"), ty);
+            self.scope.add(variable);
+        }
+        self.line("END_VAR");
+    }
+
+    /// Counters of WHILE and REPEAT, which nothing else assigns.
+    fn loop_variables(&mut self) {
+        self.line("VAR");
+        self.line("    w0, w1, w2, w3 : INT;");
+        self.line("END_VAR");
+    }
+
+    fn body(&mut self, statements: usize) {
+        self.loop_variables();
+        self.statements(statements);
+    }
+
+    /// Elementary types and their like.
+    fn plain_type(&mut self) -> Ty {
+        match self.random.below(16) {
+            0..=6 => Ty::Number(self.random.below(NUMBERS.len())),
+            7 | 8 => Ty::Number(*self.random.one_of(&[1, 2])),
+            9 | 10 => Ty::Bool,
+            11 => Ty::Bits(self.random.below(4)),
+            12 => Ty::Time,
+            13 => Ty::Text(*self.random.one_of(&[3, 5, 8])),
+            14 => Ty::Color,
+            _ => Ty::Level(self.random.below(self.types.levels.len())),
+        }
+    }
+
+    /// What can be copied.
+    fn any_type(&mut self) -> Ty {
+        match self.random.below(8) {
+            0 if !self.types.arrays.is_empty() => Ty::Array(self.random.below(3)),
+            1 if !self.types.records.is_empty() => Ty::Record(self.random.below(2)),
+            _ => self.plain_type(),
+        }
+    }
+
+    /// Of what globals and locals have, so that there is something to give.
+    fn in_out_type(&mut self, _of_block: bool) -> Ty {
+        match self.random.below(6) {
+            0 if !self.blocks.is_empty() => Ty::Instance(self.random.below(self.blocks.len())),
+            0 | 1 => Ty::Array(self.random.below(3)),
+            2 => Ty::Record(self.random.below(2)),
+            _ => {
+                let at = self.random.below(self.globals.len());
+                let at = if self.globals[at].writable { at } else { 0 };
+                let types = self.types.shapes(&self.globals[at].ty);
+                let types: Vec<_> = types.into_iter().map(|it| it.ty).collect();
+                self.random.one_of(&types).clone()
+            }
+        }
+    }
+
+    fn result_type(&mut self) -> Ty {
+        match self.random.below(10) {
+            0..=4 => Ty::Number(*self.random.one_of(&[0, 1, 1, 2, 2, 4, 8])),
+            5 | 6 => Ty::Bool,
+            7 => self.any_type(),
+            _ => self.plain_type(),
+        }
+    }
+}

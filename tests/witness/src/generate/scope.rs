@@ -1,0 +1,107 @@
+//! The variables that a body can name, and places among them.
+
+use super::Writer;
+use super::types::{Piece, Shape, Ty};
+
+#[derive(Clone, Debug)]
+pub struct Variable {
+    pub name: String,
+    pub ty: Ty,
+    pub writable: bool,
+}
+
+#[derive(Default)]
+pub struct Scope {
+    variables: Vec<Variable>,
+}
+
+impl Scope {
+    pub fn new(globals: &[Variable]) -> Self {
+        Self { variables: globals.to_vec() }
+    }
+
+    pub fn add(&mut self, variable: Variable) {
+        self.variables.push(variable);
+    }
+}
+
+impl Writer {
+    /// A place whose type fits, with its type; `None` where there is none.
+    pub(super) fn some_place(
+        &mut self,
+        to_write: bool,
+        depth: usize,
+        fits: impl Fn(&Self, &Ty) -> bool,
+    ) -> Option<(String, Ty)> {
+        let mut found: Vec<(String, Shape)> = Vec::new();
+        for variable in &self.scope.variables {
+            if to_write && (!variable.writable || self.counters.contains(&variable.name)) {
+                continue;
+            }
+            for shape in self.types.shapes(&variable.ty) {
+                if fits(self, &shape.ty) && (shape.writable || !to_write) {
+                    found.push((variable.name.clone(), shape));
+                }
+            }
+        }
+        if found.is_empty() {
+            return None;
+        }
+        let at = self.random.below(found.len());
+        let (name, shape) = found.swap_remove(at);
+        let text = self.shown(name, &shape, depth);
+        Some((text, shape.ty))
+    }
+
+    pub(super) fn place_of(&mut self, ty: &Ty, to_write: bool, depth: usize) -> Option<String> {
+        self.some_place(to_write, depth, |_, it| it == ty).map(|it| it.0)
+    }
+
+    fn shown(&mut self, name: String, shape: &Shape, depth: usize) -> String {
+        let mut text = name;
+        for piece in &shape.pieces {
+            match piece {
+                Piece::Member(name) => {
+                    text.push('.');
+                    text.push_str(name);
+                }
+                Piece::Index(bounds) => {
+                    let indices: Vec<_> = bounds.iter().map(|it| self.index(*it, depth)).collect();
+                    text.push_str(&format!("[{}]", indices.join(", ")));
+                }
+            }
+        }
+        text
+    }
+
+    /// An index that is in range, but for a few: a program that always faults tests little.
+    fn index(&mut self, (low, high): (i64, i64), depth: usize) -> String {
+        let span = usize::try_from(high - low + 1).unwrap_or(1);
+        let constant = |this: &mut Self| (low + i64::try_from(this.random.below(span)).unwrap_or(0)).to_string();
+        if depth == 0 || self.fuel == 0 {
+            return constant(self);
+        }
+        let ty = Ty::Number(*self.random.one_of(&[0, 1, 1, 2]));
+        match self.random.below(12) {
+            0..=4 => constant(self),
+            5 => {
+                let counter = self.counting.last().filter(|it| low >= 0 || it.1).map(|it| it.0.clone());
+                match counter {
+                    Some(it) if self.random.once_in(6) => it,
+                    Some(it) => format!("LIMIT({low}, {it}, {high})"),
+                    None => constant(self),
+                }
+            }
+            6..=10 => {
+                let value = self.operand(&ty, depth - 1);
+                format!("LIMIT({low}, {value}, {high})")
+            }
+            _ => {
+                let value = self.operand(&ty, depth - 1);
+                // A constant that is out of range is refused.
+                let checked = value.contains(['#', 'k']) || !self.random.once_in(4);
+                if checked { format!("ABS({value} MOD 2) + {low}") } else { value }
+            }
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! The witness: a naive interpreter of the syntax tree.
+//!
+//! The executors share one front end, so that they agree proves back ends, not meaning. The witness
+//! shares none of it: it walks the tree as it was parsed, in the order in which it is written, over
+//! a memory of whole values. It has no IR, folds nothing and hoists nothing. What it takes from
+//! elsewhere is the parser, the runtime's arithmetic on two values, and the runtime's blocks.
+//!
+//! It takes programs that `check` accepts, and does not look for mistakes. Where it says
+//! [`Stop::Unknown`] it does not know a construct.
+//!
+//! It is written for reading: what a call, a FOR loop or an in-out means stands in `calls`,
+//! `statements` and `places`, in some twenty lines each.
+#![forbid(unsafe_code)]
+
+mod types;
+
+mod declarations;
+mod storage;
+
+mod machine;
+mod statements;
+
+mod calls;
+mod expressions;
+mod functions;
+mod operators;
+mod places;
+
+pub mod generate;
+pub mod random;
+pub mod shrink;
+
+pub use machine::{Machine, Stop};

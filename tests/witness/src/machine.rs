@@ -1,0 +1,188 @@
+//! A program that runs: its memory, its scans, and its variables for comparison.
+
+use crate::declarations::Declarations;
+use crate::storage::{Cell, Place};
+use crate::types::Type;
+use staunch_frontend::ast::{File, PouKind, VarKind};
+use staunch_frontend::{Sources, Span};
+use staunch_runtime::{Context, Fault, FaultKind, Value as Scalar};
+use std::collections::HashMap;
+
+/// Why a scan ended early.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Stop {
+    /// What the program did wrong, and where.
+    Fault(Fault),
+    /// More statements than a test program may take.
+    Endless,
+    /// The witness does not know a construct.
+    Unknown(String),
+}
+
+pub(crate) type Outcome<T> = Result<T, Stop>;
+
+pub(crate) fn unknown<T>(what: &str) -> Outcome<T> {
+    Err(Stop::Unknown(what.to_owned()))
+}
+
+/// Statements and turns of loops that a scan may take.
+const STEPS: u32 = 20_000;
+
+#[derive(Debug)]
+pub struct Machine<'a> {
+    pub(crate) declared: Declarations<'a>,
+    sources: &'a Sources,
+    pub(crate) memory: Vec<Cell>,
+    pub(crate) globals: HashMap<String, Place<'a>>,
+    /// VAR_STAT, by POU and name.
+    pub(crate) statics: HashMap<(usize, String), Place<'a>>,
+    /// The PROGRAM, and where its instance lies.
+    main: usize,
+    instance: Place<'a>,
+    pub(crate) context: Context,
+    steps: u32,
+}
+
+/// The variables that a body can name, apart from the globals.
+#[derive(Debug, Default)]
+pub(crate) struct Frame<'a> {
+    pub names: HashMap<String, Place<'a>>,
+}
+
+impl<'a> Machine<'a> {
+    /// A program in its initial state.
+    ///
+    /// # Errors
+    /// What the witness does not know.
+    pub fn new(sources: &'a Sources, files: &'a [File<'a>]) -> Result<Self, Stop> {
+        let mut declared = Declarations::new(files)?;
+        let main = declared.pous.iter().position(|it| it.kind == PouKind::Program);
+        let Some(main) = main else { return unknown("sources without a PROGRAM") };
+        let ty = declared.instance_of(main)?;
+        let mut this = Self {
+            declared,
+            sources,
+            memory: Vec::new(),
+            globals: HashMap::new(),
+            statics: HashMap::new(),
+            main,
+            instance: Place { at: 0, ty: ty.clone() },
+            context: Context::default(),
+            steps: 0,
+        };
+        this.start_globals()?;
+        this.instance = this.allocate(&ty);
+        this.start(&Frame::default(), &this.instance.clone(), None)?;
+        Ok(this)
+    }
+
+    fn start_globals(&mut self) -> Outcome<()> {
+        let declared = self.declared.globals.iter().map(|it| (it.name.to_ascii_uppercase(), it.slot.clone()));
+        for (name, slot) in declared.collect::<Vec<_>>() {
+            let place = self.allocate(&slot.ty);
+            self.start(&Frame::default(), &place, slot.initial)?;
+            self.globals.insert(name, place);
+        }
+        for number in 0..self.declared.pous.len() {
+            let variables = self.declared.pous[number].variables.iter().filter(|it| it.kind == VarKind::Stat);
+            let variables: Vec<_> = variables.map(|it| (it.name.to_ascii_uppercase(), it.slot.clone())).collect();
+            for (name, slot) in variables {
+                let place = self.allocate(&slot.ty);
+                self.start(&Frame::default(), &place, slot.initial)?;
+                self.statics.insert((number, name), place);
+            }
+        }
+        Ok(())
+    }
+
+    /// One scan. After an early end the variables stay as they were then.
+    ///
+    /// # Errors
+    /// Why it ended early.
+    pub fn scan(&mut self, context: &Context) -> Result<(), Stop> {
+        self.context = context.clone();
+        self.steps = 0;
+        let size = self.memory.len();
+        let end = self.run_instance(self.main, &self.instance.clone(), Vec::new());
+        self.memory.truncate(size);
+        end
+    }
+
+    /// Counts a statement, or a turn of a loop.
+    pub(crate) fn step(&mut self) -> Outcome<()> {
+        self.steps += 1;
+        if self.steps > STEPS { Err(Stop::Endless) } else { Ok(()) }
+    }
+
+    pub(crate) fn fault(&self, kind: FaultKind, at: Span) -> Stop {
+        Stop::Fault(Fault { kind, at: self.sources.location(at) })
+    }
+
+    /// The names of an instance's own variables.
+    pub(crate) fn instance_frame(&self, instance: &Place<'a>) -> Frame<'a> {
+        let mut frame = Frame::default();
+        let Type::Record(record) = &instance.ty else { return frame };
+        let mut offset = 0;
+        for (name, slot) in &record.fields {
+            frame.names.insert(name.to_ascii_uppercase(), instance.part(offset, &slot.ty));
+            offset += slot.ty.size();
+        }
+        frame
+    }
+
+    /// Path and value of each variable, as the executors' traces name them.
+    pub fn variables(&self) -> Vec<(String, String)> {
+        let mut found = Vec::new();
+        for it in &self.declared.globals {
+            self.leaves(&format!("Globals.{}", it.name), &self.globals[&it.name.to_ascii_uppercase()], &mut found);
+        }
+        for (number, pou) in self.declared.pous.iter().enumerate() {
+            for it in pou.variables.iter().filter(|it| it.kind == VarKind::Stat) {
+                let place = &self.statics[&(number, it.name.to_ascii_uppercase())];
+                let name = format!("{}_{}", pou.name, it.name);
+                // A global of this name makes the executors take another.
+                if !self.globals.contains_key(&name.to_ascii_uppercase()) {
+                    self.leaves(&format!("Globals.{name}"), place, &mut found);
+                }
+            }
+        }
+        self.leaves(self.declared.pous[self.main].name, &self.instance, &mut found);
+        found
+    }
+
+    fn leaves(&self, path: &str, place: &Place<'a>, found: &mut Vec<(String, String)>) {
+        match &place.ty {
+            Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) | Type::Text(_) => {
+                found.push((path.to_owned(), shown(&self.memory[place.at])));
+            }
+            Type::Array(array) => {
+                let size = array.element.ty.size();
+                for (number, at) in (array.low..=array.high).zip(0..) {
+                    self.leaves(&format!("{path}[{number}]"), &place.part(at * size, &array.element.ty), found);
+                }
+            }
+            Type::Record(record) => {
+                let mut offset = 0;
+                for (name, slot) in &record.fields {
+                    self.leaves(&format!("{path}.{name}"), &place.part(offset, &slot.ty), found);
+                    offset += slot.ty.size();
+                }
+            }
+            Type::Block(info) => {
+                for (number, pin) in info.pins.iter().enumerate() {
+                    found.push((format!("{path}.{}", pin.name), shown(&self.memory[place.at + number])));
+                }
+            }
+        }
+    }
+}
+
+/// A value as its bits, but for a NaN: which one it is, processors decide.
+fn shown(cell: &Cell) -> String {
+    match cell {
+        Cell::Scalar(Scalar::F32(it)) if it.is_nan() => "NaN".to_owned(),
+        Cell::Scalar(Scalar::F64(it)) if it.is_nan() => "NaN".to_owned(),
+        Cell::Scalar(it) => format!("{it:?}"),
+        Cell::Text(bytes) => format!("{:?}", String::from_utf8_lossy(bytes)),
+    }
+}

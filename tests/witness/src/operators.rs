@@ -1,0 +1,233 @@
+//! Operators: the type at which two operands meet, and the runtime's arithmetic there.
+
+use crate::expressions::{Untyped, default_type, in_lane, literal_number, untyped};
+use crate::machine::{Frame, Machine, Outcome, unknown};
+use crate::storage::Value;
+use crate::types::{Elementary, Type};
+use staunch_frontend::Span;
+use staunch_frontend::ast::{BinaryOp, Expr};
+use staunch_runtime::{FaultKind, Lane, Outcome as _, Scalar as _, Value as Scalar, ops, text, with_lane};
+
+impl<'a> Machine<'a> {
+    pub(crate) fn binary(
+        &mut self,
+        frame: &Frame<'a>,
+        op: BinaryOp,
+        left: &'a Expr<'a>,
+        right: &'a Expr<'a>,
+        at: Span,
+        asked: Option<&Type<'a>>,
+    ) -> Outcome<Value<'a>> {
+        if let BinaryOp::AndThen | BinaryOp::OrElse = op {
+            // The right side is evaluated only where it decides.
+            let first = self.value_as(frame, left, &Type::BOOL)?;
+            let decided = first.as_bool()? == (op == BinaryOp::OrElse);
+            return if decided { Ok(first) } else { self.value_as(frame, right, &Type::BOOL) };
+        }
+        let asked = asked.filter(|_| !compares(op));
+        let (a, b) = self.sides(frame, left, right, asked)?;
+        self.operate(op, a, b, at, asked)
+    }
+
+    /// Both sides, from left to right. A number without a type takes that of the other side; it
+    /// does nothing, so that it does not matter when it is looked at.
+    fn sides(
+        &mut self,
+        frame: &Frame<'a>,
+        left: &'a Expr<'a>,
+        right: &'a Expr<'a>,
+        asked: Option<&Type<'a>>,
+    ) -> Outcome<(Value<'a>, Value<'a>)> {
+        match (untyped(left), untyped(right)) {
+            (None, None) => {
+                let a = self.value(frame, left, asked)?;
+                let beside = match a.ty.base() {
+                    Some(ty) if ty.is_integer() || ty.is_real() => Some(a.ty.clone()),
+                    _ => asked.cloned(),
+                };
+                let b = self.value(frame, right, beside.as_ref())?;
+                Ok((a, b))
+            }
+            (None, Some(kind)) => {
+                let a = self.value(frame, left, asked)?;
+                let ty = beside(&a.ty, kind, literal_number(right), asked)?;
+                let b = self.number(right, ty)?;
+                Ok((a, b))
+            }
+            (Some(kind), None) => {
+                let b = self.value(frame, right, asked)?;
+                let ty = beside(&b.ty, kind, literal_number(left), asked)?;
+                let a = self.number(left, ty)?;
+                Ok((a, b))
+            }
+            (Some(a), Some(b)) => {
+                let ty = default_type(if a == b { a } else { Untyped::Real }, asked);
+                Ok((self.number(left, ty)?, self.number(right, ty)?))
+            }
+        }
+    }
+
+    pub(crate) fn operate(
+        &mut self,
+        op: BinaryOp,
+        a: Value<'a>,
+        b: Value<'a>,
+        at: Span,
+        asked: Option<&Type<'a>>,
+    ) -> Outcome<Value<'a>> {
+        if let (Type::Text(_), Type::Text(_)) = (&a.ty, &b.ty) {
+            let order = Scalar::I16(text::compare(a.as_text()?, b.as_text()?));
+            return self.applied(name(op), Elementary::Int, &[order, Scalar::I16(0)], at);
+        }
+        let (Some(x), Some(y)) = (a.ty.base(), b.ty.base()) else { return unknown("these operands") };
+        match op {
+            BinaryOp::Power => {
+                let long = |it: Elementary| it == Elementary::Lreal || (it.is_integer() && it.lane().size() > 2);
+                let asks = asked.and_then(Type::elementary) == Some(Elementary::Lreal);
+                let ty = if long(x) || long(y) || asks { Elementary::Lreal } else { Elementary::Real };
+                let operands = [in_lane(a.as_scalar()?, ty).as_scalar()?, in_lane(b.as_scalar()?, ty).as_scalar()?];
+                self.applied("EXPT", ty, &operands, at)
+            }
+            BinaryOp::Mul | BinaryOp::Div if x.is_time() && !y.is_time() => self.scaled(op, &a, &b, at),
+            BinaryOp::Mul if y.is_time() => self.scaled(op, &b, &a, at),
+            _ => {
+                let Some(ty) = x.meets(y) else { return unknown(&format!("{x:?} and {y:?}")) };
+                let operands = [in_lane(a.as_scalar()?, ty).as_scalar()?, in_lane(b.as_scalar()?, ty).as_scalar()?];
+                self.applied(name(op), ty, &operands, at)
+            }
+        }
+    }
+
+    /// A TIME times or by a number: exactly by an integer, through LREAL by a real.
+    fn scaled(&mut self, op: BinaryOp, time: &Value<'a>, by: &Value<'a>, at: Span) -> Outcome<Value<'a>> {
+        let (Some(ty), Some(other)) = (time.ty.elementary(), by.ty.elementary()) else { return unknown("a TIME") };
+        let wide = if other.is_real() { Elementary::Lreal } else { Elementary::Lint };
+        let operands = [in_lane(time.as_scalar()?, wide).as_scalar()?, in_lane(by.as_scalar()?, wide).as_scalar()?];
+        let scaled = self.applied(name(op), wide, &operands, at)?;
+        Ok(in_lane(scaled.as_scalar()?, ty))
+    }
+
+    /// One of the runtime's operations at a type. A comparison gives a BOOL.
+    pub(crate) fn applied(&self, name: &str, ty: Elementary, operands: &[Scalar], at: Span) -> Outcome<Value<'a>> {
+        match apply(name, ty.lane(), operands) {
+            None => unknown(&format!("{name} of {ty:?}")),
+            Some(Err(kind)) => Err(self.fault(kind, at)),
+            Some(Ok(value)) => {
+                let is_test = matches!(name, "EQ" | "NE" | "LT" | "LE" | "GT" | "GE");
+                Ok(Value::scalar(if is_test { Elementary::Bool } else { ty }, value))
+            }
+        }
+    }
+}
+
+/// The type of a number beside a typed operand: the operand's, or a wider one that holds it.
+fn beside(ty: &Type<'_>, kind: Untyped, number: Option<i128>, asked: Option<&Type<'_>>) -> Outcome<Elementary> {
+    let Some(ty) = ty.elementary() else { return unknown("a number beside what is none") };
+    match kind {
+        _ if ty.is_time() => Ok(if kind == Untyped::Integer { Elementary::Lint } else { Elementary::Lreal }),
+        Untyped::Integer => Ok(number.map_or(ty, |it| ty.that_holds(it))),
+        Untyped::Real if ty.is_real() => Ok(ty),
+        Untyped::Real => {
+            let asks = asked.and_then(Type::elementary) == Some(Elementary::Lreal);
+            let real = if asks { Elementary::Lreal } else { Elementary::Real };
+            Ok(ty.meets(real).unwrap_or(real))
+        }
+    }
+}
+
+fn compares(op: BinaryOp) -> bool {
+    matches!(op, BinaryOp::Lt | BinaryOp::Gt | BinaryOp::Le | BinaryOp::Ge | BinaryOp::Eq | BinaryOp::Ne)
+}
+
+/// The function that an operator means.
+fn name(op: BinaryOp) -> &'static str {
+    match op {
+        BinaryOp::Power => "EXPT",
+        BinaryOp::Mul => "MUL",
+        BinaryOp::Div => "DIV",
+        BinaryOp::Mod => "MOD",
+        BinaryOp::Add => "ADD",
+        BinaryOp::Sub => "SUB",
+        BinaryOp::Lt => "LT",
+        BinaryOp::Gt => "GT",
+        BinaryOp::Le => "LE",
+        BinaryOp::Ge => "GE",
+        BinaryOp::Eq => "EQ",
+        BinaryOp::Ne => "NE",
+        BinaryOp::And | BinaryOp::AndThen => "AND",
+        BinaryOp::Xor => "XOR",
+        BinaryOp::Or | BinaryOp::OrElse => "OR",
+    }
+}
+
+/// The operator that a standard function means.
+pub(crate) fn operator(name: &str) -> Option<BinaryOp> {
+    use BinaryOp::{Add, And, Div, Eq, Ge, Gt, Le, Lt, Mod, Mul, Ne, Or, Power, Sub, Xor};
+    let all = [Power, Mul, Div, Mod, Add, Sub, Lt, Gt, Le, Ge, Eq, Ne, And, Xor, Or];
+    all.into_iter().find(|it| self::name(*it).eq_ignore_ascii_case(name))
+}
+
+/// Calls a function of the runtime at the lane of its operands.
+macro_rules! at {
+    ($class:ident $lane:ident $operands:ident $function:ident $($operand:ident)*) => {
+        with_lane!($class $lane, T => {
+            let mut operands = $operands.iter().copied();
+            $(let $operand = <T as staunch_runtime::Scalar>::from_value(operands.next()?)?;)*
+            let _: Option<T> = None;
+            Some(ops::$function($($operand),*).outcome().map(|it| it.into_value()))
+        }, None)
+    };
+}
+
+macro_rules! shifted {
+    ($lane:ident $operands:ident $function:ident) => {
+        with_lane!(integer $lane, T => {
+            let [value, Scalar::I64(count)] = $operands else { return None };
+            let value = <T as staunch_runtime::Scalar>::from_value(*value)?;
+            Some(Ok(ops::$function(value, *count).into_value()))
+        }, None)
+    };
+}
+
+/// The runtime's operation of this name, at a lane.
+fn apply(name: &str, lane: Lane, operands: &[Scalar]) -> Option<Result<Scalar, FaultKind>> {
+    match name {
+        "ADD" => at!(number lane operands add a b),
+        "SUB" => at!(number lane operands sub a b),
+        "MUL" => at!(number lane operands mul a b),
+        "DIV" => at!(number lane operands div a b),
+        "MOD" => at!(integer lane operands modulo a b),
+        "NEG" => at!(number lane operands neg a),
+        "ABS" => at!(number lane operands abs a),
+        "EXPT" => at!(real lane operands expt a b),
+        "SQRT" => at!(real lane operands sqrt a),
+        "LN" => at!(real lane operands ln a),
+        "LOG" => at!(real lane operands log a),
+        "EXP" => at!(real lane operands exp a),
+        "SIN" => at!(real lane operands sin a),
+        "COS" => at!(real lane operands cos a),
+        "TAN" => at!(real lane operands tan a),
+        "ASIN" => at!(real lane operands asin a),
+        "ACOS" => at!(real lane operands acos a),
+        "ATAN" => at!(real lane operands atan a),
+        "ATAN2" => at!(real lane operands atan2 a b),
+        "AND" => at!(bits lane operands and a b),
+        "OR" => at!(bits lane operands or a b),
+        "XOR" => at!(bits lane operands xor a b),
+        "NOT" => at!(bits lane operands not a),
+        "SHL" => shifted!(lane operands shl),
+        "SHR" => shifted!(lane operands shr),
+        "ROL" => shifted!(lane operands rol),
+        "ROR" => shifted!(lane operands ror),
+        "EQ" => at!(any lane operands eq a b),
+        "NE" => at!(any lane operands ne a b),
+        "LT" => at!(any lane operands lt a b),
+        "LE" => at!(any lane operands le a b),
+        "GT" => at!(any lane operands gt a b),
+        "GE" => at!(any lane operands ge a b),
+        "MAX" => at!(any lane operands max a b),
+        "MIN" => at!(any lane operands min a b),
+        "LIMIT" => at!(any lane operands limit a b c),
+        _ => None,
+    }
+}

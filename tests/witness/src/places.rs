@@ -1,0 +1,130 @@
+//! Places: where a variable, or a part of one, lies. Each index is evaluated and checked in its turn.
+
+use crate::machine::{Frame, Machine, Outcome, unknown};
+use crate::statements::Flow;
+use crate::storage::{Place, Value, integer_cell};
+use crate::types::{Elementary, Type};
+use staunch_frontend::ast::{Expr, ExprKind, Name};
+use staunch_runtime::{BlockInfo, Direction, FaultKind};
+
+/// What `.3` or `.%B1` selects: its type, and the number of its first bit.
+struct Part {
+    ty: Elementary,
+    shift: u32,
+    width: u32,
+}
+
+impl<'a> Machine<'a> {
+    pub(crate) fn place(&mut self, frame: &Frame<'a>, expr: &'a Expr<'a>) -> Outcome<Place<'a>> {
+        match &expr.kind {
+            ExprKind::Paren(inner) => self.place(frame, inner),
+            ExprKind::Name(name) => {
+                self.variable(frame, name.text).map_or_else(|| unknown(&format!("the name {}", name.text)), Ok)
+            }
+            ExprKind::Member(base, name) => {
+                let base = self.place(frame, base)?;
+                self.member(&base, name.text).map_or_else(|| unknown(&format!("the member {}", name.text)), Ok)
+            }
+            ExprKind::Index(base, indices) => {
+                let mut place = self.place(frame, base)?;
+                for index in indices {
+                    place = self.element(frame, &place, index)?;
+                }
+                Ok(place)
+            }
+            ExprKind::Literal(_)
+            | ExprKind::Address(_)
+            | ExprKind::Part(..)
+            | ExprKind::Deref(_)
+            | ExprKind::Call(..)
+            | ExprKind::Unary(..)
+            | ExprKind::Binary(..)
+            | ExprKind::Error(_) => unknown("an expression where a variable is asked for"),
+        }
+    }
+
+    pub(crate) fn variable(&self, frame: &Frame<'a>, name: &str) -> Option<Place<'a>> {
+        let key = name.to_ascii_uppercase();
+        frame.names.get(&key).or_else(|| self.globals.get(&key)).cloned()
+    }
+
+    pub(crate) fn member(&self, base: &Place<'a>, name: &str) -> Option<Place<'a>> {
+        match &base.ty {
+            Type::Record(record) => {
+                let mut offset = 0;
+                for (field, slot) in &record.fields {
+                    if field.eq_ignore_ascii_case(name) {
+                        return Some(base.part(offset, &slot.ty));
+                    }
+                    offset += slot.ty.size();
+                }
+                None
+            }
+            Type::Block(info) => {
+                let visible = |it: &staunch_runtime::Pin| it.direction != Direction::Memory;
+                let at = info.pins.iter().position(|it| visible(it) && it.name.eq_ignore_ascii_case(name))?;
+                Some(base.part(at, &pin_type(info, at)))
+            }
+            Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) | Type::Text(_) | Type::Array(_) => None,
+        }
+    }
+
+    fn element(&mut self, frame: &Frame<'a>, base: &Place<'a>, index: &'a Expr<'a>) -> Outcome<Place<'a>> {
+        let Type::Array(array) = &base.ty else { return unknown("an index of what is no array") };
+        let number = self.value(frame, index, None)?.as_integer()?;
+        if !(array.low..=array.high).contains(&number) {
+            return Err(self.fault(FaultKind::IndexOutOfRange, index.span));
+        }
+        let at = usize::try_from(number - array.low).unwrap_or(0);
+        Ok(base.part(at * array.element.ty.size(), &array.element.ty))
+    }
+
+    /// `w.3`, `w.%B1`
+    pub(crate) fn part(&mut self, frame: &Frame<'a>, base: &'a Expr<'a>, part: &Name<'a>) -> Outcome<Value<'a>> {
+        let whole = self.value(frame, base, None)?;
+        let part = part_named(part.text)?;
+        let bits = whole.as_integer()? >> part.shift & mask(part.width);
+        Ok(Value { ty: Type::Elementary(part.ty), cells: vec![integer_cell(part.ty, bits)] })
+    }
+
+    /// The other bits are those that the variable has when the value has been computed.
+    pub(crate) fn assign_part(
+        &mut self,
+        frame: &Frame<'a>,
+        place: &Place<'a>,
+        part: &Name<'a>,
+        value: &'a Expr<'a>,
+    ) -> Outcome<Flow> {
+        let part = part_named(part.text)?;
+        let value = self.value_as(frame, value, &Type::Elementary(part.ty))?.as_integer()?;
+        let Some(ty) = place.ty.elementary() else { return unknown("bits of what is no number") };
+        let width = ty.lane().size() * 8;
+        let old = self.read(place).as_integer()? & mask(width);
+        let new = old & !(mask(part.width) << part.shift) | (value & mask(part.width)) << part.shift;
+        let signed = if ty.lane().is_signed() && new > ty.range().1 { new - (1 << width) } else { new };
+        self.memory[place.at] = integer_cell(ty, signed);
+        Ok(Flow::Next)
+    }
+}
+
+fn mask(width: u32) -> i128 {
+    (1 << width) - 1
+}
+
+fn part_named(text: &str) -> Outcome<Part> {
+    let text = text.trim_start_matches('%');
+    let (ty, width, number) = match text.as_bytes().first().map(u8::to_ascii_uppercase) {
+        Some(b'X') => (Elementary::Bool, 1, &text[1..]),
+        Some(b'B') => (Elementary::Byte, 8, &text[1..]),
+        Some(b'W') => (Elementary::Word, 16, &text[1..]),
+        Some(b'D') => (Elementary::Dword, 32, &text[1..]),
+        Some(_) | None => (Elementary::Bool, 1, text),
+    };
+    let number: u32 = number.parse().or_else(|_| unknown("this part of a number"))?;
+    Ok(Part { ty, shift: number * width, width })
+}
+
+/// The type of a standard block's pin.
+pub(crate) fn pin_type<'a>(info: &BlockInfo, at: usize) -> Type<'a> {
+    Type::Elementary(Elementary::named(info.pins[at].ty.name()).unwrap_or(Elementary::Bool))
+}

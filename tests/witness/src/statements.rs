@@ -1,0 +1,202 @@
+//! Statements, one after the other.
+
+use crate::expressions::literal_number;
+use crate::machine::{Frame, Machine, Outcome, unknown};
+use crate::storage::{Value, integer_cell};
+use crate::types::Type;
+use staunch_frontend::Span;
+use staunch_frontend::ast::{Arm, Expr, ExprKind, Statement, StatementKind};
+use staunch_runtime::FaultKind;
+
+/// How a statement ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Flow {
+    Next,
+    Exit,
+    Continue,
+    Return,
+}
+
+impl<'a> Machine<'a> {
+    pub(crate) fn block(&mut self, frame: &Frame<'a>, statements: &'a [Statement<'a>]) -> Outcome<Flow> {
+        for statement in statements {
+            let flow = self.statement(frame, statement)?;
+            if flow != Flow::Next {
+                return Ok(flow);
+            }
+        }
+        Ok(Flow::Next)
+    }
+
+    fn statement(&mut self, frame: &Frame<'a>, statement: &'a Statement<'a>) -> Outcome<Flow> {
+        self.step()?;
+        match &statement.kind {
+            StatementKind::Empty => Ok(Flow::Next),
+            StatementKind::Assign { target, value } => self.assign(frame, target, value),
+            StatementKind::SetReset { target, value, set } => self.set_reset(frame, target, value, *set),
+            StatementKind::Expr(expr) => self.lone_call(frame, expr),
+            StatementKind::If { branches, otherwise } => self.choose(frame, branches, otherwise.as_deref()),
+            StatementKind::Case { selector, arms, otherwise } => {
+                self.select(frame, selector, arms, otherwise.as_deref())
+            }
+            StatementKind::For { counter, from, to, by, body } => {
+                self.count(frame, counter, [from, to], by.as_deref(), body, statement.span)
+            }
+            StatementKind::While { condition, body } => self.repeat_while(frame, condition, body),
+            StatementKind::Repeat { body, until } => self.repeat_until(frame, body, until),
+            StatementKind::Exit => Ok(Flow::Exit),
+            StatementKind::Continue => Ok(Flow::Continue),
+            StatementKind::Return => Ok(Flow::Return),
+            StatementKind::Error => unknown("a statement that did not parse"),
+        }
+    }
+
+    /// The target is found before the value is computed: it is written first.
+    fn assign(&mut self, frame: &Frame<'a>, target: &'a Expr<'a>, value: &'a Expr<'a>) -> Outcome<Flow> {
+        if let ExprKind::Part(base, part) = &target.kind {
+            let place = self.place(frame, base)?;
+            return self.assign_part(frame, &place, part, value);
+        }
+        let place = self.place(frame, target)?;
+        let value = self.value_as(frame, value, &place.ty)?;
+        self.write(&place, &value);
+        Ok(Flow::Next)
+    }
+
+    /// `x S= c` sets x while c is TRUE, `x R= c` resets it.
+    fn set_reset(&mut self, frame: &Frame<'a>, target: &'a Expr<'a>, value: &'a Expr<'a>, set: bool) -> Outcome<Flow> {
+        let place = self.place(frame, target)?;
+        if self.value_as(frame, value, &Type::BOOL)?.as_bool()? {
+            self.write(&place, &Value::bool(set));
+        }
+        Ok(Flow::Next)
+    }
+
+    fn lone_call(&mut self, frame: &Frame<'a>, expr: &'a Expr<'a>) -> Outcome<Flow> {
+        match &expr.kind {
+            ExprKind::Call(callee, arguments) => self.call(frame, callee, arguments, None).map(|_| Flow::Next),
+            _ => unknown("an expression as a statement"),
+        }
+    }
+
+    fn choose(
+        &mut self,
+        frame: &Frame<'a>,
+        branches: &'a [(Expr<'a>, Vec<Statement<'a>>)],
+        otherwise: Option<&'a [Statement<'a>]>,
+    ) -> Outcome<Flow> {
+        for (condition, body) in branches {
+            if self.condition(frame, condition)? {
+                return self.block(frame, body);
+            }
+        }
+        self.block(frame, otherwise.unwrap_or_default())
+    }
+
+    fn condition(&mut self, frame: &Frame<'a>, expr: &'a Expr<'a>) -> Outcome<bool> {
+        self.value_as(frame, expr, &Type::BOOL)?.as_bool()
+    }
+
+    /// CASE: the first arm with a label that is, or whose range holds, the selector.
+    fn select(
+        &mut self,
+        frame: &Frame<'a>,
+        selector: &'a Expr<'a>,
+        arms: &'a [Arm<'a>],
+        otherwise: Option<&'a [Statement<'a>]>,
+    ) -> Outcome<Flow> {
+        let selector = self.value(frame, selector, None)?;
+        let number = selector.as_integer()?;
+        for arm in arms {
+            for label in &arm.labels {
+                let low = self.value_as(frame, &label.low, &selector.ty)?.as_integer()?;
+                let high = match &label.high {
+                    Some(high) => self.value_as(frame, high, &selector.ty)?.as_integer()?,
+                    None => low,
+                };
+                if (low..=high).contains(&number) {
+                    return self.block(frame, &arm.body);
+                }
+            }
+        }
+        self.block(frame, otherwise.unwrap_or_default())
+    }
+
+    /// FOR goes by its variable: it is given the first value, then bound and step are evaluated, once.
+    /// Before each turn it is compared with the bound; after it, it is stepped. A step that would
+    /// leave its type or subrange ends the loop where it is past the bound, and faults where it is not.
+    fn count(
+        &mut self,
+        frame: &Frame<'a>,
+        counter: &'a Expr<'a>,
+        [from, to]: [&'a Expr<'a>; 2],
+        by: Option<&'a Expr<'a>>,
+        body: &'a [Statement<'a>],
+        at: Span,
+    ) -> Outcome<Flow> {
+        let place = self.place(frame, counter)?;
+        let Some(base) = place.ty.elementary() else { return unknown("a counter that is no integer") };
+        let first = self.value_as(frame, from, &place.ty)?;
+        self.write(&place, &first);
+        let last = self.value_as(frame, to, &Type::Elementary(base))?.as_integer()?;
+        let step = match by {
+            None => 1,
+            // A negative literal steps down, also where the counter is unsigned.
+            Some(by) => match literal_number(by) {
+                Some(number) => number,
+                None => self.value_as(frame, by, &Type::Elementary(base))?.as_integer()?,
+            },
+        };
+        if let (Some(by), 0) = (by, step) {
+            return Err(self.fault(FaultKind::ZeroStep, by.span));
+        }
+        let goes_on = |now: i128| if step > 0 { now <= last } else { now >= last };
+        // What the bound's evaluation did to the variable counts too.
+        let mut now = self.read(&place).as_integer()?;
+        while goes_on(now) {
+            self.step()?;
+            match self.block(frame, body)? {
+                Flow::Exit => break,
+                Flow::Return => return Ok(Flow::Return),
+                Flow::Next | Flow::Continue => {}
+            }
+            now = self.read(&place).as_integer()? + step;
+            let (low, high) = place.ty.range();
+            if (low..=high).contains(&now) {
+                self.memory[place.at] = integer_cell(base, now);
+            } else if goes_on(now) {
+                return Err(self.fault(FaultKind::SubrangeViolated, at));
+            } else {
+                break;
+            }
+        }
+        Ok(Flow::Next)
+    }
+
+    fn repeat_while(&mut self, frame: &Frame<'a>, condition: &'a Expr<'a>, body: &'a [Statement<'a>]) -> Outcome<Flow> {
+        while self.condition(frame, condition)? {
+            self.step()?;
+            match self.block(frame, body)? {
+                Flow::Exit => break,
+                Flow::Return => return Ok(Flow::Return),
+                Flow::Next | Flow::Continue => {}
+            }
+        }
+        Ok(Flow::Next)
+    }
+
+    fn repeat_until(&mut self, frame: &Frame<'a>, body: &'a [Statement<'a>], until: &'a Expr<'a>) -> Outcome<Flow> {
+        loop {
+            self.step()?;
+            match self.block(frame, body)? {
+                Flow::Exit => break,
+                Flow::Return => return Ok(Flow::Return),
+                Flow::Next | Flow::Continue => {}
+            }
+            if self.condition(frame, until)? {
+                break;
+            }
+        }
+        Ok(Flow::Next)
+    }
+}

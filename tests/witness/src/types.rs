@@ -1,0 +1,202 @@
+//! Types, and which of them widen to which.
+
+use staunch_frontend::ast::Initial;
+use staunch_runtime::{BlockInfo, Lane, Value as Scalar};
+use std::rc::Rc;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Elementary {
+    Bool,
+    Sint,
+    Int,
+    Dint,
+    Lint,
+    Usint,
+    Uint,
+    Udint,
+    Ulint,
+    Byte,
+    Word,
+    Dword,
+    Lword,
+    Real,
+    Lreal,
+    Time,
+    Ltime,
+}
+
+use Elementary as E;
+
+const ELEMENTARY: [(&str, E, Lane); 17] = [
+    ("BOOL", E::Bool, Lane::Bool),
+    ("SINT", E::Sint, Lane::I8),
+    ("INT", E::Int, Lane::I16),
+    ("DINT", E::Dint, Lane::I32),
+    ("LINT", E::Lint, Lane::I64),
+    ("USINT", E::Usint, Lane::U8),
+    ("UINT", E::Uint, Lane::U16),
+    ("UDINT", E::Udint, Lane::U32),
+    ("ULINT", E::Ulint, Lane::U64),
+    ("BYTE", E::Byte, Lane::U8),
+    ("WORD", E::Word, Lane::U16),
+    ("DWORD", E::Dword, Lane::U32),
+    ("LWORD", E::Lword, Lane::U64),
+    ("REAL", E::Real, Lane::F32),
+    ("LREAL", E::Lreal, Lane::F64),
+    ("TIME", E::Time, Lane::I64),
+    ("LTIME", E::Ltime, Lane::I64),
+];
+
+impl Elementary {
+    pub fn named(name: &str) -> Option<Self> {
+        ELEMENTARY.iter().find(|it| it.0.eq_ignore_ascii_case(name)).map(|it| it.1)
+    }
+
+    pub fn lane(self) -> Lane {
+        ELEMENTARY.iter().find(|it| it.1 == self).map_or(Lane::Bool, |it| it.2)
+    }
+
+    pub fn is_real(self) -> bool {
+        self.lane().is_float()
+    }
+
+    pub fn is_time(self) -> bool {
+        matches!(self, E::Time | E::Ltime)
+    }
+
+    pub fn is_bits(self) -> bool {
+        matches!(self, E::Bool | E::Byte | E::Word | E::Dword | E::Lword)
+    }
+
+    pub fn is_integer(self) -> bool {
+        self.lane().is_integer() && !self.is_time() && !self.is_bits()
+    }
+
+    /// Whether an integer literal can have this type.
+    pub fn takes_integers(self) -> bool {
+        self.is_real() || (self.lane().is_integer() && !self.is_time())
+    }
+
+    pub fn holds(self, number: i128) -> bool {
+        self.is_real() || self.lane().integer(number).is_some()
+    }
+
+    pub fn range(self) -> (i128, i128) {
+        self.lane().range().unwrap_or_default()
+    }
+
+    /// Whether each value of `self` is one of `to`: the standard's figure of implicit conversions.
+    pub fn widens_to(self, to: Self) -> bool {
+        let bits = |it: Self| it.lane().size();
+        match (self, to) {
+            _ if self == to => true,
+            (E::Time, E::Ltime) | (E::Real, E::Lreal) => true,
+            _ if self.is_time() || to.is_time() => false,
+            (E::Bool, _) => to.is_bits(),
+            _ if self.is_bits() || to.is_bits() => self.is_bits() && to.is_bits() && bits(self) < bits(to),
+            // A REAL holds integers of 16 bits, an LREAL of 32.
+            _ if to.is_real() => self.is_integer() && bits(self) * 2 <= bits(to),
+            _ if self.is_real() => false,
+            _ => self.range().0 >= to.range().0 && self.range().1 <= to.range().1,
+        }
+    }
+
+    /// The type itself, or a wider one that holds a literal beside it.
+    pub fn that_holds(self, number: i128) -> Self {
+        let own = [E::Int, E::Dint, E::Lint, E::Ulint].into_iter().find(|it| it.holds(number));
+        if self.holds(number) { self } else { own.and_then(|it| self.meets(it)).unwrap_or(self) }
+    }
+
+    /// The type at which two operands meet.
+    pub fn meets(self, other: Self) -> Option<Self> {
+        let all = [self, other, E::Int, E::Dint, E::Lint, E::Real, E::Lreal];
+        all.into_iter().find(|it| self.widens_to(*it) && other.widens_to(*it))
+    }
+}
+
+#[derive(Clone, Debug)]
+pub(crate) enum Type<'a> {
+    Elementary(Elementary),
+    /// An integer between bounds, which each write checks.
+    Subrange(Elementary, i128, i128),
+    Enum(Rc<Enum>),
+    /// Text of at most so many bytes.
+    Text(usize),
+    Array(Rc<Array<'a>>),
+    /// A structure, or an instance of a user's POU.
+    Record(Rc<Record<'a>>),
+    Block(&'static BlockInfo),
+}
+
+#[derive(Debug)]
+pub(crate) struct Enum {
+    pub name: String,
+    pub base: Elementary,
+    pub values: Vec<(String, Scalar)>,
+}
+
+#[derive(Debug)]
+pub(crate) struct Array<'a> {
+    pub low: i128,
+    pub high: i128,
+    pub element: Slot<'a>,
+}
+
+#[derive(Debug)]
+pub(crate) struct Record<'a> {
+    /// The POU whose instance this is.
+    pub pou: Option<usize>,
+    pub fields: Vec<(String, Slot<'a>)>,
+}
+
+/// What is declared: a type, and what it starts with.
+#[derive(Clone, Debug)]
+pub(crate) struct Slot<'a> {
+    pub ty: Type<'a>,
+    pub initial: Option<&'a Initial<'a>>,
+}
+
+impl Type<'_> {
+    pub const BOOL: Self = Self::Elementary(E::Bool);
+    pub const LINT: Self = Self::Elementary(E::Lint);
+
+    /// Cells of memory that a value takes.
+    pub fn size(&self) -> usize {
+        match self {
+            Self::Elementary(_) | Self::Subrange(..) | Self::Enum(_) | Self::Text(_) => 1,
+            Self::Array(it) => it.element.ty.size() * it.count(),
+            Self::Record(it) => it.fields.iter().map(|(_, slot)| slot.ty.size()).sum(),
+            Self::Block(info) => info.pins.len(),
+        }
+    }
+
+    /// The type that a value read from here has in an expression, if it is elementary.
+    pub fn elementary(&self) -> Option<Elementary> {
+        match self {
+            Self::Elementary(it) | Self::Subrange(it, ..) => Some(*it),
+            Self::Enum(_) | Self::Text(_) | Self::Array(_) | Self::Record(_) | Self::Block(_) => None,
+        }
+    }
+
+    /// The least and the greatest number that a variable can hold.
+    pub fn range(&self) -> (i128, i128) {
+        match self {
+            Self::Subrange(_, low, high) => (*low, *high),
+            other => other.elementary().map_or((0, 0), Elementary::range),
+        }
+    }
+
+    /// The elementary type whose values are behind those of this type.
+    pub fn base(&self) -> Option<Elementary> {
+        match self {
+            Self::Enum(it) => Some(it.base),
+            other => other.elementary(),
+        }
+    }
+}
+
+impl Array<'_> {
+    pub fn count(&self) -> usize {
+        usize::try_from(self.high - self.low + 1).unwrap_or(0)
+    }
+}
