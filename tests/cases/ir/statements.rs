@@ -127,10 +127,9 @@ impl Main {
                 break;
             }
         }
-        let saved: i32 = self.sum; // :20
-        let twice_2: i32 = twice(self.n, &mut half, &mut self.calls)?;
+        let twice_2: i32 = twice(self.n, &mut half, &mut self.calls)?; // :20
         self.half = half;
-        self.sum = saved.wrapping_add(twice_2.wrapping_mul(10));
+        self.sum = self.sum.wrapping_add(twice_2.wrapping_mul(10));
         self.t.call(self.go, time::ms(1000), cx); // :21
         self.s = Text::from_text( // :22
             &Text::<9>::build(|out| text::concat(b"a", self.s.as_bytes(), out)),
