@@ -47,6 +47,11 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
+    /// Integers and bit strings of fewer than 32 bits are computed at 32, and cut where they are stored.
+    pub const fn promotes_integers(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
     /// A call of a FUNCTION gives every input that has no default.
     pub const fn wants_all_inputs(self) -> bool {
         matches!(self, Self::Codesys)

@@ -128,7 +128,7 @@ impl<'s> Checker<'_, 's> {
         self.enabled_call(enable, initial, span, |this| match what {
             Callee::Standard(name) => {
                 let value = this.standard_function(name, arguments, expected, span)?;
-                this.materialise(value, expected, span).map(Some)
+                this.materialise(value.cut(), expected, span).map(Some)
             }
             Callee::Function(_) | Callee::Instruction(_) | Callee::Instance => this.call(what, callee, arguments, span),
         })

@@ -3,6 +3,7 @@
 use super::Checker;
 use super::expression::constant;
 use super::operand::Operand;
+use super::promotion::stored;
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{BoundsId, Conversion, Elementary, Expr, ExprKind, Lane, Op, Type, Value};
 
@@ -40,6 +41,10 @@ impl<'s> Checker<'_, 's> {
                 let value = self.coerce(operand, Type::Elementary(made_of), span)?;
                 self.in_range(value, made_of, id, span)
             }
+            (Operand::Promoted(expr, from), Type::Elementary(into)) => {
+                self.may_become(from, into, span).then(|| stored(expr, into))
+            }
+            (operand @ Operand::Promoted(..), _) => self.coerce(operand.cut(), to, span),
             (Operand::Typed(expr), _) => self.coerce_typed(expr.read(), to, span),
             (literal, Type::Elementary(ty)) => self.literal_as(&literal, ty, span),
             (literal, Type::Enum(id)) if self.decl.dialect(span).mixes_bits_and_integers() => {
@@ -69,11 +74,7 @@ impl<'s> Checker<'_, 's> {
         }
         match (expr.ty, to) {
             (Type::Elementary(from), Type::Elementary(into)) => {
-                if widens(from, into) || self.dialect_allows(from, into, span) {
-                    return Some(self.convert(Conversion::Value, to, expr));
-                }
-                self.report_narrowing(from, into, span);
-                None
+                self.may_become(from, into, span).then(|| self.convert(Conversion::Value, to, expr))
             }
             (Type::String(_), Type::String(capacity)) => {
                 self.warn_of_cut(&expr, capacity, span);
@@ -143,6 +144,15 @@ impl<'s> Checker<'_, 's> {
         }
         self.report(error);
         None
+    }
+
+    /// Whether a value of `from` converts to `to` by itself; else says what to write.
+    fn may_become(&mut self, from: Elementary, to: Elementary, span: Span) -> bool {
+        let may = widens(from, to) || self.dialect_allows(from, to, span);
+        if !may {
+            self.report_narrowing(from, to, span);
+        }
+        may
     }
 
     /// What CODESYS converts without being asked.

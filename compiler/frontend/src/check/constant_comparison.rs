@@ -56,7 +56,7 @@ fn variable(operand: &Operand) -> Option<Type> {
 fn constant(operand: &Operand) -> Option<i128> {
     match operand {
         Operand::Integer(value) => Some(*value),
-        Operand::Typed(expr) => expr.as_const().and_then(Value::as_integer),
+        Operand::Typed(expr) | Operand::Promoted(expr, _) => expr.as_const().and_then(Value::as_integer),
         Operand::Real { .. } => None,
     }
 }

@@ -1,5 +1,6 @@
 use super::Checker;
 use super::operand::Operand;
+use super::promotion::computed;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, UnaryOp};
 use staunch_ir::{Const, Conversion, Elementary, Expr, ExprKind, Op, Type, Value};
@@ -149,16 +150,19 @@ impl<'s> Checker<'_, 's> {
         let operand = self.operand(inner, expected)?;
         match (op, operand) {
             (UnaryOp::Plus, operand) => Some(operand),
-            (UnaryOp::Neg, Operand::Typed(value)) => self.negate(value, span).map(Operand::Typed),
+            (UnaryOp::Neg, operand) if operand.typed().is_some() => self.negate(operand, span),
             (UnaryOp::Neg, number) => Some(number.negated()),
             (UnaryOp::Not, operand) => {
-                let value = self.materialise(operand, expected, inner.span)?;
+                let value = self.materialise(operand.cut(), expected, inner.span)?;
                 self.not(value, inner.span).map(Operand::Typed)
             }
         }
     }
 
-    fn negate(&mut self, value: Expr, span: Span) -> Option<Expr> {
+    fn negate(&mut self, operand: Operand, span: Span) -> Option<Operand> {
+        let own = operand.ty()?;
+        let value = self.materialise(operand, None, span)?;
+        let value = self.promote(value, span);
         let value = if self.decl.dialect(span).mixes_bits_and_integers() { self.signed(value) } else { value };
         let ty = value.ty;
         let numeric = matches!(ty, Type::Elementary(it) if it.is_integer() || it.is_real() || it.is_time());
@@ -170,14 +174,13 @@ impl<'s> Checker<'_, 's> {
             );
             return None;
         }
-        self.apply(Op::Neg, ty, vec![value], ty, span)
+        let value = self.apply(Op::Neg, ty, vec![value], ty, span)?;
+        Some(computed(value, own))
     }
 
     /// Where bit strings count as numbers, the negative of one needs a sign.
     fn signed(&mut self, value: Expr) -> Expr {
         let signed = match value.ty {
-            Type::Elementary(Elementary::Byte) => Type::INT,
-            Type::Elementary(Elementary::Word) => Type::DINT,
             Type::Elementary(Elementary::Dword | Elementary::Lword) => Type::LINT,
             _ => return value,
         };

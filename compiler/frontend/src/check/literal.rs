@@ -81,7 +81,7 @@ impl<'s> Checker<'_, 's> {
                 self.error(Code::E0204, span, format!("`-` needs a number, this is {found}"));
                 None
             }
-            Operand::Typed(_) => self.coerce(operand, Type::Elementary(ty), span),
+            Operand::Typed(_) | Operand::Promoted(..) => self.coerce(operand, Type::Elementary(ty), span),
             number if is_negative => self.literal_as(&number.negated(), ty, span),
             number => self.literal_as(&number, ty, span),
         }
@@ -204,7 +204,7 @@ impl<'s> Checker<'_, 's> {
 
 fn number(operand: &Operand) -> Option<Real> {
     match operand {
-        Operand::Typed(_) => None,
+        Operand::Typed(_) | Operand::Promoted(..) => None,
         Operand::Integer(value) => Some(Real::Literal(value.to_string())),
         Operand::Real { number } => Some(number.clone()),
     }

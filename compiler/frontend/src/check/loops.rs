@@ -152,13 +152,13 @@ impl<'s> Checker<'_, 's> {
     /// The loop goes by one variable: what its indices are made of may change in the body.
     fn fix_indices(&mut self, place: &mut Place, span: Span) {
         for projection in &mut place.projections {
-            if let Projection::Index { index, .. } = projection {
-                if index.as_const().is_none() {
-                    let (value, at) = ((**index).clone(), index.at);
-                    let saved = self.temporary("index", value.ty);
-                    self.assign(saved.clone(), value, span);
-                    **index = Expr::load(saved, at);
-                }
+            if let Projection::Index { index, .. } = projection
+                && index.as_const().is_none()
+            {
+                let (value, at) = ((**index).clone(), index.at);
+                let saved = self.temporary("index", value.ty);
+                self.assign(saved.clone(), value, span);
+                **index = Expr::load(saved, at);
             }
         }
     }
@@ -169,7 +169,7 @@ impl<'s> Checker<'_, 's> {
         let operand = self.operand(by, Some(Type::Elementary(ty)))?;
         let constant = match &operand {
             Operand::Integer(value) => Some(*value),
-            Operand::Typed(expr) => expr.as_const().and_then(Value::as_integer),
+            Operand::Typed(expr) | Operand::Promoted(expr, _) => expr.as_const().and_then(Value::as_integer),
             Operand::Real { .. } => None,
         };
         let (_, most) = ty.lane().range()?;

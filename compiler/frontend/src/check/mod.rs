@@ -20,6 +20,7 @@ mod order;
 mod overload;
 mod place;
 mod prescan;
+mod promotion;
 mod real;
 mod standard;
 mod statement;

@@ -1,6 +1,7 @@
 //! Operands: typed expressions, and literals that take the type of their place.
 
 use super::Checker;
+use super::promotion::stored;
 use super::real::Real;
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Elementary, Expr, Op, Type, Value};
@@ -9,6 +10,8 @@ use staunch_ir::{Elementary, Expr, Op, Type, Value};
 #[derive(Clone, Debug)]
 pub(super) enum Operand {
     Typed(Expr),
+    /// Computed at more bits than the type has that its operands give it.
+    Promoted(Expr, Elementary),
     Integer(i128),
     /// With a fraction.
     Real {
@@ -22,7 +25,7 @@ impl Operand {
         match self {
             Self::Integer(value) => Self::Integer(-value),
             Self::Real { number } => Self::Real { number: Real::Apply(Op::Neg, vec![number]) },
-            Self::Typed(value) => Self::Typed(value),
+            Self::Typed(_) | Self::Promoted(..) => self,
         }
     }
 
@@ -30,31 +33,49 @@ impl Operand {
     pub fn read(self) -> Self {
         match self {
             Self::Typed(value) => Self::Typed(value.read()),
-            Self::Integer(_) | Self::Real { .. } => self,
+            Self::Promoted(..) | Self::Integer(_) | Self::Real { .. } => self,
         }
     }
 
     pub(super) fn typed(&self) -> Option<&Expr> {
         match self {
-            Self::Typed(expr) => Some(expr),
+            Self::Typed(expr) | Self::Promoted(expr, _) => Some(expr),
             Self::Integer(_) | Self::Real { .. } => None,
         }
     }
 
     pub fn typed_mut(&mut self) -> Option<&mut Expr> {
         match self {
-            Self::Typed(expr) => Some(expr),
+            Self::Typed(expr) | Self::Promoted(expr, _) => Some(expr),
             Self::Integer(_) | Self::Real { .. } => None,
         }
     }
 
+    /// The type that it counts as where it is stored, or meets another.
     pub fn ty(&self) -> Option<Type> {
+        match self {
+            Self::Typed(expr) => Some(expr.ty),
+            Self::Promoted(_, ty) => Some(Type::Elementary(*ty)),
+            Self::Integer(_) | Self::Real { .. } => None,
+        }
+    }
+
+    /// The type that it is computed at.
+    pub fn computed_at(&self) -> Option<Type> {
         self.typed().map(|it| it.ty)
+    }
+
+    /// A promoted value cut to the type that its operands give it.
+    pub fn cut(self) -> Self {
+        match self {
+            Self::Promoted(value, ty) => Self::Typed(stored(value, ty)),
+            Self::Typed(_) | Self::Integer(_) | Self::Real { .. } => self,
+        }
     }
 }
 
 impl<'s> Checker<'_, 's> {
-    /// The expression with a concrete type: its own, else the expected one, else the default.
+    /// The expression with a concrete type: what it is computed at, else the expected one, else the default.
     pub(super) fn typed(&mut self, expr: &ast::Expr<'s>, expected: Option<Type>) -> Option<Expr> {
         let operand = self.operand(expr, expected)?;
         self.materialise(operand, expected, expr.span)
@@ -63,7 +84,7 @@ impl<'s> Checker<'_, 's> {
     /// Gives an untyped number a type.
     pub(super) fn materialise(&mut self, operand: Operand, expected: Option<Type>, span: Span) -> Option<Expr> {
         let ty = match &operand {
-            Operand::Typed(_) => None,
+            Operand::Typed(_) | Operand::Promoted(..) => None,
             Operand::Integer(value) => Some(integer_type(*value, expected)),
             Operand::Real { .. } => Some(match expected {
                 Some(Type::Elementary(it)) if it.is_real() => it,
@@ -73,7 +94,7 @@ impl<'s> Checker<'_, 's> {
         match ty {
             Some(ty) => self.coerce(operand, Type::Elementary(ty), span),
             None => match operand {
-                Operand::Typed(expr) => Some(expr),
+                Operand::Typed(expr) | Operand::Promoted(expr, _) => Some(expr),
                 Operand::Integer(_) | Operand::Real { .. } => None,
             },
         }
@@ -83,7 +104,7 @@ impl<'s> Checker<'_, 's> {
     pub(super) fn literal_as(&mut self, operand: &Operand, ty: Elementary, span: Span) -> Option<Expr> {
         let at = self.at(span);
         let value = match operand {
-            Operand::Typed(expr) => return Some(expr.clone()),
+            Operand::Typed(expr) | Operand::Promoted(expr, _) => return Some(expr.clone()),
             Operand::Integer(value) => self.integer_as(*value, ty, span)?,
             Operand::Real { number } => self.real_as(number, ty, span)?,
         };

@@ -1,6 +1,7 @@
 use super::Checker;
 use super::coerce::{as_number, join};
 use super::operand::Operand;
+use super::promotion::{computed, is_narrow, join_promoted};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::BinaryOp;
 use staunch_ir::{Conversion, Elementary, Expr, Op, Statement, StatementKind, Type, Value};
@@ -50,63 +51,46 @@ impl<'s> Checker<'_, 's> {
                 sides.b = Operand::Typed(self.coerce(sides.b, ty, sides.right)?);
             }
         }
-        self.operate(sides).map(Operand::Typed)
+        self.operate(sides)
     }
 
-    fn operate(&mut self, sides: Sides) -> Option<Expr> {
+    fn operate(&mut self, sides: Sides) -> Option<Operand> {
         match sides.op {
             BinaryOp::Lt | BinaryOp::Gt | BinaryOp::Le | BinaryOp::Ge | BinaryOp::Eq | BinaryOp::Ne => {
-                self.compare(sides)
+                self.compare(sides).map(Operand::Typed)
             }
             BinaryOp::And | BinaryOp::Or | BinaryOp::Xor => self.bitwise(sides),
-            BinaryOp::Power => self.power(sides),
+            BinaryOp::Power => self.power(sides).map(Operand::Typed),
             BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Mod => self.arithmetic(sides),
             BinaryOp::AndThen | BinaryOp::OrElse => None,
         }
     }
 
     /// The one type of both sides, and the sides converted to it.
-    fn meet(
-        &mut self,
-        sides: Sides,
-        allowed: fn(Elementary, bool) -> bool,
-        wants: &str,
-    ) -> Option<(Elementary, Expr, Expr)> {
-        let mixes = self.decl.dialect(sides.span).mixes_bits_and_integers();
-        let ty = self.common(&sides, mixes);
-        let ty = match ty {
+    fn meet(&mut self, sides: Sides, allowed: fn(Elementary, bool) -> bool, wants: &str) -> Option<Meeting> {
+        let dialect = self.decl.dialect(sides.span);
+        let mixes = dialect.mixes_bits_and_integers();
+        let join = if dialect.promotes_integers() { join_promoted } else { join };
+        let own = match common(&sides, [sides.a.ty(), sides.b.ty()], mixes, join) {
             Some(ty) if allowed(ty, mixes) => ty,
             _ => {
                 self.report_operands(&sides, wants);
                 return None;
             }
         };
+        let ty = if dialect.promotes_integers() { promoted(&sides, own) } else { own };
         let a = self.side(sides.a, ty, sides.left)?;
         let b = self.side(sides.b, ty, sides.right)?;
-        Some((ty, a, b))
+        Some(Meeting { ty: Type::Elementary(ty), own: Type::Elementary(own), a, b })
     }
 
     fn side(&mut self, operand: Operand, ty: Elementary, span: Span) -> Option<Expr> {
         match operand {
             // The meeting of a bit string and an integer is decided; the lanes agree in size or widen.
-            Operand::Typed(expr) => Some(self.convert(Conversion::Value, Type::Elementary(ty), expr)),
-            literal => self.coerce(literal, Type::Elementary(ty), span),
-        }
-    }
-
-    fn common(&self, sides: &Sides, mixes: bool) -> Option<Elementary> {
-        let number = |ty: Elementary| if mixes { as_number(ty) } else { ty };
-        match (sides.a.ty(), sides.b.ty()) {
-            (Some(Type::Elementary(a)), Some(Type::Elementary(b))) => {
-                if a == b {
-                    Some(a)
-                } else {
-                    join(number(a), number(b)).or_else(|| mixed_signs(a, b, mixes))
-                }
+            Operand::Typed(expr) | Operand::Promoted(expr, _) => {
+                Some(self.convert(Conversion::Value, Type::Elementary(ty), expr))
             }
-            (Some(Type::Elementary(a)), None) => literal_meets(a, &sides.b, sides.hint, mixes),
-            (None, Some(Type::Elementary(b))) => literal_meets(b, &sides.a, sides.hint, mixes),
-            _ => None,
+            literal => self.coerce(literal, Type::Elementary(ty), span),
         }
     }
 
@@ -214,18 +198,20 @@ impl<'s> Checker<'_, 's> {
             _ => {
                 let equality = matches!(op, Op::Eq | Op::Ne);
                 self.always_the_same(&sides);
-                let (ty, a, b) = self.meet(sides, |_, _| true, "both sides need one type that can be compared")?;
+                let Meeting { ty, a, b, .. } =
+                    self.meet(sides, |_, _| true, "both sides need one type that can be compared")?;
+                let of = ty.elementary()?;
                 // A real that was set to 0 is 0: what guards a division is right.
                 let has_zero = [&a, &b].into_iter().any(|it| is_zero(it.as_const()));
-                if ty.is_real() && equality && !has_zero {
+                if of.is_real() && equality && !has_zero {
                     self.report(
                         Diagnostic::new(Code::W0503, op_span, "REAL values are compared for equality")
                             .label("rounding makes equal results differ")
                             .help("compare the distance: `ABS(a - b) < 0.001`"),
                     );
                 }
-                self.compared_with_zero(op, ty, [&a, &b], op_span);
-                self.apply(op, Type::Elementary(ty), vec![a, b], Type::BOOL, op_span)
+                self.compared_with_zero(op, of, [&a, &b], op_span);
+                self.apply(op, ty, vec![a, b], Type::BOOL, op_span)
             }
         }
     }
@@ -245,11 +231,11 @@ impl<'s> Checker<'_, 's> {
                 }
                 _ => Operand::Typed(expr),
             },
-            literal => literal,
+            other => other,
         }
     }
 
-    fn bitwise(&mut self, sides: Sides) -> Option<Expr> {
+    fn bitwise(&mut self, sides: Sides) -> Option<Operand> {
         let op = match sides.op {
             BinaryOp::And => Op::And,
             BinaryOp::Or => Op::Or,
@@ -257,9 +243,9 @@ impl<'s> Checker<'_, 's> {
         };
         let op_span = sides.op_span;
         let allowed = |ty: Elementary, mixes: bool| ty.is_bits() || (mixes && ty.is_integer());
-        let (ty, a, b) = self.meet(sides, allowed, "both sides need to be BOOL, or bit strings")?;
-        let ty = Type::Elementary(ty);
-        self.apply(op, ty, vec![a, b], ty, op_span)
+        let Meeting { ty, own, a, b } = self.meet(sides, allowed, "both sides need to be BOOL, or bit strings")?;
+        let value = self.apply(op, ty, vec![a, b], ty, op_span)?;
+        Some(computed(value, own))
     }
 
     /// `**`: REAL or LREAL; integers are converted.
@@ -283,15 +269,15 @@ impl<'s> Checker<'_, 's> {
         self.apply(Op::Expt, ty, vec![a, b], ty, op_span)
     }
 
-    fn arithmetic(&mut self, sides: Sides) -> Option<Expr> {
+    fn arithmetic(&mut self, sides: Sides) -> Option<Operand> {
         let time = |operand: &Operand| matches!(operand.ty(), Some(Type::Elementary(it)) if it.is_time());
         match (sides.op, time(&sides.a), time(&sides.b)) {
-            (BinaryOp::Mul, true, false) | (BinaryOp::Div, true, false) => self.scale_time(sides),
+            (BinaryOp::Mul, true, false) | (BinaryOp::Div, true, false) => self.scale_time(sides).map(Operand::Typed),
             (BinaryOp::Mul, false, true) => {
                 let swapped = Sides { a: sides.b, b: sides.a, left: sides.right, right: sides.left, ..sides };
-                self.scale_time(swapped)
+                self.scale_time(swapped).map(Operand::Typed)
             }
-            (BinaryOp::Add | BinaryOp::Sub, true, true) => self.add_times(sides),
+            (BinaryOp::Add | BinaryOp::Sub, true, true) => self.add_times(sides).map(Operand::Typed),
             (_, true, _) | (_, _, true) => {
                 self.report_operands(&sides, "a TIME is added to a TIME, and multiplied or divided by a number");
                 None
@@ -300,7 +286,7 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    fn plain_arithmetic(&mut self, sides: Sides) -> Option<Expr> {
+    fn plain_arithmetic(&mut self, sides: Sides) -> Option<Operand> {
         let op = arithmetic_op(sides.op);
         let op_span = sides.op_span;
         let allowed: fn(Elementary, bool) -> bool = match sides.op {
@@ -309,20 +295,19 @@ impl<'s> Checker<'_, 's> {
         };
         let wants =
             if sides.op == BinaryOp::Mod { "both sides need to be integers" } else { "both sides need to be numbers" };
-        let (ty, a, b) = self.meet(sides, allowed, wants)?;
-        let ty = Type::Elementary(ty);
-        self.apply(op, ty, vec![a, b], ty, op_span)
+        let Meeting { ty, own, a, b } = self.meet(sides, allowed, wants)?;
+        let value = self.apply(op, ty, vec![a, b], ty, op_span)?;
+        Some(computed(value, own))
     }
 
     fn add_times(&mut self, sides: Sides) -> Option<Expr> {
         let op = arithmetic_op(sides.op);
         let (op_span, span) = (sides.op_span, sides.span);
-        let (ty, a, b) = self.meet(sides, |ty, _| ty.is_time(), "both sides need to be times")?;
+        let Meeting { ty, a, b, .. } = self.meet(sides, |ty, _| ty.is_time(), "both sides need to be times")?;
         if let (Some(Value::I64(a)), Some(Value::I64(b))) = (a.as_const(), b.as_const()) {
             let sum = if op == Op::Add { a.checked_add(b) } else { a.checked_sub(b) };
             self.refuse_time_overflow(sum.is_none(), span)?;
         }
-        let ty = Type::Elementary(ty);
         self.apply(op, ty, vec![a, b], ty, op_span)
     }
 
@@ -343,18 +328,15 @@ impl<'s> Checker<'_, 's> {
         let (op_span, span) = (sides.op_span, sides.span);
         let Operand::Typed(time) = sides.a else { return None };
         let ty = time.ty;
-        let integer = match &sides.b {
-            Operand::Integer(_) => true,
-            Operand::Real { .. } => false,
-            Operand::Typed(expr) => match expr.ty {
-                Type::Elementary(it) if it.is_integer() => true,
-                Type::Elementary(it) if it.is_real() => false,
-                _ => {
-                    let sides = Sides { a: Operand::Typed(time), ..sides };
-                    self.report_operands(&sides, "a TIME is multiplied or divided by a number");
-                    return None;
-                }
-            },
+        let integer = match sides.b.ty() {
+            None => matches!(sides.b, Operand::Integer(_)),
+            Some(Type::Elementary(it)) if it.is_integer() => true,
+            Some(Type::Elementary(it)) if it.is_real() => false,
+            Some(_) => {
+                let sides = Sides { a: Operand::Typed(time), ..sides };
+                self.report_operands(&sides, "a TIME is multiplied or divided by a number");
+                return None;
+            }
         };
         if integer {
             let count = self.side(sides.b, Elementary::Lint, sides.right)?;
@@ -412,8 +394,56 @@ pub(super) fn beside(a: &Operand, hint: Option<Type>) -> Option<Type> {
     }
 }
 
+/// Two sides at the type that they are computed at, and the one that the result counts as.
+struct Meeting {
+    ty: Type,
+    own: Type,
+    a: Expr,
+    b: Expr,
+}
+
+type Join = fn(Elementary, Elementary) -> Option<Elementary>;
+
+/// The type in which sides of these types meet, where `None` is a literal's.
+fn common(sides: &Sides, types: [Option<Type>; 2], mixes: bool, join: Join) -> Option<Elementary> {
+    let number = |ty: Elementary| if mixes { as_number(ty) } else { ty };
+    let literal = |ty: Elementary, it: &Operand| literal_meets(number(ty), ty, it, sides.hint, join);
+    match types {
+        [Some(Type::Elementary(a)), Some(Type::Elementary(b))] => {
+            if a == b {
+                Some(a)
+            } else {
+                join(number(a), number(b)).or_else(|| mixed_signs(a, b, mixes))
+            }
+        }
+        [Some(Type::Elementary(a)), None] => literal(a, &sides.b),
+        [None, Some(Type::Elementary(b))] => literal(b, &sides.a),
+        _ => None,
+    }
+}
+
+/// The type at which sides are computed that give one of `own`, where integers are promoted.
+fn promoted(sides: &Sides, own: Elementary) -> Elementary {
+    let calculates = matches!(sides.op, BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Mod);
+    // A promoted value may be negative: it is compared with a UDINT by what it is.
+    let compared = compares(sides.op) && as_number(own) == Elementary::Udint;
+    if !is_narrow(own) && !compared {
+        return own;
+    }
+    match common(sides, [sides.a.computed_at(), sides.b.computed_at()], true, join) {
+        Some(ty) if calculates && is_narrow(ty) => Elementary::Dint,
+        ty => ty.unwrap_or(own),
+    }
+}
+
 /// The type at which a literal meets a typed operand: the operand's, if the literal fits it.
-fn literal_meets(ty: Elementary, literal: &Operand, hint: Option<Type>, mixes: bool) -> Option<Elementary> {
+fn literal_meets(
+    number: Elementary,
+    ty: Elementary,
+    literal: &Operand,
+    hint: Option<Type>,
+    join: Join,
+) -> Option<Elementary> {
     match literal {
         Operand::Integer(value) => {
             if ty.is_real() || ty.lane().integer(*value).is_some() {
@@ -421,13 +451,13 @@ fn literal_meets(ty: Elementary, literal: &Operand, hint: Option<Type>, mixes: b
             }
             let wider = [Elementary::Int, Elementary::Dint, Elementary::Lint, Elementary::Ulint];
             let own = wider.into_iter().find(|it| it.lane().integer(*value).is_some())?;
-            join(if mixes { as_number(ty) } else { ty }, own)
+            join(number, own)
         }
         Operand::Real { .. } => {
             let real = if hint == Some(Type::LREAL) && !ty.is_real() { Elementary::Lreal } else { Elementary::Real };
-            join(if mixes { as_number(ty) } else { ty }, real)
+            join(number, real)
         }
-        Operand::Typed(_) => None,
+        Operand::Typed(_) | Operand::Promoted(..) => None,
     }
 }
 

@@ -159,7 +159,7 @@ impl Checker<'_, '_> {
     }
 
     /// Replaces an expression by a local that holds its value from here on.
-    fn save(&mut self, name: &str, expr: &mut Expr) {
+    pub(super) fn save(&mut self, name: &str, expr: &mut Expr) {
         let at = expr.at;
         let place = self.temporary(name, expr.ty);
         let value = std::mem::replace(expr, Expr::load(place.clone(), at));

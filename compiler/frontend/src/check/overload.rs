@@ -6,6 +6,7 @@ use super::call::{Given, Parameter};
 use super::coerce::{as_number, join};
 use super::operand::Operand;
 use super::operator::beside;
+use super::promotion::join_promoted;
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Conversion, Elementary, Expr, ExprKind, Place, Projection, Section, Statement, Type};
 use staunch_runtime::{Class, Kind, Signature};
@@ -14,6 +15,8 @@ use staunch_runtime::{Class, Kind, Signature};
 pub(super) struct Resolved {
     /// What `T` is; BOOL where no parameter is `T`.
     pub ty: Type,
+    /// What `T` counts as, where it is computed at more bits.
+    pub own: Type,
     pub operands: Vec<Expr>,
 }
 
@@ -39,15 +42,17 @@ impl<'s> Checker<'_, 's> {
             true => Type::BOOL,
             false => self.common_type(signature, &at_t, &operands, values, hint, name)?,
         };
+        let own = ty;
+        let ty = self.computed_type(signature.class, own, at_t.iter().map(|at| &operands[*at]), name.span);
         let mut done = Vec::new();
         for (at, operand) in operands.into_iter().enumerate() {
             done.push(match (operand, kind(signature, at)) {
                 (operand, Kind::T) => self.at_type(operand, ty, values[at].span)?,
-                (Operand::Typed(expr), _) => expr,
+                (Operand::Typed(expr) | Operand::Promoted(expr, _), _) => expr,
                 (Operand::Integer(_) | Operand::Real { .. }, _) => return None,
             });
         }
-        Some(Resolved { ty, operands: done })
+        Some(Resolved { ty, own, operands: done })
     }
 
     /// The argument expressions of a standard function, in the order of its parameters.
@@ -131,7 +136,7 @@ impl<'s> Checker<'_, 's> {
         name: ast::Name<'s>,
     ) -> Option<Expr> {
         let expr = match self.operand(value, None)? {
-            Operand::Typed(expr) => expr,
+            Operand::Typed(expr) | Operand::Promoted(expr, _) => expr,
             literal @ Operand::Real { .. } if class != Class::Int => {
                 return self.coerce(literal, Type::LREAL, value.span);
             }
@@ -194,6 +199,24 @@ impl<'s> Checker<'_, 's> {
         Some(ty)
     }
 
+    /// The type at which operands are computed that count as one of `own`. Bits are those of that type.
+    fn computed_type<'o>(
+        &self,
+        class: Class,
+        own: Type,
+        operands: impl Iterator<Item = &'o Operand> + Clone,
+        span: Span,
+    ) -> Type {
+        let Type::Elementary(it) = own else { return own };
+        if class == Class::Bit || !self.promotes(it, span) {
+            return own;
+        }
+        let types = operands.clone().filter_map(|it| it.computed_at()?.elementary());
+        let meet = |a, b| join(a, b).or_else(|| join(as_number(a), as_number(b))).unwrap_or(Elementary::Dint);
+        let ty = types.reduce(|a, b| if a == b { a } else { meet(a, b) }).unwrap_or(it);
+        widened_by_literals(Type::Elementary(ty), operands)
+    }
+
     /// The operand at the type that was found for all.
     fn at_type(&mut self, operand: Operand, ty: Type, span: Span) -> Option<Expr> {
         match operand {
@@ -245,9 +268,11 @@ impl<'s> Checker<'_, 's> {
     fn join_types(&self, a: Type, b: Type, span: Span) -> Option<Type> {
         match (a, b) {
             (Type::Elementary(x), Type::Elementary(y)) => {
-                let mixes = self.decl.dialect(span).mixes_bits_and_integers();
-                let joined = join(x, y).or_else(|| mixes.then(|| join(as_number(x), as_number(y))).flatten());
-                joined.map(Type::Elementary)
+                let dialect = self.decl.dialect(span);
+                let join = if dialect.promotes_integers() { join_promoted } else { join };
+                let numbers = || join(as_number(x), as_number(y));
+                let mixed = || dialect.mixes_bits_and_integers().then(numbers).flatten();
+                join(x, y).or_else(mixed).map(Type::Elementary)
             }
             (Type::String(x), Type::String(y)) => Some(Type::String(x.max(y))),
             _ => (a == b).then_some(a),

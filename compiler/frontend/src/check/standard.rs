@@ -5,6 +5,7 @@ use super::Checker;
 use super::conversion;
 use super::operand::Operand;
 use super::overload::Resolved;
+use super::promotion::computed;
 use crate::dialect::Dialect;
 use crate::{Span, ast};
 use ast::BinaryOp;
@@ -110,7 +111,7 @@ impl<'s> Checker<'_, 's> {
             Meaning::Truncate => self.trunc(values[0], expected, name).map(Operand::Typed),
             Meaning::Operation(op) => {
                 let resolved = self.resolve(signature, &values, expected, name)?;
-                self.operation(op, resolved, name.span).map(Operand::Typed)
+                self.operation(op, resolved, name.span)
             }
             Meaning::Text(op) => {
                 let resolved = self.resolve(signature, &values, expected, name)?;
@@ -118,7 +119,7 @@ impl<'s> Checker<'_, 's> {
             }
             Meaning::Mux => {
                 let resolved = self.resolve(signature, &values, expected, name)?;
-                self.mux(resolved, name.span).map(Operand::Typed)
+                self.mux(resolved, name.span)
             }
         }
     }
@@ -156,8 +157,12 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// An operation of the table on operands of its type.
-    fn operation(&mut self, op: Op, Resolved { ty, mut operands }: Resolved, span: Span) -> Option<Expr> {
-        match (op, ty) {
+    fn operation(&mut self, op: Op, Resolved { mut ty, own, mut operands }: Resolved, span: Span) -> Option<Operand> {
+        if op == Op::Abs {
+            operands = operands.into_iter().map(|it| self.promote(it, span)).collect();
+            ty = operands.first()?.ty;
+        }
+        let value = match (op, ty) {
             (Op::Max | Op::Min, Type::String(_)) => self.extreme_text(op, ty, operands, span),
             (Op::Max | Op::Min, _) => self.fold(op, ty, operands, span),
             (Op::Limit, Type::String(_)) => self.limited_text(ty, operands, span),
@@ -167,7 +172,8 @@ impl<'s> Checker<'_, 's> {
                 self.shift(op, ty, value, count, span)
             }
             _ => self.apply(op, ty, operands, ty, span),
-        }
+        };
+        Some(computed(value?, own))
     }
 
     /// An extensible function folds from the left.
@@ -235,7 +241,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// `MUX(K, IN0, …)`: all inputs are evaluated; a K outside of them faults.
-    fn mux(&mut self, Resolved { ty, mut operands }: Resolved, span: Span) -> Option<Expr> {
+    fn mux(&mut self, Resolved { ty, own, mut operands }: Resolved, span: Span) -> Option<Operand> {
         self.fault_in_order(operands.iter_mut());
         let mut operands = operands.into_iter();
         let selector = operands.next()?;
@@ -248,7 +254,7 @@ impl<'s> Checker<'_, 's> {
         let arms = (0..).zip(operands).map(arm).collect();
         let outside = vec![Statement::new(StatementKind::Fault(FaultKind::IndexOutOfRange), at)];
         self.push(StatementKind::Case { selector, arms, otherwise: outside }, span);
-        Some(Expr::load(result, at))
+        Some(computed(Expr::load(result, at), own))
     }
 
     fn text_function(&mut self, op: TextOp, operands: Vec<Expr>, span: Span) -> Option<Expr> {

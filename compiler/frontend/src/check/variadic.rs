@@ -6,7 +6,7 @@ use super::operand::Operand;
 use super::operator::{Sides, compares};
 use crate::{Span, ast};
 use ast::BinaryOp;
-use staunch_ir::{Expr, ExprKind, Projection, Statement, Type};
+use staunch_ir::{Expr, ExprKind, Projection, Type};
 
 impl<'s> Checker<'_, 's> {
     pub(super) fn chain(
@@ -81,15 +81,11 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// The operand for reading it twice: what is more than a variable is computed once.
-    fn kept(&mut self, operand: Operand) -> Operand {
-        match operand {
-            Operand::Typed(expr) if !is_plain(&expr) => {
-                let (place, at) = (self.temporary("saved", expr.ty), expr.at);
-                self.block.push(Statement::assign(place.clone(), expr, at));
-                Operand::Typed(Expr::load(place, at))
-            }
-            other => other,
+    fn kept(&mut self, mut operand: Operand) -> Operand {
+        if let Some(expr) = operand.typed_mut().filter(|it| !is_plain(it)) {
+            self.save("saved", expr);
         }
+        operand
     }
 }
 
