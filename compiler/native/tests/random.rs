@@ -136,6 +136,16 @@ impl Maker {
         }
     }
 
+    /// Of what may be passed by value.
+    fn copied_part(&mut self) -> Type {
+        loop {
+            let ty = self.part();
+            if !holds_instance(&self.arrays, &self.structs, ty) {
+                return ty;
+            }
+        }
+    }
+
     fn block(&mut self) -> Type {
         Type::Block(BlockId::next(self.random.below(BLOCKS.len())))
     }
@@ -197,23 +207,24 @@ impl Maker {
         line(self.line)
     }
 
-    // routines.
+    // Routines.
 
     fn function(&mut self, globals: StructId) {
         self.open(globals);
         let mut params = Vec::new();
         for _ in 0..4 {
-            let ty = self.part();
             if self.random.one_in(2) {
+                let ty = self.copied_part();
                 let local = self.local(ty);
                 params.push(param("p", ty, Mode::Value(local)));
             } else {
+                let ty = self.part();
                 let place = Place::root(Root::Param(ParamId::next(params.len())), ty);
                 params.push(param("p", ty, Mode::Reference));
                 self.know(place, true);
             }
         }
-        let ty = self.part();
+        let ty = self.copied_part();
         let result = self.local(ty);
         self.more_locals();
         let body = self.statements(5, 2);
@@ -478,7 +489,8 @@ impl Maker {
     }
 
     fn assignment(&mut self) -> StatementKind {
-        let target = self.place(2, |_| true).unwrap();
+        let (arrays, structs) = (self.arrays.clone(), self.structs.clone());
+        let target = self.place(2, |ty| !holds_instance(&arrays, &structs, ty)).unwrap();
         let value = self.expr(target.ty, 3);
         StatementKind::Assign { target, value }
     }
@@ -584,7 +596,7 @@ impl Maker {
             Some(id) if self.random.one_in(2) => {
                 let wanted = routine.locals[id.index()].ty;
                 (0..self.locals.len())
-                    .find(|at| self.locals[*at].ty == wanted)
+                    .find(|at| self.locals[*at].ty == wanted && self.locals[*at].name != "counter")
                     .map(|at| Place::local(LocalId::next(at), wanted))
             }
             _ => None,
@@ -610,6 +622,20 @@ impl Maker {
 }
 
 /// Which NaN an operation gives is the machine's choice: LIMIT makes it a number.
+/// What holds an instance of a block is not copied.
+fn holds_instance(arrays: &[Array], structs: &[Struct], ty: Type) -> bool {
+    match ty {
+        Type::Block(_) => true,
+        Type::Struct(id) => {
+            let structure = &structs[id.index()];
+            let is_state = ["Fb", "Main"].contains(&structure.name.as_str());
+            is_state || structure.fields.iter().any(|it| holds_instance(arrays, structs, it.ty))
+        }
+        Type::Array(id) => holds_instance(arrays, structs, arrays[id.index()].element),
+        Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => false,
+    }
+}
+
 fn without_nan(expr: Expr) -> Expr {
     let Type::Elementary(ty) = expr.ty else { return expr };
     if !ty.is_real() {

@@ -121,7 +121,7 @@ impl Function<'_> {
     }
 
     fn further_turn(&self, it: &For, last: &TokenStream, step: &TokenStream) -> TokenStream {
-        let counter = self.load(&it.counter).at_least(Level::Postfix);
+        let counter = self.load(&it.counter).above(Level::Compare);
         match &it.step {
             Step::Constant(step) if *step > 0 => quote!(#counter <= #last),
             Step::Constant(_) => quote!(#counter >= #last),
@@ -142,6 +142,7 @@ impl Function<'_> {
             };
             let (least, most) = (Literal::i128_unsuffixed(it.range.0), Literal::i128_unsuffixed(it.range.1));
             let (next, at) = (self.made_up("next", self.loops.around.len()), self.emitter.at(at));
+            let counter = self.load(&it.counter).tokens;
             return quote! {
                 let Some(#next) = ops::step(#counter, #step, #last, (#least, #most)) #at? else { break };
                 #target = #next;

@@ -149,7 +149,7 @@ END_PROGRAM
 
 #[test]
 fn a_state_larger_than_the_stack_starts() {
-    let folder = Folder::with("large", &[("main.st", LARGE)]);
+    let folder = Folder::with("large_state", &[("main.st", LARGE)]);
     let shown = "--scans 2 --trace - --vars total,r,rows[1].x,started[7],plain[1]";
     let expected =
         "scan,time_ms,total,r,rows[1].x,started[7],plain[1]\n1,0,42,1.5,1.5,1.5,0.0\n2,10,44,3.0,3.0,1.5,0.0\n";

@@ -47,11 +47,13 @@ body
 
 function_block Adder
   param amount&0: INT
-prescan
-  self.sum := INT#100 @7:3
 body
   amount&0 := ADD(amount&0, INT#1) @7:3
   self.sum := ADD(self.sum, amount&0) @7:3
+
+prescan Adder
+body
+  self.sum := INT#100 @7:3
 
 program Main
   local temp%0: INT := 4

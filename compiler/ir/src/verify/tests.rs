@@ -317,7 +317,7 @@ fn calls() {
     };
     let by_value = || Argument::Value(int(1));
     let by_reference = || Argument::Reference(count());
-    bad("before its caller", call(2, None, Vec::new(), None));
+    bad("before its caller", call(3, None, Vec::new(), None));
     bad("before its caller", call(7, None, Vec::new(), None));
     bad("not called on", call(1, None, vec![by_reference()], None));
     bad("not called on", call(1, Some(count()), vec![by_reference()], None));
