@@ -86,7 +86,7 @@ impl Forger<'_> {
                 Err(Stop::Fault(fault)) => Err(fault),
                 Err(Stop::OutOfSteps) => unreachable!("there is no budget of steps"),
             };
-            self.scan(instance, &cx, end);
+            self.scan(instance, cx, end);
             self.same(scan + 1);
         }
         SCANS
