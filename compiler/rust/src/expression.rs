@@ -55,46 +55,23 @@ impl Function<'_> {
     fn apply(&self, expr: &Expr, op: Op, operands: &[Expr]) -> Code {
         let lane = self.operation_lane(expr, op, operands);
         let float = lane.is_float();
-        match op {
-            Op::Add | Op::Sub | Op::Mul if float => self.operator(op, operands),
-            Op::Div if float => self.operator(op, operands),
-            Op::Add => self.method("wrapping_add", operands),
-            Op::Sub => self.method("wrapping_sub", operands),
-            Op::Mul => self.method("wrapping_mul", operands),
-            Op::Neg if float => self.prefix(quote!(-), operands),
-            Op::Neg => self.method("wrapping_neg", operands),
-            Op::Not => self.not(&operands[0]),
-            Op::And | Op::Or if lane == Lane::Bool => self.logical(op, operands),
-            Op::And | Op::Or | Op::Xor | Op::Eq | Op::Ne | Op::Lt | Op::Le | Op::Gt | Op::Ge => {
-                self.operator(op, operands)
-            }
-            Op::Div
-            | Op::Mod
-            | Op::Abs
-            | Op::Expt
-            | Op::Sqrt
-            | Op::Ln
-            | Op::Log
-            | Op::Exp
-            | Op::Sin
-            | Op::Cos
-            | Op::Tan
-            | Op::Asin
-            | Op::Acos
-            | Op::Atan
-            | Op::Atan2
-            | Op::Shl
-            | Op::Shr
-            | Op::Sar
-            | Op::Rol
-            | Op::Ror
-            | Op::Max
-            | Op::Min
-            | Op::Limit
-            | Op::Sel
-            | Op::InRange
-            | Op::CheckIndex => self.call_op(expr, op, operands),
+        if lane == Lane::Bool && matches!(op, Op::And | Op::Or) {
+            return self.logical(op, operands);
         }
+        if op == Op::Not {
+            return self.not(&operands[0]);
+        }
+        if op == Op::Neg && float {
+            return self.prefix(quote!(-), operands);
+        }
+        if let Some(method) = wrapping(op).filter(|_| !float) {
+            return self.method(method, operands);
+        }
+        // A division of integers faults, where Rust's own would panic.
+        if operator(op).is_some() && (op != Op::Div || float) {
+            return self.operator(op, operands);
+        }
+        self.call_op(expr, op, operands)
     }
 
     /// The lane of the row's `T`.
@@ -122,7 +99,8 @@ impl Function<'_> {
         let mut printed = self.operands(op, operands).into_iter();
         let mut next = || printed.next().expect("verified IR: an operator has two operands");
         let (a, b) = (next(), next());
-        let (level, sign) = operator(op);
+        let (level, sign) = operator(op).expect("only what Rust has a sign for is printed as one");
+        let sign = sign();
         let a = match level {
             Level::Compare => a.above(level),
             _ => apart(a, level),
@@ -291,23 +269,35 @@ fn clearly(code: Code) -> TokenStream {
     if code.level == Level::LazyAnd { code.at_least(Level::Postfix) } else { code.at_least(Level::LazyOr) }
 }
 
-fn operator(op: Op) -> (Level, TokenStream) {
-    match op {
-        Op::Add => (Level::Sum, quote!(+)),
-        Op::Sub => (Level::Sum, quote!(-)),
-        Op::Mul => (Level::Product, quote!(*)),
-        Op::Div => (Level::Product, quote!(/)),
-        Op::And => (Level::And, quote!(&)),
-        Op::Or => (Level::Or, quote!(|)),
-        Op::Xor => (Level::Xor, quote!(^)),
-        Op::Eq => (Level::Compare, quote!(==)),
-        Op::Ne => (Level::Compare, quote!(!=)),
-        Op::Lt => (Level::Compare, quote!(<)),
-        Op::Le => (Level::Compare, quote!(<=)),
-        Op::Gt => (Level::Compare, quote!(>)),
-        Op::Ge => (Level::Compare, quote!(>=)),
-        _ => unreachable!("only operators with a sign in Rust are printed as one"),
-    }
+type Sign = fn() -> TokenStream;
+
+/// What Rust has a sign for.
+const SIGNS: &[(Op, Level, Sign)] = &[
+    (Op::Add, Level::Sum, || quote!(+)),
+    (Op::Sub, Level::Sum, || quote!(-)),
+    (Op::Mul, Level::Product, || quote!(*)),
+    (Op::Div, Level::Product, || quote!(/)),
+    (Op::And, Level::And, || quote!(&)),
+    (Op::Or, Level::Or, || quote!(|)),
+    (Op::Xor, Level::Xor, || quote!(^)),
+    (Op::Eq, Level::Compare, || quote!(==)),
+    (Op::Ne, Level::Compare, || quote!(!=)),
+    (Op::Lt, Level::Compare, || quote!(<)),
+    (Op::Le, Level::Compare, || quote!(<=)),
+    (Op::Gt, Level::Compare, || quote!(>)),
+    (Op::Ge, Level::Compare, || quote!(>=)),
+];
+
+fn operator(op: Op) -> Option<(Level, Sign)> {
+    SIGNS.iter().find(|(known, ..)| *known == op).map(|(_, level, sign)| (*level, *sign))
+}
+
+/// The integers' method for what wraps around.
+const WRAPPING: &[(Op, &str)] =
+    &[(Op::Add, "wrapping_add"), (Op::Sub, "wrapping_sub"), (Op::Mul, "wrapping_mul"), (Op::Neg, "wrapping_neg")];
+
+fn wrapping(op: Op) -> Option<&'static str> {
+    WRAPPING.iter().find(|(known, _)| *known == op).map(|(_, method)| *method)
 }
 
 /// Whether Rust has `From` between the lanes; it then means what `ops::convert` means.
