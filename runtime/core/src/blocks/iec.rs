@@ -4,9 +4,9 @@
 //! memory follows the input in every call, so an edge under reset or load is used up. Counting
 //! stops at the limits of the type.
 
-pub use super::bistable::{Rs, Sr};
-pub use super::edge::{FTrig, RTrig};
-pub use super::timer::{Tof, Ton, Tp};
+pub use super::bistable::*;
+pub use super::edge::*;
+pub use super::timer::*;
 
 use crate::block::pins;
 use crate::{Context, Scalar};

@@ -14,13 +14,12 @@ mod convert;
 mod index;
 mod step;
 
-pub use arithmetic::{abs, add, div, modulo, mul, neg, sub};
-pub use bits::{and, not, or, rol, ror, sar, shl, shr, xor};
-pub use class::{Bits, Integer, Number, Real};
-pub use compare::{eq, ge, gt, le, lt, ne};
-pub use convert::{ConvertTo, TruncateTo, convert, convert_value, trunc, trunc_value};
-pub use index::{checked_index, index};
-
-pub use math::{acos, asin, atan, atan2, cos, exp, expt, ln, log, sin, sqrt, tan};
-pub use select::{in_range, limit, max, min, sel};
-pub use step::{step, step_value};
+pub use arithmetic::*;
+pub use bits::*;
+pub use class::*;
+pub use compare::*;
+pub use convert::*;
+pub use index::*;
+pub use math::*;
+pub use select::*;
+pub use step::*;
