@@ -5,6 +5,7 @@ mod fixes;
 mod golden;
 mod vectors;
 
+mod constants;
 mod operations;
 mod programs;
 mod state;
