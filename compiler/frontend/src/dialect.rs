@@ -57,6 +57,26 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
+    /// TON, TOF and TP take an LTIME as well, as the standard overloads them.
+    pub const fn overloads_timers(self) -> bool {
+        matches!(self, Self::Iec)
+    }
+
+    /// A call of a block that names no input gives all of them.
+    pub const fn wants_all_positions(self) -> bool {
+        matches!(self, Self::Iec)
+    }
+
+    /// The internal variables of an instance may be read from outside.
+    pub const fn shows_inner_variables(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
+    /// A PROGRAM may be called by its name, and its variables read.
+    pub const fn calls_programs(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
     /// Nothing is assigned at an address of inputs, `%I`.
     pub const fn protects_inputs(self) -> bool {
         matches!(self, Self::Codesys)
@@ -92,8 +112,26 @@ pub(crate) fn family_name(family: Family) -> &'static str {
 
 /// The block called `name` in `family`.
 pub(crate) fn block_in(family: Family, name: &str) -> Option<BlockId> {
+    let typed = TYPED_TIMERS.iter().find(|(it, _)| family == Family::Iec && it.eq_ignore_ascii_case(name));
+    let name = typed.map_or(name, |(_, row)| row);
     let at = BLOCKS.iter().position(|it| it.family == family && it.name.eq_ignore_ascii_case(name))?;
     Some(BlockId::next(at))
+}
+
+/// The standard's names of the timers for one type, and ours.
+const TYPED_TIMERS: [(&str, &str); 6] = [
+    ("TON_TIME", "TON"),
+    ("TOF_TIME", "TOF"),
+    ("TP_TIME", "TP"),
+    ("TON_LTIME", "LTON"),
+    ("TOF_LTIME", "LTOF"),
+    ("TP_LTIME", "LTP"),
+];
+
+/// Whether a block is a timer that the standard overloads: TIME and LTIME count the same nanoseconds.
+pub(crate) fn is_overloaded_timer(block: BlockId) -> bool {
+    let info = block.info();
+    info.family == Family::Iec && matches!(info.name, "TON" | "TOF" | "TP")
 }
 
 /// A variant of a block that an option selects.

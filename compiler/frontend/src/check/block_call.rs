@@ -3,12 +3,15 @@
 use super::Checker;
 use super::argument::{Parts, Role, Source, as_written};
 use super::call::{Given, Parameter};
+use super::operand::Operand;
 use super::order::{Held, Written};
-use super::place::Found;
+use super::place::{Access, Found};
 use crate::declare::{Target, pin_place};
 use crate::diagnostic::wording::article;
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{BlockId, Expr, FieldId, Place, RoutineId, Section, StatementKind, StructId, Type};
+use staunch_ir::{
+    BlockId, Conversion, Elementary, Expr, FieldId, Place, RoutineId, Section, StatementKind, StructId, Type,
+};
 use staunch_runtime::{Direction, Family};
 
 impl<'s> Checker<'_, 's> {
@@ -53,11 +56,14 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn callable(&mut self, found: &Found<'s>, span: Span) -> Option<()> {
-        if let super::place::Access::Constant(name) = found.access {
-            self.error(Code::E0501, span, format!("`{}` is a CONSTANT and cannot be called", name.text));
-            return None;
+        match found.access {
+            Access::Constant(name) => {
+                self.error(Code::E0501, span, format!("`{}` is a CONSTANT and cannot be called", name.text));
+                None
+            }
+            Access::Inner(_) => self.may_be_given_away(found, span).then_some(()),
+            Access::Write | Access::OwnInput(_) | Access::Output(_) => Some(()),
         }
-        Some(())
     }
 
     fn standard_block(
@@ -93,6 +99,9 @@ impl<'s> Checker<'_, 's> {
         let moved = self.arguments_by_own_names(id, arguments);
         let arguments = moved.as_deref().unwrap_or(arguments);
         let given = self.bind(info.name, &parameters, arguments, |name| super::unresolved::unknown_pin(id, name))?;
+        if self.decl.dialect(span).wants_all_positions() {
+            self.require_all(info.name, &parameters, &given, arguments, |_, _| false, span)?;
+        }
         let mut parts = Parts::default();
         let place = found.place;
         parts.push(Held::Place(place.clone()), Role::Instance, callee);
@@ -108,7 +117,7 @@ impl<'s> Checker<'_, 's> {
                     let number = info.inputs().position(|it| it.name == parameter.name)?;
                     inputs[number] = Some(parts.written.len());
                     let (_, ty) = pin(id, parameter.name)?;
-                    self.value_part(&mut parts, expr, ty, Role::Passed(1 + number))
+                    self.pin_part(&mut parts, id, expr, ty, 1 + number)
                 }
                 Given::Output { target: Some(target), negated } => {
                     let (field, ty) = pin(id, parameter.name)?;
@@ -143,6 +152,19 @@ impl<'s> Checker<'_, 's> {
         self.perform(parts, &call, span).map(drop)
     }
 
+    /// Evaluates the next part, what is given for an input of a standard block.
+    fn pin_part(&mut self, parts: &mut Parts, id: BlockId, expr: &ast::Expr<'s>, ty: Type, turn: usize) -> Option<()> {
+        let overloaded = crate::dialect::is_overloaded_timer(id) && self.decl.dialect(expr.span).overloads_timers();
+        let value = self.after_parts(&mut parts.written, |this| match this.operand(expr, Some(ty))? {
+            Operand::Typed(value) if overloaded && value.ty == Type::Elementary(Elementary::Ltime) => {
+                Some(this.convert(Conversion::Value, ty, value))
+            }
+            operand => this.coerce(operand, ty, expr.span),
+        })?;
+        parts.push(Held::Value(value), Role::Passed(turn), expr.span);
+        Some(())
+    }
+
     /// Evaluates the next part, the variable that keeps a counter's count.
     fn count_part(&mut self, parts: &mut Parts, counter: &Place, id: BlockId, expr: &ast::Expr<'s>) -> Option<()> {
         let kept = self.after_parts(&mut parts.written, |this| this.retained_count(counter, expr))?;
@@ -161,6 +183,7 @@ impl<'s> Checker<'_, 's> {
     ) -> Option<()> {
         self.callable(&found, callee)?;
         let slot = self.decl.slot_of_instance(id)?;
+        self.decl.note_program_call(slot);
         let signature = self.decl.signature(slot)?;
         let owner = self.decl.pous[slot].ast.name.text;
         let formals = &signature.formals;
@@ -168,6 +191,10 @@ impl<'s> Checker<'_, 's> {
         let parameters: Vec<_> =
             formals.iter().map(|it| Parameter { name: it.name.text, section: it.section }).collect();
         let given = self.bind(owner, &parameters, arguments, |name| Self::unknown_formal(owner, formals, name))?;
+        if self.decl.dialect(span).wants_all_positions() {
+            let is_optional = |this: &Self, at: usize| this.has_initial(&formals[at], slot);
+            self.require_all(owner, &parameters, &given, arguments, is_optional, span)?;
+        }
         let mut parts = Parts::default();
         parts.push(Held::Place(found.place), Role::Instance, callee);
         let mut references = vec![None; formals.len()];

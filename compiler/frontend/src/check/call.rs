@@ -253,6 +253,9 @@ impl<'s> Checker<'_, 's> {
                 if pou.kind == ast::PouKind::Function {
                     return Some(Callee::Function(slot));
                 }
+                if self.is_callable_program(slot, name) {
+                    return Some(Callee::Instance);
+                }
                 return self.report_type_called(name, pou.kind);
             }
             Some(Entry::Type(_)) => {
@@ -490,6 +493,46 @@ impl<'s> Checker<'_, 's> {
             [one] => error.note(format!("it is {one}")),
             names => error.note(format!("they are {}", names.join(", "))),
         }
+    }
+
+    /// A call that names no parameter gives all inputs: who counts them must not wonder which one is
+    /// missing. Those with a declared value, which `is_optional` tells, may be left out behind the others.
+    pub(super) fn require_all(
+        &mut self,
+        owner: &str,
+        parameters: &[Parameter<'_>],
+        given: &[Given<'_, 's>],
+        arguments: &[ast::Argument<'s>],
+        is_optional: impl Fn(&Self, usize) -> bool,
+        span: Span,
+    ) -> Option<()> {
+        let positional = arguments.iter().all(|it| matches!(it.kind, ArgumentKind::Positional(_)));
+        if arguments.is_empty() || !positional {
+            return Some(());
+        }
+        let inputs = || (0..parameters.len()).filter(|at| parameters[*at].section != Section::Output);
+        let is_missing = |this: &Self, at: usize| {
+            parameters[at].section == Section::Input && matches!(given[at], Given::Nothing) && !is_optional(this, at)
+        };
+        let missing: Vec<_> = inputs().filter(|at| is_missing(self, *at)).map(|at| parameters[at].name).collect();
+        if missing.is_empty() {
+            return Some(());
+        }
+        let names: Vec<_> = inputs().map(|at| parameters[at].name).collect();
+        let left_out =
+            if let [one] = missing.as_slice() { format!("`{one}` is left out") } else { "too few".to_owned() };
+        let message = format!("`{owner}` takes {}, this call gives {}", plural(names.len()), arguments.len());
+        self.report(
+            Diagnostic::new(Code::E0302, span, message)
+                .label(left_out)
+                .note(format!("they are {}", names.join(", ")))
+                .help(if self.decl.dialect(span).wants_all_inputs() {
+                    "give all of them".to_owned()
+                } else {
+                    format!("give all of them, or name those that you give: `{} := …`", names[0])
+                }),
+        );
+        None
     }
 
     pub(super) fn unknown_formal(owner: &str, formals: &[Formal<'s>], name: ast::Name<'s>) -> Diagnostic {

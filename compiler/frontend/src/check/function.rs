@@ -3,7 +3,7 @@
 use super::Checker;
 use super::argument::{Parts, Role, Source, as_written};
 use super::call::{Given, Parameter};
-use crate::declare::{Entry, Formal, Resolved, Signature, Target};
+use crate::declare::{Formal, Resolved, Signature, Target};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Argument, Expr, ExprKind, Mode, ParamId, Place, Root, RoutineId, Section, StatementKind};
 
@@ -32,6 +32,8 @@ impl<'s> Checker<'_, 's> {
             formals.iter().map(|it| Parameter { name: it.name.text, section: it.section }).collect();
         let given =
             self.bind(owner.text, &parameters, arguments, |name| Self::unknown_formal(owner.text, formals, name))?;
+        let is_optional = |this: &Self, at: usize| this.has_initial(&formals[at], slot);
+        let enough = self.require_all(owner.text, &parameters, &given, arguments, is_optional, span).is_some();
         let mut parts = Parts::default();
         let mut passed: Vec<Option<Passed>> = Vec::new();
         passed.resize_with(formals.len(), || None);
@@ -52,10 +54,13 @@ impl<'s> Checker<'_, 's> {
                 passed[at] = None;
             }
         }
+        if !enough {
+            return None;
+        }
         let mut complete = true;
         for at in 0..formals.len() {
             if let Given::Nothing | Given::Output { target: None, .. } = given[at] {
-                passed[at] = self.left_out(&signature, at, owner, span);
+                passed[at] = self.left_out(&signature, at, slot, span);
             }
             complete &= passed[at].is_some();
         }
@@ -107,28 +112,29 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// What is passed for a parameter that a call does not name.
-    fn left_out(&mut self, signature: &Signature<'s>, at: usize, owner: ast::Name<'s>, span: Span) -> Option<Passed> {
+    fn left_out(&mut self, signature: &Signature<'s>, at: usize, slot: usize, span: Span) -> Option<Passed> {
         let formal = &signature.formals[at];
         match (signature.params[at].mode, formal.section) {
             (Mode::Value(_), _) => {
-                self.input_left_out(formal, owner, span)?;
+                self.input_left_out(formal, slot, span)?;
                 Some(Passed::Default(self.initial_value(&formal.resolved, span)))
             }
             (Mode::Reference, Section::Output) => {
                 Some(Passed::Output(self.temporary(formal.name.text, formal.resolved.ty)))
             }
             (Mode::Reference, _) => {
-                self.report_no_variable(formal, owner.text, span);
+                self.report_no_variable(formal, self.decl.pous[slot].ast.name.text, span);
                 None
             }
         }
     }
 
     /// Reports an input without an initial value of its own that a call leaves out. CODESYS refuses it.
-    fn input_left_out(&mut self, formal: &Formal<'s>, owner: ast::Name<'s>, span: Span) -> Option<()> {
-        if self.has_initial(formal, owner) {
+    fn input_left_out(&mut self, formal: &Formal<'s>, slot: usize, span: Span) -> Option<()> {
+        if self.has_initial(formal, slot) {
             return Some(());
         }
+        let owner = self.decl.pous[slot].ast.name;
         let (name, refused) = (formal.name.text, self.decl.dialect(span).wants_all_inputs());
         let ty = self.type_name(formal.resolved.ty);
         let code = if refused { Code::E0303 } else { Code::W0304 };
@@ -147,9 +153,8 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// Whether a formal's declaration, or its type's, gives it a value.
-    fn has_initial(&self, formal: &Formal<'s>, owner: ast::Name<'s>) -> bool {
-        let Some(Entry::Pou(slot)) = self.decl.names.get(&crate::names::Key(owner.text)) else { return true };
-        let pou = self.decl.pous[*slot].ast;
+    pub(super) fn has_initial(&self, formal: &Formal<'s>, slot: usize) -> bool {
+        let pou = self.decl.pous[slot].ast;
         let declared = pou.blocks.iter().flat_map(|it| &it.vars);
         let given = declared
             .filter(|it| it.names.iter().any(|name| name.span == formal.name.span))

@@ -82,7 +82,12 @@ pub(crate) fn bodies<'s>(
         }
         Some((routine, uses))
     };
-    statements.into_iter().enumerate().map(checked).collect()
+    let made = statements.into_iter().enumerate().map(checked).collect();
+    // A variable may be read from outside as well.
+    for at in 0..decl.pous.len() {
+        report_unused(decl, at);
+    }
+    made
 }
 
 /// The calls in a block, which is what later checks ask of it.
@@ -126,7 +131,6 @@ fn body<'s>(decl: &mut Declarations<'s>, at: usize, statements: &[ast::Statement
     whole.append(&mut body);
     let uses = checker.finish_uses();
     let locals = std::mem::take(&mut checker.locals);
-    checker.report_unused(&signature);
     let location = decl.location(pou.name.span);
     let kind = if pou.kind == ast::PouKind::Function { RoutineKind::Function } else { RoutineKind::Body };
     let body = Routine {
@@ -238,17 +242,18 @@ impl<'s> Checker<'_, 's> {
         make(self);
         std::mem::replace(&mut self.block, outer)
     }
+}
 
-    fn report_unused(&mut self, signature: &Signature<'s>) {
-        for variable in &signature.scope.variables {
-            use staunch_ir::Section;
-            let internal = matches!(variable.section, Section::Internal | Section::Temp | Section::External);
-            if internal && !variable.used.get() && !variable.name.text.starts_with(['_', '%']) {
-                self.decl.report(
-                    Diagnostic::new(Code::W0501, variable.name.span, format!("`{}` is never used", variable.name.text))
-                        .label("declared here, read and written nowhere"),
-                );
-            }
+fn report_unused(decl: &mut Declarations<'_>, slot: usize) {
+    use staunch_ir::Section;
+    let Some(signature) = decl.signature(slot) else { return };
+    for variable in &signature.scope.variables {
+        let internal = matches!(variable.section, Section::Internal | Section::Temp | Section::External);
+        if internal && !variable.used.get() && !variable.name.text.starts_with(['_', '%']) {
+            decl.report(
+                Diagnostic::new(Code::W0501, variable.name.span, format!("`{}` is never used", variable.name.text))
+                    .label("declared here, read and written nowhere"),
+            );
         }
     }
 }

@@ -27,6 +27,8 @@ pub(super) enum Access<'s> {
     OwnInput(ast::Name<'s>),
     /// An output of a block, seen from outside.
     Output(ast::Name<'s>),
+    /// An internal variable of an instance, or what is part of one, seen from outside.
+    Inner(ast::Name<'s>),
 }
 
 /// A part of an integer or bit string: `.3`, `.%W1`.
@@ -127,11 +129,21 @@ impl<'s> Checker<'_, 's> {
                 }
                 Some(variable)
             }
+            Some(Entry::Pou(slot)) if self.is_callable_program(slot, name) => {
+                Some(self.decl.program_variable(slot, name.span))
+            }
             Some(Entry::Pou(_) | Entry::Type(_)) | None => {
                 // A variable whose declaration was refused is not reported again at every use.
                 self.declared_but_refused(name).then_some(None)
             }
         }
+    }
+
+    /// Whether a name means a PROGRAM that may be called, or read, by it.
+    pub(super) fn is_callable_program(&self, slot: usize, name: ast::Name<'s>) -> bool {
+        self.signature.is_some()
+            && self.decl.pous[slot].ast.kind == ast::PouKind::Program
+            && self.decl.dialect(name.span).calls_programs()
     }
 
     /// A FUNCTION's own name is its result.
@@ -235,13 +247,18 @@ impl<'s> Checker<'_, 's> {
         let fields = &self.decl.program.structure(id).fields;
         let at = fields.iter().position(|it| it.name.eq_ignore_ascii_case(name.text));
         let Some(at) = at else {
+            if let Some(shared) = self.shared_member(&found.place, id, name) {
+                return Some(shared);
+            }
+            let fields = &self.decl.program.structure(id).fields;
             let visible = fields.iter().filter(|it| !instance || is_pin(it.section));
             let near = nearest(name.text, visible.map(|it| it.name.as_str())).map(str::to_owned);
             self.decl.unknown_member(name, found.place.ty, near.as_deref());
             return None;
         };
         let (ty, section, constant) = (fields[at].ty, fields[at].section, fields[at].constant);
-        if instance && !is_pin(section) {
+        let inner = instance && !is_pin(section);
+        if inner && self.seen_from_outside(id, name).is_none() {
             let owner = self.type_name(found.place.ty);
             self.report(
                 Diagnostic::new(
@@ -254,13 +271,44 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let access = match section {
+            _ if matches!(found.access, Access::Inner(_)) => found.access,
             _ if constant => Access::Constant(name),
+            _ if inner => Access::Inner(name),
             Section::Output if instance => Access::Output(name),
             // A structure in a constant stays constant; an instance's input is for its callers.
             _ if instance => Access::Write,
             _ => found.access,
         };
         Some(Found { place: found.place.field(FieldId::next(at), ty), access })
+    }
+
+    /// A variable of an instance that a dialect lets others read.
+    fn seen_from_outside(&mut self, id: StructId, name: ast::Name<'s>) -> Option<Rc<Variable<'s>>> {
+        if !self.decl.dialect(name.span).shows_inner_variables() {
+            return None;
+        }
+        let slot = self.decl.slot_of_instance(id)?;
+        let variable = Rc::clone(self.decl.signature(slot)?.scope.get(name.text)?);
+        let own = !matches!(variable.section, Section::External | Section::InOut | Section::Temp);
+        variable.used.set(true);
+        own.then_some(variable)
+    }
+
+    /// A member that all instances share: it lies at an address, or is VAR_STAT.
+    fn shared_member(&mut self, instance: &Place, id: StructId, name: ast::Name<'s>) -> Option<Found<'s>> {
+        // Nothing would check the index of an element whose own storage is not looked at.
+        let one = instance.indices().next().is_none();
+        let variable =
+            self.seen_from_outside(id, name).filter(|it| one && it.place.root == staunch_ir::Root::Globals)?;
+        let access = match variable.section {
+            _ if variable.constant => Access::Constant(name),
+            Section::Input => Access::Write,
+            Section::Output => Access::Output(name),
+            Section::Internal | Section::Global | Section::InOut | Section::Temp | Section::External => {
+                Access::Inner(name)
+            }
+        };
+        Some(Found { place: variable.place.clone(), access })
     }
 
     /// Where the VAR_IN_OUT `name` of an instance is declared.
@@ -288,7 +336,11 @@ impl<'s> Checker<'_, 's> {
             self.report(super::unresolved::unknown_pin(id, name));
             return None;
         };
-        let access = if pins[at].direction == Direction::Output { Access::Output(name) } else { Access::Write };
+        let access = match found.access {
+            Access::Inner(_) => found.access,
+            _ if pins[at].direction == Direction::Output => Access::Output(name),
+            Access::Write | Access::Constant(_) | Access::OwnInput(_) | Access::Output(_) => Access::Write,
+        };
         let field = FieldId::next(at);
         Some(Found { place: found.place.field(field, id.pin_type(field)?), access })
     }
@@ -484,6 +536,13 @@ impl<'s> Checker<'_, 's> {
                 self.report(
                     Diagnostic::new(Code::E0504, span, format!("`{}` is an output", name.text))
                         .label("only the block itself sets its outputs"),
+                );
+                false
+            }
+            Access::Inner(name) => {
+                self.report(
+                    Diagnostic::new(Code::E0109, span, format!("`{}` is an internal variable", name.text))
+                        .label("from outside it can only be read"),
                 );
                 false
             }

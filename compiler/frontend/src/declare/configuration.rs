@@ -10,7 +10,7 @@ use staunch_ir::{Instance, Value};
 
 const LOWEST_PRIORITY: u32 = 65535;
 
-/// Fills the program's instances: those of the configurations, or else one of each PROGRAM.
+/// Fills the program's instances: those of the configurations, or else one of each PROGRAM that no other calls.
 pub(super) fn instances(declarations: &mut Declarations<'_>) {
     let configurations = declarations.configurations.clone();
     declarations.check_configurations(&configurations);
@@ -20,8 +20,9 @@ pub(super) fn instances(declarations: &mut Declarations<'_>) {
     if !declarations.program.instances.is_empty() {
         return;
     }
-    let programs: Vec<_> =
-        (0..declarations.pous.len()).filter(|at| declarations.pous[*at].ast.kind == ast::PouKind::Program).collect();
+    let is_program = |at: &usize| declarations.pous[*at].ast.kind == ast::PouKind::Program;
+    let runs = |at: &usize| is_program(at) && !declarations.is_named_program(*at);
+    let programs: Vec<_> = (0..declarations.pous.len()).filter(runs).collect();
     for at in programs {
         let Some(program) = declarations.class_of_slot(at) else { continue };
         declarations.program.instances.push(Instance {
@@ -117,6 +118,9 @@ impl<'s> Declarations<'s> {
                 return;
             }
         };
+        if self.report_called_and_listed(program, instance.program.span) {
+            return;
+        }
         let Some(program) = self.class_of_slot(program) else { return };
         self.program.instances.push(Instance {
             name: instance.name.text.to_owned(),

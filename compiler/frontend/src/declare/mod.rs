@@ -4,6 +4,7 @@
 //! asked for; one that needs itself is a cycle.
 
 mod address;
+mod called_program;
 mod configuration;
 mod initial;
 mod order;
@@ -29,7 +30,7 @@ use staunch_ir::{
 };
 use std::rc::Rc;
 
-/// Stands for the globals' structure until it is made, when all globals are known.
+/// Stands for the globals' structure until it is made, when all declared globals are known.
 pub(crate) const GLOBALS: StructId = StructId(u32::MAX);
 
 /// Pragmas that change what a program means: to pass over them would compile another program.
@@ -115,6 +116,8 @@ pub(crate) struct Declarations<'s> {
     pub configurations: Vec<&'s ast::Configuration<'s>>,
     pub addresses: address::Addresses,
     pub hidden: synthetic::Hidden<'s>,
+    /// By their slots.
+    named_programs: FxHashMap<usize, called_program::Named<'s>>,
     pub program: Program,
     /// For each array of `program`, what its elements are.
     pub elements: Vec<Resolved>,
@@ -160,6 +163,7 @@ pub(crate) fn declare<'s>(
     }
     declarations.addresses = address::collect(&mut declarations, &statements);
     declarations.resolve_all();
+    declarations.find_named_programs(&statements);
     declarations.declare_globals();
     declarations.untyped = untyped(&declarations.pous, &statements);
     let unassigned = unassigned_results(&declarations.pous, &statements);
@@ -224,6 +228,7 @@ impl<'s> Declarations<'s> {
             configurations: Vec::new(),
             addresses: address::Addresses::default(),
             hidden: synthetic::Hidden::default(),
+            named_programs: FxHashMap::default(),
             program: empty_program(files),
             elements: Vec::new(),
             sizes: Vec::new(),
@@ -593,6 +598,7 @@ impl<'s> Declarations<'s> {
         let (routines, uses) = bodies.into_iter().collect::<Option<Vec<_>>>()?.into_iter().unzip();
         self.program.routines = routines;
         self.program.classes = (0..self.pous.len()).filter_map(|slot| self.class(slot)).collect();
+        self.check_named_programs();
         configuration::instances(self);
         order::order(self, uses)?;
         self.check_size()?;
@@ -603,6 +609,8 @@ impl<'s> Declarations<'s> {
     fn class(&mut self, slot: usize) -> Option<Class> {
         let pou = self.pous[slot].ast;
         let kind = match pou.kind {
+            // Who is called has an instance, as a FUNCTION_BLOCK has.
+            ast::PouKind::Program if self.is_named_program(slot) => ClassKind::FunctionBlock,
             ast::PouKind::Program => ClassKind::Program,
             ast::PouKind::FunctionBlock => ClassKind::FunctionBlock,
             ast::PouKind::Function => return None,

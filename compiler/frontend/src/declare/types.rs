@@ -243,8 +243,7 @@ impl<'s> Declarations<'s> {
             return None;
         }
         let signature = self.signature(at)?;
-        let state = signature.state?;
-        Some(Resolved { ty: Type::Struct(state), initial: struct_initial(&self.program.structure(state).fields) })
+        Some(instance_of(&self.program, signature.state?))
     }
 
     fn report_unknown_type(&mut self, name: ast::Name<'s>) {
@@ -567,6 +566,11 @@ impl<'s> Declarations<'s> {
         self.program.enums.push(Enum { name: name.to_owned(), doc, location, base, values: enumerators });
         Some(Resolved { ty: Type::Enum(id), initial: scalar_initial(first) })
     }
+}
+
+/// An instance of the POU with this state.
+pub(super) fn instance_of(program: &staunch_ir::Program, state: StructId) -> Resolved {
+    Resolved { ty: Type::Struct(state), initial: struct_initial(&program.structure(state).fields) }
 }
 
 /// The initial value of a structure: all zero where every field's is.

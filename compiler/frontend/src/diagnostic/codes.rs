@@ -282,7 +282,8 @@ Qualify it: `Color#Red` or `Color.Red`.
 ";
     E0109 Error "internal variable"
 "From outside an instance only its inputs and outputs can be reached. Declare the variable in
-VAR_OUTPUT to show it.
+VAR_OUTPUT to show it. In the codesys dialect an internal variable can be read from outside, but not assigned,
+given to a VAR_IN_OUT or called.
 ";
     E0201 Error "wrong type"
 "The value is of another type than its place, and no implicit conversion leads there.
@@ -345,7 +346,11 @@ input is `LD` or `LOAD`. Positional arguments mean the same in all of them.
 ";
     E0302 Error "wrong number of arguments"
 "A call gives more or fewer arguments than the function takes, or an array more indices than it
-has dimensions. A block's inputs may be omitted: they keep their values.
+has dimensions. A call that names its arguments may leave out a block's inputs, which keep their values. One that
+names none gives all inputs of a FUNCTION, and in the iec dialect of a block, but those with a declared value.
+
+    x := Scale(raw);                     (* before *)
+    x := Scale(raw, 2.0);                (* after *)
 ";
     E0303 Error "argument missing"
 "A VAR_IN_OUT works on the caller's variable, so each call names one. In the codesys dialect a call of a FUNCTION
@@ -356,7 +361,7 @@ also gives every input that has no default.
 ";
     E0305 Error "cannot be called"
 "Only functions and instances of blocks are called. A FUNCTION_BLOCK is a type: declare an
-instance and call that.
+instance and call that. A PROGRAM is called in the codesys dialect only.
 ";
     E0306 Error "a variable is needed"
 "The call writes here, so a literal or expression will not do.
