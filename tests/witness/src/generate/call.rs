@@ -96,8 +96,10 @@ impl Writer {
             arguments.push(self.argument(parameter, depth)?.1);
         }
         for parameter in named {
+            // A call without names gives all inputs.
+            let has_names = positional == 0 || arguments.len() > positional;
             let left_out = match parameter.section {
-                Section::Input => self.random.once_in(if of_function { 6 } else { 3 }),
+                Section::Input => has_names && self.random.once_in(if of_function { 6 } else { 3 }),
                 Section::Output => self.random.once_in(3),
                 Section::InOut => false,
             };
