@@ -35,6 +35,7 @@ pub mod interpret;
 pub mod layout;
 pub mod loops;
 pub mod symbols;
+pub mod usage;
 
 #[cfg(test)]
 mod fixture;

@@ -4,6 +4,7 @@
 //! array names its element's type), so the map grows with declarations, not with elements.
 
 use crate::layout::Layout;
+use crate::usage::used_globals;
 use crate::{
     Address, BlockId, Class, ClassKind, Field, FieldId, Program, Projection, Retain, Root, Section, StructId, Type,
     Variable,
@@ -31,10 +32,11 @@ pub const VERSION: u32 = 1;
 /// variable   instance  name  section  type  offset in the machine  flags  address  low..high
 /// ```
 ///
+/// The flags are `retain`, `restarts`, `constant`, and `used`, of a global that some instance uses.
 /// A type is an IEC name, `STRING[n]`, or `enum:id`, `array:id`, `struct:id`, `block:id`. A
 /// variable that lives for one call has no record.
 pub fn map_text(program: &Program, layout: &Layout) -> String {
-    let mut map = Map { program, layout, text: String::new() };
+    let mut map = Map { program, layout, used: used_globals(program), text: String::new() };
     map.write().expect("writing to a String does not fail");
     map.text
 }
@@ -42,6 +44,7 @@ pub fn map_text(program: &Program, layout: &Layout) -> String {
 struct Map<'a> {
     program: &'a Program,
     layout: &'a Layout,
+    used: BTreeSet<FieldId>,
     text: String,
 }
 
@@ -51,6 +54,8 @@ struct Attributes {
     /// Starts anew, although what it is a part of is retained.
     restarts: bool,
     constant: bool,
+    /// Of a global: some instance uses it.
+    used: bool,
     address: Option<Address>,
     range: Option<(i128, i128)>,
 }
@@ -99,7 +104,8 @@ impl Map<'_> {
             writeln!(self.text, "struct\t{id}\t{name}\t{size}\t{kind}")?;
             for (position, field) in structure.fields.iter().enumerate() {
                 let offset = self.layout.offset(ty, FieldId::next(position));
-                self.field(field, offset)?;
+                let used = id == self.program.globals.index() && self.used.contains(&FieldId::next(position));
+                self.field(field, offset, used)?;
             }
             if id == self.program.globals.index() {
                 self.aliases()?;
@@ -111,13 +117,18 @@ impl Map<'_> {
     /// A field of the globals under its other names.
     fn aliases(&mut self) -> fmt::Result {
         for alias in &self.program.aliases {
-            let Some((offset, attributes)) = self.storage(None, alias, 0) else { continue };
+            let Some((offset, mut attributes)) = self.storage(None, alias, 0) else { continue };
+            attributes.used = self.is_used(alias);
             let offset = offset - self.layout.machine.globals;
             let (section, ty) = (section_name(alias.section), TypeName(alias.place.ty));
             write!(self.text, "field\t{}\t{ty}\t{offset}\t{section}", alias.name)?;
             self.write_attributes(&attributes)?;
         }
         Ok(())
+    }
+
+    fn is_used(&self, alias: &Variable) -> bool {
+        matches!(alias.place.projections.first(), Some(Projection::Field(id)) if self.used.contains(id))
     }
 
     /// A structure's members are all for users; an instance's inputs and outputs are.
@@ -130,11 +141,10 @@ impl Map<'_> {
         }
     }
 
-    fn field(&mut self, field: &Field, offset: u64) -> fmt::Result {
+    fn field(&mut self, field: &Field, offset: u64, used: bool) -> fmt::Result {
         let section = section_name(field.section);
         write!(self.text, "field\t{}\t{}\t{offset}\t{section}", field.name, TypeName(field.ty))?;
-        let attributes = self.attributes_of(field);
-        self.write_attributes(&attributes)
+        self.write_attributes(&Attributes { used, ..self.attributes_of(field) })
     }
 
     /// The standard blocks that the program's types mention.
@@ -224,6 +234,7 @@ impl Map<'_> {
             retain: field.retain == Retain::Kept || retentive,
             restarts: field.retain == Retain::Anew && !retentive,
             constant: field.constant,
+            used: false,
             address: field.address,
             // A subrange of elements stands at their array.
             range: self.program.range(ty),
@@ -232,8 +243,12 @@ impl Map<'_> {
 
     /// `flags`, `address` and `range`, to the end of the line.
     fn write_attributes(&mut self, attributes: &Attributes) -> fmt::Result {
-        let flags =
-            [("retain", attributes.retain), ("restarts", attributes.restarts), ("constant", attributes.constant)];
+        let flags = [
+            ("retain", attributes.retain),
+            ("restarts", attributes.restarts),
+            ("constant", attributes.constant),
+            ("used", attributes.used),
+        ];
         let flags: Vec<_> = flags.into_iter().filter(|(_, is_set)| *is_set).map(|(name, _)| name).collect();
         let flags = if flags.is_empty() { "-".to_owned() } else { flags.join(",") };
         write!(self.text, "\t{flags}\t")?;
@@ -249,7 +264,8 @@ impl Map<'_> {
 }
 
 impl Attributes {
-    const NONE: Self = Self { retain: false, restarts: false, constant: false, address: None, range: None };
+    const NONE: Self =
+        Self { retain: false, restarts: false, constant: false, used: false, address: None, range: None };
 }
 
 /// A type as the map writes it.

@@ -1,7 +1,8 @@
 //! Which values a trace shows, and under which heading.
 
-use crate::map::{Map, Section, StructureKind, Type};
+use crate::map::{Map, Section, StructureKind, Type, Variable};
 use crate::path::{self, Place};
+use std::collections::HashSet;
 
 /// One elementary value.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,7 +11,8 @@ pub(crate) struct Column {
     pub place: Place,
 }
 
-/// Every variable of the running programs in declaration order, or what `vars` asks for.
+/// What `vars` asks for, or the globals that the programs use, and then the variables of those that
+/// run: each in the order of declaration.
 ///
 /// The error is a sentence without a full stop.
 pub(crate) fn columns(map: &Map, running: &[usize], vars: Option<&str>) -> Result<Vec<Column>, String> {
@@ -22,6 +24,7 @@ pub(crate) fn columns(map: &Map, running: &[usize], vars: Option<&str>) -> Resul
             }
         }
         None => {
+            used_globals(map, running, &mut columns);
             for at in running {
                 let instance = &map.instances[*at];
                 let prefix = if running.len() > 1 { format!("{}.", instance.name) } else { String::new() };
@@ -32,6 +35,27 @@ pub(crate) fn columns(map: &Map, running: &[usize], vars: Option<&str>) -> Resul
         }
     }
     Ok(columns)
+}
+
+/// Globals that a program names itself, as VAR_EXTERNAL or by the same address, are among its variables,
+/// and constants show nothing.
+fn used_globals(map: &Map, running: &[usize], out: &mut Vec<Column>) {
+    let (globals, base) = map.globals();
+    let own: HashSet<usize> = running.iter().flat_map(|at| &map.instances[*at].variables).map(|it| it.offset).collect();
+    for variable in globals.iter().filter(|it| it.used && !it.constant) {
+        let place = Place::of(variable, base);
+        if !own.contains(&place.offset) {
+            expand(map, global_heading(variable), place, out);
+        }
+    }
+}
+
+/// A variable that is only there for its address has the address as its name.
+fn global_heading(variable: &Variable) -> String {
+    match &variable.address {
+        Some(address) if address[1..].replace('.', "_") == variable.name => address.clone(),
+        _ => variable.name.clone(),
+    }
 }
 
 /// Parts at commas outside brackets.
@@ -70,7 +94,11 @@ fn elements(map: &Map, heading: &str, indices: String, place: Place, out: &mut V
 
 fn members(map: &Map, heading: &str, place: Place, out: &mut Vec<Column>) {
     let Some(structure) = map.structure(place.ty) else { return };
-    let all = matches!(structure.kind, StructureKind::Structure | StructureKind::Globals);
+    // A PROGRAM inside of the globals is one that another program calls.
+    let all = match structure.kind {
+        StructureKind::Structure | StructureKind::Globals | StructureKind::Program => true,
+        StructureKind::FunctionBlock | StructureKind::Standard => false,
+    };
     for member in &structure.members {
         let shown = match member.section {
             Section::Input | Section::Output | Section::Member => true,
@@ -87,7 +115,7 @@ fn members(map: &Map, heading: &str, place: Place, out: &mut Vec<Column>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixture::map;
+    use crate::fixture::{MAP, map};
 
     fn headings(vars: Option<&str>) -> Vec<String> {
         columns(&map(), &[0], vars).unwrap().into_iter().map(|it| it.heading).collect()
@@ -98,6 +126,23 @@ mod tests {
         let expected = "up c.CU c.R c.PV c.Q c.CV m[1,-1] m[1,0] m[1,1] m[1,2] m[2,-1] m[2,0] m[2,1] m[2,2] speed \
                         colour name pause level limit mixer.run corner.x corner.y total";
         assert_eq!(headings(None).join(" "), expected);
+    }
+
+    #[test]
+    fn globals_in_use_come_first_and_once() {
+        let globals = "field\ttotal\tDINT\t0\tglobal\tretain,used\t-\t-
+field\tlamp\tBOOL\t4\tglobal\tused\t%QX0.1\t-
+field\tQX0_5\tBOOL\t5\tglobal\tused\t%QX0.5\t-
+field\tspare\tBOOL\t6\tglobal\t-\t-\t-
+field\tfixed\tBOOL\t7\tglobal\tconstant,used\t-\t-\t-
+";
+        let (before, after) = MAP.split_at(MAP.find("field\ttotal").unwrap());
+        let map = Map::parse(&format!("{before}{globals}{}", &after[after.find("block").unwrap()..])).unwrap();
+        let columns = columns(&map, &[0], None).unwrap();
+        let headings: Vec<&str> = columns.iter().map(|it| it.heading.as_str()).collect();
+        assert_eq!(headings[..3], ["lamp", "%QX0.5", "up"]);
+        assert_eq!(headings.iter().filter(|it| **it == "total").count(), 1);
+        assert!(!headings.contains(&"spare") && !headings.contains(&"fixed"), "{headings:?}");
     }
 
     #[test]

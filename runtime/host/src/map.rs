@@ -98,6 +98,8 @@ pub struct Variable {
     /// Starts anew, although what it is a part of is retained.
     pub restarts: bool,
     pub constant: bool,
+    /// Of a global: some instance uses it.
+    pub used: bool,
     /// `%IX0.0`
     pub address: Option<String>,
     pub range: Option<(i128, i128)>,
@@ -282,7 +284,18 @@ impl Array {
 
 impl Variable {
     fn new(name: String, ty: Type, offset: usize, section: Section) -> Self {
-        Self { name, ty, offset, section, retain: false, restarts: false, constant: false, address: None, range: None }
+        Self {
+            name,
+            ty,
+            offset,
+            section,
+            retain: false,
+            restarts: false,
+            constant: false,
+            used: false,
+            address: None,
+            range: None,
+        }
     }
 
     /// TRUE for what the world outside writes: it holds its value over a restart.
@@ -369,6 +382,7 @@ impl<'a> Record<'a> {
                 "retain" => variable.retain = true,
                 "restarts" => variable.restarts = true,
                 "constant" => variable.constant = true,
+                "used" => variable.used = true,
                 _ => {}
             }
         }

@@ -41,6 +41,35 @@ fn a_trace_has_every_variable_in_order_and_spelling() {
     assert_eq!(folder.read("out.csv"), folder.staunch("run types.st --scans 1 --trace - -q").out(0));
 }
 
+const CONVEYOR: &str = "VAR_GLOBAL
+    Start AT %IX0.0 : BOOL := TRUE; Motor AT %QX0.0 : BOOL; spare : INT; parts : INT; total : INT;
+END_VAR
+VAR_GLOBAL CONSTANT lot : INT := 3; END_VAR
+FUNCTION_BLOCK Belt VAR_EXTERNAL parts : INT; END_VAR parts := parts + lot; END_FUNCTION_BLOCK
+FUNCTION_BLOCK Idle VAR_EXTERNAL spare : INT; END_VAR spare := 1; END_FUNCTION_BLOCK
+PROGRAM Main
+VAR_EXTERNAL total : INT; END_VAR
+VAR belt : Belt; load : INT; END_VAR
+belt();
+Motor := Start AND NOT %IX3.1;
+total := total + 1;
+END_PROGRAM
+";
+
+#[test]
+fn a_trace_has_the_globals_in_use_first() {
+    let folder = Folder::with("globals", &[("main.st", CONVEYOR)]);
+    let expected = "scan,time_ms,Start,Motor,parts,%IX3.1,total,load\n1,0,TRUE,TRUE,3,FALSE,1,0\n";
+    for backend in ["native", "interpret", "rust"] {
+        let run = format!("run main.st --scans 1 --trace - -A warnings --backend {backend}");
+        assert_eq!(folder.staunch(&run).out(0), expected, "{backend}");
+    }
+    folder.staunch("build main.st -o plant -q -A warnings").out(0);
+    let built = std::process::Command::new(folder.0.join("plant")).args(["--scans", "1", "--trace", "-"]).output();
+    assert_eq!(super::Ran::of(built.unwrap()).out(0), expected);
+    has(&folder.staunch("run main.st --scans 1 -A warnings").out(0), &["Start  Motor  parts  %IX3.1  total  load"]);
+}
+
 #[test]
 fn names_are_paths_in_any_case() {
     let folder = Folder::with("names", &[("types.st", TYPES)]);
