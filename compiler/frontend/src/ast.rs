@@ -291,6 +291,16 @@ pub struct Expr<'s> {
     pub span: Span,
 }
 
+impl Expr<'_> {
+    /// The expression in its parentheses.
+    pub(crate) fn bare(&self) -> &Self {
+        match &self.kind {
+            ExprKind::Paren(inner) => inner.bare(),
+            _ => self,
+        }
+    }
+}
+
 #[derive(Clone, Debug)]
 pub enum ExprKind<'s> {
     Literal(Literal<'s>),
@@ -464,7 +474,8 @@ pub(crate) fn each_expr<'a, 's>(statements: &'a [Statement<'s>], visit: &mut dyn
     }
 }
 
-fn each_part<'a, 's>(expr: &'a Expr<'s>, visit: &mut dyn FnMut(&'a Expr<'s>)) {
+/// Calls `visit` with the expression and every one in it, outer ones first.
+pub(crate) fn each_part<'a, 's>(expr: &'a Expr<'s>, visit: &mut dyn FnMut(&'a Expr<'s>)) {
     visit(expr);
     match &expr.kind {
         ExprKind::Literal(_) | ExprKind::Name(_) | ExprKind::Address(_) => {}

@@ -183,7 +183,6 @@ impl<'s> Checker<'_, 's> {
     ) -> Option<()> {
         self.callable(&found, callee)?;
         let slot = self.decl.slot_of_instance(id)?;
-        self.decl.note_program_call(slot);
         let signature = self.decl.signature(slot)?;
         let owner = self.decl.pous[slot].ast.name.text;
         let formals = &signature.formals;

@@ -111,7 +111,7 @@ impl<'s> Checker<'_, 's> {
             self.error(Code::E0102, ty.span, format!("there is no enumeration `{}`", ty.text));
             return None;
         };
-        let resolved = self.decl.resolve_type_slot(slot)?;
+        let resolved = self.decl.named_type(slot)?;
         let Type::Enum(id) = resolved.ty else {
             self.error(Code::E0102, ty.span, format!("`{}` is not an enumeration", ty.text));
             return None;

@@ -129,9 +129,7 @@ impl<'s> Checker<'_, 's> {
                 }
                 Some(variable)
             }
-            Some(Entry::Pou(slot)) if self.is_callable_program(slot, name) => {
-                Some(self.decl.program_variable(slot, name.span))
-            }
+            Some(Entry::Pou(slot)) if self.is_callable_program(slot, name) => Some(self.decl.program_variable(slot)),
             Some(Entry::Pou(_) | Entry::Type(_)) | None => {
                 // A variable whose declaration was refused is not reported again at every use.
                 self.declared_but_refused(name).then_some(None)

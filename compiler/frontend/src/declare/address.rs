@@ -4,6 +4,7 @@
 use super::types::Resolved;
 use super::{Declarations, GlobalSlot};
 use crate::ast::{self, PouKind, VarKind};
+use crate::check;
 use crate::dialect::Dialect;
 use crate::{Code, Diagnostic, Span};
 use rustc_hash::FxHashMap;
@@ -53,6 +54,14 @@ impl Addresses {
 
     pub fn global_of_field(&self, field: usize) -> Option<usize> {
         self.own_fields.get(field).copied()
+    }
+
+    /// The global that a name of an address means.
+    pub fn global_at(&self, name: ast::Name<'_>) -> Option<usize> {
+        match self.storage.get(&parse(name.text)?)? {
+            Storage::Global(at) => Some(*at),
+            Storage::Hidden(_) => None,
+        }
     }
 
     /// The globals with a field of their own.
@@ -338,13 +347,11 @@ impl<'s> Declarations<'s> {
         bits
     }
 
-    /// The variable at an address that a body names directly.
-    pub fn direct_address(&mut self, name: ast::Name<'s>) -> Option<Place> {
-        let address = self.address(name)?;
-        match self.addresses.storage.get(&address).copied() {
-            Some(Storage::Global(at)) => Some(self.global(at)?.place.clone()),
-            Some(Storage::Hidden(at)) => Some(self.hidden_place(at)),
-            None => {
+    /// Gives the addresses that only bodies name their storage.
+    pub fn declare_used_addresses(&mut self) {
+        let spans: Vec<_> = self.addresses.uses.iter().map(|it| (it.address, it.span)).collect();
+        for (address, span) in spans {
+            if !self.addresses.storage.contains_key(&address) {
                 let elementary = match address.width {
                     1 => Elementary::Bool,
                     8 => Elementary::Byte,
@@ -353,7 +360,21 @@ impl<'s> Declarations<'s> {
                     _ => Elementary::Lword,
                 };
                 let resolved = Resolved::plain(Type::Elementary(elementary));
-                Some(self.new_storage(address, &resolved, "Globals", name))
+                let name = ast::Name { text: self.sources.text(span), span };
+                self.new_storage(address, &resolved, "Globals", name);
+            }
+        }
+    }
+
+    /// The variable at an address that a body names directly.
+    pub fn direct_address(&mut self, name: ast::Name<'s>) -> Option<Place> {
+        let address = self.address(name)?;
+        match self.addresses.storage.get(&address).copied() {
+            Some(Storage::Global(at)) => Some(self.global(at)?.place.clone()),
+            Some(Storage::Hidden(at)) => Some(self.hidden_place(at)),
+            None => {
+                self.report(check::not_constant(name.span));
+                None
             }
         }
     }

@@ -4,7 +4,7 @@
 use super::{Declarations, Entry, Variable, types};
 use crate::names::Key;
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{Field, Place, Retain, Section};
+use staunch_ir::{Field, Retain, Section};
 use std::rc::Rc;
 
 /// The instance of a PROGRAM that is named somewhere.
@@ -26,25 +26,33 @@ impl<'s> Declarations<'s> {
             let Some(signature) = self.signature(at) else { continue };
             let mut found = Vec::new();
             ast::each_expr(body, &mut |it| {
-                if let ast::ExprKind::Name(name) = &it.kind
+                let (callee, is_called) = match &it.kind {
+                    ast::ExprKind::Call(callee, _) => (callee.bare(), true),
+                    _ => (it, false),
+                };
+                if let ast::ExprKind::Name(name) = &callee.kind
                     && let Some(Entry::Pou(slot)) = self.names.get(&Key(name.text))
                     && self.pous[*slot].ast.kind == ast::PouKind::Program
                     && signature.scope.get(name.text).is_none()
                 {
-                    found.push((*slot, name.span));
+                    found.push((*slot, name.span, is_called));
                 }
             });
-            for (slot, span) in found {
-                self.program_variable(slot, span);
+            for (slot, span, is_called) in found {
+                self.name_program(slot, span, is_called);
             }
         }
     }
 
-    /// The instance that the name of the PROGRAM in a slot means.
-    pub fn program_variable(&mut self, slot: usize, span: Span) -> Option<Rc<Variable<'s>>> {
-        if let Some(named) = self.named_programs.get(&slot) {
-            return Some(Rc::clone(&named.variable));
+    fn name_program(&mut self, slot: usize, first: Span, is_called: bool) {
+        if let Some(named) = self.named_programs.get_mut(&slot) {
+            named.is_called |= is_called;
+        } else if let Some(variable) = self.instance_of_program(slot) {
+            self.named_programs.insert(slot, Named { variable: Rc::new(variable), first, is_called });
         }
+    }
+
+    fn instance_of_program(&mut self, slot: usize) -> Option<Variable<'s>> {
         let signature = self.signature(slot)?;
         let resolved = types::instance_of(&self.program, signature.state?);
         let pou: &'s ast::Pou<'s> = self.pous[slot].ast;
@@ -60,26 +68,20 @@ impl<'s> Declarations<'s> {
             location: self.location(pou.name.span),
         };
         let at = self.add_hidden(field, Some(pou.name));
-        let place: Place = self.hidden_place(at);
-        let variable = Rc::new(Variable {
+        Some(Variable {
             name: pou.name,
-            place,
+            place: self.hidden_place(at),
             resolved: Rc::new(resolved),
             section: Section::Global,
             constant: false,
             retain: false,
             used: Rc::default(),
-        });
-        let named = Named { variable: Rc::clone(&variable), first: span, is_called: false };
-        self.named_programs.insert(slot, named);
-        Some(variable)
+        })
     }
 
-    /// Notes a call of an instance of a type, which may be a PROGRAM's.
-    pub fn note_program_call(&mut self, slot: usize) {
-        if let Some(named) = self.named_programs.get_mut(&slot) {
-            named.is_called = true;
-        }
+    /// The instance that the name of the PROGRAM in a slot means.
+    pub fn program_variable(&self, slot: usize) -> Option<Rc<Variable<'s>>> {
+        self.named_programs.get(&slot).map(|it| Rc::clone(&it.variable))
     }
 
     /// Whether the PROGRAM in a slot has its instance among the globals.

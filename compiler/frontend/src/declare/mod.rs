@@ -1,12 +1,12 @@
 //! Names, types and signatures: everything that holds before a body is read.
 //!
-//! Declarations may stand in any order and in any file, so each is resolved when it is first
-//! asked for; one that needs itself is a cycle.
+//! Declarations may stand in any order and in any file; they are resolved in the order of their needs.
 
 mod address;
 mod called_program;
 mod configuration;
 mod initial;
+mod needs;
 mod order;
 mod pou;
 mod prescan;
@@ -51,23 +51,18 @@ const HARMLESS_PRAGMAS: [&str; 12] = [
     "bp",
 ];
 
-/// Declarations that need one another in a row, the needed one behind: each takes a few frames of
-/// the stack, and a compilation has to fit a thread's 2 MiB.
-const MAX_NEEDS: usize = 48;
-
-/// Something that is resolved on demand.
+/// A declaration, and what it was resolved to.
 #[derive(Debug)]
 pub(crate) enum Slot<T> {
-    Waiting,
-    /// Being resolved: to ask for it now is a cycle.
-    Active,
+    /// Not resolved, or while that goes on: it is needed in a circle.
+    Open,
     Done(T),
     /// It has been reported.
     Failed,
 }
 
 /// What a name at file level means.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Entry {
     Type(usize),
     Pou(usize),
@@ -127,8 +122,6 @@ pub(crate) struct Declarations<'s> {
     pub anonymous_enumerators: FxHashMap<Key<'s>, (Type, staunch_ir::Value)>,
     /// The POU slot of each structure that is an instance's state.
     pub instances: FxHashMap<StructId, usize>,
-    /// How many declarations are being resolved, each because the one before needs it.
-    depth: usize,
     /// How many constants the initial values hold so far.
     constants: usize,
     line_cache: LineCache,
@@ -234,7 +227,6 @@ impl<'s> Declarations<'s> {
             sizes: Vec::new(),
             anonymous_enumerators: FxHashMap::default(),
             instances: FxHashMap::default(),
-            depth: 0,
             constants: 0,
             line_cache: LineCache::default(),
         }
@@ -337,7 +329,7 @@ impl<'s> Declarations<'s> {
             match item {
                 ast::Item::Types(decls) => decls.iter().for_each(|decl| self.collect_type(decl)),
                 ast::Item::Pou(pou) => {
-                    self.pous.push(PouSlot { ast: pou, slot: Slot::Waiting });
+                    self.pous.push(PouSlot { ast: pou, slot: Slot::Open });
                     self.enter(pou.name, Entry::Pou(self.pous.len() - 1));
                 }
                 ast::Item::Globals(block) => self.collect_globals(block),
@@ -355,7 +347,7 @@ impl<'s> Declarations<'s> {
                 self.enumerators.entry(Key(value.name.text)).or_default().push(slot);
             }
         }
-        self.types.push(TypeSlot { decl, slot: Slot::Waiting });
+        self.types.push(TypeSlot { decl, slot: Slot::Open });
     }
 
     fn collect_globals(&mut self, block: &'s ast::VarBlock<'s>) {
@@ -364,7 +356,7 @@ impl<'s> Declarations<'s> {
             self.check_one_name(decl);
             for name in &decl.names {
                 self.enter(*name, Entry::Global(self.globals.len()));
-                self.globals.push(GlobalSlot { name: *name, block, decl, slot: Slot::Waiting });
+                self.globals.push(GlobalSlot { name: *name, block, decl, slot: Slot::Open });
             }
         }
     }
@@ -455,12 +447,12 @@ impl<'s> Declarations<'s> {
     }
 
     /// The type of the global variable of that name; in its own declaration it is not known yet.
-    pub fn type_of_global(&mut self, name: &str) -> Option<Type> {
+    pub fn type_of_global(&self, name: &str) -> Option<Type> {
         let Some(Entry::Global(at)) = self.names.get(&Key(name)).copied() else { return None };
-        if matches!(self.globals[at].slot, Slot::Active) {
-            return None;
+        match &self.globals[at].slot {
+            Slot::Done(variable) => Some(variable.resolved.ty),
+            Slot::Open | Slot::Failed => None,
         }
-        self.global(at).map(|it| it.resolved.ty)
     }
 
     pub fn span_of(&self, entry: Entry) -> Span {
@@ -472,61 +464,70 @@ impl<'s> Declarations<'s> {
     }
 
     fn resolve_all(&mut self) {
-        for at in 0..self.types.len() {
-            self.resolve_type_slot(at);
+        for entry in needs::order(self) {
+            match entry {
+                Entry::Type(at) => self.types[at].slot = self.resolve_type_slot(at).map_or(Slot::Failed, Slot::Done),
+                Entry::Global(at) => {
+                    let variable = self.global_variable(at).map(Rc::new);
+                    self.globals[at].slot = variable.map_or(Slot::Failed, Slot::Done);
+                }
+                Entry::Pou(at) => {
+                    let signature = self.build_signature(at).map(Rc::new);
+                    self.pous[at].slot = signature.map_or(Slot::Failed, Slot::Done);
+                }
+            }
         }
-        for at in 0..self.globals.len() {
-            self.global(at);
-        }
-        for at in 0..self.pous.len() {
-            self.signature(at);
-        }
+        self.declare_used_addresses();
         address::report_overlaps(self);
     }
 
-    /// Resolves a declaration that others may wait for, unless too many do.
-    fn deeper<T>(&mut self, name: ast::Name<'s>, resolve: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
-        if self.depth == MAX_NEEDS {
-            let message = format!("more than {} declarations need one another in a row", MAX_NEEDS);
-            self.report(
-                Diagnostic::new(Code::E0091, name.span, message)
-                    .label(format!("before `{}` is needed", name.text))
-                    .help("declare what is needed before what needs it"),
-            );
-            return None;
+    /// The named type in slot `at`.
+    pub fn named_type(&mut self, at: usize) -> Option<Resolved> {
+        match &self.types[at].slot {
+            Slot::Done(resolved) => Some(resolved.clone()),
+            Slot::Failed => None,
+            Slot::Open => {
+                let name = self.types[at].decl.name;
+                self.report(
+                    Diagnostic::new(Code::E0402, name.span, format!("the type `{}` contains itself", name.text))
+                        .label("its size would be endless"),
+                );
+                None
+            }
         }
-        self.depth += 1;
-        let resolved = resolve(self);
-        self.depth -= 1;
-        resolved
     }
 
     /// The global variable in slot `at`.
     pub fn global(&mut self, at: usize) -> Option<Rc<Variable<'s>>> {
         match &self.globals[at].slot {
-            Slot::Done(variable) => return Some(Rc::clone(variable)),
-            Slot::Failed => return None,
-            Slot::Active => {
+            Slot::Done(variable) => Some(Rc::clone(variable)),
+            Slot::Failed => None,
+            Slot::Open => {
                 let name = self.globals[at].name;
                 self.error(Code::E0402, name.span, format!("the declaration of `{}` needs itself", name.text));
-                return None;
+                None
             }
-            Slot::Waiting => {}
         }
-        self.globals[at].slot = Slot::Active;
-        let GlobalSlot { name, block, decl, .. } = self.globals[at];
-        let variable = self.deeper(name, |this| this.global_variable(at, name, block, decl)).map(Rc::new);
-        self.globals[at].slot = variable.clone().map_or(Slot::Failed, Slot::Done);
-        variable
     }
 
-    fn global_variable(
-        &mut self,
-        at: usize,
-        name: ast::Name<'s>,
-        block: &'s ast::VarBlock<'s>,
-        decl: &'s ast::VarDecl<'s>,
-    ) -> Option<Variable<'s>> {
+    /// The signature of the POU in slot `at`.
+    pub fn signature(&mut self, at: usize) -> Option<Rc<Signature<'s>>> {
+        match &self.pous[at].slot {
+            Slot::Done(signature) => Some(Rc::clone(signature)),
+            Slot::Failed => None,
+            Slot::Open => {
+                let name = self.pous[at].ast.name;
+                self.report(
+                    Diagnostic::new(Code::E0402, name.span, format!("`{}` contains an instance of itself", name.text))
+                        .label("its size would be endless"),
+                );
+                None
+            }
+        }
+    }
+
+    fn global_variable(&mut self, at: usize) -> Option<Variable<'s>> {
+        let GlobalSlot { name, block, decl, .. } = self.globals[at];
         let reported = self.diagnostics.len();
         let resolved = self.declared_type(decl, &Rc::new(Scope::default()), name.text)?;
         if block.constant.is_some() && self.has_errors_since(reported) {

@@ -1,7 +1,7 @@
 //! Signatures: what callers of a POU see, and where its variables live.
 
 use super::types::Resolved;
-use super::{Declarations, Scope, Slot, Variable};
+use super::{Declarations, Scope, Variable};
 use crate::ast::{self, PouKind, VarKind};
 use crate::{Code, Diagnostic, Span, dialect};
 use staunch_ir::{
@@ -60,29 +60,8 @@ struct Builder<'s> {
 }
 
 impl<'s> Declarations<'s> {
-    /// The signature of the POU in slot `at`.
-    pub fn signature(&mut self, at: usize) -> Option<Rc<Signature<'s>>> {
-        match &self.pous[at].slot {
-            Slot::Done(signature) => return Some(Rc::clone(signature)),
-            Slot::Failed => return None,
-            Slot::Active => {
-                let name = self.pous[at].ast.name;
-                self.report(
-                    Diagnostic::new(Code::E0402, name.span, format!("`{}` contains an instance of itself", name.text))
-                        .label("its size would be endless"),
-                );
-                return None;
-            }
-            Slot::Waiting => {}
-        }
-        self.pous[at].slot = Slot::Active;
-        let pou = self.pous[at].ast;
-        let signature = self.deeper(pou.name, |this| this.build_signature(at, pou)).map(Rc::new);
-        self.pous[at].slot = signature.clone().map_or(Slot::Failed, Slot::Done);
-        signature
-    }
-
-    fn build_signature(&mut self, slot: usize, pou: &'s ast::Pou<'s>) -> Option<Signature<'s>> {
+    pub fn build_signature(&mut self, slot: usize) -> Option<Signature<'s>> {
+        let pou = self.pous[slot].ast;
         let mut builder = Builder {
             scope: Rc::new(Scope::default()),
             fields: Vec::new(),

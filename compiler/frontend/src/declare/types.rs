@@ -1,6 +1,6 @@
 //! Type specifications to types.
 
-use super::{Declarations, Entry, Scope, Slot};
+use super::{Declarations, Entry, Scope};
 use crate::ast::{self, Bound, TypeKind};
 use crate::check;
 use crate::diagnostic::wording::list;
@@ -83,32 +83,8 @@ const FOREIGN: [(&str, &str); 24] = [
 ];
 
 impl<'s> Declarations<'s> {
-    /// The named type in slot `at`.
     pub fn resolve_type_slot(&mut self, at: usize) -> Option<Resolved> {
         let decl = self.types[at].decl;
-        match &self.types[at].slot {
-            Slot::Done(resolved) => return Some(resolved.clone()),
-            Slot::Failed => return None,
-            Slot::Active => {
-                self.report(
-                    Diagnostic::new(
-                        Code::E0402,
-                        decl.name.span,
-                        format!("the type `{}` contains itself", decl.name.text),
-                    )
-                    .label("its size would be endless"),
-                );
-                return None;
-            }
-            Slot::Waiting => {}
-        }
-        self.types[at].slot = Slot::Active;
-        let resolved = self.deeper(decl.name, |this| this.resolve_type_decl(decl));
-        self.types[at].slot = resolved.clone().map_or(Slot::Failed, Slot::Done);
-        resolved
-    }
-
-    fn resolve_type_decl(&mut self, decl: &'s ast::TypeDecl<'s>) -> Option<Resolved> {
         let scope = Rc::new(Scope::default());
         let doc = decl.doc.clone();
         let mut resolved = self.resolve_type_named(&decl.ty, &scope, decl.name.text, doc)?;
@@ -219,7 +195,7 @@ impl<'s> Declarations<'s> {
             return Some(Resolved::plain(Type::Elementary(elementary)));
         }
         match self.type_named(name.text) {
-            Some(Entry::Type(at)) => return self.resolve_type_slot(at),
+            Some(Entry::Type(at)) => return self.named_type(at),
             Some(Entry::Pou(at)) => return self.instance_type(at, name),
             Some(Entry::Global(_)) | None => {}
         }

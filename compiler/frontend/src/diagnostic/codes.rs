@@ -228,8 +228,7 @@ E0090 Error "not supported yet"
 compile it yet.
 ";
 E0091 Error "too deep or too long"
-"Expressions and statements nest at most 256 levels deep, types and initial values 64, and at most 48 declarations need
-one another in a row, each declared before what it needs; a chain of operators has at most
+"Expressions and statements nest at most 256 levels deep, types and initial values 64; a chain of operators has at most
 1000 operands and an IF at most 1000 branches. Split the construct: name a part of the expression with a
 variable, or move statements into a FUNCTION.
 ";

@@ -1,0 +1,158 @@
+//! The order in which declarations are resolved: what one needs comes before it. Needs are read off
+//! the syntax, so that resolving one declaration never starts on another; one that meets another which
+//! is not resolved yet has found a circle.
+
+use super::{Declarations, Entry};
+use crate::ast::{self, ExprKind, InitialKind, TypeKind};
+use crate::names::Key;
+use rustc_hash::FxHashSet;
+
+/// All declarations at file level, each after those that it needs. Of those in a circle, the first in
+/// the text comes last.
+pub(super) fn order(declarations: &Declarations<'_>) -> Vec<Entry> {
+    let types = (0..declarations.types.len()).map(Entry::Type);
+    let globals = (0..declarations.globals.len()).map(Entry::Global);
+    let pous = (0..declarations.pous.len()).map(Entry::Pou);
+    let mut seen = FxHashSet::default();
+    let mut order = Vec::new();
+    for entry in types.chain(globals).chain(pous) {
+        visit(declarations, entry, &mut seen, &mut order);
+    }
+    order
+}
+
+/// Depth-first with its own stack: a chain of needs may be long.
+fn visit(declarations: &Declarations<'_>, start: Entry, seen: &mut FxHashSet<Entry>, order: &mut Vec<Entry>) {
+    if !seen.insert(start) {
+        return;
+    }
+    let mut stack = vec![(start, needs(declarations, start))];
+    while let Some((entry, needed)) = stack.last_mut() {
+        match needed.next() {
+            Some(next) if seen.insert(next) => stack.push((next, needs(declarations, next))),
+            Some(_) => {}
+            None => {
+                order.push(*entry);
+                stack.pop();
+            }
+        }
+    }
+}
+
+fn needs(declarations: &Declarations<'_>, entry: Entry) -> std::vec::IntoIter<Entry> {
+    let mut needs = Needs { declarations, own: FxHashSet::default(), found: Vec::new() };
+    match entry {
+        Entry::Type(at) => {
+            let decl = declarations.types[at].decl;
+            needs.spec(&decl.ty);
+            decl.initial.iter().for_each(|it| needs.initial(it));
+        }
+        Entry::Global(at) => needs.declared(declarations.globals[at].decl),
+        Entry::Pou(at) => needs.pou(declarations.pous[at].ast),
+    }
+    needs.found.into_iter()
+}
+
+/// What one declaration needs, in the order of its text.
+struct Needs<'d, 's> {
+    declarations: &'d Declarations<'s>,
+    /// The variables of the POU itself: their names mean nothing outside.
+    own: FxHashSet<Key<'s>>,
+    found: Vec<Entry>,
+}
+
+impl<'s> Needs<'_, 's> {
+    fn pou(&mut self, pou: &ast::Pou<'s>) {
+        let is_external = |it: &&ast::VarBlock<'s>| it.kind == ast::VarKind::External;
+        let own = pou.blocks.iter().filter(|it| !is_external(it)).flat_map(|it| &it.vars);
+        self.own = own.flat_map(|it| &it.names).map(|it| Key(it.text)).collect();
+        pou.result.iter().for_each(|it| self.spec(it));
+        pou.blocks.iter().flat_map(|it| &it.vars).for_each(|it| self.declared(it));
+        let externals = pou.blocks.iter().filter(is_external).flat_map(|it| &it.vars);
+        externals.flat_map(|it| &it.names).for_each(|it| self.value(*it));
+    }
+
+    fn declared(&mut self, decl: &ast::VarDecl<'s>) {
+        // What lies at the same address has to have the same type.
+        let located = decl.address.and_then(|it| self.declarations.addresses.global_at(it));
+        self.found.extend(located.map(Entry::Global));
+        self.spec(&decl.ty);
+        decl.initial.iter().for_each(|it| self.initial(it));
+    }
+
+    fn spec(&mut self, spec: &ast::TypeSpec<'s>) {
+        match &spec.kind {
+            TypeKind::Named(path) => path.last().into_iter().for_each(|it| self.type_name(*it)),
+            TypeKind::String { capacity, .. } => capacity.iter().for_each(|it| self.expr(it)),
+            TypeKind::Subrange { base, low, high } => {
+                self.type_name(*base);
+                [low, high].into_iter().for_each(|it| self.expr(it));
+            }
+            TypeKind::Array { bounds, element } => {
+                self.spec(element);
+                for bound in bounds {
+                    match bound {
+                        ast::Bound::Range(low, high) => [low, high].into_iter().for_each(|it| self.expr(it)),
+                        ast::Bound::Open(_) => {}
+                    }
+                }
+            }
+            TypeKind::Struct(members) => members.iter().for_each(|it| self.declared(it)),
+            TypeKind::Enum { values, .. } => {
+                values.iter().filter_map(|it| it.value.as_ref()).for_each(|it| self.expr(it));
+            }
+            TypeKind::Unsupported(_) | TypeKind::Error => {}
+        }
+    }
+
+    fn initial(&mut self, initial: &ast::Initial<'s>) {
+        match &initial.kind {
+            InitialKind::Value(expr) => self.expr(expr),
+            InitialKind::Elements(elements) => {
+                for element in elements {
+                    element.count.iter().for_each(|it| self.expr(it));
+                    element.values.iter().for_each(|it| self.initial(it));
+                }
+            }
+            InitialKind::Fields(fields) => fields.iter().for_each(|(_, it)| self.initial(it)),
+        }
+    }
+
+    fn expr(&mut self, expr: &ast::Expr<'s>) {
+        ast::each_part(expr, &mut |it| match &it.kind {
+            ExprKind::Name(name) if self.own.contains(&Key(name.text)) => {}
+            ExprKind::Name(name) => {
+                self.value(*name);
+                self.type_name(*name);
+            }
+            ExprKind::Literal(ast::Literal { prefix: Some(prefix), .. }) => self.type_name(**prefix),
+            // `Globals.x`
+            ExprKind::Member(_, name) => self.value(*name),
+            ExprKind::Literal(_)
+            | ExprKind::Address(_)
+            | ExprKind::Part(..)
+            | ExprKind::Index(..)
+            | ExprKind::Deref(_)
+            | ExprKind::Call(..)
+            | ExprKind::Unary(..)
+            | ExprKind::Binary(..)
+            | ExprKind::Paren(_)
+            | ExprKind::Error(_) => {}
+        });
+    }
+
+    fn type_name(&mut self, name: ast::Name<'s>) {
+        self.found.extend(self.declarations.type_named(name.text));
+    }
+
+    /// A global variable, or the enumerations that have an enumerator of that name.
+    fn value(&mut self, name: ast::Name<'s>) {
+        let key = Key(name.text);
+        if self.own.contains(&key) {
+            return;
+        }
+        let global = self.declarations.names.get(&key).copied().filter(|it| matches!(it, Entry::Global(_)));
+        let types = self.declarations.enumerators.get(&key).into_iter().flatten();
+        self.found.extend(global.into_iter().chain(types.map(|at| Entry::Type(*at))));
+    }
+}
