@@ -131,13 +131,7 @@ impl<'j> Table<'j> {
     }
 
     fn ty(&self) -> String {
-        let family = match self.family {
-            Family::Iec => "IEC",
-            Family::Cscape => "CSCAPE",
-            Family::Codesys => "CODESYS",
-            Family::Logix => "LOGIX",
-        };
-        format!("{family}.{}", self.block.name)
+        format!("{}.{}", self.family.name(), self.block.name)
     }
 
     fn call_source(&self) -> String {

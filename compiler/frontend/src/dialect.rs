@@ -1,12 +1,12 @@
 //! Whose blocks a bare name means, and what a dialect allows beyond the standard.
 
 use staunch_ir::BlockId;
-use staunch_runtime::{BLOCKS, Family};
+use staunch_runtime::{BLOCKS, BlockInfo, BlockOption, Family};
 
 /// The system whose habits a source file follows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Dialect {
-    /// IEC 61131-3 third edition, with the counters of Autonomy Edge / OpenPLC.
+    /// IEC 61131-3 third edition, with the counters of Autonomy Edge.
     #[default]
     Iec,
     /// Horner Cscape, IEC editor.
@@ -40,6 +40,11 @@ impl Dialect {
             Self::Codesys => Family::Codesys,
             Self::Logix => Family::Logix,
         }
+    }
+
+    /// The standard block that a bare `name` means.
+    pub fn block(self, name: &str) -> Option<&'static BlockInfo> {
+        bare_block(self, name).map(|it| it.info())
     }
 
     /// Bit strings count as unsigned integers, and same-size sign changes are implicit.
@@ -98,60 +103,31 @@ impl Dialect {
     }
 }
 
-/// The families by the names that qualify them.
-pub(crate) const FAMILIES: [(&str, Family); 4] =
-    [("IEC", Family::Iec), ("CSCAPE", Family::Cscape), ("CODESYS", Family::Codesys), ("LOGIX", Family::Logix)];
-
-pub(crate) fn family_named(name: &str) -> Option<Family> {
-    FAMILIES.iter().find(|(it, _)| it.eq_ignore_ascii_case(name)).map(|(_, family)| *family)
-}
-
-pub(crate) fn family_name(family: Family) -> &'static str {
-    FAMILIES.iter().find(|(_, it)| *it == family).map_or("IEC", |(name, _)| name)
-}
-
 /// The block called `name` in `family`.
 pub(crate) fn block_in(family: Family, name: &str) -> Option<BlockId> {
-    let typed = TYPED_TIMERS.iter().find(|(it, _)| family == Family::Iec && it.eq_ignore_ascii_case(name));
-    let name = typed.map_or(name, |(_, row)| row);
-    let at = BLOCKS.iter().position(|it| it.family == family && it.name.eq_ignore_ascii_case(name))?;
-    Some(BlockId::next(at))
+    block(|it| it.family == family && it.is_named(name))
 }
 
-/// The standard's names of the timers for one type, and ours.
-const TYPED_TIMERS: [(&str, &str); 6] = [
-    ("TON_TIME", "TON"),
-    ("TOF_TIME", "TOF"),
-    ("TP_TIME", "TP"),
-    ("TON_LTIME", "LTON"),
-    ("TOF_LTIME", "LTOF"),
-    ("TP_LTIME", "LTP"),
-];
-
-/// Whether a block is a timer that the standard overloads: TIME and LTIME count the same nanoseconds.
-pub(crate) fn is_overloaded_timer(block: BlockId) -> bool {
-    let info = block.info();
-    info.family == Family::Iec && matches!(info.name, "TON" | "TOF" | "TP")
-}
-
-/// A variant of a block that an option selects.
-pub(crate) fn is_option_row(name: &str) -> bool {
-    name.to_ascii_uppercase().ends_with("_STOP_AT_PV")
-}
-
-/// What the bare `name` means under `dialect`: a counter belongs to the dialect's own family
-/// alone; timers, edges and bistables are the standard's unless the family has its own.
+/// What the bare `name` means under `dialect`, and what its family's name before it means: the
+/// family's own block, or what all systems share.
 pub(crate) fn bare_block(dialect: Dialect, name: &str) -> Option<BlockId> {
-    if is_option_row(name) {
-        return None;
-    }
-    block_in(dialect.family(), name).or_else(|| {
-        let shared = !is_counter(name);
-        shared.then(|| block_in(Family::Iec, name)).flatten()
-    })
+    block_in(dialect.family(), name).or_else(|| shared_block(name))
 }
 
-pub(crate) fn is_counter(name: &str) -> bool {
-    let name = name.to_ascii_uppercase();
-    ["CTU", "CTD", "LCT", "R_CT"].iter().any(|prefix| name.starts_with(prefix))
+pub(crate) fn shared_block(name: &str) -> Option<BlockId> {
+    block(|it| it.is_shared() && it.is_named(name))
+}
+
+/// What stands for a block while `is_on` holds for an option: another, or the block itself.
+pub(crate) fn as_options_have_it(id: BlockId, is_on: impl Fn(BlockOption) -> bool) -> BlockId {
+    let info = id.info();
+    let replaces = |it: &BlockInfo| {
+        let option = it.facts.option.filter(|it| is_on(it.option) && it.of == info.name);
+        it.family == info.family && option.is_some()
+    };
+    block(replaces).unwrap_or(id)
+}
+
+fn block(is_meant: impl Fn(&BlockInfo) -> bool) -> Option<BlockId> {
+    BLOCKS.iter().position(is_meant).map(BlockId::next)
 }

@@ -32,6 +32,14 @@ pub struct Options {
     pub moved_from: Option<Dialect>,
 }
 
+impl Options {
+    fn is_on(&self, option: staunch_runtime::BlockOption) -> bool {
+        match option {
+            staunch_runtime::BlockOption::CtuStopAtPv => self.ctu_stop_at_pv,
+        }
+    }
+}
+
 /// What came out of a compilation.
 #[derive(Debug)]
 pub struct Compilation {

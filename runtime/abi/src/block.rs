@@ -3,7 +3,7 @@
 use staunch_runtime::{Context, codesys, cscape, for_each_block, iec, logix, run_instruction};
 
 macro_rules! shims {
-    ($($family:ident $name:literal $block:ty { $($pin:literal => $renamed:literal),* } $([$ty:ident => $retyped:ident])? {
+    ($($family:ident $name:literal $block:ty { $($pin:literal => $renamed:literal),* } $([$ty:ident => $retyped:ident])? $(#[$($fact:tt)*])* {
         $($how:ident $instruction:literal $method:ident $symbol:ident
             $(, prescan $prescan:ident $prescan_symbol:ident)?;)*
     })*) => {

@@ -1,4 +1,4 @@
-use crate::{Context, Elementary, Lane, Scalar, Time, Value};
+use crate::{Context, Elementary, Family, Lane, Scalar, Time, Value};
 
 /// Which way a member of a block faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,6 +21,7 @@ pub struct Pin {
     /// The Rust field.
     pub field: &'static str,
     pub direction: Direction,
+    pub role: Option<PinRole>,
     pub ty: Elementary,
     /// TRUE for a BOOL whose initial value the vendor gives as TRUE. The all-zero start state
     /// cannot say it, so the compiler does: it puts TRUE into the instance's initial value.
@@ -28,14 +29,30 @@ pub struct Pin {
     pub offset: usize,
 }
 
-/// The system whose documentation defines a block.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Family {
-    /// IEC 61131-3 as Autonomy Edge / OpenPLC has it. Owns also the blocks all systems share.
-    Iec,
-    Cscape,
-    Codesys,
-    Logix,
+/// What a pin is for, whatever a system calls it: what its counterparts elsewhere share.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum PinRole {
+    /// Counts up; in a structure that instructions share, the rung that did.
+    Up,
+    /// Counts down; in a structure that instructions share, the rung that did.
+    Down,
+    Set,
+    Reset,
+    /// Sets the count to the preset.
+    Load,
+    Preset,
+    Count,
+    /// The preset is reached; of a counter that only counts down, 0; of a bistable, it is set.
+    Done,
+    /// 0 is reached, of a counter that counts both ways.
+    Empty,
+}
+
+impl PinRole {
+    /// What a pin of that name is for, in whichever block has one.
+    pub fn named(name: &str) -> Option<Self> {
+        crate::BLOCKS.iter().flat_map(|it| it.pins).find_map(|it| it.role.filter(|_| it.is_named(name)))
+    }
 }
 
 /// What a caller can do with a block: one unnamed instruction for a function block, several
@@ -82,6 +99,52 @@ pub struct BlockInfo {
     pub pins: &'static [Pin],
     pub instructions: &'static [Instruction],
     pub retention: Retention,
+    pub facts: Facts,
+}
+
+/// What else is known of some blocks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Facts {
+    /// Another name in Structured Text: the standard's for a timer of one type, `TON_TIME`.
+    pub alias: Option<&'static str>,
+    /// The standard overloads it: what is of its pins' type may be of this one, carried alike.
+    pub overload: Option<Elementary>,
+    /// No name leads to it: it takes another's place under an option.
+    pub option: Option<Replacement>,
+    /// A variable of the user's keeps its count.
+    pub kept: Option<KeptCount>,
+    /// It counts in every call whose input is TRUE, instead of on edges.
+    pub counts_levels: bool,
+    /// It counts up only below its preset, and down only above 0.
+    pub stops: bool,
+}
+
+impl Facts {
+    pub(crate) const NONE: Self =
+        Self { alias: None, overload: None, option: None, kept: None, counts_levels: false, stops: false };
+}
+
+/// Which block of its family a block stands for while an option is on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Replacement {
+    pub option: BlockOption,
+    pub of: &'static str,
+}
+
+/// What a vendor leaves open.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum BlockOption {
+    /// CODESYS: `CTU` stops at its preset, as some of its documents say.
+    CtuStopAtPv,
+}
+
+/// A counter with one pin more, for the variable that keeps its count over a restart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct KeptCount {
+    /// The pin's name; it follows the inputs.
+    pub pin: &'static str,
+    /// The block of its family that counts as it does, without the pin.
+    pub plain: &'static str,
 }
 
 /// What a restart leaves of a block's instances.
@@ -118,11 +181,36 @@ impl Pin {
     pub const fn lane(&self) -> Lane {
         self.ty.lane()
     }
+
+    pub fn is_named(&self, name: &str) -> bool {
+        self.name.eq_ignore_ascii_case(name)
+    }
 }
 
 impl BlockInfo {
     pub fn pin(&self, name: &str) -> Option<&'static Pin> {
-        self.pins.iter().find(|pin| pin.name.eq_ignore_ascii_case(name))
+        self.pins.iter().find(|pin| pin.is_named(name))
+    }
+
+    /// The pin for a purpose, by the name that this system has for it.
+    pub fn pin_for(&self, role: PinRole) -> Option<&'static Pin> {
+        self.pins.iter().find(|pin| pin.role == Some(role))
+    }
+
+    /// Whether it counts: then its name belongs to its family alone.
+    pub fn is_counter(&self) -> bool {
+        self.pin_for(PinRole::Count).is_some()
+    }
+
+    /// Whether a bare name means it wherever a system has no block of its own by that name.
+    pub fn is_shared(&self) -> bool {
+        self.family == Family::Iec && !self.is_counter()
+    }
+
+    /// Whether `name` leads to it in its family.
+    pub fn is_named(&self, name: &str) -> bool {
+        let names = [Some(self.name), self.facts.alias];
+        self.facts.option.is_none() && names.into_iter().flatten().any(|it| it.eq_ignore_ascii_case(name))
     }
 
     pub fn inputs(&self) -> impl Iterator<Item = &'static Pin> {
@@ -164,12 +252,13 @@ pub(crate) fn store_field<T: Scalar>(value: T, bytes: &mut [u8], offset: usize) 
 /// Declares a block's members once, in the order of its struct: the [`Block`] implementation
 /// and a `const fn new`. A member that is left out does not compile.
 ///
-/// A row is `field: TYPE = "name in Structured Text"`, and `true` after it if it starts TRUE.
+/// A row is `field: TYPE = "name in Structured Text"`, `true` after it if it starts TRUE, and
+/// `as Role` if it has one.
 /// The type is IEC's; `T` is the block's own parameter, and means the type that counts in it
 /// (INT for `i16`), unless the block's row in the table says another.
 macro_rules! pins {
     ([$($generics:tt)*] $block:ty {
-        $($direction:ident { $($field:ident: $ty:ident = $name:literal $($initial:literal)?),* $(,)? })*
+        $($direction:ident { $($field:ident: $ty:ident = $name:literal $($initial:literal)? $(as $role:ident)?),* $(,)? })*
     }) => {
         impl<$($generics)*> $block {
             /// The start state: all zero.
@@ -184,6 +273,7 @@ macro_rules! pins {
                 name: $name,
                 field: stringify!($field),
                 direction: $crate::Direction::$direction,
+                role: $crate::block::pin_role!($($role)?),
                 ty: $crate::block::pin_elementary!($ty),
                 starts_true: false $(|| $initial)?,
                 offset: core::mem::offset_of!($block, $field),
@@ -211,6 +301,17 @@ macro_rules! pin_type {
     };
 }
 pub(crate) use pin_type;
+
+/// What a pin is for.
+macro_rules! pin_role {
+    () => {
+        None
+    };
+    ($role:ident) => {
+        Some($crate::PinRole::$role)
+    };
+}
+pub(crate) use pin_role;
 
 /// The IEC type of a pin.
 macro_rules! pin_elementary {

@@ -1,6 +1,9 @@
 use crate::block::{renamed, retyped};
 use crate::elementary::keyword;
-use crate::{Block, BlockInfo, Elementary, Family, Instruction, Pin, Prescan, Retention, codesys, cscape, iec, logix};
+use crate::{
+    Block, BlockInfo, BlockOption, Elementary, Facts, Family, Instruction, KeptCount, Pin, Prescan, Replacement,
+    Retention, codesys, cscape, iec, logix,
+};
 
 /// Every standard function block, one row each.
 ///
@@ -14,7 +17,7 @@ use crate::{Block, BlockInfo, Elementary, Family, Instruction, Pin, Prescan, Ret
 macro_rules! for_each_block {
     ($expand:ident) => {
         $expand! {
-            // family, name in ST, Rust type, renamed pins, [a type documented as another], { how, name, method, symbol }
+            // family, name in ST, Rust type, renamed pins, [a type documented as another], #[facts], { how, name, method, symbol }
             Iec "CTU" iec::Ctu<i16> {} { plain "" call staunch_iec_ctu; }
             Iec "CTD" iec::Ctd<i16> {} { plain "" call staunch_iec_ctd; }
             Iec "CTUD" iec::Ctud<i16> {} { plain "" call staunch_iec_ctud; }
@@ -35,22 +38,22 @@ macro_rules! for_each_block {
             Iec "CTUD_ULINT" iec::Ctud<u64> {} { plain "" call staunch_iec_ctud_ulint; }
 
             // Shared by all dialects.
-            Iec "TON" iec::Ton {} { timed "" call staunch_iec_ton; }
-            Iec "TOF" iec::Tof {} { timed "" call staunch_iec_tof; }
-            Iec "TP" iec::Tp {} { timed "" call staunch_iec_tp; }
-            Iec "LTON" iec::Ton {} [TIME => LTIME] { timed "" call staunch_iec_lton; }
-            Iec "LTOF" iec::Tof {} [TIME => LTIME] { timed "" call staunch_iec_ltof; }
-            Iec "LTP" iec::Tp {} [TIME => LTIME] { timed "" call staunch_iec_ltp; }
+            Iec "TON" iec::Ton {} #[also "TON_TIME"] #[overload LTIME] { timed "" call staunch_iec_ton; }
+            Iec "TOF" iec::Tof {} #[also "TOF_TIME"] #[overload LTIME] { timed "" call staunch_iec_tof; }
+            Iec "TP" iec::Tp {} #[also "TP_TIME"] #[overload LTIME] { timed "" call staunch_iec_tp; }
+            Iec "LTON" iec::Ton {} [TIME => LTIME] #[also "TON_LTIME"] { timed "" call staunch_iec_lton; }
+            Iec "LTOF" iec::Tof {} [TIME => LTIME] #[also "TOF_LTIME"] { timed "" call staunch_iec_ltof; }
+            Iec "LTP" iec::Tp {} [TIME => LTIME] #[also "TP_LTIME"] { timed "" call staunch_iec_ltp; }
             Iec "R_TRIG" iec::RTrig {} { plain "" call staunch_iec_r_trig; }
             Iec "F_TRIG" iec::FTrig {} { plain "" call staunch_iec_f_trig; }
             Iec "SR" iec::Sr {} { plain "" call staunch_iec_sr; }
             Iec "RS" iec::Rs {} { plain "" call staunch_iec_rs; }
 
             // The compiler adds RCV to the inputs of R_CTU and R_CTD.
-            Cscape "CTU" cscape::Ctu {} { plain "" call staunch_cscape_ctu; }
-            Cscape "CTD" cscape::Ctd {} { plain "" call staunch_cscape_ctd; }
-            Cscape "R_CTU" cscape::RCtu {} { plain "" call staunch_cscape_r_ctu; }
-            Cscape "R_CTD" cscape::RCtd {} { plain "" call staunch_cscape_r_ctd; }
+            Cscape "CTU" cscape::Ctu {} #[counts_levels] #[stops] { plain "" call staunch_cscape_ctu; }
+            Cscape "CTD" cscape::Ctd {} #[counts_levels] #[stops] { plain "" call staunch_cscape_ctd; }
+            Cscape "R_CTU" cscape::RCtu {} #[kept "CTU" in "RCV"] #[counts_levels] #[stops] { plain "" call staunch_cscape_r_ctu; }
+            Cscape "R_CTD" cscape::RCtd {} #[kept "CTD" in "RCV"] #[counts_levels] #[stops] { plain "" call staunch_cscape_r_ctd; }
 
             Codesys "CTU" codesys::Ctu { "R" => "RESET" } [UINT => WORD] { plain "" call staunch_codesys_ctu; }
             Codesys "CTD" codesys::Ctd { "LD" => "LOAD" } [UINT => WORD] { plain "" call staunch_codesys_ctd; }
@@ -61,8 +64,8 @@ macro_rules! for_each_block {
             Codesys "SR" codesys::Sr { "S1" => "SET1", "R" => "RESET" } { plain "" call staunch_codesys_sr; }
             Codesys "RS" codesys::Rs { "S" => "SET", "R1" => "RESET1" } { plain "" call staunch_codesys_rs; }
             // What CTU and LCTU mean under the option `ctu-stop-at-pv`.
-            Codesys "CTU_STOP_AT_PV" codesys::CtuStopAtPv<u16> {} [UINT => WORD] { plain "" call staunch_codesys_ctu_stop_at_pv; }
-            Codesys "LCTU_STOP_AT_PV" codesys::CtuStopAtPv<u64> {} [ULINT => LWORD] { plain "" call staunch_codesys_lctu_stop_at_pv; }
+            Codesys "CTU_STOP_AT_PV" codesys::CtuStopAtPv<u16> {} [UINT => WORD] #[option CtuStopAtPv for "CTU"] #[stops] { plain "" call staunch_codesys_ctu_stop_at_pv; }
+            Codesys "LCTU_STOP_AT_PV" codesys::CtuStopAtPv<u64> {} [ULINT => LWORD] #[option CtuStopAtPv for "LCTU"] #[stops] { plain "" call staunch_codesys_lctu_stop_at_pv; }
 
             Logix "COUNTER" logix::Counter {} {
                 rung "CTU" ctu staunch_logix_counter_ctu, prescan prescan_ctu staunch_logix_counter_prescan_ctu;
@@ -95,7 +98,7 @@ macro_rules! run_instruction {
 }
 
 macro_rules! declare_blocks {
-    ($($family:ident $name:literal $block:ty { $($pin:literal => $renamed:literal),* } $([$ty:ident => $retyped:ident])? {
+    ($($family:ident $name:literal $block:ty { $($pin:literal => $renamed:literal),* } $([$ty:ident => $retyped:ident])? $(#[$($fact:tt)*])* {
         $($how:ident $instruction:literal $method:ident $symbol:ident
             $(, prescan $prescan:ident $prescan_symbol:ident)?;)*
     })*) => {
@@ -127,6 +130,11 @@ macro_rules! declare_blocks {
                 prescan: prescan!($block $(, $prescan $prescan_symbol)?),
             }),*],
             retention: retention!($family),
+            facts: {
+                let facts = Facts::NONE;
+                $(let facts = fact!(facts, $($fact)*);)*
+                facts
+            },
         }),*];
     };
 }
@@ -157,6 +165,28 @@ macro_rules! prescan {
                 block.store(bytes);
             },
         })
+    };
+}
+
+/// `facts` with one more.
+macro_rules! fact {
+    ($facts:ident, also $name:literal) => {
+        Facts { alias: Some($name), ..$facts }
+    };
+    ($facts:ident, overload $ty:ident) => {
+        Facts { overload: Some(keyword::$ty), ..$facts }
+    };
+    ($facts:ident, option $option:ident for $of:literal) => {
+        Facts { option: Some(Replacement { option: BlockOption::$option, of: $of }), ..$facts }
+    };
+    ($facts:ident, kept $plain:literal in $pin:literal) => {
+        Facts { kept: Some(KeptCount { pin: $pin, plain: $plain }), ..$facts }
+    };
+    ($facts:ident, counts_levels) => {
+        Facts { counts_levels: true, ..$facts }
+    };
+    ($facts:ident, stops) => {
+        Facts { stops: true, ..$facts }
     };
 }
 

@@ -20,15 +20,21 @@ pub mod literal;
 pub mod text;
 pub mod time;
 
+mod family;
+
 mod block;
 mod block_table;
 pub mod blocks;
 
-pub use block::{Block, BlockInfo, Direction, Family, Instruction, Pin, Prescan, Retention};
+pub use block::{
+    Block, BlockInfo, BlockOption, Direction, Facts, Instruction, KeptCount, Pin, PinRole, Prescan, Replacement,
+    Retention,
+};
 pub use block_table::BLOCKS;
 pub use blocks::{codesys, cscape, iec, logix};
 pub use context::Context;
 pub use elementary::{Class, Elementary};
+pub use family::Family;
 pub use fault::{Fault, FaultKind, Location, OrFault, Outcome};
 pub use lane::{Lane, Scalar, Value};
 pub use signature::{Kind, Parameter, Signature};

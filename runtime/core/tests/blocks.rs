@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use staunch_runtime::time::ms;
-use staunch_runtime::{Block, Context, codesys, cscape, iec, logix};
+use staunch_runtime::{BLOCKS, Block, BlockInfo, Context, PinRole, codesys, cscape, iec, logix};
 
 /// Runs a timer at each (time, IN, PT) in milliseconds and gives its (Q, ET).
 macro_rules! timed {
@@ -166,4 +166,27 @@ fn a_call_is_inputs_and_a_step() {
     call_is_inputs_and_step!(iec::FTrig: clk: bit);
     call_is_inputs_and_step!(iec::Sr: s1: bit, r: bit);
     call_is_inputs_and_step!(iec::Rs: s: bit, r1: bit);
+}
+
+#[test]
+fn every_counter_has_the_pins_that_counters_share() {
+    for block in BLOCKS.iter().filter(|it| it.is_counter()) {
+        let has = |role| block.pin_for(role).is_some();
+        assert!(has(PinRole::Preset) && has(PinRole::Done), "{block:?}");
+        assert!(has(PinRole::Up) || has(PinRole::Down), "{block:?}");
+        let roles: Vec<_> = block.pins.iter().filter_map(|it| it.role).collect();
+        assert!(roles.iter().all(|role| roles.iter().filter(|it| *it == role).count() == 1), "{block:?}: {roles:?}");
+    }
+}
+
+#[test]
+fn what_stands_for_a_block_is_pinned_as_it_is() {
+    let pins = |it: &BlockInfo| it.pins.iter().map(|pin| (pin.name, pin.ty, pin.offset)).collect::<Vec<_>>();
+    let named = |family, name: &str| BLOCKS.iter().find(|it| it.family == family && it.name == name).expect("a block");
+    for block in BLOCKS {
+        let of = block.facts.option.map(|it| it.of).or(block.facts.kept.map(|it| it.plain));
+        if let Some(of) = of {
+            assert_eq!(pins(block), pins(named(block.family, of)), "{block:?}");
+        }
+    }
 }

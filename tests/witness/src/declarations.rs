@@ -10,10 +10,6 @@ use staunch_runtime::{BLOCKS, BlockInfo, Family};
 use std::collections::HashMap;
 use std::rc::Rc;
 
-/// The names of the families that qualify a block.
-const FAMILIES: [(&str, Family); 4] =
-    [("IEC", Family::Iec), ("CSCAPE", Family::Cscape), ("CODESYS", Family::Codesys), ("LOGIX", Family::Logix)];
-
 #[derive(Debug)]
 pub(crate) struct Pou<'a> {
     pub name: &'a str,
@@ -53,8 +49,8 @@ pub(crate) struct Declarations<'a> {
 impl<'a> Declarations<'a> {
     pub fn new(files: &'a [ast::File<'a>]) -> Outcome<Self> {
         let dialect = files.iter().flat_map(|it| &it.pragmas).find_map(|it| it.text.trim().strip_prefix("dialect"));
-        let dialect = dialect.map_or("IEC".to_owned(), |it| it.trim().trim_matches('\'').to_ascii_uppercase());
-        let family = FAMILIES.iter().find(|it| it.0 == dialect).map_or(Family::Iec, |it| it.1);
+        let dialect = dialect.and_then(|it| Family::named(it.trim().trim_matches('\'')));
+        let family = dialect.unwrap_or(Family::Iec);
         let capacity = if family == Family::Iec { 254 } else { 80 };
         let mut this = Self {
             files,
@@ -122,8 +118,8 @@ impl<'a> Declarations<'a> {
         let ty = match &spec.kind {
             TypeKind::Named(names) => match names.as_slice() {
                 [name] => return self.named(name.text),
-                [family, name] => match FAMILIES.iter().find(|it| it.0.eq_ignore_ascii_case(family.text)) {
-                    Some((_, family)) => Type::Block(block(*family, name.text)?),
+                [family, name] => match Family::named(family.text) {
+                    Some(family) => Type::Block(block(family, name.text)?),
                     None => return unknown("a qualified type"),
                 },
                 _ => return unknown("a qualified type"),

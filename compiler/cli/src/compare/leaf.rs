@@ -3,7 +3,7 @@
 use staunch_ir::layout::{Layout, usize_of};
 use staunch_ir::visit::{self, Access};
 use staunch_ir::{ArrayId, BlockId, Elementary, FieldId, Program, Retain, Section, StructId, Type, Value};
-use staunch_runtime::{Direction, Family, Pin, Retention};
+use staunch_runtime::{Direction, Pin, PinRole, Retention};
 
 /// Further elements of an array are not compared.
 const MAX_ELEMENTS: u64 = 1024;
@@ -146,14 +146,14 @@ impl Walk<'_> {
         self.found.blocks.push(Instance { path: path.to_owned(), key: key.clone(), block: id, offset: whole.offset });
         for (at, pin) in info.pins.iter().enumerate() {
             let Some(ty) = id.pin_type(FieldId::next(at)) else { continue };
-            let role = if shows(info.family, pin) { Role::Output(number) } else { Role::Hidden };
+            let role = if shows(pin) { Role::Output(number) } else { Role::Hidden };
             let retain = match info.retention {
                 Retention::Always => Retain::Kept,
                 it if it.restarts(pin) => Retain::Anew,
                 Retention::Declared | Retention::Inputs => whole.retain,
             };
             let part = Whole { offset: whole.offset + pin.offset, role, retain };
-            self.leaf(&format!("{path}.{}", pin.name), &format!("{key}.{}", common_name(id, pin.name)), ty, part);
+            self.leaf(&format!("{path}.{}", pin.name), &format!("{key}.{}", common_key(pin)), ty, part);
         }
     }
 }
@@ -167,37 +167,20 @@ fn part_of(role: Role) -> Role {
 }
 
 /// Whether a pin shows what the block has done.
-fn shows(family: Family, pin: &Pin) -> bool {
-    let logix = family == Family::Logix && matches!(pin.name, "DN" | "ACC");
-    logix || pin.direction == Direction::Output
+fn shows(pin: &Pin) -> bool {
+    let tells = matches!(pin.role, Some(PinRole::Done | PinRole::Empty | PinRole::Count));
+    pin.direction == Direction::Output || tells && pin.direction == Direction::Member
 }
 
-/// The name that a pin's counterparts share.
-pub fn common_name(block: BlockId, pin: &'static str) -> &'static str {
-    let up_and_down = block.info().name == "FBD_COUNTER";
-    match (block.info().family, pin) {
-        (Family::Logix, "ACC") => "CV",
-        (Family::Logix, "PRE") => "PV",
-        (Family::Logix, "DN") if up_and_down => "QU",
-        (Family::Logix, "DN") => "Q",
-        (Family::Logix, "CU") if up_and_down => "cu",
-        (Family::Logix, "CD") if up_and_down => "cd",
-        (Family::Logix, "CUEnable") => "CU",
-        (Family::Logix, "CDEnable") => "CD",
-        (Family::Logix, "Reset") => "R",
-        (_, "RESET") => "R",
-        (_, "LOAD") => "LD",
-        (_, "SET1") => "S1",
-        (_, "RESET1") => "R1",
-        (_, "SET") => "S",
-        (_, other) => other,
-    }
+/// What a pin's counterparts share: its role, which no name of a pin looks like, or its name.
+fn common_key(pin: &Pin) -> String {
+    pin.role.map_or_else(|| pin.name.to_owned(), |role| format!("<{role:?}>"))
 }
 
 impl Instance {
-    /// The value of the pin that the systems' counterparts call `name`.
-    pub fn pin(&self, name: &str, state: &[u8]) -> Option<i128> {
-        let pin = self.block.info().pins.iter().find(|it| common_name(self.block, it.name) == name)?;
+    /// The value of the pin with a role.
+    pub fn pin(&self, role: PinRole, state: &[u8]) -> Option<i128> {
+        let pin = self.block.info().pin_for(role)?;
         number(Value::read(pin.lane(), &state[self.offset + pin.offset..]))
     }
 }

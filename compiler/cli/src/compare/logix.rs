@@ -6,6 +6,7 @@ use staunch_frontend::ast::{
     StatementKind, TypeKind, VarBlock, VarDecl,
 };
 use staunch_frontend::{Dialect, Source, Sources, Span, parse};
+use staunch_runtime::{BlockInfo, Direction as PinDirection, Elementary, PinRole};
 use std::collections::HashMap;
 
 pub struct Rewritten {
@@ -24,69 +25,59 @@ enum Direction {
 /// A counter that a POU declares.
 #[derive(Clone, Copy, Debug)]
 struct Counter {
+    block: &'static BlockInfo,
+    /// The structure that its instructions work on.
+    tag: &'static BlockInfo,
     direction: Direction,
-    /// Its fourth input is the variable that keeps its count.
-    keeps: bool,
     /// What its count is converted with: Logix counts in DINT.
     narrow: Option<&'static str>,
 }
 
+/// The types of counts that a COUNTER can hold, and what makes one of its count.
+const NARROWED: [(Elementary, Option<&str>); 3] =
+    [(Elementary::Dint, None), (Elementary::Int, Some("DINT_TO_INT")), (Elementary::Word, Some("DINT_TO_WORD"))];
+
 impl Counter {
     fn named(name: &str, from: Dialect) -> Option<Self> {
-        let upper = name.to_ascii_uppercase();
-        let (keeps, plain) = upper.strip_prefix("R_").map_or((false, upper.as_str()), |it| (true, it));
-        let (base, wide) = plain.split_once('_').unwrap_or((plain, ""));
-        let direction = match base {
-            "CTU" => Direction::Up,
-            "CTD" => Direction::Down,
-            "CTUD" => Direction::Both,
-            _ => return None,
+        let block = from.block(name)?;
+        let count = block.pin_for(PinRole::Count).filter(|it| it.direction == PinDirection::Output)?;
+        let direction = match (block.pin_for(PinRole::Up), block.pin_for(PinRole::Down)) {
+            (Some(_), None) => Direction::Up,
+            (None, Some(_)) => Direction::Down,
+            (Some(_), Some(_)) => Direction::Both,
+            (None, None) => return None,
         };
-        let narrow = match (wide, from) {
-            ("DINT", _) => None,
-            ("" | "INT", Dialect::Codesys) => Some("DINT_TO_WORD"),
-            ("" | "INT", _) => Some("DINT_TO_INT"),
-            // Wider than a COUNTER, or unsigned: not the same thing.
-            _ => return None,
-        };
-        Some(Self { direction, keeps, narrow })
+        // What is wider than a COUNTER, or unsigned, is not the same thing.
+        let (_, narrow) = NARROWED.into_iter().find(|it| it.0 == count.ty)?;
+        let tag = Dialect::Logix.block(if direction == Direction::Both { "FBD_COUNTER" } else { "COUNTER" })?;
+        Some(Self { block, tag, direction, narrow })
     }
 
     /// The member of the COUNTER or FBD_COUNTER that stands for a pin, if one does.
-    fn tag(self, pin: &str) -> Option<&'static str> {
-        let both = self.direction == Direction::Both;
-        Some(match pin.to_ascii_uppercase().as_str() {
-            "PV" => "PRE",
-            "CV" => "ACC",
-            "Q" | "QU" => "DN",
-            "CU" => {
-                if both {
-                    "CUEnable"
-                } else {
-                    "CU"
-                }
-            }
-            "CD" => {
-                if both {
-                    "CDEnable"
-                } else {
-                    "CD"
-                }
-            }
-            "R" | "RESET" if both => "Reset",
-            _ => return None,
-        })
+    fn member(self, pin: &str) -> Option<&'static str> {
+        self.tag.pin_for(self.block.pin(pin)?.role?).map(|it| it.name)
     }
 
-    fn pins(self) -> &'static [&'static str] {
-        match (self.direction, self.keeps) {
-            (Direction::Up, false) => &["CU", "R", "PV"],
-            (Direction::Up, true) => &["CU", "R", "PV", "RCV"],
-            (Direction::Down, false) => &["CD", "LD", "PV"],
-            (Direction::Down, true) => &["CD", "LD", "PV", "RCV"],
-            (Direction::Both, _) => &["CU", "CD", "R", "LD", "PV"],
+    /// What an argument at this position is for; after the inputs, the variable that keeps the count.
+    fn input_at(self, at: usize) -> Option<Input> {
+        match self.block.inputs().nth(at) {
+            Some(pin) => pin.role.map(Input::Pin),
+            None => self.block.facts.kept.filter(|_| at == self.block.inputs().count()).map(|_| Input::Kept),
         }
     }
+
+    fn input_named(self, name: &str) -> Option<Input> {
+        let kept = self.block.facts.kept.filter(|it| it.pin.eq_ignore_ascii_case(name));
+        kept.map(|_| Input::Kept).or_else(|| PinRole::named(name).map(Input::Pin))
+    }
+}
+
+/// What is given in a call.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Input {
+    Pin(PinRole),
+    /// The variable that keeps the count.
+    Kept,
 }
 
 /// A replacement in one file.
@@ -163,8 +154,7 @@ impl Writer<'_> {
         let TypeKind::Named(names) = &decl.ty.kind else { return };
         let [Name { text, .. }] = names.as_slice() else { return };
         let Some(counter) = Counter::named(text, self.from) else { return };
-        let ty = if counter.direction == Direction::Both { "FBD_COUNTER" } else { "COUNTER" };
-        self.edit(decl.ty.span, ty.to_owned());
+        self.edit(decl.ty.span, counter.tag.name.to_owned());
         for name in &decl.names {
             self.counters.insert(name.text.to_ascii_uppercase(), counter);
         }
@@ -179,7 +169,7 @@ impl Writer<'_> {
     fn field(&self, counter: Counter, (name, value): &(Name<'_>, Initial<'_>)) -> Option<String> {
         let (start, end) = bounds(value.span);
         let value = &self.text[start..end];
-        match counter.tag(name.text) {
+        match counter.member(name.text) {
             Some(tag) => Some(format!("{tag} := {value}")),
             // An input that is FALSE does nothing, and an output is computed anew by each call.
             None if value.eq_ignore_ascii_case("FALSE") || name.text.eq_ignore_ascii_case("QD") => None,
@@ -286,7 +276,7 @@ impl Writer<'_> {
     fn member(&mut self, expr: &Expr<'_>, base: &Expr<'_>, name: Name<'_>, counter: Counter, narrow: bool) {
         let (start, end) = bounds(base.span);
         let owner = &self.text[start..end];
-        let text = match (counter.tag(name.text), counter.narrow) {
+        let text = match (counter.member(name.text), counter.narrow) {
             (Some(tag @ ("ACC" | "PRE")), Some(conversion)) if narrow => format!("{conversion}({owner}.{tag})"),
             (Some(tag), _) => format!("{owner}.{tag}"),
             (None, _) if name.text.eq_ignore_ascii_case("QD") => format!("({owner}.ACC <= 0)"),
@@ -302,24 +292,26 @@ impl Writer<'_> {
         let owner = self.text[start..end].to_owned();
         arguments.iter().for_each(|it| self.argument(it));
         let given = self.inputs(counter, arguments);
-        let get = |pin: &str| given.iter().find(|it| it.0 == pin).map(|it| it.1.as_str());
+        let input = |input: Input| given.iter().find(|it| it.0 == input).map(|it| it.1.as_str());
+        let get = |role: PinRole| input(Input::Pin(role));
         let mut lines = Vec::new();
-        lines.extend(get("PV").map(|it| format!("{owner}.PRE := {it}")));
+        lines.extend(get(PinRole::Preset).map(|it| format!("{owner}.PRE := {it}")));
         match counter.direction {
-            Direction::Up => lines.extend(up(&owner, get("CU"), get("R"))),
+            Direction::Up => lines.extend(up(&owner, get(PinRole::Up), get(PinRole::Reset))),
             Direction::Down => {
-                lines.extend(get("CD").map(|it| format!("CTD({owner}, {it})")));
-                lines.extend(get("LD").map(|it| format!("IF {it} THEN {owner}.ACC := {owner}.PRE; END_IF")));
+                lines.extend(get(PinRole::Down).map(|it| format!("CTD({owner}, {it})")));
+                lines.extend(get(PinRole::Load).map(|it| format!("IF {it} THEN {owner}.ACC := {owner}.PRE; END_IF")));
             }
             Direction::Both => {
-                for (pin, member) in [("CU", "CUEnable"), ("CD", "CDEnable"), ("R", "Reset")] {
-                    lines.extend(get(pin).map(|it| format!("{owner}.{member} := {it}")));
+                for role in [PinRole::Up, PinRole::Down, PinRole::Reset] {
+                    let member = counter.tag.pin_for(role);
+                    lines.extend(get(role).zip(member).map(|(it, member)| format!("{owner}.{} := {it}", member.name)));
                 }
                 lines.push(format!("CTUD({owner})"));
-                lines.extend(get("LD").map(|it| format!("IF {it} THEN {owner}.ACC := {owner}.PRE; END_IF")));
+                lines.extend(get(PinRole::Load).map(|it| format!("IF {it} THEN {owner}.ACC := {owner}.PRE; END_IF")));
             }
         }
-        lines.extend(get("RCV").map(|it| format!("{it} := DINT_TO_INT({owner}.ACC)")));
+        lines.extend(input(Input::Kept).map(|it| format!("{it} := DINT_TO_INT({owner}.ACC)")));
         for argument in arguments {
             if let ArgumentKind::Output { name, negated, target: Some(target) } = &argument.kind {
                 let (start, end) = bounds(target.span);
@@ -343,24 +335,17 @@ impl Writer<'_> {
         self.edits.push(Edit { start: from, end: to, text });
     }
 
-    /// The inputs by their pins' short names, with the replacements inside them.
-    fn inputs(&self, counter: Counter, arguments: &[Argument<'_>]) -> Vec<(&'static str, String)> {
+    /// The inputs with the replacements inside them.
+    fn inputs(&self, counter: Counter, arguments: &[Argument<'_>]) -> Vec<(Input, String)> {
         let mut found = Vec::new();
         for (at, argument) in arguments.iter().enumerate() {
-            let (pin, value) = match &argument.kind {
-                ArgumentKind::Positional(value) => (counter.pins().get(at).copied(), value),
-                ArgumentKind::Input(name, value) => {
-                    let name = match name.text.to_ascii_uppercase().as_str() {
-                        "RESET" => "R".to_owned(),
-                        "LOAD" => "LD".to_owned(),
-                        other => other.to_owned(),
-                    };
-                    (counter.pins().iter().copied().find(|it| *it == name), value)
-                }
+            let (input, value) = match &argument.kind {
+                ArgumentKind::Positional(value) => (counter.input_at(at), value),
+                ArgumentKind::Input(name, value) => (counter.input_named(name.text), value),
                 ArgumentKind::Output { .. } => continue,
             };
             let (start, end) = bounds(value.span);
-            found.extend(pin.map(|it| (it, self.apply(start, end))));
+            found.extend(input.map(|it| (it, self.apply(start, end))));
         }
         found
     }

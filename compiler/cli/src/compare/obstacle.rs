@@ -3,6 +3,7 @@
 use super::trap::Trap;
 use crate::session::Session;
 use staunch_frontend::{Code, Diagnostic, Dialect, Severity};
+use staunch_runtime::{BlockInfo, KeptCount, PinRole};
 
 /// What stands in the way, and what to do.
 pub struct Obstacle {
@@ -48,25 +49,27 @@ fn of(to: &Session, error: &Diagnostic, from: Dialect, target: Dialect) -> Obsta
     if from == Dialect::Logix && block {
         return Obstacle { trap: trap(11), why, advice: FROM_LOGIX.to_owned() };
     }
-    match name.as_str() {
-        "R_CTU" | "R_CTD" => {
-            let plain = &name[2..];
+    let counter = from.block(&name);
+    let kept = counter.and_then(|it| it.facts.kept);
+    let both = |it: &BlockInfo| it.pin_for(PinRole::Up).is_some() && it.pin_for(PinRole::Down).is_some();
+    match kept {
+        Some(KeptCount { plain, .. }) => {
             let advice = format!("Use a {plain} in VAR RETAIN, without RCV; its count survives a restart there");
             Obstacle { trap: trap(11), why, advice }
         }
-        _ if name.contains("CTUD") && target == Dialect::Cscape => {
+        None if counter.is_some_and(both) && target == Dialect::Cscape => {
             let advice = "Use a CTU and a CTD and subtract, or count in a variable of your own".to_owned();
             Obstacle { trap: None, why, advice }
         }
-        _ if block => {
+        None if block => {
             Obstacle { trap: None, why, advice: "Name the family, or choose a block that the system has".to_owned() }
         }
-        _ if widths(error) => Obstacle {
+        None if widths(error) => Obstacle {
             trap: trap(8),
             why,
             advice: "Convert the count or the preset explicitly, as `WORD_TO_INT(…)`".to_owned(),
         },
-        _ => Obstacle { trap: None, why, advice: "Change it as the message says".to_owned() },
+        None => Obstacle { trap: None, why, advice: "Change it as the message says".to_owned() },
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::leaf::{Instance, Role};
 use super::pair::{Matched, Pair, Row};
-use staunch_runtime::{Family, Lane};
+use staunch_runtime::{Family, Lane, PinRole};
 
 /// One of the traps of `docs/compare.md`, by its number less one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -236,17 +236,17 @@ fn outputs(case: &Case) -> Option<usize> {
 }
 
 fn pins(instance: &Instance, state: &[u8]) -> Pins {
-    let of = |name: &str| instance.pin(name, state);
-    let is = |name: &str| of(name).is_some_and(|it| it != 0);
+    let of = |role: PinRole| instance.pin(role, state);
+    let is = |role: PinRole| of(role).is_some_and(|it| it != 0);
     Pins {
-        up: is("CU"),
-        down: is("CD"),
-        reset: is("R"),
-        load: is("LD"),
-        preset: of("PV").unwrap_or(0),
-        count: of("CV").unwrap_or(0),
-        done: is("Q") || is("QU"),
-        empty: is("QD"),
+        up: is(PinRole::Up),
+        down: is(PinRole::Down),
+        reset: is(PinRole::Reset),
+        load: is(PinRole::Load),
+        preset: of(PinRole::Preset).unwrap_or(0),
+        count: of(PinRole::Count).unwrap_or(0),
+        done: is(PinRole::Done),
+        empty: is(PinRole::Empty),
     }
 }
 
@@ -305,13 +305,14 @@ fn counters(pair: &Pair, rows: &[Row], differences: &[Matched], feeding: &[Strin
 fn case(instances: [&Instance; 2], before: Option<&Row>, last: &Row, feeding: &[String]) -> Option<Case> {
     let kind = |it: &Instance| {
         let info = it.block.info();
-        let count = info.pins.iter().find(|pin| super::leaf::common_name(it.block, pin.name) == "CV")?;
+        let count = info.pin_for(PinRole::Count)?;
         Some(Kind { family: info.family, lane: count.lane() })
     };
     let of = |row: &Row| [0, 1].map(|side| pins(instances[side], &row.states[side]));
     let name = instances[0].key.rsplit(['.', ']']).next().unwrap_or_default();
     let info = [instances[0].block.info(), instances[1].block.info()];
-    let only_down = |it: &&staunch_runtime::BlockInfo| it.pin("CD").is_some() && it.pin("CU").is_none();
+    let only_down =
+        |it: &&staunch_runtime::BlockInfo| it.pin_for(PinRole::Down).is_some() && it.pin_for(PinRole::Up).is_none();
     let (now, before) = (level(of(last)), before.map(|it| level(of(it))));
     Some(Case {
         kinds: [kind(instances[0])?, kind(instances[1])?],

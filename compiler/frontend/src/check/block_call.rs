@@ -9,9 +9,7 @@ use super::place::{Access, Found};
 use crate::declare::{Target, pin_place};
 use crate::diagnostic::wording::article;
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{
-    BlockId, Conversion, Elementary, Expr, FieldId, Place, RoutineId, Section, StatementKind, StructId, Type,
-};
+use staunch_ir::{BlockId, Conversion, Expr, FieldId, Place, RoutineId, Section, StatementKind, StructId, Type};
 use staunch_runtime::{Direction, Family};
 
 impl<'s> Checker<'_, 's> {
@@ -85,16 +83,15 @@ impl<'s> Checker<'_, 's> {
             );
             return None;
         }
-        let keeps_count = is_retentive_counter(id);
         let mut parameters: Vec<_> = info
             .pins
             .iter()
             .filter(|it| matches!(it.direction, Direction::Input | Direction::Output))
             .map(|it| Parameter { name: it.name, section: section(it.direction) })
             .collect();
-        if keeps_count {
+        if let Some(kept) = info.facts.kept {
             let at = info.inputs().count();
-            parameters.insert(at, Parameter { name: "RCV", section: Section::InOut });
+            parameters.insert(at, Parameter { name: kept.pin, section: Section::InOut });
         }
         let moved = self.arguments_by_own_names(id, arguments);
         let arguments = moved.as_deref().unwrap_or(arguments);
@@ -127,7 +124,7 @@ impl<'s> Checker<'_, 's> {
             };
             complete &= made.is_some();
         }
-        if keeps_count && !parameters.iter().zip(&given).any(|(it, given)| is_given(it, given)) {
+        if info.facts.kept.is_some() && !parameters.iter().zip(&given).any(|(it, given)| is_given(it, given)) {
             self.report_no_count(callee);
             return None;
         }
@@ -154,9 +151,9 @@ impl<'s> Checker<'_, 's> {
 
     /// Evaluates the next part, what is given for an input of a standard block.
     fn pin_part(&mut self, parts: &mut Parts, id: BlockId, expr: &ast::Expr<'s>, ty: Type, turn: usize) -> Option<()> {
-        let overloaded = crate::dialect::is_overloaded_timer(id) && self.decl.dialect(expr.span).overloads_timers();
+        let overload = id.info().facts.overload.filter(|_| self.decl.dialect(expr.span).overloads_timers());
         let value = self.after_parts(&mut parts.written, |this| match this.operand(expr, Some(ty))? {
-            Operand::Typed(value) if overloaded && value.ty == Type::Elementary(Elementary::Ltime) => {
+            Operand::Typed(value) if overload.is_some_and(|it| value.ty == Type::Elementary(it)) => {
                 Some(this.convert(Conversion::Value, ty, value))
             }
             operand => this.coerce(operand, ty, expr.span),
@@ -376,12 +373,6 @@ impl<'s> Checker<'_, 's> {
             self.push(StatementKind::CallBlock { block: edge.trigger.clone(), instruction: 0, inputs }, span);
         }
     }
-}
-
-/// R_CTU and R_CTD keep their count in a variable of the user's.
-pub(super) fn is_retentive_counter(id: BlockId) -> bool {
-    let info = id.info();
-    info.family == Family::Cscape && matches!(info.name, "R_CTU" | "R_CTD")
 }
 
 fn section(direction: Direction) -> Section {

@@ -9,6 +9,7 @@ use crate::names::{Key, nearest};
 use crate::{Code, Diagnostic, Span, ast, dialect};
 use ast::{ArgumentKind, ExprKind as Ast};
 use staunch_ir::{BlockId, Section, Type};
+use staunch_runtime::Family;
 
 /// What stands before the parentheses.
 #[derive(Clone, Copy)]
@@ -192,7 +193,7 @@ impl<'s> Checker<'_, 's> {
             Ast::Member(base, name) => {
                 if let Ast::Name(family) = &base.kind
                     && self.scope.get(family.text).is_none()
-                    && let Some(it) = dialect::family_named(family.text)
+                    && let Some(it) = Family::named(family.text)
                 {
                     if is_instruction(it, name.text) {
                         return Some(Callee::Instruction(*name));
@@ -220,8 +221,8 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    fn report_family_call(&mut self, family: staunch_runtime::Family, name: ast::Name<'s>) {
-        let owner = dialect::family_name(family);
+    fn report_family_call(&mut self, family: Family, name: ast::Name<'s>) {
+        let owner = family.name();
         if dialect::block_in(family, name.text).is_some() {
             self.report(
                 Diagnostic::new(Code::E0305, name.span, format!("`{owner}.{}` is a type, not a function", name.text))
@@ -279,7 +280,7 @@ impl<'s> Checker<'_, 's> {
 
     /// An instruction of Logix under another dialect, recognised by the tag that it works on.
     fn is_logix_call(&mut self, name: ast::Name<'s>, arguments: &[ast::Argument<'s>]) -> bool {
-        if !is_instruction(staunch_runtime::Family::Logix, name.text) {
+        if !is_instruction(Family::Logix, name.text) {
             return false;
         }
         let tag = arguments.first().map(|it| &it.kind);
@@ -289,7 +290,7 @@ impl<'s> Checker<'_, 's> {
             return true;
         }
         let Some(variable) = self.scope.get(tag.text) else { return false };
-        let logix = matches!(variable.place.ty, Type::Block(id) if id.info().family == staunch_runtime::Family::Logix);
+        let logix = matches!(variable.place.ty, Type::Block(id) if id.info().family == Family::Logix);
         if logix {
             let text = name.text;
             self.report(
@@ -327,7 +328,7 @@ impl<'s> Checker<'_, 's> {
             self.report_type_called(name, ast::PouKind::FunctionBlock);
             return;
         }
-        if dialect::FAMILIES.iter().any(|(_, family)| is_instruction(*family, name.text)) {
+        if Family::ALL.into_iter().any(|it| is_instruction(it, name.text)) {
             if let Some(error) = super::block_of_another_dialect(self.decl.dialect(name.span), name) {
                 self.report(error);
                 return;
@@ -574,12 +575,12 @@ fn not_yet(name: &str) -> bool {
 }
 
 /// Whether `name` is an instruction of a structure in `family`.
-fn is_instruction(family: staunch_runtime::Family, name: &str) -> bool {
+fn is_instruction(family: Family, name: &str) -> bool {
     instruction_in(family, name).is_some()
 }
 
 /// The first structure with the instruction `name`, and the instruction's position.
-pub(super) fn instruction_in(family: staunch_runtime::Family, name: &str) -> Option<(BlockId, usize)> {
+pub(super) fn instruction_in(family: Family, name: &str) -> Option<(BlockId, usize)> {
     let blocks = staunch_runtime::BLOCKS.iter().enumerate().filter(|(_, it)| it.family == family);
     blocks.into_iter().find_map(|(at, block)| {
         let found = block.instructions.iter().position(|it| !it.name.is_empty() && it.name.eq_ignore_ascii_case(name));

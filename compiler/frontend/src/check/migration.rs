@@ -3,13 +3,12 @@
 
 use super::Checker;
 use super::unresolved::other_dialects_pin;
-use crate::dialect::family_name;
 use crate::names::Key;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ArgumentKind, BinaryOp, ExprKind as Ast, LiteralValue, StatementKind};
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{BlockId, Elementary, Expr, Op, Type, Value};
-use staunch_runtime::{Direction, Family};
+use staunch_runtime::{Direction, PinRole};
 
 /// A call of a counter that is a variable of its own.
 struct CounterCall<'a, 's> {
@@ -21,15 +20,12 @@ struct CounterCall<'a, 's> {
 
 impl<'a, 's> CounterCall<'a, 's> {
     /// The value given for an input, by its name or its position.
-    fn input(&self, pin: &str) -> Option<(&'a ast::Expr<'s>, Span)> {
-        let own = own_name(self.block, pin);
+    fn input(&self, role: PinRole) -> Option<(&'a ast::Expr<'s>, Span)> {
         let named = self.arguments.iter().find_map(|it| match &it.kind {
-            ArgumentKind::Input(name, value) if own_name(self.block, name.text).eq_ignore_ascii_case(own) => {
-                Some((value, it.span))
-            }
+            ArgumentKind::Input(name, value) if PinRole::named(name.text) == Some(role) => Some((value, it.span)),
             ArgumentKind::Input(..) | ArgumentKind::Positional(_) | ArgumentKind::Output { .. } => None,
         });
-        let position = self.block.info().inputs().position(|it| it.name.eq_ignore_ascii_case(own))?;
+        let position = self.block.info().inputs().position(|it| it.role == Some(role))?;
         named.or_else(|| match self.arguments.get(position) {
             Some(ast::Argument { kind: ArgumentKind::Positional(value), span }) => Some((value, *span)),
             _ => None,
@@ -51,7 +47,7 @@ impl<'a, 's> CounterCall<'a, 's> {
 pub(super) fn only_resets(arguments: &[ast::Argument<'_>]) -> bool {
     let resets = |it: &ast::Argument<'_>| match &it.kind {
         ArgumentKind::Input(name, _) => {
-            ["R", "RESET", "LD", "LOAD"].iter().any(|pin| pin.eq_ignore_ascii_case(name.text))
+            matches!(PinRole::named(name.text), Some(PinRole::Reset | PinRole::Load))
         }
         ArgumentKind::Positional(_) | ArgumentKind::Output { .. } => false,
     };
@@ -61,21 +57,13 @@ pub(super) fn only_resets(arguments: &[ast::Argument<'_>]) -> bool {
 /// Whether the type is a counter with a count to read.
 fn counts(ty: Type) -> bool {
     match ty {
-        Type::Block(block) => block.info().pin("CV").is_some_and(|it| it.direction == Direction::Output),
+        Type::Block(block) => block.info().pin_for(PinRole::Count).is_some_and(|it| it.direction == Direction::Output),
         Type::Elementary(_)
         | Type::Subrange(..)
         | Type::String(_)
         | Type::Enum(_)
         | Type::Array(_)
         | Type::Struct(_) => false,
-    }
-}
-
-/// This block's name for a pin.
-fn own_name(block: BlockId, pin: &str) -> &str {
-    match block.info().pin(pin) {
-        Some(_) => pin,
-        None => other_dialects_pin(block, pin).unwrap_or(pin),
     }
 }
 
@@ -87,7 +75,7 @@ impl<'s> Checker<'_, 's> {
             return name;
         }
         let Some(own) = other_dialects_pin(block, name.text) else { return name };
-        let system = family_name(info.family);
+        let system = info.family.name();
         let message = format!("the pin `{}` is called `{own}` in {system}", name.text);
         let lint = Diagnostic::new(Code::W0609, name.span, message).label("a name that the move changes");
         let lint = lint.help(format!("write `{own}`, or give the inputs by position")).fix(name.span, own);
@@ -186,7 +174,7 @@ impl<'s> Checker<'_, 's> {
     ) {
         let stops = |it: &CounterCall<'_, '_>| {
             let info = it.block.info();
-            info.family == Family::Cscape && info.pin("CU").is_some() || info.name.ends_with("CTU_STOP_AT_PV")
+            info.facts.stops && info.pin_for(PinRole::Up).is_some()
         };
         if calls.first().is_none_or(|it| !stops(it)) {
             return;
@@ -197,7 +185,7 @@ impl<'s> Checker<'_, 's> {
             (Some(preset), Some(limit)) => preset <= limit,
             _ => text(given) == text(limit),
         };
-        if own || calls.iter().all(|it| it.input("PV").is_some_and(|(given, _)| at_most(given))) {
+        if own || calls.iter().all(|it| it.input(PinRole::Preset).is_some_and(|(given, _)| at_most(given))) {
             self.report(
                 Diagnostic::new(Code::W0602, span, format!("`{}.CV` does not pass its preset", counter.text))
                     .label("the counter stops at PV, so this never holds")
@@ -209,31 +197,29 @@ impl<'s> Checker<'_, 's> {
 
     /// `c(R := done); done := c.Q;`
     fn reset_by_itself(&mut self, call: &CounterCall<'_, 's>, read: &MembersRead<'s>) {
-        let family = call.block.info().family;
-        if !matches!(family, Family::Iec | Family::Codesys) {
+        let info = call.block.info();
+        if info.facts.counts_levels {
             return;
         }
-        for (pin, outputs) in [("R", ["Q", "QU"]), ("LD", ["Q", "QD"])] {
-            let Some((given, at)) = call.input(pin) else { continue };
+        let empty = info.pin_for(PinRole::Empty).map_or(PinRole::Done, |_| PinRole::Empty);
+        for (input, output) in [(PinRole::Reset, PinRole::Done), (PinRole::Load, empty)] {
+            let Some((given, at)) = call.input(input) else { continue };
+            let (Some(pin), Some(output)) = (info.pin_for(input), info.pin_for(output)) else { continue };
+            let (pin, output) = (pin.name, output.name);
             let is_output = |expr: &ast::Expr<'s>| {
-                outputs
-                    .iter()
-                    .any(|it| member_of(expr, it).is_some_and(|name| name.text.eq_ignore_ascii_case(call.name)))
+                member_of(expr, output).is_some_and(|name| name.text.eq_ignore_ascii_case(call.name))
             };
             let set_by_call = |name: ast::Name<'s>| {
-                let mut targets = outputs.iter().filter_map(|it| call.output(it));
-                targets.any(|it| matches!(&it.kind, Ast::Name(it) if it.text.eq_ignore_ascii_case(name.text)))
+                let target = call.output(output);
+                target.is_some_and(|it| matches!(&it.kind, Ast::Name(it) if it.text.eq_ignore_ascii_case(name.text)))
             };
-            let reads_output =
-                |name: ast::Name<'s>| outputs.iter().any(|it| read.contains(&[name.text, call.name, it].map(Key)));
+            let reads_output = |name: ast::Name<'s>| read.contains(&[name.text, call.name, output].map(Key));
             let own = match &bare(given).kind {
                 Ast::Name(name) => set_by_call(*name) || reads_output(*name),
                 _ => is_output(bare(given)),
             };
             if own {
-                let (counter, pin) = (call.name, own_name(call.block, pin));
-                let has = |it: &&&str| call.block.info().pin(it).is_some();
-                let output = outputs.iter().find(has).unwrap_or(&"Q");
+                let counter = call.name;
                 let given = self.decl.sources.text(bare(given).span);
                 self.report(
                     Diagnostic::new(Code::W0612, at, format!("`{counter}` feeds its own {pin}"))

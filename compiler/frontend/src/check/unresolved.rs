@@ -2,11 +2,11 @@
 
 use super::Checker;
 use crate::diagnostic::wording::list;
-use crate::dialect::{self, Dialect, family_name};
+use crate::dialect::Dialect;
 use crate::names::nearest;
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::BlockId;
-use staunch_runtime::{BLOCKS, Direction, Family};
+use staunch_runtime::{BLOCKS, Direction, Family, PinRole};
 
 pub(crate) fn not_constant(span: Span) -> Diagnostic {
     Diagnostic::new(Code::E0205, span, "a constant is expected here")
@@ -15,9 +15,9 @@ pub(crate) fn not_constant(span: Span) -> Diagnostic {
 
 /// `CSCAPE.CTUD`: the family has no such block.
 pub(crate) fn no_such_block(family: Family, name: ast::Name<'_>) -> Diagnostic {
-    let names: Vec<_> =
-        BLOCKS.iter().filter(|it| it.family == family && !dialect::is_option_row(it.name)).map(|it| it.name).collect();
-    let owner = family_name(family);
+    let own = BLOCKS.iter().filter(|it| it.family == family && it.facts.option.is_none());
+    let names: Vec<_> = own.map(|it| it.name).collect();
+    let owner = family.name();
     let error = Diagnostic::new(Code::E0309, name.span, format!("{owner} documents no `{}`", name.text))
         .label(format!("not a block of {owner}"));
     match nearest(name.text, names.iter().copied()).filter(|near| near.len() == name.text.len()) {
@@ -28,13 +28,12 @@ pub(crate) fn no_such_block(family: Family, name: ast::Name<'_>) -> Diagnostic {
 
 /// A block that exists, but not under the dialect's bare names.
 pub(crate) fn block_of_another_dialect(dialect: Dialect, name: ast::Name<'_>) -> Option<Diagnostic> {
-    let owners: Vec<_> =
-        BLOCKS.iter().filter(|it| it.name.eq_ignore_ascii_case(name.text)).map(|it| it.family).collect();
-    if owners.is_empty() || dialect::is_option_row(name.text) {
+    let owners: Vec<_> = BLOCKS.iter().filter(|it| it.is_named(name.text)).map(|it| it.family).collect();
+    if owners.is_empty() {
         return None;
     }
-    let system = family_name(dialect.family());
-    let qualified: Vec<_> = owners.iter().map(|it| format!("{}.{}", family_name(*it), name.text)).collect();
+    let system = dialect.family().name();
+    let qualified: Vec<_> = owners.iter().map(|it| format!("{}.{}", it.name(), name.text)).collect();
     let qualified: Vec<_> = qualified.iter().map(String::as_str).collect();
     let others: Vec<_> = Dialect::ALL.iter().filter(|it| owners.contains(&it.family())).map(|it| it.name()).collect();
     let error = Diagnostic::new(Code::E0309, name.span, format!("{system} documents no `{}`", name.text))
@@ -55,7 +54,7 @@ pub(crate) fn block_of_another_dialect(dialect: Dialect, name: ast::Name<'_>) ->
 pub(super) fn unknown_pin(block: BlockId, name: ast::Name<'_>) -> Diagnostic {
     let info = block.info();
     let pins: Vec<_> = info.pins.iter().filter(|it| it.direction != Direction::Memory).map(|it| it.name).collect();
-    let full = format!("{}.{}", family_name(info.family), info.name);
+    let full = format!("{}.{}", info.family.name(), info.name);
     let error =
         Diagnostic::new(Code::E0301, name.span, format!("`{full}` has no pin `{}`", name.text)).label("unknown pin");
     let meant = other_dialects_pin(block, name.text).or_else(|| nearest(name.text, pins.iter().copied()));
@@ -67,38 +66,17 @@ pub(super) fn unknown_pin(block: BlockId, name: ast::Name<'_>) -> Diagnostic {
         Some(family) => error.note(format!(
             "the pin is called `{}` in {}, whose blocks a bare name means under `--dialect {}`",
             name.text.to_ascii_uppercase(),
-            family_name(family),
+            family.name(),
             dialect_of(family).name()
         )),
         None => error,
     }
 }
 
-/// The pins that two systems call by different names.
-const RENAMED: [(&str, &str); 8] = [
-    ("R", "RESET"),
-    ("LD", "LOAD"),
-    ("S1", "SET1"),
-    ("R1", "RESET1"),
-    ("S", "SET"),
-    ("Q1", "Q"),
-    // Of the two bistables one has a dominant set, the other a dominant reset.
-    ("S", "S1"),
-    ("R", "R1"),
-];
-
 /// This block's name for a pin that another system calls `name`.
 pub(super) fn other_dialects_pin(block: BlockId, name: &str) -> Option<&'static str> {
-    let has = |pin: &str| block.info().pin(pin).is_some();
-    RENAMED.into_iter().find_map(|(short, long)| {
-        if name.eq_ignore_ascii_case(long) && has(short) {
-            Some(short)
-        } else if name.eq_ignore_ascii_case(short) && has(long) {
-            Some(long)
-        } else {
-            None
-        }
-    })
+    let pin = block.info().pin_for(PinRole::named(name)?)?;
+    Some(pin.name).filter(|it| !it.eq_ignore_ascii_case(name))
 }
 
 /// The family whose block of the same name has a pin `name`.

@@ -565,15 +565,14 @@ impl<'s> Declarations<'s> {
 
     /// The standard block that a bare `name` means where `span` stands.
     pub fn bare_block(&self, name: &str, span: Span) -> Option<staunch_ir::BlockId> {
-        let dialect = self.dialect(span);
-        self.block_in(dialect.family(), name).or_else(|| dialect::bare_block(dialect, name))
+        let block = dialect::bare_block(self.dialect(span), name)?;
+        Some(dialect::as_options_have_it(block, |it| self.options.is_on(it)))
     }
 
     /// The block called `name` in `family`, as the options have it.
     pub fn block_in(&self, family: staunch_runtime::Family, name: &str) -> Option<staunch_ir::BlockId> {
-        let stops = self.options.ctu_stop_at_pv && family == staunch_runtime::Family::Codesys;
-        let name = if stops && name.eq_ignore_ascii_case("CTU") { "CTU_STOP_AT_PV" } else { name };
-        dialect::block_in(family, name)
+        let block = dialect::block_in(family, name)?;
+        Some(dialect::as_options_have_it(block, |it| self.options.is_on(it)))
     }
 
     /// Makes the globals' structure, so that places in bodies have their types.

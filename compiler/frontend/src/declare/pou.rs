@@ -298,7 +298,7 @@ impl<'s> Declarations<'s> {
         let info = id.info();
         let what = if info.pin("PT").is_some() {
             "its time never passes"
-        } else if info.pin("CV").is_some() || info.pin("ACC").is_some() {
+        } else if info.is_counter() {
             "its count is lost"
         } else if info.pin("CLK").is_some() {
             "it takes every TRUE for an edge"

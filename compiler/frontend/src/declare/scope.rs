@@ -123,7 +123,7 @@ impl<'s> Declarations<'s> {
         match ty {
             staunch_ir::Type::Block(id) => {
                 let info = id.info();
-                let is_lost = info.family == staunch_runtime::Family::Cscape && matches!(info.name, "CTU" | "CTD");
+                let is_lost = info.retention == staunch_runtime::Retention::Inputs && info.facts.kept.is_none();
                 is_lost.then_some(path)
             }
             staunch_ir::Type::Array(id) => self.lost_counter(path, self.program.array(id).element),

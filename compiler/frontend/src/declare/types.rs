@@ -10,6 +10,7 @@ use crate::{Code, Diagnostic, Span};
 use staunch_ir::{
     Array, ArrayId, BoundsId, Const, Elementary, Enum, EnumId, Enumerator, Struct, StructId, Type, Value,
 };
+use staunch_runtime::Family;
 use std::rc::Rc;
 
 /// What a type specification means for a variable declared with it.
@@ -167,23 +168,16 @@ impl<'s> Declarations<'s> {
     }
 
     fn resolve_qualified(&mut self, family: ast::Name<'s>, name: ast::Name<'s>) -> Option<Resolved> {
-        let Some(it) = dialect::family_named(family.text) else {
-            let names: Vec<_> = dialect::FAMILIES.iter().map(|(name, _)| *name).collect();
+        let Some(it) = Family::named(family.text) else {
+            let names = Family::ALL.map(Family::name);
             self.report(
                 Diagnostic::new(Code::E0102, family.span, format!("there is no block family `{}`", family.text))
                     .help(format!("the families are {}", list(&names))),
             );
             return None;
         };
-        // The rows of options are reached by the option, not by name.
-        let block = self.block_in(it, name.text).filter(|_| !dialect::is_option_row(name.text));
         // What all systems share needs no family of its own.
-        let block = block.or_else(|| {
-            (!dialect::is_counter(name.text))
-                .then(|| dialect::block_in(staunch_runtime::Family::Iec, name.text))
-                .flatten()
-        });
-        let Some(block) = block else {
+        let Some(block) = self.block_in(it, name.text).or_else(|| dialect::shared_block(name.text)) else {
             self.report(check::no_such_block(it, name));
             return None;
         };

@@ -26,8 +26,8 @@ impl Sr {
 }
 
 pins!([] Sr {
-    Input { s1: BOOL = "S1", r: BOOL = "R" }
-    Output { q1: BOOL = "Q1" }
+    Input { s1: BOOL = "S1" as Set, r: BOOL = "R" as Reset }
+    Output { q1: BOOL = "Q1" as Done }
 });
 
 /// `RS`: `q1` is set by `s` and reset by `r1`; `r1` wins.
@@ -55,6 +55,6 @@ impl Rs {
 }
 
 pins!([] Rs {
-    Input { s: BOOL = "S", r1: BOOL = "R1" }
-    Output { q1: BOOL = "Q1" }
+    Input { s: BOOL = "S" as Set, r1: BOOL = "R1" as Reset }
+    Output { q1: BOOL = "Q1" as Done }
 });

@@ -58,7 +58,7 @@ impl<T: Count> CtuStopAtPv<T> {
 }
 
 pins!([T: Count] CtuStopAtPv<T> {
-    Input { cu: BOOL = "CU", reset: BOOL = "RESET", pv: T = "PV" }
-    Output { q: BOOL = "Q", cv: T = "CV" }
+    Input { cu: BOOL = "CU" as Up, reset: BOOL = "RESET" as Reset, pv: T = "PV" as Preset }
+    Output { q: BOOL = "Q" as Done, cv: T = "CV" as Count }
     Memory { cu_before: BOOL = "cu_before" }
 });

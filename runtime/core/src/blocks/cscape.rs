@@ -35,8 +35,8 @@ impl Ctu {
 }
 
 pins!([] Ctu {
-    Input { cu: BOOL = "CU", reset: BOOL = "RESET", pv: INT = "PV" }
-    Output { q: BOOL = "Q", cv: INT = "CV" }
+    Input { cu: BOOL = "CU" as Up, reset: BOOL = "RESET" as Reset, pv: INT = "PV" as Preset }
+    Output { q: BOOL = "Q" as Done, cv: INT = "CV" as Count }
 });
 
 /// `CTD`: while `cd`, each call counts down until `cv` reaches 0; `q` while `cv = 0`. While
@@ -69,8 +69,8 @@ impl Ctd {
 }
 
 pins!([] Ctd {
-    Input { cd: BOOL = "CD", load: BOOL = "LOAD", pv: INT = "PV" }
-    Output { q: BOOL = "Q", cv: INT = "CV" }
+    Input { cd: BOOL = "CD" as Down, load: BOOL = "LOAD" as Load, pv: INT = "PV" as Preset }
+    Output { q: BOOL = "Q" as Done, cv: INT = "CV" as Count }
 });
 
 /// `R_CTU`: a [`Ctu`]. Its fourth pin RCV is a variable of the caller, which the compiler sets to

@@ -74,8 +74,8 @@ impl<T: Count> Ctu<T> {
 }
 
 pins!([T: Count] Ctu<T> {
-    Input { cu: BOOL = "CU", r: BOOL = "R", pv: T = "PV" }
-    Output { q: BOOL = "Q", cv: T = "CV" }
+    Input { cu: BOOL = "CU" as Up, r: BOOL = "R" as Reset, pv: T = "PV" as Preset }
+    Output { q: BOOL = "Q" as Done, cv: T = "CV" as Count }
     Memory { cu_before: BOOL = "cu_before" }
 });
 
@@ -114,8 +114,8 @@ impl<T: Count> Ctd<T> {
 }
 
 pins!([T: Count] Ctd<T> {
-    Input { cd: BOOL = "CD", ld: BOOL = "LD", pv: T = "PV" }
-    Output { q: BOOL = "Q", cv: T = "CV" }
+    Input { cd: BOOL = "CD" as Down, ld: BOOL = "LD" as Load, pv: T = "PV" as Preset }
+    Output { q: BOOL = "Q" as Done, cv: T = "CV" as Count }
     Memory { cd_before: BOOL = "cd_before" }
 });
 
@@ -164,8 +164,8 @@ impl<T: Count> Ctud<T> {
 }
 
 pins!([T: Count] Ctud<T> {
-    Input { cu: BOOL = "CU", cd: BOOL = "CD", r: BOOL = "R", ld: BOOL = "LD", pv: T = "PV" }
-    Output { qu: BOOL = "QU", qd: BOOL = "QD", cv: T = "CV" }
+    Input { cu: BOOL = "CU" as Up, cd: BOOL = "CD" as Down, r: BOOL = "R" as Reset, ld: BOOL = "LD" as Load, pv: T = "PV" as Preset }
+    Output { qu: BOOL = "QU" as Done, qd: BOOL = "QD" as Empty, cv: T = "CV" as Count }
     Memory { cu_before: BOOL = "cu_before", cd_before: BOOL = "cd_before" }
 });
 

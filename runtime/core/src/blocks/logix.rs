@@ -76,8 +76,8 @@ impl Counter {
 
 pins!([] Counter {
     Member {
-        cu: BOOL = "CU", cd: BOOL = "CD", dn: BOOL = "DN", ov: BOOL = "OV", un: BOOL = "UN",
-        pre: DINT = "PRE", acc: DINT = "ACC",
+        cu: BOOL = "CU" as Up, cd: BOOL = "CD" as Down, dn: BOOL = "DN" as Done, ov: BOOL = "OV", un: BOOL = "UN",
+        pre: DINT = "PRE" as Preset, acc: DINT = "ACC" as Count,
     }
 });
 
@@ -146,9 +146,9 @@ impl FbdCounter {
 pins!([] FbdCounter {
     Member {
         enable_in: BOOL = "EnableIn" true,
-        cu_enable: BOOL = "CUEnable", cd_enable: BOOL = "CDEnable", pre: DINT = "PRE", reset: BOOL = "Reset",
-        enable_out: BOOL = "EnableOut", acc: DINT = "ACC",
-        cu: BOOL = "CU", cd: BOOL = "CD", dn: BOOL = "DN", ov: BOOL = "OV", un: BOOL = "UN",
+        cu_enable: BOOL = "CUEnable" as Up, cd_enable: BOOL = "CDEnable" as Down, pre: DINT = "PRE" as Preset, reset: BOOL = "Reset" as Reset,
+        enable_out: BOOL = "EnableOut", acc: DINT = "ACC" as Count,
+        cu: BOOL = "CU", cd: BOOL = "CD", dn: BOOL = "DN" as Done, ov: BOOL = "OV", un: BOOL = "UN",
     }
     Memory { cu_enable_before: BOOL = "cu_enable_before", cd_enable_before: BOOL = "cd_enable_before" }
 });

@@ -2,7 +2,7 @@
 
 use crate::places::pin_type;
 use crate::types::Elementary;
-use staunch_runtime::{BLOCKS, BlockInfo, Direction, Family};
+use staunch_runtime::{BLOCKS, BlockInfo, Direction};
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Ty {
@@ -211,20 +211,11 @@ pub fn pins(block: usize) -> Vec<(String, Ty, bool)> {
 /// Blocks that stand for themselves: not those of an option, or with a variable outside of them.
 pub fn standard_blocks() -> Vec<usize> {
     let fits = |it: &BlockInfo| {
-        !it.name.ends_with("_STOP_AT_PV")
-            && !it.name.starts_with("R_CT")
-            && !it.name.starts_with("LT")
-            && it.name != "FBD_COUNTER"
+        it.facts.option.is_none() && it.facts.kept.is_none() && !it.name.starts_with("LT") && it.name != "FBD_COUNTER"
     };
     (0..BLOCKS.len()).filter(|at| fits(&BLOCKS[*at])).collect()
 }
 
 fn standard_name(info: &BlockInfo) -> String {
-    let family = match info.family {
-        Family::Iec => "IEC",
-        Family::Cscape => "CSCAPE",
-        Family::Codesys => "CODESYS",
-        Family::Logix => "LOGIX",
-    };
-    format!("{family}.{}", info.name)
+    format!("{}.{}", info.family.name(), info.name)
 }

@@ -1,0 +1,32 @@
+//! The systems whose documents define blocks, and what is said of each as a whole.
+
+/// The system whose documentation defines a block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Family {
+    /// IEC 61131-3 as Autonomy Edge documents it. Owns also the blocks that all systems share.
+    Iec,
+    /// Horner Cscape, IEC editor with Enhanced IEC.
+    Cscape,
+    /// CODESYS Standard and Standard64.
+    Codesys,
+    /// Rockwell Logix 5000.
+    Logix,
+}
+
+impl Family {
+    pub const ALL: [Self; 4] = [Self::Iec, Self::Cscape, Self::Codesys, Self::Logix];
+
+    /// The name that qualifies its blocks in Structured Text: `CODESYS.CTU`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Iec => "IEC",
+            Self::Cscape => "CSCAPE",
+            Self::Codesys => "CODESYS",
+            Self::Logix => "LOGIX",
+        }
+    }
+
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|it| it.name().eq_ignore_ascii_case(name))
+    }
+}
