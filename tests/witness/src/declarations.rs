@@ -36,7 +36,7 @@ impl Variable<'_> {
 #[derive(Debug)]
 pub(crate) struct Declarations<'a> {
     files: &'a [ast::File<'a>],
-    family: Family,
+    pub family: Family,
     /// The capacity of a STRING without one.
     capacity: usize,
     types: HashMap<String, Slot<'a>>,

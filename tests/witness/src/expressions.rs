@@ -76,8 +76,8 @@ impl<'a> Machine<'a> {
         let Some(ty) = value.ty.elementary() else { return unknown("this operand of NOT or -") };
         match op {
             UnaryOp::Plus => Ok(value),
-            UnaryOp::Neg => self.applied("NEG", ty, &[value.as_scalar()?], inner.span),
-            UnaryOp::Not => self.applied("NOT", ty, &[value.as_scalar()?], inner.span),
+            UnaryOp::Neg => self.computed("NEG", ty, &[value.as_scalar()?], inner.span),
+            UnaryOp::Not => self.applied("NOT", ty, &[in_lane(value.as_scalar()?, ty).as_scalar()?], inner.span),
         }
     }
 

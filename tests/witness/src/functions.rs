@@ -4,7 +4,7 @@ use crate::calls::is_enable;
 use crate::expressions::{Untyped, default_type, in_lane, literal_number, untyped};
 use crate::machine::{Frame, Machine, Outcome, unknown};
 use crate::operators::operator;
-use crate::storage::Value;
+use crate::storage::{Value, integer_cell};
 use crate::types::{Elementary, Type};
 use staunch_frontend::Span;
 use staunch_frontend::ast::{Argument, ArgumentKind, BinaryOp, Expr, Name};
@@ -63,7 +63,10 @@ impl<'a> Machine<'a> {
 
     fn of_one(&self, name: &str, value: &Value<'a>, at: Span) -> Outcome<Value<'a>> {
         let Some(ty) = value.ty.elementary() else { return unknown("this argument") };
-        self.applied(name, ty, &[value.as_scalar()?], at)
+        match name {
+            "ABS" => self.computed(name, ty, &[value.as_scalar()?], at),
+            _ => self.applied(name, ty, &[in_lane(value.as_scalar()?, ty).as_scalar()?], at),
+        }
     }
 
     /// Arguments that have one type between them, in the order of the parameters.
@@ -79,11 +82,11 @@ impl<'a> Machine<'a> {
             values.push((*position, value, *expr));
         }
         values.sort_by_key(|it| it.0);
-        let ty = common(&values, asked)?;
+        let ty = self.common(&values, asked)?;
         let mut made = Vec::new();
         for (_, value, expr) in values {
             made.push(match (value, ty) {
-                (Some(value), Some(ty)) if value.ty.elementary().is_some() => in_lane(value.as_scalar()?, ty),
+                (Some(value), Some(ty)) if value.ty.elementary().is_some() => self.unstored(value.as_scalar()?, ty),
                 (Some(value), _) => value,
                 (None, Some(ty)) => self.number(expr, ty)?,
                 (None, None) => return unknown("a number among others"),
@@ -105,7 +108,7 @@ impl<'a> Machine<'a> {
         let Some(mut best) = values.next() else { return unknown("a function without arguments") };
         for value in values {
             best = match (value.ty.elementary(), &value.ty) {
-                (Some(ty), _) => self.applied(name, ty, &[best.as_scalar()?, value.as_scalar()?], at)?,
+                (Some(ty), _) => self.computed(name, ty, &[best.as_scalar()?, value.as_scalar()?], at)?,
                 (None, Type::Text(_)) => {
                     let order = text::compare(value.as_text()?, best.as_text()?);
                     if (name == "MAX" && order > 0) || (name == "MIN" && order < 0) { value } else { best }
@@ -126,7 +129,7 @@ impl<'a> Machine<'a> {
         let values = self.of_one_type(frame, given, asked)?;
         let [low, value, high] = values.as_slice() else { return unknown("LIMIT without three arguments") };
         match value.ty.elementary() {
-            Some(ty) => self.applied("LIMIT", ty, &[low.as_scalar()?, value.as_scalar()?, high.as_scalar()?], at),
+            Some(ty) => self.computed("LIMIT", ty, &[low.as_scalar()?, value.as_scalar()?, high.as_scalar()?], at),
             None if text::compare(value.as_text()?, low.as_text()?) < 0 => Ok(low.clone()),
             None if text::compare(value.as_text()?, high.as_text()?) > 0 => Ok(high.clone()),
             None => Ok(value.clone()),
@@ -161,10 +164,10 @@ impl<'a> Machine<'a> {
             return Err(self.fault(FaultKind::IndexOutOfRange, at));
         }
         evaluated.sort_by_key(|it| it.0);
-        let ty = common(&evaluated, asked)?;
+        let ty = self.common(&evaluated, asked)?;
         let (_, value, expr) = evaluated.swap_remove(selected);
         match (value, ty) {
-            (Some(value), Some(ty)) if value.ty.elementary().is_some() => Ok(in_lane(value.as_scalar()?, ty)),
+            (Some(value), Some(ty)) if value.ty.elementary().is_some() => Ok(self.unstored(value.as_scalar()?, ty)),
             (Some(value), _) => Ok(value),
             (None, Some(ty)) => self.number(expr, ty),
             (None, None) => unknown("a number among others"),
@@ -189,6 +192,12 @@ impl<'a> Machine<'a> {
         }
         let (Some(value), Some(count)) = (value, count) else { return unknown("a shift without a count") };
         let Some(ty) = value.ty.elementary() else { return unknown("a shift of this type") };
+        let value = in_lane(value.as_scalar()?, ty);
+        if let ("SHR", true, (..0, _)) = (name, self.is_codesys(), ty.range()) {
+            // The sign is kept.
+            let count = count.as_integer()?.clamp(0, 127);
+            return Ok(Value { ty: value.ty.clone(), cells: vec![integer_cell(ty, value.as_integer()? >> count)] });
+        }
         self.applied(name, ty, &[value.as_scalar()?, count.as_scalar()?], at)
     }
 
@@ -311,41 +320,43 @@ impl<'a> Machine<'a> {
                 let count = self.applied("MUL", wide, &[in_lane(scalar, wide).as_scalar()?, factor], at)?;
                 Ok(in_lane(count.as_scalar()?, to))
             }
+            _ if to == Elementary::Bool && self.is_codesys() => Ok(Value::bool(value.as_integer()? != 0)),
             _ if to == Elementary::Bool && from.is_bits() && from != Elementary::Bool => {
                 Ok(Value::bool(value.as_integer()? & 1 == 1))
             }
             _ => Ok(in_lane(scalar, to)),
         }
     }
+
+    /// The type that arguments have between them, where they are elementary.
+    fn common(
+        &self,
+        values: &[(usize, Option<Value<'a>>, &'a Expr<'a>)],
+        asked: Option<&Type<'a>>,
+    ) -> Outcome<Option<Elementary>> {
+        let typed: Vec<Elementary> = values.iter().filter_map(|it| it.1.as_ref()?.ty.elementary()).collect();
+        let kinds: Vec<Untyped> = values.iter().filter_map(|it| untyped(it.2)).collect();
+        let real = kinds.contains(&Untyped::Real);
+        let Some(first) = typed.first() else {
+            let kind = if real { Untyped::Real } else { Untyped::Integer };
+            return Ok((!kinds.is_empty()).then(|| default_type(kind, asked)));
+        };
+        let mut ty = *first;
+        for other in &typed {
+            ty = self.meeting(ty, *other).map_or_else(|| unknown("arguments of different types"), Ok)?;
+        }
+        if real && !ty.is_real() {
+            ty = ty.meets(Elementary::Real).unwrap_or(Elementary::Lreal);
+        }
+        for (_, _, expr) in values {
+            ty = literal_number(expr).map_or(ty, |it| ty.that_holds(it));
+        }
+        Ok(Some(ty))
+    }
 }
 
 fn truncated<'a>(value: &Value<'a>, to: Elementary) -> Outcome<Value<'a>> {
     Ok(Value::scalar(to, ops::trunc_value(value.as_scalar()?, to.lane())))
-}
-
-/// The type that arguments have between them, where they are elementary.
-fn common<'a>(
-    values: &[(usize, Option<Value<'a>>, &'a Expr<'a>)],
-    asked: Option<&Type<'a>>,
-) -> Outcome<Option<Elementary>> {
-    let typed: Vec<Elementary> = values.iter().filter_map(|it| it.1.as_ref()?.ty.elementary()).collect();
-    let kinds: Vec<Untyped> = values.iter().filter_map(|it| untyped(it.2)).collect();
-    let real = kinds.contains(&Untyped::Real);
-    let Some(first) = typed.first() else {
-        let kind = if real { Untyped::Real } else { Untyped::Integer };
-        return Ok((!kinds.is_empty()).then(|| default_type(kind, asked)));
-    };
-    let mut ty = *first;
-    for other in &typed {
-        ty = ty.meets(*other).map_or_else(|| unknown("arguments of different types"), Ok)?;
-    }
-    if real && !ty.is_real() {
-        ty = ty.meets(Elementary::Real).unwrap_or(Elementary::Lreal);
-    }
-    for (_, _, expr) in values {
-        ty = literal_number(expr).map_or(ty, |it| ty.that_holds(it));
-    }
-    Ok(Some(ty))
 }
 
 /// The arguments as they are written, with the positions of their parameters.

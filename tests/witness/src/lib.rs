@@ -25,6 +25,7 @@ mod expressions;
 mod functions;
 mod operators;
 mod places;
+mod promotion;
 
 pub mod generate;
 pub mod random;

@@ -91,9 +91,8 @@ impl<'a> Machine<'a> {
             BinaryOp::Mul | BinaryOp::Div if x.is_time() && !y.is_time() => self.scaled(op, &a, &b, at),
             BinaryOp::Mul if y.is_time() => self.scaled(op, &b, &a, at),
             _ => {
-                let Some(ty) = x.meets(y) else { return unknown(&format!("{x:?} and {y:?}")) };
-                let operands = [in_lane(a.as_scalar()?, ty).as_scalar()?, in_lane(b.as_scalar()?, ty).as_scalar()?];
-                self.applied(name(op), ty, &operands, at)
+                let Some(ty) = self.meeting(x, y) else { return unknown(&format!("{x:?} and {y:?}")) };
+                self.computed(name(op), ty, &[a.as_scalar()?, b.as_scalar()?], at)
             }
         }
     }

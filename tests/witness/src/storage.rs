@@ -110,7 +110,7 @@ impl<'a> Machine<'a> {
     pub(crate) fn widened(&self, value: &Value<'a>, to: Elementary) -> Outcome<Value<'a>> {
         let scalar = staunch_runtime::ops::convert_value(value.as_scalar()?, to.lane());
         match value.ty.elementary() {
-            Some(from) if from.widens_to(to) => Ok(Value::scalar(to, scalar)),
+            Some(from) if self.widens(from, to) => Ok(Value::scalar(to, scalar)),
             from => unknown(&format!("{from:?} where {to:?} is asked for")),
         }
     }

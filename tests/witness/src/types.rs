@@ -68,6 +68,22 @@ impl Elementary {
         matches!(self, E::Bool | E::Byte | E::Word | E::Dword | E::Lword)
     }
 
+    /// The unsigned number of a bit string.
+    pub fn as_number(self) -> Self {
+        match self {
+            E::Byte => E::Usint,
+            E::Word => E::Uint,
+            E::Dword => E::Udint,
+            E::Lword => E::Ulint,
+            other => other,
+        }
+    }
+
+    /// Whether this is a number or a bit string of fewer than 32 bits.
+    pub fn is_narrow(self) -> bool {
+        self.lane().is_integer() && !self.is_time() && self.lane().size() < 4
+    }
+
     pub fn is_integer(self) -> bool {
         self.lane().is_integer() && !self.is_time() && !self.is_bits()
     }

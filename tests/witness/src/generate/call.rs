@@ -99,6 +99,8 @@ impl Writer {
             // A call without names gives all inputs.
             let has_names = positional == 0 || arguments.len() > positional;
             let left_out = match parameter.section {
+                // A FUNCTION of CODESYS is given all inputs.
+                Section::Input if of_function && self.codesys => false,
                 Section::Input => has_names && self.random.once_in(if of_function { 6 } else { 3 }),
                 Section::Output => self.random.once_in(3),
                 Section::InOut => false,

@@ -101,7 +101,35 @@ impl Writer {
         Ty::Number(*self.random.one_of(&[0, 1, 1, 2, 2, 4, 5, 8]))
     }
 
+    /// An operand of fewer than 32 bits, of whatever type: CODESYS computes all of them at 32.
+    fn narrow(&mut self, depth: usize) -> String {
+        let ty = match self.random.below(6) {
+            at @ (0 | 1 | 4 | 5) => Ty::Number(at),
+            at => Ty::Bits(at - 2),
+        };
+        let operand = self.operand(&ty, depth);
+        match self.random.below(4) {
+            0 => format!("({operand} + 1)"),
+            1 => format!("({operand} * {operand})"),
+            _ => operand,
+        }
+    }
+
+    fn mixed(&mut self, depth: usize) -> String {
+        let (a, b) = (self.narrow(depth - 1), self.narrow(depth - 1));
+        match self.random.below(8) {
+            0 => format!("MAX({a}, {b})"),
+            1 => format!("SEL({}, {a}, {b})", self.expression(&Ty::Bool, depth - 1)),
+            2 => format!("-({a})"),
+            3 => format!("({a} / MAX({b}, 1))"),
+            _ => format!("({a} {} {b})", self.random.one_of(&["+", "-", "*"])),
+        }
+    }
+
     fn integer(&mut self, at: usize, depth: usize) -> String {
+        if self.codesys && matches!(at, 2 | 3) && self.random.once_in(3) {
+            return self.mixed(depth);
+        }
         let ty = &Ty::Number(at);
         let a = self.operand(ty, depth - 1);
         match self.random.below(20) {
@@ -199,6 +227,10 @@ impl Writer {
                 Some((place, _)) => format!("{place}.{}", self.random.below(8)),
                 None => self.variable(&Ty::Bool, depth),
             },
+            12 if self.codesys => {
+                let (a, b) = (self.mixed(depth), self.narrow(depth - 1));
+                format!("({a} {} {b})", self.random.one_of(&["<", "<=", ">", ">=", "=", "<>"]))
+            }
             _ => {
                 let ty = self.number_type();
                 let (a, b) = (self.operand(&ty, depth - 1), self.expression(&ty, depth - 1));

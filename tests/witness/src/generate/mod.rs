@@ -18,12 +18,18 @@ use types::{Catalogue, NUMBERS, Ty};
 /// A program as Structured Text.
 pub fn program(seed: u64) -> String {
     let mut writer = Writer::new(seed);
+    writer.codesys = seed % 3 == 2;
+    if writer.codesys {
+        writer.line("{dialect 'codesys'}");
+    }
     writer.whole();
     writer.text
 }
 
 struct Writer {
     random: Random,
+    /// Whether the program follows CODESYS's rules, else the standard's.
+    codesys: bool,
     text: String,
     depth: usize,
     types: Catalogue,
@@ -46,6 +52,7 @@ impl Writer {
     fn new(seed: u64) -> Self {
         Self {
             random: Random::new(seed),
+            codesys: false,
             text: String::new(),
             depth: 0,
             types: Catalogue::default(),

@@ -1,0 +1,55 @@
+//! CODESYS computes integers and bit strings of fewer than 32 bits at 32. Such a value keeps the type
+//! that its operands give it, and is cut to that where it is stored: until then its cell has 32 bits.
+
+use crate::expressions::in_lane;
+use crate::machine::{Machine, Outcome};
+use crate::storage::Value;
+use crate::types::{Elementary, Type};
+use staunch_frontend::Span;
+use staunch_runtime::{Family, Value as Scalar};
+
+impl<'a> Machine<'a> {
+    pub(crate) fn is_codesys(&self) -> bool {
+        self.declared.family == Family::Codesys
+    }
+
+    /// Whether values of this type are computed at 32 bits.
+    pub(crate) fn promotes(&self, ty: Elementary) -> bool {
+        self.is_codesys() && ty.is_narrow()
+    }
+
+    /// The type at which two operands meet: of narrow numbers in CODESYS that of more bits, the signed
+    /// one of as many.
+    pub(crate) fn meeting(&self, a: Elementary, b: Elementary) -> Option<Elementary> {
+        if self.promotes(a) && self.promotes(b) && !(a.is_bits() && b.is_bits()) {
+            let order = |it: &Elementary| (it.lane().size(), !it.lane().is_unsigned());
+            return [a, b].into_iter().max_by_key(order);
+        }
+        a.meets(b).or_else(|| self.widening(a).meets(self.widening(b)))
+    }
+
+    /// Whether a value is taken where one of `to` is asked for.
+    pub(crate) fn widens(&self, from: Elementary, to: Elementary) -> bool {
+        from.widens_to(to) || self.widening(from).widens_to(self.widening(to))
+    }
+
+    /// In CODESYS a bit string is an unsigned number too.
+    fn widening(&self, ty: Elementary) -> Elementary {
+        if self.is_codesys() { ty.as_number() } else { ty }
+    }
+
+    /// A value of the type, not stored yet.
+    pub(crate) fn unstored(&self, value: Scalar, ty: Elementary) -> Value<'a> {
+        let lane = if self.promotes(ty) { Elementary::Dint } else { ty };
+        Value { ty: Type::Elementary(ty), ..in_lane(value, lane) }
+    }
+
+    /// One of the runtime's operations, at the type or at 32 bits. A comparison gives a BOOL.
+    pub(crate) fn computed(&self, name: &str, ty: Elementary, operands: &[Scalar], at: Span) -> Outcome<Value<'a>> {
+        let lane = if self.promotes(ty) { Elementary::Dint } else { ty };
+        let operands = operands.iter().map(|it| in_lane(*it, lane).as_scalar()).collect::<Outcome<Vec<_>>>()?;
+        let value = self.applied(name, lane, &operands, at)?;
+        let is_test = value.ty.elementary() == Some(Elementary::Bool) && ty != Elementary::Bool;
+        Ok(if is_test { value } else { Value { ty: Type::Elementary(ty), ..value } })
+    }
+}
