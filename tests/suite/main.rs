@@ -6,6 +6,7 @@ mod golden;
 mod vectors;
 
 mod constants;
+mod effects;
 mod operations;
 mod programs;
 mod state;

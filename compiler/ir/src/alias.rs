@@ -45,6 +45,7 @@ impl<'p> Frame<'p> {
     }
 
     /// Whether only this body, and what it passes the place to, can write it: no POU calls itself.
+    /// Only the variable itself says so: a member of a structure that is an input is not private.
     pub fn is_private(&self, place: &Place) -> bool {
         match (place.root, place.projections.first()) {
             (Root::Local(_), _) => true,
@@ -118,6 +119,26 @@ fn paths(a: &[Projection], b: &[Projection]) -> Alias {
     found
 }
 
+/// How many fields two ways from one root begin with together.
+pub fn common_fields(a: &[Projection], b: &[Projection]) -> usize {
+    let same = |(a, b): &(&Projection, &Projection)| match (a, b) {
+        (Projection::Field(a), Projection::Field(b)) => a == b,
+        (Projection::Index { .. }, _) | (_, Projection::Index { .. }) => false,
+    };
+    a.iter().zip(b).take_while(same).count()
+}
+
+/// Whether one way from a root leads to a part of where the other leads, for who takes any two
+/// elements of an array for one, as Rust's rules on `&mut` do: a narrower question than [`alias`],
+/// and a coarser answer.
+pub fn borrows_meet(a: &[Projection], b: &[Projection]) -> bool {
+    a.iter().zip(b).all(|pair| match pair {
+        (Projection::Field(a), Projection::Field(b)) => a == b,
+        (Projection::Index { .. }, Projection::Index { .. }) => true,
+        (Projection::Field(_), Projection::Index { .. }) | (Projection::Index { .. }, Projection::Field(_)) => false,
+    })
+}
+
 /// Whether storage of one type is storage of the other. A pin's type may be said as another of its lane.
 fn is_same(program: &Program, a: Type, b: Type) -> bool {
     a == b || program.lane(a).is_some_and(|lane| program.lane(b) == Some(lane))
@@ -152,8 +173,20 @@ fn reads_shared(frame: &Frame<'_>, expr: &Expr) -> bool {
     found
 }
 
+/// Whether statements write `place` themselves, or hand on what may be a part of it or hold it.
+pub fn writes(frame: &Frame<'_>, block: &[Statement], place: &Place) -> bool {
+    let mut found = false;
+    visit::statements(block, &mut |statement| {
+        visit::accesses(statement, &mut |it, access| {
+            found |= access != Access::Read && alias(frame, it, place) != Alias::No;
+        });
+    });
+    found
+}
+
 /// Whether running `block` may change the value of `expr`. A callee may write what it is passed and
-/// all that is global.
+/// all that is global: bodies are checked in the order of the source, so that what a callee does is
+/// not known where this is asked.
 pub fn changes(frame: &Frame<'_>, block: &[Statement], expr: &Expr) -> bool {
     let mut found = false;
     visit::statements(block, &mut |statement| {

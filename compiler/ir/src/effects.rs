@@ -1,16 +1,20 @@
-//! What each routine does, itself or through what it calls: whether it touches the globals, takes
-//! turns or runs blocks that want the context, and whether it may fault. Found in one walk, since
-//! a callee stands before its callers.
+//! What each routine does, itself or through what it calls: which variables it reads and writes, whether
+//! it takes turns or runs blocks that want the context, and whether it may fault. Found in one walk,
+//! since a callee stands before its callers.
 //!
 //! A back end says by its [`Rules`] what its code for operations and blocks needs; what follows from
 //! that for routines stands here alone.
 
+mod variables;
+
 use crate::loops::{constant_position, is_within};
 use crate::visit::{self, Access};
 use crate::{
-    Class, ClassKind, Expr, ExprKind, For, Op, Place, Program, Projection, Root, Routine, RoutineId, RoutineKind,
-    Statement, StatementKind, Type,
+    Argument, Class, ClassKind, Expr, ExprKind, For, Op, ParamId, Place, Program, Projection, Root, Routine, RoutineId,
+    RoutineKind, Statement, StatementKind, Type,
 };
+
+pub use variables::Variables;
 
 /// What the code of a back end needs.
 #[derive(Clone, Copy, Debug)]
@@ -30,9 +34,21 @@ pub struct Rules {
 pub struct Effects {
     pub faults: bool,
     pub context: bool,
-    pub globals: bool,
+    /// What it reads or writes, and what it hands on even if the callee does neither.
+    pub names: Variables,
+    pub reads: Variables,
+    pub writes: Variables,
+    /// The routines that it calls itself, each once, in order.
+    pub calls: Vec<RoutineId>,
     /// For each local, whether a call gets a reference to it.
     pub borrowed: Vec<bool>,
+}
+
+impl Effects {
+    /// Whether its code needs to find the globals.
+    pub fn uses_globals(&self) -> bool {
+        self.names.any_global()
+    }
 }
 
 /// For each routine of a verified program.
@@ -42,7 +58,9 @@ pub fn effects(program: &Program, rules: &Rules) -> Vec<Effects> {
         let effects = Effects { borrowed: vec![false; routine.locals.len()], ..Effects::default() };
         let mut finder = Finder { program, rules, known: &known, routine, loops: Vec::new(), effects };
         finder.block(&routine.body);
-        let effects = finder.effects;
+        let mut effects = finder.effects;
+        effects.calls.sort_unstable();
+        effects.calls.dedup();
         known.push(effects);
     }
     if rules.scans_take_all {
@@ -54,10 +72,10 @@ pub fn effects(program: &Program, rules: &Rules) -> Vec<Effects> {
 /// No routine calls a PROGRAM's body, so that its prescan adds to nothing else.
 fn scan_takes_all(class: &Class, known: &mut [Effects]) {
     let prescan = class.prescan.filter(|_| class.kind == ClassKind::Program);
-    let globals = prescan.is_some_and(|it| known[it.index()].globals);
+    let Some(prescan) = prescan.map(|it| known[it.index()].clone()) else { return };
     let body = &mut known[class.body.index()];
-    body.globals |= globals;
-    body.context |= prescan.is_some();
+    body.context = true;
+    body.names.add_globals(&prescan.names);
 }
 
 struct Finder<'a> {
@@ -80,8 +98,12 @@ impl<'a> Finder<'a> {
         visit::accesses(statement, &mut |place, access| self.touches(place, access));
         visit::targets(statement, &mut |it| self.place(it));
         match &statement.kind {
-            StatementKind::Call { callee, .. } => self.callee(*callee),
+            StatementKind::Call { callee, instance, arguments, .. } => {
+                self.callee(*callee);
+                self.handed_over(*callee, instance.as_ref(), arguments);
+            }
             StatementKind::CallBlock { block, instruction, .. } => {
+                self.reads_and_writes(block);
                 self.effects.context |= (self.rules.block_takes_context)(block, *instruction);
             }
             StatementKind::Turn => {
@@ -99,8 +121,8 @@ impl<'a> Finder<'a> {
             | StatementKind::Loop { .. }
             | StatementKind::Exit
             | StatementKind::Continue
-            | StatementKind::Return
-            | StatementKind::PrescanBlock { .. } => {}
+            | StatementKind::Return => {}
+            StatementKind::PrescanBlock { block, .. } => self.reads_and_writes(block),
         }
         let counted = match &statement.kind {
             StatementKind::For(it) if it.is_private => Some(&**it),
@@ -116,14 +138,64 @@ impl<'a> Finder<'a> {
         let takes_all = self.rules.scans_take_all && self.program.routine(callee).kind == RoutineKind::Body;
         self.effects.faults |= known.faults || takes_all;
         self.effects.context |= known.context || takes_all;
-        self.effects.globals |= known.globals;
+        self.effects.names.add_globals(&known.names);
+        self.effects.reads.add_globals(&known.reads);
+        self.effects.writes.add_globals(&known.writes);
+        self.effects.calls.push(callee);
     }
 
+    /// What a callee does to its instance and through its parameters is done to what it is handed.
+    fn handed_over(&mut self, callee: RoutineId, instance: Option<&Place>, arguments: &[Argument]) {
+        let known = &self.known[callee.index()];
+        if let Some(place) = instance {
+            self.passed(place, known.reads.any_own(), known.writes.any_own());
+        }
+        for (at, argument) in arguments.iter().enumerate() {
+            let id = ParamId::next(at);
+            match argument {
+                Argument::Reference(place) => self.passed(place, known.reads.has_param(id), known.writes.has_param(id)),
+                Argument::Value(_) => {}
+            }
+        }
+    }
+
+    fn reads_and_writes(&mut self, place: &Place) {
+        self.passed(place, true, true);
+    }
+
+    fn passed(&mut self, place: &Place, is_read: bool, is_written: bool) {
+        let fields = self.fields(place);
+        if is_read {
+            self.effects.reads.add(place, fields);
+        }
+        if is_written {
+            self.effects.writes.add(place, fields);
+        }
+    }
+
+    /// A borrowed place is read and written as far as the callee does so.
     fn touches(&mut self, place: &Place, access: Access) {
-        match (place.root, access) {
-            (Root::Globals, _) => self.effects.globals = true,
-            (Root::Local(id), Access::Borrow) => self.effects.borrowed[id.index()] = true,
-            (Root::Local(_) | Root::Instance | Root::Param(_), _) => {}
+        let fields = self.fields(place);
+        self.effects.names.add(place, fields);
+        self.passed(place, access == Access::Read, access == Access::Write);
+        if let (Root::Local(id), Access::Borrow) = (place.root, access) {
+            self.effects.borrowed[id.index()] = true;
+        }
+    }
+
+    /// How many variables the root of a place holds.
+    fn fields(&self, place: &Place) -> usize {
+        match self.program.root_type(self.routine, place.root) {
+            Some(Type::Struct(id)) => self.program.structure(id).fields.len(),
+            Some(
+                Type::Elementary(_)
+                | Type::Subrange(..)
+                | Type::String(_)
+                | Type::Enum(_)
+                | Type::Array(_)
+                | Type::Block(_),
+            )
+            | None => 0,
         }
     }
 
@@ -171,3 +243,6 @@ impl Rules {
         scans_take_all: false,
     };
 }
+
+#[cfg(test)]
+mod tests;

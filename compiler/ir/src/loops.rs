@@ -2,11 +2,8 @@
 //! have. A back end may keep such a counter in a register beside its storage, and an index whose
 //! range follows from the loop's bounds needs no check.
 
-use crate::visit::{self, Access};
-use crate::{
-    ArrayId, Conversion, Expr, ExprKind, For, Op, Place, Program, Projection, Root, Section, Statement, StatementKind,
-    Type, Value,
-};
+use crate::alias::{self, Frame};
+use crate::{ArrayId, Conversion, Expr, ExprKind, For, Op, Place, Program, Statement, StatementKind, Value};
 
 /// Inclusive.
 pub type Range = (i128, i128);
@@ -19,45 +16,10 @@ pub fn exit_condition(statement: &Statement) -> Option<&Expr> {
 }
 
 /// Whether nothing but the loop itself can write its counter while it runs: others cannot name it,
-/// and the body neither writes it nor hands it on. `root` is the type of the counter's root.
-pub fn is_private(program: &Program, root: Option<Type>, counter: &Place, body: &[Statement]) -> bool {
-    is_out_of_reach(program, root, counter) && !writes(body, counter)
-}
-
-/// Whether the counter is a local, or below a variable of an instance that only its own body can name.
-/// That body does not run a second time while it runs.
-fn is_out_of_reach(program: &Program, root: Option<Type>, counter: &Place) -> bool {
-    let mut ty = root;
-    let mut is_internal = matches!(counter.root, Root::Local(_));
-    for projection in &counter.projections {
-        let (Projection::Field(id), Some(whole)) = (projection, ty) else { return false };
-        if let Type::Struct(structure) = whole
-            && (counter.root == Root::Instance || program.class_of_state(structure).is_some())
-        {
-            let field = &program.structure(structure).fields[id.index()];
-            is_internal |= field.section == Section::Internal && field.address.is_none();
-        }
-        ty = program.member(whole, *id);
-    }
-    is_internal
-}
-
-/// Whether the statements write `place`, which others cannot reach, or hand it on.
-fn writes(block: &[Statement], place: &Place) -> bool {
-    let mut found = false;
-    visit::statements(block, &mut |statement| {
-        visit::accesses(statement, &mut |it, access| found |= access != Access::Read && overlaps(it, place));
-    });
-    found
-}
-
-/// Whether one place may hold the other; `private` is not reached through any other root.
-fn overlaps(place: &Place, private: &Place) -> bool {
-    place.root == private.root
-        && place.projections.iter().zip(&private.projections).all(|pair| match pair {
-            (Projection::Field(a), Projection::Field(b)) => a == b,
-            (Projection::Index { .. }, _) | (_, Projection::Index { .. }) => true,
-        })
+/// and the body neither writes it nor hands it on. A back end knows such a counter where it is read by
+/// its name, so an element of an array is none.
+pub fn is_private(frame: &Frame<'_>, counter: &Place, body: &[Statement]) -> bool {
+    counter.indices().next().is_none() && frame.is_private(counter) && !alias::writes(frame, body, counter)
 }
 
 /// The 0-based position of an index that is constant and within the bounds.

@@ -42,7 +42,7 @@ impl Function<'_, '_> {
     fn start_of_call(&self, callee: RoutineId, instance: Option<clif::Value>) -> Vec<clif::Value> {
         let effects = self.unit.effects(callee);
         let context = self.start.context.filter(|_| effects.context);
-        let globals = self.start.globals.filter(|_| effects.globals);
+        let globals = self.start.globals.filter(|_| effects.uses_globals());
         [context, globals, instance].into_iter().flatten().collect()
     }
 

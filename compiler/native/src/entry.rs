@@ -146,7 +146,7 @@ impl Scan<'_, '_, '_> {
         if effects.context {
             values.push(self.context);
         }
-        if effects.globals {
+        if effects.uses_globals() {
             values.push(self.pointer(Address::at(self.state).plus(self.unit.layout.machine.globals)));
         }
         values.push(self.pointer(instance));

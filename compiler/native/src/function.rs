@@ -262,7 +262,7 @@ impl Start {
         let mut values = values.iter().copied();
         let mut next_if = |needed: bool| if needed { values.next() } else { None };
         let context = next_if(effects.context);
-        let globals = next_if(effects.globals);
+        let globals = next_if(effects.uses_globals());
         let instance = next_if(routine.state.is_some());
         let params = values.by_ref().take(routine.params.len()).collect();
         let by_pointer = result_type(routine).is_some_and(|ty| program.lane(ty).is_none());

@@ -29,7 +29,7 @@ pub(crate) fn clif_type(lane: Lane) -> Clif {
 
 /// Fills the signature of a routine's function.
 pub(crate) fn of_routine(program: &Program, routine: &Routine, effects: &Effects, signature: &mut Signature) {
-    let pointers = [effects.context, effects.globals, routine.state.is_some()];
+    let pointers = [effects.context, effects.uses_globals(), routine.state.is_some()];
     for _ in pointers.into_iter().filter(|needed| *needed) {
         signature.params.push(AbiParam::new(POINTER));
     }

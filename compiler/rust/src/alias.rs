@@ -220,7 +220,7 @@ impl Separator<'_> {
 
     /// Emits a call whose places and values are already the caller's.
     fn call(&mut self, body: &mut Body, call: Call, out: &mut Block) {
-        let uses_globals = self.effects[call.callee.index()].globals;
+        let uses_globals = self.effects[call.callee.index()].uses_globals();
         let ancestors = overlap::ancestors(&call.references(), uses_globals);
         if ancestors.is_empty() {
             return self.plain_call(body, call, out);

@@ -89,7 +89,7 @@ impl<'a> Emitter<'a> {
 /// The context and the globals, where a callee wants them.
 fn extra_arguments(needs: &Effects) -> Vec<TokenStream> {
     let context = needs.context.then(|| quote!(cx));
-    let globals = needs.globals.then(|| quote!(globals));
+    let globals = needs.uses_globals().then(|| quote!(globals));
     context.into_iter().chain(globals).collect()
 }
 
@@ -104,7 +104,7 @@ impl Function<'_> {
         };
         let params = self.params();
         let globals_type = self.emitter.ty(staunch_ir::Type::Struct(self.emitter.program.globals));
-        let globals = needs.globals.then(|| quote!(globals: &mut #globals_type));
+        let globals = needs.uses_globals().then(|| quote!(globals: &mut #globals_type));
         let all = receiver.into_iter().chain(context).chain(params).chain(globals);
         let result = self.result_type();
         quote!(pub fn #name(#(#all),*) #result)

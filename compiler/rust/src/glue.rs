@@ -30,8 +30,9 @@ pub fn emit_glue(program: &Program, code: &str, map: &str, options: &Options) ->
     });
     let scans = program.instances.iter().enumerate().map(|(at, instance)| {
         let (name, number) = (names.instance(at), Literal::usize_unsuffixed(at));
-        let globals =
-            emitter.effects[program.class(instance.program).body.index()].globals.then(|| quote!(, &mut self.globals));
+        let globals = emitter.effects[program.class(instance.program).body.index()]
+            .uses_globals()
+            .then(|| quote!(, &mut self.globals));
         quote!(#number => self.#name.scan(cx #globals))
     });
     let (bytes, length) = (Literal::byte_string(map.as_bytes()), Literal::usize_unsuffixed(map.len()));

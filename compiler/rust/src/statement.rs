@@ -206,7 +206,7 @@ impl Function<'_> {
         let needs = &self.emitter.effects[callee.index()];
         let is_scan = self.emitter.program.routine(*callee).kind == RoutineKind::Body;
         let context = (needs.context || is_scan).then(|| quote!(cx));
-        let globals = needs.globals.then(|| quote!(globals));
+        let globals = needs.uses_globals().then(|| quote!(globals));
         let arguments = arguments.iter().map(|it| self.argument(it));
         let all = context.into_iter().chain(arguments).chain(globals);
         let head = self.call_head(*callee, instance.as_ref());

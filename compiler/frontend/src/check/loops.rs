@@ -4,8 +4,7 @@ use super::Checker;
 use super::operand::Operand;
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{
-    Block, Elementary, Expr, For, Location, Op, Place, Projection, Root, Statement, StatementKind, Step, Type, Value,
-    loops,
+    Block, Elementary, Expr, For, Location, Op, Place, Projection, Statement, StatementKind, Step, Type, Value, loops,
 };
 
 impl<'s> Checker<'_, 's> {
@@ -77,11 +76,12 @@ impl<'s> Checker<'_, 's> {
             self.loop_body(body);
             return None;
         };
+        // As far as it is known before the body: a dialect may let that write the counter.
+        head.is_private = self.frame().is_private(&head.counter) && !self.decl.dialect(counter.span).assigns_inputs();
         self.counters.push(head.clone());
         head.body = self.loop_body(body);
         self.counters.pop();
-        let state = self.signature.as_ref().and_then(|it| it.state).filter(|_| head.counter.root == Root::Instance);
-        head.is_private = loops::is_private(&self.decl.program, state.map(Type::Struct), &head.counter, &head.body);
+        head.is_private = loops::is_private(&self.frame(), &head.counter, &head.body);
         if !head.is_short() {
             head.body.insert(0, Statement::new(StatementKind::Turn, self.at(span)));
         }

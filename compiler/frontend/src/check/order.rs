@@ -227,8 +227,7 @@ impl Checker<'_, '_> {
 
     /// Whether an index is known to lie within the array's bounds.
     fn is_inside(&self, index: &Expr, array: ArrayId) -> bool {
-        let frame = self.frame();
-        let loops: Vec<_> = self.counters.iter().filter(|it| frame.is_private(&it.counter)).collect();
+        let loops: Vec<_> = self.counters.iter().filter(|it| it.is_private).collect();
         loops::is_within(&self.decl.program, index, array, &loops)
     }
 

@@ -1,6 +1,7 @@
 //! Statements: control flow that leads somewhere, and calls that fit what they call.
 
 use super::Verifier;
+use crate::alias::Frame;
 use crate::loops;
 use crate::{
     Argument, Arm, Block, ClassKind, Expr, For, Location, Mode, Param, Place, Root, Routine, RoutineId, Statement,
@@ -119,8 +120,8 @@ impl<'p> Verifier<'p> {
             }
             Step::Variable(step) => self.expr_of(body, step, ty.read()),
         }
-        let root = self.program.root_type(body.routine, it.counter.root);
-        let private = !it.is_private || loops::is_private(self.program, root, &it.counter, &it.body);
+        let frame = Frame::of(self.program, body.routine);
+        let private = !it.is_private || loops::is_private(&frame, &it.counter, &it.body);
         self.require(private, at, "a counter that others write is called private");
         self.require(it.is_short() || it.body.first().is_some_and(is_turn), at, "a loop that takes no turns");
         self.block(&Body { in_loop: true, in_continuing: false, ..*body }, &it.body);

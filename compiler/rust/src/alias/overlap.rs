@@ -1,6 +1,7 @@
 //! Which places Rust takes for overlapping: one is a part of the other, where any two elements
 //! of an array count as the same one.
 
+use staunch_ir::alias::{borrows_meet, common_fields};
 use staunch_ir::{Place, Program, Projection, Root, Type};
 
 use super::{SharedRoot, element};
@@ -22,24 +23,7 @@ pub struct Ancestor {
 }
 
 pub fn overlap(a: &Place, b: &Place) -> bool {
-    a.root == b.root && paths_overlap(&a.projections, &b.projections)
-}
-
-fn paths_overlap(a: &[Projection], b: &[Projection]) -> bool {
-    a.iter().zip(b).all(|(a, b)| match (a, b) {
-        (Projection::Field(a), Projection::Field(b)) => a == b,
-        (Projection::Index { .. }, Projection::Index { .. }) => true,
-        (Projection::Field(_), Projection::Index { .. }) | (Projection::Index { .. }, Projection::Field(_)) => true,
-    })
-}
-
-/// The fields that both paths start with.
-fn common(a: &[Projection], b: &[Projection]) -> Vec<Projection> {
-    let same = |(a, b): &(&Projection, &Projection)| match (a, b) {
-        (Projection::Field(a), Projection::Field(b)) => a == b,
-        (Projection::Index { .. }, _) | (_, Projection::Index { .. }) => false,
-    };
-    a.iter().zip(b).take_while(same).map(|(a, _)| a.clone()).collect()
+    a.root == b.root && borrows_meet(&a.projections, &b.projections)
 }
 
 /// For each set of references that overlap (or meet a callee's globals), what they share.
@@ -58,7 +42,7 @@ pub fn ancestors(references: &[Slot<'_>], uses_globals: bool) -> Vec<Ancestor> {
         // A merged group is wider, so it may meet groups that its parts did not.
         while let Some(at) = groups.iter().position(|it| meets(it, &group)) {
             let other = groups.remove(at);
-            group.prefix = common(&other.prefix, &group.prefix);
+            group.prefix.truncate(common_fields(&other.prefix, &group.prefix));
             group.slots = [other.slots, group.slots].concat();
             group.through_globals |= other.through_globals;
         }
@@ -69,7 +53,7 @@ pub fn ancestors(references: &[Slot<'_>], uses_globals: bool) -> Vec<Ancestor> {
 }
 
 fn meets(a: &Ancestor, b: &Ancestor) -> bool {
-    a.root == b.root && paths_overlap(&a.prefix, &b.prefix)
+    a.root == b.root && borrows_meet(&a.prefix, &b.prefix)
 }
 
 impl Ancestor {
