@@ -1,7 +1,11 @@
 //! Makes shared storage something Rust can say: after this pass no call hands out two paths to
 //! one variable. A call that would do so goes to a copy of its callee, in which the parameters
-//! that overlap are places below one root (the globals, the instance, or one shared parameter);
-//! array subscripts on the way are checked at the call and arrive by value.
+//! that overlap are places below one root (the instance, or one shared parameter); array subscripts on
+//! the way are checked at the call and arrive by value.
+//!
+//! A callee that uses globals is handed all of them, unless what it is handed besides lies in them:
+//! then it gets those that it uses one by one, each a parameter of its own. That form of it serves
+//! all such calls, and where there is one the declared form calls it, so that its code is there once.
 //!
 //! Both programs mean the same: the result is IR, and verifies and interprets like its source.
 
@@ -11,12 +15,12 @@ mod naming;
 mod overlap;
 mod rewrite;
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use staunch_ir::effects::{Effects, Rules, effects};
 use staunch_ir::{
-    Argument, Block, FieldId, For, Mode, Param, Place, Program, Projection, Routine, RoutineId, RoutineKind, Statement,
-    StatementKind, Type,
+    Argument, Block, Expr, FieldId, For, Mode, Param, ParamId, Place, Program, Projection, Root, Routine, RoutineId,
+    RoutineKind, Statement, StatementKind, Type,
 };
 
 use call::Call;
@@ -34,6 +38,8 @@ pub struct Separated {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
     Declared,
+    /// A declared POU that is handed the globals that it uses one by one.
+    Apart,
     /// A copy of a declared POU in which parameters share storage.
     Copy,
 }
@@ -44,8 +50,18 @@ struct Key {
     routine: RoutineId,
     /// For the instance, then for each parameter.
     bindings: Vec<Binding>,
+    globals: Globals,
     /// The types of the parameters that a copy gets for shared storage.
     groups: Vec<Type>,
+}
+
+/// How a routine reaches the globals.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+enum Globals {
+    /// It is handed all of them, if it uses any.
+    Whole,
+    /// It is handed each variable that it uses.
+    Apart(Vec<(FieldId, Binding)>),
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -58,7 +74,6 @@ enum Binding {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum SharedRoot {
-    Globals,
     Instance,
     Group(usize),
 }
@@ -73,6 +88,8 @@ enum Step {
 struct Separator<'p> {
     source: &'p Program,
     effects: Vec<Effects>,
+    /// The routines whose declared form calls the one that is handed globals one by one.
+    forwarding: HashSet<RoutineId>,
     known: HashMap<Key, RoutineId>,
     routines: Vec<Routine>,
     origins: Vec<Origin>,
@@ -81,34 +98,84 @@ struct Separator<'p> {
 /// Rewrites every call that Rust's rules on `&mut` would refuse.
 pub fn separate(source: &Program) -> Separated {
     let effects = effects(source, &Rules::PLAIN);
-    let mut separator = Separator { source, effects, known: HashMap::new(), routines: Vec::new(), origins: Vec::new() };
-    let ids: Vec<RoutineId> = (0..source.routines.len()).map(|at| separator.declared(RoutineId::next(at))).collect();
-    let mut program = Program { routines: separator.routines, ..source.clone() };
-    for class in &mut program.classes {
-        class.body = ids[class.body.index()];
-        class.prescan = class.prescan.map(|it| ids[it.index()]);
+    let first = Separator::new(source, effects.clone(), HashSet::new()).separated();
+    let forwarding = first.known.into_keys().filter(Key::is_apart).map(|it| it.routine).collect::<HashSet<_>>();
+    if forwarding.is_empty() {
+        return first.separated;
     }
-    Separated { program, origins: separator.origins }
+    Separator::new(source, effects, forwarding).separated().separated
+}
+
+/// What a pass over the program made.
+struct Pass {
+    separated: Separated,
+    known: HashMap<Key, RoutineId>,
+}
+
+impl Key {
+    /// The routine as it is declared.
+    fn declared(routine: RoutineId, params: usize) -> Self {
+        Self { routine, bindings: vec![Binding::Own; params + 1], globals: Globals::Whole, groups: Vec::new() }
+    }
+
+    fn shares(&self) -> bool {
+        let apart = match &self.globals {
+            Globals::Whole => &[][..],
+            Globals::Apart(bindings) => bindings,
+        };
+        self.bindings.iter().chain(apart.iter().map(|(_, it)| it)).any(|it| *it != Binding::Own)
+    }
+
+    fn is_apart(&self) -> bool {
+        matches!(self.globals, Globals::Apart(_)) && !self.shares()
+    }
+
+    fn origin(&self) -> Origin {
+        match self.globals {
+            _ if self.shares() => Origin::Copy,
+            Globals::Whole => Origin::Declared,
+            Globals::Apart(_) => Origin::Apart,
+        }
+    }
+}
+
+impl<'p> Separator<'p> {
+    fn new(source: &'p Program, effects: Vec<Effects>, forwarding: HashSet<RoutineId>) -> Self {
+        Self { source, effects, forwarding, known: HashMap::new(), routines: Vec::new(), origins: Vec::new() }
+    }
+
+    fn separated(mut self) -> Pass {
+        let source = self.source;
+        let ids: Vec<RoutineId> = (0..source.routines.len()).map(|at| self.declared(RoutineId::next(at))).collect();
+        let mut program = Program { routines: self.routines, ..source.clone() };
+        for class in &mut program.classes {
+            class.body = ids[class.body.index()];
+            class.prescan = class.prescan.map(|it| ids[it.index()]);
+        }
+        Pass { separated: Separated { program, origins: self.origins }, known: self.known }
+    }
 }
 
 impl Separator<'_> {
     /// The POU as declared, with its calls rewritten.
     fn declared(&mut self, id: RoutineId) -> RoutineId {
-        let params = self.source.routine(id).params.len();
-        let bindings = vec![Binding::Own; params + 1];
-        self.resolve(Key { routine: id, bindings, groups: Vec::new() })
+        self.resolve(Key::declared(id, self.source.routine(id).params.len()))
     }
 
     fn resolve(&mut self, key: Key) -> RoutineId {
         if let Some(known) = self.known.get(&key) {
             return *known;
         }
-        let declared = key.bindings.iter().all(|it| *it == Binding::Own);
-        let routine = if declared { self.rewrite_declared(key.routine) } else { self.copy(&key) };
+        let origin = key.origin();
+        let routine = match origin {
+            Origin::Declared if self.forwarding.contains(&key.routine) => self.forward(key.routine),
+            Origin::Declared => self.rewrite_declared(key.routine),
+            Origin::Apart | Origin::Copy => self.copy(&key),
+        };
         // Its callees have taken their places meanwhile, so they stand before it.
         let id = RoutineId::next(self.routines.len());
         self.routines.push(routine);
-        self.origins.push(if declared { Origin::Declared } else { Origin::Copy });
+        self.origins.push(origin);
         self.known.insert(key, id);
         id
     }
@@ -118,6 +185,36 @@ impl Separator<'_> {
         let mut body = Body::declared(source);
         let rewritten = self.block(&mut body, &source.body);
         Routine { locals: body.locals, body: rewritten, ..source.clone() }
+    }
+
+    /// The declared form of a routine that has its code in the form with the globals apart.
+    fn forward(&mut self, id: RoutineId) -> Routine {
+        let source = self.source.routine(id);
+        let fields = self.effects[id.index()].names.globals().map(|it| (it, Binding::Own)).collect();
+        let declared = Key::declared(id, source.params.len());
+        let callee = self.resolve(Key { globals: Globals::Apart(fields), ..declared });
+        let handed = source.params.iter().enumerate().map(|(at, param)| match param.mode {
+            Mode::Value(local) => Argument::Value(Expr::load(Place::local(local, param.ty), source.location)),
+            Mode::Reference => Argument::Reference(Place::root(Root::Param(ParamId::next(at)), param.ty)),
+        });
+        let globals = self.globals_of(id).into_iter().map(|(_, place)| Argument::Reference(place));
+        let kind = StatementKind::Call {
+            callee,
+            instance: source.state.map(|it| Place::root(Root::Instance, Type::Struct(it))),
+            arguments: handed.chain(globals).collect(),
+            result: source.result.map(|it| Place::local(it, source.locals[it.index()].ty)),
+        };
+        Routine { body: vec![Statement::new(kind, source.location)], ..source.clone() }
+    }
+
+    /// The variables of the globals that a routine uses.
+    fn globals_of(&self, id: RoutineId) -> Vec<(FieldId, Place)> {
+        let globals = self.source.globals;
+        let place = |field: FieldId| {
+            let ty = self.source.structure(globals).fields[field.index()].ty;
+            Place::root(Root::Globals, Type::Struct(globals)).field(field, ty)
+        };
+        self.effects[id.index()].names.globals().map(|it| (it, place(it))).collect()
     }
 
     fn copy(&mut self, key: &Key) -> Routine {
@@ -132,9 +229,13 @@ impl Separator<'_> {
             };
             body.bases.push(base);
         }
+        if let Globals::Apart(bindings) = &key.globals {
+            body.globals = Some(HashMap::new());
+            bindings.iter().for_each(|(field, binding)| self.bind_global(&mut body, *field, binding));
+        }
         let first_group = body.params.len();
         for (number, ty) in key.groups.iter().enumerate() {
-            let name = group_name(source, key, number);
+            let name = group_name(self.source, source, key, number);
             body.params.push(Param { name, ty: *ty, doc: None, mode: Mode::Reference });
         }
         body.place_groups(first_group);
@@ -151,6 +252,16 @@ impl Separator<'_> {
             result: source.result,
             body: statements,
         }
+    }
+
+    fn bind_global(&self, body: &mut Body, field: FieldId, binding: &Binding) {
+        let declared = &self.source.structure(self.source.globals).fields[field.index()];
+        let (name, ty, doc) = (declared.name.clone(), declared.ty, declared.doc.clone());
+        let base = match binding {
+            Binding::Own => body.keep(&Param { name, ty, doc, mode: Mode::Reference }),
+            Binding::Within { .. } => body.bind(binding, &name, declared.location),
+        };
+        body.globals.get_or_insert_default().insert(field, base);
     }
 
     fn block(&mut self, body: &mut Body, block: &Block) -> Block {
@@ -199,7 +310,7 @@ impl Separator<'_> {
                 let instance = instance.as_ref().map(|it| body.place(it));
                 let arguments = arguments.iter().map(|it| body.argument(it)).collect();
                 let result = result.as_ref().map(|it| body.place(it));
-                let call = Call { callee: *callee, instance, arguments, result, at };
+                let call = Call { callee: *callee, instance, arguments, globals: Vec::new(), result, at };
                 return self.call(body, call, out);
             }
             StatementKind::CallBlock { block, instruction, inputs } => StatementKind::CallBlock {
@@ -220,13 +331,18 @@ impl Separator<'_> {
 
     /// Emits a call whose places and values are already the caller's.
     fn call(&mut self, body: &mut Body, call: Call, out: &mut Block) {
-        let uses_globals = self.effects[call.callee.index()].uses_globals();
-        let ancestors = overlap::ancestors(&call.references(), uses_globals);
-        if ancestors.is_empty() {
-            return self.plain_call(body, call, out);
-        }
+        let globals: Vec<_> =
+            self.globals_of(call.callee).into_iter().map(|(field, place)| (field, body.place(&place))).collect();
+        // The globals as a whole would be a second way to what lies in them.
+        let in_globals = call.references().iter().any(|it| it.place.root == Root::Globals);
+        let apart = !globals.is_empty() && (in_globals || body.globals.is_some());
+        let call = Call { globals: if apart { globals } else { Vec::new() }, ..call };
+        let ancestors = overlap::ancestors(&call.references());
         let (key, groups) = call.key(self.source.routine(call.callee), &ancestors, body, self.source);
         let callee = self.resolve(key.clone());
+        if ancestors.is_empty() {
+            return self.plain_call(body, Call { callee, ..call }, out);
+        }
         let (instance, arguments) = self.hand_over(body, call.clone(), &key, groups, out);
         let kind = StatementKind::Call { callee, instance, arguments, result: call.result };
         out.push(Statement::new(kind, call.at));
@@ -235,7 +351,6 @@ impl Separator<'_> {
     /// A call with nothing shared. Values that are read from what an earlier argument borrows
     /// are read before the call, and then so is everything that might fault.
     fn plain_call(&mut self, body: &mut Body, mut call: Call, out: &mut Block) {
-        let callee = self.declared(call.callee);
         if call.reads_borrowed() {
             let mut arguments = Vec::with_capacity(call.arguments.len());
             call.instance = call.instance.map(|place| self.fix_place(body, place, out));
@@ -247,8 +362,9 @@ impl Separator<'_> {
             }
             call.arguments = arguments;
         }
-        let kind =
-            StatementKind::Call { callee, instance: call.instance, arguments: call.arguments, result: call.result };
+        call.arguments.extend(call.globals.into_iter().map(|(_, place)| Argument::Reference(place)));
+        let Call { callee, instance, arguments, result, .. } = call;
+        let kind = StatementKind::Call { callee, instance, arguments, result };
         out.push(Statement::new(kind, call.at));
     }
 
@@ -280,6 +396,14 @@ impl Separator<'_> {
                         Binding::Own => arguments.push(Argument::Reference(place)),
                         Binding::Within { .. } => capture(binding, &place, &mut arguments),
                     }
+                }
+            }
+        }
+        if let Globals::Apart(bindings) = &key.globals {
+            for ((_, place), (_, binding)) in call.globals.into_iter().zip(bindings) {
+                match binding {
+                    Binding::Own => arguments.push(Argument::Reference(place)),
+                    Binding::Within { .. } => capture(binding, &place, &mut arguments),
                 }
             }
         }

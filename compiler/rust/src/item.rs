@@ -109,21 +109,28 @@ impl Emitter<'_> {
     /// What a function says of itself.
     pub fn scan_docs(&self, id: RoutineId, role: Role) -> TokenStream {
         let routine = self.program.routine(id);
-        let copy = self.origins[id.index()] == Origin::Copy;
-        match role {
-            Role::Scan if copy => doc_line("One scan, for calls whose arguments share storage."),
-            Role::Scan => doc_line("One scan."),
-            Role::Free if copy => {
+        let origin = self.origins[id.index()];
+        match (role, origin) {
+            (Role::Scan, Origin::Declared) => doc_line("One scan."),
+            (Role::Scan, Origin::Apart) => {
+                doc_line("One scan, for instances that are global: it is handed the globals that it uses.")
+            }
+            (Role::Scan, Origin::Copy) => doc_line("One scan, for calls whose arguments share storage."),
+            (Role::Prescan, _) => doc_line("What counters need before the first scan."),
+            (Role::Free, Origin::Declared) => {
+                let title = format!("FUNCTION {} ({})", routine.name, self.source(routine.location));
+                self.docs(routine.doc.as_deref(), &title)
+            }
+            (Role::Free, Origin::Apart) => {
+                let title = format!("{}, which is handed the globals that it uses.", self.source(routine.location));
+                self.docs(routine.doc.as_deref(), &title)
+            }
+            (Role::Free, Origin::Copy) => {
                 let source = self.source(routine.location);
                 self.docs(
                     routine.doc.as_deref(),
                     &format!("A copy of {source}, for calls whose arguments share storage."),
                 )
-            }
-            Role::Prescan => doc_line("What counters need before the first scan."),
-            Role::Free => {
-                let title = format!("FUNCTION {} ({})", routine.name, self.source(routine.location));
-                self.docs(routine.doc.as_deref(), &title)
             }
         }
     }

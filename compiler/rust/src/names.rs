@@ -1,7 +1,7 @@
 //! Rust names for Structured Text names: in Rust's case, without collisions, the same in every
 //! run. Structured Text ignores case, so two names that differ there may meet in snake_case.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use proc_macro2::{Ident, Span};
 use staunch_ir::{FieldId, LocalId, ParamId, Program, Routine, RoutineId, RoutineKind, StructId};
@@ -44,6 +44,9 @@ const TYPES: &[&str] = &[
 
 /// Local names with a meaning of their own.
 const LOCALS: &[&str] = &["self", "cx", "globals", "out"];
+
+/// What every structure has.
+const METHODS: &[&str] = &["new", "default", "scan", "prescan"];
 
 /// Words that may not even be raw identifiers.
 const NEVER: &[&str] = &["self", "super", "crate", "_"];
@@ -205,15 +208,20 @@ pub fn by_value_param(routine: &Routine, local: LocalId) -> Option<ParamId> {
 /// first, so that copies made for aliasing never change their names.
 fn routine_names(program: &Program, origins: &[Origin]) -> Vec<Ident> {
     let mut functions = Scope::default();
+    let mut methods: HashMap<Option<StructId>, Scope> = HashMap::new();
     let mut names = vec![ident("scan"); program.routines.len()];
     let declared = |at: &usize| matches!(origins[*at], Origin::Declared);
     let (first, then): (Vec<_>, Vec<_>) = (0..program.routines.len()).partition(declared);
     for at in first.into_iter().chain(then) {
         let routine = &program.routines[at];
         names[at] = match (routine.kind, origins[at]) {
-            (RoutineKind::Function, _) | (_, Origin::Copy) => functions.claim(&snake(&routine.name)),
+            (RoutineKind::Function, _) => functions.claim(&snake(&routine.name)),
             (RoutineKind::Body, Origin::Declared) => ident("scan"),
             (RoutineKind::Prescan, Origin::Declared) => ident("prescan"),
+            (RoutineKind::Body | RoutineKind::Prescan, Origin::Apart | Origin::Copy) => {
+                let scope = methods.entry(routine.state).or_insert_with(|| Scope::with(METHODS));
+                scope.claim(&snake(&routine.name))
+            }
         };
     }
     names

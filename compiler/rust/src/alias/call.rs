@@ -1,29 +1,33 @@
 //! A call and the references it hands over; which copy of its callee it needs.
 
-use staunch_ir::{Argument, Location, Place, Program, Projection, Routine, RoutineId};
+use staunch_ir::{Argument, FieldId, Location, Place, Program, Projection, Routine, RoutineId};
 
 use super::overlap::{Ancestor, Slot, overlap};
 use super::rewrite::Body;
-use super::{Binding, Key, SharedRoot, Step};
+use super::{Binding, Globals, Key, SharedRoot, Step};
 
 #[derive(Clone)]
 pub struct Call {
     pub callee: RoutineId,
     pub instance: Option<Place>,
     pub arguments: Vec<Argument>,
+    /// The globals that the callee is handed one by one.
+    pub globals: Vec<(FieldId, Place)>,
     pub result: Option<Place>,
     pub at: Location,
 }
 
 impl Call {
-    /// What the callee may write through: the instance (0), and parameters from 1.
+    /// What the callee may write through: the instance (0), parameters from 1, and then globals.
     pub fn references(&self) -> Vec<Slot<'_>> {
         let instance = self.instance.iter().map(|place| Slot { number: 0, place });
         let arguments = self.arguments.iter().enumerate().filter_map(|(at, argument)| match argument {
             Argument::Reference(place) => Some(Slot { number: at + 1, place }),
             Argument::Value(_) => None,
         });
-        instance.chain(arguments).collect()
+        let first = self.arguments.len() + 1;
+        let globals = self.globals.iter().enumerate().map(|(at, (_, place))| Slot { number: first + at, place });
+        instance.chain(arguments).chain(globals).collect()
     }
 
     /// Whether a value, or a subscript, is read from storage that an argument before it borrows.
@@ -45,7 +49,7 @@ impl Call {
 
     /// The copy this call needs, and what is handed to the copy's shared parameters.
     pub fn key(&self, callee: &Routine, ancestors: &[Ancestor], body: &Body, program: &Program) -> (Key, Vec<Place>) {
-        let mut bindings = vec![Binding::Own; callee.params.len() + 1];
+        let mut bindings = vec![Binding::Own; callee.params.len() + 1 + self.globals.len()];
         let (mut types, mut groups) = (Vec::new(), Vec::new());
         let references = self.references();
         for ancestor in ancestors {
@@ -66,7 +70,13 @@ impl Call {
                 }
             }
         }
-        (Key { routine: self.callee, bindings, groups: types }, groups)
+        let apart = bindings.split_off(callee.params.len() + 1);
+        let globals = if apart.is_empty() {
+            Globals::Whole
+        } else {
+            Globals::Apart(self.globals.iter().map(|(field, _)| *field).zip(apart).collect())
+        };
+        (Key { routine: self.callee, bindings, globals, groups: types }, groups)
     }
 }
 

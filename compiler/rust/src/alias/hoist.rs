@@ -79,7 +79,6 @@ impl Body {
             })
             .collect();
         let (root, group) = match root {
-            SharedRoot::Globals => (Root::Globals, None),
             SharedRoot::Instance => (Root::Instance, None),
             SharedRoot::Group(number) => (Root::Instance, Some(*number)),
         };

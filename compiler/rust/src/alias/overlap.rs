@@ -18,37 +18,27 @@ pub struct Ancestor {
     pub root: Root,
     pub prefix: Vec<Projection>,
     pub slots: Vec<usize>,
-    /// The callee reaches it through the globals.
-    pub through_globals: bool,
 }
 
 pub fn overlap(a: &Place, b: &Place) -> bool {
     a.root == b.root && borrows_meet(&a.projections, &b.projections)
 }
 
-/// For each set of references that overlap (or meet a callee's globals), what they share.
-pub fn ancestors(references: &[Slot<'_>], uses_globals: bool) -> Vec<Ancestor> {
+/// For each set of references that overlap, what they share.
+pub fn ancestors(references: &[Slot<'_>]) -> Vec<Ancestor> {
     let mut groups: Vec<Ancestor> = Vec::new();
-    if uses_globals {
-        groups.push(Ancestor { root: Root::Globals, prefix: Vec::new(), slots: Vec::new(), through_globals: true });
-    }
     for slot in references {
-        let mut group = Ancestor {
-            root: slot.place.root,
-            prefix: slot.place.projections.clone(),
-            slots: vec![slot.number],
-            through_globals: false,
-        };
+        let mut group =
+            Ancestor { root: slot.place.root, prefix: slot.place.projections.clone(), slots: vec![slot.number] };
         // A merged group is wider, so it may meet groups that its parts did not.
         while let Some(at) = groups.iter().position(|it| meets(it, &group)) {
             let other = groups.remove(at);
             group.prefix.truncate(common_fields(&other.prefix, &group.prefix));
             group.slots = [other.slots, group.slots].concat();
-            group.through_globals |= other.through_globals;
         }
         groups.push(group);
     }
-    groups.retain(|group| group.slots.len() + usize::from(group.through_globals) > 1);
+    groups.retain(|group| group.slots.len() > 1);
     groups
 }
 
@@ -59,9 +49,6 @@ fn meets(a: &Ancestor, b: &Ancestor) -> bool {
 impl Ancestor {
     /// How the callee reaches it without a parameter, if it does.
     pub fn shared_root(&self, references: &[Slot<'_>]) -> Option<SharedRoot> {
-        if self.through_globals {
-            return Some(SharedRoot::Globals);
-        }
         let is_instance = |slot: &&Slot<'_>| slot.number == 0 && slot.place.projections.len() == self.prefix.len();
         let held = references.iter().filter(|slot| self.slots.contains(&slot.number));
         held.into_iter().find(is_instance).map(|_| SharedRoot::Instance)

@@ -1,7 +1,10 @@
 //! A body whose places move to other roots.
 
+use std::collections::HashMap;
+
 use staunch_ir::{
-    Argument, Expr, ExprKind, Local, LocalId, Param, ParamId, Place, Program, Projection, Root, Routine, StructId, Type,
+    Argument, Expr, ExprKind, FieldId, Local, LocalId, Param, ParamId, Place, Program, Projection, Root, Routine,
+    StructId, Type,
 };
 
 /// What stands for a root of the source's.
@@ -22,6 +25,8 @@ pub struct Body {
     pub instance: Base,
     /// For each of the source's parameters.
     pub bases: Vec<Base>,
+    /// What stands for each of the globals, where they are handed over one by one.
+    pub globals: Option<HashMap<FieldId, Base>>,
     /// The parameters that hold subscripts.
     pub subscripts: Vec<LocalId>,
 }
@@ -34,6 +39,7 @@ impl Body {
             params: source.params.clone(),
             locals: source.locals.clone(),
             state: source.state,
+            globals: None,
             subscripts: Vec::new(),
             instance: same(Root::Instance),
             bases: (0..source.params.len()).map(|at| same(Root::Param(ParamId::next(at)))).collect(),
@@ -42,7 +48,8 @@ impl Body {
 
     /// Gives the shared parameters their numbers.
     pub fn place_groups(&mut self, first: usize) {
-        for base in self.bases.iter_mut().chain([&mut self.instance]) {
+        let globals = self.globals.iter_mut().flat_map(HashMap::values_mut);
+        for base in self.bases.iter_mut().chain([&mut self.instance]).chain(globals) {
             if let Some(group) = base.group {
                 base.root = Root::Param(ParamId::next(first + group));
             }
@@ -59,7 +66,13 @@ impl Body {
     }
 
     pub fn place(&self, place: &Place) -> Place {
-        let behind = place.projections.iter().map(|it| self.projection(it));
+        let mut behind = place.projections.iter().map(|it| self.projection(it));
+        if let (Root::Globals, Some(globals)) = (place.root, &self.globals) {
+            let Some(Projection::Field(field)) = behind.next() else {
+                unreachable!("verified IR: the globals are used one by one")
+            };
+            return below(&globals[&field], behind, place.ty);
+        }
         match place.root {
             Root::Instance => below(&self.instance, behind, place.ty),
             Root::Param(id) => below(&self.bases[id.index()], behind, place.ty),

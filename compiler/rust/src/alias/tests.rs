@@ -22,7 +22,7 @@ fn copies(st: &str) -> Vec<String> {
         assert_eq!(a.state(), b.state());
     }
     let copies = separated.program.routines.iter().zip(&separated.origins);
-    copies.filter(|(_, origin)| **origin == Origin::Copy).map(|(routine, _)| routine.name.clone()).collect()
+    copies.filter(|(_, origin)| **origin != Origin::Declared).map(|(routine, _)| routine.name.clone()).collect()
 }
 
 const SWAP: &str = "
@@ -57,5 +57,57 @@ END_FUNCTION_BLOCK
 PROGRAM Main VAR own : Motor; END_VAR VAR_EXTERNAL pump : Motor; END_VAR
 pump(); own();
 END_PROGRAM";
-    assert_eq!(copies(st), ["Motor_scan_on_pump"]);
+    assert_eq!(copies(st), ["scan_apart"]);
+}
+
+/// A block that uses globals, itself and through what it calls, and `count` global instances of it.
+fn motors(count: usize) -> String {
+    let names: Vec<String> = (0..count).map(|at| format!("motor_{at}")).collect();
+    let (declared, calls) = (names.join(", "), names.join("(); "));
+    format!(
+        "
+VAR_GLOBAL total, limit : INT := 7; {declared} : Motor; END_VAR
+FUNCTION Room : INT VAR_INPUT x : INT; END_VAR VAR_EXTERNAL total, limit : INT; END_VAR
+Room := MIN(x, limit - total);
+END_FUNCTION
+FUNCTION_BLOCK Motor VAR n : INT; END_VAR VAR_EXTERNAL total : INT; END_VAR
+n := n + 1; total := total - Room(x := n);
+END_FUNCTION_BLOCK
+PROGRAM Main VAR_EXTERNAL {declared} : Motor; END_VAR
+{calls}();
+END_PROGRAM"
+    )
+}
+
+#[test]
+fn all_global_instances_share_one_copy() {
+    assert_eq!(copies(&motors(1)), ["Room_apart", "scan_apart"]);
+    assert_eq!(copies(&motors(200)), ["Room_apart", "scan_apart"]);
+}
+
+/// The text grows by what an instance takes: a field with its offset, its initial value, and its call.
+#[test]
+fn the_code_of_a_block_is_there_once() {
+    let text = |count| crate::emit(&program(&motors(count)), &crate::Options::default());
+    let (few, many) = (text(20), text(220));
+    assert_eq!(few.matches("fn ").count(), many.matches("fn ").count());
+    let each = (many.len() - few.len()) / 200;
+    assert!(each < 250, "an instance takes {each} bytes of text");
+}
+
+#[test]
+fn a_global_that_an_instance_and_its_body_share() {
+    let st = "
+VAR_GLOBAL total : INT; pump, spare : Motor; END_VAR
+FUNCTION Of_pump : INT VAR_EXTERNAL pump : Motor; END_VAR
+Of_pump := pump.n;
+END_FUNCTION
+FUNCTION_BLOCK Motor VAR_OUTPUT n : INT; END_VAR VAR_IN_OUT sum : INT; END_VAR VAR_EXTERNAL total : INT; END_VAR
+n := n + 1; sum := sum + Of_pump(); total := total + sum;
+END_FUNCTION_BLOCK
+PROGRAM Main VAR x : INT; END_VAR VAR_EXTERNAL pump, spare : Motor; total : INT; END_VAR
+pump(sum := x); spare(sum := x); pump(sum := total); spare(sum := total);
+END_PROGRAM";
+    let shared = ["scan_sharing_pump", "scan_sharing_pump_sharing_sum_total", "scan_sharing_sum_total"];
+    assert_eq!(copies(st), [["Of_pump_apart", "scan_apart"].as_slice(), &shared].concat());
 }
