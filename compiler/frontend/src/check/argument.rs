@@ -254,6 +254,24 @@ impl<'s> Checker<'_, 's> {
         Some(statements)
     }
 
+    /// An output's value for a variable of type `ty`. It is the variable that is written at `span`, so
+    /// that no conversion can be written around it.
+    fn output(&mut self, value: Expr, ty: Type, span: Span) -> Option<Expr> {
+        let reported = self.decl.diagnostics.len();
+        let found = self.type_name(value.ty);
+        let value = self.coerce(Operand::Typed(value), ty, span);
+        if value.is_none() {
+            let wanted = self.type_name(ty);
+            for error in self.decl.diagnostics[reported..].iter_mut().filter(|it| it.fix.is_some()) {
+                error.fix = None;
+                error.help = Some(format!(
+                    "connect it to a variable of type {found}, and convert that to {wanted} after the call"
+                ));
+            }
+        }
+        value
+    }
+
     /// `OUT => target`, after the call.
     fn connect(&mut self, parts: &Parts, at: usize) -> Option<()> {
         let Part { role, span } = &parts.parts[at];
@@ -269,7 +287,7 @@ impl<'s> Checker<'_, 's> {
         if negated {
             value = self.not(value, *span)?;
         }
-        let value = self.coerce(Operand::Typed(value), target.ty, *span)?;
+        let value = self.output(value, target.ty, *span)?;
         self.assign(target, value, *span);
         Some(())
     }

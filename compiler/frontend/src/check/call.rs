@@ -230,7 +230,8 @@ impl<'s> Checker<'_, 's> {
                     .help(format!("declare one: `VAR c : {owner}.{}; END_VAR`, and call `c(…)`", name.text)),
             );
         } else {
-            self.report(super::no_such_block(family, name));
+            // An instance's type could be misspelt, but a type is not called either.
+            self.report(Diagnostic { fix: None, ..super::no_such_block(family, name) });
         }
     }
 
@@ -424,7 +425,7 @@ impl<'s> Checker<'_, 's> {
                 Ok((at, value)) => given[at] = value,
                 Err(error) => {
                     complete = false;
-                    self.report(*error);
+                    self.report(without_given(*error, arguments));
                 }
             }
         }
@@ -547,6 +548,16 @@ impl<'s> Checker<'_, 's> {
             None => error.help(format!("its parameters are {}", list(&names))),
         }
     }
+}
+
+/// A fix that renames a parameter to one that the call gives too would bring the next error.
+fn without_given(error: Diagnostic, arguments: &[ast::Argument<'_>]) -> Diagnostic {
+    let named = |argument: &ast::Argument<'_>, name: &str| match &argument.kind {
+        ArgumentKind::Positional(_) => false,
+        ArgumentKind::Input(it, _) | ArgumentKind::Output { name: it, .. } => it.text.eq_ignore_ascii_case(name),
+    };
+    let is_given = error.fix.as_ref().is_some_and(|fix| arguments.iter().any(|it| named(it, &fix.replacement)));
+    if is_given { Diagnostic { fix: None, ..error } } else { error }
 }
 
 /// Functions of the standard's tables, and of CODESYS, that are known to be missing.

@@ -95,6 +95,13 @@ impl<'s> Checker<'_, 's> {
         if prefix.text.eq_ignore_ascii_case("STRING") && matches!(value, LiteralValue::String { .. }) {
             return Some(None);
         }
+        if self.decl.type_named(prefix.text).is_some() {
+            self.report(
+                Diagnostic::new(Code::E0102, prefix.span, format!("`{}` has no literals", prefix.text))
+                    .label("a literal is of an elementary type, or an enumerator"),
+            );
+            return None;
+        }
         let near = crate::names::nearest(prefix.text, Elementary::ALL.iter().map(|it| it.name()));
         let mut error = Diagnostic::new(Code::E0102, prefix.span, format!("there is no type `{}`", prefix.text))
             .label("the type of a literal");

@@ -59,11 +59,14 @@ pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
         }
         (Expected::More(end, opened) | Expected::Closing(end, opened), _) => {
             let open = input.state().place(opened);
-            Diagnostic::new(Code::E0001, span, format!("expected {}, found {shown}", said(problem.expected)))
+            let it = Diagnostic::new(Code::E0001, span, format!("expected {}, found {shown}", said(problem.expected)))
                 .label(format!("expected {end} before this"))
-                .other(open, format!("this is closed by {end}"))
-                .help(format!("write {end} here"))
-                .fix(behind(input, problem.at), bracket(end))
+                .other(open, format!("this is closed by {end}"));
+            match found {
+                // What is in brackets seems to be a list, which a closing bracket would cut off.
+                Kind::Comma => it,
+                _ => it.help(format!("write {end} here")).fix(behind(input, problem.at), bracket(end)),
+            }
         }
         (Expected::Token(Kind::Colon), _) if found == Kind::Semicolon && in_case(input) => {
             Diagnostic::new(Code::E0001, span, "a CASE label ends with `:`, not with `;`")
