@@ -22,17 +22,17 @@ fn pack() -> Result<(), String> {
     println!("cargo::rerun-if-changed=build/main.rs");
     println!("cargo::rerun-if-changed=src/toolchain.rs");
     let out = PathBuf::from(variable("OUT_DIR")?);
-    let sources = out.join("sources");
-    let _ = fs::remove_dir_all(&sources);
+    let unpacked = out.join("sources");
+    let _ = fs::remove_dir_all(&unpacked);
     let mut archive = Vec::new();
     for (package, folder) in packages()? {
         println!("cargo::rerun-if-changed={}", folder.join("src").display());
-        for file in rust_files(&folder.join("src"))? {
+        for file in sources(&folder.join("src"))? {
             let relative = file.strip_prefix(&folder).map_err(|it| it.to_string())?;
             let text = fs::read(&file).map_err(|it| format!("{}: {it}", file.display()))?;
             let path = Path::new(&package).join(relative);
             append(&mut archive, &path, &text)?;
-            write(&sources.join(&path), &text)?;
+            write(&unpacked.join(&path), &text)?;
         }
     }
     write(&out.join("runtime-sources"), &archive)?;
@@ -40,7 +40,7 @@ fn pack() -> Result<(), String> {
     let built = out.join("runtime");
     fs::create_dir_all(&built).map_err(|it| it.to_string())?;
     let rustc = Rustc { program: variable("RUSTC")?.into(), target: Some(variable("TARGET")?) };
-    rustc.runtime(&sources, &built, true)?;
+    rustc.runtime(&unpacked, &built, true)?;
     for library in [Library::Runtime, Library::Program] {
         strip(&rustc.static_library(library, &built)?);
     }
@@ -76,15 +76,15 @@ fn packages() -> Result<Vec<(String, PathBuf)>, String> {
         .collect()
 }
 
-/// Every Rust file below `folder`, sorted: the archive is the same in every build.
-fn rust_files(folder: &Path) -> Result<Vec<PathBuf>, String> {
+/// Every file of source below `folder`, sorted: the archive is the same in every build.
+fn sources(folder: &Path) -> Result<Vec<PathBuf>, String> {
     let mut files = Vec::new();
     let entries = fs::read_dir(folder).map_err(|it| format!("{}: {it}", folder.display()))?;
     for entry in entries {
         let path = entry.map_err(|it| it.to_string())?.path();
         if path.is_dir() {
-            files.extend(rust_files(&path)?);
-        } else if path.extension().is_some_and(|it| it == "rs") {
+            files.extend(sources(&path)?);
+        } else if path.extension().is_some_and(|it| it == "rs" || it == "html") {
             files.push(path);
         }
     }

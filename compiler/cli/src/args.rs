@@ -3,6 +3,7 @@
 use crate::project::Project;
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
 use staunch_frontend::Dialect;
+use staunch_host::Moment;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -174,9 +175,15 @@ pub struct Run {
     /// Inputs over time
     #[arg(long, value_name = "IN.csv")]
     pub stimulus: Option<PathBuf>,
-    /// Where to write the variables after each scan: .csv, .vcd, .svg, or - for standard output
+    /// Where to write the variables after each scan: .csv, .vcd, .svg, .html, or - for standard output
     #[arg(long, value_name = "OUT")]
     pub trace: Option<PathBuf>,
+    /// Show the scans from this one, or this time, on: 120, 1s200ms
+    #[arg(long, value_name = "MOMENT", value_parser = staunch_host::parse_moment)]
+    pub from: Option<Moment>,
+    /// Show the scans to this one, or this time; without --scans the run ends there
+    #[arg(long, value_name = "MOMENT", value_parser = staunch_host::parse_moment)]
+    pub to: Option<Moment>,
     // In a doc comment `[1,2]` would be a link.
     #[arg(long, value_name = "NAMES", help = "The variables to show, in order: a,b.CV,m[1,2]")]
     pub vars: Option<String>,

@@ -1,11 +1,11 @@
 //! `staunch run`: in this process, or, for the Rust back end, as an executable of its own.
 
 use crate::REJECTED;
-use crate::args::{Backend, Run};
+use crate::args::{Backend, MessageFormat, Run};
 use crate::machine::{Interpreted, Native};
 use crate::rustc::{self, Kind};
 use crate::session::Session;
-use staunch_host::{Error, Machine, Map, Options};
+use staunch_host::{Machine, Map, Moment, Options};
 use staunch_ir::Program;
 use staunch_ir::layout::Layout;
 use std::process::Command;
@@ -29,9 +29,8 @@ fn scans(session: &Session, args: &Run, map: &Map, machine: &mut dyn Machine) ->
     let options = options(session, args)?;
     match staunch_host::run(machine, map, &options) {
         Ok(_) => Ok(0),
-        Err(Error::ClosedPipe) => Ok(0),
         Err(error) => {
-            eprintln!("error: {error}");
+            options.report(&error);
             Ok(error.exit_code())
         }
     }
@@ -58,6 +57,9 @@ fn options(session: &Session, args: &Run) -> Result<Options, String> {
         stimulus: args.stimulus.clone(),
         trace: args.trace.clone(),
         vars: args.vars.clone(),
+        from: args.from,
+        to: args.to,
+        json: session.common.format() == MessageFormat::Json,
         retain: args.retain.clone(),
         realtime: args.realtime,
         table: true,
@@ -75,6 +77,9 @@ fn execute(session: &Session, args: &Run, program: &Program) -> Result<u8, Strin
         ("--cycle", cycle(session, args.cycle.as_deref())?.map(|it| format!("{it}ns"))),
         ("--loop-budget", args.loop_budget.or(session.project.loop_budget).map(|it| it.to_string())),
         ("--vars", args.vars.clone()),
+        ("--from", args.from.map(moment)),
+        ("--to", args.to.map(moment)),
+        ("--message-format", (session.common.format() == MessageFormat::Json).then(|| "json".to_owned())),
     ];
     for (flag, value) in texts {
         value.map(|it| command.arg(flag).arg(it));
@@ -90,6 +95,13 @@ fn execute(session: &Session, args: &Run, program: &Program) -> Result<u8, Strin
         command.arg("--quiet");
     }
     become_process(command).map_err(|error| format!("cannot run {}: {error}", executable.display()))
+}
+
+fn moment(moment: Moment) -> String {
+    match moment {
+        Moment::Scan(scan) => scan.to_string(),
+        Moment::Time(time) => format!("{time}ns"),
+    }
 }
 
 /// The executable takes this process over, so that signals reach it and nothing else.

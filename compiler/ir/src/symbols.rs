@@ -20,6 +20,7 @@ pub const VERSION: u32 = 1;
 ///
 /// ```text
 /// map        1
+/// compiler   version
 /// machine    size  align
 /// file       number  path
 /// enum       id  name  lane's Rust name  NAME=value …
@@ -64,6 +65,7 @@ impl Map<'_> {
     fn write(&mut self) -> fmt::Result {
         let machine = &self.layout.machine;
         writeln!(self.text, "map\t{VERSION}")?;
+        writeln!(self.text, "compiler\t{}", env!("CARGO_PKG_VERSION"))?;
         writeln!(self.text, "machine\t{}\t{}", machine.size, machine.align)?;
         for (number, file) in self.program.files.iter().enumerate() {
             writeln!(self.text, "file\t{number}\t{}", one_line(&file.path))?;

@@ -3,7 +3,7 @@
 use crate::bench::BenchOptions;
 use crate::literal;
 use crate::path::nearest;
-use crate::run::Options;
+use crate::run::{Moment, Options};
 use staunch_runtime::Time;
 use staunch_runtime::literal::duration;
 use std::ffi::OsString;
@@ -14,21 +14,26 @@ pub enum Wish {
     Run(Options),
     Bench(BenchOptions),
     Help(String),
+    Version,
 }
 
-const FLAGS: [(&str, &str, &str); 13] = [
+const FLAGS: [(&str, &str, &str); 17] = [
     ("--program", "NAME", "Run this program only"),
     ("--scans", "N", "End after N scans"),
     ("--cycle", "TIME", "Time between two scans, as 10ms"),
     ("--loop-budget", "N", "Turns that the loops of one scan may take together"),
     ("--stimulus", "FILE", "Inputs, from a CSV file"),
-    ("--trace", "FILE", "Write a row a scan, as .csv, .vcd or .svg; - for standard output"),
+    ("--trace", "FILE", "Write a row a scan, as .csv, .vcd, .svg or .html; - for standard output"),
+    ("--from", "MOMENT", "Show the scans from this one or this time on, as 120 or 1s200ms"),
+    ("--to", "MOMENT", "Show the scans to this one or this time"),
     ("--vars", "NAMES", "Variables to show, apart by commas"),
     ("--retain", "FILE", "Keep retained variables in a file"),
     ("--realtime", "", "Wait for the time at which each scan is due"),
     ("--table", "", "Print the last scans as a table"),
     ("--bench", "", "Measure the time of a scan instead"),
     ("--quiet", "", "Print nothing but errors and the trace"),
+    ("--message-format", "human|json", "Print a fault and the totals as JSON"),
+    ("--version", "", "Print the program and what compiled it"),
     ("--help", "", "Print this"),
 ];
 
@@ -54,11 +59,15 @@ pub fn parse_options(mut arguments: impl Iterator<Item = OsString>) -> Result<Wi
             "--stimulus" => options.stimulus = Some(value()?.into()),
             "--trace" => options.trace = Some(value()?.into()),
             "--vars" => options.vars = Some(utf8(value()?)?),
+            "--from" => options.from = Some(parse_moment(&utf8(value()?)?)?),
+            "--to" => options.to = Some(parse_moment(&utf8(value()?)?)?),
+            "--message-format" => options.json = is_json(&utf8(value()?)?)?,
             "--retain" => options.retain = Some(value()?.into()),
             "--table" => options.table = true,
             "--realtime" => options.realtime = true,
             "--bench" => bench = true,
             "--quiet" | "-q" => options.quiet = true,
+            "--version" | "-V" => return Ok(Wish::Version),
             "--help" | "-h" => return Ok(Wish::Help(help(&name.to_string_lossy()))),
             other => {
                 let near = nearest(other, FLAGS.iter().map(|it| it.0));
@@ -90,6 +99,24 @@ pub fn parse_duration(text: &str) -> Result<Time, String> {
     time.filter(|it| *it > 0).ok_or_else(|| format!("`{text}` is not a time above zero: write `10ms`"))
 }
 
+/// A scan's number, or a time of the program's clock.
+pub fn parse_moment(text: &str) -> Result<Moment, String> {
+    if let Ok(scan) = text.replace('_', "").parse() {
+        return Ok(Moment::Scan(scan));
+    }
+    let time = if text.contains('#') { literal::time(text).ok() } else { duration(text).ok() };
+    let time = time.filter(|it| *it >= 0).map(Moment::Time);
+    time.ok_or_else(|| format!("`{text}` is neither the number of a scan nor a time: write `120` or `1s200ms`"))
+}
+
+fn is_json(text: &str) -> Result<bool, String> {
+    match text {
+        "human" => Ok(false),
+        "json" => Ok(true),
+        _ => Err(format!("`{text}` is no format: there are human and json")),
+    }
+}
+
 fn help(name: &str) -> String {
     let name = name.rsplit(['/', '\\']).next().unwrap_or(name);
     let mut text = format!(
@@ -98,7 +125,7 @@ fn help(name: &str) -> String {
          wait; without, in real time until it is interrupted.\n\nUsage: {name} [OPTIONS]\n\nOptions:\n"
     );
     for (flag, value, meaning) in FLAGS {
-        text += &format!("  {:<18} {meaning}\n", format!("{flag} {value}"));
+        text += &format!("  {:<27} {meaning}\n", format!("{flag} {value}"));
     }
     text
 }
@@ -115,14 +142,14 @@ mod tests {
 
     #[test]
     fn every_flag_is_read() {
-        let text =
-            "--program P --scans=5 --cycle 1ms --stimulus a.csv --trace - --vars a,b --retain r --realtime --table -q";
+        let text = "--program P --scans=5 --cycle 1ms --stimulus a.csv --trace - --vars a,b --retain r --realtime --table -q --from 3 --to T#1s --message-format=json";
         let Wish::Run(options) = parse(text).unwrap() else { panic!() };
         assert_eq!(options.program.as_deref(), Some("P"));
         assert_eq!((options.scans, options.cycle), (Some(5), Some(1_000_000)));
         assert_eq!(options.trace, Some("-".into()));
         assert!(options.stimulus.is_some() && options.vars.is_some() && options.retain.is_some());
-        assert!(options.realtime && options.table && options.quiet);
+        assert!(options.realtime && options.table && options.quiet && options.json);
+        assert_eq!((options.from, options.to), (Some(Moment::Scan(3)), Some(Moment::Time(1_000_000_000))));
         let Wish::Bench(bench) = parse("--bench --scans 7").unwrap() else { panic!() };
         assert_eq!(bench.scans, Some(7));
         let Wish::Help(help) = parse("--help").unwrap() else { panic!() };
@@ -130,12 +157,16 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_are_told() {
+    fn mistakes_are_errors() {
         assert_eq!(
             parse("--scan 1").unwrap_err(),
             "unknown argument `--scan`; did you mean `--scans`? (--help lists them)"
         );
         assert_eq!(parse("--scans").unwrap_err(), "--scans needs a value");
+        assert_eq!(
+            parse("--to soon").unwrap_err(),
+            "`soon` is neither the number of a scan nor a time: write `120` or `1s200ms`"
+        );
         assert_eq!(parse("--cycle 0s").unwrap_err(), "`0s` is not a time above zero: write `10ms`");
     }
 }

@@ -4,7 +4,7 @@ use crate::args::{Wish, parse_options};
 use crate::bench::bench;
 use crate::domain::Domain;
 use crate::map::Map;
-use crate::run::run;
+use crate::run::{Options, run, title};
 use crate::{Error, Machine};
 use staunch_runtime::{Context, Fault};
 use std::ffi::OsString;
@@ -150,44 +150,52 @@ pub fn main(code: Code) -> ExitCode {
 /// [`main`] with the arguments given, the executable's name first. Returns the exit code, for a
 /// C `main`.
 pub fn main_with(code: Code, arguments: impl Iterator<Item = OsString>) -> u8 {
-    match start(code, arguments) {
-        Ok(()) => 0,
-        Err(error) => {
-            if !matches!(error, Error::ClosedPipe) {
-                eprintln!("error: {error}");
-            }
-            error.exit_code()
-        }
+    let started = Map::parse(code.map).and_then(|map| Ok((map, parse_options(arguments).map_err(Error::Usage)?)));
+    let (map, wish) = match started {
+        Ok(started) => started,
+        Err(error) => return failed(&Options::default(), &error),
+    };
+    // SAFETY: `Code::new` was promised that the entry points belong to the map.
+    let mut machine = unsafe { Compiled::new(&map, code.init, code.scan) };
+    match wish {
+        Wish::Run(options) => start(&mut machine, &map, options),
+        Wish::Bench(options) => match bench(&mut machine, &map, &options) {
+            Ok(timing) => print(&format!("{timing}\n")),
+            Err(error) => failed(&Options::default(), &error),
+        },
+        Wish::Help(text) => print(&text),
+        Wish::Version => print(&version(&map)),
     }
 }
 
-fn start(code: Code, arguments: impl Iterator<Item = OsString>) -> Result<(), Error> {
-    let map = Map::parse(code.map)?;
-    // SAFETY: `Code::new` was promised that the entry points belong to the map.
-    let mut machine = unsafe { Compiled::new(&map, code.init, code.scan) };
-    let mut options = match parse_options(arguments).map_err(Error::Usage)? {
-        Wish::Run(options) => options,
-        Wish::Bench(options) => {
-            let timing = bench(&mut machine, &map, &options)?;
-            print(&format!("{timing}\n"));
-            return Ok(());
-        }
-        Wish::Help(text) => {
-            print(&text);
-            return Ok(());
-        }
-    };
+fn start(machine: &mut Compiled, map: &Map, mut options: Options) -> u8 {
     // On its own an executable is the controller itself.
-    let alone = options.scans.is_none() && options.stimulus.is_none() && options.trace.is_none();
+    let alone =
+        options.scans.is_none() && options.stimulus.is_none() && options.trace.is_none() && options.to.is_none();
     options.realtime |= alone && !options.table;
     options.table |= !alone;
-    run(&mut machine, &map, &options).map(drop)
+    match run(machine, map, &options) {
+        Ok(_) => 0,
+        Err(error) => failed(&options, &error),
+    }
+}
+
+fn failed(options: &Options, error: &Error) -> u8 {
+    options.report(error);
+    error.exit_code()
+}
+
+/// `Main (plant.st), compiled by Staunch 0.1.0`
+fn version(map: &Map) -> String {
+    let all: Vec<usize> = (0..map.instances.len()).collect();
+    format!("{} ({}), compiled by Staunch {}\n", title(map, &all), map.files.join(", "), map.compiler)
 }
 
 /// A reader that has gone away wants no help.
-fn print(text: &str) {
+fn print(text: &str) -> u8 {
     use std::io::Write;
     let _ = std::io::stdout().write_all(text.as_bytes());
+    0
 }
 
 #[cfg(test)]
@@ -235,5 +243,7 @@ mod tests {
         assert_eq!(main_with(code, arguments("--scans 9 -q")), 3);
         assert_eq!(main_with(code, arguments("--scan 9")), 2);
         assert_eq!(main_with(code, arguments("--scans 1 --vars nothing")), 2);
+        assert_eq!(main_with(code, arguments("--version")), 0);
+        assert_eq!(version(&map()), "Garage (garage.st), compiled by Staunch 1.2.3\n");
     }
 }

@@ -1,5 +1,6 @@
 //! What can go wrong around a program.
 
+use crate::json::quote;
 use staunch_runtime::Fault;
 use std::fmt;
 use std::io;
@@ -28,6 +29,28 @@ impl Error {
         match error.kind() {
             io::ErrorKind::BrokenPipe => Self::ClosedPipe,
             _ => Self::File { path: path.to_owned(), doing, error },
+        }
+    }
+
+    /// The error as a JSON object.
+    pub fn json(&self) -> String {
+        let message = quote(&self.to_string());
+        match self {
+            Self::Fault { fault, scan, instance, path } => format!(
+                "{{\"reason\":\"fault\",\"message\":{message},\"kind\":{},\"file\":{},\"line\":{},\"column\":{},\
+                 \"scan\":{scan},\"program\":{}}}",
+                quote(fault.kind.text()),
+                quote(path),
+                fault.at.line,
+                fault.at.column,
+                quote(instance)
+            ),
+            Self::Usage(_)
+            | Self::Stimulus { .. }
+            | Self::Retain { .. }
+            | Self::File { .. }
+            | Self::ClosedPipe
+            | Self::Map { .. } => format!("{{\"reason\":\"error\",\"message\":{message}}}"),
         }
     }
 

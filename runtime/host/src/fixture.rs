@@ -7,6 +7,7 @@ use staunch_runtime::{Context, Fault, FaultKind, Location, Value};
 
 /// `Garage`: an input, a counter, and a variable of every kind.
 pub const MAP: &str = "map\t1
+compiler\t1.2.3
 machine\t128\t8
 file\t0\tgarage.st
 enum\t0\tColor\ti16\tRed=0\tGreen=5

@@ -12,6 +12,7 @@ mod path;
 mod domain;
 
 mod csv;
+mod json;
 mod literal;
 mod value;
 
@@ -31,14 +32,15 @@ mod signal;
 #[cfg(test)]
 mod fixture;
 
-pub use args::{Wish, parse_duration, parse_options};
+pub use args::{Wish, parse_duration, parse_moment, parse_options};
 pub use bench::{BenchOptions, Timing, bench};
 pub use compiled::{Code, Compiled, Init, Scan, main, main_with};
 pub use domain::Domain;
 pub use error::Error;
+pub use json::quote as json_text;
 pub use map::{Instance, Map, Section, Structure, StructureKind, Type, Variable};
 pub use path::Place;
-pub use run::{Options, RealTime, Summary, run};
+pub use run::{Moment, Options, RealTime, Summary, run};
 pub use value::format_time;
 
 pub use staunch_runtime::Elementary;

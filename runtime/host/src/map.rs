@@ -13,6 +13,8 @@ pub struct Map {
     /// Bytes of the whole state.
     pub size: usize,
     pub align: usize,
+    /// The version of the compiler.
+    pub compiler: String,
     /// Source paths, as the user named them; a fault names one by its number.
     pub files: Vec<String>,
     pub(crate) enums: BTreeMap<u32, Enum>,
@@ -138,6 +140,10 @@ impl Map {
     fn record(&mut self, record: &mut Record<'_>, open: &mut Option<Type>) -> Result<(), Error> {
         match record.text()? {
             "map" => record.version(),
+            "compiler" => {
+                record.text()?.clone_into(&mut self.compiler);
+                Ok(())
+            }
             "machine" => {
                 (self.size, self.align) = (record.number()?, record.number()?);
                 Ok(())

@@ -1,6 +1,7 @@
 //! A run: scan after scan, with what goes in and what comes out.
 
 use crate::column::columns;
+use crate::json::quote;
 use crate::map::Map;
 use crate::path::{nearest, same};
 use crate::retain::Retained;
@@ -18,20 +19,47 @@ const DEFAULT_SCANS: u64 = 100;
 /// The priority of a program without a TASK.
 const LOWEST_PRIORITY: u32 = 65535;
 
+/// A point of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Moment {
+    Scan(u64),
+    Time(Time),
+}
+
+impl Moment {
+    fn is_after(self, scan: u64, time: Time) -> bool {
+        match self {
+            Self::Scan(it) => it > scan,
+            Self::Time(it) => it > time,
+        }
+    }
+
+    fn is_before(self, scan: u64, time: Time) -> bool {
+        match self {
+            Self::Scan(it) => it < scan,
+            Self::Time(it) => it < time,
+        }
+    }
+}
+
 /// What to run and how. The default is 100 scans.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// An instance or a PROGRAM by name; all of them if the source has a CONFIGURATION.
     pub program: Option<String>,
-    /// `None`: to the last row of the stimulus, or 100; in real time without a stimulus, for ever.
+    /// `None`: to [`to`](Self::to), else to the last row of the stimulus, or 100; in real time without a
+    /// stimulus, for ever.
     pub scans: Option<u64>,
     /// Nanoseconds between two scans, above zero; 10 ms, or the TASKs' intervals.
     pub cycle: Option<Time>,
     /// Turns that the loops of one scan may take together; [`Context::TURNS`].
     pub loop_budget: Option<u64>,
     pub stimulus: Option<PathBuf>,
-    /// CSV, VCD or SVG by its ending; `-` is standard output.
+    /// CSV, VCD, SVG or HTML by its ending; `-` is standard output.
     pub trace: Option<PathBuf>,
+    /// The first and the last scan of the trace or table.
+    pub from: Option<Moment>,
+    pub to: Option<Moment>,
     /// Variables to trace, apart by commas.
     pub vars: Option<String>,
     /// A file that keeps retained variables from run to run.
@@ -42,12 +70,52 @@ pub struct Options {
     pub quiet: bool,
     /// Prints the last scans as a table, if there is no trace.
     pub table: bool,
+    /// Prints what the run came to as JSON, in place of the table.
+    pub json: bool,
 }
 
 impl Options {
     /// A large array has many columns: they are not made for nothing.
     fn shows_values(&self) -> bool {
-        self.trace.is_some() || self.vars.is_some() || (self.table && !self.quiet)
+        self.trace.is_some() || self.vars.is_some() || (self.table && !self.quiet && !self.json)
+    }
+}
+
+impl Options {
+    /// Says on standard error what went wrong; with `json`, as an object where all objects go.
+    pub fn report(&self, error: &Error) {
+        match error {
+            Error::ClosedPipe => {}
+            error if self.json => drop(self.print_json(&error.json())),
+            error => eprintln!("error: {error}"),
+        }
+    }
+
+    /// On standard output, but for a trace that is there.
+    fn print_json(&self, object: &str) -> Result<(), Error> {
+        let line = format!("{object}\n");
+        let written = match self.trace.as_deref().is_some_and(|it| it.as_os_str() == "-") {
+            true => io::stderr().write_all(line.as_bytes()),
+            false => io::stdout().write_all(line.as_bytes()).and_then(|()| io::stdout().flush()),
+        };
+        written.map_err(|error| Error::file("standard output".as_ref(), "write", error))
+    }
+}
+
+impl Summary {
+    /// Times in nanoseconds.
+    fn json(&self, title: &str) -> String {
+        let Self { scans, time, elapsed, real } = self;
+        let mut text = format!(
+            "{{\"reason\":\"run\",\"program\":{},\"scans\":{scans},\"time_ns\":{time},\"elapsed_ns\":{}",
+            quote(title),
+            elapsed.as_nanos()
+        );
+        if let Some(RealTime { overruns, shortest, longest, .. }) = real {
+            let (shortest, longest) = (shortest.as_nanos(), longest.as_nanos());
+            text += &format!(",\"overruns\":{overruns},\"shortest_ns\":{shortest},\"longest_ns\":{longest}");
+        }
+        text + "}"
     }
 }
 
@@ -98,7 +166,7 @@ pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Su
         fresh: vec![true; map.instances.len()],
         retained: Retained::of(map),
         epoch: 0,
-        out: Output { trace: None, table: Table::default() },
+        out: Output { rows: 0, trace: None, table: Table::default() },
         clock: None,
         summary: Summary::default(),
     };
@@ -108,7 +176,11 @@ pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Su
     }
     let ran = runner.scans(&subject);
     let finished = runner.finish(&subject);
-    ran.and(finished).map(|()| runner.summary)
+    ran.and(finished)?;
+    if options.json {
+        options.print_json(&runner.summary.json(&subject.title))?;
+    }
+    Ok(runner.summary)
 }
 
 /// The instances to run, by their numbers.
@@ -141,7 +213,7 @@ pub(crate) fn running(map: &Map, program: Option<&str>) -> Result<Vec<usize>, Er
     }
 }
 
-fn title(map: &Map, running: &[usize]) -> String {
+pub(crate) fn title(map: &Map, running: &[usize]) -> String {
     let mut names: Vec<&str> = running.iter().map(|at| map.instances[*at].program.as_str()).collect();
     names.dedup();
     names.join(", ")
@@ -168,6 +240,8 @@ struct Runner<'a> {
 }
 
 struct Output {
+    /// Rows within the window that is shown.
+    rows: u64,
     trace: Option<Trace>,
     table: Table,
 }
@@ -212,9 +286,14 @@ impl Runner<'_> {
     fn is_done(&self) -> bool {
         match self.options.scans {
             Some(scans) => self.summary.scans >= scans,
+            None if self.options.to.is_some() => self.is_past_the_window(self.summary.scans + 1, self.schedule.next()),
             None if !self.stimulus.rows.is_empty() => self.next_row >= self.stimulus.rows.len(),
             None => !self.options.realtime && self.summary.scans >= DEFAULT_SCANS,
         }
+    }
+
+    fn is_past_the_window(&self, scan: u64, time: Time) -> bool {
+        self.options.to.is_some_and(|it| it.is_before(scan, time))
     }
 
     /// Runs the next scan and returns its time; `None` when the user has asked for an end.
@@ -287,6 +366,11 @@ impl Runner<'_> {
     }
 
     fn record(&mut self, subject: &Subject<'_>, now: Time) -> Result<(), Error> {
+        let scan = self.summary.scans;
+        if self.options.from.is_some_and(|it| it.is_after(scan, now)) || self.is_past_the_window(scan, now) {
+            return Ok(());
+        }
+        self.out.rows += 1;
         let row = Row { scan: self.summary.scans, time: now, state: self.machine.state() };
         match &mut self.out.trace {
             Some(trace) => {
@@ -304,9 +388,12 @@ impl Runner<'_> {
 
     fn finish(&mut self, subject: &Subject<'_>) -> Result<(), Error> {
         let saved = self.save();
+        if self.out.rows == 0 && (self.options.from.is_some() || self.options.to.is_some()) {
+            eprintln!("note: no scan lies between --from and --to");
+        }
         match &mut self.out.trace {
             Some(trace) => trace.finish(subject).and(saved),
-            None if self.options.quiet => saved,
+            None if self.options.quiet || self.options.json => saved,
             None => {
                 let mut text = Vec::new();
                 let printed = self.out.table.print(subject, &mut text).and_then(|()| self.totals(subject, &mut text));

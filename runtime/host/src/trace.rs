@@ -1,8 +1,11 @@
 //! Where the values of a run go: a row a scan.
 
+mod axis;
 mod diagram;
+mod page;
 mod rows;
 mod table;
+mod timeline;
 mod waves;
 
 use crate::Error;
@@ -58,7 +61,7 @@ pub(crate) struct Trace {
 }
 
 impl Trace {
-    /// The file's ending says the form: `.vcd`, `.svg`, or else CSV; `-` is standard output.
+    /// The file's ending says the form: `.vcd`, `.svg`, `.html`, or else CSV; `-` is standard output.
     pub fn create(path: &Path, subject: &Subject<'_>) -> Result<Self, Error> {
         let file = |error| Error::file(path, "write", error);
         let out: Box<dyn Write> = match path.as_os_str() == "-" {
@@ -68,6 +71,7 @@ impl Trace {
         let ending = path.extension().map(|it| it.to_string_lossy().to_ascii_lowercase());
         let sink = match ending.as_deref() {
             Some("vcd") => waves::Waves::new(out, subject).map(|it| Box::new(it) as Box<dyn Sink>),
+            Some("html" | "htm") => Ok(Box::new(page::Page::new(out, subject)) as Box<dyn Sink>),
             Some("svg") => Ok(Box::new(diagram::Diagram::new(out, subject)) as Box<dyn Sink>),
             _ => rows::Rows::new(out, subject).map(|it| Box::new(it) as Box<dyn Sink>),
         };
@@ -134,6 +138,29 @@ mod tests {
         sink.row(subject, Row { scan: 2, time: 10_000_000, state: &state }).unwrap();
         Value::F32(0.5).write(&mut state[offset_of("speed")..]);
         sink.row(subject, Row { scan: 3, time: 10_250_000, state: &state }).unwrap();
+        sink.finish(subject).unwrap();
+        let bytes = file.0.borrow().clone();
+        String::from_utf8(bytes).unwrap()
+    }
+
+    /// What a sink writes of so many scans in which `up` and `level` are what `values` says.
+    pub(super) fn values_written(
+        subject: &Subject<'_>,
+        scans: u64,
+        values: impl Fn(u64) -> (bool, i16),
+        open: impl FnOnce(Box<dyn Write>) -> Box<dyn Sink>,
+    ) -> String {
+        let file = Shared::default();
+        let mut sink = open(Box::new(file.clone()));
+        let mut state = vec![0; 128];
+        let (up, level) = (offset_of("up"), offset_of("level"));
+        for scan in 1..=scans {
+            let values = values(scan);
+            Value::Bool(values.0).write(&mut state[up..]);
+            Value::I16(values.1).write(&mut state[level..]);
+            let time = Time::try_from(scan - 1).unwrap() * 10_000_000;
+            sink.row(subject, Row { scan, time, state: &state }).unwrap();
+        }
         sink.finish(subject).unwrap();
         let bytes = file.0.borrow().clone();
         String::from_utf8(bytes).unwrap()

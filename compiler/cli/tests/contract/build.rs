@@ -42,6 +42,11 @@ fn an_executable_takes_the_flags_of_run() {
     let expected = folder.staunch("run main.st --stimulus in.csv --trace -").out(0);
     assert_eq!(plant("--stimulus in.csv --trace -").out(0), expected);
     plant("--nonsense").err(2);
+    let version = format!("Main (main.st), compiled by Staunch {}\n", env!("CARGO_PKG_VERSION"));
+    assert_eq!(plant("--version").out(0), version);
+    has(&plant("--help").out(0), &["--from", "--message-format", ".html"]);
+    plant("--to 3 --trace out.html").out(0);
+    has(&folder.read("out.html"), &["<!doctype html>", "\"name\":\"parts.CV\""]);
 }
 
 #[test]

@@ -6,6 +6,7 @@ mod build;
 #[cfg(unix)]
 mod cache;
 mod check;
+mod page;
 mod retain;
 mod run;
 mod stimulus;

@@ -131,6 +131,44 @@ fn traces_are_waves_and_diagrams_too() {
 }
 
 #[test]
+fn a_window_is_cut_by_scans_or_times() {
+    let count = "PROGRAM Main VAR_OUTPUT n : INT; END_VAR n := n + 1; END_PROGRAM";
+    let folder = Folder::with("window", &[("main.st", count)]);
+    let rows = "scan,time_ms,n\n5,40,5\n6,50,6\n";
+    for backend in ["native", "rust"] {
+        for window in ["--from 5 --to 6", "--from 40ms --to 6", "--from 5 --to T#50ms", "--from 5 --scans 6"] {
+            let run = format!("run main.st --trace - --backend {backend} {window}");
+            assert_eq!(folder.staunch(&run).out(0), rows, "{run}");
+        }
+    }
+    // Without `--scans` the run ends with the window.
+    has(&folder.staunch("run main.st --from 249 --to 250").out(0), &[" 249  2s480ms  249\n", "250 scans"]);
+    has(&folder.staunch("run main.st --from 9 --to 8").err(0), &["note: no scan lies between"]);
+    has(&folder.staunch("run main.st --to soon").err(2), &["`120` or `1s200ms`"]);
+}
+
+#[test]
+fn results_and_faults_are_objects_on_request() {
+    let divides =
+        "PROGRAM Main\nVAR d : INT := 3; END_VAR\nVAR q : INT; END_VAR\nd := d - 1; q := 6 / d;\nEND_PROGRAM\n";
+    let folder = Folder::with("objects", &[("main.st", divides)]);
+    for backend in ["native", "interpret", "rust"] {
+        let run = |more: &str| folder.staunch(&format!("run main.st --message-format json --backend {backend} {more}"));
+        let report: serde_json::Value = serde_json::from_str(&run("--scans 2").out(0)).unwrap();
+        assert_eq!((&report["reason"], &report["scans"]), (&"run".into(), &2.into()), "{report}");
+        assert_eq!((&report["program"], &report["time_ns"]), (&"Main".into(), &20_000_000.into()), "{report}");
+        let fault: serde_json::Value = serde_json::from_str(&run("").out(3)).unwrap();
+        let place = (&fault["file"], &fault["line"], &fault["column"], &fault["scan"]);
+        assert_eq!(place, (&"main.st".into(), &4.into(), &20.into(), &3.into()), "{fault}");
+        assert_eq!((&fault["reason"], &fault["kind"]), (&"fault".into(), &"division by zero".into()), "{fault}");
+        // A trace on standard output stays whole.
+        let traced = run("--scans 1 --trace -");
+        assert_eq!(traced.out, "scan,time_ms,d,q\n1,0,2,3\n");
+        has(&traced.err, &["{\"reason\":\"run\""]);
+    }
+}
+
+#[test]
 fn without_a_trace_there_is_a_table() {
     let folder = Folder::with("table", &[("main.st", COUNTER)]);
     has(&folder.staunch("run main.st --scans 5").out(0), &["parts.CV", "5  40ms"]);

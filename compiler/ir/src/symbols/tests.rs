@@ -22,6 +22,7 @@ fn every_record_of_a_program() {
     let block = crate::fixture::ctu().0;
     let expected = format!(
         "map\t1
+compiler\t{}
 machine\t48\t4
 file\t0\tmain.st
 enum\t0\tColor\ti16\tRed=0\tGreen=5
@@ -46,7 +47,8 @@ field\tR\tBOOL\t1\tinput\t-\t-\t-
 field\tPV\tINT\t2\tinput\t-\t-\t-
 field\tQ\tBOOL\t4\toutput\t-\t-\t-
 field\tCV\tINT\t6\toutput\t-\t-\t-
-"
+",
+        env!("CARGO_PKG_VERSION")
     );
     let text = map(&program);
     assert!(text.starts_with(&expected), "{text}");

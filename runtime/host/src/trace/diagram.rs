@@ -1,8 +1,10 @@
 //! A trace as a timing diagram: a lane a variable, as an SVG picture.
 
-use super::{Row, Sink, Subject, milliseconds};
+use super::axis::ticks;
+use super::timeline::{Lane, Piece, Timeline};
+use super::{Row, Sink, Subject};
+use crate::column::Column;
 use crate::map::Type;
-use crate::value;
 use staunch_runtime::{Elementary, Time};
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -11,37 +13,43 @@ const CHARACTER: f64 = 7.2;
 const TOP: f64 = 56.0;
 const GAP: f64 = 10.0;
 const AXIS: f64 = 34.0;
+/// Lines of variables that never change.
+const UNCHANGED: usize = 6;
+/// Pieces of all lanes together: far more than a picture has points, where there are few lanes.
+const PIECES: usize = 200_000;
 const STYLE: &str = "text{font:12px ui-monospace,Menlo,Consolas,monospace;fill:#24292f}\
 .name{text-anchor:end}.title{font-size:15px;font-weight:600}.axis{fill:#6e7781;text-anchor:middle;font-size:11px}\
+.end{fill:#6e7781;text-anchor:end;font-size:10px}.same{fill:#6e7781}\
 .value{fill:#0550ae;font-size:11px}.grid{stroke:#eaeef2}.base{stroke:#d0d7de}\
 .bool{fill:#2da44e33;stroke:#1a7f37;stroke-width:1.5}.number{fill:none;stroke:#0969da;stroke-width:1.5}\
-.text{fill:#fff8c5;stroke:#bf8700}";
+.text{fill:#fff8c5;stroke:#bf8700}.pulses{fill:#2da44e}.swing{fill:#0969da99}.turmoil{fill:#bf870066}";
 
-/// Keeps every change until the end: only then the scale is known.
+/// Draws at the end: only then the scale is known.
 pub(super) struct Diagram {
     out: Box<dyn Write>,
-    lanes: Vec<LaneOf>,
-    /// Times of the first and last row, and of the row before the last.
-    first: Option<Time>,
-    last: Time,
-    before: Time,
-    rows: u64,
+    timeline: Timeline,
 }
 
-/// The changes of one column.
-#[derive(Default)]
-struct LaneOf {
-    changes: Vec<Change>,
+/// How a type is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Bool,
+    Number,
+    Text,
 }
 
-struct Change {
-    time: Time,
-    text: String,
-    number: f64,
+pub(super) fn kind(ty: Type) -> Kind {
+    match ty {
+        Type::Elementary(Elementary::Bool) => Kind::Bool,
+        Type::Elementary(_) => Kind::Number,
+        Type::String(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => Kind::Text,
+    }
 }
 
 /// Times as places in the picture.
 struct Scale {
+    /// Where names end.
+    names: f64,
     left: f64,
     width: f64,
     start: Time,
@@ -52,28 +60,38 @@ impl Scale {
     fn x(&self, time: Time) -> f64 {
         self.left + (time - self.start) as f64 / (self.end - self.start).max(1) as f64 * self.width
     }
+
+    fn right(&self) -> f64 {
+        self.left + self.width
+    }
+
+    /// The time that a point of the picture takes.
+    fn point(&self) -> Time {
+        ((self.end - self.start) as f64 / self.width) as Time
+    }
+}
+
+/// A lane in its place.
+struct Strip<'a> {
+    svg: &'a mut String,
+    scale: &'a Scale,
+    pieces: &'a [Piece],
+    y: f64,
+    height: f64,
 }
 
 impl Diagram {
     pub fn new(out: Box<dyn Write>, subject: &Subject<'_>) -> Self {
-        let lanes = subject.columns.iter().map(|_| LaneOf::default()).collect();
-        Self { out, lanes, first: None, last: 0, before: 0, rows: 0 }
+        Self { out, timeline: Timeline::new(subject, PIECES) }
     }
 
     fn picture(&self, subject: &Subject<'_>) -> String {
-        let names = subject.columns.iter().map(|it| it.heading.chars().count()).max().unwrap_or(0);
-        let start = self.first.unwrap_or(0);
-        // The last value holds for as long as the scan before it did.
-        let step = (self.last - self.before).max(1_000);
-        let scale = Scale {
-            left: names as f64 * CHARACTER + 24.0,
-            width: (self.rows as f64 * 26.0).clamp(560.0, 1500.0),
-            start,
-            end: self.last + step,
-        };
-        let heights: Vec<f64> = subject.columns.iter().map(|it| height(it.place.ty)).collect();
-        let bottom = TOP + heights.iter().map(|it| it + GAP).sum::<f64>();
-        let (width, height) = (scale.left + scale.width + 24.0, bottom + AXIS);
+        let all = || subject.columns.iter().zip(&self.timeline.lanes);
+        let shown: Vec<(&Column, &Lane)> = all().filter(|(_, lane)| !lane.is_constant()).collect();
+        let scale = self.scale(&shown);
+        let unchanged = unchanged(all().filter(|(_, lane)| lane.is_constant()), &scale);
+        let bottom = TOP + shown.iter().map(|(column, _)| height(column) + GAP).sum::<f64>();
+        let (width, height) = (scale.right() + 24.0, bottom + AXIS + unchanged.len() as f64 * 16.0);
         let mut svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" \
              viewBox=\"0 0 {width:.0} {height:.0}\">\n<style>{STYLE}</style>\n\
@@ -82,57 +100,192 @@ impl Diagram {
         );
         axis(&mut svg, &scale, bottom);
         let mut y = TOP;
-        for ((column, lane), height) in subject.columns.iter().zip(&self.lanes).zip(heights) {
-            let (name, base) = (escape(&column.heading), y + height);
-            let (text_x, text_y) = (scale.left - 12.0, y + height / 2.0 + 4.0);
-            let _ = writeln!(svg, "<text class=\"name\" x=\"{text_x:.1}\" y=\"{text_y:.1}\">{name}</text>");
-            let right = scale.left + scale.width;
-            let _ = writeln!(svg, "<path class=\"base\" d=\"M{:.1} {base:.1}H{right:.1}\"/>", scale.left);
-            match column.place.ty {
-                Type::Elementary(Elementary::Bool) => lane.draw_bool(&mut svg, &scale, y, height),
-                Type::Elementary(_) => lane.draw_number(&mut svg, &scale, y, height),
-                Type::String(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
-                    lane.draw_text(&mut svg, &scale, y, height);
-                }
-            }
-            y += height + GAP;
+        for (column, lane) in shown {
+            draw(&mut svg, &scale, y, column, lane);
+            y += self::height(column) + GAP;
+        }
+        for (line, number) in unchanged.iter().zip(1_u8..) {
+            let y = bottom + AXIS - 6.0 + f64::from(number) * 16.0;
+            let _ = writeln!(svg, "<text class=\"same\" x=\"16\" y=\"{y:.0}\">{}</text>", escape(line));
         }
         svg.push_str("</svg>\n");
         svg
     }
+
+    fn scale(&self, shown: &[(&Column, &Lane)]) -> Scale {
+        let names = shown.iter().map(|(column, _)| column.heading.chars().count()).max().unwrap_or(0);
+        let ends = shown.iter().filter(|(column, _)| kind(column.place.ty) == Kind::Number);
+        let ends = ends.filter_map(|(_, lane)| lane.range()).map(|(a, b)| a.text.len().max(b.text.len())).max();
+        let names = names as f64 * CHARACTER + 16.0;
+        Scale {
+            names,
+            left: names + (ends.unwrap_or(0) as f64 + 2.0) * CHARACTER * 0.85,
+            width: (self.timeline.rows as f64 * 26.0).clamp(560.0, 1500.0),
+            start: self.timeline.start(),
+            end: self.timeline.end(),
+        }
+    }
 }
 
-fn height(ty: Type) -> f64 {
-    match ty {
-        Type::Elementary(it) if it != Elementary::Bool => 40.0,
-        _ => 20.0,
+fn height(column: &Column) -> f64 {
+    match kind(column.place.ty) {
+        Kind::Number => 40.0,
+        Kind::Bool | Kind::Text => 20.0,
     }
+}
+
+/// `Unchanged: a = 1, b = FALSE`, in lines as wide as the picture.
+fn unchanged<'a>(lanes: impl Iterator<Item = (&'a Column, &'a Lane)>, scale: &Scale) -> Vec<String> {
+    let room = ((scale.right() - 16.0) / CHARACTER) as usize;
+    let (mut lines, mut left_out) = (Vec::<String>::new(), 0);
+    for (column, lane) in lanes {
+        let value = lane.pieces.first().map_or_else(String::new, |it| visible(&it.last.text));
+        let value = if value.is_empty() { "''" } else { &value };
+        let text = format!("{} = {value}", column.heading);
+        let is_last = lines.len() >= UNCHANGED;
+        match lines.last_mut() {
+            None => lines.push(format!("Unchanged: {text}")),
+            Some(line) if line.chars().count() + text.chars().count() + 2 <= room => *line += &format!(", {text}"),
+            Some(line) if !is_last => {
+                line.push(',');
+                lines.push(text);
+            }
+            Some(_) => left_out += 1,
+        }
+    }
+    if left_out > 0 {
+        lines.push(format!("and {left_out} more"));
+    }
+    lines
 }
 
 /// Vertical lines at round times.
 fn axis(svg: &mut String, scale: &Scale, bottom: f64) {
-    let span = (scale.end - scale.start).max(1);
-    let wanted = span / ((scale.width / 90.0) as Time).max(1);
-    let mut step: Time = 1;
-    while step < wanted {
-        step = [2, 5, 10].into_iter().map(|it| step * it).find(|it| *it >= wanted).unwrap_or(step * 10);
-    }
-    let mut time = scale.start.div_euclid(step) * step;
-    while time <= scale.end {
-        if time >= scale.start {
-            let x = scale.x(time);
-            let _ = writeln!(svg, "<path class=\"grid\" d=\"M{x:.1} {:.1}V{bottom:.1}\"/>", TOP - 8.0);
-            let label = axis_label(time, step);
-            let _ = writeln!(svg, "<text class=\"axis\" x=\"{x:.1}\" y=\"{:.1}\">{label}</text>", bottom + 16.0);
-        }
-        time += step;
+    for (time, label) in ticks(scale.start, scale.end, scale.point().saturating_mul(110)) {
+        let x = scale.x(time);
+        let _ = writeln!(svg, "<path class=\"grid\" d=\"M{x:.1} {:.1}V{bottom:.1}\"/>", TOP - 8.0);
+        let _ = writeln!(svg, "<text class=\"axis\" x=\"{x:.1}\" y=\"{:.1}\">{label}</text>", bottom + 16.0);
     }
 }
 
-fn axis_label(time: Time, step: Time) -> String {
-    match step {
-        1_000_000_000.. => format!("{} s", milliseconds(time / 1000)),
-        _ => format!("{} ms", milliseconds(time)),
+fn draw(svg: &mut String, scale: &Scale, y: f64, column: &Column, lane: &Lane) {
+    let (kind, height) = (kind(column.place.ty), height(column));
+    let ends = if kind == Kind::Number { lane.range() } else { None };
+    let (left, base, middle) = (scale.left, y + height, y + height / 2.0 + 4.0);
+    let (name, x) = (escape(&column.heading), scale.names);
+    let _ = writeln!(svg, "<text class=\"name\" x=\"{x:.1}\" y=\"{middle:.1}\">{name}</text>");
+    let _ = writeln!(svg, "<path class=\"base\" d=\"M{left:.1} {base:.1}H{:.1}\"/>", scale.right());
+    let pieces = lane.coarser(scale.start, scale.point());
+    let mut strip = Strip { svg, scale, pieces: &pieces, y, height };
+    match kind {
+        Kind::Bool => strip.bool(),
+        Kind::Number => strip.number(ends.as_ref().map_or((0.0, 0.0), |(low, high)| (low.number, high.number))),
+        Kind::Text => strip.text(),
+    }
+    for (text, y) in ends.iter().flat_map(|(low, high)| [(&high.text, y + 8.0), (&low.text, base)]) {
+        let _ = writeln!(svg, "<text class=\"end\" x=\"{:.1}\" y=\"{y:.1}\">{}</text>", left - 6.0, escape(text));
+    }
+}
+
+impl Strip<'_> {
+    /// Each piece with where it begins, where it has settled, and where it ends; a band is a point wide at least.
+    fn spans(&self) -> Vec<(f64, f64, f64, &Piece)> {
+        let ends = self.pieces.iter().skip(1).map(|it| it.start).chain([self.scale.end]);
+        let place = |(piece, end): (_, Time)| {
+            let piece: &Piece = piece;
+            let (from, to) = (self.scale.x(piece.start), self.scale.x(end));
+            let settled = if piece.is_steady() { from } else { self.scale.x(piece.settled).max(from + 1.0) };
+            (from, settled, to.max(settled), piece)
+        };
+        self.pieces.iter().zip(ends).map(place).collect()
+    }
+
+    fn band(&mut self, class: &str, from: f64, to: f64, top: f64, bottom: f64) {
+        let (width, height) = (to - from, (bottom - top).max(1.0));
+        let _ = writeln!(
+            self.svg,
+            "<rect class=\"{class}\" x=\"{from:.1}\" y=\"{top:.1}\" width=\"{width:.1}\" height=\"{height:.1}\"/>"
+        );
+    }
+
+    fn bool(&mut self) {
+        let (high, low) = (self.y, self.y + self.height);
+        let mut path = format!("M{:.1} {low:.1}", self.scale.left);
+        let mut bands = Vec::new();
+        for (from, settled, to, piece) in self.spans() {
+            let level = if piece.last.number == 0.0 { low } else { high };
+            let _ = write!(path, "H{settled:.1}V{level:.1}H{to:.1}");
+            if !piece.is_steady() {
+                bands.push((from, settled));
+            }
+        }
+        let _ = writeln!(self.svg, "<path class=\"bool\" d=\"{path}V{low:.1}\"/>");
+        bands.into_iter().for_each(|(from, to)| self.band("pulses", from, to, high, low));
+    }
+
+    fn number(&mut self, (low, high): (f64, f64)) {
+        let (y, height) = (self.y, self.height);
+        let level = move |number: f64| {
+            let part = if high > low { (number - low) / (high - low) } else { 0.5 };
+            let part = if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.0 };
+            y + height - 2.0 - part * (height - 4.0)
+        };
+        let (mut path, mut bands, mut is_drawn) = (String::new(), Vec::new(), false);
+        for (from, settled, to, piece) in self.spans() {
+            let at = level(piece.last.number);
+            // A value that soon changes again is a part of its band.
+            let is_seen = piece.is_steady() || to - settled >= 1.0;
+            if is_seen {
+                let _ = match is_drawn {
+                    true => write!(path, "H{settled:.1}V{at:.1}H{to:.1}"),
+                    false => write!(path, "M{settled:.1} {at:.1}H{to:.1}"),
+                };
+            }
+            is_drawn = is_seen;
+            if !piece.is_steady() {
+                bands.push((from, settled, level(piece.high.number), level(piece.low.number)));
+            }
+        }
+        let _ = writeln!(self.svg, "<path class=\"number\" d=\"{path}\"/>");
+        bands.into_iter().for_each(|(from, to, top, bottom)| self.band("swing", from, to, top, bottom));
+        // Above its line where there is room, else below.
+        self.labels(|piece| match level(piece.last.number) - 3.0 {
+            at if at < y + 8.0 => at + 14.0,
+            at => at,
+        });
+    }
+
+    fn text(&mut self) {
+        let (y, height) = (self.y, self.height);
+        let (middle, low) = (y + height / 2.0, y + height);
+        let spans: Vec<_> = self.spans().into_iter().map(|(a, b, c, piece)| (a, b, c, piece.is_steady())).collect();
+        for (from, settled, to, is_steady) in spans {
+            if !is_steady {
+                self.band("turmoil", from, settled, y, low);
+            }
+            let slant = ((to - settled) / 4.0).min(4.0);
+            let (left, right) = (settled + slant, to - slant);
+            let _ = writeln!(
+                self.svg,
+                "<path class=\"text\" d=\"M{settled:.1} {middle:.1}L{left:.1} {y:.1}H{right:.1}L{to:.1} {middle:.1}\
+                 L{right:.1} {low:.1}H{left:.1}Z\"/>"
+            );
+        }
+        self.labels(|_| y + height / 2.0 + 4.0);
+    }
+
+    /// The values, where there is room for them.
+    fn labels(&mut self, y: impl Fn(&Piece) -> f64) {
+        let mut labels = String::new();
+        for (_, settled, to, piece) in self.spans() {
+            let room = ((to - settled - 6.0) / (CHARACTER * 0.92)) as usize;
+            let shown = visible(&piece.last.text);
+            if !shown.is_empty() && shown.chars().count() <= room {
+                let (x, y) = (settled + 5.0, y(piece));
+                let _ = writeln!(labels, "<text class=\"value\" x=\"{x:.1}\" y=\"{y:.1}\">{}</text>", escape(&shown));
+            }
+        }
+        self.svg.push_str(&labels);
     }
 }
 
@@ -141,7 +294,7 @@ fn escape(text: &str) -> String {
 }
 
 /// Characters that cannot be seen, and those that XML cannot hold, as escapes of Structured Text.
-fn visible(text: &str) -> String {
+pub(super) fn visible(text: &str) -> String {
     let mut out = String::new();
     for character in text.chars() {
         let _ = match character {
@@ -157,89 +310,9 @@ fn visible(text: &str) -> String {
     out
 }
 
-impl LaneOf {
-    /// The changes as spans `(from, to, change)` in the picture; of several that fall on one
-    /// point, the last.
-    fn spans<'a>(&'a self, scale: &'a Scale) -> impl Iterator<Item = (f64, f64, &'a Change)> {
-        let ends = self.changes.iter().skip(1).map(|it| it.time).chain([scale.end]);
-        let spans = self.changes.iter().zip(ends).map(|(change, end)| (scale.x(change.time), scale.x(end), change));
-        spans.filter(|(from, to, _)| to - from > 0.05)
-    }
-
-    fn draw_bool(&self, svg: &mut String, scale: &Scale, y: f64, height: f64) {
-        let (high, low) = (y, y + height);
-        let _ = write!(svg, "<path class=\"bool\" d=\"M{:.1} {low:.1}", scale.left);
-        for (from, to, change) in self.spans(scale) {
-            let level = if change.number == 0.0 { low } else { high };
-            let _ = write!(svg, "H{from:.1}V{level:.1}H{to:.1}");
-        }
-        let _ = writeln!(svg, "V{low:.1}\"/>");
-    }
-
-    fn draw_number(&self, svg: &mut String, scale: &Scale, y: f64, height: f64) {
-        let finite = || self.changes.iter().map(|it| it.number).filter(|it| it.is_finite());
-        let (low, high) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
-        // A constant lies in the middle; room for the labels stays above.
-        let level = |number: f64| {
-            let part = if high > low { (number - low) / (high - low) } else { 0.3 };
-            let part = if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.0 };
-            y + height - 2.0 - part * (height - 16.0)
-        };
-        let _ = write!(svg, "<path class=\"number\" d=\"");
-        for (number, (from, to, change)) in self.spans(scale).enumerate() {
-            let at = level(change.number);
-            let _ = match number {
-                0 => write!(svg, "M{from:.1} {at:.1}H{to:.1}"),
-                _ => write!(svg, "H{from:.1}V{at:.1}H{to:.1}"),
-            };
-        }
-        svg.push_str("\"/>\n");
-        self.labels(svg, scale, |change| level(change.number) - 4.0);
-    }
-
-    fn draw_text(&self, svg: &mut String, scale: &Scale, y: f64, height: f64) {
-        for (from, to, _) in self.spans(scale) {
-            let slant = ((to - from) / 4.0).min(4.0);
-            let (middle, low) = (y + height / 2.0, y + height);
-            let _ = writeln!(
-                svg,
-                "<path class=\"text\" d=\"M{from:.1} {middle:.1}L{:.1} {y:.1}H{:.1}L{to:.1} {middle:.1}L{:.1} {low:.1}H{:.1}Z\"/>",
-                from + slant,
-                to - slant,
-                to - slant,
-                from + slant
-            );
-        }
-        self.labels(svg, scale, |_| y + height / 2.0 + 4.0);
-    }
-
-    /// The values, where there is room for them.
-    fn labels(&self, svg: &mut String, scale: &Scale, y: impl Fn(&Change) -> f64) {
-        for (from, to, change) in self.spans(scale) {
-            let room = ((to - from - 6.0) / (CHARACTER * 0.92)) as usize;
-            let shown = visible(&change.text);
-            if !shown.is_empty() && shown.chars().count() <= room {
-                let (x, y) = (from + 5.0, y(change));
-                let _ = writeln!(svg, "<text class=\"value\" x=\"{x:.1}\" y=\"{y:.1}\">{}</text>", escape(&shown));
-            }
-        }
-    }
-}
-
 impl Sink for Diagram {
     fn row(&mut self, subject: &Subject<'_>, row: Row<'_>) -> io::Result<()> {
-        self.first.get_or_insert(row.time);
-        self.before = if self.rows == 0 { row.time } else { self.last };
-        (self.last, self.rows) = (row.time, self.rows + 1);
-        let mut text = String::new();
-        for (column, lane) in subject.columns.iter().zip(&mut self.lanes) {
-            subject.cell(column, row.state, &mut text);
-            if lane.changes.last().is_none_or(|it| it.text != text) {
-                let bytes = &row.state[column.place.offset..];
-                let number = value::number(subject.map, column.place.ty, bytes).unwrap_or(0.0);
-                lane.changes.push(Change { time: row.time, text: text.clone(), number });
-            }
-        }
+        self.timeline.row(subject, row);
         Ok(())
     }
 
@@ -258,13 +331,16 @@ mod tests {
     use super::*;
     use crate::column::columns;
     use crate::fixture::map;
-    use crate::trace::tests::{texts_written, written};
+    use crate::trace::tests::{texts_written, values_written, written};
+
+    fn subject<'a>(map: &'a crate::Map, vars: &str, title: &str) -> Subject<'a> {
+        Subject { map, columns: columns(map, &[0], Some(vars)).unwrap(), title: title.to_owned() }
+    }
 
     #[test]
-    fn every_variable_has_a_lane() {
+    fn every_variable_that_changes_has_a_lane() {
         let map = map();
-        let columns = columns(&map, &[0], Some("up,c.CV,name,speed")).unwrap();
-        let subject = Subject { map: &map, columns, title: "A < B".to_owned() };
+        let subject = subject(&map, "up,c.CV,name,speed,level,c.Q", "A < B");
         let svg = written(&subject, |out| Box::new(Diagram::new(out, &subject)));
         assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n"), "{svg}");
         assert!(svg.contains("A &lt; B"));
@@ -274,14 +350,45 @@ mod tests {
         assert_eq!(svg.matches("class=\"bool\"").count(), 1);
         assert_eq!(svg.matches("class=\"number\"").count(), 2);
         assert!(svg.contains(">a,b</text>") || svg.contains("class=\"text\""), "{svg}");
+        assert!(svg.contains(">Unchanged: level = 0, c.Q = FALSE</text>"), "{svg}");
         assert!(!svg.contains("NaN"), "{svg}");
+        // The scale of `speed`, and the time with its unit.
+        assert!(svg.contains("class=\"end\"") && svg.contains(">0.5</text>"), "{svg}");
+        assert!(svg.contains(">10 ms</text>"), "{svg}");
+    }
+
+    #[test]
+    fn a_pulse_narrower_than_a_point_is_a_band() {
+        let map = map();
+        let subject = subject(&map, "up,level", "Long");
+        let svg = values_written(
+            &subject,
+            100_000,
+            |scan| (scan == 3_333, i16::from(scan == 7_777) * 9),
+            |out| Box::new(Diagram::new(out, &subject)),
+        );
+        assert_eq!((svg.matches("class=\"pulses\"").count(), svg.matches("class=\"swing\"").count()), (1, 1), "{svg}");
+        assert!(svg.contains(">9</text>") && svg.contains(">0</text>"), "{svg}");
+        assert!(svg.len() < 5_000, "{}", svg.len());
+    }
+
+    #[test]
+    fn a_long_run_gives_a_picture_of_bounded_size() {
+        let map = map();
+        let subject = subject(&map, "up,level", "Long");
+        let svg = values_written(
+            &subject,
+            20_000,
+            |scan| (scan % 3 == 0, (scan % 100) as i16),
+            |out| Box::new(Diagram::new(out, &subject)),
+        );
+        assert!(svg.len() < 500_000, "{}", svg.len());
     }
 
     #[test]
     fn what_cannot_be_seen_is_escaped() {
         let map = map();
-        let columns = columns(&map, &[0], Some("name")).unwrap();
-        let subject = Subject { map: &map, columns, title: "A\u{1}".to_owned() };
+        let subject = subject(&map, "name", "A\u{1}");
         let texts = ["a\nb", "a\0<", "\u{ffff}", "\u{7f}\t"];
         let svg = texts_written(&subject, &texts, |out| Box::new(Diagram::new(out, &subject)));
         for shown in ["A$01", "a$Nb", "a$00&lt;", "$FFFF", "$7F$T"] {
