@@ -3,21 +3,33 @@
 
 mod diagnostic;
 mod source;
+mod spelling;
 
 pub mod ast;
 mod lex;
-mod names;
 mod syntax;
 
-mod check;
-mod declare;
 mod dialect;
+mod log;
+mod names;
+mod types;
+
+mod expr;
+
+mod declare;
+
+mod body;
+
+mod program;
+
+mod lints;
 
 pub use diagnostic::{Code, Diagnostic, Fix, Format, Label, Severity, Style, render};
 pub use dialect::Dialect;
 pub use source::{Source, Sources, Span};
 pub use syntax::parse;
 
+use log::Log;
 use staunch_ir::Program;
 
 /// How to read the sources.
@@ -72,23 +84,36 @@ enum Bodies {
     Dropped,
 }
 
-fn run(sources: &Sources, options: &Options, bodies: Bodies) -> Compilation {
-    let mut diagnostics = Vec::new();
-    let mut files: Vec<_> = sources
-        .files()
-        .iter()
-        .zip(0u16..)
-        .map(|(source, number)| parse(number, &source.text, &mut diagnostics))
-        .collect();
-    let statements = files.iter_mut().flat_map(ast::File::take_bodies).collect();
-    let program = declare::declare(sources, &files, statements, options, bodies, &mut diagnostics);
-    diagnostics.sort_by_key(|it| (it.span.file, it.span.start, it.span.end, it.code));
+fn run(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
+    let mut log = Log::new(sources, options);
+    let numbered = sources.files().iter().zip(0u16..);
+    let mut files: Vec<_> =
+        numbered.map(|(source, number)| parse(number, &source.text, &mut log.diagnostics)).collect();
+    let mut bodies: Vec<_> = files.iter_mut().flat_map(ast::File::take_bodies).collect();
+    let mut declarations = declare::declare(log, &files, &bodies);
+    let unassigned = lints::result::unassigned(&declarations.pous);
+    let checked = body::check(&mut declarations, &mut bodies, keep);
+    lints::unused::report(&mut declarations);
+    let left_out = checked.left_out;
+    let program = program::assemble(&mut declarations, &files, checked);
+    finish(program.filter(|_| keep == Bodies::Kept), declarations.log, unassigned, left_out)
+}
+
+/// Sorts what was reported, and holds what a program promises that was accepted.
+fn finish(program: Option<Program>, log: Log<'_>, unassigned: Vec<Diagnostic>, left_out: Option<Span>) -> Compilation {
+    let Log { sources, mut diagnostics, .. } = log;
     let rejected = diagnostics.iter().any(|it| it.severity == Severity::Error);
-    let program = program.filter(|_| !rejected && bodies == Bodies::Kept);
     if rejected {
         // What is unused or unreachable is not known before everything is understood.
         diagnostics.retain(|it| it.severity == Severity::Error || !it.code.is_of_the_flow());
+    } else {
+        diagnostics.extend(unassigned);
     }
+    diagnostics.sort_by_key(|it| (it.span.file, it.span.start, it.span.end, it.code));
+    if let (Some(span), false) = (left_out, rejected) {
+        unreachable!("checked program: `{}` was left out without a word", sources.text(span));
+    }
+    let program = program.filter(|_| !rejected);
     if cfg!(debug_assertions)
         && let Some(program) = &program
         && let Err(violations) = staunch_ir::verify::verify(program)

@@ -1,107 +1,14 @@
 //! Direct addresses. What lies at an address is one field of the globals, whoever declares it:
 //! a global, several PROGRAMs, the instances of one PROGRAM, or a body that names the address.
 
-use super::types::Resolved;
-use super::{Declarations, GlobalSlot};
 use crate::ast::{self, PouKind, VarKind};
-use crate::check;
 use crate::dialect::Dialect;
+use crate::types::address::{Addresses, Storage, Use, field_name, parse};
+use crate::types::declarations::{Declarations, GlobalSlot};
+use crate::types::table::Resolved;
 use crate::{Code, Diagnostic, Span};
 use rustc_hash::FxHashMap;
-use staunch_ir::{Address, Area, Const, Elementary, Field, Place, Retain, Section, Type};
-
-#[derive(Clone, Copy, Debug)]
-enum Storage {
-    /// A declared global variable.
-    Global(usize),
-    /// A hidden field of the globals.
-    Hidden(usize),
-}
-
-/// What the declarations of one address say together of its start.
-#[derive(Debug, Default)]
-struct Start {
-    initial: Option<(Const, Span)>,
-    kept: bool,
-}
-
-/// A declaration of an address, or its use in a body.
-#[derive(Clone, Copy, Debug)]
-struct Use {
-    address: Address,
-    /// All bits, also those of an array's other elements.
-    bits: u64,
-    span: Span,
-    /// The scope in which a name is declared: a POU's span, or that of nothing for the globals.
-    scope: Option<Span>,
-}
-
-/// Where the addresses are kept.
-#[derive(Debug, Default)]
-pub(crate) struct Addresses {
-    storage: FxHashMap<Address, Storage>,
-    starts: FxHashMap<Address, Start>,
-    uses: Vec<Use>,
-    /// The slots of the globals that have a field of their own: not a second name of an address.
-    own_fields: Vec<usize>,
-}
-
-impl Addresses {
-    /// The field of the global in slot `at`, unless it is another name of an earlier one.
-    pub fn field_of_global(&self, at: usize) -> Option<usize> {
-        self.own_fields.binary_search(&at).ok()
-    }
-
-    pub fn global_of_field(&self, field: usize) -> Option<usize> {
-        self.own_fields.get(field).copied()
-    }
-
-    /// The global that a name of an address means.
-    pub fn global_at(&self, name: ast::Name<'_>) -> Option<usize> {
-        match self.storage.get(&parse(name.text)?)? {
-            Storage::Global(at) => Some(*at),
-            Storage::Hidden(_) => None,
-        }
-    }
-
-    /// The globals with a field of their own.
-    pub fn own_fields(&self) -> &[usize] {
-        &self.own_fields
-    }
-
-    /// What lies at an address starts with the value that one of its declarations gives it.
-    pub fn complete(&self, field: &mut Field) {
-        let Some(start) = field.address.and_then(|it| self.starts.get(&it)) else { return };
-        if let Some((initial, _)) = &start.initial {
-            field.initial = initial.clone();
-        }
-        if start.kept {
-            field.retain = Retain::Kept;
-        }
-    }
-}
-
-/// Finds the globals at addresses, and the addresses that `bodies`, those of the POUs, name.
-pub(super) fn collect<'s>(declarations: &mut Declarations<'s>, bodies: &[Vec<ast::Statement<'s>>]) -> Addresses {
-    let mut addresses = Addresses::default();
-    for (at, GlobalSlot { decl, .. }) in declarations.globals.iter().enumerate() {
-        let first = decl.address.and_then(|it| parse(it.text)).map(|it| addresses.storage.entry(it));
-        let is_own = match first {
-            Some(entry) => matches!(entry.or_insert(Storage::Global(at)), Storage::Global(first) if *first == at),
-            None => true,
-        };
-        if is_own {
-            addresses.own_fields.push(at);
-        }
-    }
-    let has_addresses: Vec<_> = declarations.sources.files().iter().map(|it| it.text.contains('%')).collect();
-    for (pou, body) in declarations.pous.iter().zip(bodies) {
-        if has_addresses[usize::from(pou.ast.span.file)] {
-            collect_body(body, &mut addresses.uses);
-        }
-    }
-    addresses
-}
+use staunch_ir::{Address, Area, Elementary, Field, Place, Retain, Section, Type};
 
 fn collect_body(body: &[ast::Statement<'_>], uses: &mut Vec<Use>) {
     ast::each_expr(body, &mut |expr| {
@@ -155,7 +62,7 @@ fn report_second_names(declarations: &mut Declarations<'_>, uses: &[Use]) {
         if first == it.span {
             continue;
         }
-        let text = declarations.sources.text(it.span);
+        let text = declarations.log.sources.text(it.span);
         declarations.report(
             Diagnostic::new(Code::W0411, it.span, format!("`{text}` has two names"))
                 .label("what is assigned to one of them is read from the other")
@@ -170,37 +77,31 @@ fn are_registers(dialect: Dialect, a: Address, b: Address) -> bool {
     dialect == Dialect::Iec && a.width != b.width
 }
 
-/// `%IX1.3`, `%QW10`, `%M5.1`. `None` for `%I*` and for what is no address.
-pub(crate) fn parse(text: &str) -> Option<Address> {
-    let text = text.strip_prefix('%')?.to_ascii_uppercase();
-    let area = match text.chars().next()? {
-        'I' => Area::Input,
-        'Q' => Area::Output,
-        'M' => Area::Memory,
-        _ => return None,
-    };
-    let rest = &text[1..];
-    let (width, numbers): (u8, &str) = match rest.chars().next()? {
-        'X' => (1, &rest[1..]),
-        'B' => (8, &rest[1..]),
-        'W' => (16, &rest[1..]),
-        'D' => (32, &rest[1..]),
-        'L' => (64, &rest[1..]),
-        _ => (1, rest),
-    };
-    let numbers: Option<Vec<u64>> = numbers.split('.').map(|it| it.parse::<u32>().ok().map(u64::from)).collect();
-    let bit = match (width, numbers?.as_slice()) {
-        (1, [byte]) => byte * 8,
-        (1, [byte, bit]) if *bit < 8 => byte * 8 + bit,
-        (width, [at]) if width > 1 => at * u64::from(width),
-        _ => return None,
-    };
-    Some(Address { area, bit, width })
-}
-
 impl<'s> Declarations<'s> {
+    /// Finds the globals at addresses, and the addresses that bodies name.
+    pub(super) fn collect_addresses(&mut self, bodies: &[Vec<ast::Statement<'s>>]) {
+        let mut addresses = Addresses::default();
+        for (at, GlobalSlot { decl, .. }) in self.globals.iter().enumerate() {
+            let first = decl.address.and_then(|it| parse(it.text)).map(|it| addresses.storage.entry(it));
+            let is_own = match first {
+                Some(entry) => matches!(entry.or_insert(Storage::Global(at)), Storage::Global(first) if *first == at),
+                None => true,
+            };
+            if is_own {
+                addresses.own_fields.push(at);
+            }
+        }
+        let has_addresses: Vec<_> = self.log.sources.files().iter().map(|it| it.text.contains('%')).collect();
+        for (pou, body) in self.pous.iter().zip(bodies) {
+            if has_addresses[usize::from(pou.ast.span.file)] {
+                collect_body(body, &mut addresses.uses);
+            }
+        }
+        self.addresses = addresses;
+    }
+
     /// Reports an address that a declaration gives to several names.
-    pub fn check_one_name(&mut self, decl: &ast::VarDecl<'s>) {
+    pub(super) fn check_one_name(&mut self, decl: &ast::VarDecl<'s>) {
         if let (Some(address), [_, second, ..]) = (decl.address, decl.names.as_slice()) {
             self.report(
                 Diagnostic::new(Code::E0409, second.span, "one address has one variable")
@@ -211,27 +112,13 @@ impl<'s> Declarations<'s> {
         }
     }
 
-    /// The address that a declaration names.
-    pub fn address(&mut self, name: ast::Name<'s>) -> Option<Address> {
-        let address = parse(name.text);
-        if address.is_none() {
-            let message = if name.text.ends_with('*') {
-                format!("`{}` is not bound to an address", name.text)
-            } else if is_hierarchical(name.text) {
-                format!("`{}` has more parts than are supported yet", name.text)
-            } else {
-                format!("`{}` is not a direct address", name.text)
-            };
-            self.report(
-                Diagnostic::new(Code::E0409, name.span, message)
-                    .help("write an area (I, Q, M), a size (X, B, W, D, L) and a place: `%IX0.0`, `%QW3`"),
-            );
-        }
-        address
-    }
-
     /// Reports an address where a declaration has none.
-    pub fn check_address_here(&mut self, kind: Option<PouKind>, block: &ast::VarBlock<'s>, decl: &ast::VarDecl<'s>) {
+    pub(super) fn check_address_here(
+        &mut self,
+        kind: Option<PouKind>,
+        block: &ast::VarBlock<'s>,
+        decl: &ast::VarDecl<'s>,
+    ) {
         let Some(address) = decl.address else { return };
         let in_blocks = self.dialect(address.span) == Dialect::Codesys;
         let global = "declare it in VAR_GLOBAL and name it in VAR_EXTERNAL here";
@@ -252,7 +139,7 @@ impl<'s> Declarations<'s> {
     }
 
     /// The variable at the address of a declaration; the inner `None` says that it was refused.
-    pub fn located(
+    pub(super) fn located(
         &mut self,
         pou: Option<ast::Name<'s>>,
         block: &ast::VarBlock<'s>,
@@ -270,8 +157,8 @@ impl<'s> Declarations<'s> {
                     .then(|| global.place.clone())
             }
             Some(Storage::Hidden(at)) => {
-                let (ty, first) = (self.hidden.field_type(at), self.hidden.declared(at));
-                self.same_type(resolved.ty, ty, declared, first).then(|| self.hidden_place(at))
+                let (ty, first) = (self.synthetic.field_type(at), self.synthetic.declared(at));
+                self.same_type(resolved.ty, ty, declared, first).then(|| self.synthetic_place(at))
             }
             None => {
                 let address = self.address(declared)?;
@@ -285,7 +172,7 @@ impl<'s> Declarations<'s> {
     }
 
     /// Takes note of a declaration at an address; `pou` is `None` for a global.
-    pub fn register_address(
+    pub(super) fn register_address(
         &mut self,
         pou: Option<ast::Name<'s>>,
         block: &ast::VarBlock<'s>,
@@ -299,7 +186,7 @@ impl<'s> Declarations<'s> {
         let is_named = decl.names.iter().all(|it| !it.text.starts_with('%'));
         let scope = is_named.then(|| pou.map_or_else(Span::default, |it| it.span));
         let start = self.addresses.starts.entry(address).or_default();
-        start.kept |= super::scope::is_declared_retain(block);
+        start.kept |= super::variable::is_declared_retain(block);
         let given = decl.initial.as_ref().map(|it| (resolved.initial.clone(), it.span));
         if let (Some((first, other)), Some((value, span))) = (&start.initial, &given)
             && first != value
@@ -348,7 +235,7 @@ impl<'s> Declarations<'s> {
     }
 
     /// Gives the addresses that only bodies name their storage.
-    pub fn declare_used_addresses(&mut self) {
+    pub(super) fn declare_used_addresses(&mut self) {
         let spans: Vec<_> = self.addresses.uses.iter().map(|it| (it.address, it.span)).collect();
         for (address, span) in spans {
             if !self.addresses.storage.contains_key(&address) {
@@ -360,21 +247,8 @@ impl<'s> Declarations<'s> {
                     _ => Elementary::Lword,
                 };
                 let resolved = Resolved::plain(Type::Elementary(elementary));
-                let name = ast::Name { text: self.sources.text(span), span };
+                let name = ast::Name { text: self.log.sources.text(span), span };
                 self.new_storage(address, &resolved, "Globals", name);
-            }
-        }
-    }
-
-    /// The variable at an address that a body names directly.
-    pub fn direct_address(&mut self, name: ast::Name<'s>) -> Option<Place> {
-        let address = self.address(name)?;
-        match self.addresses.storage.get(&address).copied() {
-            Some(Storage::Global(at)) => Some(self.global(at)?.place.clone()),
-            Some(Storage::Hidden(at)) => Some(self.hidden_place(at)),
-            None => {
-                self.report(check::not_constant(name.span));
-                None
             }
         }
     }
@@ -396,19 +270,8 @@ impl<'s> Declarations<'s> {
             doc: None,
             location: if is_named { self.location(name.span) } else { staunch_ir::Location::default() },
         };
-        let at = self.add_hidden(field, is_named.then_some(name));
+        let at = self.add_synthetic(field, is_named.then_some(name));
         self.addresses.storage.insert(address, Storage::Hidden(at));
-        self.hidden_place(at)
+        self.synthetic_place(at)
     }
-}
-
-/// The name of a field: an address that has no other name is called by its letters and digits.
-pub(super) fn field_name(name: &str) -> String {
-    name.trim_start_matches('%').replace('.', "_")
-}
-
-/// `%IW0.1`, `%QX1.2.3`: an address through the parts of a station.
-fn is_hierarchical(text: &str) -> bool {
-    let bits = matches!(text.as_bytes().get(2), Some(b'X' | b'x' | b'0'..=b'9'));
-    text.matches('.').count() > usize::from(bits)
 }

@@ -1,10 +1,14 @@
 //! Initial values, folded to constants.
 
-use super::types::{Resolved, scalar_initial};
-use super::{Declarations, Scope};
+use super::specs::MAX_SIZE;
 use crate::ast::{self, InitialKind};
-use crate::check;
-use crate::names::nearest;
+use crate::expr::constant::constant;
+use crate::expr::standard;
+use crate::expr::unresolved::not_constant;
+use crate::spelling::nearest;
+use crate::types::declarations::Declarations;
+use crate::types::scope::Scope;
+use crate::types::table::{Resolved, scalar_initial};
 use crate::{Code, Diagnostic, Span};
 use staunch_ir::{Array, ArrayId, Const, ExprKind, StructId, Type};
 use std::rc::Rc;
@@ -17,7 +21,7 @@ struct Runs {
 
 impl<'s> Declarations<'s> {
     /// The constant that `initial` gives a variable declared as `target`.
-    pub fn initial(
+    pub(super) fn initial(
         &mut self,
         initial: &'s ast::Initial<'s>,
         target: &Resolved,
@@ -41,14 +45,14 @@ impl<'s> Declarations<'s> {
     }
 
     fn initial_value(&mut self, expr: &'s ast::Expr<'s>, target: &Resolved, scope: &Rc<Scope<'s>>) -> Option<Const> {
-        let value = check::constant(self, scope, expr, Some(target))?;
+        let value = constant(self, scope, expr, Some(target))?;
         match value.kind {
             ExprKind::Const(it) => Some(scalar_initial(it)),
             ExprKind::Text(bytes) if bytes.is_empty() => Some(Const::Zero),
             ExprKind::Text(bytes) => Some(Const::Text(bytes)),
             ExprKind::Aggregate(it) => Some(it),
             ExprKind::Load(_) | ExprKind::Apply(..) | ExprKind::ApplyText(..) | ExprKind::Convert(..) => {
-                self.report(check::not_constant(expr.span));
+                self.report(not_constant(expr.span));
                 None
             }
         }
@@ -84,7 +88,7 @@ impl<'s> Declarations<'s> {
 
     /// What one value of the list initialises, and how many of these there are.
     fn flat(&self, elements: &[ast::Element<'s>], array: Array, id: ArrayId) -> (Resolved, u64) {
-        let mut leaf = self.elements[id.index()].clone();
+        let mut leaf = self.table.elements[id.index()].clone();
         let mut total = array.len();
         let nested = |it: &ast::Initial<'_>| matches!(it.kind, InitialKind::Elements(_));
         if elements.iter().flat_map(|it| &it.values).any(nested) {
@@ -92,7 +96,7 @@ impl<'s> Declarations<'s> {
         }
         while let Type::Array(inner) = leaf.ty {
             total = total.saturating_mul(self.program.array(inner).len());
-            leaf = self.elements[inner.index()].clone();
+            leaf = self.table.elements[inner.index()].clone();
         }
         (leaf, total)
     }
@@ -126,7 +130,7 @@ impl<'s> Declarations<'s> {
 
     fn repeat_count(&mut self, expr: &ast::Expr<'s>, scope: &Rc<Scope<'s>>) -> Option<u64> {
         let count = self.constant_integer(expr, scope)?;
-        let fits = u64::try_from(count).ok().filter(|it| *it <= super::types::MAX_SIZE);
+        let fits = u64::try_from(count).ok().filter(|it| *it <= MAX_SIZE);
         if fits.is_none() {
             self.error(Code::E0206, expr.span, format!("a value cannot be repeated {count} times"));
         }
@@ -147,7 +151,7 @@ impl<'s> Declarations<'s> {
             [one] => runs.push(count, one.clone()),
             several => {
                 let given = u64::try_from(several.len()).unwrap_or(u64::MAX).saturating_mul(count);
-                if given > super::types::MAX_SIZE / 64 {
+                if given > MAX_SIZE / 64 {
                     self.error(Code::E0206, span, format!("{given} initial values are too many to list"));
                     return None;
                 }
@@ -252,34 +256,6 @@ impl<'s> Declarations<'s> {
                 .label("it has a value already"),
         );
     }
-
-    pub fn unknown_member(&mut self, name: ast::Name<'s>, ty: Type, near: Option<&str>) {
-        let owner = self.program.type_name(ty);
-        let mut error = Diagnostic::new(Code::E0107, name.span, format!("`{owner}` has no member `{}`", name.text))
-            .label("unknown member");
-        if let Some(near) = near {
-            error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
-        } else if let Some(members) = self.member_names(ty) {
-            error = error.help(format!("it has {members}"));
-        }
-        self.report(error);
-    }
-
-    /// What can be named of a structure, enumeration or instance, for a message.
-    fn member_names(&self, ty: Type) -> Option<String> {
-        let names: Vec<&str> = match ty {
-            Type::Struct(id) => {
-                let instance = self.is_instance(id);
-                let pin = |it: &&staunch_ir::Field| {
-                    !instance || matches!(it.section, staunch_ir::Section::Input | staunch_ir::Section::Output)
-                };
-                self.program.structure(id).fields.iter().filter(pin).map(|it| it.name.as_str()).collect()
-            }
-            Type::Enum(id) => self.program.enumeration(id).values.iter().map(|it| it.name.as_str()).collect(),
-            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Array(_) | Type::Block(_) => Vec::new(),
-        };
-        (1..=12).contains(&names.len()).then(|| crate::diagnostic::wording::list(&names).replace(" or ", " and "))
-    }
 }
 
 /// `N(0)` with a named count reads as a call.
@@ -289,7 +265,7 @@ fn named_repeat<'a, 's>(element: &'a ast::Element<'s>) -> Option<(&'a ast::Expr<
         return None;
     };
     let ast::ExprKind::Name(name) = &callee.kind else { return None };
-    if check::is_function(name.text) {
+    if standard::exists(name.text) {
         return None;
     }
     let positional = |it: &'a ast::Argument<'s>| match &it.kind {

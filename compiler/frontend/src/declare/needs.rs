@@ -2,9 +2,10 @@
 //! the syntax, so that resolving one declaration never starts on another; one that meets another which
 //! is not resolved yet has found a circle.
 
-use super::{Declarations, Entry};
 use crate::ast::{self, ExprKind, InitialKind, TypeKind};
-use crate::names::Key;
+use crate::names::Entry;
+use crate::spelling::Key;
+use crate::types::declarations::Declarations;
 use rustc_hash::FxHashSet;
 
 /// All declarations at file level, each after those that it needs. Of those in a circle, the first in
@@ -142,7 +143,7 @@ impl<'s> Needs<'_, 's> {
     }
 
     fn type_name(&mut self, name: ast::Name<'s>) {
-        self.found.extend(self.declarations.type_named(name.text));
+        self.found.extend(self.declarations.names.type_named(name.text));
     }
 
     /// A global variable, or the enumerations that have an enumerator of that name.
@@ -151,8 +152,8 @@ impl<'s> Needs<'_, 's> {
         if self.own.contains(&key) {
             return;
         }
-        let global = self.declarations.names.get(&key).copied().filter(|it| matches!(it, Entry::Global(_)));
-        let types = self.declarations.enumerators.get(&key).into_iter().flatten();
+        let global = self.declarations.names.get(name.text).filter(|it| matches!(it, Entry::Global(_)));
+        let types = self.declarations.names.enumerators.get(&key).into_iter().flatten();
         self.found.extend(global.into_iter().chain(types.map(|at| Entry::Type(*at))));
     }
 }

@@ -1,51 +1,16 @@
 //! Signatures: what callers of a POU see, and where its variables live.
 
-use super::types::Resolved;
-use super::{Declarations, Scope, Variable};
 use crate::ast::{self, PouKind, VarKind};
+use crate::types::declarations::Declarations;
+use crate::types::scope::{Scope, Variable};
+use crate::types::signature::{EdgeInput, Formal, Signature, Target, pin_place};
+use crate::types::table::Resolved;
 use crate::{Code, Diagnostic, Span, dialect};
 use staunch_ir::{
-    BlockId, Const, Field, FieldId, Local, LocalId, Mode, Param, ParamId, Place, Root, Section, Struct, StructId, Type,
+    BlockId, Const, Field, FieldId, Local, LocalId, Mode, Param, ParamId, Place, Root, Section, Struct, Type,
 };
 use staunch_runtime::Family;
 use std::rc::Rc;
-
-/// A formal parameter, in declaration order.
-#[derive(Clone, Debug)]
-pub(crate) struct Formal<'s> {
-    pub name: ast::Name<'s>,
-    pub section: Section,
-    pub resolved: Rc<Resolved>,
-    pub target: Target,
-}
-
-/// How an argument reaches its parameter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Target {
-    /// A field of the instance.
-    Field(FieldId),
-    /// A parameter of the call.
-    Param(usize),
-}
-
-/// An input declared R_EDGE or F_EDGE: the body sees the trigger's output.
-#[derive(Clone, Debug)]
-pub(crate) struct EdgeInput {
-    pub input: Place,
-    pub trigger: Place,
-}
-
-#[derive(Clone, Debug)]
-pub(crate) struct Signature<'s> {
-    pub scope: Rc<Scope<'s>>,
-    /// The structure of an instance, for a PROGRAM or FUNCTION_BLOCK.
-    pub state: Option<StructId>,
-    pub formals: Vec<Formal<'s>>,
-    pub params: Vec<Param>,
-    pub locals: Vec<Local>,
-    pub result: Option<(LocalId, Resolved)>,
-    pub edges: Vec<EdgeInput>,
-}
 
 /// A signature while its variables are read.
 struct Builder<'s> {
@@ -60,7 +25,7 @@ struct Builder<'s> {
 }
 
 impl<'s> Declarations<'s> {
-    pub fn build_signature(&mut self, slot: usize) -> Option<Signature<'s>> {
+    pub(super) fn build_signature(&mut self, slot: usize) -> Option<Signature<'s>> {
         let pou = self.pous[slot].ast;
         let mut builder = Builder {
             scope: Rc::new(Scope::default()),
@@ -86,7 +51,7 @@ impl<'s> Declarations<'s> {
             fields.shrink_to_fit();
             let id =
                 self.push_struct(Struct { name: pou.name.text.to_owned(), doc: pou.doc.clone(), location, fields });
-            self.instances.insert(id, slot);
+            self.table.instances.insert(id, slot);
             id
         });
         let Builder { scope, mut formals, params, locals, edges, complete, .. } = builder;
@@ -98,7 +63,7 @@ impl<'s> Declarations<'s> {
     /// with one of them is reported when its own turn comes, but what it needs was resolved for good.
     fn early_constants(&mut self, pou: &'s ast::Pou<'s>) -> Scope<'s> {
         let mut scope = Rc::new(Scope::default());
-        let counted = self.constants;
+        let counted = self.table.constants;
         let blocks = pou.blocks.iter().filter(|it| it.constant.is_some() && it.kind != VarKind::External);
         let named = |it: &&'s ast::VarDecl<'s>| matches!(it.ty.kind, ast::TypeKind::Named(_));
         let mut waiting: Vec<_> =
@@ -107,11 +72,12 @@ impl<'s> Declarations<'s> {
         loop {
             let before = waiting.len();
             waiting.retain(|(block, decl)| {
-                let reported = self.diagnostics.len();
+                let reported = self.log.diagnostics.len();
                 let resolved = self.declared_type(decl, &scope, pou.name.text);
-                let known = resolved.filter(|_| self.diagnostics.len() == reported);
-                let others = self.diagnostics.split_off(reported).into_iter().filter(|it| !within(it.span, decl.span));
-                self.diagnostics.extend(others);
+                let known = resolved.filter(|_| self.log.diagnostics.len() == reported);
+                let others =
+                    self.log.diagnostics.split_off(reported).into_iter().filter(|it| !within(it.span, decl.span));
+                self.log.diagnostics.extend(others);
                 let Some(resolved) = known.map(Rc::new) else { return true };
                 for name in &decl.names {
                     let place = Place::root(Root::Instance, resolved.ty);
@@ -128,7 +94,7 @@ impl<'s> Declarations<'s> {
         for name in waiting.iter().flat_map(|(_, decl)| &decl.names) {
             Rc::get_mut(&mut scope).expect("no one else holds the scope between declarations").refuse(*name);
         }
-        self.constants = counted;
+        self.table.constants = counted;
         Rc::into_inner(scope).unwrap_or_default()
     }
 
@@ -147,7 +113,12 @@ impl<'s> Declarations<'s> {
         Some((id, resolved))
     }
 
-    pub fn resolve_spec(&mut self, spec: &'s ast::TypeSpec<'s>, scope: &Rc<Scope<'s>>, name: &str) -> Option<Resolved> {
+    pub(super) fn resolve_spec(
+        &mut self,
+        spec: &'s ast::TypeSpec<'s>,
+        scope: &Rc<Scope<'s>>,
+        name: &str,
+    ) -> Option<Resolved> {
         self.resolve_type_named(spec, scope, name, None)
     }
 
@@ -236,11 +207,11 @@ impl<'s> Declarations<'s> {
                     .fix(whole, ""),
             );
         }
-        let reported = self.diagnostics.len();
+        let reported = self.log.diagnostics.len();
         let resolved = self.declared_type(decl, &scope, owner);
         drop(scope);
         // What needs the value of a CONSTANT knows none where that was refused.
-        let resolved = resolved.filter(|_| block.constant.is_none() || !self.has_errors_since(reported));
+        let resolved = resolved.filter(|_| block.constant.is_none() || !self.log.has_errors_since(reported));
         let Some(resolved) = resolved.map(Rc::new) else {
             decl.names.iter().for_each(|name| builder.refuse(*name));
             return;
@@ -382,7 +353,7 @@ impl<'s> Declarations<'s> {
         resolved: &Rc<Resolved>,
         builder: &mut Builder<'s>,
     ) -> Option<Place> {
-        let section = super::scope::section(block.kind);
+        let section = super::variable::section(block.kind);
         let formal = |target| Formal { name, section, resolved: Rc::clone(resolved), target };
         let place = match (pou.kind, block.kind) {
             // A program has one set of variables, so they last anyway.
@@ -460,8 +431,8 @@ impl<'s> Declarations<'s> {
     ) -> Place {
         let spelling = format!("{}_{}", pou.name.text, name.text);
         let field = Field { name: spelling, section: Section::Global, ..self.field(name, resolved, block, decl) };
-        let at = self.add_hidden(field, Some(name));
-        self.hidden_place(at)
+        let at = self.add_synthetic(field, Some(name));
+        self.synthetic_place(at)
     }
 
     /// Adds the hidden trigger of an edge input; the body reads the trigger's `Q`.
@@ -501,15 +472,6 @@ impl<'s> Declarations<'s> {
 
 fn within(inner: Span, outer: Span) -> bool {
     inner.file == outer.file && outer.start <= inner.start && inner.end <= outer.end
-}
-
-/// The pin `name` of the block at `place`.
-pub(crate) fn pin_place(place: Place, block: BlockId, name: &str) -> Place {
-    let at = block.info().pins.iter().position(|pin| pin.name.eq_ignore_ascii_case(name));
-    let at = at.expect("the runtime's own pin names");
-    let field = FieldId::next(at);
-    let ty = block.pin_type(field).expect("the pin was found above");
-    place.field(field, ty)
 }
 
 impl<'s> Builder<'s> {

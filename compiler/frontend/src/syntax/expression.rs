@@ -75,7 +75,7 @@ fn misspelt_operator(input: &mut In<'_, '_, '_>) -> Option<(BinaryOp, u8)> {
     }
     let span = input.here();
     let words = [Kind::And, Kind::AndThen, Kind::Xor, Kind::OrElse, Kind::Mod];
-    let near = crate::names::nearest(input.text(span), words.iter().filter_map(|it| it.keyword()))?;
+    let near = crate::spelling::nearest(input.text(span), words.iter().filter_map(|it| it.keyword()))?;
     infix(words.into_iter().find(|it| it.keyword() == Some(near))?)
 }
 

@@ -74,7 +74,7 @@ const ITEMS: &[Kind] =
     &[Kind::Program, Kind::FunctionBlock, Kind::Function, Kind::Type, Kind::Configuration, Kind::VarGlobal];
 
 fn nearest_of(word: &str, kinds: &[Kind]) -> Option<Kind> {
-    let near = crate::names::nearest(word, kinds.iter().filter_map(|it| it.keyword()))?;
+    let near = crate::spelling::nearest(word, kinds.iter().filter_map(|it| it.keyword()))?;
     kinds.iter().copied().find(|it| it.keyword() == Some(near))
 }
 

@@ -317,7 +317,7 @@ fn is_nearly(input: &mut In<'_, '_, '_>, word: Kind) -> bool {
         return false;
     }
     let span = input.here();
-    crate::names::nearest(input.text(span), word.keyword().into_iter()).is_some()
+    crate::spelling::nearest(input.text(span), word.keyword().into_iter()).is_some()
 }
 
 /// How far ahead `word` is on the current line, before the statement ends.

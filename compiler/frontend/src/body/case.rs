@@ -1,0 +1,160 @@
+//! CASE: of labels that overlap, the first in the text that holds the value is chosen. The IR gets
+//! labels that do not, cut to what is left of them.
+
+use crate::expr::checker::Checker;
+use crate::{Code, Diagnostic, Span, ast};
+use staunch_ir::{Arm, StatementKind, Type, Value};
+use std::collections::{BTreeMap, HashMap};
+
+/// The labels that have been seen.
+#[derive(Default)]
+struct Seen {
+    /// As they are written.
+    labels: HashMap<(i128, i128), Span>,
+    /// What they hold, in ranges that do not overlap: by its lower end the upper one, and whose it is.
+    held: BTreeMap<i128, (i128, Span)>,
+}
+
+impl Seen {
+    /// The parts of a range that no label holds, and the first label that holds another part.
+    fn rest(&self, (low, high): (i128, i128)) -> (Vec<(i128, i128)>, Option<Span>) {
+        let (mut rest, mut from, mut first) = (Vec::new(), low, None);
+        let start = self.held.range(..=low).next_back().map_or(low, |(start, _)| *start);
+        for (start, (end, span)) in self.held.range(start..=high) {
+            if *end < from {
+                continue;
+            }
+            first.get_or_insert(*span);
+            if from < *start {
+                rest.push((from, *start - 1));
+            }
+            from = *end + 1;
+        }
+        if from <= high {
+            rest.push((from, high));
+        }
+        (rest, first)
+    }
+}
+
+impl<'s> Checker<'_, 's> {
+    pub(super) fn case(
+        &mut self,
+        selector: &ast::Expr<'s>,
+        arms: &[ast::Arm<'s>],
+        otherwise: Option<&[ast::Statement<'s>]>,
+        span: Span,
+    ) -> Option<()> {
+        let value = self.typed(selector, None);
+        let value = value.and_then(|value| {
+            let allowed = match value.ty {
+                Type::Elementary(it) | Type::Subrange(it, _) => it.lane().is_integer() && !it.is_time(),
+                Type::Enum(_) => true,
+                Type::String(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => false,
+            };
+            if !allowed {
+                let found = self.type_name(value.ty);
+                self.report(
+                    Diagnostic::new(
+                        Code::E0201,
+                        selector.span,
+                        format!("CASE selects by an integer or enumeration, this is {found}"),
+                    )
+                    .label("expected an integer, a bit string or an enumeration"),
+                );
+            }
+            allowed.then_some(value)
+        });
+        let ty = value.as_ref().map(|it| it.ty);
+        let mut seen = Seen::default();
+        let mut built = Vec::new();
+        let mut called = Vec::new();
+        for arm in arms {
+            let labels: Vec<_> = match ty {
+                Some(ty) => arm.labels.iter().flat_map(|it| self.label(it, ty, &mut seen)).collect(),
+                None => Vec::new(),
+            };
+            let before = self.called.len();
+            let body = self.block_of(&arm.body);
+            called.extend(self.leave_branch(before, &arm.body));
+            if !labels.is_empty() {
+                built.push(Arm { labels, body });
+            }
+        }
+        let otherwise = otherwise.map(|it| self.block_of(it)).unwrap_or_default();
+        self.called.append(called);
+        self.push(StatementKind::Case { selector: value?, arms: built, otherwise }, span);
+        Some(())
+    }
+
+    /// What a label holds of the values that the ones before it leave.
+    fn label(&mut self, label: &ast::Label<'s>, ty: Type, seen: &mut Seen) -> Vec<(i128, i128)> {
+        let span = label.high.as_ref().map_or(label.low.span, |high| label.low.span.to(high.span));
+        let Some(range) = self.label_range(label, ty, span) else { return Vec::new() };
+        if let Some(first) = seen.labels.insert(range, span) {
+            self.report(
+                Diagnostic::new(Code::E0506, span, "this CASE label stands twice")
+                    .label("never chosen: the first one is")
+                    .other(first, "first here"),
+            );
+            return Vec::new();
+        }
+        let (rest, first) = seen.rest(range);
+        if let Some(first) = first {
+            self.report_overlap(rest.is_empty(), first, span);
+        }
+        seen.held.extend(rest.iter().map(|(low, high)| (*low, (*high, span))));
+        rest
+    }
+
+    fn report_overlap(&mut self, never: bool, first: Span, span: Span) {
+        let lint = if never {
+            Diagnostic::new(Code::W0512, span, "this CASE label is never chosen")
+                .label("labels before it hold all of its values")
+        } else {
+            Diagnostic::new(Code::W0512, span, "this CASE label overlaps another")
+                .label("where both hold the value, the first one is chosen")
+        };
+        self.report(lint.other(first, "first here"));
+    }
+
+    fn label_range(&mut self, label: &ast::Label<'s>, ty: Type, span: Span) -> Option<(i128, i128)> {
+        let low = self.label_value(&label.low, ty)?;
+        let high = label.high.as_ref().map_or(Some(low), |high| self.label_value(high, ty))?;
+        if low > high {
+            self.report(
+                Diagnostic::new(Code::E0510, span, "this range of labels is empty")
+                    .label(format!("{low} is above {high}"))
+                    .help(format!("write `{high}..{low}`"))
+                    .fix(span, format!("{high}..{low}")),
+            );
+            return None;
+        }
+        Some((low, high))
+    }
+
+    /// A label is not converted by a call, as other values are.
+    fn label_of_another_type(&mut self, reported: usize, ty: Type) {
+        let wanted = self.type_name(ty);
+        for it in self.decl.log.diagnostics[reported..].iter_mut() {
+            let names_members = it.help.is_some() && it.fix.is_none();
+            if matches!(it.code, Code::E0201 | Code::E0203) && !names_members {
+                it.fix = None;
+                it.help = Some(format!("a label is a constant of the selector's type, {wanted}"));
+            }
+        }
+    }
+
+    fn label_value(&mut self, expr: &ast::Expr<'s>, ty: Type) -> Option<i128> {
+        let reported = self.decl.log.diagnostics.len();
+        let Some(value) = self.value(expr, ty) else {
+            self.label_of_another_type(reported, ty);
+            return None;
+        };
+        let number = value.as_const().and_then(Value::as_integer);
+        if number.is_none() {
+            self.report(crate::expr::unresolved::not_constant(expr.span));
+        }
+        number
+    }
+}

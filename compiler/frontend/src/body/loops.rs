@@ -1,0 +1,211 @@
+//! WHILE and REPEAT, which are one loop in the IR, and FOR.
+
+use crate::expr::checker::Checker;
+use crate::expr::operand::Operand;
+use crate::{Code, Diagnostic, Span, ast};
+use staunch_ir::{
+    Block, Elementary, Expr, For, Location, Op, Place, Projection, Statement, StatementKind, Step, Type, Value, loops,
+};
+
+impl<'s> Checker<'_, 's> {
+    pub(super) fn while_loop(&mut self, condition: &ast::Expr<'s>, body: &[ast::Statement<'s>], span: Span) {
+        let mut holds = None;
+        let mut block = self.nested(|this| holds = this.condition(condition));
+        let mut inside = self.loop_body(body);
+        let Some(holds) = holds else { return };
+        if holds.as_const() == Some(Value::Bool(true)) {
+            self.refuse_to_end(body, condition.span);
+        }
+        let Some(leave) = self.exit_unless(holds, condition.span) else { return };
+        block.push(leave);
+        block.push(Statement::new(StatementKind::Turn, self.at(span)));
+        block.append(&mut inside);
+        self.push(StatementKind::Loop { body: block, continuing: Vec::new() }, span);
+    }
+
+    pub(super) fn repeat_loop(&mut self, body: &[ast::Statement<'s>], until: &ast::Expr<'s>, span: Span) {
+        let statements = body;
+        let mut body = self.loop_body(body);
+        body.insert(0, Statement::new(StatementKind::Turn, self.at(span)));
+        let mut done = None;
+        let mut continuing = self.nested(|this| done = this.condition(until));
+        let Some(done) = done else { return };
+        if done.as_const() == Some(Value::Bool(false)) {
+            self.refuse_to_end(statements, until.span);
+        }
+        let at = self.at(until.span);
+        continuing.push(exit_if(done, at));
+        self.push(StatementKind::Loop { body, continuing }, span);
+    }
+
+    /// A loop whose condition never ends it needs a way out.
+    fn refuse_to_end(&mut self, body: &[ast::Statement<'s>], span: Span) {
+        if !has_way_out(body, true) {
+            self.report(
+                Diagnostic::new(Code::W0508, span, "this loop never ends")
+                    .label("the condition is constant, and nothing leaves the loop")
+                    .help("a scan has to come to its end: leave the loop with EXIT"),
+            );
+        }
+    }
+
+    fn loop_body(&mut self, body: &[ast::Statement<'s>]) -> Block {
+        self.loops += 1;
+        let block = self.block_of(body);
+        self.loops -= 1;
+        block
+    }
+
+    fn exit_unless(&mut self, condition: Expr, span: Span) -> Option<Statement> {
+        let at = self.at(span);
+        let not = self.apply(Op::Not, Type::BOOL, vec![condition], Type::BOOL, span)?;
+        Some(exit_if(not, at))
+    }
+
+    pub(super) fn for_loop(
+        &mut self,
+        counter: &ast::Expr<'s>,
+        from: &ast::Expr<'s>,
+        to: &ast::Expr<'s>,
+        by: Option<&ast::Expr<'s>>,
+        body: &[ast::Statement<'s>],
+        span: Span,
+    ) -> Option<()> {
+        let Some(mut head) = self.for_head(counter, from, to, by) else {
+            // The body may hold mistakes of its own.
+            self.loop_body(body);
+            return None;
+        };
+        // As far as it is known before the body: a dialect may let that write the counter.
+        head.is_private = self.frame().is_private(&head.counter) && !self.decl.dialect(counter.span).assigns_inputs();
+        self.counters.push(head.clone());
+        head.body = self.loop_body(body);
+        self.counters.pop();
+        head.is_private = loops::is_private(&self.frame(), &head.counter, &head.body);
+        if !head.is_short() {
+            head.body.insert(0, Statement::new(StatementKind::Turn, self.at(span)));
+        }
+        self.push(StatementKind::For(Box::new(head)), span);
+        Some(())
+    }
+
+    /// Checks a FOR loop's head; the loop has no body yet.
+    fn for_head(
+        &mut self,
+        counter: &ast::Expr<'s>,
+        from: &ast::Expr<'s>,
+        to: &ast::Expr<'s>,
+        by: Option<&ast::Expr<'s>>,
+    ) -> Option<For> {
+        let found = self.place(counter);
+        let Some(found) = found.filter(|it| self.writable(it, counter.span)) else {
+            for part in [from, to].into_iter().chain(by) {
+                self.operand(part, None);
+            }
+            return None;
+        };
+        let mut place = found.place;
+        let ty = self.counter_type(place.ty.read(), counter.span)?;
+        self.note_assigned(&place, counter.span);
+        self.fix_indices(&mut place, counter.span);
+        // Each part is checked, whatever is wrong with another.
+        let first = self.value(from, place.ty);
+        let mark = self.block.len();
+        let mut last = self.value(to, Type::Elementary(ty));
+        let mut done: Vec<_> = last.iter_mut().collect();
+        let step = self.after(&mut done, |this| this.step(by, ty));
+        let (mut first, last, step) = (first?, last?, step?);
+        if self.block.len() > mark {
+            // The counter has its first value when the calls in the other parts are made.
+            let at = first.at;
+            let start = Statement::assign(place.clone(), first, at);
+            self.block.insert(mark, start);
+            first = Expr::load(place.clone(), at);
+        }
+        let range = self.decl.program.range(place.ty).or(ty.lane().range())?;
+        let step_at = self.at(by.unwrap_or(counter).span);
+        Some(For { counter: place, first, last, step, range, is_private: false, body: Block::new(), step_at })
+    }
+
+    fn counter_type(&mut self, ty: Type, span: Span) -> Option<Elementary> {
+        match ty {
+            Type::Elementary(it) if it.is_integer() || self.counts(it, span) => Some(it),
+            other => {
+                let name = self.type_name(other);
+                self.report(
+                    Diagnostic::new(
+                        Code::E0201,
+                        span,
+                        format!("the counter of a FOR loop is an integer, this is {name}"),
+                    )
+                    .label("expected an integer"),
+                );
+                None
+            }
+        }
+    }
+
+    fn counts(&self, ty: Elementary, span: Span) -> bool {
+        ty.is_bits() && ty != Elementary::Bool && self.decl.dialect(span).mixes_bits_and_integers()
+    }
+
+    /// The loop goes by one variable: what its indices are made of may change in the body.
+    fn fix_indices(&mut self, place: &mut Place, span: Span) {
+        for projection in &mut place.projections {
+            if let Projection::Index { index, .. } = projection
+                && index.as_const().is_none()
+            {
+                let (value, at) = ((**index).clone(), index.at);
+                let saved = self.temporary("index", value.ty);
+                self.assign(saved.clone(), value, span);
+                **index = Expr::load(saved, at);
+            }
+        }
+    }
+
+    fn step(&mut self, by: Option<&ast::Expr<'s>>, ty: Elementary) -> Option<Step> {
+        let Some(by) = by else { return Some(Step::Constant(1)) };
+        // A negative constant steps down, also for an unsigned counter.
+        let operand = self.operand(by, Some(Type::Elementary(ty)))?;
+        let constant = match &operand {
+            Operand::Integer(value) => Some(*value),
+            Operand::Typed(expr) | Operand::Promoted(expr, _) => expr.as_const().and_then(Value::as_integer),
+            Operand::Real { .. } => None,
+        };
+        let (_, most) = ty.lane().range()?;
+        match constant {
+            Some(0) => {
+                self.report(
+                    Diagnostic::new(Code::E0509, by.span, "the step of a FOR loop is 0")
+                        .label("the loop would never end"),
+                );
+                None
+            }
+            Some(step) if step.abs() <= most => Some(Step::Constant(step)),
+            Some(_) | None => self.coerce(operand, Type::Elementary(ty), by.span).map(Step::Variable),
+        }
+    }
+}
+
+fn exit_if(condition: Expr, at: Location) -> Statement {
+    let then = vec![Statement::new(StatementKind::Exit, at)];
+    Statement::new(StatementKind::If { condition, then, otherwise: Vec::new() }, at)
+}
+
+/// Whether the statements hold an EXIT of this loop, or a RETURN.
+fn has_way_out(statements: &[ast::Statement<'_>], own: bool) -> bool {
+    use ast::StatementKind as Ast;
+    let within = |body: &[ast::Statement<'_>]| has_way_out(body, own);
+    statements.iter().any(|statement| match &statement.kind {
+        Ast::Return => true,
+        Ast::Exit => own,
+        Ast::If { branches, otherwise } => {
+            branches.iter().any(|(_, body)| within(body)) || otherwise.as_deref().is_some_and(within)
+        }
+        Ast::Case { arms, otherwise, .. } => {
+            arms.iter().any(|arm| within(&arm.body)) || otherwise.as_deref().is_some_and(within)
+        }
+        Ast::For { body, .. } | Ast::While { body, .. } | Ast::Repeat { body, .. } => has_way_out(body, false),
+        Ast::Empty | Ast::Assign { .. } | Ast::SetReset { .. } | Ast::Expr(_) | Ast::Continue | Ast::Error => false,
+    })
+}

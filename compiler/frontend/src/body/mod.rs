@@ -1,0 +1,87 @@
+//! Bodies: statements, and the routines that they become.
+
+mod case;
+mod loops;
+mod statement;
+
+use crate::expr::checker::Checker;
+use crate::expr::uses::Uses;
+use crate::types::declarations::Declarations;
+use crate::{Bodies, Span, ast};
+use staunch_ir::{Block, Routine, RoutineKind, StatementKind};
+
+/// What checking all bodies gave.
+pub(crate) struct Checked {
+    /// In the order of the POUs' slots; `None` where there was an error.
+    pub routines: Vec<Option<(Routine, Uses)>>,
+    /// The first statement that makes nothing, because something in it was refused.
+    pub left_out: Option<Span>,
+}
+
+/// Checks the bodies of all POUs, in the order of their slots. A body that is not kept is let go.
+pub(crate) fn check<'s>(decl: &mut Declarations<'s>, bodies: &mut [Vec<ast::Statement<'s>>], keep: Bodies) -> Checked {
+    let mut checked = Checked { routines: Vec::new(), left_out: None };
+    for (slot, body) in bodies.iter_mut().enumerate() {
+        let mut made = check_body(decl, slot, body, &mut checked.left_out);
+        if keep == Bodies::Dropped {
+            body.clear();
+            made.iter_mut().for_each(|(routine, _)| routine.body = calls(std::mem::take(&mut routine.body)));
+        }
+        checked.routines.push(made);
+    }
+    checked
+}
+
+/// The calls in a block, which is what later checks ask of it.
+fn calls(block: Block) -> Block {
+    let mut calls = Block::new();
+    move_calls(block, &mut calls);
+    calls
+}
+
+fn move_calls(block: Block, calls: &mut Block) {
+    for mut statement in block {
+        let inner: Vec<_> = statement.kind.blocks_mut().into_iter().map(std::mem::take).collect();
+        inner.into_iter().for_each(|it| move_calls(it, calls));
+        if let StatementKind::Call { .. } = statement.kind {
+            calls.push(statement);
+        }
+    }
+}
+
+/// Checks a body of the POU in a slot. Nothing in the declarations changes by that, so a body may be checked
+/// more than once.
+fn check_body<'s>(
+    decl: &mut Declarations<'s>,
+    slot: usize,
+    statements: &[ast::Statement<'s>],
+    left_out: &mut Option<Span>,
+) -> Option<(Routine, Uses)> {
+    let pou = decl.pous[slot].ast;
+    let signature = decl.signature(slot)?;
+    let mut checker = Checker::of_body(decl, &signature);
+    checker.initial_outputs(&signature);
+    checker.own_enable(&signature, pou.name.span);
+    checker.edge_inputs(&signature, pou.name.span);
+    let mut body = checker.block_of(statements);
+    checker.migration_lints(statements);
+    let mut whole = std::mem::take(&mut checker.block);
+    whole.append(&mut body);
+    let uses = checker.finish_uses();
+    *left_out = left_out.or(checker.left_out);
+    let locals = std::mem::take(&mut checker.locals);
+    let location = decl.location(pou.name.span);
+    let kind = if pou.kind == ast::PouKind::Function { RoutineKind::Function } else { RoutineKind::Body };
+    let body = Routine {
+        kind,
+        name: pou.name.text.to_owned(),
+        doc: pou.doc.clone(),
+        location,
+        state: signature.state,
+        params: signature.params.clone(),
+        locals,
+        result: signature.result.as_ref().map(|(id, _)| *id),
+        body: whole,
+    };
+    Some((body, uses))
+}

@@ -1,0 +1,267 @@
+use crate::expr::call_tracking::Instance;
+use crate::expr::checker::Checker;
+use crate::expr::operand::Operand;
+use crate::{Code, Diagnostic, Span, ast};
+use ast::{ExprKind as Ast, StatementKind as Ast_};
+use staunch_ir::{Block, Conversion, Elementary, Expr, Op, Place, StatementKind, Type, Value};
+
+impl<'s> Checker<'_, 's> {
+    /// The statements of a body, or of a branch of one.
+    pub(super) fn block_of(&mut self, statements: &[ast::Statement<'s>]) -> Block {
+        self.nested(|this| this.statements(statements))
+    }
+
+    fn statements(&mut self, statements: &[ast::Statement<'s>]) {
+        let mut left: Option<Span> = None;
+        for statement in statements {
+            if let Some(span) = left.take() {
+                let empty = matches!(statement.kind, Ast_::Empty);
+                if !empty {
+                    self.report(
+                        Diagnostic::new(Code::W0502, statement.span, "this is never reached")
+                            .label("no path leads here")
+                            .other(span, "the statement before leaves"),
+                    );
+                }
+            }
+            self.statement(statement);
+            if matches!(statement.kind, Ast_::Exit | Ast_::Continue | Ast_::Return) {
+                left = Some(statement.span);
+            }
+        }
+    }
+
+    fn statement(&mut self, statement: &ast::Statement<'s>) {
+        let span = statement.span;
+        let made = match &statement.kind {
+            Ast_::Assign { target, value } => self.assignment(target, value, span),
+            Ast_::SetReset { target, value, set } => self.set_reset(target, value, *set, span),
+            Ast_::Case { selector, arms, otherwise } => self.case(selector, arms, otherwise.as_deref(), span),
+            Ast_::For { counter, from, to, by, body } => self.for_loop(counter, from, to, by.as_deref(), body, span),
+            Ast_::Empty
+            | Ast_::Error
+            | Ast_::Expr(_)
+            | Ast_::If { .. }
+            | Ast_::While { .. }
+            | Ast_::Repeat { .. }
+            | Ast_::Exit
+            | Ast_::Continue
+            | Ast_::Return => {
+                self.flow(&statement.kind, span);
+                Some(())
+            }
+        };
+        if made.is_none() {
+            self.left_out.get_or_insert(span);
+        }
+    }
+
+    /// Calls and control flow.
+    fn flow(&mut self, kind: &Ast_<'s>, span: Span) {
+        match kind {
+            Ast_::Empty
+            | Ast_::Error
+            | Ast_::Assign { .. }
+            | Ast_::SetReset { .. }
+            | Ast_::Case { .. }
+            | Ast_::For { .. } => {}
+            Ast_::Expr(expr) => self.lone_expression(expr),
+            Ast_::If { branches, otherwise } => self.branches(branches, otherwise.as_deref()),
+            Ast_::While { condition, body } => self.while_loop(condition, body, span),
+            Ast_::Repeat { body, until } => self.repeat_loop(body, until, span),
+            Ast_::Exit => self.leave_loop("EXIT", StatementKind::Exit, span),
+            Ast_::Continue => self.leave_loop("CONTINUE", StatementKind::Continue, span),
+            Ast_::Return => self.push(StatementKind::Return, span),
+        }
+    }
+
+    fn leave_loop(&mut self, word: &str, kind: StatementKind, span: Span) {
+        if self.loops == 0 {
+            self.report(
+                Diagnostic::new(Code::E0505, span, format!("{word} stands outside of a loop"))
+                    .label("there is no FOR, WHILE or REPEAT around it")
+                    .help("to leave the whole POU, write RETURN"),
+            );
+            return;
+        }
+        self.push(kind, span);
+    }
+
+    fn lone_expression(&mut self, expr: &ast::Expr<'s>) {
+        match &expr.kind {
+            Ast::Call(callee, arguments) => self.call_statement(expr, callee, arguments),
+            Ast::Paren(inner) => self.lone_expression(inner),
+            Ast::Error(_) => drop(self.operand(expr, None)),
+            Ast::Name(_) | Ast::Member(..) | Ast::Index(..) => self.report_missing_call(expr),
+            Ast::Literal(_) | Ast::Address(_) | Ast::Part(..) | Ast::Deref(_) | Ast::Unary(..) | Ast::Binary(..) => {
+                self.report(
+                    Diagnostic::new(Code::E0508, expr.span, "this statement has no effect")
+                        .label("its value is not used"),
+                );
+            }
+        }
+    }
+
+    fn report_missing_call(&mut self, expr: &ast::Expr<'s>) {
+        let Some(found) = self.place(expr) else { return };
+        let text = self.decl.log.sources.text(expr.span).to_owned();
+        let instance = match found.place.ty {
+            Type::Block(_) => true,
+            Type::Struct(id) => self.decl.is_instance(id),
+            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Array(_) => false,
+        };
+        let error = Diagnostic::new(Code::E0508, expr.span, "this statement has no effect");
+        self.report(if instance {
+            error
+                .label("the instance is named, but not called")
+                .help(format!("write `{text}();`"))
+                .fix(expr.span, format!("{text}()"))
+        } else {
+            error.label("a variable alone does nothing").help(format!("to assign to it, write `{text} := …;`"))
+        });
+    }
+
+    fn assignment(&mut self, target: &ast::Expr<'s>, value: &ast::Expr<'s>, span: Span) -> Option<()> {
+        if let Ast::Part(base, part) = &target.kind {
+            return self.assign_part(base, *part, value, span);
+        }
+        let Some(found) = self.place(target) else {
+            // The value may hold mistakes of its own.
+            self.operand(value, None);
+            return None;
+        };
+        if let Some(()) = self.refuse_instance(&found.place, target.span) {
+            return None;
+        }
+        let writable = self.writable(&found, target.span);
+        let mut place = found.place;
+        let ty = place.ty;
+        let value = self.after_place(&mut place, |this| this.value(value, ty))?;
+        if writable {
+            self.note_assigned(&place, target.span);
+            self.assign(place, value, span);
+        }
+        Some(())
+    }
+
+    /// A block's state is not copied over another's.
+    fn refuse_instance(&mut self, place: &Place, span: Span) -> Option<()> {
+        let (way, instance) = self.decl.instance_in(place.ty)?;
+        let (ty, instance) = (self.type_name(place.ty), self.type_name(instance));
+        let error = match way.as_str() {
+            "" => Diagnostic::new(Code::E0210, span, format!("an instance of {instance} cannot be assigned to"))
+                .label("this is the block itself"),
+            way => Diagnostic::new(Code::E0210, span, format!("{ty} cannot be assigned to as a whole"))
+                .label(format!("it holds an instance of {instance}, at `{way}`, which is never copied")),
+        };
+        self.report(error.help("assign to its inputs, or call it"));
+        Some(())
+    }
+
+    /// `x.3 := b`, `x.%B1 := b`.
+    fn assign_part(
+        &mut self,
+        base: &ast::Expr<'s>,
+        part: ast::Name<'s>,
+        value: &ast::Expr<'s>,
+        span: Span,
+    ) -> Option<()> {
+        let found = self.place(base);
+        let Some(found) = found.filter(|it| self.writable(it, base.span)) else {
+            self.operand(value, None);
+            return None;
+        };
+        let mut place = found.place;
+        let ty = place.ty.read();
+        let selected = self.find_part(ty, part)?;
+        let of = Type::Elementary(selected.ty);
+        let value = self.after_place(&mut place, |this| this.value(value, of))?;
+        let Type::Elementary(whole) = ty else { return None };
+        let at = self.at(span);
+        let width = if selected.ty == Elementary::Bool { 1 } else { selected.ty.lane().size() * 8 };
+        let unsigned = unsigned_lane_of(whole);
+        let mask = unsigned.lane().integer(((1i128 << width) - 1) << selected.shift)?;
+        let mask = self.convert(Conversion::Value, ty, Expr::constant(unsigned, mask, at));
+        let kept = self.apply(Op::Not, ty, vec![mask.clone()], ty, span)?;
+        let old = Expr::load(place.clone(), at);
+        let cleared = self.apply(Op::And, ty, vec![old, kept], ty, span)?;
+        let bits = self.convert(Conversion::Value, ty, value);
+        let shift = Expr::constant(Elementary::Lint, Value::I64(i64::from(selected.shift)), at);
+        let shifted = self.apply(Op::Shl, ty, vec![bits, shift], ty, span)?;
+        // A signed part's sign bits do not spill over its neighbours.
+        let shifted = self.apply(Op::And, ty, vec![shifted, mask], ty, span)?;
+        let merged = self.apply(Op::Or, ty, vec![cleared, shifted], ty, span)?;
+        let merged = self.coerce(Operand::Typed(merged), place.ty, span)?;
+        self.note_assigned(&place, base.span);
+        self.assign(place, merged, span);
+        Some(())
+    }
+
+    /// `x S= c` sets, `x R= c` resets, while `c` is TRUE.
+    fn set_reset(&mut self, target: &ast::Expr<'s>, value: &ast::Expr<'s>, set: bool, span: Span) -> Option<()> {
+        let found = self.place(target);
+        let Some(found) = found.filter(|it| self.writable(it, target.span)) else {
+            self.operand(value, None);
+            return None;
+        };
+        if found.place.ty != Type::BOOL {
+            let ty = self.type_name(found.place.ty);
+            let op = if set { "S=" } else { "R=" };
+            self.error(Code::E0201, target.span, format!("`{op}` needs a BOOL, this is {ty}"));
+            return None;
+        }
+        let mut place = found.place;
+        self.note_assigned(&place, target.span);
+        // The target is found first, as in an assignment, whether it is then written or not.
+        self.freeze(&mut place, &[], true);
+        let condition = self.after_place(&mut place, |this| this.condition(value))?;
+        let then = self.nested(|this| {
+            let at = this.at(span);
+            this.assign(place, Expr::bool(set, at), span);
+        });
+        self.push(StatementKind::If { condition, then, otherwise: Vec::new() }, span);
+        Some(())
+    }
+
+    /// What a branch called, taken away so that the next branch, which excludes it, may call it
+    /// too; nothing where the branch does not come back.
+    pub(super) fn leave_branch(&mut self, before: usize, body: &[ast::Statement<'s>]) -> Vec<(Instance, Span)> {
+        let called = self.called.split_off(before);
+        let leaves = |it: &ast::Statement<'s>| matches!(it.kind, Ast_::Exit | Ast_::Continue | Ast_::Return);
+        if body.last().is_some_and(leaves) { Vec::new() } else { called }
+    }
+
+    fn branches(
+        &mut self,
+        branches: &[(ast::Expr<'s>, Vec<ast::Statement<'s>>)],
+        otherwise: Option<&[ast::Statement<'s>]>,
+    ) {
+        let [(condition, body), rest @ ..] = branches else {
+            if let Some(otherwise) = otherwise {
+                self.statements(otherwise);
+            }
+            return;
+        };
+        let at = condition.span;
+        let value = self.condition(condition);
+        let before = self.called.len();
+        let then = self.block_of(body);
+        let called = self.leave_branch(before, body);
+        // An ELSIF's condition, with the calls in it, is evaluated only when the ones before fail.
+        let otherwise = self.nested(|this| this.branches(rest, otherwise));
+        self.called.append(called);
+        if let Some(condition) = value {
+            self.push(StatementKind::If { condition, then, otherwise }, at);
+        }
+    }
+}
+
+/// The unsigned type of the same width, whose values are all bit patterns.
+fn unsigned_lane_of(ty: Elementary) -> Elementary {
+    match ty.lane().size() {
+        1 => Elementary::Byte,
+        2 => Elementary::Word,
+        4 => Elementary::Dword,
+        _ => Elementary::Lword,
+    }
+}

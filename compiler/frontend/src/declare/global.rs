@@ -1,0 +1,65 @@
+//! Global variables, and the structure that holds them.
+
+use crate::types::address::field_name;
+use crate::types::declarations::{Declarations, GlobalSlot};
+use crate::types::scope::{Scope, Variable};
+use crate::types::table::GLOBALS;
+use staunch_ir::{Location, Place, Root, Struct, StructId, Type};
+use std::rc::Rc;
+
+impl<'s> Declarations<'s> {
+    pub(super) fn global_variable(&mut self, at: usize) -> Option<Variable<'s>> {
+        let GlobalSlot { name, block, decl, .. } = self.globals[at];
+        let reported = self.log.diagnostics.len();
+        let resolved = self.declared_type(decl, &Rc::new(Scope::default()), name.text)?;
+        if block.constant.is_some() && self.log.has_errors_since(reported) {
+            return None;
+        }
+        self.check_retain(block, resolved.ty, name);
+        let place = match self.addresses.field_of_global(at) {
+            Some(field) => {
+                self.check_address_here(None, block, decl);
+                self.register_address(None, block, decl, &resolved);
+                let field = staunch_ir::FieldId::next(field);
+                Place::root(Root::Globals, Type::Struct(GLOBALS)).field(field, resolved.ty)
+            }
+            None => self.located(None, block, decl, name, &resolved)??,
+        };
+        Some(self.variable(name, block, Rc::new(resolved), place))
+    }
+
+    /// Makes the globals' structure, so that places in bodies have their types.
+    pub(super) fn declare_globals(&mut self) {
+        let mut fields = self.global_fields();
+        fields.iter_mut().for_each(|it| self.addresses.complete(it));
+        self.program.aliases = (0..self.globals.len()).filter_map(|at| self.alias(at)).collect();
+        self.program.globals = StructId::next(self.program.structs.len());
+        let location = Location::default();
+        self.program.structs.push(Struct { name: "Globals".to_owned(), doc: None, location, fields });
+    }
+
+    fn global_fields(&mut self) -> Vec<staunch_ir::Field> {
+        let fields: Vec<_> = (0..self.globals.len()).filter_map(|at| self.global_field(at)).collect();
+        fields.into_iter().chain(self.synthetic.fields()).collect()
+    }
+
+    fn global_field(&mut self, at: usize) -> Option<staunch_ir::Field> {
+        let variable = self.global(at)?;
+        self.addresses.field_of_global(at)?;
+        let GlobalSlot { name, block, decl, .. } = self.globals[at];
+        Some(self.field(name, &variable.resolved, block, decl))
+    }
+
+    /// The global in slot `at`, if it is another name of an earlier one's address.
+    fn alias(&mut self, at: usize) -> Option<staunch_ir::Variable> {
+        if self.addresses.field_of_global(at).is_some() {
+            return None;
+        }
+        let variable = self.global(at)?;
+        Some(staunch_ir::Variable {
+            name: field_name(variable.name.text),
+            section: variable.section,
+            place: variable.place.clone(),
+        })
+    }
+}

@@ -1,0 +1,75 @@
+//! PROGRAMs that others name: such a one does not run by itself. It has one instance, which the globals
+//! hold under its name.
+
+use crate::names::Entry;
+use crate::types::declarations::Declarations;
+use crate::types::scope::Variable;
+use crate::types::synthetic::NamedProgram;
+use crate::types::table::instance_of;
+use crate::{Span, ast};
+use staunch_ir::{Field, Retain, Section};
+use std::rc::Rc;
+
+impl<'s> Declarations<'s> {
+    /// Gives the PROGRAMs that bodies name their instances, before a body asks what the globals hold.
+    pub(super) fn find_named_programs(&mut self, statements: &[Vec<ast::Statement<'s>>]) {
+        for (at, body) in statements.iter().enumerate() {
+            if !self.dialect(self.pous[at].ast.name.span).calls_programs() {
+                continue;
+            }
+            let Some(signature) = self.signature(at) else { continue };
+            let mut found = Vec::new();
+            ast::each_expr(body, &mut |it| {
+                let (callee, is_called) = match &it.kind {
+                    ast::ExprKind::Call(callee, _) => (callee.bare(), true),
+                    _ => (it, false),
+                };
+                if let ast::ExprKind::Name(name) = &callee.kind
+                    && let Some(Entry::Pou(slot)) = self.names.get(name.text)
+                    && self.pous[slot].ast.kind == ast::PouKind::Program
+                    && signature.scope.get(name.text).is_none()
+                {
+                    found.push((slot, name.span, is_called));
+                }
+            });
+            for (slot, span, is_called) in found {
+                self.name_program(slot, span, is_called);
+            }
+        }
+    }
+
+    fn name_program(&mut self, slot: usize, first: Span, is_called: bool) {
+        if let Some(named) = self.named_programs.get_mut(&slot) {
+            named.is_called |= is_called;
+        } else if let Some(variable) = self.instance_of_program(slot) {
+            self.named_programs.insert(slot, NamedProgram { variable: Rc::new(variable), first, is_called });
+        }
+    }
+
+    fn instance_of_program(&mut self, slot: usize) -> Option<Variable<'s>> {
+        let signature = self.signature(slot)?;
+        let resolved = instance_of(&self.program, signature.state?);
+        let pou: &'s ast::Pou<'s> = self.pous[slot].ast;
+        let field = Field {
+            name: pou.name.text.to_owned(),
+            ty: resolved.ty,
+            initial: resolved.initial.clone(),
+            section: Section::Global,
+            retain: Retain::Inherited,
+            constant: false,
+            address: None,
+            doc: pou.doc.clone(),
+            location: self.location(pou.name.span),
+        };
+        let at = self.add_synthetic(field, Some(pou.name));
+        Some(Variable {
+            name: pou.name,
+            place: self.synthetic_place(at),
+            resolved: Rc::new(resolved),
+            section: Section::Global,
+            constant: false,
+            retain: false,
+            used: Rc::default(),
+        })
+    }
+}

@@ -1,0 +1,502 @@
+//! Type specifications to types.
+
+use crate::ast::{self, Bound, TypeKind};
+use crate::diagnostic::wording::list;
+use crate::dialect::{self, Dialect};
+use crate::expr::unresolved::{block_of_another_dialect, no_such_block};
+use crate::names::Entry;
+use crate::spelling::{Key, nearest};
+use crate::types::declarations::Declarations;
+use crate::types::scope::Scope;
+use crate::types::table::{Resolved, instance_of, scalar_initial, struct_initial};
+use crate::{Code, Diagnostic, Span};
+use staunch_ir::{Array, ArrayId, BoundsId, Const, Elementary, Enum, EnumId, Enumerator, Struct, Type, Value};
+use staunch_runtime::Family;
+use std::rc::Rc;
+
+/// A variable larger than this many bytes is refused.
+pub(crate) const MAX_SIZE: u64 = 1 << 30;
+/// The initial values of all variables hold at most so many constants.
+const MAX_CONSTANTS: usize = 1 << 20;
+/// An array of arrays is refused beyond so many dimensions: rustc takes no type that is much deeper.
+const MAX_DIMENSIONS: usize = 64;
+/// Longest string.
+const MAX_CAPACITY: i128 = 32767;
+
+const NOT_YET: [&str; 16] = [
+    "RTC",
+    "BLINK",
+    "DATE",
+    "LDATE",
+    "TOD",
+    "LTOD",
+    "TIME_OF_DAY",
+    "LTIME_OF_DAY",
+    "DT",
+    "LDT",
+    "DATE_AND_TIME",
+    "LDATE_AND_TIME",
+    "CHAR",
+    "WCHAR",
+    "WSTRING",
+    "POINTER",
+];
+
+/// What other languages call elementary types.
+const FOREIGN: [(&str, &str); 24] = [
+    ("INTEGER", "INT"),
+    ("SHORT", "INT"),
+    ("LONG", "DINT"),
+    ("BOOLEAN", "BOOL"),
+    ("BIT", "BOOL"),
+    ("FLOAT", "REAL"),
+    ("FLOAT32", "REAL"),
+    ("SINGLE", "REAL"),
+    ("DOUBLE", "LREAL"),
+    ("FLOAT64", "LREAL"),
+    ("INT8", "SINT"),
+    ("INT16", "INT"),
+    ("INT32", "DINT"),
+    ("INT64", "LINT"),
+    ("UINT8", "USINT"),
+    ("UINT16", "UINT"),
+    ("UINT32", "UDINT"),
+    ("UINT64", "ULINT"),
+    ("UNSIGNED", "UINT"),
+    ("STR", "STRING"),
+    ("TEXT", "STRING"),
+    ("TIMER", "TON"),
+    ("COUNT", "CTU"),
+    ("DURATION", "TIME"),
+];
+
+impl<'s> Declarations<'s> {
+    pub(super) fn resolve_type_slot(&mut self, at: usize) -> Option<Resolved> {
+        let decl = self.types[at].decl;
+        let scope = Rc::new(Scope::default());
+        let doc = decl.doc.clone();
+        let mut resolved = self.resolve_type_named(&decl.ty, &scope, decl.name.text, doc)?;
+        if let Some(initial) = &decl.initial {
+            resolved.initial = self.initial(initial, &resolved, &scope)?;
+        }
+        Some(resolved)
+    }
+
+    /// The type of a declared variable, with the variable's own initial value.
+    pub(super) fn declared_type(
+        &mut self,
+        decl: &'s ast::VarDecl<'s>,
+        scope: &Rc<Scope<'s>>,
+        name: &str,
+    ) -> Option<Resolved> {
+        let mut resolved = self.resolve_type_named(&decl.ty, scope, name, None)?;
+        if let Some(initial) = &decl.initial {
+            // A refused value has been reported; the type is known all the same.
+            let value = self.initial(initial, &resolved, scope);
+            resolved.initial = value.unwrap_or(resolved.initial);
+        }
+        self.count_constants(&mut resolved, decl);
+        Some(resolved)
+    }
+
+    /// Refuses an initial value with which all of them would hold too many constants: a structure
+    /// of structures of structures holds very many soon.
+    fn count_constants(&mut self, resolved: &mut Resolved, decl: &ast::VarDecl<'s>) {
+        let own = constants(&resolved.initial).saturating_mul(decl.names.len());
+        if self.table.constants.saturating_add(own) <= MAX_CONSTANTS {
+            self.table.constants += own;
+            return;
+        }
+        resolved.initial = Const::Zero;
+        let message = format!("the initial values hold more than {MAX_CONSTANTS} constants");
+        self.report(Diagnostic::new(Code::E0901, decl.span, message).label(format!("{own} of them are here")));
+    }
+
+    /// `name` is what an anonymous structure or enumeration is called after.
+    pub(super) fn resolve_type_named(
+        &mut self,
+        spec: &'s ast::TypeSpec<'s>,
+        scope: &Rc<Scope<'s>>,
+        name: &str,
+        doc: Option<String>,
+    ) -> Option<Resolved> {
+        match &spec.kind {
+            TypeKind::Named(path) => self.resolve_path(path, spec.span),
+            TypeKind::String { wide: true, .. } => {
+                self.not_supported(spec.span, "WSTRING");
+                None
+            }
+            TypeKind::String { wide: false, capacity } => self.string(capacity.as_deref(), scope, spec.span),
+            TypeKind::Subrange { base, low, high } => self.subrange(*base, low, high, scope),
+            TypeKind::Array { bounds, element } => self.array_type(bounds, element, scope, name, spec.span),
+            TypeKind::Struct(members) => {
+                for address in members.iter().filter_map(|it| it.address) {
+                    self.not_supported(address.span, "the address of a structure's member");
+                }
+                self.structure(members, scope, name, doc, spec.span)
+            }
+            TypeKind::Enum { base, values } => self.enumeration(*base, values, scope, name, doc, spec.span),
+            // The parser has said so.
+            TypeKind::Unsupported(_) | TypeKind::Error => None,
+        }
+    }
+
+    fn resolve_path(&mut self, path: &[ast::Name<'s>], span: Span) -> Option<Resolved> {
+        match path {
+            [name] => self.resolve_name(*name),
+            [family, name] => self.resolve_qualified(*family, *name),
+            _ => {
+                self.error(Code::E0102, span, "a type is named by at most a family and a name");
+                None
+            }
+        }
+    }
+
+    fn resolve_qualified(&mut self, family: ast::Name<'s>, name: ast::Name<'s>) -> Option<Resolved> {
+        let Some(it) = Family::named(family.text) else {
+            let names = Family::ALL.map(Family::name);
+            self.report(
+                Diagnostic::new(Code::E0102, family.span, format!("there is no block family `{}`", family.text))
+                    .help(format!("the families are {}", list(&names))),
+            );
+            return None;
+        };
+        // What all systems share needs no family of its own.
+        let Some(block) = self.block_in(it, name.text).or_else(|| dialect::shared_block(name.text)) else {
+            self.report(no_such_block(it, name));
+            return None;
+        };
+        Some(block_type(block))
+    }
+
+    fn resolve_name(&mut self, name: ast::Name<'s>) -> Option<Resolved> {
+        if let Some(elementary) = Elementary::named(name.text) {
+            return Some(Resolved::plain(Type::Elementary(elementary)));
+        }
+        match self.names.type_named(name.text) {
+            Some(Entry::Type(at)) => return self.named_type(at),
+            Some(Entry::Pou(at)) => return self.instance_type(at, name),
+            Some(Entry::Global(_)) | None => {}
+        }
+        if let Some(block) = self.bare_block(name.text, name.span) {
+            return Some(block_type(block));
+        }
+        self.report_unknown_type(name);
+        None
+    }
+
+    /// The state of a FUNCTION_BLOCK: the type of its instances.
+    fn instance_type(&mut self, at: usize, name: ast::Name<'s>) -> Option<Resolved> {
+        let pou = self.pous[at].ast;
+        if pou.kind != ast::PouKind::FunctionBlock {
+            let kind = if pou.kind == ast::PouKind::Program { "PROGRAM" } else { "FUNCTION" };
+            self.report(
+                Diagnostic::new(Code::E0102, name.span, format!("`{}` is a {kind}, not a type", name.text))
+                    .label("a FUNCTION_BLOCK or a type is expected here")
+                    .other(pou.name.span, "declared here"),
+            );
+            return None;
+        }
+        let signature = self.signature(at)?;
+        Some(instance_of(&self.program, signature.state?))
+    }
+
+    fn report_unknown_type(&mut self, name: ast::Name<'s>) {
+        if NOT_YET.iter().any(|it| it.eq_ignore_ascii_case(name.text)) {
+            self.not_supported(name.span, &format!("the type {}", name.text.to_ascii_uppercase()));
+            return;
+        }
+        if let Some(error) = block_of_another_dialect(self.dialect(name.span), name) {
+            self.report(error);
+            return;
+        }
+        let dialect = self.dialect(name.span);
+        let blocks = staunch_runtime::BLOCKS.iter().map(|it| it.name);
+        let blocks = blocks.filter(|it| dialect::bare_block(dialect, it).is_some());
+        let elementary = Elementary::ALL.iter().map(|it| it.name());
+        let candidates = self.names.type_names().chain(elementary).chain(blocks).chain(["STRING"]);
+        let near = nearest(name.text, candidates).map(str::to_owned);
+        let foreign =
+            FOREIGN.iter().find(|(it, _)| it.eq_ignore_ascii_case(name.text)).map(|(_, ours)| (*ours).to_owned());
+        let near = foreign.or(near);
+        let mut error =
+            Diagnostic::new(Code::E0102, name.span, format!("there is no type `{}`", name.text)).label("unknown type");
+        if name.text.eq_ignore_ascii_case("VOID") {
+            error = error.help("a FUNCTION without a result has no `:` and no type behind its name");
+        } else if let Some(near) = near {
+            error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
+        }
+        self.report(error);
+    }
+
+    fn string(&mut self, capacity: Option<&'s ast::Expr<'s>>, scope: &Rc<Scope<'s>>, span: Span) -> Option<Resolved> {
+        let default = if self.dialect(span) == Dialect::Iec { 254 } else { 80 };
+        let Some(expr) = capacity else { return Some(Resolved::plain(Type::String(default))) };
+        let length = self.constant_integer(expr, scope)?;
+        if !(1..=MAX_CAPACITY).contains(&length) {
+            self.report(
+                Diagnostic::new(Code::E0206, expr.span, format!("a STRING holds 1 to {MAX_CAPACITY} bytes"))
+                    .label(format!("this is {length}")),
+            );
+            return None;
+        }
+        Some(Resolved::plain(Type::String(u16::try_from(length).unwrap_or(u16::MAX))))
+    }
+
+    fn subrange(
+        &mut self,
+        base: ast::Name<'s>,
+        low: &'s ast::Expr<'s>,
+        high: &'s ast::Expr<'s>,
+        scope: &Rc<Scope<'s>>,
+    ) -> Option<Resolved> {
+        let resolved = self.resolve_name(base)?;
+        let made_of = match resolved.ty.elementary().filter(|it| it.is_integer()) {
+            Some(it) => it,
+            None => {
+                self.report(
+                    Diagnostic::new(Code::E0407, base.span, "a subrange is made of an integer type")
+                        .label(format!("this is {}", self.program.type_name(resolved.ty))),
+                );
+                return None;
+            }
+        };
+        let bounds = (self.constant_integer(low, scope)?, self.constant_integer(high, scope)?);
+        let whole = self.program.range(resolved.ty).or(made_of.lane().range())?;
+        if bounds.0 > bounds.1 || bounds.0 < whole.0 || bounds.1 > whole.1 {
+            self.report(
+                Diagnostic::new(
+                    Code::E0407,
+                    low.span.to(high.span),
+                    format!(
+                        "the bounds of a subrange of `{}` lie between {} and {}, the lower one first",
+                        base.text, whole.0, whole.1
+                    ),
+                )
+                .label(format!("these are {} and {}", bounds.0, bounds.1)),
+            );
+            return None;
+        }
+        let ty = Type::Subrange(made_of, self.intern_bounds(bounds));
+        let initial = self.least(ty);
+        Some(Resolved { ty, initial })
+    }
+
+    fn intern_bounds(&mut self, bounds: (i128, i128)) -> BoundsId {
+        let known = self.program.bounds.iter().position(|it| *it == bounds);
+        BoundsId::next(known.unwrap_or_else(|| {
+            self.program.bounds.push(bounds);
+            self.program.bounds.len() - 1
+        }))
+    }
+
+    fn array_type(
+        &mut self,
+        bounds: &'s [Bound<'s>],
+        element: &'s ast::TypeSpec<'s>,
+        scope: &Rc<Scope<'s>>,
+        name: &str,
+        span: Span,
+    ) -> Option<Resolved> {
+        let mut resolved = self.resolve_type_named(element, scope, name, None);
+        let mut dimensions = Vec::new();
+        for bound in bounds {
+            match bound {
+                Bound::Open(span) => {
+                    self.not_supported(*span, "ARRAY[*]");
+                    resolved = None;
+                }
+                Bound::Range(low, high) => dimensions.push((low, high)),
+            }
+        }
+        for (low, high) in dimensions.into_iter().rev() {
+            let (first, last) = (self.constant_integer(low, scope), self.constant_integer(high, scope));
+            let (Some(first), Some(last), Some(inner)) = (first, last, resolved.take()) else { continue };
+            resolved = self.dimension(first, last, inner, low.span.to(high.span));
+        }
+        let resolved = resolved?;
+        if self.size_of(resolved.ty) > MAX_SIZE {
+            self.error(Code::E0901, span, "this array is larger than 1 GiB");
+            return None;
+        }
+        Some(resolved)
+    }
+
+    fn dimension(&mut self, low: i128, high: i128, element: Resolved, span: Span) -> Option<Resolved> {
+        if low > high {
+            self.report(
+                Diagnostic::new(Code::E0406, span, "the bounds of an array stand in the wrong order")
+                    .label(format!("{low} is above {high}"))
+                    .fix(span, format!("{high}..{low}")),
+            );
+            return None;
+        }
+        let (Ok(low), Ok(high)) = (i64::try_from(low), i64::try_from(high)) else {
+            self.error(Code::E0406, span, "the bounds of an array are LINT values");
+            return None;
+        };
+        if self.dimensions(element.ty) >= MAX_DIMENSIONS {
+            self.error(Code::E0901, span, format!("an array has at most {MAX_DIMENSIONS} dimensions"));
+            return None;
+        }
+        let count = high.abs_diff(low).saturating_add(1);
+        if count.saturating_mul(self.size_of(element.ty).max(1)) > MAX_SIZE {
+            self.error(Code::E0901, span, "this array is larger than 1 GiB");
+            return None;
+        }
+        let initial = match &element.initial {
+            Const::Zero => Const::Zero,
+            other => Const::Array(vec![(count, other.clone())]),
+        };
+        Some(Resolved { ty: self.intern_array(low, high, element), initial })
+    }
+
+    fn dimensions(&self, mut ty: Type) -> usize {
+        let mut count = 0;
+        while let Type::Array(id) = ty {
+            ty = self.program.array(id).element;
+            count += 1;
+        }
+        count
+    }
+
+    fn intern_array(&mut self, low: i64, high: i64, element: Resolved) -> Type {
+        let array = Array { low, high, element: element.ty };
+        let known = self.program.arrays.iter().zip(&self.table.elements);
+        if let Some(at) = known.into_iter().position(|(it, of)| *it == array && *of == element) {
+            return Type::Array(ArrayId::next(at));
+        }
+        let id = ArrayId::next(self.program.arrays.len());
+        self.program.arrays.push(array);
+        self.table.elements.push(element);
+        Type::Array(id)
+    }
+
+    fn structure(
+        &mut self,
+        members: &'s [ast::VarDecl<'s>],
+        scope: &Rc<Scope<'s>>,
+        name: &str,
+        doc: Option<String>,
+        span: Span,
+    ) -> Option<Resolved> {
+        let block = ast::VarBlock {
+            kind: ast::VarKind::Var,
+            constant: None,
+            retain: None,
+            non_retain: None,
+            persistent: None,
+            vars: Vec::new(),
+            span,
+        };
+        let mut seen = Scope::default();
+        let mut fields = Vec::new();
+        let mut complete = true;
+        for decl in members {
+            let owner = decl.names.first().map_or(name, |it| it.text);
+            let Some(resolved) = self.declared_type(decl, scope, owner).map(Rc::new) else {
+                complete = false;
+                continue;
+            };
+            for member in &decl.names {
+                let place = staunch_ir::Place::root(staunch_ir::Root::Instance, resolved.ty);
+                let variable = self.variable(*member, &block, Rc::clone(&resolved), place);
+                fields.push(self.field(*member, &resolved, &block, decl));
+                self.enter_variable(&mut seen, variable);
+            }
+        }
+        if fields.is_empty() && complete {
+            self.error(Code::E0408, span, "a structure has at least one member");
+            return None;
+        }
+        let initial = struct_initial(&fields);
+        let location = self.location(span);
+        let id = self.push_struct(Struct { name: name.to_owned(), doc, location, fields });
+        complete.then_some(Resolved { ty: Type::Struct(id), initial })
+    }
+
+    /// Refuses what a call would have to copy.
+    pub(super) fn refuse_copy(&mut self, ty: Type, name: ast::Name<'s>, help: &str) -> Option<()> {
+        let Some(message) = self.held_instance(ty) else { return Some(()) };
+        self.report(
+            Diagnostic::new(Code::E0210, name.span, message).label("a call would copy it").help(help.to_owned()),
+        );
+        None
+    }
+
+    fn enumeration(
+        &mut self,
+        base: Option<ast::Name<'s>>,
+        values: &'s [ast::EnumValue<'s>],
+        scope: &Rc<Scope<'s>>,
+        name: &str,
+        doc: Option<String>,
+        span: Span,
+    ) -> Option<Resolved> {
+        let base = match base {
+            None => Elementary::Int,
+            Some(name) => match Elementary::named(name.text).filter(|it| it.lane().is_integer() && !it.is_time()) {
+                Some(base) => base,
+                None => {
+                    self.error(Code::E0407, name.span, "the base of an enumeration is an integer or bit-string type");
+                    return None;
+                }
+            },
+        };
+        let mut enumerators: Vec<Enumerator> = Vec::new();
+        let mut next = 0i128;
+        for value in values {
+            if let Some(expr) = &value.value {
+                next = self.constant_integer(expr, scope)?;
+            }
+            let Some(number) = base.lane().integer(next) else {
+                self.report(
+                    Diagnostic::new(Code::E0202, value.name.span, format!("{next} does not fit {}", base.name()))
+                        .label(format!("the enumeration's values are of type {}", base.name())),
+                );
+                return None;
+            };
+            if let Some(first) = enumerators.iter().position(|it| it.name.eq_ignore_ascii_case(value.name.text)) {
+                self.report(
+                    Diagnostic::new(Code::E0103, value.name.span, format!("`{}` is declared twice", value.name.text))
+                        .other(values[first].name.span, "first declared here"),
+                );
+            }
+            enumerators.push(Enumerator { name: value.name.text.to_owned(), doc: value.doc.clone(), value: number });
+            next += 1;
+        }
+        let Some(first) = enumerators.first().map(|it| it.value) else {
+            self.error(Code::E0408, span, "an enumeration has at least one value");
+            return None;
+        };
+        let id = EnumId::next(self.program.enums.len());
+        for (value, declared) in values.iter().zip(&enumerators) {
+            self.names.anonymous_enumerators.entry(Key(value.name.text)).or_insert((Type::Enum(id), declared.value));
+        }
+        let location = self.location(span);
+        self.program.enums.push(Enum { name: name.to_owned(), doc, location, base, values: enumerators });
+        Some(Resolved { ty: Type::Enum(id), initial: scalar_initial(first) })
+    }
+}
+
+/// How many constants an initial value is written with; a repeated one counts once.
+fn constants(initial: &Const) -> usize {
+    match initial {
+        Const::Zero | Const::Scalar(_) | Const::Text(_) => 1,
+        Const::Array(runs) => runs.iter().map(|(_, it)| constants(it)).sum(),
+        Const::Struct(fields) => fields.iter().map(constants).sum(),
+    }
+}
+
+fn block_type(block: staunch_ir::BlockId) -> Resolved {
+    let pins = block.info().pins;
+    let initial = if pins.iter().any(|pin| pin.starts_true) {
+        let value = |pin: &staunch_runtime::Pin| {
+            if pin.starts_true { Const::Scalar(Value::Bool(true)) } else { Const::Zero }
+        };
+        Const::Struct(pins.iter().map(value).collect())
+    } else {
+        Const::Zero
+    };
+    Resolved { ty: Type::Block(block), initial }
+}

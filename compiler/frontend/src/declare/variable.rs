@@ -1,0 +1,187 @@
+use crate::ast;
+use crate::names::Entry;
+use crate::types::declarations::{Declarations, GlobalSlot};
+use crate::types::scope::{Scope, Variable};
+use crate::types::table::Resolved;
+use staunch_ir::{Field, Place, Section};
+use std::cell::Cell;
+use std::rc::Rc;
+
+pub(crate) fn section(kind: ast::VarKind) -> Section {
+    match kind {
+        ast::VarKind::Var | ast::VarKind::Stat => Section::Internal,
+        ast::VarKind::Input => Section::Input,
+        ast::VarKind::Output => Section::Output,
+        ast::VarKind::InOut => Section::InOut,
+        ast::VarKind::Temp => Section::Temp,
+        ast::VarKind::Global => Section::Global,
+        ast::VarKind::External => Section::External,
+    }
+}
+
+/// RETAIN, or its synonym PERSISTENT.
+pub fn is_declared_retain(block: &ast::VarBlock<'_>) -> bool {
+    block.retain.is_some() || block.persistent.is_some()
+}
+
+impl<'s> Declarations<'s> {
+    pub(super) fn variable(
+        &self,
+        name: ast::Name<'s>,
+        block: &ast::VarBlock<'s>,
+        resolved: Rc<Resolved>,
+        place: Place,
+    ) -> Variable<'s> {
+        Variable {
+            name,
+            place,
+            section: section(block.kind),
+            constant: block.constant.is_some(),
+            retain: self.is_kept(block, resolved.ty),
+            resolved,
+            used: Rc::new(Cell::new(false)),
+        }
+    }
+
+    fn retention(&self, block: &ast::VarBlock<'s>, ty: staunch_ir::Type) -> staunch_ir::Retain {
+        match (self.is_kept(block, ty), block.non_retain) {
+            (true, _) => staunch_ir::Retain::Kept,
+            (false, Some(_)) => staunch_ir::Retain::Anew,
+            (false, None) => staunch_ir::Retain::Inherited,
+        }
+    }
+
+    /// Whether a variable of the block keeps its value over a restart.
+    fn is_kept(&self, block: &ast::VarBlock<'s>, ty: staunch_ir::Type) -> bool {
+        is_declared_retain(block) || self.is_retentive(ty)
+    }
+
+    /// The counter in a variable, by its path, that RETAIN does not keep: Cscape has R_CTU and R_CTD.
+    fn lost_counter(&self, path: String, ty: staunch_ir::Type) -> Option<String> {
+        match ty {
+            staunch_ir::Type::Block(id) => {
+                let info = id.info();
+                let is_lost = info.retention == staunch_runtime::Retention::Inputs && info.facts.kept.is_none();
+                is_lost.then_some(path)
+            }
+            staunch_ir::Type::Array(id) => self.lost_counter(path, self.program.array(id).element),
+            staunch_ir::Type::Struct(id) => {
+                let mut fields = self.program.structure(id).fields.iter();
+                fields.find_map(|it| self.lost_counter(format!("{path}.{}", it.name), it.ty))
+            }
+            staunch_ir::Type::Elementary(_)
+            | staunch_ir::Type::Subrange(..)
+            | staunch_ir::Type::String(_)
+            | staunch_ir::Type::Enum(_) => None,
+        }
+    }
+
+    /// Reports a block that is both RETAIN and NON_RETAIN, or CONSTANT and one of them.
+    pub(super) fn check_retain_once(&mut self, block: &ast::VarBlock<'s>) {
+        if let (Some(constant), Some(retain)) = (block.constant, block.retain.or(block.persistent).or(block.non_retain))
+        {
+            let word = self.log.sources.text(retain);
+            let message = format!("a variable is CONSTANT or {word}, not both");
+            self.report(
+                crate::Diagnostic::new(crate::Code::E0403, retain, message)
+                    .label("a CONSTANT has its value at each start")
+                    .other(constant, "CONSTANT here")
+                    .help(format!("delete {word}"))
+                    .fix(retain, ""),
+            );
+        }
+        if let (Some(kept), Some(not)) = (block.retain.or(block.persistent), block.non_retain) {
+            self.report(
+                crate::Diagnostic::new(crate::Code::E0403, not, "a variable is RETAIN or NON_RETAIN, not both")
+                    .label("this contradicts the other word")
+                    .other(kept, "this keeps the values over a restart")
+                    .help("delete one of the two"),
+            );
+        }
+    }
+
+    /// Reports RETAIN where it keeps nothing.
+    pub(super) fn check_retain(&mut self, block: &ast::VarBlock<'s>, ty: staunch_ir::Type, name: ast::Name<'s>) {
+        if !is_declared_retain(block) {
+            return;
+        }
+        if let Some(path) = self.lost_counter(name.text.to_owned(), ty) {
+            self.report(
+                crate::Diagnostic::new(
+                    crate::Code::W0302,
+                    name.span,
+                    format!("RETAIN does not keep the count of `{path}`, a Cscape counter"),
+                )
+                .label("it counts anew after a restart")
+                .help("use R_CTU or R_CTD, with a RETAIN variable for RCV"),
+            );
+        }
+    }
+
+    /// Whether every instance of the type is retentive (Logix tags).
+    fn is_retentive(&self, ty: staunch_ir::Type) -> bool {
+        match ty {
+            staunch_ir::Type::Block(id) => id.info().retention == staunch_runtime::Retention::Always,
+            staunch_ir::Type::Array(id) => self.is_retentive(self.program.array(id).element),
+            staunch_ir::Type::Elementary(_)
+            | staunch_ir::Type::Subrange(..)
+            | staunch_ir::Type::String(_)
+            | staunch_ir::Type::Enum(_)
+            | staunch_ir::Type::Struct(_) => false,
+        }
+    }
+
+    pub(super) fn field(
+        &mut self,
+        name: ast::Name<'s>,
+        resolved: &Resolved,
+        block: &ast::VarBlock<'s>,
+        decl: &ast::VarDecl<'s>,
+    ) -> Field {
+        let address = decl.address.and_then(|it| crate::types::address::parse(it.text));
+        Field {
+            name: crate::types::address::field_name(name.text),
+            ty: resolved.ty,
+            initial: resolved.initial.clone(),
+            section: section(block.kind),
+            retain: self.retention(block, resolved.ty),
+            constant: block.constant.is_some(),
+            address,
+            doc: decl.doc.clone(),
+            location: self.location(name.span),
+        }
+    }
+
+    /// Reports a second variable of the same name in one scope.
+    pub(super) fn enter_variable(&mut self, scope: &mut Scope<'s>, variable: Variable<'s>) {
+        let name = variable.name;
+        if variable.section != Section::External {
+            self.check_spelling(name);
+        }
+        if let Err(first) = scope.insert(variable) {
+            self.report(
+                crate::Diagnostic::new(crate::Code::E0103, name.span, format!("`{}` is declared twice", name.text))
+                    .label("declared again here")
+                    .other(first.span, "first declared here"),
+            );
+        }
+    }
+
+    pub(super) fn external(&mut self, name: ast::Name<'s>) -> Option<Rc<Variable<'s>>> {
+        let Some(Entry::Global(at)) = self.names.get(name.text) else {
+            let near = crate::spelling::nearest(name.text, self.globals.iter().map(|it: &GlobalSlot<'s>| it.name.text));
+            let mut error = crate::Diagnostic::new(
+                crate::Code::E0101,
+                name.span,
+                format!("there is no global variable `{}`", name.text),
+            )
+            .label("VAR_EXTERNAL names a variable of a VAR_GLOBAL");
+            if let Some(near) = near {
+                error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
+            }
+            self.report(error);
+            return None;
+        };
+        self.global(at)
+    }
+}

@@ -1,0 +1,294 @@
+//! The parts of a call: its instance, arguments and targets. They are evaluated in the order in which
+//! they are written, each once, before the first input is stored or passed; what the callee does
+//! changes none of them.
+
+use super::binding::Given;
+use super::checker::Checker;
+use super::operand::Operand;
+use super::order::{Held, Written};
+use super::place::Found;
+use crate::diagnostic::wording::article;
+use crate::types::signature::Formal;
+use crate::{Code, Diagnostic, Span, ast};
+use staunch_ir::{Argument, Block, Conversion, Expr, FieldId, Place, Statement, StatementKind, Type};
+
+/// What a call does with one of its parts.
+#[derive(Clone, Debug)]
+pub(crate) enum Role {
+    Instance,
+    /// It is stored in this field of the instance before the call.
+    Stored(FieldId, Type),
+    /// The statement of the call evaluates it, in this turn; the instance's is 0.
+    Passed(usize),
+    /// A string of another capacity than the VAR_IN_OUT's: it goes in by a copy, cut where it is too
+    /// long, and comes back so.
+    Copied(Place),
+    /// It is assigned after the call.
+    Target(Source, bool),
+    /// It keeps a standard block's count, which is assigned to it after the call.
+    Count(FieldId, Type),
+}
+
+/// What is assigned to a target.
+#[derive(Clone, Debug)]
+pub(crate) enum Source {
+    /// A field of the instance.
+    Field(FieldId, Type),
+    /// What a FUNCTION was given for its output.
+    Variable(Place),
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct Part {
+    pub role: Role,
+    pub span: Span,
+}
+
+/// The parts of a call, as written.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Parts {
+    pub written: Vec<Written>,
+    pub parts: Vec<Part>,
+}
+
+impl Parts {
+    pub fn push(&mut self, held: Held, role: Role, span: Span) {
+        self.written.push(Written::new(held));
+        self.parts.push(Part { role, span });
+    }
+
+    /// The instance, which stands first.
+    pub fn instance(&self) -> Option<&Place> {
+        self.written.first().and_then(Written::place)
+    }
+
+    /// What is passed to the callee for a part.
+    pub fn argument(&self, at: usize) -> Argument {
+        match (&self.parts[at].role, &self.written[at].held) {
+            (Role::Copied(copy), _) => Argument::Reference(copy.clone()),
+            (_, Held::Value(value)) => Argument::Value(value.clone()),
+            (_, Held::Place(place)) => Argument::Reference(place.clone()),
+        }
+    }
+
+    /// The parts with a role that `is` picks, in the order in which they are written.
+    fn with(&self, is: impl Fn(&Role) -> bool) -> Vec<usize> {
+        (0..self.parts.len()).filter(|at| is(&self.parts[*at].role)).collect()
+    }
+
+    /// Says where the statements of the call evaluate each part: stores, copies, the call, copies
+    /// back, and assignments of outputs.
+    fn schedule(&mut self) {
+        let stored = self.with(|it| matches!(it, Role::Stored(..)));
+        let copied = self.with(|it| matches!(it, Role::Copied(_)));
+        let targets = self.with(|it| matches!(it, Role::Target(..) | Role::Count(..)));
+        let call = stored.len() + copied.len();
+        for (at, part) in self.parts.iter().enumerate() {
+            let number = |list: &[usize]| list.iter().position(|it| *it == at).unwrap_or_default();
+            let (first, last) = match part.role {
+                Role::Instance => ((0, 0), call + copied.len() + targets.len()),
+                Role::Stored(..) => ((number(&stored), 1), number(&stored)),
+                Role::Passed(turn) => ((call, turn), call),
+                Role::Copied(_) => ((stored.len() + number(&copied), 0), call + 1 + number(&copied)),
+                Role::Target(..) | Role::Count(..) => {
+                    let at = call + 1 + copied.len() + number(&targets);
+                    ((at, 0), at)
+                }
+            };
+            self.written[at].first = first;
+            self.written[at].last = last;
+        }
+    }
+}
+
+/// The parameters that a call gives, in the order in which it writes them.
+pub(crate) fn as_written(given: &[Given<'_, '_>]) -> Vec<usize> {
+    let start = |at: &usize| match given[*at] {
+        Given::Nothing | Given::Output { target: None, .. } => None,
+        Given::Value(expr) | Given::Output { target: Some(expr), .. } => Some(expr.span.start),
+    };
+    let mut order: Vec<_> = (0..given.len()).filter(|at| start(at).is_some()).collect();
+    order.sort_by_key(start);
+    order
+}
+
+impl<'s> Checker<'_, 's> {
+    /// Evaluates the next part, a value.
+    pub(crate) fn value_part(&mut self, parts: &mut Parts, expr: &ast::Expr<'s>, ty: Type, role: Role) -> Option<()> {
+        let value = self.after_parts(&mut parts.written, |this| this.value(expr, ty))?;
+        parts.push(Held::Value(value), role, expr.span);
+        Some(())
+    }
+
+    /// Evaluates the next part, what an output is connected with.
+    pub(crate) fn target_part(
+        &mut self,
+        parts: &mut Parts,
+        target: &ast::Expr<'s>,
+        negated: bool,
+        source: Source,
+    ) -> Option<()> {
+        let found = self.after_parts(&mut parts.written, |this| this.place(target))?;
+        if !self.writable(&found, target.span) {
+            return None;
+        }
+        self.note_assigned(&found.place, target.span);
+        parts.push(Held::Place(found.place), Role::Target(source, negated), target.span);
+        Some(())
+    }
+
+    /// Evaluates the next part, the variable given for a VAR_IN_OUT.
+    pub(crate) fn in_out_part(
+        &mut self,
+        parts: &mut Parts,
+        formal: &Formal<'s>,
+        turn: usize,
+        expr: &ast::Expr<'s>,
+    ) -> Option<()> {
+        let found = self.after_parts(&mut parts.written, |this| this.variable_argument(expr, formal.name.text))?;
+        let (place, ty) = (found.place, formal.resolved.ty);
+        if let (Type::String(_), Type::String(_)) = (place.ty, ty)
+            && place.ty != ty
+        {
+            self.note_assigned(&place, expr.span);
+            let copy = self.temporary("text", ty);
+            parts.push(Held::Place(place), Role::Copied(copy), expr.span);
+            return Some(());
+        }
+        if place.ty != ty {
+            self.report_other_type(formal, place.ty, expr.span);
+            return None;
+        }
+        self.note_passed(&place, expr.span, formal.name.span);
+        parts.push(Held::Place(place), Role::Passed(turn), expr.span);
+        Some(())
+    }
+
+    pub(crate) fn report_no_variable(&mut self, formal: &Formal<'s>, owner: &str, span: Span) {
+        let name = formal.name.text;
+        self.report(
+            Diagnostic::new(Code::E0303, span, format!("`{owner}` needs a variable for `{name}`"))
+                .label("a VAR_IN_OUT is given at every call")
+                .other(formal.name.span, "declared here")
+                .help(format!("write `{name} := variable`")),
+        );
+    }
+
+    fn report_other_type(&mut self, formal: &Formal<'s>, ty: Type, span: Span) {
+        let (wants, has) = (self.type_name(formal.resolved.ty), self.type_name(ty));
+        let message = format!("`{}` is {}, found {has}", formal.name.text, article(&wants));
+        self.report(
+            Diagnostic::new(Code::E0201, span, message)
+                .label("a VAR_IN_OUT takes a variable of exactly its own type")
+                .other(formal.name.span, "declared here"),
+        );
+    }
+
+    /// An argument that must be a variable which may be written.
+    pub(crate) fn variable_argument(&mut self, expr: &ast::Expr<'s>, name: &str) -> Option<Found<'s>> {
+        use ast::ExprKind as Ast;
+        let names_storage = matches!(
+            expr.kind,
+            Ast::Name(_) | Ast::Member(..) | Ast::Index(..) | Ast::Address(_) | Ast::Paren(_) | Ast::Deref(_)
+        );
+        if !names_storage {
+            self.report(
+                Diagnostic::new(Code::E0306, expr.span, format!("`{name}` needs a variable"))
+                    .label("this is a value; the call writes to what is given here"),
+            );
+            return None;
+        }
+        let found = self.place(expr)?;
+        self.may_be_given_away(&found, expr.span).then_some(found)
+    }
+
+    /// Makes the statements of a call from its parts.
+    pub(crate) fn perform(
+        &mut self,
+        mut parts: Parts,
+        call: &dyn Fn(&Parts) -> Option<StatementKind>,
+        span: Span,
+    ) -> Option<Parts> {
+        parts.schedule();
+        let mut draft = self.until_outputs(&parts, call, span)?;
+        for at in parts.with(|it| matches!(it, Role::Target(..) | Role::Count(..))) {
+            let place = parts.written[at].place()?.clone();
+            let location = self.at(parts.parts[at].span);
+            draft.push(Statement::assign(place.clone(), Expr::load(place, location), location));
+        }
+        let Parts { written, .. } = &mut parts;
+        self.settle(written, &draft);
+        let statements = self.until_outputs(&parts, call, span)?;
+        self.block.extend(statements);
+        for at in parts.with(|it| matches!(it, Role::Target(..) | Role::Count(..))) {
+            self.connect(&parts, at)?;
+        }
+        Some(parts)
+    }
+
+    /// The statements of a call but for the assignments of its outputs.
+    fn until_outputs(
+        &mut self,
+        parts: &Parts,
+        call: &dyn Fn(&Parts) -> Option<StatementKind>,
+        span: Span,
+    ) -> Option<Block> {
+        let mut statements = Block::new();
+        let mut back = Block::new();
+        for (written, part) in parts.written.iter().zip(&parts.parts) {
+            if let (Role::Stored(field, ty), Some(value)) = (&part.role, written.value()) {
+                let target = parts.instance()?.clone().field(*field, *ty);
+                statements.push(Statement::assign(target, value.clone(), self.at(part.span)));
+            }
+        }
+        for (written, part) in parts.written.iter().zip(&parts.parts) {
+            if let (Role::Copied(copy), Some(place)) = (&part.role, written.place()) {
+                let at = self.at(part.span);
+                let cut = |from: &Place, ty| Expr::convert(Conversion::Value, ty, Expr::load(from.clone(), at), at);
+                statements.push(Statement::assign(copy.clone(), cut(place, copy.ty), at));
+                back.push(Statement::assign(place.clone(), cut(copy, place.ty), at));
+            }
+        }
+        statements.push(Statement::new(call(parts)?, self.at(span)));
+        statements.append(&mut back);
+        Some(statements)
+    }
+
+    /// An output's value for a variable of type `ty`. It is the variable that is written at `span`, so
+    /// that no conversion can be written around it.
+    fn output(&mut self, value: Expr, ty: Type, span: Span) -> Option<Expr> {
+        let reported = self.decl.log.diagnostics.len();
+        let found = self.type_name(value.ty);
+        let value = self.coerce(Operand::Typed(value), ty, span);
+        if value.is_none() {
+            let wanted = self.type_name(ty);
+            for error in self.decl.log.diagnostics[reported..].iter_mut().filter(|it| it.fix.is_some()) {
+                error.fix = None;
+                error.help = Some(format!(
+                    "connect it to a variable of type {found}, and convert that to {wanted} after the call"
+                ));
+            }
+        }
+        value
+    }
+
+    /// `OUT => target`, after the call.
+    fn connect(&mut self, parts: &Parts, at: usize) -> Option<()> {
+        let Part { role, span } = &parts.parts[at];
+        let target = parts.written[at].place()?.clone();
+        let (source, negated) = match role {
+            Role::Target(Source::Field(field, ty), negated) => (parts.instance()?.clone().field(*field, *ty), *negated),
+            Role::Target(Source::Variable(place), negated) => (place.clone(), *negated),
+            Role::Count(field, ty) => (parts.instance()?.clone().field(*field, *ty), false),
+            Role::Instance | Role::Stored(..) | Role::Passed(_) | Role::Copied(_) => return None,
+        };
+        let location = self.at(*span);
+        let mut value = Expr::load(source, location).read();
+        if negated {
+            value = self.not(value, *span)?;
+        }
+        let value = self.output(value, target.ty, *span)?;
+        self.assign(target, value, *span);
+        Some(())
+    }
+}

@@ -1,0 +1,395 @@
+//! Calls of instances: standard blocks, a user's FUNCTION_BLOCKs, and Logix instructions.
+
+use super::argument::{Parts, Role, Source, as_written};
+use super::binding::{Given, Parameter};
+use super::checker::Checker;
+use super::operand::Operand;
+use super::order::{Held, Written};
+use super::place::{Access, Found};
+use crate::diagnostic::wording::article;
+use crate::types::signature::{Target, pin_place};
+use crate::{Code, Diagnostic, Span, ast};
+use staunch_ir::{BlockId, Conversion, Expr, FieldId, Place, RoutineId, Section, StatementKind, StructId, Type};
+use staunch_runtime::{Direction, Family};
+
+impl<'s> Checker<'_, 's> {
+    pub(crate) fn instance_call(
+        &mut self,
+        callee: &ast::Expr<'s>,
+        arguments: &[ast::Argument<'s>],
+        span: Span,
+    ) -> Option<()> {
+        let found = self.place(callee)?;
+        if !super::migration::only_resets(arguments) {
+            self.note_called(&found.place, callee.span);
+        }
+        match found.place.ty {
+            Type::Block(id) => self.standard_block(found, id, arguments, callee.span, span),
+            Type::Struct(id) if self.decl.is_instance(id) => self.user_block(found, id, arguments, callee.span, span),
+            Type::Array(_) => {
+                self.report_array_called(callee, arguments);
+                None
+            }
+            other => {
+                let ty = self.type_name(other);
+                self.report(
+                    Diagnostic::new(Code::E0305, callee.span, format!("a variable of type {ty} cannot be called"))
+                        .label("this is not an instance of a block"),
+                );
+                None
+            }
+        }
+    }
+
+    /// A counter or timer that is called twice in a scan sees two edges, or none.
+    fn note_called(&mut self, place: &Place, span: Span) {
+        if let Some(first) = self.called.note(place, span) {
+            let text = self.decl.log.sources.text(span).to_owned();
+            let error = Diagnostic::new(Code::W0507, span, format!("`{text}` is called twice in a scan"))
+                .label("called again here")
+                .other(first, "first called here")
+                .help("declare a second instance, or call it once and use its outputs");
+            self.report(error);
+        }
+    }
+
+    fn callable(&mut self, found: &Found<'s>, span: Span) -> Option<()> {
+        match found.access {
+            Access::Constant(name) => {
+                self.error(Code::E0501, span, format!("`{}` is a CONSTANT and cannot be called", name.text));
+                None
+            }
+            Access::Inner(_) => self.may_be_given_away(found, span).then_some(()),
+            Access::Write | Access::OwnInput(_) | Access::Output(_) => Some(()),
+        }
+    }
+
+    fn standard_block(
+        &mut self,
+        found: Found<'s>,
+        id: BlockId,
+        arguments: &[ast::Argument<'s>],
+        callee: Span,
+        span: Span,
+    ) -> Option<()> {
+        self.callable(&found, callee)?;
+        let info = id.info();
+        if info.instructions.iter().any(|it| !it.name.is_empty()) {
+            let names: Vec<_> = info.instructions.iter().map(|it| it.name).collect();
+            self.report(
+                Diagnostic::new(Code::E0305, callee, format!("{} is not called itself", article(info.name)))
+                    .label(format!("it is worked on by {}", crate::diagnostic::wording::list(&names)))
+                    .help(format!("write `{}({}, …)`", names[0], self.decl.log.sources.text(callee))),
+            );
+            return None;
+        }
+        let mut parameters: Vec<_> = info
+            .pins
+            .iter()
+            .filter(|it| matches!(it.direction, Direction::Input | Direction::Output))
+            .map(|it| Parameter { name: it.name, section: section(it.direction) })
+            .collect();
+        if let Some(kept) = info.facts.kept {
+            let at = info.inputs().count();
+            parameters.insert(at, Parameter { name: kept.pin, section: Section::InOut });
+        }
+        let moved = self.arguments_by_own_names(id, arguments);
+        let arguments = moved.as_deref().unwrap_or(arguments);
+        let given = self.bind(info.name, &parameters, arguments, |name| super::unresolved::unknown_pin(id, name))?;
+        if self.decl.dialect(span).wants_all_positions() {
+            self.require_all(info.name, &parameters, &given, arguments, |_, _| false, span)?;
+        }
+        let mut parts = Parts::default();
+        let place = found.place;
+        parts.push(Held::Place(place.clone()), Role::Instance, callee);
+        let mut complete = true;
+        let mut inputs = vec![None; info.inputs().count()];
+        for at in as_written(&given) {
+            let parameter = &parameters[at];
+            let made = match given[at] {
+                Given::Value(expr) if parameter.section == Section::InOut => {
+                    self.count_part(&mut parts, &place, id, expr)
+                }
+                Given::Value(expr) => {
+                    let number = info.inputs().position(|it| it.name == parameter.name)?;
+                    inputs[number] = Some(parts.written.len());
+                    let (_, ty) = pin(id, parameter.name)?;
+                    self.pin_part(&mut parts, id, expr, ty, 1 + number)
+                }
+                Given::Output { target: Some(target), negated } => {
+                    let (field, ty) = pin(id, parameter.name)?;
+                    self.target_part(&mut parts, target, negated, Source::Field(field, ty))
+                }
+                Given::Nothing | Given::Output { target: None, .. } => Some(()),
+            };
+            complete &= made.is_some();
+        }
+        if info.facts.kept.is_some() && !parameters.iter().zip(&given).any(|(it, given)| is_given(it, given)) {
+            self.report_no_count(callee);
+            return None;
+        }
+        if !complete {
+            return None;
+        }
+        let at = self.at(span);
+        // What is left out holds what it was given last.
+        let kept = |place: &Place, pin: usize| {
+            let name = info.inputs().nth(pin).map(|it| it.name)?;
+            Some(Expr::load(pin_place(place.clone(), id, name), at))
+        };
+        let call = |parts: &Parts| {
+            let block = parts.instance()?.clone();
+            let value = |(pin, part): (usize, &Option<usize>)| match part {
+                Some(at) => parts.written[*at].value().cloned(),
+                None => kept(&block, pin),
+            };
+            let inputs = inputs.iter().enumerate().map(value).collect::<Option<_>>()?;
+            Some(StatementKind::CallBlock { block, instruction: 0, inputs })
+        };
+        self.perform(parts, &call, span).map(drop)
+    }
+
+    /// Evaluates the next part, what is given for an input of a standard block.
+    fn pin_part(&mut self, parts: &mut Parts, id: BlockId, expr: &ast::Expr<'s>, ty: Type, turn: usize) -> Option<()> {
+        let overload = id.info().facts.overload.filter(|_| self.decl.dialect(expr.span).overloads_timers());
+        let value = self.after_parts(&mut parts.written, |this| match this.operand(expr, Some(ty))? {
+            Operand::Typed(value) if overload.is_some_and(|it| value.ty == Type::Elementary(it)) => {
+                Some(this.convert(Conversion::Value, ty, value))
+            }
+            operand => this.coerce(operand, ty, expr.span),
+        })?;
+        parts.push(Held::Value(value), Role::Passed(turn), expr.span);
+        Some(())
+    }
+
+    /// Evaluates the next part, the variable that keeps a counter's count.
+    fn count_part(&mut self, parts: &mut Parts, counter: &Place, id: BlockId, expr: &ast::Expr<'s>) -> Option<()> {
+        let kept = self.after_parts(&mut parts.written, |this| this.retained_count(counter, expr))?;
+        let (field, ty) = pin(id, "CV")?;
+        parts.push(Held::Place(kept), Role::Count(field, ty), expr.span);
+        Some(())
+    }
+
+    fn user_block(
+        &mut self,
+        found: Found<'s>,
+        id: StructId,
+        arguments: &[ast::Argument<'s>],
+        callee: Span,
+        span: Span,
+    ) -> Option<()> {
+        self.callable(&found, callee)?;
+        let slot = self.decl.slot_of_instance(id)?;
+        let signature = self.decl.signature(slot)?;
+        let owner = self.decl.pous[slot].ast.name.text;
+        let formals = &signature.formals;
+        let arguments = &self.accepted(&signature, arguments)?;
+        let parameters: Vec<_> =
+            formals.iter().map(|it| Parameter { name: it.name.text, section: it.section }).collect();
+        let given = self.bind(owner, &parameters, arguments, |name| Self::unknown_formal(owner, formals, name))?;
+        if self.decl.dialect(span).wants_all_positions() {
+            let is_optional = |this: &Self, at: usize| this.has_initial(&formals[at], slot);
+            self.require_all(owner, &parameters, &given, arguments, is_optional, span)?;
+        }
+        let mut parts = Parts::default();
+        parts.push(Held::Place(found.place), Role::Instance, callee);
+        let mut references = vec![None; formals.len()];
+        let mut complete = true;
+        for at in as_written(&given) {
+            let formal = &formals[at];
+            let ty = formal.resolved.ty;
+            let made = match (formal.target, given[at]) {
+                (Target::Field(field), Given::Output { target: Some(target), negated }) => {
+                    self.target_part(&mut parts, target, negated, Source::Field(field, ty))
+                }
+                (Target::Field(field), Given::Value(expr)) => {
+                    self.value_part(&mut parts, expr, ty, Role::Stored(field, ty))
+                }
+                (Target::Param(_), Given::Value(expr)) => {
+                    references[at] = Some(parts.written.len());
+                    self.in_out_part(&mut parts, formal, 1 + at, expr)
+                }
+                (_, Given::Nothing | Given::Output { .. }) => Some(()),
+            };
+            complete &= made.is_some();
+        }
+        let in_outs = || (0..formals.len()).filter(|it| formals[*it].section == Section::InOut);
+        for at in in_outs().filter(|it| matches!(given[*it], Given::Nothing)) {
+            self.report_no_variable(&formals[at], owner, callee);
+            complete = false;
+        }
+        if !complete {
+            return None;
+        }
+        let call = |parts: &Parts| {
+            let arguments = in_outs().map(|it| Some(parts.argument(references[it]?))).collect::<Option<_>>()?;
+            let instance = Some(parts.instance()?.clone());
+            Some(StatementKind::Call { callee: RoutineId::next(slot), instance, arguments, result: None })
+        };
+        self.perform(parts, &call, span).map(drop)
+    }
+
+    /// The arguments but those for parameters whose declarations were refused; `None` where it is not
+    /// known which those are.
+    pub(crate) fn accepted<'a>(
+        &mut self,
+        signature: &crate::types::signature::Signature<'s>,
+        arguments: &'a [ast::Argument<'s>],
+    ) -> Option<std::borrow::Cow<'a, [ast::Argument<'s>]>> {
+        let positional = |it: &ast::Argument<'s>| matches!(it.kind, ast::ArgumentKind::Positional(_));
+        if signature.scope.has_refused() && arguments.iter().any(positional) {
+            self.check_arguments(arguments);
+            return None;
+        }
+        let refused = |it: &ast::Argument<'s>| match &it.kind {
+            ast::ArgumentKind::Positional(_) => false,
+            ast::ArgumentKind::Input(name, _) | ast::ArgumentKind::Output { name, .. } => {
+                signature.scope.is_refused(name.text)
+            }
+        };
+        if arguments.iter().any(refused) {
+            Some(arguments.iter().filter(|it| !refused(it)).cloned().collect::<Vec<_>>().into())
+        } else {
+            Some(arguments.into())
+        }
+    }
+
+    /// A Logix instruction on a structure: returns its rung-condition-out.
+    pub(crate) fn instruction(
+        &mut self,
+        name: ast::Name<'s>,
+        arguments: &[ast::Argument<'s>],
+        span: Span,
+    ) -> Option<Expr> {
+        let (id, instruction) = super::callee::instruction_in(Family::Logix, name.text)?;
+        let info = id.info();
+        let takes_rung = info.instructions[instruction].takes_rung;
+        let mut parameters = vec![Parameter { name: "Counter", section: Section::InOut }];
+        if takes_rung {
+            parameters.push(Parameter { name: "RungIn", section: Section::Input });
+        } else {
+            parameters[0].name = "CTUD_tag";
+        }
+        let names: Vec<_> = parameters.iter().map(|it| it.name).collect();
+        let given = self.bind(name.text, &parameters, arguments, |argument| {
+            Diagnostic::new(Code::E0301, argument.span, format!("`{}` has no parameter `{}`", name.text, argument.text))
+                .label("unknown parameter")
+                .help(format!("its parameters are {}", crate::diagnostic::wording::list(&names)))
+        })?;
+        let Given::Value(tag) = given[0] else {
+            self.report(
+                Diagnostic::new(Code::E0303, name.span, format!("`{}` needs {}", name.text, article(info.name)))
+                    .help(format!("write `{}(Counter := tag, RungIn := condition)`", name.text)),
+            );
+            return None;
+        };
+        let mut parts = Parts::default();
+        let mut complete = true;
+        for at in as_written(&given) {
+            let made = match given[at] {
+                Given::Value(_) if at == 0 => self.tag_part(&mut parts, tag, id, name, names[0]),
+                Given::Value(rung) => self.value_part(&mut parts, rung, Type::BOOL, Role::Passed(1)),
+                Given::Nothing | Given::Output { .. } => Some(()),
+            };
+            complete &= made.is_some();
+        }
+        if let Some(Given::Nothing | Given::Output { .. }) = given.get(1) {
+            self.report(
+                Diagnostic::new(Code::E0303, name.span, format!("`{}` needs its rung condition", name.text))
+                    .help("write `RungIn := condition`; `RungIn := TRUE` for an unconditional rung"),
+            );
+            return None;
+        }
+        if !complete {
+            return None;
+        }
+        let tag = parts.written.iter().find_map(Written::place)?;
+        self.used_instruction(tag, instruction);
+        let at = self.at(span);
+        if takes_rung {
+            self.keep_rung(&mut parts, span);
+        }
+        let call = |parts: &Parts| {
+            let block = parts.written.iter().find_map(Written::place)?.clone();
+            let inputs = parts.written.iter().filter_map(Written::value).cloned().collect();
+            Some(StatementKind::CallBlock { block, instruction, inputs })
+        };
+        let parts = self.perform(parts, &call, span)?;
+        match parts.written.iter().find_map(Written::value) {
+            Some(rung) => Some(rung.clone()),
+            None => {
+                let tag = parts.written.iter().find_map(Written::place)?;
+                Some(Expr::load(pin_place(tag.clone(), id, "EnableOut"), at))
+            }
+        }
+    }
+
+    /// Evaluates the next part, the structure that an instruction works on.
+    fn tag_part(
+        &mut self,
+        parts: &mut Parts,
+        tag: &ast::Expr<'s>,
+        id: BlockId,
+        name: ast::Name<'s>,
+        parameter: &str,
+    ) -> Option<()> {
+        let found = self.after_parts(&mut parts.written, |this| this.variable_argument(tag, parameter))?;
+        if found.place.ty != Type::Block(id) {
+            let has = self.type_name(found.place.ty);
+            let wants = article(id.info().name);
+            self.report(
+                Diagnostic::new(Code::E0313, tag.span, format!("`{}` works on {wants}, found {has}", name.text))
+                    .label(format!("expected {wants}")),
+            );
+            return None;
+        }
+        parts.push(Held::Place(found.place), Role::Instance, tag.span);
+        Some(())
+    }
+
+    /// The rung condition is read again as the call's value.
+    fn keep_rung(&mut self, parts: &mut Parts, span: Span) {
+        let rung = parts.written.iter().position(|it| it.value().is_some_and(|it| it.as_const().is_none()));
+        let Some(rung) = rung else { return };
+        let (before, rest) = parts.written.split_at_mut(rung);
+        let [written, ..] = rest else { return };
+        let Held::Value(value) = &mut written.held else { return };
+        let saved = self.temporary("rung", Type::BOOL);
+        let at = value.at;
+        let value = std::mem::replace(value, Expr::load(saved.clone(), at));
+        // A tag that is written before it is evaluated before it.
+        let fault_first = self.can_fault(&value);
+        for part in before {
+            self.hold(&mut part.held, &[], fault_first);
+        }
+        self.assign(saved, value, span);
+    }
+
+    /// The statements that feed the triggers of R_EDGE and F_EDGE inputs.
+    pub(crate) fn edge_inputs(&mut self, signature: &crate::types::signature::Signature<'s>, span: Span) {
+        for edge in &signature.edges {
+            let at = self.at(span);
+            let inputs = vec![Expr::load(edge.input.clone(), at)];
+            self.push(StatementKind::CallBlock { block: edge.trigger.clone(), instruction: 0, inputs }, span);
+        }
+    }
+}
+
+fn section(direction: Direction) -> Section {
+    match direction {
+        Direction::Input => Section::Input,
+        Direction::Output => Section::Output,
+        Direction::Memory | Direction::Member => Section::Internal,
+    }
+}
+
+/// A pin of a standard block.
+fn pin(id: BlockId, name: &str) -> Option<(FieldId, Type)> {
+    let field = FieldId::next(id.info().pins.iter().position(|it| it.name == name)?);
+    Some((field, id.pin_type(field)?))
+}
+
+/// Whether a call gives the variable for a count.
+fn is_given(parameter: &Parameter<'_>, given: &Given<'_, '_>) -> bool {
+    parameter.section == Section::InOut && matches!(given, Given::Value(_))
+}

@@ -1,0 +1,169 @@
+//! Calls: what is called, and which argument goes to which parameter.
+
+use super::callee::Callee;
+use super::checker::Checker;
+use super::enable::Enable;
+use super::operand::Operand;
+use crate::diagnostic::wording::list;
+use crate::spelling::nearest;
+use crate::types::signature::Formal;
+use crate::{Code, Diagnostic, Span, ast};
+use ast::{ArgumentKind, ExprKind as Ast};
+use staunch_ir::Type;
+
+impl<'s> Checker<'_, 's> {
+    pub(crate) fn call_value(
+        &mut self,
+        expr: &ast::Expr<'s>,
+        callee: &ast::Expr<'s>,
+        arguments: &[ast::Argument<'s>],
+        expected: Option<Type>,
+    ) -> Option<Operand> {
+        let what = self.checked_callee(callee, arguments)?;
+        if let Some((enable, rest)) = self.enable(&what, callee, arguments) {
+            let value = self.call_if_enabled(what, enable, callee, &rest, expected, expr.span)?;
+            if value.is_none() {
+                self.report_no_value(callee, expr.span);
+            }
+            return value.map(Operand::Typed);
+        }
+        match what {
+            Callee::Standard(name) => self.standard_function(name, arguments, expected, expr.span),
+            other => {
+                if self.signature.is_none() {
+                    self.report(super::unresolved::not_constant(expr.span));
+                    return None;
+                }
+                let value = self.call(other, callee, arguments, expr.span)?;
+                if value.is_none() {
+                    self.report_no_value(callee, expr.span);
+                }
+                value.map(Operand::Typed)
+            }
+        }
+    }
+
+    pub(crate) fn call_statement(
+        &mut self,
+        expr: &ast::Expr<'s>,
+        callee: &ast::Expr<'s>,
+        arguments: &[ast::Argument<'s>],
+    ) {
+        let what = self.checked_callee(callee, arguments);
+        if let Some(what) = &what
+            && !matches!(what, Callee::Standard(_))
+            && let Some((enable, rest)) = self.enable(what, callee, arguments)
+        {
+            self.call_if_enabled(*what, enable, callee, &rest, None, expr.span);
+            return;
+        }
+        match what {
+            Some(Callee::Standard(name)) => {
+                let value = self.standard_function(name, arguments, None, expr.span);
+                if value.is_none() {
+                    return;
+                }
+                self.report(
+                    Diagnostic::new(Code::E0508, expr.span, format!("the result of `{}` is not used", name.text))
+                        .label("this statement has no effect")
+                        .help(format!("assign it: `result := {}(…);`", name.text)),
+                );
+            }
+            Some(other) => {
+                self.call(other, callee, arguments, expr.span);
+            }
+            None => {}
+        }
+    }
+
+    /// A call with EN or ENO.
+    fn call_if_enabled(
+        &mut self,
+        what: Callee<'s>,
+        enable: Enable<'_, 's>,
+        callee: &ast::Expr<'s>,
+        arguments: &[ast::Argument<'s>],
+        expected: Option<Type>,
+        span: Span,
+    ) -> Option<Option<staunch_ir::Expr>> {
+        if self.signature.is_none() {
+            self.report(super::unresolved::not_constant(span));
+            return None;
+        }
+        let initial = match what {
+            Callee::Function(slot) => self.initial_result(slot, span),
+            Callee::Standard(_) | Callee::Instruction(_) | Callee::Instance => None,
+        };
+        self.enabled_call(enable, initial, span, |this| match what {
+            Callee::Standard(name) => {
+                let value = this.standard_function(name, arguments, expected, span)?;
+                this.materialise(value.cut(), expected, span).map(Some)
+            }
+            Callee::Function(_) | Callee::Instruction(_) | Callee::Instance => this.call(what, callee, arguments, span),
+        })
+    }
+
+    fn call(
+        &mut self,
+        what: Callee<'s>,
+        callee: &ast::Expr<'s>,
+        arguments: &[ast::Argument<'s>],
+        span: Span,
+    ) -> Option<Option<staunch_ir::Expr>> {
+        match what {
+            Callee::Function(slot) => self.user_function(slot, arguments, span),
+            Callee::Instruction(name) => self.instruction(name, arguments, span).map(Some),
+            Callee::Instance => self.instance_call(callee, arguments, span).map(|()| None),
+            Callee::Standard(_) => None,
+        }
+    }
+
+    fn report_no_value(&mut self, callee: &ast::Expr<'s>, span: Span) {
+        if let Ast::Name(name) = &callee.kind
+            && self.lacks_result_type(*name)
+        {
+            return;
+        }
+        let text = self.decl.log.sources.text(callee.span).to_owned();
+        self.report(
+            Diagnostic::new(Code::E0311, span, format!("a call of `{text}` has no value"))
+                .label("this cannot stand in an expression")
+                .help("call it in a statement of its own, then read its outputs"),
+        );
+    }
+
+    /// What is called. Where that is not known, the arguments may hold mistakes of their own.
+    fn checked_callee(&mut self, callee: &ast::Expr<'s>, arguments: &[ast::Argument<'s>]) -> Option<Callee<'s>> {
+        let found = self.callee(callee, arguments);
+        if found.is_none() {
+            self.check_arguments(arguments);
+        }
+        found
+    }
+
+    /// Reports what is wrong inside the arguments of a call that is wrong itself.
+    pub(crate) fn check_arguments(&mut self, arguments: &[ast::Argument<'s>]) {
+        for argument in arguments {
+            match &argument.kind {
+                ArgumentKind::Positional(value) | ArgumentKind::Input(_, value) => drop(self.operand(value, None)),
+                ArgumentKind::Output { target, .. } => {
+                    if let Some(target) = target {
+                        self.place(target);
+                    }
+                }
+            }
+        }
+    }
+
+    pub(crate) fn unknown_formal(owner: &str, formals: &[Formal<'s>], name: ast::Name<'s>) -> Diagnostic {
+        let names: Vec<_> = formals.iter().map(|it| it.name.text).collect();
+        let error = Diagnostic::new(Code::E0301, name.span, format!("`{owner}` has no parameter `{}`", name.text))
+            .label("unknown parameter");
+        match nearest(name.text, names.iter().copied()) {
+            Some(near) => error.help(format!("did you mean `{near}`?")).fix(name.span, near),
+            None if names.is_empty() => error,
+            None if names.len() == 1 => error.help(format!("its parameter is {}", list(&names))),
+            None => error.help(format!("its parameters are {}", list(&names))),
+        }
+    }
+}

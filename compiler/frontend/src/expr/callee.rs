@@ -1,0 +1,240 @@
+//! What a call calls.
+
+use super::checker::Checker;
+use super::standard;
+use super::unresolved::{block_of_another_dialect, no_such_block};
+use crate::names::Entry;
+use crate::spelling::nearest;
+use crate::{Code, Diagnostic, ast, dialect};
+use ast::{ArgumentKind, ExprKind as Ast};
+use staunch_ir::{BlockId, Type};
+use staunch_runtime::Family;
+
+/// What stands before the parentheses.
+#[derive(Clone, Copy)]
+pub(crate) enum Callee<'s> {
+    /// A user's FUNCTION, by its slot.
+    Function(usize),
+    /// An instruction of a structure that instructions share (Logix), by its name.
+    Instruction(ast::Name<'s>),
+    /// A standard function.
+    Standard(ast::Name<'s>),
+    /// An instance of a block.
+    Instance,
+}
+
+impl<'s> Checker<'_, 's> {
+    pub(crate) fn callee(&mut self, callee: &ast::Expr<'s>, arguments: &[ast::Argument<'s>]) -> Option<Callee<'s>> {
+        match &callee.kind {
+            Ast::Name(name) => self.named_callee(*name, arguments),
+            Ast::Member(base, name) => {
+                if let Ast::Name(family) = &base.kind
+                    && self.scope.get(family.text).is_none()
+                    && let Some(it) = Family::named(family.text)
+                {
+                    if is_instruction(it, name.text) {
+                        return Some(Callee::Instruction(*name));
+                    }
+                    self.report_family_call(it, *name);
+                    return None;
+                }
+                Some(Callee::Instance)
+            }
+            Ast::Index(..) | Ast::Paren(_) => Some(Callee::Instance),
+            Ast::Error(_) => {
+                self.operand(callee, None);
+                None
+            }
+            Ast::Deref(_)
+            | Ast::Literal(_)
+            | Ast::Address(_)
+            | Ast::Part(..)
+            | Ast::Call(..)
+            | Ast::Unary(..)
+            | Ast::Binary(..) => {
+                self.error(Code::E0305, callee.span, "this cannot be called");
+                None
+            }
+        }
+    }
+
+    pub(crate) fn report_family_call(&mut self, family: Family, name: ast::Name<'s>) {
+        let owner = family.name();
+        if dialect::block_in(family, name.text).is_some() {
+            self.report(
+                Diagnostic::new(Code::E0305, name.span, format!("`{owner}.{}` is a type, not a function", name.text))
+                    .label("an instance of it can be called")
+                    .help(format!("declare one: `VAR c : {owner}.{}; END_VAR`, and call `c(…)`", name.text)),
+            );
+        } else {
+            // An instance's type could be misspelt, but a type is not called either.
+            self.report(Diagnostic { fix: None, ..no_such_block(family, name) });
+        }
+    }
+
+    pub(crate) fn named_callee(&mut self, name: ast::Name<'s>, arguments: &[ast::Argument<'s>]) -> Option<Callee<'s>> {
+        if let Some(variable) = self.scope.get(name.text) {
+            // A variable that cannot be called does not hide a function of its name.
+            let callable = matches!(variable.place.ty, Type::Block(_) | Type::Struct(_));
+            let function = standard::exists(name.text) || matches!(self.decl.names.get(name.text), Some(Entry::Pou(_)));
+            if callable || !function {
+                return Some(Callee::Instance);
+            }
+        }
+        if self.scope.is_refused(name.text) {
+            return None;
+        }
+        match self.decl.names.get(name.text) {
+            Some(Entry::Global(_)) => return Some(Callee::Instance),
+            Some(Entry::Pou(slot)) => {
+                let pou = self.decl.pous[slot].ast;
+                if pou.kind == ast::PouKind::Function {
+                    return Some(Callee::Function(slot));
+                }
+                if self.is_callable_program(slot, name) {
+                    return Some(Callee::Instance);
+                }
+                return self.report_type_called(name, pou.kind);
+            }
+            Some(Entry::Type(_)) => {
+                self.error(Code::E0305, name.span, format!("`{}` is a type; it cannot be called", name.text));
+                return None;
+            }
+            None => {}
+        }
+        let own = self.decl.dialect(name.span);
+        if is_instruction(own.family(), name.text) {
+            return Some(Callee::Instruction(name));
+        }
+        if standard::exists(name.text) {
+            return Some(Callee::Standard(name));
+        }
+        if !self.is_logix_call(name, arguments) {
+            self.report_unknown_function(name);
+        }
+        None
+    }
+
+    /// An instruction of Logix under another dialect, recognised by the tag that it works on.
+    pub(crate) fn is_logix_call(&mut self, name: ast::Name<'s>, arguments: &[ast::Argument<'s>]) -> bool {
+        if !is_instruction(Family::Logix, name.text) {
+            return false;
+        }
+        let tag = arguments.first().map(|it| &it.kind);
+        let Some(ArgumentKind::Positional(tag) | ArgumentKind::Input(_, tag)) = tag else { return false };
+        let Ast::Name(tag) = &tag.kind else { return false };
+        if self.scope.is_refused(tag.text) {
+            return true;
+        }
+        let Some(variable) = self.scope.get(tag.text) else { return false };
+        let logix = matches!(variable.place.ty, Type::Block(id) if id.info().family == Family::Logix);
+        if logix {
+            let text = name.text;
+            self.report(
+                Diagnostic::new(
+                    Code::E0309,
+                    name.span,
+                    format!("`{}` is a tag of Logix, a bare `{text}` here no instruction of it", tag.text),
+                )
+                .label("expected an instruction of Logix")
+                .help(format!("write `LOGIX.{text}(…)`, or start the file with `{{dialect 'logix'}}`"))
+                .fix(name.span, format!("LOGIX.{text}")),
+            );
+        }
+        logix
+    }
+
+    pub(crate) fn report_type_called(&mut self, name: ast::Name<'s>, kind: ast::PouKind) -> Option<Callee<'s>> {
+        let mut error = Diagnostic::new(
+            Code::E0305,
+            name.span,
+            match kind {
+                ast::PouKind::Program => format!("the PROGRAM `{}` cannot be called", name.text),
+                _ => format!("`{}` is a FUNCTION_BLOCK; an instance of it is called", name.text),
+            },
+        );
+        if kind == ast::PouKind::FunctionBlock {
+            error = error.help(format!("declare one: `VAR instance : {}; END_VAR`, and call `instance(…)`", name.text));
+        }
+        self.report(error);
+        None
+    }
+
+    pub(crate) fn report_unknown_function(&mut self, name: ast::Name<'s>) {
+        if self.decl.bare_block(name.text, name.span).is_some() {
+            self.report_type_called(name, ast::PouKind::FunctionBlock);
+            return;
+        }
+        if Family::ALL.into_iter().any(|it| is_instruction(it, name.text)) {
+            if let Some(error) = block_of_another_dialect(self.decl.dialect(name.span), name) {
+                self.report(error);
+                return;
+            }
+            self.report(
+                Diagnostic::new(Code::E0309, name.span, format!("`{}` is an instruction of LOGIX", name.text))
+                    .help(format!("write `LOGIX.{}(…)`, or compile with `--dialect logix`", name.text)),
+            );
+            return;
+        }
+        if not_yet(name.text) {
+            self.decl.not_supported(name.span, &format!("the function {}", name.text.to_ascii_uppercase()));
+            return;
+        }
+        let own = self.decl.pous.iter().filter(|it| it.ast.kind == ast::PouKind::Function).map(|it| it.ast.name.text);
+        let instances =
+            self.scope.variables.iter().filter(|it| matches!(it.place.ty, Type::Block(_) | Type::Struct(_)));
+        let standard = standard::names().map(|it| -> &str { it });
+        let candidates = own.chain(instances.map(|it| it.name.text)).chain(standard);
+        let near = nearest(name.text, candidates).map(str::to_owned);
+        let mut error =
+            Diagnostic::new(Code::E0307, name.span, format!("there is no function or instance `{}`", name.text))
+                .label("unknown name");
+        if staunch_ir::Elementary::named(name.text).is_some() {
+            error = error.help(format!("a value is converted with `TO_{}(…)`", name.text.to_ascii_uppercase()));
+        } else if name.text.eq_ignore_ascii_case("POW") {
+            error = error.help("write `EXPT(base, exponent)`, or `base ** exponent`");
+        } else if let Some(near) = near {
+            error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
+        }
+        self.report(error);
+    }
+}
+
+/// Functions of the standard's tables, and of CODESYS, that are known to be missing.
+fn not_yet(name: &str) -> bool {
+    let name = name.to_ascii_uppercase();
+    let conversion = |part: &str| {
+        let texts = ["STRING", "WSTRING", "DATE", "TOD", "DT", "LDATE", "LTOD", "LDT", "CHAR", "WCHAR", "BCD"];
+        texts.iter().any(|it| part == *it || part.starts_with("BCD") || part.ends_with("BCD"))
+    };
+    let (from, to) = name.split_once("_TO_").or_else(|| Some(("", name.strip_prefix("TO_")?))).unwrap_or(("", ""));
+    let others = [
+        "ROUND",
+        "CEIL",
+        "FLOOR",
+        "SIZEOF",
+        "ASSERT",
+        "LOWER_BOUND",
+        "UPPER_BOUND",
+        "ADR",
+        "TIME",
+        "CONCAT_DATE_TOD",
+        "CONCAT_TIME",
+        "UPPER_CASE",
+    ];
+    conversion(from) || conversion(to) || others.contains(&name.as_str())
+}
+
+/// Whether `name` is an instruction of a structure in `family`.
+fn is_instruction(family: Family, name: &str) -> bool {
+    instruction_in(family, name).is_some()
+}
+
+/// The first structure with the instruction `name`, and the instruction's position.
+pub(crate) fn instruction_in(family: Family, name: &str) -> Option<(BlockId, usize)> {
+    let blocks = staunch_runtime::BLOCKS.iter().enumerate().filter(|(_, it)| it.family == family);
+    blocks.into_iter().find_map(|(at, block)| {
+        let found = block.instructions.iter().position(|it| !it.name.is_empty() && it.name.eq_ignore_ascii_case(name));
+        found.map(|instruction| (BlockId::next(at), instruction))
+    })
+}

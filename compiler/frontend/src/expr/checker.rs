@@ -1,0 +1,109 @@
+//! The state of checking a body, or a constant expression.
+
+use super::call_tracking::Called;
+use super::uses::Uses;
+use crate::types::declarations::Declarations;
+use crate::types::scope::Scope;
+use crate::types::signature::Signature;
+use crate::{Code, Diagnostic, Span, ast};
+use staunch_ir::{Block, Expr, For, Local, Location, Place, Statement, StatementKind, Type};
+use std::rc::Rc;
+
+/// Checks the body of one POU, or one constant expression.
+pub(crate) struct Checker<'d, 's> {
+    pub decl: &'d mut Declarations<'s>,
+    pub scope: Rc<Scope<'s>>,
+    /// Of the POU whose body this is; a constant expression has none.
+    pub signature: Option<Rc<Signature<'s>>>,
+    /// The statements made so far for the innermost list; hoisted calls go to its end.
+    pub block: Block,
+    pub locals: Vec<Local>,
+    /// The FOR loops around the statement.
+    pub counters: Vec<For>,
+    /// How many loops are around the statement.
+    pub loops: usize,
+    pub uses: Uses,
+    pub context: Context,
+    /// Instances called so far on the way to this statement.
+    pub called: Called,
+    /// The first statement that makes nothing, because something in it was refused.
+    pub left_out: Option<Span>,
+}
+
+/// What a name of a variable stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Context {
+    /// Its storage.
+    Body,
+    /// Nothing: a constant is wanted.
+    Constant,
+    /// Its initial value: another variable's initial value may use it.
+    Initial,
+}
+
+impl<'d, 's> Checker<'d, 's> {
+    /// For the body with a signature.
+    pub fn of_body(decl: &'d mut Declarations<'s>, signature: &Rc<Signature<'s>>) -> Self {
+        let mut checker = Self::new(decl, &signature.scope, Context::Body);
+        checker.locals.clone_from(&signature.locals);
+        checker.signature = Some(Rc::clone(signature));
+        checker
+    }
+
+    pub fn new(decl: &'d mut Declarations<'s>, scope: &Rc<Scope<'s>>, context: Context) -> Self {
+        Self {
+            decl,
+            scope: Rc::clone(scope),
+            signature: None,
+            block: Vec::new(),
+            locals: Vec::new(),
+            counters: Vec::new(),
+            loops: 0,
+            uses: Uses::default(),
+            context,
+            called: Called::default(),
+            left_out: None,
+        }
+    }
+
+    pub fn report(&mut self, diagnostic: Diagnostic) {
+        self.decl.report(diagnostic);
+    }
+
+    pub fn error(&mut self, code: Code, span: Span, message: impl Into<String>) {
+        self.decl.error(code, span, message);
+    }
+
+    pub fn is_function_body(&self) -> bool {
+        self.signature.as_ref().is_some_and(|it| it.state.is_none())
+    }
+
+    pub fn is_function_block(&self) -> bool {
+        let slot = self.signature.as_ref().and_then(|it| it.state).and_then(|it| self.decl.slot_of_instance(it));
+        slot.is_some_and(|slot| self.decl.pous[slot].ast.kind == ast::PouKind::FunctionBlock)
+    }
+
+    pub fn at(&mut self, span: Span) -> Location {
+        self.decl.location(span)
+    }
+
+    pub fn type_name(&self, ty: Type) -> String {
+        self.decl.program.type_name(ty)
+    }
+
+    pub fn push(&mut self, kind: StatementKind, span: Span) {
+        let at = self.at(span);
+        self.block.push(Statement::new(kind, at));
+    }
+
+    pub fn assign(&mut self, target: Place, value: Expr, span: Span) {
+        self.push(StatementKind::Assign { target, value }, span);
+    }
+
+    /// The statements that `make` adds, as a list of their own.
+    pub fn nested(&mut self, make: impl FnOnce(&mut Self)) -> Block {
+        let outer = std::mem::take(&mut self.block);
+        make(self);
+        std::mem::replace(&mut self.block, outer)
+    }
+}

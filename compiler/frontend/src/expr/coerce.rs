@@ -1,0 +1,227 @@
+//! Implicit conversions: they only widen. What needs a function, the message names.
+
+use super::checker::Checker;
+use super::operand::Operand;
+use super::promotion::stored;
+use crate::types::coercion::{as_number, widens};
+use crate::{Code, Diagnostic, Span, ast};
+use staunch_ir::{BoundsId, Conversion, Elementary, Expr, ExprKind, Op, Type, Value};
+
+impl<'s> Checker<'_, 's> {
+    /// The value of `expr`, to be stored where `ty` is declared.
+    pub(crate) fn value(&mut self, expr: &ast::Expr<'s>, ty: Type) -> Option<Expr> {
+        let operand = self.operand(expr, Some(ty.read()))?;
+        self.coerce(operand, ty, expr.span)
+    }
+
+    /// A value of `made_of` as one of its subrange with these limits; a constant is checked now.
+    fn in_range(&mut self, value: Expr, made_of: Elementary, id: BoundsId, span: Span) -> Option<Expr> {
+        let (low, high) = self.decl.program.bounds(id);
+        let to = Type::Subrange(made_of, id);
+        if let Some(number) = value.as_const().and_then(Value::as_integer) {
+            if (low..=high).contains(&number) {
+                return Some(Expr { ty: to, ..value });
+            }
+            self.report(
+                Diagnostic::new(Code::E0202, span, format!("{number} lies outside the subrange {low}..{high}"))
+                    .label("the variable cannot hold it"),
+            );
+            return None;
+        }
+        let at = self.at(span);
+        let limit = |number| Some(Expr::constant(made_of, made_of.lane().integer(number)?, at));
+        let operands = vec![limit(low)?, value, limit(high)?];
+        Some(Expr::apply(Op::InRange, to, operands, at))
+    }
+
+    /// Converts implicitly to `to`, or says why that is not done.
+    pub(crate) fn coerce(&mut self, operand: Operand, to: Type, span: Span) -> Option<Expr> {
+        match (operand, to) {
+            (operand, Type::Subrange(made_of, id)) => {
+                let value = self.coerce(operand, Type::Elementary(made_of), span)?;
+                self.in_range(value, made_of, id, span)
+            }
+            (Operand::Promoted(expr, from), Type::Elementary(into)) => {
+                self.may_become(from, into, span).then(|| stored(expr, into))
+            }
+            (operand @ Operand::Promoted(..), _) => self.coerce(operand.cut(), to, span),
+            (Operand::Typed(expr), _) => self.coerce_typed(expr.read(), to, span),
+            (literal, Type::Elementary(ty)) => self.literal_as(&literal, ty, span),
+            (literal, Type::Enum(id)) if self.decl.dialect(span).mixes_bits_and_integers() => {
+                let base = self.decl.program.enumeration(id).base;
+                let value = self.literal_as(&literal, base, span)?;
+                Some(self.convert(Conversion::Same, to, value))
+            }
+            (_, Type::String(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_)) => {
+                let expected = self.type_name(to);
+                let error = Diagnostic::new(Code::E0201, span, format!("expected {expected}, found a number"))
+                    .label(format!("expected {expected}"));
+                self.report(match self.members(to) {
+                    Some(members) => error.help(format!("name a member: {members}")),
+                    None => error,
+                });
+                None
+            }
+        }
+    }
+
+    fn coerce_typed(&mut self, expr: Expr, to: Type, span: Span) -> Option<Expr> {
+        if expr.ty == to {
+            return match self.decl.held_instance(to) {
+                Some(message) => self.instance_is_no_value(&expr, message, span),
+                None => Some(expr),
+            };
+        }
+        match (expr.ty, to) {
+            (Type::Elementary(from), Type::Elementary(into)) => {
+                self.may_become(from, into, span).then(|| self.convert(Conversion::Value, to, expr))
+            }
+            (Type::String(_), Type::String(capacity)) => {
+                self.warn_of_cut(&expr, capacity, span);
+                Some(self.convert(Conversion::Value, to, expr))
+            }
+            (Type::Enum(id), Type::Elementary(into))
+                if self.decl.dialect(span).mixes_bits_and_integers()
+                    && widens(self.decl.program.enumeration(id).base, into) =>
+            {
+                let base = Type::Elementary(self.decl.program.enumeration(id).base);
+                let number = self.convert(Conversion::Same, base, expr);
+                Some(self.convert(Conversion::Value, to, number))
+            }
+            _ => {
+                if let Some(message) = self.decl.held_instance(expr.ty) {
+                    return self.instance_is_no_value(&expr, message, span);
+                }
+                let (expected, found) = (self.type_name(to), self.type_name(expr.ty));
+                let error = Diagnostic::new(Code::E0201, span, format!("expected {expected}, found {found}"))
+                    .label(format!("this is {found}"));
+                let text = self.decl.log.sources.text(span);
+                let short = !text.is_empty() && text.len() < 60 && !text.contains('\n');
+                self.report(match (expr.ty, to, self.members(to)) {
+                    (Type::Enum(_), Type::Elementary(it), _) if it.is_integer() && short => {
+                        let meant = format!("TO_{}({text})", it.name());
+                        error.help(format!("write `{meant}`")).fix(span, meant)
+                    }
+                    (_, _, Some(members)) => error.help(format!("name a member: {members}")),
+                    _ => error,
+                });
+                None
+            }
+        }
+    }
+
+    /// The first members of an enumeration, for a message.
+    pub(crate) fn members(&self, ty: Type) -> Option<String> {
+        let Type::Enum(id) = ty else { return None };
+        let names = self.decl.program.enumeration(id).values.iter().map(|it| it.name.as_str());
+        Some(crate::diagnostic::wording::list(&names.take(4).collect::<Vec<_>>()))
+    }
+
+    fn instance_is_no_value(&mut self, expr: &Expr, message: String, span: Span) -> Option<Expr> {
+        let outputs: Vec<String> = match expr.ty {
+            Type::Block(id) => id.info().outputs().map(|it| it.name.to_owned()).collect(),
+            Type::Struct(id) if self.decl.is_instance(id) => {
+                let fields = &self.decl.program.structure(id).fields;
+                let outputs = fields.iter().filter(|it| it.section == staunch_ir::Section::Output);
+                outputs.map(|it| it.name.clone()).collect()
+            }
+            Type::Elementary(_)
+            | Type::Subrange(..)
+            | Type::String(_)
+            | Type::Enum(_)
+            | Type::Array(_)
+            | Type::Struct(_) => Vec::new(),
+        };
+        let text = self.decl.log.sources.text(span);
+        let whole =
+            matches!(expr.ty, Type::Block(_)) || matches!(expr.ty, Type::Struct(id) if self.decl.is_instance(id));
+        let label = if whole { "this is the block itself" } else { "this would copy the block itself" };
+        let mut error = Diagnostic::new(Code::E0210, span, message).label(label);
+        if !outputs.is_empty() && !text.contains(char::is_whitespace) {
+            let names: Vec<_> = outputs.iter().map(|it| format!("{text}.{it}")).collect();
+            let names: Vec<_> = names.iter().map(String::as_str).collect();
+            error = error.help(format!("read one of its outputs: {}", crate::diagnostic::wording::list(&names)));
+        }
+        self.report(error);
+        None
+    }
+
+    /// Whether a value of `from` converts to `to` by itself; else says what to write.
+    fn may_become(&mut self, from: Elementary, to: Elementary, span: Span) -> bool {
+        let may = widens(from, to) || self.dialect_allows(from, to, span);
+        if !may {
+            self.report_narrowing(from, to, span);
+        }
+        may
+    }
+
+    /// What CODESYS converts without being asked.
+    fn dialect_allows(&mut self, from: Elementary, to: Elementary, span: Span) -> bool {
+        if !self.decl.dialect(span).mixes_bits_and_integers() {
+            return false;
+        }
+        let (low, high) = (from.lane().range(), to.lane().range());
+        let (Some(from_range), Some(to_range)) = (low, high) else {
+            return widens(as_number(from), to) || self.loses_precision(from, to, span);
+        };
+        if from == Elementary::Bool || to == Elementary::Bool || from.is_time() || to.is_time() {
+            return false;
+        }
+        if from_range.0 >= to_range.0 && from_range.1 <= to_range.1 {
+            return true;
+        }
+        let sign_only = from.lane().size() <= to.lane().size();
+        if sign_only {
+            self.report(
+                Diagnostic::new(
+                    Code::W0506,
+                    span,
+                    format!("{} becomes {}: the sign may change", from.name(), to.name()),
+                )
+                .label("implicit conversion")
+                .help(format!("say so: `{}_TO_{}(…)`", from.name(), to.name())),
+            );
+        }
+        sign_only
+    }
+
+    /// CODESYS makes a real of any integer, with a warning where that has more digits.
+    fn loses_precision(&mut self, from: Elementary, to: Elementary, span: Span) -> bool {
+        let from = as_number(from);
+        if !from.is_integer() || !to.is_real() {
+            return false;
+        }
+        self.report(
+            Diagnostic::new(
+                Code::W0511,
+                span,
+                format!("{} becomes {}: large values are rounded", from.name(), to.name()),
+            )
+            .label("implicit conversion")
+            .help(format!("say so: `{}_TO_{}(…)`", from.name(), to.name())),
+        );
+        true
+    }
+
+    fn report_narrowing(&mut self, from: Elementary, to: Elementary, span: Span) {
+        let text = self.decl.log.sources.text(span).to_owned();
+        let function = format!("{}_TO_{}", from.name(), to.name());
+        let mut error = Diagnostic::new(Code::E0203, span, format!("expected {}, found {}", to.name(), from.name()))
+            .label(format!("{} does not convert to {} by itself", from.name(), to.name()));
+        let short = !text.is_empty() && text.len() < 60 && !text.contains('\n');
+        error = if short {
+            error.help(format!("write `{function}({text})`")).fix(span, format!("{function}({text})"))
+        } else {
+            error.help(format!("convert it with `{function}(…)`"))
+        };
+        self.report(error);
+    }
+
+    fn warn_of_cut(&mut self, value: &Expr, capacity: u16, span: Span) {
+        let ExprKind::Text(bytes) = &value.kind else { return };
+        if bytes.len() > usize::from(capacity) {
+            let message = format!("this text has {} characters, and STRING[{capacity}] keeps {capacity}", bytes.len());
+            self.report(Diagnostic::new(Code::W0202, span, message).label("the rest is cut off"));
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! Conversion functions: `INT_TO_REAL`, `TO_REAL`, `REAL_TRUNC_DINT`, `TRUNC`.
+
+use super::checker::Checker;
+use crate::{Code, Diagnostic, Span, ast};
+use staunch_ir::{Conversion, Elementary, Expr, Op, Type, Value};
+use staunch_runtime::time::MILLISECOND;
+
+/// What a conversion function's name says.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Parsed {
+    from: Option<Elementary>,
+    to: Elementary,
+    truncates: bool,
+}
+
+pub(crate) fn parse(name: &str) -> Option<Parsed> {
+    let name = name.to_ascii_uppercase();
+    if let Some(to) = name.strip_prefix("TO_") {
+        return Some(Parsed { from: None, to: Elementary::named(to)?, truncates: false });
+    }
+    if let Some(to) = name.strip_prefix("TRUNC_") {
+        let to = Elementary::named(to).filter(|it| it.is_integer())?;
+        return Some(Parsed { from: None, to, truncates: true });
+    }
+    let (truncates, (from, to)) = match name.split_once("_TRUNC_") {
+        Some(parts) => (true, parts),
+        None => (false, name.split_once("_TO_")?),
+    };
+    let (from, to) = (Elementary::named(from)?, Elementary::named(to)?);
+    if truncates && !(from.is_real() && to.is_integer()) {
+        return None;
+    }
+    Some(Parsed { from: Some(from), to, truncates })
+}
+
+impl<'s> Checker<'_, 's> {
+    pub(crate) fn conversion(&mut self, parsed: Parsed, value: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<Expr> {
+        let value_expr = match parsed.from {
+            Some(from) => self.value(value, Type::Elementary(from))?,
+            None => self.typed(value, None)?,
+        };
+        if parsed.truncates {
+            return self.truncate(value_expr, parsed.to, value.span, name);
+        }
+        let from = match value_expr.ty {
+            Type::Elementary(from) => from,
+            Type::Enum(id) => {
+                let base = self.decl.program.enumeration(id).base;
+                let number = self.convert(Conversion::Same, Type::Elementary(base), value_expr);
+                return self.between(number, base, parsed.to, name.span);
+            }
+            other => {
+                let found = self.type_name(other);
+                self.report(
+                    Diagnostic::new(Code::E0204, value.span, format!("`{}` does not take {found}", name.text))
+                        .label(format!("this is {found}")),
+                );
+                return None;
+            }
+        };
+        self.between(value_expr, from, parsed.to, name.span)
+    }
+
+    /// TIME and numbers meet at milliseconds.
+    fn between(&mut self, value: Expr, from: Elementary, to: Elementary, span: Span) -> Option<Expr> {
+        let target = Type::Elementary(to);
+        match (from.is_time(), to.is_time()) {
+            (true, true) => Some(self.convert(Conversion::Same, target, value)),
+            (false, false) if to == Elementary::Bool => self.rightmost_bit(value, from, span),
+            (false, false) => Some(self.convert(Conversion::Value, target, value)),
+            (true, false) => {
+                let nanoseconds = self.convert(Conversion::Same, Type::LINT, value);
+                let milliseconds = self.per_millisecond(Op::Div, nanoseconds, to.is_real(), span)?;
+                Some(self.convert(Conversion::Value, target, milliseconds))
+            }
+            (false, true) => {
+                let real = from.is_real();
+                let wide = self.convert(Conversion::Value, if real { Type::LREAL } else { Type::LINT }, value);
+                let nanoseconds = self.per_millisecond(Op::Mul, wide, real, span)?;
+                let count = self.convert(Conversion::Value, Type::LINT, nanoseconds);
+                Some(self.convert(Conversion::Same, target, count))
+            }
+        }
+    }
+
+    /// The rightmost bit of a bit string or an integer; where those mix, and of a real, whether it is
+    /// `<> 0`.
+    fn rightmost_bit(&mut self, value: Expr, from: Elementary, span: Span) -> Option<Expr> {
+        let whole = from.lane().integer(1).filter(|_| !self.decl.dialect(span).mixes_bits_and_integers());
+        let rightmost = match whole {
+            Some(one) if from != Elementary::Bool => {
+                let (ty, one) = (value.ty, Expr::constant(from, one, value.at));
+                self.apply(Op::And, ty, vec![value, one], ty, span)?
+            }
+            _ => value,
+        };
+        Some(self.convert(Conversion::Value, Type::BOOL, rightmost))
+    }
+
+    /// Nanoseconds to milliseconds or back, in LREAL where fractions matter, else in LINT.
+    fn per_millisecond(&mut self, op: Op, value: Expr, real: bool, span: Span) -> Option<Expr> {
+        let at = value.at;
+        if real {
+            let value = self.convert(Conversion::Value, Type::LREAL, value);
+            let factor = staunch_runtime::ops::convert::<i64, f64>(MILLISECOND);
+            let factor = Expr::constant(Elementary::Lreal, Value::F64(factor), at);
+            return self.apply(op, Type::LREAL, vec![value, factor], Type::LREAL, span);
+        }
+        let factor = Expr::constant(Elementary::Lint, Value::I64(MILLISECOND), at);
+        self.apply(op, Type::LINT, vec![value, factor], Type::LINT, span)
+    }
+
+    /// `TRUNC(x)`: to the integer type that its place asks for, DINT without one.
+    pub(crate) fn trunc(&mut self, value: &ast::Expr<'s>, expected: Option<Type>, name: ast::Name<'s>) -> Option<Expr> {
+        let to = match expected {
+            Some(Type::Elementary(it)) if it.is_integer() => it,
+            _ => Elementary::Dint,
+        };
+        let number = self.typed(value, None)?;
+        self.truncate(number, to, value.span, name)
+    }
+
+    fn truncate(&mut self, value: Expr, to: Elementary, span: Span, name: ast::Name<'s>) -> Option<Expr> {
+        if !matches!(value.ty, Type::Elementary(it) if it.is_real()) {
+            let found = self.type_name(value.ty);
+            self.report(
+                Diagnostic::new(Code::E0204, span, format!("`{}` takes a REAL or LREAL, this is {found}", name.text))
+                    .label(format!("this is {found}")),
+            );
+            return None;
+        }
+        Some(self.convert(Conversion::Truncate, Type::Elementary(to), value))
+    }
+}

@@ -1,0 +1,208 @@
+use super::checker::Checker;
+use super::operand::{Operand, computed};
+use crate::{Code, Diagnostic, Span, ast};
+use ast::{ExprKind as Ast, UnaryOp};
+use staunch_ir::{Const, Conversion, Elementary, Expr, ExprKind, Op, Type, Value};
+
+impl<'s> Checker<'_, 's> {
+    /// Types an expression. `expected` is what its place asks for; only literals, bare
+    /// enumerators and overloaded functions listen to it.
+    pub(crate) fn operand(&mut self, expr: &ast::Expr<'s>, expected: Option<Type>) -> Option<Operand> {
+        let operand = match &expr.kind {
+            Ast::Literal(literal) => self.literal(literal, expr.span),
+            Ast::Paren(inner) => self.operand(inner, expected),
+            Ast::Name(name) => self.name(*name, expected).map(Operand::Typed),
+            Ast::Member(base, name) => self.member_value(expr, base, *name).map(Operand::Typed),
+            Ast::Address(_) | Ast::Index(..) => self.load(expr).map(Operand::Typed),
+            Ast::Part(base, part) => self.part(base, *part).map(Operand::Typed),
+            Ast::Deref(_) => self.load(expr).map(Operand::Typed),
+            Ast::Call(callee, arguments) => self.call_value(expr, callee, arguments, expected),
+            Ast::Error(parts) => {
+                parts.iter().for_each(|it| drop(self.operand(it, None)));
+                None
+            }
+            Ast::Unary(op, inner) => self.unary(*op, inner, expected, expr.span),
+            Ast::Binary(sides, op, op_span) => self.binary(sides, *op, *op_span, expected, expr.span),
+        }?;
+        Some(operand.read())
+    }
+
+    /// A BOOL, for IF, WHILE, UNTIL.
+    pub(crate) fn condition(&mut self, expr: &ast::Expr<'s>) -> Option<Expr> {
+        let value = self.operand(expr, Some(Type::BOOL))?;
+        if let Some(found) = value.ty()
+            && found != Type::BOOL
+        {
+            let name = self.type_name(found);
+            let text = self.decl.log.sources.text(expr.span).to_owned();
+            let mut error = Diagnostic::new(Code::E0507, expr.span, format!("a condition is a BOOL, this is {name}"))
+                .label("expected BOOL");
+            if matches!(found, Type::Elementary(it) if it.lane().is_integer()) && !text.contains(' ') {
+                error = error.help(format!("compare it: `{text} <> 0`")).fix(expr.span, format!("{text} <> 0"));
+            } else if let Type::Block(id) = found
+                && id.info().pin("Q").is_some()
+            {
+                error = error.help(format!("ask its output: `{text}.Q`")).fix(expr.span, format!("{text}.Q"));
+            }
+            self.report(error);
+            return None;
+        }
+        self.coerce(value, Type::BOOL, expr.span)
+    }
+
+    fn name(&mut self, name: ast::Name<'s>, expected: Option<Type>) -> Option<Expr> {
+        if let Some(found) = self.find_variable(name) {
+            let variable = found?;
+            if let Some(value) = variable.constant_value() {
+                return self.constant_variable(&variable, value, name.span);
+            }
+            if self.context == super::checker::Context::Initial {
+                let initial = variable.resolved.initial.clone();
+                return self.constant_variable(&variable, initial, name.span);
+            }
+            if self.signature.is_none() {
+                self.report(
+                    super::unresolved::not_constant(name.span)
+                        .other(variable.name.span, format!("`{}` is a variable", name.text))
+                        .help("declare it in VAR CONSTANT"),
+                );
+                return None;
+            }
+            let at = self.at(name.span);
+            return Some(Expr::load(variable.place.clone(), at));
+        }
+        if let Some(value) = self.bare_enumerator(name, expected) {
+            return value;
+        }
+        self.unknown_name(name);
+        None
+    }
+
+    /// Reads a CONSTANT: a scalar is its value, so that it can size an array or label a CASE.
+    fn constant_variable(
+        &mut self,
+        variable: &crate::types::scope::Variable<'s>,
+        value: Const,
+        span: Span,
+    ) -> Option<Expr> {
+        let at = self.at(span);
+        let ty = variable.resolved.ty.read();
+        let kind = match (value, self.decl.program.lane(ty), ty) {
+            (Const::Scalar(value), _, _) => ExprKind::Const(value),
+            (Const::Zero, Some(lane), _) => ExprKind::Const(lane.zero()),
+            (Const::Text(bytes), _, _) => ExprKind::Text(bytes),
+            (Const::Zero, None, Type::String(_)) => ExprKind::Text(Vec::new()),
+            (other, _, _) if self.context != super::checker::Context::Body => ExprKind::Aggregate(other),
+            _ => ExprKind::Load(variable.place.clone()),
+        };
+        Some(Expr::new(ty, kind, at))
+    }
+
+    /// `a.b`, or the enumerator `Color.Red`. A variable hides a type of its name, unless it is an
+    /// enumeration, which has no members: `state := State.Idle`.
+    fn member_value(&mut self, expr: &ast::Expr<'s>, base: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<Expr> {
+        if let Ast::Name(ty) = &base.kind
+            && !self.scope.is_refused(ty.text)
+            && self.type_of_variable(*ty).is_none_or(|it| matches!(it, Type::Enum(_)))
+            && let Some(crate::names::Entry::Type(_)) = self.decl.names.type_named(ty.text)
+        {
+            return self.enumerator(*ty, name);
+        }
+        self.load(expr)
+    }
+
+    fn type_of_variable(&mut self, name: ast::Name<'s>) -> Option<Type> {
+        let own = self.scope.get(name.text).map(|it| it.place.ty);
+        own.or_else(|| self.decl.type_of_global(name.text))
+    }
+
+    fn load(&mut self, expr: &ast::Expr<'s>) -> Option<Expr> {
+        let found = self.place(expr)?;
+        if self.signature.is_none() {
+            self.report(super::unresolved::not_constant(expr.span));
+            return None;
+        }
+        let at = self.at(expr.span);
+        Some(Expr::load(found.place, at))
+    }
+
+    /// `x.3`, `x.%X3`, `x.%B1`: a part of an integer or bit string.
+    fn part(&mut self, base: &ast::Expr<'s>, part: ast::Name<'s>) -> Option<Expr> {
+        let value = self.typed(base, None)?;
+        let part = self.find_part(value.ty, part)?;
+        let Type::Elementary(ty) = value.ty else { return None };
+        let (at, span) = (value.at, base.span);
+        let whole = value.ty;
+        let shift = Expr::constant(Elementary::Lint, Value::I64(i64::from(part.shift)), at);
+        let shifted = self.apply(Op::Shr, whole, vec![value, shift], whole, span)?;
+        if part.ty == Elementary::Bool {
+            let one = Expr::constant(ty, ty.lane().integer(1)?, at);
+            let masked = self.apply(Op::And, whole, vec![shifted, one], whole, span)?;
+            return Some(self.convert(Conversion::Value, Type::BOOL, masked));
+        }
+        Some(self.convert(Conversion::Value, Type::Elementary(part.ty), shifted))
+    }
+
+    fn unary(&mut self, op: UnaryOp, inner: &ast::Expr<'s>, expected: Option<Type>, span: Span) -> Option<Operand> {
+        // The sign of `INT#-5` stands inside the literal: it is of the value that has to fit.
+        if let (UnaryOp::Neg, Ast::Literal(literal)) = (op, &inner.kind)
+            && inner.span == span
+            && let Some(prefix) = &literal.prefix
+        {
+            return self.negative_literal(**prefix, &literal.value, span).map(Operand::Typed);
+        }
+        let operand = self.operand(inner, expected)?;
+        match (op, operand) {
+            (UnaryOp::Plus, operand) => Some(operand),
+            (UnaryOp::Neg, operand) if operand.typed().is_some() => self.negate(operand, span),
+            (UnaryOp::Neg, number) => Some(number.negated()),
+            (UnaryOp::Not, operand) => {
+                let value = self.materialise(operand.cut(), expected, inner.span)?;
+                self.not(value, inner.span).map(Operand::Typed)
+            }
+        }
+    }
+
+    fn negate(&mut self, operand: Operand, span: Span) -> Option<Operand> {
+        let own = operand.ty()?;
+        let value = self.materialise(operand, None, span)?;
+        let value = self.promote(value, span);
+        let value = if self.decl.dialect(span).mixes_bits_and_integers() { self.signed(value) } else { value };
+        let ty = value.ty;
+        let numeric = matches!(ty, Type::Elementary(it) if it.is_integer() || it.is_real() || it.is_time());
+        if !numeric {
+            let found = self.type_name(ty);
+            self.report(
+                Diagnostic::new(Code::E0204, span, format!("`-` needs a number or a TIME, this is {found}"))
+                    .label(format!("this is {found}")),
+            );
+            return None;
+        }
+        let value = self.apply(Op::Neg, ty, vec![value], ty, span)?;
+        Some(computed(value, own))
+    }
+
+    /// Where bit strings count as numbers, the negative of one needs a sign.
+    fn signed(&mut self, value: Expr) -> Expr {
+        let signed = match value.ty {
+            Type::Elementary(Elementary::Dword | Elementary::Lword) => Type::LINT,
+            _ => return value,
+        };
+        self.convert(Conversion::Value, signed, value)
+    }
+
+    pub(crate) fn not(&mut self, value: Expr, span: Span) -> Option<Expr> {
+        let ty = value.ty;
+        let mixes = self.decl.dialect(span).mixes_bits_and_integers();
+        let bits = matches!(ty, Type::Elementary(it) if it.is_bits() || (mixes && it.is_integer()));
+        if !bits {
+            let found = self.type_name(ty);
+            self.report(
+                Diagnostic::new(Code::E0204, span, format!("NOT needs a BOOL or a bit string, this is {found}"))
+                    .label(format!("this is {found}")),
+            );
+            return None;
+        }
+        self.apply(Op::Not, ty, vec![value], ty, span)
+    }
+}

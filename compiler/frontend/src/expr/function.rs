@@ -1,0 +1,187 @@
+//! Calls of a user's own functions.
+
+use super::argument::{Parts, Role, Source, as_written};
+use super::binding::{Given, Parameter};
+use super::checker::Checker;
+use crate::types::signature::{Formal, Signature, Target};
+use crate::types::table::Resolved;
+use crate::{Code, Diagnostic, Span, ast};
+use staunch_ir::{Argument, Expr, ExprKind, Mode, ParamId, Place, Root, RoutineId, Section, StatementKind};
+
+/// What is passed for one parameter.
+enum Passed {
+    /// What the call writes for it.
+    Part(usize),
+    /// The initial value of an input that is left out.
+    Default(Expr),
+    /// Storage for an output; the FUNCTION gives it its initial value.
+    Output(Place),
+}
+
+impl<'s> Checker<'_, 's> {
+    pub(crate) fn user_function(
+        &mut self,
+        slot: usize,
+        arguments: &[ast::Argument<'s>],
+        span: Span,
+    ) -> Option<Option<Expr>> {
+        let signature = self.decl.signature(slot)?;
+        let owner = self.decl.pous[slot].ast.name;
+        let formals = &signature.formals;
+        let arguments = &self.accepted(&signature, arguments)?;
+        let parameters: Vec<_> =
+            formals.iter().map(|it| Parameter { name: it.name.text, section: it.section }).collect();
+        let given =
+            self.bind(owner.text, &parameters, arguments, |name| Self::unknown_formal(owner.text, formals, name))?;
+        let is_optional = |this: &Self, at: usize| this.has_initial(&formals[at], slot);
+        let enough = self.require_all(owner.text, &parameters, &given, arguments, is_optional, span).is_some();
+        let mut parts = Parts::default();
+        let mut passed: Vec<Option<Passed>> = Vec::new();
+        passed.resize_with(formals.len(), || None);
+        for at in as_written(&given) {
+            let number = parts.written.len();
+            let made = match given[at] {
+                Given::Value(expr) => self.given_part(&mut parts, &signature, at, expr),
+                Given::Output { target: Some(target), negated } => {
+                    let place = self.temporary(formals[at].name.text, formals[at].resolved.ty);
+                    passed[at] = Some(Passed::Output(place.clone()));
+                    self.target_part(&mut parts, target, negated, Source::Variable(place))
+                }
+                Given::Nothing | Given::Output { target: None, .. } => None,
+            };
+            if made.is_some() && passed[at].is_none() {
+                passed[at] = Some(Passed::Part(number));
+            } else if made.is_none() {
+                passed[at] = None;
+            }
+        }
+        if !enough {
+            return None;
+        }
+        let mut complete = true;
+        for at in 0..formals.len() {
+            if let Given::Nothing | Given::Output { target: None, .. } = given[at] {
+                passed[at] = self.left_out(&signature, at, slot, span);
+            }
+            complete &= passed[at].is_some();
+        }
+        if !complete {
+            return None;
+        }
+        let result = signature.result.as_ref().map(|(_, resolved)| self.temporary(owner.text, resolved.ty));
+        let call = |parts: &Parts| {
+            let argument = |it: &Option<Passed>| {
+                Some(match it.as_ref()? {
+                    Passed::Part(at) => parts.argument(*at),
+                    Passed::Default(value) => Argument::Value(value.clone()),
+                    Passed::Output(place) => Argument::Reference(place.clone()),
+                })
+            };
+            let arguments = passed.iter().map(argument).collect::<Option<_>>()?;
+            let result = result.clone();
+            Some(StatementKind::Call { callee: RoutineId::next(slot), instance: None, arguments, result })
+        };
+        self.perform(parts, &call, span)?;
+        let at = self.at(span);
+        Some(result.map(|place| Expr::load(place, at)))
+    }
+
+    /// The statements that give a FUNCTION's outputs their initial values: it keeps none from its last call.
+    pub(crate) fn initial_outputs(&mut self, signature: &Signature<'s>) {
+        for formal in signature.formals.iter().filter(|it| it.section == Section::Output) {
+            if let Target::Param(at) = formal.target {
+                let target = Place::root(Root::Param(ParamId::next(at)), formal.resolved.ty);
+                let value = self.initial_value(&formal.resolved, formal.name.span);
+                self.assign(target, value, formal.name.span);
+            }
+        }
+    }
+
+    /// Evaluates the next part, what is given for an input or a VAR_IN_OUT.
+    fn given_part(
+        &mut self,
+        parts: &mut Parts,
+        signature: &Signature<'s>,
+        at: usize,
+        expr: &ast::Expr<'s>,
+    ) -> Option<()> {
+        let formal = &signature.formals[at];
+        match signature.params[at].mode {
+            Mode::Value(_) => self.value_part(parts, expr, formal.resolved.ty, Role::Passed(1 + at)),
+            Mode::Reference => self.in_out_part(parts, formal, 1 + at, expr),
+        }
+    }
+
+    /// What is passed for a parameter that a call does not name.
+    fn left_out(&mut self, signature: &Signature<'s>, at: usize, slot: usize, span: Span) -> Option<Passed> {
+        let formal = &signature.formals[at];
+        match (signature.params[at].mode, formal.section) {
+            (Mode::Value(_), _) => {
+                self.input_left_out(formal, slot, span)?;
+                Some(Passed::Default(self.initial_value(&formal.resolved, span)))
+            }
+            (Mode::Reference, Section::Output) => {
+                Some(Passed::Output(self.temporary(formal.name.text, formal.resolved.ty)))
+            }
+            (Mode::Reference, _) => {
+                self.report_no_variable(formal, self.decl.pous[slot].ast.name.text, span);
+                None
+            }
+        }
+    }
+
+    /// Reports an input without an initial value of its own that a call leaves out. CODESYS refuses it.
+    fn input_left_out(&mut self, formal: &Formal<'s>, slot: usize, span: Span) -> Option<()> {
+        if self.has_initial(formal, slot) {
+            return Some(());
+        }
+        let owner = self.decl.pous[slot].ast.name;
+        let (name, refused) = (formal.name.text, self.decl.dialect(span).wants_all_inputs());
+        let ty = self.type_name(formal.resolved.ty);
+        let code = if refused { Code::E0303 } else { Code::W0304 };
+        let message = format!("this call of `{}` leaves out the input `{name}`", owner.text);
+        self.report(
+            Diagnostic::new(code, span, message)
+                .label(if refused {
+                    "a FUNCTION keeps no value from its last call"
+                } else {
+                    "it is 0, FALSE or empty then"
+                })
+                .other(formal.name.span, "declared here, without an initial value")
+                .help(format!("write `{name} := …` in the call, or declare a default: `{name} : {ty} := …;`")),
+        );
+        (!refused).then_some(())
+    }
+
+    /// Whether a formal's declaration, or its type's, gives it a value.
+    pub(crate) fn has_initial(&self, formal: &Formal<'s>, slot: usize) -> bool {
+        let pou = self.decl.pous[slot].ast;
+        let declared = pou.blocks.iter().flat_map(|it| &it.vars);
+        let given = declared
+            .filter(|it| it.names.iter().any(|name| name.span == formal.name.span))
+            .any(|it| it.initial.is_some());
+        given || !matches!(formal.resolved.initial, staunch_ir::Const::Zero)
+    }
+
+    /// What a FUNCTION's result starts with.
+    pub(crate) fn initial_result(&mut self, slot: usize, span: Span) -> Option<Expr> {
+        let signature = self.decl.signature(slot)?;
+        let (_, resolved) = signature.result.as_ref()?;
+        Some(self.initial_value(resolved, span))
+    }
+
+    /// What a variable starts with.
+    pub(crate) fn initial_value(&mut self, resolved: &Resolved, span: Span) -> Expr {
+        use staunch_ir::Const;
+        let at = self.at(span);
+        let ty = resolved.ty;
+        let kind = match (&resolved.initial, self.decl.program.lane(ty), ty) {
+            (Const::Scalar(value), _, _) => ExprKind::Const(*value),
+            (Const::Zero, Some(lane), _) => ExprKind::Const(lane.zero()),
+            (Const::Text(bytes), _, _) => ExprKind::Text(bytes.clone()),
+            (Const::Zero, None, staunch_ir::Type::String(_)) => ExprKind::Text(Vec::new()),
+            (other, _, _) => ExprKind::Aggregate(other.clone()),
+        };
+        Expr::new(ty, kind, at)
+    }
+}

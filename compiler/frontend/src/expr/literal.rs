@@ -1,0 +1,218 @@
+use super::checker::Checker;
+use super::operand::Operand;
+use super::real::Real;
+use crate::spelling::Key;
+use crate::{Code, Diagnostic, Span, ast};
+use ast::LiteralValue;
+use staunch_ir::{Elementary, Expr, ExprKind, Op, Type, Value};
+
+impl<'s> Checker<'_, 's> {
+    pub(crate) fn literal(&mut self, literal: &ast::Literal<'s>, span: Span) -> Option<Operand> {
+        match (&literal.prefix, &literal.value) {
+            (Some(prefix), LiteralValue::Enumerator(name)) => self.enumerator(**prefix, **name).map(Operand::Typed),
+            (Some(prefix), value) => self.typed_literal(**prefix, value, false, span).map(Operand::Typed),
+            (None, value) => self.plain_literal(value, span),
+        }
+    }
+
+    fn plain_literal(&mut self, value: &LiteralValue<'s>, span: Span) -> Option<Operand> {
+        let at = self.at(span);
+        let typed = |ty, value| Some(Operand::Typed(Expr::constant(ty, value, at)));
+        match value {
+            LiteralValue::Bool(it) => typed(Elementary::Bool, Value::Bool(*it)),
+            LiteralValue::Integer { value, .. } => Some(Operand::Integer(i128::from(*value))),
+            LiteralValue::Real(digits) => Some(Operand::Real { number: Real::Literal(digits.to_string()) }),
+            LiteralValue::Time { nanoseconds, long } => {
+                let ty = if *long { Elementary::Ltime } else { Elementary::Time };
+                typed(ty, Value::I64(*nanoseconds))
+            }
+            LiteralValue::String { bytes, wide } => self.string_literal(bytes, *wide, span),
+            LiteralValue::Date(what) => {
+                self.decl.not_supported(span, what);
+                None
+            }
+            LiteralValue::Error => None,
+            LiteralValue::Enumerator(name) => {
+                self.error(Code::E0101, name.span, format!("`{}` belongs to no enumeration here", name.text));
+                None
+            }
+        }
+    }
+
+    fn string_literal(&mut self, bytes: &[u8], wide: bool, span: Span) -> Option<Operand> {
+        if wide {
+            self.report(
+                Diagnostic::new(Code::E0902, span, "WSTRING literals are not supported yet")
+                    .label("text in double quotes is a WSTRING")
+                    .help("write a STRING in single quotes: `'…'`"),
+            );
+            return None;
+        }
+        let capacity = u16::try_from(bytes.len().max(1)).unwrap_or(u16::MAX);
+        let at = self.at(span);
+        Some(Operand::Typed(Expr::new(Type::String(capacity), ExprKind::Text(bytes.to_vec()), at)))
+    }
+
+    /// `INT#-5`, `REAL#-1.5`.
+    pub(crate) fn negative_literal(
+        &mut self,
+        prefix: ast::Name<'s>,
+        value: &LiteralValue<'s>,
+        span: Span,
+    ) -> Option<Expr> {
+        self.typed_literal(prefix, value, true, span)
+    }
+
+    /// `INT#5`, `BOOL#1`, `REAL#1.5`.
+    fn typed_literal(
+        &mut self,
+        prefix: ast::Name<'s>,
+        value: &LiteralValue<'s>,
+        is_negative: bool,
+        span: Span,
+    ) -> Option<Expr> {
+        let Some(ty) = self.literal_type(prefix, value)? else {
+            return self.plain_literal(value, span)?.typed().cloned();
+        };
+        let operand = self.plain_literal(value, span)?;
+        match operand {
+            Operand::Typed(value) if is_negative => {
+                let found = self.type_name(value.ty);
+                self.error(Code::E0204, span, format!("`-` needs a number, this is {found}"));
+                None
+            }
+            Operand::Typed(_) | Operand::Promoted(..) => self.coerce(operand, Type::Elementary(ty), span),
+            number if is_negative => self.literal_as(&number.negated(), ty, span),
+            number => self.literal_as(&number, ty, span),
+        }
+    }
+
+    /// The type that a literal's prefix names; `Some(None)` for the text behind `STRING#`.
+    fn literal_type(&mut self, prefix: ast::Name<'s>, value: &LiteralValue<'s>) -> Option<Option<Elementary>> {
+        if let Some(ty) = Elementary::named(prefix.text) {
+            return Some(Some(ty));
+        }
+        if prefix.text.eq_ignore_ascii_case("STRING") && matches!(value, LiteralValue::String { .. }) {
+            return Some(None);
+        }
+        if self.decl.names.type_named(prefix.text).is_some() {
+            self.report(
+                Diagnostic::new(Code::E0102, prefix.span, format!("`{}` has no literals", prefix.text))
+                    .label("a literal is of an elementary type, or an enumerator"),
+            );
+            return None;
+        }
+        let near = crate::spelling::nearest(prefix.text, Elementary::ALL.iter().map(|it| it.name()));
+        let mut error = Diagnostic::new(Code::E0102, prefix.span, format!("there is no type `{}`", prefix.text))
+            .label("the type of a literal");
+        if let Some(near) = near {
+            error = error.help(format!("did you mean `{near}`?")).fix(prefix.span, near);
+        }
+        self.report(error);
+        None
+    }
+
+    /// `Color#Red` or `Color.Red`.
+    pub(crate) fn enumerator(&mut self, ty: ast::Name<'s>, name: ast::Name<'s>) -> Option<Expr> {
+        let Some(crate::names::Entry::Type(slot)) = self.decl.names.type_named(ty.text) else {
+            self.error(Code::E0102, ty.span, format!("there is no enumeration `{}`", ty.text));
+            return None;
+        };
+        let resolved = self.decl.named_type(slot)?;
+        let Type::Enum(id) = resolved.ty else {
+            self.error(Code::E0102, ty.span, format!("`{}` is not an enumeration", ty.text));
+            return None;
+        };
+        let values = &self.decl.program.enumeration(id).values;
+        let found = values.iter().find(|it| it.name.eq_ignore_ascii_case(name.text)).map(|it| it.value);
+        let Some(value) = found else {
+            let near = crate::spelling::nearest(name.text, values.iter().map(|it| it.name.as_str())).map(str::to_owned);
+            self.decl.unknown_member(name, resolved.ty, near.as_deref());
+            return None;
+        };
+        let at = self.at(name.span);
+        Some(Expr::new(resolved.ty, ExprKind::Const(value), at))
+    }
+
+    /// A bare enumerator: of the expected enumeration, or the only one of that name.
+    pub(crate) fn bare_enumerator(&mut self, name: ast::Name<'s>, expected: Option<Type>) -> Option<Option<Expr>> {
+        let at = self.at(name.span);
+        if let Some(Type::Enum(id)) = expected {
+            let values = &self.decl.program.enumeration(id).values;
+            if let Some(found) = values.iter().find(|it| it.name.eq_ignore_ascii_case(name.text)) {
+                return Some(Some(Expr::new(Type::Enum(id), ExprKind::Const(found.value), at)));
+            }
+        }
+        let slots = self.decl.names.enumerators.get(&Key(name.text)).cloned().unwrap_or_default();
+        match slots.as_slice() {
+            [] => {
+                let (ty, value) = self.decl.names.anonymous_enumerators.get(&Key(name.text)).copied()?;
+                Some(Some(Expr::new(ty, ExprKind::Const(value), at)))
+            }
+            [slot] => {
+                let ty = self.decl.types[*slot].decl.name;
+                Some(self.enumerator(ty, name))
+            }
+            several => {
+                let names: Vec<_> = several
+                    .iter()
+                    .map(|slot| format!("{}#{}", self.decl.types[*slot].decl.name.text, name.text))
+                    .collect();
+                let names: Vec<_> = names.iter().map(String::as_str).collect();
+                self.report(
+                    Diagnostic::new(
+                        Code::E0108,
+                        name.span,
+                        format!("several enumerations have a value `{}`", name.text),
+                    )
+                    .label("which one is meant?")
+                    .help(format!("write {}", crate::diagnostic::wording::list(&names))),
+                );
+                Some(None)
+            }
+        }
+    }
+
+    /// Arithmetic on integers without a type is exact; with a fraction it waits for its type.
+    pub(crate) fn fold_untyped(&mut self, op: ast::BinaryOp, a: &Operand, b: &Operand, span: Span) -> Option<Operand> {
+        if let (Operand::Integer(a), Operand::Integer(b)) = (a, b) {
+            return self.fold_integers(op, *a, *b, span);
+        }
+        let op = match op {
+            ast::BinaryOp::Add => Op::Add,
+            ast::BinaryOp::Sub => Op::Sub,
+            ast::BinaryOp::Mul => Op::Mul,
+            ast::BinaryOp::Div => Op::Div,
+            _ => return None,
+        };
+        Some(Operand::Real { number: Real::Apply(op, vec![number(a)?, number(b)?]) })
+    }
+
+    fn fold_integers(&mut self, op: ast::BinaryOp, a: i128, b: i128, span: Span) -> Option<Operand> {
+        let value = match op {
+            ast::BinaryOp::Add => a.checked_add(b),
+            ast::BinaryOp::Sub => a.checked_sub(b),
+            ast::BinaryOp::Mul => a.checked_mul(b),
+            ast::BinaryOp::Div if b != 0 => a.checked_div(b),
+            ast::BinaryOp::Mod if b != 0 => a.checked_rem(b),
+            ast::BinaryOp::And if a >= 0 && b >= 0 => Some(a & b),
+            ast::BinaryOp::Or if a >= 0 && b >= 0 => Some(a | b),
+            ast::BinaryOp::Xor if a >= 0 && b >= 0 => Some(a ^ b),
+            _ => return None,
+        };
+        // Beyond every IEC type; a further operation could overflow here.
+        let value = value.filter(|it| it.unsigned_abs() <= 1 << 100);
+        if value.is_none() {
+            self.error(Code::E0202, span, "the value of this expression fits no type");
+        }
+        value.map(Operand::Integer)
+    }
+}
+
+fn number(operand: &Operand) -> Option<Real> {
+    match operand {
+        Operand::Typed(_) | Operand::Promoted(..) => None,
+        Operand::Integer(value) => Some(Real::Literal(value.to_string())),
+        Operand::Real { number } => Some(number.clone()),
+    }
+}

@@ -1,0 +1,302 @@
+//! What a move between systems changes, as far as the text alone shows it. The lints bear the
+//! numbers of the traps in `docs/compare.md`.
+
+use super::checker::Checker;
+use super::unresolved::other_dialects_pin;
+use crate::spelling::Key;
+use crate::{Code, Diagnostic, Span, ast};
+use ast::{ArgumentKind, BinaryOp, ExprKind as Ast, LiteralValue, StatementKind};
+use rustc_hash::{FxHashMap, FxHashSet};
+use staunch_ir::{BlockId, Elementary, Expr, Op, Type, Value};
+use staunch_runtime::{Direction, PinRole};
+
+/// A call of a counter that is a variable of its own.
+struct CounterCall<'a, 's> {
+    name: &'s str,
+    span: Span,
+    block: BlockId,
+    arguments: &'a [ast::Argument<'s>],
+}
+
+impl<'a, 's> CounterCall<'a, 's> {
+    /// The value given for an input, by its name or its position.
+    fn input(&self, role: PinRole) -> Option<(&'a ast::Expr<'s>, Span)> {
+        let named = self.arguments.iter().find_map(|it| match &it.kind {
+            ArgumentKind::Input(name, value) if PinRole::named(name.text) == Some(role) => Some((value, it.span)),
+            ArgumentKind::Input(..) | ArgumentKind::Positional(_) | ArgumentKind::Output { .. } => None,
+        });
+        let position = self.block.info().inputs().position(|it| it.role == Some(role))?;
+        named.or_else(|| match self.arguments.get(position) {
+            Some(ast::Argument { kind: ArgumentKind::Positional(value), span }) => Some((value, *span)),
+            _ => None,
+        })
+    }
+
+    /// The variable that `Q =>` sets.
+    fn output(&self, pin: &str) -> Option<&'a ast::Expr<'s>> {
+        self.arguments.iter().find_map(|it| match &it.kind {
+            ArgumentKind::Output { name, target, negated: false } if name.text.eq_ignore_ascii_case(pin) => {
+                target.as_ref()
+            }
+            ArgumentKind::Input(..) | ArgumentKind::Positional(_) | ArgumentKind::Output { .. } => None,
+        })
+    }
+}
+
+/// Whether a call does no more than reset or load a counter: it follows the one that counts.
+pub(crate) fn only_resets(arguments: &[ast::Argument<'_>]) -> bool {
+    let resets = |it: &ast::Argument<'_>| match &it.kind {
+        ArgumentKind::Input(name, _) => {
+            matches!(PinRole::named(name.text), Some(PinRole::Reset | PinRole::Load))
+        }
+        ArgumentKind::Positional(_) | ArgumentKind::Output { .. } => false,
+    };
+    !arguments.is_empty() && arguments.iter().all(resets)
+}
+
+/// Whether the type is a counter with a count to read.
+fn counts(ty: Type) -> bool {
+    match ty {
+        Type::Block(block) => block.info().pin_for(PinRole::Count).is_some_and(|it| it.direction == Direction::Output),
+        Type::Elementary(_)
+        | Type::Subrange(..)
+        | Type::String(_)
+        | Type::Enum(_)
+        | Type::Array(_)
+        | Type::Struct(_) => false,
+    }
+}
+
+impl<'s> Checker<'_, 's> {
+    /// The name that this system has for a pin, where the program moves here from another.
+    pub(crate) fn own_pin_name(&mut self, block: BlockId, name: ast::Name<'s>) -> ast::Name<'s> {
+        let info = block.info();
+        if self.decl.log.options.moved_from.is_none() || info.pin(name.text).is_some() {
+            return name;
+        }
+        let Some(own) = other_dialects_pin(block, name.text) else { return name };
+        let system = info.family.name();
+        let message = format!("the pin `{}` is called `{own}` in {system}", name.text);
+        let lint = Diagnostic::new(Code::W0609, name.span, message).label("a name that the move changes");
+        let lint = lint.help(format!("write `{own}`, or give the inputs by position")).fix(name.span, own);
+        self.report(lint);
+        ast::Name { text: own, span: name.span }
+    }
+
+    /// The arguments by the names that this system has, where the program moves here.
+    pub(crate) fn arguments_by_own_names(
+        &mut self,
+        block: BlockId,
+        arguments: &[ast::Argument<'s>],
+    ) -> Option<Vec<ast::Argument<'s>>> {
+        self.decl.log.options.moved_from?;
+        let mut arguments = arguments.to_vec();
+        for argument in &mut arguments {
+            match &mut argument.kind {
+                ArgumentKind::Positional(_) => {}
+                ArgumentKind::Input(name, _) | ArgumentKind::Output { name, .. } => {
+                    *name = self.own_pin_name(block, *name);
+                }
+            }
+        }
+        Some(arguments)
+    }
+
+    /// Trap 8: an unsigned value against zero, where the outcome is always the same.
+    pub(crate) fn compared_with_zero(&mut self, op: Op, ty: Elementary, sides: [&Expr; 2], span: Span) {
+        let zero = |it: &Expr| it.as_const().and_then(Value::as_integer) == Some(0);
+        let unsigned = ty.lane().is_integer() && !ty.lane().is_signed() && ty != Elementary::Bool;
+        let outcome = match (op, zero(sides[0]), zero(sides[1])) {
+            (Op::Lt, false, true) | (Op::Gt, true, false) => "FALSE",
+            (Op::Ge, false, true) | (Op::Le, true, false) => "TRUE",
+            _ => return,
+        };
+        if unsigned {
+            self.report(
+                Diagnostic::new(
+                    Code::W0608,
+                    span,
+                    format!("{} is never below zero", crate::diagnostic::wording::article(ty.name())),
+                )
+                .label(format!("this is always {outcome}"))
+                .help("compare with `= 0`, or count in a signed type"),
+            );
+        }
+    }
+
+    /// Traps 2 and 12, which show in how a POU uses its counters.
+    pub(crate) fn migration_lints(&mut self, body: &[ast::Statement<'s>]) {
+        if !self.scope.variables.iter().any(|it| counts(it.place.ty)) {
+            return;
+        }
+        let mut calls = Vec::new();
+        let mut comparisons = Vec::new();
+        ast::each_expr(body, &mut |expr| match &expr.kind {
+            Ast::Call(callee, arguments) => calls.extend(self.counter_call(callee, arguments)),
+            Ast::Binary(sides, BinaryOp::Gt, span) => comparisons.push((&sides[0], &sides[1], *span)),
+            Ast::Binary(sides, BinaryOp::Lt, span) => comparisons.push((&sides[1], &sides[0], *span)),
+            _ => {}
+        });
+        let mut calls_of: FxHashMap<_, Vec<_>> = FxHashMap::default();
+        for call in &calls {
+            calls_of.entry(Key(call.name)).or_default().push(call);
+        }
+        for (count, limit, span) in comparisons {
+            let Some(counter) = member_of(count, "CV") else { continue };
+            if let Some(calls) = calls_of.get(&Key(counter.text)) {
+                self.beyond_preset(calls, counter, limit, span);
+            }
+        }
+        let mut read = FxHashSet::default();
+        note_members_read(body, &mut read);
+        for call in &calls {
+            self.reset_by_itself(call, &read);
+        }
+    }
+
+    fn counter_call<'a>(
+        &self,
+        callee: &ast::Expr<'s>,
+        arguments: &'a [ast::Argument<'s>],
+    ) -> Option<CounterCall<'a, 's>> {
+        let Ast::Name(name) = callee.kind else { return None };
+        let Type::Block(block) = self.scope.get(name.text)?.place.ty else { return None };
+        counts(Type::Block(block)).then_some(CounterCall { name: name.text, span: callee.span, block, arguments })
+    }
+
+    /// `c.CV > PV`, where `c` stops at PV; `calls` are those of `c`.
+    fn beyond_preset(
+        &mut self,
+        calls: &[&CounterCall<'_, 's>],
+        counter: ast::Name<'s>,
+        limit: &ast::Expr<'s>,
+        span: Span,
+    ) {
+        let stops = |it: &CounterCall<'_, '_>| {
+            let info = it.block.info();
+            info.facts.stops && info.pin_for(PinRole::Up).is_some()
+        };
+        if calls.first().is_none_or(|it| !stops(it)) {
+            return;
+        }
+        let own = member_of(limit, "PV").is_some_and(|it| it.text.eq_ignore_ascii_case(counter.text));
+        let text = |expr: &ast::Expr<'s>| self.decl.log.sources.text(expr.span).to_ascii_uppercase();
+        let at_most = |given: &ast::Expr<'s>| match (number(given), number(limit)) {
+            (Some(preset), Some(limit)) => preset <= limit,
+            _ => text(given) == text(limit),
+        };
+        if own || calls.iter().all(|it| it.input(PinRole::Preset).is_some_and(|(given, _)| at_most(given))) {
+            self.report(
+                Diagnostic::new(Code::W0602, span, format!("`{}.CV` does not pass its preset", counter.text))
+                    .label("the counter stops at PV, so this never holds")
+                    .note("only where PV is lowered under the count can CV lie above it")
+                    .help("compare with `>=`, or use the output `Q`"),
+            );
+        }
+    }
+
+    /// `c(R := done); done := c.Q;`
+    fn reset_by_itself(&mut self, call: &CounterCall<'_, 's>, read: &MembersRead<'s>) {
+        let info = call.block.info();
+        if info.facts.counts_levels {
+            return;
+        }
+        let empty = info.pin_for(PinRole::Empty).map_or(PinRole::Done, |_| PinRole::Empty);
+        for (input, output) in [(PinRole::Reset, PinRole::Done), (PinRole::Load, empty)] {
+            let Some((given, at)) = call.input(input) else { continue };
+            let (Some(pin), Some(output)) = (info.pin_for(input), info.pin_for(output)) else { continue };
+            let (pin, output) = (pin.name, output.name);
+            let is_output = |expr: &ast::Expr<'s>| {
+                member_of(expr, output).is_some_and(|name| name.text.eq_ignore_ascii_case(call.name))
+            };
+            let set_by_call = |name: ast::Name<'s>| {
+                let target = call.output(output);
+                target.is_some_and(|it| matches!(&it.kind, Ast::Name(it) if it.text.eq_ignore_ascii_case(name.text)))
+            };
+            let reads_output = |name: ast::Name<'s>| read.contains(&[name.text, call.name, output].map(Key));
+            let own = match &bare(given).kind {
+                Ast::Name(name) => set_by_call(*name) || reads_output(*name),
+                _ => is_output(bare(given)),
+            };
+            if own {
+                let counter = call.name;
+                let given = self.decl.log.sources.text(bare(given).span);
+                self.report(
+                    Diagnostic::new(Code::W0612, at, format!("`{counter}` feeds its own {pin}"))
+                        .label("an edge that arrives in this scan is not counted")
+                        .other(call.span, "the counter")
+                        .help(format!(
+                            "pass `{pin} := FALSE` here, and behind the statements that read `{counter}.{output}` write \
+                             `IF {given} THEN {counter}({pin} := TRUE); END_IF`"
+                        )),
+                );
+            }
+        }
+    }
+}
+
+fn bare<'a, 's>(expr: &'a ast::Expr<'s>) -> &'a ast::Expr<'s> {
+    match &expr.kind {
+        Ast::Paren(inner) => bare(inner),
+        _ => expr,
+    }
+}
+
+/// `c` of `c.CV`.
+fn member_of<'s>(expr: &ast::Expr<'s>, member: &str) -> Option<ast::Name<'s>> {
+    match &bare(expr).kind {
+        Ast::Member(base, name) if name.text.eq_ignore_ascii_case(member) => match base.kind {
+            Ast::Name(owner) => Some(owner),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+fn number(expr: &ast::Expr<'_>) -> Option<u64> {
+    match &bare(expr).kind {
+        Ast::Literal(ast::Literal { value: LiteralValue::Integer { value, .. }, .. }) => Some(*value),
+        _ => None,
+    }
+}
+
+/// Each `a := b.c` of a body, as these three names: a body may have thousands of them and of counters.
+type MembersRead<'s> = FxHashSet<[Key<'s>; 3]>;
+
+fn note_members_read<'s>(body: &[ast::Statement<'s>], read: &mut MembersRead<'s>) {
+    for statement in body {
+        match &statement.kind {
+            StatementKind::Assign { target, value } => read.extend(member_read(target, value)),
+            StatementKind::If { branches, otherwise } => {
+                branches.iter().for_each(|(_, body)| note_members_read(body, read));
+                note_members_read(otherwise.as_deref().unwrap_or_default(), read);
+            }
+            StatementKind::Case { arms, otherwise, .. } => {
+                arms.iter().for_each(|it| note_members_read(&it.body, read));
+                note_members_read(otherwise.as_deref().unwrap_or_default(), read);
+            }
+            StatementKind::For { body, .. }
+            | StatementKind::While { body, .. }
+            | StatementKind::Repeat { body, .. } => {
+                note_members_read(body, read);
+            }
+            StatementKind::Empty
+            | StatementKind::SetReset { .. }
+            | StatementKind::Expr(_)
+            | StatementKind::Exit
+            | StatementKind::Continue
+            | StatementKind::Return
+            | StatementKind::Error => {}
+        }
+    }
+}
+
+fn member_read<'s>(target: &ast::Expr<'s>, value: &ast::Expr<'s>) -> Option<[Key<'s>; 3]> {
+    match (&target.kind, &bare(value).kind) {
+        (Ast::Name(target), Ast::Member(base, member)) => match &base.kind {
+            Ast::Name(owner) => Some([target.text, owner.text, member.text].map(Key)),
+            _ => None,
+        },
+        _ => None,
+    }
+}

@@ -1,0 +1,32 @@
+//! Expressions and calls: what types they have, and what they become. They are checked against
+//! declarations, and resolve none.
+
+mod argument;
+mod binding;
+mod block_call;
+mod call;
+pub(crate) mod call_tracking;
+mod callee;
+pub(crate) mod checker;
+mod coerce;
+pub(crate) mod constant;
+mod constant_comparison;
+mod conversion;
+mod enable;
+mod expression;
+mod fold;
+mod function;
+mod literal;
+mod migration;
+pub(crate) mod operand;
+mod operator;
+mod order;
+mod overload;
+mod place;
+mod promotion;
+mod real;
+pub(crate) mod standard;
+mod string_compare;
+pub(crate) mod unresolved;
+pub(crate) mod uses;
+mod variadic;

@@ -1,0 +1,511 @@
+use super::checker::Checker;
+use super::operand::{Operand, computed};
+use crate::types::coercion::{as_number, is_narrow, join, join_promoted};
+use crate::{Code, Diagnostic, Span, ast};
+use ast::BinaryOp;
+use staunch_ir::{Conversion, Elementary, Expr, Op, Statement, StatementKind, Type, Value};
+
+impl<'s> Checker<'_, 's> {
+    pub(crate) fn binary(
+        &mut self,
+        [left, right]: &[ast::Expr<'s>; 2],
+        op: BinaryOp,
+        op_span: Span,
+        expected: Option<Type>,
+        span: Span,
+    ) -> Option<Operand> {
+        if matches!(op, BinaryOp::AndThen | BinaryOp::OrElse) {
+            return self.short_circuit(left, op, right, span).map(Operand::Typed);
+        }
+        let hint = expected.filter(|_| !compares(op));
+        // Both sides are checked before giving up, so that one run reports every mistake.
+        let a = self.operand(left, hint);
+        let Some(mut a) = a else {
+            self.operand(right, hint);
+            return None;
+        };
+        let right_hint = beside(&a, hint);
+        let b = self.after(a.typed_mut().as_mut_slice(), |this| this.operand(right, right_hint))?;
+        // A bare enumerator on the left listens to the right side.
+        if let (Some(Type::Enum(x)), Some(Type::Enum(y))) = (a.ty(), b.ty())
+            && x != y
+            && let ast::ExprKind::Name(_) = left.kind
+        {
+            a = self.operand(left, Some(Type::Enum(y)))?;
+        }
+        let sides = Sides { a, b, left: left.span, right: right.span, op, op_span, span, hint };
+        self.combine(sides)
+    }
+
+    /// The operation on two sides that have been checked.
+    pub(crate) fn combine(&mut self, mut sides: Sides) -> Option<Operand> {
+        if sides.a.typed().is_none() && sides.b.typed().is_none() {
+            if let Some(folded) = self.fold_untyped(sides.op, &sides.a, &sides.b, sides.span) {
+                return Some(folded);
+            }
+            sides.a = Operand::Typed(self.materialise(sides.a, sides.hint, sides.left)?);
+            if let (Operand::Integer(_), Some(ty)) = (&sides.b, sides.a.ty())
+                && matches!(ty, Type::Elementary(it) if it.is_real())
+            {
+                sides.b = Operand::Typed(self.coerce(sides.b, ty, sides.right)?);
+            }
+        }
+        self.operate(sides)
+    }
+
+    fn operate(&mut self, sides: Sides) -> Option<Operand> {
+        match sides.op {
+            BinaryOp::Lt | BinaryOp::Gt | BinaryOp::Le | BinaryOp::Ge | BinaryOp::Eq | BinaryOp::Ne => {
+                self.compare(sides).map(Operand::Typed)
+            }
+            BinaryOp::And | BinaryOp::Or | BinaryOp::Xor => self.bitwise(sides),
+            BinaryOp::Power => self.power(sides).map(Operand::Typed),
+            BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Mod => self.arithmetic(sides),
+            BinaryOp::AndThen | BinaryOp::OrElse => None,
+        }
+    }
+
+    /// The one type of both sides, and the sides converted to it.
+    fn meet(&mut self, sides: Sides, allowed: fn(Elementary, bool) -> bool, wants: &str) -> Option<Meeting> {
+        let dialect = self.decl.dialect(sides.span);
+        let mixes = dialect.mixes_bits_and_integers();
+        let join = if dialect.promotes_integers() { join_promoted } else { join };
+        let own = match common(&sides, [sides.a.ty(), sides.b.ty()], mixes, join) {
+            Some(ty) if allowed(ty, mixes) => ty,
+            _ => {
+                self.report_operands(&sides, wants);
+                return None;
+            }
+        };
+        let ty = if dialect.promotes_integers() { promoted(&sides, own) } else { own };
+        let a = self.side(sides.a, ty, sides.left)?;
+        let b = self.side(sides.b, ty, sides.right)?;
+        Some(Meeting { ty: Type::Elementary(ty), own: Type::Elementary(own), a, b })
+    }
+
+    fn side(&mut self, operand: Operand, ty: Elementary, span: Span) -> Option<Expr> {
+        match operand {
+            // The meeting of a bit string and an integer is decided; the lanes agree in size or widen.
+            Operand::Typed(expr) | Operand::Promoted(expr, _) => {
+                Some(self.convert(Conversion::Value, Type::Elementary(ty), expr))
+            }
+            literal => self.coerce(literal, Type::Elementary(ty), span),
+        }
+    }
+
+    fn report_operands(&mut self, sides: &Sides, wants: &str) {
+        let name = |this: &Self, operand: &Operand| match operand.ty() {
+            Some(ty) => this.type_name(ty),
+            None => "a number".to_owned(),
+        };
+        let (a, b) = (name(self, &sides.a), name(self, &sides.b));
+        if let Some(side) = [(&sides.a, sides.left), (&sides.b, sides.right)]
+            .into_iter()
+            .find(|(operand, _)| operand.ty().is_some_and(|ty| self.decl.instance_in(ty).is_some()))
+            && let Some(expr) = side.0.typed()
+        {
+            let expr = expr.clone();
+            let _ = self.coerce(Operand::Typed(expr), Type::BOOL, side.1);
+            return;
+        }
+        let op = sides.op.text();
+        let mut error = Diagnostic::new(Code::E0204, sides.op_span, format!("`{op}` does not take {a} and {b}"))
+            .label(wants.to_owned())
+            .other(sides.left, format!("this is {a}"))
+            .other(sides.right, format!("this is {b}"));
+        if let Some(help) = self.help_for_sides(sides) {
+            error = error.help(help);
+        } else if let (Some(Type::Elementary(a)), Some(Type::Elementary(b))) = (sides.a.ty(), sides.b.ty()) {
+            let bits = [a, b].into_iter().find(|it| it.is_bits() && *it != Elementary::Bool);
+            error = match bits {
+                Some(bits) => error.help(format!(
+                    "a bit string is made a number with `{}_TO_{}(…)`",
+                    bits.name(),
+                    as_number(bits).name()
+                )),
+                None if a == b => error,
+                None => error.help("convert one side, so that both have one type"),
+            };
+        }
+        self.report(error);
+    }
+
+    /// What to write instead of an operator that a type does not have.
+    fn help_for_sides(&self, sides: &Sides) -> Option<String> {
+        let text = |span| self.decl.log.sources.text(span);
+        let (a, b) = (text(sides.left), text(sides.right));
+        match (sides.a.ty(), sides.b.ty()) {
+            (Some(Type::String(_)), Some(Type::String(_))) if matches!(sides.op, BinaryOp::Add | BinaryOp::And) => {
+                Some(format!("write `CONCAT({a}, {b})`"))
+            }
+            (Some(ty @ Type::Enum(_)), None) | (None, Some(ty @ Type::Enum(_))) => {
+                Some(format!("name a member: {}", self.members(ty)?))
+            }
+            (Some(Type::Enum(_)), Some(Type::Elementary(it))) if it.is_integer() => {
+                Some(format!("write `TO_{}({a})`", it.name()))
+            }
+            (Some(Type::Elementary(it)), Some(Type::Enum(_))) if it.is_integer() => {
+                Some(format!("write `TO_{}({b})`", it.name()))
+            }
+            (Some(Type::Elementary(x)), Some(Type::Elementary(y))) if x.is_time() && y.is_time() => {
+                let (a, b) = (format!("{}_TO_LINT({a})", x.name()), format!("{}_TO_LINT({b})", y.name()));
+                match sides.op {
+                    BinaryOp::Div => Some(format!("divide their milliseconds: `{a} / {b}`")),
+                    BinaryOp::Mod => Some(format!("take their milliseconds: `LINT_TO_{}({a} MOD {b})`", x.name())),
+                    _ => None,
+                }
+            }
+            (Some(Type::BOOL), None) if is_junction(sides.op) => {
+                Some(format!("each side of {0} is a comparison of its own: `x = 1 {0} x = 2`", sides.op.text()))
+            }
+            (Some(Type::BOOL), None) if a.contains(['<', '>', '=']) => {
+                Some("join two comparisons: `low < x AND x < high`".to_owned())
+            }
+            (Some(Type::Elementary(it)), None) if it.is_bits() && it != Elementary::Bool && !is_junction(sides.op) => {
+                Some(format!("write `{}`", converted(sides, it, as_number(it).name(), a, b)))
+            }
+            (Some(Type::Elementary(it)), None) if it.is_integer() && is_junction(sides.op) => {
+                let bits = ["BYTE", "WORD", "DWORD", "LWORD"];
+                let bits = bits[usize::try_from(it.lane().size().trailing_zeros()).unwrap_or(0)];
+                Some(format!("write `{}`", converted(sides, it, bits, a, b)))
+            }
+            (Some(Type::Elementary(it)), None) if it.is_time() => Some(format!("write the unit: `T#{b}ms`")),
+            (None, Some(Type::Elementary(it))) if it.is_time() => Some(format!("write the unit: `T#{a}ms`")),
+            _ => None,
+        }
+    }
+
+    fn compare(&mut self, sides: Sides) -> Option<Expr> {
+        let op = comparison(sides.op);
+        let op_span = sides.op_span;
+        match (sides.a.ty(), sides.b.ty()) {
+            (Some(Type::String(_)), Some(Type::String(_))) => {
+                let (Operand::Typed(a), Operand::Typed(b)) = (sides.a, sides.b) else { return None };
+                self.compare_texts(op, a, b, op_span)
+            }
+            (Some(Type::Enum(a)), Some(Type::Enum(b))) if a == b => {
+                let (Operand::Typed(a), Operand::Typed(b)) = (sides.a, sides.b) else { return None };
+                let ty = a.ty;
+                self.apply(op, ty, vec![a, b], Type::BOOL, op_span)
+            }
+            (Some(Type::Enum(_)), _) | (_, Some(Type::Enum(_)))
+                if self.decl.dialect(sides.span).mixes_bits_and_integers() =>
+            {
+                let sides = self.enums_as_numbers(sides);
+                self.compare(sides)
+            }
+            _ => {
+                let equality = matches!(op, Op::Eq | Op::Ne);
+                self.always_the_same(&sides);
+                let Meeting { ty, a, b, .. } =
+                    self.meet(sides, |_, _| true, "both sides need one type that can be compared")?;
+                let of = ty.elementary()?;
+                // A real that was set to 0 is 0: what guards a division is right.
+                let has_zero = [&a, &b].into_iter().any(|it| is_zero(it.as_const()));
+                if of.is_real() && equality && !has_zero {
+                    self.report(
+                        Diagnostic::new(Code::W0503, op_span, "REAL values are compared for equality")
+                            .label("rounding makes equal results differ")
+                            .help("compare the distance: `ABS(a - b) < 0.001`"),
+                    );
+                }
+                self.compared_with_zero(op, of, [&a, &b], op_span);
+                self.apply(op, ty, vec![a, b], Type::BOOL, op_span)
+            }
+        }
+    }
+
+    fn enums_as_numbers(&mut self, mut sides: Sides) -> Sides {
+        sides.a = self.enum_as_number(sides.a);
+        sides.b = self.enum_as_number(sides.b);
+        sides
+    }
+
+    fn enum_as_number(&mut self, operand: Operand) -> Operand {
+        match operand {
+            Operand::Typed(expr) => match expr.ty {
+                Type::Enum(id) => {
+                    let base = Type::Elementary(self.decl.program.enumeration(id).base);
+                    Operand::Typed(self.convert(Conversion::Same, base, expr))
+                }
+                _ => Operand::Typed(expr),
+            },
+            other => other,
+        }
+    }
+
+    fn bitwise(&mut self, sides: Sides) -> Option<Operand> {
+        let op = match sides.op {
+            BinaryOp::And => Op::And,
+            BinaryOp::Or => Op::Or,
+            _ => Op::Xor,
+        };
+        let op_span = sides.op_span;
+        let allowed = |ty: Elementary, mixes: bool| ty.is_bits() || (mixes && ty.is_integer());
+        let Meeting { ty, own, a, b } = self.meet(sides, allowed, "both sides need to be BOOL, or bit strings")?;
+        let value = self.apply(op, ty, vec![a, b], ty, op_span)?;
+        Some(computed(value, own))
+    }
+
+    /// `**`: REAL or LREAL; integers are converted.
+    fn power(&mut self, sides: Sides) -> Option<Expr> {
+        let op_span = sides.op_span;
+        let lreal = |operand: &Operand| matches!(operand.ty(), Some(Type::Elementary(it)) if it == Elementary::Lreal || it.lane().size() > 2 && it.is_integer());
+        let long = lreal(&sides.a) || lreal(&sides.b) || sides.hint == Some(Type::LREAL);
+        let ty = if long { Elementary::Lreal } else { Elementary::Real };
+        let numeric = |operand: &Operand| match operand.ty() {
+            Some(Type::Elementary(it)) => it.is_real() || it.is_integer(),
+            Some(_) => false,
+            None => true,
+        };
+        if !numeric(&sides.a) || !numeric(&sides.b) {
+            self.report_operands(&sides, "both sides need to be numbers");
+            return None;
+        }
+        let a = self.side(sides.a, ty, sides.left)?;
+        let b = self.side(sides.b, ty, sides.right)?;
+        let ty = Type::Elementary(ty);
+        self.apply(Op::Expt, ty, vec![a, b], ty, op_span)
+    }
+
+    fn arithmetic(&mut self, sides: Sides) -> Option<Operand> {
+        let time = |operand: &Operand| matches!(operand.ty(), Some(Type::Elementary(it)) if it.is_time());
+        match (sides.op, time(&sides.a), time(&sides.b)) {
+            (BinaryOp::Mul, true, false) | (BinaryOp::Div, true, false) => self.scale_time(sides).map(Operand::Typed),
+            (BinaryOp::Mul, false, true) => {
+                let swapped = Sides { a: sides.b, b: sides.a, left: sides.right, right: sides.left, ..sides };
+                self.scale_time(swapped).map(Operand::Typed)
+            }
+            (BinaryOp::Add | BinaryOp::Sub, true, true) => self.add_times(sides).map(Operand::Typed),
+            (_, true, _) | (_, _, true) => {
+                self.report_operands(&sides, "a TIME is added to a TIME, and multiplied or divided by a number");
+                None
+            }
+            _ => self.plain_arithmetic(sides),
+        }
+    }
+
+    fn plain_arithmetic(&mut self, sides: Sides) -> Option<Operand> {
+        let op = arithmetic_op(sides.op);
+        let op_span = sides.op_span;
+        let allowed: fn(Elementary, bool) -> bool = match sides.op {
+            BinaryOp::Mod => |ty, mixes| ty.is_integer() || (mixes && ty.is_bits() && ty != Elementary::Bool),
+            _ => |ty, mixes| ty.is_integer() || ty.is_real() || (mixes && ty.is_bits() && ty != Elementary::Bool),
+        };
+        let wants =
+            if sides.op == BinaryOp::Mod { "both sides need to be integers" } else { "both sides need to be numbers" };
+        let Meeting { ty, own, a, b } = self.meet(sides, allowed, wants)?;
+        let value = self.apply(op, ty, vec![a, b], ty, op_span)?;
+        Some(computed(value, own))
+    }
+
+    fn add_times(&mut self, sides: Sides) -> Option<Expr> {
+        let op = arithmetic_op(sides.op);
+        let (op_span, span) = (sides.op_span, sides.span);
+        let Meeting { ty, a, b, .. } = self.meet(sides, |ty, _| ty.is_time(), "both sides need to be times")?;
+        if let (Some(Value::I64(a)), Some(Value::I64(b))) = (a.as_const(), b.as_const()) {
+            let sum = if op == Op::Add { a.checked_add(b) } else { a.checked_sub(b) };
+            self.refuse_time_overflow(sum.is_none(), span)?;
+        }
+        self.apply(op, ty, vec![a, b], ty, op_span)
+    }
+
+    fn refuse_time_overflow(&mut self, overflows: bool, span: Span) -> Option<()> {
+        if overflows {
+            self.report(
+                Diagnostic::new(Code::E0209, span, "this constant TIME overflows")
+                    .label("a TIME reaches about 292 years either way"),
+            );
+            return None;
+        }
+        Some(())
+    }
+
+    /// TIME `*` or `/` a number. An integer counts exactly, a real through LREAL.
+    fn scale_time(&mut self, sides: Sides) -> Option<Expr> {
+        let op = arithmetic_op(sides.op);
+        let (op_span, span) = (sides.op_span, sides.span);
+        let Operand::Typed(time) = sides.a else { return None };
+        let ty = time.ty;
+        let integer = match sides.b.ty() {
+            None => matches!(sides.b, Operand::Integer(_)),
+            Some(Type::Elementary(it)) if it.is_integer() => true,
+            Some(Type::Elementary(it)) if it.is_real() => false,
+            Some(_) => {
+                let sides = Sides { a: Operand::Typed(time), ..sides };
+                self.report_operands(&sides, "a TIME is multiplied or divided by a number");
+                return None;
+            }
+        };
+        if integer {
+            let count = self.side(sides.b, Elementary::Lint, sides.right)?;
+            if let (Some(Value::I64(a)), Some(Value::I64(b)), Op::Mul) = (time.as_const(), count.as_const(), op) {
+                self.refuse_time_overflow(a.checked_mul(b).is_none(), span)?;
+            }
+            let count = self.convert(Conversion::Same, ty, count);
+            return self.apply(op, ty, vec![time, count], ty, op_span);
+        }
+        let factor = self.side(sides.b, Elementary::Lreal, sides.right)?;
+        let lint = self.convert(Conversion::Same, Type::LINT, time);
+        let time = self.convert(Conversion::Value, Type::LREAL, lint);
+        let scaled = self.apply(op, Type::LREAL, vec![time, factor], Type::LREAL, op_span)?;
+        let lint = self.convert(Conversion::Value, Type::LINT, scaled);
+        Some(self.convert(Conversion::Same, ty, lint))
+    }
+
+    /// `a AND_THEN b`: `b` is evaluated only when it decides.
+    fn short_circuit(&mut self, left: &ast::Expr<'s>, op: BinaryOp, right: &ast::Expr<'s>, span: Span) -> Option<Expr> {
+        let a = self.condition(left);
+        let mut b = None;
+        let evaluate = self.nested(|this| b = this.condition(right));
+        let (a, b) = (a?, b?);
+        let at = self.at(span);
+        let result = self.temporary("both", Type::BOOL);
+        self.assign(result.clone(), a, span);
+        let mut decide = evaluate;
+        decide.push(Statement::assign(result.clone(), b, at));
+        let condition = Expr::load(result.clone(), at);
+        let (then, otherwise) = if op == BinaryOp::AndThen { (decide, Vec::new()) } else { (Vec::new(), decide) };
+        self.push(StatementKind::If { condition, then, otherwise }, span);
+        Some(Expr::load(result, at))
+    }
+}
+
+/// The two sides of an operator, and where they stand.
+pub(crate) struct Sides {
+    pub a: Operand,
+    pub b: Operand,
+    pub left: Span,
+    pub right: Span,
+    pub op: BinaryOp,
+    pub op_span: Span,
+    pub span: Span,
+    pub hint: Option<Type>,
+}
+
+/// What an operand beside `a` is expected to be.
+pub(crate) fn beside(a: &Operand, hint: Option<Type>) -> Option<Type> {
+    match a.ty() {
+        Some(ty @ Type::Enum(_)) => Some(ty),
+        // A function of literals takes the type of the side it meets.
+        Some(ty @ Type::Elementary(it)) if it.is_integer() || it.is_real() => Some(ty),
+        _ => hint,
+    }
+}
+
+/// Two sides at the type that they are computed at, and the one that the result counts as.
+struct Meeting {
+    ty: Type,
+    own: Type,
+    a: Expr,
+    b: Expr,
+}
+
+type Join = fn(Elementary, Elementary) -> Option<Elementary>;
+
+/// The type in which sides of these types meet, where `None` is a literal's.
+fn common(sides: &Sides, types: [Option<Type>; 2], mixes: bool, join: Join) -> Option<Elementary> {
+    let number = |ty: Elementary| if mixes { as_number(ty) } else { ty };
+    let literal = |ty: Elementary, it: &Operand| literal_meets(number(ty), ty, it, sides.hint, join);
+    match types {
+        [Some(Type::Elementary(a)), Some(Type::Elementary(b))] => {
+            if a == b {
+                Some(a)
+            } else {
+                join(number(a), number(b)).or_else(|| mixed_signs(a, b, mixes))
+            }
+        }
+        [Some(Type::Elementary(a)), None] => literal(a, &sides.b),
+        [None, Some(Type::Elementary(b))] => literal(b, &sides.a),
+        _ => None,
+    }
+}
+
+/// The type at which sides are computed that give one of `own`, where integers are promoted.
+fn promoted(sides: &Sides, own: Elementary) -> Elementary {
+    let calculates = matches!(sides.op, BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Mod);
+    // A promoted value may be negative: it is compared with a UDINT by what it is.
+    let compared = compares(sides.op) && as_number(own) == Elementary::Udint;
+    if !is_narrow(own) && !compared {
+        return own;
+    }
+    match common(sides, [sides.a.computed_at(), sides.b.computed_at()], true, join) {
+        Some(ty) if calculates && is_narrow(ty) => Elementary::Dint,
+        ty => ty.unwrap_or(own),
+    }
+}
+
+/// The type at which a literal meets a typed operand: the operand's, if the literal fits it.
+fn literal_meets(
+    number: Elementary,
+    ty: Elementary,
+    literal: &Operand,
+    hint: Option<Type>,
+    join: Join,
+) -> Option<Elementary> {
+    match literal {
+        Operand::Integer(value) => {
+            if ty.is_real() || ty.lane().integer(*value).is_some() {
+                return Some(ty);
+            }
+            let wider = [Elementary::Int, Elementary::Dint, Elementary::Lint, Elementary::Ulint];
+            let own = wider.into_iter().find(|it| it.lane().integer(*value).is_some())?;
+            join(number, own)
+        }
+        Operand::Real { .. } => {
+            let real = if hint == Some(Type::LREAL) && !ty.is_real() { Elementary::Lreal } else { Elementary::Real };
+            join(number, real)
+        }
+        Operand::Typed(_) | Operand::Promoted(..) => None,
+    }
+}
+
+/// CODESYS lets a signed and an unsigned 64-bit integer meet at the signed one.
+fn mixed_signs(a: Elementary, b: Elementary, mixes: bool) -> Option<Elementary> {
+    let (a, b) = (as_number(a), as_number(b));
+    (mixes && a.is_integer() && b.is_integer()).then_some(Elementary::Lint)
+}
+
+pub(crate) fn compares(op: BinaryOp) -> bool {
+    matches!(op, BinaryOp::Lt | BinaryOp::Gt | BinaryOp::Le | BinaryOp::Ge | BinaryOp::Eq | BinaryOp::Ne)
+}
+
+fn comparison(op: BinaryOp) -> Op {
+    match op {
+        BinaryOp::Lt => Op::Lt,
+        BinaryOp::Gt => Op::Gt,
+        BinaryOp::Le => Op::Le,
+        BinaryOp::Ge => Op::Ge,
+        BinaryOp::Eq => Op::Eq,
+        _ => Op::Ne,
+    }
+}
+
+fn arithmetic_op(op: BinaryOp) -> Op {
+    match op {
+        BinaryOp::Add => Op::Add,
+        BinaryOp::Sub => Op::Sub,
+        BinaryOp::Mul => Op::Mul,
+        BinaryOp::Div => Op::Div,
+        _ => Op::Mod,
+    }
+}
+
+fn is_junction(op: BinaryOp) -> bool {
+    matches!(op, BinaryOp::And | BinaryOp::Or | BinaryOp::Xor)
+}
+
+/// `INT_TO_WORD(a) AND 1`, and back where the place asks for the type of `a`.
+fn converted(sides: &Sides, ty: Elementary, into: &str, a: &str, b: &str) -> String {
+    let name = ty.name();
+    let value = format!("{name}_TO_{into}({a}) {} {b}", sides.op.text());
+    if sides.hint == Some(Type::Elementary(ty)) { format!("{into}_TO_{name}({value})") } else { value }
+}
+
+fn is_zero(value: Option<Value>) -> bool {
+    match value {
+        Some(Value::F32(it)) => it == 0.0,
+        Some(Value::F64(it)) => it == 0.0,
+        Some(_) | None => false,
+    }
+}

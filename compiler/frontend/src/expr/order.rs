@@ -1,0 +1,240 @@
+//! The order of evaluation: what is written first is evaluated first, and once. An expression that
+//! comes out the same where the IR evaluates it stays there; any other is saved where it is written.
+
+use super::checker::Checker;
+use staunch_ir::alias::{self, Frame};
+use staunch_ir::{
+    ArrayId, Elementary, Expr, ExprKind, Local, LocalId, Op, Place, Projection, Root, Statement, Type, Value, loops,
+};
+
+/// What is evaluated where it is written, and used later.
+#[derive(Clone, Debug)]
+pub(crate) enum Held {
+    Value(Expr),
+    /// The variable itself: its indices are evaluated and checked.
+    Place(Place),
+}
+
+/// A part of a call, and where the call's statements evaluate it.
+#[derive(Clone, Debug)]
+pub(crate) struct Written {
+    pub held: Held,
+    /// The first statement that evaluates it, and its turn there.
+    pub first: (usize, usize),
+    /// The last one.
+    pub last: usize,
+}
+
+impl Written {
+    pub fn new(held: Held) -> Self {
+        Self { held, first: (0, 0), last: 0 }
+    }
+
+    pub fn value(&self) -> Option<&Expr> {
+        match &self.held {
+            Held::Value(value) => Some(value),
+            Held::Place(_) => None,
+        }
+    }
+
+    pub fn place(&self) -> Option<&Place> {
+        match &self.held {
+            Held::Place(place) => Some(place),
+            Held::Value(_) => None,
+        }
+    }
+}
+
+impl Checker<'_, '_> {
+    /// A local that the source does not name.
+    pub(crate) fn temporary(&mut self, name: &str, ty: Type) -> Place {
+        let id = LocalId::next(self.locals.len());
+        let initial = self.decl.least(ty);
+        self.locals.push(Local { name: name.to_owned(), ty, initial, doc: None });
+        Place::local(id, ty)
+    }
+
+    /// Runs `next`. What it hoists runs before the expression that it stands in, so of what was
+    /// evaluated before, that is saved which would come out otherwise behind it.
+    pub(crate) fn after<T>(&mut self, done: &mut [&mut Expr], next: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
+        let mark = self.block.len();
+        let result = next(self);
+        let hoisted = self.block.split_off(mark);
+        if !hoisted.is_empty() {
+            for expr in done {
+                if self.can_fault(expr) || self.changes(&hoisted, expr) {
+                    self.save("saved", expr);
+                }
+            }
+        }
+        self.block.extend(hoisted);
+        result
+    }
+
+    /// As [`after`](Self::after), for a place that was evaluated before.
+    pub(crate) fn after_place<T>(&mut self, place: &mut Place, next: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
+        let mark = self.block.len();
+        let result = next(self);
+        let hoisted = self.block.split_off(mark);
+        if !hoisted.is_empty() {
+            self.freeze(place, &hoisted, true);
+        }
+        self.block.extend(hoisted);
+        result
+    }
+
+    /// As [`after`](Self::after), for the parts of a call that are written before.
+    pub(crate) fn after_parts<T>(
+        &mut self,
+        parts: &mut [Written],
+        next: impl FnOnce(&mut Self) -> Option<T>,
+    ) -> Option<T> {
+        let mark = self.block.len();
+        let result = next(self);
+        let hoisted = self.block.split_off(mark);
+        if !hoisted.is_empty() {
+            for part in parts {
+                self.hold(&mut part.held, &hoisted, true);
+            }
+        }
+        self.block.extend(hoisted);
+        result
+    }
+
+    /// Saves those parts of a call which its statements would evaluate too late: behind a fault that
+    /// is written later, or behind a write to what they read.
+    pub(crate) fn settle(&mut self, parts: &mut [Written], call: &[Statement]) {
+        let faults: Vec<bool> = parts.iter().map(|it| self.held_can_fault(&it.held)).collect();
+        let late = |at: usize| {
+            let part: &Written = &parts[at];
+            let overtaken = (at + 1..parts.len()).any(|it| faults[it] && parts[it].first < part.first);
+            part.first.0 > 0 || overtaken || self.held_changes(&call[..part.last], &part.held)
+        };
+        let early = (0..parts.len()).rev().find(|at| faults[*at] && late(*at));
+        for (at, part) in parts.iter_mut().enumerate() {
+            let fault_first = early.is_some_and(|early| at <= early);
+            self.hold(&mut part.held, &call[..part.last], fault_first);
+        }
+    }
+
+    /// Saves what `effects` change, and what can fault where its fault comes before them.
+    pub(crate) fn hold(&mut self, held: &mut Held, effects: &[Statement], fault_first: bool) {
+        match held {
+            Held::Value(value) => {
+                if fault_first && self.can_fault(value) || self.changes(effects, value) {
+                    self.save("argument", value);
+                }
+            }
+            Held::Place(place) => self.freeze(place, effects, fault_first),
+        }
+    }
+
+    /// Saves indices of a place, each checked against its bounds.
+    pub(crate) fn freeze(&mut self, place: &mut Place, effects: &[Statement], fault_first: bool) {
+        let Some(mut ty) = self.root_type(place.root) else { return };
+        for projection in &mut place.projections {
+            ty = match (projection, ty) {
+                (Projection::Index { index, at }, Type::Array(id)) => {
+                    let inside = self.is_inside(index, id);
+                    let faults = !inside || self.can_fault(index);
+                    if fault_first && faults || self.changes(effects, index) {
+                        let array = self.decl.program.array(id);
+                        if !inside {
+                            let bound = |it| Expr::constant(Elementary::Lint, Value::I64(it), *at);
+                            let unchecked = std::mem::replace(&mut **index, bound(array.low));
+                            let operands = vec![bound(array.low), unchecked, bound(array.high)];
+                            **index = Expr::apply(Op::CheckIndex, Type::LINT, operands, *at);
+                        }
+                        self.save("index", index);
+                    }
+                    self.decl.program.array(id).element
+                }
+                (Projection::Field(field), ty) => match self.decl.program.member(ty, *field) {
+                    Some(member) => member,
+                    None => return,
+                },
+                (Projection::Index { .. }, _) => return,
+            };
+        }
+    }
+
+    /// Replaces an expression by a local that holds its value from here on.
+    pub(crate) fn save(&mut self, name: &str, expr: &mut Expr) {
+        let at = expr.at;
+        let place = self.temporary(name, expr.ty);
+        let value = std::mem::replace(expr, Expr::load(place.clone(), at));
+        self.block.push(Statement::assign(place, value, at));
+    }
+
+    fn held_can_fault(&self, held: &Held) -> bool {
+        match held {
+            Held::Value(value) => self.can_fault(value),
+            Held::Place(place) => self.place_can_fault(place),
+        }
+    }
+
+    fn held_changes(&self, effects: &[Statement], held: &Held) -> bool {
+        match held {
+            Held::Value(value) => self.changes(effects, value),
+            Held::Place(place) => place.indices().any(|it| self.changes(effects, it)),
+        }
+    }
+
+    /// Whether running `effects` may change the value of `expr`.
+    fn changes(&self, effects: &[Statement], expr: &Expr) -> bool {
+        alias::changes(&self.frame(), effects, expr)
+    }
+
+    /// What the places of this body are places of.
+    pub(crate) fn frame(&self) -> Frame<'_> {
+        let signature = self.signature.as_deref();
+        Frame {
+            program: &self.decl.program,
+            state: signature.and_then(|it| it.state),
+            params: signature.map_or(&[], |it| it.params.as_slice()),
+        }
+    }
+
+    pub(crate) fn can_fault(&self, expr: &Expr) -> bool {
+        match &expr.kind {
+            ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => false,
+            ExprKind::Load(place) => self.place_can_fault(place),
+            ExprKind::Apply(op, operands) => op.can_fault() || operands.iter().any(|it| self.can_fault(it)),
+            ExprKind::ApplyText(_, operands) => operands.iter().any(|it| self.can_fault(it)),
+            ExprKind::Convert(_, inner) => self.can_fault(inner),
+        }
+    }
+
+    fn place_can_fault(&self, place: &Place) -> bool {
+        let Some(mut ty) = self.root_type(place.root) else { return false };
+        for projection in &place.projections {
+            ty = match (projection, ty) {
+                (Projection::Index { index, .. }, Type::Array(id)) => {
+                    if !self.is_inside(index, id) || self.can_fault(index) {
+                        return true;
+                    }
+                    self.decl.program.array(id).element
+                }
+                (Projection::Field(field), ty) => match self.decl.program.member(ty, *field) {
+                    Some(member) => member,
+                    None => return false,
+                },
+                (Projection::Index { .. }, _) => return false,
+            };
+        }
+        false
+    }
+
+    /// Whether an index is known to lie within the array's bounds.
+    fn is_inside(&self, index: &Expr, array: ArrayId) -> bool {
+        let loops: Vec<_> = self.counters.iter().filter(|it| it.is_private).collect();
+        loops::is_within(&self.decl.program, index, array, &loops)
+    }
+
+    fn root_type(&self, root: Root) -> Option<Type> {
+        match root {
+            Root::Local(id) => self.locals.get(id.index()).map(|it| it.ty),
+            Root::Instance | Root::Globals | Root::Param(_) => self.frame().root_type(root),
+        }
+    }
+}

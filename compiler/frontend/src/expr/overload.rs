@@ -1,0 +1,401 @@
+//! Overloads: the arguments of a call are bound to a signature's parameters, evaluated as they are
+//! written, and brought to the one type `T` that they have in common.
+
+use super::binding::{Given, Parameter};
+use super::checker::Checker;
+use super::operand::Operand;
+use super::operator::beside;
+use crate::types::coercion::{as_number, join, join_promoted};
+use crate::{Code, Diagnostic, Span, ast};
+use staunch_ir::{Conversion, Elementary, Expr, ExprKind, Place, Projection, Section, Statement, Type};
+use staunch_runtime::{Class, Kind, Signature};
+
+/// The operands of a call, in the order of its parameters, and their common type.
+pub(crate) struct Resolved {
+    /// What `T` is; BOOL where no parameter is `T`.
+    pub ty: Type,
+    /// What `T` counts as, where it is computed at more bits.
+    pub own: Type,
+    pub operands: Vec<Expr>,
+}
+
+impl<'s> Checker<'_, 's> {
+    /// Operands of `signature` for the arguments that were bound to its parameters.
+    pub(crate) fn resolve(
+        &mut self,
+        signature: &Signature,
+        values: &[&ast::Expr<'s>],
+        expected: Option<Type>,
+        name: ast::Name<'s>,
+    ) -> Option<Resolved> {
+        let hint = expected.filter(|it| signature.result == Kind::T && self.admits(signature.class, *it, name.span));
+        let operands = self.as_written(values, |this, at, side| match kind(signature, at) {
+            Kind::T => this.operand(values[at], hint.or(side)),
+            Kind::Is(ty) => this.value(values[at], Type::Elementary(ty)).map(Operand::Typed),
+            Kind::Any(class) => this.of_class(class, values[at], at, signature, name).map(Operand::Typed),
+            Kind::String => this.text(values[at], name).map(Operand::Typed),
+        })?;
+        let generic = |at: &usize| kind(signature, *at) == Kind::T;
+        let at_t: Vec<_> = (0..values.len()).filter(generic).collect();
+        let ty = match at_t.is_empty() {
+            true => Type::BOOL,
+            false => self.common_type(signature, &at_t, &operands, values, hint, name)?,
+        };
+        let own = ty;
+        let ty = self.computed_type(signature.class, own, at_t.iter().map(|at| &operands[*at]), name.span);
+        let mut done = Vec::new();
+        for (at, operand) in operands.into_iter().enumerate() {
+            done.push(match (operand, kind(signature, at)) {
+                (operand, Kind::T) => self.at_type(operand, ty, values[at].span)?,
+                (Operand::Typed(expr) | Operand::Promoted(expr, _), _) => expr,
+                (Operand::Integer(_) | Operand::Real { .. }, _) => return None,
+            });
+        }
+        Some(Resolved { ty, own, operands: done })
+    }
+
+    /// The argument expressions of a standard function, in the order of its parameters.
+    pub(crate) fn arguments<'a>(
+        &mut self,
+        signature: &Signature,
+        name: ast::Name<'s>,
+        arguments: &'a [ast::Argument<'s>],
+        span: Span,
+    ) -> Option<Vec<&'a ast::Expr<'s>>> {
+        let names = parameter_names(signature, arguments.len());
+        let names: Vec<_> = names.iter().map(String::as_str).collect();
+        let parameters: Vec<_> = names.iter().map(|name| Parameter { name, section: Section::Input }).collect();
+        let given = self.bind(name.text, &parameters, arguments, |argument| {
+            Diagnostic::new(Code::E0301, argument.span, format!("`{}` has no parameter `{}`", name.text, argument.text))
+                .label("unknown parameter")
+                .help(format!("its parameters are {}", crate::diagnostic::wording::list(&names)))
+        })?;
+        let values: Vec<_> = given.iter().filter_map(value_of).collect();
+        if values.len() < names.len() {
+            let least = if signature.extensible { "at least " } else { "" };
+            let wants = super::binding::plural(names.len());
+            let message = format!("`{}` takes {least}{wants}, {} given", name.text, values.len());
+            let error = Diagnostic::new(Code::E0302, span, message);
+            self.report(error.label(format!("expected {}", names.join(", "))));
+            return None;
+        }
+        Some(values)
+    }
+
+    /// Evaluates operands in the order in which they are written, whatever their parameters are: the
+    /// first fault wins, and what is evaluated before a call keeps the value that it had then.
+    /// `evaluate` gets the operand's position, and the type that the one before it asks for.
+    pub(crate) fn as_written(
+        &mut self,
+        values: &[&ast::Expr<'s>],
+        mut evaluate: impl FnMut(&mut Self, usize, Option<Type>) -> Option<Operand>,
+    ) -> Option<Vec<Operand>> {
+        let mut order: Vec<_> = (0..values.len()).collect();
+        order.sort_by_key(|at| values[*at].span.start);
+        let mut written: Vec<Operand> = Vec::new();
+        let mut complete = true;
+        for at in &order {
+            let side = written.last().and_then(|it| beside(it, None));
+            let mut done: Vec<_> = written.iter_mut().filter_map(Operand::typed_mut).collect();
+            // All operands are checked before giving up, so that one run reports every mistake.
+            match self.after(&mut done, |this| evaluate(this, *at, side)) {
+                Some(operand) => written.push(operand),
+                None => complete = false,
+            }
+        }
+        if !complete {
+            return None;
+        }
+        if !order.is_sorted() {
+            self.fault_in_order(written.iter_mut().filter_map(Operand::typed_mut));
+        }
+        let mut placed: Vec<_> = order.into_iter().zip(written).collect();
+        placed.sort_by_key(|it| it.0);
+        Some(placed.into_iter().map(|it| it.1).collect())
+    }
+
+    /// Evaluates now what may fault, in this order: before a branch that uses one of the operands, or
+    /// where an operation would take them in another order.
+    pub(crate) fn fault_in_order<'e>(&mut self, operands: impl Iterator<Item = &'e mut Expr>) {
+        for expr in operands.filter(|it| can_fault(it)) {
+            let place = self.temporary("saved", expr.ty);
+            let at = expr.at;
+            let value = std::mem::replace(expr, Expr::load(place.clone(), at));
+            self.block.push(Statement::assign(place, value, at));
+        }
+    }
+
+    /// An operand of a class by itself, at its own type.
+    fn of_class(
+        &mut self,
+        class: Class,
+        value: &ast::Expr<'s>,
+        at: usize,
+        signature: &Signature,
+        name: ast::Name<'s>,
+    ) -> Option<Expr> {
+        let expr = match self.operand(value, None)? {
+            Operand::Typed(expr) | Operand::Promoted(expr, _) => expr,
+            literal @ Operand::Real { .. } if class != Class::Int => {
+                return self.coerce(literal, Type::LREAL, value.span);
+            }
+            literal => return self.coerce(literal, Type::LINT, value.span),
+        };
+        if self.admits(class, expr.ty, value.span) {
+            return Some(expr);
+        }
+        let found = self.type_name(expr.ty);
+        let parameter = &parameter_names(signature, at + 1)[at];
+        let message = format!("`{}` takes {} as {parameter}, this is {found}", name.text, wanted(class));
+        let mut error = Diagnostic::new(Code::E0201, value.span, message).label(format!("this is {found}"));
+        if let Type::Elementary(it) = expr.ty
+            && class == Class::Int
+            && (it.is_real() || it.is_bits())
+        {
+            error = error.help(format!("convert it with `{}_TO_{}(…)`", it.name(), integer_for(it).name()));
+        }
+        self.report(error);
+        None
+    }
+
+    /// The type that all operands that are `T` have in common.
+    fn common_type(
+        &mut self,
+        signature: &Signature,
+        at_t: &[usize],
+        operands: &[Operand],
+        values: &[&ast::Expr<'s>],
+        expected: Option<Type>,
+        name: ast::Name<'s>,
+    ) -> Option<Type> {
+        let mut common: Option<Type> = None;
+        for at in at_t {
+            let (Some(own), span) = (operands[*at].ty(), values[*at].span) else { continue };
+            if !self.admits(signature.class, own, span) && !self.becomes_real(signature.class, own, span) {
+                self.report_class(signature.class, own, span, name);
+                return None;
+            }
+            common = Some(match common.map(|so_far| (so_far, self.join_types(so_far, own, span))) {
+                None => own,
+                Some((_, Some(joined))) => joined,
+                Some((so_far, None)) => {
+                    self.report_apart(so_far, own, span, name);
+                    return None;
+                }
+            });
+        }
+        let literals = || at_t.iter().map(|at| &operands[*at]);
+        let ty = match common {
+            Some(ty) => widened_by_literals(ty, literals()),
+            None if signature.class == Class::Real => expected.unwrap_or(Type::LREAL),
+            None => literals_type(literals(), expected),
+        };
+        let ty = if signature.class == Class::Real { real(ty) } else { ty };
+        if !self.admits(signature.class, ty, name.span) {
+            self.report_class(signature.class, ty, values[at_t[0]].span, name);
+            return None;
+        }
+        Some(ty)
+    }
+
+    /// The type at which operands are computed that count as one of `own`. Bits are those of that type.
+    fn computed_type<'o>(
+        &self,
+        class: Class,
+        own: Type,
+        operands: impl Iterator<Item = &'o Operand> + Clone,
+        span: Span,
+    ) -> Type {
+        let Type::Elementary(it) = own else { return own };
+        if class == Class::Bit || !self.promotes(it, span) {
+            return own;
+        }
+        let types = operands.clone().filter_map(|it| it.computed_at()?.elementary());
+        let meet = |a, b| join(a, b).or_else(|| join(as_number(a), as_number(b))).unwrap_or(Elementary::Dint);
+        let ty = types.reduce(|a, b| if a == b { a } else { meet(a, b) }).unwrap_or(it);
+        widened_by_literals(Type::Elementary(ty), operands)
+    }
+
+    /// The operand at the type that was found for all.
+    fn at_type(&mut self, operand: Operand, ty: Type, span: Span) -> Option<Expr> {
+        match operand {
+            // The standard's functions of reals take integers too, a LINT as an LREAL.
+            Operand::Typed(expr)
+                if matches!((expr.ty, ty), (Type::Elementary(from), Type::Elementary(to))
+                    if to.is_real() && as_number(from).is_integer()) =>
+            {
+                Some(self.convert(Conversion::Value, ty, expr))
+            }
+            operand => self.coerce(operand, ty, span),
+        }
+    }
+
+    /// Whether values of `ty` are of the class, also where a dialect mixes bit strings and integers.
+    fn admits(&self, class: Class, ty: Type, span: Span) -> bool {
+        let mixes = self.decl.dialect(span).mixes_bits_and_integers();
+        match ty {
+            Type::Elementary(it) | Type::Subrange(it, _) => {
+                let as_bits = class == Class::Bit && it.is_integer();
+                it.is(class) || mixes && (as_bits || as_number(it).is(class))
+            }
+            Type::String(_) => class.contains(Class::String),
+            // It is a value of its base type where it is compared or chosen, and no number.
+            Type::Enum(_) => class.contains(Class::Elementary),
+            Type::Array(_) | Type::Struct(_) | Type::Block(_) => class == Class::Any,
+        }
+    }
+
+    fn becomes_real(&self, class: Class, ty: Type, span: Span) -> bool {
+        class == Class::Real && self.admits(Class::Int, ty, span)
+    }
+
+    fn report_class(&mut self, class: Class, found: Type, span: Span, name: ast::Name<'s>) {
+        let found = self.type_name(found);
+        let message = format!("`{}` takes {}, this is {found}", name.text, wanted(class));
+        self.report(Diagnostic::new(Code::E0204, span, message).label(format!("this is {found}")));
+    }
+
+    fn report_apart(&mut self, a: Type, b: Type, span: Span, name: ast::Name<'s>) {
+        let (a, b) = (self.type_name(a), self.type_name(b));
+        self.report(
+            Diagnostic::new(Code::E0204, name.span, format!("`{}` does not take {a} and {b}", name.text))
+                .label("its arguments need one type")
+                .other(span, format!("this is {b}")),
+        );
+    }
+
+    fn join_types(&self, a: Type, b: Type, span: Span) -> Option<Type> {
+        match (a, b) {
+            (Type::Elementary(x), Type::Elementary(y)) => {
+                let dialect = self.decl.dialect(span);
+                let join = if dialect.promotes_integers() { join_promoted } else { join };
+                let numbers = || join(as_number(x), as_number(y));
+                let mixed = || dialect.mixes_bits_and_integers().then(numbers).flatten();
+                join(x, y).or_else(mixed).map(Type::Elementary)
+            }
+            (Type::String(x), Type::String(y)) => Some(Type::String(x.max(y))),
+            _ => (a == b).then_some(a),
+        }
+    }
+
+    fn text(&mut self, value: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<Expr> {
+        let text = self.typed(value, None)?;
+        if let Type::String(_) = text.ty {
+            return Some(self.shallow(text));
+        }
+        let found = self.type_name(text.ty);
+        let message = format!("`{}` takes a STRING, this is {found}", name.text);
+        self.report(Diagnostic::new(Code::E0201, value.span, message).label("expected STRING"));
+        None
+    }
+}
+
+/// What the parameter at a position takes; those past the last are as the last.
+fn kind(signature: &Signature, at: usize) -> Kind {
+    let last = signature.parameters.len() - 1;
+    signature.parameters[at.min(last)].kind
+}
+
+/// The names of the parameters for so many arguments: IN1, IN2, … go on as long as arguments do.
+fn parameter_names(signature: &Signature, arguments: usize) -> Vec<String> {
+    let mut names: Vec<_> = signature.parameters.iter().map(|it| it.name.to_owned()).collect();
+    if signature.extensible
+        && let Some(last) = signature.parameters.last()
+    {
+        let stem = last.name.trim_end_matches(|it: char| it.is_ascii_digit());
+        let first: usize = last.name[stem.len()..].parse().unwrap_or(0);
+        for extra in names.len()..arguments {
+            names.push(format!("{stem}{}", first + 1 + extra - signature.parameters.len()));
+        }
+    }
+    names
+}
+
+/// A class in the words of a message.
+fn wanted(class: Class) -> &'static str {
+    match class {
+        Class::Any => "a value",
+        Class::Elementary => "a value of an elementary type",
+        Class::Magnitude => "a number or a TIME",
+        Class::Num => "a number",
+        Class::Real => "a REAL or LREAL",
+        Class::Int => "an integer",
+        Class::Unsigned => "an unsigned integer",
+        Class::Signed => "a signed integer",
+        Class::Duration => "a TIME",
+        Class::Bit => "a BOOL or a bit string",
+        Class::Chars | Class::String => "a STRING",
+    }
+}
+
+/// The integer type that a value is converted to, in a message.
+fn integer_for(ty: Elementary) -> Elementary {
+    match as_number(ty) {
+        Elementary::Real => Elementary::Dint,
+        Elementary::Lreal => Elementary::Lint,
+        Elementary::Bool => Elementary::Int,
+        number => number,
+    }
+}
+
+/// The type at which a function of reals takes a number.
+fn real(ty: Type) -> Type {
+    match ty {
+        Type::Elementary(it) if as_number(it).is_integer() => {
+            Type::Elementary(join(as_number(it), Elementary::Real).unwrap_or(Elementary::Lreal))
+        }
+        other => other,
+    }
+}
+
+fn widened_by_literals<'o>(ty: Type, operands: impl Iterator<Item = &'o Operand>) -> Type {
+    let Type::Elementary(mut ty) = ty else { return ty };
+    for operand in operands {
+        let real = matches!(operand, Operand::Real { .. });
+        if real && ty.is_integer() {
+            ty = join(ty, Elementary::Real).unwrap_or(Elementary::Lreal);
+        }
+        if let Operand::Integer(value) = operand
+            && ty.is_integer()
+            && ty.lane().integer(*value).is_none()
+        {
+            let own = [Elementary::Int, Elementary::Dint, Elementary::Lint];
+            let own = own.into_iter().find(|it| it.lane().integer(*value).is_some());
+            ty = own.and_then(|own| join(ty, own)).unwrap_or(ty);
+        }
+    }
+    Type::Elementary(ty)
+}
+
+fn literals_type<'o>(operands: impl Iterator<Item = &'o Operand> + Clone, expected: Option<Type>) -> Type {
+    let real = operands.clone().any(|it| matches!(it, Operand::Real { .. }));
+    match expected {
+        Some(ty @ Type::Elementary(it)) if it.is_real() || (!real && it.lane().is_integer() && !it.is_time()) => ty,
+        _ if real => Type::LREAL,
+        _ => {
+            let fits = |ty: &Elementary| {
+                operands.clone().all(|it| matches!(it, Operand::Integer(value) if ty.lane().integer(*value).is_some()))
+            };
+            let ty = [Elementary::Int, Elementary::Dint, Elementary::Lint].into_iter().find(fits);
+            Type::Elementary(ty.unwrap_or(Elementary::Ulint))
+        }
+    }
+}
+
+fn value_of<'a, 's>(given: &Given<'a, 's>) -> Option<&'a ast::Expr<'s>> {
+    match given {
+        Given::Value(expr) => Some(expr),
+        Given::Nothing | Given::Output { .. } => None,
+    }
+}
+
+fn can_fault(expr: &Expr) -> bool {
+    let indexed = |place: &Place| place.projections.iter().any(|it| matches!(it, Projection::Index { .. }));
+    match &expr.kind {
+        ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => false,
+        ExprKind::Load(place) => indexed(place),
+        ExprKind::Apply(op, operands) => op.can_fault() || operands.iter().any(can_fault),
+        ExprKind::ApplyText(_, operands) => operands.iter().any(can_fault),
+        ExprKind::Convert(_, inner) => can_fault(inner),
+    }
+}

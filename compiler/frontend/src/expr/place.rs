@@ -1,0 +1,585 @@
+//! Storage that an expression names.
+
+use super::checker::Checker;
+use super::unresolved::not_constant;
+use crate::dialect::Dialect;
+use crate::names::Entry;
+use crate::spelling::nearest;
+use crate::types::scope::Variable;
+use crate::{Code, Diagnostic, Span, ast};
+use ast::ExprKind as Ast;
+use staunch_ir::{
+    Address, Area, Array, ArrayId, BlockId, Elementary, Expr, FieldId, Op, Place, Section, StructId, Type, Value, alias,
+};
+use staunch_runtime::Direction;
+use std::rc::Rc;
+
+/// A place, and what may be done with it.
+#[derive(Clone, Debug)]
+pub(crate) struct Found<'s> {
+    pub place: Place,
+    pub access: Access<'s>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Access<'s> {
+    Write,
+    Constant(ast::Name<'s>),
+    /// An input of the POU itself.
+    OwnInput(ast::Name<'s>),
+    /// An output of a block, seen from outside.
+    Output(ast::Name<'s>),
+    /// An internal variable of an instance, or what is part of one, seen from outside.
+    Inner(ast::Name<'s>),
+}
+
+/// A part of an integer or bit string: `.3`, `.%W1`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Part {
+    pub ty: Elementary,
+    pub shift: u32,
+}
+
+impl<'s> Checker<'_, 's> {
+    /// The place that `expr` names, for reading or writing.
+    pub(crate) fn place(&mut self, expr: &ast::Expr<'s>) -> Option<Found<'s>> {
+        match &expr.kind {
+            Ast::Name(name) => self.variable_place(*name),
+            Ast::Paren(inner) => self.place(inner),
+            Ast::Address(name) => {
+                let address = self.decl.address(*name)?;
+                let Some(place) = self.decl.at_address(address) else {
+                    self.report(not_constant(name.span));
+                    return None;
+                };
+                Some(Found { place, access: Access::Write })
+            }
+            Ast::Member(base, name) => self.member(base, *name),
+            Ast::Index(base, indices) => self.index(base, indices),
+            Ast::Deref(inner) => {
+                self.place(inner)?;
+                self.decl.not_supported(expr.span, "dereferencing");
+                None
+            }
+            Ast::Error(_) => {
+                self.operand(expr, None);
+                None
+            }
+            Ast::Call(callee, arguments) if self.is_array(callee) => {
+                self.report_array_called(callee, arguments);
+                None
+            }
+            Ast::Literal(_) | Ast::Part(..) | Ast::Call(..) | Ast::Unary(..) | Ast::Binary(..) => {
+                let error =
+                    Diagnostic::new(Code::E0306, expr.span, "a variable is expected here").label("this is a value");
+                let text = self.decl.log.sources.text(expr.span);
+                let called = matches!(expr.kind, Ast::Call(..)).then(|| text.split('(').next()).flatten();
+                self.report(match called {
+                    Some(name) => {
+                        error.help(format!("call it before, `{name}(…);`, and read its output then: `{name}.…`"))
+                    }
+                    None => error,
+                });
+                None
+            }
+        }
+    }
+
+    /// Whether `callee` is the name of an array.
+    fn is_array(&self, callee: &ast::Expr<'s>) -> bool {
+        let Ast::Name(name) = &callee.kind else { return false };
+        self.scope.get(name.text).is_some_and(|it| matches!(it.place.ty, Type::Array(_)))
+    }
+
+    /// `a(1)` for `a[1]`
+    pub(crate) fn report_array_called(&mut self, callee: &ast::Expr<'s>, arguments: &[ast::Argument<'s>]) {
+        let text = self.decl.log.sources.text(callee.span);
+        let index = match arguments {
+            [first, .., last] => self.decl.log.sources.text(first.span.to(last.span)),
+            [one] => self.decl.log.sources.text(one.span),
+            [] => "1",
+        };
+        let meant = format!("{text}[{index}]");
+        self.report(
+            Diagnostic::new(Code::E0305, callee.span, format!("the array `{text}` cannot be called"))
+                .label("an element is chosen in brackets")
+                .help(format!("write `{meant}`")),
+        );
+    }
+
+    /// The variable that a name means; the inner `None` says that it was reported.
+    pub(crate) fn find_variable(&mut self, name: ast::Name<'s>) -> Option<Option<Rc<Variable<'s>>>> {
+        if let Some(variable) = self.scope.get(name.text) {
+            variable.used.set(true);
+            return Some(Some(Rc::clone(variable)));
+        }
+        if let Some(result) = self.result_variable(name) {
+            return Some(Some(Rc::new(result)));
+        }
+        if self.scope.is_refused(name.text) {
+            return Some(None);
+        }
+        let unknown_constant = self.scope.constants.as_ref().is_some_and(|it| it.is_refused(name.text));
+        if unknown_constant && self.context != super::checker::Context::Body {
+            self.report(
+                Diagnostic::new(Code::E0402, name.span, format!("the value of `{}` is not known here", name.text))
+                    .label("it needs itself, or its declaration is wrong"),
+            );
+            return Some(None);
+        }
+        match self.decl.names.get(name.text) {
+            Some(Entry::Global(at)) => {
+                let variable = self.decl.global(at);
+                if let Some(variable) = &variable {
+                    variable.used.set(true);
+                }
+                Some(variable)
+            }
+            Some(Entry::Pou(slot)) if self.is_callable_program(slot, name) => Some(self.decl.program_variable(slot)),
+            Some(Entry::Pou(_) | Entry::Type(_)) | None => {
+                // A variable whose declaration was refused is not reported again at every use.
+                self.declared_but_refused(name).then_some(None)
+            }
+        }
+    }
+
+    /// Whether a name means a PROGRAM that may be called, or read, by it.
+    pub(crate) fn is_callable_program(&self, slot: usize, name: ast::Name<'s>) -> bool {
+        self.signature.is_some()
+            && self.decl.pous[slot].ast.kind == ast::PouKind::Program
+            && self.decl.dialect(name.span).calls_programs()
+    }
+
+    /// A FUNCTION's own name is its result.
+    fn result_variable(&self, name: ast::Name<'s>) -> Option<Variable<'s>> {
+        let signature = self.signature.as_ref()?;
+        let (id, resolved) = signature.result.as_ref()?;
+        let local = &self.locals[id.index()];
+        local.name.eq_ignore_ascii_case(name.text).then(|| Variable {
+            name,
+            place: Place::local(*id, resolved.ty),
+            resolved: Rc::new(resolved.clone()),
+            section: Section::Internal,
+            constant: false,
+            retain: false,
+            used: Rc::default(),
+        })
+    }
+
+    fn declared_but_refused(&self, name: ast::Name<'s>) -> bool {
+        // POUs, and the variables of a block, are in the order of the source.
+        let place = |span: Span| (span.file, span.start);
+        let after = self.decl.pous.partition_point(|it| place(it.ast.span) <= place(name.span));
+        let pou = after.checked_sub(1).filter(|_| self.signature.is_none()).map(|at| &self.decl.pous[at]);
+        pou.is_some_and(|pou| {
+            pou.ast.blocks.iter().any(|block| {
+                let after = block.vars.partition_point(|it| place(it.span) <= place(name.span));
+                let variable = after.checked_sub(1).map(|at| &block.vars[at]);
+                variable.is_some_and(|it| it.names.iter().any(|it| it.span == name.span))
+            })
+        })
+    }
+
+    fn variable_place(&mut self, name: ast::Name<'s>) -> Option<Found<'s>> {
+        let Some(found) = self.find_variable(name) else {
+            self.unknown_name(name);
+            return None;
+        };
+        let variable = found?;
+        let access = match variable.section {
+            _ if variable.constant => Access::Constant(name),
+            Section::Input if self.signature.is_some() => Access::OwnInput(name),
+            Section::Input
+            | Section::Output
+            | Section::InOut
+            | Section::Internal
+            | Section::Temp
+            | Section::Global
+            | Section::External => Access::Write,
+        };
+        Some(Found { place: variable.place.clone(), access })
+    }
+
+    fn member(&mut self, base: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<Found<'s>> {
+        if let Ast::Name(owner) = &base.kind
+            && let Some(found) = self.global_of_namespace(*owner, name)
+        {
+            return found;
+        }
+        let found = self.place(base)?;
+        match found.place.ty {
+            Type::Struct(id) => self.struct_member(found, id, name),
+            Type::Block(id) => self.pin(found, id, name),
+            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Array(_) => {
+                let ty = self.type_name(found.place.ty);
+                self.report(
+                    Diagnostic::new(Code::E0107, name.span, format!("{ty} has no members"))
+                        .label(format!("`{}` cannot be part of {ty}", name.text)),
+                );
+                None
+            }
+        }
+    }
+
+    /// `Globals.x`: a global by its structure's name, where no variable is called so.
+    fn global_of_namespace(&mut self, owner: ast::Name<'s>, name: ast::Name<'s>) -> Option<Option<Found<'s>>> {
+        let hidden = self.scope.get(owner.text).is_some() || self.decl.names.get(owner.text).is_some();
+        if hidden || !owner.text.eq_ignore_ascii_case("Globals") {
+            return None;
+        }
+        match self.decl.names.get(name.text) {
+            Some(Entry::Global(_)) => Some(self.variable_place(name)),
+            Some(Entry::Pou(_) | Entry::Type(_)) | None => None,
+        }
+    }
+
+    fn struct_member(&mut self, found: Found<'s>, id: StructId, name: ast::Name<'s>) -> Option<Found<'s>> {
+        let instance = self.decl.is_instance(id);
+        if self.is_refused_member(id, name) {
+            return None;
+        }
+        if let Some(declared) = self.in_out_of(id, name) {
+            let owner = self.type_name(found.place.ty);
+            self.report(
+                Diagnostic::new(Code::E0109, name.span, format!("`{}` is a VAR_IN_OUT of `{owner}`", name.text))
+                    .label("it stands for a variable of the caller, during a call only")
+                    .other(declared, "declared here")
+                    .help(format!("use the variable that the call is given: `{} := variable`", name.text)),
+            );
+            return None;
+        }
+        let fields = &self.decl.program.structure(id).fields;
+        let at = fields.iter().position(|it| it.name.eq_ignore_ascii_case(name.text));
+        let Some(at) = at else {
+            if let Some(shared) = self.shared_member(&found.place, id, name) {
+                return Some(shared);
+            }
+            let fields = &self.decl.program.structure(id).fields;
+            let visible = fields.iter().filter(|it| !instance || is_pin(it.section));
+            let near = nearest(name.text, visible.map(|it| it.name.as_str())).map(str::to_owned);
+            self.decl.unknown_member(name, found.place.ty, near.as_deref());
+            return None;
+        };
+        let (ty, section, constant) = (fields[at].ty, fields[at].section, fields[at].constant);
+        let inner = instance && !is_pin(section);
+        if inner && self.seen_from_outside(id, name).is_none() {
+            let owner = self.type_name(found.place.ty);
+            self.report(
+                Diagnostic::new(
+                    Code::E0109,
+                    name.span,
+                    format!("`{}` is an internal variable of `{owner}`", name.text),
+                )
+                .label("only inputs and outputs can be reached from outside"),
+            );
+            return None;
+        }
+        let access = match section {
+            _ if matches!(found.access, Access::Inner(_)) => found.access,
+            _ if constant => Access::Constant(name),
+            _ if inner => Access::Inner(name),
+            Section::Output if instance => Access::Output(name),
+            // A structure in a constant stays constant; an instance's input is for its callers.
+            _ if instance => Access::Write,
+            _ => found.access,
+        };
+        Some(Found { place: found.place.field(FieldId::next(at), ty), access })
+    }
+
+    /// A variable of an instance that a dialect lets others read.
+    fn seen_from_outside(&mut self, id: StructId, name: ast::Name<'s>) -> Option<Rc<Variable<'s>>> {
+        if !self.decl.dialect(name.span).shows_inner_variables() {
+            return None;
+        }
+        let slot = self.decl.slot_of_instance(id)?;
+        let variable = Rc::clone(self.decl.signature(slot)?.scope.get(name.text)?);
+        let own = !matches!(variable.section, Section::External | Section::InOut | Section::Temp);
+        variable.used.set(true);
+        own.then_some(variable)
+    }
+
+    /// A member that all instances share: it lies at an address, or is VAR_STAT.
+    fn shared_member(&mut self, instance: &Place, id: StructId, name: ast::Name<'s>) -> Option<Found<'s>> {
+        // Nothing would check the index of an element whose own storage is not looked at.
+        let one = instance.indices().next().is_none();
+        let variable =
+            self.seen_from_outside(id, name).filter(|it| one && it.place.root == staunch_ir::Root::Globals)?;
+        let access = match variable.section {
+            _ if variable.constant => Access::Constant(name),
+            Section::Input => Access::Write,
+            Section::Output => Access::Output(name),
+            Section::Internal | Section::Global | Section::InOut | Section::Temp | Section::External => {
+                Access::Inner(name)
+            }
+        };
+        Some(Found { place: variable.place.clone(), access })
+    }
+
+    /// Where the VAR_IN_OUT `name` of an instance is declared.
+    fn in_out_of(&mut self, id: StructId, name: ast::Name<'s>) -> Option<Span> {
+        let slot = self.decl.slot_of_instance(id)?;
+        let signature = self.decl.signature(slot)?;
+        let is_meant = |it: &&crate::types::signature::Formal<'s>| {
+            it.section == Section::InOut && it.name.text.eq_ignore_ascii_case(name.text)
+        };
+        signature.formals.iter().find(is_meant).map(|it| it.name.span)
+    }
+
+    /// Whether the member was declared, but refused.
+    pub(crate) fn is_refused_member(&mut self, id: StructId, name: ast::Name<'s>) -> bool {
+        let signature = self.decl.slot_of_instance(id).and_then(|slot| self.decl.signature(slot));
+        signature.is_some_and(|it| it.scope.is_refused(name.text))
+    }
+
+    fn pin(&mut self, found: Found<'s>, id: BlockId, name: ast::Name<'s>) -> Option<Found<'s>> {
+        let pins = id.info().pins;
+        let visible = |pin: &&staunch_runtime::Pin| pin.direction != Direction::Memory;
+        let own = self.own_pin_name(id, name);
+        let at = pins.iter().position(|it| visible(&it) && it.name.eq_ignore_ascii_case(own.text));
+        let Some(at) = at else {
+            self.report(super::unresolved::unknown_pin(id, name));
+            return None;
+        };
+        let access = match found.access {
+            Access::Inner(_) => found.access,
+            _ if pins[at].direction == Direction::Output => Access::Output(name),
+            Access::Write | Access::Constant(_) | Access::OwnInput(_) | Access::Output(_) => Access::Write,
+        };
+        let field = FieldId::next(at);
+        Some(Found { place: found.place.field(field, id.pin_type(field)?), access })
+    }
+
+    fn index(&mut self, base: &ast::Expr<'s>, indices: &[ast::Expr<'s>]) -> Option<Found<'s>> {
+        let mut found = self.place(base)?;
+        for index in indices {
+            let Type::Array(id) = found.place.ty else {
+                let ty = self.type_name(found.place.ty);
+                let error = Diagnostic::new(Code::E0302, index.span, format!("{ty} has no index here"))
+                    .label("one index too many, or not an array");
+                let (text, at) = (self.decl.log.sources.text(base.span), self.decl.log.sources.text(index.span));
+                self.report(match found.place.ty {
+                    Type::String(_) => {
+                        let at = character(at, self.decl.dialect(index.span));
+                        let reads = format!("read one character with `MID({text}, 1, {at})`");
+                        error.help(format!("{reads}, change it with `{text} := REPLACE({text}, 'x', 1, {at})`"))
+                    }
+                    Type::Elementary(it) if it.is_bits() && it != Elementary::Bool => {
+                        error.help(format!("a bit is written `{text}.{at}`"))
+                    }
+                    Type::Elementary(_)
+                    | Type::Subrange(..)
+                    | Type::Enum(_)
+                    | Type::Struct(_)
+                    | Type::Block(_)
+                    | Type::Array(_) => error,
+                });
+                return None;
+            };
+            let Found { place, access, .. } = found;
+            let mut place = place;
+            let index_value = self.after_place(&mut place, |this| this.index_value(index, id))?;
+            let at = self.at(index.span);
+            let element = self.decl.program.array(id).element;
+            found = Found { place: place.index(index_value, element, at), access };
+        }
+        Some(found)
+    }
+
+    /// An index as LINT; a constant one is checked now.
+    fn index_value(&mut self, index: &ast::Expr<'s>, id: ArrayId) -> Option<Expr> {
+        let array = self.decl.program.array(id);
+        let value = self.typed(index, None)?;
+        let value = match value.ty {
+            Type::Elementary(it) if it.is_integer() || (it.is_bits() && it != Elementary::Bool) => value,
+            other => {
+                let found = self.type_name(other);
+                self.report(
+                    Diagnostic::new(Code::E0201, index.span, format!("an index is an integer, this is {found}"))
+                        .label("expected an integer"),
+                );
+                return None;
+            }
+        };
+        if let Some(number) = value.as_const().and_then(Value::as_integer)
+            && !(i128::from(array.low)..=i128::from(array.high)).contains(&number)
+        {
+            self.report(
+                Diagnostic::new(Code::E0208, index.span, format!("the index {number} is out of range"))
+                    .label(format!("the array goes from {} to {}", array.low, array.high)),
+            );
+            return None;
+        }
+        self.index_of_subrange(&value, array, index.span);
+        self.as_lint(value, index.span)
+    }
+
+    /// Reports an index whose subrange holds values that the array has not.
+    fn index_of_subrange(&mut self, index: &Expr, array: Array, span: Span) {
+        let Some((low, high)) = self.decl.program.range(index.declared()) else { return };
+        if i128::from(array.low) <= low && high <= i128::from(array.high) {
+            return;
+        }
+        let ty = self.type_name(index.declared());
+        self.report(
+            Diagnostic::new(Code::W0515, span, format!("the index is {}", crate::diagnostic::wording::article(&ty)))
+                .label(format!("the array goes from {} to {}: beyond it is a fault", array.low, array.high))
+                .help("give the subrange and the array the same limits"),
+        );
+    }
+
+    /// Any integer as LINT; a ULINT beyond LINT becomes the largest LINT, which no array holds.
+    fn as_lint(&mut self, value: Expr, span: Span) -> Option<Expr> {
+        let value = if self.decl.program.lane(value.ty) == Some(staunch_ir::Lane::U64) {
+            let (ty, at) = (value.ty, value.at);
+            let most = Expr::new(ty, staunch_ir::ExprKind::Const(Value::U64(u64::MAX >> 1)), at);
+            self.apply(Op::Min, ty, vec![value, most], ty, span)?
+        } else {
+            value
+        };
+        Some(self.convert(staunch_ir::Conversion::Value, Type::LINT, value))
+    }
+
+    /// What `.3` or `.%W1` selects from a value of type `ty`.
+    pub(crate) fn find_part(&mut self, ty: Type, part: ast::Name<'s>) -> Option<Part> {
+        let width = match ty {
+            Type::Elementary(it) if it.lane().is_integer() && !it.is_time() => it.lane().size() * 8,
+            other => {
+                let found = self.type_name(other);
+                self.report(
+                    Diagnostic::new(Code::E0204, part.span, format!("{found} has no bits to select"))
+                        .label("bits are selected from integers and bit strings"),
+                );
+                return None;
+            }
+        };
+        let text = part.text.trim_start_matches('%');
+        let (of, number) = match text.chars().next().map(|it| it.to_ascii_uppercase()) {
+            Some('X') => (Elementary::Bool, &text[1..]),
+            Some('B') => (Elementary::Byte, &text[1..]),
+            Some('W') => (Elementary::Word, &text[1..]),
+            Some('D') => (Elementary::Dword, &text[1..]),
+            Some(_) => (Elementary::Bool, text),
+            None => return None,
+        };
+        let size = if of == Elementary::Bool { 1 } else { of.lane().size() * 8 };
+        let shift = number.parse::<u32>().ok().and_then(|it| it.checked_mul(size));
+        let Some(shift) = shift.filter(|it| it + size <= width) else {
+            let found = self.type_name(ty);
+            self.report(
+                Diagnostic::new(Code::E0208, part.span, format!("`.{}` lies outside {found}", part.text))
+                    .label(format!("{found} has {width} bits, the first is 0")),
+            );
+            return None;
+        };
+        Some(Part { ty: of, shift })
+    }
+
+    /// Refuses a write where the place may not be written.
+    pub(crate) fn writable(&mut self, found: &Found<'s>, span: Span) -> bool {
+        self.may_be_given_away(found, span) && self.is_no_input_address(&found.place, span)
+    }
+
+    /// Reports an assignment to what the hardware sets before each scan.
+    fn is_no_input_address(&mut self, place: &Place, span: Span) -> bool {
+        let Some(address) = self.address_of(place).filter(|it| it.area == Area::Input) else { return true };
+        let refused = self.decl.dialect(span).protects_inputs();
+        let code = if refused { Code::E0511 } else { Code::W0509 };
+        self.report(
+            Diagnostic::new(code, span, format!("this assigns to the input address `{address}`"))
+                .label("the next scan's input overwrites it")
+                .help("assign to a variable without an address, or to an output, `%Q`"),
+        );
+        !refused
+    }
+
+    /// The direct address of the variable that a place is, or is a part of.
+    fn address_of(&self, place: &Place) -> Option<Address> {
+        let Some(staunch_ir::Projection::Field(field)) = place.projections.first() else { return None };
+        match place.root {
+            staunch_ir::Root::Globals => self.decl.address_of_global(*field),
+            staunch_ir::Root::Instance => {
+                let state = self.signature.as_ref()?.state?;
+                self.decl.program.structure(state).fields.get(field.index())?.address
+            }
+            staunch_ir::Root::Local(_) | staunch_ir::Root::Param(_) => None,
+        }
+    }
+
+    /// Whether a place may be given to a call that may write to it.
+    pub(crate) fn may_be_given_away(&mut self, found: &Found<'s>, span: Span) -> bool {
+        if self.is_counter(&found.place) {
+            return self.report_counter(span);
+        }
+        match found.access {
+            Access::Write => true,
+            Access::Constant(name) => {
+                self.report(
+                    Diagnostic::new(Code::E0501, span, format!("`{}` is a CONSTANT", name.text))
+                        .label("a constant cannot be assigned to"),
+                );
+                false
+            }
+            // A FUNCTION's input is a copy, and CODESYS code uses it as a variable.
+            Access::OwnInput(_) if self.decl.dialect(span).assigns_inputs() && self.is_function_body() => true,
+            Access::OwnInput(name) if self.decl.dialect(span).assigns_inputs() => {
+                self.report(
+                    Diagnostic::new(Code::W0504, span, format!("the input `{}` is assigned from inside", name.text))
+                        .label("the caller's value is lost"),
+                );
+                true
+            }
+            Access::OwnInput(name) => {
+                self.report(
+                    Diagnostic::new(Code::E0502, span, format!("`{}` is an input", name.text))
+                        .label("an input is set by the caller only")
+                        .help("assign to a variable of your own, or declare it VAR_IN_OUT"),
+                );
+                false
+            }
+            Access::Output(name) => {
+                self.report(
+                    Diagnostic::new(Code::E0504, span, format!("`{}` is an output", name.text))
+                        .label("only the block itself sets its outputs"),
+                );
+                false
+            }
+            Access::Inner(name) => {
+                self.report(
+                    Diagnostic::new(Code::E0109, span, format!("`{}` is an internal variable", name.text))
+                        .label("from outside it can only be read"),
+                );
+                false
+            }
+        }
+    }
+
+    fn is_counter(&self, place: &Place) -> bool {
+        let frame = self.frame();
+        self.counters.iter().any(|it| alias::alias(&frame, &it.counter, place) == alias::Alias::Must)
+    }
+
+    fn report_counter(&mut self, span: Span) -> bool {
+        let lint = self.decl.dialect(span).assigns_inputs();
+        let code = if lint { Code::W0505 } else { Code::E0503 };
+        self.report(
+            Diagnostic::new(code, span, "the counter of a FOR loop is assigned inside the loop")
+                .label("the loop itself advances it")
+                .help("use WHILE to decide the next value yourself, or EXIT to leave the loop"),
+        );
+        lint
+    }
+}
+
+fn is_pin(section: Section) -> bool {
+    matches!(section, Section::Input | Section::Output)
+}
+
+/// The place that functions on text count from 1, for an index. CODESYS counts its indices from 0; in the
+/// standard 0 is no index, and stands for the first character.
+fn character(index: &str, dialect: Dialect) -> String {
+    match index.trim().parse::<u32>() {
+        Ok(number) if number == 0 || dialect == Dialect::Codesys => format!("{}", number.saturating_add(1)),
+        Err(_) if dialect == Dialect::Codesys => format!("{index} + 1"),
+        Ok(_) | Err(_) => index.to_owned(),
+    }
+}

@@ -1,0 +1,357 @@
+//! Calls of the standard's functions: the table of all, and what is more than an operation on
+//! operands of one type.
+
+use super::checker::Checker;
+use super::conversion;
+use super::operand::{Operand, computed};
+use super::overload::Resolved;
+use crate::dialect::Dialect;
+use crate::{Span, ast};
+use ast::BinaryOp;
+use staunch_ir::{Arm, Conversion, Elementary, Expr, ExprKind, FaultKind, Op, Statement, StatementKind, TextOp, Type};
+use staunch_runtime::{Class, Kind, Signature, signature};
+
+/// What a standard function means.
+#[derive(Clone, Copy)]
+enum Meaning {
+    /// A row of the runtime's table of operations.
+    Operation(Op),
+    /// A row of the runtime's table of functions on strings.
+    Text(TextOp),
+    /// `ADD(a, b)` is `a + b`, with all that an operator does at its types.
+    Operator(BinaryOp),
+    /// The input that K numbers.
+    Mux,
+    /// The value itself: a literal stays one.
+    Move,
+    /// Toward zero, to the integer that its place asks for.
+    Truncate,
+}
+
+/// Functions that are no rows of the runtime's tables, and other vendors' names of parameters.
+const OTHERS: [(Option<Dialect>, Signature, Meaning); 22] = [
+    (None, signature!("MUX" (K: ANY_INT, IN0: T, IN1: T) -> T [ANY] extensible), Meaning::Mux),
+    (None, signature!("MOVE" (IN: T) -> T [ANY]), Meaning::Move),
+    (None, signature!("TRUNC" (IN: ANY_REAL) -> ANY_INT), Meaning::Truncate),
+    (None, signature!("ADD_TIME" (IN1: TIME, IN2: TIME) -> TIME), Meaning::Operator(BinaryOp::Add)),
+    (None, signature!("SUB_TIME" (IN1: TIME, IN2: TIME) -> TIME), Meaning::Operator(BinaryOp::Sub)),
+    (None, signature!("MUL_TIME" (IN1: TIME, IN2: ANY_NUM) -> TIME), Meaning::Operator(BinaryOp::Mul)),
+    (None, signature!("DIV_TIME" (IN1: TIME, IN2: ANY_NUM) -> TIME), Meaning::Operator(BinaryOp::Div)),
+    (None, signature!("MULTIME" (IN1: TIME, IN2: ANY_NUM) -> TIME), Meaning::Operator(BinaryOp::Mul)),
+    (None, signature!("DIVTIME" (IN1: TIME, IN2: ANY_NUM) -> TIME), Meaning::Operator(BinaryOp::Div)),
+    (None, signature!("ADD_LTIME" (IN1: LTIME, IN2: LTIME) -> LTIME), Meaning::Operator(BinaryOp::Add)),
+    (None, signature!("SUB_LTIME" (IN1: LTIME, IN2: LTIME) -> LTIME), Meaning::Operator(BinaryOp::Sub)),
+    (None, signature!("MUL_LTIME" (IN1: LTIME, IN2: ANY_NUM) -> LTIME), Meaning::Operator(BinaryOp::Mul)),
+    (None, signature!("DIV_LTIME" (IN1: LTIME, IN2: ANY_NUM) -> LTIME), Meaning::Operator(BinaryOp::Div)),
+    // CODESYS's library names the parameters of the functions on strings in its own way.
+    (CODESYS, signature!("LEN" (STR: STRING) -> INT), Meaning::Text(TextOp::Len)),
+    (CODESYS, signature!("LEFT" (STR: STRING, SIZE: ANY_INT) -> STRING), Meaning::Text(TextOp::Left)),
+    (CODESYS, signature!("RIGHT" (STR: STRING, SIZE: ANY_INT) -> STRING), Meaning::Text(TextOp::Right)),
+    (CODESYS, signature!("MID" (STR: STRING, LEN: ANY_INT, POS: ANY_INT) -> STRING), Meaning::Text(TextOp::Mid)),
+    (CODESYS, signature!("CONCAT" (STR1: STRING, STR2: STRING) -> STRING extensible), Meaning::Text(TextOp::Concat)),
+    (CODESYS, signature!("INSERT" (STR1: STRING, STR2: STRING, POS: ANY_INT) -> STRING), Meaning::Text(TextOp::Insert)),
+    (CODESYS, signature!("DELETE" (STR: STRING, LEN: ANY_INT, POS: ANY_INT) -> STRING), Meaning::Text(TextOp::Delete)),
+    (
+        CODESYS,
+        signature!("REPLACE" (STR1: STRING, STR2: STRING, L: ANY_INT, P: ANY_INT) -> STRING),
+        Meaning::Text(TextOp::Replace),
+    ),
+    (CODESYS, signature!("FIND" (STR1: STRING, STR2: STRING) -> INT), Meaning::Text(TextOp::Find)),
+];
+
+const CODESYS: Option<Dialect> = Some(Dialect::Codesys);
+
+/// The signature of every conversion, `INT_TO_REAL` and the like.
+const CONVERSION: Signature = signature!("_TO_" (IN: T) -> T [ANY]);
+
+/// So many text functions may be nested in one expression of the program that is made.
+const MAX_TEXT_DEPTH: usize = 32;
+
+/// Every standard function, a vendor's forms after the standard's.
+fn functions() -> impl Iterator<Item = (Option<Dialect>, &'static Signature, Meaning)> {
+    let operations = Op::ALL.iter().map(|op| (None, op.signature(), meaning(*op)));
+    let texts = TextOp::ALL.iter().map(|op| (None, op.signature(), Meaning::Text(*op)));
+    let others = OTHERS.iter().map(|(dialect, signature, meaning)| (*dialect, signature, *meaning));
+    operations.chain(texts).chain(others).filter(|it| !it.1.name.starts_with('_'))
+}
+
+/// The standard functions of a name.
+fn named(name: &str) -> impl Iterator<Item = (Option<Dialect>, &'static Signature, Meaning)> {
+    functions().filter(move |it| it.1.name.eq_ignore_ascii_case(name))
+}
+
+/// Whether a standard function bears this name.
+pub(crate) fn exists(name: &str) -> bool {
+    named(name).next().is_some() || conversion::parse(name).is_some()
+}
+
+/// The names of the standard functions, for suggestions.
+pub(crate) fn names() -> impl Iterator<Item = &'static str> {
+    functions().map(|it| it.1.name)
+}
+
+impl<'s> Checker<'_, 's> {
+    pub(crate) fn standard_function(
+        &mut self,
+        name: ast::Name<'s>,
+        arguments: &[ast::Argument<'s>],
+        expected: Option<Type>,
+        span: Span,
+    ) -> Option<Operand> {
+        let Some((signature, meaning)) = self.form(name, arguments) else {
+            let parsed = conversion::parse(name.text)?;
+            let values = self.arguments(&CONVERSION, name, arguments, span)?;
+            return self.conversion(parsed, values[0], name).map(Operand::Typed);
+        };
+        let values = self.arguments(signature, name, arguments, span)?;
+        match meaning {
+            Meaning::Operator(operator) => self.operator_function(signature, operator, &values, expected, name),
+            Meaning::Move => self.operand(values[0], expected),
+            Meaning::Truncate => self.trunc(values[0], expected, name).map(Operand::Typed),
+            Meaning::Operation(op) => {
+                let resolved = self.resolve(signature, &values, expected, name)?;
+                self.operation(op, resolved, name.span)
+            }
+            Meaning::Text(op) => {
+                let resolved = self.resolve(signature, &values, expected, name)?;
+                self.text_function(op, resolved.operands, name.span).map(Operand::Typed)
+            }
+            Meaning::Mux => {
+                let resolved = self.resolve(signature, &values, expected, name)?;
+                self.mux(resolved, name.span)
+            }
+        }
+    }
+
+    /// The form of a function that has all parameters that the arguments name; the standard's, where
+    /// none has.
+    fn form(&self, name: ast::Name<'s>, arguments: &[ast::Argument<'s>]) -> Option<(&'static Signature, Meaning)> {
+        let dialect = self.decl.dialect(name.span);
+        let has = |signature: &Signature, argument: &ast::Argument<'s>| match &argument.kind {
+            ast::ArgumentKind::Positional(_) => true,
+            ast::ArgumentKind::Input(name, _) | ast::ArgumentKind::Output { name, .. } => {
+                signature.parameters.iter().any(|it| it.name.eq_ignore_ascii_case(name.text))
+            }
+        };
+        let forms = || named(name.text).filter(|it| it.0.is_none_or(|it| it == dialect));
+        let fitting = forms().find(|(_, signature, _)| arguments.iter().all(|it| has(signature, it)));
+        fitting.or_else(|| forms().next()).map(|(_, signature, meaning)| (signature, meaning))
+    }
+
+    /// The operator at its operands' types; for a function of one type's own, on operands of that.
+    fn operator_function(
+        &mut self,
+        signature: &Signature,
+        operator: BinaryOp,
+        values: &[&ast::Expr<'s>],
+        expected: Option<Type>,
+        name: ast::Name<'s>,
+    ) -> Option<Operand> {
+        if signature.parameters.iter().any(|it| it.kind == Kind::T) {
+            return self.chain(operator, values, expected, name);
+        }
+        let [a, b] = <[Expr; 2]>::try_from(self.resolve(signature, values, expected, name)?.operands).ok()?;
+        let side = |expr: Expr, at: usize| (Operand::Typed(expr), values[at].span);
+        self.joined(operator, name.span, None, side(a, 0), side(b, 1))
+    }
+
+    /// An operation of the table on operands of its type.
+    fn operation(&mut self, op: Op, Resolved { mut ty, own, mut operands }: Resolved, span: Span) -> Option<Operand> {
+        if op == Op::Abs {
+            operands = operands.into_iter().map(|it| self.promote(it, span)).collect();
+            ty = operands.first()?.ty;
+        }
+        let value = match (op, ty) {
+            (Op::Max | Op::Min, Type::String(_)) => self.extreme_text(op, ty, operands, span),
+            (Op::Max | Op::Min, _) => self.fold(op, ty, operands, span),
+            (Op::Limit, Type::String(_)) => self.limited_text(ty, operands, span),
+            (Op::Sel, _) if self.decl.program.lane(ty).is_none() => self.select(ty, operands, span),
+            (Op::Shl | Op::Shr | Op::Rol | Op::Ror, _) => {
+                let (count, value) = (operands.pop()?, operands.pop()?);
+                self.shift(op, ty, value, count, span)
+            }
+            _ => self.apply(op, ty, operands, ty, span),
+        };
+        Some(computed(value?, own))
+    }
+
+    /// An extensible function folds from the left.
+    fn fold(&mut self, op: Op, ty: Type, operands: Vec<Expr>, span: Span) -> Option<Expr> {
+        let mut operands = operands.into_iter();
+        let mut result = operands.next()?;
+        for operand in operands {
+            result = self.apply(op, ty, vec![result, operand], ty, span)?;
+        }
+        Some(result)
+    }
+
+    fn shift(&mut self, op: Op, ty: Type, value: Expr, count: Expr, span: Span) -> Option<Expr> {
+        if ty == Type::BOOL {
+            return self.shift_one_bit(op, value, count, span);
+        }
+        let count = match op {
+            // The low bits of a count turn as far as all of it: every width divides 2^64.
+            Op::Rol | Op::Ror => self.convert(Conversion::Value, Type::LINT, count),
+            _ => self.count(count)?,
+        };
+        let signed = ty.elementary().is_some_and(|it| it.is(Class::Signed));
+        let keeps_sign = op == Op::Shr && signed && self.decl.dialect(span).keeps_sign();
+        let op = if keeps_sign { Op::Sar } else { op };
+        self.apply(op, ty, vec![value, count], ty, span)
+    }
+
+    /// A BOOL has one bit: turning leaves it, and a shift by more than 0 makes it FALSE.
+    fn shift_one_bit(&mut self, op: Op, mut value: Expr, mut count: Expr, span: Span) -> Option<Expr> {
+        if matches!(op, Op::Rol | Op::Ror) {
+            self.fault_in_order([&mut value, &mut count].into_iter());
+            return Some(value);
+        }
+        let byte = Type::Elementary(Elementary::Byte);
+        let bits = self.convert(Conversion::Value, byte, value);
+        // To the right, so that what leaves the one bit is gone.
+        let shifted = self.shift(Op::Shr, byte, bits, count, span)?;
+        Some(self.convert(Conversion::Value, Type::BOOL, shifted))
+    }
+
+    /// A count or position as a LINT; what is more than a LINT holds is its greatest value.
+    fn count(&mut self, value: Expr) -> Option<Expr> {
+        let most = Elementary::Ulint.lane().integer(i128::from(i64::MAX)).filter(|_| is_wide(value.ty));
+        let value = match most {
+            Some(most) => {
+                let (ty, at) = (value.ty, value.at);
+                let most = Expr::new(ty, ExprKind::Const(most), at);
+                Expr::apply(Op::Min, ty, vec![value, most], at)
+            }
+            None => value,
+        };
+        Some(self.convert(Conversion::Value, Type::LINT, value))
+    }
+
+    /// `SEL(G, IN0, IN1)` of what no lane carries; both inputs are evaluated.
+    fn select(&mut self, ty: Type, mut operands: Vec<Expr>, span: Span) -> Option<Expr> {
+        self.fault_in_order(operands.iter_mut());
+        let [selector, first, second] = <[Expr; 3]>::try_from(operands).ok()?;
+        let result = self.temporary("selected", ty);
+        let at = self.at(span);
+        let then = vec![Statement::assign(result.clone(), second, at)];
+        let otherwise = vec![Statement::assign(result.clone(), first, at)];
+        self.push(StatementKind::If { condition: selector, then, otherwise }, span);
+        Some(Expr::load(result, at))
+    }
+
+    /// `MUX(K, IN0, …)`: all inputs are evaluated; a K outside of them faults.
+    fn mux(&mut self, Resolved { ty, own, mut operands }: Resolved, span: Span) -> Option<Operand> {
+        self.fault_in_order(operands.iter_mut());
+        let mut operands = operands.into_iter();
+        let selector = operands.next()?;
+        let at = self.at(span);
+        let result = self.temporary("selected", ty);
+        let arm = |(number, input): (i128, Expr)| Arm {
+            labels: vec![(number, number)],
+            body: vec![Statement::assign(result.clone(), input, at)],
+        };
+        let arms = (0..).zip(operands).map(arm).collect();
+        let outside = vec![Statement::new(StatementKind::Fault(FaultKind::IndexOutOfRange), at)];
+        self.push(StatementKind::Case { selector, arms, otherwise: outside }, span);
+        Some(computed(Expr::load(result, at), own))
+    }
+
+    fn text_function(&mut self, op: TextOp, operands: Vec<Expr>, span: Span) -> Option<Expr> {
+        if op == TextOp::Concat {
+            return self.concat(operands, span);
+        }
+        let mut ready = Vec::new();
+        for (operand, lane) in operands.into_iter().zip(op.operands()) {
+            ready.push(if lane.is_some() { self.count(operand)? } else { operand });
+        }
+        let ty = match op.result() {
+            Some(_) => Type::INT,
+            None => Type::String(text_capacity(op, &ready)),
+        };
+        let at = self.at(span);
+        self.evaluated(Expr::new(ty, ExprKind::ApplyText(op, ready), at), span)
+    }
+
+    fn concat(&mut self, operands: Vec<Expr>, span: Span) -> Option<Expr> {
+        let at = self.at(span);
+        let mut operands = operands.into_iter();
+        let mut result = operands.next()?;
+        for operand in operands {
+            let ty = Type::String(capacity(&result).saturating_add(capacity(&operand)).min(32767));
+            let joined = Expr::new(ty, ExprKind::ApplyText(TextOp::Concat, vec![result, operand]), at);
+            let joined = self.evaluated(joined, span)?;
+            result = self.shallow(joined);
+        }
+        Some(result)
+    }
+
+    /// The text, kept in a variable where it is the result of many functions in one another: each is
+    /// a type of its own to rustc, which takes no more than some hundred in one another.
+    pub(crate) fn shallow(&mut self, text: Expr) -> Expr {
+        if text_depth(&text) < MAX_TEXT_DEPTH {
+            return text;
+        }
+        let at = text.at;
+        let place = self.temporary("saved", text.ty);
+        self.block.push(Statement::assign(place.clone(), text, at));
+        Expr::load(place, at)
+    }
+}
+
+/// What an operation's function means: for those with an operator, the operator.
+fn meaning(op: Op) -> Meaning {
+    let operator = match op {
+        Op::Add => BinaryOp::Add,
+        Op::Sub => BinaryOp::Sub,
+        Op::Mul => BinaryOp::Mul,
+        Op::Div => BinaryOp::Div,
+        Op::Mod => BinaryOp::Mod,
+        Op::Expt => BinaryOp::Power,
+        Op::And => BinaryOp::And,
+        Op::Or => BinaryOp::Or,
+        Op::Xor => BinaryOp::Xor,
+        Op::Eq => BinaryOp::Eq,
+        Op::Ne => BinaryOp::Ne,
+        Op::Lt => BinaryOp::Lt,
+        Op::Le => BinaryOp::Le,
+        Op::Gt => BinaryOp::Gt,
+        Op::Ge => BinaryOp::Ge,
+        _ => return Meaning::Operation(op),
+    };
+    Meaning::Operator(operator)
+}
+
+fn is_wide(ty: Type) -> bool {
+    matches!(ty, Type::Elementary(Elementary::Ulint | Elementary::Lword))
+}
+
+/// How many text functions are nested in the expression.
+fn text_depth(expr: &Expr) -> usize {
+    match &expr.kind {
+        ExprKind::ApplyText(_, operands) => 1 + operands.iter().map(text_depth).max().unwrap_or(0),
+        ExprKind::Convert(_, inner) => text_depth(inner),
+        ExprKind::Apply(_, operands) => operands.iter().map(text_depth).max().unwrap_or(0),
+        ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) | ExprKind::Load(_) => 0,
+    }
+}
+
+fn capacity(expr: &Expr) -> u16 {
+    match expr.ty {
+        Type::String(capacity) => capacity,
+        Type::Elementary(_)
+        | Type::Subrange(..)
+        | Type::Enum(_)
+        | Type::Array(_)
+        | Type::Struct(_)
+        | Type::Block(_) => 0,
+    }
+}
+
+/// The longest result: what is inserted adds to the text.
+fn text_capacity(op: TextOp, operands: &[Expr]) -> u16 {
+    let own = operands.first().map_or(0, capacity);
+    match op {
+        TextOp::Insert | TextOp::Replace => own.saturating_add(operands.get(1).map_or(0, capacity)).min(32767),
+        _ => own,
+    }
+}

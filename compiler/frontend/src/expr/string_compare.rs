@@ -1,0 +1,66 @@
+//! Strings in their order: comparisons, and the functions that choose the first or the last.
+
+use super::checker::Checker;
+use crate::Span;
+use staunch_ir::{Elementary, Expr, ExprKind, Op, Place, Statement, StatementKind, TextOp, Type, Value};
+
+impl Checker<'_, '_> {
+    /// `a < b` and its kin, byte by byte.
+    pub(crate) fn compare_texts(&mut self, op: Op, a: Expr, b: Expr, span: Span) -> Option<Expr> {
+        let at = self.at(span);
+        let order = Expr::new(Type::INT, ExprKind::ApplyText(TextOp::Compare, vec![a, b]), at);
+        let order = self.evaluated(order, span)?;
+        let zero = Expr::constant(Elementary::Int, Value::I16(0), at);
+        self.apply(op, Type::INT, vec![order, zero], Type::BOOL, span)
+    }
+
+    /// `MAX` and `MIN` of strings: the first of those that are greatest, or least.
+    pub(crate) fn extreme_text(&mut self, op: Op, ty: Type, texts: Vec<Expr>, span: Span) -> Option<Expr> {
+        let beats = if op == Op::Max { Op::Gt } else { Op::Lt };
+        let mut texts = self.texts_in_variables(ty, texts, span).into_iter();
+        let chosen = self.chosen_text(ty, texts.next()?, span);
+        for text in texts {
+            self.choose(&chosen, beats, text, span)?;
+        }
+        Some(Expr::load(chosen, self.at(span)))
+    }
+
+    /// `LIMIT` of strings. Where MN lies behind MX, a text before MN gives MN.
+    pub(crate) fn limited_text(&mut self, ty: Type, texts: Vec<Expr>, span: Span) -> Option<Expr> {
+        let [min, value, max] = <[Expr; 3]>::try_from(self.texts_in_variables(ty, texts, span)).ok()?;
+        let at = self.at(span);
+        let below = self.compare_texts(Op::Lt, value.clone(), min.clone(), span)?;
+        let above = self.compare_texts(Op::Gt, value.clone(), max.clone(), span)?;
+        let chosen = self.chosen_text(ty, value, span);
+        let set = |value: Expr| vec![Statement::assign(chosen.clone(), value, at)];
+        let otherwise =
+            vec![Statement::new(StatementKind::If { condition: above, then: set(max), otherwise: Vec::new() }, at)];
+        self.push(StatementKind::If { condition: below, then: set(min), otherwise }, span);
+        Some(Expr::load(chosen, at))
+    }
+
+    /// Each text is evaluated once, from left to right.
+    fn texts_in_variables(&mut self, ty: Type, texts: Vec<Expr>, span: Span) -> Vec<Expr> {
+        let at = self.at(span);
+        let saved = |text: Expr| {
+            let place = self.temporary("text", ty);
+            self.assign(place.clone(), text, span);
+            Expr::load(place, at)
+        };
+        texts.into_iter().map(saved).collect()
+    }
+
+    fn chosen_text(&mut self, ty: Type, first: Expr, span: Span) -> Place {
+        let chosen = self.temporary("chosen", ty);
+        self.assign(chosen.clone(), first, span);
+        chosen
+    }
+
+    fn choose(&mut self, chosen: &Place, beats: Op, text: Expr, span: Span) -> Option<()> {
+        let at = self.at(span);
+        let condition = self.compare_texts(beats, text.clone(), Expr::load(chosen.clone(), at), span)?;
+        let then = vec![Statement::assign(chosen.clone(), text, at)];
+        self.push(StatementKind::If { condition, then, otherwise: Vec::new() }, span);
+        Some(())
+    }
+}

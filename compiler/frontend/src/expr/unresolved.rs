@@ -1,0 +1,189 @@
+//! Names that are not there, and what was probably meant.
+
+use super::checker::Checker;
+use crate::diagnostic::wording::list;
+use crate::dialect::Dialect;
+use crate::spelling::nearest;
+use crate::{Code, Diagnostic, Span, ast};
+use staunch_ir::BlockId;
+use staunch_runtime::{BLOCKS, Direction, Family, PinRole};
+
+pub(crate) fn not_constant(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0205, span, "a constant is expected here")
+        .label("its value is not known before the program runs")
+}
+
+/// `CSCAPE.CTUD`: the family has no such block.
+pub(crate) fn no_such_block(family: Family, name: ast::Name<'_>) -> Diagnostic {
+    let own = BLOCKS.iter().filter(|it| it.family == family && it.facts.option.is_none());
+    let names: Vec<_> = own.map(|it| it.name).collect();
+    let owner = family.name();
+    let error = Diagnostic::new(Code::E0309, name.span, format!("{owner} documents no `{}`", name.text))
+        .label(format!("not a block of {owner}"));
+    match nearest(name.text, names.iter().copied()).filter(|near| near.len() == name.text.len()) {
+        Some(near) => error.help(format!("did you mean `{near}`?")).fix(name.span, near),
+        None => error.help(format!("{owner} has {}", list(&names))),
+    }
+}
+
+/// A block that exists, but not under the dialect's bare names.
+pub(crate) fn block_of_another_dialect(dialect: Dialect, name: ast::Name<'_>) -> Option<Diagnostic> {
+    let owners: Vec<_> = BLOCKS.iter().filter(|it| it.is_named(name.text)).map(|it| it.family).collect();
+    if owners.is_empty() {
+        return None;
+    }
+    let system = dialect.family().name();
+    let qualified: Vec<_> = owners.iter().map(|it| format!("{}.{}", it.name(), name.text)).collect();
+    let qualified: Vec<_> = qualified.iter().map(String::as_str).collect();
+    let others: Vec<_> = Dialect::ALL.iter().filter(|it| owners.contains(&it.family())).map(|it| it.name()).collect();
+    let error = Diagnostic::new(Code::E0309, name.span, format!("{system} documents no `{}`", name.text))
+        .label(format!("under `--dialect {}` this name has no block", dialect.name()))
+        .note(format!("the dialect {} has it", list(&others)));
+    // Who names a structure of Logix calls its instructions too, which a family's name has to precede as well.
+    Some(match (others.as_slice(), owners.as_slice()) {
+        ([one], [Family::Logix]) => error.help(format!(
+            "start the file with `{{dialect '{one}'}}`, or write `{}`, and `LOGIX.` before each instruction: `LOGIX.{}(…)`",
+            qualified[0],
+            if name.text.eq_ignore_ascii_case("FBD_COUNTER") { "CTUD" } else { "CTU" }
+        )),
+        _ => error.help(format!("name the family: {}", list(&qualified))),
+    })
+}
+
+/// `c.RST` or `c(RESET := …)` on a block that has no such pin.
+pub(crate) fn unknown_pin(block: BlockId, name: ast::Name<'_>) -> Diagnostic {
+    let info = block.info();
+    let pins: Vec<_> = info.pins.iter().filter(|it| it.direction != Direction::Memory).map(|it| it.name).collect();
+    let full = format!("{}.{}", info.family.name(), info.name);
+    let error =
+        Diagnostic::new(Code::E0301, name.span, format!("`{full}` has no pin `{}`", name.text)).label("unknown pin");
+    let meant = other_dialects_pin(block, name.text).or_else(|| nearest(name.text, pins.iter().copied()));
+    let error = match meant {
+        Some(pin) => error.help(format!("did you mean `{pin}`?")).fix(name.span, pin),
+        None => error.help(format!("its pins are {}", list(&pins))),
+    };
+    match owner_of_pin(block, name.text) {
+        Some(family) => error.note(format!(
+            "the pin is called `{}` in {}, whose blocks a bare name means under `--dialect {}`",
+            name.text.to_ascii_uppercase(),
+            family.name(),
+            dialect_of(family).name()
+        )),
+        None => error,
+    }
+}
+
+/// This block's name for a pin that another system calls `name`.
+pub(super) fn other_dialects_pin(block: BlockId, name: &str) -> Option<&'static str> {
+    let pin = block.info().pin_for(PinRole::named(name)?)?;
+    Some(pin.name).filter(|it| !it.eq_ignore_ascii_case(name))
+}
+
+/// The family whose block of the same name has a pin `name`.
+fn owner_of_pin(block: BlockId, name: &str) -> Option<Family> {
+    let info = block.info();
+    let same = BLOCKS.iter().filter(|it| it.family != info.family && it.name.eq_ignore_ascii_case(info.name));
+    same.filter(|it| it.pin(name).is_some()).map(|it| it.family).next_back()
+}
+
+fn dialect_of(family: Family) -> Dialect {
+    Dialect::ALL.into_iter().find(|it| it.family() == family).unwrap_or_default()
+}
+
+/// Values that are no names, for suggestions.
+const CONSTANTS: [&str; 2] = ["TRUE", "FALSE"];
+
+/// Words that do something in other languages, or in other places.
+const FOREIGN: [(&str, &str); 13] = [
+    ("DEFAULT", "the branch of a CASE for all other values is written `ELSE`"),
+    ("OTHERS", "the branch of a CASE for all other values is written `ELSE`"),
+    ("OTHERWISE", "the branch of a CASE for all other values is written `ELSE`"),
+    ("BREAK", "a loop is left with `EXIT;`, and a branch of a CASE ends before the next label"),
+    ("PASS", "nothing to do is written `;`"),
+    ("NOP", "nothing to do is written `;`"),
+    ("STOP", "a POU is left with `RETURN;`"),
+    ("HIGH", "write `TRUE`"),
+    ("LOW", "write `FALSE`"),
+    ("ON", "write `TRUE`"),
+    ("OFF", "write `FALSE`"),
+    ("YES", "write `TRUE`"),
+    ("NO", "write `FALSE`"),
+];
+
+impl<'s> Checker<'_, 's> {
+    fn not_a_variable(&mut self, name: ast::Name<'s>) {
+        let error = Diagnostic::new(Code::E0101, name.span, format!("`{}` is not a variable", name.text));
+        if !self.lacks_result_type(name) {
+            let error = error.label("a variable or a value is expected here");
+            let kind = match self.decl.names.get(name.text) {
+                Some(crate::names::Entry::Pou(slot)) => Some(self.decl.pous[slot].ast.kind),
+                Some(crate::names::Entry::Type(_) | crate::names::Entry::Global(_)) | None => None,
+            };
+            self.report(match kind {
+                Some(ast::PouKind::Function) => error.help(format!("call the FUNCTION: `{}(…)`", name.text)),
+                Some(ast::PouKind::FunctionBlock) => {
+                    error.help(format!("declare an instance: `VAR instance : {}; END_VAR`", name.text))
+                }
+                Some(ast::PouKind::Program) => error.help("share the value in a VAR_GLOBAL"),
+                None => error,
+            });
+            return;
+        }
+        if self.signature.as_ref().is_some_and(|it| it.result.is_none() && it.state.is_none()) {
+            self.report(
+                error
+                    .label("this FUNCTION has no result type")
+                    .help(format!("write the type behind the function's name: `FUNCTION {} : INT`", name.text)),
+            );
+        }
+    }
+
+    /// Whether `name` is a FUNCTION that assigns to its own name, but has no result type.
+    pub(crate) fn lacks_result_type(&self, name: ast::Name<'s>) -> bool {
+        let Some(crate::names::Entry::Pou(slot)) = self.decl.names.get(name.text) else {
+            return false;
+        };
+        self.decl.pous[slot].names_itself && self.decl.pous[slot].ast.result.is_none()
+    }
+
+    /// Reports a name that means nothing here.
+    pub(crate) fn unknown_name(&mut self, name: ast::Name<'s>) {
+        if self.decl.names.unread.contains(&crate::spelling::Key(name.text)) {
+            return;
+        }
+        if let Some(crate::names::Entry::Type(_) | crate::names::Entry::Pou(_)) = self.decl.names.get(name.text) {
+            self.not_a_variable(name);
+            return;
+        }
+        let block = self.decl.bare_block(name.text, name.span).is_some();
+        let message = if block {
+            format!("`{}` is a FUNCTION_BLOCK, not an instance of one", name.text)
+        } else if super::standard::exists(name.text) {
+            format!("`{}` is a function, not a variable", name.text)
+        } else {
+            format!("`{}` is not declared", name.text)
+        };
+        let mut error = Diagnostic::new(Code::E0101, name.span, message).label("unknown name");
+        if block {
+            self.report(
+                error
+                    .label("only an instance has pins and can be called")
+                    .help(format!("declare one: `VAR instance : {}; END_VAR`", name.text)),
+            );
+            return;
+        }
+        let own = self.scope.variables.iter().map(|it| it.name.text);
+        let near = nearest(name.text, own.chain(self.decl.names.names.keys().map(|key| key.0)));
+        let enumerators = self.decl.names.enumerators.keys().map(|key| key.0);
+        let near =
+            near.or_else(|| nearest(name.text, enumerators)).or_else(|| nearest(name.text, CONSTANTS.into_iter()));
+        if let Some((_, help)) = FOREIGN.iter().find(|(it, _)| it.eq_ignore_ascii_case(name.text)) {
+            error = error.help(*help);
+        } else if let Some(near) = near {
+            error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
+        } else if super::standard::exists(name.text) {
+            error = error.help(format!("call the function: `{}(…)`", name.text));
+        }
+        self.report(error);
+    }
+}

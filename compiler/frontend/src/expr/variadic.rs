@@ -1,0 +1,98 @@
+//! Operators called by their names: `ADD(a, b, c)` is `a + b + c`; `GT(a, b, c)` is
+//! `a > b AND b > c`, with `b` evaluated once.
+
+use super::checker::Checker;
+use super::operand::Operand;
+use super::operator::{Sides, compares};
+use crate::{Span, ast};
+use ast::BinaryOp;
+use staunch_ir::{Expr, ExprKind, Projection, Type};
+
+impl<'s> Checker<'_, 's> {
+    pub(crate) fn chain(
+        &mut self,
+        operator: BinaryOp,
+        values: &[&ast::Expr<'s>],
+        expected: Option<Type>,
+        name: ast::Name<'s>,
+    ) -> Option<Operand> {
+        if compares(operator) && values.len() > 2 {
+            return self.comparisons(operator, values, name);
+        }
+        if !values.is_sorted_by_key(|it| it.span.start) {
+            return self.folded(operator, values, expected, name);
+        }
+        let mut values = values.iter();
+        let mut tree = (*values.next()?).clone();
+        for value in values {
+            let span = tree.span.to(value.span);
+            let kind = ast::ExprKind::Binary(Box::new([tree, (*value).clone()]), operator, name.span);
+            tree = ast::Expr { kind, span };
+        }
+        self.operand(&tree, expected)
+    }
+
+    /// Operands that are not written in the order of their parameters: `SUB(IN2 := b, IN1 := a)`.
+    fn folded(
+        &mut self,
+        op: BinaryOp,
+        values: &[&ast::Expr<'s>],
+        expected: Option<Type>,
+        name: ast::Name<'s>,
+    ) -> Option<Operand> {
+        let hint = expected.filter(|_| !compares(op));
+        let operands = self.as_written(values, |this, at, side| this.operand(values[at], hint.or(side)))?;
+        let mut operands = operands.into_iter().zip(values).map(|(operand, value)| (operand, value.span));
+        let mut result = operands.next()?;
+        for right in operands {
+            let span = right.1;
+            result = (self.joined(op, name.span, hint, result, right)?, span);
+        }
+        Some(result.0)
+    }
+
+    fn comparisons(&mut self, op: BinaryOp, values: &[&ast::Expr<'s>], name: ast::Name<'s>) -> Option<Operand> {
+        let operands = self.as_written(values, |this, at, side| {
+            let operand = this.operand(values[at], side)?;
+            let read_twice = at > 0 && at + 1 < values.len();
+            Some(if read_twice { this.kept(operand) } else { operand })
+        })?;
+        let mut all: Option<Operand> = None;
+        for (at, pair) in operands.windows(2).enumerate() {
+            let (left, right) = (values[at].span, values[at + 1].span);
+            let one = self.joined(op, name.span, None, (pair[0].clone(), left), (pair[1].clone(), right))?;
+            all = Some(match all {
+                None => one,
+                Some(before) => self.joined(BinaryOp::And, name.span, None, (before, values[0].span), (one, right))?,
+            });
+        }
+        all
+    }
+
+    pub(crate) fn joined(
+        &mut self,
+        op: BinaryOp,
+        op_span: Span,
+        hint: Option<Type>,
+        (a, left): (Operand, Span),
+        (b, right): (Operand, Span),
+    ) -> Option<Operand> {
+        self.combine(Sides { a, b, left, right, op, op_span, span: left.to(right), hint })
+    }
+
+    /// The operand for reading it twice: what is more than a variable is computed once.
+    fn kept(&mut self, mut operand: Operand) -> Operand {
+        if let Some(expr) = operand.typed_mut().filter(|it| !is_plain(it)) {
+            self.save("saved", expr);
+        }
+        operand
+    }
+}
+
+fn is_plain(expr: &Expr) -> bool {
+    match &expr.kind {
+        ExprKind::Load(place) => place.projections.iter().all(|it| matches!(it, Projection::Field(_))),
+        ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => true,
+        ExprKind::Apply(..) | ExprKind::ApplyText(..) | ExprKind::Convert(..) => false,
+    }
+}

@@ -1,0 +1,4 @@
+//! What is right, and was hardly meant.
+
+pub(crate) mod result;
+pub(crate) mod unused;

@@ -1,0 +1,15 @@
+//! FUNCTIONs that never say what their result is.
+
+use crate::types::declarations::PouSlot;
+use crate::{Code, Diagnostic, ast};
+
+/// The FUNCTIONs whose bodies do not name their result. What was refused may have assigned it.
+pub(crate) fn unassigned(pous: &[PouSlot<'_>]) -> Vec<Diagnostic> {
+    let unassigned = pous.iter().filter(|it| it.ast.result.is_some() && !it.names_itself).map(|it| it.ast.name);
+    let lint = |name: ast::Name<'_>| {
+        Diagnostic::new(Code::W0516, name.span, format!("the result of `{}` is never assigned", name.text))
+            .label("each call gives its type's initial value")
+            .help(format!("assign it, `{} := …;`", name.text))
+    };
+    unassigned.map(lint).collect()
+}

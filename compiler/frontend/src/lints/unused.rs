@@ -1,0 +1,25 @@
+//! Variables that nothing reads or writes.
+
+use crate::types::declarations::Declarations;
+use crate::{Code, Diagnostic};
+use staunch_ir::Section;
+
+/// Reports them, when all bodies have been checked: a variable may be read from outside as well.
+pub(crate) fn report(decl: &mut Declarations<'_>) {
+    for slot in 0..decl.pous.len() {
+        of_pou(decl, slot);
+    }
+}
+
+fn of_pou(decl: &mut Declarations<'_>, slot: usize) {
+    let Some(signature) = decl.signature(slot) else { return };
+    for variable in &signature.scope.variables {
+        let internal = matches!(variable.section, Section::Internal | Section::Temp | Section::External);
+        if internal && !variable.used.get() && !variable.name.text.starts_with(['_', '%']) {
+            decl.report(
+                Diagnostic::new(Code::W0501, variable.name.span, format!("`{}` is never used", variable.name.text))
+                    .label("declared here, read and written nowhere"),
+            );
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! The sources, and what is reported of them.
+
+use crate::dialect::Dialect;
+use crate::{Code, Diagnostic, Options, Severity, Sources, Span};
+use staunch_ir::Location;
+
+pub(crate) struct Log<'s> {
+    pub sources: &'s Sources,
+    pub options: &'s Options,
+    /// A dialect for each file.
+    pub dialects: Vec<Dialect>,
+    pub diagnostics: Vec<Diagnostic>,
+    line_cache: LineCache,
+}
+
+/// The last line that was looked up: the next position is usually on it or just behind.
+#[derive(Default)]
+struct LineCache {
+    file: u16,
+    line: u32,
+    start: u32,
+    end: u32,
+    /// The last position that was looked up on the line, and the characters before it.
+    counted_to: u32,
+    count: usize,
+}
+
+impl<'s> Log<'s> {
+    pub fn new(sources: &'s Sources, options: &'s Options) -> Self {
+        let line_cache = LineCache::default();
+        Self { sources, options, dialects: Vec::new(), diagnostics: Vec::new(), line_cache }
+    }
+
+    pub fn report(&mut self, diagnostic: Diagnostic) {
+        self.diagnostics.push(diagnostic);
+    }
+
+    pub fn error(&mut self, code: Code, span: Span, message: impl Into<String>) {
+        self.report(Diagnostic::new(code, span, message));
+    }
+
+    pub fn not_supported(&mut self, span: Span, what: &str) {
+        self.report(
+            Diagnostic::new(Code::E0902, span, format!("{what} is not supported yet"))
+                .label("this version of Staunch cannot compile it"),
+        );
+    }
+
+    /// Whether errors were reported since there were `reported` diagnostics.
+    pub fn has_errors_since(&self, reported: usize) -> bool {
+        self.diagnostics[reported..].iter().any(|it| it.severity == Severity::Error)
+    }
+
+    pub fn dialect(&self, span: Span) -> Dialect {
+        self.dialects.get(usize::from(span.file)).copied().unwrap_or(self.options.dialect)
+    }
+
+    /// Where `span` starts, for people.
+    pub fn location(&mut self, span: Span) -> Location {
+        let source = self.sources.get(span.file);
+        let cache = &self.line_cache;
+        let cached = cache.file == span.file && (cache.start..cache.end).contains(&span.start);
+        if !cached {
+            let line = source.line(span.start);
+            let (start, end) = source.line_bounds(line);
+            self.line_cache = LineCache { file: span.file, line, start, end, counted_to: start, count: 0 };
+        }
+        let cache = &mut self.line_cache;
+        if source.is_ascii() {
+            let column = u16::try_from(span.start - cache.start + 1).unwrap_or(u16::MAX);
+            return Location { file: span.file, line: cache.line, column };
+        }
+        // A line may be long: what was counted is not counted again.
+        if span.start < cache.counted_to {
+            (cache.counted_to, cache.count) = (cache.start, 0);
+        }
+        let between = Span { file: span.file, start: cache.counted_to, end: span.start };
+        cache.count += self.sources.text(between).chars().count();
+        cache.counted_to = span.start;
+        let (line, column) = (cache.line, u16::try_from(cache.count + 1).unwrap_or(u16::MAX));
+        Location { file: span.file, line, column }
+    }
+
+    /// The name that stands at a location.
+    pub fn name_at(&self, at: Location) -> Span {
+        let source = self.sources.get(at.file);
+        let range = source.line_range(at.line);
+        let (start, line) = (range.start, &source.text[range]);
+        let before = usize::from(at.column).saturating_sub(1);
+        let before: usize = line.chars().take(before).map(char::len_utf8).sum();
+        let name = line[before..].chars().take_while(|it| it.is_ascii_alphanumeric() || *it == '_').count();
+        let offset = |length: usize| u32::try_from(start + length).unwrap_or(u32::MAX);
+        Span { file: at.file, start: offset(before), end: offset(before + name) }
+    }
+}

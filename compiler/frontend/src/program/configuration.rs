@@ -1,0 +1,216 @@
+//! CONFIGURATION, RESOURCE and TASK: which programs run, and how often.
+
+use crate::ast;
+use crate::expr::constant::constant;
+use crate::names::Entry;
+use crate::spelling::{Key, nearest};
+use crate::types::declarations::Declarations;
+use crate::{Code, Diagnostic, Span};
+use rustc_hash::FxHashMap;
+use staunch_ir::{Instance, Value};
+
+const LOWEST_PRIORITY: u32 = 65535;
+
+/// Fills the program's instances: those of the configurations, or else one of each PROGRAM that no other calls.
+pub(super) fn instances<'s>(declarations: &mut Declarations<'s>, files: &'s [ast::File<'s>]) {
+    let items = files.iter().flat_map(|it| &it.items);
+    let configurations: Vec<_> = items
+        .filter_map(|it| match it {
+            ast::Item::Configuration(it) => Some(it),
+            ast::Item::Pou(_) | ast::Item::Types(_) | ast::Item::Globals(_) => None,
+        })
+        .collect();
+    declarations.check_configurations(&configurations);
+    for resource in configurations.iter().flat_map(|it| &it.resources) {
+        declarations.resource(resource);
+    }
+    if !declarations.program.instances.is_empty() {
+        return;
+    }
+    let is_program = |at: &usize| declarations.pous[*at].ast.kind == ast::PouKind::Program;
+    let runs = |at: &usize| is_program(at) && !declarations.is_named_program(*at);
+    let programs: Vec<_> = (0..declarations.pous.len()).filter(runs).collect();
+    for at in programs {
+        let Some(program) = declarations.class_of_slot(at) else { continue };
+        declarations.program.instances.push(Instance {
+            name: declarations.pous[at].ast.name.text.to_owned(),
+            program,
+            interval: None,
+            priority: LOWEST_PRIORITY,
+        });
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Timing {
+    interval: Option<i64>,
+    priority: u32,
+}
+
+impl<'s> Declarations<'s> {
+    fn check_configurations(&mut self, configurations: &[&'s ast::Configuration<'s>]) {
+        if let [first, second, ..] = configurations {
+            self.report(
+                Diagnostic::new(Code::E0902, second.name.span, "a second CONFIGURATION is not supported yet")
+                    .label("a program has one, with one or more RESOURCEs")
+                    .other(first.name.span, "the first one"),
+            );
+        }
+        for configuration in configurations {
+            self.names_once(configuration.resources.iter().filter_map(|it| it.name));
+        }
+        let resources = configurations.iter().flat_map(|it| &it.resources);
+        for resource in resources.clone() {
+            self.names_once(resource.tasks.iter().map(|it| it.name));
+        }
+        self.names_once(resources.flat_map(|it| &it.programs).map(|it| it.name));
+    }
+
+    /// Reports a name that stands twice among `names`.
+    fn names_once(&mut self, names: impl Iterator<Item = ast::Name<'s>>) {
+        let mut seen: FxHashMap<Key<'s>, Span> = FxHashMap::default();
+        for name in names {
+            let Some(first) = seen.insert(Key(name.text), name.span) else { continue };
+            self.report(
+                Diagnostic::new(Code::E0103, name.span, format!("`{}` is declared twice", name.text))
+                    .label("declared again here")
+                    .other(first, "first declared here"),
+            );
+        }
+    }
+
+    fn resource(&mut self, resource: &'s ast::Resource<'s>) {
+        let tasks: Vec<_> = resource.tasks.iter().map(|task| (task.name, self.task(task))).collect();
+        for instance in &resource.programs {
+            let mut timing = Timing { interval: None, priority: LOWEST_PRIORITY };
+            if let Some(name) = instance.task {
+                let found = tasks.iter().find(|(it, _)| it.text.eq_ignore_ascii_case(name.text));
+                match found {
+                    Some((_, it)) => timing = *it,
+                    None => self.unknown_task(name, &tasks),
+                }
+            }
+            self.instance(instance, timing);
+        }
+    }
+
+    fn unknown_task(&mut self, name: ast::Name<'s>, tasks: &[(ast::Name<'s>, Timing)]) {
+        let near = nearest(name.text, tasks.iter().map(|(it, _)| it.text));
+        let mut error = Diagnostic::new(Code::E0101, name.span, format!("there is no TASK `{}`", name.text));
+        if let Some(near) = near {
+            error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
+        }
+        self.report(error);
+    }
+
+    fn instance(&mut self, instance: &'s ast::ProgramInstance<'s>, timing: Timing) {
+        let found = self.names.get(instance.program.text);
+        let program = match found {
+            Some(Entry::Pou(at)) if self.pous[at].ast.kind == ast::PouKind::Program => at,
+            _ => {
+                if let Some(Entry::Pou(at)) = found {
+                    return self.not_a_program(instance.program, at);
+                }
+                let programs = self.pous.iter().filter(|it| it.ast.kind == ast::PouKind::Program);
+                let near = nearest(instance.program.text, programs.map(|it| it.ast.name.text));
+                let mut error = Diagnostic::new(
+                    Code::E0101,
+                    instance.program.span,
+                    format!("there is no PROGRAM `{}`", instance.program.text),
+                );
+                if let Some(near) = near {
+                    error = error.help(format!("did you mean `{near}`?")).fix(instance.program.span, near);
+                }
+                self.report(error);
+                return;
+            }
+        };
+        if self.report_called_and_listed(program, instance.program.span) {
+            return;
+        }
+        let Some(program) = self.class_of_slot(program) else { return };
+        self.program.instances.push(Instance {
+            name: instance.name.text.to_owned(),
+            program,
+            interval: timing.interval,
+            priority: timing.priority,
+        });
+    }
+
+    fn not_a_program(&mut self, name: ast::Name<'s>, at: usize) {
+        let pou = self.pous[at].ast;
+        let kind = if pou.kind == ast::PouKind::Function { "FUNCTION" } else { "FUNCTION_BLOCK" };
+        self.report(
+            Diagnostic::new(Code::E0102, name.span, format!("`{}` is a {kind}, not a PROGRAM", name.text))
+                .label("a PROGRAM is expected here")
+                .other(pou.name.span, "declared here"),
+        );
+    }
+
+    fn task(&mut self, task: &'s ast::Task<'s>) -> Timing {
+        let mut timing = Timing { interval: None, priority: LOWEST_PRIORITY };
+        self.names_once(task.properties.iter().map(|(name, _)| *name));
+        if !task.properties.iter().any(|(name, _)| name.text.eq_ignore_ascii_case("PRIORITY")) {
+            self.report(
+                Diagnostic::new(Code::W0412, task.name.span, format!("the TASK `{}` has no PRIORITY", task.name.text))
+                    .label("it runs after all tasks that have one")
+                    .help("give it one, 0 is the most urgent: `PRIORITY := 1`"),
+            );
+        }
+        for (name, expr) in &task.properties {
+            if name.text.eq_ignore_ascii_case("SINGLE") {
+                self.not_supported(name.span, "SINGLE");
+                continue;
+            }
+            let scope = std::rc::Rc::default();
+            let value = constant(self, &scope, expr, None).and_then(|it| it.as_const());
+            match (name.text.to_ascii_uppercase().as_str(), value) {
+                ("INTERVAL", Some(Value::I64(interval))) if interval > 0 => timing.interval = Some(interval),
+                // What is no constant has been reported.
+                ("INTERVAL", None) => {}
+                ("INTERVAL", Some(_)) => self.report(
+                    Diagnostic::new(Code::E0201, expr.span, "INTERVAL is a TIME above zero").help("write `T#10ms`"),
+                ),
+                ("PRIORITY", Some(value)) => match value.as_integer().and_then(|it| u32::try_from(it).ok()) {
+                    Some(priority) => timing.priority = priority,
+                    None => self.error(Code::E0201, expr.span, "PRIORITY is a whole number from 0"),
+                },
+                ("PRIORITY", None) => {}
+                _ => self.report(
+                    Diagnostic::new(Code::E0107, name.span, format!("a TASK has no `{}`", name.text))
+                        .help("it has INTERVAL, PRIORITY and SINGLE"),
+                ),
+            }
+        }
+        timing
+    }
+
+    /// Reports PROGRAMs whose variables are read, but which nobody calls: they run by themselves, and
+    /// their variables belong to those runs.
+    pub(super) fn check_named_programs(&mut self) {
+        let mut alone: Vec<_> = self.named_programs.iter().filter(|(_, it)| !it.is_called).collect();
+        alone.sort_by_key(|(slot, _)| **slot);
+        let alone: Vec<_> = alone.into_iter().map(|(_, it)| (it.variable.name, it.first)).collect();
+        for (name, span) in alone {
+            self.report(
+                Diagnostic::new(Code::E0902, span, format!("reading `{}`, a PROGRAM that runs by itself", name.text))
+                    .label("only those that are called by name can be read from outside yet")
+                    .other(name.span, "nobody calls it")
+                    .help(format!("call it here, `{}();`, or share the value in a VAR_GLOBAL", name.text)),
+            );
+        }
+    }
+
+    /// Reports a PROGRAM that a CONFIGURATION lists, and others call.
+    pub fn report_called_and_listed(&mut self, slot: usize, listed: Span) -> bool {
+        let Some(named) = self.named_programs.get(&slot) else { return false };
+        let (name, first) = (named.variable.name.text, named.first);
+        self.report(
+            Diagnostic::new(Code::E0902, listed, format!("`{name}` both runs in a RESOURCE and is called by name"))
+                .label("one of the two is supported, not both yet")
+                .other(first, "named here")
+                .help("delete it here, or call it nowhere"),
+        );
+        true
+    }
+}

@@ -1,0 +1,156 @@
+//! The order of routines: a callee before its callers. Recursion ends here.
+
+use crate::expr::uses::Uses;
+use crate::types::declarations::Declarations;
+use crate::{Code, Diagnostic};
+use staunch_ir::{Block, Routine, RoutineId, RoutineKind, Statement, StatementKind};
+
+/// Bytes that the variables of one call chain may take: they live on the stack.
+const MAX_STACK: u64 = 1 << 20;
+
+/// Sorts the program's POUs. `None` when there is recursion, which has been reported.
+pub(super) fn order(declarations: &mut Declarations<'_>, uses: Vec<Uses>) -> Option<()> {
+    let mut calls = all_callees(declarations);
+    let mut order = sorted(declarations, &calls)?;
+    if super::prescan::add(declarations, uses, &order) {
+        // A prescan calls those of contained instances.
+        calls = all_callees(declarations);
+        order = sorted(declarations, &calls)?;
+    }
+    let is_empty = |it: &Routine| it.kind == RoutineKind::Prescan && it.body.is_empty();
+    order.retain(|at| !is_empty(&declarations.program.routines[*at]));
+    check_stack(declarations, &calls, &order);
+    renumber(declarations, &order);
+    Some(())
+}
+
+fn all_callees(declarations: &mut Declarations<'_>) -> Vec<Vec<usize>> {
+    declarations.program.routines.iter_mut().map(callees).collect()
+}
+
+/// The slots of the POUs, a callee before its callers.
+fn sorted(declarations: &mut Declarations<'_>, calls: &[Vec<usize>]) -> Option<Vec<usize>> {
+    let mut order = Vec::new();
+    let mut marks = vec![Mark::New; calls.len()];
+    for at in 0..calls.len() {
+        if let Err(cycle) = visit(at, calls, &mut marks, &mut order) {
+            report_recursion(declarations, &cycle);
+            return None;
+        }
+    }
+    Some(order)
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Mark {
+    New,
+    Open,
+    Closed,
+}
+
+/// Depth-first with its own stack: a chain of calls may be long. The error is the cycle.
+fn visit(start: usize, calls: &[Vec<usize>], marks: &mut [Mark], order: &mut Vec<usize>) -> Result<(), Vec<usize>> {
+    if marks[start] != Mark::New {
+        return Ok(());
+    }
+    marks[start] = Mark::Open;
+    let mut stack = vec![(start, 0)];
+    while let Some((at, next)) = stack.last_mut() {
+        let Some(callee) = calls[*at].get(*next).copied() else {
+            marks[*at] = Mark::Closed;
+            order.push(*at);
+            stack.pop();
+            continue;
+        };
+        *next += 1;
+        match marks[callee] {
+            Mark::Closed => {}
+            Mark::New => {
+                marks[callee] = Mark::Open;
+                stack.push((callee, 0));
+            }
+            Mark::Open => {
+                let first = stack.iter().position(|(at, _)| *at == callee).unwrap_or(0);
+                return Err(stack[first..].iter().map(|(at, _)| *at).collect());
+            }
+        }
+    }
+    Ok(())
+}
+
+fn report_recursion(declarations: &mut Declarations<'_>, cycle: &[usize]) {
+    let name = |at: usize| declarations.pous[slot(declarations, at)].ast.name;
+    let first = name(cycle[0]);
+    let way: Vec<_> = cycle.iter().chain(&cycle[..1]).map(|at| name(*at).text).collect();
+    declarations.report(
+        Diagnostic::new(Code::E0310, first.span, format!("`{}` calls itself", first.text))
+            .label("recursion has no bound on its stack")
+            .note(format!("the calls go {}", way.join(" -> ")))
+            .help("write it as a loop"),
+    );
+}
+
+/// Variables that live for one call are on the stack; a long chain of large ones is refused.
+fn check_stack(declarations: &mut Declarations<'_>, calls: &[Vec<usize>], order: &[usize]) {
+    let mut depth = vec![0u64; calls.len()];
+    for at in order.iter().copied() {
+        let locals = &declarations.program.routines[at].locals;
+        let own = locals.iter().map(|it| declarations.size_of(it.ty)).fold(0, u64::saturating_add);
+        let below = calls[at].iter().map(|callee| depth[*callee]).max().unwrap_or(0);
+        depth[at] = own.saturating_add(below);
+        if depth[at] > MAX_STACK && below <= MAX_STACK {
+            let name = declarations.pous[slot(declarations, at)].ast.name;
+            declarations.report(
+                Diagnostic::new(
+                    Code::E0903,
+                    name.span,
+                    format!("the temporary variables of `{}` take {own} bytes", name.text),
+                )
+                .label("a call's variables, with those of the calls it makes, may take 1 MiB")
+                .help("move large arrays to VAR of a FUNCTION_BLOCK or PROGRAM, or to VAR_GLOBAL"),
+            );
+        }
+    }
+}
+
+/// The slot of a routine: a body has its number, a prescan follows behind all bodies.
+fn slot(declarations: &Declarations<'_>, routine: usize) -> usize {
+    routine % declarations.pous.len()
+}
+
+fn renumber(declarations: &mut Declarations<'_>, order: &[usize]) {
+    let slots = declarations.pous.len();
+    let program = &mut declarations.program;
+    let mut new = vec![None; program.routines.len()];
+    for (position, at) in order.iter().enumerate() {
+        new[*at] = Some(RoutineId::next(position));
+    }
+    let mut routines: Vec<_> = std::mem::take(&mut program.routines).into_iter().map(Some).collect();
+    program.routines = order.iter().filter_map(|at| routines[*at].take()).collect();
+    let renamed = |id: RoutineId| new[id.index()].expect("what is called is not empty");
+    for routine in &mut program.routines {
+        each_call(&mut routine.body, &mut |id| *id = renamed(*id));
+    }
+    for class in &mut program.classes {
+        class.prescan = new.get(slots + class.body.index()).copied().flatten();
+        class.body = renamed(class.body);
+    }
+}
+
+fn callees(routine: &mut Routine) -> Vec<usize> {
+    let mut found = Vec::new();
+    each_call(&mut routine.body, &mut |id| found.push(id.index()));
+    found.sort_unstable();
+    found.dedup();
+    found
+}
+
+/// Calls `visit` with the id of every routine that the block calls.
+fn each_call(block: &mut Block, visit: &mut dyn FnMut(&mut RoutineId)) {
+    for Statement { kind, .. } in block {
+        if let StatementKind::Call { callee, .. } = kind {
+            visit(callee);
+        }
+        kind.blocks_mut().into_iter().for_each(|inner| each_call(inner, visit));
+    }
+}

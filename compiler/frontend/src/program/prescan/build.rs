@@ -1,0 +1,203 @@
+//! The statements of a prescan.
+
+use super::routine_of;
+use crate::types::declarations::Declarations;
+use crate::types::signature::pin_place;
+use staunch_ir::{
+    Block, Const, Elementary, Expr, For, Local, LocalId, Location, Op, Place, Program, Projection, Retain, RoutineId,
+    Statement, StatementKind, Step, Type, Value,
+};
+
+/// Builds the prescan of one POU.
+pub(super) struct Builder<'p> {
+    program: &'p Program,
+    pou: usize,
+    prescan: RoutineId,
+    locals: Vec<Local>,
+    block: Block,
+    at: Location,
+}
+
+/// What is added to a prescan.
+pub(super) struct Addition {
+    prescan: RoutineId,
+    locals: Vec<Local>,
+    block: Block,
+}
+
+impl Addition {
+    pub fn add_to(mut self, declarations: &mut Declarations<'_>) {
+        let routine = &mut declarations.program.routines[self.prescan.index()];
+        routine.body.append(&mut self.block);
+        routine.locals = self.locals;
+    }
+}
+
+impl<'p> Builder<'p> {
+    /// Goes on with the prescan of the POU in slot `pou`.
+    pub fn new(declarations: &'p Declarations<'_>, pou: usize) -> Self {
+        let (program, prescan) = (&declarations.program, routine_of(declarations, pou));
+        let it = program.routine(prescan);
+        Self { program, pou, prescan, locals: it.locals.clone(), block: Block::new(), at: it.location }
+    }
+
+    pub fn finish(self) -> Addition {
+        Addition { prescan: self.prescan, locals: self.locals, block: self.block }
+    }
+
+    /// What an instruction does to the structures that it works on.
+    pub fn instruction(&mut self, place: &Place, instruction: usize) {
+        let Type::Block(id) = place.ty else { return };
+        if id.info().instructions[instruction].prescan.is_none() {
+            return;
+        }
+        let at = self.at;
+        let kind = |block| StatementKind::PrescanBlock { block, instruction };
+        self.everywhere(place, &mut |_, place| vec![Statement::new(kind(place), at)]);
+    }
+
+    /// CV starts at the kept count where that is retained, else at 0. Counters and counts in arrays
+    /// belong together element by element.
+    pub fn restore(&mut self, counter: &Place, kept: &Place, retained: bool) {
+        let Type::Block(id) = counter.ty else { return };
+        let at = self.at;
+        let bounds = self.open_bounds(kept);
+        let needs_guard = bounds != self.open_bounds(counter);
+        self.everywhere(counter, &mut |indices, counter| {
+            let value = if retained {
+                Expr::load(at_indices(kept, indices), at)
+            } else {
+                Expr::constant(Elementary::Int, Value::I16(0), at)
+            };
+            let restore = vec![Statement::assign(pin_place(counter, id, "CV"), value, at)];
+            if needs_guard { where_within(indices, &bounds, restore, at) } else { restore }
+        });
+    }
+
+    /// Runs another POU's prescan on its instance.
+    pub fn instance(&mut self, callee: RoutineId, place: &Place) {
+        let at = self.at;
+        self.everywhere(place, &mut |_, instance| {
+            let kind = StatementKind::Call { callee, instance: Some(instance), arguments: Vec::new(), result: None };
+            vec![Statement::new(kind, at)]
+        });
+    }
+
+    /// Runs `make` on the place; where an index is not constant, on every element.
+    fn everywhere(&mut self, place: &Place, make: &mut dyn FnMut(&[Expr], Place) -> Block) {
+        let mut made = self.elements(place.clone(), 0, &mut Vec::new(), make);
+        self.block.append(&mut made);
+    }
+
+    fn elements(
+        &mut self,
+        mut place: Place,
+        from: usize,
+        indices: &mut Vec<Expr>,
+        make: &mut dyn FnMut(&[Expr], Place) -> Block,
+    ) -> Block {
+        let open = (from..place.projections.len()).find(|position| is_open(&place.projections[*position]));
+        let Some(position) = open else { return make(indices, place) };
+        let Some((low, high)) = self.bounds_at(&place, position) else { return Block::new() };
+        let counter = LocalId::next(self.locals.len());
+        self.locals.push(Local { name: "element".to_owned(), ty: Type::LINT, initial: Const::Zero, doc: None });
+        let counter = Place::local(counter, Type::LINT);
+        let index = Expr::load(counter.clone(), self.at);
+        place.projections[position] = Projection::Index { index: Box::new(index.clone()), at: self.at };
+        indices.push(index.clone());
+        let body = self.elements(place, position + 1, indices, make);
+        indices.pop();
+        for_each(counter, (low, high), body, self.at)
+    }
+
+    /// The bounds for the indices of a place that are known in the call only.
+    fn open_bounds(&self, place: &Place) -> Vec<(i64, i64)> {
+        let open = (0..place.projections.len()).filter(|position| is_open(&place.projections[*position]));
+        open.filter_map(|position| self.bounds_at(place, position)).collect()
+    }
+
+    /// The bounds of the array that projection `position` indexes.
+    fn bounds_at(&self, place: &Place, position: usize) -> Option<(i64, i64)> {
+        let mut ty = self.program.root_type(&self.program.routines[self.pou], place.root)?;
+        for projection in &place.projections[..position] {
+            ty = match (projection, ty) {
+                (Projection::Field(field), _) => self.program.member(ty, *field)?,
+                (Projection::Index { .. }, Type::Array(id)) => self.program.array(id).element,
+                (Projection::Index { .. }, _) => return None,
+            };
+        }
+        let Type::Array(id) = ty else { return None };
+        Some((self.program.array(id).low, self.program.array(id).high))
+    }
+}
+
+/// An index that is known in the call only; in a prescan it stands for every element.
+fn is_open(projection: &Projection) -> bool {
+    matches!(projection, Projection::Index { index, .. } if index.as_const().is_none())
+}
+
+fn at_indices(place: &Place, indices: &[Expr]) -> Place {
+    let mut place = place.clone();
+    let open = place.projections.iter_mut().filter(|it| is_open(it));
+    for (projection, given) in open.zip(indices) {
+        if let Projection::Index { index, .. } = projection {
+            **index = given.clone();
+        }
+    }
+    place
+}
+
+/// `block`, where every index is within its bounds: of two arrays one may be the larger.
+fn where_within(indices: &[Expr], bounds: &[(i64, i64)], block: Block, at: Location) -> Block {
+    let lint = |value| Expr::constant(Elementary::Lint, Value::I64(value), at);
+    let test = |op, a: &Expr, b| Expr::apply(op, Type::BOOL, vec![a.clone(), b], at);
+    let tests = indices
+        .iter()
+        .zip(bounds)
+        .flat_map(|(index, (low, high))| [test(Op::Ge, index, lint(*low)), test(Op::Le, index, lint(*high))]);
+    let condition = tests.reduce(|a, b| Expr::apply(Op::And, Type::BOOL, vec![a, b], at));
+    match condition {
+        Some(condition) => {
+            vec![Statement::new(StatementKind::If { condition, then: block, otherwise: Vec::new() }, at)]
+        }
+        None => block,
+    }
+}
+
+/// Runs `body` with each index from `low` to `high` in a local that it does not write.
+fn for_each(counter: Place, (low, high): (i64, i64), body: Block, at: Location) -> Block {
+    let lint = |value| Expr::constant(Elementary::Lint, Value::I64(value), at);
+    let mut turns = For {
+        counter,
+        first: lint(low),
+        last: lint(high),
+        step: Step::Constant(1),
+        range: (i64::MIN.into(), i64::MAX.into()),
+        is_private: true,
+        body,
+        step_at: at,
+    };
+    if !turns.is_short() {
+        turns.body.insert(0, Statement::new(StatementKind::Turn, at));
+    }
+    vec![Statement::new(StatementKind::For(Box::new(turns)), at)]
+}
+
+/// What the declarations on the way to the place say of a restart.
+pub(super) fn retention(program: &Program, pou: usize, place: &Place) -> Retain {
+    let mut ty = program.root_type(&program.routines[pou], place.root);
+    let mut retain = Retain::Inherited;
+    for projection in &place.projections {
+        ty = match (projection, ty) {
+            (Projection::Field(field), Some(Type::Struct(id))) => {
+                let field = &program.structure(id).fields[field.index()];
+                retain = field.retain.within(retain);
+                Some(field.ty)
+            }
+            (Projection::Index { .. }, Some(Type::Array(id))) => Some(program.array(id).element),
+            // A pin of a standard block.
+            (Projection::Field(_) | Projection::Index { .. }, _) => return retain,
+        };
+    }
+    retain
+}

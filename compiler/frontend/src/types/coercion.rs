@@ -1,0 +1,62 @@
+//! Which types become which by themselves, and the type at which two meet.
+
+use staunch_ir::Elementary;
+
+/// Whether every value of `from` is one of `to`, by the standard's figure of implicit conversions.
+pub(crate) fn widens(from: Elementary, to: Elementary) -> bool {
+    if from == to {
+        return true;
+    }
+    if from.is_bits() || to.is_bits() {
+        return from.is_bits() && to.is_bits() && from.lane().size() < to.lane().size()
+            || (from == Elementary::Bool && to == Elementary::Byte);
+    }
+    if from.is_time() || to.is_time() {
+        return from == Elementary::Time && to == Elementary::Ltime;
+    }
+    match (from.lane().range(), to.lane().range()) {
+        (Some(from), Some(to)) => from.0 >= to.0 && from.1 <= to.1,
+        // A REAL holds 24 bits exactly, an LREAL 53.
+        (Some(_), None) => from.lane().size() * 2 <= to.lane().size(),
+        (None, Some(_)) => false,
+        (None, None) => from.lane().size() <= to.lane().size(),
+    }
+}
+
+/// The type at which two operands meet.
+pub(crate) fn join(a: Elementary, b: Elementary) -> Option<Elementary> {
+    if widens(a, b) {
+        return Some(b);
+    }
+    if widens(b, a) {
+        return Some(a);
+    }
+    let meeting = [Elementary::Int, Elementary::Dint, Elementary::Lint, Elementary::Real, Elementary::Lreal];
+    meeting.into_iter().find(|it| widens(a, *it) && widens(b, *it))
+}
+
+/// The integer type that a bit string counts as where bits and integers mix.
+pub(crate) fn as_number(ty: Elementary) -> Elementary {
+    match ty {
+        Elementary::Byte => Elementary::Usint,
+        Elementary::Word => Elementary::Uint,
+        Elementary::Dword => Elementary::Udint,
+        Elementary::Lword => Elementary::Ulint,
+        other => other,
+    }
+}
+
+/// Whether this is an integer or a bit string, BOOL aside, of fewer than 32 bits.
+pub(crate) fn is_narrow(ty: Elementary) -> bool {
+    as_number(ty).is_integer() && ty.lane().size() < 4
+}
+
+/// The type that two operands give a value which is computed at more bits: that of more bits, the
+/// signed one of as many.
+pub(crate) fn join_promoted(a: Elementary, b: Elementary) -> Option<Elementary> {
+    let numbers = !(a.is_bits() && b.is_bits());
+    if numbers && is_narrow(a) && is_narrow(b) {
+        return [as_number(a), as_number(b)].into_iter().max_by_key(|it| (it.lane().size(), !it.lane().is_unsigned()));
+    }
+    join(a, b)
+}

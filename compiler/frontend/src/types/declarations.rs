@@ -1,0 +1,240 @@
+//! What a program declares: what expressions and bodies are checked against.
+
+use super::address::{self, Addresses};
+use super::scope::Variable;
+use super::signature::Signature;
+use super::synthetic::{NamedProgram, Synthetic};
+use super::table::{Resolved, Table};
+use crate::dialect::{self, Dialect};
+use crate::log::Log;
+use crate::names::{Entry, Names};
+use crate::{Code, Diagnostic, Span, ast};
+use rustc_hash::FxHashMap;
+use staunch_ir::{Location, Program, SourceFile, StructId, Type};
+use std::rc::Rc;
+
+/// A declaration, and what it was resolved to.
+#[derive(Debug)]
+pub(crate) enum Slot<T> {
+    /// Not resolved, or while that goes on: it is needed in a circle.
+    Open,
+    Done(T),
+    /// It has been reported.
+    Failed,
+}
+
+pub(crate) struct TypeSlot<'s> {
+    pub decl: &'s ast::TypeDecl<'s>,
+    pub slot: Slot<Resolved>,
+}
+
+pub(crate) struct PouSlot<'s> {
+    pub ast: &'s ast::Pou<'s>,
+    /// A FUNCTION whose body names its result.
+    pub names_itself: bool,
+    pub slot: Slot<Rc<Signature<'s>>>,
+}
+
+pub(crate) struct GlobalSlot<'s> {
+    pub name: ast::Name<'s>,
+    pub block: &'s ast::VarBlock<'s>,
+    pub decl: &'s ast::VarDecl<'s>,
+    pub slot: Slot<Rc<Variable<'s>>>,
+}
+
+/// The program while it is being declared and checked.
+pub(crate) struct Declarations<'s> {
+    pub log: Log<'s>,
+    pub names: Names<'s>,
+    pub types: Vec<TypeSlot<'s>>,
+    pub pous: Vec<PouSlot<'s>>,
+    pub globals: Vec<GlobalSlot<'s>>,
+    pub addresses: Addresses,
+    pub synthetic: Synthetic<'s>,
+    /// By their slots.
+    pub named_programs: FxHashMap<usize, NamedProgram<'s>>,
+    pub program: Program,
+    pub table: Table,
+}
+
+impl<'s> Declarations<'s> {
+    pub fn new(log: Log<'s>) -> Self {
+        let files = log.sources.files().iter().map(|it| SourceFile { path: it.path.clone() }).collect();
+        Self {
+            log,
+            names: Names::default(),
+            types: Vec::new(),
+            pous: Vec::new(),
+            globals: Vec::new(),
+            addresses: Addresses::default(),
+            synthetic: Synthetic::default(),
+            named_programs: FxHashMap::default(),
+            program: empty_program(files),
+            table: Table::default(),
+        }
+    }
+
+    pub fn report(&mut self, diagnostic: Diagnostic) {
+        self.log.report(diagnostic);
+    }
+
+    pub fn error(&mut self, code: Code, span: Span, message: impl Into<String>) {
+        self.log.error(code, span, message);
+    }
+
+    pub fn not_supported(&mut self, span: Span, what: &str) {
+        self.log.not_supported(span, what);
+    }
+
+    pub fn dialect(&self, span: Span) -> Dialect {
+        self.log.dialect(span)
+    }
+
+    pub fn location(&mut self, span: Span) -> Location {
+        self.log.location(span)
+    }
+
+    /// The named type in slot `at`.
+    pub fn named_type(&mut self, at: usize) -> Option<Resolved> {
+        match &self.types[at].slot {
+            Slot::Done(resolved) => Some(resolved.clone()),
+            Slot::Failed => None,
+            Slot::Open => {
+                let name = self.types[at].decl.name;
+                self.report(
+                    Diagnostic::new(Code::E0402, name.span, format!("the type `{}` contains itself", name.text))
+                        .label("its size would be endless"),
+                );
+                None
+            }
+        }
+    }
+
+    /// The global variable in slot `at`.
+    pub fn global(&mut self, at: usize) -> Option<Rc<Variable<'s>>> {
+        match &self.globals[at].slot {
+            Slot::Done(variable) => Some(Rc::clone(variable)),
+            Slot::Failed => None,
+            Slot::Open => {
+                let name = self.globals[at].name;
+                self.error(Code::E0402, name.span, format!("the declaration of `{}` needs itself", name.text));
+                None
+            }
+        }
+    }
+
+    /// The signature of the POU in slot `at`.
+    pub fn signature(&mut self, at: usize) -> Option<Rc<Signature<'s>>> {
+        match &self.pous[at].slot {
+            Slot::Done(signature) => Some(Rc::clone(signature)),
+            Slot::Failed => None,
+            Slot::Open => {
+                let name = self.pous[at].ast.name;
+                self.report(
+                    Diagnostic::new(Code::E0402, name.span, format!("`{}` contains an instance of itself", name.text))
+                        .label("its size would be endless"),
+                );
+                None
+            }
+        }
+    }
+
+    /// The type of the global variable of that name; in its own declaration it is not known yet.
+    pub fn type_of_global(&self, name: &str) -> Option<Type> {
+        let Some(Entry::Global(at)) = self.names.get(name) else { return None };
+        match &self.globals[at].slot {
+            Slot::Done(variable) => Some(variable.resolved.ty),
+            Slot::Open | Slot::Failed => None,
+        }
+    }
+
+    pub fn span_of(&self, entry: Entry) -> Span {
+        match entry {
+            Entry::Type(at) => self.types[at].decl.name.span,
+            Entry::Pou(at) => self.pous[at].ast.name.span,
+            Entry::Global(at) => self.globals[at].name.span,
+        }
+    }
+
+    /// Whether the structure is the state of a PROGRAM or FUNCTION_BLOCK.
+    pub fn is_instance(&self, id: StructId) -> bool {
+        self.table.instances.contains_key(&id)
+    }
+
+    pub fn slot_of_instance(&self, id: StructId) -> Option<usize> {
+        self.table.instances.get(&id).copied()
+    }
+
+    /// The direct address of a field of the globals.
+    pub fn address_of_global(&self, field: staunch_ir::FieldId) -> Option<staunch_ir::Address> {
+        match self.addresses.global_of_field(field.index()) {
+            Some(at) => address::parse(self.globals[at].decl.address?.text),
+            None => self.synthetic.address_of(field.index() - self.addresses.own_fields().len()),
+        }
+    }
+
+    /// The standard block that a bare `name` means where `span` stands.
+    pub fn bare_block(&self, name: &str, span: Span) -> Option<staunch_ir::BlockId> {
+        let block = dialect::bare_block(self.dialect(span), name)?;
+        Some(dialect::as_options_have_it(block, |it| self.log.options.is_on(it)))
+    }
+
+    /// The block called `name` in `family`, as the options have it.
+    pub fn block_in(&self, family: staunch_runtime::Family, name: &str) -> Option<staunch_ir::BlockId> {
+        let block = dialect::block_in(family, name)?;
+        Some(dialect::as_options_have_it(block, |it| self.log.options.is_on(it)))
+    }
+
+    /// The instance that the name of the PROGRAM in a slot means.
+    pub fn program_variable(&self, slot: usize) -> Option<Rc<Variable<'s>>> {
+        self.named_programs.get(&slot).map(|it| Rc::clone(&it.variable))
+    }
+
+    /// Whether the PROGRAM in a slot has its instance among the globals.
+    pub fn is_named_program(&self, slot: usize) -> bool {
+        self.named_programs.contains_key(&slot)
+    }
+
+    pub fn unknown_member(&mut self, name: ast::Name<'s>, ty: Type, near: Option<&str>) {
+        let owner = self.program.type_name(ty);
+        let mut error = Diagnostic::new(Code::E0107, name.span, format!("`{owner}` has no member `{}`", name.text))
+            .label("unknown member");
+        if let Some(near) = near {
+            error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
+        } else if let Some(members) = self.member_names(ty) {
+            error = error.help(format!("it has {members}"));
+        }
+        self.report(error);
+    }
+
+    /// What can be named of a structure, enumeration or instance, for a message.
+    fn member_names(&self, ty: Type) -> Option<String> {
+        let names: Vec<&str> = match ty {
+            Type::Struct(id) => {
+                let instance = self.is_instance(id);
+                let pin = |it: &&staunch_ir::Field| {
+                    !instance || matches!(it.section, staunch_ir::Section::Input | staunch_ir::Section::Output)
+                };
+                self.program.structure(id).fields.iter().filter(pin).map(|it| it.name.as_str()).collect()
+            }
+            Type::Enum(id) => self.program.enumeration(id).values.iter().map(|it| it.name.as_str()).collect(),
+            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Array(_) | Type::Block(_) => Vec::new(),
+        };
+        (1..=12).contains(&names.len()).then(|| crate::diagnostic::wording::list(&names).replace(" or ", " and "))
+    }
+}
+
+pub(crate) fn empty_program(files: Vec<SourceFile>) -> Program {
+    Program {
+        files,
+        enums: Vec::new(),
+        bounds: Vec::new(),
+        arrays: Vec::new(),
+        structs: Vec::new(),
+        globals: StructId(0),
+        classes: Vec::new(),
+        routines: Vec::new(),
+        aliases: Vec::new(),
+        instances: Vec::new(),
+    }
+}

@@ -1,0 +1,10 @@
+//! Declared types, variables and signatures, and which types become which.
+
+pub(crate) mod address;
+pub(crate) mod coercion;
+pub(crate) mod declarations;
+pub(crate) mod scope;
+pub(crate) mod signature;
+mod storage;
+pub(crate) mod synthetic;
+pub(crate) mod table;

@@ -1,0 +1,71 @@
+//! Variables, and the names that a POU has for them.
+
+use super::table::Resolved;
+use crate::ast;
+use crate::spelling::Key;
+use rustc_hash::{FxHashMap, FxHashSet};
+use staunch_ir::{Const, Place, Section};
+use std::cell::Cell;
+use std::rc::Rc;
+
+/// A variable as a body knows it.
+#[derive(Clone, Debug)]
+pub(crate) struct Variable<'s> {
+    pub name: ast::Name<'s>,
+    pub place: Place,
+    pub resolved: Rc<Resolved>,
+    pub section: Section,
+    pub constant: bool,
+    pub retain: bool,
+    /// Set when a body reads or writes it; shared between the copies of one declaration.
+    pub used: Rc<Cell<bool>>,
+}
+
+impl Variable<'_> {
+    /// The value of a CONSTANT of an elementary or enumeration type.
+    pub fn constant_value(&self) -> Option<Const> {
+        self.constant.then(|| self.resolved.initial.clone())
+    }
+}
+
+/// The variables a POU can name without a qualifier.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Scope<'s> {
+    pub variables: Vec<Rc<Variable<'s>>>,
+    index: FxHashMap<Key<'s>, usize>,
+    /// Names whose declarations were refused: what uses them is not reported again.
+    refused: FxHashSet<Key<'s>>,
+    /// The CONSTANTs of the POU, which size arrays wherever they are declared.
+    pub constants: Option<Rc<Scope<'s>>>,
+}
+
+impl<'s> Scope<'s> {
+    pub fn get(&self, name: &str) -> Option<&Rc<Variable<'s>>> {
+        let own = self.index.get(&Key(name)).map(|at| &self.variables[*at]);
+        own.or_else(|| self.constants.as_ref()?.get(name))
+    }
+
+    pub fn refuse(&mut self, name: ast::Name<'s>) {
+        self.refused.insert(Key(name.text));
+    }
+
+    pub fn is_refused(&self, name: &str) -> bool {
+        self.refused.contains(&Key(name))
+    }
+
+    pub fn has_refused(&self) -> bool {
+        !self.refused.is_empty()
+    }
+
+    /// The earlier variable of that name, if there is one.
+    pub fn insert(&mut self, variable: impl Into<Rc<Variable<'s>>>) -> Result<(), ast::Name<'s>> {
+        let variable = variable.into();
+        let key = Key(variable.name.text);
+        if let Some(at) = self.index.get(&key) {
+            return Err(self.variables[*at].name);
+        }
+        self.index.insert(key, self.variables.len());
+        self.variables.push(variable);
+        Ok(())
+    }
+}

@@ -1,0 +1,88 @@
+//! What a program's variables take, and where they lie.
+
+use super::address::{self, Storage, field_name};
+use super::declarations::Declarations;
+use super::table::{GLOBALS, scalar_initial};
+use crate::ast;
+use staunch_ir::{Address, Const, Field, FieldId, Place, Root, Section, Struct, StructId, Type};
+
+impl<'s> Declarations<'s> {
+    pub fn push_struct(&mut self, structure: Struct) -> StructId {
+        let id = StructId::next(self.program.structs.len());
+        let size = structure.fields.iter().map(|it| self.size_of(it.ty)).fold(0, u64::saturating_add);
+        self.table.sizes.push(size);
+        self.program.structs.push(structure);
+        id
+    }
+
+    /// The instance of a block that a variable of type `ty` is or holds, and the way to it.
+    pub fn instance_in(&self, ty: Type) -> Option<(String, Type)> {
+        self.program.instance_in(ty, &|id| self.is_instance(id))
+    }
+
+    /// What `ty` holds that is never copied, in a sentence.
+    pub fn held_instance(&self, ty: Type) -> Option<String> {
+        let (way, instance) = self.instance_in(ty)?;
+        let (name, instance) = (self.program.type_name(ty), self.program.type_name(instance));
+        Some(match way.as_str() {
+            "" => format!("an instance of {instance} is not a value"),
+            way => format!("{name} holds an instance of {instance}, at `{way}`, which is never copied"),
+        })
+    }
+
+    /// About how many bytes a value of the type takes: alignment may add some.
+    pub fn size_of(&self, ty: Type) -> u64 {
+        match ty {
+            Type::Elementary(it) | Type::Subrange(it, _) => u64::from(it.lane().size()),
+            Type::String(capacity) => u64::from(capacity) + 2,
+            Type::Enum(id) => u64::from(self.program.enumeration(id).base.lane().size()),
+            Type::Struct(id) => self.table.sizes[id.index()],
+            Type::Block(id) => u64::try_from(id.info().size).unwrap_or(u64::MAX),
+            Type::Array(id) => {
+                let array = self.program.array(id);
+                array.len().saturating_mul(self.size_of(array.element))
+            }
+        }
+    }
+
+    /// What a variable starts at that nobody gives a value: a subrange at its lower limit.
+    pub fn least(&self, ty: Type) -> Const {
+        let low = self.program.range(ty).map_or(0, |(low, _)| low);
+        ty.elementary().and_then(|it| it.lane().integer(low)).map_or(Const::Zero, scalar_initial)
+    }
+
+    /// Adds a field to the globals, under `field.name` or, where that is taken, one like it.
+    pub fn add_synthetic(&mut self, mut field: Field, declared: Option<ast::Name<'s>>) -> usize {
+        while self.is_global_name(&field.name) {
+            field.name.push('_');
+        }
+        field.section = Section::Global;
+        self.synthetic.fields.push(field);
+        self.synthetic.declared.push(declared);
+        self.synthetic.fields.len() - 1
+    }
+
+    /// Whether a field of the globals has the name.
+    pub fn is_global_name(&self, name: &str) -> bool {
+        self.synthetic.fields.iter().any(|it| it.name.eq_ignore_ascii_case(name))
+            || self.globals.iter().any(|it| field_name(it.name.text).eq_ignore_ascii_case(name))
+    }
+
+    pub fn synthetic_place(&self, at: usize) -> Place {
+        let id = FieldId::next(self.addresses.own_fields().len() + at);
+        Place::root(Root::Globals, Type::Struct(GLOBALS)).field(id, self.synthetic.fields[at].ty)
+    }
+
+    /// The address that is written; else reports what is wrong with it.
+    pub fn address(&mut self, name: ast::Name<'s>) -> Option<Address> {
+        address::read(name).map_err(|error| self.report(error)).ok()
+    }
+
+    /// The variable at an address.
+    pub fn at_address(&mut self, address: Address) -> Option<Place> {
+        match self.addresses.storage.get(&address).copied()? {
+            Storage::Global(at) => Some(self.global(at)?.place.clone()),
+            Storage::Hidden(at) => Some(self.synthetic_place(at)),
+        }
+    }
+}

@@ -1,0 +1,41 @@
+//! Variables that the globals hold without being declared there: shared addresses, and VAR_STAT.
+
+use super::scope::Variable;
+use crate::Span;
+use crate::ast;
+use staunch_ir::{Field, Type};
+use std::rc::Rc;
+
+#[derive(Debug, Default)]
+pub(crate) struct Synthetic<'s> {
+    pub fields: Vec<Field>,
+    /// The first declaration of each, if it has one.
+    pub declared: Vec<Option<ast::Name<'s>>>,
+}
+
+impl<'s> Synthetic<'s> {
+    pub fn field_type(&self, at: usize) -> Type {
+        self.fields[at].ty
+    }
+
+    pub fn declared(&self, at: usize) -> Option<ast::Name<'s>> {
+        self.declared[at]
+    }
+
+    pub fn address_of(&self, at: usize) -> Option<staunch_ir::Address> {
+        self.fields.get(at).and_then(|it| it.address)
+    }
+
+    pub fn fields(&self) -> Vec<Field> {
+        self.fields.clone()
+    }
+}
+
+/// The instance of a PROGRAM that is named somewhere.
+#[derive(Debug)]
+pub(crate) struct NamedProgram<'s> {
+    pub variable: Rc<Variable<'s>>,
+    /// Where it is named first.
+    pub first: Span,
+    pub is_called: bool,
+}

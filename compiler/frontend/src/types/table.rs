@@ -1,0 +1,58 @@
+//! Types: what a declaration's type is, what it holds, and how large it is.
+
+use rustc_hash::FxHashMap;
+use staunch_ir::{Const, StructId, Type, Value};
+
+/// Stands for the globals' structure until it is made, when all declared globals are known.
+pub(crate) const GLOBALS: StructId = StructId(u32::MAX);
+
+/// What a type specification means for a variable declared with it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Resolved {
+    pub ty: Type,
+    /// The initial value of a variable that is declared without one.
+    pub initial: Const,
+}
+
+impl Resolved {
+    pub fn plain(ty: Type) -> Self {
+        Self { ty, initial: Const::Zero }
+    }
+}
+
+/// What is known of the types of a program beside what the program itself says.
+#[derive(Debug, Default)]
+pub(crate) struct Table {
+    /// For each array, what its elements are.
+    pub elements: Vec<Resolved>,
+    /// For each structure, about how many bytes it takes.
+    pub sizes: Vec<u64>,
+    /// The POU slot of each structure that is an instance's state.
+    pub instances: FxHashMap<StructId, usize>,
+    /// How many constants the initial values hold so far.
+    pub constants: usize,
+}
+
+/// An instance of the POU with this state.
+pub(crate) fn instance_of(program: &staunch_ir::Program, state: StructId) -> Resolved {
+    Resolved { ty: Type::Struct(state), initial: struct_initial(&program.structure(state).fields) }
+}
+
+/// The initial value of a structure: all zero where every field's is.
+pub(crate) fn struct_initial(fields: &[staunch_ir::Field]) -> Const {
+    if fields.iter().all(|it| it.initial == Const::Zero) {
+        return Const::Zero;
+    }
+    Const::Struct(fields.iter().map(|it| it.initial.clone()).collect())
+}
+
+/// A scalar constant, in its shortest form.
+pub(crate) fn scalar_initial(value: Value) -> Const {
+    // -0.0 equals 0.0 but has other bytes.
+    let is_zero = match value {
+        Value::F32(it) => it.to_bits() == 0,
+        Value::F64(it) => it.to_bits() == 0,
+        other => other == other.lane().zero(),
+    };
+    if is_zero { Const::Zero } else { Const::Scalar(value) }
+}
