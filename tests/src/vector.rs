@@ -219,6 +219,7 @@ fn family_and_name(table: &Json) -> (Family, String) {
         (b'A', name) => (Family::Iec, name.to_owned()),
         (b'B', name) => (Family::Cscape, name.to_owned()),
         (b'C', name) => (Family::Codesys, name.to_owned()),
+        (b'E', name) => (Family::Openplc, name.to_owned()),
         (b'D', "CTUD (ST/FBD)") => (Family::Logix, "FBD_COUNTER".to_owned()),
         (b'D', _) => (Family::Logix, "COUNTER".to_owned()),
         (other, _) => panic!("no family {other}"),

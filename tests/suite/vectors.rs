@@ -1,4 +1,4 @@
-//! The counters of the four systems, scan by scan, as programs on every executor.
+//! The counters of the five systems, scan by scan, as programs on every executor.
 
 use staunch_frontend::{Format, Source, Sources, Style, render};
 use staunch_tests::execute::{Settings, agree};
@@ -6,7 +6,7 @@ use staunch_tests::folder;
 use staunch_tests::scan::{Row, Table};
 use staunch_tests::vector::{self, Scan, Vector};
 
-const VECTORS: usize = 79;
+const VECTORS: usize = 116;
 const ROWS: usize = 403;
 
 #[test]

@@ -13,18 +13,21 @@ pub enum Dialect {
     Cscape,
     /// CODESYS (and TwinCAT).
     Codesys,
+    /// OpenPLC v3, OpenPLC Editor and Beremiz: as `Iec`, with MATIEC's counters.
+    Openplc,
     /// Rockwell Logix 5000.
     Logix,
 }
 
 impl Dialect {
-    pub const ALL: [Self; 4] = [Self::Iec, Self::Cscape, Self::Codesys, Self::Logix];
+    pub const ALL: [Self; 5] = [Self::Iec, Self::Cscape, Self::Codesys, Self::Openplc, Self::Logix];
 
     pub const fn name(self) -> &'static str {
         match self {
             Self::Iec => "iec",
             Self::Cscape => "cscape",
             Self::Codesys => "codesys",
+            Self::Openplc => "openplc",
             Self::Logix => "logix",
         }
     }
@@ -38,6 +41,7 @@ impl Dialect {
             Self::Iec => Family::Iec,
             Self::Cscape => Family::Cscape,
             Self::Codesys => Family::Codesys,
+            Self::Openplc => Family::Openplc,
             Self::Logix => Family::Logix,
         }
     }
@@ -45,6 +49,11 @@ impl Dialect {
     /// The standard block that a bare `name` means.
     pub fn block(self, name: &str) -> Option<&'static BlockInfo> {
         bare_block(self, name).map(|it| it.info())
+    }
+
+    /// The standard's own habits, where a vendor has none.
+    pub const fn is_standard(self) -> bool {
+        matches!(self, Self::Iec | Self::Openplc)
     }
 
     /// Bit strings count as unsigned integers, and same-size sign changes are implicit.
@@ -64,12 +73,12 @@ impl Dialect {
 
     /// TON, TOF and TP take an LTIME as well, as the standard overloads them.
     pub const fn overloads_timers(self) -> bool {
-        matches!(self, Self::Iec)
+        self.is_standard()
     }
 
     /// A call of a block that names no input gives all of them.
     pub const fn wants_all_positions(self) -> bool {
-        matches!(self, Self::Iec)
+        self.is_standard()
     }
 
     /// The internal variables of an instance may be read from outside.

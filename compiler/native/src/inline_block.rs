@@ -40,6 +40,26 @@ const INLINE: &[(&str, Emit)] = &[
     ("staunch_codesys_lctu", ctu),
     ("staunch_codesys_lctd", ctd),
     ("staunch_codesys_lctud", ctud),
+    ("staunch_openplc_ctu", ctu_that_stops),
+    ("staunch_openplc_ctd", ctd_that_stops),
+    ("staunch_openplc_ctud", ctud_that_stops),
+    ("staunch_openplc_ctu_int", ctu_that_stops),
+    ("staunch_openplc_ctd_int", ctd_that_stops),
+    ("staunch_openplc_ctud_int", ctud_that_stops),
+    ("staunch_openplc_ctu_dint", ctu_that_stops),
+    ("staunch_openplc_ctd_dint", ctd_that_stops),
+    ("staunch_openplc_ctud_dint", ctud_that_stops),
+    ("staunch_openplc_ctu_lint", ctu_that_stops),
+    ("staunch_openplc_ctd_lint", ctd_that_stops),
+    ("staunch_openplc_ctud_lint", ctud_that_stops),
+    ("staunch_openplc_ctu_udint", ctu_that_stops),
+    ("staunch_openplc_ctd_udint", ctd_that_stops),
+    ("staunch_openplc_ctud_udint", ctud_that_stops),
+    ("staunch_openplc_ctu_ulint", ctu_that_stops),
+    ("staunch_openplc_ctd_ulint", ctd_that_stops),
+    ("staunch_openplc_ctud_ulint", ctud_that_stops),
+    ("staunch_codesys_ctu_stop_at_pv", ctu_that_stops),
+    ("staunch_codesys_lctu_stop_at_pv", ctu_that_stops),
     ("staunch_iec_r_trig", r_trig),
     ("staunch_iec_f_trig", f_trig),
     ("staunch_iec_sr", sr),
@@ -87,6 +107,49 @@ fn ctud(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Address, inputs:
     let cv = step.load_count("cv");
     let counted = step.count(cv, up, down);
     let pv = step.widen(pv);
+    let loaded = step.f.ins().select(ld, pv, counted);
+    let cv = step.or_zero(r, loaded);
+    step.store_count("cv", cv);
+    step.store_at_least("qu", cv, pv);
+    step.store_not_positive("qd", cv);
+}
+
+fn ctu_that_stops(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Address, inputs: &[Clif]) {
+    f.store_pins(info, at, inputs);
+    let mut step = Counter { f, info, at };
+    let up = step.edge("cu", inputs[0]);
+    let cv = step.load_count("cv");
+    let pv = step.widen(inputs[2]);
+    let counted = step.count_up_below(pv, cv, up);
+    let cv = step.or_zero(inputs[1], counted);
+    step.store_count("cv", cv);
+    step.store_at_least("q", cv, pv);
+}
+
+fn ctd_that_stops(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Address, inputs: &[Clif]) {
+    f.store_pins(info, at, inputs);
+    let mut step = Counter { f, info, at };
+    let down = step.edge("cd", inputs[0]);
+    let cv = step.load_count("cv");
+    let counted = step.count_down_above_zero(cv, down);
+    let pv = step.widen(inputs[2]);
+    let cv = step.f.ins().select(inputs[1], pv, counted);
+    step.store_count("cv", cv);
+    step.store_not_positive("q", cv);
+}
+
+fn ctud_that_stops(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Address, inputs: &[Clif]) {
+    let &[_, _, r, ld, pv] = inputs else { unreachable!("verified IR: every input has a value") };
+    f.store_pins(info, at, inputs);
+    let mut step = Counter { f, info, at };
+    let up = step.edge("cu", inputs[0]);
+    let down = step.edge("cd", inputs[1]);
+    let only_up = step.f.ins().band_not(up, down);
+    let only_down = step.f.ins().band_not(down, up);
+    let cv = step.load_count("cv");
+    let pv = step.widen(pv);
+    let raised = step.count_up_below(pv, cv, only_up);
+    let counted = step.count_down_above_zero(raised, only_down);
     let loaded = step.f.ins().select(ld, pv, counted);
     let cv = step.or_zero(r, loaded);
     step.store_count("cv", cv);
@@ -225,6 +288,28 @@ impl Counter<'_, '_, '_> {
         let step = self.number(edge);
         let next = self.f.ins().isub(cv, step);
         self.at_least(min, next)
+    }
+
+    /// `cv` and one more if `edge`, while it is less than `pv`.
+    fn count_up_below(&mut self, pv: Clif, cv: Clif, edge: Clif) -> Clif {
+        let step = self.step_while(IntCC::SignedLessThan, cv, pv, edge);
+        self.f.ins().iadd(cv, step)
+    }
+
+    /// `cv` and one less if `edge`, while it is more than 0.
+    fn count_down_above_zero(&mut self, cv: Clif, edge: Clif) -> Clif {
+        let wide = self.wide();
+        let zero = self.f.integer(wide, 0);
+        let step = self.step_while(IntCC::SignedGreaterThan, cv, zero, edge);
+        self.f.ins().isub(cv, step)
+    }
+
+    /// 1 for an edge while the condition holds, which is that of signed counts.
+    fn step_while(&mut self, condition: IntCC, cv: Clif, limit: Clif, edge: Clif) -> Clif {
+        let condition = if self.lane().is_signed() { condition } else { condition.unsigned() };
+        let may_count = self.f.ins().icmp(condition, cv, limit);
+        let counts = self.f.ins().band(edge, may_count);
+        self.number(counts)
     }
 
     /// Both edges together leave the count alone, also at a limit.

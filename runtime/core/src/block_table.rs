@@ -2,7 +2,7 @@ use crate::block::{renamed, retyped};
 use crate::elementary::keyword;
 use crate::{
     Block, BlockInfo, BlockOption, Elementary, Facts, Family, Instruction, KeptCount, Pin, Prescan, Replacement,
-    Retention, codesys, cscape, iec, logix,
+    Retention, codesys, cscape, iec, logix, openplc,
 };
 
 /// Every standard function block, one row each.
@@ -64,8 +64,27 @@ macro_rules! for_each_block {
             Codesys "SR" codesys::Sr { "S1" => "SET1", "R" => "RESET" } { plain "" call staunch_codesys_sr; }
             Codesys "RS" codesys::Rs { "S" => "SET", "R1" => "RESET1" } { plain "" call staunch_codesys_rs; }
             // What CTU and LCTU mean under the option `ctu-stop-at-pv`.
-            Codesys "CTU_STOP_AT_PV" codesys::CtuStopAtPv<u16> {} [UINT => WORD] #[option CtuStopAtPv for "CTU"] #[stops] { plain "" call staunch_codesys_ctu_stop_at_pv; }
-            Codesys "LCTU_STOP_AT_PV" codesys::CtuStopAtPv<u64> {} [ULINT => LWORD] #[option CtuStopAtPv for "LCTU"] #[stops] { plain "" call staunch_codesys_lctu_stop_at_pv; }
+            Codesys "CTU_STOP_AT_PV" codesys::CtuStopAtPv<u16> { "R" => "RESET" } [UINT => WORD] #[option CtuStopAtPv for "CTU"] #[stops] { plain "" call staunch_codesys_ctu_stop_at_pv; }
+            Codesys "LCTU_STOP_AT_PV" codesys::CtuStopAtPv<u64> { "R" => "RESET" } [ULINT => LWORD] #[option CtuStopAtPv for "LCTU"] #[stops] { plain "" call staunch_codesys_lctu_stop_at_pv; }
+
+            Openplc "CTU" openplc::Ctu<i16> {} #[stops] { plain "" call staunch_openplc_ctu; }
+            Openplc "CTD" openplc::Ctd<i16> {} #[stops] { plain "" call staunch_openplc_ctd; }
+            Openplc "CTUD" openplc::Ctud<i16> {} #[stops] { plain "" call staunch_openplc_ctud; }
+            Openplc "CTU_INT" openplc::Ctu<i16> {} #[stops] { plain "" call staunch_openplc_ctu_int; }
+            Openplc "CTD_INT" openplc::Ctd<i16> {} #[stops] { plain "" call staunch_openplc_ctd_int; }
+            Openplc "CTUD_INT" openplc::Ctud<i16> {} #[stops] { plain "" call staunch_openplc_ctud_int; }
+            Openplc "CTU_DINT" openplc::Ctu<i32> {} #[stops] { plain "" call staunch_openplc_ctu_dint; }
+            Openplc "CTD_DINT" openplc::Ctd<i32> {} #[stops] { plain "" call staunch_openplc_ctd_dint; }
+            Openplc "CTUD_DINT" openplc::Ctud<i32> {} #[stops] { plain "" call staunch_openplc_ctud_dint; }
+            Openplc "CTU_LINT" openplc::Ctu<i64> {} #[stops] { plain "" call staunch_openplc_ctu_lint; }
+            Openplc "CTD_LINT" openplc::Ctd<i64> {} #[stops] { plain "" call staunch_openplc_ctd_lint; }
+            Openplc "CTUD_LINT" openplc::Ctud<i64> {} #[stops] { plain "" call staunch_openplc_ctud_lint; }
+            Openplc "CTU_UDINT" openplc::Ctu<u32> {} #[stops] { plain "" call staunch_openplc_ctu_udint; }
+            Openplc "CTD_UDINT" openplc::Ctd<u32> {} #[stops] { plain "" call staunch_openplc_ctd_udint; }
+            Openplc "CTUD_UDINT" openplc::Ctud<u32> {} #[stops] { plain "" call staunch_openplc_ctud_udint; }
+            Openplc "CTU_ULINT" openplc::Ctu<u64> {} #[stops] { plain "" call staunch_openplc_ctu_ulint; }
+            Openplc "CTD_ULINT" openplc::Ctd<u64> {} #[stops] { plain "" call staunch_openplc_ctd_ulint; }
+            Openplc "CTUD_ULINT" openplc::Ctud<u64> {} #[stops] { plain "" call staunch_openplc_ctud_ulint; }
 
             Logix "COUNTER" logix::Counter {} {
                 rung "CTU" ctu staunch_logix_counter_ctu, prescan prescan_ctu staunch_logix_counter_prescan_ctu;

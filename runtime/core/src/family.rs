@@ -9,12 +9,14 @@ pub enum Family {
     Cscape,
     /// CODESYS Standard and Standard64.
     Codesys,
+    /// OpenPLC v3, OpenPLC Editor and Beremiz: MATIEC's library, as it runs.
+    Openplc,
     /// Rockwell Logix 5000.
     Logix,
 }
 
 impl Family {
-    pub const ALL: [Self; 4] = [Self::Iec, Self::Cscape, Self::Codesys, Self::Logix];
+    pub const ALL: [Self; 5] = [Self::Iec, Self::Cscape, Self::Codesys, Self::Openplc, Self::Logix];
 
     /// The name that qualifies its blocks in Structured Text: `CODESYS.CTU`.
     pub const fn name(self) -> &'static str {
@@ -22,6 +24,7 @@ impl Family {
             Self::Iec => "IEC",
             Self::Cscape => "CSCAPE",
             Self::Codesys => "CODESYS",
+            Self::Openplc => "OPENPLC",
             Self::Logix => "LOGIX",
         }
     }

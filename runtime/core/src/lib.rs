@@ -31,7 +31,7 @@ pub use block::{
     Retention,
 };
 pub use block_table::BLOCKS;
-pub use blocks::{codesys, cscape, iec, logix};
+pub use blocks::{codesys, cscape, iec, logix, openplc};
 pub use context::Context;
 pub use elementary::{Class, Elementary};
 pub use family::Family;

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use staunch_runtime::time::ms;
-use staunch_runtime::{BLOCKS, Block, BlockInfo, Context, PinRole, codesys, cscape, iec, logix};
+use staunch_runtime::{BLOCKS, Block, BlockInfo, Context, PinRole, cscape, iec, logix, openplc};
 
 /// Runs a timer at each (time, IN, PT) in milliseconds and gives its (Q, ET).
 macro_rules! timed {
@@ -161,7 +161,9 @@ fn a_call_is_inputs_and_a_step() {
     call_is_inputs_and_step!(iec::Ctud<u32>: cu: bit, cd: bit, r: bit, ld: bit, pv: number);
     call_is_inputs_and_step!(cscape::Ctu: cu: bit, reset: bit, pv: number);
     call_is_inputs_and_step!(cscape::Ctd: cd: bit, load: bit, pv: number);
-    call_is_inputs_and_step!(codesys::CtuStopAtPv<u16>: cu: bit, reset: bit, pv: number);
+    call_is_inputs_and_step!(openplc::Ctu<u16>: cu: bit, r: bit, pv: number);
+    call_is_inputs_and_step!(openplc::Ctd<i32>: cd: bit, ld: bit, pv: number);
+    call_is_inputs_and_step!(openplc::Ctud<i64>: cu: bit, cd: bit, r: bit, ld: bit, pv: number);
     call_is_inputs_and_step!(iec::RTrig: clk: bit);
     call_is_inputs_and_step!(iec::FTrig: clk: bit);
     call_is_inputs_and_step!(iec::Sr: s1: bit, r: bit);

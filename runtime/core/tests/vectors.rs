@@ -9,7 +9,7 @@ use std::collections::HashSet;
 use serde_json::{Map, Value as Json};
 use staunch_runtime::{BLOCKS, BlockInfo, Context, Direction, Family, Instruction, Lane, Value};
 
-const TABLES: usize = 79;
+const TABLES: usize = 116;
 
 #[test]
 fn every_table_holds() {
@@ -156,6 +156,7 @@ fn block_of(table: &Json) -> &'static BlockInfo {
         (b'B', name) => (Family::Cscape, name),
         (b'C', "CTU") if table["setup"]["stop"] == Json::Bool(true) => (Family::Codesys, "CTU_STOP_AT_PV"),
         (b'C', name) => (Family::Codesys, name),
+        (b'E', name) => (Family::Openplc, name),
         (b'D', "CTUD (ST/FBD)") => (Family::Logix, "FBD_COUNTER"),
         (b'D', _) => (Family::Logix, "COUNTER"),
         (other, _) => panic!("no family {other}"),

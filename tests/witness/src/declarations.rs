@@ -51,7 +51,7 @@ impl<'a> Declarations<'a> {
         let dialect = files.iter().flat_map(|it| &it.pragmas).find_map(|it| it.text.trim().strip_prefix("dialect"));
         let dialect = dialect.and_then(|it| Family::named(it.trim().trim_matches('\'')));
         let family = dialect.unwrap_or(Family::Iec);
-        let capacity = if family == Family::Iec { 254 } else { 80 };
+        let capacity = if matches!(family, Family::Iec | Family::Openplc) { 254 } else { 80 };
         let mut this = Self {
             files,
             family,

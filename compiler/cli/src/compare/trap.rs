@@ -200,8 +200,10 @@ fn counts(case: &Case) -> Option<usize> {
     if wider && same_bits {
         return Some(8);
     }
-    // Two documents of one system: whether a CTU stops at its preset.
-    let stops = case.kinds[0].family == case.kinds[1].family || case.involves(Family::Codesys);
+    // OpenPLC stops at the preset, and one document of CODESYS says so of its CTU.
+    let stops = case.kinds[0].family == case.kinds[1].family
+        || case.involves(Family::Openplc)
+        || case.involves(Family::Codesys);
     (stops && up && a.count.min(b.count) >= a.preset).then_some(2)
 }
 

@@ -74,7 +74,7 @@ fn report_second_names(declarations: &mut Declarations<'_>, uses: &[Use]) {
 
 /// OpenPLC keeps each size apart, so that %IX0.0 and %IW0 are two registers.
 fn are_registers(dialect: Dialect, a: Address, b: Address) -> bool {
-    dialect == Dialect::Iec && a.width != b.width
+    dialect.is_standard() && a.width != b.width
 }
 
 impl<'s> Declarations<'s> {

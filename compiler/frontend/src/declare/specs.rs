@@ -2,7 +2,7 @@
 
 use crate::ast::{self, Bound, TypeKind};
 use crate::diagnostic::wording::list;
-use crate::dialect::{self, Dialect};
+use crate::dialect;
 use crate::expr::unresolved::{block_of_another_dialect, no_such_block};
 use crate::names::Entry;
 use crate::spelling::{Key, nearest};
@@ -230,7 +230,7 @@ impl<'s> Declarations<'s> {
     }
 
     fn string(&mut self, capacity: Option<&'s ast::Expr<'s>>, scope: &Rc<Scope<'s>>, span: Span) -> Option<Resolved> {
-        let default = if self.dialect(span) == Dialect::Iec { 254 } else { 80 };
+        let default = if self.dialect(span).is_standard() { 254 } else { 80 };
         let Some(expr) = capacity else { return Some(Resolved::plain(Type::String(default))) };
         let length = self.constant_integer(expr, scope)?;
         if !(1..=MAX_CAPACITY).contains(&length) {

@@ -262,7 +262,7 @@ and global variables share one scope; the variables of a POU are another.
 ";
     E0105 Error "unknown dialect"
 "The pragma `{dialect '…'}` names a dialect that does not exist. The dialects are iec, cscape,
-codesys and logix; they decide whose counters a bare `CTU` means.
+codesys, openplc and logix; they decide whose counters a bare `CTU` means.
 ";
     E0106 Error "two dialects in one file"
 "A file has one dialect. To use a block of another system beside it, name its family:

@@ -62,15 +62,12 @@ pub(crate) fn unknown_pin(block: BlockId, name: ast::Name<'_>) -> Diagnostic {
         Some(pin) => error.help(format!("did you mean `{pin}`?")).fix(name.span, pin),
         None => error.help(format!("its pins are {}", list(&pins))),
     };
-    match owner_of_pin(block, name.text) {
-        Some(family) => error.note(format!(
-            "the pin is called `{}` in {}, whose blocks a bare name means under `--dialect {}`",
-            name.text.to_ascii_uppercase(),
-            family.name(),
-            dialect_of(family).name()
-        )),
-        None => error,
+    let dialects = dialects_with_pin(block, name.text);
+    if dialects.is_empty() {
+        return error;
     }
+    let pin = name.text.to_ascii_uppercase();
+    error.note(format!("the pin is called `{pin}` where a bare `{}` is that of {}", info.name, list(&dialects)))
 }
 
 /// This block's name for a pin that another system calls `name`.
@@ -79,15 +76,12 @@ pub(super) fn other_dialects_pin(block: BlockId, name: &str) -> Option<&'static 
     Some(pin.name).filter(|it| !it.eq_ignore_ascii_case(name))
 }
 
-/// The family whose block of the same name has a pin `name`.
-fn owner_of_pin(block: BlockId, name: &str) -> Option<Family> {
+/// The dialects whose block of the same name has a pin `name`.
+fn dialects_with_pin(block: BlockId, name: &str) -> Vec<&'static str> {
     let info = block.info();
     let same = BLOCKS.iter().filter(|it| it.family != info.family && it.name.eq_ignore_ascii_case(info.name));
-    same.filter(|it| it.pin(name).is_some()).map(|it| it.family).next_back()
-}
-
-fn dialect_of(family: Family) -> Dialect {
-    Dialect::ALL.into_iter().find(|it| it.family() == family).unwrap_or_default()
+    let owners: Vec<_> = same.filter(|it| it.pin(name).is_some()).map(|it| it.family).collect();
+    Dialect::ALL.iter().filter(|it| owners.contains(&it.family())).map(|it| it.name()).collect()
 }
 
 /// Values that are no names, for suggestions.

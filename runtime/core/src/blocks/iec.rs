@@ -1,4 +1,4 @@
-//! The counters of Autonomy Edge / OpenPLC, and the blocks that all families share.
+//! The counters of Autonomy Edge as its page documents them, and the blocks that all families share.
 //!
 //! The counters count rising edges; an input that is TRUE in the first call is one. The edge
 //! memory follows the input in every call, so an edge under reset or load is used up. Counting

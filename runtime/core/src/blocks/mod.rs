@@ -9,6 +9,7 @@ pub mod codesys;
 pub mod cscape;
 pub mod iec;
 pub mod logix;
+pub mod openplc;
 
 mod bistable;
 mod edge;
