@@ -13,3 +13,4 @@ mod state;
 
 mod architecture;
 mod documents;
+mod layers;

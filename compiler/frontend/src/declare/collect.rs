@@ -1,21 +1,27 @@
 //! The names at file level.
 
+use super::list::Lists;
 use crate::dialect::Dialect;
-use crate::names::Entry;
+use crate::names::{Entry, SpaceId};
 use crate::spelling::Key;
 use crate::types::declarations::{Declarations, GlobalSlot, PouSlot, Slot, TypeSlot};
 use crate::{Code, Diagnostic, ast};
 
 impl<'s> Declarations<'s> {
     pub(super) fn collect(&mut self, file: &'s ast::File<'s>) {
+        let mut lists = Lists::of(self, file);
         for item in &file.items {
             match item {
                 ast::Item::Types(decls) => decls.iter().for_each(|decl| self.collect_type(decl)),
                 ast::Item::Pou(pou) => {
+                    lists.end(pou.span);
                     self.pous.push(PouSlot { ast: pou, names_itself: false, slot: Slot::Open });
-                    self.enter(pou.name, Entry::Pou(self.pous.len() - 1));
+                    self.enter(SpaceId::ROOT, pou.name, Entry::Pou(self.pous.len() - 1));
                 }
-                ast::Item::Globals(block) => self.collect_globals(block),
+                ast::Item::Globals(block) => {
+                    let list = lists.around(block.span).map(|it| self.names.list(it));
+                    self.collect_globals(list.unwrap_or_default(), block);
+                }
                 ast::Item::Configuration(it) => self.collect_configuration(it),
             }
         }
@@ -23,7 +29,7 @@ impl<'s> Declarations<'s> {
 
     fn collect_type(&mut self, decl: &'s ast::TypeDecl<'s>) {
         let slot = self.types.len();
-        self.enter(decl.name, Entry::Type(slot));
+        self.enter(SpaceId::ROOT, decl.name, Entry::Type(slot));
         self.names.unread.extend(decl.unread.iter().map(|it| Key(it.text)));
         if let ast::TypeKind::Enum { values, .. } = &decl.ty.kind {
             for value in values {
@@ -33,13 +39,13 @@ impl<'s> Declarations<'s> {
         self.types.push(TypeSlot { decl, slot: Slot::Open });
     }
 
-    fn collect_globals(&mut self, block: &'s ast::VarBlock<'s>) {
+    fn collect_globals(&mut self, space: SpaceId, block: &'s ast::VarBlock<'s>) {
         self.check_retain_once(block);
         for decl in &block.vars {
             self.check_one_name(decl);
             for name in &decl.names {
-                self.enter(*name, Entry::Global(self.globals.len()));
-                self.globals.push(GlobalSlot { name: *name, block, decl, slot: Slot::Open });
+                self.enter(space, *name, Entry::Global(self.globals.len()));
+                self.globals.push(GlobalSlot { space, name: *name, block, decl, slot: Slot::Open });
             }
         }
     }
@@ -47,12 +53,12 @@ impl<'s> Declarations<'s> {
     fn collect_configuration(&mut self, configuration: &'s ast::Configuration<'s>) {
         let resources = configuration.resources.iter().flat_map(|it| &it.globals);
         for block in configuration.globals.iter().chain(resources) {
-            self.collect_globals(block);
+            self.collect_globals(SpaceId::ROOT, block);
         }
     }
 
-    /// Enters a name at file level; the first declaration of a name wins.
-    fn enter(&mut self, name: ast::Name<'s>, entry: Entry) {
+    /// Enters a name in a namespace; the first declaration of a name wins.
+    fn enter(&mut self, space: SpaceId, name: ast::Name<'s>, entry: Entry) {
         if staunch_ir::Elementary::named(name.text).is_some() {
             self.error(Code::E0104, name.span, format!("`{}` is the name of an elementary type", name.text));
             return;
@@ -62,19 +68,28 @@ impl<'s> Declarations<'s> {
             return;
         }
         self.check_spelling(name);
-        if let Some(first) = self.names.get(name.text) {
-            if self.enter_beside(name, first, entry) {
-                return;
-            }
-            let first = self.span_of(first);
-            self.report(
-                Diagnostic::new(Code::E0103, name.span, format!("`{}` is declared twice", name.text))
-                    .label("declared again here")
-                    .other(first, "first declared here"),
-            );
+        let Some(first) = self.clash(space, name.text, entry) else {
+            self.names.insert(space, name.text, entry);
             return;
-        }
-        self.names.names.insert(Key(name.text), entry);
+        };
+        let first = self.span_of(first);
+        self.report(
+            Diagnostic::new(Code::E0103, name.span, format!("`{}` is declared twice", name.text))
+                .label("declared again here")
+                .other(first, "first declared here"),
+        );
+    }
+
+    /// What stands in the way of a new name. A global may have the name of a type, `motor : Motor`, and two
+    /// lists may have variables of one name; but a list's is not hidden by what the root has.
+    fn clash(&self, space: SpaceId, name: &str, entry: Entry) -> Option<Entry> {
+        let root = self.names.root(name).unwrap_or_default();
+        let own = self.names.own(space, name).unwrap_or_default();
+        let lists = if space == SpaceId::ROOT { self.names.in_lists(name) } else { &[] };
+        let known = [own.value, own.ty, root.value, root.ty].into_iter().flatten().chain(lists.iter().map(|it| it.1));
+        let is_global = |it| matches!(it, Entry::Global(_));
+        let may_share = |it| is_global(it) && self.is_type(entry) || is_global(entry) && self.is_type(it);
+        known.into_iter().find(|it| !may_share(*it))
     }
 
     /// Reports a name with underlines where the standard has none.
@@ -90,22 +105,6 @@ impl<'s> Declarations<'s> {
             Diagnostic::new(Code::W0101, name.span, format!("the name `{}` has {wrong}", name.text))
                 .label("the standard has no such names, and other systems refuse them"),
         );
-    }
-
-    /// A global may have the name of a type: `motor : Motor`. FALSE for any other pair of equal names.
-    fn enter_beside(&mut self, name: ast::Name<'s>, first: Entry, second: Entry) -> bool {
-        let key = Key(name.text);
-        let (global, ty) = match (first, second) {
-            (global @ Entry::Global(_), ty) if self.is_type(ty) => (global, ty),
-            (ty, global @ Entry::Global(_)) if self.is_type(ty) => (global, ty),
-            _ => return false,
-        };
-        if self.names.hidden_types.contains_key(&key) {
-            return false;
-        }
-        self.names.hidden_types.insert(key, ty);
-        self.names.names.insert(key, global);
-        true
     }
 
     fn is_type(&self, entry: Entry) -> bool {

@@ -1,17 +1,16 @@
 //! Global variables, and the structure that holds them.
 
-use crate::types::address::field_name;
 use crate::types::declarations::{Declarations, GlobalSlot};
 use crate::types::scope::{Scope, Variable};
 use crate::types::table::GLOBALS;
-use staunch_ir::{Location, Place, Root, Struct, StructId, Type};
+use staunch_ir::{Field, Location, Place, Root, Struct, StructId, Type};
 use std::rc::Rc;
 
 impl<'s> Declarations<'s> {
     pub(super) fn global_variable(&mut self, at: usize) -> Option<Variable<'s>> {
-        let GlobalSlot { name, block, decl, .. } = self.globals[at];
+        let GlobalSlot { space, name, block, decl, .. } = self.globals[at];
         let reported = self.log.diagnostics.len();
-        let resolved = self.declared_type(decl, &Rc::new(Scope::default()), name.text)?;
+        let resolved = self.declared_type(decl, &Rc::new(Scope::of(space)), name.text)?;
         if block.constant.is_some() && self.log.has_errors_since(reported) {
             return None;
         }
@@ -38,16 +37,17 @@ impl<'s> Declarations<'s> {
         self.program.structs.push(Struct { name: "Globals".to_owned(), doc: None, location, fields });
     }
 
-    fn global_fields(&mut self) -> Vec<staunch_ir::Field> {
+    fn global_fields(&mut self) -> Vec<Field> {
         let fields: Vec<_> = (0..self.globals.len()).filter_map(|at| self.global_field(at)).collect();
         fields.into_iter().chain(self.synthetic.fields()).collect()
     }
 
-    fn global_field(&mut self, at: usize) -> Option<staunch_ir::Field> {
+    fn global_field(&mut self, at: usize) -> Option<Field> {
         let variable = self.global(at)?;
         self.addresses.field_of_global(at)?;
         let GlobalSlot { name, block, decl, .. } = self.globals[at];
-        Some(self.field(name, &variable.resolved, block, decl))
+        let field = self.field(name, &variable.resolved, block, decl);
+        Some(Field { name: self.global_field_name(at), ..field })
     }
 
     /// The global in slot `at`, if it is another name of an earlier one's address.
@@ -57,7 +57,7 @@ impl<'s> Declarations<'s> {
         }
         let variable = self.global(at)?;
         Some(staunch_ir::Variable {
-            name: field_name(variable.name.text),
+            name: self.global_field_name(at),
             section: variable.section,
             place: variable.place.clone(),
         })

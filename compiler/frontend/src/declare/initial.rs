@@ -3,8 +3,8 @@
 use super::specs::MAX_SIZE;
 use crate::ast::{self, InitialKind};
 use crate::expr::constant::constant;
-use crate::expr::standard;
 use crate::expr::unresolved::not_constant;
+use crate::names::functions;
 use crate::spelling::nearest;
 use crate::types::declarations::Declarations;
 use crate::types::scope::Scope;
@@ -265,7 +265,7 @@ fn named_repeat<'a, 's>(element: &'a ast::Element<'s>) -> Option<(&'a ast::Expr<
         return None;
     };
     let ast::ExprKind::Name(name) = &callee.kind else { return None };
-    if standard::exists(name.text) {
+    if functions::exists(name.text) {
         return None;
     }
     let positional = |it: &'a ast::Argument<'s>| match &it.kind {

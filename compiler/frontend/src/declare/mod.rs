@@ -6,6 +6,7 @@ mod address;
 mod collect;
 mod global;
 mod initial;
+mod list;
 mod named_program;
 mod needs;
 mod pou;

@@ -1,7 +1,7 @@
 //! PROGRAMs that others name: such a one does not run by itself. It has one instance, which the globals
 //! hold under its name.
 
-use crate::names::Entry;
+use crate::names::{Entry, SpaceId};
 use crate::types::declarations::Declarations;
 use crate::types::scope::Variable;
 use crate::types::synthetic::NamedProgram;
@@ -25,7 +25,7 @@ impl<'s> Declarations<'s> {
                     _ => (it, false),
                 };
                 if let ast::ExprKind::Name(name) = &callee.kind
-                    && let Some(Entry::Pou(slot)) = self.names.get(name.text)
+                    && let Some(Entry::Pou(slot)) = self.declared(SpaceId::ROOT, *name)
                     && self.pous[slot].ast.kind == ast::PouKind::Program
                     && signature.scope.get(name.text).is_none()
                 {

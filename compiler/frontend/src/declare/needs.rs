@@ -3,7 +3,7 @@
 //! is not resolved yet has found a circle.
 
 use crate::ast::{self, ExprKind, InitialKind, TypeKind};
-use crate::names::Entry;
+use crate::names::{Entry, Found, Meaning, Sense, SpaceId};
 use crate::spelling::Key;
 use crate::types::declarations::Declarations;
 use rustc_hash::FxHashSet;
@@ -41,7 +41,11 @@ fn visit(declarations: &Declarations<'_>, start: Entry, seen: &mut FxHashSet<Ent
 }
 
 fn needs(declarations: &Declarations<'_>, entry: Entry) -> std::vec::IntoIter<Entry> {
-    let mut needs = Needs { declarations, own: FxHashSet::default(), found: Vec::new() };
+    let space = match entry {
+        Entry::Global(at) => declarations.globals[at].space,
+        Entry::Type(_) | Entry::Pou(_) => SpaceId::ROOT,
+    };
+    let mut needs = Needs { declarations, space, own: FxHashSet::default(), found: Vec::new() };
     match entry {
         Entry::Type(at) => {
             let decl = declarations.types[at].decl;
@@ -57,6 +61,8 @@ fn needs(declarations: &Declarations<'_>, entry: Entry) -> std::vec::IntoIter<En
 /// What one declaration needs, in the order of its text.
 struct Needs<'d, 's> {
     declarations: &'d Declarations<'s>,
+    /// The namespace around it.
+    space: SpaceId,
     /// The variables of the POU itself: their names mean nothing outside.
     own: FxHashSet<Key<'s>>,
     found: Vec<Entry>,
@@ -127,8 +133,12 @@ impl<'s> Needs<'_, 's> {
                 self.type_name(*name);
             }
             ExprKind::Literal(ast::Literal { prefix: Some(prefix), .. }) => self.type_name(**prefix),
-            // `Globals.x`
-            ExprKind::Member(_, name) => self.value(*name),
+            // `GVL.x`
+            ExprKind::Member(owner, name) => {
+                if let ExprKind::Name(owner) = &owner.kind {
+                    self.path(&[*owner, *name], Sense::Value);
+                }
+            }
             ExprKind::Literal(_)
             | ExprKind::Address(_)
             | ExprKind::Part(..)
@@ -143,7 +153,14 @@ impl<'s> Needs<'_, 's> {
     }
 
     fn type_name(&mut self, name: ast::Name<'s>) {
-        self.found.extend(self.declarations.names.type_named(name.text));
+        self.path(&[name], Sense::Type);
+    }
+
+    fn path(&mut self, path: &[ast::Name<'s>], sense: Sense) {
+        match self.declarations.lookup(self.space, path, sense) {
+            Found::One(Meaning::Declared(entry)) => self.found.push(entry),
+            Found::One(_) | Found::Nothing | Found::Several(_) => {}
+        }
     }
 
     /// A global variable, or the enumerations that have an enumerator of that name.
@@ -152,7 +169,7 @@ impl<'s> Needs<'_, 's> {
         if self.own.contains(&key) {
             return;
         }
-        let global = self.declarations.names.get(name.text).filter(|it| matches!(it, Entry::Global(_)));
+        let global = self.declarations.declared(self.space, name).filter(|it| matches!(it, Entry::Global(_)));
         let types = self.declarations.names.enumerators.get(&key).into_iter().flatten();
         self.found.extend(global.into_iter().chain(types.map(|at| Entry::Type(*at))));
     }

@@ -63,6 +63,9 @@ impl Log<'_> {
         let word: String =
             pragma.text.trim().chars().take_while(|it| it.is_ascii_alphanumeric() || *it == '_').collect();
         let word = word.to_ascii_lowercase();
+        if super::list::is_list_pragma(pragma.text) {
+            return;
+        }
         if DECIDING_PRAGMAS.contains(&word.as_str()) {
             self.not_supported(pragma.span, &format!("the pragma `{word}`"));
         } else if !HARMLESS_PRAGMAS.contains(&word.as_str()) {

@@ -4,7 +4,7 @@ use crate::ast::{self, Bound, TypeKind};
 use crate::diagnostic::wording::list;
 use crate::dialect;
 use crate::expr::unresolved::{block_of_another_dialect, no_such_block};
-use crate::names::Entry;
+use crate::names::{Entry, Found, Meaning, Sense, SpaceId};
 use crate::spelling::{Key, nearest};
 use crate::types::declarations::Declarations;
 use crate::types::scope::Scope;
@@ -142,9 +142,15 @@ impl<'s> Declarations<'s> {
     }
 
     fn resolve_path(&mut self, path: &[ast::Name<'s>], span: Span) -> Option<Resolved> {
-        match path {
-            [name] => self.resolve_name(*name),
-            [family, name] => self.resolve_qualified(*family, *name),
+        if let [name] = path {
+            return self.resolve_name(*name);
+        }
+        match (self.lookup(SpaceId::ROOT, path, Sense::Type), path) {
+            (Found::One(Meaning::Block(block)), _) => Some(block_type(block)),
+            (_, [family, name]) => {
+                self.report_unknown_in_family(*family, *name);
+                None
+            }
             _ => {
                 self.error(Code::E0102, span, "a type is named by at most a family and a name");
                 None
@@ -152,37 +158,31 @@ impl<'s> Declarations<'s> {
         }
     }
 
-    fn resolve_qualified(&mut self, family: ast::Name<'s>, name: ast::Name<'s>) -> Option<Resolved> {
-        let Some(it) = Family::named(family.text) else {
-            let names = Family::ALL.map(Family::name);
-            self.report(
+    fn report_unknown_in_family(&mut self, family: ast::Name<'s>, name: ast::Name<'s>) {
+        let error = match Family::named(family.text) {
+            Some(family) => no_such_block(family, name),
+            None => {
+                let names = Family::ALL.map(Family::name);
                 Diagnostic::new(Code::E0102, family.span, format!("there is no block family `{}`", family.text))
-                    .help(format!("the families are {}", list(&names))),
-            );
-            return None;
+                    .help(format!("the families are {}", list(&names)))
+            }
         };
-        // What all systems share needs no family of its own.
-        let Some(block) = self.block_in(it, name.text).or_else(|| dialect::shared_block(name.text)) else {
-            self.report(no_such_block(it, name));
-            return None;
-        };
-        Some(block_type(block))
+        self.report(error);
     }
 
     fn resolve_name(&mut self, name: ast::Name<'s>) -> Option<Resolved> {
         if let Some(elementary) = Elementary::named(name.text) {
             return Some(Resolved::plain(Type::Elementary(elementary)));
         }
-        match self.names.type_named(name.text) {
-            Some(Entry::Type(at)) => return self.named_type(at),
-            Some(Entry::Pou(at)) => return self.instance_type(at, name),
-            Some(Entry::Global(_)) | None => {}
+        match self.lookup(SpaceId::ROOT, &[name], Sense::Type) {
+            Found::One(Meaning::Declared(Entry::Type(at))) => self.named_type(at),
+            Found::One(Meaning::Declared(Entry::Pou(at))) => self.instance_type(at, name),
+            Found::One(Meaning::Block(block)) => Some(block_type(block)),
+            Found::One(_) | Found::Nothing | Found::Several(_) => {
+                self.report_unknown_type(name);
+                None
+            }
         }
-        if let Some(block) = self.bare_block(name.text, name.span) {
-            return Some(block_type(block));
-        }
-        self.report_unknown_type(name);
-        None
     }
 
     /// The state of a FUNCTION_BLOCK: the type of its instances.

@@ -1,5 +1,5 @@
 use crate::ast;
-use crate::names::Entry;
+use crate::names::{Entry, Found, Meaning, Sense, SpaceId};
 use crate::types::declarations::{Declarations, GlobalSlot};
 use crate::types::scope::{Scope, Variable};
 use crate::types::table::Resolved;
@@ -168,7 +168,12 @@ impl<'s> Declarations<'s> {
     }
 
     pub(super) fn external(&mut self, name: ast::Name<'s>) -> Option<Rc<Variable<'s>>> {
-        let Some(Entry::Global(at)) = self.names.get(name.text) else {
+        let found = self.lookup(SpaceId::ROOT, &[name], Sense::Value);
+        if let Found::Several(meanings) = &found {
+            self.report_ambiguous(name, meanings);
+            return None;
+        }
+        let Found::One(Meaning::Declared(Entry::Global(at))) = found else {
             let near = crate::spelling::nearest(name.text, self.globals.iter().map(|it: &GlobalSlot<'s>| it.name.text));
             let mut error = crate::Diagnostic::new(
                 crate::Code::E0101,

@@ -275,9 +275,9 @@ codesys, openplc and logix; they decide whose counters a bare `CTU` means.
     E0107 Error "unknown member"
 "A structure, enumeration or instance has no member of that name.
 ";
-    E0108 Error "ambiguous enumerator"
-"Several enumerations have a value of that name, and the place does not say which is meant.
-Qualify it: `Color#Red` or `Color.Red`.
+    E0108 Error "ambiguous name"
+"Several enumerations have a value of that name, or several lists of global variables a variable, and the place does
+not say which is meant. Write it in full: `Color#Red` or `Color.Red`; `GVL.x`.
 ";
     E0109 Error "internal variable"
 "From outside an instance only its inputs and outputs can be reached. Declare the variable in

@@ -261,7 +261,7 @@ impl<'s> Checker<'_, 's> {
         arguments: &[ast::Argument<'s>],
         span: Span,
     ) -> Option<Expr> {
-        let (id, instruction) = super::callee::instruction_in(Family::Logix, name.text)?;
+        let (id, instruction) = crate::names::instruction_in(Family::Logix, name.text)?;
         let info = id.info();
         let takes_rung = info.instructions[instruction].takes_rung;
         let mut parameters = vec![Parameter { name: "Counter", section: Section::InOut }];

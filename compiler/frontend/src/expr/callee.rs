@@ -1,13 +1,12 @@
 //! What a call calls.
 
 use super::checker::Checker;
-use super::standard;
 use super::unresolved::{block_of_another_dialect, no_such_block};
-use crate::names::Entry;
+use crate::names::{Entry, Found, Meaning, Sense, functions, instruction_in};
 use crate::spelling::nearest;
 use crate::{Code, Diagnostic, ast, dialect};
 use ast::{ArgumentKind, ExprKind as Ast};
-use staunch_ir::{BlockId, Type};
+use staunch_ir::Type;
 use staunch_runtime::Family;
 
 /// What stands before the parentheses.
@@ -28,14 +27,16 @@ impl<'s> Checker<'_, 's> {
         match &callee.kind {
             Ast::Name(name) => self.named_callee(*name, arguments),
             Ast::Member(base, name) => {
-                if let Ast::Name(family) = &base.kind
-                    && self.scope.get(family.text).is_none()
-                    && let Some(it) = Family::named(family.text)
+                if let Ast::Name(owner) = &base.kind
+                    && self.scope.get(owner.text).is_none()
+                    && let Some(family) = Family::named(owner.text)
                 {
-                    if is_instruction(it, name.text) {
+                    if let Found::One(Meaning::Instruction(..)) =
+                        self.decl.lookup(self.scope.space, &[*owner, *name], Sense::Callee)
+                    {
                         return Some(Callee::Instruction(*name));
                     }
-                    self.report_family_call(it, *name);
+                    self.report_family_call(family, *name);
                     return None;
                 }
                 Some(Callee::Instance)
@@ -73,10 +74,11 @@ impl<'s> Checker<'_, 's> {
     }
 
     pub(crate) fn named_callee(&mut self, name: ast::Name<'s>, arguments: &[ast::Argument<'s>]) -> Option<Callee<'s>> {
+        let found = self.decl.lookup(self.scope.space, &[name], Sense::Callee);
         if let Some(variable) = self.scope.get(name.text) {
             // A variable that cannot be called does not hide a function of its name.
             let callable = matches!(variable.place.ty, Type::Block(_) | Type::Struct(_));
-            let function = standard::exists(name.text) || matches!(self.decl.names.get(name.text), Some(Entry::Pou(_)));
+            let function = matches!(found, Found::One(Meaning::Function | Meaning::Declared(Entry::Pou(_))));
             if callable || !function {
                 return Some(Callee::Instance);
             }
@@ -84,35 +86,34 @@ impl<'s> Checker<'_, 's> {
         if self.scope.is_refused(name.text) {
             return None;
         }
-        match self.decl.names.get(name.text) {
-            Some(Entry::Global(_)) => return Some(Callee::Instance),
-            Some(Entry::Pou(slot)) => {
-                let pou = self.decl.pous[slot].ast;
-                if pou.kind == ast::PouKind::Function {
-                    return Some(Callee::Function(slot));
-                }
-                if self.is_callable_program(slot, name) {
-                    return Some(Callee::Instance);
-                }
-                return self.report_type_called(name, pou.kind);
-            }
-            Some(Entry::Type(_)) => {
+        match found {
+            Found::One(Meaning::Declared(Entry::Global(_))) => Some(Callee::Instance),
+            Found::One(Meaning::Declared(Entry::Pou(slot))) => self.called_pou(slot, name),
+            Found::One(Meaning::Declared(Entry::Type(_)) | Meaning::Enumerator(_)) => {
                 self.error(Code::E0305, name.span, format!("`{}` is a type; it cannot be called", name.text));
-                return None;
+                None
             }
-            None => {}
+            Found::One(Meaning::Instruction(..)) => Some(Callee::Instruction(name)),
+            Found::One(Meaning::Function) => Some(Callee::Standard(name)),
+            Found::Several(meanings) => {
+                self.decl.report_ambiguous(name, &meanings);
+                None
+            }
+            Found::One(Meaning::Block(_)) | Found::Nothing => {
+                if !self.is_logix_call(name, arguments) {
+                    self.report_unknown_function(name);
+                }
+                None
+            }
         }
-        let own = self.decl.dialect(name.span);
-        if is_instruction(own.family(), name.text) {
-            return Some(Callee::Instruction(name));
+    }
+
+    fn called_pou(&mut self, slot: usize, name: ast::Name<'s>) -> Option<Callee<'s>> {
+        match self.decl.pous[slot].ast.kind {
+            ast::PouKind::Function => Some(Callee::Function(slot)),
+            ast::PouKind::Program if self.is_callable_program(slot, name) => Some(Callee::Instance),
+            kind @ (ast::PouKind::Program | ast::PouKind::FunctionBlock) => self.report_type_called(name, kind),
         }
-        if standard::exists(name.text) {
-            return Some(Callee::Standard(name));
-        }
-        if !self.is_logix_call(name, arguments) {
-            self.report_unknown_function(name);
-        }
-        None
     }
 
     /// An instruction of Logix under another dialect, recognised by the tag that it works on.
@@ -161,7 +162,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     pub(crate) fn report_unknown_function(&mut self, name: ast::Name<'s>) {
-        if self.decl.bare_block(name.text, name.span).is_some() {
+        if self.decl.bare_block(name).is_some() {
             self.report_type_called(name, ast::PouKind::FunctionBlock);
             return;
         }
@@ -183,7 +184,7 @@ impl<'s> Checker<'_, 's> {
         let own = self.decl.pous.iter().filter(|it| it.ast.kind == ast::PouKind::Function).map(|it| it.ast.name.text);
         let instances =
             self.scope.variables.iter().filter(|it| matches!(it.place.ty, Type::Block(_) | Type::Struct(_)));
-        let standard = standard::names().map(|it| -> &str { it });
+        let standard = functions::names().map(|it| -> &str { it });
         let candidates = own.chain(instances.map(|it| it.name.text)).chain(standard);
         let near = nearest(name.text, candidates).map(str::to_owned);
         let mut error =
@@ -228,13 +229,4 @@ fn not_yet(name: &str) -> bool {
 /// Whether `name` is an instruction of a structure in `family`.
 fn is_instruction(family: Family, name: &str) -> bool {
     instruction_in(family, name).is_some()
-}
-
-/// The first structure with the instruction `name`, and the instruction's position.
-pub(crate) fn instruction_in(family: Family, name: &str) -> Option<(BlockId, usize)> {
-    let blocks = staunch_runtime::BLOCKS.iter().enumerate().filter(|(_, it)| it.family == family);
-    blocks.into_iter().find_map(|(at, block)| {
-        let found = block.instructions.iter().position(|it| !it.name.is_empty() && it.name.eq_ignore_ascii_case(name));
-        found.map(|instruction| (BlockId::next(at), instruction))
-    })
 }

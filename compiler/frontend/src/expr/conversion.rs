@@ -1,40 +1,18 @@
 //! Conversion functions: `INT_TO_REAL`, `TO_REAL`, `REAL_TRUNC_DINT`, `TRUNC`.
 
 use super::checker::Checker;
+use crate::names::functions;
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Conversion, Elementary, Expr, Op, Type, Value};
 use staunch_runtime::time::MILLISECOND;
 
-/// What a conversion function's name says.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Parsed {
-    from: Option<Elementary>,
-    to: Elementary,
-    truncates: bool,
-}
-
-pub(crate) fn parse(name: &str) -> Option<Parsed> {
-    let name = name.to_ascii_uppercase();
-    if let Some(to) = name.strip_prefix("TO_") {
-        return Some(Parsed { from: None, to: Elementary::named(to)?, truncates: false });
-    }
-    if let Some(to) = name.strip_prefix("TRUNC_") {
-        let to = Elementary::named(to).filter(|it| it.is_integer())?;
-        return Some(Parsed { from: None, to, truncates: true });
-    }
-    let (truncates, (from, to)) = match name.split_once("_TRUNC_") {
-        Some(parts) => (true, parts),
-        None => (false, name.split_once("_TO_")?),
-    };
-    let (from, to) = (Elementary::named(from)?, Elementary::named(to)?);
-    if truncates && !(from.is_real() && to.is_integer()) {
-        return None;
-    }
-    Some(Parsed { from: Some(from), to, truncates })
-}
-
 impl<'s> Checker<'_, 's> {
-    pub(crate) fn conversion(&mut self, parsed: Parsed, value: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<Expr> {
+    pub(crate) fn conversion(
+        &mut self,
+        parsed: functions::Conversion,
+        value: &ast::Expr<'s>,
+        name: ast::Name<'s>,
+    ) -> Option<Expr> {
         let value_expr = match parsed.from {
             Some(from) => self.value(value, Type::Elementary(from))?,
             None => self.typed(value, None)?,

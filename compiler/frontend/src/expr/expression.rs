@@ -1,5 +1,7 @@
-use super::checker::Checker;
+use super::checker::{Checker, Context};
 use super::operand::{Operand, computed};
+use crate::names::{Found, Meaning, Sense};
+use crate::types::scope::Variable;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, UnaryOp};
 use staunch_ir::{Const, Conversion, Elementary, Expr, ExprKind, Op, Type, Value};
@@ -53,23 +55,7 @@ impl<'s> Checker<'_, 's> {
     fn name(&mut self, name: ast::Name<'s>, expected: Option<Type>) -> Option<Expr> {
         if let Some(found) = self.find_variable(name) {
             let variable = found?;
-            if let Some(value) = variable.constant_value() {
-                return self.constant_variable(&variable, value, name.span);
-            }
-            if self.context == super::checker::Context::Initial {
-                let initial = variable.resolved.initial.clone();
-                return self.constant_variable(&variable, initial, name.span);
-            }
-            if self.signature.is_none() {
-                self.report(
-                    super::unresolved::not_constant(name.span)
-                        .other(variable.name.span, format!("`{}` is a variable", name.text))
-                        .help("declare it in VAR CONSTANT"),
-                );
-                return None;
-            }
-            let at = self.at(name.span);
-            return Some(Expr::load(variable.place.clone(), at));
+            return self.variable_value(&variable, name.span);
         }
         if let Some(value) = self.bare_enumerator(name, expected) {
             return value;
@@ -78,13 +64,28 @@ impl<'s> Checker<'_, 's> {
         None
     }
 
+    fn variable_value(&mut self, variable: &Variable<'s>, span: Span) -> Option<Expr> {
+        if let Some(value) = variable.constant_value() {
+            return self.constant_variable(variable, value, span);
+        }
+        if self.context == Context::Initial {
+            let initial = variable.resolved.initial.clone();
+            return self.constant_variable(variable, initial, span);
+        }
+        if self.signature.is_none() {
+            self.report(
+                super::unresolved::not_constant(span)
+                    .other(variable.name.span, format!("`{}` is a variable", variable.name.text))
+                    .help("declare it in VAR CONSTANT"),
+            );
+            return None;
+        }
+        let at = self.at(span);
+        Some(Expr::load(variable.place.clone(), at))
+    }
+
     /// Reads a CONSTANT: a scalar is its value, so that it can size an array or label a CASE.
-    fn constant_variable(
-        &mut self,
-        variable: &crate::types::scope::Variable<'s>,
-        value: Const,
-        span: Span,
-    ) -> Option<Expr> {
+    fn constant_variable(&mut self, variable: &Variable<'s>, value: Const, span: Span) -> Option<Expr> {
         let at = self.at(span);
         let ty = variable.resolved.ty.read();
         let kind = match (value, self.decl.program.lane(ty), ty) {
@@ -92,7 +93,7 @@ impl<'s> Checker<'_, 's> {
             (Const::Zero, Some(lane), _) => ExprKind::Const(lane.zero()),
             (Const::Text(bytes), _, _) => ExprKind::Text(bytes),
             (Const::Zero, None, Type::String(_)) => ExprKind::Text(Vec::new()),
-            (other, _, _) if self.context != super::checker::Context::Body => ExprKind::Aggregate(other),
+            (other, _, _) if self.context != Context::Body => ExprKind::Aggregate(other),
             _ => ExprKind::Load(variable.place.clone()),
         };
         Some(Expr::new(ty, kind, at))
@@ -104,16 +105,22 @@ impl<'s> Checker<'_, 's> {
         if let Ast::Name(ty) = &base.kind
             && !self.scope.is_refused(ty.text)
             && self.type_of_variable(*ty).is_none_or(|it| matches!(it, Type::Enum(_)))
-            && let Some(crate::names::Entry::Type(_)) = self.decl.names.type_named(ty.text)
+            && let Found::One(Meaning::Enumerator(_)) = self.decl.lookup(self.scope.space, &[*ty, name], Sense::Value)
         {
             return self.enumerator(*ty, name);
+        }
+        if let Ast::Name(owner) = &base.kind
+            && let Some(variable) = self.global_of_namespace(*owner, name)
+        {
+            let variable = variable?;
+            return self.variable_value(&variable, expr.span);
         }
         self.load(expr)
     }
 
     fn type_of_variable(&mut self, name: ast::Name<'s>) -> Option<Type> {
         let own = self.scope.get(name.text).map(|it| it.place.ty);
-        own.or_else(|| self.decl.type_of_global(name.text))
+        own.or_else(|| self.decl.type_of_global(self.scope.space, name))
     }
 
     fn load(&mut self, expr: &ast::Expr<'s>) -> Option<Expr> {

@@ -1,6 +1,7 @@
 use super::checker::Checker;
 use super::operand::Operand;
 use super::real::Real;
+use crate::names::{Found, Meaning, Sense};
 use crate::spelling::Key;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::LiteralValue;
@@ -95,7 +96,7 @@ impl<'s> Checker<'_, 's> {
         if prefix.text.eq_ignore_ascii_case("STRING") && matches!(value, LiteralValue::String { .. }) {
             return Some(None);
         }
-        if self.decl.names.type_named(prefix.text).is_some() {
+        if self.decl.names.root(prefix.text).is_some_and(|it| it.ty.is_some()) {
             self.report(
                 Diagnostic::new(Code::E0102, prefix.span, format!("`{}` has no literals", prefix.text))
                     .label("a literal is of an elementary type, or an enumerator"),
@@ -114,7 +115,8 @@ impl<'s> Checker<'_, 's> {
 
     /// `Color#Red` or `Color.Red`.
     pub(crate) fn enumerator(&mut self, ty: ast::Name<'s>, name: ast::Name<'s>) -> Option<Expr> {
-        let Some(crate::names::Entry::Type(slot)) = self.decl.names.type_named(ty.text) else {
+        let found = self.decl.lookup(self.scope.space, &[ty, name], Sense::Value);
+        let Found::One(Meaning::Enumerator(slot)) = found else {
             self.error(Code::E0102, ty.span, format!("there is no enumeration `{}`", ty.text));
             return None;
         };

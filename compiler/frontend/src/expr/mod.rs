@@ -25,6 +25,7 @@ mod overload;
 mod place;
 mod promotion;
 mod real;
+mod retained;
 pub(crate) mod standard;
 mod string_compare;
 pub(crate) mod unresolved;

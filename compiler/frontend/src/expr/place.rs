@@ -3,7 +3,7 @@
 use super::checker::Checker;
 use super::unresolved::not_constant;
 use crate::dialect::Dialect;
-use crate::names::Entry;
+use crate::names::{self, Entry, Meaning, Sense};
 use crate::spelling::nearest;
 use crate::types::scope::Variable;
 use crate::{Code, Diagnostic, Span, ast};
@@ -127,20 +127,28 @@ impl<'s> Checker<'_, 's> {
             );
             return Some(None);
         }
-        match self.decl.names.get(name.text) {
-            Some(Entry::Global(at)) => {
-                let variable = self.decl.global(at);
-                if let Some(variable) = &variable {
-                    variable.used.set(true);
-                }
-                Some(variable)
+        let found = self.decl.lookup(self.scope.space, &[name], Sense::Value);
+        match found {
+            names::Found::Several(meanings) => {
+                self.decl.report_ambiguous(name, &meanings);
+                Some(None)
             }
-            Some(Entry::Pou(slot)) if self.is_callable_program(slot, name) => Some(self.decl.program_variable(slot)),
-            Some(Entry::Pou(_) | Entry::Type(_)) | None => {
+            names::Found::One(Meaning::Declared(Entry::Global(at))) => Some(self.global(at)),
+            names::Found::One(Meaning::Declared(Entry::Pou(slot))) if self.is_callable_program(slot, name) => {
+                Some(self.decl.program_variable(slot))
+            }
+            names::Found::One(_) | names::Found::Nothing => {
                 // A variable whose declaration was refused is not reported again at every use.
                 self.declared_but_refused(name).then_some(None)
             }
         }
+    }
+
+    /// The global variable in a slot, which is used by that.
+    fn global(&mut self, at: usize) -> Option<Rc<Variable<'s>>> {
+        let variable = self.decl.global(at)?;
+        variable.used.set(true);
+        Some(variable)
     }
 
     /// Whether a name means a PROGRAM that may be called, or read, by it.
@@ -186,6 +194,10 @@ impl<'s> Checker<'_, 's> {
             return None;
         };
         let variable = found?;
+        Some(self.found(&variable, name))
+    }
+
+    fn found(&self, variable: &Variable<'s>, name: ast::Name<'s>) -> Found<'s> {
         let access = match variable.section {
             _ if variable.constant => Access::Constant(name),
             Section::Input if self.signature.is_some() => Access::OwnInput(name),
@@ -197,14 +209,14 @@ impl<'s> Checker<'_, 's> {
             | Section::Global
             | Section::External => Access::Write,
         };
-        Some(Found { place: variable.place.clone(), access })
+        Found { place: variable.place.clone(), access }
     }
 
     fn member(&mut self, base: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<Found<'s>> {
         if let Ast::Name(owner) = &base.kind
-            && let Some(found) = self.global_of_namespace(*owner, name)
+            && let Some(variable) = self.global_of_namespace(*owner, name)
         {
-            return found;
+            return variable.map(|it| self.found(&it, name));
         }
         let found = self.place(base)?;
         match found.place.ty {
@@ -221,15 +233,27 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    /// `Globals.x`: a global by its structure's name, where no variable is called so.
-    fn global_of_namespace(&mut self, owner: ast::Name<'s>, name: ast::Name<'s>) -> Option<Option<Found<'s>>> {
-        let hidden = self.scope.get(owner.text).is_some() || self.decl.names.get(owner.text).is_some();
-        if hidden || !owner.text.eq_ignore_ascii_case("Globals") {
+    /// `GVL.x`, `Globals.x`: a global by its namespace, where no variable is called so. The inner `None`
+    /// says that it was reported.
+    pub(crate) fn global_of_namespace(
+        &mut self,
+        owner: ast::Name<'s>,
+        name: ast::Name<'s>,
+    ) -> Option<Option<Rc<Variable<'s>>>> {
+        if self.scope.get(owner.text).is_some() || self.decl.declared(self.scope.space, owner).is_some() {
             return None;
         }
-        match self.decl.names.get(name.text) {
-            Some(Entry::Global(_)) => Some(self.variable_place(name)),
-            Some(Entry::Pou(_) | Entry::Type(_)) | None => None,
+        match self.decl.lookup(self.scope.space, &[owner, name], Sense::Value) {
+            names::Found::One(Meaning::Declared(Entry::Global(at))) => Some(self.global(at)),
+            names::Found::Several(meanings) => {
+                self.decl.report_ambiguous(name, &meanings);
+                Some(None)
+            }
+            names::Found::Nothing if self.decl.names.list_named(owner.text).is_some() => {
+                self.not_in_list(owner, name);
+                Some(None)
+            }
+            names::Found::One(_) | names::Found::Nothing => None,
         }
     }
 

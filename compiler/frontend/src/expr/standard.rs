@@ -2,93 +2,19 @@
 //! operands of one type.
 
 use super::checker::Checker;
-use super::conversion;
 use super::operand::{Operand, computed};
 use super::overload::Resolved;
-use crate::dialect::Dialect;
+use crate::names::functions::{self, Meaning, named};
 use crate::{Span, ast};
 use ast::BinaryOp;
 use staunch_ir::{Arm, Conversion, Elementary, Expr, ExprKind, FaultKind, Op, Statement, StatementKind, TextOp, Type};
 use staunch_runtime::{Class, Kind, Signature, signature};
-
-/// What a standard function means.
-#[derive(Clone, Copy)]
-enum Meaning {
-    /// A row of the runtime's table of operations.
-    Operation(Op),
-    /// A row of the runtime's table of functions on strings.
-    Text(TextOp),
-    /// `ADD(a, b)` is `a + b`, with all that an operator does at its types.
-    Operator(BinaryOp),
-    /// The input that K numbers.
-    Mux,
-    /// The value itself: a literal stays one.
-    Move,
-    /// Toward zero, to the integer that its place asks for.
-    Truncate,
-}
-
-/// Functions that are no rows of the runtime's tables, and other vendors' names of parameters.
-const OTHERS: [(Option<Dialect>, Signature, Meaning); 22] = [
-    (None, signature!("MUX" (K: ANY_INT, IN0: T, IN1: T) -> T [ANY] extensible), Meaning::Mux),
-    (None, signature!("MOVE" (IN: T) -> T [ANY]), Meaning::Move),
-    (None, signature!("TRUNC" (IN: ANY_REAL) -> ANY_INT), Meaning::Truncate),
-    (None, signature!("ADD_TIME" (IN1: TIME, IN2: TIME) -> TIME), Meaning::Operator(BinaryOp::Add)),
-    (None, signature!("SUB_TIME" (IN1: TIME, IN2: TIME) -> TIME), Meaning::Operator(BinaryOp::Sub)),
-    (None, signature!("MUL_TIME" (IN1: TIME, IN2: ANY_NUM) -> TIME), Meaning::Operator(BinaryOp::Mul)),
-    (None, signature!("DIV_TIME" (IN1: TIME, IN2: ANY_NUM) -> TIME), Meaning::Operator(BinaryOp::Div)),
-    (None, signature!("MULTIME" (IN1: TIME, IN2: ANY_NUM) -> TIME), Meaning::Operator(BinaryOp::Mul)),
-    (None, signature!("DIVTIME" (IN1: TIME, IN2: ANY_NUM) -> TIME), Meaning::Operator(BinaryOp::Div)),
-    (None, signature!("ADD_LTIME" (IN1: LTIME, IN2: LTIME) -> LTIME), Meaning::Operator(BinaryOp::Add)),
-    (None, signature!("SUB_LTIME" (IN1: LTIME, IN2: LTIME) -> LTIME), Meaning::Operator(BinaryOp::Sub)),
-    (None, signature!("MUL_LTIME" (IN1: LTIME, IN2: ANY_NUM) -> LTIME), Meaning::Operator(BinaryOp::Mul)),
-    (None, signature!("DIV_LTIME" (IN1: LTIME, IN2: ANY_NUM) -> LTIME), Meaning::Operator(BinaryOp::Div)),
-    // CODESYS's library names the parameters of the functions on strings in its own way.
-    (CODESYS, signature!("LEN" (STR: STRING) -> INT), Meaning::Text(TextOp::Len)),
-    (CODESYS, signature!("LEFT" (STR: STRING, SIZE: ANY_INT) -> STRING), Meaning::Text(TextOp::Left)),
-    (CODESYS, signature!("RIGHT" (STR: STRING, SIZE: ANY_INT) -> STRING), Meaning::Text(TextOp::Right)),
-    (CODESYS, signature!("MID" (STR: STRING, LEN: ANY_INT, POS: ANY_INT) -> STRING), Meaning::Text(TextOp::Mid)),
-    (CODESYS, signature!("CONCAT" (STR1: STRING, STR2: STRING) -> STRING extensible), Meaning::Text(TextOp::Concat)),
-    (CODESYS, signature!("INSERT" (STR1: STRING, STR2: STRING, POS: ANY_INT) -> STRING), Meaning::Text(TextOp::Insert)),
-    (CODESYS, signature!("DELETE" (STR: STRING, LEN: ANY_INT, POS: ANY_INT) -> STRING), Meaning::Text(TextOp::Delete)),
-    (
-        CODESYS,
-        signature!("REPLACE" (STR1: STRING, STR2: STRING, L: ANY_INT, P: ANY_INT) -> STRING),
-        Meaning::Text(TextOp::Replace),
-    ),
-    (CODESYS, signature!("FIND" (STR1: STRING, STR2: STRING) -> INT), Meaning::Text(TextOp::Find)),
-];
-
-const CODESYS: Option<Dialect> = Some(Dialect::Codesys);
 
 /// The signature of every conversion, `INT_TO_REAL` and the like.
 const CONVERSION: Signature = signature!("_TO_" (IN: T) -> T [ANY]);
 
 /// So many text functions may be nested in one expression of the program that is made.
 const MAX_TEXT_DEPTH: usize = 32;
-
-/// Every standard function, a vendor's forms after the standard's.
-fn functions() -> impl Iterator<Item = (Option<Dialect>, &'static Signature, Meaning)> {
-    let operations = Op::ALL.iter().map(|op| (None, op.signature(), meaning(*op)));
-    let texts = TextOp::ALL.iter().map(|op| (None, op.signature(), Meaning::Text(*op)));
-    let others = OTHERS.iter().map(|(dialect, signature, meaning)| (*dialect, signature, *meaning));
-    operations.chain(texts).chain(others).filter(|it| !it.1.name.starts_with('_'))
-}
-
-/// The standard functions of a name.
-fn named(name: &str) -> impl Iterator<Item = (Option<Dialect>, &'static Signature, Meaning)> {
-    functions().filter(move |it| it.1.name.eq_ignore_ascii_case(name))
-}
-
-/// Whether a standard function bears this name.
-pub(crate) fn exists(name: &str) -> bool {
-    named(name).next().is_some() || conversion::parse(name).is_some()
-}
-
-/// The names of the standard functions, for suggestions.
-pub(crate) fn names() -> impl Iterator<Item = &'static str> {
-    functions().map(|it| it.1.name)
-}
 
 impl<'s> Checker<'_, 's> {
     pub(crate) fn standard_function(
@@ -99,7 +25,7 @@ impl<'s> Checker<'_, 's> {
         span: Span,
     ) -> Option<Operand> {
         let Some((signature, meaning)) = self.form(name, arguments) else {
-            let parsed = conversion::parse(name.text)?;
+            let parsed = functions::conversion(name.text)?;
             let values = self.arguments(&CONVERSION, name, arguments, span)?;
             return self.conversion(parsed, values[0], name).map(Operand::Typed);
         };
@@ -133,9 +59,9 @@ impl<'s> Checker<'_, 's> {
                 signature.parameters.iter().any(|it| it.name.eq_ignore_ascii_case(name.text))
             }
         };
-        let forms = || named(name.text).filter(|it| it.0.is_none_or(|it| it == dialect));
+        let forms = || named(name.text).iter().filter(|it| it.0.is_none_or(|it| it == dialect));
         let fitting = forms().find(|(_, signature, _)| arguments.iter().all(|it| has(signature, it)));
-        fitting.or_else(|| forms().next()).map(|(_, signature, meaning)| (signature, meaning))
+        fitting.or_else(|| forms().next()).map(|(_, signature, meaning)| (*signature, *meaning))
     }
 
     /// The operator at its operands' types; for a function of one type's own, on operands of that.
@@ -296,29 +222,6 @@ impl<'s> Checker<'_, 's> {
         self.block.push(Statement::assign(place.clone(), text, at));
         Expr::load(place, at)
     }
-}
-
-/// What an operation's function means: for those with an operator, the operator.
-fn meaning(op: Op) -> Meaning {
-    let operator = match op {
-        Op::Add => BinaryOp::Add,
-        Op::Sub => BinaryOp::Sub,
-        Op::Mul => BinaryOp::Mul,
-        Op::Div => BinaryOp::Div,
-        Op::Mod => BinaryOp::Mod,
-        Op::Expt => BinaryOp::Power,
-        Op::And => BinaryOp::And,
-        Op::Or => BinaryOp::Or,
-        Op::Xor => BinaryOp::Xor,
-        Op::Eq => BinaryOp::Eq,
-        Op::Ne => BinaryOp::Ne,
-        Op::Lt => BinaryOp::Lt,
-        Op::Le => BinaryOp::Le,
-        Op::Gt => BinaryOp::Gt,
-        Op::Ge => BinaryOp::Ge,
-        _ => return Meaning::Operation(op),
-    };
-    Meaning::Operator(operator)
 }
 
 fn is_wide(ty: Type) -> bool {

@@ -3,6 +3,7 @@
 use super::checker::Checker;
 use crate::diagnostic::wording::list;
 use crate::dialect::Dialect;
+use crate::names::functions;
 use crate::spelling::nearest;
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::BlockId;
@@ -109,7 +110,7 @@ impl<'s> Checker<'_, 's> {
         let error = Diagnostic::new(Code::E0101, name.span, format!("`{}` is not a variable", name.text));
         if !self.lacks_result_type(name) {
             let error = error.label("a variable or a value is expected here");
-            let kind = match self.decl.names.get(name.text) {
+            let kind = match self.decl.declared(self.scope.space, name) {
                 Some(crate::names::Entry::Pou(slot)) => Some(self.decl.pous[slot].ast.kind),
                 Some(crate::names::Entry::Type(_) | crate::names::Entry::Global(_)) | None => None,
             };
@@ -134,10 +135,22 @@ impl<'s> Checker<'_, 's> {
 
     /// Whether `name` is a FUNCTION that assigns to its own name, but has no result type.
     pub(crate) fn lacks_result_type(&self, name: ast::Name<'s>) -> bool {
-        let Some(crate::names::Entry::Pou(slot)) = self.decl.names.get(name.text) else {
+        let Some(crate::names::Entry::Pou(slot)) = self.decl.declared(self.scope.space, name) else {
             return false;
         };
         self.decl.pous[slot].names_itself && self.decl.pous[slot].ast.result.is_none()
+    }
+
+    /// `GVL.x`, where the list has no `x`.
+    pub(crate) fn not_in_list(&mut self, list: ast::Name<'s>, name: ast::Name<'s>) {
+        let message = format!("the list `{}` has no variable `{}`", list.text, name.text);
+        let error = Diagnostic::new(Code::E0101, name.span, message).label("unknown name");
+        let near =
+            self.decl.names.list_named(list.text).and_then(|it| nearest(name.text, self.decl.names.names_in(it)));
+        self.report(match near {
+            Some(near) => error.help(format!("did you mean `{near}`?")).fix(name.span, near),
+            None => error,
+        });
     }
 
     /// Reports a name that means nothing here.
@@ -145,14 +158,16 @@ impl<'s> Checker<'_, 's> {
         if self.decl.names.unread.contains(&crate::spelling::Key(name.text)) {
             return;
         }
-        if let Some(crate::names::Entry::Type(_) | crate::names::Entry::Pou(_)) = self.decl.names.get(name.text) {
+        if let Some(crate::names::Entry::Type(_) | crate::names::Entry::Pou(_)) =
+            self.decl.declared(self.scope.space, name)
+        {
             self.not_a_variable(name);
             return;
         }
-        let block = self.decl.bare_block(name.text, name.span).is_some();
+        let block = self.decl.bare_block(name).is_some();
         let message = if block {
             format!("`{}` is a FUNCTION_BLOCK, not an instance of one", name.text)
-        } else if super::standard::exists(name.text) {
+        } else if functions::exists(name.text) {
             format!("`{}` is a function, not a variable", name.text)
         } else {
             format!("`{}` is not declared", name.text)
@@ -167,7 +182,7 @@ impl<'s> Checker<'_, 's> {
             return;
         }
         let own = self.scope.variables.iter().map(|it| it.name.text);
-        let near = nearest(name.text, own.chain(self.decl.names.names.keys().map(|key| key.0)));
+        let near = nearest(name.text, own.chain(self.decl.names.all()));
         let enumerators = self.decl.names.enumerators.keys().map(|key| key.0);
         let near =
             near.or_else(|| nearest(name.text, enumerators)).or_else(|| nearest(name.text, CONSTANTS.into_iter()));
@@ -175,7 +190,7 @@ impl<'s> Checker<'_, 's> {
             error = error.help(*help);
         } else if let Some(near) = near {
             error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
-        } else if super::standard::exists(name.text) {
+        } else if functions::exists(name.text) {
             error = error.help(format!("call the function: `{}(…)`", name.text));
         }
         self.report(error);

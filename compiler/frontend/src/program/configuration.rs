@@ -2,7 +2,7 @@
 
 use crate::ast;
 use crate::expr::constant::constant;
-use crate::names::Entry;
+use crate::names::{Entry, SpaceId};
 use crate::spelling::{Key, nearest};
 use crate::types::declarations::Declarations;
 use crate::{Code, Diagnostic, Span};
@@ -104,7 +104,7 @@ impl<'s> Declarations<'s> {
     }
 
     fn instance(&mut self, instance: &'s ast::ProgramInstance<'s>, timing: Timing) {
-        let found = self.names.get(instance.program.text);
+        let found = self.declared(SpaceId::ROOT, instance.program);
         let program = match found {
             Some(Entry::Pou(at)) if self.pous[at].ast.kind == ast::PouKind::Program => at,
             _ => {

@@ -13,7 +13,7 @@ mod reach;
 use crate::expr::uses::Uses;
 use crate::types::declarations::Declarations;
 use build::Builder;
-use staunch_ir::{Place, Retain, Root, Routine, RoutineId, RoutineKind};
+use staunch_ir::{Place, Retain, Root, Routine, RoutineKind};
 
 /// Adds the prescans, given the slots of the POUs in an order in which a callee stands before its
 /// callers. `false` if there are none.
@@ -32,11 +32,6 @@ pub(super) fn add(declarations: &mut Declarations<'_>, mut uses: Vec<Uses>, orde
     }
     nest::nest(declarations, &open);
     true
-}
-
-/// The routine of the prescan of the POU in a slot, until routines are put in order.
-pub(super) fn routine_of(declarations: &Declarations<'_>, slot: usize) -> RoutineId {
-    RoutineId::next(declarations.pous.len() + slot)
 }
 
 /// Gives each slot an empty prescan.

@@ -108,19 +108,17 @@ pub(crate) fn field_name(name: &str) -> String {
     name.trim_start_matches('%').replace('.', "_")
 }
 
-/// The address that is written, or what is wrong with it.
-pub(crate) fn read(name: ast::Name<'_>) -> Result<Address, Diagnostic> {
-    parse(name.text).ok_or_else(|| {
-        let message = if name.text.ends_with('*') {
-            format!("`{}` is not bound to an address", name.text)
-        } else if is_hierarchical(name.text) {
-            format!("`{}` has more parts than are supported yet", name.text)
-        } else {
-            format!("`{}` is not a direct address", name.text)
-        };
-        Diagnostic::new(Code::E0409, name.span, message)
-            .help("write an area (I, Q, M), a size (X, B, W, D, L) and a place: `%IX0.0`, `%QW3`")
-    })
+/// What is wrong with an address that cannot be read.
+pub(crate) fn wrong(name: ast::Name<'_>) -> Diagnostic {
+    let message = if name.text.ends_with('*') {
+        format!("`{}` is not bound to an address", name.text)
+    } else if is_hierarchical(name.text) {
+        format!("`{}` has more parts than are supported yet", name.text)
+    } else {
+        format!("`{}` is not a direct address", name.text)
+    };
+    Diagnostic::new(Code::E0409, name.span, message)
+        .help("write an area (I, Q, M), a size (X, B, W, D, L) and a place: `%IX0.0`, `%QW3`")
 }
 
 /// `%IW0.1`, `%QX1.2.3`: an address through the parts of a station.

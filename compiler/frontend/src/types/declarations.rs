@@ -7,10 +7,10 @@ use super::synthetic::{NamedProgram, Synthetic};
 use super::table::{Resolved, Table};
 use crate::dialect::{self, Dialect};
 use crate::log::Log;
-use crate::names::{Entry, Names};
+use crate::names::{Entry, Found, Meaning, Names, Sense, Site, SpaceId};
 use crate::{Code, Diagnostic, Span, ast};
 use rustc_hash::FxHashMap;
-use staunch_ir::{Location, Program, SourceFile, StructId, Type};
+use staunch_ir::{BlockId, Location, Program, SourceFile, StructId, Type};
 use std::rc::Rc;
 
 /// A declaration, and what it was resolved to.
@@ -36,6 +36,8 @@ pub(crate) struct PouSlot<'s> {
 }
 
 pub(crate) struct GlobalSlot<'s> {
+    /// The list that it is in, or the root.
+    pub space: SpaceId,
     pub name: ast::Name<'s>,
     pub block: &'s ast::VarBlock<'s>,
     pub decl: &'s ast::VarDecl<'s>,
@@ -139,15 +141,6 @@ impl<'s> Declarations<'s> {
         }
     }
 
-    /// The type of the global variable of that name; in its own declaration it is not known yet.
-    pub fn type_of_global(&self, name: &str) -> Option<Type> {
-        let Some(Entry::Global(at)) = self.names.get(name) else { return None };
-        match &self.globals[at].slot {
-            Slot::Done(variable) => Some(variable.resolved.ty),
-            Slot::Open | Slot::Failed => None,
-        }
-    }
-
     pub fn span_of(&self, entry: Entry) -> Span {
         match entry {
             Entry::Type(at) => self.types[at].decl.name.span,
@@ -173,16 +166,64 @@ impl<'s> Declarations<'s> {
         }
     }
 
-    /// The standard block that a bare `name` means where `span` stands.
-    pub fn bare_block(&self, name: &str, span: Span) -> Option<staunch_ir::BlockId> {
-        let block = dialect::bare_block(self.dialect(span), name)?;
-        Some(dialect::as_options_have_it(block, |it| self.log.options.is_on(it)))
+    /// What a path means in a namespace, as the options have it.
+    pub fn lookup(&self, space: SpaceId, path: &[ast::Name<'_>], sense: Sense) -> Found {
+        let Some(last) = path.last() else { return Found::Nothing };
+        let names: Vec<_> = path.iter().map(|it| it.text).collect();
+        let site = Site { space, dialect: self.dialect(last.span) };
+        match self.names.lookup(site, &names, sense) {
+            Found::One(Meaning::Block(block)) => {
+                let block = dialect::as_options_have_it(block, |it| self.log.options.is_on(it));
+                Found::One(Meaning::Block(block))
+            }
+            found @ (Found::Nothing | Found::One(_) | Found::Several(_)) => found,
+        }
     }
 
-    /// The block called `name` in `family`, as the options have it.
-    pub fn block_in(&self, family: staunch_runtime::Family, name: &str) -> Option<staunch_ir::BlockId> {
-        let block = dialect::block_in(family, name)?;
-        Some(dialect::as_options_have_it(block, |it| self.log.options.is_on(it)))
+    /// What files declare by a name where a value is expected.
+    pub fn declared(&self, space: SpaceId, name: ast::Name<'_>) -> Option<Entry> {
+        match self.lookup(space, &[name], Sense::Value) {
+            Found::One(Meaning::Declared(entry)) => Some(entry),
+            Found::One(_) | Found::Nothing | Found::Several(_) => None,
+        }
+    }
+
+    /// The standard block that a bare name means.
+    pub fn bare_block(&self, name: ast::Name<'_>) -> Option<BlockId> {
+        match self.lookup(SpaceId::ROOT, &[name], Sense::Type) {
+            Found::One(Meaning::Block(block)) => Some(block),
+            Found::One(_) | Found::Nothing | Found::Several(_) => None,
+        }
+    }
+
+    /// Reports a name that means several things, which are named in full.
+    pub fn report_ambiguous(&mut self, name: ast::Name<'_>, meanings: &[String]) {
+        let names: Vec<_> = meanings.iter().map(String::as_str).collect();
+        self.report(
+            Diagnostic::new(Code::E0108, name.span, format!("several global variables are called `{}`", name.text))
+                .label("which one is meant?")
+                .help(format!("write {}", crate::diagnostic::wording::list(&names))),
+        );
+    }
+
+    /// The type of a global variable, where it is known: in its own declaration it is not yet.
+    pub fn type_of_global(&self, space: SpaceId, name: ast::Name<'_>) -> Option<Type> {
+        let Some(Entry::Global(at)) = self.declared(space, name) else { return None };
+        match &self.globals[at].slot {
+            Slot::Done(variable) => Some(variable.resolved.ty),
+            Slot::Open | Slot::Failed => None,
+        }
+    }
+
+    /// What the field of the global variable in a slot is called: a name that two lists have stands after
+    /// its list's.
+    pub fn global_field_name(&self, at: usize) -> String {
+        let GlobalSlot { name, space, .. } = &self.globals[at];
+        let own = address::field_name(name.text);
+        match self.names.list_name(*space) {
+            Some(list) if self.names.in_lists(name.text).len() > 1 => format!("{list}_{own}"),
+            Some(_) | None => own,
+        }
     }
 
     /// The instance that the name of the PROGRAM in a slot means.

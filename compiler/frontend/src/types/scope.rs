@@ -2,6 +2,7 @@
 
 use super::table::Resolved;
 use crate::ast;
+use crate::names::SpaceId;
 use crate::spelling::Key;
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{Const, Place, Section};
@@ -31,6 +32,8 @@ impl Variable<'_> {
 /// The variables a POU can name without a qualifier.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scope<'s> {
+    /// The namespace around it.
+    pub space: SpaceId,
     pub variables: Vec<Rc<Variable<'s>>>,
     index: FxHashMap<Key<'s>, usize>,
     /// Names whose declarations were refused: what uses them is not reported again.
@@ -40,6 +43,11 @@ pub(crate) struct Scope<'s> {
 }
 
 impl<'s> Scope<'s> {
+    /// Without variables, in a namespace.
+    pub fn of(space: SpaceId) -> Self {
+        Self { space, ..Self::default() }
+    }
+
     pub fn get(&self, name: &str) -> Option<&Rc<Variable<'s>>> {
         let own = self.index.get(&Key(name)).map(|at| &self.variables[*at]);
         own.or_else(|| self.constants.as_ref()?.get(name))

@@ -1,6 +1,6 @@
 //! What a program's variables take, and where they lie.
 
-use super::address::{self, Storage, field_name};
+use super::address::{self, Storage};
 use super::declarations::Declarations;
 use super::table::{GLOBALS, scalar_initial};
 use crate::ast;
@@ -65,7 +65,7 @@ impl<'s> Declarations<'s> {
     /// Whether a field of the globals has the name.
     pub fn is_global_name(&self, name: &str) -> bool {
         self.synthetic.fields.iter().any(|it| it.name.eq_ignore_ascii_case(name))
-            || self.globals.iter().any(|it| field_name(it.name.text).eq_ignore_ascii_case(name))
+            || (0..self.globals.len()).any(|at| self.global_field_name(at).eq_ignore_ascii_case(name))
     }
 
     pub fn synthetic_place(&self, at: usize) -> Place {
@@ -75,7 +75,11 @@ impl<'s> Declarations<'s> {
 
     /// The address that is written; else reports what is wrong with it.
     pub fn address(&mut self, name: ast::Name<'s>) -> Option<Address> {
-        address::read(name).map_err(|error| self.report(error)).ok()
+        let address = address::parse(name.text);
+        if address.is_none() {
+            self.report(address::wrong(name));
+        }
+        address
     }
 
     /// The variable at an address.

@@ -1,6 +1,5 @@
 //! The statements of a prescan.
 
-use super::routine_of;
 use crate::types::declarations::Declarations;
 use crate::types::signature::pin_place;
 use staunch_ir::{
@@ -200,4 +199,9 @@ pub(super) fn retention(program: &Program, pou: usize, place: &Place) -> Retain 
         };
     }
     retain
+}
+
+/// The routine of the prescan of the POU in a slot, until routines are put in order.
+pub(super) fn routine_of(declarations: &Declarations<'_>, slot: usize) -> RoutineId {
+    RoutineId::next(declarations.pous.len() + slot)
 }

@@ -1,8 +1,8 @@
 //! A prescan reaches the instances inside: each POU's runs those of the instances it contains.
 
+use super::build::routine_of;
 use super::build::{Builder, retention};
 use super::reach::joined;
-use super::routine_of;
 use crate::expr::uses::{KeptCount, Uses};
 use crate::types::declarations::Declarations;
 use staunch_ir::{

@@ -1,0 +1,82 @@
+//! Lists of global variables: whose name stands before a variable's, `GVL.x`. A file that holds nothing but
+//! VAR_GLOBAL is one, by the name of the file; a pragma `{gvl 'Name'}` names the blocks that follow it.
+
+use crate::dialect::Dialect;
+use crate::types::declarations::Declarations;
+use crate::{Code, Diagnostic, Span, ast};
+
+/// The names of a file's lists.
+pub(super) struct Lists<'s> {
+    file: Option<&'s str>,
+    /// Where each is named, in order.
+    named: Vec<(u32, &'s str)>,
+    /// Where the last unit that is no list ends.
+    end: u32,
+}
+
+impl<'s> Lists<'s> {
+    pub fn of(declarations: &mut Declarations<'s>, file: &'s ast::File<'s>) -> Self {
+        let mut lists = Self { file: None, named: Vec::new(), end: 0 };
+        for pragma in file.pragmas.iter().filter(|it| is_list_pragma(it.text)) {
+            if declarations.dialect(pragma.span) != Dialect::Codesys {
+                declarations.report(
+                    Diagnostic::new(Code::W0102, pragma.span, "lists of global variables have names in codesys")
+                        .label("it has no effect")
+                        .help("start the file with `{dialect 'codesys'}`"),
+                );
+            } else if let Some(name) = quoted(pragma.text) {
+                lists.named.push((pragma.span.start, name));
+            } else {
+                declarations.report(
+                    Diagnostic::new(Code::W0102, pragma.span, "this pragma names a list of global variables")
+                        .label("it has no effect")
+                        .help("write the list's name in quotes: `{gvl 'Name'}`"),
+                );
+            }
+        }
+        let globals = |it: &ast::Item<'s>| match it {
+            ast::Item::Globals(block) => Some(block.span),
+            ast::Item::Pou(_) | ast::Item::Types(_) | ast::Item::Configuration(_) => None,
+        };
+        let spans: Option<Vec<_>> = file.items.iter().map(globals).collect();
+        if let Some([first, ..]) = spans.as_deref()
+            && declarations.dialect(*first) == Dialect::Codesys
+        {
+            let path = declarations.log.sources.get(first.file).path.as_str();
+            lists.file = stem(path).filter(|it| is_name(it));
+        }
+        lists
+    }
+
+    /// A pragma before this unit names no block after it.
+    pub fn end(&mut self, unit: Span) {
+        self.end = unit.start;
+    }
+
+    /// The list that a block of variables is in.
+    pub fn around(&self, block: Span) -> Option<&'s str> {
+        let before = self.named.iter().rev().find(|(start, _)| *start < block.start);
+        before.filter(|(start, _)| *start >= self.end).map(|(_, name)| *name).or(self.file)
+    }
+}
+
+pub(super) fn is_list_pragma(text: &str) -> bool {
+    let word = text.trim().split(|it: char| !it.is_ascii_alphanumeric() && it != '_').next();
+    word.is_some_and(|it| it.eq_ignore_ascii_case("gvl"))
+}
+
+fn quoted(text: &str) -> Option<&str> {
+    let rest = text.trim().get("gvl".len()..)?.trim_start().trim_start_matches(":=").trim();
+    rest.strip_prefix('\'')?.strip_suffix('\'').filter(|it| is_name(it))
+}
+
+/// The name of a file without its folder and ending.
+fn stem(path: &str) -> Option<&str> {
+    let file = path.rsplit(['/', '\\']).next()?;
+    file.rsplit_once('.').map(|(stem, _)| stem)
+}
+
+fn is_name(text: &str) -> bool {
+    let starts = text.starts_with(|it: char| it.is_ascii_alphabetic() || it == '_');
+    starts && text.chars().all(|it| it.is_ascii_alphanumeric() || it == '_')
+}

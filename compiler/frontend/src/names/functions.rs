@@ -1,0 +1,141 @@
+//! The standard functions, as a table of signatures, and the names of conversions.
+
+use crate::ast::BinaryOp;
+use crate::dialect::Dialect;
+use crate::spelling::Key;
+use rustc_hash::FxHashMap;
+use staunch_ir::{Elementary, Op, TextOp};
+use staunch_runtime::{Signature, signature};
+use std::sync::LazyLock;
+
+/// What a standard function means.
+#[derive(Clone, Copy)]
+pub(crate) enum Meaning {
+    /// A row of the runtime's table of operations.
+    Operation(Op),
+    /// A row of the runtime's table of functions on strings.
+    Text(TextOp),
+    /// `ADD(a, b)` is `a + b`, with all that an operator does at its types.
+    Operator(BinaryOp),
+    /// The input that K numbers.
+    Mux,
+    /// The value itself: a literal stays one.
+    Move,
+    /// Toward zero, to the integer that its place asks for.
+    Truncate,
+}
+
+/// Functions that are no rows of the runtime's tables, and other vendors' names of parameters.
+const OTHERS: [(Option<Dialect>, Signature, Meaning); 22] = [
+    (None, signature!("MUX" (K: ANY_INT, IN0: T, IN1: T) -> T [ANY] extensible), Meaning::Mux),
+    (None, signature!("MOVE" (IN: T) -> T [ANY]), Meaning::Move),
+    (None, signature!("TRUNC" (IN: ANY_REAL) -> ANY_INT), Meaning::Truncate),
+    (None, signature!("ADD_TIME" (IN1: TIME, IN2: TIME) -> TIME), Meaning::Operator(BinaryOp::Add)),
+    (None, signature!("SUB_TIME" (IN1: TIME, IN2: TIME) -> TIME), Meaning::Operator(BinaryOp::Sub)),
+    (None, signature!("MUL_TIME" (IN1: TIME, IN2: ANY_NUM) -> TIME), Meaning::Operator(BinaryOp::Mul)),
+    (None, signature!("DIV_TIME" (IN1: TIME, IN2: ANY_NUM) -> TIME), Meaning::Operator(BinaryOp::Div)),
+    (None, signature!("MULTIME" (IN1: TIME, IN2: ANY_NUM) -> TIME), Meaning::Operator(BinaryOp::Mul)),
+    (None, signature!("DIVTIME" (IN1: TIME, IN2: ANY_NUM) -> TIME), Meaning::Operator(BinaryOp::Div)),
+    (None, signature!("ADD_LTIME" (IN1: LTIME, IN2: LTIME) -> LTIME), Meaning::Operator(BinaryOp::Add)),
+    (None, signature!("SUB_LTIME" (IN1: LTIME, IN2: LTIME) -> LTIME), Meaning::Operator(BinaryOp::Sub)),
+    (None, signature!("MUL_LTIME" (IN1: LTIME, IN2: ANY_NUM) -> LTIME), Meaning::Operator(BinaryOp::Mul)),
+    (None, signature!("DIV_LTIME" (IN1: LTIME, IN2: ANY_NUM) -> LTIME), Meaning::Operator(BinaryOp::Div)),
+    // CODESYS's library names the parameters of the functions on strings in its own way.
+    (CODESYS, signature!("LEN" (STR: STRING) -> INT), Meaning::Text(TextOp::Len)),
+    (CODESYS, signature!("LEFT" (STR: STRING, SIZE: ANY_INT) -> STRING), Meaning::Text(TextOp::Left)),
+    (CODESYS, signature!("RIGHT" (STR: STRING, SIZE: ANY_INT) -> STRING), Meaning::Text(TextOp::Right)),
+    (CODESYS, signature!("MID" (STR: STRING, LEN: ANY_INT, POS: ANY_INT) -> STRING), Meaning::Text(TextOp::Mid)),
+    (CODESYS, signature!("CONCAT" (STR1: STRING, STR2: STRING) -> STRING extensible), Meaning::Text(TextOp::Concat)),
+    (CODESYS, signature!("INSERT" (STR1: STRING, STR2: STRING, POS: ANY_INT) -> STRING), Meaning::Text(TextOp::Insert)),
+    (CODESYS, signature!("DELETE" (STR: STRING, LEN: ANY_INT, POS: ANY_INT) -> STRING), Meaning::Text(TextOp::Delete)),
+    (
+        CODESYS,
+        signature!("REPLACE" (STR1: STRING, STR2: STRING, L: ANY_INT, P: ANY_INT) -> STRING),
+        Meaning::Text(TextOp::Replace),
+    ),
+    (CODESYS, signature!("FIND" (STR1: STRING, STR2: STRING) -> INT), Meaning::Text(TextOp::Find)),
+];
+
+const CODESYS: Option<Dialect> = Some(Dialect::Codesys);
+
+/// A signature, whose it is if it is a vendor's, and what it means.
+type Function = (Option<Dialect>, &'static Signature, Meaning);
+
+/// Every standard function, a vendor's forms after the standard's.
+static FUNCTIONS: LazyLock<FxHashMap<Key<'static>, Vec<Function>>> = LazyLock::new(|| {
+    let operations = Op::ALL.iter().map(|op| (None, op.signature(), meaning(*op)));
+    let texts = TextOp::ALL.iter().map(|op| (None, op.signature(), Meaning::Text(*op)));
+    let others = OTHERS.iter().map(|(dialect, signature, meaning)| (*dialect, signature, *meaning));
+    let mut functions: FxHashMap<_, Vec<_>> = FxHashMap::default();
+    for function in operations.chain(texts).chain(others).filter(|it| !it.1.name.starts_with('_')) {
+        functions.entry(Key(function.1.name)).or_default().push(function);
+    }
+    functions
+});
+
+/// The standard functions of a name.
+pub(crate) fn named(name: &str) -> &[Function] {
+    FUNCTIONS.get(&Key(name)).map_or(&[], Vec::as_slice)
+}
+
+/// Whether a standard function bears this name.
+pub(crate) fn exists(name: &str) -> bool {
+    !named(name).is_empty() || conversion(name).is_some()
+}
+
+/// The names of the standard functions, for suggestions.
+pub(crate) fn names() -> impl Iterator<Item = &'static str> {
+    FUNCTIONS.keys().map(|it| it.0)
+}
+
+/// What an operation's function means: for those with an operator, the operator.
+fn meaning(op: Op) -> Meaning {
+    let operator = match op {
+        Op::Add => BinaryOp::Add,
+        Op::Sub => BinaryOp::Sub,
+        Op::Mul => BinaryOp::Mul,
+        Op::Div => BinaryOp::Div,
+        Op::Mod => BinaryOp::Mod,
+        Op::Expt => BinaryOp::Power,
+        Op::And => BinaryOp::And,
+        Op::Or => BinaryOp::Or,
+        Op::Xor => BinaryOp::Xor,
+        Op::Eq => BinaryOp::Eq,
+        Op::Ne => BinaryOp::Ne,
+        Op::Lt => BinaryOp::Lt,
+        Op::Le => BinaryOp::Le,
+        Op::Gt => BinaryOp::Gt,
+        Op::Ge => BinaryOp::Ge,
+        _ => return Meaning::Operation(op),
+    };
+    Meaning::Operator(operator)
+}
+
+/// What a conversion function's name says.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Conversion {
+    pub from: Option<Elementary>,
+    pub to: Elementary,
+    pub truncates: bool,
+}
+
+/// What the name of a conversion function says.
+pub(crate) fn conversion(name: &str) -> Option<Conversion> {
+    let name = name.to_ascii_uppercase();
+    if let Some(to) = name.strip_prefix("TO_") {
+        return Some(Conversion { from: None, to: Elementary::named(to)?, truncates: false });
+    }
+    if let Some(to) = name.strip_prefix("TRUNC_") {
+        let to = Elementary::named(to).filter(|it| it.is_integer())?;
+        return Some(Conversion { from: None, to, truncates: true });
+    }
+    let (truncates, (from, to)) = match name.split_once("_TRUNC_") {
+        Some(parts) => (true, parts),
+        None => (false, name.split_once("_TO_")?),
+    };
+    let (from, to) = (Elementary::named(from)?, Elementary::named(to)?);
+    if truncates && !(from.is_real() && to.is_integer()) {
+        return None;
+    }
+    Some(Conversion { from: Some(from), to, truncates })
+}

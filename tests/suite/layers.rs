@@ -1,0 +1,178 @@
+//! The front end's folders are layers: each imports from those before it, and no modules import one
+//! another in a circle.
+
+use staunch_tests::project;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+const ROOT: &str = "compiler/frontend/src";
+
+/// The folders and files at the root, from the lowest.
+const LAYERS: [&str; 15] = [
+    "source",
+    "diagnostic",
+    "spelling",
+    "ast",
+    "lex",
+    "syntax",
+    "dialect",
+    "log",
+    "names",
+    "types",
+    "expr",
+    "declare",
+    "body",
+    "program",
+    "lints",
+];
+
+/// The circles that there are: a module that is divided into a few files.
+const CIRCLES: [&[&str]; 4] = [
+    &["diagnostic", "diagnostic::codes", "diagnostic::render"],
+    &["lex", "lex::comment", "lex::kind"],
+    &["syntax::diagnostics", "syntax::diagnostics::declared"],
+    &["syntax::doc", "syntax::parser"],
+];
+
+type Imports = BTreeMap<String, BTreeSet<String>>;
+
+#[test]
+fn a_layer_imports_from_those_below_it() {
+    let rank = |module: &str| {
+        let layer = module.split("::").next().unwrap();
+        LAYERS.iter().position(|it| *it == layer).unwrap_or_else(|| panic!("`{layer}` is in no layer"))
+    };
+    let mut wrong = Vec::new();
+    let mut checked = 0;
+    for (module, imports) in imports() {
+        for import in imports {
+            checked += 1;
+            if rank(&import) > rank(&module) {
+                wrong.push(format!("{module} imports {import}"));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+    assert!(checked > 200, "{checked}");
+}
+
+#[test]
+fn no_modules_import_one_another_in_a_circle() {
+    let imports = imports();
+    let reached: BTreeMap<_, _> = imports.keys().map(|it| (it.as_str(), reach(&imports, it))).collect();
+    let mut circles: BTreeSet<Vec<&str>> = BTreeSet::new();
+    for (module, all) in &reached {
+        let back = |it: &&&str| reached[**it].contains(*module) && all.contains(**it);
+        let circle: Vec<_> = reached.keys().filter(back).copied().collect();
+        if circle.len() > 1 {
+            circles.insert(circle);
+        }
+    }
+    let allowed: BTreeSet<Vec<&str>> = CIRCLES.iter().map(|it| it.to_vec()).collect();
+    assert_eq!(circles, allowed);
+}
+
+fn reach<'i>(imports: &'i Imports, from: &str) -> BTreeSet<&'i str> {
+    let (mut reached, mut open) = (BTreeSet::new(), vec![from]);
+    while let Some(module) = open.pop() {
+        for next in &imports[module] {
+            if reached.insert(next.as_str()) {
+                open.push(next);
+            }
+        }
+    }
+    reached
+}
+
+/// For each module of the front end, tests aside, the modules of it that it names.
+fn imports() -> Imports {
+    let mut texts = BTreeMap::new();
+    read(&project().join(ROOT), "", &mut texts);
+    let known: BTreeSet<_> = texts.keys().cloned().collect();
+    let found = texts.iter().map(|(module, text)| {
+        let paths = paths(text).into_iter().filter_map(|path| meant(module, &path, &known));
+        (module.clone(), paths.filter(|it| it != module).collect())
+    });
+    found.collect()
+}
+
+fn read(folder: &Path, prefix: &str, texts: &mut BTreeMap<String, String>) {
+    for entry in std::fs::read_dir(folder).unwrap().flatten() {
+        let (path, name) = (entry.path(), entry.file_name().into_string().unwrap());
+        let name = name.trim_end_matches(".rs");
+        let module = if prefix.is_empty() { name.to_owned() } else { format!("{prefix}::{name}") };
+        match name {
+            "tests" | "lib" => {}
+            _ if path.is_dir() => read(&path, &module, texts),
+            "mod" => drop(texts.insert(prefix.to_owned(), std::fs::read_to_string(path).unwrap())),
+            _ => drop(texts.insert(module, std::fs::read_to_string(path).unwrap())),
+        }
+    }
+}
+
+/// Every path in a file that starts with `crate`, `super`, `self` or, after `use`, a module: those in
+/// braces in full.
+fn paths(text: &str) -> Vec<String> {
+    let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap();
+    let code: String = code.lines().map(|it| it.split("//").next().unwrap()).collect::<Vec<_>>().join("\n");
+    let mut paths = Vec::new();
+    for start in starts(&code) {
+        expand("", &code[start..], &mut paths);
+    }
+    paths
+}
+
+fn starts(code: &str) -> Vec<usize> {
+    let boundary = |at: usize| !code[..at].ends_with(|it: char| it.is_alphanumeric() || it == '_' || it == ':');
+    let mut starts: Vec<_> = ["crate::", "super::", "self::"]
+        .iter()
+        .flat_map(|word| code.match_indices(word).map(|(at, _)| at))
+        .filter(|at| boundary(*at))
+        .collect();
+    starts.extend(code.match_indices("use ").filter(|(at, _)| boundary(*at)).map(|(at, _)| at + "use ".len()));
+    starts
+}
+
+/// The paths of a use tree, and how much of the text it takes.
+fn expand(before: &str, text: &str, paths: &mut Vec<String>) -> usize {
+    let end = text.find(|it: char| !(it.is_alphanumeric() || it == '_' || it == ':')).unwrap_or(text.len());
+    let path = format!("{before}{}", &text[..end]);
+    if !text[end..].starts_with('{') || !path.ends_with("::") {
+        paths.push(path);
+        return end;
+    }
+    let mut at = end + 1;
+    loop {
+        at += text[at..].len() - text[at..].trim_start_matches([' ', '\n', ',']).len();
+        if text[at..].starts_with('}') {
+            return at + 1;
+        }
+        let taken = expand(&path, &text[at..], paths);
+        // `as name`, or what is no path.
+        let rest = text[at + taken..].find([',', '}']).unwrap_or(text.len() - at - taken);
+        at += taken + rest;
+        if at >= text.len() {
+            return at;
+        }
+    }
+}
+
+/// The module that a path in `module` leads to, or into.
+fn meant(module: &str, path: &str, known: &BTreeSet<String>) -> Option<String> {
+    let mut parts: Vec<&str> = path.split("::").filter(|it| !it.is_empty()).collect();
+    let mut full: Vec<&str> = module.split("::").collect();
+    match *parts.first()? {
+        "crate" => full.clear(),
+        "self" => {}
+        "super" => {
+            while parts.first() == Some(&"super") {
+                full.pop();
+                parts.remove(0);
+            }
+        }
+        first if known.contains(&format!("{module}::{first}")) => {}
+        _ => return None,
+    }
+    full.extend(parts.iter().filter(|it| !matches!(**it, "crate" | "self")));
+    (1..=full.len()).rev().map(|len| full[..len].join("::")).find(|it| known.contains(it))
+}
