@@ -1,8 +1,10 @@
 //! Every case below `cases/`, each a test of its own.
 
 use staunch_frontend::{Code, Options, Source, Sources};
+use staunch_ir::{Argument, Place, StatementKind, Type, visit};
 use staunch_tests::case::{self, Case, Pin};
 use staunch_tests::{cases, golden};
+use std::collections::BTreeSet;
 
 include!(concat!(env!("OUT_DIR"), "/golden_tests.rs"));
 
@@ -19,6 +21,76 @@ fn nothing_lies_about() {
     let (cases, problems) = case::discover(&cases());
     assert!(problems.is_empty(), "{}", problems.join("\n"));
     assert!(cases.len() > 100, "only {} cases", cases.len());
+}
+
+/// Each kind of statement, and each way in which a call hands something over, is pinned as IR.
+#[test]
+fn every_form_of_statement_is_pinned_as_ir() {
+    let (cases, _) = case::discover(&cases());
+    let mut pinned = BTreeSet::new();
+    for case in cases.iter().filter(|it| it.pins.contains(&Pin::Ir)) {
+        let program = case.compile().1.program.unwrap();
+        for routine in &program.routines {
+            visit::statements(&routine.body, &mut |it| {
+                pinned.insert(form(&it.kind));
+                pinned.extend(handed_over(&it.kind));
+            });
+        }
+    }
+    let expected = [
+        "assign",
+        "if",
+        "case",
+        "loop",
+        "for",
+        "turn",
+        "exit",
+        "continue",
+        "return",
+        "call",
+        "call an instance",
+        "call a block",
+        "prescan a block",
+        "fault",
+        "hand over a value",
+        "hand over a text",
+        "hand over a variable",
+        "hand over an element",
+        "call an element",
+    ];
+    assert_eq!(pinned, BTreeSet::from(expected));
+}
+
+fn form(kind: &StatementKind) -> &'static str {
+    match kind {
+        StatementKind::Assign { .. } => "assign",
+        StatementKind::If { .. } => "if",
+        StatementKind::Case { .. } => "case",
+        StatementKind::Loop { .. } => "loop",
+        StatementKind::For(_) => "for",
+        StatementKind::Turn => "turn",
+        StatementKind::Exit => "exit",
+        StatementKind::Continue => "continue",
+        StatementKind::Return => "return",
+        StatementKind::Call { instance: None, .. } => "call",
+        StatementKind::Call { instance: Some(_), .. } => "call an instance",
+        StatementKind::CallBlock { .. } => "call a block",
+        StatementKind::PrescanBlock { .. } => "prescan a block",
+        StatementKind::Fault(_) => "fault",
+    }
+}
+
+fn handed_over(kind: &StatementKind) -> BTreeSet<&'static str> {
+    let StatementKind::Call { instance, arguments, .. } = kind else { return BTreeSet::new() };
+    let is_element = |place: &Place| place.indices().next().is_some();
+    let argument = |it: &Argument| match it {
+        Argument::Value(value) if matches!(value.ty, Type::String(_)) => "hand over a text",
+        Argument::Value(_) => "hand over a value",
+        Argument::Reference(place) if is_element(place) => "hand over an element",
+        Argument::Reference(_) => "hand over a variable",
+    };
+    let element = instance.iter().filter(|it| is_element(it)).map(|_| "call an element");
+    arguments.iter().map(argument).chain(element).collect()
 }
 
 #[test]

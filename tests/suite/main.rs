@@ -9,6 +9,7 @@ mod constants;
 mod effects;
 mod operations;
 mod programs;
+mod stack;
 mod state;
 
 mod architecture;

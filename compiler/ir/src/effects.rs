@@ -7,11 +7,11 @@
 
 mod variables;
 
-use crate::loops::{constant_position, is_within};
+use crate::loops::{Known, checked_locals, constant_position};
 use crate::visit::{self, Access};
 use crate::{
-    Argument, Class, ClassKind, Expr, ExprKind, For, Op, ParamId, Place, Program, Projection, Root, Routine, RoutineId,
-    RoutineKind, Statement, StatementKind, Type,
+    Argument, ArrayId, Class, ClassKind, Expr, ExprKind, For, LocalId, Op, ParamId, Place, Program, Projection, Root,
+    Routine, RoutineId, RoutineKind, Statement, StatementKind, Type,
 };
 
 pub use variables::Variables;
@@ -23,7 +23,7 @@ pub struct Rules {
     pub block_takes_context: fn(&Place, usize) -> bool,
     /// Whether the code for an operation on these operands has a way to a fault.
     pub operation_faults: fn(&Program, Op, &[Expr]) -> bool,
-    /// Whether an index has no check where loops show that it lies within its bounds.
+    /// Whether an index has no check where it is known to lie within its bounds.
     pub drops_checks: bool,
     /// Whether the body of a PROGRAM or FUNCTION_BLOCK takes the context and returns a fault
     /// whatever it does, and a PROGRAM's runs its prescan.
@@ -42,6 +42,8 @@ pub struct Effects {
     pub calls: Vec<RoutineId>,
     /// For each local, whether a call gets a reference to it.
     pub borrowed: Vec<bool>,
+    /// For each local, whether its values are always within its subrange.
+    pub checked: Vec<bool>,
 }
 
 impl Effects {
@@ -55,7 +57,8 @@ impl Effects {
 pub fn effects(program: &Program, rules: &Rules) -> Vec<Effects> {
     let mut known: Vec<Effects> = Vec::with_capacity(program.routines.len());
     for routine in &program.routines {
-        let effects = Effects { borrowed: vec![false; routine.locals.len()], ..Effects::default() };
+        let (borrowed, checked) = (vec![false; routine.locals.len()], checked_locals(routine));
+        let effects = Effects { borrowed, checked, ..Effects::default() };
         let mut finder = Finder { program, rules, known: &known, routine, loops: Vec::new(), effects };
         finder.block(&routine.body);
         let mut effects = finder.effects;
@@ -212,6 +215,11 @@ impl<'a> Finder<'a> {
         }
     }
 
+    fn is_within(&self, index: &Expr, array: ArrayId) -> bool {
+        let checked = |id: LocalId| self.effects.checked[id.index()];
+        Known { program: self.program, loops: &self.loops, checked: &checked }.is_within(index, array)
+    }
+
     /// Finding a place may fault at each of its indices.
     fn place(&mut self, place: &Place) {
         let mut ty = self.program.root_type(self.routine, place.root);
@@ -221,7 +229,7 @@ impl<'a> Finder<'a> {
                 (Projection::Index { index, .. }, Some(Type::Array(id))) => {
                     self.expr(index);
                     let constant = constant_position(self.program, index, id).is_some();
-                    let dropped = self.rules.drops_checks && is_within(self.program, index, id, &self.loops);
+                    let dropped = self.rules.drops_checks && self.is_within(index, id);
                     self.effects.faults |= !constant && !dropped;
                     Some(self.program.array(id).element)
                 }

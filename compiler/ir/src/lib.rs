@@ -34,6 +34,7 @@ pub mod effects;
 pub mod interpret;
 pub mod layout;
 pub mod loops;
+pub mod stack;
 pub mod symbols;
 pub mod usage;
 

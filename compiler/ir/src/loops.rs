@@ -1,9 +1,13 @@
-//! What is known of FOR loops: which counters nothing but the loop writes, and what values they
-//! have. A back end may keep such a counter in a register beside its storage, and an index whose
-//! range follows from the loop's bounds needs no check.
+//! What is known of FOR loops and of checked indices: which counters nothing but the loop writes, and
+//! what values they have. A back end may keep such a counter in a register beside its storage, and an
+//! index whose range follows from the loop's bounds, or from a check before, needs no check.
 
 use crate::alias::{self, Frame};
-use crate::{ArrayId, Conversion, Expr, ExprKind, For, Op, Place, Program, Statement, StatementKind, Value};
+use crate::visit;
+use crate::{
+    ArrayId, Conversion, Expr, ExprKind, For, LocalId, Mode, Op, Place, Program, Root, Routine, Statement,
+    StatementKind, Type, Value,
+};
 
 /// Inclusive.
 pub type Range = (i128, i128);
@@ -29,31 +33,79 @@ pub fn constant_position(program: &Program, index: &Expr, array: ArrayId) -> Opt
     (array.low..=array.high).contains(&index).then(|| index.abs_diff(array.low))
 }
 
-/// Whether an index needs no check in the bodies of `loops`, whose counters are private.
-pub fn is_within(program: &Program, index: &Expr, array: ArrayId, loops: &[&For]) -> bool {
-    let array = program.array(array);
-    let range = range(program, index, loops);
-    range.is_some_and(|(least, most)| i128::from(array.low) <= least && most <= i128::from(array.high))
+/// What is known where an expression stands.
+#[expect(missing_debug_implementations, reason = "it holds a function, and lives for one question")]
+#[derive(Clone, Copy)]
+pub struct Known<'a> {
+    pub program: &'a Program,
+    /// The FOR loops around, with private counters.
+    pub loops: &'a [&'a For],
+    /// Whether a local's values [are checked](checked_locals).
+    pub checked: &'a dyn Fn(LocalId) -> bool,
 }
 
-/// What an integer expression may be, in the bodies of `loops`.
-fn range(program: &Program, expr: &Expr, loops: &[&For]) -> Option<Range> {
-    let whole = program.lane(expr.ty)?.range()?;
-    let known = match &expr.kind {
-        ExprKind::Const(value) => value.as_integer().map(|it| (it, it)),
-        ExprKind::Load(place) => running(loops, place).map(|at| loops[at].bounds()),
-        ExprKind::Convert(Conversion::Value | Conversion::Same, operand) => range(program, operand, loops),
-        ExprKind::Apply(op, operands) => match operands.as_slice() {
-            [a, b] => range(program, a, loops).zip(range(program, b, loops)).and_then(|(a, b)| combined(*op, a, b)),
-            _ => None,
-        },
-        ExprKind::Convert(Conversion::Truncate, _)
-        | ExprKind::ApplyText(..)
-        | ExprKind::Text(_)
-        | ExprKind::Aggregate(_) => None,
-    };
-    // What leaves the type wraps, and may be anything.
-    Some(known.filter(|(least, most)| whole.0 <= *least && *most <= whole.1).unwrap_or(whole))
+/// For each local, whether it holds a value of its subrange at any time: it starts with one, and
+/// nothing writes it but assignments of constants and of checked values. What a caller hands over, and
+/// what is read from a state that a host may have written, is not relied on.
+pub fn checked_locals(routine: &Routine) -> Vec<bool> {
+    let mut checked: Vec<bool> = routine.locals.iter().map(|it| matches!(it.ty, Type::Subrange(..))).collect();
+    let values = routine.params.iter().filter_map(|it| match it.mode {
+        Mode::Value(id) => Some(id),
+        Mode::Reference => None,
+    });
+    values.for_each(|id| checked[id.index()] = false);
+    visit::statements(&routine.body, &mut |statement| {
+        let is_checked = matches!(&statement.kind, StatementKind::Assign { value, .. } if is_check(value));
+        visit::targets(statement, &mut |place| {
+            if let Root::Local(id) = place.root {
+                checked[id.index()] &= is_checked;
+            }
+        });
+    });
+    checked
+}
+
+/// `verify` sees to it that such a value of a subrange is within its limits.
+fn is_check(value: &Expr) -> bool {
+    matches!(value.kind, ExprKind::Const(_) | ExprKind::Apply(Op::CheckIndex | Op::InRange, _))
+}
+
+impl Known<'_> {
+    /// Whether an index needs no check here.
+    pub fn is_within(&self, index: &Expr, array: ArrayId) -> bool {
+        let array = self.program.array(array);
+        let range = self.range(index);
+        range.is_some_and(|(least, most)| i128::from(array.low) <= least && most <= i128::from(array.high))
+    }
+
+    /// What an integer expression may be.
+    fn range(&self, expr: &Expr) -> Option<Range> {
+        let whole = self.program.lane(expr.ty)?.range()?;
+        let known = match &expr.kind {
+            ExprKind::Const(value) => value.as_integer().map(|it| (it, it)),
+            ExprKind::Load(place) => self.variable(place),
+            ExprKind::Convert(Conversion::Value | Conversion::Same, operand) => self.range(operand),
+            ExprKind::Apply(op, operands) => match operands.as_slice() {
+                [a, b] => self.range(a).zip(self.range(b)).and_then(|(a, b)| combined(*op, a, b)),
+                _ => None,
+            },
+            ExprKind::Convert(Conversion::Truncate, _)
+            | ExprKind::ApplyText(..)
+            | ExprKind::Text(_)
+            | ExprKind::Aggregate(_) => None,
+        };
+        // What leaves the type wraps, and may be anything.
+        Some(known.filter(|(least, most)| whole.0 <= *least && *most <= whole.1).unwrap_or(whole))
+    }
+
+    fn variable(&self, place: &Place) -> Option<Range> {
+        if let Root::Local(id) = place.root
+            && (self.checked)(id)
+        {
+            return self.program.range(place.ty);
+        }
+        running(self.loops, place).map(|at| self.loops[at].bounds())
+    }
 }
 
 /// Which of the loops has `place` as its counter.
@@ -80,3 +132,6 @@ fn product(a: Range, b: Range) -> Option<Range> {
     let corners = [a.0.checked_mul(b.0)?, a.0.checked_mul(b.1)?, a.1.checked_mul(b.0)?, a.1.checked_mul(b.1)?];
     Some((*corners.iter().min()?, *corners.iter().max()?))
 }
+
+#[cfg(test)]
+mod tests;

@@ -28,6 +28,8 @@ pub(crate) struct Function<'a, 'p> {
     pub(crate) counters: Vec<&'p For>,
     /// One for each of `counters`: its value, extended to 64 bits.
     pub(crate) registers: Vec<Variable>,
+    /// The locals whose values are always within their subranges.
+    pub(crate) checked: Vec<bool>,
     /// Where RETURN goes.
     pub(crate) exit: clif::Block,
     pub(crate) faults: Faults,
@@ -101,6 +103,7 @@ impl<'a, 'p> Function<'a, 'p> {
             loops: Vec::new(),
             counters: Vec::new(),
             registers: Vec::new(),
+            checked: effects.checked.clone(),
             exit,
             faults: Faults::default(),
             temporaries: Temporaries::default(),
@@ -198,6 +201,7 @@ impl<'a, 'p> Function<'a, 'p> {
         values.extend(result);
         self.ins().return_(&values);
         self.close_faults();
+        self.close_temporaries();
         self.builder.finalize(self.unit.module.target_config());
     }
 

@@ -42,7 +42,7 @@ impl Jit {
         let memory = ArenaMemoryProvider::new_with_size(RESERVED).map_err(|error| Error::Output(error.to_string()))?;
         builder.memory_provider(Box::new(memory));
         let mut module = JITModule::new(builder);
-        let (entry_points, _) = unit::emit(program, &mut module, None)?;
+        let entry_points = unit::emit(program, &mut module, None)?.entry_points;
         module.finalize_definitions()?;
         Ok(Self::of_module(module, entry_points))
     }

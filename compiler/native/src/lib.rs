@@ -38,6 +38,6 @@ mod object;
 
 pub use error::Error;
 pub use jit::{Init, Jit, Scan};
-pub use listing::clif;
+pub use listing::{clif, frames};
 pub use object::object;
 pub use target::Target;

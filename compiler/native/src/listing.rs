@@ -1,4 +1,4 @@
-//! The code as text.
+//! What people and tests ask of the code: its text, and how much of the stack it takes.
 
 use crate::{Error, Target, object, unit};
 use staunch_ir::Program;
@@ -10,6 +10,14 @@ use staunch_ir::Program;
 /// As [`object`](crate::object()).
 pub fn clif(program: &Program, target: &Target) -> Result<String, Error> {
     let mut module = object::module(target)?;
-    let (_, text) = unit::emit(program, &mut module, Some(String::new()))?;
-    Ok(text)
+    Ok(unit::emit(program, &mut module, Some(String::new()))?.listing)
+}
+
+/// How many bytes of the stack a call of each routine takes, without those of the calls it makes.
+///
+/// # Errors
+/// As [`object`](crate::object()).
+pub fn frames(program: &Program, target: &Target) -> Result<Vec<u64>, Error> {
+    let mut module = object::module(target)?;
+    Ok(unit::emit(program, &mut module, None)?.frames)
 }

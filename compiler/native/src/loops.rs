@@ -124,6 +124,7 @@ impl<'p> Function<'_, 'p> {
     }
 
     fn further_turn(&mut self, control: &Control<'p>, turn: clif::Block, after: clif::Block) {
+        self.release_temporaries();
         match control {
             Control::Count(running) => {
                 let (counter, last) = (self.counter_value(running), self.last(running));

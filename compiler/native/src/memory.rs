@@ -5,7 +5,6 @@ use crate::signature::{POINTER, clif_type};
 use cranelift_codegen::ir::{self as clif, InstBuilder, MemFlagsData, StackSlot, StackSlotData, StackSlotKind, types};
 use staunch_ir::layout::{Shape, usize_of};
 use staunch_ir::{Const, Lane, Type, Value};
-use std::collections::HashMap;
 
 /// A pointer and a constant distance from it.
 #[derive(Clone, Copy, Debug)]
@@ -30,13 +29,17 @@ impl Address {
     }
 }
 
-/// Parts of the frame that live for a statement, and are used again in later ones.
+/// A part of the frame whose bytes are taken for a statement, one after the other, and again in the next.
 #[derive(Debug, Default)]
 pub(crate) struct Temporaries {
-    /// By size and alignment.
-    free: HashMap<(u64, u64), Vec<StackSlot>>,
-    taken: Vec<(Shape, StackSlot)>,
+    slot: Option<StackSlot>,
+    taken: u64,
+    /// The most that a statement takes.
+    most: u64,
 }
+
+/// Of the part of the frame for temporaries: that of the largest elementary type.
+const TEMPORARY_ALIGN: u64 = 8;
 
 impl Function<'_, '_> {
     pub(crate) fn slot(&mut self, shape: Shape) -> StackSlot {
@@ -52,15 +55,26 @@ impl Function<'_, '_> {
 
     /// Space until the end of the statement.
     pub(crate) fn temporary(&mut self, shape: Shape) -> Address {
-        let reused = self.temporaries.free.get_mut(&(shape.size, shape.align)).and_then(Vec::pop);
-        let slot = reused.unwrap_or_else(|| self.slot(shape));
-        self.temporaries.taken.push((shape, slot));
-        self.slot_address(slot)
+        let slot = match self.temporaries.slot {
+            Some(slot) => slot,
+            // How large it is shows when all statements have been emitted.
+            None => self.slot(Shape { size: 0, align: TEMPORARY_ALIGN }),
+        };
+        let offset = self.temporaries.taken.next_multiple_of(shape.align);
+        let taken = offset + shape.size.max(1);
+        let most = self.temporaries.most.max(taken);
+        self.temporaries = Temporaries { slot: Some(slot), taken, most };
+        self.slot_address(slot).plus(offset)
     }
 
     pub(crate) fn release_temporaries(&mut self) {
-        for (shape, slot) in self.temporaries.taken.drain(..) {
-            self.temporaries.free.entry((shape.size, shape.align)).or_default().push(slot);
+        self.temporaries.taken = 0;
+    }
+
+    pub(crate) fn close_temporaries(&mut self) {
+        if let Some(slot) = self.temporaries.slot {
+            let size = u32::try_from(self.temporaries.most).expect("verified IR: sizes are within 1 GiB");
+            self.builder.func.sized_stack_slots[slot].size = size;
         }
     }
 

@@ -4,8 +4,8 @@ use crate::function::{Function, Home};
 use crate::memory::Address;
 use cranelift_codegen::ir::{InstBuilder, condcodes::IntCC};
 use cranelift_frontend::Variable;
-use staunch_ir::loops::{constant_position, is_within};
-use staunch_ir::{ArrayId, Expr, FaultKind, Location, Place, Projection, Root, Type};
+use staunch_ir::loops::{Known, constant_position};
+use staunch_ir::{ArrayId, Expr, FaultKind, LocalId, Location, Place, Projection, Root, Type};
 
 /// Where the value of a place is.
 #[derive(Clone, Copy, Debug)]
@@ -63,7 +63,9 @@ impl Function<'_, '_> {
             return array.plus(position * stride);
         }
         let bounds = program.array(id);
-        let needs_check = !is_within(program, index, id, &self.counters);
+        let checked = |id: LocalId| self.checked[id.index()];
+        let known = Known { program, loops: &self.counters, checked: &checked };
+        let needs_check = !known.is_within(index, id);
         let index = self.scalar(index);
         // Below the lower bound the difference wraps, and is too large as well.
         let position = self.ins().iadd_imm_s(index, bounds.low.wrapping_neg());

@@ -16,6 +16,9 @@ use std::fmt::Write;
 /// to minutes for a hundred thousand statements.
 const LARGE: usize = 30_000;
 
+/// Beside a frame lie the caller's frame pointer and the address to return to.
+const FRAME_ENDS: u64 = 16;
+
 /// What the code for blocks and operations needs.
 const RULES: Rules = Rules {
     block_takes_context: |block, instruction| inline_block::find(block, instruction).is_none(),
@@ -33,6 +36,8 @@ pub(crate) struct Unit<'p> {
     imports: HashMap<String, FuncId>,
     /// Read-only data, defined when all code is made.
     constants: HashMap<Vec<u8>, DataId>,
+    /// How much of the stack each function takes, in the order in which they are made.
+    pub(crate) frames: Vec<u64>,
     /// The functions as text, where it is wanted.
     pub(crate) listing: Option<String>,
 }
@@ -50,12 +55,17 @@ pub(crate) struct EntryPoints {
     pub(crate) scan: FuncId,
 }
 
-/// Puts a whole program into `module`; gives its entry points and, if wanted, a listing.
-pub(crate) fn emit(
-    program: &Program,
-    module: &mut dyn Module,
-    listing: Option<String>,
-) -> Result<(EntryPoints, String), Error> {
+/// What is known of a program's code when it is made.
+pub(crate) struct Emitted {
+    pub(crate) entry_points: EntryPoints,
+    /// Empty if none was wanted.
+    pub(crate) listing: String,
+    /// How much of the stack each routine takes.
+    pub(crate) frames: Vec<u64>,
+}
+
+/// Puts a whole program into `module`.
+pub(crate) fn emit(program: &Program, module: &mut dyn Module, listing: Option<String>) -> Result<Emitted, Error> {
     let mut unit = Unit {
         program,
         layout: Layout::new(program),
@@ -64,6 +74,7 @@ pub(crate) fn emit(
         functions: Vec::with_capacity(program.routines.len()),
         imports: HashMap::new(),
         constants: HashMap::new(),
+        frames: Vec::with_capacity(program.routines.len()),
         listing,
     };
     unit.declare()?;
@@ -71,9 +82,10 @@ pub(crate) fn emit(
     for at in 0..program.routines.len() {
         function::emit(&mut unit, &mut workspace, RoutineId::next(at))?;
     }
+    let frames = core::mem::take(&mut unit.frames);
     let entry_points = entry::emit(&mut unit, &mut workspace)?;
     unit.define_constants()?;
-    Ok((entry_points, unit.listing.unwrap_or_default()))
+    Ok(Emitted { entry_points, listing: unit.listing.unwrap_or_default(), frames })
 }
 
 impl<'p> Unit<'p> {
@@ -146,6 +158,8 @@ impl<'p> Unit<'p> {
         } else {
             self.module.define_function(id, context).map_err(|error| reason(&error))
         };
+        let frame = context.compiled_code().and_then(|code| code.buffer.frame_layout());
+        self.frames.push(frame.map_or(0, |it| u64::from(it.frame_to_fp_offset) + FRAME_ENDS));
         self.module.clear_context(context);
         defined.map_err(|reason| Error::Code { function: name.to_owned(), reason })
     }

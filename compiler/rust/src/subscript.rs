@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
-use staunch_ir::loops::is_within;
+use staunch_ir::loops::Known;
 use staunch_ir::{ArrayId, Conversion, Expr, ExprKind, For, Location, Place, Projection, Type};
 
 use crate::function::Function;
@@ -64,7 +64,7 @@ impl Function<'_> {
         for (projection, ty) in place.projections.iter().zip(self.emitter.types_along(self.routine, place)) {
             let (Projection::Index { index, at }, Type::Array(array)) = (projection, ty) else { continue };
             let is_counter = counter(index).is_some_and(|it| it.is_same_variable(&counted.counter));
-            if is_counter && is_within(program, index, array, &[counted]) {
+            if is_counter && (Known { program, loops: &[counted], checked: &|_| false }).is_within(index, array) {
                 let bounds = program.array(array);
                 let new = || Use { index: (**index).clone(), array, at: *at, times: 0 };
                 uses.entry((bounds.low, bounds.high)).or_insert_with(new).times += 1;

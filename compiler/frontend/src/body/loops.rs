@@ -3,9 +3,7 @@
 use crate::expr::checker::Checker;
 use crate::expr::operand::Operand;
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{
-    Block, Elementary, Expr, For, Location, Op, Place, Projection, Statement, StatementKind, Step, Type, Value, loops,
-};
+use staunch_ir::{Block, Elementary, Expr, For, Location, Op, Statement, StatementKind, Step, Type, Value, loops};
 
 impl<'s> Checker<'_, 's> {
     pub(super) fn while_loop(&mut self, condition: &ast::Expr<'s>, body: &[ast::Statement<'s>], span: Span) {
@@ -107,7 +105,8 @@ impl<'s> Checker<'_, 's> {
         let mut place = found.place;
         let ty = self.counter_type(place.ty.read(), counter.span)?;
         self.note_assigned(&place, counter.span);
-        self.fix_indices(&mut place, counter.span);
+        // The loop goes by one variable: what its indices are made of may change in the body.
+        self.fix(&mut place);
         // Each part is checked, whatever is wrong with another.
         let first = self.value(from, place.ty);
         let mark = self.block.len();
@@ -147,20 +146,6 @@ impl<'s> Checker<'_, 's> {
 
     fn counts(&self, ty: Elementary, span: Span) -> bool {
         ty.is_bits() && ty != Elementary::Bool && self.decl.dialect(span).mixes_bits_and_integers()
-    }
-
-    /// The loop goes by one variable: what its indices are made of may change in the body.
-    fn fix_indices(&mut self, place: &mut Place, span: Span) {
-        for projection in &mut place.projections {
-            if let Projection::Index { index, .. } = projection
-                && index.as_const().is_none()
-            {
-                let (value, at) = ((**index).clone(), index.at);
-                let saved = self.temporary("index", value.ty);
-                self.assign(saved.clone(), value, span);
-                **index = Expr::load(saved, at);
-            }
-        }
     }
 
     fn step(&mut self, by: Option<&ast::Expr<'s>>, ty: Elementary) -> Option<Step> {

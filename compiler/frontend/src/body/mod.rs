@@ -8,21 +8,26 @@ use crate::expr::checker::Checker;
 use crate::expr::uses::Uses;
 use crate::types::declarations::Declarations;
 use crate::{Bodies, Span, ast};
+use staunch_ir::stack;
 use staunch_ir::{Block, Routine, RoutineKind, StatementKind};
 
 /// What checking all bodies gave.
 pub(crate) struct Checked {
     /// In the order of the POUs' slots; `None` where there was an error.
     pub routines: Vec<Option<(Routine, Uses)>>,
+    /// The stack that a call of each takes, but for results that nobody wants.
+    pub stacks: Vec<u64>,
     /// The first statement that makes nothing, because something in it was refused.
     pub left_out: Option<Span>,
 }
 
 /// Checks the bodies of all POUs, in the order of their slots. A body that is not kept is let go.
 pub(crate) fn check<'s>(decl: &mut Declarations<'s>, bodies: &mut [Vec<ast::Statement<'s>>], keep: Bodies) -> Checked {
-    let mut checked = Checked { routines: Vec::new(), left_out: None };
+    let mut checked = Checked { routines: Vec::new(), stacks: Vec::new(), left_out: None };
     for (slot, body) in bodies.iter_mut().enumerate() {
         let mut made = check_body(decl, slot, body, &mut checked.left_out);
+        let stack = made.as_ref().map_or(0, |(routine, _)| stack::of_body(routine, &|ty| decl.size_at_most(ty)));
+        checked.stacks.push(stack);
         if keep == Bodies::Dropped {
             body.clear();
             made.iter_mut().for_each(|(routine, _)| routine.body = calls(std::mem::take(&mut routine.body)));

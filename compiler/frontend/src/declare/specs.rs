@@ -282,7 +282,8 @@ impl<'s> Declarations<'s> {
         Some(Resolved { ty, initial })
     }
 
-    fn intern_bounds(&mut self, bounds: (i128, i128)) -> BoundsId {
+    /// The limits of a subrange, each pair once.
+    pub(crate) fn intern_bounds(&mut self, bounds: (i128, i128)) -> BoundsId {
         let known = self.program.bounds.iter().position(|it| *it == bounds);
         BoundsId::next(known.unwrap_or_else(|| {
             self.program.bounds.push(bounds);

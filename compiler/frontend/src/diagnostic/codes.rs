@@ -478,8 +478,8 @@ and all initial values together hold at most 1048576 constants; a repeated one c
 refused rather than compiled wrongly.
 ";
     E0903 Error "too many temporary variables"
-"VAR_TEMP and the variables of functions live on the stack during a call. Those of a call and of
-all calls below it may take 1 MiB.
+"VAR_TEMP, the variables of functions, and the strings that a statement makes on its way live on the
+stack during a call. Those of a call and of all calls below it may take 1 MiB.
 ";
     W0301 Warning "RCV is not retained"
 "R_CTU and R_CTD restore their count from the variable given as RCV after a restart. A variable

@@ -3,8 +3,9 @@
 
 use super::checker::Checker;
 use staunch_ir::alias::{self, Frame};
+use staunch_ir::loops::Known;
 use staunch_ir::{
-    ArrayId, Elementary, Expr, ExprKind, Local, LocalId, Op, Place, Projection, Root, Statement, Type, Value, loops,
+    ArrayId, Elementary, Expr, ExprKind, Local, LocalId, Location, Op, Place, Projection, Root, Statement, Type, Value,
 };
 
 /// What is evaluated where it is written, and used later.
@@ -131,21 +132,28 @@ impl Checker<'_, '_> {
 
     /// Saves indices of a place, each checked against its bounds.
     pub(crate) fn freeze(&mut self, place: &mut Place, effects: &[Statement], fault_first: bool) {
+        self.save_indices(place, &|this, index, faults| fault_first && faults || this.changes(effects, index));
+    }
+
+    /// Saves each index that is no constant: the place stays what it is, whatever runs after this.
+    pub(crate) fn fix(&mut self, place: &mut Place) {
+        self.save_indices(place, &|_, index, _| index.as_const().is_none());
+    }
+
+    /// Saves the indices that `asked` for, which is told whether they can fault. Their locals are of a
+    /// subrange with the array's bounds, so that nothing checks them again.
+    fn save_indices(&mut self, place: &mut Place, asked: &dyn Fn(&Self, &Expr, bool) -> bool) {
         let Some(mut ty) = self.root_type(place.root) else { return };
         for projection in &mut place.projections {
             ty = match (projection, ty) {
                 (Projection::Index { index, at }, Type::Array(id)) => {
                     let inside = self.is_inside(index, id);
-                    let faults = !inside || self.can_fault(index);
-                    if fault_first && faults || self.changes(effects, index) {
-                        let array = self.decl.program.array(id);
+                    if asked(self, index, !inside || self.can_fault(index)) {
                         if !inside {
-                            let bound = |it| Expr::constant(Elementary::Lint, Value::I64(it), *at);
-                            let unchecked = std::mem::replace(&mut **index, bound(array.low));
-                            let operands = vec![bound(array.low), unchecked, bound(array.high)];
-                            **index = Expr::apply(Op::CheckIndex, Type::LINT, operands, *at);
+                            self.check_index(index, id, *at);
                         }
                         self.save("index", index);
+                        index.ty = index.ty.read();
                     }
                     self.decl.program.array(id).element
                 }
@@ -156,6 +164,16 @@ impl Checker<'_, '_> {
                 (Projection::Index { .. }, _) => return,
             };
         }
+    }
+
+    /// An index that faults outside of the array's bounds.
+    fn check_index(&mut self, index: &mut Expr, id: ArrayId, at: Location) {
+        let array = self.decl.program.array(id);
+        let bound = |it| Expr::constant(Elementary::Lint, Value::I64(it), at);
+        let (low, high) = (bound(array.low), bound(array.high));
+        let checked = Type::Subrange(Elementary::Lint, self.decl.intern_bounds((array.low.into(), array.high.into())));
+        let unchecked = std::mem::replace(index, bound(array.low));
+        *index = Expr::apply(Op::CheckIndex, checked, vec![low, unchecked, high], at);
     }
 
     /// Replaces an expression by a local that holds its value from here on.
@@ -228,7 +246,8 @@ impl Checker<'_, '_> {
     /// Whether an index is known to lie within the array's bounds.
     fn is_inside(&self, index: &Expr, array: ArrayId) -> bool {
         let loops: Vec<_> = self.counters.iter().filter(|it| it.is_private).collect();
-        loops::is_within(&self.decl.program, index, array, &loops)
+        let checked = |id: LocalId| matches!(self.locals[id.index()].ty, Type::Subrange(..));
+        Known { program: &self.decl.program, loops: &loops, checked: &checked }.is_within(index, array)
     }
 
     fn root_type(&self, root: Root) -> Option<Type> {

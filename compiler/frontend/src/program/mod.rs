@@ -18,12 +18,13 @@ pub(crate) fn assemble<'s>(
     files: &'s [ast::File<'s>],
     checked: Checked,
 ) -> Option<Program> {
+    let stacks = checked.stacks;
     let (routines, uses) = checked.routines.into_iter().collect::<Option<Vec<_>>>()?.into_iter().unzip();
     declarations.program.routines = routines;
     declarations.program.classes = (0..declarations.pous.len()).filter_map(|slot| declarations.class(slot)).collect();
     declarations.check_named_programs();
     configuration::instances(declarations, files);
-    order::order(declarations, uses)?;
+    order::order(declarations, uses, stacks)?;
     declarations.check_size()?;
     Some(std::mem::replace(&mut declarations.program, empty_program(Vec::new())))
 }

@@ -3,13 +3,14 @@
 use crate::expr::uses::Uses;
 use crate::types::declarations::Declarations;
 use crate::{Code, Diagnostic};
+use staunch_ir::stack;
 use staunch_ir::{Block, Routine, RoutineId, RoutineKind, Statement, StatementKind};
 
-/// Bytes that the variables of one call chain may take: they live on the stack.
+/// Bytes of the stack that one chain of calls may take.
 const MAX_STACK: u64 = 1 << 20;
 
 /// Sorts the program's POUs. `None` when there is recursion, which has been reported.
-pub(super) fn order(declarations: &mut Declarations<'_>, uses: Vec<Uses>) -> Option<()> {
+pub(super) fn order(declarations: &mut Declarations<'_>, uses: Vec<Uses>, stacks: Vec<u64>) -> Option<()> {
     let mut calls = all_callees(declarations);
     let mut order = sorted(declarations, &calls)?;
     if super::prescan::add(declarations, uses, &order) {
@@ -19,7 +20,7 @@ pub(super) fn order(declarations: &mut Declarations<'_>, uses: Vec<Uses>) -> Opt
     }
     let is_empty = |it: &Routine| it.kind == RoutineKind::Prescan && it.body.is_empty();
     order.retain(|at| !is_empty(&declarations.program.routines[*at]));
-    check_stack(declarations, &calls, &order);
+    check_stack(declarations, stacks, &calls, &order);
     renumber(declarations, &order);
     Some(())
 }
@@ -90,12 +91,17 @@ fn report_recursion(declarations: &mut Declarations<'_>, cycle: &[usize]) {
     );
 }
 
-/// Variables that live for one call are on the stack; a long chain of large ones is refused.
-fn check_stack(declarations: &mut Declarations<'_>, calls: &[Vec<usize>], order: &[usize]) {
+/// Variables that live for one call are on the stack, and the strings that it makes; a long chain of large
+/// ones is refused.
+fn check_stack(declarations: &mut Declarations<'_>, mut stacks: Vec<u64>, calls: &[Vec<usize>], order: &[usize]) {
     let mut depth = vec![0u64; calls.len()];
+    let prescans = declarations.program.routines.iter().skip(stacks.len());
+    let prescans: Vec<u64> = prescans.map(|it| stack::of_body(it, &|ty| declarations.size_at_most(ty))).collect();
+    stacks.extend(prescans);
     for at in order.iter().copied() {
-        let locals = &declarations.program.routines[at].locals;
-        let own = locals.iter().map(|it| declarations.size_of(it.ty)).fold(0, u64::saturating_add);
+        let program = &declarations.program;
+        let (routine, size) = (&program.routines[at], |ty| declarations.size_at_most(ty));
+        let own = stacks[at].saturating_add(stack::of_ignored_results(program, routine, &size));
         let below = calls[at].iter().map(|callee| depth[*callee]).max().unwrap_or(0);
         depth[at] = own.saturating_add(below);
         if depth[at] > MAX_STACK && below <= MAX_STACK {
@@ -104,10 +110,10 @@ fn check_stack(declarations: &mut Declarations<'_>, calls: &[Vec<usize>], order:
                 Diagnostic::new(
                     Code::E0903,
                     name.span,
-                    format!("the temporary variables of `{}` take {own} bytes", name.text),
+                    format!("a call of `{}` takes {own} bytes of the stack", name.text),
                 )
-                .label("a call's variables, with those of the calls it makes, may take 1 MiB")
-                .help("move large arrays to VAR of a FUNCTION_BLOCK or PROGRAM, or to VAR_GLOBAL"),
+                .label("for its temporary variables and the strings that it makes; with the calls it makes, it may take 1 MiB")
+                .help("move large arrays to VAR of a FUNCTION_BLOCK or PROGRAM, or to VAR_GLOBAL; take expressions of long strings apart"),
             );
         }
     }

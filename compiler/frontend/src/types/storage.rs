@@ -11,6 +11,9 @@ impl<'s> Declarations<'s> {
         let id = StructId::next(self.program.structs.len());
         let size = structure.fields.iter().map(|it| self.size_of(it.ty)).fold(0, u64::saturating_add);
         self.table.sizes.push(size);
+        let rounded = |it: &Field| self.size_at_most(it.ty).checked_next_multiple_of(8).unwrap_or(u64::MAX);
+        let at_most = structure.fields.iter().map(rounded).fold(0, u64::saturating_add);
+        self.table.sizes_at_most.push(at_most);
         self.program.structs.push(structure);
         id
     }
@@ -41,6 +44,20 @@ impl<'s> Declarations<'s> {
             Type::Array(id) => {
                 let array = self.program.array(id);
                 array.len().saturating_mul(self.size_of(array.element))
+            }
+        }
+    }
+
+    /// No fewer bytes than a value of the type takes, whatever its alignment adds.
+    pub fn size_at_most(&self, ty: Type) -> u64 {
+        match ty {
+            Type::Struct(id) => self.table.sizes_at_most[id.index()],
+            Type::Array(id) => {
+                let array = self.program.array(id);
+                array.len().saturating_mul(self.size_at_most(array.element))
+            }
+            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Block(_) => {
+                self.size_of(ty)
             }
         }
     }

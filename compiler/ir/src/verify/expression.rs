@@ -81,7 +81,7 @@ impl Verifier<'_> {
     fn is_checked(&self, op: Op, operands: &[Expr], result: Type) -> bool {
         let Some((low, high)) = self.program.range(result) else { return true };
         let limit = |at: usize| operands.get(at).and_then(Expr::as_const).and_then(Value::as_integer);
-        op == Op::InRange && limit(0) == Some(low) && limit(2) == Some(high)
+        matches!(op, Op::InRange | Op::CheckIndex) && limit(0) == Some(low) && limit(2) == Some(high)
     }
 
     /// The lane of operands that share one. Enumerations have a lane only in a comparison of

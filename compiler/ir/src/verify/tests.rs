@@ -245,6 +245,9 @@ fn subranges() {
     for value in [load(count()), int(0), checked(-3, 8), checked(-4, 7), constant(8), constant(-4)] {
         written_to_subrange(value).unwrap_err();
     }
+    let index = |low, high| apply(Op::CheckIndex, SUBRANGE, vec![int(low), load(count()), int(high)]);
+    written_to_subrange(index(-3, 7)).unwrap();
+    written_to_subrange(index(-3, 8)).unwrap_err();
     let sum = apply(Op::Add, SUBRANGE, vec![int(1), load(count())]);
     let same = Expr::convert(Conversion::Same, SUBRANGE, load(count()), AT);
     for value in [sum, same] {

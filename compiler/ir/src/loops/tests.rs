@@ -1,0 +1,145 @@
+use super::*;
+use crate::fixture::{AT, assign, call_adder, count, int, lint, load, local, sample, stmt, temp, total, value, values};
+use crate::{Argument, Array, BoundsId, Const, Elementary, LocalId, RoutineId, Step, Type, apply};
+
+const MAIN: usize = 3;
+
+fn counted(counter: Place, first: i16, last: i16, step: i128) -> For {
+    For {
+        counter,
+        first: int(first),
+        last: int(last),
+        step: Step::Constant(step),
+        range: (i16::MIN.into(), i16::MAX.into()),
+        is_private: true,
+        body: Vec::new(),
+        step_at: AT,
+    }
+}
+
+fn private(counter: &Place, body: Vec<Statement>) -> bool {
+    let program = sample(Vec::new());
+    is_private(&Frame::of(&program, &program.routines[MAIN]), counter, &body)
+}
+
+#[test]
+fn a_counter_is_private_while_nobody_else_can_write_it() {
+    let [read, other] = [|| assign(temp(), load(count())), || assign(temp(), int(1))];
+    assert!(private(&count(), vec![read(), other(), call_adder(temp())]));
+    assert!(!private(&count(), vec![assign(count(), int(1))]));
+    assert!(!private(&count(), vec![call_adder(count())]));
+    let inner = stmt(StatementKind::If {
+        condition: Expr::bool(true, AT),
+        then: vec![assign(count(), int(1))],
+        otherwise: vec![],
+    });
+    assert!(!private(&count(), vec![inner]));
+    assert!(private(&temp(), vec![]) && !private(&temp(), vec![read()]));
+    assert!(!private(&total(), vec![]), "globals are everybody's");
+    assert!(!private(&value(lint(1), 1), vec![]), "elements are not known by a name");
+    assert!(!private(&values(), vec![assign(value(lint(1), 1), int(1))]));
+    assert!(private(&count(), vec![assign(value(load(count()), 1), int(1)), call_adder(value(lint(1), 1))]));
+}
+
+/// What an expression of two counters may be holds for each of their values.
+#[test]
+fn ranges_hold_for_every_value() {
+    let program = sample(Vec::new());
+    let other = crate::fixture::limit();
+    for (first, last, step) in [(-3, 4, 1), (0, 7, 2), (5, -2, -3), (300, 310, 1)] {
+        let (a, b) = (counted(temp(), first, last, step), counted(other.clone(), -2, 3, 1));
+        let loops = [&a, &b];
+        let known = Known { program: &program, loops: &loops, checked: &|_| false };
+        for op in [Op::Add, Op::Sub, Op::Mul, Op::Mod, Op::And, Op::Or, Op::Max] {
+            for right in [load(other.clone()), int(0), int(1), int(6), int(-4), int(i16::MAX)] {
+                let expr = Expr::apply(op, Type::INT, vec![load(temp()), right.clone()], AT);
+                let (least, most) = known.range(&expr).unwrap();
+                let mut x = first;
+                while if step > 0 { x <= last } else { x >= last } {
+                    for y in -2..=3_i16 {
+                        let y = right.as_const().unwrap_or(Value::I16(y));
+                        if let Some(Ok(found)) = apply(op, crate::Lane::I16, &[Value::I16(x), y]) {
+                            let found = found.as_integer().unwrap();
+                            assert!(
+                                (least..=most).contains(&found),
+                                "{op:?} {x} {y:?}: {found} not in {least}..{most}"
+                            );
+                        }
+                    }
+                    x += i16::try_from(step).unwrap();
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn what_leaves_its_type_may_be_anything() {
+    let program = sample(Vec::new());
+    let counter = counted(temp(), 0, i16::MAX, 1);
+    let known = Known { program: &program, loops: &[&counter], checked: &|_| false };
+    let next = Expr::apply(Op::Add, Type::INT, vec![load(temp()), int(1)], AT);
+    assert_eq!(known.range(&next), Some((i16::MIN.into(), i16::MAX.into())));
+    assert_eq!(known.range(&load(temp())), Some((0, i16::MAX.into())));
+}
+
+const INDEX: Type = Type::Subrange(Elementary::Lint, BoundsId(0));
+
+/// Main with a local of LINT(1..9), and this body.
+fn with_index(body: impl FnOnce(Place) -> Vec<Statement>) -> Program {
+    let mut program = sample(Vec::new());
+    let id = LocalId::next(program.routines[MAIN].locals.len());
+    program.bounds = vec![(1, 9)];
+    program.arrays.push(Array { low: 0, high: 9, element: Type::INT });
+    let initial = Const::Scalar(Value::I64(1));
+    program.routines[MAIN].locals.push(local("index", INDEX, initial));
+    program.routines[MAIN].body = body(Place::local(id, INDEX));
+    crate::verify::verify(&program).unwrap();
+    program
+}
+
+fn check() -> Expr {
+    Expr::apply(Op::CheckIndex, INDEX, vec![lint(1), lint(12), lint(9)], AT)
+}
+
+fn is_checked(body: impl FnOnce(Place) -> Vec<Statement>) -> bool {
+    let program = with_index(body);
+    let checked = checked_locals(&program.routines[MAIN]);
+    assert!(!checked[0], "temp is of no subrange");
+    let index = Expr::load(Place::local(LocalId(1), INDEX), AT).read();
+    let known = Known { program: &program, loops: &[], checked: &|id| checked[id.index()] };
+    let last = crate::ArrayId::next(program.arrays.len() - 1);
+    assert_eq!(known.is_within(&index, last), checked[1]);
+    assert!(!known.is_within(&index, crate::ArrayId(0)), "an array of other bounds");
+    checked[1]
+}
+
+#[test]
+fn a_local_is_checked_while_only_checks_are_written_to_it() {
+    assert!(is_checked(|_| vec![]));
+    assert!(is_checked(|index| vec![assign(index, check())]));
+    assert!(!is_checked(|index| vec![assign(index.clone(), check()), assign(index.clone(), load(index))]));
+    assert!(!is_checked(|index| vec![stmt(StatementKind::For(Box::new(For {
+        counter: index,
+        first: Expr::new(INDEX, ExprKind::Const(Value::I64(1)), AT),
+        last: lint(2),
+        step: Step::Constant(1),
+        range: (1, 9),
+        is_private: false,
+        body: vec![stmt(StatementKind::Turn)],
+        step_at: AT,
+    })))]));
+    let handed_on = with_index(|_| vec![]);
+    let mut routine = handed_on.routines[MAIN].clone();
+    let arguments = vec![Argument::Reference(Place::local(LocalId(1), INDEX))];
+    routine.body = vec![stmt(StatementKind::Call { callee: RoutineId(0), instance: None, arguments, result: None })];
+    assert!(!checked_locals(&routine)[1]);
+}
+
+/// A parameter's value is the caller's, who may have read it from a state.
+#[test]
+fn a_parameter_is_not_checked() {
+    let mut routine = with_index(|_| vec![]).routines.remove(MAIN);
+    routine.params = vec![crate::fixture::param("index", INDEX, Mode::Value(LocalId(1)))];
+    assert!(!checked_locals(&routine)[1]);
+}
