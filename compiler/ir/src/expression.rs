@@ -1,3 +1,5 @@
+//! Expressions: typed trees that read, compute or fault.
+
 use crate::{Const, Elementary, Location, Op, Place, TextOp, Type, Value};
 
 /// A value with its type. Reads, computes or faults; changes nothing.

@@ -1,3 +1,5 @@
+//! The operations, made of the runtime's tables: their operands, results, and how the interpreter runs them.
+
 use staunch_runtime::{FaultKind, Lane, Outcome, Scalar, Signature, Value};
 use staunch_runtime::{carried, for_each_op, for_each_text_op, kind, ops, signature, text, with_lane};
 

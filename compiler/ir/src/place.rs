@@ -1,3 +1,5 @@
+//! Places: the storage that a statement or expression names.
+
 use crate::{Expr, FieldId, LocalId, Location, ParamId, Type};
 
 /// Storage: a root and the way from it to the part that is meant.

@@ -1,3 +1,5 @@
+//! A whole program: its types, globals, classes, routines and instances.
+
 use crate::types::ids;
 use crate::{Array, ArrayId, Block, BoundsId, Const, Enum, EnumId, Location, Place, Root, Struct, StructId, Type};
 use core::fmt;

@@ -1,3 +1,5 @@
+//! Statements, and what each of them means.
+
 use crate::{Expr, FaultKind, Location, Place, RoutineId, Value};
 
 pub type Block = Vec<Statement>;

@@ -1,3 +1,5 @@
+//! Types, constants of them, and the ids of what a program holds.
+
 use crate::{Field, FieldId, Location};
 use staunch_runtime::{BLOCKS, BlockInfo, Value};
 

@@ -1,10 +1,10 @@
 //! Calls of routines and of standard blocks.
 
+use crate::address::Address;
 use crate::function::Function;
-use crate::inline_block;
-use crate::memory::Address;
-use crate::place::Site;
-use crate::shim::by_pointer;
+use crate::inline_block::{self, block_info, offset};
+use crate::place::PlaceValue;
+use crate::runtime_call::by_pointer;
 use crate::signature::result_type;
 use cranelift_codegen::ir::{self as clif, InstBuilder};
 use staunch_ir::{Argument, Expr, Lane, Place, RoutineId, Type};
@@ -31,16 +31,16 @@ impl Function<'_, '_> {
         values.extend(out);
         let returned = self.call_routine(callee, &values);
         if let (Some(returned), Some(target)) = (returned, result) {
-            match self.site(target) {
-                Site::Variable(variable) => self.builder.def_var(variable, returned),
-                Site::Memory(address) => self.store(returned, address),
+            match self.place_value(target) {
+                PlaceValue::Variable(variable) => self.builder.def_var(variable, returned),
+                PlaceValue::Memory(address) => self.store(returned, address),
             }
         }
     }
 
     /// What every function takes first.
     fn start_of_call(&self, callee: RoutineId, instance: Option<clif::Value>) -> Vec<clif::Value> {
-        let effects = self.unit.effects(callee);
+        let effects = self.module.effects(callee);
         let context = self.start.context.filter(|_| effects.context);
         let globals = self.start.globals.filter(|_| effects.uses_globals());
         [context, globals, instance].into_iter().flatten().collect()
@@ -48,11 +48,11 @@ impl Function<'_, '_> {
 
     /// Calls a function, passes its fault on, and gives an elementary result.
     fn call_routine(&mut self, callee: RoutineId, values: &[clif::Value]) -> Option<clif::Value> {
-        let function = self.unit.function(callee);
+        let function = self.module.function(callee);
         let function = self.function_ref(function);
         let call = self.ins().call(function, values);
         let results = self.builder.inst_results(call).to_vec();
-        if !self.unit.effects(callee).faults {
+        if !self.module.effects(callee).faults {
             return results.first().copied();
         }
         self.pass_fault(results[0]);
@@ -78,12 +78,12 @@ impl Function<'_, '_> {
 
     /// Where a callee puts a result that is not elementary, whether it is wanted or not.
     fn result_pointer(&mut self, callee: RoutineId, result: Option<&Place>) -> Option<clif::Value> {
-        let program = self.unit.program;
+        let program = self.module.program;
         let ty = result_type(program.routine(callee)).filter(|ty| program.lane(*ty).is_none())?;
         let address = match result {
             Some(place) => self.address(place),
             None => {
-                let shape = self.unit.layout.shape(ty);
+                let shape = self.module.layout.shape(ty);
                 self.temporary(shape)
             }
         };
@@ -127,23 +127,4 @@ impl Function<'_, '_> {
         let block = self.reference(block);
         self.call_runtime(symbol, &[by_pointer(block)], None);
     }
-}
-
-pub(crate) fn block_info(place: &Place) -> &'static BlockInfo {
-    match place.ty {
-        Type::Block(id) => id.info(),
-        Type::Elementary(_)
-        | Type::Subrange(..)
-        | Type::String(_)
-        | Type::Enum(_)
-        | Type::Array(_)
-        | Type::Struct(_) => {
-            unreachable!("verified IR: an instance of a standard block")
-        }
-    }
-}
-
-/// The offset of a pin in its block.
-pub(crate) fn offset(of_pin: usize) -> u64 {
-    u64::try_from(of_pin).expect("blocks are small")
 }

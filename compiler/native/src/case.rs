@@ -1,6 +1,6 @@
 //! CASE: wide ranges are compared for, all other labels become jump tables and search trees.
 
-use crate::function::{Function, Goes};
+use crate::function::{Flow, Function};
 use cranelift_codegen::ir::{self as clif, InstBuilder, condcodes::IntCC};
 use cranelift_frontend::Switch;
 use staunch_ir::{Arm, Block, Expr};
@@ -9,7 +9,7 @@ use staunch_ir::{Arm, Block, Expr};
 const WIDE: i128 = 16;
 
 impl<'p> Function<'_, 'p> {
-    pub(crate) fn case(&mut self, selector: &Expr, arms: &'p [Arm], otherwise: &'p Block) -> Goes {
+    pub(crate) fn case(&mut self, selector: &Expr, arms: &'p [Arm], otherwise: &'p Block) -> Flow {
         let selector = self.scalar(selector);
         let blocks: Vec<_> = arms.iter().map(|_| self.builder.create_block()).collect();
         let (otherwise_block, after) = (self.builder.create_block(), self.builder.create_block());
@@ -20,15 +20,15 @@ impl<'p> Function<'_, 'p> {
             }
         }
         switch.emit(&mut self.builder, selector, otherwise_block);
-        let mut goes: Vec<_> = arms
+        let mut flow: Vec<_> = arms
             .iter()
             .zip(blocks)
             // No label, no way in.
             .filter(|(arm, _)| !arm.labels.is_empty())
             .map(|(arm, block)| self.arm(block, &arm.body, after))
             .collect();
-        goes.push(self.arm(otherwise_block, otherwise, after));
-        self.join(&goes, after)
+        flow.push(self.arm(otherwise_block, otherwise, after));
+        self.join(&flow, after)
     }
 
     fn label(&mut self, selector: clif::Value, (low, high): (i128, i128), arm: clif::Block, switch: &mut Switch) {

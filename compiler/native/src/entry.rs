@@ -2,9 +2,9 @@
 //! `staunch_scan`, and for objects the data `staunch_map` and `staunch_map_len`.
 
 use crate::Error;
-use crate::memory::Address;
+use crate::address::Address;
+use crate::module::{ModuleEmitter, Workspace, define_data};
 use crate::signature::{CODE, POINTER};
-use crate::unit::{EntryPoints, Unit, Workspace, define_data};
 use cranelift_codegen::ir::{self as clif, AbiParam, BlockArg, InstBuilder, MemFlagsData, UserFuncName, types};
 use cranelift_frontend::{FunctionBuilder, Switch};
 use cranelift_module::{FuncId, Linkage, Module};
@@ -14,25 +14,32 @@ use staunch_runtime::Context;
 /// Runs of zeros in the initial image that are at least this long are not kept as data.
 const GAP: usize = 256;
 
-pub(crate) fn emit(unit: &mut Unit<'_>, workspace: &mut Workspace) -> Result<EntryPoints, Error> {
-    let init = define(unit, workspace, "staunch_init", &[POINTER], &[], init)?;
+/// The functions that a program consists of.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct EntryPoints {
+    pub(crate) init: FuncId,
+    pub(crate) scan: FuncId,
+}
+
+pub(crate) fn emit(module: &mut ModuleEmitter<'_>, workspace: &mut Workspace) -> Result<EntryPoints, Error> {
+    let init = define(module, workspace, "staunch_init", &[POINTER], &[], init)?;
     let parameters = [POINTER, POINTER, types::I32];
-    let scan = define(unit, workspace, "staunch_scan", &parameters, &[CODE], scan)?;
+    let scan = define(module, workspace, "staunch_scan", &parameters, &[CODE], scan)?;
     Ok(EntryPoints { init, scan })
 }
 
 fn define(
-    unit: &mut Unit<'_>,
+    module: &mut ModuleEmitter<'_>,
     workspace: &mut Workspace,
     name: &str,
     params: &[clif::Type],
     returns: &[clif::Type],
-    emit: fn(&mut Unit<'_>, &mut FunctionBuilder<'_>, &[clif::Value]),
+    emit: fn(&mut ModuleEmitter<'_>, &mut FunctionBuilder<'_>, &[clif::Value]),
 ) -> Result<FuncId, Error> {
-    let mut signature = unit.module.make_signature();
+    let mut signature = module.output.make_signature();
     signature.params.extend(params.iter().map(|ty| AbiParam::new(*ty)));
     signature.returns.extend(returns.iter().map(|ty| AbiParam::new(*ty)));
-    let id = unit.module.declare_function(name, Linkage::Export, &signature)?;
+    let id = module.output.declare_function(name, Linkage::Export, &signature)?;
     let context = &mut workspace.context;
     context.func.signature = signature;
     context.func.name = UserFuncName::user(0, id.as_u32());
@@ -41,24 +48,24 @@ fn define(
     builder.append_block_params_for_function_params(entry);
     builder.switch_to_block(entry);
     let values = builder.block_params(entry).to_vec();
-    emit(unit, &mut builder, &values);
+    emit(module, &mut builder, &values);
     builder.seal_all_blocks();
-    builder.finalize(unit.module.target_config());
-    unit.define(context, id, name)?;
+    builder.finalize(module.output.target_config());
+    module.define(context, id, name)?;
     Ok(id)
 }
 
 /// `staunch_init(state)`: zeros, and over them the parts of the initial image that are not.
-fn init(unit: &mut Unit<'_>, builder: &mut FunctionBuilder<'_>, values: &[clif::Value]) {
-    let (state, config) = (values[0], unit.module.target_config());
-    let image = unit.layout.image(unit.program);
+fn init(module: &mut ModuleEmitter<'_>, builder: &mut FunctionBuilder<'_>, values: &[clif::Value]) {
+    let (state, config) = (values[0], module.output.target_config());
+    let image = module.layout.image(module.program);
     let size = i64::try_from(image.len()).expect("verified IR: sizes are within 1 GiB");
     let size = builder.ins().iconst(POINTER, size);
     let zero = builder.ins().iconst(types::I8, 0);
     builder.call_memset(config, state, zero, size);
     for (start, end) in parts(&image) {
-        let id = unit.constant(image[start..end].to_vec());
-        let data = unit.module.declare_data_in_func(id, builder.func);
+        let id = module.constant(image[start..end].to_vec());
+        let data = module.output.declare_data_in_func(id, builder.func);
         let from = builder.ins().symbol_value(POINTER, data);
         let to = builder.ins().iadd_imm_s(state, immediate(start));
         let size = builder.ins().iconst(POINTER, immediate(end - start));
@@ -81,12 +88,12 @@ fn parts(image: &[u8]) -> Vec<(usize, usize)> {
 
 /// `staunch_scan(state, context, instance)`: the code of a fault, or 0. A number that is no
 /// instance's does nothing.
-fn scan(unit: &mut Unit<'_>, builder: &mut FunctionBuilder<'_>, values: &[clif::Value]) {
+fn scan(module: &mut ModuleEmitter<'_>, builder: &mut FunctionBuilder<'_>, values: &[clif::Value]) {
     let &[state, context, instance] = values else { unreachable!("as many as declared above") };
     let done = builder.create_block();
     builder.append_block_param(done, CODE);
     let otherwise = builder.create_block();
-    let blocks: Vec<_> = unit.program.instances.iter().map(|_| builder.create_block()).collect();
+    let blocks: Vec<_> = module.program.instances.iter().map(|_| builder.create_block()).collect();
     let mut switch = Switch::new();
     for (number, block) in blocks.iter().enumerate() {
         switch.set_entry(u128::try_from(number).expect("a usize fits"), *block);
@@ -94,7 +101,7 @@ fn scan(unit: &mut Unit<'_>, builder: &mut FunctionBuilder<'_>, values: &[clif::
     switch.emit(builder, instance, otherwise);
     for (number, block) in blocks.into_iter().enumerate() {
         builder.switch_to_block(block);
-        let mut scan = Scan { unit, builder, state, context, done };
+        let mut scan = Scan { module, builder, state, context, done };
         scan.instance(number);
     }
     builder.switch_to_block(otherwise);
@@ -106,7 +113,7 @@ fn scan(unit: &mut Unit<'_>, builder: &mut FunctionBuilder<'_>, values: &[clif::
 }
 
 struct Scan<'s, 'p, 'b> {
-    unit: &'s mut Unit<'p>,
+    module: &'s mut ModuleEmitter<'p>,
     builder: &'s mut FunctionBuilder<'b>,
     state: clif::Value,
     context: clif::Value,
@@ -115,8 +122,8 @@ struct Scan<'s, 'p, 'b> {
 
 impl Scan<'_, '_, '_> {
     fn instance(&mut self, number: usize) {
-        let class = self.unit.program.class(self.unit.program.instances[number].program);
-        let at = Address::at(self.state).plus(self.unit.layout.machine.instances[number]);
+        let class = self.module.program.class(self.module.program.instances[number].program);
+        let at = Address::at(self.state).plus(self.module.layout.machine.instances[number]);
         if let Some(prescan) = class.prescan {
             self.prescan(prescan, at);
         }
@@ -140,14 +147,14 @@ impl Scan<'_, '_, '_> {
 
     /// Calls a routine of a PROGRAM; gives the code that it returned, or 0.
     fn call(&mut self, routine: RoutineId, instance: Address) -> clif::Value {
-        let effects = self.unit.effects(routine).clone();
-        let function = self.unit.module.declare_func_in_func(self.unit.function(routine), self.builder.func);
+        let effects = self.module.effects(routine).clone();
+        let function = self.module.output.declare_func_in_func(self.module.function(routine), self.builder.func);
         let mut values = Vec::new();
         if effects.context {
             values.push(self.context);
         }
         if effects.uses_globals() {
-            values.push(self.pointer(Address::at(self.state).plus(self.unit.layout.machine.globals)));
+            values.push(self.pointer(Address::at(self.state).plus(self.module.layout.machine.globals)));
         }
         values.push(self.pointer(instance));
         let call = self.builder.ins().call(function, &values);

@@ -2,21 +2,11 @@
 //! recurse here, and small frames let them.
 
 use crate::function::Function;
-use crate::place::Site;
-use crate::{inline_conversion, inline_op, shim};
+use crate::operands::Operands;
+use crate::place::PlaceValue;
+use crate::{inline_conversion, inline_op, runtime_call};
 use cranelift_codegen::ir as clif;
-use staunch_ir::{Conversion, Expr, ExprKind, Lane, Location, Op, Place, Value};
-
-/// The operands of an operation, evaluated.
-#[derive(Debug)]
-pub(crate) struct Operands {
-    /// The lane that the operation's row calls `T`.
-    pub(crate) lane: Lane,
-    pub(crate) values: Vec<clif::Value>,
-    /// Where an operand is constant, what it is.
-    pub(crate) constants: Vec<Option<Value>>,
-    pub(crate) at: Location,
-}
+use staunch_ir::{Conversion, Expr, ExprKind, Lane, Location, Op, Place};
 
 impl Function<'_, '_> {
     pub(crate) fn scalar(&mut self, expr: &Expr) -> clif::Value {
@@ -36,20 +26,20 @@ impl Function<'_, '_> {
     }
 
     pub(crate) fn load_place(&mut self, place: &Place) -> clif::Value {
-        match self.site(place) {
-            Site::Variable(variable) => self.builder.use_var(variable),
-            Site::Memory(address) => self.load(place.ty, address),
+        match self.place_value(place) {
+            PlaceValue::Variable(variable) => self.builder.use_var(variable),
+            PlaceValue::Memory(address) => self.load(place.ty, address),
         }
     }
 
     fn apply(&mut self, op: Op, operands: &[Expr], at: Location) -> clif::Value {
-        let lane = inline_op::lane(self.unit.program, op, operands);
+        let lane = inline_op::lane(self.module.program, op, operands);
         let values = operands.iter().map(|operand| self.scalar(operand)).collect();
         let constants = operands.iter().map(Expr::as_const).collect();
         let operands = Operands { lane, values, constants, at };
         match inline_op::find(op) {
             Some(emit) => emit(self, &operands),
-            None => shim::operation(self, op, &operands),
+            None => runtime_call::operation(self, op, &operands),
         }
     }
 
@@ -71,6 +61,6 @@ impl Function<'_, '_> {
     }
 
     fn lane_of(&self, expr: &Expr) -> Lane {
-        self.unit.program.lane(expr.ty).expect("verified IR: an expression of an elementary type")
+        self.module.program.lane(expr.ty).expect("verified IR: an expression of an elementary type")
     }
 }

@@ -5,16 +5,6 @@ use crate::signature::CODE;
 use cranelift_codegen::ir::{self as clif, BlockArg, InstBuilder, condcodes::IntCC};
 use staunch_ir::{FaultKind, Location};
 use staunch_runtime::Fault;
-use std::collections::BTreeMap;
-
-/// The blocks that return faults, filled when the function is complete.
-#[derive(Debug, Default)]
-pub(crate) struct Faults {
-    /// By code.
-    known: BTreeMap<u64, clif::Block>,
-    /// Returns the code that it is given.
-    passing: Option<clif::Block>,
-}
 
 impl Function<'_, '_> {
     pub(crate) fn fault_if(&mut self, condition: clif::Value, kind: FaultKind, at: Location) {

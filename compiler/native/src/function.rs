@@ -1,36 +1,35 @@
 //! The function of a routine: what it starts and ends with.
 
 use crate::Error;
-use crate::fault::Faults;
-use crate::memory::{Address, Temporaries};
+use crate::address::Address;
+use crate::module::{ModuleEmitter, Workspace};
 use crate::signature::{POINTER, clif_type, result_type};
-use crate::unit::{Unit, Workspace};
 use cranelift_codegen::ir::{self as clif, InstBuilder, StackSlot, UserFuncName};
 use cranelift_frontend::{FuncInstBuilder, FunctionBuilder, Variable};
 use cranelift_module::{DataId, FuncId};
 use staunch_ir::effects::Effects;
 use staunch_ir::{Const, For, LocalId, Mode, Program, Routine, RoutineId, RoutineKind, Type};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// More variables than this make the construction of SSA form slow; the rest live in the frame.
 const MAX_VARIABLES: usize = 1000;
 
 /// Emits a function, statement by statement.
 pub(crate) struct Function<'a, 'p> {
-    pub(crate) unit: &'a mut Unit<'p>,
+    pub(crate) module: &'a mut ModuleEmitter<'p>,
     pub(crate) builder: FunctionBuilder<'a>,
     pub(crate) routine: &'p Routine,
     pub(crate) start: Start,
-    pub(crate) locals: Vec<Home>,
+    pub(crate) locals: Vec<LocalSlot>,
     /// The innermost loop is the last.
-    pub(crate) loops: Vec<Turn>,
+    pub(crate) loops: Vec<LoopFrame>,
     /// The FOR loops among them whose counters are in registers.
     pub(crate) counters: Vec<&'p For>,
     /// One for each of `counters`: its value, extended to 64 bits.
     pub(crate) registers: Vec<Variable>,
     /// The locals whose values are always within their subranges.
     pub(crate) checked: Vec<bool>,
-    /// Where RETURN goes.
+    /// Where RETURN flow.
     pub(crate) exit: clif::Block,
     pub(crate) faults: Faults,
     pub(crate) temporaries: Temporaries,
@@ -47,20 +46,20 @@ pub(crate) struct Start {
     pub(crate) instance: Option<clif::Value>,
     /// One for each parameter.
     pub(crate) params: Vec<clif::Value>,
-    /// Where a result goes that is not elementary.
+    /// Where a result flow that is not elementary.
     pub(crate) result: Option<clif::Value>,
 }
 
 /// Where a local lives.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Home {
+pub(crate) enum LocalSlot {
     Variable(Variable),
     Slot(StackSlot),
 }
 
 /// A loop that is being emitted.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Turn {
+pub(crate) struct LoopFrame {
     /// Runs `continuing`.
     pub(crate) next: clif::Block,
     pub(crate) after: clif::Block,
@@ -68,34 +67,57 @@ pub(crate) struct Turn {
     pub(crate) is_left: bool,
 }
 
-pub(crate) fn emit(unit: &mut Unit<'_>, workspace: &mut Workspace, id: RoutineId) -> Result<(), Error> {
-    let routine = unit.program.routine(id);
-    let function = unit.function(id);
+/// The blocks that return faults, filled when the function is complete.
+#[derive(Debug, Default)]
+pub(crate) struct Faults {
+    /// By code.
+    pub(crate) known: BTreeMap<u64, clif::Block>,
+    /// Returns the code that it is given.
+    pub(crate) passing: Option<clif::Block>,
+}
+
+/// A part of the frame whose bytes are taken for a statement, one after the other, and again in the next.
+#[derive(Debug, Default)]
+pub(crate) struct Temporaries {
+    pub(crate) slot: Option<StackSlot>,
+    pub(crate) taken: u64,
+    /// The most that a statement takes.
+    pub(crate) most: u64,
+}
+
+pub(crate) fn emit(module: &mut ModuleEmitter<'_>, workspace: &mut Workspace, id: RoutineId) -> Result<(), Error> {
+    let routine = module.program.routine(id);
+    let function = module.function(id);
     let context = &mut workspace.context;
-    context.func.signature = unit.signature(id);
+    context.func.signature = module.signature(id);
     context.func.name = UserFuncName::user(0, function.as_u32());
     let builder = FunctionBuilder::new(&mut context.func, &mut workspace.builder);
-    let effects = unit.effects(id).clone();
-    let mut open = Function::open(unit, builder, routine, &effects);
-    let goes = open.block(&routine.body);
-    open.close(goes, &effects);
+    let effects = module.effects(id).clone();
+    let mut open = Function::open(module, builder, routine, &effects);
+    let flow = open.block(&routine.body);
+    open.close(flow, &effects);
     let name = match routine.kind {
         RoutineKind::Function | RoutineKind::Body => routine.name.clone(),
         RoutineKind::Prescan => format!("{} (prescan)", routine.name),
     };
-    unit.define(context, function, &name)
+    module.define(context, function, &name)
 }
 
 impl<'a, 'p> Function<'a, 'p> {
-    fn open(unit: &'a mut Unit<'p>, mut builder: FunctionBuilder<'a>, routine: &'p Routine, effects: &Effects) -> Self {
+    fn open(
+        module: &'a mut ModuleEmitter<'p>,
+        mut builder: FunctionBuilder<'a>,
+        routine: &'p Routine,
+        effects: &Effects,
+    ) -> Self {
         let entry = builder.create_block();
         builder.append_block_params_for_function_params(entry);
         builder.switch_to_block(entry);
         builder.seal_block(entry);
-        let start = Start::new(builder.block_params(entry), unit.program, routine, effects);
+        let start = Start::new(builder.block_params(entry), module.program, routine, effects);
         let exit = builder.create_block();
         let mut function = Self {
-            unit,
+            module,
             builder,
             routine,
             start,
@@ -119,15 +141,15 @@ impl<'a, 'p> Function<'a, 'p> {
     fn place_locals(&mut self, effects: &Effects) {
         let mut variables = 0;
         for (local, is_referred) in self.routine.locals.iter().zip(&effects.borrowed) {
-            let lane = self.unit.program.lane(local.ty).filter(|_| !is_referred);
+            let lane = self.module.program.lane(local.ty).filter(|_| !is_referred);
             let home = match lane {
                 Some(lane) if variables < MAX_VARIABLES => {
                     variables += 1;
-                    Home::Variable(self.builder.declare_var(clif_type(lane)))
+                    LocalSlot::Variable(self.builder.declare_var(clif_type(lane)))
                 }
                 Some(_) | None => {
-                    let shape = self.unit.layout.shape(local.ty);
-                    Home::Slot(self.slot(shape))
+                    let shape = self.module.layout.shape(local.ty);
+                    LocalSlot::Slot(self.slot(shape))
                 }
             };
             self.locals.push(home);
@@ -152,10 +174,10 @@ impl<'a, 'p> Function<'a, 'p> {
         }
     }
 
-    fn start_with_argument(&mut self, home: Home, ty: Type, value: clif::Value) {
+    fn start_with_argument(&mut self, home: LocalSlot, ty: Type, value: clif::Value) {
         match home {
-            Home::Variable(variable) => self.builder.def_var(variable, value),
-            Home::Slot(slot) => {
+            LocalSlot::Variable(variable) => self.builder.def_var(variable, value),
+            LocalSlot::Slot(slot) => {
                 let target = self.slot_address(slot);
                 match ty {
                     Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) => self.store(value, target),
@@ -168,10 +190,10 @@ impl<'a, 'p> Function<'a, 'p> {
         }
     }
 
-    fn start_with_constant(&mut self, home: Home, ty: Type, initial: &Const) {
+    fn start_with_constant(&mut self, home: LocalSlot, ty: Type, initial: &Const) {
         match home {
-            Home::Variable(variable) => {
-                let lane = self.unit.program.lane(ty).expect("a variable is elementary");
+            LocalSlot::Variable(variable) => {
+                let lane = self.module.program.lane(ty).expect("a variable is elementary");
                 let initial = match initial {
                     Const::Scalar(value) => *value,
                     Const::Zero | Const::Text(_) | Const::Array(_) | Const::Struct(_) => lane.zero(),
@@ -179,15 +201,15 @@ impl<'a, 'p> Function<'a, 'p> {
                 let value = self.constant(initial);
                 self.builder.def_var(variable, value);
             }
-            Home::Slot(slot) => {
+            LocalSlot::Slot(slot) => {
                 let target = self.slot_address(slot);
                 self.store_const(ty, initial, target);
             }
         }
     }
 
-    fn close(mut self, goes: Goes, effects: &Effects) {
-        if goes == Goes::On {
+    fn close(mut self, flow: Flow, effects: &Effects) {
+        if flow == Flow::Continues {
             let exit = self.exit;
             self.ins().jump(exit, &[]);
         }
@@ -202,19 +224,19 @@ impl<'a, 'p> Function<'a, 'p> {
         self.ins().return_(&values);
         self.close_faults();
         self.close_temporaries();
-        self.builder.finalize(self.unit.module.target_config());
+        self.builder.finalize(self.module.output.target_config());
     }
 
-    /// Stores a result that goes to memory; gives one that is returned.
+    /// Stores a result that flow to memory; gives one that is returned.
     fn result(&mut self) -> Option<clif::Value> {
         let (local, ty) = self.result?;
         match (self.locals[local.index()], self.start.result) {
-            (Home::Variable(variable), _) => Some(self.builder.use_var(variable)),
-            (Home::Slot(slot), None) => {
+            (LocalSlot::Variable(variable), _) => Some(self.builder.use_var(variable)),
+            (LocalSlot::Slot(slot), None) => {
                 let from = self.slot_address(slot);
                 Some(self.load(ty, from))
             }
-            (Home::Slot(slot), Some(target)) => {
+            (LocalSlot::Slot(slot), Some(target)) => {
                 let from = self.slot_address(slot);
                 self.copy(from, Address::at(target), ty);
                 None
@@ -225,7 +247,7 @@ impl<'a, 'p> Function<'a, 'p> {
     /// What is returned beside a fault's code.
     pub(crate) fn no_result(&mut self) -> Option<clif::Value> {
         let (_, ty) = self.result?;
-        let lane = self.unit.program.lane(ty)?;
+        let lane = self.module.program.lane(ty)?;
         Some(self.constant(lane.zero()))
     }
 
@@ -237,16 +259,16 @@ impl<'a, 'p> Function<'a, 'p> {
         if let Some(known) = self.functions.get(&id) {
             return *known;
         }
-        let new = self.unit.module.declare_func_in_func(id, self.builder.func);
+        let new = self.module.output.declare_func_in_func(id, self.builder.func);
         self.functions.insert(id, new);
         new
     }
 
-    /// A pointer to a constant of the unit.
+    /// A pointer to a constant of the module.
     pub(crate) fn data_pointer(&mut self, id: DataId) -> clif::Value {
         let known = self.data.get(&id).copied();
         let data = known.unwrap_or_else(|| {
-            let new = self.unit.module.declare_data_in_func(id, self.builder.func);
+            let new = self.module.output.declare_data_in_func(id, self.builder.func);
             self.data.insert(id, new);
             new
         });
@@ -256,9 +278,9 @@ impl<'a, 'p> Function<'a, 'p> {
 
 /// Whether control reaches the end of a statement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Goes {
-    On,
-    Away,
+pub(crate) enum Flow {
+    Continues,
+    Leaves,
 }
 
 impl Start {

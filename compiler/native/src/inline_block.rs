@@ -2,9 +2,8 @@
 //! its return cost as much as the step. Counts are computed at twice their bits where there are
 //! such. A test drives each row here against the runtime's own step.
 
-use crate::call::{block_info, offset};
+use crate::address::Address;
 use crate::function::Function;
-use crate::memory::Address;
 use crate::signature::clif_type;
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Type, Value as Clif, types};
@@ -375,4 +374,23 @@ impl Counter<'_, '_, '_> {
         let holds = self.f.ins().icmp(condition, cv, zero);
         self.store(field, holds);
     }
+}
+
+pub(crate) fn block_info(place: &Place) -> &'static BlockInfo {
+    match place.ty {
+        staunch_ir::Type::Block(id) => id.info(),
+        staunch_ir::Type::Elementary(_)
+        | staunch_ir::Type::Subrange(..)
+        | staunch_ir::Type::String(_)
+        | staunch_ir::Type::Enum(_)
+        | staunch_ir::Type::Array(_)
+        | staunch_ir::Type::Struct(_) => {
+            unreachable!("verified IR: an instance of a standard block")
+        }
+    }
+}
+
+/// The offset of a pin in its block.
+pub(crate) fn offset(of_pin: usize) -> u64 {
+    u64::try_from(of_pin).expect("blocks are small")
 }

@@ -1,8 +1,8 @@
 //! The operations that are a few instructions: emitted in place, with the meaning of the
 //! runtime's function. A test compares both over all edge values. What has no row here is a call.
 
-use crate::expression::Operands;
 use crate::function::Function;
+use crate::operands::Operands;
 use crate::signature::clif_type;
 use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
 use cranelift_codegen::ir::{InstBuilder, Value as Clif, types};

@@ -1,6 +1,7 @@
 //! Code in memory, for running at once, with the runtime that is linked into this process.
 
-use crate::unit::{self, EntryPoints};
+use crate::entry::EntryPoints;
+use crate::program;
 use crate::{Error, target};
 use core::fmt;
 use cranelift_jit::{ArenaMemoryProvider, JITBuilder, JITModule};
@@ -42,7 +43,7 @@ impl Jit {
         let memory = ArenaMemoryProvider::new_with_size(RESERVED).map_err(|error| Error::Output(error.to_string()))?;
         builder.memory_provider(Box::new(memory));
         let mut module = JITModule::new(builder);
-        let entry_points = unit::emit(program, &mut module, None)?.entry_points;
+        let entry_points = program::emit(program, &mut module, None)?.entry_points;
         module.finalize_definitions()?;
         Ok(Self::of_module(module, entry_points))
     }

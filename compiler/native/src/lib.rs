@@ -9,8 +9,10 @@
 mod error;
 mod target;
 
+mod address;
+mod module;
+mod operands;
 mod signature;
-mod unit;
 
 mod function;
 mod loops;
@@ -25,12 +27,13 @@ mod text;
 mod inline_block;
 mod inline_conversion;
 mod inline_op;
-mod shim;
+mod runtime_call;
 
 mod fault;
 mod memory;
 
 mod entry;
+mod program;
 
 mod jit;
 mod listing;

@@ -1,6 +1,6 @@
 //! What people and tests ask of the code: its text, and how much of the stack it takes.
 
-use crate::{Error, Target, object, unit};
+use crate::{Error, Target, object, program};
 use staunch_ir::Program;
 
 /// The code of a verified program as text, before the code generator improves it: for golden
@@ -10,7 +10,7 @@ use staunch_ir::Program;
 /// As [`object`](crate::object()).
 pub fn clif(program: &Program, target: &Target) -> Result<String, Error> {
     let mut module = object::module(target)?;
-    Ok(unit::emit(program, &mut module, Some(String::new()))?.listing)
+    Ok(program::emit(program, &mut module, Some(String::new()))?.listing)
 }
 
 /// How many bytes of the stack a call of each routine takes, without those of the calls it makes.
@@ -19,5 +19,5 @@ pub fn clif(program: &Program, target: &Target) -> Result<String, Error> {
 /// As [`object`](crate::object()).
 pub fn frames(program: &Program, target: &Target) -> Result<Vec<u64>, Error> {
     let mut module = object::module(target)?;
-    Ok(unit::emit(program, &mut module, None)?.frames)
+    Ok(program::emit(program, &mut module, None)?.frames)
 }

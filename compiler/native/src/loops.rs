@@ -1,8 +1,8 @@
 //! Loops. What decides whether there is a further turn stands in front of the loop and again at
 //! its end, so that a turn costs one branch.
 
-use crate::function::{Function, Goes, Turn};
-use crate::place::Site;
+use crate::function::{Flow, Function, LoopFrame};
+use crate::place::PlaceValue;
 use crate::signature::clif_type;
 use cranelift_codegen::ir::{self as clif, InstBuilder, MemFlagsData, condcodes::IntCC, types};
 use cranelift_frontend::Variable;
@@ -35,7 +35,7 @@ struct Running<'p> {
 }
 
 impl<'p> Function<'_, 'p> {
-    pub(crate) fn turns(&mut self, body: &'p Block, continuing: &'p Block) -> Goes {
+    pub(crate) fn turns(&mut self, body: &'p Block, continuing: &'p Block) -> Flow {
         match body.split_first() {
             Some((test, rest)) if let Some(leave) = exit_condition(test).filter(|it| is_small(it)) => {
                 self.turns_under(&Control::Unless(leave), rest, continuing)
@@ -44,22 +44,22 @@ impl<'p> Function<'_, 'p> {
         }
     }
 
-    pub(crate) fn for_loop(&mut self, it: &'p For, at: Location) -> Goes {
+    pub(crate) fn for_loop(&mut self, it: &'p For, at: Location) -> Flow {
         let running = self.start_for(it, at);
         if let Some(register) = running.register {
             self.counters.push(it);
             self.registers.push(register);
         }
-        let goes = self.turns_under(&Control::Count(running), &it.body, &[]);
+        let flow = self.turns_under(&Control::Count(running), &it.body, &[]);
         if running.register.is_some() {
             self.registers.pop();
             self.counters.pop();
         }
-        goes
+        flow
     }
 
     fn start_for(&mut self, it: &'p For, at: Location) -> Running<'p> {
-        let lane = self.unit.program.lane(it.counter.ty).expect("verified IR: an integer counter");
+        let lane = self.module.program.lane(it.counter.ty).expect("verified IR: an integer counter");
         self.assign(&it.counter, &it.first);
         let last = it.last.as_const().is_none().then(|| self.wide_scalar(lane, &it.last));
         let step = match &it.step {
@@ -103,24 +103,24 @@ impl<'p> Function<'_, 'p> {
         }
     }
 
-    fn turns_under(&mut self, control: &Control<'p>, body: &'p [Statement], continuing: &'p [Statement]) -> Goes {
+    fn turns_under(&mut self, control: &Control<'p>, body: &'p [Statement], continuing: &'p [Statement]) -> Flow {
         let [turn, next, after] = [(); 3].map(|()| self.builder.create_block());
         self.further_turn(control, turn, after);
         self.builder.switch_to_block(turn);
         let is_left = !matches!(control, Control::Always);
-        self.loops.push(Turn { next, after, is_continued: false, is_left });
-        if self.block(body) == Goes::On {
+        self.loops.push(LoopFrame { next, after, is_continued: false, is_left });
+        if self.block(body) == Flow::Continues {
             self.continue_loop();
         }
-        if self.turn().is_continued {
+        if self.innermost().is_continued {
             self.go_on_in(next);
-            if self.end_of_turn(control, continuing) == Goes::On {
+            if self.end_of_turn(control, continuing) == Flow::Continues {
                 self.further_turn(control, turn, after);
             }
         }
         self.builder.seal_block(turn);
         let is_left = self.loops.pop().expect("pushed above").is_left;
-        self.join(&[if is_left { Goes::On } else { Goes::Away }], after)
+        self.join(&[if is_left { Flow::Continues } else { Flow::Leaves }], after)
     }
 
     fn further_turn(&mut self, control: &Control<'p>, turn: clif::Block, after: clif::Block) {
@@ -138,11 +138,11 @@ impl<'p> Function<'_, 'p> {
         }
     }
 
-    fn end_of_turn(&mut self, control: &Control<'p>, continuing: &'p [Statement]) -> Goes {
+    fn end_of_turn(&mut self, control: &Control<'p>, continuing: &'p [Statement]) -> Flow {
         match control {
             Control::Count(running) => {
                 self.step(running);
-                Goes::On
+                Flow::Continues
             }
             Control::Unless(_) | Control::Always => self.block(continuing),
         }
@@ -185,16 +185,16 @@ impl<'p> Function<'_, 'p> {
         if let Some(register) = running.register {
             self.builder.def_var(register, value);
         }
-        match self.site(&running.it.counter) {
-            Site::Variable(variable) => {
+        match self.place_value(&running.it.counter) {
+            PlaceValue::Variable(variable) => {
                 let value = self.narrowed(running.lane, value);
                 self.builder.def_var(variable, value);
             }
-            Site::Memory(address) => self.store_low(running.lane, value, address),
+            PlaceValue::Memory(address) => self.store_low(running.lane, value, address),
         }
     }
 
-    /// Ends the loop, or faults, where the step would lead out of the counter's range; else goes on.
+    /// Ends the loop, or faults, where the step would lead out of the counter's range; else flow on.
     fn unless_out_of_range(&mut self, running: &Running<'p>, counter: clif::Value) {
         let (it, lane) = (running.it, running.lane);
         let is_out = match &it.step {
@@ -294,26 +294,26 @@ impl<'p> Function<'_, 'p> {
         if lane.size() == 8 { value } else { self.ins().ireduce(clif_type(lane), value) }
     }
 
-    fn turn(&mut self) -> &mut Turn {
+    fn innermost(&mut self) -> &mut LoopFrame {
         self.loops.last_mut().expect("verified IR: EXIT and CONTINUE stand in a loop")
     }
 
-    pub(crate) fn leave_loop(&mut self) -> Goes {
+    pub(crate) fn leave_loop(&mut self) -> Flow {
         let after = self.turn_end();
         self.go(after)
     }
 
-    /// Where the innermost loop goes on that is left.
+    /// Where the innermost loop flow on that is left.
     fn turn_end(&mut self) -> clif::Block {
-        let turn = self.turn();
-        turn.is_left = true;
-        turn.after
+        let frame = self.innermost();
+        frame.is_left = true;
+        frame.after
     }
 
-    pub(crate) fn continue_loop(&mut self) -> Goes {
-        let turn = self.turn();
-        turn.is_continued = true;
-        let next = turn.next;
+    pub(crate) fn continue_loop(&mut self) -> Flow {
+        let frame = self.innermost();
+        frame.is_continued = true;
+        let next = frame.next;
         self.go(next)
     }
 }

@@ -1,42 +1,11 @@
 //! Values in memory: addresses, loads and stores, copies, and the frame.
 
-use crate::function::Function;
+use crate::address::Address;
+use crate::function::{Function, Temporaries};
 use crate::signature::{POINTER, clif_type};
 use cranelift_codegen::ir::{self as clif, InstBuilder, MemFlagsData, StackSlot, StackSlotData, StackSlotKind, types};
 use staunch_ir::layout::{Shape, usize_of};
 use staunch_ir::{Const, Lane, Type, Value};
-
-/// A pointer and a constant distance from it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Address {
-    pub(crate) base: clif::Value,
-    pub(crate) offset: u64,
-}
-
-impl Address {
-    pub(crate) fn at(base: clif::Value) -> Self {
-        Self { base, offset: 0 }
-    }
-
-    #[must_use]
-    pub(crate) fn plus(self, offset: u64) -> Self {
-        Self { offset: self.offset + offset, ..self }
-    }
-
-    /// The distance as instructions carry it.
-    pub(crate) fn displacement(self) -> i32 {
-        i32::try_from(self.offset).expect("verified IR: sizes are within 1 GiB")
-    }
-}
-
-/// A part of the frame whose bytes are taken for a statement, one after the other, and again in the next.
-#[derive(Debug, Default)]
-pub(crate) struct Temporaries {
-    slot: Option<StackSlot>,
-    taken: u64,
-    /// The most that a statement takes.
-    most: u64,
-}
 
 /// Of the part of the frame for temporaries: that of the largest elementary type.
 const TEMPORARY_ALIGN: u64 = 8;
@@ -87,7 +56,7 @@ impl Function<'_, '_> {
 
     /// Reads a value of an elementary or enumeration type.
     pub(crate) fn load(&mut self, ty: Type, from: Address) -> clif::Value {
-        let lane = self.unit.program.lane(ty).expect("verified IR: an elementary type");
+        let lane = self.module.program.lane(ty).expect("verified IR: an elementary type");
         self.load_as(clif_type(lane), from)
     }
 
@@ -112,7 +81,7 @@ impl Function<'_, '_> {
 
     /// Copies a value; both places may be the same.
     pub(crate) fn copy(&mut self, from: Address, to: Address, ty: Type) {
-        let shape = self.unit.layout.shape(ty);
+        let shape = self.module.layout.shape(ty);
         self.copy_bytes(from, to, shape);
     }
 
@@ -121,7 +90,7 @@ impl Function<'_, '_> {
             return;
         }
         let (from, to) = (self.pointer(from), self.pointer(to));
-        let (config, align) = (self.unit.module.target_config(), align_of(shape));
+        let (config, align) = (self.module.output.target_config(), align_of(shape));
         let flags = MemFlagsData::trusted();
         self.builder.emit_small_memory_copy(config, to, from, shape.size, align, align, false, flags);
     }
@@ -132,11 +101,11 @@ impl Function<'_, '_> {
             let value = self.constant(*value);
             return self.store(value, to);
         }
-        let shape = self.unit.layout.shape(ty);
+        let shape = self.module.layout.shape(ty);
         if let Some(from) = self.const_data(ty, value) {
             self.copy_bytes(from, to, shape);
         } else {
-            let (config, align) = (self.unit.module.target_config(), align_of(shape));
+            let (config, align) = (self.module.output.target_config(), align_of(shape));
             let to = self.pointer(to);
             let flags = MemFlagsData::trusted();
             self.builder.emit_small_memset(config, to, 0, shape.size, align, flags);
@@ -145,18 +114,18 @@ impl Function<'_, '_> {
 
     /// A constant as read-only data; `None` if its bytes are all zero.
     fn const_data(&mut self, ty: Type, value: &Const) -> Option<Address> {
-        let layout = &self.unit.layout;
+        let layout = &self.module.layout;
         if matches!(value, Const::Zero) {
             return None;
         }
         let mut bytes = vec![0; usize_of(layout.size(ty))];
-        layout.write_const(self.unit.program, ty, value, &mut bytes);
+        layout.write_const(self.module.program, ty, value, &mut bytes);
         bytes.iter().any(|byte| *byte != 0).then(|| self.data(bytes))
     }
 
     /// Read-only bytes.
     pub(crate) fn data(&mut self, bytes: Vec<u8>) -> Address {
-        let id = self.unit.constant(bytes);
+        let id = self.module.constant(bytes);
         Address::at(self.data_pointer(id))
     }
 

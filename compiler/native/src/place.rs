@@ -1,7 +1,7 @@
 //! Places: where a variable, a field or an element is.
 
-use crate::function::{Function, Home};
-use crate::memory::Address;
+use crate::address::Address;
+use crate::function::{Function, LocalSlot};
 use cranelift_codegen::ir::{InstBuilder, condcodes::IntCC};
 use cranelift_frontend::Variable;
 use staunch_ir::loops::{Known, constant_position};
@@ -9,36 +9,36 @@ use staunch_ir::{ArrayId, Expr, FaultKind, LocalId, Location, Place, Projection,
 
 /// Where the value of a place is.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Site {
+pub(crate) enum PlaceValue {
     Variable(Variable),
     Memory(Address),
 }
 
 impl Function<'_, '_> {
-    pub(crate) fn site(&mut self, place: &Place) -> Site {
+    pub(crate) fn place_value(&mut self, place: &Place) -> PlaceValue {
         if let Root::Local(id) = place.root
-            && let Home::Variable(variable) = self.locals[id.index()]
+            && let LocalSlot::Variable(variable) = self.locals[id.index()]
         {
-            return Site::Variable(variable);
+            return PlaceValue::Variable(variable);
         }
-        Site::Memory(self.address(place))
+        PlaceValue::Memory(self.address(place))
     }
 
     /// The address of a place that is not a variable of the code generator's.
     pub(crate) fn address(&mut self, place: &Place) -> Address {
         let mut address = self.root(place.root);
-        let root_type = self.unit.program.root_type(self.routine, place.root);
+        let root_type = self.module.program.root_type(self.routine, place.root);
         let mut ty = root_type.expect("verified IR: a root that the POU has");
         for projection in &place.projections {
             (address, ty) = match projection {
                 Projection::Field(field) => {
-                    let member = self.unit.program.member(ty, *field);
-                    let offset = self.unit.layout.offset(ty, *field);
+                    let member = self.module.program.member(ty, *field);
+                    let offset = self.module.layout.offset(ty, *field);
                     (address.plus(offset), member.expect("verified IR: a member of the type"))
                 }
                 Projection::Index { index, at } => {
                     let Type::Array(id) = ty else { unreachable!("verified IR: an index into an array") };
-                    (self.element(address, id, index, *at), self.unit.program.array(id).element)
+                    (self.element(address, id, index, *at), self.module.program.array(id).element)
                 }
             };
         }
@@ -51,14 +51,14 @@ impl Function<'_, '_> {
             Root::Globals => Address::at(self.start.globals.expect("a function that uses globals gets them")),
             Root::Param(id) => Address::at(self.start.params[id.index()]),
             Root::Local(id) => match self.locals[id.index()] {
-                Home::Slot(slot) => self.slot_address(slot),
-                Home::Variable(_) => unreachable!("an elementary local without references to it"),
+                LocalSlot::Slot(slot) => self.slot_address(slot),
+                LocalSlot::Variable(_) => unreachable!("an elementary local without references to it"),
             },
         }
     }
 
     fn element(&mut self, array: Address, id: ArrayId, index: &Expr, at: Location) -> Address {
-        let (program, stride) = (self.unit.program, self.unit.layout.stride(id));
+        let (program, stride) = (self.module.program, self.module.layout.stride(id));
         if let Some(position) = constant_position(program, index, id) {
             return array.plus(position * stride);
         }

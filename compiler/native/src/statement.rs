@@ -1,23 +1,23 @@
 //! Statements: writes and control flow.
 
-use crate::function::{Function, Goes};
-use crate::memory::Address;
-use crate::place::Site;
+use crate::address::Address;
+use crate::function::{Flow, Function};
+use crate::place::PlaceValue;
 use cranelift_codegen::ir::{self as clif, InstBuilder};
 use staunch_ir::{Block, Expr, ExprKind, Op, Place, Statement, StatementKind, Type};
 
 impl<'p> Function<'_, 'p> {
     /// What stands behind a statement that control does not pass is left out.
-    pub(crate) fn block(&mut self, block: &'p [Statement]) -> Goes {
+    pub(crate) fn block(&mut self, block: &'p [Statement]) -> Flow {
         for statement in block {
-            if self.statement(statement) == Goes::Away {
-                return Goes::Away;
+            if self.statement(statement) == Flow::Leaves {
+                return Flow::Leaves;
             }
         }
-        Goes::On
+        Flow::Continues
     }
 
-    fn statement(&mut self, statement: &'p Statement) -> Goes {
+    fn statement(&mut self, statement: &'p Statement) -> Flow {
         self.release_temporaries();
         match &statement.kind {
             StatementKind::Assign { target, value } => self.assign(target, value),
@@ -44,19 +44,19 @@ impl<'p> Function<'_, 'p> {
             }
             StatementKind::Fault(kind) => {
                 self.fault(*kind, statement.at);
-                return Goes::Away;
+                return Flow::Leaves;
             }
         }
-        Goes::On
+        Flow::Continues
     }
 
     pub(crate) fn assign(&mut self, target: &Place, value: &Expr) {
-        match self.site(target) {
-            Site::Variable(variable) => {
+        match self.place_value(target) {
+            PlaceValue::Variable(variable) => {
                 let value = self.scalar(value);
                 self.builder.def_var(variable, value);
             }
-            Site::Memory(address) => self.assign_to(value, address),
+            PlaceValue::Memory(address) => self.assign_to(value, address),
         }
     }
 
@@ -86,7 +86,7 @@ impl<'p> Function<'_, 'p> {
         match &value.kind {
             ExprKind::Load(place) => self.address(place),
             ExprKind::Aggregate(constant) => {
-                let shape = self.unit.layout.shape(value.ty);
+                let shape = self.module.layout.shape(value.ty);
                 let address = self.temporary(shape);
                 self.store_const(value.ty, constant, address);
                 address
@@ -101,21 +101,21 @@ impl<'p> Function<'_, 'p> {
         }
     }
 
-    fn branch(&mut self, condition: &Expr, then: &'p Block, otherwise: &'p Block) -> Goes {
+    fn branch(&mut self, condition: &Expr, then: &'p Block, otherwise: &'p Block) -> Flow {
         let (then_block, after) = (self.builder.create_block(), self.builder.create_block());
         if otherwise.is_empty() {
             self.test(condition, then_block, after);
             self.arm(then_block, then, after);
             self.go_on_in(after);
-            return Goes::On;
+            return Flow::Continues;
         }
         let otherwise_block = self.builder.create_block();
         self.test(condition, then_block, otherwise_block);
-        let goes = [self.arm(then_block, then, after), self.arm(otherwise_block, otherwise, after)];
-        self.join(&goes, after)
+        let flow = [self.arm(then_block, then, after), self.arm(otherwise_block, otherwise, after)];
+        self.join(&flow, after)
     }
 
-    /// Goes one way or the other. A NOT costs nothing here.
+    /// Flow one way or the other. A NOT costs nothing here.
     pub(crate) fn test(&mut self, condition: &Expr, holds: clif::Block, fails: clif::Block) {
         if let ExprKind::Apply(Op::Not, operands) = &condition.kind {
             return self.test(&operands[0], fails, holds);
@@ -125,26 +125,26 @@ impl<'p> Function<'_, 'p> {
     }
 
     /// One way through a branch, from `block` to `after`.
-    pub(crate) fn arm(&mut self, block: clif::Block, body: &'p Block, after: clif::Block) -> Goes {
+    pub(crate) fn arm(&mut self, block: clif::Block, body: &'p Block, after: clif::Block) -> Flow {
         self.go_on_in(block);
-        let goes = self.block(body);
-        if goes == Goes::On {
+        let flow = self.block(body);
+        if flow == Flow::Continues {
             self.ins().jump(after, &[]);
         }
-        goes
+        flow
     }
 
-    /// Goes on behind a branch, if one of its ways leads there.
-    pub(crate) fn join(&mut self, ways: &[Goes], after: clif::Block) -> Goes {
-        if !ways.contains(&Goes::On) {
-            return Goes::Away;
+    /// Flow on behind a branch, if one of its ways leads there.
+    pub(crate) fn join(&mut self, ways: &[Flow], after: clif::Block) -> Flow {
+        if !ways.contains(&Flow::Continues) {
+            return Flow::Leaves;
         }
         self.go_on_in(after);
-        Goes::On
+        Flow::Continues
     }
 
-    pub(crate) fn go(&mut self, block: clif::Block) -> Goes {
+    pub(crate) fn go(&mut self, block: clif::Block) -> Flow {
         self.ins().jump(block, &[]);
-        Goes::Away
+        Flow::Leaves
     }
 }

@@ -1,9 +1,9 @@
 //! Strings: pointers to a length and the bytes behind it. What makes a new string writes it to
 //! the frame, so no result overlaps an operand.
 
+use crate::address::Address;
 use crate::function::Function;
-use crate::memory::Address;
-use crate::shim::by_pointer;
+use crate::runtime_call::by_pointer;
 use cranelift_codegen::ir as clif;
 use staunch_ir::{Const, Expr, ExprKind, Lane, TextOp, Type};
 
@@ -40,19 +40,19 @@ impl Function<'_, '_> {
         let capacity = u16::try_from(bytes.len()).expect("verified IR: a string fits its type");
         let mut data = vec![0; self.size_of_text(capacity)];
         let value = Const::Text(bytes.to_vec());
-        let unit = &self.unit;
-        unit.layout.write_const(unit.program, Type::String(capacity), &value, &mut data);
+        let module = &self.module;
+        module.layout.write_const(module.program, Type::String(capacity), &value, &mut data);
         Text { address: self.data(data), capacity }
     }
 
     fn size_of_text(&self, capacity: u16) -> usize {
-        staunch_ir::layout::usize_of(self.unit.layout.size(Type::String(capacity)))
+        staunch_ir::layout::usize_of(self.module.layout.size(Type::String(capacity)))
     }
 
     fn text_operation(&mut self, op: TextOp, operands: &[Expr], ty: Type) -> Text {
         let mut arguments = self.text_arguments(op, operands);
         let capacity = capacity(ty);
-        let shape = self.unit.layout.shape(ty);
+        let shape = self.module.layout.shape(ty);
         let address = self.temporary(shape);
         let out = self.pointer(address);
         let limit = self.integer(clif::types::I16, i128::from(capacity));
@@ -89,7 +89,7 @@ impl Function<'_, '_> {
         if text.capacity <= capacity {
             return text;
         }
-        let shape = self.unit.layout.shape(ty);
+        let shape = self.module.layout.shape(ty);
         let address = self.temporary(shape);
         let from = self.pointer(text.address);
         self.copy_text(from, address, capacity);

@@ -11,6 +11,7 @@
 
 mod call;
 mod hoist;
+mod key;
 mod naming;
 mod overlap;
 mod rewrite;
@@ -24,8 +25,11 @@ use staunch_ir::{
 };
 
 use call::Call;
+use key::{Binding, Globals, Key};
 use naming::{copy_name, group_name};
 use rewrite::Body;
+
+pub use key::{Origin, element};
 
 /// A program without aliases in its calls.
 #[derive(Debug)]
@@ -33,56 +37,6 @@ pub struct Separated {
     pub program: Program,
     /// For each of its routines.
     pub origins: Vec<Origin>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Origin {
-    Declared,
-    /// A declared POU that is handed the globals that it uses one by one.
-    Apart,
-    /// A copy of a declared POU in which parameters share storage.
-    Copy,
-}
-
-/// A callee, and what of it shares storage with what.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-struct Key {
-    routine: RoutineId,
-    /// For the instance, then for each parameter.
-    bindings: Vec<Binding>,
-    globals: Globals,
-    /// The types of the parameters that a copy gets for shared storage.
-    groups: Vec<Type>,
-}
-
-/// How a routine reaches the globals.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-enum Globals {
-    /// It is handed all of them, if it uses any.
-    Whole,
-    /// It is handed each variable that it uses.
-    Apart(Vec<(FieldId, Binding)>),
-}
-
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-enum Binding {
-    /// It is handed over as declared.
-    Own,
-    /// It is part of what the callee reaches anyway.
-    Within { root: SharedRoot, steps: Vec<Step> },
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum SharedRoot {
-    Instance,
-    Group(usize),
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum Step {
-    Field(FieldId),
-    /// The subscript arrives as a parameter.
-    Index,
 }
 
 struct Separator<'p> {
@@ -110,33 +64,6 @@ pub fn separate(source: &Program) -> Separated {
 struct Pass {
     separated: Separated,
     known: HashMap<Key, RoutineId>,
-}
-
-impl Key {
-    /// The routine as it is declared.
-    fn declared(routine: RoutineId, params: usize) -> Self {
-        Self { routine, bindings: vec![Binding::Own; params + 1], globals: Globals::Whole, groups: Vec::new() }
-    }
-
-    fn shares(&self) -> bool {
-        let apart = match &self.globals {
-            Globals::Whole => &[][..],
-            Globals::Apart(bindings) => bindings,
-        };
-        self.bindings.iter().chain(apart.iter().map(|(_, it)| it)).any(|it| *it != Binding::Own)
-    }
-
-    fn is_apart(&self) -> bool {
-        matches!(self.globals, Globals::Apart(_)) && !self.shares()
-    }
-
-    fn origin(&self) -> Origin {
-        match self.globals {
-            _ if self.shares() => Origin::Copy,
-            Globals::Whole => Origin::Declared,
-            Globals::Apart(_) => Origin::Apart,
-        }
-    }
 }
 
 impl<'p> Separator<'p> {
@@ -439,15 +366,6 @@ fn capture(binding: &Binding, place: &Place, arguments: &mut Vec<Argument>) {
         if let Projection::Index { index, .. } = projection {
             arguments.push(Argument::Value(index.as_ref().clone()));
         }
-    }
-}
-
-/// The type behind a projection.
-pub fn element(program: &Program, ty: Type, projection: &Projection) -> Type {
-    match (projection, ty) {
-        (Projection::Field(field), _) => program.member(ty, *field).expect("verified IR: the member exists"),
-        (Projection::Index { .. }, Type::Array(array)) => program.array(array).element,
-        (Projection::Index { .. }, _) => unreachable!("verified IR: only arrays have elements"),
     }
 }
 

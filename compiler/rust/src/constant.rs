@@ -4,9 +4,9 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 use staunch_ir::{ArrayId, BlockId, Const, Elementary, EnumId, FieldId, Lane, StructId, Type, Value};
 
-use crate::code::{Code, Level};
 use crate::emitter::Emitter;
 use crate::names;
+use crate::precedence::{Code, Level};
 
 /// Arrays up to this length are written out where their elements differ.
 const SHORT_ARRAY: u64 = 64;

@@ -5,10 +5,10 @@ use proc_macro2::TokenStream;
 use quote::quote;
 use staunch_ir::{Conversion, Expr, ExprKind, Lane, Op, Type, Value};
 
-use crate::code::{Code, Level};
 use crate::constant::{literal, plain};
 use crate::function::Function;
 use crate::names::ident;
+use crate::precedence::{Code, Level};
 use staunch_ir::visit;
 
 impl Function<'_> {

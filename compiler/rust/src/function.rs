@@ -9,9 +9,9 @@ use staunch_ir::{Block, Class, ClassKind, LocalId, Mode, Place, Routine, Routine
 
 use crate::declare::{Declaration, Plan, plan};
 use crate::emitter::Emitter;
+use crate::index_hoist::HoistedIndex;
+use crate::loops::Loops;
 use crate::names::{LocalNames, ident};
-use crate::repeat::Loops;
-use crate::subscript::Subscript;
 
 /// One function being printed.
 pub struct Function<'a> {
@@ -27,7 +27,7 @@ pub struct Function<'a> {
     /// The names of those copies, by what they copy.
     pub counter_names: HashMap<String, Ident>,
     /// Subscripts that the loops around have found, innermost last.
-    pub subscripts: Vec<Subscript>,
+    pub hoisted_indices: Vec<HoistedIndex>,
     /// The line last marked.
     pub marked: Option<(u16, u32)>,
 }
@@ -80,7 +80,7 @@ impl<'a> Emitter<'a> {
             loops: Loops::default(),
             counters: Vec::new(),
             counter_names: HashMap::new(),
-            subscripts: Vec::new(),
+            hoisted_indices: Vec::new(),
             marked: None,
         }
     }

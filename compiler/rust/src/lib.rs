@@ -6,23 +6,23 @@ mod names;
 
 mod alias;
 
-mod code;
 mod declare;
 mod emitter;
+mod precedence;
 
 mod constant;
 mod expression;
 mod function;
+mod index_hoist;
 mod item;
+mod loops;
 mod place;
-mod repeat;
 mod statement;
 mod string;
-mod subscript;
 
-mod check;
+mod format;
 mod glue;
-mod polish;
+mod layout_asserts;
 
 use quote::quote;
 use staunch_ir::Program;
@@ -92,7 +92,7 @@ pub fn emit(program: &Program, options: &Options) -> String {
     let emitter = Emitter::new(&separated.program, &separated.origins);
     let items = emitter.items();
     let imports = imports(&items, &options.runtime);
-    let body = format!("{}{}", polish::format(quote!(#imports #items)), check::layout(&emitter));
+    let body = format!("{}{}", format::format(quote!(#imports #items)), layout_asserts::layout(&emitter));
     let header = header(program);
     match &options.shape {
         Shape::File => {
@@ -109,7 +109,7 @@ pub fn emit(program: &Program, options: &Options) -> String {
 }
 
 fn imports(items: &proc_macro2::TokenStream, runtime: &str) -> Option<proc_macro2::TokenStream> {
-    let names: Vec<_> = polish::imports(items).iter().map(|it| names::ident(it)).collect();
+    let names: Vec<_> = format::imports(items).iter().map(|it| names::ident(it)).collect();
     let runtime: syn::Path = syn::parse_str(runtime).expect("the runtime's path is a Rust path");
     match names.as_slice() {
         [] => None,

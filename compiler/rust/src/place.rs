@@ -4,10 +4,10 @@ use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 use staunch_ir::{Expr, Location, Place, Projection, Root, Type, Value};
 
-use crate::code::{Code, Level};
 use crate::constant::{number, signed};
 use crate::function::Function;
 use crate::names::ident;
+use crate::precedence::{Code, Level};
 use staunch_ir::visit;
 
 impl Function<'_> {

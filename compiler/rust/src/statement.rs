@@ -1,4 +1,4 @@
-//! Statements, each behind a mark of its source line (`polish` turns marks into comments).
+//! Statements, each behind a mark of its source line (`format` turns marks into comments).
 
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
@@ -7,10 +7,10 @@ use staunch_ir::{
     StatementKind, Type,
 };
 
-use crate::code::Level;
 use crate::constant::{literal, plain};
 use crate::function::Function;
 use crate::names::ident;
+use crate::precedence::Level;
 use staunch_ir::visit;
 
 impl Function<'_> {

@@ -4,10 +4,10 @@ use proc_macro2::TokenStream;
 use quote::quote;
 use staunch_ir::{Expr, ExprKind, TextOp, Type};
 
-use crate::code::{Code, Level};
 use crate::constant::number;
 use crate::function::Function;
 use crate::names::ident;
+use crate::precedence::{Code, Level};
 use staunch_ir::visit;
 
 impl Function<'_> {

@@ -1,3 +1,5 @@
+//! The relation of places, against where they lie.
+
 use super::*;
 use crate::fixture::{AT, assign, field, int, lint, load, local, param, program, routine, structure};
 use crate::{Argument, Array, ArrayId, Const, Field, FieldId, LocalId, Mode, ParamId, Routine, RoutineKind};

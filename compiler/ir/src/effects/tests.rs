@@ -1,3 +1,5 @@
+//! What routines of the sample program read, write and call.
+
 use super::*;
 use crate::fixture::{
     adder, assign, call_adder, call_counter, call_double, count, int, load, sample, temp, total, wide,

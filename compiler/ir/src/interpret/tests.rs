@@ -1,3 +1,5 @@
+//! What hand-built statements do.
+
 use super::*;
 use crate::fixture::*;
 use crate::{

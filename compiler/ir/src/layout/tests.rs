@@ -1,3 +1,5 @@
+//! Sizes and offsets, against those of Rust.
+
 use super::*;
 use crate::fixture::{self, AT, COLOR, field, routine, structure};
 use crate::{Elementary, RoutineKind, Struct};

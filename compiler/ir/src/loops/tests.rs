@@ -1,3 +1,5 @@
+//! Which counters are private, and which values expressions have in loops.
+
 use super::*;
 use crate::fixture::{AT, assign, call_adder, count, int, lint, load, local, sample, stmt, temp, total, value, values};
 use crate::{Argument, Array, BoundsId, Const, Elementary, LocalId, RoutineId, Step, Type, apply};
@@ -108,9 +110,9 @@ fn is_checked(body: impl FnOnce(Place) -> Vec<Statement>) -> bool {
     assert!(!checked[0], "temp is of no subrange");
     let index = Expr::load(Place::local(LocalId(1), INDEX), AT).read();
     let known = Known { program: &program, loops: &[], checked: &|id| checked[id.index()] };
-    let last = crate::ArrayId::next(program.arrays.len() - 1);
+    let last = ArrayId::next(program.arrays.len() - 1);
     assert_eq!(known.is_within(&index, last), checked[1]);
-    assert!(!known.is_within(&index, crate::ArrayId(0)), "an array of other bounds");
+    assert!(!known.is_within(&index, ArrayId(0)), "an array of other bounds");
     checked[1]
 }
 

@@ -1,3 +1,5 @@
+//! The text of the sample program.
+
 use super::print;
 use crate::fixture::*;
 use crate::{

@@ -1,3 +1,5 @@
+//! The map of small programs.
+
 use super::map_text;
 use crate::fixture::{block, sample};
 use crate::layout::Layout;

@@ -2,9 +2,9 @@
 
 use staunch_ir::{Argument, FieldId, Location, Place, Program, Projection, Routine, RoutineId};
 
+use super::key::{Binding, Globals, Key, SharedRoot, Step};
 use super::overlap::{Ancestor, Slot, overlap};
 use super::rewrite::Body;
-use super::{Binding, Globals, Key, SharedRoot, Step};
 
 #[derive(Clone)]
 pub struct Call {

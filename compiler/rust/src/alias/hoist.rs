@@ -5,8 +5,8 @@ use staunch_ir::{
     Projection, Root, Statement, StatementKind, Type, Value,
 };
 
+use super::key::{Binding, SharedRoot, Step};
 use super::rewrite::{Base, Body};
-use super::{Binding, SharedRoot, Step};
 
 impl Body {
     /// Reads `value` now if reading it at the call could fault, or read what is borrowed then.

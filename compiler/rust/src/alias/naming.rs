@@ -2,7 +2,7 @@
 
 use staunch_ir::{Program, Routine, RoutineKind};
 
-use super::{Binding, Globals, Key, SharedRoot};
+use super::key::{Binding, Globals, Key, SharedRoot};
 
 /// The names of the parameters and globals that share storage, `a_b`.
 fn sharing(program: &Program, source: &Routine, key: &Key, with: SharedRoot) -> String {

@@ -4,7 +4,7 @@
 use staunch_ir::alias::{borrows_meet, common_fields};
 use staunch_ir::{Place, Program, Projection, Root, Type};
 
-use super::{SharedRoot, element};
+use super::key::{SharedRoot, element};
 
 /// A reference that a call hands over; number 0 is the instance.
 pub struct Slot<'a> {

@@ -1,3 +1,5 @@
+//! Which copies calls need, and that they mean the same.
+
 #![allow(clippy::unwrap_used)]
 
 use super::*;

@@ -1,7 +1,7 @@
 //! Calls of the runtime's C symbols.
 
-use crate::expression::Operands;
 use crate::function::Function;
+use crate::operands::Operands;
 use crate::signature::{POINTER, c_value};
 use cranelift_codegen::ir::{self as clif, AbiParam, InstBuilder, types};
 use staunch_ir::layout::Shape;
@@ -15,10 +15,10 @@ impl Function<'_, '_> {
         arguments: &[(AbiParam, clif::Value)],
         result: Option<AbiParam>,
     ) -> Option<clif::Value> {
-        let mut signature = self.unit.module.make_signature();
+        let mut signature = self.module.output.make_signature();
         signature.params.extend(arguments.iter().map(|(param, _)| *param));
         signature.returns.extend(result);
-        let id = self.unit.import(symbol, &signature);
+        let id = self.module.import(symbol, &signature);
         let function = self.function_ref(id);
         let values: Vec<_> = arguments.iter().map(|(_, value)| *value).collect();
         let call = self.ins().call(function, &values);
@@ -30,7 +30,7 @@ impl Function<'_, '_> {
     }
 
     pub(crate) fn c_param(&self, lane: Lane) -> AbiParam {
-        c_value(self.unit.module.isa().triple(), lane)
+        c_value(self.module.output.isa().triple(), lane)
     }
 }
 

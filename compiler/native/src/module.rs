@@ -1,12 +1,12 @@
 //! One program on its way into a module: what is declared, and the data that code refers to.
 
-use crate::{Error, entry, function, inline_block, inline_op, signature, target};
+use crate::{Error, signature, target};
 use cranelift_codegen::Context;
 use cranelift_codegen::control::ControlPlane;
 use cranelift_codegen::ir::Signature;
 use cranelift_frontend::FunctionBuilderContext;
 use cranelift_module::{DataDescription, DataId, FuncId, Linkage, Module, ModuleReloc};
-use staunch_ir::effects::{Effects, Rules, effects};
+use staunch_ir::effects::Effects;
 use staunch_ir::layout::Layout;
 use staunch_ir::{Program, Routine, RoutineId, RoutineKind};
 use std::collections::HashMap;
@@ -19,19 +19,11 @@ const LARGE: usize = 30_000;
 /// Beside a frame lie the caller's frame pointer and the address to return to.
 const FRAME_ENDS: u64 = 16;
 
-/// What the code for blocks and operations needs.
-const RULES: Rules = Rules {
-    block_takes_context: |block, instruction| inline_block::find(block, instruction).is_none(),
-    operation_faults: inline_op::may_fault,
-    drops_checks: true,
-    scans_take_all: false,
-};
-
-pub(crate) struct Unit<'p> {
+pub(crate) struct ModuleEmitter<'p> {
     pub(crate) program: &'p Program,
     pub(crate) layout: Layout,
-    pub(crate) effects: Vec<Effects>,
-    pub(crate) module: &'p mut dyn Module,
+    effects: Vec<Effects>,
+    pub(crate) output: &'p mut dyn Module,
     functions: Vec<FuncId>,
     imports: HashMap<String, FuncId>,
     /// Read-only data, defined when all code is made.
@@ -48,60 +40,34 @@ pub(crate) struct Workspace {
     pub(crate) builder: FunctionBuilderContext,
 }
 
-/// The functions that a program consists of.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct EntryPoints {
-    pub(crate) init: FuncId,
-    pub(crate) scan: FuncId,
-}
-
-/// What is known of a program's code when it is made.
-pub(crate) struct Emitted {
-    pub(crate) entry_points: EntryPoints,
-    /// Empty if none was wanted.
-    pub(crate) listing: String,
-    /// How much of the stack each routine takes.
-    pub(crate) frames: Vec<u64>,
-}
-
-/// Puts a whole program into `module`.
-pub(crate) fn emit(program: &Program, module: &mut dyn Module, listing: Option<String>) -> Result<Emitted, Error> {
-    let mut unit = Unit {
-        program,
-        layout: Layout::new(program),
-        effects: effects(program, &RULES),
-        module,
-        functions: Vec::with_capacity(program.routines.len()),
-        imports: HashMap::new(),
-        constants: HashMap::new(),
-        frames: Vec::with_capacity(program.routines.len()),
-        listing,
-    };
-    unit.declare()?;
-    let mut workspace = Workspace { context: unit.module.make_context(), builder: FunctionBuilderContext::new() };
-    for at in 0..program.routines.len() {
-        function::emit(&mut unit, &mut workspace, RoutineId::next(at))?;
+impl<'p> ModuleEmitter<'p> {
+    pub(crate) fn new(program: &'p Program, effects: Vec<Effects>, output: &'p mut dyn Module) -> Self {
+        Self {
+            program,
+            layout: Layout::new(program),
+            effects,
+            output,
+            functions: Vec::with_capacity(program.routines.len()),
+            imports: HashMap::new(),
+            constants: HashMap::new(),
+            frames: Vec::with_capacity(program.routines.len()),
+            listing: None,
+        }
     }
-    let frames = core::mem::take(&mut unit.frames);
-    let entry_points = entry::emit(&mut unit, &mut workspace)?;
-    unit.define_constants()?;
-    Ok(Emitted { entry_points, listing: unit.listing.unwrap_or_default(), frames })
-}
 
-impl<'p> Unit<'p> {
-    fn declare(&mut self) -> Result<(), Error> {
+    pub(crate) fn declare(&mut self) -> Result<(), Error> {
         let program = self.program;
         for (at, routine) in program.routines.iter().enumerate() {
             let id = RoutineId::next(at);
             let signature = self.signature(id);
-            let function = self.module.declare_function(&symbol(id, routine), Linkage::Local, &signature)?;
+            let function = self.output.declare_function(&symbol(id, routine), Linkage::Local, &signature)?;
             self.functions.push(function);
         }
         Ok(())
     }
 
     pub(crate) fn signature(&self, id: RoutineId) -> Signature {
-        let mut signature = self.module.make_signature();
+        let mut signature = self.output.make_signature();
         signature::of_routine(self.program, self.program.routine(id), self.effects(id), &mut signature);
         signature
     }
@@ -120,7 +86,7 @@ impl<'p> Unit<'p> {
             return *id;
         }
         let id = self
-            .module
+            .output
             .declare_function(symbol, Linkage::Import, signature)
             .expect("a symbol of the runtime has one signature, and no other meaning");
         self.imports.insert(symbol.to_owned(), id);
@@ -133,16 +99,16 @@ impl<'p> Unit<'p> {
             return *id;
         }
         let name = format!("staunch_constant_{}", self.constants.len());
-        let id = self.module.declare_data(&name, Linkage::Local, false, false).expect("names of constants are counted");
+        let id = self.output.declare_data(&name, Linkage::Local, false, false).expect("names of constants are counted");
         self.constants.insert(bytes, id);
         id
     }
 
-    fn define_constants(&mut self) -> Result<(), Error> {
+    pub(crate) fn define_constants(&mut self) -> Result<(), Error> {
         let mut constants: Vec<_> = core::mem::take(&mut self.constants).into_iter().collect();
         constants.sort_unstable_by_key(|(_, id)| *id);
         for (bytes, id) in constants {
-            define_data(self.module, id, bytes)?;
+            define_data(self.output, id, bytes)?;
         }
         Ok(())
     }
@@ -156,22 +122,22 @@ impl<'p> Unit<'p> {
         let defined = if context.func.dfg.num_insts() > LARGE {
             self.define_plainly(context, id)
         } else {
-            self.module.define_function(id, context).map_err(|error| reason(&error))
+            self.output.define_function(id, context).map_err(|error| reason(&error))
         };
         let frame = context.compiled_code().and_then(|code| code.buffer.frame_layout());
         self.frames.push(frame.map_or(0, |it| u64::from(it.frame_to_fp_offset) + FRAME_ENDS));
-        self.module.clear_context(context);
+        self.output.clear_context(context);
         defined.map_err(|reason| Error::Code { function: name.to_owned(), reason })
     }
 
     fn define_plainly(&mut self, context: &mut Context, id: FuncId) -> Result<(), String> {
-        let isa = target::plain_isa(self.module.isa());
+        let isa = target::plain_isa(self.output.isa());
         let code = context.compile(&*isa, &mut ControlPlane::default()).map_err(|error| reason(&error.inner))?;
         let (align, bytes) = (u64::from(code.buffer.alignment), code.code_buffer().to_vec());
         let relocations = code.buffer.relocs().to_vec();
         let relocations: Vec<_> =
             relocations.iter().map(|it| ModuleReloc::from_mach_reloc(it, &context.func, id)).collect();
-        self.module.define_function_bytes(id, align, &bytes, &relocations).map_err(|error| reason(&error))
+        self.output.define_function_bytes(id, align, &bytes, &relocations).map_err(|error| reason(&error))
     }
 }
 

@@ -13,7 +13,7 @@ use staunch_ir::visit;
 
 /// A counter's position in arrays of certain bounds.
 #[derive(Clone, Debug)]
-pub struct Subscript {
+pub struct HoistedIndex {
     counter: Place,
     low: i64,
     high: i64,
@@ -30,12 +30,12 @@ struct Use {
 
 impl Function<'_> {
     /// The subscript found before, if `index` is a counter.
-    pub fn subscript(&self, index: &Expr, array: ArrayId) -> Option<&Subscript> {
+    pub fn subscript(&self, index: &Expr, array: ArrayId) -> Option<&HoistedIndex> {
         let place = counter(index)?;
         let array = self.emitter.program.array(array);
         let is_it =
-            |it: &&Subscript| (it.low, it.high) == (array.low, array.high) && it.counter.is_same_variable(place);
-        self.subscripts.iter().rev().find(is_it)
+            |it: &&HoistedIndex| (it.low, it.high) == (array.low, array.high) && it.counter.is_same_variable(place);
+        self.hoisted_indices.iter().rev().find(is_it)
     }
 
     /// The statements at the start of a turn that find the subscripts which its body needs more
@@ -46,7 +46,7 @@ impl Function<'_> {
             let position = self.position(&it.index, Type::Array(it.array), it.at);
             let name = self.subscript_name(&counted.counter, low, high);
             found.extend(quote!(let #name = #position;));
-            self.subscripts.push(Subscript { counter: counted.counter.clone(), low, high, name });
+            self.hoisted_indices.push(HoistedIndex { counter: counted.counter.clone(), low, high, name });
         }
         found
     }

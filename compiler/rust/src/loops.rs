@@ -7,9 +7,9 @@ use staunch_ir::loops::exit_condition;
 use staunch_ir::visit::{self, Access};
 use staunch_ir::{Block, Expr, For, Location, Place, Root, Statement, StatementKind, Step, Value};
 
-use crate::code::Level;
 use crate::function::Function;
 use crate::names::ident;
+use crate::precedence::Level;
 
 /// The labels of the loops around a statement, innermost last.
 #[derive(Debug, Default)]
@@ -64,10 +64,10 @@ impl Function<'_> {
         let labels = self.labels(&it.body, true);
         let reads = it.is_private && !matches!(it.counter.root, Root::Local(_)) && mentions(&it.body, &it.counter);
         let copy = reads.then(|| self.copy_counter(&it.counter));
-        let outer = self.subscripts.len();
+        let outer = self.hoisted_indices.len();
         let subscripts = if it.is_private { self.find_subscripts(it) } else { TokenStream::new() };
         let body = self.turn(&labels, &it.body, |this| {
-            this.subscripts.truncate(outer);
+            this.hoisted_indices.truncate(outer);
             if reads {
                 this.counters.pop();
             }

@@ -1,0 +1,41 @@
+//! A whole program into a module: its routines, its entry points, and the data that code refers to.
+
+use crate::entry::EntryPoints;
+use crate::module::{ModuleEmitter, Workspace};
+use crate::{Error, entry, function, inline_block, inline_op};
+use cranelift_frontend::FunctionBuilderContext;
+use cranelift_module::Module;
+use staunch_ir::effects::{Rules, effects};
+use staunch_ir::{Program, RoutineId};
+
+/// What the code for blocks and operations needs.
+const RULES: Rules = Rules {
+    block_takes_context: |block, instruction| inline_block::find(block, instruction).is_none(),
+    operation_faults: inline_op::may_fault,
+    drops_checks: true,
+    scans_take_all: false,
+};
+
+/// What is known of a program's code when it is made.
+pub(crate) struct Emitted {
+    pub(crate) entry_points: EntryPoints,
+    /// Empty if none was wanted.
+    pub(crate) listing: String,
+    /// How much of the stack each routine takes.
+    pub(crate) frames: Vec<u64>,
+}
+
+/// Puts a whole program into `output`; a listing is added to where one is wanted.
+pub(crate) fn emit(program: &Program, output: &mut dyn Module, listing: Option<String>) -> Result<Emitted, Error> {
+    let mut workspace = Workspace { context: output.make_context(), builder: FunctionBuilderContext::new() };
+    let mut module = ModuleEmitter::new(program, effects(program, &RULES), output);
+    module.listing = listing;
+    module.declare()?;
+    for at in 0..program.routines.len() {
+        function::emit(&mut module, &mut workspace, RoutineId::next(at))?;
+    }
+    let frames = core::mem::take(&mut module.frames);
+    let entry_points = entry::emit(&mut module, &mut workspace)?;
+    module.define_constants()?;
+    Ok(Emitted { entry_points, listing: module.listing.unwrap_or_default(), frames })
+}
