@@ -23,20 +23,21 @@ mod stimulus;
 mod trace;
 
 mod bench;
+mod drive;
 mod run;
 
 mod args;
 mod compiled;
 mod signal;
-mod terminal;
 
 #[cfg(test)]
 mod fixture;
 
 pub use args::{Wish, parse_duration, parse_moment, parse_options};
 pub use bench::{BenchOptions, Timing, bench};
-pub use compiled::{Code, Compiled, Init, Scan, main, main_with};
+pub use compiled::{Code, Compiled, Init, Scan, Snapshot, main, main_with};
 pub use domain::Domain;
+pub use drive::{Bookmark, Drive};
 pub use error::Error;
 pub use json::quote as json_text;
 pub use map::{Instance, Map, Section, Structure, StructureKind, Type, Variable};

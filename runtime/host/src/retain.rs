@@ -68,6 +68,14 @@ impl Retained {
         Self { regions: walk.regions, programs: programs.join(" ") }
     }
 
+    pub fn is_empty(&self) -> bool {
+        self.regions.is_empty()
+    }
+
+    pub fn holds(&self, offset: usize) -> bool {
+        self.regions.iter().any(|it| (it.offset..it.offset + it.size).contains(&offset))
+    }
+
     /// Their bytes, for [`restore`](Self::restore).
     pub fn snapshot(&self, state: &[u8]) -> Vec<u8> {
         self.regions.iter().flat_map(|it| &state[it.offset..it.offset + it.size]).copied().collect()

@@ -8,7 +8,7 @@ use crate::retain::Retained;
 use crate::schedule::Schedule;
 use crate::stimulus::{Stimulus, Write};
 use crate::trace::{Row, Subject, Table, Trace};
-use crate::{Error, Machine, format_time, signal, terminal};
+use crate::{Error, Machine, format_time, signal};
 use staunch_runtime::{Context, Time};
 use std::io::{self, Write as _};
 use std::path::PathBuf;
@@ -166,7 +166,7 @@ pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Su
         fresh: vec![true; map.instances.len()],
         retained: Retained::of(map),
         epoch: 0,
-        out: Output { rows: 0, trace: None, table: Table::new(terminal::width()) },
+        out: Output { rows: 0, trace: None, table: Table::default() },
         clock: None,
         summary: Summary::default(),
     };

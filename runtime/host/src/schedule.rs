@@ -64,6 +64,20 @@ impl Schedule {
         &self.due
     }
 
+    pub fn shortest_period(&self) -> Time {
+        self.tasks.iter().map(|it| it.period).min().unwrap_or(DEFAULT_CYCLE)
+    }
+
+    /// For each program, when it is due.
+    pub fn times(&self) -> impl Iterator<Item = Time> {
+        self.tasks.iter().map(|it| it.next)
+    }
+
+    /// Goes back to what [`times`](Self::times) gave.
+    pub fn set_times(&mut self, times: &[Time]) {
+        self.tasks.iter_mut().zip(times).for_each(|(task, next)| task.next = *next);
+    }
+
     /// What [`advance`](Self::advance) returned last.
     pub fn due(&self) -> &[usize] {
         &self.due
