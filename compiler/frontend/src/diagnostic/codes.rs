@@ -249,13 +249,9 @@ FUNCTION_BLOCK of the program, nor a standard block of the dialect in force.
 
     VAR speed : IINT; END_VAR      (* did you mean `INT`? *)
 ";
-    W0102 Warning "a pragma without effect"
-"A pragma in braces that Staunch does not know has no effect. Those of editors and other tools
-pass without a word; those that would change the program's meaning are refused. An `allow` that names no
-lint, or that nothing follows, has no effect either.
-
-    {alow W0501} spare : BOOL;      (* before *)
-    {allow W0501} spare : BOOL;     (* after *)
+    W0102 Warning "unknown pragma"
+"A pragma in braces that Staunch does not know: it has no effect. Those of editors and other tools
+pass without a word; those that would change the program's meaning are refused.
 ";
     E0103 Error "declared twice"
 "A scope holds each name once, whatever its case: `Motor` and `MOTOR` are one name. POUs, types
@@ -624,15 +620,17 @@ LD or LOAD, S1 or SET1. Inputs that are given by position need no change.
     parts(sensor, clear, 10);                           (* all three *)
 ";
     W0612 Warning "a counter's own output resets it"
-"The reset takes effect in the scan after the count is complete. Reset wins over counting, and the edge memory goes on
-working under it: an edge that arrives in that scan is consumed without being counted. Reset the counter in a second
-call in the scan in which it completes; the input is then seen again before the next edge.
+"The reset takes effect in the scan after the count is complete, and reset wins over counting. Where Q rises on an edge
+of the counter's one input, nothing is lost by it: the input has no other edge in that scan. But a CSCAPE counter
+counts calls and loses one; a CTUD loses an edge of its other input; and where the preset moves, Q rises without an
+edge, so that one may arrive with the reset. Reset the counter in a second call in the scan in which it completes,
+after what reads its output; the call that counts then says that it does not reset.
 
-    parts(CU := sensor, R := done, PV := 10);      (* before *)
-    done := parts.Q;
+    both(CU := up, CD := down, R := done, LD := FALSE, PV := 10);       (* before *)
+    done := both.QU;
 
-    parts(CU := sensor, R := FALSE, PV := 10);     (* after *)
-    done := parts.Q;
-    IF done THEN parts(R := TRUE); END_IF
+    both(CU := up, CD := down, R := FALSE, LD := FALSE, PV := 10);      (* after *)
+    done := both.QU;
+    IF done THEN both(R := TRUE); END_IF
 ";
 }

@@ -154,6 +154,15 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
+    fn is_constant(&self, expr: &ast::Expr<'s>) -> bool {
+        match &bare(expr).kind {
+            Ast::Literal(_) => true,
+            Ast::Unary(_, inner) => self.is_constant(inner),
+            Ast::Name(name) => self.scope.get(name.text).is_some_and(|it| it.constant_value().is_some()),
+            _ => false,
+        }
+    }
+
     fn counter_call<'a>(
         &self,
         callee: &ast::Expr<'s>,
@@ -195,12 +204,20 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    /// `c(R := done); done := c.Q;`
+    /// `c(R := done); done := c.Q;`, where a count can arrive in the scan of the reset. It cannot where
+    /// Q rises on an edge alone: the input is still TRUE then.
     fn reset_by_itself(&mut self, call: &CounterCall<'_, 's>, read: &MembersRead<'s>) {
         let info = call.block.info();
-        if info.facts.counts_levels {
+        let moves = call.input(PinRole::Preset).is_some_and(|(preset, _)| !self.is_constant(preset));
+        let lost = if info.facts.counts_levels {
+            "a call that would count in this scan does not"
+        } else if info.pin_for(PinRole::Up).is_some() && info.pin_for(PinRole::Down).is_some() {
+            "an edge of the other input that arrives in this scan is not counted"
+        } else if moves {
+            "an edge that arrives in this scan is not counted, if the preset has moved"
+        } else {
             return;
-        }
+        };
         let empty = info.pin_for(PinRole::Empty).map_or(PinRole::Done, |_| PinRole::Empty);
         for (input, output) in [(PinRole::Reset, PinRole::Done), (PinRole::Load, empty)] {
             let Some((given, at)) = call.input(input) else { continue };
@@ -223,7 +240,7 @@ impl<'s> Checker<'_, 's> {
                 let given = self.decl.log.sources.text(bare(given).span);
                 self.report(
                     Diagnostic::new(Code::W0612, at, format!("`{counter}` feeds its own {pin}"))
-                        .label("an edge that arrives in this scan is not counted")
+                        .label(lost)
                         .other(call.span, "the counter")
                         .help(format!(
                             "pass `{pin} := FALSE` here, and behind the statements that read `{counter}.{output}` write \
