@@ -1,7 +1,7 @@
 //! The command line, as `docs/cli.md` promises it.
 
+use crate::project::Project;
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
-use staunch_build::Project;
 use staunch_frontend::Dialect;
 use staunch_host::Moment;
 use std::ffi::OsString;
@@ -32,12 +32,8 @@ pub enum Command {
     Bench(Bench),
     /// Find out what a move to another system changes
     Compare(Compare),
-    /// Print the long text of a diagnostic, or the list of all
+    /// Print the long text of a diagnostic
     Explain(Explain),
-    /// Print a shell's completions
-    Completions(Completions),
-    /// Print the manual page, or write one for each command into a folder
-    Man(Man),
     /// Make a project that builds and runs
     New(New),
 }
@@ -76,8 +72,8 @@ impl Common {
     #[must_use]
     pub fn with(&self, project: &Project) -> Self {
         Self {
-            message_format: self.message_format.or(project.message_format.as_deref().and_then(named)),
-            color: self.color.or(project.color.as_deref().and_then(named)),
+            message_format: self.message_format.or(project.message_format),
+            color: self.color.or(project.color),
             quiet: self.quiet || project.quiet && self.verbose == 0,
             verbose: self.verbose.max(u8::from(project.verbose)),
             ..self.clone()
@@ -91,11 +87,6 @@ impl Common {
     pub fn color(&self) -> Color {
         self.color.unwrap_or_default()
     }
-}
-
-/// A word of the project file, which has been checked.
-fn named<T: ValueEnum>(word: &str) -> Option<T> {
-    T::from_str(word, false).ok()
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -259,31 +250,36 @@ pub struct Compare {
     /// Compare only these variables: a,b.CV
     #[arg(long, value_name = "NAMES")]
     pub vars: Option<String>,
-    /// Try every sequence of inputs of at most this many scans
-    #[arg(long, value_name = "N", default_value_t = 12)]
-    pub depth: usize,
+    /// Try every sequence of inputs over at most this many scans; without it as many as the budget allows
+    #[arg(long, value_name = "N")]
+    pub depth: Option<usize>,
     /// Scans that the search may take in all
-    #[arg(long, value_name = "N", default_value_t = 2_000_000)]
+    #[arg(long, value_name = "N", default_value_t = 8_000_000)]
     pub budget: u64,
+    /// Findings that are accepted, a line each: parts 2: nobody reads the count past 50
+    #[arg(long, value_name = "FILE")]
+    pub accept: Option<PathBuf>,
+    /// What the inputs never do, a line each: Target 1..500; not (Start and Stop); Part for at least 3 scans
+    #[arg(long, value_name = "FILE")]
+    pub assume: Option<PathBuf>,
+    /// Write the inputs that make a difference as a stimulus
+    #[arg(long, value_name = "OUT.csv")]
+    pub save_stimulus: Option<PathBuf>,
+    /// Write the program as it was rewritten for the other system
+    #[arg(long, value_name = "OUT.st")]
+    pub write: Option<PathBuf>,
+    /// Show every scan, not only those in which something happens
+    #[arg(long)]
+    pub trace: bool,
+    /// Show all inputs, not only those that change
+    #[arg(long)]
+    pub all_inputs: bool,
 }
 
 #[derive(Clone, Debug, Args)]
 pub struct Explain {
-    /// A diagnostic's code, as E0101; without one all are listed
-    pub code: Option<String>,
-}
-
-#[derive(Clone, Debug, Args)]
-pub struct Completions {
-    /// The shell that they are for
-    #[arg(value_enum)]
-    pub shell: clap_complete::Shell,
-}
-
-#[derive(Clone, Debug, Args)]
-pub struct Man {
-    /// The folder to write pages into: staunch.1, staunch-run.1 and so on
-    pub dir: Option<PathBuf>,
+    /// A diagnostic's code, as E0101
+    pub code: String,
 }
 
 #[derive(Clone, Debug, Args)]

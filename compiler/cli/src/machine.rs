@@ -1,9 +1,9 @@
 //! The executors that run in this process, as the host sees them.
 
 use crate::run::map;
-use staunch_host::{Compiled, Domain, Machine, Map};
+use staunch_host::{Compiled, Domain, Machine, Map, Snapshot};
+use staunch_ir::Program;
 use staunch_ir::interpret::{Interpreter, Stop};
-use staunch_ir::{Program, Value};
 use staunch_native::Jit;
 use staunch_runtime::{Context, Fault};
 
@@ -29,11 +29,8 @@ impl Native {
         &mut self.compiled
     }
 
-    pub fn write_value(&mut self, offset: usize, value: Value) {
-        let mut bytes = [0; 8];
-        value.write(&mut bytes);
-        let size = usize::try_from(value.lane().size()).expect("lanes are small");
-        self.write(offset, &bytes[..size]);
+    pub fn snapshot(&self) -> Snapshot {
+        self.compiled.snapshot()
     }
 }
 

@@ -1,6 +1,7 @@
 //! The command `staunch`: arguments, files, exit codes. What it promises stands in `docs/cli.md`.
 
 mod args;
+mod project;
 
 mod input;
 mod session;
@@ -20,7 +21,6 @@ mod machine;
 mod run;
 
 mod explain;
-mod manual;
 mod new;
 
 mod output;
@@ -33,6 +33,8 @@ use std::process::ExitCode;
 pub const REJECTED: u8 = 1;
 /// The command was used wrongly, or a file or tool was missing.
 pub const USAGE: u8 = 2;
+/// `compare`: no difference was found, and none is ruled out.
+pub const NOT_FOUND: u8 = 4;
 /// The program faulted while it ran.
 pub const FAULTED: u8 = 3;
 /// A mistake of the compiler's own.
@@ -76,8 +78,6 @@ fn report_panic(panic: &std::panic::PanicHookInfo<'_>) {
 fn dispatch(cli: Cli) -> u8 {
     let result = match &cli.command {
         Command::Explain(it) => explain::explain(it),
-        Command::Completions(it) => manual::completions(it),
-        Command::Man(it) => manual::pages(it),
         Command::New(it) => new::new(it, &cli.common),
         Command::Check(it) => Session::check(&cli.common, it),
         Command::Build(it) => Session::start(&cli.common, &it.files).and_then(|session| build::build(&session, it)),

@@ -1,9 +1,9 @@
 //! One compilation: sources and settings in, diagnostics out, and the program where there is one.
 
 use crate::args::{Color, Common, Files, MessageFormat};
+use crate::project::{self, Project};
 use crate::{REJECTED, input, output};
-use staunch_build::Project;
-use staunch_frontend::{Compilation, Diagnostic, Dialect, Format, Level, Levels, Options, Severity, Sources, Style};
+use staunch_frontend::{Code, Compilation, Diagnostic, Dialect, Format, Options, Severity, Sources, Span, Style};
 use staunch_ir::Program;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -51,18 +51,16 @@ impl Session {
     ) -> Result<(Self, usize), String> {
         let near = files.files.first().filter(|it| it.as_path() != Path::new("-"));
         let folder = near.map_or(Path::new("."), |it| if it.is_dir() { it } else { parent(it) });
-        let project = Project::find(folder)?.unwrap_or_default();
+        let project = project::find(folder)?.unwrap_or_default();
         let named = if files.files.is_empty() {
-            let here = std::env::current_dir().and_then(|it| it.canonicalize());
-            let here = here.map_err(|it| format!("the current folder: {it}"))?;
-            project.files.iter().map(|it| project.seen_from(&here, it)).collect()
+            project.files.iter().map(|it| project.folder.join(it)).collect()
         } else {
             files.files.clone()
         };
         if named.is_empty() {
             return Err("name a source file or folder, or list `files` in staunch.toml".to_owned());
         }
-        let levels = levels(common, &project)?;
+        let levels = Levels::new(common, &project)?;
         let sources = input::read(&named)?;
         let start = Instant::now();
         let compilation = compile(&sources, &options(common, &project)?);
@@ -90,22 +88,44 @@ impl Session {
     /// The same program, or `sources` in its place, as it moves to another dialect. What has been
     /// said of it is not said again.
     pub fn moved(&self, to: Dialect, sources: Option<Sources>) -> Result<Self, String> {
-        let from = options(&self.common, &self.project)?;
         let known: &[Diagnostic] = if sources.is_none() { &self.diagnostics } else { &[] };
         let sources = sources.unwrap_or_else(|| self.sources.clone());
+        let (compilation, compile_time) = self.compile_moved(to, &sources)?;
+        self.beside(sources, compilation, compile_time, known)
+    }
+
+    /// The same program in other words, as it moves to another dialect. What there is to say of it is
+    /// said of the user's own text, which `origin` leads back to.
+    pub fn rewritten(&self, to: Dialect, sources: &Sources, origin: impl Fn(Span) -> Span) -> Result<Self, String> {
+        let (mut compilation, compile_time) = self.compile_moved(to, sources)?;
+        for diagnostic in &mut compilation.diagnostics {
+            diagnostic.span = origin(diagnostic.span);
+            diagnostic.others.iter_mut().for_each(|it| it.span = origin(it.span));
+            // What would be pasted fits the other text.
+            diagnostic.fix = None;
+        }
+        self.beside(self.sources.clone(), compilation, compile_time, &self.diagnostics)
+    }
+
+    fn compile_moved(&self, to: Dialect, sources: &Sources) -> Result<(Compilation, Duration), String> {
+        let from = options(&self.common, &self.project)?;
         let options = Options { dialect: to, moved_from: Some(from.dialect), ..from };
         let start = Instant::now();
-        let compilation = staunch_frontend::compile(&sources, &options);
-        let mut session = Self {
-            common: self.common.clone(),
-            project: self.project.clone(),
-            first: self.first.clone(),
-            sources,
-            program: None,
-            diagnostics: Vec::new(),
-            compile_time: start.elapsed(),
-        };
-        session.accept(compilation, &levels(&self.common, &self.project)?, known)?;
+        Ok((staunch_frontend::compile(sources, &options), start.elapsed()))
+    }
+
+    /// A session of the same settings.
+    fn beside(
+        &self,
+        sources: Sources,
+        compilation: Compilation,
+        compile_time: Duration,
+        known: &[Diagnostic],
+    ) -> Result<Self, String> {
+        let (common, project, first) = (self.common.clone(), self.project.clone(), self.first.clone());
+        let diagnostics = Vec::new();
+        let mut session = Self { common, project, first, sources, program: None, diagnostics, compile_time };
+        session.accept(compilation, &Levels::new(&self.common, &self.project)?, known)?;
         Ok(session)
     }
 
@@ -234,9 +254,12 @@ fn are(names: &[String]) -> String {
 }
 
 fn options(common: &Common, project: &Project) -> Result<Options, String> {
-    let dialect = match common.dialect {
-        Some(dialect) => dialect,
-        None => project.dialect()?.unwrap_or_default(),
+    let dialect = match (common.dialect, &project.dialect) {
+        (Some(dialect), _) => dialect,
+        (None, Some(name)) => {
+            Dialect::named(name).ok_or_else(|| format!("staunch.toml: there is no dialect `{name}`"))?
+        }
+        (None, None) => Dialect::default(),
     };
     Ok(Options { dialect, ctu_stop_at_pv: project.ctu_stop_at_pv, moved_from: None })
 }
@@ -252,11 +275,62 @@ fn summary(errors: usize, warnings: usize) -> String {
     }
 }
 
-/// What the project file and `-W`, `-D`, `-A` say of lints; the command line comes later.
-fn levels(common: &Common, project: &Project) -> Result<Levels, String> {
-    let mut levels = project.levels()?;
-    for (level, names) in [(Level::Warn, &common.warn), (Level::Deny, &common.deny), (Level::Allow, &common.allow)] {
-        levels.add(level, names.iter().map(String::as_str))?;
+/// What `-W`, `-D`, `-A` and the project file say of lints; the command line comes later.
+struct Levels {
+    rules: Vec<(Option<Code>, Level)>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Level {
+    Warn,
+    Deny,
+    Allow,
+}
+
+impl Levels {
+    fn new(common: &Common, project: &Project) -> Result<Self, String> {
+        let mut rules = Vec::new();
+        let lists = [
+            (&project.warn, Level::Warn),
+            (&project.deny, Level::Deny),
+            (&project.allow, Level::Allow),
+            (&common.warn, Level::Warn),
+            (&common.deny, Level::Deny),
+            (&common.allow, Level::Allow),
+        ];
+        for (codes, level) in lists {
+            for name in codes {
+                rules.push((lint(name)?, level));
+            }
+        }
+        Ok(Self { rules })
     }
-    Ok(levels)
+
+    /// The diagnostic at its level, or `None` where it is allowed.
+    fn apply(&self, mut diagnostic: Diagnostic) -> Option<Diagnostic> {
+        if diagnostic.severity == Severity::Error {
+            return Some(diagnostic);
+        }
+        let applies = |(code, _): &&(Option<Code>, Level)| code.is_none_or(|it| it == diagnostic.code);
+        match self.rules.iter().rev().find(applies).map(|(_, level)| *level) {
+            Some(Level::Allow) => None,
+            Some(Level::Deny) => {
+                diagnostic.severity = Severity::Error;
+                Some(diagnostic)
+            }
+            Some(Level::Warn) | None => Some(diagnostic),
+        }
+    }
+}
+
+/// A lint by its code; `None` for `warnings`, which means all.
+fn lint(name: &str) -> Result<Option<Code>, String> {
+    if name.eq_ignore_ascii_case("warnings") {
+        return Ok(None);
+    }
+    match Code::named(name) {
+        Some(code) if code.severity() == Severity::Warning => Ok(Some(code)),
+        Some(code) => Err(format!("{} is an error; only lints (W…) have levels", code.name())),
+        None => Err(format!("there is no lint `{name}`")),
+    }
 }

@@ -13,6 +13,41 @@ pub struct Rewritten {
     pub sources: Sources,
     /// Lines before and after.
     pub notes: Vec<(String, String)>,
+    /// For each file, what was replaced, in order; no replacement lies in another.
+    edits: Vec<Vec<Edit>>,
+}
+
+impl Rewritten {
+    /// A text of the user's own.
+    pub fn by_user(sources: Sources) -> Self {
+        Self { sources, notes: Vec::new(), edits: Vec::new() }
+    }
+
+    /// Where what is written here comes from: the place in the user's text, as a whole where it was
+    /// replaced.
+    pub fn origin(&self, span: Span) -> Span {
+        let Some(edits) = self.edits.get(usize::from(span.file)) else { return span };
+        let (start, end) = bounds(span);
+        let number = |it: usize| u32::try_from(it).unwrap_or(u32::MAX);
+        Span { file: span.file, start: number(origin(edits, start, false)), end: number(origin(edits, end, true)) }
+    }
+}
+
+/// The place before the replacements of one after them; in a replacement, its start or end.
+fn origin(edits: &[Edit], at: usize, is_end: bool) -> usize {
+    let (mut old, mut new) = (0, 0);
+    for edit in edits {
+        let begins = new + edit.start - old;
+        let ends = begins + edit.text.len();
+        if at < begins || is_end && at == begins {
+            break;
+        }
+        if at < ends || is_end && at == ends {
+            return if is_end { edit.end } else { edit.start };
+        }
+        (old, new) = (edit.end, ends);
+    }
+    old + at - new
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,7 +124,7 @@ struct Edit {
 
 /// `None` where there is nothing to rewrite.
 pub fn rewrite(sources: &Sources, from: Dialect) -> Option<Rewritten> {
-    let mut rewritten = Rewritten { sources: Sources::default(), notes: Vec::new() };
+    let mut rewritten = Rewritten::by_user(Sources::default());
     for (source, number) in sources.files().iter().zip(0u16..) {
         let file = parse(number, &source.text, &mut Vec::new());
         let mut writer = Writer { text: &source.text, from, counters: HashMap::new(), edits: Vec::new() };
@@ -97,6 +132,8 @@ pub fn rewrite(sources: &Sources, from: Dialect) -> Option<Rewritten> {
         rewritten.notes.extend(writer.notes());
         let text = writer.apply(0, source.text.len());
         rewritten.sources.add(Source::new(source.path.clone(), text));
+        writer.edits.sort_by_key(|it| it.start);
+        rewritten.edits.push(writer.edits);
     }
     (!rewritten.notes.is_empty()).then_some(rewritten)
 }

@@ -1,41 +1,63 @@
 //! `staunch compare`: what a move of a program from one system to another changes.
 
-mod leaf;
-mod pair;
-
+mod fixed;
 mod logix;
+mod missing;
+mod rejection;
 
-mod duration;
-mod hold;
+mod normal;
+mod pair;
+mod scalar;
+
+mod facts;
+mod usage;
+
+mod alphabet;
+mod assume;
+
+mod exhaustive;
+mod guided;
+mod novelty;
+mod random;
 mod search;
 mod shrink;
+mod trace;
+
 mod stimulus;
 
-mod trap;
+mod pitfall;
 
-mod obstacle;
+mod accept;
+mod finding;
+
 mod report;
 
 use crate::args::{Common, Compare, Files, MessageFormat};
 use crate::session::Session;
-use crate::{REJECTED, input, run};
+use crate::{REJECTED, input, output, run};
+use alphabet::Alphabet;
+use assume::Assumptions;
+use facts::Facts;
+use finding::Findings;
 use pair::{Pair, Row, Side};
+use search::World;
 use staunch_frontend::{Code, Dialect, Sources};
-
-/// Time between scans where neither the command nor the project file says one.
-const CYCLE: i64 = 10_000_000;
+use trace::Trace;
 
 /// What the comparison came to.
 enum Verdict {
     /// The rows up to the first difference.
-    Differs(Vec<Row>),
-    /// How far it was looked, in a sentence.
-    Same(String),
+    Differs { rows: Vec<Row>, trace: Option<Trace>, shortest: bool },
+    /// Nothing differs, for this reason.
+    Equal(String),
+    /// Nothing was found to differ: what was tried, and what was not.
+    NotFound { tried: Vec<String>, left: Vec<String> },
 }
 
 pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
     let common = Common { dialect: Some(args.from), ..common.clone() };
     let from = Session::start(&common, &args.files)?;
+    fixed::check(&from.sources, args.from, "--from", args.against.is_none() && args.from != args.to)?;
     let Some(program) = from.program_to_run(args.program.as_deref())? else {
         if from.common.format() == MessageFormat::Human {
             eprintln!("the program is compared once `--from {}` accepts it", args.from.name());
@@ -43,25 +65,42 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
         return Ok(REJECTED);
     };
     let rewritten = rewrite(&from, args)?;
+    if let (Some(path), Some(it)) = (&args.write, &rewritten) {
+        write(path, &it.sources)?;
+    }
     let notes = rewritten.as_ref().map_or_else(Vec::new, |it| it.notes.clone());
-    let to = from.moved(args.to, rewritten.map(|it| it.sources))?;
+    let to = match &rewritten {
+        Some(it) if args.against.is_none() => from.rewritten(args.to, &it.sources, |span| it.origin(span))?,
+        Some(it) => from.moved(args.to, Some(it.sources.clone()))?,
+        None => from.moved(args.to, None)?,
+    };
     let renamed = to.diagnostics.iter().filter(|it| it.code == Code::W0609).count();
-    let report = report::Report { session: &from, from: args.from, to: args.to, notes, renamed };
+    let missing = if args.against.is_some() { Vec::new() } else { missing::find(&from.sources, &program, args.to) };
+    let report = report::Report { session: &from, args, notes, renamed, missing };
     let moved = match to.program_to_run(args.program.as_deref())? {
         Some(moved) => moved,
-        None => return report.obstacle(&obstacle::find(&to, args.from, args.to)),
+        None => return report.rejection(&rejection::find(&to, args.from, args.to)),
     };
-    let cycle = run::cycle(&from, args.cycle.as_deref())?.unwrap_or(CYCLE);
+    let cycle = run::cycle(&from, args.cycle.as_deref())?;
+    let same_program = is_same(&program, &moved);
+    let sides = [Side::new(args.from, program, cycle)?, Side::new(args.to, moved, cycle)?];
+    let mut pair = Pair::new(sides, &[]);
+    let world = world(&mut pair, args)?;
     let only: Vec<String> = args.vars.iter().flat_map(|it| it.split(',')).map(|it| it.trim().to_owned()).collect();
-    let sides = [Side::new(args.from, program)?, Side::new(args.to, moved)?];
-    let mut pair = Pair::new(sides, cycle, &only);
+    pair.compare_only(&only);
     if pair.compared.is_empty() && !only.is_empty() {
         return Err("--vars names no variable that both systems' programs have".to_owned());
     }
-    match verdict(&mut pair, args)? {
-        Verdict::Same(how) => report.same(&how),
-        Verdict::Differs(rows) => report.difference(&pair, &rows, &self_feeding(&[&from, &to])),
-    }
+    let uses = finding::uses(&pair);
+    let mut findings = Findings::new(&pair, uses, renamed);
+    let verdict = if same_program && args.stimulus.is_none() {
+        findings.all_impossible("both systems run the same program");
+        Verdict::Equal("both systems run the same program: no statement, type, block or retention differs".to_owned())
+    } else {
+        verdict(&mut pair, &world, args, &mut findings)?
+    };
+    let accepted = args.accept.as_deref().map(accept::Accepted::read).transpose()?.unwrap_or_default();
+    report.print(&pair, &world, &verdict, &findings, &accepted)
 }
 
 /// The other system's program where it is another text: the user's, or, for Logix, one with its
@@ -70,7 +109,8 @@ fn rewrite(from: &Session, args: &Compare) -> Result<Option<logix::Rewritten>, S
     if let Some(path) = &args.against {
         let files = Files { files: vec![path.clone()] };
         let sources = input::read(&files.files)?;
-        return Ok(Some(logix::Rewritten { sources, notes: Vec::new() }));
+        fixed::check(&sources, args.to, "--to", false)?;
+        return Ok(Some(logix::Rewritten::by_user(sources)));
     }
     if args.to == Dialect::Logix && args.from != Dialect::Logix {
         return Ok(logix::rewrite(&from.sources, args.from));
@@ -78,33 +118,61 @@ fn rewrite(from: &Session, args: &Compare) -> Result<Option<logix::Rewritten>, S
     Ok(None)
 }
 
-fn verdict(pair: &mut Pair, args: &Compare) -> Result<Verdict, String> {
+/// The migrated source as one file.
+fn write(path: &std::path::Path, sources: &Sources) -> Result<(), String> {
+    let texts: Vec<&str> = sources.files().iter().map(|it| it.text.as_str()).collect();
+    output::write(path, texts.join("\n").as_bytes())
+}
+
+/// Whether both systems run one program: the statements and types with their blocks, and where each
+/// variable lies and whether it is retained, are the same.
+fn is_same(a: &staunch_ir::Program, b: &staunch_ir::Program) -> bool {
+    use staunch_ir::{layout::Layout, print, symbols::map_text};
+    print(a) == print(b) && map_text(a, &Layout::new(a)) == map_text(b, &Layout::new(b))
+}
+
+/// The inputs, and what is known of them.
+fn world(pair: &mut Pair, args: &Compare) -> Result<World, String> {
+    let facts = [0, 1].map(|side: usize| Facts::of(&pair.sides[side].program));
+    let facts = facts.each_ref();
+    pair.inputs = alphabet::inputs(pair, facts);
+    let assumptions = args.assume.as_deref().map(|it| Assumptions::read(it, pair)).transpose()?.unwrap_or_default();
+    let alphabet = Alphabet::of(pair, facts, &assumptions);
+    if alphabet.vectors.is_empty() {
+        return Err("the assumptions allow no combination of the values of inputs that are tried".to_owned());
+    }
+    let wait = facts.iter().flat_map(|it| it.times.last().copied()).max().unwrap_or(0);
+    let longest = usize::try_from(wait / pair.shortest_cycle().max(1)).unwrap_or(usize::MAX);
+    let habits = finding::uses(pair).into_iter().map(|it| it.habits).collect();
+    Ok(World {
+        alphabet,
+        assumptions,
+        initial: pair.initial(),
+        depth: args.depth,
+        constants: facts.iter().flat_map(|it| it.constants.iter().copied()).collect(),
+        longest: longest.min(20_000),
+        inputs_written: alphabet::are_written(pair, facts),
+        habits,
+    })
+}
+
+fn verdict(pair: &mut Pair, world: &World, args: &Compare, findings: &mut Findings) -> Result<Verdict, String> {
     if args.stimulus.is_some() {
         return stimulus::follow(pair, args);
     }
-    let outcome = search::search(pair, search::Limits { depth: args.depth, budget: args.budget });
-    if let Some(rows) = outcome.steps.as_ref().and_then(|it| pair.replay(it)) {
-        return Ok(Verdict::Differs(rows));
+    let outcome = search::search(pair, world, args.budget, findings.open());
+    let exact = world.alphabet.is_exact() && pair.whole && !alphabet::has_untried(pair);
+    findings.note(pair, world, &outcome, exact);
+    if let Some(trace) = outcome.found.clone() {
+        let steps: Vec<pair::Step> = trace.steps().cloned().collect();
+        let rows = pair.replay(&steps);
+        let shortest = world.alphabet.complete && outcome.depth + 1 >= trace.scans();
+        return Ok(Verdict::Differs { rows, trace: Some(trace), shortest });
     }
-    Ok(Verdict::Same(match (outcome.complete, outcome.depth) {
-        (true, _) => {
-            format!("every state that the inputs tried can reach is the same on both ({} scans)", outcome.scans)
-        }
-        (false, depth) => format!(
-            "every sequence of inputs over {depth} scans, then inputs that are held, long pulses and random inputs, {} scans in all",
-            outcome.scans
-        ),
-    }))
-}
-
-/// The counters that their own output resets.
-fn self_feeding(sessions: &[&Session]) -> Vec<String> {
-    let of = |session: &&Session| {
-        let lints = session.diagnostics.iter().filter(|it| it.code == Code::W0612);
-        let names = lints.filter_map(|it| Some(session.sources.text(it.others.first()?.span).to_owned()));
-        names.collect::<Vec<_>>()
-    };
-    sessions.iter().flat_map(of).collect()
+    if outcome.complete && exact {
+        return Ok(Verdict::Equal(report::every_state(pair, world, &outcome)));
+    }
+    Ok(report::not_found(pair, world, &outcome))
 }
 
 /// The text of a file by its number, for messages.

@@ -1,73 +1,126 @@
 //! One program under two dialects, scanned side by side.
 
-use super::leaf::{self, Leaf, Leaves, Role};
+use super::normal::{self, Timer};
+use super::scalar::{self, Instance, Role, Scalar, Scalars};
 use crate::machine::Native;
 use staunch_frontend::Dialect;
-use staunch_host::Machine;
+use staunch_host::{Bookmark, Drive, Machine, Snapshot};
 use staunch_ir::{Program, Value};
-use staunch_runtime::{Context, Family, Fault};
+use staunch_runtime::{Fault, FaultKind};
 use std::collections::HashMap;
 
 /// The program as one system runs it.
 pub struct Side {
     pub dialect: Dialect,
     pub program: Program,
-    pub leaves: Leaves,
+    pub scalars: Scalars,
     machine: Native,
-    /// The instances in the order in which they run.
-    order: Vec<usize>,
-    /// What a restart keeps: offset and size.
-    kept: Vec<(usize, usize)>,
+    drive: Drive,
+    start: Bookmark,
+    timers: Vec<Timer>,
+    /// The state before the last scan.
+    before: Vec<u8>,
     initial: Vec<u8>,
 }
 
 /// Something that the world outside sets.
+#[derive(Clone, Debug)]
 pub struct Input {
-    pub leaves: [usize; 2],
-    /// The initial value first.
-    pub values: Vec<Value>,
+    /// Its position among the scalars of each side.
+    pub scalars: [usize; 2],
+    /// What it holds before anything sets it.
+    pub initial: Value,
+}
+
+/// What happens to a controller before a scan.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Event {
+    #[default]
+    None,
+    /// A power cycle.
+    Restart,
+}
+
+impl Event {
+    /// As a stimulus names it.
+    pub fn name(self) -> Option<&'static str> {
+        match self {
+            Self::None => None,
+            Self::Restart => Some("restart"),
+        }
+    }
 }
 
 /// What comes before one scan: an event, and a value for each input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
-    pub restart: bool,
+    pub event: Event,
     pub inputs: Vec<Value>,
+}
+
+impl Step {
+    pub fn of(inputs: Vec<Value>) -> Self {
+        Self { event: Event::None, inputs }
+    }
 }
 
 /// The states of both sides after a scan, and how the scan ended.
 #[derive(Clone, Debug)]
 pub struct Row {
-    pub restart: bool,
+    pub event: Event,
     pub states: [Vec<u8>; 2],
     pub faults: [Option<Fault>; 2],
 }
 
-/// Two leaves of one meaning, by their positions.
+/// How a scan ended on both sides.
+pub type Faults = [Option<Fault>; 2];
+
+/// Two scalars, or two instances, of one meaning, by their positions.
 pub type Matched = [usize; 2];
+
+/// A state of both sides that can be gone back to.
+#[derive(Clone, Debug)]
+pub struct Place {
+    snapshots: [Snapshot; 2],
+    bookmarks: [Bookmark; 2],
+}
+
+/// Bytes whose equality is that of values: two offsets and a length; and other scalars.
+#[derive(Debug, Default)]
+struct Comparison {
+    runs: Vec<([usize; 2], usize)>,
+    singles: Vec<Matched>,
+}
 
 pub struct Pair {
     pub sides: [Side; 2],
     pub inputs: Vec<Input>,
     /// What is compared after each scan, in the order of the declarations.
     pub compared: Vec<Matched>,
-    /// Those whose bytes are equal when their values are, as runs: two offsets and a length.
-    runs: Vec<([usize; 2], usize)>,
-    /// The others.
-    singles: Vec<Matched>,
-    /// Nanoseconds from scan to scan.
-    pub cycle: i64,
+    /// Counters that both sides have.
+    pub counters: Vec<Matched>,
+    /// For each counter, its outputs.
+    pub outputs: Vec<Vec<Matched>>,
+    /// Whether all of both states is compared, or decides nothing.
+    pub whole: bool,
+    compared_bytes: Comparison,
+    counter_bytes: Comparison,
+    scratch: Vec<u8>,
+    first: bool,
+    /// A program had not run since a restart.
+    restarted: bool,
+    /// Scans that both sides have made together.
+    pub scans: u64,
 }
 
 impl Side {
-    pub fn new(dialect: Dialect, program: Program) -> Result<Self, String> {
-        let (machine, _) = Native::new(&program)?;
-        let leaves = Leaves::of(&program);
-        let mut order: Vec<usize> = (0..program.instances.len()).collect();
-        order.sort_by_key(|it| program.instances[*it].priority);
-        let kept = leaves.all.iter().filter(|it| it.retain).map(|it| (it.offset, it.size)).collect();
-        let initial = machine.state().to_vec();
-        Ok(Self { dialect, program, leaves, machine, order, kept, initial })
+    pub fn new(dialect: Dialect, program: Program, cycle: Option<i64>) -> Result<Self, String> {
+        let (machine, map) = Native::new(&program)?;
+        let scalars = Scalars::of(&program);
+        let drive = Drive::new(&map, cycle);
+        let timers = normal::timers(&scalars.blocks);
+        let (start, before) = (drive.bookmark(), machine.state().to_vec());
+        Ok(Self { dialect, program, scalars, machine, drive, start, timers, initial: before.clone(), before })
     }
 
     pub fn state(&self) -> &[u8] {
@@ -78,95 +131,110 @@ impl Side {
         &mut self.machine
     }
 
-    /// What counters of CSCAPE start with after a restart, whatever their declaration retains.
-    pub fn forgotten(&self) -> Vec<(usize, Vec<u8>)> {
-        let cscape = self.leaves.blocks.iter().filter(|it| it.block.info().family == Family::Cscape);
-        cscape.map(|it| (it.offset, self.initial[it.offset..it.offset + it.block.info().size].to_vec())).collect()
+    /// Whether a restart keeps the byte at this offset.
+    pub fn keeps(&self, offset: usize) -> bool {
+        self.drive.keeps(offset)
     }
 
-    /// A power cycle: all but the retained variables start anew.
-    fn restart(&mut self) {
-        let kept: Vec<Vec<u8>> =
-            self.kept.iter().map(|(offset, size)| self.state()[*offset..offset + size].to_vec()).collect();
-        self.machine.init();
-        for ((offset, _), bytes) in self.kept.iter().zip(kept) {
-            self.machine.write(*offset, &bytes);
+    fn write(&mut self, offset: usize, value: Value) {
+        let mut bytes = [0; 8];
+        value.write(&mut bytes);
+        let size = usize::try_from(value.lane().size()).expect("lanes are small");
+        if self.state()[offset..offset + size] != bytes[..size] {
+            self.machine.write(offset, &bytes[..size]);
         }
     }
 
-    fn scan(&mut self, cx: &Context) -> Option<Fault> {
-        self.order.iter().find_map(|instance| self.machine.scan(*instance, cx).err())
-    }
-
-    pub fn show(&self, leaf: usize, state: &[u8]) -> String {
-        leaf::show(&self.program, &self.leaves.all[leaf], state)
+    pub fn show(&self, scalar: usize, state: &[u8]) -> String {
+        scalar::show(&self.program, &self.scalars.all[scalar], state)
     }
 }
 
 impl Pair {
-    pub fn new(sides: [Side; 2], cycle: i64, only: &[String]) -> Self {
-        let mut pair =
-            Self { sides, inputs: Vec::new(), compared: Vec::new(), runs: Vec::new(), singles: Vec::new(), cycle };
-        pair.inputs = pair.find_inputs();
-        pair.compared = pair.find_compared(only);
-        pair.find_runs();
+    pub fn new(sides: [Side; 2], only: &[String]) -> Self {
+        let mut pair = Self {
+            sides,
+            inputs: Vec::new(),
+            compared: Vec::new(),
+            counters: Vec::new(),
+            outputs: Vec::new(),
+            whole: false,
+            compared_bytes: Comparison::default(),
+            counter_bytes: Comparison::default(),
+            scratch: Vec::new(),
+            first: false,
+            restarted: false,
+            scans: 0,
+        };
+        pair.counters = pair.find_counters();
+        pair.whole = !pair.sides.iter().any(|it| it.scalars.truncated);
+        pair.outputs = pair.find_outputs();
+        let outputs: Vec<Matched> = pair.outputs.concat();
+        pair.counter_bytes = pair.comparison(&outputs);
+        pair.compare_only(only);
         pair
     }
 
+    /// The variables that are compared: all that both sides have, or those that are named.
+    pub fn compare_only(&mut self, only: &[String]) {
+        self.compared = self.find_compared(only);
+        self.compared_bytes = self.comparison(&self.compared);
+    }
+
     /// Arrays of one type on both sides are compared in one go.
-    fn find_runs(&mut self) {
-        for [a, b] in self.compared.clone() {
-            let (x, y) = (self.leaf(0, a), self.leaf(1, b));
+    fn comparison(&self, matched: &[Matched]) -> Comparison {
+        let mut found = Comparison::default();
+        for [a, b] in matched.iter().copied() {
+            let (x, y) = (self.scalar(0, a), self.scalar(1, b));
             let (offsets, size) = ([x.offset, y.offset], x.size);
             if x.ty.elementary().is_none() || x.ty != y.ty {
-                self.singles.push([a, b]);
+                found.singles.push([a, b]);
                 continue;
             }
-            match self.runs.last_mut() {
+            match found.runs.last_mut() {
                 Some((start, length)) if [start[0] + *length, start[1] + *length] == offsets => *length += size,
-                _ => self.runs.push((offsets, size)),
+                _ => found.runs.push((offsets, size)),
             }
         }
+        found
     }
 
-    fn leaf(&self, side: usize, at: usize) -> &Leaf {
-        &self.sides[side].leaves.all[at]
+    pub fn scalar(&self, side: usize, at: usize) -> &Scalar {
+        &self.sides[side].scalars.all[at]
     }
 
-    /// The leaves that both sides have, by their common names.
-    fn matched(&self, wanted: impl Fn(&Leaf) -> bool) -> Vec<Matched> {
-        let other = self.sides[1].leaves.all.iter().enumerate();
-        let other: HashMap<&str, usize> = other.map(|(at, leaf)| (leaf.key.as_str(), at)).collect();
-        let all = self.sides[0].leaves.all.iter().enumerate();
-        let wanted = all.filter(|(_, leaf)| wanted(leaf));
-        wanted.filter_map(|(at, leaf)| Some([at, *other.get(leaf.key.as_str())?])).collect()
+    /// The path of what both sides have, in the words of the first.
+    pub fn path(&self, matched: Matched) -> &str {
+        &self.scalar(0, matched[0]).path
     }
 
-    /// The inputs by their declaration; without any, the BOOLs that no statement writes.
-    fn find_inputs(&self) -> Vec<Input> {
-        let mut found = self.matched(|it| it.role == Role::Input);
-        if found.is_empty() {
-            let written = leaf::written(&self.sides[0].program);
-            found = self.matched(|it| {
-                let unwritten = matches!(it.role, Role::Variable(Some(field)) if !written.contains(&field));
-                unwritten && it.ty == staunch_ir::Type::BOOL
-            });
-        }
-        let program = &self.sides[0].program;
-        let scalar = |[a, b]: &Matched| {
-            program.lane(self.leaf(0, *a).ty).is_some() && self.leaf(0, *a).ty == self.leaf(1, *b).ty
+    /// The scalars that both sides have, by their common names.
+    pub fn matched(&self, wanted: impl Fn(&Scalar) -> bool) -> Vec<Matched> {
+        let other = self.sides[1].scalars.all.iter().enumerate();
+        let other: HashMap<&str, usize> = other.map(|(at, scalar)| (scalar.key.as_str(), at)).collect();
+        let all = self.sides[0].scalars.all.iter().enumerate();
+        let wanted = all.filter(|(_, scalar)| wanted(scalar));
+        wanted.filter_map(|(at, scalar)| Some([at, *other.get(scalar.key.as_str())?])).collect()
+    }
+
+    fn find_counters(&self) -> Vec<Matched> {
+        let others = &self.sides[1].scalars.blocks;
+        let counterpart = |it: &Instance| others.iter().position(|other| other.key == it.key && other.counts());
+        let ours = self.sides[0].scalars.blocks.iter().enumerate().filter(|(_, it)| it.counts());
+        ours.filter_map(|(at, it)| Some([at, counterpart(it)?])).collect()
+    }
+
+    fn find_outputs(&self) -> Vec<Vec<Matched>> {
+        let all = self.matched(|it| matches!(it.role, Role::Output(_)));
+        let of = |[counter, _]: &Matched| {
+            let own = |it: &&Matched| self.scalar(0, it[0]).role == Role::Output(*counter);
+            all.iter().filter(own).copied().collect()
         };
-        let input = |leaves: Matched| {
-            let leaf = self.leaf(0, leaves[0]);
-            let lane = program.lane(leaf.ty)?;
-            let initial = Value::read(lane, &self.sides[0].state()[leaf.offset..]);
-            Some(Input { leaves, values: leaf::interesting(program, leaf, initial) })
-        };
-        found.into_iter().filter(scalar).filter_map(input).collect()
+        self.counters.iter().map(of).collect()
     }
 
     fn find_compared(&self, only: &[String]) -> Vec<Matched> {
-        let inputs: Vec<_> = self.inputs.iter().map(|it| it.leaves[0]).collect();
+        let inputs: Vec<_> = self.inputs.iter().map(|it| it.scalars[0]).collect();
         let named = |key: &str| {
             only.is_empty()
                 || only.iter().any(|it| {
@@ -174,71 +242,176 @@ impl Pair {
                     key.strip_prefix(&it).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
                 })
         };
-        let mut found = self.matched(|it| matches!(it.role, Role::Variable(_) | Role::Output(_)));
+        let shows = |it: &Scalar| matches!(it.role, Role::Variable | Role::Output(_));
+        let mut found = self.matched(shows);
         found.retain(|[a, b]| {
-            let compares = |side, at| matches!(self.leaf(side, at).role, Role::Variable(_) | Role::Output(_));
-            let path = self.leaf(0, *a).path.to_ascii_lowercase();
-            compares(1, *b) && !inputs.contains(a) && (named(&self.leaf(0, *a).key) || named(&path))
+            let path = self.scalar(0, *a).path.to_ascii_lowercase();
+            let asked = named(&self.scalar(0, *a).key) || named(&path);
+            shows(self.scalar(1, *b)) && !inputs.contains(a) && asked
         });
         found
     }
 
     /// The inputs' values before anything sets them.
     pub fn initial(&self) -> Vec<Value> {
-        self.inputs.iter().map(|it| it.values[0]).collect()
+        self.inputs.iter().map(|it| it.initial).collect()
     }
 
     /// Both sides as they start.
     pub fn init(&mut self) {
-        self.sides.iter_mut().for_each(|it| it.machine.init());
-    }
-
-    pub fn restore(&mut self, states: &[Vec<u8>; 2]) {
-        for (side, state) in self.sides.iter_mut().zip(states) {
-            side.machine.write(0, state);
+        for side in &mut self.sides {
+            side.machine.init();
+            side.drive.go_to(&side.start);
         }
     }
 
-    pub fn states(&self) -> [Vec<u8>; 2] {
-        [0, 1].map(|side| self.sides[side].state().to_vec())
+    pub fn place(&self) -> Place {
+        let snapshots = self.sides.each_ref().map(|it| it.machine.snapshot());
+        Place { snapshots, bookmarks: self.sides.each_ref().map(|it| it.drive.bookmark()) }
     }
 
-    /// Whether a restart keeps anything, so that it is more than a new start.
-    pub fn retains(&self) -> bool {
-        self.sides.iter().any(|it| !it.kept.is_empty())
+    pub fn go_to(&mut self, place: &Place) {
+        for ((side, snapshot), bookmark) in self.sides.iter_mut().zip(&place.snapshots).zip(&place.bookmarks) {
+            side.machine.compiled().restore(snapshot);
+            side.drive.go_to(bookmark);
+        }
     }
 
-    /// Scan `number`, counted from 1, on both sides.
-    pub fn scan(&mut self, number: usize, step: &Step) -> [Option<Fault>; 2] {
-        let elapsed = i64::try_from(number - 1).unwrap_or(i64::MAX);
-        let cx = Context::new(elapsed.saturating_mul(self.cycle), number == 1 || step.restart);
+    /// Bytes of both states.
+    pub fn size(&self) -> usize {
+        self.sides.iter().map(|it| it.state().len()).sum()
+    }
+
+    pub fn states(&self) -> [&[u8]; 2] {
+        self.sides.each_ref().map(Side::state)
+    }
+
+    /// The states before the last scan.
+    pub fn before(&self) -> [&[u8]; 2] {
+        self.sides.each_ref().map(|it| it.before.as_slice())
+    }
+
+    /// What a restart may do on either side, besides nothing and starting all anew.
+    pub fn events(&self) -> Vec<Event> {
+        let retains = self.sides.iter().any(|it| it.drive.retains());
+        if retains { vec![Event::Restart] } else { Vec::new() }
+    }
+
+    /// Whether a timer runs on either side, so that time is a part of the state.
+    pub fn has_timers(&self) -> bool {
+        self.sides.iter().any(|it| !it.timers.is_empty())
+    }
+
+    /// The least time between two scans of a program.
+    pub fn shortest_cycle(&self) -> i64 {
+        self.sides.iter().map(|it| it.drive.shortest_period()).min().unwrap_or(1)
+    }
+
+    /// The next scan, on both sides.
+    pub fn scan(&mut self, step: &Step) -> Faults {
+        self.scans += 1;
+        self.first = self.sides[0].drive.next() == 0;
+        self.restarted = !self.first && self.sides[0].drive.phases().any(|it| it.1);
         let inputs = &self.inputs;
-        let mut at = 0;
+        let mut number = 0;
         self.sides.each_mut().map(|side| {
-            if step.restart {
-                side.restart();
+            side.before.copy_from_slice(side.machine.state());
+            match step.event {
+                Event::None => {}
+                Event::Restart => side.drive.restart(&mut side.machine),
             }
             for (input, value) in inputs.iter().zip(&step.inputs) {
-                let offset = side.leaves.all[input.leaves[at]].offset;
-                side.machine.write_value(offset, *value);
+                side.write(side.scalars.all[input.scalars[number]].offset, *value);
             }
-            at += 1;
-            side.scan(&cx)
+            number += 1;
+            side.drive.scan(side.machine.compiled()).err()
         })
+    }
+
+    /// What decides all that is to come, as a number: two states with one key behave alike under
+    /// the same inputs.
+    pub fn key(&mut self, ages: &[u8]) -> u128 {
+        self.scratch.clear();
+        for (number, side) in self.sides.iter().enumerate() {
+            let from = self.scratch.len();
+            self.scratch.extend_from_slice(side.machine.state());
+            let state = &mut self.scratch[from..];
+            for input in &self.inputs {
+                let scalar = &side.scalars.all[input.scalars[number]];
+                state[scalar.offset..scalar.offset + scalar.size].fill(0);
+            }
+            let now = side.drive.next();
+            side.timers.iter().for_each(|it| it.settle(state, now));
+        }
+        for (wait, fresh) in self.sides.iter().flat_map(|it| it.drive.phases()) {
+            self.scratch.extend_from_slice(&wait.to_ne_bytes());
+            self.scratch.push(u8::from(fresh));
+        }
+        self.scratch.extend_from_slice(ages);
+        normal::hash(&self.scratch)
     }
 
     fn equal(&self, [a, b]: Matched, states: [&[u8]; 2]) -> bool {
         let programs = [&self.sides[0].program, &self.sides[1].program];
-        leaf::equal(programs, [self.leaf(0, a), self.leaf(1, b)], states)
+        scalar::equal(programs, [self.scalar(0, a), self.scalar(1, b)], states)
     }
 
-    /// Whether the two states, or how the scan ended, differ.
-    pub fn differs(&self, faults: [Option<Fault>; 2]) -> bool {
-        let kind = |it: Option<Fault>| it.map(|it| it.kind);
-        let states = [self.sides[0].state(), self.sides[1].state()];
-        kind(faults[0]) != kind(faults[1])
-            || self.runs.iter().any(|([a, b], length)| states[0][*a..a + length] != states[1][*b..b + length])
-            || self.singles.iter().any(|it| !self.equal(*it, states))
+    fn all_equal(&self, comparison: &Comparison) -> bool {
+        let states = self.states();
+        let same = |([a, b], length): &([usize; 2], usize)| states[0][*a..a + length] == states[1][*b..b + length];
+        comparison.runs.iter().all(same) && comparison.singles.iter().all(|it| self.equal(*it, states))
+    }
+
+    /// Whether the compared values, or how the scan ended, differ.
+    pub fn differs(&self, faults: Faults) -> bool {
+        self.faults_differ(faults) || !self.all_equal(&self.compared_bytes)
+    }
+
+    pub fn faults_differ(&self, faults: Faults) -> bool {
+        kinds(faults)[0] != kinds(faults)[1]
+    }
+
+    /// Whether every counter shows the same on both sides.
+    pub fn counters_agree(&self) -> bool {
+        self.all_equal(&self.counter_bytes)
+    }
+
+    /// Whether these show the same, and did before the last scan.
+    pub fn newly_differs(&self, matched: Matched) -> bool {
+        !self.equal(matched, self.states()) && self.equal(matched, self.before())
+    }
+
+    /// Whether these showed the same before the last scan.
+    pub fn agreed(&self, matched: Matched) -> bool {
+        self.equal(matched, self.before())
+    }
+
+    /// A counter on both sides, by its position among the counters.
+    pub fn instances(&self, counter: usize) -> [&Instance; 2] {
+        let [a, b] = self.counters[counter];
+        [&self.sides[0].scalars.blocks[a], &self.sides[1].scalars.blocks[b]]
+    }
+
+    /// Whether the last scan was the first since the start.
+    pub fn is_first(&self) -> bool {
+        self.first
+    }
+
+    /// Whether a program that had not run since a restart may have run in the last scan.
+    pub fn is_restarted(&self) -> bool {
+        self.restarted
+    }
+
+    /// Both states before anything ran.
+    pub fn start(&self) -> [&[u8]; 2] {
+        self.sides.each_ref().map(|it| it.initial.as_slice())
+    }
+
+    /// Variables that differ since the last scan.
+    pub fn newly_different(&self) -> Vec<Matched> {
+        let variables = self.compared.iter().copied();
+        let variables = variables.filter(|it| self.scalar(0, it[0]).role == Role::Variable);
+        variables.filter(|it| self.newly_differs(*it)).collect()
     }
 
     /// What differs, in the order of the declarations.
@@ -246,44 +419,26 @@ impl Pair {
         self.compared.iter().copied().filter(|it| !self.same(*it, row)).collect()
     }
 
-    /// The outputs of standard blocks, whether they are compared or not.
-    pub fn outputs(&self) -> Vec<Matched> {
-        self.matched(|it| matches!(it.role, Role::Output(_)))
+    pub fn same(&self, matched: Matched, row: &Row) -> bool {
+        self.equal(matched, row.states.each_ref().map(Vec::as_slice))
     }
 
-    pub fn same(&self, leaves: Matched, row: &Row) -> bool {
-        self.equal(leaves, row.states.each_ref().map(Vec::as_slice))
-    }
-
-    /// All rows of a run that starts anew, up to the first difference.
-    pub fn replay(&mut self, steps: &[Step]) -> Option<Vec<Row>> {
+    /// The rows of a run that starts anew, one for each step, or up to a fault.
+    pub fn replay(&mut self, steps: &[Step]) -> Vec<Row> {
         self.init();
         let mut rows = Vec::new();
-        for (step, number) in steps.iter().zip(1..) {
-            let faults = self.scan(number, step);
-            rows.push(Row { restart: step.restart, states: self.states(), faults });
-            if self.differs(faults) {
-                return Some(rows);
-            }
-            if faults[0].is_some() {
-                return None;
+        for step in steps {
+            let faults = self.scan(step);
+            let states = self.sides.each_ref().map(|it| it.state().to_vec());
+            rows.push(Row { event: step.event, states, faults });
+            if faults.iter().any(Option::is_some) {
+                break;
             }
         }
-        None
+        rows
     }
+}
 
-    /// The number of steps after which the two differ.
-    pub fn differs_after(&mut self, steps: &[Step]) -> Option<usize> {
-        self.init();
-        for (step, number) in steps.iter().zip(1..) {
-            let faults = self.scan(number, step);
-            if self.differs(faults) {
-                return Some(number);
-            }
-            if faults[0].is_some() {
-                return None;
-            }
-        }
-        None
-    }
+fn kinds(faults: Faults) -> [Option<FaultKind>; 2] {
+    faults.map(|it| it.map(|it| it.kind))
 }

@@ -1,275 +1,185 @@
-//! A search for the shortest inputs after which two systems differ: every sequence up to a depth,
-//! then inputs that are held, long patterns, and random ones from a fixed seed. The same program
-//! gives the same answer.
+//! A search for inputs that make two systems differ, and for every pitfall that the inputs can reach.
+//! The same program gives the same answer.
+//!
+//! First every sequence, shortest first; then patterns from every state that is new in some respect;
+//! then what is left of both, and random sequences from a fixed seed.
 
-use super::pair::{Pair, Step};
-use super::{hold, shrink};
+use super::alphabet::Alphabet;
+use super::assume::Assumptions;
+use super::exhaustive::Exhaustive;
+use super::guided::Guided;
+use super::pair::{Event, Faults, Matched, Pair, Step};
+use super::pitfall::{self, Habits, Pitfall};
+use super::random;
+use super::shrink;
+use super::trace::Trace;
 use staunch_ir::Value;
-use std::collections::HashSet;
-use std::hash::{DefaultHasher, Hash, Hasher};
+use std::collections::{BTreeSet, HashMap};
 
-/// Input vectors that are tried in every scan of the exhaustive part.
-const MAX_VECTORS: usize = 256;
-/// Bytes of states that the exhaustive part keeps at a time.
-const MAX_BYTES: usize = 256 << 20;
-/// Bytes that all scans together compare.
-const MAX_COMPARED: usize = 4 << 30;
-/// Scans of a random sequence.
-const EPISODE: usize = 120;
-/// Enough scans to count past the limit of a WORD.
-pub const LONG: usize = 140_000;
+/// Bytes that all scans together may compare.
+const MAX_COMPARED: u64 = 16 << 30;
 
-#[derive(Clone, Copy, Debug)]
-pub struct Limits {
-    /// Scans of a sequence in the exhaustive part.
-    pub depth: usize,
-    /// Scans in all.
-    pub budget: u64,
+/// What the search knows of the world around the programs.
+#[derive(Debug)]
+pub struct World {
+    pub alphabet: Alphabet,
+    pub assumptions: Assumptions,
+    /// The inputs before anything sets them.
+    pub initial: Vec<Value>,
+    /// Every sequence of more scans is left to patterns.
+    pub depth: Option<usize>,
+    /// Every constant of the programs.
+    pub constants: BTreeSet<i128>,
+    /// Scans that the longest wait in the programs takes.
+    pub longest: usize,
+    /// Whether a program assigns its own inputs, so that a stimulus has to write them in each scan.
+    pub inputs_written: bool,
+    /// How the programs use each counter.
+    pub habits: Vec<Habits>,
+}
+
+/// What a pitfall was seen on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Subject {
+    /// A counter, by its position among those of the pair.
+    Counter(usize),
+    /// A variable, by its scalars.
+    Variable(Matched),
+}
+
+pub type Sighting = (Subject, Option<Pitfall>);
+
+/// What one scan showed.
+#[derive(Debug, Default)]
+pub struct Seen {
+    /// The compared values differ.
+    pub differs: bool,
+    pub sightings: Vec<Sighting>,
 }
 
 /// How the search went.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub struct Outcome {
-    /// Sequences of inputs, up to the first difference.
-    pub steps: Option<Vec<Step>>,
+    /// Inputs up to the first difference.
+    pub found: Option<Trace>,
+    /// The shortest sequence that was met for each.
+    pub sightings: HashMap<Sighting, Trace>,
     /// Every sequence of this many scans was tried.
     pub depth: usize,
-    /// Every state that the inputs can reach was tried.
+    /// Every state that the inputs tried can reach was seen.
     pub complete: bool,
+    /// And every state past the first difference.
+    pub all_seen: bool,
     pub scans: u64,
+    /// States from which patterns were tried.
+    pub places: usize,
 }
 
-pub fn search(pair: &mut Pair, limits: Limits) -> Outcome {
-    // A large state takes its time to compare and to keep.
-    let bytes = pair.states().iter().map(Vec::len).sum::<usize>().max(1);
-    let affordable = u64::try_from(MAX_COMPARED / bytes).unwrap_or(u64::MAX);
-    let limits = Limits { budget: limits.budget.min(affordable.max(1000)), ..limits };
-    let mut search = Search { left: limits.budget, outcome: Outcome::default(), pair };
-    search.outcome.steps = search.run(limits);
-    search.outcome.scans = limits.budget - search.left;
-    search.outcome
-}
-
-struct Search<'p> {
-    pair: &'p mut Pair,
-    left: u64,
+pub struct Search<'p> {
+    pub pair: &'p mut Pair,
+    pub world: &'p World,
+    /// Scans that may still be made.
+    pub left: u64,
+    /// Sightings that the two systems allow: when all are known, there is nothing more to find.
+    wanted: usize,
+    /// Past the first difference, for what else there is.
+    goes_on: bool,
+    ended: bool,
     outcome: Outcome,
 }
 
-/// How a state of the exhaustive part was reached.
-struct Node {
-    parent: usize,
-    symbol: usize,
+pub fn search(pair: &mut Pair, world: &World, budget: u64, wanted: usize) -> Outcome {
+    // A large state takes its time to compare and to keep.
+    let bytes = u64::try_from(pair.size().max(1)).unwrap_or(u64::MAX);
+    let budget = budget.min((MAX_COMPARED / bytes).max(1000));
+    let before = pair.scans;
+    let mut search =
+        Search { pair, world, left: budget, wanted, goes_on: false, ended: false, outcome: Outcome::default() };
+    search.run(budget);
+    search.outcome.scans = search.pair.scans - before;
+    let mut outcome = search.outcome;
+    outcome.found = outcome.found.map(|it| shrink::shrink(pair, world, shrink::Goal::Differ, it));
+    outcome
 }
 
 impl Search<'_> {
-    fn run(&mut self, limits: Limits) -> Option<Vec<Step>> {
-        if let Some(found) = self.exhaustive(limits.depth, limits.budget / 4 * 3) {
-            return Some(found);
+    fn run(&mut self, budget: u64) {
+        let (depth, complete) = self.look(budget);
+        (self.outcome.depth, self.outcome.complete) = (depth, complete);
+        if self.outcome.found.is_some() && self.outcome.sightings.len() < self.wanted {
+            // What else there is gets its share, and no more; what parted may agree again.
+            self.left = self.left.min(budget / 16);
+            self.goes_on = true;
+            self.outcome.all_seen = self.look(self.left).1;
         }
-        if self.outcome.complete {
-            return None;
-        }
-        let found =
-            self.holds(limits.budget / 2).or_else(|| self.patterns(limits.budget / 8)).or_else(|| self.random());
-        found.map(|it| shrink::shrink(self.pair, it))
     }
 
-    /// The input vectors, those that change little first.
-    fn symbols(&self) -> Vec<Step> {
-        let mut vectors = vec![(0, Vec::new())];
-        for input in &self.pair.inputs {
-            let with = |(changes, vector): &(usize, Vec<Value>)| {
-                let each = |(at, value): (usize, &Value)| {
-                    let mut vector = vector.clone();
-                    vector.push(*value);
-                    (changes + usize::from(at > 0), vector)
-                };
-                input.values.iter().enumerate().map(each).collect::<Vec<_>>()
-            };
-            vectors = vectors.iter().flat_map(with).collect();
-            vectors.sort_by_key(|it| it.0);
-            vectors.truncate(MAX_VECTORS * 4);
+    /// How many scans of every sequence were tried, and whether that was all of them.
+    fn look(&mut self, budget: u64) -> (usize, bool) {
+        let mut exhaustive = Exhaustive::new(self);
+        exhaustive.run(self, budget / 4 * 3);
+        if !exhaustive.complete && !self.is_done() {
+            let mut guided = Guided::new(self);
+            guided.run(self, budget / 4);
+            exhaustive.run(self, budget / 8);
+            if !exhaustive.complete {
+                guided.run(self, budget / 16);
+                random::walk(self, &guided);
+            }
+            self.outcome.places = guided.places();
         }
-        vectors.truncate(MAX_VECTORS);
-        let plain = |(_, inputs)| Step { restart: false, inputs };
-        let mut symbols: Vec<Step> = vectors.into_iter().map(plain).collect();
-        if self.pair.retains() {
-            let restarts: Vec<_> = symbols.iter().map(|it| Step { restart: true, ..it.clone() }).collect();
-            symbols.extend(restarts);
-        }
-        symbols
+        (exhaustive.depth, exhaustive.complete)
     }
 
-    /// Breadth first, each pair of states once. Timers make the time a part of the state.
-    fn exhaustive(&mut self, depth: usize, reserve: u64) -> Option<Vec<Step>> {
-        let symbols = self.symbols();
-        let timed = self.pair.sides[0]
-            .leaves
-            .blocks
-            .iter()
-            .any(|it| it.block.info().instructions.iter().any(|it| it.needs_context));
-        self.pair.init();
-        let mut nodes: Vec<Node> = Vec::new();
-        let mut frontier = vec![(usize::MAX, self.pair.states())];
-        let mut seen = HashSet::new();
-        seen.insert(hash(&frontier[0].1, 0));
-        let bytes = frontier[0].1.iter().map(Vec::len).sum::<usize>().max(1);
-        for level in 1..=depth {
-            let mut next = Vec::new();
-            for (parent, states) in &frontier {
-                for (symbol, step) in symbols.iter().enumerate() {
-                    if self.left <= reserve || (next.len() + frontier.len()) * bytes > MAX_BYTES {
-                        return None;
-                    }
-                    if step.restart && level == 1 {
-                        continue;
-                    }
-                    self.left -= 1;
-                    self.pair.restore(states);
-                    let faults = self.pair.scan(level, step);
-                    let node = Node { parent: *parent, symbol };
-                    if self.pair.differs(faults) {
-                        return Some(path(&nodes, node, &symbols));
-                    }
-                    if faults[0].is_some() {
-                        continue;
-                    }
-                    let reached = self.pair.states();
-                    if seen.insert(hash(&reached, if timed { level } else { 0 })) {
-                        next.push((nodes.len(), reached));
-                        nodes.push(node);
-                    }
-                }
-            }
-            self.outcome.depth = level;
-            if next.is_empty() {
-                self.outcome.complete = true;
-                return None;
-            }
-            frontier = next;
-        }
-        None
+    /// Whether there is nothing more to look for.
+    pub fn is_done(&self) -> bool {
+        self.outcome.found.is_some() && (!self.goes_on || self.outcome.sightings.len() >= self.wanted)
     }
 
-    /// Runs steps from the start until the two differ; `None` if they do not, or the budget ends.
-    fn drive(&mut self, count: usize, reserve: u64, mut make: impl FnMut(usize) -> Step) -> Option<Vec<Step>> {
-        self.pair.init();
-        let mut steps = Vec::new();
-        for number in 1..=count {
-            if self.left <= reserve {
-                return None;
-            }
-            self.left -= 1;
-            let step = make(number);
-            let faults = self.pair.scan(number, &step);
-            steps.push(step);
-            if self.pair.differs(faults) {
-                return Some(steps);
-            }
-            if faults[0].is_some() {
-                return None;
-            }
-        }
-        None
+    /// One scan, and what it shows.
+    pub fn scan(&mut self, step: &Step) -> Seen {
+        self.left = self.left.saturating_sub(1);
+        let faults = self.pair.scan(step);
+        let seen = look(self.pair, self.world, step.event, faults);
+        self.ended = seen.differs && !self.goes_on || faults.iter().any(Option::is_some);
+        seen
     }
 
-    /// Inputs that are TRUE for long; the first that makes a difference.
-    fn holds(&mut self, reserve: u64) -> Option<Vec<Step>> {
-        hold::sequences(self.pair, &self.symbols()).into_iter().find_map(|runs| {
-            let count = runs.iter().map(|it| it.scans).sum();
-            let mut steps = runs.iter().flat_map(|it| std::iter::repeat_n(&it.step, it.scans));
-            let last = runs.last().map(|it| &it.step)?;
-            self.drive(count, reserve, |_| steps.next().unwrap_or(last).clone())
-        })
+    /// Whether nothing follows the last scan: the compared values differ, or a fault ends the run.
+    pub fn ended(&self) -> bool {
+        self.ended
     }
 
-    /// One input pulses in every second scan, long enough for a limit, while the others keep
-    /// still: all at their start, then all TRUE.
-    fn patterns(&mut self, reserve: u64) -> Option<Vec<Step>> {
-        let initial = self.pair.initial();
-        let raised = hold::raised(&initial);
-        for still in [&initial, &raised] {
-            for at in 0..initial.len() {
-                if initial[at].lane() != staunch_ir::Lane::Bool {
-                    continue;
-                }
-                let pulse = |number: usize| {
-                    let mut inputs = still.clone();
-                    inputs[at] = Value::Bool(number.is_multiple_of(2));
-                    Step { restart: false, inputs }
-                };
-                if let Some(found) = self.drive(LONG, reserve, pulse) {
-                    return Some(found);
-                }
-            }
+    /// Keeps what is new or shorter.
+    pub fn record(&mut self, seen: Seen, trace: impl FnOnce() -> Trace) {
+        let Outcome { found, sightings, .. } = &mut self.outcome;
+        let news: Vec<_> = seen.sightings.into_iter().filter(|it| !sightings.contains_key(it)).collect();
+        let first = seen.differs && found.is_none();
+        if !first && news.is_empty() {
+            return;
         }
-        None
-    }
-
-    /// Sequences in which inputs hold, change one at a time, and now and then all at once.
-    fn random(&mut self) -> Option<Vec<Step>> {
-        let mut dice = Dice(0x5EED);
-        let initial = self.pair.initial();
-        let retains = self.pair.retains();
-        let values: Vec<Vec<Value>> = self.pair.inputs.iter().map(|it| it.values.clone()).collect();
-        if values.is_empty() && !retains {
-            return self.drive(usize::MAX, 0, |_| Step { restart: false, inputs: Vec::new() });
+        let trace = trace();
+        if first {
+            *found = Some(trace.clone());
         }
-        while self.left > 0 {
-            let mut inputs = initial.clone();
-            let found = self.drive(EPISODE, 0, |number| {
-                match dice.below(8) {
-                    0 | 1 => {}
-                    7 => (0..values.len()).for_each(|at| inputs[at] = *dice.pick(&values[at])),
-                    _ if values.is_empty() => {}
-                    _ => {
-                        let at = dice.below(values.len());
-                        inputs[at] = *dice.pick(&values[at]);
-                    }
-                }
-                let restart = retains && number > 1 && dice.below(16) == 0;
-                Step { restart, inputs: inputs.clone() }
-            });
-            if found.is_some() {
-                return found;
-            }
-        }
-        None
+        sightings.extend(news.into_iter().map(|it| (it, trace.clone())));
     }
 }
 
-fn hash(states: &[Vec<u8>; 2], level: usize) -> u64 {
-    let mut hasher = DefaultHasher::new();
-    (states, level).hash(&mut hasher);
-    hasher.finish()
-}
-
-fn path(nodes: &[Node], last: Node, symbols: &[Step]) -> Vec<Step> {
-    let mut steps = vec![symbols[last.symbol].clone()];
-    let mut parent = last.parent;
-    while let Some(node) = nodes.get(parent) {
-        steps.push(symbols[node.symbol].clone());
-        parent = node.parent;
+/// What the last scan has made differ that did not before.
+pub fn look(pair: &Pair, world: &World, event: Event, faults: Faults) -> Seen {
+    let differs = pair.differs(faults);
+    let mut sightings = Vec::new();
+    if !pair.counters_agree() {
+        for at in 0..pair.counters.len() {
+            if let Some(pitfall) = pitfall::seen(pair, at, event, world.habits[at]) {
+                sightings.push((Subject::Counter(at), pitfall));
+            }
+        }
     }
-    steps.reverse();
-    steps
-}
-
-/// SplitMix64.
-struct Dice(u64);
-
-impl Dice {
-    fn below(&mut self, limit: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut bits = self.0;
-        bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        let limit = u64::try_from(limit.max(1)).unwrap_or(1);
-        usize::try_from((bits ^ (bits >> 31)) % limit).unwrap_or(0)
+    if event != Event::None && differs {
+        let restarted = pair.newly_different();
+        sightings.extend(restarted.into_iter().map(|it| (Subject::Variable(it), Some(Pitfall::RESTART))));
     }
-
-    fn pick<'v, T>(&mut self, values: &'v [T]) -> &'v T {
-        &values[self.below(values.len())]
-    }
+    Seen { differs, sightings }
 }

@@ -1,86 +1,183 @@
-//! A sequence of inputs without what the difference does not need.
+//! A sequence of inputs without what its difference does not need.
 
-use super::hold::Run;
-use super::pair::{Pair, Step};
+use super::pair::{Event, Pair, Step};
+use super::search::{self, Sighting, World};
+use super::trace::{Group, Trace};
 
-/// Longer sequences are made shorter by what repeats in them, not scan by scan.
+/// Scans that making the sequence to the first difference shorter may take.
+const BUDGET: u64 = 4_000_000;
+/// And one that shows another finding, of which there may be many.
+const SMALL_BUDGET: u64 = 40_000;
+/// A sequence of at most this many scans is tried without each of them.
 const MAX_STEPS: usize = 300;
-/// More runs than this are not made shorter by trying.
-const MAX_RUNS: usize = 100;
+/// More parts than this are not tried one by one.
+const MAX_GROUPS: usize = 200;
 
-/// Leaves out runs of scans, restarts, changes of inputs.
-pub fn shrink(pair: &mut Pair, mut steps: Vec<Step>) -> Vec<Step> {
-    if steps.len() > MAX_STEPS {
-        steps = by_runs(pair, steps);
-    }
-    if steps.len() > MAX_STEPS {
-        return without_the_first(pair, steps);
-    }
-    let shorter = shorter(pair, steps);
-    calmer(pair, shorter)
+/// What a sequence is to show.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Goal {
+    /// The compared values differ.
+    Differ,
+    Sees(Sighting),
 }
 
-fn without_the_first(pair: &mut Pair, steps: Vec<Step>) -> Vec<Step> {
-    let later = steps[1..].to_vec();
-    if pair.differs_after(&later) == Some(later.len()) { later } else { steps }
-}
-
-fn runs(steps: &[Step]) -> Vec<Run> {
-    let mut runs: Vec<Run> = Vec::new();
-    for step in steps {
-        match runs.last_mut() {
-            Some(run) if run.step == *step && !step.restart => run.scans += 1,
-            _ => runs.push(Run { step: step.clone(), scans: 1 }),
+/// Leaves out runs of scans, events, and changes of inputs.
+pub fn shrink(pair: &mut Pair, world: &World, goal: Goal, trace: Trace) -> Trace {
+    let left = match goal {
+        Goal::Differ => BUDGET,
+        Goal::Sees(_) => SMALL_BUDGET,
+    };
+    let mut shrink = Shrink { pair, world, goal, left };
+    let Some(mut best) = shrink.tried(trace.clone()) else { return trace };
+    loop {
+        let before = best.scans();
+        best = shrink.groups(best);
+        best = shrink.bodies(best);
+        if best.scans() <= MAX_STEPS {
+            best = shrink.steps(best);
         }
+        if best.scans() == before || shrink.left == 0 {
+            return shrink.calmer(best);
+        }
+        // What is left may repeat in another way.
+        best = Trace::of(best.steps().cloned().collect());
     }
-    runs
 }
 
-fn steps(runs: &[Run]) -> Vec<Step> {
-    runs.iter().flat_map(|it| std::iter::repeat_n(it.step.clone(), it.scans)).collect()
+struct Shrink<'p> {
+    pair: &'p mut Pair,
+    world: &'p World,
+    goal: Goal,
+    left: u64,
 }
 
-/// Each run at the fewest scans, then with its inputs at their start where that does as well.
-fn by_runs(pair: &mut Pair, all: Vec<Step>) -> Vec<Step> {
-    let mut shrunk = runs(&all);
-    if shrunk.len() > MAX_RUNS {
-        return all;
-    }
-    let mut at = 0;
-    while at < shrunk.len() {
-        fewest(pair, &mut shrunk, at);
-        at += 1;
-    }
-    shrunk.retain(|it| it.scans > 0);
-    let initial = pair.initial();
-    for at in 0..shrunk.len() {
-        for (input, start) in initial.iter().enumerate() {
-            let mut calm = shrunk.clone();
-            calm[at].step.inputs[input] = *start;
-            let length = calm.iter().map(|it| it.scans).sum();
-            if calm != shrunk && pair.differs_after(&steps(&calm)) == Some(length) {
-                shrunk = calm;
+impl Shrink<'_> {
+    fn shows_after(&mut self, trace: &Trace) -> Option<usize> {
+        self.pair.init();
+        let mut ages = self.world.assumptions.ages();
+        let mut before = &self.world.initial;
+        for (step, number) in trace.steps().zip(1..) {
+            if self.left == 0 || number == 1 && step.event != Event::None {
+                return None;
+            }
+            self.left -= 1;
+            ages = self.world.assumptions.age(&ages, before, &step.inputs)?;
+            if before != &step.inputs && !self.world.assumptions.allow(&step.inputs) {
+                return None;
+            }
+            before = &step.inputs;
+            let faults = self.pair.scan(step);
+            let shown = match self.goal {
+                Goal::Differ => self.pair.differs(faults),
+                Goal::Sees(sighting) => {
+                    search::look(self.pair, self.world, step.event, faults).sightings.contains(&sighting)
+                }
+            };
+            if shown {
+                return Some(number);
+            }
+            if faults.iter().any(Option::is_some) {
+                return None;
             }
         }
+        None
     }
-    steps(&shrunk)
-}
 
-/// Looks for the fewest scans of one run with which the two still differ, by halves.
-fn fewest(pair: &mut Pair, runs: &mut [Run], at: usize) {
-    let (mut too_few, mut enough) = (None, runs[at].scans);
-    while let Some(middle) = between(too_few, enough) {
-        let before = std::mem::replace(&mut runs[at].scans, middle);
-        match pair.differs_after(&steps(runs)) {
-            Some(length) => {
-                end_after(runs, length);
-                enough = runs[at].scans;
-            }
-            None => {
-                runs[at].scans = before;
-                too_few = Some(middle);
+    /// The sequence up to what is looked for, if it shows that.
+    fn tried(&mut self, trace: Trace) -> Option<Trace> {
+        let scans = self.shows_after(&trace)?;
+        Some(if scans == trace.scans() { trace } else { trace.first(scans) })
+    }
+
+    /// Each group as few times as will do.
+    fn groups(&mut self, mut best: Trace) -> Trace {
+        let mut at = 0;
+        while at < best.groups.len().min(MAX_GROUPS) {
+            let times = best.groups[at].times;
+            best = self.fewest(best, times, |trace, times| trace.groups[at].times = times);
+            at += 1;
+        }
+        best.groups.retain(|it| it.times > 0);
+        best
+    }
+
+    /// Each run of a group as few scans as will do.
+    fn bodies(&mut self, mut best: Trace) -> Trace {
+        for group in 0..best.groups.len().min(MAX_GROUPS) {
+            let mut at = 0;
+            while best.groups.get(group).is_some_and(|it| at < it.body.len()) {
+                let scans = best.groups[group].body[at].1;
+                best = self.fewest(best, scans, |trace, scans| trace.groups[group].body[at].1 = scans);
+                at += 1;
             }
         }
+        best.groups.iter_mut().for_each(|it| it.body.retain(|run| run.1 > 0));
+        best.groups.retain(|it| !it.body.is_empty());
+        best
+    }
+
+    /// Looks for the least number with which it still does, by halves.
+    fn fewest(&mut self, best: Trace, mut enough: usize, set: impl Fn(&mut Trace, usize)) -> Trace {
+        let mut found = best;
+        let mut too_few = None;
+        while let Some(middle) = between(too_few, enough) {
+            let mut fewer = found.clone();
+            set(&mut fewer, middle);
+            match self.shows_after(&fewer) {
+                Some(scans) if scans <= found.scans() => {
+                    (found, enough) = (fewer, middle);
+                }
+                Some(_) | None => too_few = Some(middle),
+            }
+        }
+        found
+    }
+
+    /// Without each part of the sequence, halves first.
+    fn steps(&mut self, best: Trace) -> Trace {
+        let mut steps: Vec<Step> = best.steps().cloned().collect();
+        let mut size = steps.len() / 2;
+        while size > 0 && self.left > 0 {
+            let mut at = 0;
+            while at < steps.len() {
+                let mut fewer = steps.clone();
+                fewer.drain(at..(at + size).min(steps.len()));
+                match self.shows_after(&Trace::of(fewer.clone())) {
+                    Some(length) => {
+                        fewer.truncate(length);
+                        steps = fewer;
+                    }
+                    None => at += size,
+                }
+            }
+            size /= 2;
+        }
+        Trace::of(steps)
+    }
+
+    /// Inputs that keep their value, or the one they start with; events that are not needed.
+    fn calmer(&mut self, best: Trace) -> Trace {
+        let mut best = self.tried(best.clone()).unwrap_or(best);
+        let scans = best.scans();
+        let mut before = self.world.initial.clone();
+        for group in 0..best.groups.len().min(MAX_GROUPS) {
+            for run in 0..best.groups[group].body.len() {
+                for (input, kept) in before.iter().enumerate() {
+                    for simpler in [self.world.initial[input], *kept] {
+                        let mut calmer = best.clone();
+                        calmer.groups[group].body[run].0.inputs[input] = simpler;
+                        if calmer != best && self.shows_after(&calmer) == Some(scans) {
+                            best = calmer;
+                            break;
+                        }
+                    }
+                }
+                before.clone_from(&best.groups[group].body[run].0.inputs);
+            }
+        }
+        let same = best.groups.iter().all(|it: &Group| it.times > 0);
+        debug_assert!(same, "groups without a turn were left out");
+        best
     }
 }
 
@@ -92,51 +189,4 @@ fn between(too_few: Option<usize>, enough: usize) -> Option<usize> {
         Some(few) if few + 1 >= enough => None,
         Some(few) => Some(few + (enough - few) / 2),
     }
-}
-
-/// Cuts what stands after this many scans.
-fn end_after(runs: &mut [Run], mut length: usize) {
-    for run in runs {
-        run.scans = run.scans.min(length);
-        length -= run.scans;
-    }
-}
-
-fn shorter(pair: &mut Pair, mut steps: Vec<Step>) -> Vec<Step> {
-    let mut size = steps.len() / 2;
-    while size > 0 {
-        let mut at = 0;
-        while at < steps.len() {
-            let mut shorter = steps.clone();
-            shorter.drain(at..(at + size).min(steps.len()));
-            match pair.differs_after(&shorter) {
-                Some(length) => {
-                    shorter.truncate(length);
-                    steps = shorter;
-                }
-                None => at += size,
-            }
-        }
-        size /= 2;
-    }
-    steps
-}
-
-/// Inputs that keep their value, or the one they start with.
-fn calmer(pair: &mut Pair, mut steps: Vec<Step>) -> Vec<Step> {
-    let initial = pair.initial();
-    for at in 0..steps.len() {
-        for (input, start) in initial.iter().enumerate() {
-            let before = if at == 0 { *start } else { steps[at - 1].inputs[input] };
-            for simpler in [*start, before] {
-                let mut calmer = steps.clone();
-                calmer[at].inputs[input] = simpler;
-                if calmer != steps && pair.differs_after(&calmer) == Some(steps.len()) {
-                    steps = calmer;
-                    break;
-                }
-            }
-        }
-    }
-    steps
 }

@@ -1,24 +1,28 @@
 //! Both systems under a stimulus: the host drives each, and what it leaves after each scan is kept.
+//! And a sequence of inputs as a stimulus.
 
 use super::Verdict;
-use super::pair::{Input, Pair, Row, Side};
+use super::pair::{Event, Input, Pair, Row, Side};
+use super::scalar;
+use super::search::World;
+use super::trace::Trace;
 use crate::args::Compare;
 use crate::{machine::Native, run};
 use staunch_host::{Error, Machine, Options};
+use staunch_ir::Value;
 use staunch_runtime::{Context, Fault};
+use std::fmt::Write;
 
 /// A machine that keeps its state after each scan.
 struct Recorder<'s> {
     machine: &'s mut Native,
     scans: Vec<Recorded>,
-    restarted: bool,
-    /// What a restart sets anew although the declaration retains it.
-    forgotten: Vec<(usize, Vec<u8>)>,
+    event: Event,
 }
 
 struct Recorded {
     now: i64,
-    restart: bool,
+    event: Event,
     state: Vec<u8>,
     fault: Option<Fault>,
 }
@@ -34,19 +38,19 @@ impl Machine for Recorder<'_> {
 
     fn init(&mut self) {
         self.machine.init();
-        self.restarted = !self.scans.is_empty();
+        self.event = if self.scans.is_empty() { Event::None } else { Event::Restart };
     }
 
     fn scan(&mut self, instance: usize, cx: &Context) -> Result<(), Fault> {
-        for (offset, bytes) in self.forgotten.iter().filter(|_| self.restarted) {
-            self.machine.write(*offset, bytes);
-        }
         let result = self.machine.scan(instance, cx);
         // Programs that run at one time make one scan.
         let same = self.scans.pop_if(|it| it.now == cx.now);
-        let restart = std::mem::take(&mut self.restarted) || same.is_some_and(|it| it.restart);
+        let event = match std::mem::take(&mut self.event) {
+            Event::None => same.map_or(Event::None, |it| it.event),
+            event => event,
+        };
         let state = self.machine.state().to_vec();
-        self.scans.push(Recorded { now: cx.now, restart, state, fault: result.err() });
+        self.scans.push(Recorded { now: cx.now, event, state, fault: result.err() });
         result
     }
 }
@@ -59,15 +63,13 @@ pub fn follow(pair: &mut Pair, args: &Compare) -> Result<Verdict, String> {
     let mut rows = Vec::new();
     let count = a.len().max(b.len());
     for (a, b) in a.into_iter().zip(b) {
-        let row = Row { restart: a.restart, states: [a.state, b.state], faults: [a.fault, b.fault] };
-        pair.restore(&row.states);
-        let differs = pair.differs(row.faults);
-        rows.push(row);
-        if differs {
-            return Ok(Verdict::Differs(rows));
+        rows.push(Row { event: a.event, states: [a.state, b.state], faults: [a.fault, b.fault] });
+        if rows.last().is_some_and(|row| !pair.differences(row).is_empty() || pair.faults_differ(row.faults)) {
+            return Ok(Verdict::Differs { rows, trace: None, shortest: false });
         }
     }
-    Ok(Verdict::Same(format!("{count} scans of the stimulus leave the same values on both")))
+    let tried = vec![format!("{count} scans of the stimulus: they leave the same values on both")];
+    Ok(Verdict::NotFound { tried, left: vec!["any other inputs".to_owned()] })
 }
 
 fn record(side: &mut Side, args: &Compare) -> Result<Vec<Recorded>, String> {
@@ -75,8 +77,7 @@ fn record(side: &mut Side, args: &Compare) -> Result<Vec<Recorded>, String> {
     let cycle = args.cycle.as_deref().map(staunch_host::parse_duration).transpose()?;
     let options =
         Options { scans: args.scans, cycle, stimulus: args.stimulus.clone(), quiet: true, ..Options::default() };
-    let forgotten = side.forgotten();
-    let mut recorder = Recorder { machine: side.machine(), scans: Vec::new(), restarted: false, forgotten };
+    let mut recorder = Recorder { machine: side.machine(), scans: Vec::new(), event: Event::None };
     match staunch_host::run(&mut recorder, &map, &options) {
         // A fault ends the run; the other side may have one too.
         Ok(_) | Err(Error::Fault { .. }) => Ok(recorder.scans),
@@ -88,16 +89,50 @@ fn record(side: &mut Side, args: &Compare) -> Result<Vec<Recorded>, String> {
 fn name_columns(pair: &mut Pair, args: &Compare) {
     let text = args.stimulus.as_ref().and_then(|it| std::fs::read_to_string(it).ok()).unwrap_or_default();
     let header = text.lines().next().unwrap_or_default();
-    let names = header.split(',').map(|it| it.trim().trim_matches('"').to_ascii_lowercase());
+    let names = header.split([',', ';']).map(|it| it.trim().trim_matches('"').to_ascii_lowercase());
     let place = |side: &Side, name: &str| {
-        side.leaves.all.iter().position(|it| it.path.eq_ignore_ascii_case(name) || it.key == name)
+        side.scalars.all.iter().position(|it| it.path.eq_ignore_ascii_case(name) || it.key == name)
     };
     let column = |name: String| {
-        let leaves = [place(&pair.sides[0], &name)?, place(&pair.sides[1], &name)?];
-        Some(Input { leaves, values: Vec::new() })
+        let scalars = [place(&pair.sides[0], &name)?, place(&pair.sides[1], &name)?];
+        Some(Input { scalars, initial: Value::Bool(false) })
     };
     let found: Vec<Input> = names.filter_map(column).collect();
     if !found.is_empty() {
         pair.inputs = found;
     }
+}
+
+/// A stimulus for `run` and `compare`: a row where something changes, and the last.
+pub fn text(pair: &Pair, world: &World, trace: &Trace) -> String {
+    let steps: Vec<_> = trace.steps().collect();
+    let events = steps.iter().any(|it| it.event != Event::None);
+    let mut text = "scan".to_owned();
+    for input in &pair.inputs {
+        let path = pair.path(input.scalars);
+        let quote = if path.contains(',') { "\"" } else { "" };
+        let _ = write!(text, ",{quote}{path}{quote}");
+    }
+    text.push_str(if events { ",@event\n" } else { "\n" });
+    let mut before: Option<&[Value]> = None;
+    for (number, step) in (1..).zip(&steps) {
+        let same = before == Some(step.inputs.as_slice()) && step.event == Event::None && !world.inputs_written;
+        if !same || number == steps.len() {
+            let _ = write!(text, "{number}");
+            for (input, value) in pair.inputs.iter().zip(&step.inputs) {
+                let _ = write!(text, ",{}", cell(pair, input, *value));
+            }
+            if events {
+                let _ = write!(text, ",{}", step.event.name().unwrap_or_default());
+            }
+            text.push('\n');
+        }
+        before = Some(&step.inputs);
+    }
+    text
+}
+
+fn cell(pair: &Pair, input: &Input, value: Value) -> String {
+    let scalar = pair.scalar(0, input.scalars[0]);
+    scalar::spell(&pair.sides[0].program, scalar.ty, value)
 }

@@ -1,13 +1,13 @@
 //! Why a program cannot be compared: the other system rejects it.
 
-use super::trap::Trap;
+use super::pitfall::Pitfall;
 use crate::session::Session;
 use staunch_frontend::{Code, Diagnostic, Dialect, Severity};
 use staunch_runtime::{BlockInfo, KeptCount, PinRole};
 
 /// What stands in the way, and what to do.
-pub struct Obstacle {
-    pub trap: Option<Trap>,
+pub struct Rejection {
+    pub pitfall: Option<Pitfall>,
     pub why: String,
     pub advice: String,
 }
@@ -26,28 +26,32 @@ const FROM_LOGIX: &str = "A COUNTER and its instructions become an instance and 
 compare it";
 
 /// The reason behind the first error.
-pub fn find(to: &Session, from: Dialect, target: Dialect) -> Obstacle {
+pub fn find(to: &Session, from: Dialect, target: Dialect) -> Rejection {
     let errors = to.diagnostics.iter().filter(|it| it.severity == Severity::Error);
     let found = errors.map(|it| of(to, it, from, target));
     let mut found: Vec<_> = found.collect();
-    let at = found.iter().position(|it| it.trap.is_some()).unwrap_or(0);
+    let at = found.iter().position(|it| it.pitfall.is_some()).unwrap_or(0);
     if found.is_empty() {
-        return Obstacle { trap: None, why: format!("{} rejects the program", target.name()), advice: String::new() };
+        return Rejection {
+            pitfall: None,
+            why: format!("{} rejects the program", target.name()),
+            advice: String::new(),
+        };
     }
     found.swap_remove(at)
 }
 
-fn of(to: &Session, error: &Diagnostic, from: Dialect, target: Dialect) -> Obstacle {
+fn of(to: &Session, error: &Diagnostic, from: Dialect, target: Dialect) -> Rejection {
     let name = to.sources.text(error.span).to_ascii_uppercase();
     let system = target.name().to_ascii_uppercase();
     let block = matches!(error.code, Code::E0309 | Code::E0102 | Code::E0305 | Code::E0307);
     let why = format!("{system} rejects the program: {}", error.message);
-    let trap = |number| Some(Trap::numbered(number));
+    let pitfall = |number| Some(Pitfall::numbered(number));
     if target == Dialect::Logix && block {
-        return Obstacle { trap: None, why, advice: TO_LOGIX.to_owned() };
+        return Rejection { pitfall: None, why, advice: TO_LOGIX.to_owned() };
     }
     if from == Dialect::Logix && block {
-        return Obstacle { trap: trap(11), why, advice: FROM_LOGIX.to_owned() };
+        return Rejection { pitfall: pitfall(11), why, advice: FROM_LOGIX.to_owned() };
     }
     let counter = from.block(&name);
     let kept = counter.and_then(|it| it.facts.kept);
@@ -55,21 +59,23 @@ fn of(to: &Session, error: &Diagnostic, from: Dialect, target: Dialect) -> Obsta
     match kept {
         Some(KeptCount { plain, .. }) => {
             let advice = format!("Use a {plain} in VAR RETAIN, without RCV; its count survives a restart there");
-            Obstacle { trap: trap(11), why, advice }
+            Rejection { pitfall: pitfall(11), why, advice }
         }
         None if counter.is_some_and(both) && target == Dialect::Cscape => {
             let advice = "Use a CTU and a CTD and subtract, or count in a variable of your own".to_owned();
-            Obstacle { trap: None, why, advice }
+            Rejection { pitfall: None, why, advice }
         }
-        None if block => {
-            Obstacle { trap: None, why, advice: "Name the family, or choose a block that the system has".to_owned() }
-        }
-        None if widths(error) => Obstacle {
-            trap: trap(8),
+        None if block => Rejection {
+            pitfall: None,
+            why,
+            advice: "Name the family, or choose a block that the system has".to_owned(),
+        },
+        None if widths(error) => Rejection {
+            pitfall: pitfall(8),
             why,
             advice: "Convert the count or the preset explicitly, as `WORD_TO_INT(…)`".to_owned(),
         },
-        None => Obstacle { trap: None, why, advice: "Change it as the message says".to_owned() },
+        None => Rejection { pitfall: None, why, advice: "Change it as the message says".to_owned() },
     }
 }
 

@@ -1,0 +1,214 @@
+//! What the world may do before a scan: the values of each input that are worth trying, and the
+//! combinations of them.
+
+use super::assume::Assumptions;
+use super::facts::{Facts, Name, Numbers};
+use super::pair::{Input, Matched, Pair};
+use super::scalar::{Role, Scalar};
+use staunch_ir::{Elementary, Lane, Program, Type, Value};
+
+/// Combinations of inputs that are tried in every scan of an exhaustive search.
+const MAX_VECTORS: usize = 512;
+/// Values of one input, besides those that its comparisons ask for.
+const MAX_VALUES: usize = 64;
+/// A type or subrange of at most this many values is tried whole.
+const MAX_WHOLE: i128 = 300;
+
+/// The values of an input that are tried, the initial one first.
+#[derive(Clone, Debug)]
+pub struct Choice {
+    pub values: Vec<Value>,
+    /// Why the values that are not tried would show nothing else; `None` where they might.
+    pub covered: Option<Covered>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Covered {
+    /// Every value is tried.
+    All,
+    /// The program compares it with constants alone, and values on every side of each are tried.
+    Compared,
+    /// Nothing reads it.
+    Unread,
+}
+
+#[derive(Clone, Debug)]
+pub struct Alphabet {
+    pub choices: Vec<Choice>,
+    /// Combinations, those that change little first.
+    pub vectors: Vec<Vec<Value>>,
+    /// Whether all combinations are among them.
+    pub complete: bool,
+}
+
+impl Alphabet {
+    pub fn of(pair: &Pair, facts: [&Facts; 2], assumptions: &Assumptions) -> Self {
+        let choice = |(at, input): (usize, &Input)| {
+            let mut choice = choice(pair, facts, input);
+            assumptions.narrow(at, &mut choice, lane(pair, input));
+            choice
+        };
+        let choices: Vec<Choice> = pair.inputs.iter().enumerate().map(choice).collect();
+        let (vectors, complete) = vectors(&choices, assumptions);
+        Self { choices, vectors, complete }
+    }
+
+    /// Whether nothing that the inputs can do is left out.
+    pub fn is_exact(&self) -> bool {
+        self.complete && self.choices.iter().all(|it| it.covered.is_some())
+    }
+}
+
+fn lane(pair: &Pair, input: &Input) -> Lane {
+    let program = &pair.sides[0].program;
+    program.lane(pair.scalar(0, input.scalars[0]).ty).unwrap_or(Lane::Bool)
+}
+
+/// The inputs by their declaration; without any, what no statement writes and some read.
+pub fn inputs(pair: &Pair, facts: [&Facts; 2]) -> Vec<Input> {
+    let mut found = pair.matched(|it| it.role == Role::Input);
+    if found.is_empty() {
+        found = pair.matched(|it| it.role == Role::Variable);
+        found.retain(|[a, b]| {
+            let names = [name(pair.scalar(0, *a)), name(pair.scalar(1, *b))];
+            let free =
+                |side: usize| names[side].is_some_and(|it| !facts[side].is_written(it) && facts[side].is_read(it));
+            free(0) && free(1)
+        });
+    }
+    let input = |scalars: Matched| {
+        let [a, b] = [pair.scalar(0, scalars[0]), pair.scalar(1, scalars[1])];
+        let lane = pair.sides[0].program.lane(a.ty)?;
+        // Two programs number their types for themselves.
+        (pair.sides[1].program.lane(b.ty)? == lane)
+            .then(|| Input { scalars, initial: Value::read(lane, &pair.sides[0].state()[a.offset..]) })
+    };
+    found.into_iter().filter_map(input).collect()
+}
+
+/// Inputs that are not tried: strings, and those that the two sides hold in different types.
+pub fn has_untried(pair: &Pair) -> bool {
+    let declared = |it: &&Scalar| it.role == Role::Input;
+    let count = |side: usize| pair.sides[side].scalars.all.iter().filter(declared).count();
+    let tried = pair.inputs.iter().filter(|it| pair.scalar(0, it.scalars[0]).role == Role::Input).count();
+    count(0) != tried || count(1) != tried
+}
+
+/// Whether a program assigns an input of its own.
+pub fn are_written(pair: &Pair, facts: [&Facts; 2]) -> bool {
+    let written = |side: usize, input: &Input| {
+        name(pair.scalar(side, input.scalars[side])).is_some_and(|it| facts[side].is_written(it))
+    };
+    pair.inputs.iter().any(|it| written(0, it) || written(1, it))
+}
+
+fn name(scalar: &Scalar) -> Option<Name> {
+    scalar.field.map(|(structure, field)| Name::Field(structure, field))
+}
+
+fn choice(pair: &Pair, facts: [&Facts; 2], input: &Input) -> Choice {
+    let program = &pair.sides[0].program;
+    let scalars = [pair.scalar(0, input.scalars[0]), pair.scalar(1, input.scalars[1])];
+    let names = scalars.map(name);
+    let both = |holds: fn(&Facts, Name) -> bool| (0..2).all(|it| names[it].is_some_and(|name| holds(facts[it], name)));
+    let mut near = Numbers::default();
+    for (facts, name) in facts.iter().zip(names) {
+        let more = name.map(|it| facts.near(it)).unwrap_or_default();
+        near.integers.extend(more.integers);
+        near.reals.extend(more.reals);
+    }
+    let (values, all) = values(program, scalars[0].ty, &near);
+    let range = |side: usize| pair.sides[side].program.range(scalars[side].ty);
+    let covered = if all && range(0) == range(1) {
+        Some(Covered::All)
+    } else if both(|facts, name| !facts.is_read(name)) {
+        Some(Covered::Unread)
+    } else if both(Facts::only_compared) && !input.initial.lane().is_float() {
+        Some(Covered::Compared)
+    } else {
+        None
+    };
+    let mut kept = vec![input.initial];
+    for value in values {
+        if !kept.contains(&value) {
+            kept.push(value);
+        }
+    }
+    Choice { values: kept, covered }
+}
+
+/// What to try of a type, those near a comparison first; and whether that is all of it.
+fn values(program: &Program, ty: Type, near: &Numbers) -> (Vec<Value>, bool) {
+    let Some(lane) = program.lane(ty) else { return (Vec::new(), false) };
+    match ty {
+        Type::Enum(id) => (program.enumeration(id).values.iter().map(|it| it.value).collect(), true),
+        Type::Elementary(Elementary::Bool) => (vec![Value::Bool(false), Value::Bool(true)], true),
+        _ if lane.is_float() => (reals(lane, near), false),
+        _ => integers(lane, program.range(ty).or(lane.range()).unwrap_or((0, 0)), ty, near),
+    }
+}
+
+fn integers(lane: Lane, (low, high): (i128, i128), ty: Type, near: &Numbers) -> (Vec<Value>, bool) {
+    let inside = |it: &i128| (low..=high).contains(it);
+    let whole = high - low < MAX_WHOLE;
+    let times = ty.elementary().is_some_and(Elementary::is_time);
+    let around = near.integers.iter().flat_map(|it| [*it, it.saturating_add(1), it.saturating_sub(1)]);
+    // A time of one scan, and of a hundred; and what counts and presets are small in.
+    let some: &[i128] = if times { &[0, 10_000_000, 1_000_000_000] } else { &[1, 2, 3, 0, -1] };
+    let ends = [high, low];
+    let mut found: Vec<i128> = Vec::new();
+    for it in around.chain(some.iter().copied()).chain(ends).filter(inside) {
+        if !found.contains(&it) {
+            found.push(it);
+        }
+    }
+    if whole {
+        found.extend((low..=high).filter(|it| !found.contains(it)).collect::<Vec<_>>());
+    }
+    (found.into_iter().filter_map(|it| lane.integer(it)).collect(), whole)
+}
+
+fn reals(lane: Lane, near: &Numbers) -> Vec<Value> {
+    let mut found = Vec::new();
+    for (at, limit) in near.reals.iter().enumerate() {
+        let between = near.reals.get(at + 1).map(|next| f64::midpoint(*limit, *next));
+        found.extend([*limit, limit + 1.0, limit - 1.0]);
+        found.extend(between);
+    }
+    found.extend([0.0, 1.0, -1.0]);
+    found.truncate(MAX_VALUES);
+    let value = |it: f64| match lane {
+        Lane::F32 => narrowed(it).map(Value::F32),
+        _ => Some(Value::F64(it)),
+    };
+    found.into_iter().filter_map(value).collect()
+}
+
+/// The nearest REAL.
+fn narrowed(number: f64) -> Option<f32> {
+    number.to_string().parse().ok()
+}
+
+/// Every combination that is allowed, or those that change few inputs; and whether that is all.
+fn vectors(choices: &[Choice], assumptions: &Assumptions) -> (Vec<Vec<Value>>, bool) {
+    let mut found: Vec<(usize, Vec<Value>)> = vec![(0, Vec::new())];
+    let mut complete = true;
+    for choice in choices {
+        let with = |(changes, vector): &(usize, Vec<Value>)| {
+            let each = |(at, value): (usize, &Value)| {
+                let mut vector = vector.clone();
+                vector.push(*value);
+                (changes + usize::from(at > 0), vector)
+            };
+            choice.values.iter().enumerate().map(each).collect::<Vec<_>>()
+        };
+        found = found.iter().flat_map(with).collect();
+        found.sort_by_key(|it| it.0);
+        complete &= found.len() <= MAX_VECTORS * 8;
+        found.truncate(MAX_VECTORS * 8);
+    }
+    found.retain(|it| assumptions.allow(&it.1));
+    complete &= found.len() <= MAX_VECTORS;
+    found.truncate(MAX_VECTORS);
+    (found.into_iter().map(|it| it.1).collect(), complete)
+}

@@ -1,0 +1,446 @@
+//! What a program's statements say of its inputs: the constants that each is compared with, and
+//! whether it is compared with constants alone.
+//!
+//! Variables are told apart by their declarations: all elements of an array are one, and so are a
+//! member of all instances of a block. What is found for one holds for each.
+
+use staunch_ir::{
+    Argument, Block, Const, Conversion, Expr, ExprKind, FieldId, LocalId, Mode, Op, ParamId, Place, Program,
+    Projection, Root, Routine, RoutineId, Statement, StatementKind, Step, StructId, Type, Value, visit,
+};
+use std::collections::{BTreeSet, HashMap, HashSet};
+
+/// A variable, by its declaration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Name {
+    Field(StructId, FieldId),
+    Local(RoutineId, LocalId),
+    Param(RoutineId, ParamId),
+}
+
+/// Numbers that a variable is worth comparing with; reals keep their order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Numbers {
+    pub integers: BTreeSet<i128>,
+    pub reals: Vec<f64>,
+}
+
+#[derive(Debug, Default)]
+pub struct Facts {
+    near: HashMap<Name, Numbers>,
+    /// Values of the first go to the second, as they are.
+    flows: HashSet<(Name, Name)>,
+    /// Used in another way than compared with constants and handed on.
+    computed: HashSet<Name>,
+    written: HashSet<Name>,
+    read: HashSet<Name>,
+    /// Every constant of the program that is a whole number or a time.
+    pub constants: BTreeSet<i128>,
+    /// Every time of the program, in nanoseconds.
+    pub times: BTreeSet<i64>,
+}
+
+impl Facts {
+    pub fn of(program: &Program) -> Self {
+        let mut facts = Self::default();
+        for (at, routine) in program.routines.iter().enumerate() {
+            let mut walk = Walk { program, routine, id: RoutineId::next(at), facts: &mut facts };
+            walk.block(&routine.body);
+            routine.locals.iter().for_each(|it| facts.initial(Some(it.ty), &it.initial));
+        }
+        let fields = program.structs.iter().flat_map(|it| &it.fields);
+        fields.for_each(|it| facts.initial(Some(it.ty), &it.initial));
+        facts.follow();
+        facts
+    }
+
+    /// The numbers that decide something about a variable.
+    pub fn near(&self, name: Name) -> Numbers {
+        self.near.get(&name).cloned().unwrap_or_default()
+    }
+
+    /// Whether nothing but comparisons with those numbers depends on a variable's value.
+    pub fn only_compared(&self, name: Name) -> bool {
+        !self.computed.contains(&name)
+    }
+
+    pub fn is_written(&self, name: Name) -> bool {
+        self.written.contains(&name)
+    }
+
+    pub fn is_read(&self, name: Name) -> bool {
+        self.read.contains(&name)
+    }
+
+    /// What is known of a variable is known of those whose values go to it.
+    fn follow(&mut self) {
+        let mut changed = true;
+        while changed {
+            changed = false;
+            for (from, to) in self.flows.clone() {
+                if self.computed.contains(&to) {
+                    changed |= self.computed.insert(from);
+                }
+                let theirs = self.near(to);
+                let ours = self.near.entry(from).or_default();
+                let before = (ours.integers.len(), ours.reals.len());
+                ours.integers.extend(theirs.integers);
+                theirs.reals.into_iter().for_each(|it| ours.add_real(it));
+                changed |= before != (ours.integers.len(), ours.reals.len());
+            }
+        }
+    }
+
+    fn constant(&mut self, ty: Option<Type>, value: Value) {
+        match value {
+            Value::I64(time) if ty.and_then(Type::elementary).is_some_and(|it| it.is_time()) => {
+                self.times.insert(time);
+                self.constants.insert(i128::from(time));
+            }
+            Value::Bool(_) => {}
+            other => self.constants.extend(other.as_integer()),
+        }
+    }
+
+    fn initial(&mut self, ty: Option<Type>, value: &Const) {
+        let pin = |at: usize| match ty {
+            Some(Type::Block(id)) => id.pin_type(FieldId::next(at)),
+            _ => None,
+        };
+        match value {
+            Const::Scalar(it) => self.constant(ty, *it),
+            Const::Zero | Const::Text(_) => {}
+            Const::Array(runs) => runs.iter().for_each(|it| self.initial(None, &it.1)),
+            Const::Struct(fields) => fields.iter().enumerate().for_each(|(at, it)| self.initial(pin(at), it)),
+        }
+    }
+
+    fn near_to(&mut self, name: Name, value: Value) {
+        let numbers = self.near.entry(name).or_default();
+        match value {
+            Value::F32(it) => numbers.add_real(f64::from(it)),
+            Value::F64(it) => numbers.add_real(it),
+            other => numbers.integers.extend(other.as_integer()),
+        }
+    }
+}
+
+impl Numbers {
+    fn add_real(&mut self, number: f64) {
+        if number.is_finite() && !self.reals.contains(&number) {
+            self.reals.push(number);
+            self.reals.sort_by(f64::total_cmp);
+        }
+    }
+}
+
+struct Walk<'p, 'f> {
+    program: &'p Program,
+    routine: &'p Routine,
+    id: RoutineId,
+    facts: &'f mut Facts,
+}
+
+impl<'p> Walk<'p, '_> {
+    /// The innermost declaration that a place is an element of; a pin of a block is none.
+    fn name(&self, place: &Place) -> Option<Name> {
+        let mut ty = self.program.root_type(self.routine, place.root)?;
+        let mut name = match place.root {
+            Root::Instance | Root::Globals => None,
+            Root::Local(id) => Some(Name::Local(self.id, id)),
+            Root::Param(id) => Some(Name::Param(self.id, id)),
+        };
+        for projection in &place.projections {
+            ty = match (projection, ty) {
+                (Projection::Field(field), Type::Struct(id)) => {
+                    name = Some(Name::Field(id, *field));
+                    self.program.member(ty, *field)?
+                }
+                (Projection::Field(_), _) => return None,
+                (Projection::Index { .. }, Type::Array(id)) => self.program.array(id).element,
+                (Projection::Index { .. }, _) => return None,
+            };
+        }
+        name
+    }
+
+    /// The variable whose value an expression is, unchanged but for a wider type.
+    fn variable(&self, expr: &Expr) -> Option<Name> {
+        match &expr.kind {
+            ExprKind::Load(place) => self.name(place),
+            ExprKind::Convert(Conversion::Same | Conversion::Value, inner) if self.widens(inner.ty, expr.ty) => {
+                self.variable(inner)
+            }
+            ExprKind::Convert(..)
+            | ExprKind::Const(_)
+            | ExprKind::Text(_)
+            | ExprKind::Aggregate(_)
+            | ExprKind::Apply(..)
+            | ExprKind::ApplyText(..) => None,
+        }
+    }
+
+    fn widens(&self, from: Type, to: Type) -> bool {
+        let range = |ty| self.program.lane(ty).and_then(staunch_runtime::Lane::range);
+        match (range(from), range(to)) {
+            (Some(from), Some(to)) => to.0 <= from.0 && from.1 <= to.1,
+            _ => from == to,
+        }
+    }
+
+    fn block(&mut self, block: &'p Block) {
+        let mut found = Vec::new();
+        visit::statements(block, &mut |it| found.push(it));
+        found.into_iter().for_each(|it| self.statement(it));
+    }
+
+    fn statement(&mut self, statement: &'p Statement) {
+        visit::targets(statement, &mut |place| {
+            if let Some(name) = self.name(place) {
+                self.facts.written.insert(name);
+            }
+            self.indices(place);
+        });
+        match &statement.kind {
+            StatementKind::Assign { target, value } => self.assign(self.name(target), value),
+            StatementKind::Case { selector, arms, .. } => {
+                for (low, high) in arms.iter().flat_map(|it| &it.labels) {
+                    [*low, *high].into_iter().for_each(|it| self.compared(selector, Number::Integer(it)));
+                }
+                self.operand(selector);
+            }
+            StatementKind::If { condition, .. } => self.expr(condition),
+            StatementKind::For(it) => {
+                let step = if let Step::Variable(step) = &it.step { Some(step) } else { None };
+                [Some(&it.first), Some(&it.last), step].into_iter().flatten().for_each(|it| self.expr(it));
+            }
+            StatementKind::Call { callee, arguments, result, .. } => {
+                arguments.iter().enumerate().for_each(|(at, it)| self.argument(*callee, at, it));
+                let returned = self.program.routine(*callee).result.map(|it| Name::Local(*callee, it));
+                let target = result.as_ref().and_then(|it| self.name(it));
+                self.facts.flows.extend(returned.zip(target));
+            }
+            StatementKind::CallBlock { inputs, .. } => inputs.iter().for_each(|it| self.expr(it)),
+            StatementKind::Loop { .. }
+            | StatementKind::Turn
+            | StatementKind::Exit
+            | StatementKind::Continue
+            | StatementKind::Return
+            | StatementKind::PrescanBlock { .. }
+            | StatementKind::Fault(_) => {}
+        }
+    }
+
+    fn assign(&mut self, target: Option<Name>, value: &'p Expr) {
+        match (self.variable(value), target) {
+            (Some(from), Some(to)) => {
+                self.facts.flows.insert((from, to));
+                self.note_read(from);
+                visit::reads(value, &mut |it| self.indices(it));
+            }
+            _ => self.expr(value),
+        }
+    }
+
+    fn argument(&mut self, callee: RoutineId, at: usize, argument: &'p Argument) {
+        let Some(param) = self.program.routine(callee).params.get(at) else { return };
+        let name = match param.mode {
+            Mode::Value(local) => Name::Local(callee, local),
+            Mode::Reference => Name::Param(callee, ParamId::next(at)),
+        };
+        match argument {
+            Argument::Value(value) => self.assign(Some(name), value),
+            Argument::Reference(place) => {
+                if let Some(own) = self.name(place) {
+                    self.facts.flows.extend([(own, name), (name, own)]);
+                    self.note_read(own);
+                }
+            }
+        }
+    }
+
+    fn note_read(&mut self, name: Name) {
+        self.facts.read.insert(name);
+    }
+
+    /// What an array is indexed with is worth being at its ends, and beyond.
+    fn indices(&mut self, place: &Place) {
+        let mut ty = self.program.root_type(self.routine, place.root);
+        for projection in &place.projections {
+            ty = match (projection, ty) {
+                (Projection::Field(field), Some(owner)) => self.program.member(owner, *field),
+                (Projection::Index { index, .. }, Some(Type::Array(id))) => {
+                    let array = self.program.array(id);
+                    for edge in [array.low - 1, array.low, array.high, array.high.saturating_add(1)] {
+                        self.compared(index, Number::Integer(i128::from(edge)));
+                    }
+                    self.expr(index);
+                    Some(array.element)
+                }
+                (_, other) => other,
+            };
+        }
+    }
+
+    /// An expression whose value matters as a whole.
+    fn expr(&mut self, expr: &Expr) {
+        match &expr.kind {
+            ExprKind::Const(value) => self.facts.constant(Some(expr.ty), *value),
+            ExprKind::Text(_) => {}
+            ExprKind::Aggregate(value) => self.facts.initial(Some(expr.ty), value),
+            ExprKind::Load(place) => {
+                self.indices(place);
+                if let Some(name) = self.name(place) {
+                    self.note_read(name);
+                    self.facts.computed.insert(name);
+                }
+            }
+            ExprKind::Apply(op, operands) => match operands.as_slice() {
+                [a, b] if compares(*op) => {
+                    self.comparison(a, b);
+                    self.comparison(b, a);
+                }
+                _ => {
+                    for limit in operands.iter().filter_map(number) {
+                        operands.iter().for_each(|it| self.compared(it, limit));
+                    }
+                    operands.iter().for_each(|it| self.expr(it));
+                }
+            },
+            ExprKind::ApplyText(_, operands) => operands.iter().for_each(|it| self.expr(it)),
+            ExprKind::Convert(_, inner) => self.expr(inner),
+        }
+    }
+
+    /// `a` as it is compared with `b`.
+    fn comparison(&mut self, a: &Expr, b: &Expr) {
+        match number(b) {
+            Some(limit) => {
+                self.compared(a, limit);
+                self.operand(a);
+            }
+            None => {
+                if let (Some(x), Some(y)) = (self.variable(a), self.variable(b)) {
+                    self.facts.flows.insert((x, y));
+                }
+                self.expr(a);
+            }
+        }
+    }
+
+    /// An operand of which only a comparison with a constant is seen.
+    fn operand(&mut self, expr: &Expr) {
+        match self.variable(expr) {
+            Some(name) => {
+                self.note_read(name);
+                visit::reads(expr, &mut |it| self.indices(it));
+            }
+            None => self.expr(expr),
+        }
+    }
+
+    /// Notes for which values of its variables an expression comes near a limit.
+    fn compared(&mut self, expr: &Expr, limit: Number) {
+        match &expr.kind {
+            ExprKind::Load(place) => {
+                if let (Some(name), Some(value)) = (self.name(place), limit.value()) {
+                    self.facts.near_to(name, value);
+                }
+            }
+            ExprKind::Convert(_, inner) => self.compared(inner, limit.of_type(self.program, inner.ty)),
+            ExprKind::Apply(op, operands) => {
+                for (at, operand) in operands.iter().enumerate() {
+                    let other = operands.get(1 - at.min(1)).and_then(number);
+                    for limit in limit.before(*op, at, other) {
+                        self.compared(operand, limit);
+                    }
+                }
+            }
+            ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) | ExprKind::ApplyText(..) => {}
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Number {
+    Integer(i128),
+    Real(f64),
+}
+
+impl Number {
+    fn value(self) -> Option<Value> {
+        match self {
+            Self::Integer(it) => i64::try_from(it).ok().map(Value::I64),
+            Self::Real(it) => Some(Value::F64(it)),
+        }
+    }
+
+    fn of_type(self, program: &Program, ty: Type) -> Self {
+        let real = program.lane(ty).is_some_and(staunch_runtime::Lane::is_float);
+        match (self, real) {
+            (Self::Integer(it), true) => Self::Real(real_of(it)),
+            (Self::Real(it), false) => Self::Integer(whole(it)),
+            (same, _) => same,
+        }
+    }
+
+    /// What an operand is near to where the operation's result is near to this.
+    fn before(self, op: Op, at: usize, other: Option<Self>) -> Vec<Self> {
+        match (self, other) {
+            (Self::Integer(limit), Some(Self::Integer(other))) => {
+                integers_before(op, at, limit, other).into_iter().map(Self::Integer).collect()
+            }
+            (Self::Real(limit), Some(Self::Real(other))) => {
+                reals_before(op, at, limit, other).into_iter().map(Self::Real).collect()
+            }
+            (same, _) => vec![same],
+        }
+    }
+}
+
+fn integers_before(op: Op, at: usize, limit: i128, other: i128) -> Vec<i128> {
+    // A quotient is the same for several dividends; a product is near for the factors around.
+    let (exact, width) = match (op, at) {
+        (Op::Add, _) => (limit.checked_sub(other), 1),
+        (Op::Sub, 0) => (limit.checked_add(other), 1),
+        (Op::Sub, _) => (other.checked_sub(limit), 1),
+        (Op::Mul, _) => (limit.checked_div(other), 2),
+        (Op::Div, 0) => (limit.checked_mul(other), other),
+        _ => (Some(limit), 1),
+    };
+    exact.into_iter().flat_map(|it| [it, it.saturating_add(width.saturating_sub(1))]).collect()
+}
+
+fn reals_before(op: Op, at: usize, limit: f64, other: f64) -> Vec<f64> {
+    vec![match (op, at) {
+        (Op::Add, _) => limit - other,
+        (Op::Sub, 0) => limit + other,
+        (Op::Sub, _) => other - limit,
+        (Op::Mul, _) => limit / other,
+        (Op::Div, 0) => limit * other,
+        _ => limit,
+    }]
+}
+
+fn number(expr: &Expr) -> Option<Number> {
+    match expr.as_const()? {
+        Value::F32(it) => Some(Number::Real(f64::from(it))),
+        Value::F64(it) => Some(Number::Real(it)),
+        Value::Bool(_) => None,
+        other => other.as_integer().map(Number::Integer),
+    }
+}
+
+fn compares(op: Op) -> bool {
+    matches!(op, Op::Lt | Op::Le | Op::Gt | Op::Ge | Op::Eq | Op::Ne)
+}
+
+/// The nearest real: a limit need not be exact to be near.
+fn real_of(number: i128) -> f64 {
+    number.to_string().parse().unwrap_or(0.0)
+}
+
+/// The whole part of a real, or 0 where it is none.
+fn whole(number: f64) -> i128 {
+    format!("{:.0}", number.trunc()).parse().unwrap_or(0)
+}

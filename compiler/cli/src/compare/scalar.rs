@@ -1,0 +1,239 @@
+//! The scalars of a program's state, by paths that two systems share.
+
+use staunch_ir::layout::{Layout, usize_of};
+use staunch_ir::{ArrayId, BlockId, Elementary, FieldId, Program, Section, StructId, Type, Value};
+use staunch_runtime::{Direction, Pin, PinRole};
+
+/// Further elements of an array are not compared.
+const MAX_ELEMENTS: u64 = 1024;
+/// Further scalars of a program are not compared.
+const MAX_SCALARS: usize = 1 << 16;
+
+/// A scalar or a string.
+#[derive(Clone, Debug)]
+pub struct Scalar {
+    /// As a user writes it.
+    pub path: String,
+    /// The same on both systems, whatever they call a pin.
+    pub key: String,
+    pub ty: Type,
+    pub offset: usize,
+    pub size: usize,
+    pub role: Role,
+    /// The innermost declared variable or member that it is, or is an element of; no pin is one.
+    pub field: Option<(StructId, FieldId)>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// The world outside writes it.
+    Input,
+    /// A variable of the program.
+    Variable,
+    /// An output of the standard block at this position of [`Scalars::blocks`].
+    Output(usize),
+    /// Another pin or the memory of a standard block, or a constant.
+    Hidden,
+}
+
+/// An instance of a standard block.
+#[derive(Clone, Debug)]
+pub struct Instance {
+    pub path: String,
+    pub key: String,
+    pub block: BlockId,
+    pub offset: usize,
+    /// Its declaration, or that of the array that it is in.
+    pub field: Option<(StructId, FieldId)>,
+}
+
+#[derive(Clone, Debug, Default)]
+pub struct Scalars {
+    pub all: Vec<Scalar>,
+    pub blocks: Vec<Instance>,
+    /// There are more than are listed.
+    pub truncated: bool,
+}
+
+/// What is handed down from a variable to its parts.
+#[derive(Clone, Copy)]
+struct Whole {
+    offset: usize,
+    role: Role,
+    field: Option<(StructId, FieldId)>,
+}
+
+struct Walk<'p> {
+    program: &'p Program,
+    layout: Layout,
+    found: Scalars,
+}
+
+impl Scalars {
+    /// Of all running instances and the globals, in the order of their declaration.
+    pub fn of(program: &Program) -> Self {
+        let layout = Layout::new(program);
+        let machine = layout.machine.clone();
+        let mut walk = Walk { program, layout, found: Self::default() };
+        for (instance, offset) in program.instances.iter().zip(&machine.instances) {
+            let prefix = if program.instances.len() > 1 { format!("{}.", instance.name) } else { String::new() };
+            walk.structure(&prefix, program.class(instance.program).state, usize_of(*offset));
+        }
+        walk.structure("", program.globals, usize_of(machine.globals));
+        walk.found
+    }
+}
+
+impl Walk<'_> {
+    /// The members of a PROGRAM or of the globals.
+    fn structure(&mut self, prefix: &str, id: StructId, base: usize) {
+        for (at, field) in self.program.structure(id).fields.iter().enumerate() {
+            let number = FieldId::next(at);
+            let from_outside =
+                field.section == Section::Input || field.address.is_some_and(|it| it.area == staunch_ir::Area::Input);
+            let role = match (field.constant, from_outside) {
+                (true, _) => Role::Hidden,
+                (false, true) => Role::Input,
+                (false, false) => Role::Variable,
+            };
+            let offset = base + usize_of(self.layout.field(id, number));
+            let path = format!("{prefix}{}", field.name);
+            self.part(&path, field.ty, Whole { offset, role, field: Some((id, number)) });
+        }
+    }
+
+    fn part(&mut self, path: &str, ty: Type, whole: Whole) {
+        match ty {
+            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => {
+                self.scalar(path, path, ty, whole)
+            }
+            Type::Array(id) => self.array(path, id, whole),
+            Type::Struct(id) => self.members(path, id, whole),
+            Type::Block(id) => self.block(path, id, whole),
+        }
+    }
+
+    fn scalar(&mut self, path: &str, key: &str, ty: Type, whole: Whole) {
+        if self.found.all.len() >= MAX_SCALARS {
+            self.found.truncated = true;
+            return;
+        }
+        let Whole { offset, role, field } = whole;
+        let size = usize_of(self.layout.size(ty));
+        let (path, key) = (path.to_owned(), key.to_ascii_lowercase());
+        self.found.all.push(Scalar { path, key, ty, offset, size, role, field });
+    }
+
+    fn array(&mut self, path: &str, id: ArrayId, whole: Whole) {
+        let array = self.program.array(id);
+        self.found.truncated |= array.len() > MAX_ELEMENTS;
+        let stride = usize_of(self.layout.stride(id));
+        let mut offset = whole.offset;
+        for index in (array.low..=array.high).take(usize_of(MAX_ELEMENTS.min(array.len()))) {
+            self.part(&format!("{path}[{index}]"), array.element, Whole { offset, ..whole });
+            offset += stride;
+        }
+    }
+
+    fn members(&mut self, path: &str, id: StructId, whole: Whole) {
+        for (at, field) in self.program.structure(id).fields.iter().enumerate() {
+            let role = if field.constant { Role::Hidden } else { whole.role };
+            let number = FieldId::next(at);
+            let offset = whole.offset + usize_of(self.layout.field(id, number));
+            self.part(&format!("{path}.{}", field.name), field.ty, Whole { offset, role, field: Some((id, number)) });
+        }
+    }
+
+    fn block(&mut self, path: &str, id: BlockId, whole: Whole) {
+        let number = self.found.blocks.len();
+        let key = path.to_ascii_lowercase();
+        let Whole { offset, field, .. } = whole;
+        self.found.blocks.push(Instance { path: path.to_owned(), key: key.clone(), block: id, offset, field });
+        for (at, pin) in id.info().pins.iter().enumerate() {
+            let Some(ty) = id.pin_type(FieldId::next(at)) else { continue };
+            let role = if shows(pin) { Role::Output(number) } else { Role::Hidden };
+            let part = Whole { offset: whole.offset + pin.offset, role, field: None };
+            self.scalar(&format!("{path}.{}", pin.name), &format!("{key}.{}", common_key(pin)), ty, part);
+        }
+    }
+}
+
+/// Whether a pin shows what the block has done.
+fn shows(pin: &Pin) -> bool {
+    let tells = matches!(pin.role, Some(PinRole::Done | PinRole::Empty | PinRole::Count));
+    pin.direction == Direction::Output || tells && pin.direction == Direction::Member
+}
+
+/// What a pin's counterparts share: its role, which no name of a pin looks like, or its name.
+fn common_key(pin: &Pin) -> String {
+    pin.role.map_or_else(|| pin.name.to_owned(), |role| format!("<{role:?}>"))
+}
+
+impl Instance {
+    /// Whether it is a counter.
+    pub fn counts(&self) -> bool {
+        self.has(PinRole::Count)
+    }
+
+    pub fn has(&self, role: PinRole) -> bool {
+        self.block.info().pin_for(role).is_some()
+    }
+
+    /// The value of the pin with a role.
+    pub fn pin(&self, role: PinRole, state: &[u8]) -> Option<i128> {
+        let pin = self.block.info().pin_for(role)?;
+        number(Value::read(pin.lane(), &state[self.offset + pin.offset..]))
+    }
+}
+
+/// A BOOL counts as 0 or 1.
+fn number(value: Value) -> Option<i128> {
+    match value {
+        Value::Bool(it) => Some(i128::from(it)),
+        other => other.as_integer(),
+    }
+}
+
+/// Whether two systems hold the same value, by its number and not by its bits.
+pub fn equal(programs: [&Program; 2], scalars: [&Scalar; 2], states: [&[u8]; 2]) -> bool {
+    let [a, b] = [0, 1].map(|side| &states[side][scalars[side].offset..scalars[side].offset + scalars[side].size]);
+    let lanes = [0, 1].map(|side| programs[side].lane(scalars[side].ty));
+    match lanes {
+        [Some(x), Some(y)] if x != y => {
+            let (a, b) = (Value::read(x, a), Value::read(y, b));
+            number(a).is_some() && number(a) == number(b)
+        }
+        [Some(_), Some(_)] => a == b,
+        _ => a == b || text(a) == text(b),
+    }
+}
+
+fn text(bytes: &[u8]) -> &[u8] {
+    let Some((length, rest)) = bytes.split_first_chunk::<2>() else { return bytes };
+    rest.get(..usize::from(u16::from_ne_bytes(*length))).unwrap_or(rest)
+}
+
+/// The value as a trace shows it.
+pub fn show(program: &Program, scalar: &Scalar, state: &[u8]) -> String {
+    let bytes = &state[scalar.offset..scalar.offset + scalar.size];
+    match program.lane(scalar.ty) {
+        Some(lane) => spell(program, scalar.ty, Value::read(lane, bytes)),
+        None => String::from_utf8_lossy(text(bytes)).into_owned(),
+    }
+}
+
+/// A value as a trace shows it and a stimulus takes it.
+pub fn spell(program: &Program, ty: Type, value: Value) -> String {
+    let named = match ty {
+        Type::Enum(id) => program.enumeration(id).values.iter().find(|it| it.value == value),
+        _ => None,
+    };
+    match (named, value) {
+        (Some(named), _) => named.name.clone(),
+        (None, Value::I64(time)) if ty.elementary().is_some_and(Elementary::is_time) => staunch_host::format_time(time),
+        (None, Value::Bool(it)) => if it { "TRUE" } else { "FALSE" }.to_owned(),
+        (None, Value::F32(it)) => format!("{it:?}"),
+        (None, Value::F64(it)) => format!("{it:?}"),
+        (None, other) => other.as_integer().map_or_else(String::new, |it| it.to_string()),
+    }
+}

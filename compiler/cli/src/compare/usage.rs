@@ -1,0 +1,192 @@
+//! How a program uses its counters: presets that are constants, counters that their own outputs
+//! reset or feed.
+
+use super::facts::Name;
+use staunch_ir::{
+    BlockId, Expr, FieldId, Place, Program, Projection, Root, Routine, RoutineId, StatementKind, Type, Value, visit,
+};
+use staunch_runtime::PinRole;
+use std::collections::{HashMap, HashSet};
+
+/// What the statements say of the instances of one declaration.
+#[derive(Clone, Debug, Default)]
+pub struct Usage {
+    /// The presets that it is given; `None` among them is one that is computed.
+    pub presets: HashSet<Option<i128>>,
+    /// Something other than FALSE resets or loads it.
+    pub resets: bool,
+    /// An output of its own, or a variable that is given just that, resets or loads it.
+    pub feeds_itself: bool,
+    /// What resets or loads it depends on its own outputs in some way.
+    pub reset_depends: bool,
+    /// What it counts depends on its own outputs in some way.
+    pub count_depends: bool,
+}
+
+/// By the declarations of the instances.
+pub fn of(program: &Program) -> HashMap<Name, Usage> {
+    let mut walk = Walk { program, links: HashMap::new(), copies: HashMap::new(), found: HashMap::new() };
+    walk.each_statement(Walk::link);
+    walk.close();
+    walk.each_statement(Walk::note);
+    walk.found
+}
+
+/// A variable's value, or a pin of an instance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Source {
+    Variable(Name),
+    Pin(Name, PinRole),
+}
+
+struct Walk<'p> {
+    program: &'p Program,
+    /// What a variable's values may depend on.
+    links: HashMap<Name, HashSet<Source>>,
+    /// What a variable is given as it is.
+    copies: HashMap<Name, HashSet<Source>>,
+    found: HashMap<Name, Usage>,
+}
+
+type At<'p> = (&'p Routine, RoutineId);
+
+impl<'p> Walk<'p> {
+    fn each_statement(&mut self, see: fn(&mut Self, At<'p>, &'p StatementKind)) {
+        for (at, routine) in self.program.routines.iter().enumerate() {
+            let mut found = Vec::new();
+            visit::statements(&routine.body, &mut |it| found.push(&it.kind));
+            found.into_iter().for_each(|it| see(self, (routine, RoutineId::next(at)), it));
+        }
+    }
+
+    /// The variable that a place is a part of, and the pin of an instance where it is one.
+    fn source(&self, (routine, id): At<'p>, place: &Place) -> Option<Source> {
+        let (mut name, mut ty) = (root_name(id, place.root), self.program.root_type(routine, place.root)?);
+        for projection in &place.projections {
+            ty = match (projection, ty) {
+                (Projection::Field(field), Type::Struct(owner)) => {
+                    name = Some(Name::Field(owner, *field));
+                    self.program.member(ty, *field)?
+                }
+                (Projection::Field(pin), Type::Block(block)) => {
+                    return Some(Source::Pin(name?, role(block, *pin)?));
+                }
+                (Projection::Index { .. }, Type::Array(array)) => self.program.array(array).element,
+                (Projection::Field(_) | Projection::Index { .. }, _) => return None,
+            };
+        }
+        name.map(Source::Variable)
+    }
+
+    fn sources(&self, at: At<'p>, expr: &Expr) -> HashSet<Source> {
+        let mut found = HashSet::new();
+        visit::reads(expr, &mut |place| found.extend(self.source(at, place)));
+        found
+    }
+
+    /// The place that an expression reads and no more.
+    fn copied(&self, at: At<'p>, expr: &Expr) -> Option<Source> {
+        match &expr.kind {
+            staunch_ir::ExprKind::Load(place) => self.source(at, place),
+            _ => None,
+        }
+    }
+
+    fn link(&mut self, at: At<'p>, statement: &'p StatementKind) {
+        let StatementKind::Assign { target, value } = statement else { return };
+        let Some(Source::Variable(target)) = self.source(at, target) else { return };
+        let sources = self.sources(at, value);
+        let copied = self.copied(at, value);
+        self.links.entry(target).or_default().extend(sources);
+        self.copies.entry(target).or_default().extend(copied);
+    }
+
+    /// What a variable depends on through others.
+    fn close(&mut self) {
+        let mut changed = true;
+        while changed {
+            changed = false;
+            for (name, sources) in self.links.clone() {
+                let through = sources.iter().filter_map(|it| match it {
+                    Source::Variable(other) => self.links.get(other),
+                    Source::Pin(..) => None,
+                });
+                let more: HashSet<Source> = through.flatten().copied().collect();
+                let own = self.links.entry(name).or_default();
+                let before = own.len();
+                own.extend(more);
+                changed |= own.len() > before;
+            }
+        }
+    }
+
+    fn note(&mut self, at: At<'p>, statement: &'p StatementKind) {
+        match statement {
+            StatementKind::Assign { target, value } => {
+                if let Some(Source::Pin(name, role)) = self.source(at, target) {
+                    self.given(at, name, role, value);
+                }
+            }
+            StatementKind::CallBlock { block, instruction, inputs } => {
+                let (Some(Source::Variable(name)), Type::Block(id)) = (self.source(at, block), block.ty) else {
+                    return;
+                };
+                let info = id.info();
+                let rung = info.instructions.get(*instruction).filter(|it| it.takes_rung);
+                match rung {
+                    Some(instruction) => {
+                        let role = if instruction.name == "RES" { PinRole::Reset } else { PinRole::Up };
+                        inputs.iter().for_each(|it| self.given(at, name, role, it));
+                    }
+                    None => {
+                        for (pin, value) in info.inputs().zip(inputs) {
+                            pin.role.into_iter().for_each(|it| self.given(at, name, it, value));
+                        }
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// An input of an instance is given a value.
+    fn given(&mut self, at: At<'p>, name: Name, role: PinRole, value: &Expr) {
+        let own = |it: &Source| matches!(it, Source::Pin(owner, role) if *owner == name && *role != PinRole::Preset);
+        let copies = |it: &Source| match it {
+            Source::Variable(other) => self.copies.get(other).is_some_and(|it| it.iter().any(own)),
+            Source::Pin(..) => own(it),
+        };
+        let direct = self.copied(at, value).is_some_and(|it| copies(&it));
+        let sources = self.sources(at, value);
+        let depends = sources.iter().any(|it| match it {
+            Source::Variable(other) => self.links.get(other).is_some_and(|it| it.iter().any(own)),
+            Source::Pin(..) => own(it),
+        });
+        let keeps = self.copied(at, value) == Some(Source::Pin(name, role));
+        let usage = self.found.entry(name).or_default();
+        match role {
+            PinRole::Preset if !keeps => {
+                usage.presets.insert(value.as_const().and_then(Value::as_integer));
+            }
+            PinRole::Reset | PinRole::Load if !keeps => {
+                usage.resets |= value.as_const() != Some(Value::Bool(false));
+                usage.feeds_itself |= direct;
+                usage.reset_depends |= depends;
+            }
+            PinRole::Up | PinRole::Down if !keeps => usage.count_depends |= depends,
+            _ => {}
+        }
+    }
+}
+
+fn root_name(id: RoutineId, root: Root) -> Option<Name> {
+    match root {
+        Root::Instance | Root::Globals => None,
+        Root::Local(local) => Some(Name::Local(id, local)),
+        Root::Param(param) => Some(Name::Param(id, param)),
+    }
+}
+
+fn role(block: BlockId, pin: FieldId) -> Option<PinRole> {
+    block.info().pins.get(pin.index())?.role
+}
