@@ -94,7 +94,7 @@ pub fn program(tasks: &[Task]) -> Program {
     let mut structs: Vec<_> = tasks.iter().map(|it| structure(*it)).collect();
     structs.push(Struct { name: "globals".to_owned(), doc: None, location: AT, fields: Vec::new() });
     Program {
-        files: vec![SourceFile { path: "operations.st".to_owned() }],
+        files: vec![SourceFile { path: "operations.st".to_owned(), system: staunch_runtime::Family::Iec }],
         enums: Vec::new(),
         bounds: Vec::new(),
         arrays: Vec::new(),

@@ -53,7 +53,7 @@ pub fn routine(kind: RoutineKind, name: &str, state: Option<StructId>) -> Routin
 /// A program that runs `routines`' last, a PROGRAM, as `main`; the globals are the last of `structs`.
 pub fn program(arrays: Vec<Array>, structs: Vec<Struct>, routines: Vec<Routine>) -> Program {
     Program {
-        files: vec![SourceFile { path: "main.st".to_owned() }],
+        files: vec![SourceFile { path: "main.st".to_owned(), system: Family::Iec }],
         enums: vec![color()],
         bounds: vec![(-3, 7), (1, 9)],
         arrays,

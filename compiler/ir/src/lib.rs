@@ -35,6 +35,7 @@ pub mod interpret;
 pub mod layout;
 pub mod loops;
 pub mod stack;
+pub mod startup;
 pub mod symbols;
 pub mod usage;
 

@@ -3,6 +3,7 @@
 use crate::types::ids;
 use crate::{Array, ArrayId, Block, BoundsId, Const, Enum, EnumId, Location, Place, Root, Struct, StructId, Type};
 use core::fmt;
+use staunch_runtime::Family;
 
 ids! {
     ClassId;
@@ -39,6 +40,8 @@ pub struct Program {
 pub struct SourceFile {
     /// As the user named it.
     pub path: String,
+    /// The system whose rules hold for what it declares.
+    pub system: Family,
 }
 
 /// One running PROGRAM.

@@ -4,13 +4,13 @@
 //! array names its element's type), so the map grows with declarations, not with elements.
 
 use crate::layout::Layout;
+use crate::startup::{self, Event, Fate, Startup};
 use crate::usage::used_globals;
 use crate::{
-    Address, BlockId, Class, ClassKind, Field, FieldId, Program, Projection, Retain, Root, Section, StructId, Type,
-    Variable,
+    Address, BlockId, Class, ClassKind, FieldId, Program, Projection, Root, Section, StructId, Type, Variable,
 };
 use core::fmt::{self, Write};
-use staunch_runtime::{Direction, Pin, Retention};
+use staunch_runtime::{Direction, Pin};
 use std::collections::BTreeSet;
 
 /// The map's version, in its first line.
@@ -33,11 +33,12 @@ pub const VERSION: u32 = 1;
 /// variable   instance  name  section  type  offset in the machine  flags  address  low..high
 /// ```
 ///
-/// The flags are `retain`, `restarts`, `constant`, and `used`, of a global that some instance uses.
+/// The flags are `retain`, `whole`, `stays`, `restarts`, `constant`, and `used`, of a global that some instance uses.
 /// A type is an IEC name, `STRING[n]`, or `enum:id`, `array:id`, `struct:id`, `block:id`. A
 /// variable that lives for one call has no record.
 pub fn map_text(program: &Program, layout: &Layout) -> String {
-    let mut map = Map { program, layout, used: used_globals(program), text: String::new() };
+    let (used, startup) = (used_globals(program), Startup::new(program));
+    let mut map = Map { program, layout, used, startup, text: String::new() };
     map.write().expect("writing to a String does not fail");
     map.text
 }
@@ -46,12 +47,17 @@ struct Map<'a> {
     program: &'a Program,
     layout: &'a Layout,
     used: BTreeSet<FieldId>,
+    startup: Startup<'a>,
     text: String,
 }
 
 /// What a `field` or `variable` line says after its place.
 struct Attributes {
     retain: bool,
+    /// Kept with all that is inside.
+    whole: bool,
+    /// Kept so over IDLE -> RUN.
+    stays: bool,
     /// Starts anew, although what it is a part of is retained.
     restarts: bool,
     constant: bool,
@@ -104,10 +110,10 @@ impl Map<'_> {
             let ty = Type::Struct(StructId::next(id));
             let (name, size, kind) = (&structure.name, self.layout.size(ty), self.kind(StructId::next(id)));
             writeln!(self.text, "struct\t{id}\t{name}\t{size}\t{kind}")?;
-            for (position, field) in structure.fields.iter().enumerate() {
+            for position in 0..structure.fields.len() {
                 let offset = self.layout.offset(ty, FieldId::next(position));
                 let used = id == self.program.globals.index() && self.used.contains(&FieldId::next(position));
-                self.field(field, offset, used)?;
+                self.field(StructId::next(id), FieldId::next(position), offset, used)?;
             }
             if id == self.program.globals.index() {
                 self.aliases()?;
@@ -143,10 +149,11 @@ impl Map<'_> {
         }
     }
 
-    fn field(&mut self, field: &Field, offset: u64, used: bool) -> fmt::Result {
+    fn field(&mut self, owner: StructId, id: FieldId, offset: u64, used: bool) -> fmt::Result {
+        let field = &self.program.structure(owner).fields[id.index()];
         let section = section_name(field.section);
         write!(self.text, "field\t{}\t{}\t{offset}\t{section}", field.name, TypeName(field.ty))?;
-        self.write_attributes(&Attributes { used, ..self.attributes_of(field) })
+        self.write_attributes(&Attributes { used, ..self.attributes_of(owner, id) })
     }
 
     /// The standard blocks that the program's types mention.
@@ -164,7 +171,7 @@ impl Map<'_> {
             let ty = id.pin_type(FieldId::next(position)).expect("position of a pin");
             let Pin { name, offset, .. } = pin;
             write!(self.text, "field\t{name}\t{}\t{offset}\t{}", TypeName(ty), direction_name(pin.direction))?;
-            self.write_attributes(&Attributes { restarts: info.retention.restarts(pin), ..Attributes::NONE })?;
+            self.write_attributes(&Attributes { restarts: startup::pin(info, pin) == Fate::Anew, ..Attributes::NONE })?;
         }
         Ok(())
     }
@@ -218,23 +225,26 @@ impl Map<'_> {
         match ty {
             Type::Struct(structure) => {
                 let field = &self.program.structure(structure).fields[id.index()];
-                Some((field.ty, self.attributes_of(field)))
+                Some((field.ty, self.attributes_of(structure, id)))
             }
             Type::Block(block) => Some((block.pin_type(id)?, Attributes::NONE)),
             Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Array(_) => None,
         }
     }
 
-    /// An instance of a block that is always retentive is one, whatever its declaration says.
-    fn attributes_of(&self, field: &Field) -> Attributes {
+    fn attributes_of(&self, owner: StructId, id: FieldId) -> Attributes {
+        let field = &self.program.structure(owner).fields[id.index()];
+        let fate = |event| self.startup.field(owner, id, event);
+        let (power_cycle, run) = (fate(Event::PowerCycle), fate(Event::Run));
         let mut ty = field.ty;
         while let Type::Array(id) = ty {
             ty = self.program.array(id).element;
         }
-        let retentive = block_of(ty).is_some_and(|block| block.info().retention == Retention::Always);
         Attributes {
-            retain: field.retain == Retain::Kept || retentive,
-            restarts: field.retain == Retain::Anew && !retentive,
+            retain: power_cycle.is_kept(),
+            whole: power_cycle == Fate::Whole,
+            stays: run == Fate::Whole && power_cycle != Fate::Whole,
+            restarts: power_cycle == Fate::Anew,
             constant: field.constant,
             used: false,
             address: field.address,
@@ -247,6 +257,8 @@ impl Map<'_> {
     fn write_attributes(&mut self, attributes: &Attributes) -> fmt::Result {
         let flags = [
             ("retain", attributes.retain),
+            ("whole", attributes.whole),
+            ("stays", attributes.stays),
             ("restarts", attributes.restarts),
             ("constant", attributes.constant),
             ("used", attributes.used),
@@ -266,8 +278,16 @@ impl Map<'_> {
 }
 
 impl Attributes {
-    const NONE: Self =
-        Self { retain: false, restarts: false, constant: false, used: false, address: None, range: None };
+    const NONE: Self = Self {
+        retain: false,
+        whole: false,
+        stays: false,
+        restarts: false,
+        constant: false,
+        used: false,
+        address: None,
+        range: None,
+    };
 }
 
 /// A type as the map writes it.

@@ -94,7 +94,7 @@ impl Maker {
         let is_program = |at: &usize| maker.classes[*at].kind == ClassKind::Program;
         let instances = (0..maker.classes.len()).filter(is_program).map(|at| instance(ClassId::next(at)));
         Program {
-            files: vec![SourceFile { path: "random.st".to_owned() }],
+            files: vec![SourceFile { path: "random.st".to_owned(), system: staunch_runtime::Family::Iec }],
             bounds: vec![LIMITS],
             enums: vec![Enum {
                 name: "Color".to_owned(),

@@ -15,6 +15,15 @@ pub enum Family {
     Logix,
 }
 
+/// Which variables an event leaves as they are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Keeps {
+    /// Those that are declared RETAIN or PERSISTENT; all others start anew.
+    Declared,
+    /// All, of every type.
+    Everything,
+}
+
 impl Family {
     pub const ALL: [Self; 5] = [Self::Iec, Self::Cscape, Self::Codesys, Self::Openplc, Self::Logix];
 
@@ -26,6 +35,22 @@ impl Family {
             Self::Codesys => "CODESYS",
             Self::Openplc => "OPENPLC",
             Self::Logix => "LOGIX",
+        }
+    }
+
+    /// What is left when the power fails and comes back.
+    pub const fn over_power_cycle(self) -> Keeps {
+        match self {
+            Self::Iec | Self::Cscape | Self::Codesys | Self::Openplc => Keeps::Declared,
+            Self::Logix => Keeps::Everything,
+        }
+    }
+
+    /// What is left when the controller goes from IDLE, or STOP, to RUN.
+    pub const fn over_run(self) -> Keeps {
+        match self {
+            Self::Iec | Self::Cscape | Self::Openplc => Keeps::Declared,
+            Self::Codesys | Self::Logix => Keeps::Everything,
         }
     }
 

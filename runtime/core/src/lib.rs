@@ -34,7 +34,7 @@ pub use block_table::BLOCKS;
 pub use blocks::{codesys, cscape, iec, logix, openplc};
 pub use context::Context;
 pub use elementary::{Class, Elementary};
-pub use family::Family;
+pub use family::{Family, Keeps};
 pub use fault::{Fault, FaultKind, Location, OrFault, Outcome};
 pub use lane::{Lane, Scalar, Value};
 pub use signature::{Kind, Parameter, Signature};

@@ -2,8 +2,8 @@
 //! search drives. Times, tasks and restarts are those of [`run`](crate::run()).
 
 use crate::map::Map;
-use crate::retain::Retained;
 use crate::schedule::Schedule;
+use crate::start::{Event, Start};
 use crate::{Compiled, Machine};
 use staunch_runtime::{Context, Fault, Time};
 
@@ -11,7 +11,7 @@ use staunch_runtime::{Context, Fault, Time};
 #[derive(Clone, Debug)]
 pub struct Drive {
     schedule: Schedule,
-    retained: Retained,
+    start: Start,
     /// Instances that have not run since the start.
     fresh: Vec<bool>,
 }
@@ -29,7 +29,7 @@ impl Drive {
     pub fn new(map: &Map, cycle: Option<Time>) -> Self {
         let running: Vec<usize> = (0..map.instances.len()).collect();
         let schedule = Schedule::new(map, &running, cycle);
-        Self { schedule, retained: Retained::of(map), fresh: vec![true; map.instances.len()] }
+        Self { schedule, start: Start::of(map), fresh: vec![true; map.instances.len()] }
     }
 
     /// When the next scan is due.
@@ -42,22 +42,20 @@ impl Drive {
         self.schedule.shortest_period()
     }
 
-    /// A power cycle: what is not retained starts anew. Inputs are to be written again.
-    pub fn restart(&mut self, machine: &mut dyn Machine) {
-        let kept = self.retained.snapshot(machine.state());
-        machine.init();
-        self.retained.restore(&kept, machine);
+    /// What the event does not keep starts anew. Inputs are to be written again.
+    pub fn start_again(&mut self, event: Event, machine: &mut dyn Machine) {
+        self.start.again(event, machine);
         self.fresh.fill(true);
     }
 
-    /// Whether a restart keeps anything, so that it is more than a new start.
-    pub fn retains(&self) -> bool {
-        !self.retained.is_empty()
+    /// Whether an event keeps anything, so that it is more than a new start.
+    pub fn keeps_anything(&self, event: Event) -> bool {
+        !self.start.kept(event).is_empty()
     }
 
-    /// Whether a restart keeps the byte at this offset.
-    pub fn keeps(&self, offset: usize) -> bool {
-        self.retained.holds(offset)
+    /// Whether an event keeps the byte at this offset.
+    pub fn keeps(&self, event: Event, offset: usize) -> bool {
+        self.start.kept(event).iter().any(|it| it.contains(&offset))
     }
 
     /// The programs that are due.

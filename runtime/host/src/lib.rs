@@ -19,6 +19,7 @@ mod value;
 mod column;
 mod retain;
 mod schedule;
+mod start;
 mod stimulus;
 mod trace;
 
@@ -43,6 +44,7 @@ pub use json::quote as json_text;
 pub use map::{Instance, Map, Section, Structure, StructureKind, Type, Variable};
 pub use path::Place;
 pub use run::{Moment, Options, RealTime, Summary, run};
+pub use start::Event;
 pub use value::format_time;
 
 pub use staunch_runtime::Elementary;

@@ -97,6 +97,10 @@ pub struct Variable {
     pub offset: usize,
     pub section: Section,
     pub retain: bool,
+    /// Kept with all that is inside.
+    pub whole: bool,
+    /// Kept so over IDLE -> RUN.
+    pub stays: bool,
     /// Starts anew, although what it is a part of is retained.
     pub restarts: bool,
     pub constant: bool,
@@ -296,6 +300,8 @@ impl Variable {
             offset,
             section,
             retain: false,
+            whole: false,
+            stays: false,
             restarts: false,
             constant: false,
             used: false,
@@ -386,6 +392,8 @@ impl<'a> Record<'a> {
         for flag in self.optional()?.into_iter().flat_map(|it| it.split(',')) {
             match flag {
                 "retain" => variable.retain = true,
+                "whole" => variable.whole = true,
+                "stays" => variable.stays = true,
                 "restarts" => variable.restarts = true,
                 "constant" => variable.constant = true,
                 "used" => variable.used = true,

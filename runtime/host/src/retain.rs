@@ -5,11 +5,11 @@
 //! A type is written with all that its bytes mean: an enumeration with its values, a subrange
 //! with its bounds, a standard block with its pins.
 
-use crate::map::{Map, Structure, Type, Variable};
+use crate::map::{Map, Type};
 use crate::path;
+use crate::start::{Event, Part, kept_parts};
 use crate::{Error, Machine};
 use staunch_runtime::Time;
-use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{self, Read as _, Write as _};
@@ -52,41 +52,15 @@ struct Region {
 
 impl Retained {
     pub fn of(map: &Map) -> Self {
-        let mut walk = Walk { map, holds: HashMap::new(), regions: Vec::new() };
-        let (globals, base) = map.globals();
-        for member in globals {
-            walk.variable("Globals", base, member, false);
-        }
-        for instance in &map.instances {
-            for member in map.structure(instance.ty).map_or(&[][..], |it| &it.members) {
-                walk.variable(&instance.name, instance.offset, member, false);
-            }
-        }
+        let region = |it: Part| {
+            let (ty, size) = (type_text(map, it.ty, it.range), map.size_of(it.ty));
+            Region { path: it.path, ty, offset: it.offset, size }
+        };
+        let regions = kept_parts(map, Event::Restart).into_iter().map(region).collect();
         let mut programs: Vec<&str> = map.instances.iter().map(|it| it.program.as_str()).collect();
         programs.sort_unstable();
         programs.dedup();
-        Self { regions: walk.regions, programs: programs.join(" ") }
-    }
-
-    pub fn is_empty(&self) -> bool {
-        self.regions.is_empty()
-    }
-
-    pub fn holds(&self, offset: usize) -> bool {
-        self.regions.iter().any(|it| (it.offset..it.offset + it.size).contains(&offset))
-    }
-
-    /// Their bytes, for [`restore`](Self::restore).
-    pub fn snapshot(&self, state: &[u8]) -> Vec<u8> {
-        self.regions.iter().flat_map(|it| &state[it.offset..it.offset + it.size]).copied().collect()
-    }
-
-    pub fn restore(&self, mut snapshot: &[u8], machine: &mut dyn Machine) {
-        for region in &self.regions {
-            let (bytes, rest) = snapshot.split_at(region.size);
-            machine.write(region.offset, bytes);
-            snapshot = rest;
-        }
+        Self { regions, programs: programs.join(" ") }
     }
 
     /// Reads the file into the state. A file that does not exist changes nothing: it is a first
@@ -275,82 +249,11 @@ fn crc32(bytes: &[u8]) -> u32 {
     !crc
 }
 
-/// Collects the regions, in the order of the state.
-struct Walk<'m> {
-    map: &'m Map,
-    /// Whether a structure holds a retained variable.
-    holds: HashMap<u32, bool>,
-    regions: Vec<Region>,
-}
-
-impl Walk<'_> {
-    fn variable(&mut self, scope: &str, base: usize, variable: &Variable, retained: bool) {
-        let retained = variable.retain || retained && !variable.restarts;
-        if !variable.constant && (retained || self.holds(variable.ty)) {
-            let path = format!("{scope}.{}", variable.name);
-            self.part(path, variable.ty, variable.range, base + variable.offset, retained);
-        }
-    }
-
-    fn part(&mut self, path: String, ty: Type, range: Option<(i128, i128)>, offset: usize, retained: bool) {
-        let map = self.map;
-        match (ty, map.array(ty)) {
-            _ if self.is_in_parts(ty) => {
-                for member in map.structure(ty).map_or(&[][..], |it| &it.members) {
-                    self.variable(&path, offset, member, retained);
-                }
-            }
-            (_, Some(array)) if self.is_of_parts(array.element) => {
-                for (position, index) in (array.low..=array.high).enumerate() {
-                    let element = offset + position * array.stride;
-                    self.part(format!("{path}[{index}]"), array.element, None, element, retained);
-                }
-            }
-            _ if retained => {
-                self.regions.push(Region { path, ty: type_text(map, ty, range), offset, size: map.size_of(ty) });
-            }
-            _ => {}
-        }
-    }
-
-    fn is_of_parts(&self, element: Type) -> bool {
-        match self.map.array(element) {
-            Some(inner) => self.is_of_parts(inner.element),
-            None => self.is_in_parts(element),
-        }
-    }
-
-    /// Whether the members of the type are kept one by one.
-    fn is_in_parts(&self, ty: Type) -> bool {
-        let restarts = |it: &Structure| it.members.iter().any(|it| it.restarts);
-        match ty {
-            Type::Struct(_) => true,
-            Type::Block(_) => self.map.structure(ty).is_some_and(restarts),
-            Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) => false,
-        }
-    }
-
-    fn holds(&mut self, ty: Type) -> bool {
-        match ty {
-            Type::Array(_) => self.map.array(ty).is_some_and(|it| self.holds(it.element)),
-            Type::Struct(id) => {
-                if let Some(known) = self.holds.get(&id) {
-                    return *known;
-                }
-                let structure: Option<&Structure> = self.map.structure(ty);
-                let found = structure.is_some_and(|it| it.members.iter().any(|it| it.retain || self.holds(it.ty)));
-                self.holds.insert(id, found);
-                found
-            }
-            Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Block(_) => false,
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::fixture::{Bytes, MAP, map, offset_of};
+    use crate::start::Start;
 
     fn file(name: &str) -> std::path::PathBuf {
         let folder = std::env::temp_dir().join(format!("staunch-retain-{}", std::process::id()));
@@ -361,11 +264,12 @@ mod tests {
     #[test]
     fn only_retained_variables_are_kept() {
         let retained = Retained::of(&map());
+        let start = Start::of(&map());
         let paths: Vec<&str> = retained.regions.iter().map(|it| it.path.as_str()).collect();
         assert_eq!(paths, ["Globals.total", "main.mixer.count"]);
-        let snapshot = retained.snapshot(&[1; 128]);
         let mut machine = Bytes::new(&map());
-        retained.restore(&snapshot, &mut machine);
+        machine.state.fill(1);
+        start.again(Event::Restart, &mut machine);
         assert_eq!(machine.state.iter().filter(|it| **it == 1).count(), 6);
         assert_eq!(machine.state[offset_of("total")], 1);
     }

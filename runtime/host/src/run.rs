@@ -6,6 +6,7 @@ use crate::map::Map;
 use crate::path::{nearest, same};
 use crate::retain::Retained;
 use crate::schedule::Schedule;
+use crate::start::{Event, Start};
 use crate::stimulus::{Stimulus, Write};
 use crate::trace::{Row, Subject, Table, Trace};
 use crate::{Error, Machine, format_time, signal};
@@ -165,6 +166,7 @@ pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Su
         held: Vec::new(),
         fresh: vec![true; map.instances.len()],
         retained: Retained::of(map),
+        start: Start::of(map),
         epoch: 0,
         out: Output { rows: 0, trace: None, table: Table::default() },
         clock: None,
@@ -232,6 +234,7 @@ struct Runner<'a> {
     /// Instances that have not run since the start.
     fresh: Vec<bool>,
     retained: Retained,
+    start: Start,
     /// The program's clock at this run's time 0: a retained timer goes on where it stood.
     epoch: Time,
     out: Output,
@@ -332,8 +335,8 @@ impl Runner<'_> {
     /// Events and values that come before scan `number`.
     fn stimulate(&mut self, number: u64, now: Time) -> Result<(), Error> {
         while self.stimulus.acts(self.next_row, number, now) {
-            if self.stimulus.rows[self.next_row].restart {
-                self.restart()?;
+            if let Some(event) = self.stimulus.rows[self.next_row].event {
+                self.start_again(event)?;
             }
             for write in &self.stimulus.rows[self.next_row].writes {
                 self.machine.write(write.offset, &write.bytes);
@@ -347,12 +350,12 @@ impl Runner<'_> {
         Ok(())
     }
 
-    /// A power cycle: retained variables and inputs keep their values.
-    fn restart(&mut self) -> Result<(), Error> {
-        let kept = self.retained.snapshot(self.machine.state());
-        self.save()?;
-        self.machine.init();
-        self.retained.restore(&kept, self.machine);
+    /// What the event keeps stays as it is, and so do inputs.
+    fn start_again(&mut self, event: Event) -> Result<(), Error> {
+        if event == Event::Restart {
+            self.save()?;
+        }
+        self.start.again(event, self.machine);
         self.held.iter().for_each(|it| self.machine.write(it.offset, &it.bytes));
         self.fresh.fill(true);
         Ok(())

@@ -5,6 +5,7 @@ use crate::csv::{self, Cell};
 use crate::literal;
 use crate::map::Map;
 use crate::path::{self, Place, same};
+use crate::start::Event;
 use staunch_runtime::Time;
 use std::path::{Path, PathBuf};
 
@@ -22,7 +23,7 @@ pub(crate) struct Row {
     /// With `scan`, when that scan runs; alone, the row acts before the first scan from then on.
     pub time: Option<Time>,
     /// A power cycle, or a change from IDLE to RUN, comes first.
-    pub restart: bool,
+    pub event: Option<Event>,
     pub writes: Vec<Write>,
     /// Line and column.
     at: (usize, usize),
@@ -167,7 +168,7 @@ impl Parser<'_> {
                     row.time = Some(self.time(cell)?);
                     row.time_at = (cell.line, cell.column);
                 }
-                Column::Event => row.restart = self.event(cell)?,
+                Column::Event => row.event = Some(self.event(cell)?),
                 Column::Variable(place) => row.writes.push(self.write(cell, *place)?),
             }
         }
@@ -193,11 +194,11 @@ impl Parser<'_> {
         }
     }
 
-    fn event(&self, cell: &Cell) -> Result<bool, Error> {
-        match cell.text.to_ascii_lowercase().as_str() {
-            "restart" | "run" => Ok(true),
-            _ => Err(self.at(cell, format!("`{}` is no event: there are `restart` and `run`", cell.text))),
-        }
+    fn event(&self, cell: &Cell) -> Result<Event, Error> {
+        let named = Event::ALL.into_iter().find(|it| it.name().eq_ignore_ascii_case(&cell.text));
+        named.ok_or_else(|| {
+            self.at(cell, format!("`{}` is no event: there are `restart`, `run` and `reset`", cell.text))
+        })
     }
 
     fn write(&self, cell: &Cell, place: Place) -> Result<Write, Error> {
@@ -237,8 +238,8 @@ mod tests {
         let stimulus = read("scan,up,@event,c.CV\n1,TRUE,,\n3,,restart,16#F\n3,0,,\n").unwrap();
         let [first, second, third] = stimulus.rows.as_slice() else { panic!("{stimulus:?}") };
         let up = |value| vec![Write { offset: offset_of("up"), bytes: vec![value], input: true }];
-        assert_eq!((first.scan, first.restart, &first.writes), (Some(1), false, &up(1)));
-        assert_eq!((second.scan, second.restart), (Some(3), true));
+        assert_eq!((first.scan, first.event, &first.writes), (Some(1), None, &up(1)));
+        assert_eq!((second.scan, second.event), (Some(3), Some(Event::Restart)));
         assert_eq!(second.writes[0].bytes, 15_i16.to_ne_bytes());
         assert_eq!(third.writes, up(0));
     }
@@ -269,7 +270,7 @@ mod tests {
             ("scan,up\n1,5\n", "in.csv:2:3: `5` is not a BOOL: write TRUE or FALSE"),
             ("scan,up\n1,1,1\n", "in.csv:2:5: the header has only 2 columns"),
             ("scan,up\n,1\n", "in.csv:2:1: the row does not say when: its first cell is empty"),
-            ("scan,@event\n1,stop\n", "in.csv:2:3: `stop` is no event: there are `restart` and `run`"),
+            ("scan,@event\n1,stop\n", "in.csv:2:3: `stop` is no event: there are `restart`, `run` and `reset`"),
             ("scan,up\n3,1\n2,1\n", "in.csv:3:1: rows are out of order: this one is earlier than one above"),
             ("scan,up\n1,\"1\n", "in.csv:2:3: a quote that is not closed"),
         ] {

@@ -133,7 +133,7 @@ impl Side {
 
     /// Whether a restart keeps the byte at this offset.
     pub fn keeps(&self, offset: usize) -> bool {
-        self.drive.keeps(offset)
+        self.drive.keeps(staunch_host::Event::Restart, offset)
     }
 
     fn write(&mut self, offset: usize, value: Value) {
@@ -293,7 +293,7 @@ impl Pair {
 
     /// What a restart may do on either side, besides nothing and starting all anew.
     pub fn events(&self) -> Vec<Event> {
-        let retains = self.sides.iter().any(|it| it.drive.retains());
+        let retains = self.sides.iter().any(|it| it.drive.keeps_anything(staunch_host::Event::Restart));
         if retains { vec![Event::Restart] } else { Vec::new() }
     }
 
@@ -318,7 +318,7 @@ impl Pair {
             side.before.copy_from_slice(side.machine.state());
             match step.event {
                 Event::None => {}
-                Event::Restart => side.drive.restart(&mut side.machine),
+                Event::Restart => side.drive.start_again(staunch_host::Event::Restart, &mut side.machine),
             }
             for (input, value) in inputs.iter().zip(&step.inputs) {
                 side.write(side.scalars.all[input.scalars[number]].offset, *value);

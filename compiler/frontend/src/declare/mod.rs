@@ -27,8 +27,9 @@ pub(crate) fn declare<'s>(
     bodies: &[Vec<ast::Statement<'s>>],
 ) -> Declarations<'s> {
     let mut declarations = Declarations::new(log);
-    for file in files {
-        declarations.log.read_pragmas(file);
+    for (number, file) in files.iter().enumerate() {
+        let dialect = declarations.log.read_pragmas(file);
+        declarations.program.files[number].system = dialect.family();
     }
     for file in files {
         declarations.collect(file);

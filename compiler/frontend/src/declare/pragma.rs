@@ -24,7 +24,7 @@ const HARMLESS_PRAGMAS: [&str; 12] = [
 ];
 
 impl Log<'_> {
-    pub(super) fn read_pragmas(&mut self, file: &ast::File<'_>) {
+    pub(super) fn read_pragmas(&mut self, file: &ast::File<'_>) -> Dialect {
         let mut found: Option<(Dialect, Span)> = None;
         for pragma in &file.pragmas {
             let Some(name) = dialect_pragma(pragma.text) else {
@@ -55,7 +55,9 @@ impl Log<'_> {
             found = Some((dialect, pragma.span));
         }
         let own = found.map(|(dialect, _)| dialect).filter(|it| self.options.moved_from != Some(*it));
-        self.dialects.push(own.unwrap_or(self.options.dialect));
+        let dialect = own.unwrap_or(self.options.dialect);
+        self.dialects.push(dialect);
+        dialect
     }
 
     /// What a pragma that does not name a dialect is good for.

@@ -24,6 +24,15 @@ pub fn is_declared_retain(block: &ast::VarBlock<'_>) -> bool {
     block.retain.is_some() || block.persistent.is_some()
 }
 
+/// What the words of a block say of a restart.
+fn retention(block: &ast::VarBlock<'_>) -> staunch_ir::Retain {
+    match (is_declared_retain(block), block.non_retain) {
+        (true, _) => staunch_ir::Retain::Kept,
+        (false, Some(_)) => staunch_ir::Retain::Anew,
+        (false, None) => staunch_ir::Retain::Inherited,
+    }
+}
+
 impl<'s> Declarations<'s> {
     pub(super) fn variable(
         &self,
@@ -37,23 +46,15 @@ impl<'s> Declarations<'s> {
             place,
             section: section(block.kind),
             constant: block.constant.is_some(),
-            retain: self.is_kept(block, resolved.ty),
+            retain: is_declared_retain(block) || self.keeps_everything(name.span),
             resolved,
             used: Rc::new(Cell::new(false)),
         }
     }
 
-    fn retention(&self, block: &ast::VarBlock<'s>, ty: staunch_ir::Type) -> staunch_ir::Retain {
-        match (self.is_kept(block, ty), block.non_retain) {
-            (true, _) => staunch_ir::Retain::Kept,
-            (false, Some(_)) => staunch_ir::Retain::Anew,
-            (false, None) => staunch_ir::Retain::Inherited,
-        }
-    }
-
-    /// Whether a variable of the block keeps its value over a restart.
-    fn is_kept(&self, block: &ast::VarBlock<'s>, ty: staunch_ir::Type) -> bool {
-        is_declared_retain(block) || self.is_retentive(ty)
+    /// Whether a power cycle leaves what is declared at `span`, whatever its declaration says.
+    fn keeps_everything(&self, span: crate::Span) -> bool {
+        self.dialect(span).family().over_power_cycle() == staunch_runtime::Keeps::Everything
     }
 
     /// The counter in a variable, by its path, that RETAIN does not keep: Cscape has R_CTU and R_CTD.
@@ -118,19 +119,6 @@ impl<'s> Declarations<'s> {
         }
     }
 
-    /// Whether every instance of the type is retentive (Logix tags).
-    fn is_retentive(&self, ty: staunch_ir::Type) -> bool {
-        match ty {
-            staunch_ir::Type::Block(id) => id.info().retention == staunch_runtime::Retention::Always,
-            staunch_ir::Type::Array(id) => self.is_retentive(self.program.array(id).element),
-            staunch_ir::Type::Elementary(_)
-            | staunch_ir::Type::Subrange(..)
-            | staunch_ir::Type::String(_)
-            | staunch_ir::Type::Enum(_)
-            | staunch_ir::Type::Struct(_) => false,
-        }
-    }
-
     pub(super) fn field(
         &mut self,
         name: ast::Name<'s>,
@@ -144,7 +132,7 @@ impl<'s> Declarations<'s> {
             ty: resolved.ty,
             initial: resolved.initial.clone(),
             section: section(block.kind),
-            retain: self.retention(block, resolved.ty),
+            retain: retention(block),
             constant: block.constant.is_some(),
             address,
             doc: decl.doc.clone(),

@@ -13,7 +13,7 @@ mod reach;
 use crate::expr::uses::Uses;
 use crate::types::declarations::Declarations;
 use build::Builder;
-use staunch_ir::{Place, Retain, Root, Routine, RoutineKind};
+use staunch_ir::{Place, Root, Routine, RoutineKind};
 
 /// Adds the prescans, given the slots of the POUs in an order in which a callee stands before its
 /// callers. `false` if there are none.
@@ -61,8 +61,7 @@ fn own(declarations: &mut Declarations<'_>, at: usize, uses: &Uses) {
         builder.instruction(place, *instruction);
     }
     for count in uses.counts.iter().filter(|it| lasts(&it.counter) && lasts(&it.kept)) {
-        let retain = build::retention(&declarations.program, at, &count.kept);
-        builder.restore(&count.counter, &count.kept, retain == Retain::Kept);
+        builder.restore(&count.counter, &count.kept);
     }
     builder.finish().add_to(declarations);
 }

@@ -61,7 +61,9 @@ pub(crate) struct Declarations<'s> {
 
 impl<'s> Declarations<'s> {
     pub fn new(log: Log<'s>) -> Self {
-        let files = log.sources.files().iter().map(|it| SourceFile { path: it.path.clone() }).collect();
+        // A pragma may say another.
+        let system = log.options.dialect.family();
+        let files = log.sources.files().iter().map(|it| SourceFile { path: it.path.clone(), system }).collect();
         Self {
             log,
             names: Names::default(),

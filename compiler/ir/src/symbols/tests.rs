@@ -76,8 +76,21 @@ fn a_retentive_block_marks_its_variable() {
     let text = map(&program);
     for name in ["values", "counter"] {
         let line = text.lines().find(|line| line.starts_with(&format!("field\t{name}\t")));
-        assert!(line.unwrap().contains("\tretain\t"), "{line:?}");
+        assert!(line.unwrap().contains("\tretain,whole\t"), "{line:?}");
     }
+}
+
+#[test]
+fn the_file_that_declares_a_variable_decides_what_is_kept() {
+    let flags = |system: Family| {
+        let mut program = sample(Vec::new());
+        program.files[0].system = system;
+        let text = map(&program);
+        let line = text.lines().find(|line| line.starts_with("field\tcounter\t")).unwrap_or_default().to_owned();
+        line.split('\t').nth(5).unwrap_or_default().to_owned()
+    };
+    let found = [Family::Iec, Family::Cscape, Family::Openplc, Family::Codesys, Family::Logix].map(flags);
+    assert_eq!(found, ["-", "-", "-", "stays", "retain,whole"]);
 }
 
 #[test]

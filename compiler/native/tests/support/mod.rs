@@ -79,7 +79,7 @@ pub fn program(arrays: Vec<Array>, mut structs: Vec<Struct>, routines: Vec<Routi
     let bodies = (0..routines.len()).filter(|at| routines[*at].kind == RoutineKind::Body).map(RoutineId::next);
     let classes: Vec<_> = bodies.map(|it| class(ClassKind::Program, &routines, it, None)).collect();
     Program {
-        files: vec![SourceFile { path: "main.st".to_owned() }],
+        files: vec![SourceFile { path: "main.st".to_owned(), system: staunch_runtime::Family::Iec }],
         enums: Vec::new(),
         bounds: Vec::new(),
         arrays,

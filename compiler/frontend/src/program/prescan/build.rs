@@ -2,8 +2,9 @@
 
 use crate::types::declarations::Declarations;
 use crate::types::signature::pin_place;
+use staunch_ir::startup::{Event, Fate, Startup};
 use staunch_ir::{
-    Block, Const, Elementary, Expr, For, Local, LocalId, Location, Op, Place, Program, Projection, Retain, RoutineId,
+    Block, Const, Elementary, Expr, For, Local, LocalId, Location, Op, Place, Program, Projection, RoutineId,
     Statement, StatementKind, Step, Type, Value,
 };
 
@@ -57,8 +58,16 @@ impl<'p> Builder<'p> {
 
     /// CV starts at the kept count where that is retained, else at 0. Counters and counts in arrays
     /// belong together element by element.
-    pub fn restore(&mut self, counter: &Place, kept: &Place, retained: bool) {
+    ///
+    /// A counter that stays as it is over IDLE -> RUN does so here: its kept count is what it counted
+    /// last, and without one a power cycle has set it to 0 already.
+    pub fn restore(&mut self, counter: &Place, kept: &Place) {
         let Type::Block(id) = counter.ty else { return };
+        let (startup, routine) = (Startup::new(self.program), &self.program.routines[self.pou]);
+        let retained = startup.place(routine, kept, Event::PowerCycle).is_kept();
+        if !retained && startup.place(routine, counter, Event::Run) == Fate::Whole {
+            return;
+        }
         let at = self.at;
         let bounds = self.open_bounds(kept);
         let needs_guard = bounds != self.open_bounds(counter);
@@ -180,25 +189,6 @@ fn for_each(counter: Place, (low, high): (i64, i64), body: Block, at: Location) 
         turns.body.insert(0, Statement::new(StatementKind::Turn, at));
     }
     vec![Statement::new(StatementKind::For(Box::new(turns)), at)]
-}
-
-/// What the declarations on the way to the place say of a restart.
-pub(super) fn retention(program: &Program, pou: usize, place: &Place) -> Retain {
-    let mut ty = program.root_type(&program.routines[pou], place.root);
-    let mut retain = Retain::Inherited;
-    for projection in &place.projections {
-        ty = match (projection, ty) {
-            (Projection::Field(field), Some(Type::Struct(id))) => {
-                let field = &program.structure(id).fields[field.index()];
-                retain = field.retain.within(retain);
-                Some(field.ty)
-            }
-            (Projection::Index { .. }, Some(Type::Array(id))) => Some(program.array(id).element),
-            // A pin of a standard block.
-            (Projection::Field(_) | Projection::Index { .. }, _) => return retain,
-        };
-    }
-    retain
 }
 
 /// The routine of the prescan of the POU in a slot, until routines are put in order.

@@ -1,8 +1,7 @@
 //! The rules on RCV, the variable that keeps a Cscape counter's count, where they span calls: it is
 //! one counter's alone, no one else writes it, and it is RETAIN.
 
-use super::build::retention;
-use super::nest::{OpenCounts, kept_from_outside};
+use super::nest::{OpenCounts, fate, kept_from_outside};
 use crate::Span;
 use crate::expr::uses::{
     Assigned, KeptCount, Uses, assigned_count, holds_storage, is_element_by_element, lost_count, same_storage,
@@ -10,7 +9,8 @@ use crate::expr::uses::{
 };
 use crate::types::declarations::{Declarations, Slot};
 use crate::types::signature::Target;
-use staunch_ir::{Retain, Root};
+use staunch_ir::Root;
+use staunch_ir::startup::Startup;
 use std::collections::HashSet;
 
 pub(super) fn check(declarations: &mut Declarations<'_>, uses: &[Uses], open: &OpenCounts) {
@@ -75,9 +75,8 @@ fn assigned(declarations: &mut Declarations<'_>, count: &KeptCount, at: usize, u
 fn lost(declarations: &mut Declarations<'_>, uses: &[Uses], open: &OpenCounts) {
     let mut kept: HashSet<Span> = kept_from_outside(declarations, open).map(|it| it.span).collect();
     let all = || uses.iter().enumerate().flat_map(|(at, it)| it.counts.iter().map(move |count| (at, count)));
-    kept.extend(
-        all().filter(|(at, it)| retention(&declarations.program, *at, &it.kept) == Retain::Kept).map(|(_, it)| it.span),
-    );
+    let (program, startup) = (&declarations.program, Startup::new(&declarations.program));
+    kept.extend(all().filter(|(at, it)| fate(&startup, program, *at, it).is_kept()).map(|(_, it)| it.span));
     let mut told = HashSet::new();
     let lost: Vec<_> = all().filter(|(_, it)| !it.told && !kept.contains(&it.span)).map(|(_, it)| it.span).collect();
     for span in lost {

@@ -1,13 +1,11 @@
 //! A prescan reaches the instances inside: each POU's runs those of the instances it contains.
 
-use super::build::routine_of;
-use super::build::{Builder, retention};
+use super::build::{Builder, routine_of};
 use super::reach::joined;
 use crate::expr::uses::{KeptCount, Uses};
 use crate::types::declarations::Declarations;
-use staunch_ir::{
-    Elementary, Expr, FieldId, Location, Op, Place, Program, Retain, Root, RoutineId, StructId, Type, Value,
-};
+use staunch_ir::startup::{Event, Fate, Startup};
+use staunch_ir::{Elementary, Expr, FieldId, Location, Op, Place, Program, Root, RoutineId, StructId, Type, Value};
 
 /// The slots of the POUs that have instances, with their structures: parts before what they are
 /// parts of, as structures stand in that order.
@@ -35,15 +33,15 @@ fn extend(declarations: &mut Declarations<'_>, open: &OpenCounts, at: usize, roo
         return;
     }
     let mut builder = Builder::new(declarations, at);
-    for Inside { slot, place, retain } in instances {
+    for Inside { slot, place, fate } in instances {
         let prescan = routine_of(declarations, slot);
         if !declarations.program.routine(prescan).body.is_empty() {
             builder.instance(prescan, &place);
         }
         // The block itself cannot know that its instance is RETAIN as a whole.
-        if retain == Retain::Kept {
+        if fate.is_kept() {
             for count in &open[slot] {
-                builder.restore(&joined(&place, &count.counter), &joined(&place, &count.kept), true);
+                builder.restore(&joined(&place, &count.counter), &joined(&place, &count.kept));
             }
         }
     }
@@ -54,35 +52,45 @@ fn extend(declarations: &mut Declarations<'_>, open: &OpenCounts, at: usize, roo
 struct Inside {
     slot: usize,
     place: Place,
-    retain: Retain,
+    fate: Fate,
 }
 
 /// The instances in a POU's state, or in the globals.
 fn instances(declarations: &Declarations<'_>, root: Root, state: StructId) -> Vec<Inside> {
     let mut found = Vec::new();
-    members(declarations, &Place::root(root, Type::Struct(state)), state, Retain::Inherited, &mut found);
+    let startup = Startup::new(&declarations.program);
+    let walk = Walk { declarations, startup };
+    walk.members(&Place::root(root, Type::Struct(state)), state, Fate::Inherited, &mut found);
     found
 }
 
-fn members(declarations: &Declarations<'_>, place: &Place, id: StructId, retain: Retain, found: &mut Vec<Inside>) {
-    for (at, field) in declarations.program.structure(id).fields.iter().enumerate() {
-        let member = place.clone().field(FieldId::next(at), field.ty);
-        inside(declarations, member, field.retain.within(retain), found);
-    }
+struct Walk<'d, 's> {
+    declarations: &'d Declarations<'s>,
+    startup: Startup<'d>,
 }
 
-/// The instances at `place`: itself, or its elements or members.
-fn inside(declarations: &Declarations<'_>, place: Place, retain: Retain, found: &mut Vec<Inside>) {
-    match place.ty {
-        Type::Struct(id) => match declarations.slot_of_instance(id) {
-            Some(slot) => found.push(Inside { slot, place, retain }),
-            None => members(declarations, &place, id, retain, found),
-        },
-        Type::Array(id) => {
-            let element = declarations.program.array(id).element;
-            inside(declarations, place.index(every(), element, Location::default()), retain, found);
+impl Walk<'_, '_> {
+    fn members(&self, place: &Place, id: StructId, fate: Fate, found: &mut Vec<Inside>) {
+        for (at, field) in self.declarations.program.structure(id).fields.iter().enumerate() {
+            let (at, ty) = (FieldId::next(at), field.ty);
+            let fate = self.startup.field(id, at, Event::PowerCycle).within(fate);
+            self.inside(place.clone().field(at, ty), fate, found);
         }
-        Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Block(_) => {}
+    }
+
+    /// The instances at `place`: itself, or its elements or members.
+    fn inside(&self, place: Place, fate: Fate, found: &mut Vec<Inside>) {
+        match place.ty {
+            Type::Struct(id) => match self.declarations.slot_of_instance(id) {
+                Some(slot) => found.push(Inside { slot, place, fate }),
+                None => self.members(&place, id, fate, found),
+            },
+            Type::Array(id) => {
+                let element = self.declarations.program.array(id).element;
+                self.inside(place.index(every(), element, Location::default()), fate, found);
+            }
+            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Block(_) => {}
+        }
     }
 }
 
@@ -98,14 +106,14 @@ pub(super) type OpenCounts = Vec<Vec<KeptCount>>;
 
 pub(super) fn open_counts(declarations: &Declarations<'_>, uses: &[Uses]) -> OpenCounts {
     let program = &declarations.program;
+    let startup = Startup::new(program);
     let mut open = vec![Vec::new(); uses.len()];
     for (state, at) in owners(program) {
         let is_inside = |it: &&KeptCount| it.counter.root == Root::Instance && it.kept.root == Root::Instance;
         let own = uses[at].counts.iter().filter(is_inside);
-        let mut counts: Vec<_> =
-            own.filter(|it| retention(program, at, &it.kept) == Retain::Inherited).cloned().collect();
-        for Inside { slot, place, retain } in instances(declarations, Root::Instance, state) {
-            if retain == Retain::Inherited {
+        let mut counts: Vec<_> = own.filter(|it| fate(&startup, program, at, it) == Fate::Inherited).cloned().collect();
+        for Inside { slot, place, fate } in instances(declarations, Root::Instance, state) {
+            if fate == Fate::Inherited {
                 counts.extend(open[slot].iter().map(|it: &KeptCount| KeptCount {
                     counter: joined(&place, &it.counter),
                     kept: joined(&place, &it.kept),
@@ -118,6 +126,11 @@ pub(super) fn open_counts(declarations: &Declarations<'_>, uses: &[Uses]) -> Ope
     open
 }
 
+/// What a power cycle does to the variable that keeps a count.
+pub(super) fn fate(startup: &Startup<'_>, program: &Program, pou: usize, count: &KeptCount) -> Fate {
+    startup.place(&program.routines[pou], &count.kept, Event::PowerCycle)
+}
+
 /// The counts that are kept because an instance around them is RETAIN as a whole.
 pub(super) fn kept_from_outside<'o>(
     declarations: &Declarations<'_>,
@@ -127,5 +140,5 @@ pub(super) fn kept_from_outside<'o>(
     let states = owners(program).into_iter().map(|(state, _)| (Root::Instance, state));
     let all = states.chain([(Root::Globals, program.globals)]);
     let all: Vec<_> = all.flat_map(|(root, state)| instances(declarations, root, state)).collect();
-    all.into_iter().filter(|it| it.retain == Retain::Kept).flat_map(|it| &open[it.slot])
+    all.into_iter().filter(|it| it.fate.is_kept()).flat_map(|it| &open[it.slot])
 }
