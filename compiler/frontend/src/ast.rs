@@ -233,6 +233,11 @@ pub enum StatementKind<'s> {
         target: Expr<'s>,
         value: Expr<'s>,
     },
+    /// `a := b := c`, with the targets as written, two or more.
+    AssignAll {
+        targets: Vec<Expr<'s>>,
+        value: Expr<'s>,
+    },
     /// `a S= b` (set) and `a R= b` (reset).
     SetReset {
         target: Expr<'s>,
@@ -444,6 +449,9 @@ pub(crate) fn each_expr<'a, 's>(statements: &'a [Statement<'s>], visit: &mut dyn
             StatementKind::Assign { target, value } | StatementKind::SetReset { target, value, .. } => {
                 each_part(target, visit);
                 each_part(value, visit);
+            }
+            StatementKind::AssignAll { targets, value } => {
+                targets.iter().chain([value]).for_each(|it| each_part(it, visit));
             }
             StatementKind::Expr(expr) => each_part(expr, visit),
             StatementKind::If { branches, otherwise } => {

@@ -106,6 +106,16 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
+    /// `a := b := c` assigns to both.
+    pub const fn assigns_in_a_row(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
+    /// An enumeration's value is a number where an index is asked for, and counts in a FOR.
+    pub const fn counts_by_enumerations(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
     /// Assigning an input from inside, or a FOR counter in its loop, is a lint, not an error.
     pub const fn assigns_inputs(self) -> bool {
         matches!(self, Self::Codesys)

@@ -33,6 +33,7 @@ impl<'a> Machine<'a> {
         match &statement.kind {
             StatementKind::Empty => Ok(Flow::Next),
             StatementKind::Assign { target, value } => self.assign(frame, target, value),
+            StatementKind::AssignAll { .. } => unknown("assignments in a row"),
             StatementKind::SetReset { target, value, set } => self.set_reset(frame, target, value, *set),
             StatementKind::Expr(expr) => self.lone_call(frame, expr),
             StatementKind::If { branches, otherwise } => self.choose(frame, branches, otherwise.as_deref()),

@@ -237,6 +237,10 @@ impl Writer<'_> {
                 self.expr(target, false);
                 self.expr(value, true);
             }
+            StatementKind::AssignAll { targets, value } => {
+                targets.iter().for_each(|it| self.expr(it, false));
+                self.expr(value, true);
+            }
             StatementKind::Expr(expr) => match &expr.kind {
                 ExprKind::Call(callee, arguments) => match self.counter(callee) {
                     Some(counter) => self.call(expr.span, callee, counter, arguments),

@@ -129,6 +129,14 @@ impl<'s> Checker<'_, 's> {
     fn counter_type(&mut self, ty: Type, span: Span) -> Option<Elementary> {
         match ty {
             Type::Elementary(it) if it.is_integer() || self.counts(it, span) => Some(it),
+            Type::Enum(_) if self.decl.dialect(span).counts_by_enumerations() => {
+                self.report(
+                    Diagnostic::new(Code::E0902, span, "a FOR that counts by an enumeration is not supported yet")
+                        .label(format!("this is {}", self.type_name(ty)))
+                        .help("count in an INT, and choose the enumeration's value by a CASE of it"),
+                );
+                None
+            }
             other => {
                 let name = self.type_name(other);
                 self.report(
@@ -191,6 +199,12 @@ fn has_way_out(statements: &[ast::Statement<'_>], own: bool) -> bool {
             arms.iter().any(|arm| within(&arm.body)) || otherwise.as_deref().is_some_and(within)
         }
         Ast::For { body, .. } | Ast::While { body, .. } | Ast::Repeat { body, .. } => has_way_out(body, false),
-        Ast::Empty | Ast::Assign { .. } | Ast::SetReset { .. } | Ast::Expr(_) | Ast::Continue | Ast::Error => false,
+        Ast::Empty
+        | Ast::Assign { .. }
+        | Ast::AssignAll { .. }
+        | Ast::SetReset { .. }
+        | Ast::Expr(_)
+        | Ast::Continue
+        | Ast::Error => false,
     })
 }

@@ -35,6 +35,7 @@ impl<'s> Checker<'_, 's> {
         let span = statement.span;
         let made = match &statement.kind {
             Ast_::Assign { target, value } => self.assignment(target, value, span),
+            Ast_::AssignAll { targets, value } => self.assign_all(targets, value, span),
             Ast_::SetReset { target, value, set } => self.set_reset(target, value, *set, span),
             Ast_::Case { selector, arms, otherwise } => self.case(selector, arms, otherwise.as_deref(), span),
             Ast_::For { counter, from, to, by, body } => self.for_loop(counter, from, to, by.as_deref(), body, span),
@@ -62,6 +63,7 @@ impl<'s> Checker<'_, 's> {
             Ast_::Empty
             | Ast_::Error
             | Ast_::Assign { .. }
+            | Ast_::AssignAll { .. }
             | Ast_::SetReset { .. }
             | Ast_::Case { .. }
             | Ast_::For { .. } => {}
@@ -142,6 +144,54 @@ impl<'s> Checker<'_, 's> {
             self.assign(place, value, span);
         }
         Some(())
+    }
+
+    /// `a := b := c`: each target gets what the one to its right was given.
+    fn assign_all(&mut self, targets: &[ast::Expr<'s>], value: &ast::Expr<'s>, span: Span) -> Option<()> {
+        if !self.decl.dialect(span).assigns_in_a_row() {
+            let message = "an assignment has no value, and one variable on its left";
+            self.report(
+                Diagnostic::new(Code::E0512, span, message)
+                    .label("several assignments in a row are an extension of CODESYS")
+                    .help("write one statement for each variable"),
+            );
+            targets.iter().for_each(|it| drop(self.place(it)));
+            self.operand(value, None);
+            return None;
+        }
+        self.assigned(targets, value, span).map(drop)
+    }
+
+    /// What the first of the targets is given. Targets are found from left to right, then the value is
+    /// computed, and assigned from right to left.
+    fn assigned(&mut self, targets: &[ast::Expr<'s>], value: &ast::Expr<'s>, span: Span) -> Option<Expr> {
+        let [target, rest @ ..] = targets else { return None };
+        let Some(found) = self.place(target) else {
+            rest.iter().for_each(|it| drop(self.place(it)));
+            self.operand(value, None);
+            return None;
+        };
+        if let Some(()) = self.refuse_instance(&found.place, target.span) {
+            return None;
+        }
+        let writable = self.writable(&found, target.span);
+        let mut place = found.place;
+        let ty = place.ty;
+        let mut given = self.after_place(&mut place, |this| {
+            if rest.is_empty() {
+                return this.value(value, ty);
+            }
+            let right = this.assigned(rest, value, span)?;
+            this.coerce(Operand::Typed(right.read()), ty, value.span)
+        })?;
+        if given.as_const().is_none() {
+            self.save("assigned", &mut given);
+        }
+        if writable {
+            self.note_assigned(&place, target.span);
+            self.assign(place, given.clone(), span);
+        }
+        Some(given)
     }
 
     /// A block's state is not copied over another's.

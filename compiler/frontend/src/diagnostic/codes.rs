@@ -469,6 +469,13 @@ never chosen.
 "Before each scan the hardware's inputs are copied to `%I`: what a program assigns there is overwritten. CODESYS
 refuses it, and so does the codesys dialect; the others have the lint W0509.
 ";
+    E0512 Error "several assignments in a row"
+"An assignment is a statement and has no value. The codesys dialect knows several in a row, where each variable gets
+what the one to its right was given; elsewhere write one statement for each.
+
+    a := b := 0;          (* before *)
+    b := 0; a := b;       (* after *)
+";
     E0901 Error "too large"
 "Variables are laid out in one block of memory, which may take 1 GiB. An array has at most 64 dimensions,
 and all initial values together hold at most 1048576 constants; a repeated one counts once.

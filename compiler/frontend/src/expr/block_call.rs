@@ -20,7 +20,7 @@ impl<'s> Checker<'_, 's> {
         span: Span,
     ) -> Option<()> {
         let found = self.place(callee)?;
-        if !super::migration::only_resets(arguments) {
+        if !super::migration::only_resets(found.place.ty, arguments) {
             self.note_called(&found.place, callee.span);
         }
         match found.place.ty {

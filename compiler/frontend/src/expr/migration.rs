@@ -43,15 +43,24 @@ impl<'a, 's> CounterCall<'a, 's> {
     }
 }
 
-/// Whether a call does no more than reset or load a counter: it follows the one that counts.
-pub(crate) fn only_resets(arguments: &[ast::Argument<'_>]) -> bool {
+/// Whether a call does no more than reset or load a counter, or take back a timer's input: it stands beside
+/// the one that counts.
+pub(crate) fn only_resets(ty: Type, arguments: &[ast::Argument<'_>]) -> bool {
+    let is_timer = matches!(ty, Type::Block(id) if id.info().pin("PT").is_some());
     let resets = |it: &ast::Argument<'_>| match &it.kind {
+        ArgumentKind::Input(name, value) if name.text.eq_ignore_ascii_case("IN") => is_timer && is_false(value),
+        ArgumentKind::Input(name, _) if name.text.eq_ignore_ascii_case("PT") => is_timer,
         ArgumentKind::Input(name, _) => {
             matches!(PinRole::named(name.text), Some(PinRole::Reset | PinRole::Load))
         }
         ArgumentKind::Positional(_) | ArgumentKind::Output { .. } => false,
     };
-    !arguments.is_empty() && arguments.iter().all(resets)
+    let names_in = |it: &ast::Argument<'_>| matches!(&it.kind, ArgumentKind::Input(name, _) if !name.text.eq_ignore_ascii_case("PT"));
+    arguments.iter().any(names_in) && arguments.iter().all(resets)
+}
+
+fn is_false(expr: &ast::Expr<'_>) -> bool {
+    matches!(&bare(expr).kind, Ast::Literal(ast::Literal { value: LiteralValue::Bool(false), .. }))
 }
 
 /// Whether the type is a counter with a count to read.
@@ -298,6 +307,7 @@ fn note_members_read<'s>(body: &[ast::Statement<'s>], read: &mut MembersRead<'s>
                 note_members_read(body, read);
             }
             StatementKind::Empty
+            | StatementKind::AssignAll { .. }
             | StatementKind::SetReset { .. }
             | StatementKind::Expr(_)
             | StatementKind::Exit

@@ -276,7 +276,7 @@ impl<'s> Checker<'_, 's> {
         let at = fields.iter().position(|it| it.name.eq_ignore_ascii_case(name.text));
         let Some(at) = at else {
             if let Some(shared) = self.shared_member(&found.place, id, name) {
-                return Some(shared);
+                return shared;
             }
             let fields = &self.decl.program.structure(id).fields;
             let visible = fields.iter().filter(|it| !instance || is_pin(it.section));
@@ -323,11 +323,23 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// A member that all instances share: it lies at an address, or is VAR_STAT.
-    fn shared_member(&mut self, instance: &Place, id: StructId, name: ast::Name<'s>) -> Option<Found<'s>> {
+    fn shared_member(&mut self, instance: &Place, id: StructId, name: ast::Name<'s>) -> Option<Option<Found<'s>>> {
+        let variable = self.seen_from_outside(id, name).filter(|it| it.place.root == staunch_ir::Root::Globals)?;
         // Nothing would check the index of an element whose own storage is not looked at.
-        let one = instance.indices().next().is_none();
-        let variable =
-            self.seen_from_outside(id, name).filter(|it| one && it.place.root == staunch_ir::Root::Globals)?;
+        if instance.indices().any(|it| it.as_const().is_none()) {
+            let owner = self.type_name(Type::Struct(id));
+            self.report(
+                Diagnostic::new(
+                    Code::E0902,
+                    name.span,
+                    format!("reading `{}` through an element whose index is not constant", name.text),
+                )
+                .label(format!("all instances of `{owner}` share it"))
+                .other(variable.name.span, "declared here")
+                .help("read it through an instance by itself, or an element with a constant index"),
+            );
+            return Some(None);
+        }
         let access = match variable.section {
             _ if variable.constant => Access::Constant(name),
             Section::Input => Access::Write,
@@ -336,7 +348,7 @@ impl<'s> Checker<'_, 's> {
                 Access::Inner(name)
             }
         };
-        Some(Found { place: variable.place.clone(), access })
+        Some(Some(Found { place: variable.place.clone(), access }))
     }
 
     /// Where the VAR_IN_OUT `name` of an instance is declared.
@@ -415,6 +427,10 @@ impl<'s> Checker<'_, 's> {
         let value = self.typed(index, None)?;
         let value = match value.ty {
             Type::Elementary(it) if it.is_integer() || (it.is_bits() && it != Elementary::Bool) => value,
+            Type::Enum(id) if self.decl.dialect(index.span).counts_by_enumerations() => {
+                let base = Type::Elementary(self.decl.program.enumeration(id).base);
+                self.convert(staunch_ir::Conversion::Same, base, value)
+            }
             other => {
                 let found = self.type_name(other);
                 self.report(

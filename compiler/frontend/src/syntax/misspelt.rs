@@ -119,16 +119,20 @@ pub fn misspelt(input: &mut In<'_, '_, '_>) -> Option<(Kind, usize)> {
     }
 }
 
-/// `THNE` where a THEN is expected, and no assignment or call begins. DO and OF are too short to tell.
+/// `THNE` where a THEN is expected, and no assignment or call begins; `D0` for DO. Otherwise DO and OF are too
+/// short to tell.
 pub fn is_misspelt_then(input: &mut In<'_, '_, '_>, word: Kind) -> bool {
     let begins = matches!(
         input.kind_ahead(1),
         Kind::Assign | Kind::Equal | Kind::Dot | Kind::OpenParen | Kind::OpenBracket | Kind::Semicolon | Kind::Colon
     );
-    if word != Kind::Then || input.kind() != Kind::Name || begins {
+    if input.kind() != Kind::Name || begins {
         return false;
     }
     let span = input.here();
+    if word != Kind::Then {
+        return word == Kind::Do && input.text(span).eq_ignore_ascii_case("D0");
+    }
     nearest_of(input.text(span), &[word]).is_some()
 }
 

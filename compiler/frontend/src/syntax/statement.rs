@@ -208,12 +208,15 @@ fn simple<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
 }
 
 fn assignment<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<StatementKind<'s>> {
-    let value = expression(input)?;
-    while let Some(sign) = input.eat(Kind::Assign) {
-        input.report(diagnostics::unsupported(sign, "an assignment inside another one"));
-        expression(input)?;
+    let mut value = expression(input)?;
+    if input.kind() != Kind::Assign {
+        return Ok(StatementKind::Assign { target, value });
     }
-    Ok(StatementKind::Assign { target, value })
+    let mut targets = vec![target];
+    while input.eat(Kind::Assign).is_some() {
+        targets.push(std::mem::replace(&mut value, expression(input)?));
+    }
+    Ok(StatementKind::AssignAll { targets, value })
 }
 
 /// `x : = 1`, or a label to jump to.

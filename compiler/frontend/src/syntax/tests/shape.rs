@@ -39,6 +39,10 @@ fn statement(it: &Statement<'_>) -> String {
     match &it.kind {
         StatementKind::Empty => ";".into(),
         StatementKind::Assign { target, value } => format!("{}:={}", expr(target), expr(value)),
+        StatementKind::AssignAll { targets, value } => {
+            let targets: Vec<_> = targets.iter().map(expr).collect();
+            format!("{}:={}", targets.join(":="), expr(value))
+        }
         StatementKind::SetReset { target, value, set } => {
             format!("{}{}{}", expr(target), if *set { " S=" } else { " R=" }, expr(value))
         }
