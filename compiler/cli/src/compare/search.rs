@@ -16,8 +16,9 @@ use super::trace::Trace;
 use staunch_ir::Value;
 use std::collections::{BTreeSet, HashMap};
 
-/// Bytes that all scans together may compare.
-const MAX_COMPARED: u64 = 16 << 30;
+/// Bytes of states that all scans together may go through; a small state counts as `SMALL`.
+const MAX_BYTES: u64 = 4 << 30;
+const SMALL: usize = 512;
 
 /// What the search knows of the world around the programs.
 #[derive(Debug)]
@@ -90,8 +91,8 @@ pub struct Search<'p> {
 
 pub fn search(pair: &mut Pair, world: &World, budget: u64, wanted: usize) -> Outcome {
     // A large state takes its time to compare and to keep.
-    let bytes = u64::try_from(pair.size().max(1)).unwrap_or(u64::MAX);
-    let budget = budget.min((MAX_COMPARED / bytes).max(1000));
+    let bytes = u64::try_from(pair.size().max(SMALL)).unwrap_or(u64::MAX);
+    let budget = budget.min((MAX_BYTES / bytes).max(1000));
     let before = pair.scans;
     let mut search =
         Search { pair, world, left: budget, wanted, goes_on: false, ended: false, outcome: Outcome::default() };
