@@ -6,7 +6,7 @@ use staunch_tests::folder;
 use staunch_tests::scan::{Row, Table};
 use staunch_tests::vector::{self, Scan, Vector};
 
-const VECTORS: usize = 116;
+const VECTORS: usize = 122;
 const ROWS: usize = 403;
 
 #[test]
