@@ -2,7 +2,7 @@
 
 use proc_macro2::TokenStream;
 use quote::quote;
-use staunch_ir::{ClassKind, EnumId, FieldId, RoutineId, RoutineKind, StructId, Type};
+use staunch_ir::{ClassKind, EnumId, Field, FieldId, Retain, RoutineId, RoutineKind, Section, StructId, Type};
 
 use crate::alias::Origin;
 use crate::constant::literal;
@@ -18,7 +18,8 @@ impl Emitter<'_> {
             .map(RoutineId::next)
             .filter(|id| self.program.routine(*id).kind == RoutineKind::Function)
             .map(|id| self.routine(id));
-        quote!(#files #(#enums)* #(#structs)* #(#functions)*)
+        let tables = self.tables();
+        quote!(#files #tables #(#enums)* #(#structs)* #(#functions)*)
     }
 
     fn files(&self) -> TokenStream {
@@ -43,7 +44,8 @@ impl Emitter<'_> {
             &format!("TYPE {} ({})", enumeration.name, self.source(enumeration.location)),
         );
         let consts = enumeration.values.iter().enumerate().map(|(at, enumerator)| {
-            let (name, doc) = (self.names.enumerator(id, at), doc(enumerator.doc.as_deref()));
+            let own = format!("`{}`.", enumerator.name);
+            let (name, doc) = (self.names.enumerator(id, at), doc(enumerator.doc.as_deref().or(Some(&own))));
             let value = literal(enumeration.base, enumerator.value, false).tokens;
             quote!(#doc pub const #name: Self = Self(#value);)
         });
@@ -62,9 +64,8 @@ impl Emitter<'_> {
         let docs = self.structure_docs(id);
         let fields = structure.fields.iter().enumerate().map(|(at, field)| {
             let (name, ty) = (self.names.field(id, FieldId::next(at)), self.ty(field.ty));
-            let doc = doc(field.doc.as_deref());
-            let address = field.address.map(|it| doc_line(&format!("At `{it}`.")));
-            quote!(#doc #address pub #name: #ty)
+            let docs = self.field_docs(id, field);
+            quote!(#docs pub #name: #ty)
         });
         let values = structure.fields.iter().enumerate().map(|(at, field)| {
             let name = self.names.field(id, FieldId::next(at));
@@ -72,6 +73,7 @@ impl Emitter<'_> {
             quote!(#name: #value)
         });
         let methods = self.methods(id);
+        let io = (id == self.program.globals).then(|| self.io_methods());
         quote! {
             #docs
             #[repr(C)]
@@ -81,8 +83,38 @@ impl Emitter<'_> {
                 /// With initial values.
                 pub const fn new() -> Self { Self { #(#values),* } }
                 #methods
+                #io
             }
             impl Default for #name { fn default() -> Self { Self::new() } }
+        }
+    }
+
+    /// What a field is to who holds the structure, and what its author wrote about it, which is enough for a
+    /// plain variable.
+    fn field_docs(&self, id: StructId, field: &Field) -> TokenStream {
+        let is_state = self.program.class_of_state(id).is_some();
+        let (what, is_plain) = match field.section {
+            Section::Input => ("Input", false),
+            Section::Output => ("Output", false),
+            Section::InOut => ("In-out", false),
+            Section::Internal if is_state => ("Variable", true),
+            Section::Internal => ("Member", true),
+            Section::Global => ("Global", true),
+            Section::Temp | Section::External => ("Variable", true),
+        };
+        let mut marks = String::new();
+        if field.constant {
+            marks.push_str(", constant");
+        }
+        if field.retain == Retain::Kept {
+            marks.push_str(", retained");
+        }
+        if let Some(address) = field.address {
+            marks.push_str(&format!(", at `{address}`"));
+        }
+        match &field.doc {
+            Some(written) if is_plain && marks.is_empty() => doc(Some(written)),
+            written => self.docs(written.as_deref(), &format!("{what} `{}`{marks}.", field.name)),
         }
     }
 

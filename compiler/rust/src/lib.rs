@@ -12,6 +12,7 @@ mod precedence;
 
 mod constant;
 mod expression;
+mod firmware;
 mod function;
 mod index_hoist;
 mod item;

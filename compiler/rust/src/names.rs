@@ -145,7 +145,10 @@ impl Names {
                 .map(|it| claim_all(Scope::default(), it.fields.iter().map(|field| snake(&field.name))))
                 .collect(),
             routines,
-            files: claim_all(Scope::with(&["FILES"]), program.files.iter().map(|it| screaming(base_name(&it.path)))),
+            files: claim_all(
+                Scope::with(&["FILES", "IO", "TASKS"]),
+                program.files.iter().map(|it| screaming(base_name(&it.path))),
+            ),
             instances: claim_all(Scope::with(&["globals"]), program.instances.iter().map(|it| snake(&it.name))),
             locals,
         }

@@ -75,6 +75,38 @@ impl Fault {
     }
 }
 
+impl Fault {
+    /// The fault with the names of its program's files, to be shown: `line.st:12:5: division by zero`.
+    /// Generated Rust has them as `FILES`.
+    ///
+    /// ```
+    /// use staunch_runtime::{Fault, FaultKind, Location};
+    ///
+    /// let fault = Fault { kind: FaultKind::DivideByZero, at: Location { file: 1, line: 12, column: 5 } };
+    /// assert_eq!(fault.of(&["main.st", "line.st"]).to_string(), "line.st:12:5: division by zero");
+    /// ```
+    pub const fn of<'f>(self, files: &'f [&'f str]) -> FaultOf<'f> {
+        FaultOf { fault: self, files }
+    }
+}
+
+/// A fault of a program with these files; a number that is none of them shows as `?`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FaultOf<'f> {
+    pub fault: Fault,
+    pub files: &'f [&'f str],
+}
+
+impl fmt::Display for FaultOf<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Fault { kind, at } = self.fault;
+        let file = self.files.get(usize::from(at.file)).unwrap_or(&"?");
+        write!(f, "{file}:{}:{}: {kind}", at.line, at.column)
+    }
+}
+
+impl core::error::Error for FaultOf<'_> {}
+
 /// The greatest line that a fault's code can carry.
 const LINE_MAX: u32 = 0xFF_FFFF;
 

@@ -20,6 +20,8 @@ pub mod literal;
 pub mod text;
 pub mod time;
 
+pub mod firmware;
+
 mod family;
 
 mod block;
@@ -35,7 +37,7 @@ pub use blocks::{codesys, cscape, iec, logix, openplc};
 pub use context::Context;
 pub use elementary::{Class, Elementary};
 pub use family::{Family, Keeps};
-pub use fault::{Fault, FaultKind, Location, OrFault, Outcome};
+pub use fault::{Fault, FaultKind, FaultOf, Location, OrFault, Outcome};
 pub use lane::{Lane, Scalar, Value};
 pub use signature::{Kind, Parameter, Signature};
 pub use text::Text;

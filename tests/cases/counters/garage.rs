@@ -31,11 +31,21 @@
     reason = "constants and phrasing are as in the source"
 )]
 
-use staunch_runtime::{Context, Fault, iec};
+use staunch_runtime::{Context, Fault, firmware, iec};
 
 /// The sources, as the `file` of a fault's location counts them.
 pub const FILES: &[&str] = &["garage.st"];
 const GARAGE_ST: u16 = 0;
+
+/// The programs that run.
+pub const TASKS: &[firmware::Task] = &[
+    firmware::Task {
+        instance: "ParkingGarage",
+        program: "ParkingGarage",
+        interval: None,
+        priority: 65535,
+    },
+];
 
 /// PROGRAM ParkingGarage (garage.st:2)
 ///
@@ -43,10 +53,15 @@ const GARAGE_ST: u16 = 0;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParkingGarage {
+    /// Input `entry_sensor`.
+    ///
     /// Car entering the garage
     pub entry_sensor: bool,
+    /// Input `exit_sensor`.
     pub exit_sensor: bool,
+    /// Input `reset_count`.
     pub reset_count: bool,
+    /// Output `garage_full`.
     pub garage_full: bool,
     /// Track occupancy, max 2
     pub tracker: iec::Ctud<i16>,

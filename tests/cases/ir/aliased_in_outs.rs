@@ -31,20 +31,35 @@
     reason = "constants and phrasing are as in the source"
 )]
 
-use staunch_runtime::{Context, Fault, FaultKind, OrFault, ops};
+use staunch_runtime::{Context, Fault, FaultKind, OrFault, firmware, ops};
 
 /// The sources, as the `file` of a fault's location counts them.
 pub const FILES: &[&str] = &["aliased_in_outs.st"];
 const ALIASED_IN_OUTS_ST: u16 = 0;
 
+/// The programs that run.
+pub const TASKS: &[firmware::Task] = &[
+    firmware::Task {
+        instance: "Main",
+        program: "Main",
+        interval: None,
+        priority: 65535,
+    },
+];
+
 /// PROGRAM Main (aliased_in_outs.st:7)
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Main {
+    /// Variable `x`.
     pub x: i16,
+    /// Variable `y`.
     pub y: i16,
+    /// Variable `v`.
     pub v: [i16; 4],
+    /// Variable `i`.
     pub i: i16,
+    /// Variable `ok`.
     pub ok: bool,
 }
 

@@ -31,11 +31,21 @@
     reason = "constants and phrasing are as in the source"
 )]
 
-use staunch_runtime::{Context, Fault, OrFault, iec, ops};
+use staunch_runtime::{Context, Fault, OrFault, firmware, iec, ops};
 
 /// The sources, as the `file` of a fault's location counts them.
 pub const FILES: &[&str] = &["counted_loop.st"];
 const COUNTED_LOOP_ST: u16 = 0;
+
+/// The programs that run.
+pub const TASKS: &[firmware::Task] = &[
+    firmware::Task {
+        instance: "Main",
+        program: "Main",
+        interval: None,
+        priority: 65535,
+    },
+];
 
 /// PROGRAM Main (counted_loop.st:2)
 ///
@@ -43,10 +53,15 @@ const COUNTED_LOOP_ST: u16 = 0;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Main {
+    /// Input `pulse`.
     pub pulse: bool,
+    /// Input `reset`.
     pub reset: bool,
+    /// Variable `i`.
     pub i: i16,
+    /// Variable `total`.
     pub total: i16,
+    /// Variable `parts`.
     pub parts: [iec::Ctu<i16>; 8],
 }
 

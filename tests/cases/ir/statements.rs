@@ -31,11 +31,21 @@
     reason = "constants and phrasing are as in the source"
 )]
 
-use staunch_runtime::{Context, Fault, OrFault, Text, iec, ops, text, time};
+use staunch_runtime::{Context, Fault, OrFault, Text, firmware, iec, ops, text, time};
 
 /// The sources, as the `file` of a fault's location counts them.
 pub const FILES: &[&str] = &["statements.st"];
 const STATEMENTS_ST: u16 = 0;
+
+/// The programs that run.
+pub const TASKS: &[firmware::Task] = &[
+    firmware::Task {
+        instance: "Main",
+        program: "Main",
+        interval: None,
+        priority: 65535,
+    },
+];
 
 /// TYPE Color (statements.st:2)
 #[repr(transparent)]
@@ -43,7 +53,9 @@ const STATEMENTS_ST: u16 = 0;
 pub struct Color(pub i16);
 
 impl Color {
+    /// `Red`.
     pub const RED: Self = Self(0);
+    /// `Green`.
     pub const GREEN: Self = Self(1);
 }
 
@@ -51,15 +63,25 @@ impl Color {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Main {
+    /// Input `n`.
     pub n: i32,
+    /// Input `go`.
     pub go: bool,
+    /// Output `sum`.
     pub sum: i32,
+    /// Output `half`.
     pub half: i32,
+    /// Output `c`.
     pub c: Color,
+    /// Variable `a`.
     pub a: [i32; 3],
+    /// Variable `i`.
     pub i: i32,
+    /// Variable `calls`.
     pub calls: u16,
+    /// Variable `t`.
     pub t: iec::Ton,
+    /// Variable `s`.
     pub s: Text<8>,
 }
 

@@ -31,16 +31,27 @@
     reason = "constants and phrasing are as in the source"
 )]
 
-use staunch_runtime::{Context, Fault};
+use staunch_runtime::{Context, Fault, firmware};
 
 /// The sources, as the `file` of a fault's location counts them.
 pub const FILES: &[&str] = &["empty.st"];
 const EMPTY_ST: u16 = 0;
 
+/// The programs that run.
+pub const TASKS: &[firmware::Task] = &[
+    firmware::Task {
+        instance: "Main",
+        program: "Main",
+        interval: None,
+        priority: 65535,
+    },
+];
+
 /// PROGRAM Main (empty.st:1)
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Main {
+    /// Output `x`.
     pub x: i16,
 }
 

@@ -36,6 +36,16 @@ pub fn agree(name: &str, st: &str) -> String {
     text
 }
 
+/// What a `main` prints that has the program as `code`.
+pub fn output_of(name: &str, st: &str, main: &str) -> String {
+    let program = program(st);
+    let folder = folder(name);
+    write_crate(&folder, &program, &emit(&program, &Options::default()));
+    lint(&folder);
+    std::fs::write(folder.join("main.rs"), format!("mod code;\n{main}")).expect("the main's file");
+    run_rust(&folder)
+}
+
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     std::fs::create_dir_all(&folder).expect("a folder for the case");
@@ -54,7 +64,7 @@ fn write_crate(folder: &Path, program: &Program, text: &str) {
         ("code.rs", text),
         ("glue.rs", &glue),
         ("main.rs", &main),
-        ("lib.rs", "#![no_std]\n//! The case.\nmod code;\n"),
+        ("lib.rs", "#![no_std]\n#![warn(missing_docs)]\n//! The case.\n/// Its code.\npub mod code;\n"),
     ] {
         std::fs::write(folder.join(file), text).expect("the case's files");
     }
