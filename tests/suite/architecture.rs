@@ -32,6 +32,7 @@ const UNSAFE: &[&str] = &[
     "runtime/abi/",
     "runtime/host/src/compiled.rs",
     "runtime/host/src/signal.rs",
+    "runtime/host/src/terminal.rs",
     "compiler/native/src/jit.rs",
     "compiler/cli/src/machine.rs",
     "compiler/rust/src/glue.rs",

@@ -17,12 +17,14 @@
 
 mod cargo;
 mod files;
+mod project;
 
 use std::path::{Path, PathBuf};
 
-use staunch_frontend::{Severity, Source, Sources};
+use staunch_frontend::{Level, Levels, Severity, Source, Sources};
 use staunch_rust::Shape;
 
+pub use project::Project;
 pub use staunch_frontend::Dialect;
 
 /// Compiles a file, or every source below a folder, to `$OUT_DIR/<its stem>.rs`.
@@ -35,12 +37,17 @@ pub fn compile(path: impl Into<PathBuf>) {
 }
 
 /// What to compile, and how. All sources together are one program.
+///
+/// What is not said here is read from the `staunch.toml` of the first source's folder, or of the nearest
+/// one above it.
 #[derive(Clone, Debug, Default)]
 pub struct Build {
     paths: Vec<PathBuf>,
     name: Option<String>,
     runtime: Option<String>,
-    options: staunch_frontend::Options,
+    dialect: Option<Dialect>,
+    ctu_stop_at_pv: Option<bool>,
+    levels: Vec<(Level, String)>,
 }
 
 /// Why there is no output.
@@ -68,14 +75,37 @@ impl Build {
     /// Whose blocks a bare name means, in files that do not say it themselves.
     #[must_use]
     pub fn dialect(mut self, dialect: Dialect) -> Self {
-        self.options.dialect = dialect;
+        self.dialect = Some(dialect);
         self
     }
 
     /// CODESYS `CTU` stops at its preset.
     #[must_use]
     pub fn ctu_stop_at_pv(mut self, stops: bool) -> Self {
-        self.options.ctu_stop_at_pv = stops;
+        self.ctu_stop_at_pv = Some(stops);
+        self
+    }
+
+    /// Allows a lint by its code; `warnings` means all.
+    #[must_use]
+    pub fn allow(self, lint: impl Into<String>) -> Self {
+        self.level(Level::Allow, lint.into())
+    }
+
+    /// Warns about a lint, which `staunch.toml` may allow.
+    #[must_use]
+    pub fn warn(self, lint: impl Into<String>) -> Self {
+        self.level(Level::Warn, lint.into())
+    }
+
+    /// Rejects a source for a lint; `warnings` means all.
+    #[must_use]
+    pub fn deny(self, lint: impl Into<String>) -> Self {
+        self.level(Level::Deny, lint.into())
+    }
+
+    fn level(mut self, level: Level, lint: String) -> Self {
+        self.levels.push((level, lint));
         self
     }
 
@@ -113,8 +143,14 @@ impl Build {
 
     fn compile_to(&self, folder: &Path, cargo: &mut cargo::Instructions) -> Result<(), Failed> {
         let sources = self.read(cargo)?;
-        let compilation = staunch_frontend::compile(&sources, &self.options);
-        for diagnostic in &compilation.diagnostics {
+        let (options, levels) = self.settings(cargo).map_err(|error| {
+            cargo.error(&error);
+            Failed
+        })?;
+        let compilation = staunch_frontend::compile(&sources, &options);
+        let diagnostics: Vec<_> = compilation.diagnostics.into_iter().filter_map(|it| levels.apply(it)).collect();
+        let is_rejected = diagnostics.iter().any(|it| it.severity == Severity::Error);
+        for diagnostic in &diagnostics {
             let text = staunch_frontend::render(
                 diagnostic,
                 &sources,
@@ -126,7 +162,7 @@ impl Build {
                 Severity::Warning => cargo.warning(&text),
             }
         }
-        let program = compilation.program.ok_or(Failed)?;
+        let program = compilation.program.filter(|_| !is_rejected).ok_or(Failed)?;
         let name = self.output_name();
         let mut options =
             staunch_rust::Options { shape: Shape::Include { module: name.clone() }, ..Default::default() };
@@ -138,11 +174,33 @@ impl Build {
         std::fs::write(&path, text).map_err(|error| cargo.failed("write", &path, &error))
     }
 
+    /// What this build says, before what its project file does.
+    fn settings(&self, cargo: &mut cargo::Instructions) -> Result<(staunch_frontend::Options, Levels), String> {
+        let first = self.paths.first().map_or(Path::new("."), PathBuf::as_path);
+        let folder = if first.is_dir() { first } else { first.parent().unwrap_or(first) };
+        let here = if folder == Path::new("") { Path::new(".") } else { folder };
+        let found = Project::find(here)?;
+        if let Some(project) = &found {
+            cargo.rerun_if_changed(&project.folder.join("staunch.toml"));
+        }
+        let project = found.unwrap_or_default();
+        let options = staunch_frontend::Options {
+            dialect: self.dialect.or(project.dialect()?).unwrap_or_default(),
+            ctu_stop_at_pv: self.ctu_stop_at_pv.unwrap_or(project.ctu_stop_at_pv),
+            ..Default::default()
+        };
+        let mut levels = project.levels()?;
+        for (level, lint) in &self.levels {
+            levels.add(*level, [lint.as_str()])?;
+        }
+        Ok((options, levels))
+    }
+
     fn read(&self, cargo: &mut cargo::Instructions) -> Result<Sources, Failed> {
         let mut sources = Sources::default();
         for path in files::find(&self.paths, cargo)? {
             let bytes = std::fs::read(&path).map_err(|error| cargo.failed("read", &path, &error))?;
-            sources.add(Source::decode(path.display().to_string(), &bytes));
+            sources.add(Source::decode(shown(&path), &bytes));
         }
         if sources.files().is_empty() {
             cargo.error("there is no Structured Text to compile");
@@ -156,6 +214,13 @@ impl Build {
         let name = self.name.clone().or_else(|| stem().map(|it| it.to_string_lossy().into_owned()));
         name.unwrap_or_else(|| "plc".to_owned())
     }
+}
+
+/// A path as messages and the emitted Rust have it: the same on every machine.
+fn shown(path: &Path) -> String {
+    let crate_folder = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from);
+    let inside = crate_folder.as_deref().and_then(|it| path.strip_prefix(it).ok());
+    inside.unwrap_or(path).display().to_string().replace(std::path::MAIN_SEPARATOR, "/")
 }
 
 #[cfg(test)]

@@ -49,3 +49,34 @@ fn a_missing_file_is_named() {
     assert_eq!(build.compile_to(Path::new("."), &mut cargo), Err(Failed));
     assert!(cargo.lines.iter().any(|it| it.contains("cannot read no/such.st")), "{:?}", cargo.lines);
 }
+
+#[test]
+fn lints_have_levels_here_and_in_the_project_file() {
+    let unused = "PROGRAM Main VAR a : INT; END_VAR ; END_PROGRAM";
+    let made = |name: &str, project: &str, set: fn(Build) -> Build| {
+        let folder = folder(name, &[("src/plc.st", unused), ("staunch.toml", project)]);
+        let mut cargo = cargo::Instructions::default();
+        let done = set(Build::new().folder(folder.join("src"))).compile_to(&folder, &mut cargo);
+        std::fs::remove_dir_all(folder).unwrap();
+        (done.is_ok(), cargo.lines.iter().any(|it| it.contains("W0501")))
+    };
+    assert_eq!(made("warns", "", |it| it), (true, true));
+    assert_eq!(made("denied", "deny = [\"warnings\"]", |it| it), (false, true));
+    assert_eq!(made("allowed", "allow = [\"W0501\"]", |it| it), (true, false));
+    assert_eq!(made("allowed_here", "deny = [\"W0501\"]", |it| it.allow("W0501")), (true, false));
+    assert_eq!(made("denied_here", "", |it| it.deny("warnings")), (false, true));
+    assert_eq!(made("unknown", "", |it| it.warn("W9999")), (false, false));
+    assert_eq!(made("bad", "dialekt = 1", |it| it), (false, false));
+}
+
+#[test]
+fn the_project_file_names_the_dialect() {
+    let wide = "PROGRAM Main VAR c : CTU; w : WORD; END_VAR c(RESET := FALSE, PV := 1); w := c.CV; END_PROGRAM";
+    let folder = folder("dialect", &[("plc.st", wide), ("staunch.toml", "dialect = \"codesys\"")]);
+    let build = Build::new().file(folder.join("plc.st"));
+    let mut cargo = cargo::Instructions::default();
+    assert_eq!(build.compile_to(&folder, &mut cargo), Ok(()), "{:?}", cargo.lines);
+    assert!(cargo.lines.iter().any(|it| it.starts_with("cargo::rerun-if-changed=") && it.ends_with("staunch.toml")));
+    assert_eq!(build.dialect(Dialect::Iec).compile_to(&folder, &mut cargo), Err(Failed));
+    std::fs::remove_dir_all(folder).unwrap();
+}

@@ -1,7 +1,7 @@
 //! The command line, as `docs/cli.md` promises it.
 
-use crate::project::Project;
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
+use staunch_build::Project;
 use staunch_frontend::Dialect;
 use staunch_host::Moment;
 use std::ffi::OsString;
@@ -32,8 +32,12 @@ pub enum Command {
     Bench(Bench),
     /// Find out what a move to another system changes
     Compare(Compare),
-    /// Print the long text of a diagnostic
+    /// Print the long text of a diagnostic, or the list of all
     Explain(Explain),
+    /// Print a shell's completions
+    Completions(Completions),
+    /// Print the manual page, or write one for each command into a folder
+    Man(Man),
     /// Make a project that builds and runs
     New(New),
 }
@@ -72,8 +76,8 @@ impl Common {
     #[must_use]
     pub fn with(&self, project: &Project) -> Self {
         Self {
-            message_format: self.message_format.or(project.message_format),
-            color: self.color.or(project.color),
+            message_format: self.message_format.or(project.message_format.as_deref().and_then(named)),
+            color: self.color.or(project.color.as_deref().and_then(named)),
             quiet: self.quiet || project.quiet && self.verbose == 0,
             verbose: self.verbose.max(u8::from(project.verbose)),
             ..self.clone()
@@ -87,6 +91,11 @@ impl Common {
     pub fn color(&self) -> Color {
         self.color.unwrap_or_default()
     }
+}
+
+/// A word of the project file, which has been checked.
+fn named<T: ValueEnum>(word: &str) -> Option<T> {
+    T::from_str(word, false).ok()
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -278,8 +287,21 @@ pub struct Compare {
 
 #[derive(Clone, Debug, Args)]
 pub struct Explain {
-    /// A diagnostic's code, as E0101
-    pub code: String,
+    /// A diagnostic's code, as E0101; without one all are listed
+    pub code: Option<String>,
+}
+
+#[derive(Clone, Debug, Args)]
+pub struct Completions {
+    /// The shell that they are for
+    #[arg(value_enum)]
+    pub shell: clap_complete::Shell,
+}
+
+#[derive(Clone, Debug, Args)]
+pub struct Man {
+    /// The folder to write pages into: staunch.1, staunch-run.1 and so on
+    pub dir: Option<PathBuf>,
 }
 
 #[derive(Clone, Debug, Args)]

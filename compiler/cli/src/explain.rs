@@ -1,16 +1,49 @@
+//! `staunch explain`: the long text of a diagnostic, and the list of all.
+
 use crate::{args, output};
 use staunch_frontend::{Code, Severity};
 
-/// Prints the long text of a diagnostic.
+/// What the first two digits of a code say.
+const SUBJECTS: [(&str, &str); 8] = [
+    ("00", "Text and syntax"),
+    ("01", "Names"),
+    ("02", "Types and values"),
+    ("03", "Calls and blocks"),
+    ("04", "Declarations"),
+    ("05", "Statements"),
+    ("06", "What changes between systems"),
+    ("09", "Limits, and what is not supported"),
+];
+
+/// Prints the long text of a diagnostic, or the list of all.
 pub fn explain(args: &args::Explain) -> Result<u8, String> {
-    let code = Code::named(&args.code).ok_or_else(|| {
-        let near = nearest(&args.code).iter().map(|it| format!("`{it}`")).collect::<Vec<_>>();
+    match &args.code {
+        Some(code) => one(code),
+        None => output::print(list().as_bytes()).map(|()| 0),
+    }
+}
+
+fn list() -> String {
+    let mut text =
+        String::from("E is an error, W a lint, which -W, -D and -A CODE, staunch.toml and {allow CODE} set.\n");
+    for (digits, subject) in SUBJECTS {
+        text += &format!("\n{subject}\n");
+        for code in Code::ALL.iter().filter(|it| it.name()[1..].starts_with(digits)) {
+            text += &format!("  {}  {}\n", code.name(), code.title());
+        }
+    }
+    text
+}
+
+fn one(asked: &str) -> Result<u8, String> {
+    let code = Code::named(asked).ok_or_else(|| {
+        let near = nearest(asked).iter().map(|it| format!("`{it}`")).collect::<Vec<_>>();
         let help = if near.is_empty() {
             "a code is E for an error or W for a lint, and four digits: `E0101`".to_owned()
         } else {
             format!("did you mean {}?", near.join(" or "))
         };
-        format!("there is no diagnostic `{}`; {help}", args.code)
+        format!("there is no diagnostic `{}`; {help}", asked)
     })?;
     let kind = match code.severity() {
         Severity::Error => "error",

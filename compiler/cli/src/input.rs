@@ -67,7 +67,7 @@ fn is_twincat(path: &Path) -> bool {
 }
 
 fn source(path: &Path) -> Result<Source, String> {
-    let name = path.display().to_string();
+    let name = shown(path);
     if is_twincat(path) {
         return Err(format!("{name}: TwinCAT's XML files are not supported yet; export the code as .st"));
     }
@@ -84,6 +84,14 @@ fn source(path: &Path) -> Result<Source, String> {
     let mut bytes = Vec::new();
     file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|it| format!("{name}: {it}"))?;
     decode(&name, &bytes)
+}
+
+/// As messages and outputs have it: seen from the current folder, with the strokes of every system.
+fn shown(path: &Path) -> String {
+    let here = std::env::current_dir().ok();
+    let below = here.as_deref().and_then(|it| path.strip_prefix(it).ok());
+    let parts = below.unwrap_or(path).components().filter(|it| *it != std::path::Component::CurDir);
+    parts.collect::<PathBuf>().display().to_string().replace(std::path::MAIN_SEPARATOR, "/")
 }
 
 fn decode(name: &str, bytes: &[u8]) -> Result<Source, String> {

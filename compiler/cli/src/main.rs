@@ -1,7 +1,6 @@
 //! The command `staunch`: arguments, files, exit codes. What it promises stands in `docs/cli.md`.
 
 mod args;
-mod project;
 
 mod input;
 mod session;
@@ -21,6 +20,7 @@ mod machine;
 mod run;
 
 mod explain;
+mod manual;
 mod new;
 
 mod output;
@@ -78,6 +78,8 @@ fn report_panic(panic: &std::panic::PanicHookInfo<'_>) {
 fn dispatch(cli: Cli) -> u8 {
     let result = match &cli.command {
         Command::Explain(it) => explain::explain(it),
+        Command::Completions(it) => manual::completions(it),
+        Command::Man(it) => manual::pages(it),
         Command::New(it) => new::new(it, &cli.common),
         Command::Check(it) => Session::check(&cli.common, it),
         Command::Build(it) => Session::start(&cli.common, &it.files).and_then(|session| build::build(&session, it)),

@@ -1,9 +1,9 @@
 //! One compilation: sources and settings in, diagnostics out, and the program where there is one.
 
 use crate::args::{Color, Common, Files, MessageFormat};
-use crate::project::{self, Project};
 use crate::{REJECTED, input, output};
-use staunch_frontend::{Code, Compilation, Diagnostic, Dialect, Format, Options, Severity, Sources, Span, Style};
+use staunch_build::Project;
+use staunch_frontend::{Compilation, Diagnostic, Dialect, Format, Level, Levels, Options, Severity, Sources, Span, Style};
 use staunch_ir::Program;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -51,16 +51,18 @@ impl Session {
     ) -> Result<(Self, usize), String> {
         let near = files.files.first().filter(|it| it.as_path() != Path::new("-"));
         let folder = near.map_or(Path::new("."), |it| if it.is_dir() { it } else { parent(it) });
-        let project = project::find(folder)?.unwrap_or_default();
+        let project = Project::find(folder)?.unwrap_or_default();
         let named = if files.files.is_empty() {
-            project.files.iter().map(|it| project.folder.join(it)).collect()
+            let here = std::env::current_dir().and_then(|it| it.canonicalize());
+            let here = here.map_err(|it| format!("the current folder: {it}"))?;
+            project.files.iter().map(|it| project.seen_from(&here, it)).collect()
         } else {
             files.files.clone()
         };
         if named.is_empty() {
             return Err("name a source file or folder, or list `files` in staunch.toml".to_owned());
         }
-        let levels = Levels::new(common, &project)?;
+        let levels = levels(common, &project)?;
         let sources = input::read(&named)?;
         let start = Instant::now();
         let compilation = compile(&sources, &options(common, &project)?);
@@ -125,7 +127,7 @@ impl Session {
         let (common, project, first) = (self.common.clone(), self.project.clone(), self.first.clone());
         let diagnostics = Vec::new();
         let mut session = Self { common, project, first, sources, program: None, diagnostics, compile_time };
-        session.accept(compilation, &Levels::new(&self.common, &self.project)?, known)?;
+        session.accept(compilation, &levels(&self.common, &self.project)?, known)?;
         Ok(session)
     }
 
@@ -254,12 +256,9 @@ fn are(names: &[String]) -> String {
 }
 
 fn options(common: &Common, project: &Project) -> Result<Options, String> {
-    let dialect = match (common.dialect, &project.dialect) {
-        (Some(dialect), _) => dialect,
-        (None, Some(name)) => {
-            Dialect::named(name).ok_or_else(|| format!("staunch.toml: there is no dialect `{name}`"))?
-        }
-        (None, None) => Dialect::default(),
+    let dialect = match common.dialect {
+        Some(dialect) => dialect,
+        None => project.dialect()?.unwrap_or_default(),
     };
     Ok(Options { dialect, ctu_stop_at_pv: project.ctu_stop_at_pv, moved_from: None })
 }
@@ -275,62 +274,11 @@ fn summary(errors: usize, warnings: usize) -> String {
     }
 }
 
-/// What `-W`, `-D`, `-A` and the project file say of lints; the command line comes later.
-struct Levels {
-    rules: Vec<(Option<Code>, Level)>,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Level {
-    Warn,
-    Deny,
-    Allow,
-}
-
-impl Levels {
-    fn new(common: &Common, project: &Project) -> Result<Self, String> {
-        let mut rules = Vec::new();
-        let lists = [
-            (&project.warn, Level::Warn),
-            (&project.deny, Level::Deny),
-            (&project.allow, Level::Allow),
-            (&common.warn, Level::Warn),
-            (&common.deny, Level::Deny),
-            (&common.allow, Level::Allow),
-        ];
-        for (codes, level) in lists {
-            for name in codes {
-                rules.push((lint(name)?, level));
-            }
-        }
-        Ok(Self { rules })
+/// What the project file and `-W`, `-D`, `-A` say of lints; the command line comes later.
+fn levels(common: &Common, project: &Project) -> Result<Levels, String> {
+    let mut levels = project.levels()?;
+    for (level, names) in [(Level::Warn, &common.warn), (Level::Deny, &common.deny), (Level::Allow, &common.allow)] {
+        levels.add(level, names.iter().map(String::as_str))?;
     }
-
-    /// The diagnostic at its level, or `None` where it is allowed.
-    fn apply(&self, mut diagnostic: Diagnostic) -> Option<Diagnostic> {
-        if diagnostic.severity == Severity::Error {
-            return Some(diagnostic);
-        }
-        let applies = |(code, _): &&(Option<Code>, Level)| code.is_none_or(|it| it == diagnostic.code);
-        match self.rules.iter().rev().find(applies).map(|(_, level)| *level) {
-            Some(Level::Allow) => None,
-            Some(Level::Deny) => {
-                diagnostic.severity = Severity::Error;
-                Some(diagnostic)
-            }
-            Some(Level::Warn) | None => Some(diagnostic),
-        }
-    }
-}
-
-/// A lint by its code; `None` for `warnings`, which means all.
-fn lint(name: &str) -> Result<Option<Code>, String> {
-    if name.eq_ignore_ascii_case("warnings") {
-        return Ok(None);
-    }
-    match Code::named(name) {
-        Some(code) if code.severity() == Severity::Warning => Ok(Some(code)),
-        Some(code) => Err(format!("{} is an error; only lints (W…) have levels", code.name())),
-        None => Err(format!("there is no lint `{name}`")),
-    }
+    Ok(levels)
 }

@@ -1,10 +1,13 @@
 //! What a user is told: one mistake, where it is, and what to do about it.
 
 mod codes;
+mod levels;
 mod render;
 pub(crate) mod wording;
 
 pub use codes::Code;
+pub(crate) use levels::lint;
+pub use levels::{Level, Levels};
 pub use render::{Format, Style, render};
 
 use crate::source::Span;

@@ -9,6 +9,7 @@ pub mod ast;
 mod lex;
 mod syntax;
 
+mod allow;
 mod dialect;
 mod log;
 mod names;
@@ -24,7 +25,7 @@ mod program;
 
 mod lints;
 
-pub use diagnostic::{Code, Diagnostic, Fix, Format, Label, Severity, Style, render};
+pub use diagnostic::{Code, Diagnostic, Fix, Format, Label, Level, Levels, Severity, Style, render};
 pub use dialect::Dialect;
 pub use source::{Source, Sources, Span};
 pub use syntax::parse;
@@ -89,6 +90,7 @@ fn run(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
     let numbered = sources.files().iter().zip(0u16..);
     let mut files: Vec<_> =
         numbered.map(|(source, number)| parse(number, &source.text, &mut log.diagnostics)).collect();
+    let allowances = allow::Allowances::read(&files, &mut log.diagnostics);
     let mut bodies: Vec<_> = files.iter_mut().flat_map(ast::File::take_bodies).collect();
     let mut declarations = declare::declare(log, &files, &bodies);
     let unassigned = lints::result::unassigned(&declarations.pous);
@@ -96,7 +98,9 @@ fn run(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
     lints::unused::report(&mut declarations);
     let left_out = checked.left_out;
     let program = program::assemble(&mut declarations, &files, checked);
-    finish(program.filter(|_| keep == Bodies::Kept), declarations.log, unassigned, left_out)
+    let mut compilation = finish(program.filter(|_| keep == Bodies::Kept), declarations.log, unassigned, left_out);
+    compilation.diagnostics.retain(|it| !allowances.cover(it));
+    compilation
 }
 
 /// Sorts what was reported, and holds what a program promises that was accepted.

@@ -1,4 +1,5 @@
-//! Comma-separated values, as RFC 4180 has them, with the place of every cell.
+//! Comma-separated values, as RFC 4180 has them, with the place of every cell. Where a comma is the decimal
+//! sign, spreadsheets write semicolons between cells; these are read too.
 
 use std::borrow::Cow;
 use std::io::{self, Write};
@@ -24,7 +25,8 @@ impl Cell {
 /// closed.
 pub(crate) fn parse(text: &str) -> Result<Vec<Vec<Cell>>, (usize, usize)> {
     let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
-    let mut reader = Reader { rest: text.chars().peekable(), line: 1, column: 1 };
+    let separator = if has_semicolons(text) { ';' } else { ',' };
+    let mut reader = Reader { rest: text.chars().peekable(), line: 1, column: 1, separator };
     let mut rows = Vec::new();
     while reader.rest.peek().is_some() {
         let row = reader.row()?;
@@ -35,10 +37,17 @@ pub(crate) fn parse(text: &str) -> Result<Vec<Vec<Cell>>, (usize, usize)> {
     Ok(rows)
 }
 
+/// Whether the first of both signs in the header is a semicolon.
+pub(crate) fn has_semicolons(text: &str) -> bool {
+    let header = text.trim_start().lines().next().unwrap_or_default();
+    header.chars().find(|it| matches!(it, ',' | ';')) == Some(';')
+}
+
 struct Reader<'t> {
     rest: std::iter::Peekable<std::str::Chars<'t>>,
     line: usize,
     column: usize,
+    separator: char,
 }
 
 impl Reader<'_> {
@@ -75,7 +84,7 @@ impl Reader<'_> {
         }
         loop {
             match self.next() {
-                Some(',') => break Ok((trimmed(cell), false)),
+                Some(it) if it == self.separator => break Ok((trimmed(cell), false)),
                 Some('\n') | None => break Ok((trimmed(cell), true)),
                 Some('\r') if matches!(self.rest.peek(), Some('\n') | None) => {}
                 Some(' ' | '\t') if cell.quoted => {}
@@ -139,6 +148,12 @@ mod tests {
         assert_eq!(texts("scan,a b\n1,\"x,\"\"y\"\"\""), expected);
         assert_eq!(texts(""), Vec::<Vec<String>>::new());
         assert_eq!(texts("a\n,\n"), [vec!["a".to_owned()], vec![String::new(), String::new()]]);
+    }
+
+    #[test]
+    fn semicolons_part_cells_where_the_header_has_them() {
+        assert_eq!(texts("scan;m[1,2]\n1;3,5\n"), [["scan", "m[1,2]"], ["1", "3,5"]]);
+        assert_eq!(texts("scan,a\n1,x;y\n"), [["scan", "a"], ["1", "x;y"]]);
     }
 
     #[test]

@@ -30,6 +30,7 @@ mod run;
 mod args;
 mod compiled;
 mod signal;
+mod terminal;
 
 #[cfg(test)]
 mod fixture;

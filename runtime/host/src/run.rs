@@ -9,7 +9,7 @@ use crate::schedule::Schedule;
 use crate::start::{Event, Start};
 use crate::stimulus::{Stimulus, Write};
 use crate::trace::{Row, Subject, Table, Trace};
-use crate::{Error, Machine, format_time, signal};
+use crate::{Error, Machine, format_time, signal, terminal};
 use staunch_runtime::{Context, Time};
 use std::io::{self, Write as _};
 use std::path::PathBuf;
@@ -168,7 +168,7 @@ pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Su
         retained: Retained::of(map),
         start: Start::of(map),
         epoch: 0,
-        out: Output { rows: 0, trace: None, table: Table::default() },
+        out: Output { rows: 0, trace: None, table: Table::new(terminal::width()) },
         clock: None,
         summary: Summary::default(),
     };

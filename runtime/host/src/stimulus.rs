@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::csv::{self, Cell};
 use crate::literal;
-use crate::map::Map;
+use crate::map::{Map, Type};
 use crate::path::{self, Place, same};
 use crate::start::Event;
 use staunch_runtime::Time;
@@ -56,7 +56,8 @@ impl Stimulus {
 
     /// `path` is for messages.
     pub fn parse(path: &Path, text: &str, map: &Map, running: &[usize]) -> Result<Self, Error> {
-        let mut parser = Parser { path, map, running, columns: Vec::new() };
+        let decimal_comma = csv::has_semicolons(text);
+        let mut parser = Parser { path, map, running, columns: Vec::new(), decimal_comma };
         let open = |(line, column)| parser.error(line, column, "a quote that is not closed".to_owned());
         let cells = csv::parse(text).map_err(open)?;
         let Some((header, rows)) = cells.split_first() else {
@@ -111,6 +112,8 @@ struct Parser<'a> {
     map: &'a Map,
     running: &'a [usize],
     columns: Vec<Column>,
+    /// Reals are written `3,5`.
+    decimal_comma: bool,
 }
 
 impl Parser<'_> {
@@ -202,7 +205,10 @@ impl Parser<'_> {
     }
 
     fn write(&self, cell: &Cell, place: Place) -> Result<Write, Error> {
-        let bytes = literal::parse(self.map, place, &cell.text).map_err(|text| self.at(cell, text))?;
+        let is_real = matches!(place.ty, Type::Elementary(it) if it.lane().is_float());
+        let with_point = (self.decimal_comma && is_real).then(|| cell.text.replacen(',', ".", 1));
+        let text = with_point.as_deref().unwrap_or(&cell.text);
+        let bytes = literal::parse(self.map, place, text).map_err(|text| self.at(cell, text))?;
         Ok(Write { offset: place.offset, bytes, input: place.input })
     }
 
@@ -242,6 +248,14 @@ mod tests {
         assert_eq!((second.scan, second.event), (Some(3), Some(Event::Restart)));
         assert_eq!(second.writes[0].bytes, 15_i16.to_ne_bytes());
         assert_eq!(third.writes, up(0));
+    }
+
+    #[test]
+    fn a_comma_is_a_decimal_sign_between_semicolons() {
+        let stimulus = read("scan;speed;c.CV\n1;-3,5;4\n2;1,5E2;\n3;2.5;\n").unwrap();
+        let speeds: Vec<_> = stimulus.rows.iter().map(|it| it.writes[0].bytes.clone()).collect();
+        assert_eq!(speeds, [-3.5_f32, 150.0, 2.5].map(|it| it.to_ne_bytes().to_vec()));
+        assert!(read("scan;c.CV\n1;4,5\n").is_err() && read("scan;speed\n1;1,2,3\n").is_err());
     }
 
     #[test]

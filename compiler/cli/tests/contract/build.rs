@@ -73,3 +73,35 @@ fn what_cannot_be_built_is_refused_with_the_way_to_go() {
     folder.write("fb.st", "FUNCTION_BLOCK F VAR a : INT; END_VAR a := 1; END_FUNCTION_BLOCK");
     has(&folder.staunch("run fb.st").err(2), &["PROGRAM"]);
 }
+
+/// A project in a folder of the machine's: what it makes does not tell where it lies.
+#[test]
+fn two_folders_make_the_same_bytes() {
+    let project = |name: &str| {
+        let folder = Folder::new(name);
+        std::fs::create_dir_all(folder.0.join("src")).unwrap();
+        folder.write("staunch.toml", "files = [\"src\"]\n");
+        folder.write("src/main.st", COUNTER.replace("full := parts.Q;", "full := 6 / parts.CV > 0;"));
+        folder
+    };
+    let folders = [project("one"), project("other_place")];
+    let made = |folder: &Folder, arguments: &str| {
+        folder.staunch(&format!("build {arguments} -q -A warnings -o made")).out(0);
+        std::fs::read(folder.0.join("made")).unwrap()
+    };
+    for kind in ["rust", "map", "header", "obj", "lib", "exe", "rust --backend rust"] {
+        let arguments = format!("--emit {kind}");
+        let [one, other] = folders.each_ref().map(|it| made(it, &arguments));
+        assert!(one == other, "{kind} differs");
+    }
+    let absolute = format!("{}/src/main.st --emit map", folders[0].0.display());
+    assert_eq!(made(&folders[0], &absolute), made(&folders[1], "--emit map"));
+    let map = String::from_utf8(made(&folders[0], "--emit map")).unwrap();
+    has(&map, &["\tsrc/main.st\n"]);
+    for folder in &folders {
+        has(&folder.staunch("run -q -A warnings").err(3), &["error: src/main.st:6:"]);
+    }
+    // From inside of it, sources are named from there.
+    let inside = Folder(folders[0].0.join("src"));
+    has(&inside.staunch("run -q -A warnings").err(3), &["error: main.st:6:"]);
+}

@@ -147,6 +147,45 @@ fn codes_are_explained() {
     let folder = Folder::new("explain");
     has(&folder.staunch("explain E0203").out(0), &["E0203"]);
     folder.staunch("explain Z9").err(2);
+    let list = folder.staunch("explain").out(0);
+    has(&list, &["\nNames\n", "\n  E0101  ", "\n  W0501  "]);
+    // The page is this list; write it anew when it differs.
+    let page = include_str!("../../../../docs/diagnostics.md");
+    assert!(
+        page.contains(&format!("```text\n{list}```\n")),
+        "docs/diagnostics.md is not what `staunch explain` prints"
+    );
+    let codes = list.lines().filter(|it| it.starts_with("  E") || it.starts_with("  W")).count();
+    assert_eq!(codes, staunch_frontend::Code::ALL.len());
+}
+
+#[test]
+fn shells_and_manuals_know_the_command() {
+    let folder = Folder::new("manual");
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        has(&folder.staunch(&format!("completions {shell}")).out(0), &["staunch", "stimulus"]);
+    }
+    folder.staunch("completions cmd").err(2);
+    has(&folder.staunch("man").out(0), &[".TH", "staunch"]);
+    folder.staunch("man pages").out(0);
+    has(&folder.read("pages/staunch-run.1"), &["stimulus", "loop"]);
+}
+
+#[test]
+fn a_source_and_a_project_allow_lints() {
+    let unused = "PROGRAM Main VAR a : INT; END_VAR ; END_PROGRAM";
+    let folder =
+        Folder::with("allowed", &[("plain.st", unused), ("all.st", &format!("{{allow_file W0501}} {unused}"))]);
+    folder.write("one.st", unused.replace("a :", "{allow W0501} a :"));
+    for quiet in ["one.st", "all.st"] {
+        assert_eq!(folder.staunch(&format!("check {quiet} -D warnings -q")).err(0), "", "{quiet}");
+    }
+    folder.staunch("check plain.st -D warnings").err(1);
+    folder.write("staunch.toml", "deny = [\"W0501\"]\n");
+    folder.staunch("check plain.st").err(1);
+    folder.staunch("check one.st").out(0);
+    folder.write("staunch.toml", "allow = [\"W0501\"]\n");
+    assert_eq!(folder.staunch("check plain.st -q").err(0), "");
 }
 
 #[test]

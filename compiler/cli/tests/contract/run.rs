@@ -175,6 +175,18 @@ fn without_a_trace_there_is_a_table() {
 }
 
 #[test]
+fn a_table_fits_its_terminal() {
+    let folder = Folder::with("narrow", &[("main.st", COUNTER)]);
+    for width in [40, 60, 120] {
+        let ran = folder.command("run main.st --scans 5").env("COLUMNS", width.to_string()).output().unwrap();
+        let out = super::Ran::of(ran).out(0);
+        let lines: Vec<usize> = out.lines().take(7).map(|it| it.chars().count()).collect();
+        assert!(lines.iter().all(|it| *it <= width), "{out}");
+        assert_eq!(out.contains("parts.CV"), width == 120, "{out}");
+    }
+}
+
+#[test]
 fn bench_reports_one_object() {
     let folder = Folder::with("bench", &[("main.st", COUNTER)]);
     let out = folder.staunch("bench main.st --scans 2000 --message-format json").out(0);

@@ -77,3 +77,19 @@ fn what_is_wrong_is_named_with_its_place() {
         has(&err, &[place, word]);
     }
 }
+
+#[test]
+fn a_spreadsheet_with_decimal_commas_is_read() {
+    let folder = Folder::with(
+        "commas",
+        &[
+            (
+                "main.st",
+                "PROGRAM Main VAR_INPUT on : BOOL; level : REAL; END_VAR VAR m : ARRAY[1..2, 1..2] OF INT; END_VAR ; END_PROGRAM",
+            ),
+            ("in.csv", "scan;on;level;m[1,2]\r\n1;TRUE;3,5;4\r\n2;;-0,25;\r\n"),
+        ],
+    );
+    let out = folder.staunch("run main.st --stimulus in.csv --trace - -A warnings --vars on,level,m[1,2]").out(0);
+    assert_eq!(out, "scan,time_ms,on,level,\"m[1,2]\"\n1,0,TRUE,3.5,4\n2,10,TRUE,-0.25,4\n");
+}

@@ -70,7 +70,7 @@ impl Log<'_> {
         }
         if DECIDING_PRAGMAS.contains(&word.as_str()) {
             self.not_supported(pragma.span, &format!("the pragma `{word}`"));
-        } else if !HARMLESS_PRAGMAS.contains(&word.as_str()) {
+        } else if !HARMLESS_PRAGMAS.contains(&word.as_str()) && !crate::allow::is_allowance(pragma.text) {
             self.report(
                 Diagnostic::new(Code::W0102, pragma.span, format!("the pragma `{word}` is not known"))
                     .label("it has no effect"),

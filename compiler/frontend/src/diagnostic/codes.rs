@@ -249,9 +249,13 @@ FUNCTION_BLOCK of the program, nor a standard block of the dialect in force.
 
     VAR speed : IINT; END_VAR      (* did you mean `INT`? *)
 ";
-    W0102 Warning "unknown pragma"
-"A pragma in braces that Staunch does not know: it has no effect. Those of editors and other tools
-pass without a word; those that would change the program's meaning are refused.
+    W0102 Warning "a pragma without effect"
+"A pragma in braces that Staunch does not know has no effect. Those of editors and other tools
+pass without a word; those that would change the program's meaning are refused. An `allow` that names no
+lint, or that nothing follows, has no effect either.
+
+    {alow W0501} spare : BOOL;      (* before *)
+    {allow W0501} spare : BOOL;     (* after *)
 ";
     E0103 Error "declared twice"
 "A scope holds each name once, whatever its case: `Motor` and `MOTOR` are one name. POUs, types

@@ -1,6 +1,7 @@
 //! The last scans as a table for people.
 
 use super::{Row, Subject};
+use crate::column::Column;
 use crate::format_time;
 use crate::map::Type;
 use staunch_runtime::{Elementary, Time};
@@ -9,15 +10,15 @@ use std::io::{self, Write};
 
 /// Rows that are shown.
 const ROWS: usize = 20;
-/// Characters in a line.
-const WIDTH: usize = 100;
-/// More columns than this never fit.
-const COLUMNS: usize = WIDTH / 3;
+/// Characters that a column takes at least.
+const NARROWEST: usize = 3;
 
 /// Keeps the last rows of a run.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Table {
     rows: VecDeque<Kept>,
+    /// Characters in a line.
+    width: usize,
 }
 
 #[derive(Debug, Default)]
@@ -29,11 +30,20 @@ struct Kept {
 }
 
 impl Table {
+    pub fn new(width: usize) -> Self {
+        Self { rows: VecDeque::new(), width }
+    }
+
+    /// More columns than these never fit.
+    fn columns<'a>(&self, subject: &'a Subject<'_>) -> impl Iterator<Item = &'a Column> {
+        subject.columns.iter().take(self.width / NARROWEST)
+    }
+
     pub fn row(&mut self, subject: &Subject<'_>, row: Row<'_>) {
         let mut kept = if self.rows.len() < ROWS { Kept::default() } else { self.rows.pop_front().unwrap_or_default() };
         (kept.scan, kept.time) = (row.scan, row.time);
         kept.bytes.clear();
-        for column in subject.columns.iter().take(COLUMNS) {
+        for column in self.columns(subject) {
             let size = subject.map.size_of(column.place.ty);
             kept.bytes.extend_from_slice(&row.state[column.place.offset..column.place.offset + size]);
         }
@@ -48,7 +58,7 @@ impl Table {
         ];
         let mut offset = 0;
         let mut left_out = subject.columns.len();
-        for column in subject.columns.iter().take(COLUMNS) {
+        for column in self.columns(subject) {
             let size = subject.map.size_of(column.place.ty);
             let cell = |kept: &Kept| {
                 let mut cell = String::new();
@@ -56,7 +66,7 @@ impl Table {
                 cell
             };
             columns.push(Printed::new(&column.heading, is_number(column.place.ty), self.rows.iter().map(cell)));
-            if columns.iter().map(|it| it.width + 2).sum::<usize>() > WIDTH {
+            if columns.iter().map(|it| it.width + 2).sum::<usize>() > self.width + 2 {
                 columns.pop();
                 break;
             }
@@ -129,9 +139,9 @@ mod tests {
     use crate::fixture::map;
     use crate::map::Map;
 
-    fn table(map: &Map, vars: Option<&str>, scans: u64) -> String {
+    fn table(map: &Map, vars: Option<&str>, scans: u64, width: usize) -> String {
         let subject = Subject { map, columns: columns(map, &[0], vars).unwrap(), title: String::new() };
-        let (mut table, mut state) = (Table::default(), vec![0; 128]);
+        let (mut table, mut state) = (Table::new(width), vec![0; 128]);
         for scan in 1..=scans {
             state[8] = u8::from(scan % 2 == 0);
             let time = Time::try_from(scan - 1).unwrap() * 10_000_000;
@@ -146,15 +156,20 @@ mod tests {
     fn columns_line_up() {
         let expected =
             "scan  time  up     c.CV\n────  ────  ─────  ────\n   1    0s  FALSE     0\n   2  10ms  TRUE      0\n";
-        assert_eq!(table(&map(), Some("up,c.CV"), 2), expected);
+        assert_eq!(table(&map(), Some("up,c.CV"), 2, 100), expected);
     }
 
     #[test]
     fn only_the_last_rows_and_what_fits_is_shown() {
-        let text = table(&map(), None, 50);
+        for width in [40, 80, 200] {
+            let text = table(&map(), None, 50, width);
+            let widest = text.lines().skip(1).take(20).map(|it| it.chars().count()).max().unwrap();
+            assert!(widest <= width && widest + 20 > width.min(180), "{width}: {text}");
+        }
+        let text = table(&map(), None, 50, 100);
         assert_eq!(text.lines().count(), 2 + 1 + ROWS + 1);
         assert!(text.contains("\n  31  300ms  FALSE"), "{text}");
         assert!(text.ends_with("more variables: --vars picks, --trace - shows all\n"), "{text}");
-        assert!(text.lines().all(|it| it.chars().count() <= WIDTH));
+        assert!(text.lines().all(|it| it.chars().count() <= 100));
     }
 }

@@ -1,0 +1,140 @@
+//! `staunch.toml`: the settings of the command and of build scripts, for the folder it lies in and those
+//! below.
+
+use staunch_frontend::{Dialect, Level, Levels};
+use std::path::{Path, PathBuf};
+
+/// What a project file says. Paths are relative to its folder.
+#[derive(Clone, Debug, Default)]
+pub struct Project {
+    pub folder: PathBuf,
+    pub dialect: Option<String>,
+    pub files: Vec<PathBuf>,
+    pub program: Option<String>,
+    pub cycle: Option<String>,
+    pub loop_budget: Option<u64>,
+    pub ctu_stop_at_pv: bool,
+    pub warn: Vec<String>,
+    pub deny: Vec<String>,
+    pub allow: Vec<String>,
+    pub message_format: Option<String>,
+    pub color: Option<String>,
+    pub quiet: bool,
+    pub verbose: bool,
+}
+
+impl Project {
+    /// The project file of `start` or of the nearest folder above it.
+    pub fn find(start: &Path) -> Result<Option<Self>, String> {
+        let start = start.canonicalize().unwrap_or_else(|_| start.to_owned());
+        let found = start.ancestors().map(|folder| folder.join("staunch.toml")).find(|it| it.is_file());
+        found.map(|path| read(&path)).transpose()
+    }
+
+    /// The dialect that it names.
+    pub fn dialect(&self) -> Result<Option<Dialect>, String> {
+        let named =
+            |name: &String| Dialect::named(name).ok_or_else(|| format!("staunch.toml: there is no dialect `{name}`"));
+        self.dialect.as_ref().map(named).transpose()
+    }
+
+    /// What it says of lints.
+    pub fn levels(&self) -> Result<Levels, String> {
+        let mut levels = Levels::default();
+        for (level, names) in [(Level::Warn, &self.warn), (Level::Deny, &self.deny), (Level::Allow, &self.allow)] {
+            levels.add(level, names.iter().map(String::as_str))?;
+        }
+        Ok(levels)
+    }
+
+    /// A path of the file, as seen from `from`, with strokes as on every machine.
+    pub fn seen_from(&self, from: &Path, path: &Path) -> PathBuf {
+        relative(&self.folder.join(path), from)
+    }
+}
+
+/// `path` as seen from `from`: both absolute, and not on two drives.
+fn relative(path: &Path, from: &Path) -> PathBuf {
+    let shared = path.components().zip(from.components()).take_while(|(a, b)| a == b).count();
+    if shared == 0 {
+        return path.to_owned();
+    }
+    let up = from.components().skip(shared).map(|_| Path::new("..").as_os_str());
+    let down = path.components().skip(shared).map(std::path::Component::as_os_str);
+    let parts: PathBuf = up.chain(down).collect();
+    if parts.as_os_str().is_empty() { PathBuf::from(".") } else { parts }
+}
+
+fn read(path: &Path) -> Result<Project, String> {
+    let fail = |what: String| format!("{}: {what}", path.display());
+    let text = std::fs::read_to_string(path).map_err(|it| fail(it.to_string()))?;
+    let table: toml::Table = text.parse().map_err(|it: toml::de::Error| fail(it.to_string()))?;
+    let mut project = Project { folder: path.parent().unwrap_or(Path::new(".")).to_owned(), ..Project::default() };
+    for (key, value) in &table {
+        set(&mut project, key, value).map_err(fail)?;
+    }
+    Ok(project)
+}
+
+fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), String> {
+    match key {
+        "dialect" => project.dialect = Some(text(key, value)?),
+        "files" => project.files = texts(key, value)?.into_iter().map(PathBuf::from).collect(),
+        "program" => project.program = Some(text(key, value)?),
+        "cycle" => project.cycle = Some(text(key, value)?),
+        "loop-budget" => project.loop_budget = Some(number(key, value)?),
+        "ctu-stop-at-pv" => project.ctu_stop_at_pv = flag(key, value)?,
+        "warn" => project.warn = texts(key, value)?,
+        "deny" => project.deny = texts(key, value)?,
+        "allow" => project.allow = texts(key, value)?,
+        "message-format" => project.message_format = Some(choice(key, value, &["human", "short", "json"])?),
+        "color" => project.color = Some(choice(key, value, &["auto", "always", "never"])?),
+        "quiet" => project.quiet = flag(key, value)?,
+        "verbose" => project.verbose = flag(key, value)?,
+        _ => {
+            return Err(format!(
+                "there is no setting `{key}`; there are dialect, files, program, cycle, loop-budget, ctu-stop-at-pv, warn, deny, allow, message-format, color, quiet and verbose"
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn text(key: &str, value: &toml::Value) -> Result<String, String> {
+    value.as_str().map(str::to_owned).ok_or_else(|| format!("`{key}` is a text in quotes"))
+}
+
+fn number(key: &str, value: &toml::Value) -> Result<u64, String> {
+    let number = value.as_integer().and_then(|it| u64::try_from(it).ok());
+    number.ok_or_else(|| format!("`{key}` is a whole number, 0 or more"))
+}
+
+fn flag(key: &str, value: &toml::Value) -> Result<bool, String> {
+    value.as_bool().ok_or_else(|| format!("`{key}` is true or false"))
+}
+
+/// One of the words that the option of this name takes.
+fn choice(key: &str, value: &toml::Value, words: &[&str]) -> Result<String, String> {
+    let named = value.as_str().filter(|it| words.contains(it)).map(str::to_owned);
+    let quoted = || words.iter().map(|it| format!("\"{it}\"")).collect::<Vec<_>>().join(", ");
+    named.ok_or_else(|| format!("`{key}` is one of {}", quoted()))
+}
+
+fn texts(key: &str, value: &toml::Value) -> Result<Vec<String>, String> {
+    let list = value.as_array().ok_or_else(|| format!("`{key}` is a list"))?;
+    list.iter().map(|it| text(key, it)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_are_seen_from_a_folder() {
+        let seen = |path: &str, from: &str| relative(Path::new(path), Path::new(from)).display().to_string();
+        assert_eq!(seen("/home/a/plant/src/x.st", "/home/a/plant"), "src/x.st");
+        assert_eq!(seen("/home/a/plant/src/x.st", "/home/a/plant/src"), "x.st");
+        assert_eq!(seen("/home/a/plant/src", "/home/a/plant/tests/deep"), "../../src");
+        assert_eq!(seen("/home/a/plant", "/home/a/plant"), ".");
+    }
+}

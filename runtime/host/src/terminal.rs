@@ -1,0 +1,36 @@
+//! How wide the terminal is.
+
+/// Characters in a line where there is no terminal, or none that says.
+const DEFAULT: usize = 100;
+/// Less has no room for a table.
+const LEAST: usize = 40;
+
+/// Characters in a line of standard output: what `COLUMNS` or the terminal says.
+pub(crate) fn width() -> usize {
+    let said = std::env::var("COLUMNS").ok().and_then(|it| it.trim().parse().ok());
+    said.or_else(of_terminal).unwrap_or(DEFAULT).max(LEAST)
+}
+
+#[cfg(any(target_os = "linux", target_os = "macos"))]
+fn of_terminal() -> Option<usize> {
+    const STANDARD_OUTPUT: i32 = 1;
+    #[cfg(target_os = "linux")]
+    const GET_SIZE: core::ffi::c_ulong = 0x5413;
+    #[cfg(target_os = "macos")]
+    const GET_SIZE: core::ffi::c_ulong = 0x4008_7468;
+
+    unsafe extern "C" {
+        fn ioctl(file: i32, request: core::ffi::c_ulong, ...) -> i32;
+    }
+
+    // Rows, columns, and both in pixels.
+    let mut size = [0_u16; 4];
+    // SAFETY: the request fills a `struct winsize`, which is four of these. On another file it fails.
+    let done = unsafe { ioctl(STANDARD_OUTPUT, GET_SIZE, size.as_mut_ptr()) };
+    (done == 0 && size[1] > 0).then(|| usize::from(size[1]))
+}
+
+#[cfg(not(any(target_os = "linux", target_os = "macos")))]
+fn of_terminal() -> Option<usize> {
+    None
+}
