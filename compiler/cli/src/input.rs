@@ -68,9 +68,6 @@ fn is_twincat(path: &Path) -> bool {
 
 fn source(path: &Path) -> Result<Source, String> {
     let name = shown(path);
-    if is_twincat(path) {
-        return Err(format!("{name}: TwinCAT's XML files are not supported yet; export the code as .st"));
-    }
     if path == Path::new("-") {
         let mut bytes = Vec::new();
         std::io::stdin()

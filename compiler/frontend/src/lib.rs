@@ -11,6 +11,8 @@ mod syntax;
 
 mod allow;
 mod dialect;
+mod follow_up;
+mod foreign;
 mod log;
 mod names;
 mod types;
@@ -87,9 +89,9 @@ enum Bodies {
 
 fn run(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
     let mut log = Log::new(sources, options);
-    let numbered = sources.files().iter().zip(0u16..);
-    let mut files: Vec<_> =
-        numbered.map(|(source, number)| parse(number, &source.text, &mut log.diagnostics)).collect();
+    let Some(mut files) = parse_all(sources, &mut log.diagnostics) else {
+        return Compilation { program: None, diagnostics: log.diagnostics };
+    };
     let allowances = allow::Allowances::read(&files, &mut log.diagnostics);
     let mut bodies: Vec<_> = files.iter_mut().flat_map(ast::File::take_bodies).collect();
     let mut declarations = declare::declare(log, &files, &bodies);
@@ -100,7 +102,29 @@ fn run(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
     let program = program::assemble(&mut declarations, &files, checked);
     let mut compilation = finish(program.filter(|_| keep == Bodies::Kept), declarations.log, unassigned, left_out);
     compilation.diagnostics.retain(|it| !allowances.cover(it));
+    if compilation.program.is_none() {
+        follow_up::remove(sources, &mut compilation.diagnostics);
+    }
     compilation
+}
+
+/// The files' trees; `None` where one is no Structured Text, of which alone is then said so.
+fn parse_all<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Option<Vec<ast::File<'s>>> {
+    let mut foreign = Vec::new();
+    let mut files = Vec::new();
+    for (source, number) in sources.files().iter().zip(0u16..) {
+        let before = diagnostics.len();
+        files.push(parse(number, &source.text, diagnostics));
+        // Only what does not parse is looked at again.
+        if diagnostics[before..].iter().any(|it| it.severity == Severity::Error) {
+            foreign.extend(foreign::recognise(number, source));
+        }
+    }
+    if foreign.is_empty() {
+        return Some(files);
+    }
+    *diagnostics = foreign;
+    None
 }
 
 /// Sorts what was reported, and holds what a program promises that was accepted.

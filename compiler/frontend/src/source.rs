@@ -36,8 +36,18 @@ pub struct Source {
 struct Encoding {
     /// Bytes of the byte order mark, which is no part of the text.
     mark: u32,
-    /// Each character is one byte of the file.
-    windows_1252: bool,
+    units: Units,
+}
+
+/// What the characters are made of in the file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Units {
+    #[default]
+    Utf8,
+    /// Each character is one byte.
+    Windows1252,
+    /// Each character is one or two words.
+    Utf16,
 }
 
 /// Bytes of a text between two counts of its characters: a column is then found at once in a line
@@ -61,22 +71,30 @@ impl Source {
         Self { path: path.into(), text, lines, characters, encoding: Encoding::default() }
     }
 
-    /// UTF-8, with or without a byte order mark; any other text is read as Windows-1252.
+    /// UTF-8 or UTF-16, with or without a byte order mark; any other text is read as Windows-1252.
     pub fn decode(path: impl Into<String>, bytes: &[u8]) -> Self {
+        if let Some((mark, text)) = utf16(bytes) {
+            return Self { encoding: Encoding { mark, units: Units::Utf16 }, ..Self::new(path, text) };
+        }
         let (mark, bytes) = bytes.strip_prefix(MARK).map_or((0, bytes), |it| (3, it));
-        let utf8 = core::str::from_utf8(bytes);
-        let encoding = Encoding { mark, windows_1252: utf8.is_err() };
-        let text = match utf8 {
-            Ok(text) => text.to_owned(),
-            Err(_) => bytes.iter().map(|it| windows_1252(*it)).collect(),
+        let (units, text) = match core::str::from_utf8(bytes) {
+            Ok(text) => (Units::Utf8, text.to_owned()),
+            Err(_) => (Units::Windows1252, bytes.iter().map(|it| windows_1252(*it)).collect()),
         };
-        Self { encoding, ..Self::new(path, text) }
+        Self { encoding: Encoding { mark, units }, ..Self::new(path, text) }
     }
 
     /// Where a byte of the text stands in the file as it was read.
     pub fn file_offset(&self, offset: u32) -> u32 {
-        let Encoding { mark, windows_1252 } = self.encoding;
-        mark + if windows_1252 { self.characters_before(offset) } else { offset }
+        let before = match self.encoding.units {
+            Units::Utf8 => offset,
+            Units::Windows1252 => self.characters_before(offset),
+            Units::Utf16 => {
+                let text = self.text.get(..usize::try_from(offset).unwrap_or(usize::MAX)).unwrap_or(&self.text);
+                u32::try_from(2 * text.encode_utf16().count()).unwrap_or(u32::MAX)
+            }
+        };
+        self.encoding.mark + before
     }
 
     /// The characters that start before a byte of the text.
@@ -123,6 +141,20 @@ impl Source {
         let column = self.characters_before(offset) - self.characters_before(self.lines[line - 1]) + 1;
         (u32::try_from(line).unwrap_or(u32::MAX), column)
     }
+}
+
+/// The length of the byte order mark, and the text, of UTF-16. Without a mark it is known by its zeros: a
+/// program starts with ASCII.
+fn utf16(bytes: &[u8]) -> Option<(u32, String)> {
+    let word: fn([u8; 2]) -> u16 = match bytes {
+        [0xFF, 0xFE, ..] | [1..=0x7F, 0, 1..=0x7F, 0, ..] => u16::from_le_bytes,
+        [0xFE, 0xFF, ..] | [0, 1..=0x7F, 0, 1..=0x7F, ..] => u16::from_be_bytes,
+        _ => return None,
+    };
+    let mark = if matches!(bytes, [0xFE | 0xFF, ..]) { 2 } else { 0 };
+    let words = bytes[mark..].as_chunks::<2>().0.iter().map(|it| word(*it));
+    let text = char::decode_utf16(words).map(|it| it.unwrap_or(char::REPLACEMENT_CHARACTER)).collect();
+    Some((u32::try_from(mark).unwrap_or(0), text))
 }
 
 /// The characters that start before each chunk of a text.

@@ -64,6 +64,51 @@ fn an_executable_runs_until_it_is_stopped() {
     assert_eq!(ran.code, 0);
 }
 
+/// A scan that would go on for hours: Ctrl-C ends it all the same.
+#[test]
+#[cfg(unix)]
+fn an_interrupt_ends_a_scan_that_does_not_end() {
+    use std::os::unix::process::ExitStatusExt;
+    use std::time::{Duration, Instant};
+    let endless = "PROGRAM Main VAR n : LINT; END_VAR WHILE n >= 0 DO n := (n + 1) MOD 1000; END_WHILE END_PROGRAM";
+    let folder = Folder::with("endless", &[("main.st", endless)]);
+    folder.staunch("build main.st -o native -q").out(0);
+    folder.staunch("build main.st -o rust --backend rust -q").out(0);
+    let budget = format!("--loop-budget {}", u64::MAX);
+    let built = |name: &str| {
+        let mut command = Command::new(folder.0.join(name));
+        command.args(budget.split(' '));
+        command
+    };
+    let run = |more: &str| folder.command(&format!("run main.st -q {budget} {more}"));
+    let commands = [
+        ("native executable", built("native")),
+        ("rust executable", built("rust")),
+        ("native", run("--realtime")),
+        ("interpret", run("--realtime --backend interpret")),
+        ("native, virtual", run("")),
+        ("interpret, virtual", run("--backend interpret")),
+    ];
+    for (name, mut command) in commands {
+        let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(700));
+        assert!(child.try_wait().unwrap().is_none(), "{name} ended too early");
+        assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+        let asked = Instant::now();
+        let status = loop {
+            if let Some(status) = child.try_wait().unwrap() {
+                break status;
+            }
+            if asked.elapsed() > Duration::from_secs(20) {
+                child.kill().unwrap();
+                panic!("{name} goes on");
+            }
+            std::thread::sleep(Duration::from_millis(50));
+        };
+        assert_eq!(status.signal(), Some(2), "{name}");
+    }
+}
+
 #[test]
 fn what_cannot_be_built_is_refused_with_the_way_to_go() {
     let folder = Folder::with("refused", &[("main.st", COUNTER)]);

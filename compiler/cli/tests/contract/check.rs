@@ -79,6 +79,25 @@ fn a_fix_counts_the_bytes_of_the_file() {
 }
 
 #[test]
+fn utf_16_is_read_with_its_columns() {
+    let folder = Folder::new("utf16");
+    let text = "PROGRAM Main (* größe 𝄞 *) VAR x : INT; END_VAR\nx = 1;\nEND_PROGRAM\n";
+    let words = |mark: &str| format!("{mark}{text}").encode_utf16().collect::<Vec<_>>();
+    let little = |mark| words(mark).iter().flat_map(|it| it.to_le_bytes()).collect::<Vec<_>>();
+    let big = |mark| words(mark).iter().flat_map(|it| it.to_be_bytes()).collect::<Vec<_>>();
+    for (bytes, mark) in [(little("\u{feff}"), 2), (little(""), 0), (big("\u{feff}"), 2), (big(""), 0)] {
+        folder.write("main.st", bytes);
+        let out = folder.staunch("check main.st --message-format json").out(1);
+        let diagnostic: serde_json::Value = serde_json::from_str(out.lines().next().unwrap()).unwrap();
+        let span = &diagnostic["spans"][0];
+        assert_eq!((&span["line_start"], &span["column_start"]), (&2.into(), &3.into()));
+        let before = text.find("= 1").unwrap();
+        let expected = mark + 2 * text[..before].encode_utf16().count();
+        assert_eq!(span["byte_start"], expected);
+    }
+}
+
+#[test]
 fn sources_are_files_folders_and_standard_input() {
     let folder = Folder::with("sources", &[]);
     std::fs::create_dir_all(folder.0.join("plc/inner")).unwrap();
@@ -91,7 +110,7 @@ fn sources_are_files_folders_and_standard_input() {
     folder.with_input("check -", COUNTER).out(0);
     has(&folder.with_input("check -", WRONG).err(1), &["<stdin>:4:1"]);
     folder.write("plc/other.TcPOU", "<TcPlcObject/>");
-    has(&folder.staunch("check plc").err(2), &["other.TcPOU", "TwinCAT"]);
+    has(&folder.staunch("check plc").err(1), &["error[E0032]", "plc/other.TcPOU:1:1", "TwinCAT"]);
 }
 
 #[test]

@@ -223,6 +223,17 @@ E0030 Error "too many errors"
 E0031 Error "a file that is too large"
 "A source file has at most 4 GiB.
 ";
+E0032 Error "a file of another kind"
+"The file is no Structured Text: an XML or binary file of another system, Instruction List, Siemens' SCL, or Logix's
+neutral text. The message says which, and what to do; nothing else is said of the sources until then. Text may be UTF-8,
+UTF-16 or Windows-1252.
+
+    LD  start                 (* before *)
+    AND ready
+    ST  motor
+
+    motor := start AND ready;   (* after *)
+";
 E0090 Error "not supported yet"
 "The marked construct is valid in IEC 61131-3 or in a vendor's dialect, and this compiler knows it, but does not
 compile it yet.

@@ -1,0 +1,142 @@
+//! Files that are no Structured Text, known by what they hold: one diagnostic says what the file is and
+//! what to do, in place of those that reading it as Structured Text gives.
+
+use crate::diagnostic::{Code, Diagnostic};
+use crate::source::{Source, Span};
+
+/// What a file is, where that is seen, and what to do.
+struct Kind {
+    name: &'static str,
+    at: usize,
+    help: &'static str,
+}
+
+const EXPORT: &str = "export the program as text, and check that";
+
+/// What a file that does not parse turns out to be.
+pub(crate) fn recognise(file: u16, source: &Source) -> Option<Diagnostic> {
+    let text = source.text.as_str();
+    let kind =
+        binary(text).or_else(|| xml(text)).or_else(|| logix(text)).or_else(|| scl(text)).or_else(|| list(text))?;
+    let line = text[kind.at..].lines().next().unwrap_or_default();
+    let end = kind.at + line.trim_end().len();
+    let offset = |it: usize| u32::try_from(it).unwrap_or(u32::MAX);
+    let span = Span { file, start: offset(kind.at), end: offset(end) };
+    // Of a binary file nothing can be shown.
+    let span = if kind.name.contains("binary") || kind.name.contains("archive") {
+        Span { end: span.start, ..span }
+    } else {
+        span
+    };
+    Some(Diagnostic::new(Code::E0032, span, format!("this is {}, not Structured Text", kind.name)).help(kind.help))
+}
+
+fn binary(text: &str) -> Option<Kind> {
+    let name = match text {
+        _ if text.starts_with("PK\u{3}\u{4}") => "an archive (zip), as project files of CODESYS and TwinCAT are",
+        _ if text.starts_with("\u{7f}ELF") || text.starts_with("MZ") && has_nul(text) => "a binary program",
+        _ if has_nul(text) => "a binary file, as the project files of CODESYS (.project), Logix (.ACD) and TIA are",
+        _ => return None,
+    };
+    Some(Kind { name, at: 0, help: "export the program's text in its own system, and check that" })
+}
+
+fn has_nul(text: &str) -> bool {
+    text.chars().take(4096).any(|it| it == '\0')
+}
+
+fn xml(text: &str) -> Option<Kind> {
+    let start = text.len() - text.trim_start().len();
+    let rest = text[start..].strip_prefix('<')?;
+    rest.starts_with(|it: char| it == '?' || it == '!' || it.is_ascii_alphabetic()).then_some(())?;
+    let (name, help) = match rest {
+        _ if rest.contains("TcPlcObject") => {
+            ("an XML file of TwinCAT's", "copy what is in `<Declaration>` and `<ST>` to a file .st")
+        }
+        _ if rest.contains("www.plcopen.org") => {
+            ("PLCopen XML", "copy what is in `<ST>`, with its declarations, to a file .st, or export as text")
+        }
+        _ if rest.contains("RSLogix5000Content") => {
+            ("an export of Studio 5000 (L5X)", "copy the lines of its Structured Text routines, and declare their tags")
+        }
+        _ if rest.contains("SW.Blocks.") => {
+            ("XML of TIA Portal", "generate a source (.scl) from the block, and move that")
+        }
+        _ => ("XML", EXPORT),
+    };
+    Some(Kind { name, at: start, help })
+}
+
+/// Logix's neutral text: a version, and then a CONTROLLER.
+fn logix(text: &str) -> Option<Kind> {
+    let (at, _) = lines(text).find(|(_, line)| line.starts_with("IE_VER") || line.starts_with("CONTROLLER "))?;
+    text.contains("END_CONTROLLER").then_some(Kind {
+        name: "neutral text of Logix (L5K)",
+        at,
+        help: "copy the lines of its Structured Text routines, without the `'` before them, and declare their tags",
+    })
+}
+
+/// Siemens' language: quoted names of blocks, `#` before local names, REGION.
+fn scl(text: &str) -> Option<Kind> {
+    const HEADS: [&str; 6] =
+        ["ORGANIZATION_BLOCK", "DATA_BLOCK", "FUNCTION_BLOCK \"", "FUNCTION \"", "TYPE \"", "{ S7_Optimized_Access"];
+    let is_head = |line: &str| HEADS.iter().any(|it| line.starts_with(it));
+    let head = lines(text).find(|(_, line)| is_head(line)).map(|it| it.0);
+    let first = |sign: fn(&str) -> bool| lines(text).find(|(_, line)| sign(line)).map(|it| it.0);
+    let signs = [first(has_local), first(has_block), first(|line| line == "REGION" || line.starts_with("REGION "))];
+    let seen: Vec<usize> = signs.into_iter().flatten().collect();
+    let at = head.or_else(|| (seen.len() > 1).then(|| seen.iter().copied().min()).flatten())?;
+    Some(Kind {
+        name: "SCL of Siemens'",
+        at,
+        help: "write names without `#` and quotes, pass what is in data blocks as variables, and drop REGION",
+    })
+}
+
+/// `#x` where no number and no type is before it.
+fn has_local(line: &str) -> bool {
+    line.match_indices('#').any(|(at, _)| {
+        let before = line[..at].chars().next_back();
+        let after = line[at + 1..].chars().next();
+        !before.is_some_and(|it| it.is_alphanumeric() || it == '_') && after.is_some_and(char::is_alphabetic)
+    })
+}
+
+/// `"DB".x`
+fn has_block(line: &str) -> bool {
+    line.match_indices("\".").any(|(at, _)| line[..at].contains('"'))
+}
+
+/// Instruction List: an operator and its operand on a line of their own. `LD x` is never Structured Text.
+fn list(text: &str) -> Option<Kind> {
+    let operators = lines(text).filter(|(_, line)| is_instruction(line, &["LD", "LDN", "ST", "STN"]));
+    let mut found = operators.map(|it| it.0);
+    let (at, second) = (found.next()?, found.next());
+    let others = ["CAL", "CALC", "JMPC", "JMPCN", "RETC", "S", "R"];
+    let more = || lines(text).any(|(_, line)| is_instruction(line, &others));
+    (second.is_some() || more()).then_some(Kind {
+        name: "Instruction List",
+        at,
+        help: "write what it does in Structured Text: `LD a`, `AND b`, `ST c` is `c := a AND b;`",
+    })
+}
+
+fn is_instruction(line: &str, operators: &[&str]) -> bool {
+    let line = line.split("(*").next().unwrap_or_default().split("//").next().unwrap_or_default();
+    let mut words = line.split_whitespace();
+    let operator = words.next().is_some_and(|it| operators.iter().any(|of| of.eq_ignore_ascii_case(it)));
+    let operand = words.next().is_some_and(|it| it.starts_with(|it: char| it.is_alphanumeric() || "%_#".contains(it)));
+    operator && operand && !line.trim_end().ends_with(';')
+}
+
+/// The lines with something on them, each where it begins.
+fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let mut start = 0;
+    let place = move |line: &str| {
+        let at = start + line.len() - line.trim_start().len();
+        start += line.len();
+        at
+    };
+    text.split_inclusive('\n').scan(place, |place, line| Some((place(line), line.trim()))).filter(|it| !it.1.is_empty())
+}
