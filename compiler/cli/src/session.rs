@@ -3,7 +3,9 @@
 use crate::args::{Color, Common, Files, MessageFormat};
 use crate::{REJECTED, input, output};
 use staunch_build::Project;
-use staunch_frontend::{Compilation, Diagnostic, Dialect, Format, Level, Levels, Options, Severity, Sources, Span, Style};
+use staunch_frontend::{
+    Compilation, Diagnostic, Dialect, Format, Level, Levels, Options, Severity, Sources, Span, Style,
+};
 use staunch_ir::Program;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
