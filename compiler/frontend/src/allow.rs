@@ -177,6 +177,7 @@ fn inner<'a, 's>(kind: &'a StatementKind<'s>, see: &mut dyn FnMut(&'a [Statement
         }
         StatementKind::Empty
         | StatementKind::Assign { .. }
+        | StatementKind::AssignAll { .. }
         | StatementKind::SetReset { .. }
         | StatementKind::Expr(_)
         | StatementKind::Exit
