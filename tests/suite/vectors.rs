@@ -7,7 +7,7 @@ use staunch_tests::scan::{Row, Table};
 use staunch_tests::vector::{self, Scan, Vector};
 
 const VECTORS: usize = 122;
-const ROWS: usize = 403;
+const ROWS: usize = 651;
 
 #[test]
 fn every_counter_vector_holds_on_every_executor() {
