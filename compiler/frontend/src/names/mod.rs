@@ -12,6 +12,7 @@
 
 pub(crate) mod functions;
 
+use crate::ast;
 use crate::dialect::{self, Dialect};
 use crate::spelling::Key;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -124,11 +125,11 @@ impl Default for Names<'_> {
 
 impl<'s> Names<'s> {
     /// What a path means where it stands, after the scope of the POU.
-    pub fn lookup(&self, site: Site, path: &[&str], sense: Sense) -> Found {
+    pub fn lookup(&self, site: Site, path: &[ast::Name<'_>], sense: Sense) -> Found {
         match path {
             [] => Found::Nothing,
-            [name] => self.bare(site, name, sense),
-            [space, name] => self.qualified(space, name, sense),
+            [name] => self.bare(site, name.text, sense),
+            [space, name] => self.qualified(space.text, name.text, sense),
             // No namespace is in one of those that there are.
             [_, _, ..] => Found::Nothing,
         }

@@ -171,9 +171,8 @@ impl<'s> Declarations<'s> {
     /// What a path means in a namespace, as the options have it.
     pub fn lookup(&self, space: SpaceId, path: &[ast::Name<'_>], sense: Sense) -> Found {
         let Some(last) = path.last() else { return Found::Nothing };
-        let names: Vec<_> = path.iter().map(|it| it.text).collect();
         let site = Site { space, dialect: self.dialect(last.span) };
-        match self.names.lookup(site, &names, sense) {
+        match self.names.lookup(site, path, sense) {
             Found::One(Meaning::Block(block)) => {
                 let block = dialect::as_options_have_it(block, |it| self.log.options.is_on(it));
                 Found::One(Meaning::Block(block))
