@@ -20,7 +20,7 @@ const EDGES: &[(&str, &[&str])] = &[
     ),
     // A second reading of the language sees the syntax tree, and nothing of the first.
     ("staunch-witness", &["staunch-frontend", "staunch-runtime"]),
-    ("staunch-build", &["staunch-frontend", "staunch-ir", "staunch-rust"]),
+    ("staunch-build", &["staunch-frontend", "staunch-ir", "staunch-rust", "toml"]),
     ("staunch-example-build-script", &["staunch-runtime", "staunch-build"]),
 ];
 

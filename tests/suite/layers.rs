@@ -8,11 +8,14 @@ use std::path::Path;
 const ROOT: &str = "compiler/frontend/src";
 
 /// The folders and files at the root, from the lowest.
-const LAYERS: [&str; 15] = [
+const LAYERS: [&str; 18] = [
     "source",
     "diagnostic",
     "spelling",
     "ast",
+    "allow",
+    "follow_up",
+    "foreign",
     "lex",
     "syntax",
     "dialect",
@@ -28,7 +31,7 @@ const LAYERS: [&str; 15] = [
 
 /// The circles that there are: a module that is divided into a few files.
 const CIRCLES: [&[&str]; 4] = [
-    &["diagnostic", "diagnostic::codes", "diagnostic::render"],
+    &["diagnostic", "diagnostic::codes", "diagnostic::levels", "diagnostic::render"],
     &["lex", "lex::comment", "lex::kind"],
     &["syntax::diagnostics", "syntax::diagnostics::declared"],
     &["syntax::doc", "syntax::parser"],

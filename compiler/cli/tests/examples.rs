@@ -46,7 +46,7 @@ fn commands(document: &str) -> Vec<Shown> {
 
 fn staunch(arguments: &[String], more: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
-    command.args(arguments).args(more).current_dir(project()).env("NO_COLOR", "1");
+    command.args(arguments).args(more).current_dir(project()).env("NO_COLOR", "1").env_remove("COLUMNS");
     command.env("STAUNCH_CACHE", Path::new(env!("CARGO_TARGET_TMPDIR")).join("cache"));
     command.output().expect("the command starts")
 }

@@ -103,6 +103,11 @@ impl<'a> Machine<'a> {
     /// Numbers without types, and what is computed of them, at one type.
     pub(crate) fn number(&mut self, expr: &'a Expr<'a>, ty: Elementary) -> Outcome<Value<'a>> {
         match &expr.kind {
+            // Whole numbers are computed as such, whatever their place asks for: 7 / 2 is 3.
+            ExprKind::Binary(..) if ty.is_real() && untyped(expr) == Some(Untyped::Integer) => {
+                let whole = self.number(expr, Elementary::Lint)?;
+                Ok(in_lane(whole.as_scalar()?, ty))
+            }
             ExprKind::Paren(inner) => self.number(inner, ty),
             ExprKind::Literal(literal) => typed_number(&literal.value, false, ty),
             ExprKind::Unary(UnaryOp::Neg, inner) => match &inner.kind {

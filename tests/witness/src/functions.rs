@@ -35,7 +35,11 @@ impl<'a> Machine<'a> {
                 self.of_one("ABS", &value, at)
             }
             "SQRT" | "LN" | "LOG" | "EXP" | "SIN" | "COS" | "TAN" | "ASIN" | "ACOS" | "ATAN" => {
-                let value = self.value(frame, self.only(arguments)?, asked)?;
+                let argument = self.only(arguments)?;
+                let value = match untyped(argument) {
+                    Some(_) => self.number(argument, default_type(Untyped::Real, asked))?,
+                    None => self.value(frame, argument, asked)?,
+                };
                 let ty = value.ty.elementary().and_then(|it| it.meets(Elementary::Real)).unwrap_or(Elementary::Lreal);
                 self.applied(&upper, ty, &[in_lane(value.as_scalar()?, ty).as_scalar()?], at)
             }

@@ -259,8 +259,9 @@ fn tokens(line: &str) -> Result<Vec<String>, String> {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
+
     use super::*;
 
     fn parsed(text: &str) -> Result<Assumptions, (usize, String)> {

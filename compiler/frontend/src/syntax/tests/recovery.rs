@@ -307,7 +307,7 @@ fn what_is_not_supported_is_named() {
         "FUNCTION_BLOCK ABSTRACT b EXTENDS c IMPLEMENTS d, e // E0090 E0090 E0090
          VAR x : POINTER TO INT; y : REFERENCE TO INT; z : REF_TO INT; END_VAR // E0090 E0090 E0090
          VAR_CONFIG x : y; END_VAR // E0090
-           x := y := 1; // E0090
+           x := y := 1;
            x REF= y; // E0090
            x ?= y; // E0090
            JMP there; // E0090
