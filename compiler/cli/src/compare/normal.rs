@@ -28,7 +28,8 @@ impl Timer {
         if !info.instructions.iter().any(|it| it.needs_context) {
             return None;
         }
-        let kind = match info.rust_path {
+        // A path of tokens, which the table prints with spaces between.
+        let kind = match info.rust_path.replace(' ', "").as_str() {
             "iec::Ton" => Kind::OnDelay,
             "iec::Tof" => Kind::OffDelay,
             "iec::Tp" => Kind::Pulse,
@@ -84,4 +85,84 @@ fn fold(a: u64, b: u64) -> u64 {
     let bytes = product.to_ne_bytes();
     let half = |at: usize| u64::from_ne_bytes(std::array::from_fn(|it| bytes[at + it]));
     half(0) ^ half(8).rotate_left(17) ^ a.rotate_left(32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use staunch_ir::BlockId;
+    use staunch_runtime::{BLOCKS, BlockInfo, Context};
+
+    const STEP: i64 = 10_000_000;
+
+    /// Numbers without order, the same in every run.
+    struct Numbers(u64);
+
+    impl Numbers {
+        fn below(&mut self, limit: i64) -> i64 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            i64::try_from(self.0 >> 33).map_or(0, |it| it % limit)
+        }
+    }
+
+    fn set(info: &BlockInfo, state: &mut [u8], pin: &str, value: Value) {
+        let at = info.pin(pin).map_or(0, |it| it.offset);
+        value.write(&mut state[at..]);
+    }
+
+    /// A call with an input, a delay, and the time since the last one.
+    fn call(info: &BlockInfo, state: &mut [u8], now: i64, (input, delay, _): (bool, i64, i64)) {
+        set(info, state, "IN", Value::Bool(input));
+        set(info, state, "PT", Value::I64(delay));
+        (info.instructions[0].run)(state, &Context::new(now, false), false);
+    }
+
+    fn inputs(numbers: &mut Numbers) -> (bool, i64, i64) {
+        (numbers.below(2) == 1, (numbers.below(5) - 1) * STEP, numbers.below(3) * STEP)
+    }
+
+    fn settled(timer: Timer, state: &[u8], now: i64) -> Vec<u8> {
+        let mut state = state.to_vec();
+        timer.settle(&mut state, now);
+        state
+    }
+
+    /// A state and another one of its normal form, at another time and with another start where that
+    /// should not matter, go the same way.
+    #[test]
+    fn states_of_one_normal_form_behave_alike() {
+        let mut compared = 0;
+        let timed = |it: &BlockInfo| it.instructions.iter().any(|it| it.needs_context);
+        for (number, info) in BLOCKS.iter().enumerate().filter(|(_, it)| timed(it)) {
+            let (path, key, block) = (String::new(), String::new(), BlockId::next(number));
+            let timer = Timer::of(&Instance { path, key, block, offset: 0, field: None });
+            let timer = timer.expect("a block that takes the time is a timer");
+            assert_ne!(timer.kind, Kind::Other, "{}", info.name);
+            let mut numbers = Numbers(u64::try_from(number).unwrap_or(0));
+            for _ in 0..2000 {
+                let (mut state, mut now) = (vec![0; info.size], 0);
+                for _ in 0..numbers.below(12) {
+                    let given = inputs(&mut numbers);
+                    now += given.2;
+                    call(info, &mut state, now, given);
+                }
+                let shift = numbers.below(1000) * STEP;
+                let (mut other, form) = (state.clone(), settled(timer, &state, now));
+                let start = match Value::read(Lane::I64, &form[timer.start..]) {
+                    Value::I64(age) if timer.measures(&state) => now + shift - age,
+                    _ => numbers.below(1000) * STEP,
+                };
+                Value::I64(start).write(&mut other[timer.start..]);
+                for _ in 0..8 {
+                    assert_eq!(settled(timer, &state, now), settled(timer, &other, now + shift), "{}", info.name);
+                    let given = inputs(&mut numbers);
+                    now += given.2;
+                    call(info, &mut state, now, given);
+                    call(info, &mut other, now + shift, given);
+                    compared += 1;
+                }
+            }
+        }
+        assert!(compared > 40_000, "{compared}");
+    }
 }
