@@ -1,7 +1,7 @@
 //! Lints that a source allows itself: `{allow W0507}` before a statement or declaration, for all of it,
 //! and `{allow_file W0507}` anywhere, for the file.
 
-use crate::ast::{File, Item, Statement, StatementKind, TypeKind, TypeSpec, VarBlock, VarDecl};
+use crate::ast::{File, Item, Statement, TypeKind, TypeSpec, VarBlock, VarDecl, each_body};
 use crate::diagnostic::{Code, Diagnostic, Severity, lint};
 use crate::source::Span;
 
@@ -156,33 +156,7 @@ impl Spans {
     fn statements(&mut self, statements: &[Statement<'_>]) {
         for statement in statements {
             self.add(statement.span);
-            inner(&statement.kind, &mut |it| self.statements(it));
+            each_body(statement, &mut |it| self.statements(it));
         }
-    }
-}
-
-/// Calls `see` with each list of statements in a statement.
-fn inner<'a, 's>(kind: &'a StatementKind<'s>, see: &mut dyn FnMut(&'a [Statement<'s>])) {
-    match kind {
-        StatementKind::If { branches, otherwise } => {
-            branches.iter().for_each(|(_, body)| see(body));
-            otherwise.iter().for_each(|it| see(it));
-        }
-        StatementKind::Case { arms, otherwise, .. } => {
-            arms.iter().for_each(|arm| see(&arm.body));
-            otherwise.iter().for_each(|it| see(it));
-        }
-        StatementKind::For { body, .. } | StatementKind::While { body, .. } | StatementKind::Repeat { body, .. } => {
-            see(body);
-        }
-        StatementKind::Empty
-        | StatementKind::Assign { .. }
-        | StatementKind::AssignAll { .. }
-        | StatementKind::SetReset { .. }
-        | StatementKind::Expr(_)
-        | StatementKind::Exit
-        | StatementKind::Continue
-        | StatementKind::Return
-        | StatementKind::Error => {}
     }
 }

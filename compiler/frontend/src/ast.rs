@@ -437,6 +437,32 @@ pub enum LiteralValue<'s> {
     Error,
 }
 
+/// Calls `see` with each list of statements that a statement holds.
+pub(crate) fn each_body<'a, 's>(statement: &'a Statement<'s>, see: &mut dyn FnMut(&'a [Statement<'s>])) {
+    match &statement.kind {
+        StatementKind::If { branches, otherwise } => {
+            branches.iter().for_each(|(_, body)| see(body));
+            otherwise.iter().for_each(|it| see(it));
+        }
+        StatementKind::Case { arms, otherwise, .. } => {
+            arms.iter().for_each(|arm| see(&arm.body));
+            otherwise.iter().for_each(|it| see(it));
+        }
+        StatementKind::For { body, .. } | StatementKind::While { body, .. } | StatementKind::Repeat { body, .. } => {
+            see(body);
+        }
+        StatementKind::Empty
+        | StatementKind::Assign { .. }
+        | StatementKind::AssignAll { .. }
+        | StatementKind::SetReset { .. }
+        | StatementKind::Expr(_)
+        | StatementKind::Exit
+        | StatementKind::Continue
+        | StatementKind::Return
+        | StatementKind::Error => {}
+    }
+}
+
 /// Calls `visit` with every expression in the statements, outer ones first.
 pub(crate) fn each_expr<'a, 's>(statements: &'a [Statement<'s>], visit: &mut dyn FnMut(&'a Expr<'s>)) {
     for statement in statements {

@@ -127,23 +127,7 @@ impl<'s> Checker<'_, 's> {
         if let Ast::Part(base, part) = &target.kind {
             return self.assign_part(base, *part, value, span);
         }
-        let Some(found) = self.place(target) else {
-            // The value may hold mistakes of its own.
-            self.operand(value, None);
-            return None;
-        };
-        if let Some(()) = self.refuse_instance(&found.place, target.span) {
-            return None;
-        }
-        let writable = self.writable(&found, target.span);
-        let mut place = found.place;
-        let ty = place.ty;
-        let value = self.after_place(&mut place, |this| this.value(value, ty))?;
-        if writable {
-            self.note_assigned(&place, target.span);
-            self.assign(place, value, span);
-        }
-        Some(())
+        self.assigned(std::slice::from_ref(target), value, span, false).map(drop)
     }
 
     /// `a := b := c`: each target gets what the one to its right was given.
@@ -159,14 +143,21 @@ impl<'s> Checker<'_, 's> {
             self.operand(value, None);
             return None;
         }
-        self.assigned(targets, value, span).map(drop)
+        self.assigned(targets, value, span, false).map(drop)
     }
 
     /// What the first of the targets is given. Targets are found from left to right, then the value is
-    /// computed, and assigned from right to left.
-    fn assigned(&mut self, targets: &[ast::Expr<'s>], value: &ast::Expr<'s>, span: Span) -> Option<Expr> {
+    /// computed, and assigned from right to left. It is computed once where a target to the left reads it.
+    fn assigned(
+        &mut self,
+        targets: &[ast::Expr<'s>],
+        value: &ast::Expr<'s>,
+        span: Span,
+        is_read: bool,
+    ) -> Option<Expr> {
         let [target, rest @ ..] = targets else { return None };
         let Some(found) = self.place(target) else {
+            // What is left may hold mistakes of its own.
             rest.iter().for_each(|it| drop(self.place(it)));
             self.operand(value, None);
             return None;
@@ -181,10 +172,10 @@ impl<'s> Checker<'_, 's> {
             if rest.is_empty() {
                 return this.value(value, ty);
             }
-            let right = this.assigned(rest, value, span)?;
+            let right = this.assigned(rest, value, span, true)?;
             this.coerce(Operand::Typed(right.read()), ty, value.span)
         })?;
-        if given.as_const().is_none() {
+        if is_read && given.as_const().is_none() {
             self.save("assigned", &mut given);
         }
         if writable {

@@ -291,30 +291,10 @@ type MembersRead<'s> = FxHashSet<[Key<'s>; 3]>;
 
 fn note_members_read<'s>(body: &[ast::Statement<'s>], read: &mut MembersRead<'s>) {
     for statement in body {
-        match &statement.kind {
-            StatementKind::Assign { target, value } => read.extend(member_read(target, value)),
-            StatementKind::If { branches, otherwise } => {
-                branches.iter().for_each(|(_, body)| note_members_read(body, read));
-                note_members_read(otherwise.as_deref().unwrap_or_default(), read);
-            }
-            StatementKind::Case { arms, otherwise, .. } => {
-                arms.iter().for_each(|it| note_members_read(&it.body, read));
-                note_members_read(otherwise.as_deref().unwrap_or_default(), read);
-            }
-            StatementKind::For { body, .. }
-            | StatementKind::While { body, .. }
-            | StatementKind::Repeat { body, .. } => {
-                note_members_read(body, read);
-            }
-            StatementKind::Empty
-            | StatementKind::AssignAll { .. }
-            | StatementKind::SetReset { .. }
-            | StatementKind::Expr(_)
-            | StatementKind::Exit
-            | StatementKind::Continue
-            | StatementKind::Return
-            | StatementKind::Error => {}
+        if let StatementKind::Assign { target, value } = &statement.kind {
+            read.extend(member_read(target, value));
         }
+        ast::each_body(statement, &mut |body| note_members_read(body, read));
     }
 }
 

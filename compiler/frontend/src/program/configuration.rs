@@ -196,7 +196,7 @@ impl<'s> Declarations<'s> {
                 Diagnostic::new(Code::E0902, span, format!("reading `{}`, a PROGRAM that runs by itself", name.text))
                     .label("only those that are called by name can be read from outside yet")
                     .other(name.span, "nobody calls it")
-                    .help(format!("call it here, `{}();`, or share the value in a VAR_GLOBAL", name.text)),
+                    .help("share the value in a VAR_GLOBAL"),
             );
         }
     }
