@@ -1,5 +1,5 @@
 //! A program's state as the values of its variables: what executors must agree on. Padding, and
-//! the bytes of a string behind its length, are nobody's.
+//! the bytes of a string after its length, are nobody's.
 
 use staunch_ir::layout::{Layout, usize_of};
 use staunch_ir::{FieldId, Program, Type, Value};

@@ -50,7 +50,7 @@ impl Task {
         }
     }
 
-    /// The lane of the field behind the operands.
+    /// The lane of the field after the operands.
     pub fn result(self) -> Lane {
         match self {
             Self::Apply(op, lane) => op.result().unwrap_or(lane),

@@ -59,7 +59,7 @@ impl Table {
 
     fn row(&mut self, cells: &[String]) -> Result<(), String> {
         if self.fault.is_some() {
-            return Err("a row behind the fault, which ends the run".to_owned());
+            return Err("a row after the fault, which ends the run".to_owned());
         }
         if let [first, text, place] = cells
             && first == "fault"

@@ -72,7 +72,7 @@ fn compile(fence: &Fence, dialect: Dialect) -> (Sources, Compilation) {
 }
 
 /// Declarations of variables, with or without statements, become a PROGRAM.
-fn wrapped(text: &str) -> String {
+pub fn wrapped(text: &str) -> String {
     let units = ["PROGRAM ", "FUNCTION", "TYPE", "CONFIGURATION", "VAR_GLOBAL", "{dialect"];
     let is_unit = |line: &str| units.iter().any(|it| line.starts_with(it));
     match text.lines().any(is_unit) {

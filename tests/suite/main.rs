@@ -15,3 +15,4 @@ mod state;
 mod architecture;
 mod documents;
 mod layers;
+mod pages;

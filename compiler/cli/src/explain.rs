@@ -49,7 +49,7 @@ fn one(asked: &str) -> Result<u8, String> {
         Severity::Error => "error",
         Severity::Warning => "lint",
     };
-    output::print(format!("{} ({kind}): {}\n\n{}", code.name(), code.title(), code.explanation()).as_bytes())?;
+    output::print(format!("{} ({kind}): {}\n\n{}", code.name(), code.title(), code.page()).as_bytes())?;
     Ok(0)
 }
 

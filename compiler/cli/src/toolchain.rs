@@ -5,7 +5,7 @@ use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// One crate of the runtime, in an order in which each stands behind what it uses.
+/// One crate of the runtime, in an order in which each comes after what it uses.
 pub struct Recipe {
     /// Its folder in the source archive, which is also the package's name.
     pub package: &'static str,

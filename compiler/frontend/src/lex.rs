@@ -153,8 +153,8 @@ impl<'s> Reading<'s> {
         let mut it =
             Diagnostic::new(Code::E0002, self.span(place), format!("`{shown}` means nothing in Structured Text"));
         it = match shown.chars().next() {
-            Some('‘' | '’' | '‚' | '`') => it.help("a string stands between two `'`"),
-            Some('“' | '”' | '„') => it.help("a string stands between two `'`, a WSTRING between two `\"`"),
+            Some('‘' | '’' | '‚' | '`') => it.help("a string is written between two `'`"),
+            Some('“' | '”' | '„') => it.help("a string is written between two `'`, a WSTRING between two `\"`"),
             Some('–' | '—' | '−') => it.help("write `-`"),
             Some('\u{a0}') => it.help("write an ordinary space"),
             Some('#') if self.text[index(place.1)..].starts_with(|it: char| it.is_ascii_alphabetic()) => {
@@ -171,7 +171,7 @@ impl<'s> Reading<'s> {
         self.tokens.diagnostics.push(it);
     }
 
-    /// `’` behind `‘Mixer`: the pair is one mistake.
+    /// `’` after `‘Mixer`: the pair is one mistake.
     fn closes_text(&mut self, place: (u32, u32)) -> bool {
         let Some(opened) = self.tokens.diagnostics.last().map(|it| it.span) else { return false };
         let whole = (opened.start, place.1);
@@ -189,7 +189,7 @@ impl<'s> Reading<'s> {
                 self.span(whole),
                 format!("`{open}` and `{close}` mean nothing in Structured Text"),
             )
-            .label("a string stands between two `'`")
+            .label("a string is written between two `'`")
             .help(format!("write `{meant}`"))
             .fix(self.span(whole), meant),
         );

@@ -13,7 +13,7 @@ pub(crate) struct Log<'s> {
     line_cache: LineCache,
 }
 
-/// The last line that was looked up: the next position is usually on it or just behind.
+/// The last line that was looked up: the next position is usually on it or just after.
 #[derive(Default)]
 struct LineCache {
     file: u16,

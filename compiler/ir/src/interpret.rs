@@ -29,7 +29,7 @@ pub struct Interpreter<'p> {
     layout: Layout,
     frames: Vec<FrameImage>,
     initial: Vec<u8>,
-    /// The state, and behind it the locals of the routines that are running, callee after caller.
+    /// The state, and after it the locals of the routines that are running, callee after caller.
     memory: Vec<u8>,
     /// Where the by-reference parameters of the running routines refer to: offsets in `memory`.
     references: Vec<usize>,

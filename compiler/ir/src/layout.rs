@@ -291,7 +291,7 @@ pub fn usize_of(size: u64) -> usize {
     usize::try_from(size).expect("sizes are below the limit of 1 GiB")
 }
 
-/// Writes a string's header and bytes to the start of `bytes`, and zeros behind them.
+/// Writes a string's header and bytes to the start of `bytes`, and zeros after them.
 fn write_text(text: &[u8], bytes: &mut [u8]) {
     let length = u16::try_from(text.len()).expect("verified IR: a string fits its capacity");
     bytes.fill(0);

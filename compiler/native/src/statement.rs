@@ -7,7 +7,7 @@ use cranelift_codegen::ir::{self as clif, InstBuilder};
 use staunch_ir::{Block, Expr, ExprKind, Op, Place, Statement, StatementKind, Type};
 
 impl<'p> Function<'_, 'p> {
-    /// What stands behind a statement that control does not pass is left out.
+    /// What comes after a statement that control does not pass is left out.
     pub(crate) fn block(&mut self, block: &'p [Statement]) -> Flow {
         for statement in block {
             if self.statement(statement) == Flow::Leaves {
@@ -134,7 +134,7 @@ impl<'p> Function<'_, 'p> {
         flow
     }
 
-    /// Flow on behind a branch, if one of its ways leads there.
+    /// Flow on after a branch, if one of its ways leads there.
     pub(crate) fn join(&mut self, ways: &[Flow], after: clif::Block) -> Flow {
         if !ways.contains(&Flow::Continues) {
             return Flow::Leaves;

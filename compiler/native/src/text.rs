@@ -1,4 +1,4 @@
-//! Strings: pointers to a length and the bytes behind it. What makes a new string writes it to
+//! Strings: pointers to a length and the bytes after it. What makes a new string writes it to
 //! the frame, so no result overlaps an operand.
 
 use crate::address::Address;
@@ -7,7 +7,7 @@ use crate::runtime_call::by_pointer;
 use cranelift_codegen::ir as clif;
 use staunch_ir::{Const, Expr, ExprKind, Lane, TextOp, Type};
 
-/// Up to this capacity a constant is kept as it is in memory, with the zeros behind it.
+/// Up to this capacity a constant is kept as it is in memory, with the zeros after it.
 const WHOLE: u16 = 256;
 
 /// A string that can be read, and the capacity of the storage it is in.

@@ -33,7 +33,7 @@ impl Random {
     }
 }
 
-/// The block is field 0; the inputs are the fields behind it.
+/// The block is field 0; the inputs are the fields after it.
 fn program_of(id: BlockId, instruction: usize, is_prescan: bool) -> Program {
     let info = id.info();
     let lanes = inputs(info, instruction);

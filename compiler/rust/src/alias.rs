@@ -361,8 +361,8 @@ impl Separator<'_> {
 /// The subscripts of `place` that the callee gets by value.
 fn capture(binding: &Binding, place: &Place, arguments: &mut Vec<Argument>) {
     let Binding::Within { steps, .. } = binding else { return };
-    let behind = &place.projections[place.projections.len() - steps.len()..];
-    for projection in behind {
+    let after = &place.projections[place.projections.len() - steps.len()..];
+    for projection in after {
         if let Projection::Index { index, .. } = projection {
             arguments.push(Argument::Value(index.as_ref().clone()));
         }

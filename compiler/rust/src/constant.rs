@@ -168,7 +168,7 @@ fn block(id: BlockId, value: &Const) -> TokenStream {
         return start;
     }
     let ty = rust_path(info.rust_path, false);
-    // A path in an expression has its generic arguments behind `::`; here they follow from `start`.
+    // A path in an expression has its generic arguments after `::`; here they follow from `start`.
     let ty = ty.into_iter().take_while(|it| it.to_string() != "<").collect::<TokenStream>();
     quote!(#ty { #(#set,)* ..#start })
 }

@@ -16,7 +16,7 @@ pub fn format(items: TokenStream) -> String {
     space(&comment(&prettyplease::unparse(&file)))
 }
 
-/// Puts each mark behind the line that follows it.
+/// Puts each mark after the line that follows it.
 fn comment(text: &str) -> String {
     let mut commented = String::with_capacity(text.len());
     let mut pending = None;

@@ -234,7 +234,7 @@ fn claim_all(mut scope: Scope, wanted: impl Iterator<Item = String>) -> Vec<Iden
     wanted.map(|name| scope.claim(&name)).collect()
 }
 
-/// The part of a path behind its last slash.
+/// The part of a path after its last slash.
 pub fn base_name(path: &str) -> &str {
     path.rsplit(['/', '\\']).next().unwrap_or(path)
 }

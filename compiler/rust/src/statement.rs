@@ -1,4 +1,4 @@
-//! Statements, each behind a mark of its source line (`format` turns marks into comments).
+//! Statements, each after a mark of its source line (`format` turns marks into comments).
 
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
@@ -45,7 +45,7 @@ impl Function<'_> {
         Some(quote!(st_mark!(#text);))
     }
 
-    /// `x = f(…);` for a call whose result only the assignment behind it reads.
+    /// `x = f(…);` for a call whose result only the assignment after it reads.
     fn joined<'s>(&self, statement: &Statement, after: &'s [Statement]) -> Option<(TokenStream, &'s [Statement])> {
         let StatementKind::Call { result: Some(result), .. } = &statement.kind else { return None };
         let (next, then) = after.split_first()?;

@@ -4,12 +4,12 @@
 //! Symbols and signatures (a BOOL is a byte that is 0 or 1):
 //!
 //! - `staunch_{function}_{lane}`: a row of the operation table. A total one takes its operands and
-//!   returns its result; one that may fault has an out pointer behind its operands and returns 0,
+//!   returns its result; one that may fault has an out pointer after its operands and returns 0,
 //!   or the fault's code and leaves the result alone.
 //! - `staunch_convert_{from}_{to}`, `staunch_trunc_{from}_{to}`: conversions.
 //! - `staunch_text_{function}`, `staunch_text_copy`: strings. A string is a pointer to its header,
-//!   a `u16` length, with the bytes right behind it; a string result goes to a header and a
-//!   capacity behind the operands.
+//!   a `u16` length, with the bytes right after it; a string result goes to a header and a
+//!   capacity after the operands.
 //! - the symbols in `BLOCKS`: instructions of the standard blocks take the instance, the context
 //!   and the rung; prescans take the instance.
 #![no_std]

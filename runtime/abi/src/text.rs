@@ -14,7 +14,7 @@ const BYTES: usize = size_of::<u16>();
 /// # Safety
 /// `header` points to a string, aligned for its length, that nobody writes to during `'a`.
 unsafe fn bytes<'a>(header: *const u8) -> &'a [u8] {
-    // SAFETY: a string starts with its length, and has that many bytes behind it.
+    // SAFETY: a string starts with its length, and has that many bytes after it.
     unsafe { slice::from_raw_parts(header.add(BYTES), usize::from(header.cast::<u16>().read())) }
 }
 

@@ -179,7 +179,7 @@ pub fn concat(a: &[u8], b: &[u8], out: &mut Destination<'_>) {
     out.write(b);
 }
 
-/// `INSERT`: puts `inserted` behind the byte at `position`; 0 puts it in front.
+/// `INSERT`: puts `inserted` after the byte at `position`; 0 puts it in front.
 #[inline]
 pub fn insert(text: &[u8], inserted: &[u8], position: i64, out: &mut Destination<'_>) {
     let (before, after) = split(text, position);

@@ -25,7 +25,7 @@ const FROM_LOGIX: &str = "A COUNTER and its instructions become an instance and 
 `c(CU := rung, R := clear, PV := preset)`, c.DN is c.Q, c.ACC is c.CV. Give the rewritten program with --against FILE to \
 compare it";
 
-/// The reason behind the first error.
+/// The reason after the first error.
 pub fn find(to: &Session, from: Dialect, target: Dialect) -> Rejection {
     let errors = to.diagnostics.iter().filter(|it| it.severity == Severity::Error);
     let found = errors.map(|it| of(to, it, from, target));

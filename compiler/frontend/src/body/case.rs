@@ -93,7 +93,7 @@ impl<'s> Checker<'_, 's> {
         let Some(range) = self.label_range(label, ty, span) else { return Vec::new() };
         if let Some(first) = seen.labels.insert(range, span) {
             self.report(
-                Diagnostic::new(Code::E0506, span, "this CASE label stands twice")
+                Diagnostic::new(Code::E0506, span, "this CASE label is written twice")
                     .label("never chosen: the first one is")
                     .other(first, "first here"),
             );

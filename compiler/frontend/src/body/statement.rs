@@ -80,7 +80,7 @@ impl<'s> Checker<'_, 's> {
     fn leave_loop(&mut self, word: &str, kind: StatementKind, span: Span) {
         if self.loops == 0 {
             self.report(
-                Diagnostic::new(Code::E0505, span, format!("{word} stands outside of a loop"))
+                Diagnostic::new(Code::E0505, span, format!("{word} is outside of a loop"))
                     .label("there is no FOR, WHILE or REPEAT around it")
                     .help("to leave the whole POU, write RETURN"),
             );

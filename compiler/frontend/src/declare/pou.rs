@@ -68,7 +68,7 @@ impl<'s> Declarations<'s> {
         let named = |it: &&'s ast::VarDecl<'s>| matches!(it.ty.kind, ast::TypeKind::Named(_));
         let mut waiting: Vec<_> =
             blocks.flat_map(|block| block.vars.iter().filter(named).map(move |decl| (block, decl))).collect();
-        // One constant may use another that is declared behind it, so rounds go on while they help.
+        // One constant may use another that is declared after it, so rounds go on while they help.
         loop {
             let before = waiting.len();
             waiting.retain(|(block, decl)| {
@@ -163,7 +163,7 @@ impl<'s> Declarations<'s> {
             self.report(
                 Diagnostic::new(Code::E0403, block.span, format!("a {kind} has no VAR_GLOBAL"))
                     .label(format!("expected VAR: its variables belong to the {kind} `{}`", pou.name.text))
-                    .help(format!("write `VAR`, or move the block above the {kind}, to where the file's units stand")),
+                    .help(format!("write `VAR`, or move the block above the {kind}, to where the file's units are")),
             );
         }
     }

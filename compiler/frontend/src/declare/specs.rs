@@ -222,7 +222,7 @@ impl<'s> Declarations<'s> {
         let mut error =
             Diagnostic::new(Code::E0102, name.span, format!("there is no type `{}`", name.text)).label("unknown type");
         if name.text.eq_ignore_ascii_case("VOID") {
-            error = error.help("a FUNCTION without a result has no `:` and no type behind its name");
+            error = error.help("a FUNCTION without a result has no `:` and no type after its name");
         } else if let Some(near) = near {
             error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
         }
@@ -326,7 +326,7 @@ impl<'s> Declarations<'s> {
     fn dimension(&mut self, low: i128, high: i128, element: Resolved, span: Span) -> Option<Resolved> {
         if low > high {
             self.report(
-                Diagnostic::new(Code::E0406, span, "the bounds of an array stand in the wrong order")
+                Diagnostic::new(Code::E0406, span, "the bounds of an array are in the wrong order")
                     .label(format!("{low} is above {high}"))
                     .fix(span, format!("{high}..{low}")),
             );

@@ -163,7 +163,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// A call that names no parameter gives all inputs: who counts them must not wonder which one is
-    /// missing. Those with a declared value, which `is_optional` tells, may be left out behind the others.
+    /// missing. Those with a declared value, which `is_optional` tells, may be left out after the others.
     pub(crate) fn require_all(
         &mut self,
         owner: &str,

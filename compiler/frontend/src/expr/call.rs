@@ -127,7 +127,7 @@ impl<'s> Checker<'_, 's> {
         let text = self.decl.log.sources.text(callee.span).to_owned();
         self.report(
             Diagnostic::new(Code::E0311, span, format!("a call of `{text}` has no value"))
-                .label("this cannot stand in an expression")
+                .label("this cannot be part of an expression")
                 .help("call it in a statement of its own, then read its outputs"),
         );
     }

@@ -88,7 +88,7 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    /// The type that a literal's prefix names; `Some(None)` for the text behind `STRING#`.
+    /// The type that a literal's prefix names; `Some(None)` for the text after `STRING#`.
     fn literal_type(&mut self, prefix: ast::Name<'s>, value: &LiteralValue<'s>) -> Option<Option<Elementary>> {
         if let Some(ty) = Elementary::named(prefix.text) {
             return Some(Some(ty));

@@ -252,7 +252,7 @@ impl<'s> Checker<'_, 's> {
                         .label(lost)
                         .other(call.span, "the counter")
                         .help(format!(
-                            "pass `{pin} := FALSE` here, and behind the statements that read `{counter}.{output}` write \
+                            "pass `{pin} := FALSE` here, and after the statements that read `{counter}.{output}` write \
                              `IF {given} THEN {counter}({pin} := TRUE); END_IF`"
                         )),
                 );

@@ -56,7 +56,7 @@ impl Checker<'_, '_> {
     }
 
     /// Runs `next`. What it hoists runs before the expression that it stands in, so of what was
-    /// evaluated before, that is saved which would come out otherwise behind it.
+    /// evaluated before, that is saved which would come out otherwise after it.
     pub(crate) fn after<T>(&mut self, done: &mut [&mut Expr], next: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
         let mark = self.block.len();
         let result = next(self);
@@ -102,8 +102,8 @@ impl Checker<'_, '_> {
         result
     }
 
-    /// Saves those parts of a call which its statements would evaluate too late: behind a fault that
-    /// is written later, or behind a write to what they read.
+    /// Saves those parts of a call which its statements would evaluate too late: after a fault that
+    /// is written later, or after a write to what they read.
     pub(crate) fn settle(&mut self, parts: &mut [Written], call: &[Statement]) {
         let faults: Vec<bool> = parts.iter().map(|it| self.held_can_fault(&it.held)).collect();
         let late = |at: usize| {

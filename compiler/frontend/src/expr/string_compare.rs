@@ -25,7 +25,7 @@ impl Checker<'_, '_> {
         Some(Expr::load(chosen, self.at(span)))
     }
 
-    /// `LIMIT` of strings. Where MN lies behind MX, a text before MN gives MN.
+    /// `LIMIT` of strings. Where MN lies after MX, a text before MN gives MN.
     pub(crate) fn limited_text(&mut self, ty: Type, texts: Vec<Expr>, span: Span) -> Option<Expr> {
         let [min, value, max] = <[Expr; 3]>::try_from(self.texts_in_variables(ty, texts, span)).ok()?;
         let at = self.at(span);

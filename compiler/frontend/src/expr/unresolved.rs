@@ -128,7 +128,7 @@ impl<'s> Checker<'_, 's> {
             self.report(
                 error
                     .label("this FUNCTION has no result type")
-                    .help(format!("write the type behind the function's name: `FUNCTION {} : INT`", name.text)),
+                    .help(format!("write the type after the function's name: `FUNCTION {} : INT`", name.text)),
             );
         }
     }

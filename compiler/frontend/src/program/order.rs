@@ -119,7 +119,7 @@ fn check_stack(declarations: &mut Declarations<'_>, mut stacks: Vec<u64>, calls:
     }
 }
 
-/// The slot of a routine: a body has its number, a prescan follows behind all bodies.
+/// The slot of a routine: a body has its number, a prescan follows after all bodies.
 fn slot(declarations: &Declarations<'_>, routine: usize) -> usize {
     routine % declarations.pous.len()
 }

@@ -44,7 +44,7 @@ pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
                 .help("name the variable again: `x > 1 AND x < 5`")
         }
         (Expected::Expression, _) if found == Kind::OpenBracket => {
-            Diagnostic::new(Code::E0001, span, "a list of values stands only in a declaration")
+            Diagnostic::new(Code::E0001, span, "a list of values is allowed only in a declaration")
                 .label("expected an expression")
                 .help("assign to one element after the other: `a[0] := 1;`")
         }
@@ -65,7 +65,7 @@ pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
             match found {
                 // What is in brackets seems to be a list, which a closing bracket would cut off.
                 Kind::Comma => it,
-                _ => it.help(format!("write {end} here")).fix(behind(input, problem.at), bracket(end)),
+                _ => it.help(format!("write {end} here")).fix(after(input, problem.at), bracket(end)),
             }
         }
         (Expected::Token(Kind::Colon), _) if found == Kind::Semicolon && in_case(input) => {
@@ -75,11 +75,11 @@ pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
                 .fix(span, ":")
         }
         (Expected::Token(Kind::Colon), _) if found == Kind::Semicolon => {
-            let behind = Span { end: span.start, ..span };
+            let after = Span { end: span.start, ..span };
             Diagnostic::new(Code::E0001, span, "expected `:` and a type, found `;`")
                 .label("a type is missing before this")
-                .help("write the type behind the name: ` : INT`")
-                .fix(behind, " : INT")
+                .help("write the type after the name: ` : INT`")
+                .fix(after, " : INT")
         }
         (expected, _) => {
             let expected = said(expected);
@@ -147,8 +147,8 @@ pub fn shown(input: &mut In<'_, '_, '_>, kind: Kind, span: Span) -> String {
     if own && text.len() <= 40 { format!("`{text}`") } else { kind.to_string() }
 }
 
-/// The empty place behind the token before the one at `at`.
-fn behind(input: &mut In<'_, '_, '_>, at: usize) -> Span {
+/// The empty place after the token before the one at `at`.
+fn after(input: &mut In<'_, '_, '_>, at: usize) -> Span {
     let last = input.state().place(at.saturating_sub(1));
     Span { start: last.end, ..last }
 }
@@ -166,7 +166,7 @@ pub fn padded(input: &mut In<'_, '_, '_>, span: Span, word: &str) -> String {
     format!("{}{word}{}", space(before), space(after))
 }
 
-/// Directly behind the token before the current one.
+/// Directly after the token before the current one.
 pub fn behind_last(input: &mut In<'_, '_, '_>) -> Span {
     let last = input.last();
     let len = input.text(last).chars().next_back().map_or(0, char::len_utf8);
@@ -197,7 +197,7 @@ pub fn missing_semicolon(input: &mut In<'_, '_, '_>) {
     let found = shown(input, kind, here);
     input.report(
         Diagnostic::new(Code::E0012, span, format!("expected `;`, found {found}"))
-            .label("a `;` is missing behind this")
+            .label("a `;` is missing after this")
             .help("write `;` here")
             .fix(place, ";"),
     );
@@ -234,7 +234,7 @@ pub fn missing_end(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
     let inner = input.state().misaligned.filter(|it| it.start > opened.start);
     if let Some(inner) = inner {
         let inner_opener = input.text(inner).to_ascii_uppercase();
-        it = it.other(inner, format!("or this {inner_opener} is not: the end behind it stands in another column"));
+        it = it.other(inner, format!("or this {inner_opener} is not: the end after it is in another column"));
     }
     input.report(it.help(help));
 }
@@ -269,7 +269,7 @@ pub fn else_if(input: &mut In<'_, '_, '_>, words: Span, opened: Span) {
 }
 
 pub fn behind_else(word: Span, kind: Kind) -> Diagnostic {
-    Diagnostic::new(Code::E0015, word, format!("{kind} stands behind the ELSE of the same IF"))
+    Diagnostic::new(Code::E0015, word, format!("{kind} comes after the ELSE of the same IF"))
         .label("expected `END_IF`")
         .help("move this branch before the ELSE")
 }
@@ -309,7 +309,7 @@ pub fn too_many(limit: usize) -> String {
 }
 
 pub fn declaration_behind_statements(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0017, span, "this declaration stands behind statements")
+    Diagnostic::new(Code::E0017, span, "this declaration comes after statements")
         .label("all VAR blocks come before the first statement")
         .help("move this block to the head of its PROGRAM, FUNCTION_BLOCK or FUNCTION")
 }
@@ -334,7 +334,7 @@ pub fn missing_colon(input: &mut In<'_, '_, '_>) {
     let found = shown(input, kind, here);
     input.report(
         Diagnostic::new(Code::E0001, span, format!("expected `:`, found {found}"))
-            .label("a `:` is missing behind this label")
+            .label("a `:` is missing after this label")
             .help("write `:` here")
             .fix(place, ":"),
     );
@@ -349,7 +349,7 @@ pub fn missing_comma(input: &mut In<'_, '_, '_>) {
     if kind == Kind::Semicolon {
         input.report(
             Diagnostic::new(Code::E0001, here, "expected `,`, found `;`")
-                .label("the list goes on behind this")
+                .label("the list goes on after this")
                 .help("write `,`")
                 .fix(here, ","),
         );
@@ -357,7 +357,7 @@ pub fn missing_comma(input: &mut In<'_, '_, '_>) {
     }
     input.report(
         Diagnostic::new(Code::E0001, span, format!("expected `,`, found {found}"))
-            .label("a `,` is missing behind this")
+            .label("a `,` is missing after this")
             .help("write `,` here")
             .fix(place, ","),
     );
@@ -365,7 +365,7 @@ pub fn missing_comma(input: &mut In<'_, '_, '_>) {
 
 /// `else:`
 pub fn colon_behind_else(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0001, span, "no `:` stands behind the ELSE of an IF")
+    Diagnostic::new(Code::E0001, span, "no `:` comes after the ELSE of an IF")
         .label("delete this")
         .help("delete it")
         .fix(span, "")
@@ -375,7 +375,7 @@ pub fn colon_behind_else(span: Span) -> Diagnostic {
 pub fn name_alone(input: &mut In<'_, '_, '_>, span: Span) {
     let text = input.text(span);
     input.report(
-        Diagnostic::new(Code::E0001, span, "expected `:=` or a call behind this")
+        Diagnostic::new(Code::E0001, span, "expected `:=` or a call after this")
             .label("this alone is no statement")
             .help(format!("to assign, write `{text} := …;`; to call, `{text}(…);`")),
     );
@@ -399,7 +399,7 @@ pub fn missing_assign(input: &mut In<'_, '_, '_>) {
     let found = shown(input, kind, here);
     input.report(
         Diagnostic::new(Code::E0001, span, format!("expected `:=`, found {found}"))
-            .label("a `:=` is missing behind this")
+            .label("a `:=` is missing after this")
             .help("write `:=` here")
             .fix(place, " :="),
     );

@@ -1,7 +1,7 @@
 //! Expressions, by precedence climbing.
 //!
 //! Written as productions over chumsky's input rather than with its `pratt`: that tries eight
-//! levels behind each operand, and needs a stack frame for each, where a nesting limit counts.
+//! levels after each operand, and needs a stack frame for each, where a nesting limit counts.
 
 use crate::{
     ast::{Argument, ArgumentKind, BinaryOp, Expr, ExprKind, Literal, LiteralValue, Name, UnaryOp},
@@ -411,7 +411,7 @@ fn is_left_out(input: &mut In<'_, '_, '_>) -> bool {
     matches!(input.kind(), Kind::Comma | Kind::CloseParen)
 }
 
-/// Behind a list: its end, or one more item. `opened` is the number of the opening token.
+/// After a list: its end, or one more item. `opened` is the number of the opening token.
 pub fn close(input: &mut In<'_, '_, '_>, end: Kind, opened: usize) -> Parsed<Span> {
     match input.eat(end) {
         Some(span) => Ok(span),

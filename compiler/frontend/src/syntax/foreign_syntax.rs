@@ -121,7 +121,7 @@ pub fn counting_loop(input: &mut In<'_, '_, '_>) -> bool {
     true
 }
 
-/// The second half of an operator that other languages write in two signs, behind the first one:
+/// The second half of an operator that other languages write in two signs, after the first one:
 /// `=<`, `><`, `<<`. None where the statement cannot be read on.
 pub fn second_sign(input: &mut In<'_, '_, '_>, first: Kind, sign: Span) -> Option<Option<(BinaryOp, Span)>> {
     if input.here().start != sign.end {
@@ -223,31 +223,31 @@ pub fn point_first(input: &mut In<'_, '_, '_>) -> bool {
     true
 }
 
-/// `5.`, at what stands behind the point.
+/// `5.`, at what comes after the point.
 pub fn point_last(input: &mut In<'_, '_, '_>, number: Span) {
     let whole = number.to(input.last());
     let text = input.text(whole);
     input.report(
-        Diagnostic::new(Code::E0005, whole, "a number has a digit behind its point")
+        Diagnostic::new(Code::E0005, whole, "a number has a digit after its point")
             .help(format!("write `{text}0`"))
             .fix(whole, format!("{text}0")),
     );
 }
 
-/// `1,5` behind the `1`.
+/// `1,5` after the `1`.
 pub fn decimal_comma(input: &mut In<'_, '_, '_>) -> bool {
     let digits = kind_before(input) == Some(Kind::Integer) && input.kind_ahead(1) == Kind::Integer;
     let (last, comma, at) = (input.last(), input.here(), input.number());
-    let behind = input.state().place(at + 1);
-    if input.kind() != Kind::Comma || !digits || last.end != comma.start || comma.end != behind.start {
+    let after = input.state().place(at + 1);
+    if input.kind() != Kind::Comma || !digits || last.end != comma.start || comma.end != after.start {
         return false;
     }
     input.take();
     input.take();
-    let whole = last.to(behind);
+    let whole = last.to(after);
     let meant = input.text(whole).replace(',', ".");
     input.report(
-        Diagnostic::new(Code::E0005, whole, "a number's fraction stands behind a point")
+        Diagnostic::new(Code::E0005, whole, "a number's fraction comes after a point")
             .help(format!("write `{meant}`"))
             .fix(whole, meant),
     );

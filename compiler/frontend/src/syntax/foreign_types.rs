@@ -97,7 +97,7 @@ pub fn missing_comma<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
     })
 }
 
-/// `INT[10]`, as other languages write an array, behind its `INT`.
+/// `INT[10]`, as other languages write an array, after its `INT`.
 pub fn length<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
     let starts =
         ahead(|input| input.kind() == Kind::OpenBracket && matches!(input.kind_ahead(1), Kind::Integer | Kind::Name));
@@ -226,7 +226,7 @@ pub fn no_colon_in_type<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
     })
 }
 
-/// `AT IX0.0`, behind its AT.
+/// `AT IX0.0`, after its AT.
 pub fn address_without_sign<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
     let number = token(Kind::Integer).or(token(Kind::Real));
     let more = token(Kind::Dot).ignore_then(number.clone().or_not()).ignored().or(number.ignored());

@@ -1,4 +1,4 @@
-//! Initial values, behind `:=`.
+//! Initial values, after `:=`.
 
 use chumsky::prelude::*;
 

@@ -41,7 +41,7 @@ pub fn mend(tokens: &mut Tokens<'_>, text: &str, file: u16) {
 /// Walks over the places where a name is declared.
 fn declarations(tokens: &Tokens<'_>, found: &mut Found<'_>) {
     let mut open: Vec<Kind> = Vec::new();
-    // At the first name of a declaration, or behind the `,` of its names.
+    // At the first name of a declaration, or after the `,` of its names.
     let mut fresh = false;
     // Since the declaration began, only names and `,` were seen.
     let mut names = false;
@@ -102,7 +102,7 @@ fn declared(tokens: &Tokens<'_>, at: usize, found: &mut Found<'_>) -> Option<usi
     Some(count)
 }
 
-/// A reserved word behind PROGRAM, FUNCTION or FUNCTION_BLOCK.
+/// A reserved word after PROGRAM, FUNCTION or FUNCTION_BLOCK.
 fn head(tokens: &Tokens<'_>, at: usize, found: &mut Found<'_>) {
     let kind = tokens.kinds[at];
     let word = kind.keyword().is_some_and(|it| !it.starts_with("END_"));
@@ -227,7 +227,7 @@ fn may_precede_parenthesis(word: Kind) -> bool {
     )
 }
 
-/// Kinds behind which an operand stands.
+/// Kinds after which an operand stands.
 fn wants_operand(kind: Kind) -> bool {
     matches!(
         kind,

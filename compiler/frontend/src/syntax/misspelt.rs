@@ -31,7 +31,7 @@ fn misspelt_word(word: &str) -> Option<Kind> {
     WORDS.iter().find(|(it, _)| word.eq_ignore_ascii_case(it)).map(|(_, kind)| *kind)
 }
 
-/// The end that a name stands for, with the kind behind it, and how many tokens that takes:
+/// The end that a name stands for, with the kind after it, and how many tokens that takes:
 /// `ENDIF`, `END_FOOR`, `END IF`.
 pub fn misspelt_end(word: &str, next: Kind) -> Option<(Kind, usize)> {
     if word.eq_ignore_ascii_case("END") {

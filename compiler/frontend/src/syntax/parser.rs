@@ -103,7 +103,7 @@ pub struct State<'t, 's> {
     pub depth: usize,
     /// Height of the tree of the expression that was read last.
     pub height: usize,
-    /// Behind a limit there are no more tokens.
+    /// After a limit there are no more tokens.
     pub stopped: bool,
     /// Operands whose operator waits for its right side, of all expressions being read.
     pub waiting: Vec<Waiting<'s>>,
@@ -117,11 +117,11 @@ pub struct State<'t, 's> {
     pub braces: Vec<Span>,
     /// Declarations among the statements of the current POU, reported.
     pub strays: Vec<VarDecl<'s>>,
-    /// Number of the token behind the last of them.
+    /// Number of the token after the last of them.
     pub told_at: Option<usize>,
     /// What opened the first block of the POU whose end stands in another column.
     pub misaligned: Option<Span>,
-    /// An ELSE without its IF has been reported: so is the END_IF behind it.
+    /// An ELSE without its IF has been reported: so is the END_IF after it.
     pub orphaned: bool,
     /// Units inside a POU, reported.
     pub nested: Vec<Item<'s>>,
@@ -182,7 +182,7 @@ impl<'s> State<'_, 's> {
 pub trait TokenReader<'t, 's> {
     fn number(&self) -> usize;
     fn kind(&mut self) -> Kind;
-    /// The kind of the token `ahead` places behind the current one.
+    /// The kind of the token `ahead` places after the current one.
     fn kind_ahead(&mut self, ahead: usize) -> Kind;
     fn here(&mut self) -> Span;
     /// The token before the current one.

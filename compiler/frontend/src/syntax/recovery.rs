@@ -52,7 +52,7 @@ pub fn begins_statement(input: &mut In<'_, '_, '_>) -> bool {
         || (input.on_new_line() && matches!(kind, Kind::Name | Kind::Address | Kind::Integer))
 }
 
-/// A name with `:=` directly behind it.
+/// A name with `:=` directly after it.
 fn starts_action(input: &mut In<'_, '_, '_>) -> bool {
     input.kind() == Kind::Name && input.kind_ahead(1) == Kind::Assign
 }
@@ -72,7 +72,7 @@ pub fn statement<'t, 'p>(input: &mut In<'t, 'p, '_>, problem: Problem, start: St
     skip_statement(input, start);
 }
 
-/// Behind the END_ of the block that starts here.
+/// After the END_ of the block that starts here.
 fn skip_block(input: &mut In<'_, '_, '_>) {
     let mut depth = 0usize;
     loop {
@@ -107,7 +107,7 @@ pub fn declaration<'t, 'p>(input: &mut In<'t, 'p, '_>, problem: Problem, start: 
     true
 }
 
-/// Behind the END_STRUCT of a structure that is not read.
+/// After the END_STRUCT of a structure that is not read.
 fn skip_structure(input: &mut In<'_, '_, '_>) {
     let mut ahead = 0;
     while input.kind_ahead(ahead) != Kind::EndStruct {
@@ -141,7 +141,7 @@ fn respell<'t, 'p>(input: &mut In<'t, 'p, '_>, start: Start<'t, 'p>) -> bool {
     true
 }
 
-/// Behind the next `;`, or before a keyword or a line that starts another statement.
+/// After the next `;`, or before a keyword or a line that starts another statement.
 pub fn skip_statement(input: &mut In<'_, '_, '_>, start: Span) {
     loop {
         let kind = input.kind();
@@ -164,7 +164,7 @@ fn starts_line(input: &mut In<'_, '_, '_>) -> bool {
         && matches!(input.kind_ahead(1), Kind::Assign | Kind::OpenParen | Kind::Dot | Kind::OpenBracket | Kind::Colon)
 }
 
-/// Behind `ends`, if it stands before the next statement.
+/// After `ends`, if it stands before the next statement.
 pub fn skip_header(input: &mut In<'_, '_, '_>, ends: Kind, opened: Span) {
     loop {
         let kind = input.kind();
@@ -180,7 +180,7 @@ pub fn skip_header(input: &mut In<'_, '_, '_>, ends: Kind, opened: Span) {
     }
 }
 
-/// Behind the `:` of a broken label on its line, or at the next statement.
+/// After the `:` of a broken label on its line, or at the next statement.
 pub fn skip_label(input: &mut In<'_, '_, '_>, start: Span) {
     while input.here().start == start.start || !input.on_new_line() {
         let kind = input.kind();
@@ -197,7 +197,7 @@ pub fn skip_label(input: &mut In<'_, '_, '_>, start: Span) {
     }
 }
 
-/// Behind the next `;`, or before a line that starts another declaration, or a guard.
+/// After the next `;`, or before a line that starts another declaration, or a guard.
 pub fn skip_declaration(input: &mut In<'_, '_, '_>, start: Span) {
     loop {
         let kind = input.kind();
@@ -229,7 +229,7 @@ pub fn is_statement_in_section(input: &mut In<'_, '_, '_>) -> bool {
     }
 }
 
-/// Behind the END_VAR of a section that is not read.
+/// After the END_VAR of a section that is not read.
 pub fn skip_section(input: &mut In<'_, '_, '_>) {
     loop {
         let kind = input.kind();
@@ -256,7 +256,7 @@ pub fn skip_to_item(input: &mut In<'_, '_, '_>) {
     }
 }
 
-/// Behind the first line of a POU whose head does not parse.
+/// After the first line of a POU whose head does not parse.
 pub fn skip_head(input: &mut In<'_, '_, '_>) {
     while !ends_statements(input.kind()) && !input.on_new_line() {
         input.take();
@@ -302,7 +302,7 @@ pub fn missing_word(input: &mut In<'_, '_, '_>, word: Kind, opened: Span) {
     } else {
         let (span, place) = (diagnostics::behind_last(input), diagnostics::insertion(input));
         Diagnostic::new(Code::E0013, span, message)
-            .label(format!("{word} is missing behind this"))
+            .label(format!("{word} is missing after this"))
             .help(format!("write {word} here"))
             .fix(place, format!(" {}", word.keyword().unwrap_or_default()))
     };

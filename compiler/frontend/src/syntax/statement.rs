@@ -128,8 +128,8 @@ fn stray_declaration<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>
         diagnostics::stray_declaration(input, found.span, closed);
     }
     input.state().strays.push(found);
-    let behind = input.number();
-    input.state().told_at = Some(behind);
+    let after = input.number();
+    input.state().told_at = Some(after);
     if input.kind() == Kind::EndVar {
         input.take();
         input.eat(Kind::Semicolon);
@@ -238,7 +238,7 @@ fn split_assign<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<Stat
     Err(input.problem(Expected::Action))
 }
 
-/// `a S= b`, `a R= b`, `a REF= b`: the letters mean this only with the `=` directly behind them.
+/// `a S= b`, `a R= b`, `a REF= b`: the letters mean this only with the `=` directly after them.
 fn latch<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<StatementKind<'s>> {
     let word = input.here();
     let joined = input.kind_ahead(1) == Kind::Equal && {

@@ -118,7 +118,7 @@ fn bare_structure<'s>(input: &mut In<'_, '_, 's>) -> Item<'s> {
     Item::Types(vec![TypeDecl { name, ty, initial: None, doc: None, unread: Vec::new() }])
 }
 
-/// Takes a unit that stands inside another one, if the other one goes on behind it.
+/// Takes a unit that stands inside another one, if the other one goes on after it.
 fn nested_unit(input: &mut In<'_, '_, '_>) -> bool {
     let Some((end, opened)) = input.state().open.last().copied() else { return false };
     if !opens_item(input.kind()) || !goes_on(input, end) {

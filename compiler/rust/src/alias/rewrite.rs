@@ -66,17 +66,17 @@ impl Body {
     }
 
     pub fn place(&self, place: &Place) -> Place {
-        let mut behind = place.projections.iter().map(|it| self.projection(it));
+        let mut after = place.projections.iter().map(|it| self.projection(it));
         if let (Root::Globals, Some(globals)) = (place.root, &self.globals) {
-            let Some(Projection::Field(field)) = behind.next() else {
+            let Some(Projection::Field(field)) = after.next() else {
                 unreachable!("verified IR: the globals are used one by one")
             };
-            return below(&globals[&field], behind, place.ty);
+            return below(&globals[&field], after, place.ty);
         }
         match place.root {
-            Root::Instance => below(&self.instance, behind, place.ty),
-            Root::Param(id) => below(&self.bases[id.index()], behind, place.ty),
-            Root::Globals | Root::Local(_) => Place { root: place.root, projections: behind.collect(), ty: place.ty },
+            Root::Instance => below(&self.instance, after, place.ty),
+            Root::Param(id) => below(&self.bases[id.index()], after, place.ty),
+            Root::Globals | Root::Local(_) => Place { root: place.root, projections: after.collect(), ty: place.ty },
         }
     }
 
@@ -107,6 +107,6 @@ impl Body {
     }
 }
 
-fn below(base: &Base, behind: impl Iterator<Item = Projection>, ty: Type) -> Place {
-    Place { root: base.root, projections: base.projections.iter().cloned().chain(behind).collect(), ty }
+fn below(base: &Base, after: impl Iterator<Item = Projection>, ty: Type) -> Place {
+    Place { root: base.root, projections: base.projections.iter().cloned().chain(after).collect(), ty }
 }

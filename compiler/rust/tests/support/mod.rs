@@ -131,7 +131,7 @@ fn mark(program: &Program, layout: &Layout, ty: Type, offset: u64, mask: &mut [u
         Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) => {
             mask[usize_of(offset)..][..usize_of(layout.size(ty))].fill(1)
         }
-        // Bytes behind a string's end mean nothing.
+        // Bytes after a string's end mean nothing.
         Type::String(capacity) => {
             let at = usize_of(offset);
             mask[at..][..2].fill(1);

@@ -1,4 +1,4 @@
-// A byte as it is compared: zero in padding and behind a string's end.
+// A byte as it is compared: zero in padding and after a string's end.
 fn show(byte: u8, mask: u8, last: &mut [u8; 2], left: &mut u16) -> u8 {
     if mask == 2 {
         let held = *left > 0;

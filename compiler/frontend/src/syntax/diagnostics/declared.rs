@@ -26,7 +26,7 @@ pub fn missing_type_colon(input: &mut In<'_, '_, '_>) {
     let (span, place) = (behind_last(input), insertion(input));
     input.report(
         Diagnostic::new(Code::E0001, span, message)
-            .label("a `:` is missing behind this")
+            .label("a `:` is missing after this")
             .help("write `:` here")
             .fix(place, " :"),
     );
@@ -54,14 +54,15 @@ pub fn name_of_two_words(input: &mut In<'_, '_, '_>, first: Span, second: Span) 
     );
 }
 
-/// `a : INT;` among statements; `closed` where an END_VAR stands behind such declarations.
+/// `a : INT;` among statements; `closed` where an END_VAR comes after such declarations.
 pub fn stray_declaration(input: &mut In<'_, '_, '_>, span: Span, closed: bool) {
-    let it = Diagnostic::new(Code::E0017, span, "this declaration stands outside of VAR … END_VAR");
+    let it = Diagnostic::new(Code::E0017, span, "this declaration is outside of VAR … END_VAR");
     let text = input.text(span);
     input.report(if closed {
         it.label("expected `VAR` before this").help("write `VAR` here").fix(Span { end: span.start, ..span }, "VAR ")
     } else {
-        it.label("only statements stand here").help(format!("write `VAR {text} END_VAR` before the first statement"))
+        it.label("only statements are allowed here")
+            .help(format!("write `VAR {text} END_VAR` before the first statement"))
     });
 }
 
@@ -70,7 +71,7 @@ pub fn outside_of_units(span: Span, statements: bool) -> Diagnostic {
     let it = Diagnostic::new(Code::E0001, span, "this belongs to no unit of the program")
         .label("no PROGRAM, FUNCTION_BLOCK or FUNCTION is open here");
     if statements {
-        it.help("write `PROGRAM Main` before it, and `END_PROGRAM` behind it")
+        it.help("write `PROGRAM Main` before it, and `END_PROGRAM` after it")
     } else {
         it.help("write `VAR_GLOBAL` for global variables, or `PROGRAM Main` before it")
     }
@@ -79,12 +80,12 @@ pub fn outside_of_units(span: Span, statements: bool) -> Diagnostic {
 /// `FUNCTION f(x : INT) : INT`, `PROGRAM p()`
 pub fn parameters_in_head(span: Span, empty: bool) -> Diagnostic {
     if empty {
-        return Diagnostic::new(Code::E0020, span, "no parentheses stand behind the name of a unit")
+        return Diagnostic::new(Code::E0020, span, "no parentheses come after the name of a unit")
             .label("delete this")
             .help("delete them")
             .fix(span, "");
     }
-    Diagnostic::new(Code::E0020, span, "parameters stand in VAR_INPUT, not in parentheses")
+    Diagnostic::new(Code::E0020, span, "parameters are declared in VAR_INPUT, not in parentheses")
         .label("expected no parentheses")
         .help("write `VAR_INPUT x : INT; END_VAR` on the next line")
 }
@@ -105,8 +106,8 @@ pub fn bare_structure(span: Span, name: &str) -> Diagnostic {
 
 /// TYPE or FUNCTION inside a PROGRAM.
 pub fn nested_unit(span: Span, kind: Kind, outer: &str) -> Diagnostic {
-    Diagnostic::new(Code::E0001, span, format!("{kind} stands inside {}", crate::diagnostic::wording::article(outer)))
-        .label("units of the program stand beside one another")
+    Diagnostic::new(Code::E0001, span, format!("{kind} is inside {}", crate::diagnostic::wording::article(outer)))
+        .label("no unit of the program is inside another")
         .help(format!("move it before the {outer}"))
 }
 
@@ -128,7 +129,7 @@ pub fn address_without_sign(span: Span, text: &str) -> Diagnostic {
 
 /// `x : BOOL AT %QX0.0;`
 pub fn address_after_type(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0409, span, "the address of a variable stands before its type")
+    Diagnostic::new(Code::E0409, span, "the address of a variable is written before its type")
         .label("expected before the `:`")
         .help("write `name AT %QX0.0 : BOOL;`")
 }

@@ -1,0 +1,66 @@
+//! The pages of the diagnostics: the text before has the diagnostic, the text after has none.
+
+use crate::documents::wrapped;
+use staunch_frontend::{Code, Dialect, Options, Source, Sources};
+
+/// What no short text shows: how much was written, or how deep.
+const WITHOUT_A_TEXT: [Code; 3] = [Code::E0030, Code::E0031, Code::E0091];
+
+#[test]
+fn pages_show_what_they_say() {
+    let problems: Vec<_> = Code::ALL.iter().flat_map(|it| problems_of(*it)).collect();
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
+
+fn problems_of(code: Code) -> Vec<String> {
+    let page = code.page();
+    let is_wide = page.lines().any(|it| it.chars().count() > 120);
+    let wide = is_wide.then(|| format!("{}: a line has more than 120 characters", code.name()));
+    let examples: Vec<_> = ["Before", "After"].into_iter().filter_map(|it| Example::of(page, it)).collect();
+    let wrong = match &examples[..] {
+        [before, after] => {
+            let expected = [vec![code], Vec::new()];
+            let found = [before.codes(), after.codes()];
+            (found != expected)
+                .then(|| format!("{}: {} before, {} after", code.name(), list(&found[0]), list(&found[1])))
+        }
+        [] if WITHOUT_A_TEXT.contains(&code) => None,
+        _ => Some(format!("{}: the page has {} of Before and After", code.name(), examples.len())),
+    };
+    wide.into_iter().chain(wrong).collect()
+}
+
+fn list(codes: &[Code]) -> String {
+    format!("[{}]", codes.iter().map(|it| it.name()).collect::<Vec<_>>().join(" "))
+}
+
+/// What is indented after `Before:`, `Before, in codesys:` or `Before, from iec to codesys:`.
+struct Example {
+    text: String,
+    options: Options,
+}
+
+impl Example {
+    fn of(page: &str, title: &str) -> Option<Self> {
+        let mut lines = page.lines().skip_while(|it| !(it.starts_with(title) && it.ends_with(':')));
+        let heading = lines.next()?.trim_end_matches(':');
+        let lines = lines.take_while(|it| it.is_empty() || it.starts_with("    "));
+        let text: String = lines.map(|it| format!("{}\n", it.strip_prefix("    ").unwrap_or(it))).collect();
+        let dialect = |word: &str| {
+            let name = heading.split_once(&format!(" {word} "))?.1.split(' ').next()?;
+            Some(Dialect::named(name).unwrap_or_else(|| panic!("`{name}` is no dialect")))
+        };
+        let moved_from = dialect("from");
+        let dialect = dialect("in").or_else(|| dialect("to")).unwrap_or_default();
+        Some(Self { text, options: Options { dialect, moved_from, ..Options::default() } })
+    }
+
+    /// The diagnostics of the text, each once.
+    fn codes(&self) -> Vec<Code> {
+        let mut sources = Sources::default();
+        sources.add(Source::new("page.st".to_owned(), wrapped(&self.text)));
+        let mut codes: Vec<_> = staunch_frontend::check(&sources, &self.options).iter().map(|it| it.code).collect();
+        codes.dedup();
+        codes
+    }
+}
