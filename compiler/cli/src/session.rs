@@ -198,8 +198,7 @@ impl Session {
         let names: Vec<_> = program.instances.iter().map(|it| it.name.clone()).collect();
         match asked {
             Some(asked) => {
-                let of =
-                    |it: &staunch_ir::Instance| program.routines[it.program.index()].name.eq_ignore_ascii_case(asked);
+                let of = |it: &staunch_ir::Instance| program.class(it.program).name.eq_ignore_ascii_case(asked);
                 let wanted: Vec<_> = program
                     .instances
                     .iter()
@@ -228,8 +227,7 @@ impl Session {
     /// Whether a CONFIGURATION says which instances run: then they bear names of their own, or
     /// the source has a TASK.
     fn configured(&self, program: &Program) -> bool {
-        let plain =
-            |it: &staunch_ir::Instance| it.interval.is_none() && it.name == program.routines[it.program.index()].name;
+        let plain = |it: &staunch_ir::Instance| it.interval.is_none() && it.name == program.class(it.program).name;
         !program.instances.iter().all(plain)
     }
 

@@ -210,12 +210,14 @@ pub struct Task<'s> {
     pub properties: Vec<(Name<'s>, Expr<'s>)>,
 }
 
-/// `PROGRAM main WITH t : Main;`
+/// `PROGRAM main WITH t : Main(x := g, y => h);`
 #[derive(Clone, Debug)]
 pub struct ProgramInstance<'s> {
     pub name: Name<'s>,
     pub task: Option<Name<'s>>,
     pub program: Name<'s>,
+    /// What its parameters are connected with.
+    pub connections: Vec<Argument<'s>>,
 }
 
 #[derive(Clone, Debug)]

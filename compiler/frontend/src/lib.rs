@@ -94,7 +94,9 @@ fn run(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
     };
     let allowances = allow::Allowances::read(&files, &mut log.diagnostics);
     let mut bodies: Vec<_> = files.iter_mut().flat_map(ast::File::take_bodies).collect();
-    let mut declarations = declare::declare(log, &files, &bodies);
+    let mut runs = declare::run::runs(&files);
+    bodies.extend(runs.iter_mut().map(|it| std::mem::take(&mut it.body)));
+    let mut declarations = declare::declare(log, &files, &runs, &bodies);
     let unassigned = lints::result::unassigned(&declarations.pous);
     let checked = body::check(&mut declarations, &mut bodies, keep);
     lints::unused::report(&mut declarations);

@@ -4,6 +4,7 @@
 //! array names its element's type), so the map grows with declarations, not with elements.
 
 use crate::layout::Layout;
+use crate::loops::constant_position;
 use crate::startup::{self, Event, Fate, Startup};
 use crate::usage::used_globals;
 use crate::{
@@ -214,9 +215,18 @@ impl Map<'_> {
         let mut ty = Type::Struct(structure);
         let mut attributes = Attributes::NONE;
         for projection in &variable.place.projections {
-            let Projection::Field(id) = projection else { unreachable!("verified IR: a variable is a field") };
-            offset += self.layout.offset(ty, *id);
-            (ty, attributes) = self.member(ty, *id)?;
+            match (projection, ty) {
+                (Projection::Field(id), _) => {
+                    offset += self.layout.offset(ty, *id);
+                    (ty, attributes) = self.member(ty, *id)?;
+                }
+                (Projection::Index { index, .. }, Type::Array(id)) => {
+                    let element = self.program.array(id).element;
+                    offset += constant_position(self.program, index, id)? * self.layout.size(element);
+                    ty = element;
+                }
+                (Projection::Index { .. }, _) => unreachable!("verified IR: an array is indexed"),
+            }
         }
         Some((offset, attributes))
     }

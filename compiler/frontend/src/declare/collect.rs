@@ -15,7 +15,7 @@ impl<'s> Declarations<'s> {
                 ast::Item::Types(decls) => decls.iter().for_each(|decl| self.collect_type(decl)),
                 ast::Item::Pou(pou) => {
                     lists.end(pou.span);
-                    self.pous.push(PouSlot { ast: pou, names_itself: false, slot: Slot::Open });
+                    self.pous.push(PouSlot { ast: pou, names_itself: false, run: None, slot: Slot::Open });
                     self.enter(SpaceId::ROOT, pou.name, Entry::Pou(self.pous.len() - 1));
                 }
                 ast::Item::Globals(block) => {

@@ -11,19 +11,22 @@ mod named_program;
 mod needs;
 mod pou;
 mod pragma;
+pub(crate) mod run;
 mod specs;
 mod variable;
 
 use crate::ast;
 use crate::log::Log;
 use crate::names::Entry;
-use crate::types::declarations::{Declarations, Slot};
+use crate::types::declarations::{Declarations, PouSlot, Slot};
+use run::Run;
 use std::rc::Rc;
 
-/// Declares what the files do; `bodies` are those of their POUs, in order.
+/// Declares what the files do; `bodies` are those of their POUs, and then of the runs, in order.
 pub(crate) fn declare<'s>(
     log: Log<'s>,
     files: &'s [ast::File<'s>],
+    runs: &'s [Run<'s>],
     bodies: &[Vec<ast::Statement<'s>>],
 ) -> Declarations<'s> {
     let mut declarations = Declarations::new(log);
@@ -33,6 +36,10 @@ pub(crate) fn declare<'s>(
     }
     for file in files {
         declarations.collect(file);
+    }
+    for Run { pou, instance, .. } in runs {
+        let run = Some(*instance);
+        declarations.pous.push(PouSlot { ast: pou, names_itself: false, run, slot: Slot::Open });
     }
     declarations.note_results(bodies);
     declarations.collect_addresses(bodies);

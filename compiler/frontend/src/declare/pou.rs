@@ -49,8 +49,11 @@ impl<'s> Declarations<'s> {
             let location = self.location(pou.name.span);
             let mut fields = std::mem::take(&mut builder.fields);
             fields.shrink_to_fit();
-            let id =
-                self.push_struct(Struct { name: pou.name.text.to_owned(), doc: pou.doc.clone(), location, fields });
+            let name = match self.pous[slot].run {
+                Some(instance) => format!("{}_{}", pou.name.text, self.log.sources.text(instance)),
+                None => pou.name.text.to_owned(),
+            };
+            let id = self.push_struct(Struct { name, doc: pou.doc.clone(), location, fields });
             self.table.instances.insert(id, slot);
             id
         });
@@ -144,13 +147,6 @@ impl<'s> Declarations<'s> {
             );
         }
         self.check_retain_once(block);
-        if block.kind == VarKind::InOut && pou.kind == PouKind::Program {
-            self.report(
-                Diagnostic::new(Code::E0403, block.span, "a PROGRAM has no VAR_IN_OUT")
-                    .label("no call gives it a variable")
-                    .help("use VAR_INPUT and VAR_OUTPUT, or VAR_EXTERNAL for a global variable"),
-            );
-        }
         if let Some(span) = block.constant {
             self.check_constant_section(block.kind, span);
         }

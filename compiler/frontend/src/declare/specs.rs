@@ -188,7 +188,8 @@ impl<'s> Declarations<'s> {
     /// The state of a FUNCTION_BLOCK: the type of its instances.
     fn instance_type(&mut self, at: usize, name: ast::Name<'s>) -> Option<Resolved> {
         let pou = self.pous[at].ast;
-        if pou.kind != ast::PouKind::FunctionBlock {
+        let is_run = pou.kind == ast::PouKind::Program && self.is_run(name.span);
+        if pou.kind != ast::PouKind::FunctionBlock && !is_run {
             let kind = if pou.kind == ast::PouKind::Program { "PROGRAM" } else { "FUNCTION" };
             self.report(
                 Diagnostic::new(Code::E0102, name.span, format!("`{}` is a {kind}, not a type", name.text))

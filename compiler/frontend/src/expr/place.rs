@@ -177,8 +177,9 @@ impl<'s> Checker<'_, 's> {
     fn declared_but_refused(&self, name: ast::Name<'s>) -> bool {
         // POUs, and the variables of a block, are in the order of the source.
         let place = |span: Span| (span.file, span.start);
-        let after = self.decl.pous.partition_point(|it| place(it.ast.span) <= place(name.span));
-        let pou = after.checked_sub(1).filter(|_| self.signature.is_none()).map(|at| &self.decl.pous[at]);
+        let pous = self.decl.written_pous();
+        let after = pous.partition_point(|it| place(it.ast.span) <= place(name.span));
+        let pou = after.checked_sub(1).filter(|_| self.signature.is_none()).map(|at| &pous[at]);
         pou.is_some_and(|pou| {
             pou.ast.blocks.iter().any(|block| {
                 let after = block.vars.partition_point(|it| place(it.span) <= place(name.span));

@@ -1,13 +1,14 @@
 //! CONFIGURATION, RESOURCE and TASK: which programs run, and how often.
 
 use crate::ast;
+use crate::declare::run::is_false;
 use crate::expr::constant::constant;
 use crate::names::{Entry, SpaceId};
 use crate::spelling::{Key, nearest};
 use crate::types::declarations::Declarations;
 use crate::{Code, Diagnostic, Span};
 use rustc_hash::FxHashMap;
-use staunch_ir::{Instance, Value};
+use staunch_ir::{Instance, Section, Value};
 
 const LOWEST_PRIORITY: u32 = 65535;
 
@@ -21,16 +22,20 @@ pub(super) fn instances<'s>(declarations: &mut Declarations<'s>, files: &'s [ast
         })
         .collect();
     declarations.check_configurations(&configurations);
+    let runs = declarations.pous.iter().enumerate().filter_map(|(at, it)| Some((it.run?, at))).collect();
     for resource in configurations.iter().flat_map(|it| &it.resources) {
-        declarations.resource(resource);
+        declarations.resource(resource, &runs);
     }
     if !declarations.program.instances.is_empty() {
         return;
     }
     let is_program = |at: &usize| declarations.pous[*at].ast.kind == ast::PouKind::Program;
     let runs = |at: &usize| is_program(at) && !declarations.is_named_program(*at);
-    let programs: Vec<_> = (0..declarations.pous.len()).filter(runs).collect();
+    let programs: Vec<_> = (0..declarations.written_pous().len()).filter(runs).collect();
     for at in programs {
+        if declarations.report_not_connected(at) {
+            continue;
+        }
         let Some(program) = declarations.class_of_slot(at) else { continue };
         declarations.program.instances.push(Instance {
             name: declarations.pous[at].ast.name.text.to_owned(),
@@ -79,7 +84,30 @@ impl<'s> Declarations<'s> {
         }
     }
 
-    fn resource(&mut self, resource: &'s ast::Resource<'s>) {
+    /// Reports a PROGRAM with a VAR_IN_OUT that nothing runs in a way which could connect it.
+    fn report_not_connected(&mut self, slot: usize) -> bool {
+        let Some(signature) = self.signature(slot) else { return false };
+        let mut in_outs = signature.formals.iter().filter(|it| it.section == Section::InOut).map(|it| it.name);
+        let Some(first) = in_outs.next() else { return false };
+        let name = self.pous[slot].ast.name.text;
+        let connected: Vec<_> =
+            [first].into_iter().chain(in_outs).map(|it| format!("{} := variable", it.text)).collect();
+        self.report(
+            Diagnostic::new(
+                Code::E0303,
+                first.span,
+                format!("nothing gives the PROGRAM `{name}` a variable for `{}`", first.text),
+            )
+            .label("a VAR_IN_OUT is connected with a global variable where the PROGRAM is run")
+            .help(format!(
+                "connect it in a CONFIGURATION: `PROGRAM run WITH task : {name}({});`",
+                connected.join(", ")
+            )),
+        );
+        true
+    }
+
+    fn resource(&mut self, resource: &'s ast::Resource<'s>, runs: &FxHashMap<Span, usize>) {
         let tasks: Vec<_> = resource.tasks.iter().map(|task| (task.name, self.task(task))).collect();
         for instance in &resource.programs {
             let mut timing = Timing { interval: None, priority: LOWEST_PRIORITY };
@@ -90,7 +118,7 @@ impl<'s> Declarations<'s> {
                     None => self.unknown_task(name, &tasks),
                 }
             }
-            self.instance(instance, timing);
+            self.instance(instance, timing, runs);
         }
     }
 
@@ -103,7 +131,7 @@ impl<'s> Declarations<'s> {
         self.report(error);
     }
 
-    fn instance(&mut self, instance: &'s ast::ProgramInstance<'s>, timing: Timing) {
+    fn instance(&mut self, instance: &'s ast::ProgramInstance<'s>, timing: Timing, runs: &FxHashMap<Span, usize>) {
         let found = self.declared(SpaceId::ROOT, instance.program);
         let program = match found {
             Some(Entry::Pou(at)) if self.pous[at].ast.kind == ast::PouKind::Program => at,
@@ -128,7 +156,8 @@ impl<'s> Declarations<'s> {
         if self.report_called_and_listed(program, instance.program.span) {
             return;
         }
-        let Some(program) = self.class_of_slot(program) else { return };
+        let run = runs.get(&instance.name.span).copied();
+        let Some(program) = self.class_of_slot(run.unwrap_or(program)) else { return };
         self.program.instances.push(Instance {
             name: instance.name.text.to_owned(),
             program,
@@ -159,7 +188,10 @@ impl<'s> Declarations<'s> {
         }
         for (name, expr) in &task.properties {
             if name.text.eq_ignore_ascii_case("SINGLE") {
-                self.not_supported(name.span, "SINGLE");
+                let is_interval = |(it, _): &&(ast::Name<'s>, _)| it.text.eq_ignore_ascii_case("INTERVAL");
+                if !is_false(expr) && task.properties.iter().any(|it| is_interval(&it)) {
+                    self.not_supported(name.span, "a TASK with SINGLE and INTERVAL");
+                }
                 continue;
             }
             let scope = std::rc::Rc::default();

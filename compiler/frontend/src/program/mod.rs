@@ -5,11 +5,13 @@ mod order;
 mod prescan;
 
 use crate::body::Checked;
+use crate::spelling::Key;
 use crate::types::declarations::{Declarations, empty_program};
 use crate::types::scope::Variable;
+use crate::types::signature::Signature;
 use crate::{Code, Diagnostic, ast};
 use staunch_ir::layout::{Layout, TooLarge};
-use staunch_ir::{Class, ClassId, ClassKind, Program, RoutineId};
+use staunch_ir::{Argument, Block, Class, ClassId, ClassKind, Place, Program, Root, RoutineId, StatementKind, Type};
 use std::rc::Rc;
 
 /// Puts the parts together: the classes, the instances, the order of the routines.
@@ -35,16 +37,15 @@ impl Declarations<'_> {
         let pou = self.pous[slot].ast;
         let kind = match pou.kind {
             // Who is called has an instance, as a FUNCTION_BLOCK has.
-            ast::PouKind::Program if self.is_named_program(slot) => ClassKind::FunctionBlock,
+            ast::PouKind::Program if self.is_named_program(slot) || self.is_held(slot) => ClassKind::FunctionBlock,
             ast::PouKind::Program => ClassKind::Program,
             ast::PouKind::FunctionBlock => ClassKind::FunctionBlock,
             ast::PouKind::Function => return None,
         };
         let signature = self.signature(slot)?;
-        let variable = |it: &Rc<Variable<'_>>| staunch_ir::Variable {
-            name: it.name.text.to_owned(),
-            section: it.section,
-            place: it.place.clone(),
+        let variables = match self.pous[slot].run {
+            Some(_) => self.variables_of_run(slot, &signature)?,
+            None => variables(&signature),
         };
         Some(Class {
             kind,
@@ -52,10 +53,44 @@ impl Declarations<'_> {
             doc: pou.doc.clone(),
             location: self.location(pou.name.span),
             state: signature.state?,
-            variables: signature.scope.variables.iter().map(variable).collect(),
+            variables,
             body: RoutineId::next(slot),
             prescan: None,
         })
+    }
+
+    /// Whether runs of a CONFIGURATION hold the PROGRAM in a slot.
+    fn is_held(&self, slot: usize) -> bool {
+        let name = self.pous[slot].ast.name;
+        self.pous[slot].run.is_none()
+            && self
+                .pous
+                .iter()
+                .rev()
+                .take_while(|it| it.run.is_some())
+                .any(|it| Key(it.ast.name.text) == Key(name.text))
+    }
+
+    /// The variables of the PROGRAM that a run holds: an in-out is what the run connects it with.
+    fn variables_of_run(&mut self, slot: usize, run: &Signature<'_>) -> Option<Vec<staunch_ir::Variable>> {
+        let held = &run.scope.variables.first()?.place;
+        let Type::Struct(state) = held.ty else { return None };
+        let inner = self.slot_of_instance(state)?;
+        let signature = self.signature(inner)?;
+        let arguments = arguments_of(&self.program.routines[slot].body, RoutineId::next(inner)).unwrap_or_default();
+        let mut variables = variables(&signature);
+        for Place { root, projections, .. } in variables.iter_mut().map(|it| &mut it.place) {
+            match *root {
+                Root::Instance => drop(projections.splice(0..0, held.projections.iter().cloned())),
+                Root::Param(id) => {
+                    if let Some(Argument::Reference(place)) = arguments.get(id.index()) {
+                        (*root, *projections) = (place.root, place.projections.clone());
+                    }
+                }
+                Root::Globals | Root::Local(_) => {}
+            }
+        }
+        Some(variables)
     }
 
     /// The class of the PROGRAM or FUNCTION_BLOCK in a slot, while bodies have their slots' numbers.
@@ -75,4 +110,21 @@ impl Declarations<'_> {
         );
         None
     }
+}
+
+fn variables(signature: &Signature<'_>) -> Vec<staunch_ir::Variable> {
+    let variable = |it: &Rc<Variable<'_>>| staunch_ir::Variable {
+        name: it.name.text.to_owned(),
+        section: it.section,
+        place: it.place.clone(),
+    };
+    signature.scope.variables.iter().map(variable).collect()
+}
+
+/// What the call of a routine in the block passes.
+fn arguments_of(block: &Block, routine: RoutineId) -> Option<&[Argument]> {
+    block.iter().find_map(|it| match &it.kind {
+        StatementKind::Call { callee, arguments, .. } if *callee == routine => Some(arguments.as_slice()),
+        kind => kind.blocks().into_iter().find_map(|it| arguments_of(it, routine)),
+    })
 }

@@ -25,20 +25,13 @@ fn task<'t, 's: 't>() -> impl Rule<'t, 's, Task<'s>> {
     task.map(|(name, properties)| Task { name, properties: properties.unwrap_or_default() })
 }
 
-/// `PROGRAM main WITH t : Main;`
+/// `PROGRAM main WITH t : Main(x := g);`
 fn program<'t, 's: 't>() -> impl Rule<'t, 's, ProgramInstance<'s>> {
     let task = word("WITH").ignore_then(name()).or_not();
-    let connections = rule(|input| {
-        let span = input.here();
-        if input.kind() == Kind::OpenParen {
-            arguments(input)?;
-            input.report(diagnostics::unsupported(span, "connecting a program's variables here"));
-        }
-        Ok(())
-    });
+    let connections = rule(|input| if input.kind() == Kind::OpenParen { arguments(input) } else { Ok(Vec::new()) });
     let program = token(Kind::Program).ignore_then(name()).then(task).then_ignore(token(Kind::Colon)).then(name());
-    let program = program.then_ignore(connections).then_ignore(end());
-    program.map(|((name, task), program)| ProgramInstance { name, task, program })
+    let program = program.then(connections).then_ignore(end());
+    program.map(|(((name, task), program), connections)| ProgramInstance { name, task, program, connections })
 }
 
 /// `RESOURCE name ON machine`

@@ -32,6 +32,8 @@ pub(crate) struct PouSlot<'s> {
     pub ast: &'s ast::Pou<'s>,
     /// A FUNCTION whose body names its result.
     pub names_itself: bool,
+    /// Of a run that a CONFIGURATION writes: where the CONFIGURATION names it.
+    pub run: Option<Span>,
     pub slot: Slot<Rc<Signature<'s>>>,
 }
 
@@ -76,6 +78,16 @@ impl<'s> Declarations<'s> {
             program: empty_program(files),
             table: Table::default(),
         }
+    }
+
+    /// The POUs that the source writes, in its order; runs of a CONFIGURATION come after them.
+    pub fn written_pous(&self) -> &[PouSlot<'s>] {
+        &self.pous[..self.pous.partition_point(|it| it.run.is_none())]
+    }
+
+    /// Whether a name is that of the PROGRAM in a run of a CONFIGURATION.
+    pub fn is_run(&self, program: Span) -> bool {
+        self.pous.iter().rev().take_while(|it| it.run.is_some()).any(|it| it.ast.name.span == program)
     }
 
     pub fn report(&mut self, diagnostic: Diagnostic) {

@@ -2,7 +2,8 @@
 
 use super::Verifier;
 use crate::layout::Layout;
-use crate::{Class, ClassKind, Location, Mode, Projection, Routine, RoutineId, RoutineKind, Variable};
+use crate::loops::constant_position;
+use crate::{Class, ClassKind, Location, Mode, Projection, Routine, RoutineId, RoutineKind, Type, Variable};
 use std::collections::BTreeSet;
 
 impl Verifier<'_> {
@@ -106,18 +107,19 @@ impl Verifier<'_> {
         }
     }
 
-    /// A declared variable is a root, or a member of one.
+    /// A declared variable is a root, or a part of one that is always the same.
     pub(super) fn variable(&mut self, routine: &Routine, variable: &Variable) {
         let at = routine.location;
-        let direct = variable.place.projections.iter().all(|it| matches!(it, Projection::Field(_)));
-        if !self.require(direct, at, format_args!("{} is not a field", variable.name)) {
-            return;
-        }
         // Unlike in a body, the root may be a parameter that is passed by value.
         let mut ty = self.program.root_type(routine, variable.place.root);
         for projection in &variable.place.projections {
-            let Projection::Field(id) = projection else { continue };
-            ty = ty.and_then(|ty| self.program.member(ty, *id));
+            ty = match (projection, ty) {
+                (Projection::Field(id), Some(ty)) => self.program.member(ty, *id),
+                (Projection::Index { index, .. }, Some(Type::Array(id))) => {
+                    constant_position(self.program, index, id).map(|_| self.program.array(id).element)
+                }
+                (Projection::Field(_) | Projection::Index { .. }, _) => None,
+            };
         }
         self.require(ty == Some(variable.place.ty), at, format_args!("{} is of another type", variable.name));
     }

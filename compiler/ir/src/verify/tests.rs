@@ -144,7 +144,7 @@ fn instances() {
 
 #[test]
 fn variables() {
-    broken("is not a field", |program| program.classes[1].variables[0].place = value(lint(1), 1));
+    broken("of another type", |program| program.classes[1].variables[0].place = value(lint(99), 1));
     broken("of another type", |program| program.classes[1].variables[0].place.ty = Type::BOOL);
     broken("of another type", |program| {
         program.classes[1].variables[0].place = Place::root(Root::Param(ParamId(0)), Type::INT);
