@@ -10,7 +10,8 @@ use crate::types::declarations::Declarations;
 use crate::types::scope::Scope;
 use crate::types::table::{Resolved, scalar_initial};
 use crate::{Code, Diagnostic, Span};
-use staunch_ir::{Array, ArrayId, Const, ExprKind, StructId, Type};
+use staunch_ir::{Array, ArrayId, Const, ExprKind, Lane, StructId, Type};
+use staunch_runtime::{BlockInfo, Pin, PinRole};
 use std::rc::Rc;
 
 /// Elements of an array that have been given, in runs.
@@ -245,9 +246,28 @@ impl<'s> Declarations<'s> {
                 self.given_twice(*name);
                 continue;
             }
-            values[at] = self.initial(initial, &Resolved::plain(id.pin_type(staunch_ir::FieldId::next(at))?), scope)?;
+            let value = self.initial(initial, &Resolved::plain(id.pin_type(staunch_ir::FieldId::next(at))?), scope)?;
+            if id.info().retention.restarts(&pins[at]) && value != Const::Zero {
+                self.starts_anew(id.info(), &pins[at], initial.span);
+            } else {
+                values[at] = value;
+            }
         }
         Some(collapse(values))
+    }
+
+    /// What every start of a Cscape counter sets anew has no initial value.
+    fn starts_anew(&mut self, block: &BlockInfo, pin: &Pin, span: Span) {
+        let owner = format!("{}.{}", block.family.name(), block.name);
+        let start = if pin.lane() == Lane::Bool { "FALSE" } else { "0" };
+        let message = format!("`{}` of a {owner} starts at {start}, whatever its initial value", pin.name);
+        let warning = Diagnostic::new(Code::W0305, span, message).label("this value is not used");
+        self.report(match (block.facts.kept, block.pin_for(PinRole::Load)) {
+            (Some(kept), _) => warning
+                .help(format!("give it to the variable for `{}` instead, and declare that in VAR RETAIN", kept.pin)),
+            (None, Some(load)) => warning.help(format!("load it: call the counter once with `{} := TRUE`", load.name)),
+            (None, None) => warning.help("leave it out, and add it where the count is read"),
+        });
     }
 
     fn given_twice(&mut self, name: ast::Name<'s>) {

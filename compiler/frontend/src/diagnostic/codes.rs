@@ -132,6 +132,7 @@ codes! {
     W0302 Warning "RETAIN does not keep this count";
     W0303 Warning "a block that starts anew at each call";
     W0304 Warning "an input of a FUNCTION is left out";
+    W0305 Warning "an initial count that is not used";
     W0404 Warning "a constant without a value";
     W0410 Warning "overlapping addresses";
     W0411 Warning "one address under two names";

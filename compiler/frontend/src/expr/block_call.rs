@@ -287,7 +287,7 @@ impl<'s> Checker<'_, 's> {
         let mut complete = true;
         for at in as_written(&given) {
             let made = match given[at] {
-                Given::Value(_) if at == 0 => self.tag_part(&mut parts, tag, id, name, names[0]),
+                Given::Value(_) if at == 0 => self.tag_part(&mut parts, tag, (id, instruction), name, names[0]),
                 Given::Value(rung) => self.value_part(&mut parts, rung, Type::BOOL, Role::Passed(1)),
                 Given::Nothing | Given::Output { .. } => Some(()),
             };
@@ -303,8 +303,6 @@ impl<'s> Checker<'_, 's> {
         if !complete {
             return None;
         }
-        let tag = parts.written.iter().find_map(Written::place)?;
-        self.used_instruction(tag, instruction);
         let at = self.at(span);
         if takes_rung {
             self.keep_rung(&mut parts, span);
@@ -329,7 +327,7 @@ impl<'s> Checker<'_, 's> {
         &mut self,
         parts: &mut Parts,
         tag: &ast::Expr<'s>,
-        id: BlockId,
+        (id, instruction): (BlockId, usize),
         name: ast::Name<'s>,
         parameter: &str,
     ) -> Option<()> {
@@ -343,6 +341,7 @@ impl<'s> Checker<'_, 's> {
             );
             return None;
         }
+        self.used_instruction(&found.place, instruction);
         parts.push(Held::Place(found.place), Role::Instance, tag.span);
         Some(())
     }

@@ -134,6 +134,9 @@ impl<'s> Checker<'_, 's> {
 
     /// What is called. Where that is not known, the arguments may hold mistakes of their own.
     fn checked_callee(&mut self, callee: &ast::Expr<'s>, arguments: &[ast::Argument<'s>]) -> Option<Callee<'s>> {
+        if self.has_logix_operands(callee, arguments) {
+            return None;
+        }
         let found = self.callee(callee, arguments);
         if found.is_none() {
             self.check_arguments(arguments);

@@ -17,6 +17,7 @@ mod expression;
 mod fold;
 mod function;
 mod literal;
+mod logix_operands;
 mod migration;
 pub(crate) mod operand;
 mod operator;

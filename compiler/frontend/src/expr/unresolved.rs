@@ -73,8 +73,14 @@ pub(crate) fn unknown_pin(block: BlockId, name: ast::Name<'_>) -> Diagnostic {
 
 /// This block's name for a pin that another system calls `name`.
 pub(super) fn other_dialects_pin(block: BlockId, name: &str) -> Option<&'static str> {
-    let pin = block.info().pin_for(PinRole::named(name)?)?;
+    let pin = block.info().pin_for(PinRole::named(name).or_else(|| spelled_out(name))?)?;
     Some(pin.name).filter(|it| !it.eq_ignore_ascii_case(name))
+}
+
+/// What Logix's pages call the operands of its instructions.
+fn spelled_out(name: &str) -> Option<PinRole> {
+    let words = [("Preset", PinRole::Preset), ("Accum", PinRole::Count), ("Accumulated", PinRole::Count)];
+    words.iter().find(|it| it.0.eq_ignore_ascii_case(name)).map(|it| it.1)
 }
 
 /// The dialects whose block of the same name has a pin `name`.

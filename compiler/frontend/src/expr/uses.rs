@@ -88,7 +88,8 @@ fn is_same_value(a: &Expr, b: &Expr) -> bool {
     }
 }
 
-fn is_same_place(a: &Place, b: &Place) -> bool {
+/// Whether two places are one, whatever their indices are.
+pub(crate) fn is_same_place(a: &Place, b: &Place) -> bool {
     let same = |(a, b): (&Projection, &Projection)| match (a, b) {
         (Projection::Field(a), Projection::Field(b)) => a == b,
         (Projection::Index { index: a, .. }, Projection::Index { index: b, .. }) => is_same_value(a, b),

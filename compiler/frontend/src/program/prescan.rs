@@ -7,12 +7,14 @@
 
 mod build;
 mod kept;
+mod named;
 mod nest;
 mod reach;
 
 use crate::expr::uses::Uses;
 use crate::types::declarations::Declarations;
 use build::Builder;
+use named::reads_param;
 use staunch_ir::{Place, Root, Routine, RoutineKind};
 
 /// Adds the prescans, given the slots of the POUs in an order in which a callee stands before its
@@ -57,7 +59,7 @@ fn own(declarations: &mut Declarations<'_>, at: usize, uses: &Uses) {
         return;
     }
     let mut builder = Builder::new(declarations, at);
-    for (place, instruction) in uses.instructions.iter().filter(|(place, _)| lasts(place)) {
+    for (place, instruction) in uses.instructions.iter().filter(|(place, _)| lasts(place) && !reads_param(place)) {
         builder.instruction(place, *instruction);
     }
     for count in uses.counts.iter().filter(|it| lasts(&it.counter) && lasts(&it.kept)) {

@@ -1,5 +1,6 @@
 //! The statements of a prescan.
 
+use super::named;
 use crate::types::declarations::Declarations;
 use crate::types::signature::pin_place;
 use staunch_ir::startup::{Event, Fate, Startup};
@@ -45,15 +46,17 @@ impl<'p> Builder<'p> {
         Addition { prescan: self.prescan, locals: self.locals, block: self.block }
     }
 
-    /// What an instruction does to the structures that it works on.
+    /// What an instruction does to the structure that it works on, and to no other element of an array.
     pub fn instruction(&mut self, place: &Place, instruction: usize) {
         let Type::Block(id) = place.ty else { return };
         if id.info().instructions[instruction].prescan.is_none() {
             return;
         }
-        let at = self.at;
-        let kind = |block| StatementKind::PrescanBlock { block, instruction };
-        self.everywhere(place, &mut |_, place| vec![Statement::new(kind(place), at)]);
+        let routine = &self.program.routines[self.pou];
+        let block = named::before_calls(self.program, routine, place);
+        let kind = StatementKind::PrescanBlock { block: block.clone(), instruction };
+        let prescan = vec![Statement::new(kind, self.at)];
+        self.block.extend(named::where_it_is_one(self.program, routine, &block, prescan, self.at));
     }
 
     /// CV starts at the kept count where that is retained, else at 0. Counters and counts in arrays
@@ -91,7 +94,8 @@ impl<'p> Builder<'p> {
         });
     }
 
-    /// Runs `make` on the place; where an index is not constant, on every element.
+    /// Runs `make` on the place; where an index is not constant, on every element: of what a restart
+    /// prepares nothing is left out.
     fn everywhere(&mut self, place: &Place, make: &mut dyn FnMut(&[Expr], Place) -> Block) {
         let mut made = self.elements(place.clone(), 0, &mut Vec::new(), make);
         self.block.append(&mut made);
@@ -139,7 +143,7 @@ impl<'p> Builder<'p> {
     }
 }
 
-/// An index that is known in the call only; in a prescan it stands for every element.
+/// An index that is known in the call only; where counts are restored it stands for every element.
 fn is_open(projection: &Projection) -> bool {
     matches!(projection, Projection::Index { index, .. } if index.as_const().is_none())
 }

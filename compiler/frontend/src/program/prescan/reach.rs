@@ -1,7 +1,10 @@
 //! Uses of counters that reach a POU through its calls.
 
-use crate::expr::uses::{KeptCount, Uses, same_storage};
-use staunch_ir::{Argument, Block, Location, Place, Program, Root, RoutineId, RoutineKind, Statement, StatementKind};
+use super::named::{self, reads_param};
+use crate::expr::uses::{KeptCount, Uses, is_same_place, same_storage};
+use staunch_ir::{
+    Argument, Block, Expr, Location, Mode, Place, Program, Root, RoutineId, RoutineKind, Statement, StatementKind,
+};
 
 struct Call<'p> {
     callee: RoutineId,
@@ -22,8 +25,8 @@ pub(super) fn through_calls(program: &Program, at: usize, uses: &mut [Uses]) {
         }
         let is_function = program.routines[callee].kind == RoutineKind::Function;
         for (place, instruction) in uses[callee].instructions.clone() {
-            if (is_function || is_passed(&place))
-                && let Some(place) = call.carried(&place)
+            if (is_function || is_passed(&place) || reads_param(&place))
+                && let Some(place) = call.named(program, &place)
             {
                 add_instruction(&mut uses[at], place, instruction);
             }
@@ -43,6 +46,26 @@ fn is_passed(place: &Place) -> bool {
 }
 
 impl Call<'_> {
+    /// The same, with the indices as the caller finds them.
+    fn named(&self, program: &Program, place: &Place) -> Option<Place> {
+        let routine = program.routine(self.callee);
+        let passed = |local| {
+            let at = routine.params.iter().position(|it| it.mode == Mode::Value(local))?;
+            match self.arguments.get(at)? {
+                Argument::Value(value) => Some(value.clone()),
+                Argument::Reference(_) => None,
+            }
+        };
+        let load = |inner: Place| match inner.root {
+            Root::Local(local) => passed(local).unwrap_or_else(|| named::initial(program, routine, local, &inner)),
+            Root::Instance | Root::Globals | Root::Param(_) => match self.carried(&inner) {
+                Some(place) => Expr::load(place, self.at),
+                None => unreachable!("a callee that has an instance is called on one, and is passed what it refers to"),
+            },
+        };
+        self.carried(&named::with_indices(place, &load))
+    }
+
     /// The caller's name for a place of the callee's.
     fn carried(&self, place: &Place) -> Option<Place> {
         match place.root {
@@ -64,7 +87,7 @@ pub(super) fn joined(outer: &Place, inner: &Place) -> Place {
 }
 
 fn add_instruction(uses: &mut Uses, place: Place, instruction: usize) {
-    let known = uses.instructions.iter().any(|(it, at)| *at == instruction && same_storage(it, &place));
+    let known = uses.instructions.iter().any(|(it, at)| *at == instruction && is_same_place(it, &place));
     if !known {
         uses.instructions.push((place, instruction));
     }
