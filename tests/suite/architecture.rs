@@ -30,6 +30,7 @@ const KEPT_FROM_BUILD: [&str; 4] = ["cranelift", "cc", "cmake", "stacker"];
 /// Folders whose code may be `unsafe`, each block with its `SAFETY:`.
 const UNSAFE: &[&str] = &[
     "runtime/abi/",
+    "runtime/host/src/allocations.rs",
     "runtime/host/src/compiled.rs",
     "runtime/host/src/signal.rs",
     "runtime/host/src/terminal.rs",

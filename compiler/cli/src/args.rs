@@ -202,6 +202,10 @@ pub struct Run {
     /// Keep retained variables in this file
     #[arg(long, value_name = "FILE")]
     pub retain: Option<PathBuf>,
+    /// With --realtime, how soon a change of retained variables is on disk: 500ms, or `scan` for after every
+    /// scan [default: 1s]
+    #[arg(long, value_name = "TIME", requires = "retain", value_parser = staunch_host::parse_within)]
+    pub retain_within: Option<i64>,
     /// Sleep, so that scans happen at their time
     #[arg(long)]
     pub realtime: bool,

@@ -61,6 +61,7 @@ fn options(session: &Session, args: &Run) -> Result<Options, String> {
         to: args.to,
         json: session.common.format() == MessageFormat::Json,
         retain: args.retain.clone(),
+        retain_within: args.retain_within,
         realtime: args.realtime,
         table: true,
         quiet: session.common.quiet,
@@ -76,6 +77,7 @@ fn execute(session: &Session, args: &Run, program: &Program) -> Result<u8, Strin
         ("--scans", args.scans.map(|it| it.to_string())),
         ("--cycle", cycle(session, args.cycle.as_deref())?.map(|it| format!("{it}ns"))),
         ("--loop-budget", args.loop_budget.or(session.project.loop_budget).map(|it| it.to_string())),
+        ("--retain-within", args.retain_within.map(within)),
         ("--vars", args.vars.clone()),
         ("--from", args.from.map(moment)),
         ("--to", args.to.map(moment)),
@@ -95,6 +97,10 @@ fn execute(session: &Session, args: &Run, program: &Program) -> Result<u8, Strin
         command.arg("--quiet");
     }
     become_process(command).map_err(|error| format!("cannot run {}: {error}", executable.display()))
+}
+
+fn within(time: i64) -> String {
+    if time == 0 { "scan".to_owned() } else { format!("{time}ns") }
 }
 
 fn moment(moment: Moment) -> String {

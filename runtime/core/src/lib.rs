@@ -8,6 +8,7 @@
 #![forbid(unsafe_code)]
 
 mod context;
+mod crc;
 mod elementary;
 mod fault;
 mod lane;
@@ -35,6 +36,7 @@ pub use block::{
 pub use block_table::BLOCKS;
 pub use blocks::{codesys, cscape, iec, logix, openplc};
 pub use context::Context;
+pub use crc::{Crc32, crc32};
 pub use elementary::{Class, Elementary};
 pub use family::{Family, Keeps};
 pub use fault::{Fault, FaultKind, FaultOf, Location, OrFault, Outcome};

@@ -17,7 +17,7 @@ pub enum Wish {
     Version,
 }
 
-const FLAGS: [(&str, &str, &str); 17] = [
+const FLAGS: [(&str, &str, &str); 18] = [
     ("--program", "NAME", "Run this program only"),
     ("--scans", "N", "End after N scans"),
     ("--cycle", "TIME", "Time between two scans, as 10ms"),
@@ -28,6 +28,7 @@ const FLAGS: [(&str, &str, &str); 17] = [
     ("--to", "MOMENT", "Show the scans to this one or this time"),
     ("--vars", "NAMES", "Variables to show, apart by commas"),
     ("--retain", "FILE", "Keep retained variables in a file"),
+    ("--retain-within", "TIME|scan", "In real time, how soon a change is on disk; without, 1s"),
     ("--realtime", "", "Wait for the time at which each scan is due"),
     ("--table", "", "Print the last scans as a table"),
     ("--bench", "", "Measure the time of a scan instead"),
@@ -63,6 +64,7 @@ pub fn parse_options(mut arguments: impl Iterator<Item = OsString>) -> Result<Wi
             "--to" => options.to = Some(parse_moment(&utf8(value()?)?)?),
             "--message-format" => options.json = is_json(&utf8(value()?)?)?,
             "--retain" => options.retain = Some(value()?.into()),
+            "--retain-within" => options.retain_within = Some(parse_within(&utf8(value()?)?)?),
             "--table" => options.table = true,
             "--realtime" => options.realtime = true,
             "--bench" => bench = true,
@@ -74,6 +76,9 @@ pub fn parse_options(mut arguments: impl Iterator<Item = OsString>) -> Result<Wi
                 return Err(format!("unknown argument `{other}`{near} (--help lists them)"));
             }
         }
+    }
+    if options.retain_within.is_some() && options.retain.is_none() {
+        return Err("--retain-within needs --retain, the file to keep them in".to_owned());
     }
     let Options { program, scans, cycle, loop_budget, stimulus, .. } = options;
     Ok(match bench {
@@ -97,6 +102,15 @@ pub fn parse_duration(text: &str) -> Result<Time, String> {
         false => duration(text).ok(),
     };
     time.filter(|it| *it > 0).ok_or_else(|| format!("`{text}` is not a time above zero: write `10ms`"))
+}
+
+/// How soon a change of retained variables is on disk, in nanoseconds: `500ms`; `scan`, which is 0, for
+/// after every scan.
+pub fn parse_within(text: &str) -> Result<Time, String> {
+    match text {
+        "scan" => Ok(0),
+        _ => parse_duration(text).map_err(|error| format!("{error}, or `scan` for every scan")),
+    }
 }
 
 /// A scan's number, or a time of the program's clock.
@@ -142,7 +156,7 @@ mod tests {
 
     #[test]
     fn every_flag_is_read() {
-        let text = "--program P --scans=5 --cycle 1ms --stimulus a.csv --trace - --vars a,b --retain r --realtime --table -q --from 3 --to T#1s --message-format=json";
+        let text = "--program P --scans=5 --cycle 1ms --stimulus a.csv --trace - --vars a,b --retain r --retain-within scan --realtime --table -q --from 3 --to T#1s --message-format=json";
         let Wish::Run(options) = parse(text).unwrap() else { panic!() };
         assert_eq!(options.program.as_deref(), Some("P"));
         assert_eq!((options.scans, options.cycle), (Some(5), Some(1_000_000)));
@@ -150,6 +164,7 @@ mod tests {
         assert!(options.stimulus.is_some() && options.vars.is_some() && options.retain.is_some());
         assert!(options.realtime && options.table && options.quiet && options.json);
         assert_eq!((options.from, options.to), (Some(Moment::Scan(3)), Some(Moment::Time(1_000_000_000))));
+        assert_eq!(options.retain_within, Some(0));
         let Wish::Bench(bench) = parse("--bench --scans 7").unwrap() else { panic!() };
         assert_eq!(bench.scans, Some(7));
         let Wish::Help(help) = parse("--help").unwrap() else { panic!() };
@@ -166,6 +181,14 @@ mod tests {
         assert_eq!(
             parse("--to soon").unwrap_err(),
             "`soon` is neither the number of a scan nor a time: write `120` or `1s200ms`"
+        );
+        assert_eq!(
+            parse("--retain-within 1s").unwrap_err(),
+            "--retain-within needs --retain, the file to keep them in"
+        );
+        assert_eq!(
+            parse("--retain r --retain-within 0s").unwrap_err(),
+            "`0s` is not a time above zero: write `10ms`, or `scan` for every scan"
         );
         assert_eq!(parse("--cycle 0s").unwrap_err(), "`0s` is not a time above zero: write `10ms`");
     }

@@ -33,9 +33,11 @@ mod signal;
 mod terminal;
 
 #[cfg(test)]
+mod allocations;
+#[cfg(test)]
 mod fixture;
 
-pub use args::{Wish, parse_duration, parse_moment, parse_options};
+pub use args::{Wish, parse_duration, parse_moment, parse_options, parse_within};
 pub use bench::{BenchOptions, Timing, bench};
 pub use compiled::{Code, Compiled, Init, Scan, Snapshot, main, main_with};
 pub use domain::Domain;

@@ -4,7 +4,7 @@ use crate::column::columns;
 use crate::json::quote;
 use crate::map::Map;
 use crate::path::{nearest, same};
-use crate::retain::Retained;
+use crate::retain::{Pace, Retention};
 use crate::schedule::Schedule;
 use crate::start::{Event, Start};
 use crate::stimulus::{Stimulus, Write};
@@ -65,6 +65,9 @@ pub struct Options {
     pub vars: Option<String>,
     /// A file that keeps retained variables from run to run.
     pub retain: Option<PathBuf>,
+    /// In real time, how soon a change of retained variables is on disk, in nanoseconds; 0 is after every
+    /// scan. [`RETAIN_WITHIN`](Self::RETAIN_WITHIN) without.
+    pub retain_within: Option<Time>,
     /// Waits for the time at which each scan is due.
     pub realtime: bool,
     /// Prints nothing but errors and the trace.
@@ -76,6 +79,9 @@ pub struct Options {
 }
 
 impl Options {
+    /// How soon a change of retained variables is on disk where nothing else is asked for: a second.
+    pub const RETAIN_WITHIN: Time = 1_000_000_000;
+
     /// A large array has many columns: they are not made for nothing.
     fn shows_values(&self) -> bool {
         self.trace.is_some() || self.vars.is_some() || (self.table && !self.quiet && !self.json)
@@ -165,7 +171,7 @@ pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Su
         next_row: 0,
         held: Vec::new(),
         fresh: vec![true; map.instances.len()],
-        retained: Retained::of(map),
+        retention: None,
         start: Start::of(map),
         epoch: 0,
         out: Output { rows: 0, trace: None, table: Table::new(terminal::width()) },
@@ -233,7 +239,7 @@ struct Runner<'a> {
     held: Vec<Write>,
     /// Instances that have not run since the start.
     fresh: Vec<bool>,
-    retained: Retained,
+    retention: Option<Retention>,
     start: Start,
     /// The program's clock at this run's time 0: a retained timer goes on where it stood.
     epoch: Time,
@@ -253,11 +259,12 @@ impl Runner<'_> {
     fn start(&mut self) -> Result<(), Error> {
         self.machine.init();
         if let Some(path) = &self.options.retain {
-            let loaded = self.retained.load(self.map, path, self.machine)?;
+            let (retention, loaded) = Retention::load(self.map, path, self.machine)?;
             for note in loaded.notes {
                 eprintln!("note: {}: {note}", path.display());
             }
             self.epoch = loaded.clock;
+            self.retention = Some(retention);
         }
         Ok(())
     }
@@ -266,6 +273,11 @@ impl Runner<'_> {
         let began = Instant::now();
         if self.options.realtime {
             signal::listen();
+            if let Some(retention) = &mut self.retention {
+                let within = self.options.retain_within.unwrap_or(Options::RETAIN_WITHIN);
+                let pace = Pace::within(Duration::from_nanos(u64::try_from(within).unwrap_or(0)));
+                retention.save_always(pace, self.machine.state())?;
+            }
             self.clock = Some(Clock::start());
         }
         if self.options.scans == Some(0) {
@@ -328,6 +340,10 @@ impl Runner<'_> {
             clock.figures.add(began.elapsed());
         }
         self.summary.scans = number;
+        let clock = self.saved_clock();
+        if let Some(retention) = &mut self.retention {
+            retention.offer(clock, self.machine.state());
+        }
         self.record(subject, now)?;
         Ok(Some(now))
     }
@@ -352,8 +368,9 @@ impl Runner<'_> {
 
     /// What the event keeps stays as it is, and so do inputs.
     fn start_again(&mut self, event: Event) -> Result<(), Error> {
-        if event == Event::Restart {
-            self.save()?;
+        let clock = self.saved_clock();
+        if let (Event::Restart, Some(retention)) = (event, &mut self.retention) {
+            retention.save(clock, self.machine.state())?;
         }
         self.start.again(event, self.machine);
         self.held.iter().for_each(|it| self.machine.write(it.offset, &it.bytes));
@@ -361,11 +378,10 @@ impl Runner<'_> {
         Ok(())
     }
 
-    fn save(&self) -> Result<(), Error> {
-        let Some(path) = &self.options.retain else { return Ok(()) };
+    /// The program's clock as it is kept with retained variables.
+    fn saved_clock(&self) -> Time {
         let ran = if self.summary.scans == 0 { 0 } else { self.schedule.next() };
-        let clock = self.epoch.saturating_add(ran);
-        self.retained.save(path, clock, self.machine.state())
+        self.epoch.saturating_add(ran)
     }
 
     fn record(&mut self, subject: &Subject<'_>, now: Time) -> Result<(), Error> {
@@ -390,7 +406,8 @@ impl Runner<'_> {
     }
 
     fn finish(&mut self, subject: &Subject<'_>) -> Result<(), Error> {
-        let saved = self.save();
+        let clock = self.saved_clock();
+        let saved = self.retention.as_mut().map_or(Ok(()), |it| it.finish(clock, self.machine.state()));
         if self.out.rows == 0 && (self.options.from.is_some() || self.options.to.is_some()) {
             eprintln!("note: no scan lies between --from and --to");
         }

@@ -7,6 +7,8 @@ mod build;
 mod cache;
 mod check;
 mod page;
+#[cfg(unix)]
+mod power;
 mod retain;
 mod run;
 mod stimulus;

@@ -37,22 +37,42 @@ fn an_edited_program_takes_what_still_fits() {
     assert_eq!(ran.out(0), "scan,time_ms,kept,other,c.CV,plain\n1,0,3,5,3,1\n2,10,4,6,4,2\n");
 }
 
+/// The head's text takes less than a sector; the first slot is the next, with a head of 24 bytes.
+const SECTOR: usize = 4096;
+const SLOT_HEAD: usize = 24;
+
 #[test]
 fn a_damaged_file_is_refused_and_kept() {
     let folder = folder("damaged");
     folder.staunch(RUN).out(0);
     let whole = std::fs::read(folder.0.join("plant.retain")).unwrap();
-    for cut in [0, 1, whole.len() / 2, whole.len() - 1] {
+    let head = whole.iter().position(|it| *it == 0).unwrap();
+    let values = 2 + 4;
+    for cut in [0, 1, head / 2, head, SECTOR, SECTOR + SLOT_HEAD + values - 1] {
         folder.write("plant.retain", &whole[..cut]);
-        has(&folder.staunch(RUN).err(2), &["plant.retain"]);
+        has(&folder.staunch(RUN).err(2), &["plant.retain", "move it away"]);
         assert_eq!(std::fs::read(folder.0.join("plant.retain")).unwrap(), &whole[..cut]);
     }
-    for flipped in (0..whole.len()).step_by(7) {
+    for flipped in (0..head).step_by(7).chain(SECTOR..SECTOR + SLOT_HEAD + values) {
         let mut bytes = whole.clone();
         bytes[flipped] ^= 0x10;
         folder.write("plant.retain", &bytes);
         folder.staunch(RUN).err(2);
+        assert_eq!(std::fs::read(folder.0.join("plant.retain")).unwrap(), bytes);
     }
+}
+
+#[test]
+fn a_damaged_state_gives_way_to_the_one_before_and_a_note() {
+    let folder = folder("cut-off");
+    folder.staunch(RUN).out(0);
+    assert_eq!(folder.staunch(RUN).out(0).lines().last(), Some("2,10,4,8,4,2"));
+    let mut bytes = std::fs::read(folder.0.join("plant.retain")).unwrap();
+    bytes[2 * SECTOR + SLOT_HEAD] ^= 0x10;
+    folder.write("plant.retain", &bytes);
+    let ran = folder.staunch(RUN);
+    has(&ran.err, &["note: plant.retain: one of its two states is not whole"]);
+    assert_eq!(ran.out(0).lines().last(), Some("2,10,4,8,4,2"));
 }
 
 #[test]
@@ -74,10 +94,10 @@ fn a_retained_timer_goes_on_where_it_stood() {
     assert!(out.ends_with("5,40,T#100ms,TRUE\n6,50,T#100ms,TRUE\n7,60,T#100ms,TRUE\n"), "{out}");
 }
 
-/// CRC-32 (IEEE 802.3), as the file ends with.
-fn checksum(text: &str) -> u32 {
-    !text.bytes().fold(u32::MAX, |crc, byte| {
-        (0..8).fold(crc ^ u32::from(byte), |crc, _| crc >> 1 ^ 0xEDB8_8320 & (crc & 1).wrapping_neg())
+/// CRC-32 (IEEE 802.3).
+fn checksum(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(u32::MAX, |crc, byte| {
+        (0..8).fold(crc ^ u32::from(*byte), |crc, _| crc >> 1 ^ 0xEDB8_8320 & (crc & 1).wrapping_neg())
     })
 }
 
@@ -94,24 +114,35 @@ CASE color OF Red: chosen := 1; Green: chosen := 2; END_CASE
 END_PROGRAM
 ";
 
+/// A file with a right checksum in which every byte of a value is 255: as version 2, and as it is now.
+fn forged(good: &[u8]) -> [Vec<u8>; 2] {
+    let end = good.windows(7).position(|it| it == b"\ncrc32\t").unwrap() + 1;
+    let head = std::str::from_utf8(&good[..end]).unwrap();
+    let mut size = 0;
+    let old = |line: &str| match line.split('\t').collect::<Vec<_>>()[..] {
+        [path, ty, count] => {
+            size += count.parse::<usize>().unwrap();
+            format!("{path}\t{ty}\t{}\n", "ff".repeat(count.parse().unwrap()))
+        }
+        _ => format!("{line}\n").replace("variables 3", "variables 2"),
+    };
+    let text: String = head.lines().map(old).collect();
+    assert!(head.lines().count() > 7 && text.contains("STRING[4]\tffffffff"), "{text}");
+    let mut slots = good.to_vec();
+    slots[SECTOR + SLOT_HEAD..SECTOR + SLOT_HEAD + size].fill(0xFF);
+    let mut covered = checksum(head.as_bytes()).to_le_bytes().to_vec();
+    covered.extend(&slots[SECTOR + 4..SECTOR + SLOT_HEAD + size]);
+    slots[SECTOR..SECTOR + 4].copy_from_slice(&checksum(&covered).to_le_bytes());
+    [format!("{text}crc32\t{:08x}\n", checksum(text.as_bytes())).into_bytes(), slots]
+}
+
 #[test]
 fn any_bytes_of_a_file_are_the_same_values_on_every_back_end() {
     let folder = Folder::with("forged", &[("main.st", TYPES)]);
     folder.staunch("run main.st --scans 1 --retain good --quiet").out(0);
-    let forge = |line: &str| {
-        let mut cells: Vec<&str> = line.split('\t').collect();
-        let forged = cells.last().unwrap().replace(|it: char| it.is_ascii_hexdigit(), "f");
-        if let (3, Some(last)) = (cells.len(), cells.last_mut()) {
-            *last = &forged;
-        }
-        cells.join("\t") + "\n"
-    };
-    let good = folder.read("good");
-    let text: String = good.lines().filter(|it| !it.starts_with("crc32")).map(forge).collect();
-    let forged = format!("{text}crc32\t{:08x}\n", checksum(&text));
-    assert!(good.lines().count() > 8 && forged.contains("STRING[4]\tffffffff"), "{forged}");
-    let run = |backend| {
-        folder.write("plant.retain", &forged);
+    let good = std::fs::read(folder.0.join("good")).unwrap();
+    let run = |backend, forged: &[u8]| {
+        folder.write("plant.retain", forged);
         folder.staunch(&format!(
             "run main.st --scans 2 --trace - --retain plant.retain --backend {backend} \
              --vars on,level,color,length,chosen,element,neither,timer.Q,timer.in_before"
@@ -119,7 +150,9 @@ fn any_bytes_of_a_file_are_the_same_values_on_every_back_end() {
     };
     let expected = "scan,time_ms,on,level,color,length,chosen,element,neither,timer.Q,timer.in_before\n\
                     1,0,TRUE,0,-1,4,0,-1,FALSE,TRUE,TRUE\n2,10,TRUE,0,-1,4,0,-1,FALSE,TRUE,TRUE\n";
-    for backend in ["interpret", "native", "rust"] {
-        assert_eq!(run(backend).out(0), expected, "{backend}");
+    for (version, forged) in forged(&good).iter().enumerate() {
+        for backend in ["interpret", "native", "rust"] {
+            assert_eq!(run(backend, forged).out(0), expected, "{backend}, version {}", version + 2);
+        }
     }
 }

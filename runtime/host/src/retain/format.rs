@@ -1,0 +1,250 @@
+//! The file of retained variables as bytes: what is written, and what is recovered of whatever is
+//! found. It touches no file.
+//!
+//! A head of text comes first: the format's version, the PROGRAMs, a line a variable with its path,
+//! type and size, and a checksum. Two slots follow, each on sectors of its own, of which one is
+//! written while the other holds the state before: a checksum over all of the rest and the head's
+//! checksum, a sequence number, the program's clock, and the variables' bytes in the order of the
+//! head's lines. Numbers of the slot are little endian, and so are values on every supported target.
+
+use super::text;
+use staunch_runtime::{Crc32, Time, crc32};
+use std::fmt::Write as _;
+
+/// The first line, before the version.
+pub(super) const TITLE: &str = "staunch retained variables ";
+
+/// Version 1 named types without what they mean; version 2 was text alone, written as a whole.
+const VERSION: &str = "3";
+
+/// Slots do not share a sector, nor a page of what stores them, so that writing one leaves the other alone.
+pub(super) const SECTOR: usize = 4096;
+
+/// Checksum, a word that is 0, sequence number, clock.
+const SLOT_HEAD: usize = 24;
+
+/// A variable as the file names it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Named {
+    pub path: String,
+    /// All that decides what the bytes mean.
+    pub ty: String,
+    pub size: usize,
+}
+
+/// What a file of one program is like: its head, and where its slots are.
+#[derive(Clone, Debug)]
+pub(super) struct Layout {
+    head: String,
+    fingerprint: u32,
+    /// Bytes of all values.
+    size: usize,
+}
+
+/// One of the two slots.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Slot {
+    First,
+    Second,
+}
+
+impl Slot {
+    pub const BOTH: [Self; 2] = [Self::First, Self::Second];
+
+    pub const fn other(self) -> Self {
+        match self {
+            Self::First => Self::Second,
+            Self::Second => Self::First,
+        }
+    }
+}
+
+/// What a slot holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Record<'a> {
+    /// Counts up with each record that is written, so that the later one is known.
+    pub sequence: u64,
+    pub clock: Time,
+    pub values: &'a [u8],
+}
+
+impl Layout {
+    pub fn new<'a>(programs: &str, variables: impl Iterator<Item = (&'a str, &'a str, usize)>) -> Self {
+        let (mut head, mut size) = (format!("{TITLE}{VERSION}\nprogram\t{programs}\n"), 0);
+        for (path, ty, bytes) in variables {
+            let _ = writeln!(head, "{path}\t{ty}\t{bytes}");
+            size += bytes;
+        }
+        let fingerprint = crc32(head.as_bytes());
+        let _ = writeln!(head, "{CHECKSUM}{fingerprint:08x}");
+        Self { head, fingerprint, size }
+    }
+
+    /// Where a slot is in the file.
+    pub fn offset(&self, slot: Slot) -> usize {
+        let first = self.head.len().next_multiple_of(SECTOR);
+        match slot {
+            Slot::First => first,
+            Slot::Second => first + self.slot_size(),
+        }
+    }
+
+    fn slot_size(&self) -> usize {
+        (SLOT_HEAD + self.size).next_multiple_of(SECTOR)
+    }
+
+    fn file_size(&self) -> usize {
+        self.offset(Slot::Second) + self.slot_size()
+    }
+
+    /// Whether a file of these bytes is of this layout, so that its slots may be written.
+    pub fn is_of(&self, file: &[u8]) -> bool {
+        file.starts_with(self.head.as_bytes()) && file.len() == self.file_size()
+    }
+
+    /// The bytes of a slot, in place of what `out` holds.
+    pub fn encode_slot(&self, record: Record<'_>, out: &mut Vec<u8>) {
+        out.clear();
+        out.extend([0; 8]);
+        out.extend(record.sequence.to_le_bytes());
+        out.extend(record.clock.to_le_bytes());
+        out.extend(record.values);
+        let checksum = slot_checksum(self.fingerprint, out);
+        out[..4].copy_from_slice(&checksum.to_le_bytes());
+    }
+
+    /// The bytes of a new file, which holds the record in its first slot.
+    pub fn encode_file(&self, record: Record<'_>) -> Vec<u8> {
+        let mut slot = Vec::new();
+        self.encode_slot(record, &mut slot);
+        let mut file = self.head.clone().into_bytes();
+        file.resize(self.offset(Slot::First), 0);
+        file.extend(slot);
+        // Written rather than left out: the disk has room for the second slot from now on.
+        file.resize(self.file_size(), 0);
+        file
+    }
+}
+
+/// How the last line of a head begins. No variable does: its path has a dot in it.
+const CHECKSUM: &str = "crc32\t";
+
+fn slot_checksum(fingerprint: u32, slot: &[u8]) -> u32 {
+    Crc32::new().with(&fingerprint.to_le_bytes()).with(&slot[4..]).value()
+}
+
+/// What a file holds, whatever its version.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Content {
+    pub programs: String,
+    pub clock: Time,
+    /// Of each variable the path, the type, and the bytes if they can be read.
+    pub variables: Vec<(String, String, Option<Vec<u8>>)>,
+    /// Where the values were, in a file with slots.
+    pub found: Option<Found>,
+}
+
+/// The record that was taken.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Found {
+    pub slot: Slot,
+    pub sequence: u64,
+    pub values: Vec<u8>,
+    /// The other slot holds something that is no whole record: its writing did not end, or it was damaged.
+    pub other_is_broken: bool,
+}
+
+/// Why nothing can be recovered.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Refusal {
+    Foreign,
+    Version(String),
+    Damaged(&'static str),
+}
+
+impl Refusal {
+    pub fn text(&self) -> String {
+        match self {
+            Self::Foreign => "it does not hold retained variables".to_owned(),
+            Self::Version(other) => {
+                format!("its format is version {other}, and this Staunch reads version {VERSION} and {}", text::VERSION)
+            }
+            Self::Damaged(what) => format!("it is damaged: {what}"),
+        }
+    }
+}
+
+/// The last whole state of a file, of any bytes.
+pub(super) fn recover(file: &[u8]) -> Result<Content, Refusal> {
+    let title = String::from_utf8_lossy(file.split(|it| *it == b'\n').next().unwrap_or_default());
+    match title.strip_prefix(TITLE).map(str::trim_end) {
+        Some(VERSION) => recover_slots(file),
+        Some(text::VERSION) => text::recover(file),
+        Some(other) => Err(Refusal::Version(other.to_owned())),
+        None => Err(Refusal::Foreign),
+    }
+}
+
+fn recover_slots(file: &[u8]) -> Result<Content, Refusal> {
+    let (layout, programs, variables) = head(file).ok_or(Refusal::Damaged("its head's checksum does not match"))?;
+    let slots = Slot::BOTH.map(|slot| slot_at(file, &layout, slot));
+    let [first, second] = slots.map(|it| decode_slot(&layout, it?));
+    let (slot, record) = match (first, second) {
+        (Some(first), Some(second)) if second.sequence > first.sequence => (Slot::Second, second),
+        (Some(first), _) => (Slot::First, first),
+        (None, Some(second)) => (Slot::Second, second),
+        (None, None) => return Err(Refusal::Damaged("neither of its two states has the checksum that it should")),
+    };
+    let other = slots[usize::from(slot == Slot::First)];
+    let other_is_broken = other.is_none_or(|it| it.iter().any(|byte| *byte != 0) && decode_slot(&layout, it).is_none());
+    let mut rest = record.values;
+    let variables = variables.into_iter().map(|Named { path, ty, size }| {
+        let (bytes, after) = rest.split_at(size);
+        rest = after;
+        (path, ty, Some(bytes.to_vec()))
+    });
+    Ok(Content {
+        programs,
+        clock: record.clock,
+        variables: variables.collect(),
+        found: Some(Found { slot, sequence: record.sequence, values: record.values.to_vec(), other_is_broken }),
+    })
+}
+
+/// The head's layout, PROGRAMs and variables, if its checksum is right.
+fn head(file: &[u8]) -> Option<(Layout, String, Vec<Named>)> {
+    let last = CHECKSUM.len() + 9;
+    let line = format!("\n{CHECKSUM}");
+    let at = 1 + file.windows(line.len()).position(|it| it == line.as_bytes())?;
+    let head = std::str::from_utf8(file.get(..at + last)?).ok()?;
+    let mut lines = head[..at].lines().skip(1);
+    let programs = lines.next()?.strip_prefix("program\t")?.to_owned();
+    let variables = lines.map(named).collect::<Option<Vec<_>>>()?;
+    variables.iter().try_fold(0_usize, |sum, it| sum.checked_add(it.size)).filter(|it| *it <= file.len())?;
+    let layout = Layout::new(&programs, variables.iter().map(|it| (it.path.as_str(), it.ty.as_str(), it.size)));
+    // What reads as the same head is the same text, checksum included.
+    (layout.head == head).then_some((layout, programs, variables))
+}
+
+fn named(line: &str) -> Option<Named> {
+    let mut cells = line.split('\t');
+    let named =
+        Named { path: cells.next()?.to_owned(), ty: cells.next()?.to_owned(), size: cells.next()?.parse().ok()? };
+    cells.next().is_none().then_some(named)
+}
+
+fn slot_at<'a>(file: &'a [u8], layout: &Layout, slot: Slot) -> Option<&'a [u8]> {
+    let at = layout.offset(slot);
+    file.get(at..at + SLOT_HEAD + layout.size)
+}
+
+fn decode_slot<'a>(layout: &Layout, slot: &'a [u8]) -> Option<Record<'a>> {
+    let (head, values) = slot.split_first_chunk::<SLOT_HEAD>()?;
+    let checksum = u32::from_le_bytes(*head.first_chunk()?);
+    let sequence = u64::from_le_bytes(*head[8..].first_chunk()?);
+    let clock = Time::from_le_bytes(*head.last_chunk()?);
+    (checksum == slot_checksum(layout.fingerprint, slot)).then_some(Record { sequence, clock, values })
+}
+
+#[cfg(test)]
+mod tests;
