@@ -9,9 +9,6 @@ mod storage;
 mod text;
 mod writer;
 
-#[cfg(test)]
-mod faulty;
-
 use crate::map::{Map, Type};
 use crate::path;
 use crate::start::{Event, Part, kept_parts};

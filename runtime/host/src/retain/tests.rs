@@ -1,3 +1,7 @@
+//! Retained variables from file to state; `faulty` is a disk for the tests below this folder.
+
+pub(super) mod faulty;
+
 use super::*;
 use crate::fixture::{Bytes, MAP, map, offset_of};
 use crate::start::Start;

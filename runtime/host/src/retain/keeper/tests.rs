@@ -1,5 +1,5 @@
-use super::super::faulty::{Faults, Faulty, Random};
 use super::super::format::recover;
+use super::super::tests::faulty::{Faults, Faulty, Random};
 use super::*;
 
 const SIZE: usize = 1500;

@@ -1,6 +1,6 @@
-use super::super::faulty::{Faults, Faulty};
 use super::super::format::{Layout, recover};
 use super::super::storage::Which;
+use super::super::tests::faulty::{Faults, Faulty};
 use super::*;
 use crate::allocations::allocations;
 use std::sync::mpsc::{Receiver, Sender, channel};

@@ -1,7 +1,7 @@
 //! A disk for tests: it writes short, fills up, fails to sync, and forgets or tears what was not synced
 //! when its power is cut. Sectors reach it in any order.
 
-use super::storage::{Storage, Which};
+use super::super::storage::{Storage, Which};
 use std::io;
 use std::sync::{Arc, Mutex};
 
@@ -10,7 +10,7 @@ const SECTOR: usize = 512;
 
 /// Numbers that are random enough.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Random(pub u64);
+pub(crate) struct Random(pub u64);
 
 impl Random {
     pub fn below(&mut self, bound: usize) -> usize {
@@ -93,7 +93,7 @@ impl Model {
 
 /// How often things fail, in percent, and when the power goes.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Faults {
+pub(crate) struct Faults {
     pub errors: usize,
     pub short_writes: usize,
     pub failing_syncs: usize,
@@ -116,7 +116,7 @@ struct State {
 
 /// The disk; its copies are the same disk.
 #[derive(Clone, Debug)]
-pub(super) struct Faulty(Arc<Mutex<State>>);
+pub(crate) struct Faulty(Arc<Mutex<State>>);
 
 impl Faulty {
     pub fn new(seed: u64, faults: Faults, file: Option<&[u8]>) -> Self {
