@@ -3,6 +3,7 @@
 //! The parser limits nesting ([`MAX_DEPTH`]), so later passes may recurse freely.
 
 use crate::source::Span;
+use staunch_runtime::Elementary;
 
 /// Nesting of expressions and statements; types and initial values nest a quarter as deep.
 pub const MAX_DEPTH: usize = 256;
@@ -421,10 +422,10 @@ pub enum LiteralValue<'s> {
     },
     /// The digits as spelled, without `_`: they are read at the width their place asks for.
     Real(Box<str>),
-    /// Signed nanoseconds, of `T#…` (`long: false`) or `LTIME#…`.
+    /// A duration, a date or a time of day, as its type carries it.
     Time {
+        ty: Elementary,
         nanoseconds: i64,
-        long: bool,
     },
     /// The bytes of `'…'`, escapes resolved, or the UTF-16 units of `"…"` as UTF-8 text.
     String {
@@ -433,8 +434,6 @@ pub enum LiteralValue<'s> {
     },
     /// After `Color#`.
     Enumerator(Box<Name<'s>>),
-    /// D#, TOD#, DT# and their L forms: refused by name for now.
-    Date(&'static str),
     /// A literal that cannot be read; reported.
     Error,
 }

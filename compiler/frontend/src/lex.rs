@@ -6,7 +6,7 @@ mod kind;
 mod literal;
 
 pub use kind::Kind;
-pub use literal::{Fault, duration, integer, real, string};
+pub use literal::{Fault, date, duration, integer, real, string};
 
 use logos::Logos;
 

@@ -4,6 +4,8 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 use staunch_ir::{ArrayId, BlockId, Const, Elementary, EnumId, FieldId, Lane, StructId, Type, Value};
 
+use staunch_runtime::calendar::Day;
+
 use crate::emitter::Emitter;
 use crate::names;
 use crate::precedence::{Code, Level};
@@ -213,6 +215,7 @@ pub fn literal(ty: Elementary, value: Value, suffixed: bool) -> Code {
     let suffix = if suffixed { ty.lane().rust_name() } else { "" };
     match value {
         Value::Bool(it) => Code::postfix(quote!(#it)),
+        Value::I64(it) if ty.is_day() && Day::at(it).start() == Some(it) => date(it),
         Value::I64(it) if ty.is_time() => time(it, suffix),
         Value::F32(it) => float(f64::from(it), format!("{it:?}"), u64::from(it.to_bits()), "f32", suffix),
         Value::F64(it) => float(it, format!("{it:?}"), it.to_bits(), "f64", suffix),
@@ -274,6 +277,12 @@ fn time(nanoseconds: i64, suffix: &str) -> Code {
     }
     let count = signed(i128::from(nanoseconds / staunch_runtime::time::MILLISECOND), "").tokens;
     Code::postfix(quote!(time::ms(#count)))
+}
+
+fn date(midnight: i64) -> Code {
+    let Day { year, month, day } = Day::at(midnight);
+    let [year, month, day] = [year, month, day].map(Literal::i64_unsuffixed);
+    Code::postfix(quote!(time::date(#year, #month, #day)))
 }
 
 fn float(value: f64, text: String, bits: u64, lane: &str, suffix: &str) -> Code {

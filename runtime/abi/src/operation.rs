@@ -26,6 +26,9 @@ macro_rules! at_lanes {
     (real $each:ident $row:tt) => {
         at_lanes!(@ $each $row f32 f64)
     };
+    (long $each:ident $row:tt) => {
+        at_lanes!(@ $each $row i64)
+    };
     (bits $each:ident $row:tt) => {
         at_lanes!(@ $each $row bool i8 i16 i32 i64 u8 u16 u32 u64)
     };

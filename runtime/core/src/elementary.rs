@@ -1,6 +1,6 @@
 //! The elementary types of IEC 61131-3, and the classes that its generic functions name.
 
-use crate::Lane;
+use crate::{Lane, time};
 
 macro_rules! elementary {
     ($($(#[$doc:meta])* $ty:ident $name:ident $rust:ident $lane:ident $class:ident;)*) => {
@@ -58,7 +58,24 @@ elementary! {
     /// Nanoseconds, signed 64-bit, as LTIME.
     Time    TIME    i64   I64   Duration;
     Ltime   LTIME   i64   I64   Duration;
+    /// The midnight at which the day starts, in nanoseconds since 1970-01-01; as LDATE.
+    Date    DATE    i64   I64   Date;
+    Ldate   LDATE   i64   I64   Date;
+    /// Nanoseconds since midnight, less than a day; as LTOD.
+    Tod     TOD     i64   I64   Date;
+    Ltod    LTOD    i64   I64   Date;
+    /// Nanoseconds since 1970-01-01; as LDT.
+    Dt      DT      i64   I64   Date;
+    Ldt     LDT     i64   I64   Date;
 }
+
+/// The types' long names.
+const LONG_NAMES: [(&str, Elementary); 4] = [
+    ("TIME_OF_DAY", Elementary::Tod),
+    ("LTIME_OF_DAY", Elementary::Ltod),
+    ("DATE_AND_TIME", Elementary::Dt),
+    ("LDATE_AND_TIME", Elementary::Ldt),
+];
 
 macro_rules! classes {
     ($($(#[$doc:meta])* $class:ident $name:literal $($parent:ident)?;)*) => {
@@ -100,6 +117,8 @@ classes! {
     Unsigned    "ANY_UNSIGNED"    Int;
     Signed      "ANY_SIGNED"      Int;
     Duration    "ANY_DURATION"    Magnitude;
+    /// Days, times of day, and points in time.
+    Date        "ANY_DATE"        Elementary;
     /// BOOL and the bit strings.
     Bit         "ANY_BIT"         Elementary;
     Chars       "ANY_CHARS"       Elementary;
@@ -123,7 +142,9 @@ impl Class {
 impl Elementary {
     /// Finds a type by its keyword, in any case.
     pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|it| it.name().eq_ignore_ascii_case(name))
+        let short = || Self::ALL.into_iter().find(|it| it.name().eq_ignore_ascii_case(name));
+        let long = || LONG_NAMES.into_iter().find(|it| it.0.eq_ignore_ascii_case(name)).map(|it| it.1);
+        short().or_else(long)
     }
 
     /// The type that counts or calculates in a lane; BOOL for a `bool`.
@@ -152,8 +173,46 @@ impl Elementary {
         self.is(Class::Bit)
     }
 
-    pub const fn is_time(self) -> bool {
+    /// A duration.
+    pub const fn is_duration(self) -> bool {
         self.is(Class::Duration)
+    }
+
+    /// A duration, a date or a time of day: what a [`Time`](crate::Time) carries.
+    pub const fn is_time(self) -> bool {
+        self.is_duration() || self.is(Class::Date)
+    }
+
+    /// A day, by its midnight.
+    pub const fn is_day(self) -> bool {
+        matches!(self, Self::Date | Self::Ldate)
+    }
+
+    /// A time of day.
+    pub const fn is_time_of_day(self) -> bool {
+        matches!(self, Self::Tod | Self::Ltod)
+    }
+
+    /// A point in time.
+    pub const fn is_date_and_time(self) -> bool {
+        matches!(self, Self::Dt | Self::Ldt)
+    }
+
+    /// What a number counts that is converted to this type or from it, for what a [`Time`](crate::Time)
+    /// carries: as CODESYS documents it, milliseconds of durations and times of day, seconds of dates,
+    /// and nanoseconds of the long forms of these.
+    pub const fn counted_in(self) -> Option<crate::Time> {
+        match self {
+            Self::Time | Self::Ltime | Self::Tod => Some(time::MILLISECOND),
+            Self::Date | Self::Dt => Some(time::SECOND),
+            Self::Ldate | Self::Ltod | Self::Ldt => Some(1),
+            _ => None,
+        }
+    }
+
+    /// An integer, BOOL or a bit string: what counts, and has bits.
+    pub const fn is_integral(self) -> bool {
+        self.is_integer() || self.is_bits()
     }
 
     pub const fn is_integer(self) -> bool {

@@ -15,11 +15,19 @@ pub enum FaultKind {
     ZeroStep = 4,
     /// The loops of a scan took more turns than it has: one of them may have no end.
     LoopBudget = 5,
+    /// Numbers of a year, a month, a day or a time of day that make none, or one beyond what is reached.
+    NoSuchDate = 6,
 }
 
 impl FaultKind {
-    pub const ALL: [Self; 5] =
-        [Self::DivideByZero, Self::IndexOutOfRange, Self::SubrangeViolated, Self::ZeroStep, Self::LoopBudget];
+    pub const ALL: [Self; 6] = [
+        Self::DivideByZero,
+        Self::IndexOutOfRange,
+        Self::SubrangeViolated,
+        Self::ZeroStep,
+        Self::LoopBudget,
+        Self::NoSuchDate,
+    ];
 
     /// The fault with this code, as native code returns it.
     pub fn from_code(code: u8) -> Option<Self> {
@@ -34,6 +42,7 @@ impl FaultKind {
             Self::SubrangeViolated => "value outside its subrange",
             Self::ZeroStep => "the step of a FOR loop is 0",
             Self::LoopBudget => "a loop went on past the scan's budget of turns",
+            Self::NoSuchDate => "no such date or time of day",
         }
     }
 }

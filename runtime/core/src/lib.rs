@@ -17,6 +17,8 @@ mod op_table;
 pub mod ops;
 mod signature;
 
+pub mod calendar;
+pub mod format;
 pub mod literal;
 pub mod text;
 pub mod time;

@@ -3,7 +3,9 @@
 //! The compiler reads them in sources and the host in the cells of a stimulus, so that both take
 //! and refuse the same.
 
-use crate::Time;
+use crate::calendar::{Clock, Day, days_of_month};
+use crate::time::{DAY, SECOND};
+use crate::{Elementary, Time};
 
 /// What is wrong with a literal, and the bytes of its text where.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,6 +42,22 @@ pub enum LiteralErrorKind {
     },
     /// More than 64 bits of nanoseconds, about 292 years.
     DurationTooLong,
+    /// Not year, month and day.
+    DateForm,
+    /// Not hour, minute and second.
+    TimeOfDayForm,
+    /// Not a date with a time of day.
+    DateAndTimeForm,
+    Month,
+    /// A day that its month does not have; that has `last`.
+    Day {
+        last: i64,
+    },
+    Hour,
+    Minute,
+    Second,
+    /// A date that 64 bits of nanoseconds do not reach.
+    DateTooFar,
 }
 
 impl LiteralErrorKind {
@@ -58,6 +76,15 @@ impl LiteralErrorKind {
             Self::UnitOrder => "a unit is after a shorter or the same unit",
             Self::InnerFraction { .. } => "only the last unit of a duration has a fraction",
             Self::DurationTooLong => "the duration does not fit 64 bits of nanoseconds (about 292 years)",
+            Self::DateForm => "a date is year, month and day, as in `2024-02-29`",
+            Self::TimeOfDayForm => "a time of day is hour, minute and second, as in `23:59:59.5`",
+            Self::DateAndTimeForm => "a DT is a date and a time of day, as in `2024-02-29-23:59:59.5`",
+            Self::Month => "a year has the months 1 to 12",
+            Self::Day { .. } => "the month has no such day",
+            Self::Hour => "a day has the hours 0 to 23",
+            Self::Minute => "an hour has the minutes 0 to 59",
+            Self::Second => "a minute has the seconds 0 to 59",
+            Self::DateTooFar => "dates reach from 1677-09-22 to 2262-04-11",
         }
     }
 }
@@ -154,6 +181,113 @@ pub fn duration(text: &str) -> Result<Time, LiteralError> {
     Time::try_from(total).map_err(|_| long)
 }
 
+/// The value of a literal of a duration, a date or a time of day: what follows its `#`.
+pub fn time(ty: Elementary, text: &str) -> Result<Time, LiteralError> {
+    match ty {
+        Elementary::Date | Elementary::Ldate => date(text),
+        Elementary::Tod | Elementary::Ltod => time_of_day(text),
+        Elementary::Dt | Elementary::Ldt => date_and_time(text),
+        _ => duration(text),
+    }
+}
+
+/// The midnight of `2024-02-29`.
+pub fn date(text: &str) -> Result<Time, LiteralError> {
+    let too_far = LiteralError { start: 0, end: text.len(), kind: LiteralErrorKind::DateTooFar };
+    day(text)?.checked_mul(DAY).ok_or(too_far)
+}
+
+/// Days from 1970-01-01 to `2024-02-29`.
+fn day(text: &str) -> Result<i64, LiteralError> {
+    let error = |start, end, kind| LiteralError { start, end, kind };
+    let Fields { values: [year, month, day], ends, count } = Fields::of(text, '-', LiteralErrorKind::DateForm)?;
+    if count < 3 {
+        return Err(error(0, text.len(), LiteralErrorKind::DateForm));
+    }
+    if !(1..=12).contains(&month) {
+        return Err(error(ends[0] + 1, ends[1], LiteralErrorKind::Month));
+    }
+    let last = days_of_month(year, month);
+    if !(1..=last).contains(&day) {
+        return Err(error(ends[1] + 1, ends[2], LiteralErrorKind::Day { last }));
+    }
+    Day { year, month, day }.number().ok_or(error(0, text.len(), LiteralErrorKind::DateTooFar))
+}
+
+/// Nanoseconds since midnight at `23:59:59.5`. The seconds may be left out; less than a nanosecond is
+/// cut off.
+pub fn time_of_day(text: &str) -> Result<Time, LiteralError> {
+    let kind = LiteralErrorKind::TimeOfDayForm;
+    let error = |start, end, kind| LiteralError { start, end, kind };
+    let (whole, fraction) = text.split_once('.').map_or((text, None), |(whole, fraction)| (whole, Some(fraction)));
+    let Fields { values: [hour, minute, second], ends, count } = Fields::of(whole, ':', kind)?;
+    let is_fraction = |it: &str| !it.is_empty() && it.bytes().all(|it| it.is_ascii_digit() || it == b'_');
+    if count < 2 || fraction.is_some_and(|it| count < 3 || !is_fraction(it)) {
+        return Err(error(0, text.len(), kind));
+    }
+    underscores(text, u8::is_ascii_digit, u8::is_ascii_digit, LiteralErrorKind::UnderscoreInNumber)?;
+    let nanosecond = scaled("", fraction.unwrap_or_default(), i128::from(SECOND));
+    let nanosecond = Time::try_from(nanosecond).unwrap_or(0);
+    let limits = [
+        (hour, 24, LiteralErrorKind::Hour),
+        (minute, 60, LiteralErrorKind::Minute),
+        (second, 60, LiteralErrorKind::Second),
+    ];
+    for (at, (value, limit, kind)) in limits.into_iter().enumerate() {
+        if value >= limit {
+            let start = if at == 0 { 0 } else { ends[at - 1] + 1 };
+            return Err(error(start, ends[at], kind));
+        }
+    }
+    Clock { hour, minute, second, nanosecond }.since_midnight().ok_or(error(0, text.len(), kind))
+}
+
+/// Nanoseconds from 1970-01-01 to `2024-02-29-23:59:59.5`.
+pub fn date_and_time(text: &str) -> Result<Time, LiteralError> {
+    let whole = |kind| LiteralError { start: 0, end: text.len(), kind };
+    // The last of three `-` is between the day and the hour.
+    let mut dashes = text.match_indices('-').map(|it| it.0);
+    let (Some(between), None) = (dashes.nth(2), dashes.next()) else {
+        return Err(whole(LiteralErrorKind::DateAndTimeForm));
+    };
+    let (date, clock) = (&text[..between], &text[between + 1..]);
+    let number = day(date)?;
+    let shifted = |it: LiteralError| LiteralError { start: it.start + between + 1, end: it.end + between + 1, ..it };
+    let clock = time_of_day(clock).map_err(shifted)?;
+    let time = i128::from(number) * i128::from(DAY) + i128::from(clock);
+    Time::try_from(time).map_err(|_| whole(LiteralErrorKind::DateTooFar))
+}
+
+/// Up to three numbers between separators, and where each ends.
+struct Fields {
+    values: [i64; 3],
+    ends: [usize; 3],
+    count: usize,
+}
+
+impl Fields {
+    fn of(text: &str, separator: char, kind: LiteralErrorKind) -> Result<Self, LiteralError> {
+        underscores(text, u8::is_ascii_digit, u8::is_ascii_digit, LiteralErrorKind::UnderscoreInNumber)?;
+        let wrong = LiteralError { start: 0, end: text.len(), kind };
+        let mut fields = Self { values: [0; 3], ends: [0; 3], count: 0 };
+        let mut start = 0;
+        for digits in text.split(separator) {
+            let (Some(value), Some(end)) = (fields.values.get_mut(fields.count), fields.ends.get_mut(fields.count))
+            else {
+                return Err(wrong);
+            };
+            if digits.is_empty() || digits.bytes().any(|it| !it.is_ascii_digit() && it != b'_') {
+                return Err(wrong);
+            }
+            *value = i64::try_from(decimal(digits)).unwrap_or(i64::MAX);
+            *end = start + digits.len();
+            start = *end + separator.len_utf8();
+            fields.count += 1;
+        }
+        Ok(fields)
+    }
+}
+
 /// One number of a duration with its unit.
 struct Part {
     /// Index in [`UNITS`].
@@ -191,14 +325,22 @@ fn part(text: &str, start: usize) -> Result<Part, LiteralError> {
 
 /// `whole.fraction` times `scale`, saturating, cut to whole nanoseconds.
 fn scaled(whole: &str, fraction: &str, scale: i128) -> i128 {
-    fn digits(text: &str) -> impl Iterator<Item = i128> {
-        text.bytes().filter(u8::is_ascii_digit).map(|it| i128::from(it - b'0'))
-    }
-    let add = |sum: i128, digit| sum.saturating_mul(10).saturating_add(digit);
-    let whole = digits(whole).fold(0, add).saturating_mul(scale);
     // No unit has more than 14 decimal digits of nanoseconds.
-    let (part, tenths) = digits(fraction).take(15).fold((0, 1), |(sum, tenths), digit| (add(sum, digit), tenths * 10));
-    whole.saturating_add(part * scale / tenths)
+    let (part, tenths) = digits(fraction).take(15).fold((0, 1), |(sum, tenths), it| (appended(sum, it), tenths * 10));
+    decimal(whole).saturating_mul(scale).saturating_add(part * scale / tenths)
+}
+
+/// The number that digits spell, saturating; other characters between them are passed over.
+fn decimal(text: &str) -> i128 {
+    digits(text).fold(0, appended)
+}
+
+fn digits(text: &str) -> impl Iterator<Item = i128> {
+    text.bytes().filter(u8::is_ascii_digit).map(|it| i128::from(it - b'0'))
+}
+
+fn appended(number: i128, digit: i128) -> i128 {
+    number.saturating_mul(10).saturating_add(digit)
 }
 
 /// `text` holds no `_` but after a byte that is `before` one and before a byte that is `after` one.
@@ -256,6 +398,77 @@ mod tests {
             ("9223372036854775808ns", 0, 21, Kind::DurationTooLong),
         ] {
             assert_eq!(duration(text), Err(LiteralError { start, end, kind }), "{text}");
+        }
+    }
+
+    #[test]
+    fn dates_and_times_of_day_have_one_value() {
+        for (text, value) in [
+            ("1970-01-01", 0),
+            ("1970-1-2", DAY),
+            ("2024-02-29", 1_709_164_800 * SECOND),
+            ("1969-12-31", -DAY),
+            ("1677-09-22", -106_751 * DAY),
+            ("2262-04-11", 106_751 * DAY),
+        ] {
+            assert_eq!(date(text), Ok(value), "{text}");
+        }
+        for (text, value) in [
+            ("00:00:00", 0),
+            ("23:59:59.999999999", DAY - 1),
+            ("23:59:59.9999999999", DAY - 1),
+            ("1:2:3", 3723 * SECOND),
+            ("12:30", 45_000 * SECOND),
+            ("0:0:0.25", SECOND / 4),
+        ] {
+            assert_eq!(time_of_day(text), Ok(value), "{text}");
+        }
+        for (text, value) in [
+            ("2024-02-29-12:34:56.789", 1_709_210_096_789_000_000),
+            ("1970-1-1-0:0", 0),
+            ("1677-09-21-00:12:43.145224192", i64::MIN),
+            ("2262-04-11-23:47:16.854775807", i64::MAX),
+        ] {
+            assert_eq!(date_and_time(text), Ok(value), "{text}");
+        }
+    }
+
+    #[test]
+    fn dates_and_times_of_day_are_refused_at_the_place() {
+        use LiteralErrorKind as Kind;
+        type Read = fn(&str) -> Result<Time, LiteralError>;
+        let all: &[(Read, &str, usize, usize, Kind)] = &[
+            (date, "2024-02-30", 8, 10, Kind::Day { last: 29 }),
+            (date, "2023-2-29", 7, 9, Kind::Day { last: 28 }),
+            (date, "1900-02-29", 8, 10, Kind::Day { last: 28 }),
+            (date, "2024-04-31", 8, 10, Kind::Day { last: 30 }),
+            (date, "2024-13-01", 5, 7, Kind::Month),
+            (date, "2024-00-01", 5, 7, Kind::Month),
+            (date, "2024-01-00", 8, 10, Kind::Day { last: 31 }),
+            (date, "70-01-01", 0, 8, Kind::DateTooFar),
+            (date, "2262-04-12", 0, 10, Kind::DateTooFar),
+            (date, "1677-09-21", 0, 10, Kind::DateTooFar),
+            (date, "99999999999999999999-01-01", 0, 26, Kind::DateTooFar),
+            (date, "2024-02", 0, 7, Kind::DateForm),
+            (date, "2024-02-03-04", 0, 13, Kind::DateForm),
+            (date, "2024:02:03", 0, 10, Kind::DateForm),
+            (date, "2024-_2-03", 5, 6, Kind::UnderscoreInNumber),
+            (date, "", 0, 0, Kind::DateForm),
+            (time_of_day, "24:00:00", 0, 2, Kind::Hour),
+            (time_of_day, "12:60:00", 3, 5, Kind::Minute),
+            (time_of_day, "12:00:60", 6, 8, Kind::Second),
+            (time_of_day, "12", 0, 2, Kind::TimeOfDayForm),
+            (time_of_day, "12:30.5", 0, 7, Kind::TimeOfDayForm),
+            (time_of_day, "12:30:5.", 0, 8, Kind::TimeOfDayForm),
+            (time_of_day, "12:30:5.1.2", 0, 11, Kind::TimeOfDayForm),
+            (date_and_time, "2024-02-30-12:00:00", 8, 10, Kind::Day { last: 29 }),
+            (date_and_time, "2024-02-29-25:00:00", 11, 13, Kind::Hour),
+            (date_and_time, "2024-02-29", 0, 10, Kind::DateAndTimeForm),
+            (date_and_time, "2024-02-29-12:00:00-1", 0, 21, Kind::DateAndTimeForm),
+            (date_and_time, "2262-04-11-23:47:16.854775808", 0, 29, Kind::DateTooFar),
+        ];
+        for (read, text, start, end, kind) in all {
+            assert_eq!(read(text), Err(LiteralError { start: *start, end: *end, kind: *kind }), "{text}");
         }
     }
 

@@ -56,6 +56,17 @@ macro_rules! for_each_op {
             InRange     "_RANGE"   in_range   (MN: T, IN: T, MX: T) -> T             [ANY_INT as integer]         faults;
             // An index that is looked at before its element: IN if it lies in MN..MX, else a fault.
             CheckIndex  "_INDEX"   checked_index (MN: T, IN: T, MX: T) -> T          [ANY_INT as integer]         faults;
+            // Points in time and what they are made of, in nanoseconds.
+            WholeUnits  "_UNITS"   whole_units (IN: T, UNIT: T) -> T                 [ANY_DATE as long]           total;
+            StartOfDay  "_DATE"    start_of_day (IN: T) -> T                         [ANY_DATE as long]           total;
+            TimeOfDay   "_TOD"     time_of_day (IN: T) -> T                          [ANY_DATE as long]           total;
+            DayOf       "_DAY_OF"  day_of     (YEAR: T, MONTH: T, DAY: T) -> T       [ANY_INT as long]            faults;
+            ClockOf     "_CLOCK_OF" clock_of  (HOUR: T, MINUTE: T, SECOND: T, MILLISECOND: T) -> T [ANY_INT as long] faults;
+            PointOf     "_POINT_OF" point_of  (DAY: T, CLOCK: T) -> T                [ANY_DATE as long]           faults;
+            YearOf      "_YEAR"    year       (IN: T) -> T                           [ANY_DATE as long]           total;
+            MonthOf     "_MONTH"   month      (IN: T) -> T                           [ANY_DATE as long]           total;
+            DayOfMonth  "_DAY"     day        (IN: T) -> T                           [ANY_DATE as long]           total;
+            Weekday     "_WEEKDAY" weekday    (IN: T) -> T                           [ANY_DATE as long]           total;
         }
     };
 }
@@ -79,6 +90,9 @@ macro_rules! with_lane {
     (real $lane:expr, $T:ident => $body:expr, $other:expr) => {
         $crate::with_lane!(@ $lane, $T, $body, $other, [Bool I8 I16 I32 I64 U8 U16 U32 U64]
             F32 f32, F64 f64)
+    };
+    (long $lane:expr, $T:ident => $body:expr, $other:expr) => {
+        $crate::with_lane!(@ $lane, $T, $body, $other, [Bool I8 I16 I32 U8 U16 U32 U64 F32 F64] I64 i64)
     };
     (bits $lane:expr, $T:ident => $body:expr, $other:expr) => {
         $crate::with_lane!(@ $lane, $T, $body, $other, [F32 F64]

@@ -97,6 +97,24 @@ macro_rules! kind {
     (LTIME) => {
         $crate::Kind::Is($crate::Elementary::Ltime)
     };
+    (DATE) => {
+        $crate::Kind::Is($crate::Elementary::Date)
+    };
+    (LDATE) => {
+        $crate::Kind::Is($crate::Elementary::Ldate)
+    };
+    (TOD) => {
+        $crate::Kind::Is($crate::Elementary::Tod)
+    };
+    (LTOD) => {
+        $crate::Kind::Is($crate::Elementary::Ltod)
+    };
+    (DT) => {
+        $crate::Kind::Is($crate::Elementary::Dt)
+    };
+    (LDT) => {
+        $crate::Kind::Is($crate::Elementary::Ldt)
+    };
     ($class:ident) => {
         $crate::Kind::Any($crate::class!($class))
     };
@@ -126,6 +144,9 @@ macro_rules! class {
     };
     (ANY_BIT) => {
         $crate::Class::Bit
+    };
+    (ANY_DATE) => {
+        $crate::Class::Date
     };
     (ANY_STRING) => {
         $crate::Class::String

@@ -2,7 +2,7 @@
 //! host) pass through here, so that compiled code finds values of its variables' types.
 
 use crate::map::{Array, Map, Type, Variable};
-use staunch_runtime::{Lane, Value};
+use staunch_runtime::{Lane, Time, Value, ops};
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ use std::ops::Range;
 ///
 /// Written bytes become the nearest value of their variable's type: a BOOL that is not 0 is TRUE, a
 /// string's length is at most its capacity and the bytes after its end are 0, a number of a subrange
-/// is moved to its nearer bound, and bytes that belong to no variable are 0. A number of an
+/// is moved to its nearer bound, a date is moved to its midnight and a time of day into its day, and bytes that belong to no variable are 0. A number of an
 /// enumeration stays, also where it has no name, and so does a REAL, also where it is not a number.
 #[derive(Clone, Debug)]
 pub struct Domain {
@@ -24,6 +24,10 @@ enum Node {
     /// Any bytes are a value.
     Any,
     Bool,
+    /// A day, which is its midnight.
+    Day,
+    /// A time of day, which is less than a day.
+    Clock,
     /// A string of at most this many bytes.
     Text(u16),
     Subrange {
@@ -86,7 +90,9 @@ impl Domain {
                     (at, node) = (at - part.offset, part.node);
                 }
                 Node::Any => return true,
-                Node::Bool | Node::Text(_) | Node::Subrange { .. } | Node::Array { .. } => return at == 0,
+                Node::Bool | Node::Day | Node::Clock | Node::Text(_) | Node::Subrange { .. } | Node::Array { .. } => {
+                    return at == 0;
+                }
             }
         }
     }
@@ -100,6 +106,8 @@ impl Domain {
         match &self.nodes[part.node] {
             Node::Any => {}
             Node::Bool => bytes[0] = u8::from(bytes[0] != 0),
+            Node::Day => settle_time(bytes, ops::start_of_day),
+            Node::Clock => settle_time(bytes, ops::time_of_day),
             Node::Text(capacity) => settle_text(bytes, *capacity),
             Node::Subrange { lane, low, high } => settle_number(bytes, *lane, *low, *high),
             Node::Array { element, stride, count } => {
@@ -154,6 +162,12 @@ fn settle_text(bytes: &mut [u8], capacity: u16) {
     rest[usize::from(length)..].fill(0);
 }
 
+fn settle_time(bytes: &mut [u8], settled: fn(Time) -> Time) {
+    if let Value::I64(time) = Value::read(Lane::I64, bytes) {
+        Value::I64(settled(time)).write(bytes);
+    }
+}
+
 fn settle_number(bytes: &mut [u8], lane: Lane, low: i128, high: i128) {
     let number = Value::read(lane, bytes).as_integer().map(|it| it.max(low).min(high));
     if let Some(value) = number.and_then(|it| lane.integer(it)) {
@@ -180,6 +194,8 @@ impl Builder<'_> {
         }
         let node = match ty {
             Type::Elementary(it) if it.lane() == Lane::Bool => self.push(Node::Bool),
+            Type::Elementary(it) if it.is_day() => self.push(Node::Day),
+            Type::Elementary(it) if it.is_time_of_day() => self.push(Node::Clock),
             Type::Elementary(it) => self.number(it.lane(), range),
             Type::Enum(_) => self.push(Node::Any),
             Type::String(capacity) => self.push(Node::Text(capacity)),

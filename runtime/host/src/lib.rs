@@ -48,7 +48,7 @@ pub use map::{Instance, Map, Section, Structure, StructureKind, Type, Variable};
 pub use path::Place;
 pub use run::{Moment, Options, RealTime, Summary, run};
 pub use start::Event;
-pub use value::format_time;
+pub use value::{format_time, format_time_as};
 
 pub use staunch_runtime::Elementary;
 

@@ -3,13 +3,14 @@
 use crate::map::{Enum, Map, Type};
 use crate::path::{Place, nearest, same};
 use staunch_runtime::literal::{self, LiteralErrorKind, check_real, duration};
-use staunch_runtime::{Elementary, Lane, Value};
+use staunch_runtime::{Elementary, Lane, Value, ops};
 
 /// The bytes that `text` stands for in a variable; the error is a sentence without a full stop.
 pub(crate) fn parse(map: &Map, place: Place, text: &str) -> Result<Vec<u8>, String> {
     let value = match place.ty {
         Type::String(capacity) => return string(text, capacity),
-        Type::Elementary(it) if it.is_time() => Value::I64(time(text)?),
+        Type::Elementary(it) if it.is_duration() => Value::I64(time(text)?),
+        Type::Elementary(it) if it.is_time() => Value::I64(date(text, it)?),
         Type::Elementary(Elementary::Bool) => Value::Bool(boolean(text)?),
         Type::Elementary(it) if it.lane().is_float() => float(text, it.name(), it.lane())?,
         Type::Elementary(it) => integer(text, it.name(), it.lane())?,
@@ -69,6 +70,27 @@ pub(crate) fn time(text: &str) -> Result<i64, String> {
         return Err(format!("`{text}` is not a TIME: write `T#500ms`"));
     }
     duration(rest).map_err(|error| format!("`{text}` is not a TIME: {}", error.kind.text()))
+}
+
+/// A date or a time of day, with the prefix of its type or of the long form of it.
+fn date(text: &str, ty: Elementary) -> Result<i64, String> {
+    let wrong = || format!("`{text}` is not {} {}: ", article(ty.name()), ty.name());
+    let Some((prefix, rest)) = text.split_once('#') else { return Err(wrong() + &example(ty)) };
+    let short = [("D", Elementary::Date), ("LD", Elementary::Ldate)];
+    let short = short.into_iter().find(|it| same(it.0, prefix)).map(|it| it.1);
+    let found = short.or_else(|| Elementary::named(prefix));
+    let kind = |it: Elementary| (it.is_day(), it.is_time_of_day(), it.is_date_and_time());
+    if found.is_none_or(|it| kind(it) != kind(ty)) {
+        return Err(wrong() + &example(ty));
+    }
+    literal::time(ty, rest).map_err(|error| wrong() + error.kind.text())
+}
+
+fn example(ty: Elementary) -> String {
+    // Noon of a leap day, as each type has it.
+    let noon = 1_709_208_000_000_000_000;
+    let value = if ty.is_day() { ops::start_of_day(noon) } else { noon };
+    format!("write `{}`", crate::format_time_as(ty, value))
 }
 
 fn float(text: &str, name: &str, lane: Lane) -> Result<Value, String> {

@@ -1,8 +1,7 @@
 //! How values read: the cells of a trace.
 
 use crate::map::{Map, Type};
-use staunch_runtime::literal::UNITS;
-use staunch_runtime::{Elementary, Time, Value};
+use staunch_runtime::{Elementary, Time, Value, format};
 use std::fmt::Write;
 
 /// Appends the value of type `ty` at the start of `bytes`; nothing for a composite type.
@@ -11,10 +10,8 @@ pub(crate) fn format(map: &Map, ty: Type, bytes: &[u8], out: &mut String) {
         Type::Elementary(it) => {
             let value = Value::read(it.lane(), bytes);
             match (it.is_time(), value) {
-                (true, Value::I64(time)) => {
-                    out.push_str(if it == Elementary::Ltime { "LTIME#" } else { "T#" });
-                    write_duration(time, out);
-                }
+                // Writing to a String cannot fail.
+                (true, Value::I64(time)) => _ = format::time(out, it, time),
                 _ => format_scalar(value, out),
             }
         }
@@ -75,26 +72,15 @@ fn text(bytes: &[u8]) -> String {
 
 /// `T#1s500ms`
 pub fn format_time(time: Time) -> String {
-    let mut out = String::from("T#");
-    write_duration(time, &mut out);
-    out
+    format_time_as(Elementary::Time, time)
 }
 
-fn write_duration(time: Time, out: &mut String) {
-    if time < 0 {
-        out.push('-');
-    }
-    let mut rest = time.unsigned_abs();
-    if rest == 0 {
-        out.push_str("0s");
-    }
-    for (unit, size) in UNITS {
-        let size = size.unsigned_abs();
-        if rest >= size {
-            let _ = write!(out, "{}{unit}", rest / size);
-            rest %= size;
-        }
-    }
+/// `DT#2024-02-29-12:34:56`: a value of a duration's or a date's type as its literal.
+pub fn format_time_as(ty: Elementary, time: Time) -> String {
+    let mut out = String::new();
+    // Writing to a String cannot fail.
+    _ = format::time(&mut out, ty, time);
+    out
 }
 
 #[cfg(test)]

@@ -87,10 +87,10 @@ impl<'a> Machine<'a> {
                 self.declared.enumerator(ty.text, name.text).map_or_else(|| unknown("this enumerator"), Ok)
             }
             (_, LiteralValue::Bool(it)) => Ok(Value::bool(*it)),
-            (_, LiteralValue::Time { nanoseconds, long }) => {
-                let ty = if *long { Elementary::Ltime } else { Elementary::Time };
-                Ok(Value::scalar(ty, Scalar::I64(*nanoseconds)))
-            }
+            (_, LiteralValue::Time { ty, nanoseconds }) => match Elementary::named(ty.name()) {
+                Some(ty) => Ok(Value::scalar(ty, Scalar::I64(*nanoseconds))),
+                None => unknown("literals of dates"),
+            },
             (_, LiteralValue::String { bytes, wide: false }) => Ok(Value::text(bytes.to_vec())),
             (Some(ty), value) => match Elementary::named(ty.text) {
                 Some(ty) => typed_number(value, false, ty),

@@ -230,7 +230,9 @@ pub fn spell(program: &Program, ty: Type, value: Value) -> String {
     };
     match (named, value) {
         (Some(named), _) => named.name.clone(),
-        (None, Value::I64(time)) if ty.elementary().is_some_and(Elementary::is_time) => staunch_host::format_time(time),
+        (None, Value::I64(time)) if let Some(ty) = ty.elementary().filter(|it| it.is_time()) => {
+            staunch_host::format_time_as(ty, time)
+        }
         (None, Value::Bool(it)) => if it { "TRUE" } else { "FALSE" }.to_owned(),
         (None, Value::F32(it)) => format!("{it:?}"),
         (None, Value::F64(it)) => format!("{it:?}"),

@@ -23,24 +23,7 @@ const MAX_DIMENSIONS: usize = 64;
 /// Longest string.
 const MAX_CAPACITY: i128 = 32767;
 
-const NOT_YET: [&str; 16] = [
-    "RTC",
-    "BLINK",
-    "DATE",
-    "LDATE",
-    "TOD",
-    "LTOD",
-    "TIME_OF_DAY",
-    "LTIME_OF_DAY",
-    "DT",
-    "LDT",
-    "DATE_AND_TIME",
-    "LDATE_AND_TIME",
-    "CHAR",
-    "WCHAR",
-    "WSTRING",
-    "POINTER",
-];
+const NOT_YET: [&str; 6] = ["RTC", "BLINK", "CHAR", "WCHAR", "WSTRING", "POINTER"];
 
 /// What other languages call elementary types.
 const FOREIGN: [(&str, &str); 24] = [
@@ -437,7 +420,7 @@ impl<'s> Declarations<'s> {
     ) -> Option<Resolved> {
         let base = match base {
             None => Elementary::Int,
-            Some(name) => match Elementary::named(name.text).filter(|it| it.lane().is_integer() && !it.is_time()) {
+            Some(name) => match Elementary::named(name.text).filter(|it| it.lane().is_integer() && it.is_integral()) {
                 Some(base) => base,
                 None => {
                     self.error(Code::E0407, name.span, "the base of an enumeration is an integer or bit-string type");

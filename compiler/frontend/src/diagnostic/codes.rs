@@ -49,7 +49,7 @@ codes! {
     E0003 Error "a comment or pragma is not closed";
     E0004 Error "a string is not closed";
     E0005 Error "a number that cannot be read";
-    E0006 Error "a duration that cannot be read";
+    E0006 Error "a duration or a date that cannot be read";
     E0007 Error "an escape that means nothing";
     E0008 Error "`=` where `:=` assigns";
     E0009 Error "`:=` where `=` compares";

@@ -205,7 +205,7 @@ impl<'s> Checker<'_, 's> {
 fn not_yet(name: &str) -> bool {
     let name = name.to_ascii_uppercase();
     let conversion = |part: &str| {
-        let texts = ["STRING", "WSTRING", "DATE", "TOD", "DT", "LDATE", "LTOD", "LDT", "CHAR", "WCHAR", "BCD"];
+        let texts = ["STRING", "WSTRING", "CHAR", "WCHAR", "BCD"];
         texts.iter().any(|it| part == *it || part.starts_with("BCD") || part.ends_with("BCD"))
     };
     let (from, to) = name.split_once("_TO_").or_else(|| Some(("", name.strip_prefix("TO_")?))).unwrap_or(("", ""));
@@ -219,7 +219,11 @@ fn not_yet(name: &str) -> bool {
         "UPPER_BOUND",
         "ADR",
         "TIME",
-        "CONCAT_DATE_TOD",
+        "SPLIT_DATE",
+        "SPLIT_TOD",
+        "SPLIT_LTOD",
+        "SPLIT_DT",
+        "SPLIT_LDT",
         "CONCAT_TIME",
         "UPPER_CASE",
     ];

@@ -42,7 +42,7 @@ fn variable(operand: &Operand) -> Option<Type> {
     let expr = operand.typed().filter(|it| it.as_const().is_none())?;
     let declared = expr.declared();
     match expr.ty {
-        Type::Elementary(it) if it.lane().is_integer() && !it.is_time() && it != Elementary::Bool => Some(declared),
+        Type::Elementary(it) if it.is_integral() && it != Elementary::Bool => Some(declared),
         Type::Elementary(_)
         | Type::Subrange(..)
         | Type::String(_)

@@ -4,7 +4,8 @@ use super::checker::Checker;
 use crate::names::functions;
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Conversion, Elementary, Expr, Op, Type, Value};
-use staunch_runtime::time::MILLISECOND;
+use staunch_runtime::Time;
+use staunch_runtime::time::SECOND;
 
 impl<'s> Checker<'_, 's> {
     pub(crate) fn conversion(
@@ -39,24 +40,28 @@ impl<'s> Checker<'_, 's> {
         self.between(value_expr, from, parsed.to, name.span)
     }
 
-    /// TIME and numbers meet at milliseconds.
+    /// What a TIME carries and numbers meet at the unit in which such numbers count.
     fn between(&mut self, value: Expr, from: Elementary, to: Elementary, span: Span) -> Option<Expr> {
         let target = Type::Elementary(to);
-        match (from.is_time(), to.is_time()) {
-            (true, true) => Some(self.convert(Conversion::Same, target, value)),
-            (false, false) if to == Elementary::Bool => self.rightmost_bit(value, from, span),
-            (false, false) => Some(self.convert(Conversion::Value, target, value)),
-            (true, false) => {
+        match (from.counted_in(), to.counted_in()) {
+            (Some(_), Some(_)) if is_the_same(from, to) => Some(self.convert(Conversion::Same, target, value)),
+            (Some(_), Some(_)) => {
                 let nanoseconds = self.convert(Conversion::Same, Type::LINT, value);
-                let milliseconds = self.per_millisecond(Op::Div, nanoseconds, to.is_real(), span)?;
-                Some(self.convert(Conversion::Value, target, milliseconds))
+                self.as_time(nanoseconds, to, span)
             }
-            (false, true) => {
+            (None, None) if to == Elementary::Bool => self.rightmost_bit(value, from, span),
+            (None, None) => Some(self.convert(Conversion::Value, target, value)),
+            (Some(unit), None) => {
+                let nanoseconds = self.convert(Conversion::Same, Type::LINT, value);
+                let count = self.scaled_by(Op::Div, nanoseconds, unit, to.is_real(), span)?;
+                Some(self.convert(Conversion::Value, target, count))
+            }
+            (None, Some(unit)) => {
                 let real = from.is_real();
                 let wide = self.convert(Conversion::Value, if real { Type::LREAL } else { Type::LINT }, value);
-                let nanoseconds = self.per_millisecond(Op::Mul, wide, real, span)?;
+                let nanoseconds = self.scaled_by(Op::Mul, wide, unit, real, span)?;
                 let count = self.convert(Conversion::Value, Type::LINT, nanoseconds);
-                Some(self.convert(Conversion::Same, target, count))
+                self.as_time(count, to, span)
             }
         }
     }
@@ -75,16 +80,20 @@ impl<'s> Checker<'_, 's> {
         Some(self.convert(Conversion::Value, Type::BOOL, rightmost))
     }
 
-    /// Nanoseconds to milliseconds or back, in LREAL where fractions matter, else in LINT.
-    fn per_millisecond(&mut self, op: Op, value: Expr, real: bool, span: Span) -> Option<Expr> {
+    /// Nanoseconds to a unit or back, in LREAL where fractions matter, else in LINT.
+    fn scaled_by(&mut self, op: Op, value: Expr, unit: Time, real: bool, span: Span) -> Option<Expr> {
         let at = value.at;
         if real {
             let value = self.convert(Conversion::Value, Type::LREAL, value);
-            let factor = staunch_runtime::ops::convert::<i64, f64>(MILLISECOND);
+            let factor = staunch_runtime::ops::convert::<i64, f64>(unit);
             let factor = Expr::constant(Elementary::Lreal, Value::F64(factor), at);
             return self.apply(op, Type::LREAL, vec![value, factor], Type::LREAL, span);
         }
-        let factor = Expr::constant(Elementary::Lint, Value::I64(MILLISECOND), at);
+        if unit == 1 {
+            return Some(value);
+        }
+        let factor = Expr::constant(Elementary::Lint, Value::I64(unit), at);
+        let op = if op == Op::Div && unit == SECOND { Op::WholeUnits } else { op };
         self.apply(op, Type::LINT, vec![value, factor], Type::LINT, span)
     }
 
@@ -109,4 +118,12 @@ impl<'s> Checker<'_, 's> {
         }
         Some(self.convert(Conversion::Truncate, Type::Elementary(to), value))
     }
+}
+
+/// Whether every value of the one is a value of the other, where a [`Time`] carries both.
+fn is_the_same(from: Elementary, to: Elementary) -> bool {
+    from == to
+        || from.is_day() && to.is_day()
+        || from.is_time_of_day() && to.is_time_of_day()
+        || !to.is_day() && !to.is_time_of_day()
 }

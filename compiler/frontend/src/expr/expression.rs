@@ -5,6 +5,7 @@ use crate::types::scope::Variable;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, UnaryOp};
 use staunch_ir::{Const, Conversion, Elementary, Expr, ExprKind, Op, Type, Value};
+use staunch_runtime::Class;
 
 impl<'s> Checker<'_, 's> {
     /// Types an expression. `expected` is what its place asks for; only literals, bare
@@ -176,7 +177,7 @@ impl<'s> Checker<'_, 's> {
         let value = self.promote(value, span);
         let value = if self.decl.dialect(span).mixes_bits_and_integers() { self.signed(value) } else { value };
         let ty = value.ty;
-        let numeric = matches!(ty, Type::Elementary(it) if it.is_integer() || it.is_real() || it.is_time());
+        let numeric = matches!(ty, Type::Elementary(it) if it.is(Class::Magnitude));
         if !numeric {
             let found = self.type_name(ty);
             self.report(

@@ -23,15 +23,8 @@ impl<'s> Checker<'_, 's> {
             LiteralValue::Bool(it) => typed(Elementary::Bool, Value::Bool(*it)),
             LiteralValue::Integer { value, .. } => Some(Operand::Integer(i128::from(*value))),
             LiteralValue::Real(digits) => Some(Operand::Real { number: Real::Literal(digits.to_string()) }),
-            LiteralValue::Time { nanoseconds, long } => {
-                let ty = if *long { Elementary::Ltime } else { Elementary::Time };
-                typed(ty, Value::I64(*nanoseconds))
-            }
+            LiteralValue::Time { ty, nanoseconds } => typed(*ty, Value::I64(*nanoseconds)),
             LiteralValue::String { bytes, wide } => self.string_literal(bytes, *wide, span),
-            LiteralValue::Date(what) => {
-                self.decl.not_supported(span, what);
-                None
-            }
             LiteralValue::Error => None,
             LiteralValue::Enumerator(name) => {
                 self.error(Code::E0101, name.span, format!("`{}` belongs to no enumeration here", name.text));

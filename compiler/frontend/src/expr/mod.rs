@@ -12,6 +12,7 @@ mod coerce;
 pub(crate) mod constant;
 mod constant_comparison;
 mod conversion;
+mod dates;
 mod enable;
 mod expression;
 mod fold;

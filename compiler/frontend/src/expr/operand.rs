@@ -124,7 +124,7 @@ impl<'s> Checker<'_, 's> {
                     format!("{} is expected, not a number", crate::diagnostic::wording::article(ty.name())),
                 )
                 .label(format!("expected {}", ty.name()))
-                .help(format!("write the unit: `T#{value}ms`")),
+                .help(example(ty, value)),
             );
             return None;
         }
@@ -173,10 +173,20 @@ impl<'s> Checker<'_, 's> {
     }
 }
 
+/// What a literal looks like of a type that a number is no value of.
+fn example(ty: Elementary, number: i128) -> String {
+    match ty {
+        Elementary::Date | Elementary::Ldate => "write the date: `D#2024-02-29`".to_owned(),
+        Elementary::Tod | Elementary::Ltod => "write the time of day: `TOD#23:59:59.5`".to_owned(),
+        Elementary::Dt | Elementary::Ldt => "write date and time of day: `DT#2024-02-29-23:59:59.5`".to_owned(),
+        _ => format!("write the unit: `T#{number}ms`"),
+    }
+}
+
 /// The expected type where the value fits it, else the smallest of INT, DINT, LINT, ULINT.
 fn integer_type(value: i128, expected: Option<Type>) -> Elementary {
     if let Some(Type::Elementary(expected)) = expected {
-        let fits = expected.is_real() || (!expected.is_time() && expected.lane().integer(value).is_some());
+        let fits = expected.is_real() || (expected.is_integral() && expected.lane().integer(value).is_some());
         if fits && expected != Elementary::Bool {
             return expected;
         }

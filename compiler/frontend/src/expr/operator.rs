@@ -4,6 +4,7 @@ use crate::types::coercion::{as_number, is_narrow, join, join_promoted};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::BinaryOp;
 use staunch_ir::{Conversion, Elementary, Expr, Op, Statement, StatementKind, Type, Value};
+use staunch_runtime::Class;
 
 impl<'s> Checker<'_, 's> {
     pub(crate) fn binary(
@@ -83,7 +84,7 @@ impl<'s> Checker<'_, 's> {
         Some(Meeting { ty: Type::Elementary(ty), own: Type::Elementary(own), a, b })
     }
 
-    fn side(&mut self, operand: Operand, ty: Elementary, span: Span) -> Option<Expr> {
+    pub(super) fn side(&mut self, operand: Operand, ty: Elementary, span: Span) -> Option<Expr> {
         match operand {
             // The meeting of a bit string and an integer is decided; the lanes agree in size or widen.
             Operand::Typed(expr) | Operand::Promoted(expr, _) => {
@@ -93,7 +94,7 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    fn report_operands(&mut self, sides: &Sides, wants: &str) {
+    pub(super) fn report_operands(&mut self, sides: &Sides, wants: &str) {
         let name = |this: &Self, operand: &Operand| match operand.ty() {
             Some(ty) => this.type_name(ty),
             None => "a number".to_owned(),
@@ -147,7 +148,15 @@ impl<'s> Checker<'_, 's> {
             (Some(Type::Elementary(it)), Some(Type::Enum(_))) if it.is_integer() => {
                 Some(format!("write `TO_{}({b})`", it.name()))
             }
-            (Some(Type::Elementary(x)), Some(Type::Elementary(y))) if x.is_time() && y.is_time() => {
+            (Some(Type::Elementary(x)), Some(Type::Elementary(y))) if x.is_day() && y.is_duration() => {
+                Some(format!("count from its midnight: `{}_TO_{}({a}) {} {b}`", x.name(), point(x), sides.op.text()))
+            }
+            (Some(Type::Elementary(x)), Some(Type::Elementary(y)))
+                if x.is_duration() && y.is(Class::Date) && sides.op == BinaryOp::Add =>
+            {
+                Some(format!("write the TIME after it: `{b} + {a}`"))
+            }
+            (Some(Type::Elementary(x)), Some(Type::Elementary(y))) if x.is_duration() && y.is_duration() => {
                 let (a, b) = (format!("{}_TO_LINT({a})", x.name()), format!("{}_TO_LINT({b})", y.name()));
                 match sides.op {
                     BinaryOp::Div => Some(format!("divide their milliseconds: `{a} / {b}`")),
@@ -169,8 +178,8 @@ impl<'s> Checker<'_, 's> {
                 let bits = bits[usize::try_from(it.lane().size().trailing_zeros()).unwrap_or(0)];
                 Some(format!("write `{}`", converted(sides, it, bits, a, b)))
             }
-            (Some(Type::Elementary(it)), None) if it.is_time() => Some(format!("write the unit: `T#{b}ms`")),
-            (None, Some(Type::Elementary(it))) if it.is_time() => Some(format!("write the unit: `T#{a}ms`")),
+            (Some(Type::Elementary(it)), None) if it.is_duration() => Some(format!("write the unit: `T#{b}ms`")),
+            (None, Some(Type::Elementary(it))) if it.is_duration() => Some(format!("write the unit: `T#{a}ms`")),
             _ => None,
         }
     }
@@ -269,7 +278,11 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn arithmetic(&mut self, sides: Sides) -> Option<Operand> {
-        let time = |operand: &Operand| matches!(operand.ty(), Some(Type::Elementary(it)) if it.is_time());
+        let of_class = |operand: &Operand, class| matches!(operand.ty(), Some(Type::Elementary(it)) if it.is(class));
+        if of_class(&sides.a, Class::Date) || of_class(&sides.b, Class::Date) {
+            return self.date_arithmetic(sides).map(Operand::Typed);
+        }
+        let time = |operand: &Operand| of_class(operand, Class::Duration);
         match (sides.op, time(&sides.a), time(&sides.b)) {
             (BinaryOp::Mul, true, false) | (BinaryOp::Div, true, false) => self.scale_time(sides).map(Operand::Typed),
             (BinaryOp::Mul, false, true) => {
@@ -302,7 +315,7 @@ impl<'s> Checker<'_, 's> {
     fn add_times(&mut self, sides: Sides) -> Option<Expr> {
         let op = arithmetic_op(sides.op);
         let (op_span, span) = (sides.op_span, sides.span);
-        let Meeting { ty, a, b, .. } = self.meet(sides, |ty, _| ty.is_time(), "both sides need to be times")?;
+        let Meeting { ty, a, b, .. } = self.meet(sides, |ty, _| ty.is_duration(), "both sides need to be times")?;
         if let (Some(Value::I64(a)), Some(Value::I64(b))) = (a.as_const(), b.as_const()) {
             let sum = if op == Op::Add { a.checked_add(b) } else { a.checked_sub(b) };
             self.refuse_time_overflow(sum.is_none(), span)?;
@@ -310,7 +323,7 @@ impl<'s> Checker<'_, 's> {
         self.apply(op, ty, vec![a, b], ty, op_span)
     }
 
-    fn refuse_time_overflow(&mut self, overflows: bool, span: Span) -> Option<()> {
+    pub(super) fn refuse_time_overflow(&mut self, overflows: bool, span: Span) -> Option<()> {
         if overflows {
             self.report(
                 Diagnostic::new(Code::E0209, span, "this constant TIME overflows")
@@ -481,7 +494,7 @@ fn comparison(op: BinaryOp) -> Op {
     }
 }
 
-fn arithmetic_op(op: BinaryOp) -> Op {
+pub(super) fn arithmetic_op(op: BinaryOp) -> Op {
     match op {
         BinaryOp::Add => Op::Add,
         BinaryOp::Sub => Op::Sub,
@@ -500,6 +513,11 @@ fn converted(sides: &Sides, ty: Elementary, into: &str, a: &str, b: &str) -> Str
     let name = ty.name();
     let value = format!("{name}_TO_{into}({a}) {} {b}", sides.op.text());
     if sides.hint == Some(Type::Elementary(ty)) { format!("{into}_TO_{name}({value})") } else { value }
+}
+
+/// The type of points in time that has all days of this one.
+fn point(day: Elementary) -> &'static str {
+    if day == Elementary::Ldate { "LDT" } else { "DT" }
 }
 
 fn is_zero(value: Option<Value>) -> bool {

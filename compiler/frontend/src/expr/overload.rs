@@ -323,6 +323,7 @@ fn wanted(class: Class) -> &'static str {
         Class::Unsigned => "an unsigned integer",
         Class::Signed => "a signed integer",
         Class::Duration => "a TIME",
+        Class::Date => "a date or a time of day",
         Class::Bit => "a BOOL or a bit string",
         Class::Chars | Class::String => "a STRING",
     }
@@ -370,7 +371,7 @@ fn widened_by_literals<'o>(ty: Type, operands: impl Iterator<Item = &'o Operand>
 fn literals_type<'o>(operands: impl Iterator<Item = &'o Operand> + Clone, expected: Option<Type>) -> Type {
     let real = operands.clone().any(|it| matches!(it, Operand::Real { .. }));
     match expected {
-        Some(ty @ Type::Elementary(it)) if it.is_real() || (!real && it.lane().is_integer() && !it.is_time()) => ty,
+        Some(ty @ Type::Elementary(it)) if it.is_real() || (!real && it.lane().is_integer() && it.is_integral()) => ty,
         _ if real => Type::LREAL,
         _ => {
             let fits = |ty: &Elementary| {

@@ -483,7 +483,7 @@ impl<'s> Checker<'_, 's> {
     /// What `.3` or `.%W1` selects from a value of type `ty`.
     pub(crate) fn find_part(&mut self, ty: Type, part: ast::Name<'s>) -> Option<Part> {
         let width = match ty {
-            Type::Elementary(it) if it.lane().is_integer() && !it.is_time() => it.lane().size() * 8,
+            Type::Elementary(it) if it.lane().is_integer() && it.is_integral() => it.lane().size() * 8,
             other => {
                 let found = self.type_name(other);
                 self.report(

@@ -42,6 +42,14 @@ impl<'s> Checker<'_, 's> {
                 let resolved = self.resolve(signature, &values, expected, name)?;
                 self.text_function(op, resolved.operands, name.span).map(Operand::Typed)
             }
+            Meaning::Date(function) => {
+                let operands = self.resolve(signature, &values, expected, name)?.operands;
+                let to = match signature.result {
+                    Kind::Is(ty) => ty,
+                    _ => expected.and_then(Type::elementary).filter(|it| it.is_integer()).unwrap_or(Elementary::Int),
+                };
+                self.date_function(function, to, operands, name.span).map(Operand::Typed)
+            }
             Meaning::Mux => {
                 let resolved = self.resolve(signature, &values, expected, name)?;
                 self.mux(resolved, name.span)

@@ -1,5 +1,6 @@
 //! Values of literals, read from the text of their tokens.
 
+use staunch_runtime::Elementary;
 use staunch_runtime::literal::{self, LiteralError, LiteralErrorKind as Kind, UNITS};
 
 /// Why a literal has no value: a range of its text, and a sentence.
@@ -29,12 +30,24 @@ pub fn real(text: &str) -> Result<String, Fault> {
     Ok(text.chars().filter(|it| *it != '_').collect())
 }
 
-/// `T#-1h30m`, `LTIME#1.5s`: signed nanoseconds, and whether it is an LTIME.
-pub fn duration(text: &str) -> Result<(i64, bool), Fault> {
-    let (prefix, value) = text.split_once('#').unwrap_or(("", text));
-    let long = prefix.starts_with(['l', 'L']);
+/// `T#-1h30m`, `LTIME#1.5s`: the type, and nanoseconds.
+pub fn duration(text: &str) -> Result<(Elementary, i64), Fault> {
+    let is_long = text.starts_with(['l', 'L']);
+    time(text, if is_long { Elementary::Ltime } else { Elementary::Time })
+}
+
+/// `D#2024-02-29`, `TIME_OF_DAY#12:30:00`, `LDT#…`: the type, and nanoseconds.
+pub fn date(text: &str) -> Result<(Elementary, i64), Fault> {
+    let prefix = text.split('#').next().unwrap_or_default();
+    let short = [("D", Elementary::Date), ("LD", Elementary::Ldate)];
+    let short = short.into_iter().find(|it| it.0.eq_ignore_ascii_case(prefix)).map(|it| it.1);
+    time(text, short.or_else(|| Elementary::named(prefix)).unwrap_or(Elementary::Date))
+}
+
+fn time(text: &str, ty: Elementary) -> Result<(Elementary, i64), Fault> {
+    let value = text.split_once('#').map_or(text, |it| it.1);
     let first = text.len() - value.len();
-    literal::duration(value).map(|it| (it, long)).map_err(|error| fault(text, first, error))
+    literal::time(ty, value).map(|it| (ty, it)).map_err(|error| fault(text, first, error))
 }
 
 /// The sentence about what is wrong in `text`, in the part of it that starts at `first`.
@@ -47,16 +60,33 @@ fn fault(text: &str, first: usize, error: LiteralError) -> Fault {
         Kind::UnknownUnit => format!("`{}` is no unit of time: expected d, h, m, s, ms, us or ns", unit(wrong)),
         Kind::UnitOrder => format!("`{}` is after a shorter or the same unit", unit(wrong)),
         Kind::InnerFraction { .. } => format!("{}, and `{}` is not the last", error.kind.text(), unit(wrong)),
+        Kind::Day { last } => format!("{}: it has {last} days", error.kind.text()),
         Kind::NoDigits
         | Kind::UnderscoreInNumber
         | Kind::UnderscoreInDuration
         | Kind::NumberTooLarge
         | Kind::NoNumber
         | Kind::NoUnit
-        | Kind::DurationTooLong => error.kind.text().to_owned(),
+        | Kind::DurationTooLong
+        | Kind::DateForm
+        | Kind::TimeOfDayForm
+        | Kind::DateAndTimeForm
+        | Kind::Month
+        | Kind::Hour
+        | Kind::Minute
+        | Kind::Second
+        | Kind::DateTooFar => error.kind.text().to_owned(),
     };
-    let (start, end) = if error.kind == Kind::DurationTooLong { (0, text.len()) } else { (start, end) };
+    let (start, end) = if is_of_all(error.kind) { (0, text.len()) } else { (start, end) };
     Fault { start, end, message, meant: meant(text, first, error.kind) }
+}
+
+/// Whether the whole literal is what is wrong, its prefix too.
+fn is_of_all(kind: Kind) -> bool {
+    matches!(
+        kind,
+        Kind::DurationTooLong | Kind::DateForm | Kind::TimeOfDayForm | Kind::DateAndTimeForm | Kind::DateTooFar
+    )
 }
 
 /// The letters of a part of a duration.
@@ -84,7 +114,16 @@ fn meant(text: &str, first: usize, kind: Kind) -> Option<String> {
         | Kind::NoUnit
         | Kind::UnknownUnit
         | Kind::UnitOrder
-        | Kind::DurationTooLong => None,
+        | Kind::DurationTooLong
+        | Kind::DateForm
+        | Kind::TimeOfDayForm
+        | Kind::DateAndTimeForm
+        | Kind::Month
+        | Kind::Day { .. }
+        | Kind::Hour
+        | Kind::Minute
+        | Kind::Second
+        | Kind::DateTooFar => None,
     }
 }
 

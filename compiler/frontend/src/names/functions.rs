@@ -23,10 +23,26 @@ pub(crate) enum Meaning {
     Move,
     /// Toward zero, to the integer that its place asks for.
     Truncate,
+    /// A date or a time of day from its parts, or a part of one.
+    Date(DateFunction),
+}
+
+/// What a function makes of dates or their parts.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum DateFunction {
+    /// A day and a time of day.
+    Concat,
+    /// Year, month and day.
+    Day,
+    /// Hour, minute, second and millisecond.
+    Clock,
+    /// All of these.
+    Point,
+    Weekday,
 }
 
 /// Functions that are no rows of the runtime's tables, and other vendors' names of parameters.
-const OTHERS: [(Option<Dialect>, Signature, Meaning); 22] = [
+const OTHERS: &[(Option<Dialect>, Signature, Meaning)] = &[
     (None, signature!("MUX" (K: ANY_INT, IN0: T, IN1: T) -> T [ANY] extensible), Meaning::Mux),
     (None, signature!("MOVE" (IN: T) -> T [ANY]), Meaning::Move),
     (None, signature!("TRUNC" (IN: ANY_REAL) -> ANY_INT), Meaning::Truncate),
@@ -40,6 +56,48 @@ const OTHERS: [(Option<Dialect>, Signature, Meaning); 22] = [
     (None, signature!("SUB_LTIME" (IN1: LTIME, IN2: LTIME) -> LTIME), Meaning::Operator(BinaryOp::Sub)),
     (None, signature!("MUL_LTIME" (IN1: LTIME, IN2: ANY_NUM) -> LTIME), Meaning::Operator(BinaryOp::Mul)),
     (None, signature!("DIV_LTIME" (IN1: LTIME, IN2: ANY_NUM) -> LTIME), Meaning::Operator(BinaryOp::Div)),
+    (None, signature!("ADD_TOD_TIME" (IN1: TOD, IN2: TIME) -> TOD), Meaning::Operator(BinaryOp::Add)),
+    (None, signature!("ADD_DT_TIME" (IN1: DT, IN2: TIME) -> DT), Meaning::Operator(BinaryOp::Add)),
+    (None, signature!("SUB_DATE_DATE" (IN1: DATE, IN2: DATE) -> TIME), Meaning::Operator(BinaryOp::Sub)),
+    (None, signature!("SUB_TOD_TIME" (IN1: TOD, IN2: TIME) -> TOD), Meaning::Operator(BinaryOp::Sub)),
+    (None, signature!("SUB_TOD_TOD" (IN1: TOD, IN2: TOD) -> TIME), Meaning::Operator(BinaryOp::Sub)),
+    (None, signature!("SUB_DT_TIME" (IN1: DT, IN2: TIME) -> DT), Meaning::Operator(BinaryOp::Sub)),
+    (None, signature!("SUB_DT_DT" (IN1: DT, IN2: DT) -> TIME), Meaning::Operator(BinaryOp::Sub)),
+    (None, signature!("ADD_LTOD_LTIME" (IN1: LTOD, IN2: LTIME) -> LTOD), Meaning::Operator(BinaryOp::Add)),
+    (None, signature!("ADD_LDT_LTIME" (IN1: LDT, IN2: LTIME) -> LDT), Meaning::Operator(BinaryOp::Add)),
+    (None, signature!("SUB_LDATE_LDATE" (IN1: LDATE, IN2: LDATE) -> LTIME), Meaning::Operator(BinaryOp::Sub)),
+    (None, signature!("SUB_LTOD_LTIME" (IN1: LTOD, IN2: LTIME) -> LTOD), Meaning::Operator(BinaryOp::Sub)),
+    (None, signature!("SUB_LTOD_LTOD" (IN1: LTOD, IN2: LTOD) -> LTIME), Meaning::Operator(BinaryOp::Sub)),
+    (None, signature!("SUB_LDT_LTIME" (IN1: LDT, IN2: LTIME) -> LDT), Meaning::Operator(BinaryOp::Sub)),
+    (None, signature!("SUB_LDT_LDT" (IN1: LDT, IN2: LDT) -> LTIME), Meaning::Operator(BinaryOp::Sub)),
+    (None, signature!("CONCAT_DATE_TOD" (IN1: DATE, IN2: TOD) -> DT), Meaning::Date(DateFunction::Concat)),
+    (None, signature!("CONCAT_DATE_LTOD" (IN1: DATE, IN2: LTOD) -> LDT), Meaning::Date(DateFunction::Concat)),
+    (
+        None,
+        signature!("CONCAT_DATE" (YEAR: ANY_INT, MONTH: ANY_INT, DAY: ANY_INT) -> DATE),
+        Meaning::Date(DateFunction::Day),
+    ),
+    (
+        None,
+        signature!("CONCAT_TOD" (HOUR: ANY_INT, MINUTE: ANY_INT, SECOND: ANY_INT, MILLISECOND: ANY_INT) -> TOD),
+        Meaning::Date(DateFunction::Clock),
+    ),
+    (
+        None,
+        signature!("CONCAT_LTOD" (HOUR: ANY_INT, MINUTE: ANY_INT, SECOND: ANY_INT, MILLISECOND: ANY_INT) -> LTOD),
+        Meaning::Date(DateFunction::Clock),
+    ),
+    (
+        None,
+        signature!("CONCAT_DT" (YEAR: ANY_INT, MONTH: ANY_INT, DAY: ANY_INT, HOUR: ANY_INT, MINUTE: ANY_INT, SECOND: ANY_INT, MILLISECOND: ANY_INT) -> DT),
+        Meaning::Date(DateFunction::Point),
+    ),
+    (
+        None,
+        signature!("CONCAT_LDT" (YEAR: ANY_INT, MONTH: ANY_INT, DAY: ANY_INT, HOUR: ANY_INT, MINUTE: ANY_INT, SECOND: ANY_INT, MILLISECOND: ANY_INT) -> LDT),
+        Meaning::Date(DateFunction::Point),
+    ),
+    (None, signature!("DAY_OF_WEEK" (IN: LDATE) -> ANY_INT), Meaning::Date(DateFunction::Weekday)),
     // CODESYS's library names the parameters of the functions on strings in its own way.
     (CODESYS, signature!("LEN" (STR: STRING) -> INT), Meaning::Text(TextOp::Len)),
     (CODESYS, signature!("LEFT" (STR: STRING, SIZE: ANY_INT) -> STRING), Meaning::Text(TextOp::Left)),

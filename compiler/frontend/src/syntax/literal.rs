@@ -113,7 +113,7 @@ fn integer<'s>(state: &mut State<'_, 's>, at: usize) -> LiteralValue<'s> {
 fn duration<'s>(state: &mut State<'_, 's>, at: usize) -> LiteralValue<'s> {
     let span = state.place(at);
     let fault = match lex::duration(state.slice(span)) {
-        Ok((nanoseconds, long)) => return LiteralValue::Time { nanoseconds, long },
+        Ok((ty, nanoseconds)) => return LiteralValue::Time { ty, nanoseconds },
         Err(fault) => fault,
     };
     if !lacks_unit(state, at) {
@@ -141,16 +141,13 @@ fn string<'s>(state: &mut State<'_, 's>, at: usize) -> LiteralValue<'s> {
     LiteralValue::String { bytes: bytes.into(), wide }
 }
 
-/// A date, by the type that its prefix names.
 fn date<'s>(state: &mut State<'_, 's>, at: usize) -> LiteralValue<'s> {
-    let text = state.slice(state.place(at));
-    let prefix = text.split('#').next().unwrap_or_default().to_ascii_uppercase();
-    LiteralValue::Date(match prefix.as_str() {
-        "D" | "DATE" => "DATE",
-        "LD" | "LDATE" => "LDATE",
-        "TOD" | "TIME_OF_DAY" => "TIME_OF_DAY",
-        "LTOD" | "LTIME_OF_DAY" => "LTIME_OF_DAY",
-        "DT" | "DATE_AND_TIME" => "DATE_AND_TIME",
-        _ => "LDATE_AND_TIME",
-    })
+    let span = state.place(at);
+    match lex::date(state.slice(span)) {
+        Ok((ty, nanoseconds)) => LiteralValue::Time { ty, nanoseconds },
+        Err(fault) => {
+            report(state, Code::E0006, span, fault);
+            LiteralValue::Error
+        }
+    }
 }

@@ -12,7 +12,7 @@ pub(crate) fn widens(from: Elementary, to: Elementary) -> bool {
             || (from == Elementary::Bool && to == Elementary::Byte);
     }
     if from.is_time() || to.is_time() {
-        return from == Elementary::Time && to == Elementary::Ltime;
+        return LONG_FORMS.contains(&(from, to));
     }
     match (from.lane().range(), to.lane().range()) {
         (Some(from), Some(to)) => from.0 >= to.0 && from.1 <= to.1,
@@ -22,6 +22,14 @@ pub(crate) fn widens(from: Elementary, to: Elementary) -> bool {
         (None, None) => from.lane().size() <= to.lane().size(),
     }
 }
+
+/// Each type of 64 bits with the one that the standard has for fewer.
+const LONG_FORMS: [(Elementary, Elementary); 4] = [
+    (Elementary::Time, Elementary::Ltime),
+    (Elementary::Date, Elementary::Ldate),
+    (Elementary::Tod, Elementary::Ltod),
+    (Elementary::Dt, Elementary::Ldt),
+];
 
 /// The type at which two operands meet.
 pub(crate) fn join(a: Elementary, b: Elementary) -> Option<Elementary> {

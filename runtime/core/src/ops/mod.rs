@@ -11,6 +11,7 @@ mod math;
 mod select;
 
 mod convert;
+mod dates;
 mod index;
 mod step;
 
@@ -19,6 +20,7 @@ pub use bits::*;
 pub use class::*;
 pub use compare::*;
 pub use convert::*;
+pub use dates::*;
 pub use index::*;
 pub use math::*;
 pub use select::*;

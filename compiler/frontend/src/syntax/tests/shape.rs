@@ -120,10 +120,9 @@ fn literal(it: &Literal<'_>) -> String {
         LiteralValue::Bool(it) => it.to_string(),
         LiteralValue::Integer { value, .. } => value.to_string(),
         LiteralValue::Real(digits) => digits.to_string(),
-        LiteralValue::Time { nanoseconds, long } => format!("{nanoseconds}{}ns", if *long { "l" } else { "" }),
+        LiteralValue::Time { ty, nanoseconds } => format!("{nanoseconds}ns:{}", ty.name()),
         LiteralValue::String { bytes, .. } => format!("{:?}", String::from_utf8_lossy(bytes)),
         LiteralValue::Enumerator(name) => name.text.into(),
-        LiteralValue::Date(kind) => (*kind).into(),
         LiteralValue::Error => "error".into(),
     };
     prefix + &value

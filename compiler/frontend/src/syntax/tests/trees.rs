@@ -33,15 +33,18 @@ fn literals_have_their_values() {
         ("x := INT#-5;", "x:=Neg(INT#5)"),
         ("x := 18446744073709551615;", "x:=18446744073709551615"),
         ("x := 1.0 + 1_0.5e-3 + REAL#2.5E+2 + 1e5;", "x:=(((1.0 + 10.5e-3) + REAL#2.5E+2) + 1e5)"),
-        ("x := T#1h30m + t#1.5s + TIME#-2s500ms;", "x:=((5400000000000ns + 1500000000ns) + -2500000000ns)"),
-        ("x := LTIME#1s500us7ns + LT#1d_2h + T#0s;", "x:=((1000500007lns + 93600000000000lns) + 0ns)"),
-        ("x := T#1_000ms + T#0.000001ms;", "x:=(1000000000ns + 1ns)"),
+        (
+            "x := T#1h30m + t#1.5s + TIME#-2s500ms;",
+            "x:=((5400000000000ns:TIME + 1500000000ns:TIME) + -2500000000ns:TIME)",
+        ),
+        ("x := LTIME#1s500us7ns + LT#1d_2h + T#0s;", "x:=((1000500007ns:LTIME + 93600000000000ns:LTIME) + 0ns:TIME)"),
+        ("x := T#1_000ms + T#0.000001ms;", "x:=(1000000000ns:TIME + 1ns:TIME)"),
         ("x := 'a$N$'$$$0A$t\"';", "x:=\"a\\n'$\\n\\t\\\"\""),
         ("x := \"ä$00E4$\"'\";", "x:=\"ää\\\"'\""),
         ("x := Color#Red;", "x:=Color#Red"),
         (
             "x := D#2024-01-31; y := LTOD#12:30:00.5; z := date_and_time#2024-01-01-12:00:00;",
-            "x:=DATE y:=LTIME_OF_DAY z:=DATE_AND_TIME",
+            "x:=1706659200000000000ns:DATE y:=45000500000000ns:LTOD z:=1704110400000000000ns:DT",
         ),
         ("x := %IX0.0 AND %qw10 = %MD48;", "x:=(%IX0.0 AND (%qw10 = %MD48))"),
     ]);
@@ -52,7 +55,7 @@ fn operands_have_members_and_arguments() {
     trees(&[
         ("a.b[1, i + 1].c^.d := w.3 + w.%X3 + w.%B1;", "a.b[1,(i + 1)].c^.d:=((w.3 + w.%X3) + w.%B1)"),
         ("f(); g(1, A := 2, B => c, NOT D => e, F => );", "f() g(1,A:=2,B=>c,not D=>e,F=>)"),
-        ("t(IN := , PT := T#1s, Q => );", "t(PT:=1000000000ns,Q=>)"),
+        ("t(IN := , PT := T#1s, Q => );", "t(PT:=1000000000ns:TIME,Q=>)"),
         ("c[i](CU := x = 1);", "c[i](CU:=(x = 1))"),
         ("f(NOT a, (b), g(h(1)));", "f(Not(a),<b>,g(h(1)))"),
     ]);
