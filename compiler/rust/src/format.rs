@@ -45,6 +45,7 @@ fn space(text: &str) -> String {
         let opens = content.starts_with("pub ")
             || content.starts_with("///")
             || content.starts_with("#[")
+            || content.starts_with("fn ")
             || content.starts_with("impl ");
         if ended && opens && depth < 2 {
             spaced.push('\n');

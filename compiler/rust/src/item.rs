@@ -19,7 +19,8 @@ impl Emitter<'_> {
             .filter(|id| self.program.routine(*id).kind == RoutineKind::Function)
             .map(|id| self.routine(id));
         let tables = self.tables();
-        quote!(#files #tables #(#enums)* #(#structs)* #(#functions)*)
+        let retained = self.retained();
+        quote!(#files #tables #(#enums)* #(#structs)* #retained #(#functions)*)
     }
 
     fn files(&self) -> TokenStream {

@@ -18,6 +18,7 @@ mod index_hoist;
 mod item;
 mod loops;
 mod place;
+mod retained;
 mod statement;
 mod string;
 

@@ -45,6 +45,13 @@ const TYPES: &[&str] = &[
 /// Local names with a meaning of their own.
 const LOCALS: &[&str] = &["self", "cx", "globals", "out"];
 
+/// Functions and constants of the emitted text's own.
+const FUNCTIONS: &[&str] = &["save_retained", "load_retained", "retained_stamp", "carry_retained"];
+const CONSTANTS: &[&str] = &["FILES", "IO", "TASKS", "RETAINED_SIZE", "RETAINED_PROGRAM"];
+
+/// What the functions for retained variables call their own.
+const INSTANCES: &[&str] = &["globals", "bytes", "stamp", "carrier", "element"];
+
 /// What every structure has.
 const METHODS: &[&str] = &["new", "default", "scan", "prescan"];
 
@@ -145,11 +152,8 @@ impl Names {
                 .map(|it| claim_all(Scope::default(), it.fields.iter().map(|field| snake(&field.name))))
                 .collect(),
             routines,
-            files: claim_all(
-                Scope::with(&["FILES", "IO", "TASKS"]),
-                program.files.iter().map(|it| screaming(base_name(&it.path))),
-            ),
-            instances: claim_all(Scope::with(&["globals"]), program.instances.iter().map(|it| snake(&it.name))),
+            files: claim_all(Scope::with(CONSTANTS), program.files.iter().map(|it| screaming(base_name(&it.path)))),
+            instances: claim_all(Scope::with(INSTANCES), program.instances.iter().map(|it| snake(&it.name))),
             locals,
         }
     }
@@ -210,7 +214,7 @@ pub fn by_value_param(routine: &Routine, local: LocalId) -> Option<ParamId> {
 /// Free functions share one scope; the methods of a structure share another. Declared routines come
 /// first, so that copies made for aliasing never change their names.
 fn routine_names(program: &Program, origins: &[Origin]) -> Vec<Ident> {
-    let mut functions = Scope::default();
+    let mut functions = Scope::with(FUNCTIONS);
     let mut methods: HashMap<Option<StructId>, Scope> = HashMap::new();
     let mut names = vec![ident("scan"); program.routines.len()];
     let declared = |at: &usize| matches!(origins[*at], Origin::Declared);

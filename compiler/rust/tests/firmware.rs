@@ -77,3 +77,104 @@ case.st:11:15: division by zero
 ";
     assert_eq!(output_of("firmware", ST, MAIN), expected);
 }
+
+const RETAINING: &str = "
+TYPE Color : (Red, Green := 5); Part : STRUCT number : INT; weight : REAL; END_STRUCT; END_TYPE
+FUNCTION_BLOCK Station
+VAR RETAIN done : INT(0..100) := 7; END_VAR
+VAR plain : INT; END_VAR
+done := done; plain := plain + 1;
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Whole
+VAR kept : LINT; t : TON; END_VAR
+VAR NON_RETAIN lost : INT; END_VAR
+t(IN := TRUE, PT := T#1s); kept := kept + 1; lost := lost + 1;
+END_FUNCTION_BLOCK
+VAR_GLOBAL RETAIN total : DINT; END_VAR
+VAR_GLOBAL scrap : DINT; END_VAR
+PROGRAM Main
+VAR_EXTERNAL total, scrap : DINT; END_VAR
+VAR RETAIN
+    on : BOOL; name : STRING[5]; color : Color; colors : ARRAY[1..2] OF Color; levels : ARRAY[0..1, 0..1] OF INT(1..9);
+    parts : ARRAY[1..2] OF Part; row : ARRAY[1..3] OF UINT; whole : Whole;
+END_VAR
+VAR stations : ARRAY[1..2] OF Station; c : CSCAPE.CTU; forgotten : INT; END_VAR
+VAR RETAIN counter : CSCAPE.CTU; save_retained : INT; END_VAR
+on := TRUE; name := 'abcde'; color := Green; colors[2] := Green; levels[1, 0] := 9; parts[2].weight := 1.5; row[3] := 65535;
+whole(); stations[2](); total := total + 1; scrap := 4; forgotten := 3; c(CU := TRUE, PV := 3); counter(CU := TRUE, PV := 4);
+save_retained := 1;
+END_PROGRAM
+FUNCTION load_retained : INT
+load_retained := 1;
+END_FUNCTION
+";
+
+/// Saves after a scan, loads into a new program, and shows what is there; then what a damaged, a foreign and a
+/// forged record do.
+const RETAINING_MAIN: &str = r#"
+use staunch_runtime::{Context, crc32};
+use staunch_runtime::firmware::Stamp;
+
+fn loaded(bytes: &[u8]) -> (code::Main, code::Globals) {
+    let (mut globals, mut main) = (code::Globals::new(), code::Main::new());
+    println!("{:?}", code::load_retained(bytes, &mut main, &mut globals));
+    (main, globals)
+}
+
+fn main() {
+    let (mut globals, mut main) = (code::Globals::new(), code::Main::new());
+    main.scan(&Context::first(5), &mut globals).unwrap();
+    main.stations[1].done = 50;
+    let mut page = [0xFF; code::RETAINED_SIZE + 9];
+    let record: &mut [u8; code::RETAINED_SIZE] = page.first_chunk_mut().unwrap();
+    code::save_retained(record, Stamp { sequence: 8, now: 5 }, &mut main, &mut globals);
+    println!("{:?} {}", code::retained_stamp(&page), code::RETAINED_SIZE);
+    let (m, g) = loaded(&page);
+    println!("{} {} {:?} {:?} {:?}", m.on, m.name, m.color, m.colors, m.levels);
+    println!("{:?} {:?} {} {}", m.parts[1], m.row, m.stations[0].done, m.stations[1].done);
+    println!("{} {} {} {} {}", m.whole.kept, m.whole.lost, m.whole.t.in_before, m.whole.t.start, m.stations[1].plain);
+    println!("{} {} {} {} {} {}", g.total, g.scrap, m.forgotten, m.c.cv, m.counter.cv, m.counter.pv);
+
+    println!("{:?}", loaded(&page[..20]).1.total);
+    page[30] ^= 1;
+    println!("{:?}", loaded(&page).1.total);
+    page[5] ^= 1;
+    println!("{}", code::retained_stamp(&page).unwrap_err());
+    page[5] ^= 1;
+
+    let size = code::RETAINED_SIZE;
+    page[20..size - 4].fill(0xFF);
+    let checksum = crc32(&page[..size - 4]).to_le_bytes();
+    page[size - 4..size].copy_from_slice(&checksum);
+    let (mut m, mut g) = loaded(&page);
+    println!("{} {:?} {:?} {:?} {}", m.on, m.name.as_bytes(), m.color, m.levels, m.stations[0].done);
+    m.scan(&Context::first(6), &mut g).unwrap();
+}
+"#;
+
+#[test]
+fn retained_variables_go_to_bytes_and_back() {
+    // 24 beside the values; on, name, color, colors, levels, parts, row: 1 + 7 + 2 + 4 + 8 + 12 + 6 bytes;
+    // whole: kept, and the pins of its timer: 8 + 1 + 8 + 1 + 8 + 1 + 8; of each station 2; total 4;
+    // of the counter CU, RESET and PV, since the rest starts anew; and the last variable, 2.
+    let counter = 1 + 1 + 2;
+    let size = 24 + 40 + 35 + 4 + 4 + counter + 2;
+    let expected = format!(
+        "\
+Ok(Stamp {{ sequence: 8, now: 5 }}) {size}
+Ok(Stamp {{ sequence: 8, now: 5 }})
+true abcde Color(5) [Color(0), Color(5)] [[1, 1], [9, 1]]
+Part {{ number: 0, weight: 1.5 }} [0, 0, 65535] 7 50
+1 0 true 5 0
+1 0 0 0 0 4
+Err(Missing)
+0
+Err(Damaged)
+0
+the retained variables are those of another program
+Ok(Stamp {{ sequence: 8, now: 5 }})
+true [255, 255, 255, 255, 255] Color(-1) [[1, 1], [1, 1]] 0
+"
+    );
+    assert_eq!(output_of("retaining", RETAINING, RETAINING_MAIN), expected);
+}

@@ -1,5 +1,9 @@
 //! What a firmware asks of the program that is compiled into it: what runs when, and which variable lies at
-//! which direct address. Generated Rust holds the tables.
+//! which direct address, and what it retains. Generated Rust holds the tables.
+
+mod retained;
+
+pub use retained::{Carried, Carrier, NotRetained, RECORD_OVERHEAD, Stamp, load, save, stamp};
 
 /// A PROGRAM that runs, as its TASK says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
