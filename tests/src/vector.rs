@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value as Json};
 use staunch_frontend::{Dialect, Options};
-use staunch_runtime::{BLOCKS, BlockInfo, Direction, Family};
+use staunch_runtime::{BLOCKS, BlockInfo, Direction, Family, Retention};
 use std::fmt::Write;
 
 /// One table.
@@ -82,7 +82,7 @@ impl<'j> Table<'j> {
             title: text(&self.json["title"]),
             source,
             options: Options { dialect, ctu_stop_at_pv, ..Options::default() },
-            scans: self.rows().map(|it| self.scan(it)).collect(),
+            scans: self.scans(),
         }
     }
 
@@ -111,6 +111,9 @@ impl<'j> Table<'j> {
 
     /// The instance's initial value: the members that the table presets.
     fn initial(&self) -> String {
+        if self.starts_anew() {
+            return String::new();
+        }
         let preload = object(&self.json["preload"]);
         let members: Vec<_> = preload.iter().map(|(name, value)| format!("{name} := {}", cell(value))).collect();
         if members.is_empty() { String::new() } else { format!(" := ({})", members.join(", ")) }
@@ -172,6 +175,20 @@ impl<'j> Table<'j> {
             let _ = writeln!(text, "IF execute_{it} THEN\n    {it}(Counter := c, RungIn := rung_{it});\nEND_IF");
         }
         text + "END_PROGRAM\n"
+    }
+
+    /// Whether initial values of the counts are not used, so that what is preset is written before the first row.
+    fn starts_anew(&self) -> bool {
+        self.block.retention == Retention::Inputs
+    }
+
+    fn scans(&self) -> Vec<Scan> {
+        let mut scans: Vec<_> = self.rows().map(|it| self.scan(it)).collect();
+        if let Some(first) = scans.first_mut().filter(|_| self.starts_anew()) {
+            let preload = object(&self.json["preload"]).iter();
+            first.inputs.extend(preload.map(|(name, value)| (format!("c.{name}"), cell(value))));
+        }
+        scans
     }
 
     fn scan(&self, row: &Json) -> Scan {

@@ -48,8 +48,8 @@ fn the_traps_are_found() {
         ("after_reset.st --from iec --to logix --vars parts.CV --stimulus after_reset.csv", "6"),
         ("after_reset.st --from iec --to cscape --stimulus after_reset.csv", "6"),
         ("wraps.st --from iec --to logix --vars parts.CV --stimulus wraps.csv", "7"),
-        ("limit.st --from iec --to codesys", "8"),
-        ("widths.st --from iec --to codesys", "8"),
+        ("limit.st --from iec --to codesys --assume no_run.txt", "8"),
+        ("widths.st --from iec --to codesys --assume no_run.txt", "8"),
         ("preset_lowered.st --from iec --to cscape", "10"),
         ("restart.st --from iec --to logix", "11"),
         ("retained.st --from iec --to cscape", "11"),
@@ -121,15 +121,15 @@ fn names_that_change_are_lints_and_not_differences() {
     let lints = text(&output.stderr);
     assert_eq!(lints.matches("warning[W0609]").count(), 6, "{lints}");
     assert!(lints.contains("write `RESET`, or give the inputs by position"), "{lints}");
-    let few = run("names.st --from iec --to codesys --budget 2000");
+    let few = run("names.st --from iec --to codesys --assume no_run.txt --budget 2000");
     assert_eq!(few.status.code(), Some(4), "{}", text(&few.stdout));
-    let denied = run("names.st --from iec --to codesys --budget 2000 -D W0609");
+    let denied = run("names.st --from iec --to codesys --assume no_run.txt --budget 2000 -D W0609");
     assert_eq!(denied.status.code(), Some(1));
 }
 
 #[test]
 fn what_is_not_found_is_not_ruled_out() {
-    let output = run("names.st --from iec --to codesys --budget 2000");
+    let output = run("names.st --from iec --to codesys --assume no_run.txt --budget 2000");
     let out = text(&output.stdout);
     assert_eq!(output.status.code(), Some(4), "{out}");
     assert!(
@@ -137,7 +137,8 @@ fn what_is_not_found_is_not_ruled_out() {
         "{out}"
     );
     assert!(out.contains("Not tried: longer sequences; a larger --budget tries more of them.\n"), "{out}");
-    let object = text(&run("names.st --from iec --to codesys --budget 2000 --message-format json").stdout);
+    let object =
+        text(&run("names.st --from iec --to codesys --assume no_run.txt --budget 2000 --message-format json").stdout);
     let last = object.lines().last().unwrap_or_default();
     assert!(last.contains(r#""reason":"compare","from":"iec","to":"codesys","verdict":"not found""#), "{object}");
 }
@@ -307,6 +308,60 @@ fn assumptions_bound_what_is_tried() {
     let output = run(&format!("{arguments} --assume {}", wrong.display()));
     assert_eq!(output.status.code(), Some(2));
     assert!(text(&output.stderr).contains("wrong.txt:1: `for` is not expected here"), "{}", text(&output.stderr));
+}
+
+/// CODESYS keeps every variable over STOP -> RUN; IEC keeps what is RETAIN over both events.
+#[test]
+fn what_only_stop_to_run_keeps_is_found() {
+    let latch = |section: &str| {
+        format!("PROGRAM p\nVAR_INPUT on : BOOL; END_VAR\n{section} n : BOOL; END_VAR\nn := n OR on;\nEND_PROGRAM\n")
+    };
+    let path = written("latch.st", &latch("VAR"));
+    let saved = written("latch.csv", "");
+    let arguments = format!("{} --from iec --to codesys", path.display());
+    let table = "iec and codesys differ after 2 scans:\n\
+         \n\
+         \x20 scan  @event     on  n iec  n codesys\n\
+         \x20    1           TRUE   TRUE       TRUE\n\
+         \x20    2     run  FALSE  FALSE       TRUE ◀\n";
+    let out = difference(&format!("{arguments} --save-stimulus {}", saved.display()));
+    assert!(out.starts_with(table) && out.contains("Trap 11: Restart"), "{out}");
+    assert_eq!(std::fs::read_to_string(&saved).expect("it is saved"), "scan,on,@event\n1,TRUE,\n2,FALSE,run\n");
+    let again = difference(&format!("{arguments} --stimulus {}", saved.display()));
+    assert!(again.contains("     2     run  FALSE  FALSE       TRUE ◀"), "{again}");
+    let object = difference(&format!("{arguments} --message-format json"));
+    assert!(
+        object.contains(r#"{"scan":2,"event":"run","inputs":{"on":"FALSE"},"from":{"n":"FALSE"},"to":{"n":"TRUE"}}"#)
+    );
+    let never = run(&format!("{arguments} --assume no_run.txt"));
+    assert_eq!(never.status.code(), Some(0), "{}", text(&never.stdout));
+    assert!(text(&never.stdout).contains("assumed: no run"), "{}", text(&never.stdout));
+    let retained = written("latch_retained.st", &latch("VAR RETAIN"));
+    let alike = run(&format!("{} --from iec --to codesys", retained.display()));
+    assert_eq!(alike.status.code(), Some(0), "{}", text(&alike.stdout));
+    let wrong = written("no_such_event.txt", "no rain\n");
+    let output = run(&format!("{arguments} --assume {}", wrong.display()));
+    assert!(
+        text(&output.stderr).contains(":1: `rain` is no event; they are restart, run, reset"),
+        "{}",
+        text(&output.stderr)
+    );
+}
+
+/// A stimulus names its own events.
+#[test]
+fn the_events_of_a_stimulus_are_told_apart() {
+    let path = written(
+        "events.st",
+        "PROGRAM p\nVAR_INPUT x : BOOL; END_VAR\nVAR c : CTU; END_VAR\nc(x, FALSE, 30000);\nEND_PROGRAM\n",
+    );
+    let stimulus =
+        written("events.csv", "scan,x,@event\n1,FALSE,\n2,FALSE,restart\n3,FALSE,reset\n4,TRUE,\n5,FALSE,run\n");
+    let out =
+        difference(&format!("{} --from iec --to codesys --stimulus {} --trace", path.display(), stimulus.display()));
+    for row in ["     2  restart", "     3    reset", "     5      run"] {
+        assert!(out.contains(row), "{row}\n{out}");
+    }
 }
 
 #[test]

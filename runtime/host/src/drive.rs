@@ -53,6 +53,11 @@ impl Drive {
         !self.start.kept(event).is_empty()
     }
 
+    /// Whether two events keep the same.
+    pub fn are_alike(&self, a: Event, b: Event) -> bool {
+        self.start.kept(a) == self.start.kept(b)
+    }
+
     /// Whether an event keeps the byte at this offset.
     pub fn keeps(&self, event: Event, offset: usize) -> bool {
         self.start.kept(event).iter().any(|it| it.contains(&offset))

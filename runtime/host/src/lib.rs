@@ -65,6 +65,8 @@ pub trait Machine {
     fn write(&mut self, offset: usize, bytes: &[u8]);
     /// Writes the initial values over all of the state.
     fn init(&mut self);
+    /// An event has started the program again: what it does not keep is initial.
+    fn starts_again(&mut self, _: Event) {}
     /// One scan of an instance. After a fault the state stays as it was at that point.
     fn scan(&mut self, instance: usize, cx: &Context) -> Result<(), Fault>;
 }

@@ -375,6 +375,7 @@ impl Runner<'_> {
         self.start.again(event, self.machine);
         self.held.iter().for_each(|it| self.machine.write(it.offset, &it.bytes));
         self.fresh.fill(true);
+        self.machine.starts_again(event);
         Ok(())
     }
 

@@ -1,8 +1,9 @@
 //! What a plant's inputs are said never to do: a file of lines as `Target 1..500`,
-//! `not (Start and Stop)` and `Part for at least 3 scans`.
+//! `not (Start and Stop)`, `Part for at least 3 scans` and `no run`.
 
 use super::alphabet::{Choice, Covered};
 use super::pair::Pair;
+use staunch_host::Event;
 use staunch_ir::{Lane, Value};
 use std::path::Path;
 
@@ -13,6 +14,8 @@ pub struct Assumptions {
     conditions: Vec<Condition>,
     /// Inputs, and scans for which a value stays at least.
     holds: Vec<(usize, u8)>,
+    /// Events that do not happen.
+    pub never: Vec<Event>,
     /// The lines, as they are written.
     pub lines: Vec<String>,
 }
@@ -61,6 +64,10 @@ impl Assumptions {
         let mut parser = Parser { tokens: &tokens, names };
         let words: Vec<&str> = tokens.iter().map(String::as_str).collect();
         match words.as_slice() {
+            [no, event] if no.eq_ignore_ascii_case("no") => {
+                let found = Event::ALL.into_iter().find(|it| it.name().eq_ignore_ascii_case(event));
+                self.never.push(found.ok_or_else(|| format!("`{event}` is no event; they are restart, run, reset"))?);
+            }
             [name, low, "..", high] => {
                 let bound = |it: &str| it.parse::<i128>().map_err(|_| format!("`{it}` is no whole number"));
                 let (low, high) = (bound(low)?, bound(high)?);
@@ -84,8 +91,8 @@ impl Assumptions {
                 let condition = parser.either()?;
                 if let Some(rest) = parser.tokens.first() {
                     return Err(format!(
-                        "`{rest}` is not expected here; a line is `Input 1..500`, `Input for at least 3 scans` or a \
-                         condition with AND, OR, NOT and comparisons"
+                        "`{rest}` is not expected here; a line is `Input 1..500`, `Input for at least 3 scans`, \
+                         `no run` or a condition with AND, OR, NOT and comparisons"
                     ));
                 }
                 self.conditions.push(condition);

@@ -1,9 +1,10 @@
 //! Every sequence of inputs, the shortest first, each pair of states once. Where it comes to its
 //! end, every reachable state was seen.
 
-use super::pair::{Event, Place, Step};
+use super::pair::{Place, Step};
 use super::search::{Search, Seen};
 use super::trace::Trace;
+use staunch_host::Event;
 use std::collections::HashSet;
 use std::hash::{BuildHasherDefault, Hasher};
 
@@ -67,7 +68,7 @@ impl Exhaustive {
     pub fn new(search: &mut Search<'_>) -> Self {
         let vectors = search.world.alphabet.vectors.iter().enumerate();
         let plain: Vec<(usize, Step)> = vectors.map(|(at, it)| (at, Step::of(it.clone()))).collect();
-        let with = |event: Event| plain.iter().map(move |(at, it)| (*at, Step { event, ..it.clone() }));
+        let with = |event: Event| plain.iter().map(move |(at, it)| (*at, Step { event: Some(event), ..it.clone() }));
         let events = search.pair.events();
         let symbols = plain.iter().cloned().chain(events.into_iter().flat_map(with)).collect();
         search.pair.init();
@@ -114,7 +115,7 @@ impl Exhaustive {
     fn step(&mut self, search: &mut Search<'_>, entry: usize, symbol: usize) {
         let Entry { node: parent, place, ages, vector } = &self.frontier[entry];
         let (parent, (now, step)) = (*parent, &self.symbols[symbol]);
-        if step.event != Event::None && parent == usize::MAX {
+        if step.event.is_some() && parent == usize::MAX {
             // Before the first scan it is a start.
             return;
         }

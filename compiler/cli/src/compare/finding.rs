@@ -7,6 +7,7 @@ use super::search::{Outcome, Subject, World};
 use super::shrink::{self, Goal};
 use super::trace::Trace;
 use super::usage::{self, Usage};
+use staunch_host::Event;
 use staunch_runtime::PinRole;
 use std::collections::HashMap;
 
@@ -48,7 +49,9 @@ pub fn uses(pair: &Pair) -> Vec<Use> {
         let presets: Vec<_> = a.presets.union(&b.presets).collect();
         let kept = |side: usize| {
             let count = instances[side].block.info().pin_for(PinRole::Count);
-            count.is_some_and(|it| pair.sides[side].keeps(instances[side].offset + it.offset))
+            let keeps =
+                |event| count.is_some_and(|it| pair.sides[side].keeps(event, instances[side].offset + it.offset));
+            Event::ALL.map(|it| !pair.never.contains(&it) && keeps(it))
         };
         Use {
             constant_preset: presets.len() == 1 && presets[0].is_some(),

@@ -6,7 +6,7 @@
 //! compared values may follow.
 
 use super::novelty::Novelty;
-use super::pair::{Event, Place, Step};
+use super::pair::{Place, Step};
 use super::search::Search;
 use super::trace::{Paths, ROOT, Trace, Way};
 use staunch_ir::Value;
@@ -153,7 +153,7 @@ impl Guided {
         let same = allowed(&inputs).then(|| inputs.clone());
         let mut patterns: Vec<(Vec<Step>, bool)> = Vec::new();
         for event in events {
-            let restart = |it: &Vec<Value>| (vec![Step { event, inputs: it.clone() }], false);
+            let restart = |it: &Vec<Value>| (vec![Step { event: Some(event), inputs: it.clone() }], false);
             patterns.extend(same.iter().chain(&others).map(restart));
         }
         patterns.extend(same.iter().map(|it| (vec![Step::of(it.clone())], false)));
@@ -184,7 +184,7 @@ impl Guided {
     fn follow(&mut self, search: &mut Search<'_>, mut pattern: Pattern, reserve: u64) {
         search.pair.go_to(&pattern.place);
         let mut known = Known::default();
-        let once = pattern.steps.iter().any(|it| it.event != Event::None);
+        let once = pattern.steps.iter().any(|it| it.event.is_some());
         let limit = if once { 1 } else { TURNS[pattern.turn] };
         let mut before = match pattern.last() {
             Some(step) => step.inputs.clone(),

@@ -137,6 +137,7 @@ fn world(pair: &mut Pair, args: &Compare) -> Result<World, String> {
     let facts = facts.each_ref();
     pair.inputs = alphabet::inputs(pair, facts);
     let assumptions = args.assume.as_deref().map(|it| Assumptions::read(it, pair)).transpose()?.unwrap_or_default();
+    pair.never.clone_from(&assumptions.never);
     let alphabet = Alphabet::of(pair, facts, &assumptions);
     if alphabet.vectors.is_empty() {
         return Err("the assumptions allow no combination of the values of inputs that are tried".to_owned());

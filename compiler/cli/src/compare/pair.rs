@@ -4,7 +4,7 @@ use super::normal::{self, Timer};
 use super::scalar::{self, Instance, Role, Scalar, Scalars};
 use crate::machine::Native;
 use staunch_frontend::Dialect;
-use staunch_host::{Bookmark, Drive, Machine, Snapshot};
+use staunch_host::{Bookmark, Drive, Event, Machine, Snapshot};
 use staunch_ir::{Program, Value};
 use staunch_runtime::{Fault, FaultKind};
 use std::collections::HashMap;
@@ -32,42 +32,23 @@ pub struct Input {
     pub initial: Value,
 }
 
-/// What happens to a controller before a scan.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Event {
-    #[default]
-    None,
-    /// A power cycle.
-    Restart,
-}
-
-impl Event {
-    /// As a stimulus names it.
-    pub fn name(self) -> Option<&'static str> {
-        match self {
-            Self::None => None,
-            Self::Restart => Some("restart"),
-        }
-    }
-}
-
 /// What comes before one scan: an event, and a value for each input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
-    pub event: Event,
+    pub event: Option<Event>,
     pub inputs: Vec<Value>,
 }
 
 impl Step {
     pub fn of(inputs: Vec<Value>) -> Self {
-        Self { event: Event::None, inputs }
+        Self { event: None, inputs }
     }
 }
 
 /// The states of both sides after a scan, and how the scan ended.
 #[derive(Clone, Debug)]
 pub struct Row {
-    pub event: Event,
+    pub event: Option<Event>,
     pub states: [Vec<u8>; 2],
     pub faults: [Option<Fault>; 2],
 }
@@ -107,8 +88,10 @@ pub struct Pair {
     counter_bytes: Comparison,
     scratch: Vec<u8>,
     first: bool,
-    /// A program had not run since a restart.
+    /// A program had not run since an event.
     restarted: bool,
+    /// Events that are said never to happen.
+    pub never: Vec<Event>,
     /// Scans that both sides have made together.
     pub scans: u64,
 }
@@ -131,9 +114,9 @@ impl Side {
         &mut self.machine
     }
 
-    /// Whether a restart keeps the byte at this offset.
-    pub fn keeps(&self, offset: usize) -> bool {
-        self.drive.keeps(staunch_host::Event::Restart, offset)
+    /// Whether an event keeps the byte at this offset.
+    pub fn keeps(&self, event: Event, offset: usize) -> bool {
+        self.drive.keeps(event, offset)
     }
 
     fn write(&mut self, offset: usize, value: Value) {
@@ -164,6 +147,7 @@ impl Pair {
             scratch: Vec::new(),
             first: false,
             restarted: false,
+            never: Vec::new(),
             scans: 0,
         };
         pair.counters = pair.find_counters();
@@ -291,10 +275,17 @@ impl Pair {
         self.sides.each_ref().map(|it| it.before.as_slice())
     }
 
-    /// What a restart may do on either side, besides nothing and starting all anew.
+    /// The events that do more on either side than to start all anew, one of those that do the same.
     pub fn events(&self) -> Vec<Event> {
-        let retains = self.sides.iter().any(|it| it.drive.keeps_anything(staunch_host::Event::Restart));
-        if retains { vec![Event::Restart] } else { Vec::new() }
+        let same = |a: Event, b: Event| self.sides.iter().all(|it| it.drive.are_alike(a, b));
+        let mut found: Vec<Event> = Vec::new();
+        for event in Event::ALL {
+            let keeps = self.sides.iter().any(|it| it.drive.keeps_anything(event));
+            if keeps && !self.never.contains(&event) && !found.iter().any(|it| same(*it, event)) {
+                found.push(event);
+            }
+        }
+        found
     }
 
     /// Whether a timer runs on either side, so that time is a part of the state.
@@ -316,9 +307,8 @@ impl Pair {
         let mut number = 0;
         self.sides.each_mut().map(|side| {
             side.before.copy_from_slice(side.machine.state());
-            match step.event {
-                Event::None => {}
-                Event::Restart => side.drive.start_again(staunch_host::Event::Restart, &mut side.machine),
+            if let Some(event) = step.event {
+                side.drive.start_again(event, &mut side.machine);
             }
             for (input, value) in inputs.iter().zip(&step.inputs) {
                 side.write(side.scalars.all[input.scalars[number]].offset, *value);

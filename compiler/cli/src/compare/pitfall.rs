@@ -1,7 +1,8 @@
 //! The pitfalls of a move between systems, which of them a difference shows, and which cannot happen.
 
-use super::pair::{Event, Matched, Pair, Row};
+use super::pair::{Matched, Pair, Row};
 use super::scalar::{Instance, Role};
+use staunch_host::Event;
 use staunch_runtime::{Family, Lane, PinRole};
 
 /// One of the pitfalls of `docs/compare.md`, by its number less one.
@@ -56,8 +57,9 @@ const PITFALLS: [Text; 15] = [
         advice: "Let PV be 32767, which no INT passes, and compare the count with the preset yourself: `c.CV >= preset`.",
     },
     Text {
-        sentence: "Restart: Logix keeps all; IEC and CODESYS restart at 0 unless the instance is RETAIN; CSCAPE needs R_CTU/R_CTD and a RETAIN RCV.",
-        advice: "Declare what Logix keeps RETAIN (IEC, CODESYS), or use R_CTU/R_CTD with a RETAIN RCV (CSCAPE).",
+        sentence: "Restart: Logix keeps all, and so does CODESYS over STOP -> RUN; else IEC and CODESYS restart at 0 unless the instance is RETAIN; CSCAPE needs R_CTU/R_CTD and a RETAIN RCV.",
+        advice: "Declare RETAIN what Logix keeps, and what CODESYS keeps over STOP -> RUN (IEC, CODESYS), or use R_CTU/R_CTD with a \
+                 RETAIN RCV (CSCAPE). IEC and CSCAPE have no variable that only STOP -> RUN keeps.",
     },
     Text {
         sentence: "`c(R := done); done := c.Q;` loses a call on CSCAPE, an edge of a CTUD's other input, and an edge when PV moves.",
@@ -291,7 +293,7 @@ fn outputs(case: &Case) -> Option<usize> {
 
 /// What the last scan has made of a counter: `None` where it has not parted by it, and within it no
 /// pitfall where none explains it.
-pub fn seen(pair: &Pair, at: usize, event: Event, habits: Habits) -> Option<Option<Pitfall>> {
+pub fn seen(pair: &Pair, at: usize, event: Option<Event>, habits: Habits) -> Option<Option<Pitfall>> {
     let parted = pair.outputs[at].iter().any(|it| pair.newly_differs(*it));
     let agreed = pair.outputs[at].iter().all(|it| pair.agreed(*it));
     if !parted || !agreed {
@@ -303,7 +305,7 @@ pub fn seen(pair: &Pair, at: usize, event: Event, habits: Habits) -> Option<Opti
     Some(classify(&Case { first: pair.is_first(), restarted, ..case }))
 }
 
-fn case(pair: &Pair, at: usize, states: [[&[u8]; 2]; 2], event: Event, habits: Habits) -> Option<Case> {
+fn case(pair: &Pair, at: usize, states: [[&[u8]; 2]; 2], event: Option<Event>, habits: Habits) -> Option<Case> {
     let instances = pair.instances(at);
     let of = |states: [&[u8]; 2]| level([0, 1].map(|side| pins(instances[side], states[side])));
     let only_down = |it: &Instance| it.has(PinRole::Down) && !it.has(PinRole::Up);
@@ -312,7 +314,7 @@ fn case(pair: &Pair, at: usize, states: [[&[u8]; 2]; 2], event: Event, habits: H
         before: of(states[0]),
         now: of(states[1]),
         first: false,
-        restarted: event != Event::None,
+        restarted: event.is_some(),
         feeds_itself: habits.feeds_itself,
         guards_itself: habits.guards_itself,
         counts_down: instances.into_iter().any(only_down),
@@ -372,7 +374,7 @@ pub fn cause(pair: &Pair, rows: &[Row], differences: &[Matched], habits: &[Habit
             return found;
         }
         counter = counter.or(found.counter);
-        let restarted = row.event != Event::None && pair.compared.iter().any(|it| !pair.same(*it, row));
+        let restarted = row.event.is_some() && pair.compared.iter().any(|it| !pair.same(*it, row));
         if restarted {
             return Cause { counter, pitfall: Some(Pitfall::RESTART) };
         }

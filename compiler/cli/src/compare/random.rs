@@ -2,7 +2,7 @@
 //! order nor novelty leads to.
 
 use super::guided::Guided;
-use super::pair::{Event, Step};
+use super::pair::Step;
 use super::search::Search;
 use super::trace::Trace;
 
@@ -33,12 +33,12 @@ pub fn walk(search: &mut Search<'_>, guided: &Guided) {
                 continue;
             };
             let event = match events.as_slice() {
-                [] => Event::None,
-                events if dice.below(16) == 0 => *dice.pick(events),
-                _ => Event::None,
+                [] => None,
+                events if dice.below(16) == 0 => Some(*dice.pick(events)),
+                _ => None,
             };
             let started = !steps.is_empty() || !before.is_empty();
-            let event = if started { event } else { Event::None };
+            let event = event.filter(|_| started);
             (inputs, ages) = (next, now);
             let step = Step { event, inputs: inputs.clone() };
             let seen = search.scan(&step);

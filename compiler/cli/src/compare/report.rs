@@ -3,7 +3,7 @@
 use super::accept::Accepted;
 use super::finding::{self, Finding, Findings};
 use super::missing::Missing;
-use super::pair::{Event, Matched, Pair, Row};
+use super::pair::{Matched, Pair, Row};
 use super::pitfall::{self, Cause, Pitfall};
 use super::rejection::Rejection;
 use super::search::{Outcome, World};
@@ -12,6 +12,7 @@ use super::{Verdict, alphabet, stimulus};
 use crate::args::{Compare, MessageFormat};
 use crate::session::Session;
 use crate::{NOT_FOUND, REJECTED, output};
+use staunch_host::Event;
 use std::fmt::Write;
 
 /// Rows at the start and the end of a long trace that are shown.
@@ -33,7 +34,7 @@ pub struct Report<'s> {
 /// One line of the table; `None` stands for rows that are left out.
 struct Line {
     scan: usize,
-    event: Event,
+    event: Option<Event>,
     inputs: Vec<String>,
     /// For each shown variable, the value on both sides.
     cells: Vec<[String; 2]>,
@@ -57,11 +58,21 @@ pub fn every_state(pair: &Pair, world: &World, outcome: &Outcome) -> String {
             );
         }
     }
-    if !pair.events().is_empty() {
-        text.push_str(", with a restart at every point");
+    if let Some(events) = events(pair) {
+        let _ = write!(text, ", with {events} at every point");
     }
     assumed(&mut text, world);
     text
+}
+
+/// The events that are tried.
+fn events(pair: &Pair) -> Option<String> {
+    let words = pair.events().into_iter().map(|it| match it {
+        Event::Restart => "a restart",
+        Event::Run => "STOP -> RUN",
+        Event::Reset => "a reset",
+    });
+    words.map(str::to_owned).reduce(|all, it| format!("{all} and {it}"))
 }
 
 fn assumed(text: &mut String, world: &World) {
@@ -80,9 +91,7 @@ pub fn not_found(pair: &Pair, world: &World, outcome: &Outcome) -> Verdict {
     if outcome.places > 0 {
         tried.push(format!("inputs that hold, pulse and wait, from {} states", outcome.places));
     }
-    if !pair.events().is_empty() {
-        tried.push("a restart at each of them".to_owned());
-    }
+    tried.extend(events(pair).map(|it| format!("{it} at each of them")));
     tried.push(format!("{} scans in all", outcome.scans));
     if !world.assumptions.lines.is_empty() {
         tried.push(format!("assumed: {}", world.assumptions.lines.join("; ")));
@@ -261,7 +270,7 @@ impl Report<'_> {
         let mut text = format!("{from} and {to} differ after {scans}:\n\n");
         let shown = &differences[..differences.len().min(SHOWN)];
         let inputs = self.inputs(pair, rows);
-        let events = rows.iter().any(|it| it.event != Event::None);
+        let events = rows.iter().any(|it| it.event.is_some());
         let mut header = vec!["scan".to_owned()];
         if events {
             header.push("@event".to_owned());
@@ -530,7 +539,7 @@ fn telling(pair: &Pair, rows: &[Row]) -> Vec<usize> {
     let mut told = Vec::new();
     for (at, row) in rows.iter().enumerate() {
         let now: Vec<String> = inputs(row);
-        if now != before || row.event != Event::None || at + 2 >= rows.len() {
+        if now != before || row.event.is_some() || at + 2 >= rows.len() {
             told.push(at);
         }
         before = now;
@@ -555,7 +564,7 @@ impl Line {
     fn cells(self, events: bool) -> Vec<String> {
         let mut cells = vec![self.scan.to_string()];
         if events {
-            cells.push(self.event.name().unwrap_or_default().to_owned());
+            cells.push(self.event.map_or("", Event::name).to_owned());
         }
         cells.extend(self.inputs);
         cells.extend(self.cells.into_iter().flatten());
@@ -576,7 +585,7 @@ impl Line {
                 .map(|(it, cell)| format!("{}:{}", quoted(pair.path(*it)), quoted(&cell[side])));
             cells.collect::<Vec<_>>().join(",")
         };
-        let event = self.event.name().map_or("null".to_owned(), quoted);
+        let event = self.event.map_or("null".to_owned(), |it| quoted(it.name()));
         format!(
             "{{\"scan\":{},\"event\":{event},\"inputs\":{{{}}},\"from\":{{{}}},\"to\":{{{}}}}}",
             self.scan,

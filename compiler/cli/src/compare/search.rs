@@ -8,11 +8,12 @@ use super::alphabet::Alphabet;
 use super::assume::Assumptions;
 use super::exhaustive::Exhaustive;
 use super::guided::Guided;
-use super::pair::{Event, Faults, Matched, Pair, Step};
+use super::pair::{Faults, Matched, Pair, Step};
 use super::pitfall::{self, Habits, Pitfall};
 use super::random;
 use super::shrink;
 use super::trace::Trace;
+use staunch_host::Event;
 use staunch_ir::Value;
 use std::collections::{BTreeSet, HashMap};
 
@@ -168,7 +169,7 @@ impl Search<'_> {
 }
 
 /// What the last scan has made differ that did not before.
-pub fn look(pair: &Pair, world: &World, event: Event, faults: Faults) -> Seen {
+pub fn look(pair: &Pair, world: &World, event: Option<Event>, faults: Faults) -> Seen {
     let differs = pair.differs(faults);
     let mut sightings = Vec::new();
     if !pair.counters_agree() {
@@ -178,7 +179,7 @@ pub fn look(pair: &Pair, world: &World, event: Event, faults: Faults) -> Seen {
             }
         }
     }
-    if event != Event::None && differs {
+    if event.is_some() && differs {
         let restarted = pair.newly_different();
         sightings.extend(restarted.into_iter().map(|it| (Subject::Variable(it), Some(Pitfall::RESTART))));
     }

@@ -1,6 +1,6 @@
 //! A sequence of inputs without what its difference does not need.
 
-use super::pair::{Event, Pair, Step};
+use super::pair::{Pair, Step};
 use super::search::{self, Sighting, World};
 use super::trace::{Group, Trace};
 
@@ -30,17 +30,13 @@ pub fn shrink(pair: &mut Pair, world: &World, goal: Goal, trace: Trace) -> Trace
     let mut shrink = Shrink { pair, world, goal, left };
     let Some(mut best) = shrink.tried(trace.clone()) else { return trace };
     loop {
-        let before = best.scans();
-        best = shrink.groups(best);
-        best = shrink.bodies(best);
-        if best.scans() <= MAX_STEPS {
-            best = shrink.steps(best);
+        let calm = shrink.shortest(best);
+        let calm = shrink.calmer(calm);
+        // With inputs that keep their values, a scan may be one too many.
+        best = shrink.shorter(calm.clone());
+        if best.scans() == calm.scans() {
+            return calm;
         }
-        if best.scans() == before || shrink.left == 0 {
-            return shrink.calmer(best);
-        }
-        // What is left may repeat in another way.
-        best = Trace::of(best.steps().cloned().collect());
     }
 }
 
@@ -52,12 +48,30 @@ struct Shrink<'p> {
 }
 
 impl Shrink<'_> {
+    /// Shorter and shorter: what is left may repeat in another way.
+    fn shortest(&mut self, mut best: Trace) -> Trace {
+        loop {
+            let before = best.scans();
+            best = self.shorter(best);
+            if best.scans() == before || self.left == 0 {
+                return best;
+            }
+            best = Trace::of(best.steps().cloned().collect());
+        }
+    }
+
+    fn shorter(&mut self, best: Trace) -> Trace {
+        let best = self.groups(best);
+        let best = self.bodies(best);
+        if best.scans() <= MAX_STEPS { self.steps(best) } else { best }
+    }
+
     fn shows_after(&mut self, trace: &Trace) -> Option<usize> {
         self.pair.init();
         let mut ages = self.world.assumptions.ages();
         let mut before = &self.world.initial;
         for (step, number) in trace.steps().zip(1..) {
-            if self.left == 0 || number == 1 && step.event != Event::None {
+            if self.left == 0 || number == 1 && step.event.is_some() {
                 return None;
             }
             self.left -= 1;

@@ -2,13 +2,13 @@
 //! And a sequence of inputs as a stimulus.
 
 use super::Verdict;
-use super::pair::{Event, Input, Pair, Row, Side};
+use super::pair::{Input, Pair, Row, Side};
 use super::scalar;
 use super::search::World;
 use super::trace::Trace;
 use crate::args::Compare;
 use crate::{machine::Native, run};
-use staunch_host::{Error, Machine, Options};
+use staunch_host::{Error, Event, Machine, Options};
 use staunch_ir::Value;
 use staunch_runtime::{Context, Fault};
 use std::fmt::Write;
@@ -17,12 +17,12 @@ use std::fmt::Write;
 struct Recorder<'s> {
     machine: &'s mut Native,
     scans: Vec<Recorded>,
-    event: Event,
+    event: Option<Event>,
 }
 
 struct Recorded {
     now: i64,
-    event: Event,
+    event: Option<Event>,
     state: Vec<u8>,
     fault: Option<Fault>,
 }
@@ -38,17 +38,17 @@ impl Machine for Recorder<'_> {
 
     fn init(&mut self) {
         self.machine.init();
-        self.event = if self.scans.is_empty() { Event::None } else { Event::Restart };
+    }
+
+    fn starts_again(&mut self, event: Event) {
+        self.event = Some(event);
     }
 
     fn scan(&mut self, instance: usize, cx: &Context) -> Result<(), Fault> {
         let result = self.machine.scan(instance, cx);
         // Programs that run at one time make one scan.
         let same = self.scans.pop_if(|it| it.now == cx.now);
-        let event = match std::mem::take(&mut self.event) {
-            Event::None => same.map_or(Event::None, |it| it.event),
-            event => event,
-        };
+        let event = self.event.take().or(same.and_then(|it| it.event));
         let state = self.machine.state().to_vec();
         self.scans.push(Recorded { now: cx.now, event, state, fault: result.err() });
         result
@@ -77,7 +77,7 @@ fn record(side: &mut Side, args: &Compare) -> Result<Vec<Recorded>, String> {
     let cycle = args.cycle.as_deref().map(staunch_host::parse_duration).transpose()?;
     let options =
         Options { scans: args.scans, cycle, stimulus: args.stimulus.clone(), quiet: true, ..Options::default() };
-    let mut recorder = Recorder { machine: side.machine(), scans: Vec::new(), event: Event::None };
+    let mut recorder = Recorder { machine: side.machine(), scans: Vec::new(), event: None };
     match staunch_host::run(&mut recorder, &map, &options) {
         // A fault ends the run; the other side may have one too.
         Ok(_) | Err(Error::Fault { .. }) => Ok(recorder.scans),
@@ -106,7 +106,7 @@ fn name_columns(pair: &mut Pair, args: &Compare) {
 /// A stimulus for `run` and `compare`: a row where something changes, and the last.
 pub fn text(pair: &Pair, world: &World, trace: &Trace) -> String {
     let steps: Vec<_> = trace.steps().collect();
-    let events = steps.iter().any(|it| it.event != Event::None);
+    let events = steps.iter().any(|it| it.event.is_some());
     let mut text = "scan".to_owned();
     for input in &pair.inputs {
         let path = pair.path(input.scalars);
@@ -116,14 +116,14 @@ pub fn text(pair: &Pair, world: &World, trace: &Trace) -> String {
     text.push_str(if events { ",@event\n" } else { "\n" });
     let mut before: Option<&[Value]> = None;
     for (number, step) in (1..).zip(&steps) {
-        let same = before == Some(step.inputs.as_slice()) && step.event == Event::None && !world.inputs_written;
+        let same = before == Some(step.inputs.as_slice()) && step.event.is_none() && !world.inputs_written;
         if !same || number == steps.len() {
             let _ = write!(text, "{number}");
             for (input, value) in pair.inputs.iter().zip(&step.inputs) {
                 let _ = write!(text, ",{}", cell(pair, input, *value));
             }
             if events {
-                let _ = write!(text, ",{}", step.event.name().unwrap_or_default());
+                let _ = write!(text, ",{}", step.event.map_or("", Event::name));
             }
             text.push('\n');
         }

@@ -1,6 +1,6 @@
 //! Sequences of inputs, as what repeats in them.
 
-use super::pair::{Event, Step};
+use super::pair::Step;
 use std::rc::Rc;
 
 /// Steps that follow one another, each for some scans, again and again.
@@ -22,7 +22,7 @@ impl Trace {
         let mut runs: Vec<(Step, usize)> = Vec::new();
         for step in steps {
             match runs.last_mut() {
-                Some((last, count)) if *last == step && step.event == Event::None => *count += 1,
+                Some((last, count)) if *last == step && step.event.is_none() => *count += 1,
                 _ => runs.push((step, 1)),
             }
         }

@@ -7,7 +7,7 @@ use crate::spelling::Key;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ArgumentKind, BinaryOp, ExprKind as Ast, LiteralValue, StatementKind};
 use rustc_hash::{FxHashMap, FxHashSet};
-use staunch_ir::{BlockId, Elementary, Expr, Op, Type, Value};
+use staunch_ir::{BlockId, Const, Elementary, Expr, Op, Type, Value};
 use staunch_runtime::{Direction, PinRole};
 
 /// A call of a counter that is a variable of its own.
@@ -172,6 +172,20 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
+    /// The number that is always there.
+    fn known(&self, expr: &ast::Expr<'s>) -> Option<i128> {
+        match &bare(expr).kind {
+            Ast::Unary(ast::UnaryOp::Neg, inner) => self.known(inner).map(|it| -it),
+            Ast::Unary(ast::UnaryOp::Plus, inner) => self.known(inner),
+            Ast::Name(name) => match self.scope.get(name.text)?.constant_value()? {
+                Const::Scalar(value) => value.as_integer(),
+                Const::Zero => Some(0),
+                Const::Text(_) | Const::Array(_) | Const::Struct(_) => None,
+            },
+            _ => number(expr).map(i128::from),
+        }
+    }
+
     fn counter_call<'a>(
         &self,
         callee: &ast::Expr<'s>,
@@ -199,15 +213,18 @@ impl<'s> Checker<'_, 's> {
         }
         let own = member_of(limit, "PV").is_some_and(|it| it.text.eq_ignore_ascii_case(counter.text));
         let text = |expr: &ast::Expr<'s>| self.decl.log.sources.text(expr.span).to_ascii_uppercase();
-        let at_most = |given: &ast::Expr<'s>| match (number(given), number(limit)) {
-            (Some(preset), Some(limit)) => preset <= limit,
+        // A count starts at 0, above a preset that is negative.
+        let at_most = |given: &ast::Expr<'s>| match (self.known(given), self.known(limit)) {
+            (Some(preset), Some(limit)) => preset <= limit && limit >= 0,
             _ => text(given) == text(limit),
         };
-        if own || calls.iter().all(|it| it.input(PinRole::Preset).is_some_and(|(given, _)| at_most(given))) {
+        let negative = calls.iter().any(|it| it.input(PinRole::Preset).is_some_and(|it| self.known(it.0) < Some(0)));
+        if own && !negative || calls.iter().all(|it| it.input(PinRole::Preset).is_some_and(|(given, _)| at_most(given)))
+        {
             self.report(
                 Diagnostic::new(Code::W0602, span, format!("`{}.CV` does not pass its preset", counter.text))
                     .label("the counter stops at PV, so this never holds")
-                    .note("only where PV is lowered under the count can CV lie above it")
+                    .note("only where PV is negative, or lowered under the count, can CV lie above it")
                     .help("compare with `>=`, or use the output `Q`"),
             );
         }

@@ -62,26 +62,30 @@ impl<'p> Builder<'p> {
     /// CV starts at the kept count where that is retained, else at 0. Counters and counts in arrays
     /// belong together element by element.
     ///
-    /// A counter that stays as it is over IDLE -> RUN does so here: its kept count is what it counted
-    /// last, and without one a power cycle has set it to 0 already.
+    /// A counter that stays as it is over IDLE -> RUN has its count then, and is at 0 after a power
+    /// cycle alone.
     pub fn restore(&mut self, counter: &Place, kept: &Place) {
         let Type::Block(id) = counter.ty else { return };
         let (startup, routine) = (Startup::new(self.program), &self.program.routines[self.pou]);
         let retained = startup.place(routine, kept, Event::PowerCycle).is_kept();
-        if !retained && startup.place(routine, counter, Event::Run) == Fate::Whole {
+        let stays = startup.place(routine, counter, Event::Run) == Fate::Whole;
+        if !retained && stays {
             return;
         }
         let at = self.at;
         let bounds = self.open_bounds(kept);
         let needs_guard = bounds != self.open_bounds(counter);
         self.everywhere(counter, &mut |indices, counter| {
-            let value = if retained {
-                Expr::load(at_indices(kept, indices), at)
-            } else {
-                Expr::constant(Elementary::Int, Value::I16(0), at)
-            };
-            let restore = vec![Statement::assign(pin_place(counter, id, "CV"), value, at)];
-            if needs_guard { where_within(indices, &bounds, restore, at) } else { restore }
+            let zero = Expr::constant(Elementary::Int, Value::I16(0), at);
+            let value = if retained { Expr::load(at_indices(kept, indices), at) } else { zero.clone() };
+            let count = pin_place(counter, id, "CV");
+            let restore = vec![Statement::assign(count.clone(), value, at)];
+            let restore = if needs_guard { where_within(indices, &bounds, restore, at) } else { restore };
+            if !stays {
+                return restore;
+            }
+            let condition = Expr::apply(Op::Eq, Type::BOOL, vec![Expr::load(count, at), zero], at);
+            vec![Statement::new(StatementKind::If { condition, then: restore, otherwise: Vec::new() }, at)]
         });
     }
 
