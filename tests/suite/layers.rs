@@ -8,7 +8,7 @@ use std::path::Path;
 const ROOT: &str = "compiler/frontend/src";
 
 /// The folders and files at the root, from the lowest.
-const LAYERS: [&str; 18] = [
+const LAYERS: [&str; 19] = [
     "source",
     "diagnostic",
     "spelling",
@@ -18,6 +18,7 @@ const LAYERS: [&str; 18] = [
     "foreign",
     "lex",
     "syntax",
+    "testing",
     "dialect",
     "log",
     "names",

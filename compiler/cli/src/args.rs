@@ -28,6 +28,8 @@ pub enum Command {
     Build(Build),
     /// Run scans on a virtual clock, with stimulus and trace
     Run(Run),
+    /// Run the unit tests that the sources hold
+    Test(Test),
     /// Measure the time of a scan
     Bench(Bench),
     /// Find out what a move to another system changes
@@ -209,6 +211,24 @@ pub struct Run {
     /// Sleep, so that scans happen at their time
     #[arg(long)]
     pub realtime: bool,
+}
+
+#[derive(Clone, Debug, Args)]
+pub struct Test {
+    #[command(flatten)]
+    pub files: Files,
+    /// Run the tests whose titles hold this text, in any case
+    #[arg(long, value_name = "TEXT")]
+    pub filter: Option<String>,
+    /// Write the results as JUnit has them, for CI
+    #[arg(long, value_name = "OUT.xml")]
+    pub junit: Option<PathBuf>,
+    /// Turns that the loops of one test may take together [default: 10000000]
+    #[arg(long, value_name = "N")]
+    pub loop_budget: Option<u64>,
+    /// What runs them
+    #[arg(long, value_enum, default_value_t = Backend::Native)]
+    pub backend: Backend,
 }
 
 #[derive(Clone, Debug, Args)]

@@ -18,6 +18,7 @@ mod bench;
 mod compare;
 mod machine;
 mod run;
+mod test;
 
 mod explain;
 mod manual;
@@ -84,6 +85,7 @@ fn dispatch(cli: Cli) -> u8 {
         Command::Check(it) => Session::check(&cli.common, it),
         Command::Build(it) => Session::start(&cli.common, &it.files).and_then(|session| build::build(&session, it)),
         Command::Run(it) => Session::start(&cli.common, &it.files).and_then(|session| run::run(&session, it)),
+        Command::Test(it) => Session::start_tests(&cli.common, &it.files).and_then(|session| test::test(&session, it)),
         Command::Compare(it) => compare::compare(&cli.common, it),
         Command::Bench(it) => Session::start(&cli.common, &it.files).and_then(|session| bench::bench(&session, it)),
     };

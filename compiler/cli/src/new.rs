@@ -19,6 +19,23 @@ parts(CU := part, R := empty, PV := 10, Q => full);
 END_PROGRAM
 ";
 
+const TEST: &str = "TEST 'ten parts fill a box'
+VAR
+    line : Main;
+    i    : INT;
+END_VAR
+FOR i := 1 TO 10 DO
+    ASSERT_FALSE(line.full);
+    line(part := FALSE);
+    line(part := TRUE);
+END_FOR
+ASSERT_TRUE(line.full);
+
+line(part := FALSE, empty := TRUE);
+ASSERT_FALSE(line.full, 'an empty box is not full');
+END_TEST
+";
+
 const STIMULUS: &str = "scan,part,empty
 1,FALSE,FALSE
 2,TRUE,
@@ -32,6 +49,7 @@ const STIMULUS: &str = "scan,part,empty
 const README: &str = "# A Staunch project
 
     staunch check
+    staunch test
     staunch run --stimulus stimulus.csv
     staunch run --stimulus stimulus.csv --trace -
     staunch build -o plc && ./plc --scans 10
@@ -58,6 +76,7 @@ pub fn new(args: &args::New, common: &args::Common) -> Result<u8, String> {
     let files = [
         ("staunch.toml", project.as_str()),
         ("src/main.st", program.as_str()),
+        ("src/main_test.st", TEST),
         ("stimulus.csv", STIMULUS),
         ("README.md", README),
     ];

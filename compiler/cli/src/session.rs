@@ -4,7 +4,7 @@ use crate::args::{Color, Common, Files, MessageFormat};
 use crate::{REJECTED, input, output};
 use staunch_build::Project;
 use staunch_frontend::{
-    Compilation, Diagnostic, Dialect, Format, Level, Levels, Options, Severity, Sources, Span, Style,
+    Compilation, Diagnostic, Dialect, Format, Level, Levels, Options, Severity, Sources, Span, Style, Test,
 };
 use staunch_ir::Program;
 use std::io::{IsTerminal, Write};
@@ -20,6 +20,8 @@ pub struct Session {
     pub sources: Sources,
     /// `None` when the program was rejected.
     program: Option<Program>,
+    /// The unit tests that the program's instances are.
+    pub tests: Vec<Test>,
     /// At their levels.
     pub diagnostics: Vec<Diagnostic>,
     pub compile_time: Duration,
@@ -31,11 +33,19 @@ impl Session {
         Self::begin(common, files, staunch_frontend::compile).map(|(session, _)| session)
     }
 
+    /// As [`start`](Self::start), for the unit tests in the sources.
+    pub fn start_tests(common: &Common, files: &Files) -> Result<Self, String> {
+        let compile = |sources: &_, options: &Options| {
+            staunch_frontend::compile(sources, &Options { tests: true, ..options.clone() })
+        };
+        Self::begin(common, files, compile).map(|(session, _)| session)
+    }
+
     /// As [`start`](Self::start), but without a program at the end: the verdict alone.
     pub fn check(common: &Common, files: &Files) -> Result<u8, String> {
         let check = |sources: &_, options: &_| {
             let diagnostics = staunch_frontend::check(sources, options);
-            Compilation { program: None, diagnostics }
+            Compilation { program: None, diagnostics, tests: Vec::new() }
         };
         let (session, errors) = Self::begin(common, files, check)?;
         if errors > 0 {
@@ -72,7 +82,8 @@ impl Session {
         let first = PathBuf::from(&sources.files()[0].path);
         let diagnostics = Vec::new();
         let common = common.with(&project);
-        let mut session = Self { common, project, first, sources, program: None, diagnostics, compile_time };
+        let mut session =
+            Self { common, project, first, sources, program: None, tests: Vec::new(), diagnostics, compile_time };
         session.say_what_was_read();
         let errors = session.accept(compilation, &levels, &[])?;
         Ok((session, errors))
@@ -128,7 +139,8 @@ impl Session {
     ) -> Result<Self, String> {
         let (common, project, first) = (self.common.clone(), self.project.clone(), self.first.clone());
         let diagnostics = Vec::new();
-        let mut session = Self { common, project, first, sources, program: None, diagnostics, compile_time };
+        let mut session =
+            Self { common, project, first, sources, program: None, tests: Vec::new(), diagnostics, compile_time };
         session.accept(compilation, &levels(&self.common, &self.project)?, known)?;
         Ok(session)
     }
@@ -143,6 +155,7 @@ impl Session {
         let errors = new.iter().filter(|it| is_error(it)).count();
         self.print(&new, errors)?;
         self.program = compilation.program.filter(|_| errors == 0);
+        self.tests = compilation.tests;
         self.diagnostics = diagnostics;
         Ok(errors)
     }
@@ -260,7 +273,7 @@ fn options(common: &Common, project: &Project) -> Result<Options, String> {
         Some(dialect) => dialect,
         None => project.dialect()?.unwrap_or_default(),
     };
-    Ok(Options { dialect, ctu_stop_at_pv: project.ctu_stop_at_pv, moved_from: None })
+    Ok(Options { dialect, ctu_stop_at_pv: project.ctu_stop_at_pv, moved_from: None, tests: false })
 }
 
 fn summary(errors: usize, warnings: usize) -> String {

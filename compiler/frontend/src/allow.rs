@@ -1,7 +1,7 @@
 //! Lints that a source allows itself: `{allow W0507}` before a statement or declaration, for all of it,
 //! and `{allow_file W0507}` anywhere, for the file.
 
-use crate::ast::{File, Item, Statement, TypeKind, TypeSpec, VarBlock, VarDecl, each_body};
+use crate::ast::{File, Item, Statement, TestUnit, TypeKind, TypeSpec, VarBlock, VarDecl, each_body};
 use crate::diagnostic::{Code, Diagnostic, Severity, lint};
 use crate::source::Span;
 
@@ -109,7 +109,7 @@ impl Spans {
         let mut spans = Self::default();
         for item in &file.items {
             match item {
-                Item::Pou(pou) => {
+                Item::Pou(pou) | Item::Test(TestUnit { pou, .. }) => {
                     let before = spans.all.len();
                     pou.blocks.iter().for_each(|it| spans.block(it));
                     spans.statements(&pou.body);

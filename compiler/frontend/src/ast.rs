@@ -30,7 +30,7 @@ impl<'s> File<'s> {
     pub(crate) fn take_bodies(&mut self) -> impl Iterator<Item = Vec<Statement<'s>>> {
         self.items.iter_mut().filter_map(|it| match it {
             Item::Pou(pou) => Some(std::mem::take(&mut pou.body)),
-            Item::Types(_) | Item::Globals(_) | Item::Configuration(_) => None,
+            Item::Types(_) | Item::Globals(_) | Item::Configuration(_) | Item::Test(_) => None,
         })
     }
 }
@@ -42,6 +42,22 @@ pub enum Item<'s> {
     /// VAR_GLOBAL at file level.
     Globals(VarBlock<'s>),
     Configuration(Configuration<'s>),
+    Test(TestUnit<'s>),
+}
+
+/// A part of a unit test: SETUP, TEARDOWN or TEST.
+#[derive(Clone, Debug)]
+pub struct TestUnit<'s> {
+    pub part: TestPart,
+    /// Its variables and statements. The name is a TEST's title, a string literal as it is spelled.
+    pub pou: Pou<'s>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TestPart {
+    Setup,
+    Teardown,
+    Test,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,6 +65,8 @@ pub enum PouKind {
     Program,
     FunctionBlock,
     Function,
+    /// A TEST, with what SETUP and TEARDOWN add to it.
+    Test,
 }
 
 #[derive(Clone, Debug)]

@@ -1,7 +1,10 @@
 //! Whose blocks a bare name means, and what a dialect allows beyond the standard.
 
+use crate::spelling::Key;
+use rustc_hash::FxHashMap;
 use staunch_ir::BlockId;
 use staunch_runtime::{BLOCKS, BlockInfo, BlockOption, Family};
+use std::sync::LazyLock;
 
 /// The system whose habits a source file follows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -122,9 +125,24 @@ impl Dialect {
     }
 }
 
+/// All standard blocks by the names that lead to them, in the order of the table.
+static BY_NAME: LazyLock<FxHashMap<Key<'static>, Vec<BlockId>>> = LazyLock::new(|| {
+    let mut by_name: FxHashMap<_, Vec<_>> = FxHashMap::default();
+    for (at, block) in BLOCKS.iter().enumerate() {
+        for name in [Some(block.name), block.facts.alias].into_iter().flatten().filter(|it| block.is_named(it)) {
+            by_name.entry(Key(name)).or_default().push(BlockId::next(at));
+        }
+    }
+    by_name
+});
+
+fn block_named(name: &str, is_meant: impl Fn(&BlockInfo) -> bool) -> Option<BlockId> {
+    BY_NAME.get(&Key(name))?.iter().copied().find(|it| is_meant(it.info()))
+}
+
 /// The block called `name` in `family`.
 pub(crate) fn block_in(family: Family, name: &str) -> Option<BlockId> {
-    block(|it| it.family == family && it.is_named(name))
+    block_named(name, |it| it.family == family)
 }
 
 /// What the bare `name` means under `dialect`, and what its family's name before it means: the
@@ -134,7 +152,7 @@ pub(crate) fn bare_block(dialect: Dialect, name: &str) -> Option<BlockId> {
 }
 
 pub(crate) fn shared_block(name: &str) -> Option<BlockId> {
-    block(|it| it.is_shared() && it.is_named(name))
+    block_named(name, BlockInfo::is_shared)
 }
 
 /// What stands for a block while `is_on` holds for an option: another, or the block itself.
@@ -144,9 +162,5 @@ pub(crate) fn as_options_have_it(id: BlockId, is_on: impl Fn(BlockOption) -> boo
         let option = it.facts.option.filter(|it| is_on(it.option) && it.of == info.name);
         it.family == info.family && option.is_some()
     };
-    block(replaces).unwrap_or(id)
-}
-
-fn block(is_meant: impl Fn(&BlockInfo) -> bool) -> Option<BlockId> {
-    BLOCKS.iter().position(is_meant).map(BlockId::next)
+    BLOCKS.iter().position(replaces).map_or(id, BlockId::next)
 }

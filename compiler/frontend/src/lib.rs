@@ -8,6 +8,7 @@ mod spelling;
 pub mod ast;
 mod lex;
 mod syntax;
+mod testing;
 
 mod allow;
 mod dialect;
@@ -31,6 +32,7 @@ pub use diagnostic::{Code, Diagnostic, Fix, Format, Label, Level, Levels, Severi
 pub use dialect::Dialect;
 pub use source::{Source, Sources, Span};
 pub use syntax::parse;
+pub use testing::{Assertion, Test};
 
 use log::Log;
 use staunch_ir::Program;
@@ -45,6 +47,8 @@ pub struct Options {
     /// The dialect that the sources were written in, where `dialect` is the one they move to:
     /// its pragma then means the new dialect, and a pin by its old name is a lint.
     pub moved_from: Option<Dialect>,
+    /// Each TEST becomes an instance of the program, and no other PROGRAM runs.
+    pub tests: bool,
 }
 
 impl Options {
@@ -62,11 +66,28 @@ pub struct Compilation {
     pub program: Option<Program>,
     /// In the order of files and lines.
     pub diagnostics: Vec<Diagnostic>,
+    /// The unit tests that the program's instances are.
+    pub tests: Vec<Test>,
 }
 
 impl Compilation {
     pub fn has_errors(&self) -> bool {
         self.diagnostics.iter().any(|it| it.severity == Severity::Error)
+    }
+
+    /// Adds what else there is to say of the same sources.
+    fn add(&mut self, diagnostics: Vec<Diagnostic>) {
+        for it in diagnostics {
+            let is_known =
+                |known: &Diagnostic| (known.code, known.span) == (it.code, it.span) && known.message == it.message;
+            if !self.diagnostics.iter().any(is_known) {
+                self.diagnostics.push(it);
+            }
+        }
+        self.diagnostics.sort_by_key(|it| (it.span.file, it.span.start, it.span.end, it.code));
+        if self.has_errors() {
+            self.program = None;
+        }
     }
 }
 
@@ -90,8 +111,12 @@ enum Bodies {
 fn run(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
     let mut log = Log::new(sources, options);
     let Some(mut files) = parse_all(sources, &mut log.diagnostics) else {
-        return Compilation { program: None, diagnostics: log.diagnostics };
+        return Compilation { program: None, diagnostics: log.diagnostics, tests: Vec::new() };
     };
+    // Unit tests that do not run are checked all the same.
+    let tested = (!options.tests && testing::has_tests(&files))
+        .then(|| check(sources, &Options { tests: true, ..options.clone() }));
+    testing::expand(&mut files, options.tests);
     let allowances = allow::Allowances::read(&files, &mut log.diagnostics);
     let mut bodies: Vec<_> = files.iter_mut().flat_map(ast::File::take_bodies).collect();
     let mut runs = declare::run::runs(&files);
@@ -102,7 +127,12 @@ fn run(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
     lints::unused::report(&mut declarations);
     let left_out = checked.left_out;
     let program = program::assemble(&mut declarations, &files, checked);
+    let tests = program::tests::tests(&mut declarations);
     let mut compilation = finish(program.filter(|_| keep == Bodies::Kept), declarations.log, unassigned, left_out);
+    compilation.tests = tests;
+    compilation.add(tested.unwrap_or_default());
+    // SETUP is a part of each test.
+    compilation.diagnostics.dedup_by(|a, b| (a.code, a.span) == (b.code, b.span) && a.message == b.message);
     compilation.diagnostics.retain(|it| !allowances.cover(it));
     if compilation.program.is_none() {
         follow_up::remove(sources, &mut compilation.diagnostics);
@@ -150,5 +180,5 @@ fn finish(program: Option<Program>, log: Log<'_>, unassigned: Vec<Diagnostic>, l
     {
         unreachable!("the front end made IR that does not verify: {violations:?}");
     }
-    Compilation { program, diagnostics }
+    Compilation { program, diagnostics, tests: Vec::new() }
 }

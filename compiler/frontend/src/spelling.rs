@@ -8,7 +8,8 @@ pub(crate) struct Key<'s>(pub &'s str);
 
 impl PartialEq for Key<'_> {
     fn eq(&self, other: &Self) -> bool {
-        self.0.eq_ignore_ascii_case(other.0)
+        // Mostly a name is spelled as it was declared.
+        self.0 == other.0 || self.0.eq_ignore_ascii_case(other.0)
     }
 }
 

@@ -28,6 +28,7 @@ mod types;
 mod declaration;
 mod type_block;
 
+mod mock;
 mod statement;
 
 mod configuration;

@@ -46,6 +46,8 @@ macro_rules! for_each_block {
             Iec "LTP" iec::Tp {} [TIME => LTIME] #[also "TP_LTIME"] { timed "" call staunch_iec_ltp; }
             Iec "R_TRIG" iec::RTrig {} { plain "" call staunch_iec_r_trig; }
             Iec "F_TRIG" iec::FTrig {} { plain "" call staunch_iec_f_trig; }
+            // What ADVANCE_TIME in a unit test is; no program names it.
+            Iec "__ADVANCE_TIME" iec::AdvanceTime {} { timed "" call staunch_iec_advance_time; }
             Iec "SR" iec::Sr {} { plain "" call staunch_iec_sr; }
             Iec "RS" iec::Rs {} { plain "" call staunch_iec_rs; }
 

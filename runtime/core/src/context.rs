@@ -7,8 +7,7 @@ use core::cell::Cell;
 #[repr(C)]
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Context {
-    /// Time since start at the beginning of this scan, in nanoseconds; never goes back.
-    pub now: Time,
+    now: Cell<Time>,
     /// TRUE in the first scan after a start, a restart, or a change from IDLE to RUN.
     pub first_scan: bool,
     /// The turns that the loops of this scan have left.
@@ -25,7 +24,7 @@ impl Context {
 
     /// A scan at `now` nanoseconds.
     pub const fn new(now: Time, first_scan: bool) -> Self {
-        Self { now, first_scan, turns: Cell::new(Self::TURNS) }
+        Self { now: Cell::new(now), first_scan, turns: Cell::new(Self::TURNS) }
     }
 
     /// A scan at `now` nanoseconds that is not the first.
@@ -36,6 +35,17 @@ impl Context {
     /// The first scan, at `now` nanoseconds.
     pub const fn first(now: Time) -> Self {
         Self::new(now, true)
+    }
+
+    /// Time since start at the beginning of this scan, in nanoseconds; never goes back.
+    #[inline]
+    pub fn now(&self) -> Time {
+        self.now.get()
+    }
+
+    /// Lets time pass in the midst of a scan, as only a unit test does; it does not go back.
+    pub fn advance(&self, time: Time) {
+        self.now.set(self.now.get().saturating_add(time.max(0)));
     }
 
     /// The same with another number of turns for its loops.

@@ -238,7 +238,7 @@ mod tests {
 
     unsafe extern "C" fn faulting(_: *mut u8, cx: *const Context, _: u32) -> u64 {
         // SAFETY: a machine gives it a context.
-        if unsafe { (*cx).now } >= 30_000_000 { 1 | 5 << 24 | 9 << 40 } else { 0 }
+        if unsafe { (*cx).now() } >= 30_000_000 { 1 | 5 << 24 | 9 << 40 } else { 0 }
     }
 
     fn machine(scan: crate::Scan) -> Compiled {

@@ -251,7 +251,7 @@ mod tests {
         // SAFETY: as above; the offset is below the map's size.
         unsafe {
             *state.add(36) = instance as u8 + 7;
-            if (*cx).now >= 20_000_000 { 1 | 5 << 24 | 9 << 40 } else { 0 }
+            if (*cx).now() >= 20_000_000 { 1 | 5 << 24 | 9 << 40 } else { 0 }
         }
     }
 

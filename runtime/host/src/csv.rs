@@ -37,6 +37,12 @@ pub(crate) fn parse(text: &str) -> Result<Vec<Vec<Cell>>, (usize, usize)> {
     Ok(rows)
 }
 
+/// The texts of all rows and their cells; `None` where a quote is not closed.
+pub fn cells(text: &str) -> Option<Vec<Vec<String>>> {
+    let texts = |row: Vec<Cell>| row.into_iter().map(|it| it.text).collect();
+    Some(parse(text).ok()?.into_iter().map(texts).collect())
+}
+
 /// Whether the first of both signs in the header is a semicolon.
 pub(crate) fn has_semicolons(text: &str) -> bool {
     let header = text.trim_start().lines().next().unwrap_or_default();

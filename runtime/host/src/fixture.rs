@@ -106,9 +106,9 @@ impl Machine for Garage {
 
     fn scan(&mut self, _instance: usize, cx: &Context) -> Result<(), Fault> {
         if cx.first_scan {
-            self.first_scans.push(cx.now);
+            self.first_scans.push(cx.now());
         }
-        Value::F32(cx.now as f32 / 1e9).write(&mut self.state[offset_of("speed")..]);
+        Value::F32(cx.now() as f32 / 1e9).write(&mut self.state[offset_of("speed")..]);
         let up = self.read("up");
         if up == Value::Bool(true) && self.read("c.m") == Value::Bool(false) {
             let count = self.add("c.CV");

@@ -40,6 +40,7 @@ mod fixture;
 pub use args::{Wish, parse_duration, parse_moment, parse_options, parse_within};
 pub use bench::{BenchOptions, Timing, bench};
 pub use compiled::{Code, Compiled, Init, Scan, Snapshot, main, main_with};
+pub use csv::cells as csv_cells;
 pub use domain::Domain;
 pub use drive::{Bookmark, Drive};
 pub use error::Error;
@@ -48,7 +49,7 @@ pub use map::{Instance, Map, Section, Structure, StructureKind, Type, Variable};
 pub use path::Place;
 pub use run::{Moment, Options, RealTime, Summary, run};
 pub use start::Event;
-pub use value::{format_time, format_time_as};
+pub use value::{format_time, format_time_as, value_at};
 
 pub use staunch_runtime::Elementary;
 

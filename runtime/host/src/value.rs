@@ -1,8 +1,18 @@
 //! How values read: the cells of a trace.
 
 use crate::map::{Map, Type};
+use crate::path::resolve;
 use staunch_runtime::{Elementary, Time, Value, format};
 use std::fmt::Write;
+
+/// The value of the variable that `path` names, as a cell of a trace.
+pub fn value_at(map: &Map, state: &[u8], path: &str) -> Result<String, String> {
+    let all: Vec<usize> = (0..map.instances.len()).collect();
+    let place = resolve(map, &all, path)?;
+    let mut text = String::new();
+    format(map, place.ty, &state[place.offset..], &mut text);
+    Ok(text)
+}
 
 /// Appends the value of type `ty` at the start of `bytes`; nothing for a composite type.
 pub(crate) fn format(map: &Map, ty: Type, bytes: &[u8], out: &mut String) {

@@ -77,6 +77,7 @@ impl<'a> Declarations<'a> {
                 Item::Pou(pou) => this.pou(pou)?,
                 Item::Types(_) => {}
                 Item::Configuration(_) => return unknown("a CONFIGURATION"),
+                Item::Test(_) => return unknown("a TEST"),
             }
         }
         Ok(this)
@@ -212,7 +213,7 @@ impl<'a> Declarations<'a> {
                     return slot(ty);
                 }
                 Item::Pou(_) => pous += 1,
-                Item::Globals(_) | Item::Configuration(_) => {}
+                Item::Globals(_) | Item::Configuration(_) | Item::Test(_) => {}
             }
         }
         slot(Type::Block(block(self.family, name).or_else(|_| block(Family::Iec, name))?))

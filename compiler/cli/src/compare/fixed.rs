@@ -54,7 +54,7 @@ fn each_type<'f>(file: &'f File<'f>, see: &mut dyn FnMut(&'f [Name<'f>])) {
             Item::Types(decls) => decls.iter().for_each(|it| of_type(&it.ty, see)),
             Item::Pou(pou) => pou.blocks.iter().for_each(|it| of_block(it, see)),
             Item::Globals(block) => of_block(block, see),
-            Item::Configuration(_) => {}
+            Item::Configuration(_) | Item::Test(_) => {}
         }
     }
 }

@@ -47,10 +47,10 @@ impl Machine for Recorder<'_> {
     fn scan(&mut self, instance: usize, cx: &Context) -> Result<(), Fault> {
         let result = self.machine.scan(instance, cx);
         // Programs that run at one time make one scan.
-        let same = self.scans.pop_if(|it| it.now == cx.now);
+        let same = self.scans.pop_if(|it| it.now == cx.now());
         let event = self.event.take().or(same.and_then(|it| it.event));
         let state = self.machine.state().to_vec();
-        self.scans.push(Recorded { now: cx.now, event, state, fault: result.err() });
+        self.scans.push(Recorded { now: cx.now(), event, state, fault: result.err() });
         result
     }
 }

@@ -214,5 +214,6 @@ fn a_new_project_builds_and_runs() {
     let inside = Folder(folder.0.join("plant"));
     inside.staunch("check -D warnings").out(0);
     inside.staunch("run").out(0);
+    has(&inside.staunch("test").out(0), &["ok      ten parts fill a box", "1 passed, 0 failed"]);
     folder.staunch("new plant").err(2);
 }

@@ -12,6 +12,7 @@ mod power;
 mod retain;
 mod run;
 mod stimulus;
+mod unit_tests;
 
 use std::fs;
 use std::io::Write;

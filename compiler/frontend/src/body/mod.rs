@@ -1,5 +1,6 @@
 //! Bodies: statements, and the routines that they become.
 
+mod assertion;
 mod case;
 mod loops;
 mod statement;
@@ -68,6 +69,7 @@ fn check_body<'s>(
     checker.initial_outputs(&signature);
     checker.own_enable(&signature, pou.name.span);
     checker.edge_inputs(&signature, pou.name.span);
+    checker.mocked_result(slot, pou.name.span);
     let mut body = checker.block_of(statements);
     checker.migration_lints(statements);
     let mut whole = std::mem::take(&mut checker.block);
@@ -79,7 +81,7 @@ fn check_body<'s>(
     let kind = if pou.kind == ast::PouKind::Function { RoutineKind::Function } else { RoutineKind::Body };
     let body = Routine {
         kind,
-        name: pou.name.text.to_owned(),
+        name: decl.emitted_name(slot),
         doc: pou.doc.clone(),
         location,
         state: signature.state,

@@ -91,7 +91,11 @@ impl<'s> Checker<'_, 's> {
 
     fn lone_expression(&mut self, expr: &ast::Expr<'s>) {
         match &expr.kind {
-            Ast::Call(callee, arguments) => self.call_statement(expr, callee, arguments),
+            Ast::Call(callee, arguments) => {
+                if self.test_statement(callee, arguments, expr.span).is_none() {
+                    self.call_statement(expr, callee, arguments);
+                }
+            }
             Ast::Paren(inner) => self.lone_expression(inner),
             Ast::Error(_) => drop(self.operand(expr, None)),
             Ast::Name(_) | Ast::Member(..) | Ast::Index(..) => self.report_missing_call(expr),

@@ -16,13 +16,18 @@ impl<'s> Declarations<'s> {
                 ast::Item::Pou(pou) => {
                     lists.end(pou.span);
                     self.pous.push(PouSlot { ast: pou, names_itself: false, run: None, slot: Slot::Open });
-                    self.enter(SpaceId::ROOT, pou.name, Entry::Pou(self.pous.len() - 1));
+                    // Nobody names a test.
+                    if pou.kind != ast::PouKind::Test {
+                        self.enter(SpaceId::ROOT, pou.name, Entry::Pou(self.pous.len() - 1));
+                    }
                 }
                 ast::Item::Globals(block) => {
                     let list = lists.around(block.span).map(|it| self.names.list(it));
                     self.collect_globals(list.unwrap_or_default(), block);
                 }
                 ast::Item::Configuration(it) => self.collect_configuration(it),
+                // They have become POUs, or are not wanted.
+                ast::Item::Test(_) => {}
             }
         }
     }
@@ -94,6 +99,10 @@ impl<'s> Declarations<'s> {
 
     /// Reports a name with underlines where the standard has none.
     pub(super) fn check_spelling(&mut self, name: ast::Name<'s>) {
+        // The compiler's own name.
+        if self.log.sources.text(name.span) != name.text {
+            return;
+        }
         let wrong = if name.text.contains("__") {
             "two underlines in a row"
         } else if name.text.ends_with('_') && self.dialect(name.span) != Dialect::Codesys {

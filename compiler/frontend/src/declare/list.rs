@@ -36,7 +36,7 @@ impl<'s> Lists<'s> {
         }
         let globals = |it: &ast::Item<'s>| match it {
             ast::Item::Globals(block) => Some(block.span),
-            ast::Item::Pou(_) | ast::Item::Types(_) | ast::Item::Configuration(_) => None,
+            ast::Item::Pou(_) | ast::Item::Types(_) | ast::Item::Configuration(_) | ast::Item::Test(_) => None,
         };
         let spans: Option<Vec<_>> = file.items.iter().map(globals).collect();
         if let Some([first, ..]) = spans.as_deref()

@@ -7,6 +7,7 @@ mod collect;
 mod global;
 mod initial;
 mod list;
+mod mock;
 mod named_program;
 mod needs;
 mod pou;
@@ -18,6 +19,7 @@ mod variable;
 use crate::ast;
 use crate::log::Log;
 use crate::names::Entry;
+use crate::testing;
 use crate::types::declarations::{Declarations, PouSlot, Slot};
 use run::Run;
 use std::rc::Rc;
@@ -45,6 +47,7 @@ pub(crate) fn declare<'s>(
     declarations.collect_addresses(bodies);
     declarations.resolve_all();
     declarations.find_named_programs(bodies);
+    declarations.declare_mocks(&testing::mocked_functions(bodies));
     declarations.declare_globals();
     declarations
 }

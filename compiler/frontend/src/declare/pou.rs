@@ -51,7 +51,7 @@ impl<'s> Declarations<'s> {
             fields.shrink_to_fit();
             let name = match self.pous[slot].run {
                 Some(instance) => format!("{}_{}", pou.name.text, self.log.sources.text(instance)),
-                None => pou.name.text.to_owned(),
+                None => self.emitted_name(slot),
             };
             let id = self.push_struct(Struct { name, doc: pou.doc.clone(), location, fields });
             self.table.instances.insert(id, slot);
@@ -155,6 +155,7 @@ impl<'s> Declarations<'s> {
                 PouKind::Program => "PROGRAM",
                 PouKind::Function => "FUNCTION",
                 PouKind::FunctionBlock => "FUNCTION_BLOCK",
+                PouKind::Test => "TEST",
             };
             self.report(
                 Diagnostic::new(Code::E0403, block.span, format!("a {kind} has no VAR_GLOBAL"))
@@ -274,7 +275,7 @@ impl<'s> Declarations<'s> {
         };
         let (place, help) = match pou.kind {
             PouKind::Function => ("a FUNCTION", "make this a FUNCTION_BLOCK, or take the block as a VAR_IN_OUT"),
-            PouKind::Program | PouKind::FunctionBlock => ("VAR_TEMP", "declare it in VAR"),
+            PouKind::Program | PouKind::FunctionBlock | PouKind::Test => ("VAR_TEMP", "declare it in VAR"),
         };
         let block = crate::diagnostic::wording::article(info.name);
         self.report(
@@ -376,7 +377,7 @@ impl<'s> Declarations<'s> {
             (PouKind::Function, _) | (_, VarKind::Temp) => {
                 Place::local(builder.local(name.text, resolved, decl.doc.clone()), resolved.ty)
             }
-            (PouKind::Program | PouKind::FunctionBlock, _) => {
+            (PouKind::Program | PouKind::FunctionBlock | PouKind::Test, _) => {
                 let has_place = pou.kind == PouKind::Program || matches!(block.kind, VarKind::Var | VarKind::Stat);
                 let located = has_place.then(|| self.located(Some(pou.name), block, decl, name, resolved));
                 let place = match located.flatten() {

@@ -25,7 +25,7 @@ pub(crate) fn runs<'s>(files: &[ast::File<'s>]) -> Vec<Run<'s>> {
     let items = || files.iter().flat_map(|it| &it.items);
     let resources = items().flat_map(|it| match it {
         ast::Item::Configuration(it) => it.resources.as_slice(),
-        ast::Item::Pou(_) | ast::Item::Types(_) | ast::Item::Globals(_) => &[],
+        ast::Item::Pou(_) | ast::Item::Types(_) | ast::Item::Globals(_) | ast::Item::Test(_) => &[],
     });
     let listed: Vec<_> =
         resources.flat_map(|resource| resource.programs.iter().map(move |it| (resource, it))).collect();
@@ -49,6 +49,7 @@ fn program<'a, 's>(item: &'a ast::Item<'s>) -> Option<&'a ast::Pou<'s>> {
     match item {
         ast::Item::Pou(pou) if pou.kind == PouKind::Program => Some(pou),
         ast::Item::Pou(_) | ast::Item::Types(_) | ast::Item::Globals(_) | ast::Item::Configuration(_) => None,
+        ast::Item::Test(_) => None,
     }
 }
 

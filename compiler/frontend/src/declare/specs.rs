@@ -171,7 +171,7 @@ impl<'s> Declarations<'s> {
     /// The state of a FUNCTION_BLOCK: the type of its instances.
     fn instance_type(&mut self, at: usize, name: ast::Name<'s>) -> Option<Resolved> {
         let pou = self.pous[at].ast;
-        let is_run = pou.kind == ast::PouKind::Program && self.is_run(name.span);
+        let is_run = pou.kind == ast::PouKind::Program && (self.log.options.tests || self.is_run(name.span));
         if pou.kind != ast::PouKind::FunctionBlock && !is_run {
             let kind = if pou.kind == ast::PouKind::Program { "PROGRAM" } else { "FUNCTION" };
             self.report(

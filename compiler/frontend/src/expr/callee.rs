@@ -112,7 +112,9 @@ impl<'s> Checker<'_, 's> {
         match self.decl.pous[slot].ast.kind {
             ast::PouKind::Function => Some(Callee::Function(slot)),
             ast::PouKind::Program if self.is_callable_program(slot, name) => Some(Callee::Instance),
-            kind @ (ast::PouKind::Program | ast::PouKind::FunctionBlock) => self.report_type_called(name, kind),
+            kind @ (ast::PouKind::Program | ast::PouKind::FunctionBlock | ast::PouKind::Test) => {
+                self.report_type_called(name, kind)
+            }
         }
     }
 

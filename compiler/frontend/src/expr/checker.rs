@@ -78,6 +78,16 @@ impl<'d, 's> Checker<'d, 's> {
         self.signature.as_ref().is_some_and(|it| it.state.is_none())
     }
 
+    pub(crate) fn is_test(&self) -> bool {
+        self.test_slot().is_some()
+    }
+
+    /// The slot of the TEST whose body this is.
+    pub(crate) fn test_slot(&self) -> Option<usize> {
+        let slot = self.decl.slot_of_instance(self.signature.as_ref()?.state?)?;
+        (self.decl.pous[slot].ast.kind == ast::PouKind::Test).then_some(slot)
+    }
+
     pub fn is_function_block(&self) -> bool {
         let slot = self.signature.as_ref().and_then(|it| it.state).and_then(|it| self.decl.slot_of_instance(it));
         slot.is_some_and(|slot| self.decl.pous[slot].ast.kind == ast::PouKind::FunctionBlock)

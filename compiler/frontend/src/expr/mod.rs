@@ -21,7 +21,7 @@ mod literal;
 mod logix_operands;
 mod migration;
 pub(crate) mod operand;
-mod operator;
+pub(crate) mod operator;
 mod order;
 mod overload;
 mod place;

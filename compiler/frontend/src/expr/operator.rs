@@ -483,7 +483,7 @@ pub(crate) fn compares(op: BinaryOp) -> bool {
     matches!(op, BinaryOp::Lt | BinaryOp::Gt | BinaryOp::Le | BinaryOp::Ge | BinaryOp::Eq | BinaryOp::Ne)
 }
 
-fn comparison(op: BinaryOp) -> Op {
+pub(crate) fn comparison(op: BinaryOp) -> Op {
     match op {
         BinaryOp::Lt => Op::Lt,
         BinaryOp::Gt => Op::Gt,

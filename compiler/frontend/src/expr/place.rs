@@ -287,7 +287,9 @@ impl<'s> Checker<'_, 's> {
         };
         let (ty, section, constant) = (fields[at].ty, fields[at].section, fields[at].constant);
         let inner = instance && !is_pin(section);
-        if inner && self.seen_from_outside(id, name).is_none() {
+        // A unit test looks into everything.
+        let is_test = self.is_test();
+        if inner && !is_test && self.seen_from_outside(id, name).is_none() {
             let owner = self.type_name(found.place.ty);
             self.report(
                 Diagnostic::new(
@@ -302,6 +304,7 @@ impl<'s> Checker<'_, 's> {
         let access = match section {
             _ if matches!(found.access, Access::Inner(_)) => found.access,
             _ if constant => Access::Constant(name),
+            _ if is_test => Access::Write,
             _ if inner => Access::Inner(name),
             Section::Output if instance => Access::Output(name),
             // A structure in a constant stays constant; an instance's input is for its callers.

@@ -126,7 +126,7 @@ impl<'s> Checker<'_, 's> {
                     error.help(format!("declare an instance: `VAR instance : {}; END_VAR`", name.text))
                 }
                 Some(ast::PouKind::Program) => error.help("share the value in a VAR_GLOBAL"),
-                None => error,
+                Some(ast::PouKind::Test) | None => error,
             });
             return;
         }

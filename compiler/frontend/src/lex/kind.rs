@@ -111,6 +111,9 @@ kinds! {
         EndClass "END_CLASS"
         EndNamespace "END_NAMESPACE"
         EndUnion "END_UNION"
+        EndSetup "END_SETUP"
+        EndTeardown "END_TEARDOWN"
+        EndTest "END_TEST"
     }
     signs {
         Assign ":="

@@ -1,7 +1,8 @@
 //! Variables that nothing reads or writes.
 
+use crate::ast::PouKind;
 use crate::types::declarations::Declarations;
-use crate::{Code, Diagnostic};
+use crate::{Code, Diagnostic, Span};
 use staunch_ir::Section;
 
 /// Reports them, when all bodies have been checked: a variable may be read from outside as well.
@@ -13,9 +14,12 @@ pub(crate) fn report(decl: &mut Declarations<'_>) {
 
 fn of_pou(decl: &mut Declarations<'_>, slot: usize) {
     let Some(signature) = decl.signature(slot) else { return };
+    let pou = decl.pous[slot].ast;
+    // What SETUP declares is for several tests.
+    let own = |it: Span| pou.kind != PouKind::Test || (pou.span.start <= it.start && it.end <= pou.span.end);
     for variable in &signature.scope.variables {
         let internal = matches!(variable.section, Section::Internal | Section::Temp | Section::External);
-        if internal && !variable.used.get() && !variable.name.text.starts_with(['_', '%']) {
+        if internal && own(variable.name.span) && !variable.used.get() && !variable.name.text.starts_with(['_', '%']) {
             decl.report(
                 Diagnostic::new(Code::W0501, variable.name.span, format!("`{}` is never used", variable.name.text))
                     .label("declared here, read and written nowhere"),

@@ -18,6 +18,7 @@ use crate::spelling::Key;
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{BlockId, Type, Value};
 use staunch_runtime::Family;
+use std::sync::LazyLock;
 
 /// What is declared, by its slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -262,11 +263,19 @@ fn in_family(family: Family, name: &str, sense: Sense) -> Option<Meaning> {
     }
 }
 
+/// The instructions of all blocks by their names.
+static INSTRUCTIONS: LazyLock<FxHashMap<Key<'static>, Vec<(BlockId, usize)>>> = LazyLock::new(|| {
+    let mut by_name: FxHashMap<_, Vec<_>> = FxHashMap::default();
+    for (block, info) in staunch_runtime::BLOCKS.iter().enumerate() {
+        for (at, it) in info.instructions.iter().enumerate().filter(|it| !it.1.name.is_empty()) {
+            by_name.entry(Key(it.name)).or_default().push((BlockId::next(block), at));
+        }
+    }
+    by_name
+});
+
 /// The first structure of a family with the instruction `name`, and the instruction's position.
 pub(crate) fn instruction_in(family: Family, name: &str) -> Option<(BlockId, usize)> {
-    let blocks = staunch_runtime::BLOCKS.iter().enumerate().filter(|(_, it)| it.family == family);
-    blocks.into_iter().find_map(|(at, block)| {
-        let found = block.instructions.iter().position(|it| !it.name.is_empty() && it.name.eq_ignore_ascii_case(name));
-        found.map(|instruction| (BlockId::next(at), instruction))
-    })
+    let instructions = INSTRUCTIONS.get(&Key(name))?;
+    instructions.iter().copied().find(|(block, _)| block.info().family == family)
 }

@@ -18,13 +18,16 @@ pub(super) fn instances<'s>(declarations: &mut Declarations<'s>, files: &'s [ast
     let configurations: Vec<_> = items
         .filter_map(|it| match it {
             ast::Item::Configuration(it) => Some(it),
-            ast::Item::Pou(_) | ast::Item::Types(_) | ast::Item::Globals(_) => None,
+            ast::Item::Pou(_) | ast::Item::Types(_) | ast::Item::Globals(_) | ast::Item::Test(_) => None,
         })
         .collect();
     declarations.check_configurations(&configurations);
     let runs = declarations.pous.iter().enumerate().filter_map(|(at, it)| Some((it.run?, at))).collect();
     for resource in configurations.iter().flat_map(|it| &it.resources) {
         declarations.resource(resource, &runs);
+    }
+    if declarations.log.options.tests {
+        return declarations.test_instances();
     }
     if !declarations.program.instances.is_empty() {
         return;
@@ -53,6 +56,17 @@ struct Timing {
 }
 
 impl<'s> Declarations<'s> {
+    /// One instance of each TEST, and nothing else.
+    fn test_instances(&mut self) {
+        let is_test = |at: &usize| self.pous[*at].ast.kind == ast::PouKind::Test;
+        let tests: Vec<_> = (0..self.pous.len()).filter(is_test).collect();
+        for at in tests {
+            let Some(program) = self.class_of_slot(at) else { continue };
+            let name = self.emitted_name(at);
+            self.program.instances.push(Instance { name, program, interval: None, priority: LOWEST_PRIORITY });
+        }
+    }
+
     fn check_configurations(&mut self, configurations: &[&'s ast::Configuration<'s>]) {
         if let [first, second, ..] = configurations {
             self.report(

@@ -3,6 +3,7 @@
 mod configuration;
 mod order;
 mod prescan;
+pub(crate) mod tests;
 
 use crate::body::Checked;
 use crate::spelling::Key;
@@ -38,7 +39,9 @@ impl Declarations<'_> {
         let kind = match pou.kind {
             // Who is called has an instance, as a FUNCTION_BLOCK has.
             ast::PouKind::Program if self.is_named_program(slot) || self.is_held(slot) => ClassKind::FunctionBlock,
-            ast::PouKind::Program => ClassKind::Program,
+            // A test holds it, as it holds a FUNCTION_BLOCK.
+            ast::PouKind::Program if self.log.options.tests => ClassKind::FunctionBlock,
+            ast::PouKind::Program | ast::PouKind::Test => ClassKind::Program,
             ast::PouKind::FunctionBlock => ClassKind::FunctionBlock,
             ast::PouKind::Function => return None,
         };
@@ -47,13 +50,14 @@ impl Declarations<'_> {
             Some(_) => self.variables_of_run(slot, &signature)?,
             None => variables(&signature),
         };
+        let kept = self.tests.kept.remove(&slot).unwrap_or_default();
         Some(Class {
             kind,
-            name: pou.name.text.to_owned(),
+            name: self.emitted_name(slot),
             doc: pou.doc.clone(),
             location: self.location(pou.name.span),
             state: signature.state?,
-            variables,
+            variables: variables.into_iter().chain(kept).collect(),
             body: RoutineId::next(slot),
             prescan: None,
         })

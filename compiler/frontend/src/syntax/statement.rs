@@ -10,7 +10,7 @@ use crate::{
 use super::{
     block_ends, declaration, diagnostics,
     expression::{condition, expression, postfix},
-    foreign_syntax, misspelt,
+    foreign_syntax, misspelt, mock,
     parser::{Expected, In, Parsed, Problem, TokenReader, too_long},
     recovery,
     token_class::{closes, ends_statements, opens_statement},
@@ -74,6 +74,11 @@ fn statement_kind<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
         Kind::Continue => word(input, StatementKind::Continue),
         Kind::Return => return_statement(input),
         Kind::Name if is_declaration(input) => stray_declaration(input),
+        Kind::Name if mock::begins(input) => {
+            let call = mock::mock(input)?;
+            end(input)?;
+            Ok(StatementKind::Expr(call))
+        }
         _ => simple(input),
     }
 }

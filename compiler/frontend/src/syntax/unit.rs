@@ -3,7 +3,10 @@
 use chumsky::prelude::*;
 
 use crate::{
-    ast::{Item, Name, Pou, PouKind, Statement, StatementKind, TypeDecl, TypeSpec, VarBlock, VarDecl, VarKind},
+    ast::{
+        Item, Name, Pou, PouKind, Statement, StatementKind, TestPart, TestUnit, TypeDecl, TypeSpec, VarBlock, VarDecl,
+        VarKind,
+    },
     lex::Kind,
 };
 
@@ -15,7 +18,7 @@ use super::{
     parser::{Expected, In, TokenReader},
     recovery,
     statement::statements,
-    token_class::{closes, is_pou_end, opens_item, opens_section, opens_statement},
+    token_class::{closes, is_end, is_pou_end, opens_item, opens_section, opens_statement},
     type_block::types,
     unsupported,
 };
@@ -40,6 +43,7 @@ pub fn items<'s>(input: &mut In<'_, '_, 's>) -> Vec<Item<'s>> {
             Kind::VarGlobal => items.extend(section(input).map(Item::Globals)),
             kind if opens_section(kind) => bare_unit(input, &mut items),
             Kind::Name if unsupported::skip(input) => {}
+            Kind::Name if begins_test(input) => items.push(test_unit(input)),
             Kind::Name if misspelt_item(input) => {}
             kind if is_statement(input, kind) => bare_unit(input, &mut items),
             kind if closes(kind) => {
@@ -230,6 +234,56 @@ fn pou<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind) -> Item<'s> {
         }
     }
     Item::Pou(pou)
+}
+
+/// The parts of a unit test. Their words are names everywhere else.
+const TEST_PARTS: [(&str, TestPart, Kind); 3] = [
+    ("SETUP", TestPart::Setup, Kind::EndSetup),
+    ("TEARDOWN", TestPart::Teardown, Kind::EndTeardown),
+    ("TEST", TestPart::Test, Kind::EndTest),
+];
+
+fn test_part(input: &mut In<'_, '_, '_>) -> Option<(TestPart, Kind)> {
+    let word = input.here();
+    let word = input.text(word);
+    TEST_PARTS.iter().find(|it| word.eq_ignore_ascii_case(it.0)).map(|it| (it.1, it.2))
+}
+
+/// Whether a part of a test begins here: its word, and for a TEST its title.
+fn begins_test(input: &mut In<'_, '_, '_>) -> bool {
+    let next = input.kind_ahead(1);
+    let is_used = matches!(next, Kind::Assign | Kind::OpenParen | Kind::Dot | Kind::OpenBracket | Kind::Colon);
+    match test_part(input) {
+        Some((TestPart::Test, _)) => matches!(next, Kind::Text | Kind::WideText),
+        Some((TestPart::Setup | TestPart::Teardown, _)) => !is_used,
+        None => false,
+    }
+}
+
+/// SETUP, TEARDOWN or TEST, up to its end.
+fn test_unit<'s>(input: &mut In<'_, '_, 's>) -> Item<'s> {
+    let (part, end) = test_part(input).unwrap_or((TestPart::Test, Kind::EndTest));
+    let opened = input.take();
+    let span = if part == TestPart::Test { input.take() } else { opened };
+    let name = Name { text: input.text(span), span };
+    let span = opened.to(span);
+    let mut pou =
+        Pou { kind: PouKind::Test, name, result: None, blocks: Vec::new(), body: Vec::new(), doc: None, span };
+    input.state().open.push((end, opened));
+    contents(input, &mut pou);
+    input.state().open.pop();
+    if input.eat(end).is_none() {
+        if is_end(input.kind()) {
+            diagnostics::wrong_end(input, end, opened);
+            input.take();
+        } else {
+            diagnostics::missing_end(input, end, opened);
+        }
+    }
+    // Not its head alone: what it declares is told apart from what SETUP does.
+    pou.span = pou.span.to(input.last());
+    input.eat(Kind::Semicolon);
+    Item::Test(TestUnit { part, pou })
 }
 
 /// A unit's name, what follows it in parentheses, and a function's result type.

@@ -5,6 +5,7 @@ use super::scope::Variable;
 use super::signature::Signature;
 use super::synthetic::{NamedProgram, Synthetic};
 use super::table::{Resolved, Table};
+use super::tests::Tests;
 use crate::dialect::{self, Dialect};
 use crate::log::Log;
 use crate::names::{Entry, Found, Meaning, Names, Sense, Site, SpaceId};
@@ -57,6 +58,7 @@ pub(crate) struct Declarations<'s> {
     pub synthetic: Synthetic<'s>,
     /// By their slots.
     pub named_programs: FxHashMap<usize, NamedProgram<'s>>,
+    pub tests: Tests,
     pub program: Program,
     pub table: Table,
 }
@@ -75,6 +77,7 @@ impl<'s> Declarations<'s> {
             addresses: Addresses::default(),
             synthetic: Synthetic::default(),
             named_programs: FxHashMap::default(),
+            tests: Tests::default(),
             program: empty_program(files),
             table: Table::default(),
         }
@@ -108,6 +111,15 @@ impl<'s> Declarations<'s> {
 
     pub fn location(&mut self, span: Span) -> Location {
         self.log.location(span)
+    }
+
+    /// The name that a POU has for back ends: a TEST has a title, which is none.
+    pub fn emitted_name(&self, slot: usize) -> String {
+        let pou = self.pous[slot].ast;
+        match pou.kind {
+            ast::PouKind::Test => format!("__test_{slot}"),
+            ast::PouKind::Program | ast::PouKind::FunctionBlock | ast::PouKind::Function => pou.name.text.to_owned(),
+        }
     }
 
     /// The named type in slot `at`.

@@ -8,3 +8,4 @@ pub(crate) mod signature;
 mod storage;
 pub(crate) mod synthetic;
 pub(crate) mod table;
+pub(crate) mod tests;

@@ -5,6 +5,7 @@
 //! stops at the limits of the type.
 
 pub use super::bistable::*;
+pub use super::clock::*;
 pub use super::edge::*;
 pub use super::timer::*;
 

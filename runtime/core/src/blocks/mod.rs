@@ -12,5 +12,6 @@ pub mod logix;
 pub mod openplc;
 
 mod bistable;
+mod clock;
 mod edge;
 mod timer;

@@ -33,9 +33,9 @@ impl Ton {
     pub fn step(&mut self, cx: &Context) {
         let rises = self.in_ & !self.in_before;
         self.in_before = self.in_;
-        self.start = if rises { cx.now } else { self.start };
+        self.start = if rises { cx.now() } else { self.start };
         let held = self.in_ & self.q;
-        let run = Run::measure(self.start, cx.now, self.pt);
+        let run = Run::measure(self.start, cx.now(), self.pt);
         let et = if held { self.et } else { run.elapsed };
         self.et = if self.in_ { et } else { 0 };
         self.q = self.in_ & (held | run.over);
@@ -77,8 +77,8 @@ impl Tof {
     pub fn step(&mut self, cx: &Context) {
         let falls = !self.in_ & self.in_before;
         self.in_before = self.in_;
-        self.start = if falls { cx.now } else { self.start };
-        let run = Run::measure(self.start, cx.now, self.pt);
+        self.start = if falls { cx.now() } else { self.start };
+        let run = Run::measure(self.start, cx.now(), self.pt);
         let et = if self.q { run.elapsed } else { self.et };
         self.et = if self.in_ { 0 } else { et };
         self.q = self.in_ | (self.q & !run.over);
@@ -121,9 +121,9 @@ impl Tp {
     pub fn step(&mut self, cx: &Context) {
         let begins = self.in_ & !self.in_before & !self.q;
         self.in_before = self.in_;
-        self.start = if begins { cx.now } else { self.start };
+        self.start = if begins { cx.now() } else { self.start };
         let pulse = begins | self.q;
-        let run = Run::measure(self.start, cx.now, self.pt);
+        let run = Run::measure(self.start, cx.now(), self.pt);
         let et = if pulse { run.elapsed } else { self.et };
         self.q = pulse & !run.over;
         self.et = if self.in_ | self.q { et } else { 0 };

@@ -1,0 +1,117 @@
+//! One test on one executor: a scan for SETUP and the test itself, and one for TEARDOWN.
+
+use super::Outcome;
+use crate::args::{self, Backend};
+use crate::machine::{Interpreted, Native};
+use crate::rustc::{self, Kind};
+use crate::session::Session;
+use staunch_frontend::Test;
+use staunch_host::{Machine, Map, csv_cells, value_at};
+use staunch_ir::Program;
+use staunch_runtime::{Context, Fault};
+use std::path::PathBuf;
+use std::process::Command;
+
+pub struct Executor<'p> {
+    runs: Runs<'p>,
+    turns: u64,
+}
+
+enum Runs<'p> {
+    Here(Box<dyn Machine + 'p>, Box<Map>),
+    /// An executable, which runs one test each time.
+    Apart(PathBuf),
+}
+
+/// The variables of a test after its scans, by their names.
+type Values<'v> = dyn Fn(&str) -> Result<String, String> + 'v;
+
+impl<'p> Executor<'p> {
+    pub fn new(session: &Session, args: &args::Test, program: &'p Program) -> Result<Self, String> {
+        let runs = match args.backend {
+            Backend::Native => {
+                let (machine, map) = Native::new(program)?;
+                Runs::Here(Box::new(machine), Box::new(map))
+            }
+            Backend::Interpret => {
+                let (machine, map) = Interpreted::new(program)?;
+                Runs::Here(Box::new(machine), Box::new(map))
+            }
+            Backend::Rust => Runs::Apart(rustc::compile(program, Kind::Executable, None)?),
+        };
+        let turns = args.loop_budget.or(session.project.loop_budget).unwrap_or(Context::TURNS);
+        Ok(Self { runs, turns })
+    }
+
+    pub fn run(&mut self, instance: usize, test: &Test) -> Result<Outcome, String> {
+        match &mut self.runs {
+            Runs::Here(machine, map) => {
+                machine.init();
+                for first_scan in [true, false] {
+                    let cx = Context::new(0, first_scan).with_turns(self.turns);
+                    if let Err(fault) = machine.scan(instance, &cx) {
+                        return Ok(Outcome::Faulted(place_of(fault, map)));
+                    }
+                    let values = |name: &str| value_at(map, machine.state(), &format!("{}.{name}", test.instance));
+                    let outcome = outcome(test, &values)?;
+                    if outcome != Outcome::Passed {
+                        return Ok(outcome);
+                    }
+                }
+                Ok(Outcome::Passed)
+            }
+            Runs::Apart(executable) => apart(executable, test, self.turns),
+        }
+    }
+}
+
+fn place_of(fault: Fault, map: &Map) -> String {
+    let files: Vec<_> = map.files.iter().map(String::as_str).collect();
+    fault.of(&files).to_string()
+}
+
+fn outcome(test: &Test, values: &Values<'_>) -> Result<Outcome, String> {
+    let failed = values("__failed")?;
+    let Some(number) = failed.parse::<usize>().ok().filter(|it| *it > 0) else { return Ok(Outcome::Passed) };
+    let assertion = number - 1;
+    let made = test.assertions.get(assertion).ok_or_else(|| format!("assertion {number} is not known"))?;
+    let shown = |name: &Option<String>| name.as_deref().map(values).transpose();
+    let (actual, expected, message) = (shown(&made.actual)?, shown(&made.expected)?, shown(&made.message)?);
+    Ok(Outcome::Failed { assertion, actual, expected, message })
+}
+
+fn apart(executable: &PathBuf, test: &Test, turns: u64) -> Result<Outcome, String> {
+    let assertions = test.assertions.iter();
+    let kept = assertions.flat_map(|it| [&it.actual, &it.expected, &it.message]).flatten();
+    let names: Vec<_> = ["__failed".to_owned()].into_iter().chain(kept.cloned()).collect();
+    let mut command = Command::new(executable);
+    command.args(["--program", &test.instance, "--scans", "2", "--trace", "-", "--vars", &names.join(",")]);
+    command.args(["--loop-budget", &turns.to_string()]);
+    let ran = command.output().map_err(|error| format!("cannot run {}: {error}", executable.display()))?;
+    let text = String::from_utf8_lossy(&ran.stdout);
+    let rows = csv_cells(&text).unwrap_or_default();
+    let Some((heading, rows)) = rows.split_first() else {
+        return Err(String::from_utf8_lossy(&ran.stderr).into_owned());
+    };
+    for row in rows {
+        let values = |name: &str| {
+            let at = heading.iter().position(|it| it == name);
+            at.and_then(|at| row.get(at)).cloned().ok_or_else(|| format!("the trace has no `{name}`"))
+        };
+        let outcome = outcome(test, &values)?;
+        if outcome != Outcome::Passed {
+            return Ok(outcome);
+        }
+    }
+    match ran.status.code() {
+        Some(0) => Ok(Outcome::Passed),
+        _ => Ok(Outcome::Faulted(fault_in(&String::from_utf8_lossy(&ran.stderr)))),
+    }
+}
+
+/// The place and the kind of a fault, without the scan and the program that an executable adds.
+fn fault_in(text: &str) -> String {
+    let text = text.trim();
+    let text = text.strip_prefix("error: ").unwrap_or(text).replacen(": fault: ", ": ", 1);
+    text.rsplit_once(" (scan ").map_or(text.clone(), |it| it.0.to_owned())
+}

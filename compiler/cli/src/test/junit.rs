@@ -1,0 +1,54 @@
+//! The results as JUnit's XML has them: a suite for each file.
+
+use super::report::{Report, Result};
+
+pub fn text(report: &Report<'_>) -> String {
+    let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
+    let (all, failed) = (report.results.len(), report.failed());
+    text += &format!("<testsuites tests=\"{all}\" failures=\"{failed}\">\n");
+    for suite in report.results.chunk_by(|a, b| a.file == b.file) {
+        let failed = suite.iter().filter(|it| !it.problem.is_empty()).count();
+        let file = escaped(suite[0].file);
+        text += &format!("  <testsuite name=\"{file}\" tests=\"{}\" failures=\"{failed}\">\n", suite.len());
+        suite.iter().for_each(|it| text += &case(it));
+        text += "  </testsuite>\n";
+    }
+    text + "</testsuites>\n"
+}
+
+fn case(result: &Result<'_>) -> String {
+    let (title, file) = (escaped(&result.test.title), escaped(result.file));
+    let head = format!("    <testcase name=\"{title}\" classname=\"{file}\" file=\"{file}\" line=\"{}\"", result.line);
+    if result.problem.is_empty() {
+        return format!("{head}/>\n");
+    }
+    let what = escaped(result.problem.get(1).unwrap_or(&result.problem[0]));
+    let kind = if result.faulted { "fault" } else { "assertion" };
+    let details = escaped(&result.problem.join("\n"));
+    format!("{head}>\n      <failure type=\"{kind}\" message=\"{what}\">{details}</failure>\n    </testcase>\n")
+}
+
+/// As text or an attribute of XML; characters that XML does not have are left out.
+fn escaped(text: &str) -> String {
+    let mut out = String::new();
+    for character in text.chars() {
+        match character {
+            '&' => out += "&amp;",
+            '<' => out += "&lt;",
+            '>' => out += "&gt;",
+            '"' => out += "&quot;",
+            '\n' => out += "&#10;",
+            it if it.is_control() => {}
+            it => out.push(it),
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn what_xml_keeps_for_itself_is_escaped() {
+        assert_eq!(super::escaped("a < b & \"c\"\u{1}"), "a &lt; b &amp; &quot;c&quot;");
+    }
+}

@@ -1,0 +1,183 @@
+//! `staunch test`.
+
+use super::{Folder, has};
+
+const SOURCE: &str = "FUNCTION Add : INT
+VAR_INPUT a, b : INT; END_VAR
+    Add := a + b;
+END_FUNCTION
+FUNCTION_BLOCK Sensor
+VAR_INPUT channel : INT; END_VAR
+VAR_OUTPUT value : REAL := 1.5; END_VAR
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Motor
+VAR_INPUT setpoint : REAL; END_VAR
+VAR_OUTPUT speed : REAL; END_VAR
+VAR sensor : Sensor; calls : INT; END_VAR
+    sensor(channel := Add(1, 2));
+    speed := setpoint - sensor.value;
+    calls := calls + 1;
+END_FUNCTION_BLOCK
+PROGRAM Main
+VAR motor : Motor; speed : REAL; END_VAR
+    motor(setpoint := 3.0);
+    speed := motor.speed;
+END_PROGRAM
+";
+
+const TESTS: &str = "SETUP
+VAR motor : Motor; delay : TON; END_VAR
+    motor(setpoint := 2.0);
+END_SETUP
+TEARDOWN
+    ASSERT_LT(motor.calls, 4, 'too many calls');
+END_TEARDOWN
+TEST 'setup runs before each test'
+    ASSERT_EQ(motor.calls, 1);
+    ASSERT_NEAR(motor.speed, 0.5, 0.001);
+END_TEST
+TEST \"state is fresh, and time is virtual\"
+    ASSERT_EQ(motor.calls, 1);
+    delay(IN := TRUE, PT := T#100ms);
+    ADVANCE_TIME(T#99ms);
+    delay(IN := TRUE, PT := T#100ms);
+    ASSERT_FALSE(delay.Q);
+    ADVANCE_TIME(1000000); (* nanoseconds *)
+    delay(IN := TRUE, PT := T#100ms);
+    ASSERT_TRUE(delay.Q);
+END_TEST
+TEST 'mocks'
+    MOCK motor.sensor;
+    MOCK_FUNCTION Add RETURNS 7;
+    motor.sensor.value := 25.0;
+    motor(setpoint := 100.0);
+    ASSERT_NEAR(motor.speed, 75.0, 0.001);
+    ASSERT_EQ(motor.sensor.channel, 7);
+    MOCK_VERIFY_CALLED(motor.sensor);
+    MOCK_VERIFY_CALL_COUNT(motor.sensor, 1);
+END_TEST
+TEST 'a mock is of its own test'
+    ASSERT_EQ(Add(1, 2), 3);
+    motor(setpoint := 100.0);
+    ASSERT_NEAR(motor.speed, 98.5, 0.001);
+END_TEST
+TEST 'a program is an instance too'
+VAR main : Main; END_VAR
+    main();
+    ASSERT_GE(main.speed, 1.5);
+    ASSERT_LE(main.speed, 1.5);
+END_TEST
+";
+
+const BACKENDS: [&str; 3] = ["native", "interpret", "rust"];
+
+#[test]
+fn tests_pass() {
+    let folder = Folder::with("tests_pass", &[("motor.st", SOURCE), ("motor_test.st", TESTS)]);
+    folder.staunch("check . -D warnings").out(0);
+    for backend in BACKENDS {
+        let out = folder.staunch(&format!("test . --backend {backend}")).out(0);
+        has(&out, &["motor_test.st\n  ok      setup runs before each test\n", "\n5 passed, 0 failed\n"]);
+    }
+    // They are no part of what is built or run.
+    assert!(!folder.staunch("run . --scans 1 --trace -").out(0).contains("test"));
+    assert!(!folder.staunch("build . --emit map -o -").out(0).contains("mocked"));
+}
+
+#[test]
+fn failures_say_what_was_expected() {
+    let tests = "TEST 'a number'
+        ASSERT_EQ(Add(1, 2), 4, 'one and two');
+        ASSERT_TRUE(FALSE);
+    END_TEST
+    TEST 'a text'
+    VAR name : STRING := 'fan'; END_VAR
+        ASSERT_EQ(name, 'pump');
+    END_TEST
+    TEST 'a condition'
+        ASSERT_FALSE(Add(1, 2) = 3);
+    END_TEST
+    TEST 'calls'
+    VAR motor : Motor; END_VAR
+        MOCK motor.sensor;
+        MOCK_VERIFY_CALL_COUNT(motor.sensor, 2);
+    END_TEST
+    TEST 'a fault'
+    VAR i : INT := 7; list : ARRAY[0..3] OF INT; END_VAR
+        list[i] := 1;
+    END_TEST
+    TEST 'a loop without an end'
+    VAR n : INT; END_VAR
+        WHILE n < 10 DO n := 0; END_WHILE
+    END_TEST
+    ";
+    let folder = Folder::with("tests_fail", &[("motor.st", SOURCE), ("motor_test.st", tests)]);
+    let expected = "motor_test.st
+  FAILED  a number
+          motor_test.st:2:9: ASSERT_EQ(Add(1, 2), 4, 'one and two')
+          expected to be 4, found 3
+          one and two
+  FAILED  a text
+          motor_test.st:7:9: ASSERT_EQ(name, 'pump')
+          expected to be 'pump', found 'fan'
+  FAILED  a condition
+          motor_test.st:10:9: ASSERT_FALSE(Add(1, 2) = 3)
+          expected to be FALSE
+  FAILED  calls
+          motor_test.st:15:9: MOCK_VERIFY_CALL_COUNT(motor.sensor, 2)
+          expected 2 calls, found 0
+  FAILED  a fault
+          motor_test.st:19:14: index out of range
+  FAILED  a loop without an end
+          motor_test.st:23:9: a loop went on past the scan's budget of turns
+
+0 passed, 6 failed
+";
+    for backend in BACKENDS {
+        let out = folder.staunch(&format!("test . --loop-budget 1000 --backend {backend}")).out(1);
+        assert_eq!(out, expected, "{backend}");
+    }
+}
+
+#[test]
+fn results_for_machines() {
+    let tests = "TEST 'good & <short>' ASSERT_EQ(Add(1, 2), 3); END_TEST
+TEST 'bad' ASSERT_EQ(Add(1, 2), 4); END_TEST
+";
+    let folder = Folder::with("tests_junit", &[("motor.st", SOURCE), ("motor_test.st", tests)]);
+    let out = folder.staunch("test . --message-format json --junit out.xml").out(1);
+    has(
+        &out,
+        &["{\"reason\":\"test\",\"title\":\"good & \\u003cshort>\",", "\"result\":\"passed\"", "\"result\":\"failed\""],
+    );
+    has(&out, &["{\"reason\":\"tests\",\"passed\":1,\"failed\":1}\n"]);
+    let xml = folder.read("out.xml");
+    has(&xml, &["<testsuite name=\"motor_test.st\" tests=\"2\" failures=\"1\">", "name=\"good &amp; &lt;short&gt;\""]);
+    has(&xml, &["<failure type=\"assertion\" message=\"expected to be 4, found 3\">"]);
+    let filtered = folder.staunch("test . --filter GOOD").out(0);
+    has(&filtered, &["1 passed, 0 failed"]);
+    has(&folder.staunch("test . --filter other").err(2), &["no test has `other` in its title"]);
+    has(&folder.staunch("test motor.st").err(2), &["the sources hold no TEST"]);
+}
+
+#[test]
+fn mistakes_in_tests_are_told_once() {
+    let tests = "SETUP
+VAR delay : TON; END_VAR
+    delay.Z := TRUE;
+END_SETUP
+TEST 'one' ASSERT_EQ(1); END_TEST
+TEST 'two' MOCK delay; END_TEST
+FUNCTION_BLOCK Other
+    MOCK delay;
+END_FUNCTION_BLOCK
+";
+    let folder = Folder::with("tests_wrong", &[("wrong.st", tests)]);
+    let expected = "wrong.st:3:11: error[E0301]: `IEC.TON` has no pin `Z`
+wrong.st:5:12: error[E0302]: `ASSERT_EQ` does not take 1 arguments
+wrong.st:6:17: error[E0316]: `delay` cannot be replaced by a mock
+wrong.st:8:5: error[E0305]: `MOCK` belongs to a unit test
+";
+    assert_eq!(folder.staunch("check wrong.st --message-format short").err(1), expected);
+    assert_eq!(folder.staunch("test wrong.st --message-format short").err(1), expected);
+}

@@ -1,0 +1,377 @@
+//! What only a unit test has: assertions, the clock, mocks. An assertion keeps what it compares in variables
+//! of the test, so that who runs it can show them, and one that fails leaves the test.
+
+use crate::expr::checker::Checker;
+use crate::expr::operand::Operand;
+use crate::expr::operator::{Sides, beside};
+use crate::testing::{Assertion, CALLS, CLOCK, FAILED, MOCKED};
+use crate::types::signature::pin_place;
+use crate::{Code, Diagnostic, Span, ast};
+use ast::{ArgumentKind, BinaryOp, ExprKind as Ast};
+use staunch_ir::{
+    Const, Conversion, Elementary, Expr, ExprKind, Field, FieldId, Op, Place, Retain, Root, Section, StatementKind,
+    Type, Value, Variable,
+};
+
+/// The comparisons, by the end of their names after `ASSERT_`, with what they want in words, where `{}` is the right side.
+const COMPARISONS: [(&str, BinaryOp, &str); 6] = [
+    ("EQ", BinaryOp::Eq, "to be {}"),
+    ("NEQ", BinaryOp::Ne, "to be other than {}"),
+    ("GT", BinaryOp::Gt, "to be greater than {}"),
+    ("LT", BinaryOp::Lt, "to be less than {}"),
+    ("GE", BinaryOp::Ge, "to be at least {}"),
+    ("LE", BinaryOp::Le, "to be at most {}"),
+];
+
+const WORDS: [&str; 6] =
+    ["ASSERT_TRUE", "ASSERT_FALSE", "ASSERT_NEAR", "ADVANCE_TIME", "MOCK_VERIFY_CALLED", "MOCK_VERIFY_CALL_COUNT"];
+
+/// What an assertion has checked: its condition, and the variables that keep what it compared.
+struct Claim {
+    holds: Expr,
+    wants: &'static str,
+    actual: Option<String>,
+    expected: Option<String>,
+    compares_texts: bool,
+}
+
+impl Claim {
+    fn new(holds: Expr, wants: &'static str) -> Self {
+        Self { holds, wants, actual: None, expected: None, compares_texts: false }
+    }
+
+    fn of(holds: Expr, wants: &'static str, actual: String, expected: String) -> Self {
+        Self { actual: Some(actual), expected: Some(expected), ..Self::new(holds, wants) }
+    }
+}
+
+impl<'s> Checker<'_, 's> {
+    /// A call of what only unit tests have; `None` where it is none, or a POU of the user's has its name.
+    pub(super) fn test_statement(
+        &mut self,
+        callee: &ast::Expr<'s>,
+        arguments: &[ast::Argument<'s>],
+        span: Span,
+    ) -> Option<()> {
+        let Ast::Name(name) = &callee.kind else { return None };
+        let word = name.text.to_ascii_uppercase();
+        let comparison = COMPARISONS.iter().find(|it| word.strip_prefix("ASSERT_") == Some(it.0));
+        let is_mock = matches!(word.as_str(), "MOCK" | "MOCK_FUNCTION");
+        if !(is_mock || comparison.is_some() || WORDS.contains(&word.as_str())) || self.scope.get(name.text).is_some() {
+            return None;
+        }
+        if !self.is_test() {
+            return is_mock.then(|| self.outside_of_a_test(*name));
+        }
+        let values = self.positional(*name, arguments)?;
+        let made = match (word.as_str(), &values[..]) {
+            ("MOCK", [instance]) => self.mock(instance),
+            ("MOCK_FUNCTION", [function, value]) => self.mock_function(function, value, span),
+            ("ADVANCE_TIME", [duration]) => self.advance_time(duration, span),
+            ("ASSERT_TRUE" | "ASSERT_FALSE", [condition, message @ ..]) if message.len() < 2 => {
+                self.claim_of(condition, word == "ASSERT_TRUE").and_then(|it| self.assert(it, message.first(), span))
+            }
+            ("ASSERT_NEAR", [actual, expected, tolerance, message @ ..]) if message.len() < 2 => {
+                let claim = self.near([actual, expected], tolerance, span);
+                claim.and_then(|it| self.assert(it, message.first(), span))
+            }
+            ("MOCK_VERIFY_CALLED", [instance, message @ ..]) if message.len() < 2 => {
+                let claim = self.called_more_than(instance, span);
+                claim.and_then(|it| self.assert(it, message.first(), span))
+            }
+            ("MOCK_VERIFY_CALL_COUNT", [instance, count, message @ ..]) if message.len() < 2 => {
+                let claim = self.call_count(instance, count, span);
+                claim.and_then(|it| self.assert(it, message.first(), span))
+            }
+            (_, [actual, expected, message @ ..]) if message.len() < 2 && comparison.is_some() => {
+                let (_, op, wants) = *comparison?;
+                let claim = self.comparison([actual, expected], op, wants, span);
+                claim.and_then(|it| self.assert(it, message.first(), span))
+            }
+            _ => {
+                self.wrong_count(*name, values.len(), span);
+                None
+            }
+        };
+        if made.is_none() {
+            self.left_out.get_or_insert(span);
+        }
+        Some(())
+    }
+
+    fn outside_of_a_test(&mut self, name: ast::Name<'s>) {
+        self.report(
+            Diagnostic::new(Code::E0305, name.span, format!("`{}` belongs to a unit test", name.text))
+                .label("it is written between TEST and END_TEST, or in SETUP"),
+        );
+    }
+
+    fn wrong_count(&mut self, name: ast::Name<'s>, count: usize, span: Span) {
+        let form = match name.text.to_ascii_uppercase().as_str() {
+            "MOCK" => "MOCK instance;",
+            "MOCK_FUNCTION" => "MOCK_FUNCTION name RETURNS value;",
+            "ADVANCE_TIME" => "ADVANCE_TIME(T#100ms);",
+            "ASSERT_TRUE" => "ASSERT_TRUE(condition);",
+            "ASSERT_FALSE" => "ASSERT_FALSE(condition);",
+            "ASSERT_NEAR" => "ASSERT_NEAR(actual, expected, tolerance);",
+            "MOCK_VERIFY_CALLED" => "MOCK_VERIFY_CALLED(instance);",
+            "MOCK_VERIFY_CALL_COUNT" => "MOCK_VERIFY_CALL_COUNT(instance, count);",
+            _ => "ASSERT_EQ(actual, expected);",
+        };
+        self.report(
+            Diagnostic::new(Code::E0302, span, format!("`{}` does not take {count} arguments", name.text))
+                .help(format!("write `{form}`; an assertion may end with a message")),
+        );
+    }
+
+    fn positional<'a>(
+        &mut self,
+        name: ast::Name<'s>,
+        arguments: &'a [ast::Argument<'s>],
+    ) -> Option<Vec<&'a ast::Expr<'s>>> {
+        let mut values = Vec::new();
+        for argument in arguments {
+            let ArgumentKind::Positional(value) = &argument.kind else {
+                self.report(
+                    Diagnostic::new(Code::E0301, argument.span, format!("`{}` has no named parameters", name.text))
+                        .label("write the value alone"),
+                );
+                self.left_out.get_or_insert(argument.span);
+                return None;
+            };
+            values.push(value);
+        }
+        Some(values)
+    }
+
+    /// Leaves the test, with the number of the assertion and what it compared, unless the claim holds.
+    fn assert(&mut self, claim: Claim, message: Option<&&ast::Expr<'s>>, span: Span) -> Option<()> {
+        let slot = self.test_slot()?;
+        let at = self.at(span);
+        let number = self.decl.tests.assertions.entry(slot).or_default().len() + 1;
+        let failed = self.scope.get(FAILED)?.place.clone();
+        let holds = Expr::apply(Op::Not, Type::BOOL, vec![claim.holds], at);
+        let mut shown = None;
+        let then = self.nested(|this| {
+            if let Some(message) = message {
+                shown = this.operand(message, None).and_then(|it| {
+                    let text = this.materialise(it, None, message.span)?;
+                    this.keep("message", text, message.span).map(|it| it.1)
+                });
+            }
+            let value = i32::try_from(number).unwrap_or(i32::MAX);
+            this.assign(failed, Expr::constant(Elementary::Dint, Value::I32(value), at), span);
+            this.push(StatementKind::Return, span);
+        });
+        self.push(StatementKind::If { condition: holds, then, otherwise: Vec::new() }, span);
+        let Claim { wants, actual, expected, compares_texts, .. } = claim;
+        self.decl.tests.assertions.entry(slot).or_default().push(Assertion {
+            span,
+            wants,
+            compares_texts,
+            actual,
+            expected,
+            message: shown,
+        });
+        Some(())
+    }
+
+    fn claim_of(&mut self, condition: &ast::Expr<'s>, wanted: bool) -> Option<Claim> {
+        let value = self.condition(condition)?;
+        let at = value.at;
+        let holds = if wanted { value } else { Expr::apply(Op::Not, Type::BOOL, vec![value], at) };
+        let wants = if wanted { "to be TRUE" } else { "to be FALSE" };
+        Some(Claim::new(holds, wants))
+    }
+
+    fn comparison(
+        &mut self,
+        [left, right]: [&ast::Expr<'s>; 2],
+        op: BinaryOp,
+        wants: &'static str,
+        span: Span,
+    ) -> Option<Claim> {
+        let sides = self.sides([left, right], op, span)?;
+        if let (Some(Type::String(_)), Some(Type::String(_))) = (sides.a.ty(), sides.b.ty()) {
+            let (Operand::Typed(a), Operand::Typed(b)) = (sides.a, sides.b) else { return None };
+            let (a, actual) = self.keep("actual", a, left.span)?;
+            let (b, expected) = self.keep("expected", b, right.span)?;
+            let holds = self.compare_texts(crate::expr::operator::comparison(op), a, b, span)?;
+            return Some(Claim { compares_texts: true, ..Claim::of(holds, wants, actual, expected) });
+        }
+        let compared = self.combine(sides)?.typed()?.clone();
+        let ExprKind::Apply(op, operands) = compared.kind else {
+            // Both sides are constants.
+            return Some(Claim::new(compared, wants));
+        };
+        let [a, b] = <[Expr; 2]>::try_from(operands).ok()?;
+        let (a, actual) = self.keep("actual", a, left.span)?;
+        let (b, expected) = self.keep("expected", b, right.span)?;
+        let holds = Expr::new(compared.ty, ExprKind::Apply(op, vec![a, b]), compared.at);
+        Some(Claim::of(holds, wants, actual, expected))
+    }
+
+    fn sides(&mut self, [left, right]: [&ast::Expr<'s>; 2], op: BinaryOp, span: Span) -> Option<Sides> {
+        let mut a = self.operand(left, None)?;
+        let hint = beside(&a, None);
+        let b = self.after(a.typed_mut().as_mut_slice(), |this| this.operand(right, hint))?;
+        Some(Sides { a, b, left: left.span, right: right.span, op, op_span: span, span, hint: None })
+    }
+
+    /// `ABS(actual - expected) <= tolerance`.
+    fn near(&mut self, both: [&ast::Expr<'s>; 2], tolerance: &ast::Expr<'s>, span: Span) -> Option<Claim> {
+        let [left, right] = both;
+        let sides = self.sides(both, BinaryOp::Sub, span)?;
+        let difference = self.combine(sides)?;
+        let difference = self.materialise(difference, None, span)?;
+        let ty = difference.ty;
+        let ExprKind::Apply(op, operands) = difference.kind else {
+            self.report(
+                Diagnostic::new(Code::E0201, span, "`ASSERT_NEAR` compares a value that the program computes")
+                    .label("both sides are constants"),
+            );
+            return None;
+        };
+        let [a, b] = <[Expr; 2]>::try_from(operands).ok()?;
+        let (a, actual) = self.keep("actual", a, left.span)?;
+        let (b, expected) = self.keep("expected", b, right.span)?;
+        let difference = Expr::new(ty, ExprKind::Apply(op, vec![a, b]), difference.at);
+        let distance = self.apply(Op::Abs, ty, vec![difference], ty, span)?;
+        let limit = self.value(tolerance, ty)?;
+        let holds = self.apply(Op::Le, ty, vec![distance, limit], Type::BOOL, span)?;
+        Some(Claim::of(holds, "to be near {}", actual, expected))
+    }
+
+    /// The value in a new variable of the test, and the variable's name.
+    fn keep(&mut self, what: &str, value: Expr, span: Span) -> Option<(Expr, String)> {
+        let slot = self.test_slot()?;
+        let state = self.signature.as_ref()?.state?;
+        let at = self.at(span);
+        let ty = value.ty;
+        let fields = &mut self.decl.program.structs[state.index()].fields;
+        let id = FieldId::next(fields.len());
+        let name = format!("__{what}_{}", fields.len());
+        fields.push(Field {
+            name: name.clone(),
+            ty,
+            initial: Const::Zero,
+            section: Section::Internal,
+            retain: Retain::Inherited,
+            constant: false,
+            address: None,
+            doc: None,
+            location: at,
+        });
+        let place = Place::root(Root::Instance, Type::Struct(state)).field(id, ty);
+        let variable = Variable { name: name.clone(), section: Section::Internal, place: place.clone() };
+        self.decl.tests.kept.entry(slot).or_default().push(variable);
+        self.assign(place.clone(), value, span);
+        Some((Expr::load(place, at), name))
+    }
+
+    /// A TIME, or a number of nanoseconds.
+    fn advance_time(&mut self, duration: &ast::Expr<'s>, span: Span) -> Option<()> {
+        let operand = self.operand(duration, None)?;
+        let time = Type::Elementary(Elementary::Time);
+        let value = match operand.ty() {
+            Some(Type::Elementary(it)) if it.is_time() => self.coerce(operand, time, duration.span)?,
+            _ => {
+                let number = self.coerce(operand, Type::Elementary(Elementary::Lint), duration.span)?;
+                self.convert(Conversion::Same, time, number)
+            }
+        };
+        let clock = ast::Name { text: CLOCK, span };
+        let clock = ast::Expr { kind: Ast::Name(clock), span };
+        let place = self.place(&clock)?.place;
+        let Type::Block(block) = place.ty else { return None };
+        self.assign(pin_place(place, block, "IN"), value, span);
+        self.instance_call(&clock, &[], span)
+    }
+
+    /// A hidden variable of a FUNCTION_BLOCK's instance.
+    fn hidden_member(&mut self, instance: &ast::Expr<'s>, member: &str) -> Option<Place> {
+        let found = self.place(instance)?;
+        let field = match found.place.ty {
+            Type::Struct(id) if self.decl.is_instance(id) => {
+                let fields = &self.decl.program.structure(id).fields;
+                fields.iter().position(|it| it.name == member).map(|at| (FieldId::next(at), fields[at].ty))
+            }
+            Type::Struct(_) | Type::Block(_) | Type::Array(_) => None,
+            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => None,
+        };
+        if field.is_none() {
+            let text = self.decl.log.sources.text(instance.span).to_owned();
+            let ty = self.type_name(found.place.ty);
+            self.report(
+                Diagnostic::new(Code::E0316, instance.span, format!("`{text}` cannot be replaced by a mock"))
+                    .label(format!("it is {}", crate::diagnostic::wording::article(&ty)))
+                    .help("a mock takes the place of an instance of a FUNCTION_BLOCK that the sources declare"),
+            );
+        }
+        let (field, ty) = field?;
+        Some(found.place.field(field, ty))
+    }
+
+    fn mock(&mut self, instance: &ast::Expr<'s>) -> Option<()> {
+        let mocked = self.hidden_member(instance, MOCKED)?;
+        let at = self.at(instance.span);
+        self.assign(mocked, Expr::bool(true, at), instance.span);
+        Some(())
+    }
+
+    fn calls(&mut self, instance: &ast::Expr<'s>) -> Option<(Expr, String)> {
+        let calls = self.hidden_member(instance, CALLS)?;
+        let at = self.at(instance.span);
+        self.keep("actual", Expr::load(calls, at), instance.span)
+    }
+
+    fn called_more_than(&mut self, instance: &ast::Expr<'s>, span: Span) -> Option<Claim> {
+        let (calls, actual) = self.calls(instance)?;
+        let at = self.at(span);
+        let zero = Expr::constant(Elementary::Dint, Value::I32(0), at);
+        let holds = self.apply(Op::Gt, Type::Elementary(Elementary::Dint), vec![calls, zero], Type::BOOL, span)?;
+        Some(Claim { actual: Some(actual), ..Claim::new(holds, "one call at least") })
+    }
+
+    fn call_count(&mut self, instance: &ast::Expr<'s>, count: &ast::Expr<'s>, span: Span) -> Option<Claim> {
+        let (calls, actual) = self.calls(instance)?;
+        let dint = Type::Elementary(Elementary::Dint);
+        let wanted = self.value(count, dint)?;
+        let (wanted, expected) = self.keep("expected", wanted, count.span)?;
+        let holds = self.apply(Op::Eq, dint, vec![calls, wanted], Type::BOOL, span)?;
+        Some(Claim::of(holds, "{} calls", actual, expected))
+    }
+
+    fn mock_function(&mut self, function: &ast::Expr<'s>, value: &ast::Expr<'s>, span: Span) -> Option<()> {
+        let Ast::Name(name) = &function.kind else {
+            self.report(Diagnostic::new(Code::E0316, function.span, "the name of a FUNCTION is expected here"));
+            return None;
+        };
+        let Some(mock) = self.decl.mock_of(*name) else {
+            self.report(
+                Diagnostic::new(Code::E0316, name.span, format!("`{}` cannot be replaced by a mock", name.text))
+                    .label("it is no FUNCTION with a result that the sources declare"),
+            );
+            return None;
+        };
+        let value = self.value(value, mock.value.ty)?;
+        let at = self.at(span);
+        self.assign(mock.value, value, span);
+        self.assign(mock.active, Expr::bool(true, at), span);
+        Some(())
+    }
+
+    /// Before the body of a FUNCTION that some test replaces.
+    pub(super) fn mocked_result(&mut self, slot: usize, span: Span) {
+        let Some(mock) = self.decl.tests.mocks.get(&slot).cloned() else { return };
+        let result = self.signature.as_ref().and_then(|it| it.result.as_ref()).map(|it| it.0);
+        let Some(result) = result else { return };
+        let at = self.at(span);
+        let then = self.nested(|this| {
+            let ty = mock.value.ty;
+            this.assign(Place::root(Root::Local(result), ty), Expr::load(mock.value, at), span);
+            this.push(StatementKind::Return, span);
+        });
+        self.push(StatementKind::If { condition: Expr::load(mock.active, at), then, otherwise: Vec::new() }, span);
+    }
+}

@@ -1,0 +1,23 @@
+//! What unit tests add to a program: variables that keep what assertions compared, and mocks.
+
+use crate::testing::Assertion;
+use rustc_hash::FxHashMap;
+use staunch_ir::{Place, Variable};
+
+/// By the slots of POUs.
+#[derive(Debug, Default)]
+pub(crate) struct Tests {
+    /// The variables that a TEST's assertions have added.
+    pub kept: FxHashMap<usize, Vec<Variable>>,
+    /// The assertions of a TEST, in order: the first is number 1.
+    pub assertions: FxHashMap<usize, Vec<Assertion>>,
+    /// The FUNCTIONs that some test replaces.
+    pub mocks: FxHashMap<usize, FunctionMock>,
+}
+
+/// Two globals: whether a FUNCTION is replaced, and the value that it then has.
+#[derive(Clone, Debug)]
+pub(crate) struct FunctionMock {
+    pub active: Place,
+    pub value: Place,
+}
