@@ -1,7 +1,7 @@
 //! The scalars of a program's state, by paths that two systems share.
 
 use staunch_ir::layout::{Layout, usize_of};
-use staunch_ir::{ArrayId, BlockId, Elementary, FieldId, Program, Section, StructId, Type, Value};
+use staunch_ir::{ArrayId, BlockId, FieldId, Program, Section, StructId, Type, Value};
 use staunch_runtime::{Direction, Pin, PinRole};
 
 /// Further elements of an array are not compared.

@@ -382,7 +382,7 @@ impl<'s> Checker<'_, 's> {
         };
         let access = match found.access {
             Access::Inner(_) => found.access,
-            _ if pins[at].direction == Direction::Output => Access::Output(name),
+            _ if pins[at].direction == Direction::Output && !self.is_test() => Access::Output(name),
             Access::Write | Access::Constant(_) | Access::OwnInput(_) | Access::Output(_) => Access::Write,
         };
         let field = FieldId::next(at);
