@@ -59,7 +59,10 @@ fn actual(case: &Case) -> Result<Vec<(Pin, String)>, String> {
                 }
                 Pin::Diagnostics => diagnostics.clone(),
                 Pin::Ir => staunch_ir::print(program()?),
-                Pin::Rust => staunch_rust::emit(program()?, &staunch_rust::Options::default()),
+                Pin::Rust => {
+                    let options = staunch_rust::Options { state: staunch_rust::State::Lean, ..Default::default() };
+                    staunch_rust::emit(program()?, &options)
+                }
                 Pin::Clif => clif(program()?)?,
                 Pin::Scan => scan(case, program()?)?,
             },

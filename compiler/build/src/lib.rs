@@ -22,7 +22,7 @@ mod project;
 use std::path::{Path, PathBuf};
 
 use staunch_frontend::{Level, Levels, Severity, Source, Sources};
-use staunch_rust::Shape;
+use staunch_rust::{Shape, State};
 
 pub use project::Project;
 pub use staunch_frontend::Dialect;
@@ -164,8 +164,11 @@ impl Build {
         }
         let program = compilation.program.filter(|_| !is_rejected).ok_or(Failed)?;
         let name = self.output_name();
-        let mut options =
-            staunch_rust::Options { shape: Shape::Include { module: name.clone() }, ..Default::default() };
+        let mut options = staunch_rust::Options {
+            shape: Shape::Include { module: name.clone() },
+            state: State::Lean,
+            ..Default::default()
+        };
         if let Some(runtime) = &self.runtime {
             options.runtime.clone_from(runtime);
         }

@@ -7,6 +7,7 @@ use crate::{REJECTED, header, link, output};
 use staunch_ir::Program;
 use staunch_ir::layout::Layout;
 use staunch_native::Target;
+use staunch_rust::State;
 use std::path::{Path, PathBuf};
 
 pub fn build(session: &Session, args: &Build) -> Result<u8, String> {
@@ -16,7 +17,7 @@ pub fn build(session: &Session, args: &Build) -> Result<u8, String> {
     let target = target.as_deref();
     match args.emit {
         Emit::Rust => {
-            let text = staunch_rust::emit(program, &staunch_rust::Options::default());
+            let text = staunch_rust::emit(program, &staunch_rust::Options { state: State::Lean, ..Default::default() });
             output::write(&out, text.as_bytes())?;
         }
         Emit::Map => {

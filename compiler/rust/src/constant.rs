@@ -88,7 +88,8 @@ impl Emitter<'_> {
             Const::Zero | Const::Scalar(_) | Const::Text(_) | Const::Array(_) => &Const::Zero,
         };
         let differs = |at: &usize| !self.same(fields[*at].ty, member(*at), &fields[*at].initial);
-        let different: Vec<usize> = (0..fields.len()).filter(differs).collect();
+        let is_part = |at: &usize| !self.constants.contains(&(id, FieldId::next(*at)));
+        let different: Vec<usize> = (0..fields.len()).filter(is_part).filter(differs).collect();
         let set = different.iter().map(|at| {
             let field = self.names.field(id, FieldId::next(*at));
             let value = self.constant(fields[*at].ty, member(*at)).tokens;
@@ -96,7 +97,7 @@ impl Emitter<'_> {
         });
         Code::postfix(if different.is_empty() {
             quote!(#name::new())
-        } else if different.len() == fields.len() {
+        } else if different.len() == (0..fields.len()).filter(is_part).count() {
             quote!(#name { #(#set),* })
         } else {
             quote!(#name { #(#set,)* ..#name::new() })
@@ -104,7 +105,7 @@ impl Emitter<'_> {
     }
 
     /// Whether two constants of one type are the same value.
-    fn same(&self, ty: Type, a: &Const, b: &Const) -> bool {
+    pub fn same(&self, ty: Type, a: &Const, b: &Const) -> bool {
         match (ty, a, b) {
             (_, Const::Zero, Const::Zero) => true,
             (_, Const::Zero, other) | (_, other, Const::Zero) => is_zero(other),

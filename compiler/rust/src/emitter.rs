@@ -8,6 +8,7 @@ use staunch_ir::{Location, Place, Program, Root, Routine, Type};
 
 use crate::alias::{Origin, element};
 use crate::constant::{number, rust_path};
+use crate::flash::Constants;
 use crate::names::{Names, ident};
 
 pub struct Emitter<'p> {
@@ -16,13 +17,15 @@ pub struct Emitter<'p> {
     pub names: Names,
     pub effects: Vec<Effects>,
     pub layout: Layout,
+    /// What is no part of the state.
+    pub constants: Constants,
 }
 
 impl<'p> Emitter<'p> {
     pub fn new(program: &'p Program, origins: &'p [Origin]) -> Self {
         let names = Names::new(program, origins);
         let effects = effects(program, &Rules { scans_take_all: true, ..Rules::PLAIN });
-        Self { program, origins, names, effects, layout: Layout::new(program) }
+        Self { program, origins, names, effects, layout: Layout::new(program), constants: Constants::new() }
     }
 
     pub fn ty(&self, ty: Type) -> TokenStream {

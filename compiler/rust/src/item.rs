@@ -63,17 +63,21 @@ impl Emitter<'_> {
         let structure = self.program.structure(id);
         let name = self.names.structure(id);
         let docs = self.structure_docs(id);
-        let fields = structure.fields.iter().enumerate().map(|(at, field)| {
+        let parts = || {
+            let all = structure.fields.iter().enumerate();
+            all.filter(|(at, _)| !self.constants.contains(&(id, FieldId::next(*at))))
+        };
+        let fields = parts().map(|(at, field)| {
             let (name, ty) = (self.names.field(id, FieldId::next(at)), self.ty(field.ty));
             let docs = self.field_docs(id, field);
             quote!(#docs pub #name: #ty)
         });
-        let values = structure.fields.iter().enumerate().map(|(at, field)| {
+        let values = parts().map(|(at, field)| {
             let name = self.names.field(id, FieldId::next(at));
             let value = self.constant(field.ty, &field.initial).tokens;
             quote!(#name: #value)
         });
-        let methods = self.methods(id);
+        let (methods, constants) = (self.methods(id), self.constant_items(id));
         let io = (id == self.program.globals).then(|| self.io_methods());
         quote! {
             #docs
@@ -81,6 +85,7 @@ impl Emitter<'_> {
             #[derive(Clone, Copy, Debug, PartialEq)]
             pub struct #name { #(#fields),* }
             impl #name {
+                #constants
                 /// With initial values.
                 pub const fn new() -> Self { Self { #(#values),* } }
                 #methods
@@ -92,7 +97,7 @@ impl Emitter<'_> {
 
     /// What a field is to who holds the structure, and what its author wrote about it, which is enough for a
     /// plain variable.
-    fn field_docs(&self, id: StructId, field: &Field) -> TokenStream {
+    pub fn field_docs(&self, id: StructId, field: &Field) -> TokenStream {
         let is_state = self.program.class_of_state(id).is_some();
         let (what, is_plain) = match field.section {
             Section::Input => ("Input", false),

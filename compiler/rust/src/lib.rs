@@ -13,6 +13,7 @@ mod precedence;
 mod constant;
 mod expression;
 mod firmware;
+mod flash;
 mod function;
 mod index_hoist;
 mod item;
@@ -39,6 +40,16 @@ pub struct Options {
     /// Path of the runtime crate.
     pub runtime: String,
     pub shape: Shape,
+    pub state: State,
+}
+
+/// What is in the structures of the emitted text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// All variables, each where the program's map says: for hosts that find them by that.
+    Mapped,
+    /// What changes: constants are `const` items.
+    Lean,
 }
 
 /// Where the emitted text goes.
@@ -53,7 +64,7 @@ pub enum Shape {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { runtime: "staunch_runtime".to_owned(), shape: Shape::File }
+        Self { runtime: "staunch_runtime".to_owned(), shape: Shape::File, state: State::Mapped }
     }
 }
 
@@ -91,7 +102,10 @@ const ALLOWED: &[(&str, &[&str])] = &[
 /// Prints a verified program.
 pub fn emit(program: &Program, options: &Options) -> String {
     let separated = alias::separate(program);
-    let emitter = Emitter::new(&separated.program, &separated.origins);
+    let mut emitter = Emitter::new(&separated.program, &separated.origins);
+    if options.state == State::Lean {
+        emitter.constants = flash::constants(&emitter);
+    }
     let items = emitter.items();
     let imports = imports(&items, &options.runtime);
     let body = format!("{}{}", format::format(quote!(#imports #items)), layout_asserts::layout(&emitter));

@@ -2,7 +2,7 @@
 
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
-use staunch_ir::{Expr, Location, Place, Projection, Root, Type, Value};
+use staunch_ir::{Expr, FieldId, Location, Place, Projection, Root, Type, Value};
 
 use crate::constant::{number, signed};
 use crate::function::Function;
@@ -46,6 +46,10 @@ impl Function<'_> {
         for (projection, ty) in place.projections.iter().zip(types) {
             tokens = match projection {
                 Projection::Field(field) => {
+                    if let Some(constant) = self.constant(ty, *field) {
+                        tokens = constant;
+                        continue;
+                    }
                     let name = match ty {
                         Type::Struct(id) => self.emitter.names.field(id, *field).clone(),
                         Type::Block(id) => ident(id.info().pins[field.index()].field),
@@ -62,6 +66,13 @@ impl Function<'_> {
             };
         }
         tokens
+    }
+
+    /// A constant that is no part of the state: `Main::LIMIT`.
+    fn constant(&self, ty: Type, field: FieldId) -> Option<TokenStream> {
+        let Type::Struct(id) = ty else { return None };
+        let (name, constant) = (self.emitter.names.structure(id), self.emitter.constant_name(id, field)?);
+        Some(quote!(#name::#constant))
     }
 
     /// The 0-based position of an element.
@@ -110,7 +121,14 @@ impl Function<'_> {
 
     pub fn load(&self, place: &Place) -> Code {
         let tokens = self.place(place);
-        if self.is_whole_param(place) { Code::new(quote!(*#tokens), Level::Unary) } else { Code::postfix(tokens) }
+        let types = self.emitter.types_along(self.routine, place);
+        let last = place.projections.last().zip(types.last());
+        let is_reference = last.is_some_and(|(last, ty)| self.emitter.is_constant_reference(*ty, last));
+        if is_reference || self.is_whole_param(place) {
+            Code::new(quote!(*#tokens), Level::Unary)
+        } else {
+            Code::postfix(tokens)
+        }
     }
 
     /// The place as the target of an assignment.

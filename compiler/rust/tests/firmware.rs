@@ -3,7 +3,8 @@
 
 mod support;
 
-use support::output_of;
+use staunch_rust::State;
+use support::{output_of, output_with};
 
 const ST: &str = "
 VAR_GLOBAL
@@ -178,3 +179,64 @@ true [255, 255, 255, 255, 255] Color(-1) [[1, 1], [1, 1]] 0
     );
     assert_eq!(output_of("retaining", RETAINING, RETAINING_MAIN), expected);
 }
+
+const CONSTANTS: &str = "
+TYPE Point : STRUCT x, y : INT; END_STRUCT; Color : (Red, Green := 5); END_TYPE
+VAR_GLOBAL CONSTANT sines : ARRAY[0..999] OF REAL := [500(0.25), 499(0.75), 1.0]; most : INT := 9; END_VAR
+VAR_GLOBAL count : INT; END_VAR
+FUNCTION_BLOCK Look
+VAR_INPUT i : INT; END_VAR
+VAR_OUTPUT y : REAL; place : Point; all : ARRAY[0..3] OF INT; END_VAR
+VAR CONSTANT
+    own : ARRAY[0..3] OF INT := [4, 5, 6, 7]; name : STRING[5] := 'abc'; scale : INT := 3; Scale_ : INT := 30;
+    origin : Point := (x := 7, y := 8); color : Color := Green;
+END_VAR
+VAR text : STRING[9]; chosen : Color; long : INT; END_VAR
+VAR_EXTERNAL CONSTANT sines : ARRAY[0..999] OF REAL; most : INT; END_VAR
+VAR_EXTERNAL count : INT; END_VAR
+y := sines[i * 100 + most * 11] + INT_TO_REAL(own[i MOD scale]);
+place := origin; place.x := origin.y; all := own; text := CONCAT(name, '!'); chosen := color; long := LEN(name) + Scale_;
+count := count + 1;
+END_FUNCTION_BLOCK
+PROGRAM Main
+VAR a, b : Look; END_VAR
+VAR CONSTANT c : ARRAY[1..2] OF Point := [(x := 1), (y := 2)]; END_VAR
+VAR z : INT; p : Point; END_VAR
+a(i := 9); b(i := 1);
+z := c[b.i].x; p := c[2];
+END_PROGRAM
+";
+
+const CONSTANTS_MAIN: &str = r#"
+use staunch_runtime::Context;
+
+fn main() {
+    let (mut globals, mut main) = (code::Globals::new(), code::Main::new());
+    main.scan(&Context::first(5), &mut globals).unwrap();
+    println!("{} {} {:?} {:?}", main.a.y, main.b.y, main.a.place, main.b.all);
+    println!("{} {:?} {} {} {:?} {}", main.a.text, main.a.chosen, main.a.long, main.z, main.p, globals.count);
+    println!("{} {}", size_of::<code::Globals>(), size_of::<code::Look>());
+    println!("{} {:?} {}", code::Globals::SINES[999], code::Look::OWN, code::Look::SCALE_2);
+}
+"#;
+
+/// Constants are items: of `Globals` the count is left, of `Look` its input, outputs and three variables.
+#[test]
+fn constants_are_no_part_of_the_state() {
+    // sines[999] + own[0], and sines[199] + own[1].
+    let look = 2 + 2 + 4 + 4 + 8 + 12 + 2 + 2;
+    let expected = format!(
+        "\
+5 5.25 Point {{ x: 8, y: 8 }} [4, 5, 6, 7]
+abc! Color(5) 33 1 Point {{ x: 0, y: 2 }} 2
+2 {look}
+1 [4, 5, 6, 7] 30
+"
+    );
+    assert_eq!(output_with("constants", CONSTANTS, CONSTANTS_MAIN, State::Lean), expected);
+    // Where a host finds them by the map, they are fields: the table, the number, and the count.
+    let mapped = output_with("constants-mapped", CONSTANTS, MAPPED_MAIN, State::Mapped);
+    assert_eq!(mapped, format!("{}\n", 4000 + 2 + 2));
+}
+
+const MAPPED_MAIN: &str = "fn main() { println!(\"{}\", size_of::<code::Globals>()); }";

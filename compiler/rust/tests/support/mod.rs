@@ -10,7 +10,7 @@ use staunch_ir::interpret::{Interpreter, Stop};
 use staunch_ir::layout::{Layout, usize_of};
 use staunch_ir::{FieldId, Program, StructId, Type};
 use staunch_runtime::Context;
-use staunch_rust::{Options, emit, emit_glue};
+use staunch_rust::{Options, State, emit, emit_glue};
 
 const SCANS: i64 = 4;
 
@@ -38,9 +38,14 @@ pub fn agree(name: &str, st: &str) -> String {
 
 /// What a `main` prints that has the program as `code`.
 pub fn output_of(name: &str, st: &str, main: &str) -> String {
+    output_with(name, st, main, State::Mapped)
+}
+
+/// [`output_of`] with one of the forms of the state.
+pub fn output_with(name: &str, st: &str, main: &str, state: State) -> String {
     let program = program(st);
     let folder = folder(name);
-    write_crate(&folder, &program, &emit(&program, &Options::default()));
+    write_crate(&folder, &program, &emit(&program, &Options { state, ..Options::default() }));
     lint(&folder);
     std::fs::write(folder.join("main.rs"), format!("mod code;\n{main}")).expect("the main's file");
     run_rust(&folder)
