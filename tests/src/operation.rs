@@ -153,6 +153,7 @@ fn class(task: Task, state: StructId, body: RoutineId) -> Class {
         name,
         section: Section::Internal,
         place: Place::root(Root::Instance, Type::Struct(state)).field(FieldId::next(at), ty),
+        view: None,
     };
     Class {
         kind: ClassKind::Program,

@@ -1,7 +1,7 @@
 //! A C header for what an object or library exports: the entry points, and the state by name.
 
 use staunch_ir::layout::Layout;
-use staunch_ir::{FaultKind, FieldId, Lane, Program, StructId, Type};
+use staunch_ir::{FaultKind, FieldId, Lane, Program, Projection, StructId, Type};
 use staunch_runtime::Context;
 use std::collections::HashSet;
 use std::fmt::Write;
@@ -76,6 +76,21 @@ impl Macros<'_> {
             self.text.push_str("\n/* Global variables */\n");
             self.structure(program.globals, layout.machine.globals, "Globals");
         }
+        program.aliases.iter().for_each(|it| self.view(it));
+    }
+
+    /// A variable that shares its bits with another one: it may lie at any byte.
+    fn view(&mut self, variable: &staunch_ir::Variable) {
+        let (Some(view), Some(Projection::Field(field))) = (variable.view, variable.place.projections.first()) else {
+            return;
+        };
+        let start = self.layout.machine.globals + self.layout.field(self.program.globals, *field);
+        let name = self.claim(macro_name(&["OFFSET", "Globals", &variable.name]));
+        let (ty, offset) = (view.ty.name(), start + view.bit / 8);
+        let _ = match view.address.width {
+            1 => writeln!(self.text, "#define STAUNCH_{name} {offset}u /* {ty}, bit {} */", view.bit % 8),
+            _ => writeln!(self.text, "#define STAUNCH_{name} {offset}u /* {ty} */"),
+        };
     }
 
     /// Variables come before the pins of blocks: a declared name is kept where the two meet.

@@ -141,7 +141,8 @@ pub fn sample(body: Block) -> Program {
     let arrays = vec![Array { low: 1, high: 3, element: Type::INT }];
     let routines = vec![double(), adder_routine(), adder_prescan(), main_routine(body)];
     let mut program = program(arrays, vec![adder, main, globals], routines);
-    let variable = |name: &str, place| Variable { name: name.to_owned(), section: Section::Internal, place };
+    let variable =
+        |name: &str, place| Variable { name: name.to_owned(), section: Section::Internal, place, view: None };
     program.classes[1].variables = vec![
         variable("count", count()),
         variable("temp", temp()),

@@ -48,7 +48,7 @@ pub use place::{Place, Projection, Root};
 pub use print::print;
 pub use program::{
     Address, Area, Class, ClassId, ClassKind, Field, FieldId, Instance, Local, LocalId, Mode, Param, ParamId, Program,
-    Retain, Routine, RoutineId, RoutineKind, Section, SourceFile, Variable,
+    Retain, Routine, RoutineId, RoutineKind, Section, SourceFile, Variable, View,
 };
 pub use statement::{Argument, Arm, Block, For, Statement, StatementKind, Step};
 pub use types::{

@@ -1,7 +1,9 @@
 //! A whole program: its types, globals, classes, routines and instances.
 
 use crate::types::ids;
-use crate::{Array, ArrayId, Block, BoundsId, Const, Enum, EnumId, Location, Place, Root, Struct, StructId, Type};
+use crate::{
+    Array, ArrayId, Block, BoundsId, Const, Elementary, Enum, EnumId, Location, Place, Root, Struct, StructId, Type,
+};
 use core::fmt;
 use staunch_runtime::Family;
 
@@ -190,6 +192,19 @@ pub struct Variable {
     pub name: String,
     pub section: Section,
     pub place: Place,
+    /// It is some of the place's bits, which others share.
+    pub view: Option<View>,
+}
+
+/// Bits of a place that holds an integer, a bit string, or an array of them. The lowest come first, also
+/// in an array.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct View {
+    /// BOOL for a single bit.
+    pub ty: Elementary,
+    /// The first bit.
+    pub bit: u64,
+    pub address: Address,
 }
 
 /// A direct address, `%QX1.3`.

@@ -8,7 +8,8 @@ use crate::loops::constant_position;
 use crate::startup::{self, Event, Fate, Startup};
 use crate::usage::used_globals;
 use crate::{
-    Address, BlockId, Class, ClassKind, FieldId, Program, Projection, Root, Section, StructId, Type, Variable,
+    Address, BlockId, Class, ClassKind, Elementary, FieldId, Program, Projection, Root, Section, StructId, Type,
+    Variable, View,
 };
 use core::fmt::{self, Write};
 use staunch_runtime::{Direction, Pin};
@@ -64,6 +65,8 @@ struct Attributes {
     constant: bool,
     /// Of a global: some instance uses it.
     used: bool,
+    /// Some bits of another variable.
+    view: bool,
     address: Option<Address>,
     range: Option<(i128, i128)>,
 }
@@ -129,7 +132,7 @@ impl Map<'_> {
             let Some((offset, mut attributes)) = self.storage(None, alias, 0) else { continue };
             attributes.used = self.is_used(alias);
             let offset = offset - self.layout.machine.globals;
-            let (section, ty) = (section_name(alias.section), TypeName(alias.place.ty));
+            let (section, ty) = (section_name(alias.section), type_of(alias));
             write!(self.text, "field\t{}\t{ty}\t{offset}\t{section}", alias.name)?;
             self.write_attributes(&attributes)?;
         }
@@ -197,7 +200,7 @@ impl Map<'_> {
         for variable in &class.variables {
             let Some((offset, attributes)) = self.storage(Some(class.state), variable, base) else { continue };
             let section = section_name(variable.section);
-            let ty = TypeName(variable.place.ty);
+            let ty = type_of(variable);
             write!(self.text, "variable\t{instance}\t{}\t{section}\t{ty}\t{offset}", variable.name)?;
             self.write_attributes(&attributes)?;
         }
@@ -228,7 +231,12 @@ impl Map<'_> {
                 (Projection::Index { .. }, _) => unreachable!("verified IR: an array is indexed"),
             }
         }
-        Some((offset, attributes))
+        match variable.view {
+            Some(View { bit, address, .. }) => {
+                Some((offset + bit / 8, Attributes { view: true, address: Some(address), ..Attributes::NONE }))
+            }
+            None => Some((offset, attributes)),
+        }
     }
 
     fn member(&self, ty: Type, id: FieldId) -> Option<(Type, Attributes)> {
@@ -257,6 +265,7 @@ impl Map<'_> {
             restarts: power_cycle == Fate::Anew,
             constant: field.constant,
             used: false,
+            view: false,
             address: field.address,
             // A subrange of elements stands at their array.
             range: self.program.range(ty),
@@ -272,6 +281,7 @@ impl Map<'_> {
             ("restarts", attributes.restarts),
             ("constant", attributes.constant),
             ("used", attributes.used),
+            ("view", attributes.view),
         ];
         let flags: Vec<_> = flags.into_iter().filter(|(_, is_set)| *is_set).map(|(name, _)| name).collect();
         let flags = if flags.is_empty() { "-".to_owned() } else { flags.join(",") };
@@ -295,9 +305,19 @@ impl Attributes {
         restarts: false,
         constant: false,
         used: false,
+        view: false,
         address: None,
         range: None,
     };
+}
+
+/// The type of a variable; that of a single bit says which one of its byte it is.
+fn type_of(variable: &Variable) -> String {
+    match variable.view {
+        Some(View { ty: Elementary::Bool, bit, .. }) => format!("bit:{}", bit % 8),
+        Some(View { ty, .. }) => ty.name().to_owned(),
+        None => TypeName(variable.place.ty).to_string(),
+    }
 }
 
 /// A type as the map writes it.

@@ -1,18 +1,32 @@
 //! The tables that a firmware reads: what runs when, and the variables at direct addresses.
 
-use proc_macro2::{Ident, Literal, TokenStream};
+use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
-use staunch_ir::{Address, Area, Field, FieldId, Lane, Type};
+use staunch_ir::{Address, Area, FieldId, Lane, Projection, Type, Variable, View};
 
 use crate::emitter::Emitter;
 
 /// A variable at a direct address, and how its bits are carried.
 struct Io<'p> {
-    field: &'p Field,
+    variable: &'p str,
     address: Address,
-    name: &'p Ident,
+    /// The integers that keep it, the lowest first.
+    units: Vec<Unit>,
+    /// The first of its bits, where it shares the integer with others.
+    shared: Option<u64>,
+}
+
+/// Where bits go when they are shifted.
+#[derive(Clone, Copy)]
+enum Way {
+    Up,
+    Down,
+}
+
+/// Storage of a lane.
+struct Unit {
+    place: TokenStream,
     lane: Lane,
-    is_enumeration: bool,
 }
 
 impl Emitter<'_> {
@@ -23,7 +37,7 @@ impl Emitter<'_> {
             return tasks;
         }
         let rows = io.iter().map(|it| {
-            let (address, variable) = (it.address.to_string(), &it.field.name);
+            let (address, variable) = (it.address.to_string(), it.variable);
             let (bit, width) = (Literal::u64_unsuffixed(it.address.bit), Literal::u8_unsuffixed(it.address.width));
             let area = match it.address.area {
                 Area::Input => quote!(Input),
@@ -65,16 +79,33 @@ impl Emitter<'_> {
     fn io(&self) -> Vec<Io<'_>> {
         let globals = self.program.globals;
         let fields = self.program.structure(globals).fields.iter().enumerate();
-        let io = fields.filter_map(|(at, field)| {
-            Some(Io {
-                field,
-                address: field.address?,
-                name: self.names.field(globals, FieldId::next(at)),
-                lane: self.program.lane(field.ty)?,
-                is_enumeration: matches!(field.ty, Type::Enum(_)),
-            })
+        let own = fields.filter_map(|(at, field)| {
+            let name = self.names.field(globals, FieldId::next(at));
+            let place = if matches!(field.ty, Type::Enum(_)) { quote!(self.#name.0) } else { quote!(self.#name) };
+            let unit = Unit { place, lane: self.program.lane(field.ty)? };
+            Some(Io { variable: &field.name, address: field.address?, units: vec![unit], shared: None })
         });
-        io.collect()
+        own.chain(self.program.aliases.iter().filter_map(|it| self.view(it))).collect()
+    }
+
+    /// A variable that shares its bits with another one.
+    fn view<'v>(&self, variable: &'v Variable) -> Option<Io<'v>> {
+        let View { bit, address, .. } = variable.view?;
+        let Some(Projection::Field(field)) = variable.place.projections.first() else { return None };
+        let name = self.names.field(self.program.globals, *field);
+        let Type::Array(id) = variable.place.ty else {
+            let unit = Unit { place: quote!(self.#name), lane: self.program.lane(variable.place.ty)? };
+            return Some(Io { variable: &variable.name, address, units: vec![unit], shared: Some(bit) });
+        };
+        let lane = self.program.lane(self.program.array(id).element)?;
+        let size = u64::from(lane.size()) * 8;
+        let unit = |number: u64| {
+            let position = Literal::u64_unsuffixed(bit / size + number);
+            Unit { place: quote!(self.#name[#position]), lane }
+        };
+        let count = u64::from(address.width).div_ceil(size);
+        let shared = (u64::from(address.width) < size).then_some(bit % size);
+        Some(Io { variable: &variable.name, address, units: (0..count).map(unit).collect(), shared })
     }
 
     /// How the globals show and take the bits at an address.
@@ -101,17 +132,59 @@ impl Emitter<'_> {
 }
 
 impl Io<'_> {
-    fn place(&self) -> TokenStream {
-        let name = self.name;
-        if self.is_enumeration { quote!(self.#name.0) } else { quote!(self.#name) }
+    fn mask(&self) -> Literal {
+        Literal::u64_unsuffixed(u64::MAX >> (64 - u32::from(self.address.width)))
     }
 
     fn read(&self) -> TokenStream {
-        let place = self.place();
+        if let (Some(shift), [unit]) = (self.shared, self.units.as_slice()) {
+            let (whole, mask) = (shifted(unit.read(), Way::Down, shift), self.mask());
+            return quote!(#whole & #mask);
+        }
+        let parts =
+            self.units.iter().zip(0..).map(|(unit, number)| shifted(unit.read(), Way::Up, unit.bits() * number));
+        quote!(#(#parts)|*)
+    }
+
+    fn write(&self) -> TokenStream {
+        if let (Some(shift), [unit]) = (self.shared, self.units.as_slice()) {
+            let (whole, mask, write) = (unit.read(), self.mask(), unit.write());
+            let kept = Literal::u64_unsuffixed((u64::MAX >> (64 - u32::from(self.address.width))) << shift);
+            let bits = shifted(quote!((bits & #mask)), Way::Up, shift);
+            return quote!({ let bits = #whole & !#kept | #bits; #write });
+        }
+        let writes = self.units.iter().zip(0..).map(|(unit, number)| {
+            let (write, bits) = (unit.write(), shifted(quote!(bits), Way::Down, unit.bits() * number));
+            if number == 0 { quote!(#write;) } else { quote!({ let bits = #bits; #write }) }
+        });
+        match self.units.as_slice() {
+            [unit] => unit.write(),
+            _ => quote!({ #(#writes)* }),
+        }
+    }
+}
+
+/// `bits`, shifted unless that is by 0.
+fn shifted(bits: TokenStream, way: Way, by: u64) -> TokenStream {
+    let count = Literal::u64_unsuffixed(by);
+    match way {
+        _ if by == 0 => bits,
+        Way::Up => quote!(#bits << #count),
+        Way::Down => quote!(#bits >> #count),
+    }
+}
+
+impl Unit {
+    fn bits(&self) -> u64 {
+        u64::from(self.lane.size()) * 8
+    }
+
+    fn read(&self) -> TokenStream {
+        let place = &self.place;
         match self.lane {
             Lane::Bool | Lane::U8 | Lane::U16 | Lane::U32 => quote!(u64::from(#place)),
-            Lane::U64 => place,
-            Lane::I64 => quote!(#place as u64),
+            Lane::U64 => quote!(#place),
+            Lane::I64 => quote!((#place as u64)),
             Lane::F32 => quote!(u64::from(#place.to_bits())),
             Lane::F64 => quote!(#place.to_bits()),
             Lane::I8 | Lane::I16 | Lane::I32 => {
@@ -122,7 +195,7 @@ impl Io<'_> {
     }
 
     fn write(&self) -> TokenStream {
-        let place = self.place();
+        let place = &self.place;
         let value = match self.lane {
             Lane::Bool => quote!(bits & 1 == 1),
             Lane::U64 => quote!(bits),

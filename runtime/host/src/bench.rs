@@ -69,7 +69,7 @@ pub fn bench(machine: &mut Compiled, map: &Map, options: &BenchOptions) -> Resul
     let running = running(map, options.program.as_deref())?;
     machine.init();
     let lists = match &options.stimulus {
-        Some(path) => repeated(&Stimulus::read(path, map, &running)?),
+        Some(path) => repeated(&Stimulus::read(path, map, &running)?, machine.state()),
         None => toggled(&bool_inputs(map, &running), machine.state()),
     };
     machine.prepare(&lists);
@@ -103,8 +103,10 @@ pub fn bench(machine: &mut Compiled, map: &Map, options: &BenchOptions) -> Resul
 type Lists = Vec<Vec<(usize, Vec<u8>)>>;
 
 /// Rows as scans; a row that is placed by time alone counts as one scan.
-fn repeated(stimulus: &Stimulus) -> Lists {
+fn repeated(stimulus: &Stimulus, state: &[u8]) -> Lists {
     let mut scans = Lists::new();
+    // Bits are written into the bytes that the rows above them left.
+    let mut state = state.to_vec();
     for row in &stimulus.rows {
         let number = row.scan.and_then(|it| usize::try_from(it).ok()).unwrap_or(scans.len() + 1);
         // A row far ahead would only repeat the one before it.
@@ -112,7 +114,11 @@ fn repeated(stimulus: &Stimulus) -> Lists {
             scans.resize_with(number, Vec::new);
         }
         if let Some(last) = scans.last_mut() {
-            last.extend(row.writes.iter().map(|it| (it.offset, it.bytes.clone())));
+            for write in &row.writes {
+                let bytes = write.over(&state).into_owned();
+                state[write.offset..write.offset + bytes.len()].copy_from_slice(&bytes);
+                last.push((write.offset, bytes));
+            }
         }
     }
     scans
@@ -285,7 +291,7 @@ mod tests {
         assert_eq!(inputs, [offset_of("up")]);
         assert_eq!(seen(&toggled(&inputs, &[0; 128])), [1, 0, 1, 0, 1, 0]);
         let stimulus = Stimulus::parse("s.csv".as_ref(), "scan,up\n1,1\n3,0\n", &map(), &[0]).unwrap();
-        assert_eq!(seen(&repeated(&stimulus)), [1, 1, 0, 1, 1, 0]);
+        assert_eq!(seen(&repeated(&stimulus, &[0; 128])), [1, 1, 0, 1, 1, 0]);
     }
 
     #[test]

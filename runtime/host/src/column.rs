@@ -41,10 +41,11 @@ pub(crate) fn columns(map: &Map, running: &[usize], vars: Option<&str>) -> Resul
 /// and constants show nothing.
 fn used_globals(map: &Map, running: &[usize], out: &mut Vec<Column>) {
     let (globals, base) = map.globals();
-    let own: HashSet<usize> = running.iter().flat_map(|at| &map.instances[*at].variables).map(|it| it.offset).collect();
+    let own = running.iter().flat_map(|at| &map.instances[*at].variables).map(|it| (it.offset, it.ty));
+    let own: HashSet<(usize, Type)> = own.collect();
     for variable in globals.iter().filter(|it| it.used && !it.constant) {
         let place = Place::of(variable, base);
-        if !own.contains(&place.offset) {
+        if !own.contains(&(place.offset, place.ty)) {
             expand(map, global_heading(variable), place, out);
         }
     }
@@ -74,7 +75,7 @@ fn split(vars: &str) -> Vec<&str> {
 
 fn expand(map: &Map, heading: String, place: Place, out: &mut Vec<Column>) {
     match place.ty {
-        Type::Elementary(_) | Type::String(_) | Type::Enum(_) => out.push(Column { heading, place }),
+        Type::Elementary(_) | Type::Bit(_) | Type::String(_) | Type::Enum(_) => out.push(Column { heading, place }),
         Type::Array(_) => elements(map, &heading, String::new(), place, out),
         Type::Struct(_) | Type::Block(_) => members(map, &heading, place, out),
     }

@@ -197,7 +197,7 @@ impl Builder<'_> {
             Type::Elementary(it) if it.is_day() => self.push(Node::Day),
             Type::Elementary(it) if it.is_time_of_day() => self.push(Node::Clock),
             Type::Elementary(it) => self.number(it.lane(), range),
-            Type::Enum(_) => self.push(Node::Any),
+            Type::Enum(_) | Type::Bit(_) => self.push(Node::Any),
             Type::String(capacity) => self.push(Node::Text(capacity)),
             Type::Array(_) => match self.map.array(ty) {
                 Some(array) => self.array(array, range),
@@ -233,7 +233,7 @@ impl Builder<'_> {
     fn members(&mut self, ty: Type) -> usize {
         let members = self.map.structure(ty).map_or(&[][..], |it| &it.members);
         let part = |it: &Variable| self.part(it.ty, it.range, it.offset);
-        let parts = members.iter().map(part).collect();
+        let parts = members.iter().filter(|it| !it.view).map(part).collect();
         self.structure(parts)
     }
 

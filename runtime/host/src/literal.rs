@@ -11,7 +11,7 @@ pub(crate) fn parse(map: &Map, place: Place, text: &str) -> Result<Vec<u8>, Stri
         Type::String(capacity) => return string(text, capacity),
         Type::Elementary(it) if it.is_duration() => Value::I64(time(text)?),
         Type::Elementary(it) if it.is_time() => Value::I64(date(text, it)?),
-        Type::Elementary(Elementary::Bool) => Value::Bool(boolean(text)?),
+        Type::Elementary(Elementary::Bool) | Type::Bit(_) => Value::Bool(boolean(text)?),
         Type::Elementary(it) if it.lane().is_float() => float(text, it.name(), it.lane())?,
         Type::Elementary(it) => integer(text, it.name(), it.lane())?,
         Type::Enum(id) => {

@@ -29,6 +29,8 @@ pub struct Map {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Type {
     Elementary(Elementary),
+    /// A BOOL that is this bit of a byte.
+    Bit(u8),
     /// A string of at most this many bytes.
     String(u16),
     Enum(u32),
@@ -106,6 +108,8 @@ pub struct Variable {
     pub constant: bool,
     /// Of a global: some instance uses it.
     pub used: bool,
+    /// Some bits of another variable.
+    pub view: bool,
     /// `%IX0.0`
     pub address: Option<String>,
     pub range: Option<(i128, i128)>,
@@ -226,7 +230,7 @@ impl Map {
 
     fn knows(&self, ty: Type) -> bool {
         match ty {
-            Type::Elementary(_) | Type::String(_) => true,
+            Type::Elementary(_) | Type::Bit(_) | Type::String(_) => true,
             Type::Enum(id) => self.enums.contains_key(&id),
             Type::Array(id) => self.arrays.contains_key(&id),
             Type::Struct(id) => self.structs.contains_key(&id),
@@ -239,14 +243,16 @@ impl Map {
         match ty {
             Type::Struct(id) => self.structs.get(&id),
             Type::Block(id) => self.blocks.get(&id),
-            Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) => None,
+            Type::Elementary(_) | Type::Bit(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) => None,
         }
     }
 
     pub(crate) fn array(&self, ty: Type) -> Option<Array> {
         match ty {
             Type::Array(id) => self.arrays.get(&id).copied(),
-            Type::Elementary(_) | Type::String(_) | Type::Enum(_) | Type::Struct(_) | Type::Block(_) => None,
+            Type::Elementary(_) | Type::Bit(_) | Type::String(_) | Type::Enum(_) | Type::Struct(_) | Type::Block(_) => {
+                None
+            }
         }
     }
 
@@ -260,6 +266,7 @@ impl Map {
     pub fn size_of(&self, ty: Type) -> usize {
         match ty {
             Type::Elementary(it) => it.lane().size() as usize,
+            Type::Bit(_) => 1,
             Type::String(capacity) => 2 + usize::from(capacity).next_multiple_of(2),
             Type::Enum(id) => self.enums.get(&id).map_or(0, |it| it.lane.size() as usize),
             Type::Array(_) => self.array(ty).map_or(0, |it| it.stride * it.len()),
@@ -271,6 +278,7 @@ impl Map {
     pub fn type_name(&self, ty: Type) -> String {
         match ty {
             Type::Elementary(it) => it.name().to_owned(),
+            Type::Bit(_) => Elementary::Bool.name().to_owned(),
             Type::String(capacity) => format!("STRING[{capacity}]"),
             Type::Enum(id) => self.enums.get(&id).map_or_else(String::new, |it| it.name.clone()),
             Type::Array(_) => self.array(ty).map_or_else(String::new, |it| {
@@ -305,6 +313,7 @@ impl Variable {
             restarts: false,
             constant: false,
             used: false,
+            view: false,
             address: None,
             range: None,
         }
@@ -397,6 +406,7 @@ impl<'a> Record<'a> {
                 "restarts" => variable.restarts = true,
                 "constant" => variable.constant = true,
                 "used" => variable.used = true,
+                "view" => variable.view = true,
                 _ => {}
             }
         }
@@ -434,6 +444,7 @@ fn type_named(text: &str) -> Option<Type> {
         return Some(Type::String(capacity.strip_suffix(']')?.parse().ok()?));
     }
     match text.split_once(':') {
+        Some(("bit", number)) => number.parse().ok().filter(|it| *it < 8).map(Type::Bit),
         Some(("enum", id)) => Some(Type::Enum(id.parse().ok()?)),
         Some(("array", id)) => Some(Type::Array(id.parse().ok()?)),
         Some(("struct", id)) => Some(Type::Struct(id.parse().ok()?)),

@@ -355,9 +355,10 @@ impl Runner<'_> {
                 self.start_again(event)?;
             }
             for write in &self.stimulus.rows[self.next_row].writes {
-                self.machine.write(write.offset, &write.bytes);
+                let bytes = write.over(self.machine.state()).into_owned();
+                self.machine.write(write.offset, &bytes);
                 if write.input {
-                    self.held.retain(|it| it.offset != write.offset);
+                    self.held.retain(|it| !it.replaces(write));
                     self.held.push(write.clone());
                 }
             }
@@ -373,7 +374,10 @@ impl Runner<'_> {
             retention.save(clock, self.machine.state())?;
         }
         self.start.again(event, self.machine);
-        self.held.iter().for_each(|it| self.machine.write(it.offset, &it.bytes));
+        for it in &self.held {
+            let bytes = it.over(self.machine.state()).into_owned();
+            self.machine.write(it.offset, &bytes);
+        }
         self.fresh.fill(true);
         self.machine.starts_again(event);
         Ok(())

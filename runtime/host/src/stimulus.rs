@@ -7,6 +7,7 @@ use crate::map::{Map, Type};
 use crate::path::{self, Place, same};
 use crate::start::Event;
 use staunch_runtime::Time;
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 /// Rows in the order in which they act.
@@ -35,8 +36,25 @@ pub(crate) struct Row {
 pub(crate) struct Write {
     pub offset: usize,
     pub bytes: Vec<u8>,
+    /// The one bit of the byte that is written.
+    pub bit: Option<u8>,
     /// To an input, which holds over a restart.
     pub input: bool,
+}
+
+impl Write {
+    /// The bytes as they are written over a state.
+    pub fn over(&self, state: &[u8]) -> Cow<'_, [u8]> {
+        match self.bit {
+            Some(number) => vec![state[self.offset] & !(1 << number) | self.bytes[0] << number].into(),
+            None => self.bytes.as_slice().into(),
+        }
+    }
+
+    /// Whether it is to the same variable.
+    pub fn replaces(&self, other: &Self) -> bool {
+        (self.offset, self.bit, self.bytes.len()) == (other.offset, other.bit, other.bytes.len())
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -209,7 +227,11 @@ impl Parser<'_> {
         let with_point = (self.decimal_comma && is_real).then(|| cell.text.replacen(',', ".", 1));
         let text = with_point.as_deref().unwrap_or(&cell.text);
         let bytes = literal::parse(self.map, place, text).map_err(|text| self.at(cell, text))?;
-        Ok(Write { offset: place.offset, bytes, input: place.input })
+        let bit = match place.ty {
+            Type::Bit(number) => Some(number),
+            _ => None,
+        };
+        Ok(Write { offset: place.offset, bytes, bit, input: place.input })
     }
 
     fn in_order(&self, rows: &[Row]) -> Result<(), Error> {
@@ -243,7 +265,7 @@ mod tests {
     fn rows_write_their_non_empty_cells() {
         let stimulus = read("scan,up,@event,c.CV\n1,TRUE,,\n3,,restart,16#F\n3,0,,\n").unwrap();
         let [first, second, third] = stimulus.rows.as_slice() else { panic!("{stimulus:?}") };
-        let up = |value| vec![Write { offset: offset_of("up"), bytes: vec![value], input: true }];
+        let up = |value| vec![Write { offset: offset_of("up"), bytes: vec![value], bit: None, input: true }];
         assert_eq!((first.scan, first.event, &first.writes), (Some(1), None, &up(1)));
         assert_eq!((second.scan, second.event), (Some(3), Some(Event::Restart)));
         assert_eq!(second.writes[0].bytes, 15_i16.to_ne_bytes());

@@ -25,6 +25,7 @@ pub(crate) fn format(map: &Map, ty: Type, bytes: &[u8], out: &mut String) {
                 _ => format_scalar(value, out),
             }
         }
+        Type::Bit(number) => format_scalar(Value::Bool(bit(bytes, number)), out),
         Type::String(_) => out.push_str(&text(bytes)),
         Type::Enum(id) => {
             let Some(enumeration) = map.enums.get(&id) else { return };
@@ -55,10 +56,15 @@ fn format_scalar(value: Value, out: &mut String) {
     };
 }
 
+fn bit(bytes: &[u8], number: u8) -> bool {
+    bytes.first().is_some_and(|byte| byte >> number & 1 == 1)
+}
+
 /// The value as a number, for diagrams; `None` for a string.
 pub(crate) fn number(map: &Map, ty: Type, bytes: &[u8]) -> Option<f64> {
     let lane = match ty {
         Type::Elementary(it) => it.lane(),
+        Type::Bit(number) => return Some(f64::from(u8::from(bit(bytes, number)))),
         Type::Enum(id) => map.enums.get(&id)?.lane,
         Type::String(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => return None,
     };

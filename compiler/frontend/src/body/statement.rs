@@ -3,7 +3,7 @@ use crate::expr::checker::Checker;
 use crate::expr::operand::Operand;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, StatementKind as Ast_};
-use staunch_ir::{Block, Conversion, Elementary, Expr, Op, Place, StatementKind, Type, Value};
+use staunch_ir::{Block, Expr, Place, StatementKind, Type};
 
 impl<'s> Checker<'_, 's> {
     /// The statements of a body, or of a branch of one.
@@ -160,7 +160,7 @@ impl<'s> Checker<'_, 's> {
         is_read: bool,
     ) -> Option<Expr> {
         let [target, rest @ ..] = targets else { return None };
-        let Some(found) = self.place(target) else {
+        let Some(found) = self.place_or_view(target) else {
             // What is left may hold mistakes of its own.
             rest.iter().for_each(|it| drop(self.place(it)));
             self.operand(value, None);
@@ -170,8 +170,8 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let writable = self.writable(&found, target.span);
+        let (ty, view) = (self.type_of(&found), found.view);
         let mut place = found.place;
-        let ty = place.ty;
         let mut given = self.after_place(&mut place, |this| {
             if rest.is_empty() {
                 return this.value(value, ty);
@@ -184,7 +184,7 @@ impl<'s> Checker<'_, 's> {
         }
         if writable {
             self.note_assigned(&place, target.span);
-            self.assign(place, given.clone(), span);
+            self.write(place, view, given.clone(), span)?;
         }
         Some(given)
     }
@@ -221,40 +221,25 @@ impl<'s> Checker<'_, 's> {
         let selected = self.find_part(ty, part)?;
         let of = Type::Elementary(selected.ty);
         let value = self.after_place(&mut place, |this| this.value(value, of))?;
-        let Type::Elementary(whole) = ty else { return None };
-        let at = self.at(span);
-        let width = if selected.ty == Elementary::Bool { 1 } else { selected.ty.lane().size() * 8 };
-        let unsigned = unsigned_lane_of(whole);
-        let mask = unsigned.lane().integer(((1i128 << width) - 1) << selected.shift)?;
-        let mask = self.convert(Conversion::Value, ty, Expr::constant(unsigned, mask, at));
-        let kept = self.apply(Op::Not, ty, vec![mask.clone()], ty, span)?;
-        let old = Expr::load(place.clone(), at);
-        let cleared = self.apply(Op::And, ty, vec![old, kept], ty, span)?;
-        let bits = self.convert(Conversion::Value, ty, value);
-        let shift = Expr::constant(Elementary::Lint, Value::I64(i64::from(selected.shift)), at);
-        let shifted = self.apply(Op::Shl, ty, vec![bits, shift], ty, span)?;
-        // A signed part's sign bits do not spill over its neighbours.
-        let shifted = self.apply(Op::And, ty, vec![shifted, mask], ty, span)?;
-        let merged = self.apply(Op::Or, ty, vec![cleared, shifted], ty, span)?;
-        let merged = self.coerce(Operand::Typed(merged), place.ty, span)?;
         self.note_assigned(&place, base.span);
-        self.assign(place, merged, span);
-        Some(())
+        self.merge(place, selected.bits(), value, span)
     }
 
     /// `x S= c` sets, `x R= c` resets, while `c` is TRUE.
     fn set_reset(&mut self, target: &ast::Expr<'s>, value: &ast::Expr<'s>, set: bool, span: Span) -> Option<()> {
-        let found = self.place(target);
+        let found = self.place_or_view(target);
         let Some(found) = found.filter(|it| self.writable(it, target.span)) else {
             self.operand(value, None);
             return None;
         };
-        if found.place.ty != Type::BOOL {
-            let ty = self.type_name(found.place.ty);
+        let ty = self.type_of(&found);
+        if ty != Type::BOOL {
+            let ty = self.type_name(ty);
             let op = if set { "S=" } else { "R=" };
             self.error(Code::E0201, target.span, format!("`{op}` needs a BOOL, this is {ty}"));
             return None;
         }
+        let view = found.view;
         let mut place = found.place;
         self.note_assigned(&place, target.span);
         // The target is found first, as in an assignment, whether it is then written or not.
@@ -262,7 +247,7 @@ impl<'s> Checker<'_, 's> {
         let condition = self.after_place(&mut place, |this| this.condition(value))?;
         let then = self.nested(|this| {
             let at = this.at(span);
-            this.assign(place, Expr::bool(set, at), span);
+            this.write(place, view, Expr::bool(set, at), span);
         });
         self.push(StatementKind::If { condition, then, otherwise: Vec::new() }, span);
         Some(())
@@ -298,15 +283,5 @@ impl<'s> Checker<'_, 's> {
         if let Some(condition) = value {
             self.push(StatementKind::If { condition, then, otherwise }, at);
         }
-    }
-}
-
-/// The unsigned type of the same width, whose values are all bit patterns.
-fn unsigned_lane_of(ty: Elementary) -> Elementary {
-    match ty.lane().size() {
-        1 => Elementary::Byte,
-        2 => Elementary::Word,
-        4 => Elementary::Dword,
-        _ => Elementary::Lword,
     }
 }

@@ -8,7 +8,7 @@ use crate::types::declarations::{Declarations, GlobalSlot};
 use crate::types::table::Resolved;
 use crate::{Code, Diagnostic, Span};
 use rustc_hash::FxHashMap;
-use staunch_ir::{Address, Area, Elementary, Field, Place, Retain, Section, Type};
+use staunch_ir::{Address, Elementary, Field, Place, Retain, Section, Type};
 
 fn collect_body(body: &[ast::Statement<'_>], uses: &mut Vec<Use>) {
     ast::each_expr(body, &mut |expr| {
@@ -20,41 +20,10 @@ fn collect_body(body: &[ast::Statement<'_>], uses: &mut Vec<Use>) {
     });
 }
 
-/// Reports what shares bits, when all declarations are known. One area is addressed in several sizes,
-/// so that `%MB1` is a part of `%MW0`.
-pub(super) fn report_overlaps(declarations: &mut Declarations<'_>) {
-    let mut uses = std::mem::take(&mut declarations.addresses.uses);
-    uses.sort_by_key(|it| (it.address, it.span.file, it.span.start));
-    report_second_names(declarations, &uses);
-    let mut widest: Option<Use> = None;
-    for it in uses {
-        let end = it.address.bit + it.bits;
-        let before = widest.filter(|w| w.address.area == it.address.area && it.address.bit < w.address.bit + w.bits);
-        if let Some(other) = before
-            && other.address != it.address
-        {
-            report_overlap(declarations, &it, &other);
-        }
-        if widest.is_none_or(|w| (w.address.area, w.address.bit + w.bits) < (it.address.area, end)) {
-            widest = Some(it);
-        }
-    }
-}
-
-fn report_overlap(declarations: &mut Declarations<'_>, it: &Use, other: &Use) {
-    let error = |code| Diagnostic::new(code, it.span, "two variables lie on overlapping addresses");
-    let diagnostic = if !are_registers(declarations.dialect(it.span), other.address, it.address) {
-        error(Code::E0410).label("this address shares bits with another one, which is not supported yet")
-    } else if it.address.area == Area::Memory {
-        error(Code::W0410).label("this address shares bits with another one, but is kept apart from it")
-    } else {
-        return;
-    };
-    declarations.report(diagnostic.other(other.span, "the other address"));
-}
-
 /// Reports two names that one scope has for one address.
-fn report_second_names(declarations: &mut Declarations<'_>, uses: &[Use]) {
+pub(super) fn report_second_names(declarations: &mut Declarations<'_>, uses: &[Use]) {
+    let mut uses: Vec<&Use> = uses.iter().collect();
+    uses.sort_by_key(|it| (it.address, it.span.file, it.span.start));
     let mut declared: FxHashMap<(Address, Span), Span> = FxHashMap::default();
     for it in uses {
         let Some(first) = it.scope.and_then(|scope| declared.insert((it.address, scope), it.span)) else { continue };
@@ -70,11 +39,6 @@ fn report_second_names(declarations: &mut Declarations<'_>, uses: &[Use]) {
                 .help("give this variable an address of its own, or use one name"),
         );
     }
-}
-
-/// OpenPLC keeps each size apart, so that %IX0.0 and %IW0 are two registers.
-fn are_registers(dialect: Dialect, a: Address, b: Address) -> bool {
-    dialect.is_standard() && a.width != b.width
 }
 
 impl<'s> Declarations<'s> {

@@ -31,7 +31,11 @@ impl<'s> Declarations<'s> {
     pub(super) fn declare_globals(&mut self) {
         let mut fields = self.global_fields();
         fields.iter_mut().for_each(|it| self.addresses.complete(it));
-        self.program.aliases = (0..self.globals.len()).filter_map(|at| self.alias(at)).collect();
+        let names: Vec<_> = fields.iter().map(|it| it.name.clone()).collect();
+        self.settle_image(&mut fields);
+        let mut aliases: Vec<_> = (0..self.globals.len()).filter_map(|at| self.alias(at)).collect();
+        aliases.extend(self.views(&names));
+        self.program.aliases = aliases;
         self.program.globals = StructId::next(self.program.structs.len());
         let location = Location::default();
         self.program.structs.push(Struct { name: "Globals".to_owned(), doc: None, location, fields });
@@ -56,10 +60,7 @@ impl<'s> Declarations<'s> {
             return None;
         }
         let variable = self.global(at)?;
-        Some(staunch_ir::Variable {
-            name: self.global_field_name(at),
-            section: variable.section,
-            place: variable.place.clone(),
-        })
+        let (place, view) = self.image.stored(&variable.place);
+        Some(staunch_ir::Variable { name: self.global_field_name(at), section: variable.section, place, view })
     }
 }

@@ -5,6 +5,7 @@
 mod address;
 mod collect;
 mod global;
+mod image;
 mod initial;
 mod list;
 mod mock;
@@ -75,7 +76,9 @@ impl<'s> Declarations<'s> {
             }
         }
         self.declare_used_addresses();
-        address::report_overlaps(self);
+        let uses = std::mem::take(&mut self.addresses.uses);
+        address::report_second_names(self, &uses);
+        self.find_image(uses);
     }
 }
 

@@ -10,7 +10,7 @@ use super::place::Found;
 use crate::diagnostic::wording::article;
 use crate::types::signature::Formal;
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{Argument, Block, Conversion, Expr, FieldId, Place, Statement, StatementKind, Type};
+use staunch_ir::{Argument, Block, Conversion, Expr, FieldId, Place, Statement, StatementKind, Type, View};
 
 /// What a call does with one of its parts.
 #[derive(Clone, Debug)]
@@ -23,8 +23,8 @@ pub(crate) enum Role {
     /// A string of another capacity than the VAR_IN_OUT's: it goes in by a copy, cut where it is too
     /// long, and comes back so.
     Copied(Place),
-    /// It is assigned after the call.
-    Target(Source, bool),
+    /// It, or bits of it, is assigned after the call.
+    Target(Source, bool, Option<View>),
     /// It keeps a standard block's count, which is assigned to it after the call.
     Count(FieldId, Type),
 }
@@ -128,12 +128,12 @@ impl<'s> Checker<'_, 's> {
         negated: bool,
         source: Source,
     ) -> Option<()> {
-        let found = self.after_parts(&mut parts.written, |this| this.place(target))?;
+        let found = self.after_parts(&mut parts.written, |this| this.place_or_view(target))?;
         if !self.writable(&found, target.span) {
             return None;
         }
         self.note_assigned(&found.place, target.span);
-        parts.push(Held::Place(found.place), Role::Target(source, negated), target.span);
+        parts.push(Held::Place(found.place), Role::Target(source, negated, found.view), target.span);
         Some(())
     }
 
@@ -276,10 +276,12 @@ impl<'s> Checker<'_, 's> {
     fn connect(&mut self, parts: &Parts, at: usize) -> Option<()> {
         let Part { role, span } = &parts.parts[at];
         let target = parts.written[at].place()?.clone();
-        let (source, negated) = match role {
-            Role::Target(Source::Field(field, ty), negated) => (parts.instance()?.clone().field(*field, *ty), *negated),
-            Role::Target(Source::Variable(place), negated) => (place.clone(), *negated),
-            Role::Count(field, ty) => (parts.instance()?.clone().field(*field, *ty), false),
+        let (source, negated, view) = match role {
+            Role::Target(Source::Field(field, ty), negated, view) => {
+                (parts.instance()?.clone().field(*field, *ty), *negated, *view)
+            }
+            Role::Target(Source::Variable(place), negated, view) => (place.clone(), *negated, *view),
+            Role::Count(field, ty) => (parts.instance()?.clone().field(*field, *ty), false, None),
             Role::Instance | Role::Stored(..) | Role::Passed(_) | Role::Copied(_) => return None,
         };
         let location = self.at(*span);
@@ -287,8 +289,8 @@ impl<'s> Checker<'_, 's> {
         if negated {
             value = self.not(value, *span)?;
         }
-        let value = self.output(value, target.ty, *span)?;
-        self.assign(target, value, *span);
-        Some(())
+        let ty = view.map_or(target.ty, |it| Type::Elementary(it.ty));
+        let value = self.output(value, ty, *span)?;
+        self.write(target, view, value, *span)
     }
 }

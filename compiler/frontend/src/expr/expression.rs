@@ -4,7 +4,7 @@ use crate::names::{Found, Meaning, Sense};
 use crate::types::scope::Variable;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, UnaryOp};
-use staunch_ir::{Const, Conversion, Elementary, Expr, ExprKind, Op, Type, Value};
+use staunch_ir::{Const, Conversion, Elementary, Expr, ExprKind, Op, Type};
 use staunch_runtime::Class;
 
 impl<'s> Checker<'_, 's> {
@@ -81,8 +81,8 @@ impl<'s> Checker<'_, 's> {
             );
             return None;
         }
-        let at = self.at(span);
-        Some(Expr::load(variable.place.clone(), at))
+        let (place, view) = self.decl.image.stored(&variable.place);
+        self.read(place, view, span)
     }
 
     /// Reads a CONSTANT: a scalar is its value, so that it can size an array or label a CASE.
@@ -95,7 +95,7 @@ impl<'s> Checker<'_, 's> {
             (Const::Text(bytes), _, _) => ExprKind::Text(bytes),
             (Const::Zero, None, Type::String(_)) => ExprKind::Text(Vec::new()),
             (other, _, _) if self.context != Context::Body => ExprKind::Aggregate(other),
-            _ => ExprKind::Load(variable.place.clone()),
+            _ => ExprKind::Load(self.decl.image.stored(&variable.place).0),
         };
         Some(Expr::new(ty, kind, at))
     }
@@ -125,30 +125,19 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn load(&mut self, expr: &ast::Expr<'s>) -> Option<Expr> {
-        let found = self.place(expr)?;
+        let found = self.place_or_view(expr)?;
         if self.signature.is_none() {
             self.report(super::unresolved::not_constant(expr.span));
             return None;
         }
-        let at = self.at(expr.span);
-        Some(Expr::load(found.place, at))
+        self.read(found.place, found.view, expr.span)
     }
 
     /// `x.3`, `x.%X3`, `x.%B1`: a part of an integer or bit string.
     fn part(&mut self, base: &ast::Expr<'s>, part: ast::Name<'s>) -> Option<Expr> {
         let value = self.typed(base, None)?;
         let part = self.find_part(value.ty, part)?;
-        let Type::Elementary(ty) = value.ty else { return None };
-        let (at, span) = (value.at, base.span);
-        let whole = value.ty;
-        let shift = Expr::constant(Elementary::Lint, Value::I64(i64::from(part.shift)), at);
-        let shifted = self.apply(Op::Shr, whole, vec![value, shift], whole, span)?;
-        if part.ty == Elementary::Bool {
-            let one = Expr::constant(ty, ty.lane().integer(1)?, at);
-            let masked = self.apply(Op::And, whole, vec![shifted, one], whole, span)?;
-            return Some(self.convert(Conversion::Value, Type::BOOL, masked));
-        }
-        Some(self.convert(Conversion::Value, Type::Elementary(part.ty), shifted))
+        self.bits(value, part.bits(), Type::Elementary(part.ty), base.span)
     }
 
     fn unary(&mut self, op: UnaryOp, inner: &ast::Expr<'s>, expected: Option<Type>, span: Span) -> Option<Operand> {

@@ -33,3 +33,4 @@ mod string_compare;
 pub(crate) mod unresolved;
 pub(crate) mod uses;
 mod variadic;
+mod view;

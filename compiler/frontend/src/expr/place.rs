@@ -2,6 +2,7 @@
 
 use super::checker::Checker;
 use super::unresolved::not_constant;
+use super::view::Bits;
 use crate::dialect::Dialect;
 use crate::names::{self, Entry, Meaning, Sense};
 use crate::spelling::nearest;
@@ -9,7 +10,8 @@ use crate::types::scope::Variable;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::ExprKind as Ast;
 use staunch_ir::{
-    Address, Area, Array, ArrayId, BlockId, Elementary, Expr, FieldId, Op, Place, Section, StructId, Type, Value, alias,
+    Address, Area, Array, ArrayId, BlockId, Elementary, Expr, FieldId, Op, Place, Section, StructId, Type, Value, View,
+    alias,
 };
 use staunch_runtime::Direction;
 use std::rc::Rc;
@@ -18,6 +20,8 @@ use std::rc::Rc;
 #[derive(Clone, Debug)]
 pub(crate) struct Found<'s> {
     pub place: Place,
+    /// The bits of the place that it is.
+    pub view: Option<View>,
     pub access: Access<'s>,
 }
 
@@ -40,19 +44,33 @@ pub(crate) struct Part {
     pub shift: u32,
 }
 
+impl Part {
+    pub fn bits(self) -> Bits {
+        let width = if self.ty == Elementary::Bool { 1 } else { self.ty.lane().size() * 8 };
+        Bits { shift: self.shift, width }
+    }
+}
+
 impl<'s> Checker<'_, 's> {
-    /// The place that `expr` names, for reading or writing.
+    /// The place that `expr` names, for reading or writing, or for being handed on.
     pub(crate) fn place(&mut self, expr: &ast::Expr<'s>) -> Option<Found<'s>> {
+        let found = self.place_or_view(expr)?;
+        self.whole(found, expr.span)
+    }
+
+    /// The place that `expr` names, or the bits of it, for reading or writing.
+    pub(crate) fn place_or_view(&mut self, expr: &ast::Expr<'s>) -> Option<Found<'s>> {
         match &expr.kind {
             Ast::Name(name) => self.variable_place(*name),
-            Ast::Paren(inner) => self.place(inner),
+            Ast::Paren(inner) => self.place_or_view(inner),
             Ast::Address(name) => {
                 let address = self.decl.address(*name)?;
                 let Some(place) = self.decl.at_address(address) else {
                     self.report(not_constant(name.span));
                     return None;
                 };
-                Some(Found { place, access: Access::Write })
+                let (place, view) = self.decl.image.stored(&place);
+                Some(Found { place, view, access: Access::Write })
             }
             Ast::Member(base, name) => self.member(base, *name),
             Ast::Index(base, indices) => self.index(base, indices),
@@ -210,7 +228,8 @@ impl<'s> Checker<'_, 's> {
             | Section::Global
             | Section::External => Access::Write,
         };
-        Found { place: variable.place.clone(), access }
+        let (place, view) = self.decl.image.stored(&variable.place);
+        Found { place, view, access }
     }
 
     fn member(&mut self, base: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<Found<'s>> {
@@ -311,7 +330,7 @@ impl<'s> Checker<'_, 's> {
             _ if instance => Access::Write,
             _ => found.access,
         };
-        Some(Found { place: found.place.field(FieldId::next(at), ty), access })
+        Some(Found { place: found.place.field(FieldId::next(at), ty), view: None, access })
     }
 
     /// A variable of an instance that a dialect lets others read.
@@ -352,7 +371,8 @@ impl<'s> Checker<'_, 's> {
                 Access::Inner(name)
             }
         };
-        Some(Some(Found { place: variable.place.clone(), access }))
+        let (place, view) = self.decl.image.stored(&variable.place);
+        Some(Some(Found { place, view, access }))
     }
 
     /// Where the VAR_IN_OUT `name` of an instance is declared.
@@ -386,7 +406,7 @@ impl<'s> Checker<'_, 's> {
             Access::Write | Access::Constant(_) | Access::OwnInput(_) | Access::Output(_) => Access::Write,
         };
         let field = FieldId::next(at);
-        Some(Found { place: found.place.field(field, id.pin_type(field)?), access })
+        Some(Found { place: found.place.field(field, id.pin_type(field)?), view: None, access })
     }
 
     fn index(&mut self, base: &ast::Expr<'s>, indices: &[ast::Expr<'s>]) -> Option<Found<'s>> {
@@ -420,7 +440,7 @@ impl<'s> Checker<'_, 's> {
             let index_value = self.after_place(&mut place, |this| this.index_value(index, id))?;
             let at = self.at(index.span);
             let element = self.decl.program.array(id).element;
-            found = Found { place: place.index(index_value, element, at), access };
+            found = Found { place: place.index(index_value, element, at), view: None, access };
         }
         Some(found)
     }
@@ -520,12 +540,13 @@ impl<'s> Checker<'_, 's> {
 
     /// Refuses a write where the place may not be written.
     pub(crate) fn writable(&mut self, found: &Found<'s>, span: Span) -> bool {
-        self.may_be_given_away(found, span) && self.is_no_input_address(&found.place, span)
+        self.may_be_given_away(found, span) && self.is_no_input_address(found, span)
     }
 
     /// Reports an assignment to what the hardware sets before each scan.
-    fn is_no_input_address(&mut self, place: &Place, span: Span) -> bool {
-        let Some(address) = self.address_of(place).filter(|it| it.area == Area::Input) else { return true };
+    fn is_no_input_address(&mut self, found: &Found<'s>, span: Span) -> bool {
+        let address = found.view.map(|it| it.address).or_else(|| self.address_of(&found.place));
+        let Some(address) = address.filter(|it| it.area == Area::Input) else { return true };
         let refused = self.decl.dialect(span).protects_inputs();
         let code = if refused { Code::E0511 } else { Code::W0509 };
         self.report(
@@ -540,7 +561,9 @@ impl<'s> Checker<'_, 's> {
     fn address_of(&self, place: &Place) -> Option<Address> {
         let Some(staunch_ir::Projection::Field(field)) = place.projections.first() else { return None };
         match place.root {
-            staunch_ir::Root::Globals => self.decl.address_of_global(*field),
+            staunch_ir::Root::Globals => {
+                self.decl.program.structure(self.decl.program.globals).fields.get(field.index())?.address
+            }
             staunch_ir::Root::Instance => {
                 let state = self.signature.as_ref()?.state?;
                 self.decl.program.structure(state).fields.get(field.index())?.address

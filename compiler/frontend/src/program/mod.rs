@@ -8,6 +8,7 @@ pub(crate) mod tests;
 use crate::body::Checked;
 use crate::spelling::Key;
 use crate::types::declarations::{Declarations, empty_program};
+use crate::types::image::Image;
 use crate::types::scope::Variable;
 use crate::types::signature::Signature;
 use crate::{Code, Diagnostic, ast};
@@ -48,7 +49,7 @@ impl Declarations<'_> {
         let signature = self.signature(slot)?;
         let variables = match self.pous[slot].run {
             Some(_) => self.variables_of_run(slot, &signature)?,
-            None => variables(&signature),
+            None => variables(&self.image, &signature),
         };
         let kept = self.tests.kept.remove(&slot).unwrap_or_default();
         Some(Class {
@@ -82,7 +83,7 @@ impl Declarations<'_> {
         let inner = self.slot_of_instance(state)?;
         let signature = self.signature(inner)?;
         let arguments = arguments_of(&self.program.routines[slot].body, RoutineId::next(inner)).unwrap_or_default();
-        let mut variables = variables(&signature);
+        let mut variables = variables(&self.image, &signature);
         for Place { root, projections, .. } in variables.iter_mut().map(|it| &mut it.place) {
             match *root {
                 Root::Instance => drop(projections.splice(0..0, held.projections.iter().cloned())),
@@ -116,11 +117,10 @@ impl Declarations<'_> {
     }
 }
 
-fn variables(signature: &Signature<'_>) -> Vec<staunch_ir::Variable> {
-    let variable = |it: &Rc<Variable<'_>>| staunch_ir::Variable {
-        name: it.name.text.to_owned(),
-        section: it.section,
-        place: it.place.clone(),
+fn variables(image: &Image, signature: &Signature<'_>) -> Vec<staunch_ir::Variable> {
+    let variable = |it: &Rc<Variable<'_>>| {
+        let (place, view) = image.stored(&it.place);
+        staunch_ir::Variable { name: it.name.text.to_owned(), section: it.section, place, view }
     };
     signature.scope.variables.iter().map(variable).collect()
 }

@@ -46,10 +46,6 @@ impl Addresses {
         self.own_fields.binary_search(&at).ok()
     }
 
-    pub fn global_of_field(&self, field: usize) -> Option<usize> {
-        self.own_fields.get(field).copied()
-    }
-
     /// The global that a name of an address means.
     pub fn global_at(&self, name: ast::Name<'_>) -> Option<usize> {
         match self.storage.get(&parse(name.text)?)? {

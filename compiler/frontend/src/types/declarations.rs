@@ -1,6 +1,7 @@
 //! What a program declares: what expressions and bodies are checked against.
 
 use super::address::{self, Addresses};
+use super::image::Image;
 use super::scope::Variable;
 use super::signature::Signature;
 use super::synthetic::{NamedProgram, Synthetic};
@@ -55,6 +56,7 @@ pub(crate) struct Declarations<'s> {
     pub pous: Vec<PouSlot<'s>>,
     pub globals: Vec<GlobalSlot<'s>>,
     pub addresses: Addresses,
+    pub image: Image,
     pub synthetic: Synthetic<'s>,
     /// By their slots.
     pub named_programs: FxHashMap<usize, NamedProgram<'s>>,
@@ -75,6 +77,7 @@ impl<'s> Declarations<'s> {
             pous: Vec::new(),
             globals: Vec::new(),
             addresses: Addresses::default(),
+            image: Image::default(),
             synthetic: Synthetic::default(),
             named_programs: FxHashMap::default(),
             tests: Tests::default(),
@@ -182,14 +185,6 @@ impl<'s> Declarations<'s> {
 
     pub fn slot_of_instance(&self, id: StructId) -> Option<usize> {
         self.table.instances.get(&id).copied()
-    }
-
-    /// The direct address of a field of the globals.
-    pub fn address_of_global(&self, field: staunch_ir::FieldId) -> Option<staunch_ir::Address> {
-        match self.addresses.global_of_field(field.index()) {
-            Some(at) => address::parse(self.globals[at].decl.address?.text),
-            None => self.synthetic.address_of(field.index() - self.addresses.own_fields().len()),
-        }
     }
 
     /// What a path means in a namespace, as the options have it.

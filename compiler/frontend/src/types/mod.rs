@@ -3,6 +3,7 @@
 pub(crate) mod address;
 pub(crate) mod coercion;
 pub(crate) mod declarations;
+pub(crate) mod image;
 pub(crate) mod scope;
 pub(crate) mod signature;
 mod storage;

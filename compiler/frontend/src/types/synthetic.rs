@@ -22,10 +22,6 @@ impl<'s> Synthetic<'s> {
         self.declared[at]
     }
 
-    pub fn address_of(&self, at: usize) -> Option<staunch_ir::Address> {
-        self.fields.get(at).and_then(|it| it.address)
-    }
-
     pub fn fields(&self) -> Vec<Field> {
         self.fields.clone()
     }

@@ -122,5 +122,19 @@ impl Verifier<'_> {
             };
         }
         self.require(ty == Some(variable.place.ty), at, format_args!("{} is of another type", variable.name));
+        if let (Some(view), Some(ty)) = (variable.view, ty) {
+            let bits = self.bits_of(ty);
+            let is_inside = bits.is_some_and(|bits| view.bit + u64::from(view.address.width) <= bits);
+            self.require(is_inside, at, format_args!("{} is no part of what it is a view of", variable.name));
+        }
+    }
+
+    /// How many bits the views of a type may show.
+    fn bits_of(&self, ty: Type) -> Option<u64> {
+        match ty {
+            Type::Elementary(it) => it.lane().is_integer().then(|| u64::from(it.lane().size()) * 8),
+            Type::Array(id) => Some(self.bits_of(self.program.array(id).element)? * self.program.array(id).len()),
+            Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Struct(_) | Type::Block(_) => None,
+        }
     }
 }

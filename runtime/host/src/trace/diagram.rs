@@ -40,7 +40,7 @@ pub(super) enum Kind {
 
 pub(super) fn kind(ty: Type) -> Kind {
     match ty {
-        Type::Elementary(Elementary::Bool) => Kind::Bool,
+        Type::Elementary(Elementary::Bool) | Type::Bit(_) => Kind::Bool,
         Type::Elementary(_) => Kind::Number,
         Type::String(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => Kind::Text,
     }

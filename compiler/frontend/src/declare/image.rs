@@ -1,0 +1,231 @@
+//! Which direct addresses share bits, and which variable keeps them: the array among them, else the widest.
+//! Addresses are multiples of their own widths, so that of two which overlap one holds the other.
+
+use crate::dialect::Dialect;
+use crate::types::address::{Storage, Use};
+use crate::types::declarations::Declarations;
+use crate::types::image::Shared;
+use crate::types::table::{GLOBALS, scalar_initial};
+use crate::{Code, Diagnostic, Span};
+use rustc_hash::FxHashSet;
+use staunch_ir::{Address, Const, Elementary, Field, FieldId, Lane, Place, Retain, Root, Section, Type, Value, View};
+use std::cmp::Reverse;
+
+/// What lies at an address, among others.
+#[derive(Clone, Copy)]
+struct Member {
+    first: Use,
+    /// All bits, also those of an array's other elements.
+    bits: u64,
+    ty: Type,
+    /// The field that its declaration has got.
+    field: usize,
+}
+
+impl Member {
+    fn end(&self) -> u64 {
+        self.first.address.bit + self.bits
+    }
+}
+
+impl<'s> Declarations<'s> {
+    /// Finds the addresses that share bits, when all declarations are known.
+    pub(super) fn find_image(&mut self, mut uses: Vec<Use>) {
+        let key = |this: &Self, it: &Use| (it.address.area, this.register_size(it));
+        uses.sort_by_key(|it| {
+            (key(self, it), it.address.bit, Reverse(it.bits), it.address.width, it.span.file, it.span.start)
+        });
+        let mut group: Vec<Use> = Vec::new();
+        let mut end = 0;
+        for it in uses {
+            let goes_on = group.first().is_some_and(|first| key(self, first) == key(self, &it)) && it.address.bit < end;
+            if !goes_on {
+                self.share(&group);
+                group.clear();
+                end = 0;
+            }
+            end = end.max(it.address.bit + it.bits);
+            group.push(it);
+        }
+        self.share(&group);
+    }
+
+    /// OpenPLC keeps each size in registers of its own, so that %IX0.0 and %IW0 are two.
+    fn register_size(&self, it: &Use) -> u8 {
+        if self.dialect(it.span) == Dialect::Openplc { it.address.width } else { 0 }
+    }
+
+    fn share(&mut self, group: &[Use]) {
+        let mut seen = FxHashSet::default();
+        let firsts: Vec<Use> = group.iter().filter(|it| seen.insert(it.address)).copied().collect();
+        let [widest, others @ ..] = firsts.as_slice() else { return };
+        if others.is_empty() {
+            return;
+        }
+        // A body that names an address says itself which bits it means.
+        for it in others.iter().filter(|it| it.scope.is_some()) {
+            self.report(
+                Diagnostic::new(Code::W0410, it.span, "two variables lie on overlapping addresses")
+                    .label("this address shares bits with another one: what is assigned to one is read from both")
+                    .other(widest.span, "the other address"),
+            );
+        }
+        let members: Option<Vec<Member>> = firsts.iter().map(|it| self.member(*it, group)).collect();
+        let Some(members) = members else { return };
+        let storage = self.keeper(&members);
+        let Some((storage, keeper)) = storage else { return };
+        for it in members.iter().filter(|it| it.field != keeper.field) {
+            let bit = it.first.address.bit - keeper.first.address.bit;
+            let (Type::Elementary(ty), address) = (it.ty, it.first.address) else { continue };
+            let shared = Shared { storage, ty: keeper.ty, view: View { ty, bit, address } };
+            self.image.shared.insert(it.field, shared);
+        }
+    }
+
+    /// `None` where its declaration was refused.
+    fn member(&mut self, first: Use, group: &[Use]) -> Option<Member> {
+        let same = group.iter().filter(|it| it.address == first.address);
+        let bits = same.map(|it| it.bits).max().unwrap_or(first.bits);
+        let own = self.addresses.own_fields().len();
+        let (ty, field) = match self.addresses.storage.get(&first.address).copied()? {
+            Storage::Global(at) => (self.global(at)?.resolved.ty, self.addresses.field_of_global(at)?),
+            Storage::Hidden(at) => (self.synthetic.field_type(at), own + at),
+        };
+        Some(Member { first, bits, ty, field })
+    }
+
+    /// Who keeps the bits of all.
+    fn keeper(&mut self, members: &[Member]) -> Option<(usize, Member)> {
+        let mut arrays = members.iter().filter(|it| matches!(it.ty, Type::Array(_)));
+        let array = arrays.next();
+        if let Some(second) = arrays.next() {
+            self.refuse_sharing(second.first.span, "sharing the bits of two arrays");
+            return None;
+        }
+        let keeper = *array.or_else(|| members.iter().max_by_key(|it| it.bits))?;
+        for it in members.iter().filter(|it| it.field != keeper.field) {
+            let inside = keeper.first.address.bit <= it.first.address.bit && it.end() <= keeper.end();
+            if !inside {
+                self.refuse_sharing(it.first.span, "sharing a part of its bits with an array");
+                return None;
+            }
+            if !is_of_bits(it.ty) {
+                self.refuse_sharing(it.first.span, &format!("sharing the bits of {}", self.program.type_name(it.ty)));
+                return None;
+            }
+        }
+        let unit = self.unit(keeper.ty);
+        if unit.is_none_or(|bits| !keeper.first.address.bit.is_multiple_of(bits)) {
+            let ty = self.program.type_name(keeper.ty);
+            self.refuse_sharing(keeper.first.span, &format!("sharing the bits of {ty}"));
+            return None;
+        }
+        Some((keeper.field, keeper))
+    }
+
+    /// The bits of the integers that the type is made of.
+    fn unit(&self, ty: Type) -> Option<u64> {
+        match ty {
+            Type::Elementary(it) if is_of_bits(ty) => Some(u64::from(it.lane().size()) * 8),
+            Type::Array(id) => match self.program.array(id).element {
+                Type::Elementary(Elementary::Bool) | Type::Array(_) => None,
+                element => self.unit(element),
+            },
+            _ => None,
+        }
+    }
+
+    fn refuse_sharing(&mut self, span: Span, what: &str) {
+        self.report(
+            Diagnostic::new(Code::E0410, span, format!("{what} is not supported yet"))
+                .label("this address shares bits with another one")
+                .help("BOOL, integers and bit strings share their bits with one another, and with one array of them"),
+        );
+    }
+
+    /// Takes the fields away that others keep, with what they say of the start.
+    pub(super) fn settle_image(&mut self, fields: &mut Vec<Field>) {
+        self.image.settle(fields.len());
+        let mut shared: Vec<_> = self.image.shared.values().copied().collect();
+        shared.sort_by_key(|it| (it.storage, it.view.bit, it.view.address.width));
+        for views in shared.chunk_by(|a, b| a.storage == b.storage) {
+            let Some(keeper) = fields.get_mut(views[0].storage) else { continue };
+            self.start_together(keeper, views);
+        }
+        let mut field = 0;
+        fields.retain(|_| {
+            field += 1;
+            !self.image.shared.contains_key(&(field - 1))
+        });
+    }
+
+    /// Each declaration may say how its bits start.
+    fn start_together(&mut self, keeper: &mut Field, views: &[Shared]) {
+        let start = |this: &Self, address: Address| {
+            let start = this.addresses.starts.get(&address)?;
+            Some((start.kept, start.initial.clone()))
+        };
+        let own = keeper.address.and_then(|it| start(self, it)).and_then(|it| it.1);
+        let mut said = own.as_ref().map_or(0, |_| u64::MAX);
+        let mut bits = bits_of(&keeper.initial);
+        for it in views {
+            let Some((kept, initial)) = start(self, it.view.address) else { continue };
+            if kept {
+                keeper.retain = Retain::Kept;
+            }
+            let Some((value, span)) = initial else { continue };
+            if matches!(keeper.ty, Type::Array(_)) {
+                self.refuse_sharing(span, "an initial value for bits of an array");
+                continue;
+            }
+            let mask = (u64::MAX >> (64 - u64::from(it.view.address.width))) << it.view.bit;
+            let value = bits_of(&value) << it.view.bit & mask;
+            if (bits ^ value) & mask & said != 0 {
+                self.report(
+                    Diagnostic::new(Code::E0409, span, "two initial values for the same bits")
+                        .label("another declaration says that they start otherwise")
+                        .other(self.log.name_at(keeper.location), "they are kept here")
+                        .help("give the value in one of the declarations"),
+                );
+                continue;
+            }
+            bits |= value;
+            said |= mask;
+        }
+        if let Some(value) = self.program.lane(keeper.ty).and_then(|it| value_of(it, bits)) {
+            keeper.initial = scalar_initial(value);
+        }
+    }
+
+    /// The views as other names of what keeps their bits. `names` are those of all declared fields.
+    pub(super) fn views(&self, names: &[String]) -> Vec<staunch_ir::Variable> {
+        let mut views: Vec<_> = self.image.shared.keys().copied().collect();
+        views.sort_unstable();
+        let variable = |field: usize| {
+            let ty = Type::Elementary(self.image.shared.get(&field)?.view.ty);
+            let declared = Place::root(Root::Globals, Type::Struct(GLOBALS)).field(FieldId::next(field), ty);
+            let (place, view) = self.image.stored(&declared);
+            Some(staunch_ir::Variable { name: names.get(field)?.clone(), section: Section::Global, place, view })
+        };
+        views.into_iter().filter_map(variable).collect()
+    }
+}
+
+/// BOOL, integers and bit strings: all bits are values of them.
+fn is_of_bits(ty: Type) -> bool {
+    matches!(ty, Type::Elementary(it) if it == Elementary::Bool || it.lane().is_integer() && !it.is_time())
+}
+
+fn bits_of(value: &Const) -> u64 {
+    match value {
+        Const::Scalar(Value::Bool(it)) => u64::from(*it),
+        Const::Scalar(it) => it.as_integer().map_or(0, |it| u64::try_from(it & i128::from(u64::MAX)).unwrap_or(0)),
+        Const::Zero | Const::Text(_) | Const::Array(_) | Const::Struct(_) => 0,
+    }
+}
+
+/// The integer of these bits.
+fn value_of(lane: Lane, bits: u64) -> Option<Value> {
+    let (number, size) = (i128::from(bits), 1i128 << (lane.size() * 8));
+    lane.integer(number).or_else(|| lane.integer(number - size))
+}
