@@ -263,7 +263,7 @@ impl<'s> Checker<'_, 's> {
             location: at,
         });
         let place = Place::root(Root::Instance, Type::Struct(state)).field(id, ty);
-        let variable = Variable { name: name.clone(), section: Section::Internal, place: place.clone() };
+        let variable = Variable { name: name.clone(), section: Section::Internal, place: place.clone(), view: None };
         self.decl.tests.kept.entry(slot).or_default().push(variable);
         self.assign(place.clone(), value, span);
         Some((Expr::load(place, at), name))
