@@ -117,11 +117,20 @@ pub struct Facts {
     pub counts_levels: bool,
     /// It counts up only below its preset, and down only above 0.
     pub stops: bool,
+    /// A system that has not this block, and what it has in its place.
+    pub instead: Option<(Family, &'static str)>,
 }
 
 impl Facts {
-    pub(crate) const NONE: Self =
-        Self { alias: None, overload: None, option: None, kept: None, counts_levels: false, stops: false };
+    pub(crate) const NONE: Self = Self {
+        alias: None,
+        overload: None,
+        option: None,
+        kept: None,
+        counts_levels: false,
+        stops: false,
+        instead: None,
+    };
 }
 
 /// Which block of its family a block stands for while an option is on.

@@ -38,18 +38,18 @@ macro_rules! for_each_block {
             Iec "CTUD_ULINT" iec::Ctud<u64> {} { plain "" call staunch_iec_ctud_ulint; }
 
             // Shared by all dialects.
-            Iec "TON" iec::Ton {} #[also "TON_TIME"] #[overload LTIME] { timed "" call staunch_iec_ton; }
-            Iec "TOF" iec::Tof {} #[also "TOF_TIME"] #[overload LTIME] { timed "" call staunch_iec_tof; }
-            Iec "TP" iec::Tp {} #[also "TP_TIME"] #[overload LTIME] { timed "" call staunch_iec_tp; }
-            Iec "LTON" iec::Ton {} [TIME => LTIME] #[also "TON_LTIME"] { timed "" call staunch_iec_lton; }
-            Iec "LTOF" iec::Tof {} [TIME => LTIME] #[also "TOF_LTIME"] { timed "" call staunch_iec_ltof; }
-            Iec "LTP" iec::Tp {} [TIME => LTIME] #[also "TP_LTIME"] { timed "" call staunch_iec_ltp; }
-            Iec "R_TRIG" iec::RTrig {} { plain "" call staunch_iec_r_trig; }
-            Iec "F_TRIG" iec::FTrig {} { plain "" call staunch_iec_f_trig; }
+            Iec "TON" iec::Ton {} #[also "TON_TIME"] #[overload LTIME] #[in Logix "TONR with an FBD_TIMER"] { timed "" call staunch_iec_ton; }
+            Iec "TOF" iec::Tof {} #[also "TOF_TIME"] #[overload LTIME] #[in Logix "TOFR with an FBD_TIMER"] { timed "" call staunch_iec_tof; }
+            Iec "TP" iec::Tp {} #[also "TP_TIME"] #[overload LTIME] #[in Logix "no pulse timer: build it of a TONR"] { timed "" call staunch_iec_tp; }
+            Iec "LTON" iec::Ton {} [TIME => LTIME] #[also "TON_LTIME"] #[in Logix "TONR with an FBD_TIMER"] { timed "" call staunch_iec_lton; }
+            Iec "LTOF" iec::Tof {} [TIME => LTIME] #[also "TOF_LTIME"] #[in Logix "TOFR with an FBD_TIMER"] { timed "" call staunch_iec_ltof; }
+            Iec "LTP" iec::Tp {} [TIME => LTIME] #[also "TP_LTIME"] #[in Logix "no pulse timer: build it of a TONR"] { timed "" call staunch_iec_ltp; }
+            Iec "R_TRIG" iec::RTrig {} #[in Logix "OSRI with an FBD_ONESHOT"] { plain "" call staunch_iec_r_trig; }
+            Iec "F_TRIG" iec::FTrig {} #[in Logix "OSFI with an FBD_ONESHOT"] { plain "" call staunch_iec_f_trig; }
             // What ADVANCE_TIME in a unit test is; no program names it.
             Iec "__ADVANCE_TIME" iec::AdvanceTime {} { timed "" call staunch_iec_advance_time; }
-            Iec "SR" iec::Sr {} { plain "" call staunch_iec_sr; }
-            Iec "RS" iec::Rs {} { plain "" call staunch_iec_rs; }
+            Iec "SR" iec::Sr {} #[in Logix "SETD with a DOMINANT_SET"] { plain "" call staunch_iec_sr; }
+            Iec "RS" iec::Rs {} #[in Logix "RESD with a DOMINANT_RESET"] { plain "" call staunch_iec_rs; }
 
             // The compiler adds RCV to the inputs of R_CTU and R_CTD.
             Cscape "CTU" cscape::Ctu {} #[counts_levels] #[stops] { plain "" call staunch_cscape_ctu; }
@@ -63,8 +63,8 @@ macro_rules! for_each_block {
             Codesys "LCTU" codesys::Lctu { "R" => "RESET" } [ULINT => LWORD] { plain "" call staunch_codesys_lctu; }
             Codesys "LCTD" codesys::Lctd { "LD" => "LOAD" } [ULINT => LWORD] { plain "" call staunch_codesys_lctd; }
             Codesys "LCTUD" codesys::Lctud { "R" => "RESET", "LD" => "LOAD" } [ULINT => LWORD] { plain "" call staunch_codesys_lctud; }
-            Codesys "SR" codesys::Sr { "S1" => "SET1", "R" => "RESET" } { plain "" call staunch_codesys_sr; }
-            Codesys "RS" codesys::Rs { "S" => "SET", "R1" => "RESET1" } { plain "" call staunch_codesys_rs; }
+            Codesys "SR" codesys::Sr { "S1" => "SET1", "R" => "RESET" } #[in Logix "SETD with a DOMINANT_SET"] { plain "" call staunch_codesys_sr; }
+            Codesys "RS" codesys::Rs { "S" => "SET", "R1" => "RESET1" } #[in Logix "RESD with a DOMINANT_RESET"] { plain "" call staunch_codesys_rs; }
             // What CTU and LCTU mean under the option `ctu-stop-at-pv`.
             Codesys "CTU_STOP_AT_PV" codesys::CtuStopAtPv<u16> { "R" => "RESET" } [UINT => WORD] #[option CtuStopAtPv for "CTU"] #[stops] { plain "" call staunch_codesys_ctu_stop_at_pv; }
             Codesys "LCTU_STOP_AT_PV" codesys::CtuStopAtPv<u64> { "R" => "RESET" } [ULINT => LWORD] #[option CtuStopAtPv for "LCTU"] #[stops] { plain "" call staunch_codesys_lctu_stop_at_pv; }
@@ -205,6 +205,9 @@ macro_rules! fact {
     };
     ($facts:ident, counts_levels) => {
         Facts { counts_levels: true, ..$facts }
+    };
+    ($facts:ident, in $family:ident $instead:literal) => {
+        Facts { instead: Some((Family::$family, $instead)), ..$facts }
     };
     ($facts:ident, stops) => {
         Facts { stops: true, ..$facts }

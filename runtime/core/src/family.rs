@@ -1,5 +1,7 @@
 //! The systems whose documents define blocks, and what is said of each as a whole.
 
+use crate::Elementary;
+
 /// The system whose documentation defines a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Family {
@@ -51,6 +53,17 @@ impl Family {
         match self {
             Self::Iec | Self::Cscape | Self::Openplc => Keeps::Declared,
             Self::Codesys | Self::Logix => Keeps::Everything,
+        }
+    }
+
+    /// What the system has in place of a type, where it has not that.
+    pub const fn instead_of(self, ty: Elementary) -> Option<&'static str> {
+        match (self, ty) {
+            (Self::Logix, Elementary::Byte) => Some("SINT"),
+            (Self::Logix, Elementary::Word) => Some("INT"),
+            (Self::Logix, Elementary::Dword) => Some("DINT"),
+            (Self::Logix, Elementary::Lword) => Some("LINT"),
+            (Self::Iec | Self::Cscape | Self::Codesys | Self::Openplc | Self::Logix, _) => None,
         }
     }
 

@@ -1,5 +1,6 @@
 //! Findings that a plant lives with, and why: a file of lines as `parts 2: nobody reads CV past 50`.
 
+use super::beyond::Kind;
 use super::finding::{Finding, Findings, Verdict};
 use std::path::Path;
 
@@ -9,12 +10,19 @@ pub struct Accepted {
     path: String,
 }
 
+/// A trap by its number, or all that is found of a kind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum What {
+    Trap(usize),
+    Kind(&'static str),
+}
+
 #[derive(Clone, Debug)]
 struct Line {
     number: usize,
     /// A counter or variable; `*` is any.
     subject: String,
-    pitfall: usize,
+    what: What,
 }
 
 impl Accepted {
@@ -57,7 +65,11 @@ impl Accepted {
                 Verdict::Reachable(_) | Verdict::Undecided => None,
             });
             let why = why.unwrap_or_else(|| "is not found".to_owned());
-            format!("{}:{}: trap {} of `{}` is accepted, and {why}", self.path, it.number, it.pitfall, it.subject)
+            let what = match it.what {
+                What::Trap(number) => format!("trap {number}"),
+                What::Kind(name) => name.to_owned(),
+            };
+            format!("{}:{}: {what} of `{}` is accepted, and {why}", self.path, it.number, it.subject)
         };
         self.lines.iter().filter(stale).map(sentence).collect()
     }
@@ -74,13 +86,22 @@ impl Line {
         let (Some(subject), Some(pitfall), None) = (words.next(), words.next(), words.next()) else {
             return Err(SHAPE.to_owned());
         };
-        let pitfall = pitfall.parse().map_err(|_| format!("`{pitfall}` is no trap's number; {SHAPE}"))?;
-        Ok(Self { number, subject: subject.to_owned(), pitfall })
+        let kind = Kind::ALL.into_iter().map(Kind::name).find(|it| it.eq_ignore_ascii_case(pitfall));
+        let what = match (kind, pitfall.parse()) {
+            (Some(kind), _) => What::Kind(kind),
+            (None, Ok(number)) => What::Trap(number),
+            (None, Err(_)) => return Err(format!("`{pitfall}` is no trap's number; {SHAPE}")),
+        };
+        Ok(Self { number, subject: subject.to_owned(), what })
     }
 
     fn is_of(&self, finding: &Finding) -> bool {
         let subject = self.subject == "*" || self.subject.eq_ignore_ascii_case(&finding.subject);
-        subject && finding.pitfall.is_some_and(|it| it.number() == self.pitfall)
+        let what = match self.what {
+            What::Trap(number) => finding.pitfall.is_some_and(|it| it.number() == number),
+            What::Kind(name) => finding.kind.name() == name,
+        };
+        subject && what
     }
 }
 
@@ -92,7 +113,13 @@ mod tests {
     use super::*;
 
     fn finding(verdict: Verdict) -> Finding {
-        Finding { subject: "parts".to_owned(), pitfall: Some(Pitfall::numbered(2)), verdict }
+        Finding {
+            kind: Kind::Counter,
+            at: None,
+            subject: "parts".to_owned(),
+            pitfall: Some(Pitfall::numbered(2)),
+            verdict,
+        }
     }
 
     #[test]

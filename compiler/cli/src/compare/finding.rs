@@ -1,13 +1,15 @@
 //! For each counter and pitfall: reachable, with inputs that show it; impossible, and why; or undecided.
 
+use super::beyond::{self, Kind};
 use super::facts::Name;
-use super::pair::Pair;
+use super::pair::{Matched, Pair};
 use super::pitfall::{self, Habits, Pitfall, Use};
 use super::search::{Outcome, Subject, World};
 use super::shrink::{self, Goal};
 use super::trace::Trace;
 use super::usage::{self, Usage};
 use staunch_host::Event;
+use staunch_ir::Location;
 use staunch_runtime::PinRole;
 use std::collections::HashMap;
 
@@ -25,8 +27,11 @@ pub enum Verdict {
 
 #[derive(Clone, Debug)]
 pub struct Finding {
-    /// The counter or variable.
+    pub kind: Kind,
+    /// The counter, block or variable; of a fault, its kind.
     pub subject: String,
+    /// Where the first program says so; that of a counter is its name.
+    pub at: Option<Location>,
     pub pitfall: Option<Pitfall>,
     pub verdict: Verdict,
 }
@@ -34,6 +39,8 @@ pub struct Finding {
 #[derive(Debug, Default)]
 pub struct Findings {
     pub all: Vec<Finding>,
+    /// Where in `all` those are that are of no counter.
+    others: HashMap<Subject, usize>,
 }
 
 /// How both programs use each counter.
@@ -69,7 +76,7 @@ pub fn uses(pair: &Pair) -> Vec<Use> {
 
 impl Findings {
     /// What the systems' rules and the programs' texts alone say.
-    pub fn new(pair: &Pair, uses: Vec<Use>, renamed: usize) -> Self {
+    pub fn new(pair: &Pair, world: &World, uses: Vec<Use>, renamed: usize) -> Self {
         let mut all = Vec::new();
         for (at, usage) in uses.iter().enumerate() {
             let instances = pair.instances(at);
@@ -79,10 +86,35 @@ impl Findings {
                     Some(why) => Verdict::Impossible(why.to_owned()),
                     None => Verdict::Undecided,
                 };
-                all.push(Finding { subject: instances[0].path.clone(), pitfall: Some(pitfall), verdict });
+                let (kind, subject) = (Kind::Counter, instances[0].path.clone());
+                all.push(Finding { kind, subject, at: None, pitfall: Some(pitfall), verdict });
             }
         }
-        Self { all }
+        let mut found = Self { all, others: HashMap::new() };
+        found.add_others(pair, world);
+        found
+    }
+
+    /// What else may differ: it is open until the search has seen it.
+    fn add_others(&mut self, pair: &Pair, world: &World) {
+        let program = &pair.sides[0].program;
+        for (at, [ours, _]) in pair.blocks.iter().enumerate() {
+            let instance = &pair.sides[0].scalars.blocks[*ours];
+            let place = instance.field.map(|it| beyond::location(program, it));
+            self.add(Subject::Block(at), Kind::of(instance), instance.path.clone(), place);
+        }
+        for (at, it) in world.computed.iter().enumerate() {
+            self.add(Subject::Computed(at), Kind::Width, pair.path(it.variable).to_owned(), Some(it.at));
+        }
+        for it in beyond::kept_by_one(pair) {
+            let subject = pair.path(it.variable).to_owned();
+            self.add(Subject::Variable(it.variable), Kind::Retention, subject, Some(it.at));
+        }
+    }
+
+    fn add(&mut self, key: Subject, kind: Kind, subject: String, at: Option<Location>) {
+        self.others.insert(key, self.all.len());
+        self.all.push(Finding { kind, subject, at, pitfall: None, verdict: Verdict::Undecided });
     }
 
     pub fn all_impossible(&mut self, why: &str) {
@@ -91,9 +123,9 @@ impl Findings {
         }
     }
 
-    /// How many are not decided.
+    /// How many of counters are not decided.
     pub fn open(&self) -> usize {
-        self.all.iter().filter(|it| matches!(it.verdict, Verdict::Undecided)).count()
+        self.all.iter().filter(|it| it.is_open()).count()
     }
 
     /// What the search adds. `exact`: it left nothing out that the inputs could do.
@@ -122,18 +154,72 @@ impl Findings {
         }
         let mut others: Vec<_> = traces.into_iter().collect();
         others.sort_by_key(|(sighting, trace)| (trace.scans(), *sighting));
-        for (sighting, trace) in others {
-            let (subject, pitfall) = match sighting {
-                (Subject::Variable(matched), pitfall) => (pair.path(matched).to_owned(), pitfall),
-                (Subject::Counter(at), None) => (pair.instances(at)[0].path.clone(), None),
-                (Subject::Counter(_), Some(_)) => continue,
-            };
-            self.all.push(Finding { subject, pitfall, verdict: Verdict::Reachable(Some(trace)) });
+        for ((subject, pitfall), trace) in others {
+            if !matches!((subject, pitfall), (Subject::Counter(_), Some(_))) {
+                self.sighted(pair, subject, pitfall, trace);
+            }
         }
+    }
+
+    /// What is seen of no counter's trap: the shortest trace is the first of several.
+    fn sighted(&mut self, pair: &Pair, subject: Subject, pitfall: Option<Pitfall>, trace: Trace) {
+        let place = self.others.get(&self.declared(pair, subject)).copied();
+        let verdict = Verdict::Reachable(Some(trace));
+        match place.and_then(|at| self.all.get_mut(at)) {
+            Some(known) if matches!(known.verdict, Verdict::Reachable(_)) && known.pitfall == pitfall => {}
+            Some(known) if !matches!(known.verdict, Verdict::Reachable(_)) => {
+                (known.pitfall, known.verdict) = (pitfall, verdict);
+            }
+            Some(known) => {
+                let more = Finding { pitfall, verdict, ..known.clone() };
+                self.all.push(more);
+            }
+            None => {
+                let (kind, subject, at) = described(pair, subject);
+                self.all.push(Finding { kind, subject, at, pitfall, verdict });
+            }
+        }
+    }
+
+    /// The subject that is listed: of a variable, one scalar of its declaration.
+    fn declared(&self, pair: &Pair, subject: Subject) -> Subject {
+        let Subject::Variable(seen) = subject else { return subject };
+        let field = |it: Matched| pair.scalar(0, it[0]).field;
+        let same = |it: &&Subject| matches!(it, Subject::Variable(other) if field(*other) == field(seen));
+        self.others.keys().find(same).copied().unwrap_or(subject)
+    }
+}
+
+/// What the text does not say beforehand.
+fn described(pair: &Pair, subject: Subject) -> (Kind, String, Option<Location>) {
+    let variable = |it: Matched| {
+        let scalar = pair.scalar(0, it[0]);
+        let at = scalar.field.map(|it| beyond::location(&pair.sides[0].program, it));
+        (Kind::Retention, scalar.path.clone(), at)
+    };
+    match subject {
+        Subject::Counter(at) => (Kind::Counter, pair.instances(at)[0].path.clone(), None),
+        Subject::Variable(it) => variable(it),
+        Subject::Fault(side, at) => (Kind::Fault, pair.sides[side].dialect.name().to_owned(), Some(at)),
+        Subject::Block(_) | Subject::Computed(_) => unreachable!("they are listed before the search"),
     }
 }
 
 impl Finding {
+    /// Whether it is reason enough to fail: not what only follows from another finding.
+    pub fn is_reachable(&self) -> bool {
+        let follows = match self.kind {
+            Kind::Timer | Kind::OneShot | Kind::Latch => self.pitfall.is_none(),
+            Kind::Counter | Kind::Width | Kind::Retention | Kind::Fault => false,
+        };
+        matches!(self.verdict, Verdict::Reachable(Some(_))) && !follows
+    }
+
+    /// Whether a trap of a counter is neither shown nor ruled out.
+    pub fn is_open(&self) -> bool {
+        self.kind == Kind::Counter && matches!(self.verdict, Verdict::Undecided)
+    }
+
     pub fn trace(&self) -> Option<&Trace> {
         match &self.verdict {
             Verdict::Reachable(trace) => trace.as_ref(),

@@ -12,6 +12,8 @@ mod scalar;
 mod facts;
 mod usage;
 
+mod beyond;
+
 mod alphabet;
 mod assume;
 
@@ -92,7 +94,7 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
         return Err("--vars names no variable that both systems' programs have".to_owned());
     }
     let uses = finding::uses(&pair);
-    let mut findings = Findings::new(&pair, uses, renamed);
+    let mut findings = Findings::new(&pair, &world, uses, renamed);
     let verdict = if same_program && args.stimulus.is_none() {
         findings.all_impossible("both systems run the same program");
         Verdict::Equal("both systems run the same program: no statement, type, block or retention differs".to_owned())
@@ -145,6 +147,7 @@ fn world(pair: &mut Pair, args: &Compare) -> Result<World, String> {
     let wait = facts.iter().flat_map(|it| it.times.last().copied()).max().unwrap_or(0);
     let longest = usize::try_from(wait / pair.shortest_cycle().max(1)).unwrap_or(usize::MAX);
     let habits = finding::uses(pair).into_iter().map(|it| it.habits).collect();
+    let computed = if args.against.is_none() { beyond::computed_apart(pair) } else { Vec::new() };
     Ok(World {
         alphabet,
         assumptions,
@@ -154,6 +157,7 @@ fn world(pair: &mut Pair, args: &Compare) -> Result<World, String> {
         longest: longest.min(20_000),
         inputs_written: alphabet::are_written(pair, facts),
         habits,
+        computed,
     })
 }
 

@@ -82,10 +82,14 @@ pub struct Pair {
     pub counters: Vec<Matched>,
     /// For each counter, its outputs.
     pub outputs: Vec<Vec<Matched>>,
+    /// Other blocks that both sides have, and their outputs.
+    pub blocks: Vec<Matched>,
+    pub block_outputs: Vec<Vec<Matched>>,
     /// Whether all of both states is compared, or decides nothing.
     pub whole: bool,
     compared_bytes: Comparison,
     counter_bytes: Comparison,
+    block_bytes: Comparison,
     scratch: Vec<u8>,
     first: bool,
     /// A program had not run since an event.
@@ -141,20 +145,24 @@ impl Pair {
             compared: Vec::new(),
             counters: Vec::new(),
             outputs: Vec::new(),
+            blocks: Vec::new(),
+            block_outputs: Vec::new(),
             whole: false,
             compared_bytes: Comparison::default(),
             counter_bytes: Comparison::default(),
+            block_bytes: Comparison::default(),
             scratch: Vec::new(),
             first: false,
             restarted: false,
             never: Vec::new(),
             scans: 0,
         };
-        pair.counters = pair.find_counters();
+        pair.counters = pair.find_blocks(true);
+        pair.blocks = pair.find_blocks(false);
         pair.whole = !pair.sides.iter().any(|it| it.scalars.truncated);
-        pair.outputs = pair.find_outputs();
-        let outputs: Vec<Matched> = pair.outputs.concat();
-        pair.counter_bytes = pair.comparison(&outputs);
+        (pair.outputs, pair.block_outputs) = (pair.find_outputs(&pair.counters), pair.find_outputs(&pair.blocks));
+        pair.counter_bytes = pair.comparison(&pair.outputs.concat());
+        pair.block_bytes = pair.comparison(&pair.block_outputs.concat());
         pair.compare_only(only);
         pair
     }
@@ -201,20 +209,22 @@ impl Pair {
         wanted.filter_map(|(at, scalar)| Some([at, *other.get(scalar.key.as_str())?])).collect()
     }
 
-    fn find_counters(&self) -> Vec<Matched> {
-        let others = &self.sides[1].scalars.blocks;
-        let counterpart = |it: &Instance| others.iter().position(|other| other.key == it.key && other.counts());
-        let ours = self.sides[0].scalars.blocks.iter().enumerate().filter(|(_, it)| it.counts());
+    /// Instances on both sides: those that count, or the others.
+    fn find_blocks(&self, count: bool) -> Vec<Matched> {
+        let others = self.sides[1].scalars.blocks.iter().enumerate().filter(|(_, it)| it.counts() == count);
+        let others: HashMap<&str, usize> = others.map(|(at, it)| (it.key.as_str(), at)).collect();
+        let counterpart = |it: &Instance| others.get(it.key.as_str()).copied();
+        let ours = self.sides[0].scalars.blocks.iter().enumerate().filter(|(_, it)| it.counts() == count);
         ours.filter_map(|(at, it)| Some([at, counterpart(it)?])).collect()
     }
 
-    fn find_outputs(&self) -> Vec<Vec<Matched>> {
+    fn find_outputs(&self, blocks: &[Matched]) -> Vec<Vec<Matched>> {
         let all = self.matched(|it| matches!(it.role, Role::Output(_)));
         let of = |[counter, _]: &Matched| {
             let own = |it: &&Matched| self.scalar(0, it[0]).role == Role::Output(*counter);
             all.iter().filter(own).copied().collect()
         };
-        self.counters.iter().map(of).collect()
+        blocks.iter().map(of).collect()
     }
 
     fn find_compared(&self, only: &[String]) -> Vec<Matched> {
@@ -364,6 +374,16 @@ impl Pair {
     /// Whether every counter shows the same on both sides.
     pub fn counters_agree(&self) -> bool {
         self.all_equal(&self.counter_bytes)
+    }
+
+    /// Whether every other block shows the same on both sides.
+    pub fn blocks_agree(&self) -> bool {
+        self.all_equal(&self.block_bytes)
+    }
+
+    /// Whether all that is compared was the same before the last scan.
+    pub fn agreed_in_all(&self) -> bool {
+        self.compared.iter().all(|it| self.agreed(*it))
     }
 
     /// Whether these show the same, and did before the last scan.

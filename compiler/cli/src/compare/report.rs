@@ -1,6 +1,7 @@
 //! What `staunch compare` prints: a table and a list for people, or an object a finding.
 
 use super::accept::Accepted;
+use super::beyond::Kind;
 use super::finding::{self, Finding, Findings};
 use super::missing::Missing;
 use super::pair::{Matched, Pair, Row};
@@ -13,6 +14,7 @@ use crate::args::{Compare, MessageFormat};
 use crate::session::Session;
 use crate::{NOT_FOUND, REJECTED, output};
 use staunch_host::Event;
+use staunch_ir::Location;
 use std::fmt::Write;
 
 /// Rows at the start and the end of a long trace that are shown.
@@ -161,11 +163,9 @@ impl Report<'_> {
 
     /// 0 where nothing differs, or what does is accepted with what is undecided.
     fn code(&self, verdict: &Verdict, cause: &Cause, findings: &Findings, accepted: &Accepted) -> u8 {
-        let open = |wanted: fn(&finding::Verdict) -> bool| {
-            findings.all.iter().any(|it| wanted(&it.verdict) && !accepted.accepts(it))
-        };
-        let reachable = open(|it| matches!(it, finding::Verdict::Reachable(Some(_))));
-        let undecided = open(|it| matches!(it, finding::Verdict::Undecided));
+        let open = |wanted: fn(&Finding) -> bool| findings.all.iter().any(|it| wanted(it) && !accepted.accepts(it));
+        let reachable = open(Finding::is_reachable);
+        let undecided = open(Finding::is_open);
         let explained = cause.pitfall.is_some() && !reachable;
         match verdict {
             _ if !self.missing.is_empty() => REJECTED,
@@ -231,7 +231,7 @@ impl Report<'_> {
             }
         }
         if self.args.stimulus.is_none() {
-            text += &listed(findings, accepted);
+            text += &self.listed(findings, accepted);
         }
         text + &self.names_change()
     }
@@ -371,7 +371,7 @@ impl Report<'_> {
         let mut text = String::new();
         if self.args.stimulus.is_none() {
             for finding in &findings.all {
-                text += &object(pair, world, [from, to], finding, accepted);
+                text += &self.object(pair, world, [from, to], finding, accepted);
             }
         }
         for it in &self.missing {
@@ -412,6 +412,69 @@ impl Report<'_> {
         text + "}\n"
     }
 
+    /// One finding as an object.
+    fn object(
+        &self,
+        pair: &Pair,
+        world: &World,
+        [from, to]: [&str; 2],
+        finding: &Finding,
+        accepted: &Accepted,
+    ) -> String {
+        let (verdict, why) = match &finding.verdict {
+            finding::Verdict::Reachable(_) if finding.pitfall.is_none() => ("reachable", quoted(finding.kind.reason())),
+            finding::Verdict::Reachable(_) => ("reachable", "null".to_owned()),
+            finding::Verdict::Impossible(why) => ("impossible", quoted(why)),
+            finding::Verdict::Undecided => ("undecided", "null".to_owned()),
+        };
+        let scans = finding.trace().map_or("null".to_owned(), |it| it.scans().to_string());
+        let saved = finding.trace().map_or("null".to_owned(), |it| quoted(&stimulus::text(pair, world, it)));
+        let at = finding.at.map_or("null".to_owned(), |it| quoted(&self.place(it)));
+        format!(
+            "{{\"reason\":\"finding\",\"from\":\"{from}\",\"to\":\"{to}\",\"kind\":\"{}\",\"at\":{at},\"counter\":{},\"trap\":{},\"verdict\":\"{verdict}\",\"scans\":{scans},\"stimulus\":{saved},\"why\":{why},\"accepted\":{}}}\n",
+            finding.kind.name(),
+            quoted(&finding.subject),
+            number(finding.pitfall),
+            accepted.accepts(finding)
+        )
+    }
+
+    /// `file:line`
+    fn place(&self, at: Location) -> String {
+        let source = self.session.sources.files().get(usize::from(at.file));
+        format!("{}:{}", source.map_or("", |it| it.path.as_str()), at.line)
+    }
+
+    /// What is known of each counter, block and variable, in a line for each verdict.
+    fn listed(&self, findings: &Findings, accepted: &Accepted) -> String {
+        let mut subjects: Vec<(&str, Kind, Option<Location>)> = Vec::new();
+        for finding in &findings.all {
+            let subject = (finding.subject.as_str(), finding.kind, finding.at);
+            if !subjects.contains(&subject) {
+                subjects.push(subject);
+            }
+        }
+        let mut known: Vec<((Kind, String), Vec<String>)> = Vec::new();
+        for (subject, kind, at) in subjects {
+            let is_own = |it: &&Finding| (it.subject.as_str(), it.kind, it.at) == (subject, kind, at);
+            let own: Vec<&Finding> = findings.all.iter().filter(is_own).collect();
+            let lines = (kind, of_subject(&own, accepted));
+            let place = at.map_or_else(String::new, |it| format!(" ({}, {})", kind.name(), self.place(it)));
+            let heading = format!("`{subject}`{place}");
+            match known.iter_mut().find(|it| it.0 == lines) {
+                Some((_, alike)) => alike.push(heading),
+                None => known.push((lines, vec![heading])),
+            }
+        }
+        let mut text = String::new();
+        for ((_, lines), headings) in known {
+            let more =
+                if headings.len() > 1 { format!(" and {} more alike", headings.len() - 1) } else { String::new() };
+            let _ = write!(text, "\n{}{more}\n{lines}", headings[0]);
+        }
+        text
+    }
+
     fn difference(&self, pair: &Pair, rows: &[Row], shortest: bool, cause: &Cause) -> String {
         let differences = rows.last().map_or_else(Vec::new, |it| pair.differences(it));
         let sentence = cause.pitfall.map_or("null".to_owned(), |it| quoted(it.sentence()));
@@ -436,48 +499,6 @@ fn number(pitfall: Option<Pitfall>) -> String {
     pitfall.map_or("null".to_owned(), |it| it.number().to_string())
 }
 
-/// One finding as an object.
-fn object(pair: &Pair, world: &World, [from, to]: [&str; 2], finding: &Finding, accepted: &Accepted) -> String {
-    let (verdict, why) = match &finding.verdict {
-        finding::Verdict::Reachable(_) => ("reachable", "null".to_owned()),
-        finding::Verdict::Impossible(why) => ("impossible", quoted(why)),
-        finding::Verdict::Undecided => ("undecided", "null".to_owned()),
-    };
-    let scans = finding.trace().map_or("null".to_owned(), |it| it.scans().to_string());
-    let saved = finding.trace().map_or("null".to_owned(), |it| quoted(&stimulus::text(pair, world, it)));
-    format!(
-        "{{\"reason\":\"finding\",\"from\":\"{from}\",\"to\":\"{to}\",\"counter\":{},\"trap\":{},\"verdict\":\"{verdict}\",\"scans\":{scans},\"stimulus\":{saved},\"why\":{why},\"accepted\":{}}}\n",
-        quoted(&finding.subject),
-        number(finding.pitfall),
-        accepted.accepts(finding)
-    )
-}
-
-/// What is known of each counter, in a line for each verdict.
-fn listed(findings: &Findings, accepted: &Accepted) -> String {
-    let mut text = String::new();
-    let mut subjects: Vec<&str> = Vec::new();
-    for finding in &findings.all {
-        if !subjects.contains(&finding.subject.as_str()) {
-            subjects.push(&finding.subject);
-        }
-    }
-    let mut known: Vec<(String, Vec<&str>)> = Vec::new();
-    for subject in subjects {
-        let own: Vec<&Finding> = findings.all.iter().filter(|it| it.subject == subject).collect();
-        let lines = of_subject(&own, accepted);
-        match known.iter_mut().find(|it| it.0 == lines) {
-            Some((_, alike)) => alike.push(subject),
-            None => known.push((lines, vec![subject])),
-        }
-    }
-    for (lines, subjects) in known {
-        let more = if subjects.len() > 1 { format!(" and {} more alike", subjects.len() - 1) } else { String::new() };
-        let _ = write!(text, "\n`{}`{more}\n{lines}", subjects[0]);
-    }
-    text
-}
-
 /// What is known of one counter.
 fn of_subject(own: &[&Finding], accepted: &Accepted) -> String {
     let mut text = String::new();
@@ -486,13 +507,13 @@ fn of_subject(own: &[&Finding], accepted: &Accepted) -> String {
             let _ = writeln!(text, "  {}{}", reached(finding, trace.as_ref()), note(finding, accepted));
         }
     }
-    let undecided: Vec<String> = own
-        .iter()
-        .filter(|it| matches!(it.verdict, finding::Verdict::Undecided))
-        .map(|it| format!("{}{}", number(it.pitfall), note(it, accepted)))
-        .collect();
-    if !undecided.is_empty() {
-        let _ = writeln!(text, "  undecided: trap {}", undecided.join(", "));
+    let undecided: Vec<&&Finding> = own.iter().filter(|it| matches!(it.verdict, finding::Verdict::Undecided)).collect();
+    let traps: Vec<String> =
+        undecided.iter().filter_map(|it| Some(format!("{}{}", it.pitfall?.number(), note(it, accepted)))).collect();
+    if !traps.is_empty() {
+        let _ = writeln!(text, "  undecided: trap {}", traps.join(", "));
+    } else if !undecided.is_empty() {
+        text.push_str("  undecided: it was not seen to differ\n");
     }
     text + &impossible(own)
 }
@@ -505,7 +526,7 @@ fn reached(finding: &Finding, trace: Option<&Trace>) -> String {
     };
     match finding.pitfall {
         Some(pitfall) => format!("reachable {when}: trap {}. {}", pitfall.number(), pitfall.sentence()),
-        None => format!("differs {when}; what it is given differs, or no trap explains it"),
+        None => format!("differs {when}: {}", finding.kind.reason()),
     }
 }
 
@@ -518,13 +539,16 @@ fn impossible(own: &[&Finding]) -> String {
     let mut reasons: Vec<(&str, Vec<String>)> = Vec::new();
     for finding in own {
         let finding::Verdict::Impossible(why) = &finding.verdict else { continue };
-        let pitfall = number(finding.pitfall);
+        let pitfall = finding.pitfall.map(|it| it.number().to_string());
         match reasons.iter_mut().find(|it| it.0 == why) {
-            Some((_, pitfalls)) => pitfalls.push(pitfall),
-            None => reasons.push((why, vec![pitfall])),
+            Some((_, pitfalls)) => pitfalls.extend(pitfall),
+            None => reasons.push((why, pitfall.into_iter().collect())),
         }
     }
-    let line = |(why, pitfalls): (&str, Vec<String>)| format!("  impossible: trap {}: {why}\n", pitfalls.join(", "));
+    let line = |(why, pitfalls): (&str, Vec<String>)| match pitfalls.as_slice() {
+        [] => format!("  does not differ: {why}\n"),
+        _ => format!("  impossible: trap {}: {why}\n", pitfalls.join(", ")),
+    };
     reasons.into_iter().map(line).collect()
 }
 

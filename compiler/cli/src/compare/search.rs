@@ -6,6 +6,7 @@
 
 use super::alphabet::Alphabet;
 use super::assume::Assumptions;
+use super::beyond::Candidate;
 use super::exhaustive::Exhaustive;
 use super::guided::Guided;
 use super::pair::{Faults, Matched, Pair, Step};
@@ -14,7 +15,8 @@ use super::random;
 use super::shrink;
 use super::trace::Trace;
 use staunch_host::Event;
-use staunch_ir::Value;
+use staunch_ir::{Location, Value};
+use staunch_runtime::Fault;
 use std::collections::{BTreeSet, HashMap};
 
 /// Bytes of states that all scans together may go through; a small state counts as `SMALL`.
@@ -38,6 +40,8 @@ pub struct World {
     pub inputs_written: bool,
     /// How the programs use each counter.
     pub habits: Vec<Habits>,
+    /// Variables that the two systems compute in other types.
+    pub computed: Vec<Candidate>,
 }
 
 /// What a pitfall was seen on.
@@ -45,8 +49,14 @@ pub struct World {
 pub enum Subject {
     /// A counter, by its position among those of the pair.
     Counter(usize),
-    /// A variable, by its scalars.
+    /// Another block, by its position among those of the pair.
+    Block(usize),
+    /// A variable that an event parts, by its scalars.
     Variable(Matched),
+    /// A variable that the two systems compute in other types, by its position among the candidates.
+    Computed(usize),
+    /// A fault on one side, and where.
+    Fault(usize, Location),
 }
 
 pub type Sighting = (Subject, Option<Pitfall>);
@@ -179,9 +189,36 @@ pub fn look(pair: &Pair, world: &World, event: Option<Event>, faults: Faults) ->
             }
         }
     }
+    if !pair.blocks_agree() {
+        sightings.extend(blocks_seen(pair, event));
+    }
+    if event.is_none() && differs {
+        sightings.extend(computed_seen(pair, world));
+    }
+    if pair.faults_differ(faults) {
+        let of = |(side, fault): (usize, Option<Fault>)| Some((Subject::Fault(side, fault?.at), None));
+        sightings.extend(faults.into_iter().enumerate().filter_map(of));
+    }
     if event.is_some() && differs {
         let restarted = pair.newly_different();
         sightings.extend(restarted.into_iter().map(|it| (Subject::Variable(it), Some(Pitfall::RESTART))));
     }
     Seen { differs, sightings }
+}
+
+/// The blocks that have parted in the last scan, by an event or by what they are given.
+fn blocks_seen(pair: &Pair, event: Option<Event>) -> Vec<Sighting> {
+    let pitfall = (event.is_some() || pair.is_restarted()).then_some(Pitfall::RESTART);
+    let parted = |outputs: &[Matched]| {
+        outputs.iter().any(|it| pair.newly_differs(*it)) && outputs.iter().all(|it| pair.agreed(*it))
+    };
+    let blocks = (0..pair.blocks.len()).filter(|at| parted(&pair.block_outputs[*at]));
+    blocks.map(|at| (Subject::Block(at), pitfall)).collect()
+}
+
+/// The variables that have parted by how they are computed: all that they are made of was the same.
+fn computed_seen(pair: &Pair, world: &World) -> Vec<Sighting> {
+    let parted = world.computed.iter().enumerate().filter(|it| pair.newly_differs(it.1.variable));
+    let mut parted = parted.map(|(at, _)| (Subject::Computed(at), None)).peekable();
+    if parted.peek().is_some() && pair.agreed_in_all() && pair.counters_agree() { parted.collect() } else { Vec::new() }
 }

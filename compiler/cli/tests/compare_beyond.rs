@@ -1,0 +1,224 @@
+//! What a move changes beside counters, planted one kind a program: `staunch compare` lists it at the user's own
+//! line, with the scans that show it.
+
+use std::path::PathBuf;
+use std::process::Command;
+
+struct Planted {
+    name: &'static str,
+    from: &'static str,
+    to: &'static str,
+    /// From the second line on; the first is the PROGRAM's head.
+    source: &'static str,
+    /// Of the finding, as JSON has it.
+    kind: &'static str,
+    subject: &'static str,
+    line: u32,
+    trap: Option<u32>,
+    scans: u32,
+}
+
+const PLANTED: &[Planted] = &[
+    // The count passes 2 on one system alone, in its third edge.
+    Planted {
+        name: "timer",
+        from: "iec",
+        to: "cscape",
+        source: "VAR_INPUT item : BOOL; END_VAR VAR e : R_TRIG; c : CTU; END_VAR
+VAR late : TON; END_VAR
+e(CLK := item); c(e.Q, FALSE, 2);
+late(IN := c.CV > 2, PT := T#20ms);",
+        kind: "timer",
+        subject: "late",
+        line: 3,
+        trap: None,
+        scans: 6,
+    },
+    Planted {
+        name: "one_shot",
+        from: "iec",
+        to: "cscape",
+        source: "VAR_INPUT item : BOOL; END_VAR VAR e : R_TRIG; c : CTU; END_VAR
+VAR over : R_TRIG; END_VAR
+e(CLK := item); c(e.Q, FALSE, 2);
+over(CLK := c.CV > 2);",
+        kind: "one-shot",
+        subject: "over",
+        line: 3,
+        trap: None,
+        scans: 5,
+    },
+    Planted {
+        name: "latch",
+        from: "iec",
+        to: "cscape",
+        source: "VAR_INPUT item : BOOL; END_VAR VAR e : R_TRIG; c : CTU; END_VAR
+VAR jam : SR; END_VAR
+e(CLK := item); c(e.Q, FALSE, 2);
+jam(c.CV > 2, FALSE);",
+        kind: "latch",
+        subject: "jam",
+        line: 3,
+        trap: None,
+        scans: 5,
+    },
+    // Logix keeps a latch over a power cycle.
+    Planted {
+        name: "kept_latch",
+        from: "iec",
+        to: "logix",
+        source: "VAR_INPUT on, off : BOOL; END_VAR
+VAR lamp : RS; END_VAR
+lamp(on, off);",
+        kind: "latch",
+        subject: "lamp",
+        line: 3,
+        trap: Some(11),
+        scans: 2,
+    },
+    // The sum leaves INT: CODESYS computes at 32 bits.
+    Planted {
+        name: "width",
+        from: "iec",
+        to: "codesys",
+        source: "VAR_INPUT a, b : INT; END_VAR VAR sum : DINT; END_VAR
+
+sum := a + b;",
+        kind: "width",
+        subject: "sum",
+        line: 4,
+        trap: None,
+        scans: 1,
+    },
+    Planted {
+        name: "condition",
+        from: "iec",
+        to: "codesys",
+        source: "VAR_INPUT a, b : SINT; END_VAR VAR hot : BOOL; END_VAR
+hot := FALSE;
+IF a + b > 100 THEN
+    hot := TRUE;
+END_IF",
+        kind: "width",
+        subject: "hot",
+        line: 4,
+        trap: None,
+        scans: 1,
+    },
+    // A plain variable, which STOP -> RUN of CODESYS keeps.
+    Planted {
+        name: "retention",
+        from: "iec",
+        to: "codesys",
+        source: "VAR_INPUT on : BOOL; END_VAR
+VAR seen : BOOL; END_VAR
+seen := seen OR on;",
+        kind: "retention",
+        subject: "seen",
+        line: 3,
+        trap: Some(11),
+        scans: 2,
+    },
+    // The divisor is 0 when the count is 3, which CSCAPE does not reach.
+    Planted {
+        name: "fault",
+        from: "iec",
+        to: "cscape",
+        source: "VAR_INPUT item : BOOL; END_VAR VAR e : R_TRIG; c : CTU; share : INT; END_VAR
+e(CLK := item); c(e.Q, FALSE, 2);
+share := 100 / (c.CV - 3);",
+        kind: "fault",
+        subject: "iec",
+        line: 4,
+        trap: None,
+        scans: 5,
+    },
+];
+
+fn folder() -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("compare_beyond");
+    std::fs::create_dir_all(&folder).expect("a folder for the programs");
+    folder
+}
+
+fn program(name: &str, source: &str) -> PathBuf {
+    let path = folder().join(format!("{name}.st"));
+    std::fs::write(&path, format!("PROGRAM p\n{source}\nEND_PROGRAM\n")).expect("a program");
+    path
+}
+
+fn compare(path: &PathBuf, from: &str, to: &str, more: &[&str]) -> (Option<i32>, String) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
+    command.arg("compare").arg(path).args(["--from", from, "--to", to, "-A", "warnings", "--budget", "400000"]);
+    let output = command.args(more).env("NO_COLOR", "1").output().expect("the command starts");
+    (output.status.code(), String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+#[test]
+fn each_kind_is_found_at_its_line() {
+    for it in PLANTED {
+        let path = program(it.name, it.source);
+        let (code, text) = compare(&path, it.from, it.to, &["--message-format", "json"]);
+        assert_eq!(code, Some(1), "{}: {text}", it.name);
+        let of = format!("\"kind\":\"{}\",\"at\":\"{}:{}\"", it.kind, path.display(), it.line);
+        let found =
+            text.lines().find(|line| line.contains(&of) && line.contains(&format!("\"counter\":\"{}\"", it.subject)));
+        let found = found.unwrap_or_else(|| panic!("{}: no {of}\n{text}", it.name));
+        let trap = it.trap.map_or("null".to_owned(), |it| it.to_string());
+        let shown = format!("\"trap\":{trap},\"verdict\":\"reachable\",\"scans\":{},", it.scans);
+        assert!(found.contains(&shown), "{}: not {shown}\n{found}", it.name);
+    }
+}
+
+/// What is the same on both systems is not said to differ, and what follows from a counter's trap fails no more than that.
+#[test]
+fn what_does_not_differ_is_not_found() {
+    let timer = PLANTED.iter().find(|it| it.name == "timer").expect("it is planted");
+    let path = program("accepted", timer.source);
+    let accept = folder().join("accepted.txt");
+    std::fs::write(&accept, "c 2: nobody reads the count past its preset\nc 1: it is fed edges\n").expect("a file");
+    let (code, text) = compare(&path, "iec", "cscape", &["--accept", &accept.display().to_string()]);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(text.contains("`late` (timer, ") && text.contains("both systems run the same block"), "{text}");
+    let path = program(
+        "alike",
+        "VAR_INPUT a : BOOL; END_VAR VAR t : TON; n : BOOL; END_VAR\nt(IN := a, PT := T#30ms); n := t.Q;",
+    );
+    let (code, text) = compare(&path, "iec", "cscape", &[]);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(!text.contains("reachable after"), "{text}");
+}
+
+/// Findings of a kind are accepted by its name.
+#[test]
+fn a_kind_is_accepted_by_its_name() {
+    let retention = PLANTED.iter().find(|it| it.name == "retention").expect("it is planted");
+    let path = program("accepted_kind", retention.source);
+    let accept = folder().join("accepted_kind.txt");
+    std::fs::write(&accept, "seen retention: the plant is never stopped while it runs\n").expect("a file");
+    let (code, text) = compare(&path, "iec", "codesys", &["--accept", &accept.display().to_string()]);
+    assert_eq!(code, Some(0), "{text}");
+}
+
+/// What the other system lacks is said at the user's own line, by what is known of each system.
+#[test]
+fn what_is_lacking_is_said_at_its_line() {
+    let path = program(
+        "lacking",
+        "VAR_INPUT a : BOOL; END_VAR
+VAR t : TON; latch : SR; mask : WORD; END_VAR
+t(IN := a, PT := T#30ms); latch(t.Q, FALSE); mask := 3;",
+    );
+    let (code, text) = compare(&path, "codesys", "logix", &[]);
+    assert_eq!(code, Some(1), "{text}");
+    for line in ["LOGIX has no TON (`t`)", "LOGIX has no SR (`latch`): there it is SETD", "LOGIX has no WORD (`mask`)"]
+    {
+        assert!(text.contains(&format!("{}:3: {line}", path.display())), "{line}\n{text}");
+    }
+    let path = program("no_ctud", "VAR_INPUT a : BOOL; END_VAR\nVAR c : CTUD; END_VAR\nc(a, FALSE, FALSE, FALSE, 3);");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
+    let output =
+        command.arg("compare").arg(&path).args(["--from", "iec", "--to", "cscape"]).output().expect("it starts");
+    assert_eq!(output.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("no_ctud.st:3:"), "{output:?}");
+}
