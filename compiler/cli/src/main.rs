@@ -26,8 +26,9 @@ mod new;
 
 mod output;
 
-use args::{Cli, Command};
+use args::{Cli, Command, MessageFormat};
 use session::Session;
+use std::io::Write as _;
 use std::process::ExitCode;
 
 /// The program was rejected, or a test failed.
@@ -76,6 +77,18 @@ fn report_panic(panic: &std::panic::PanicHookInfo<'_>) {
     eprintln!("at {}/issues (staunch {}).", env!("CARGO_PKG_REPOSITORY"), env!("CARGO_PKG_VERSION"));
 }
 
+/// Says what went wrong where the format's readers look.
+fn report(format: MessageFormat, message: &str) {
+    match format {
+        MessageFormat::Json => {
+            let object = format!("{{\"reason\":\"error\",\"message\":{}}}\n", staunch_host::json_text(message));
+            // A reader that has gone away wants no more.
+            let _ = std::io::stdout().write_all(object.as_bytes());
+        }
+        MessageFormat::Human | MessageFormat::Short => eprintln!("error: {message}"),
+    }
+}
+
 fn dispatch(cli: Cli) -> u8 {
     let result = match &cli.command {
         Command::Explain(it) => explain::explain(it),
@@ -92,7 +105,7 @@ fn dispatch(cli: Cli) -> u8 {
     match result {
         Ok(code) => code,
         Err(message) => {
-            eprintln!("error: {message}");
+            report(cli.common.format(), &message);
             USAGE
         }
     }

@@ -137,6 +137,21 @@ pub(crate) fn write_row<'t>(out: &mut dyn Write, cells: impl Iterator<Item = &'t
     out.write_all(b"\n")
 }
 
+/// A file's text: UTF-8, or UTF-16 as spreadsheets write "Unicode text", with or without its mark.
+pub fn decoded(bytes: &[u8]) -> Cow<'_, str> {
+    let from: fn([u8; 2]) -> u16 = match bytes {
+        [0xFF, 0xFE, ..] => u16::from_le_bytes,
+        [0xFE, 0xFF, ..] => u16::from_be_bytes,
+        // A header begins with a letter or a sign of ASCII.
+        [1..=0xFF, 0, ..] => u16::from_le_bytes,
+        [0, 1..=0xFF, ..] => u16::from_be_bytes,
+        _ => return String::from_utf8_lossy(bytes),
+    };
+    let words = bytes.chunks_exact(2).map(|it| from([it[0], it[1]]));
+    let text: String = char::decode_utf16(words).map(|it| it.unwrap_or(char::REPLACEMENT_CHARACTER)).collect();
+    Cow::Owned(text)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

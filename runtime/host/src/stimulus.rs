@@ -68,7 +68,7 @@ enum Column {
 impl Stimulus {
     pub fn read(path: &Path, map: &Map, running: &[usize]) -> Result<Self, Error> {
         let bytes = std::fs::read(path).map_err(|error| Error::file(path, "read", error))?;
-        let text = String::from_utf8_lossy(&bytes);
+        let text = csv::decoded(&bytes);
         Self::parse(path, &text, map, running)
     }
 

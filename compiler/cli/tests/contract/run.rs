@@ -240,3 +240,27 @@ fn a_state_larger_than_the_stack_starts() {
     let ran = super::Ran::of(built.args(shown.split(' ')).output().unwrap());
     assert_eq!(ran.out(0), expected);
 }
+
+#[test]
+fn every_error_of_every_command_is_an_object_on_request() {
+    let folder = Folder::with("errors", &[("main.st", COUNTER), ("bad.csv", "scan,nothing\n1,1\n")]);
+    for command in [
+        "check none.st",
+        "run none.st",
+        "run main.st --vars nothing",
+        "run main.st --stimulus bad.csv",
+        "run main.st --retain main.st",
+        "run main.st --program Other",
+        "bench none.st",
+        "test none.st",
+        "compare none.st --from codesys --to logix",
+        "build main.st --emit rust -o no/such/folder/x.rs",
+        "explain E9999",
+        "new .",
+    ] {
+        let out = folder.staunch(&format!("{command} --message-format json")).out(2);
+        let error: serde_json::Value = serde_json::from_str(&out).unwrap_or_else(|_| panic!("{command}: {out}"));
+        assert_eq!(error["reason"], "error", "{command}");
+        assert!(!error["message"].as_str().unwrap().is_empty(), "{command}");
+    }
+}

@@ -93,3 +93,29 @@ fn a_spreadsheet_with_decimal_commas_is_read() {
     let out = folder.staunch("run main.st --stimulus in.csv --trace - -A warnings --vars on,level,m[1,2]").out(0);
     assert_eq!(out, "scan,time_ms,on,level,\"m[1,2]\"\n1,0,TRUE,3.5,4\n2,10,TRUE,-0.25,4\n");
 }
+
+#[test]
+fn a_spreadsheet_in_utf_16_is_read() {
+    let folder = Folder::with(
+        "utf16",
+        &[("main.st", "PROGRAM Main VAR_INPUT on : BOOL; text : STRING[9]; END_VAR ; END_PROGRAM")],
+    );
+    let text = "scan;on;text\r\n1;TRUE;aé\r\n2;;b\r\n";
+    let units = |mark: &str| -> Vec<u16> { mark.chars().chain(text.chars()).map(|it| u32::from(it) as u16).collect() };
+    let files: [Vec<u8>; 4] = [
+        units("\u{FEFF}").into_iter().flat_map(u16::to_le_bytes).collect(),
+        units("\u{FEFF}").into_iter().flat_map(u16::to_be_bytes).collect(),
+        units("").into_iter().flat_map(u16::to_le_bytes).collect(),
+        units("").into_iter().flat_map(u16::to_be_bytes).collect(),
+    ];
+    folder.write("utf8.csv", text);
+    let run = |file: &str| {
+        folder.staunch(&format!("run main.st --stimulus {file} --trace - -A warnings --vars on,text")).out(0)
+    };
+    let expected = run("utf8.csv");
+    assert!(expected.starts_with("scan,time_ms,on,text\n1,0,TRUE,a"), "{expected}");
+    for file in files {
+        folder.write("utf16.csv", file);
+        assert_eq!(run("utf16.csv"), expected);
+    }
+}
