@@ -34,7 +34,7 @@ impl<'p> Leaves<'p> {
 
     fn read(&self, path: &str, ty: Type, bytes: &[u8], leaves: &mut Vec<(String, String)>) {
         match ty {
-            Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) => {
+            Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::Enum(_) => {
                 let lane = self.program.lane(ty).expect("an elementary type has a lane");
                 leaves.push((path.to_owned(), scalar(Value::read(lane, bytes))));
             }

@@ -101,7 +101,7 @@ impl Macros<'_> {
             .iter()
             .map(|field| match field.ty {
                 Type::Block(_) => String::new(),
-                Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) => {
+                Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::Enum(_) => {
                     self.claim(macro_name(&[owner, &field.name]))
                 }
                 Type::String(_) | Type::Array(_) | Type::Struct(_) => {
@@ -119,7 +119,7 @@ impl Macros<'_> {
                         variable(&name, pin.lane(), place, &mut self.text);
                     }
                 }
-                Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) => {
+                Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::Enum(_) => {
                     if let Some(lane) = program.lane(field.ty) {
                         variable(&name, lane, offset, &mut self.text);
                     }

@@ -153,7 +153,9 @@ pub enum TypeKind<'s> {
     Struct(Vec<VarDecl<'s>>),
     /// `(Red, Green := 5) INT`, also `INT (Red, Green)`.
     Enum { base: Option<Name<'s>>, values: Vec<EnumValue<'s>> },
-    /// A construct that is parsed to be refused by name: REF_TO, POINTER TO, REFERENCE TO, UNION.
+    /// `REF_TO T`, `POINTER TO T`, `REFERENCE TO T`
+    Reference { kind: staunch_ir::RefKind, target: Box<TypeSpec<'s>> },
+    /// A construct that is parsed to be refused by name: UNION.
     Unsupported(&'static str),
     /// A type that did not parse, or is not told apart any further; reported.
     Error,
@@ -264,6 +266,16 @@ pub enum StatementKind<'s> {
         target: Expr<'s>,
         value: Expr<'s>,
         set: bool,
+    },
+    /// `a REF= b`
+    Bind {
+        target: Expr<'s>,
+        value: Expr<'s>,
+    },
+    /// `a ?= b`
+    Attempt {
+        target: Expr<'s>,
+        value: Expr<'s>,
     },
     /// An expression that stands alone; only a call has a meaning there.
     Expr(Expr<'s>),
@@ -474,6 +486,8 @@ pub(crate) fn each_body<'a, 's>(statement: &'a Statement<'s>, see: &mut dyn FnMu
         | StatementKind::Assign { .. }
         | StatementKind::AssignAll { .. }
         | StatementKind::SetReset { .. }
+        | StatementKind::Bind { .. }
+        | StatementKind::Attempt { .. }
         | StatementKind::Expr(_)
         | StatementKind::Exit
         | StatementKind::Continue
@@ -491,7 +505,10 @@ pub(crate) fn each_expr<'a, 's>(statements: &'a [Statement<'s>], visit: &mut dyn
             | StatementKind::Continue
             | StatementKind::Return
             | StatementKind::Error => {}
-            StatementKind::Assign { target, value } | StatementKind::SetReset { target, value, .. } => {
+            StatementKind::Assign { target, value }
+            | StatementKind::SetReset { target, value, .. }
+            | StatementKind::Bind { target, value }
+            | StatementKind::Attempt { target, value } => {
                 each_part(target, visit);
                 each_part(value, visit);
             }

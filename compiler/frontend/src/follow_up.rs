@@ -14,8 +14,6 @@ const DECLARING: [(&str, &str); 6] = [
     ("CLASS", "END_CLASS"),
     ("NAMESPACE", "END_NAMESPACE"),
 ];
-/// Names that references bring with them.
-const OF_REFERENCES: [&str; 3] = ["REF", "NULL", "ADR"];
 
 /// Takes out what follows from the constructs that are refused.
 pub(crate) fn remove(sources: &Sources, diagnostics: &mut Vec<Diagnostic>) {
@@ -47,8 +45,6 @@ impl Unknown {
             let length = rest.to_ascii_uppercase().find("END_FUNCTION_BLOCK").unwrap_or(rest.len());
             let end = u32::try_from(start + length).unwrap_or(u32::MAX);
             self.heirs.push(Span { end, ..span });
-        } else if word.starts_with("REF") || word.starts_with("POINTER") {
-            self.names.extend(OF_REFERENCES.map(str::to_owned));
         }
     }
 

@@ -51,7 +51,8 @@ impl<'p> Frame<'p> {
             (Root::Local(_), _) => true,
             (Root::Instance, Some(Projection::Field(id))) => self.state.is_some_and(|state| {
                 let field = &self.program.structure(state).fields[id.index()];
-                field.section == Section::Internal && field.address.is_none()
+                let is_reached = !self.program.references.is_empty();
+                field.section == Section::Internal && field.address.is_none() && !is_reached
             }),
             (Root::Instance | Root::Globals | Root::Param(_), _) => false,
         }
@@ -62,8 +63,13 @@ impl<'p> Frame<'p> {
     }
 }
 
-/// How the storage of two places of one body relates.
+/// How the storage of two places of one body relates. A reference may lead to any variable that does not
+/// live for one call; those whose addresses are taken have [fixed storage](crate::reference::fixed).
 pub fn alias(frame: &Frame<'_>, a: &Place, b: &Place) -> Alias {
+    if a.is_followed() || b.is_followed() {
+        let is_local = |it: &Place| matches!(it.root, Root::Local(_)) && !it.is_followed();
+        return if is_local(a) || is_local(b) { Alias::No } else { Alias::May };
+    }
     if a.root == b.root {
         return paths(&a.projections, &b.projections);
     }
@@ -96,10 +102,11 @@ fn part_of(program: &Program, ty: Type, projection: &Projection) -> Option<Type>
         (Projection::Field(field), ty) => program.member(ty, *field),
         (Projection::Index { .. }, Type::Array(id)) => Some(program.array(id).element),
         (Projection::Index { .. }, _) => None,
+        (Projection::Deref { target, .. }, _) => Some(*target),
     }
 }
 
-/// Two ways from one root.
+/// Two ways from one root, through no reference.
 fn paths(a: &[Projection], b: &[Projection]) -> Alias {
     let mut found = Alias::Must;
     for pair in a.iter().zip(b) {
@@ -114,6 +121,7 @@ fn paths(a: &[Projection], b: &[Projection]) -> Alias {
             }
             (Projection::Field(_), Projection::Field(_) | Projection::Index { .. })
             | (Projection::Index { .. }, Projection::Field(_)) => return Alias::No,
+            (Projection::Deref { .. }, _) | (_, Projection::Deref { .. }) => return Alias::May,
         }
     }
     found
@@ -123,7 +131,8 @@ fn paths(a: &[Projection], b: &[Projection]) -> Alias {
 pub fn common_fields(a: &[Projection], b: &[Projection]) -> usize {
     let same = |(a, b): &(&Projection, &Projection)| match (a, b) {
         (Projection::Field(a), Projection::Field(b)) => a == b,
-        (Projection::Index { .. }, _) | (_, Projection::Index { .. }) => false,
+        (Projection::Index { .. } | Projection::Deref { .. }, _)
+        | (_, Projection::Index { .. } | Projection::Deref { .. }) => false,
     };
     a.iter().zip(b).take_while(same).count()
 }
@@ -136,6 +145,7 @@ pub fn borrows_meet(a: &[Projection], b: &[Projection]) -> bool {
         (Projection::Field(a), Projection::Field(b)) => a == b,
         (Projection::Index { .. }, Projection::Index { .. }) => true,
         (Projection::Field(_), Projection::Index { .. }) | (Projection::Index { .. }, Projection::Field(_)) => false,
+        (Projection::Deref { .. }, _) | (_, Projection::Deref { .. }) => true,
     })
 }
 
@@ -154,7 +164,7 @@ fn holds(program: &Program, whole: Type, part: Type) -> bool {
             let lane = program.lane(part);
             id.info().pins.iter().any(|pin| Some(pin.ty.lane()) == lane)
         }
-        Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => false,
+        Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => false,
     }
 }
 
@@ -169,6 +179,11 @@ pub fn reads(frame: &Frame<'_>, expr: &Expr, place: &Place) -> bool {
 fn reads_shared(frame: &Frame<'_>, expr: &Expr) -> bool {
     let globals = frame.globals();
     let mut found = false;
+    if !frame.program.references.is_empty() {
+        // A callee may reach any variable, also a local whose address it is passed.
+        visit::reads(expr, &mut |_| found = true);
+        return found;
+    }
     visit::reads(expr, &mut |it| found |= !frame.is_private(it) && alias(frame, it, &globals) != Alias::No);
     found
 }

@@ -10,9 +10,10 @@ mod variables;
 use crate::loops::{Known, checked_locals, constant_position};
 use crate::visit::{self, Access};
 use crate::{
-    Argument, ArrayId, Class, ClassKind, Expr, ExprKind, For, LocalId, Op, ParamId, Place, Program, Projection, Root,
-    Routine, RoutineId, RoutineKind, Statement, StatementKind, Type,
+    Argument, ArrayId, Class, ClassKind, Expr, ExprKind, FieldId, For, LocalId, Op, ParamId, Place, Program,
+    Projection, Root, Routine, RoutineId, RoutineKind, Statement, StatementKind, StructId, Type, reference,
 };
+use std::collections::BTreeSet;
 
 pub use variables::Variables;
 
@@ -44,22 +45,28 @@ pub struct Effects {
     pub borrowed: Vec<bool>,
     /// For each local, whether its values are always within its subrange.
     pub checked: Vec<bool>,
+    /// Whether it makes references or follows them, and so needs to find all of the state.
+    pub reaches: bool,
+    /// Whether it follows references, and may read and write what they lead to.
+    follows: bool,
 }
 
 impl Effects {
     /// Whether its code needs to find the globals.
     pub fn uses_globals(&self) -> bool {
-        self.names.any_global()
+        self.names.any_global() || self.reaches
     }
 }
 
 /// For each routine of a verified program.
 pub fn effects(program: &Program, rules: &Rules) -> Vec<Effects> {
     let mut known: Vec<Effects> = Vec::with_capacity(program.routines.len());
+    let addressable = reference::addressable(program);
     for routine in &program.routines {
         let (borrowed, checked) = (vec![false; routine.locals.len()], checked_locals(routine));
         let effects = Effects { borrowed, checked, ..Effects::default() };
-        let mut finder = Finder { program, rules, known: &known, routine, loops: Vec::new(), effects };
+        let mut finder =
+            Finder { program, rules, known: &known, addressable: &addressable, routine, loops: Vec::new(), effects };
         finder.block(&routine.body);
         let mut effects = finder.effects;
         effects.calls.sort_unstable();
@@ -85,6 +92,7 @@ struct Finder<'a> {
     program: &'a Program,
     rules: &'a Rules,
     known: &'a [Effects],
+    addressable: &'a BTreeSet<(StructId, FieldId)>,
     routine: &'a Routine,
     /// The loops around, with private counters.
     loops: Vec<&'a For>,
@@ -145,6 +153,10 @@ impl<'a> Finder<'a> {
         self.effects.reads.add_globals(&known.reads);
         self.effects.writes.add_globals(&known.writes);
         self.effects.calls.push(callee);
+        self.effects.reaches |= known.reaches;
+        if known.follows {
+            self.reaches_any();
+        }
     }
 
     /// What a callee does to its instance and through its parameters is done to what it is handed.
@@ -162,11 +174,35 @@ impl<'a> Finder<'a> {
         }
     }
 
+    /// Whatever references lead to may be read and written.
+    fn reaches_any(&mut self) {
+        self.effects.reaches = true;
+        if std::mem::replace(&mut self.effects.follows, true) {
+            return;
+        }
+        let roots = [(Root::Globals, Some(self.program.globals)), (Root::Instance, self.routine.state)];
+        for (owner, field) in self.addressable {
+            for (root, _) in roots.iter().filter(|(_, of)| *of == Some(*owner)) {
+                let ty = self.program.structure(*owner).fields[field.index()].ty;
+                let variable = Place::root(*root, Type::Struct(*owner)).field(*field, ty);
+                self.effects.names.add(&variable, 0);
+                self.passed(&variable, true, true);
+            }
+        }
+        for (at, param) in self.routine.params.iter().enumerate() {
+            let place = Place::root(Root::Param(ParamId::next(at)), param.ty);
+            self.passed(&place, true, true);
+        }
+    }
+
     fn reads_and_writes(&mut self, place: &Place) {
         self.passed(place, true, true);
     }
 
     fn passed(&mut self, place: &Place, is_read: bool, is_written: bool) {
+        if place.is_followed() {
+            return;
+        }
         let fields = self.fields(place);
         if is_read {
             self.effects.reads.add(place, fields);
@@ -178,6 +214,9 @@ impl<'a> Finder<'a> {
 
     /// A borrowed place is read and written as far as the callee does so.
     fn touches(&mut self, place: &Place, access: Access) {
+        if place.is_followed() {
+            return;
+        }
         let fields = self.fields(place);
         self.effects.names.add(place, fields);
         self.passed(place, access == Access::Read, access == Access::Write);
@@ -192,6 +231,7 @@ impl<'a> Finder<'a> {
             Some(Type::Struct(id)) => self.program.structure(id).fields.len(),
             Some(
                 Type::Elementary(_)
+                | Type::Reference(_)
                 | Type::Subrange(..)
                 | Type::String(_)
                 | Type::Enum(_)
@@ -206,6 +246,10 @@ impl<'a> Finder<'a> {
         match &expr.kind {
             ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => {}
             ExprKind::Load(place) => self.place(place),
+            ExprKind::AddressOf(place) => {
+                self.place(place);
+                self.effects.reaches = true;
+            }
             ExprKind::Apply(op, operands) => {
                 operands.iter().for_each(|it| self.expr(it));
                 self.effects.faults |= (self.rules.operation_faults)(self.program, *op, operands);
@@ -232,6 +276,11 @@ impl<'a> Finder<'a> {
                     let dropped = self.rules.drops_checks && self.is_within(index, id);
                     self.effects.faults |= !constant && !dropped;
                     Some(self.program.array(id).element)
+                }
+                (Projection::Deref { target, .. }, _) => {
+                    self.effects.faults = true;
+                    self.reaches_any();
+                    Some(*target)
                 }
                 (Projection::Field(_) | Projection::Index { .. }, _) => None,
             };

@@ -21,6 +21,8 @@ pub enum ExprKind {
     Aggregate(Const),
     /// Reads a place of the expression's type, or of a subrange that is made of it.
     Load(Place),
+    /// A reference to a place.
+    AddressOf(Box<Place>),
     /// An operation at `lane`: that of each operand and the result which the operation's row
     /// calls `T`. Operands of a comparison may be enumerations; both then have one type.
     Apply(Op, Vec<Expr>),
@@ -81,6 +83,7 @@ impl Expr {
             ExprKind::Const(_)
             | ExprKind::Text(_)
             | ExprKind::Aggregate(_)
+            | ExprKind::AddressOf(_)
             | ExprKind::Apply(..)
             | ExprKind::ApplyText(..)
             | ExprKind::Convert(..) => self.ty,
@@ -94,6 +97,7 @@ impl Expr {
             ExprKind::Text(_)
             | ExprKind::Aggregate(_)
             | ExprKind::Load(_)
+            | ExprKind::AddressOf(_)
             | ExprKind::Apply(..)
             | ExprKind::ApplyText(..)
             | ExprKind::Convert(..) => None,

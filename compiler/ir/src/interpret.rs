@@ -4,11 +4,12 @@
 mod evaluate;
 mod execute;
 mod fold;
+mod follow;
 
 pub use fold::fold;
 
 use crate::layout::{Layout, usize_of};
-use crate::{Place, Program, Routine, RoutineId, Value};
+use crate::{Place, Program, Routine, RoutineId, Value, reference};
 use core::fmt;
 use evaluate::Scope;
 use staunch_runtime::{Context, Fault};
@@ -29,6 +30,8 @@ pub struct Interpreter<'p> {
     layout: Layout,
     frames: Vec<FrameImage>,
     initial: Vec<u8>,
+    /// The words of the table by which accesses through references are checked.
+    table: Vec<u32>,
     /// The state, and after it the locals of the routines that are running, callee after caller.
     memory: Vec<u8>,
     /// Where the by-reference parameters of the running routines refer to: offsets in `memory`.
@@ -69,6 +72,7 @@ impl<'p> Interpreter<'p> {
             frames: program.routines.iter().map(|routine| FrameImage::new(program, &layout, routine)).collect(),
             memory: initial.clone(),
             initial,
+            table: reference::table(program, &layout),
             layout,
             references: Vec::new(),
             inputs: Vec::new(),

@@ -151,6 +151,7 @@ impl Layout {
             Type::Array(id) => self.arrays[id.index()].expect("every array has been measured"),
             Type::Struct(id) => self.structs[id.index()].shape,
             Type::Block(id) => block_shape(id),
+            Type::Reference(_) => lane_shape(Lane::U64),
         }
     }
 
@@ -179,7 +180,12 @@ impl Layout {
         match ty {
             Type::Struct(id) => self.field(id, field),
             Type::Block(id) => pin_offset(id, field),
-            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Array(_) => {
+            Type::Elementary(_)
+            | Type::Reference(_)
+            | Type::Subrange(..)
+            | Type::String(_)
+            | Type::Enum(_)
+            | Type::Array(_) => {
                 unreachable!("verified IR: only structures and blocks have fields")
             }
         }

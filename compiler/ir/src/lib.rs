@@ -34,6 +34,7 @@ pub mod effects;
 pub mod interpret;
 pub mod layout;
 pub mod loops;
+pub mod reference;
 pub mod stack;
 pub mod startup;
 pub mod symbols;
@@ -52,7 +53,8 @@ pub use program::{
 };
 pub use statement::{Argument, Arm, Block, For, Statement, StatementKind, Step};
 pub use types::{
-    Array, ArrayId, BlockId, BoundsId, Const, Elementary, Enum, EnumId, Enumerator, Struct, StructId, Type,
+    Array, ArrayId, BlockId, BoundsId, Const, Elementary, Enum, EnumId, Enumerator, RefKind, RefType, ReferenceId,
+    Struct, StructId, Type,
 };
 
 pub use staunch_runtime::{FaultKind, Lane, Location, Value};

@@ -57,7 +57,9 @@ pub fn checked_locals(routine: &Routine) -> Vec<bool> {
     visit::statements(&routine.body, &mut |statement| {
         let is_checked = matches!(&statement.kind, StatementKind::Assign { value, .. } if is_check(value));
         visit::targets(statement, &mut |place| {
-            if let Root::Local(id) = place.root {
+            if let Root::Local(id) = place.root
+                && !place.is_followed()
+            {
                 checked[id.index()] &= is_checked;
             }
         });
@@ -92,6 +94,7 @@ impl Known<'_> {
             ExprKind::Convert(Conversion::Truncate, _)
             | ExprKind::ApplyText(..)
             | ExprKind::Text(_)
+            | ExprKind::AddressOf(_)
             | ExprKind::Aggregate(_) => None,
         };
         // What leaves the type wraps, and may be anything.
@@ -100,6 +103,7 @@ impl Known<'_> {
 
     fn variable(&self, place: &Place) -> Option<Range> {
         if let Root::Local(id) = place.root
+            && !place.is_followed()
             && (self.checked)(id)
         {
             return self.program.range(place.ty);

@@ -30,6 +30,9 @@ pub enum Projection {
     /// An element of an array. `index` is a LINT in the array's own bounds; outside of them it
     /// faults with IndexOutOfRange at `at`.
     Index { index: Box<Expr>, at: Location },
+    /// What the reference points to that the place up to here holds. What is looked at in the end is
+    /// checked: null, outside of the object, misaligned, and a view that is not allowed fault at `at`.
+    Deref { reference: Type, target: Type, at: Location },
 }
 
 impl Place {
@@ -55,11 +58,29 @@ impl Place {
         self
     }
 
+    #[must_use]
+    pub fn deref(mut self, target: Type, at: Location) -> Self {
+        self.projections.push(Projection::Deref { reference: self.ty, target, at });
+        self.ty = target;
+        self
+    }
+
+    /// Whether the way leads through a reference.
+    pub fn is_followed(&self) -> bool {
+        self.projections.iter().any(|it| matches!(it, Projection::Deref { .. }))
+    }
+
+    /// The way up to a projection, to something of type `ty`.
+    #[must_use]
+    pub fn before(&self, position: usize, ty: Type) -> Self {
+        Self { root: self.root, projections: self.projections[..position].to_vec(), ty }
+    }
+
     /// The indices on the way, from left to right.
     pub fn indices(&self) -> impl Iterator<Item = &Expr> {
         self.projections.iter().filter_map(|it| match it {
             Projection::Index { index, .. } => Some(&**index),
-            Projection::Field(_) => None,
+            Projection::Field(_) | Projection::Deref { .. } => None,
         })
     }
 
@@ -67,7 +88,7 @@ impl Place {
     pub fn is_same_variable(&self, other: &Self) -> bool {
         let field = |it: &Projection| match it {
             Projection::Field(id) => Some(*id),
-            Projection::Index { .. } => None,
+            Projection::Index { .. } | Projection::Deref { .. } => None,
         };
         let same = |(a, b)| field(a).is_some() && field(a) == field(b);
         self.root == other.root

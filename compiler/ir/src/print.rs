@@ -150,6 +150,10 @@ impl Printer<'_> {
                     text.push_str(&format!("[{}]", self.expr(routine, index)));
                     ty = self.element(ty);
                 }
+                Projection::Deref { target, .. } => {
+                    text.push('^');
+                    ty = Some(*target);
+                }
             }
         }
         text
@@ -159,7 +163,14 @@ impl Printer<'_> {
         match ty {
             Some(Type::Struct(id)) => self.program.structure(id).fields[field.index()].name.clone(),
             Some(Type::Block(id)) => id.info().pins[field.index()].name.to_owned(),
-            Some(Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Array(_))
+            Some(
+                Type::Elementary(_)
+                | Type::Reference(_)
+                | Type::Subrange(..)
+                | Type::String(_)
+                | Type::Enum(_)
+                | Type::Array(_),
+            )
             | None => {
                 format!("?{}", field.0)
             }
@@ -171,6 +182,7 @@ impl Printer<'_> {
             Some(Type::Array(id)) => Some(self.program.array(id).element),
             Some(
                 Type::Elementary(_)
+                | Type::Reference(_)
                 | Type::Subrange(..)
                 | Type::String(_)
                 | Type::Enum(_)
@@ -189,6 +201,7 @@ impl Printer<'_> {
             ExprKind::Text(bytes) => quoted(bytes),
             ExprKind::Aggregate(value) => format!("{}{}", ty(), constant_text(value)),
             ExprKind::Load(place) => self.place(routine, place),
+            ExprKind::AddressOf(place) => format!("ADR({})", self.place(routine, place)),
             ExprKind::Apply(op, operands) => self.call(routine, op.source_name(), operands),
             ExprKind::ApplyText(op, operands) => self.call(routine, op.source_name(), operands),
             ExprKind::Convert(how, operand) => {

@@ -2,7 +2,8 @@
 
 use crate::types::ids;
 use crate::{
-    Array, ArrayId, Block, BoundsId, Const, Elementary, Enum, EnumId, Location, Place, Root, Struct, StructId, Type,
+    Array, ArrayId, Block, BoundsId, Const, Elementary, Enum, EnumId, Location, Place, RefType, ReferenceId, Root,
+    Struct, StructId, Type,
 };
 use core::fmt;
 use staunch_runtime::Family;
@@ -25,6 +26,8 @@ pub struct Program {
     /// The lower and upper limits of subranges, each pair once.
     pub bounds: Vec<(i128, i128)>,
     pub arrays: Vec<Array>,
+    /// The types of references. What they point to may stand after what holds them.
+    pub references: Vec<RefType>,
     /// A structure stands after those it contains.
     pub structs: Vec<Struct>,
     /// The structure that holds the global variables; it may be empty.
@@ -238,12 +241,18 @@ impl Program {
         match ty {
             Type::Subrange(_, id) => Some(self.bounds(id)),
             Type::Elementary(_)
+            | Type::Reference(_)
             | Type::String(_)
             | Type::Enum(_)
             | Type::Array(_)
             | Type::Struct(_)
             | Type::Block(_) => None,
         }
+    }
+
+    /// What a reference is declared to point to.
+    pub fn target(&self, id: ReferenceId) -> Type {
+        self.references[id.index()].target
     }
 
     pub fn array(&self, id: ArrayId) -> Array {
@@ -283,7 +292,12 @@ impl Program {
         match ty {
             Type::Struct(structure) => self.structure(structure).fields.get(id.index()).map(|field| field.ty),
             Type::Block(block) => block.pin_type(id),
-            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Array(_) => None,
+            Type::Elementary(_)
+            | Type::Reference(_)
+            | Type::Subrange(..)
+            | Type::String(_)
+            | Type::Enum(_)
+            | Type::Array(_) => None,
         }
     }
 
@@ -302,7 +316,7 @@ impl Program {
                 let (way, instance) = self.instance_in(self.array(id).element, is_state)?;
                 Some((format!("[…]{way}"), instance))
             }
-            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => None,
+            Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => None,
         }
     }
 
@@ -319,6 +333,9 @@ impl Program {
             Type::Struct(id) => self.structure(id).name.clone(),
             Type::Block(id) => id.info().name.to_owned(),
             Type::Array(id) => self.array_name(id),
+            Type::Reference(id) => {
+                format!("{} {}", self.references[id.index()].kind.word(), self.type_name(self.target(id)))
+            }
         }
     }
 
@@ -333,11 +350,12 @@ impl Program {
         format!("ARRAY[{}] OF {}", bounds.join(", "), self.type_name(ty))
     }
 
-    /// The lane of an elementary, enumeration or subrange type.
+    /// The lane of an elementary, enumeration, subrange or reference type.
     pub fn lane(&self, ty: Type) -> Option<staunch_runtime::Lane> {
         match ty {
             Type::Elementary(it) | Type::Subrange(it, _) => Some(it.lane()),
             Type::Enum(id) => Some(self.enumeration(id).base.lane()),
+            Type::Reference(_) => Some(staunch_runtime::Lane::U64),
             Type::String(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => None,
         }
     }

@@ -102,6 +102,11 @@ impl Taken<'_> {
         for projection in &place.projections {
             match projection {
                 Projection::Field(_) => {}
+                // The reference, the distance, and a value on its way.
+                Projection::Deref { .. } => {
+                    self.values += 4;
+                    self.make(Type::Elementary(crate::Elementary::Lword));
+                }
                 Projection::Index { index, .. } => {
                     // The distance and the address.
                     self.values += 2;
@@ -116,7 +121,14 @@ impl Taken<'_> {
         match &expr.kind {
             ExprKind::Const(_) | ExprKind::Text(_) => {}
             ExprKind::Aggregate(_) => self.make(expr.ty),
-            ExprKind::Load(place) => self.place(place),
+            ExprKind::Load(place) => {
+                self.place(place);
+                // What is found through a reference is copied.
+                if place.is_followed() {
+                    self.make(place.ty);
+                }
+            }
+            ExprKind::AddressOf(place) => self.place(place),
             ExprKind::Apply(op, operands) => {
                 operands.iter().for_each(|it| self.expr(it));
                 // The runtime's function writes its result where it is told to.

@@ -64,6 +64,10 @@ impl<'p> Startup<'p> {
         if self.is_retentive(field.ty) {
             return Fate::Whole;
         }
+        // An address is no data that outlives the program.
+        if self.is_reference(field.ty) {
+            return Fate::Anew;
+        }
         let system = self.program.files[usize::from(field.location.file)].system;
         let keeps = match event {
             // No system starts more variables anew in a warm reset than in a power cycle.
@@ -89,6 +93,8 @@ impl<'p> Startup<'p> {
                     Some(self.program.structure(id).fields[field.index()].ty)
                 }
                 (Projection::Index { .. }, Some(Type::Array(id))) => Some(self.program.array(id).element),
+                // What a reference leads to is what its own declaration says, which is not known.
+                (Projection::Deref { .. }, _) => return Fate::Inherited,
                 // A pin of a standard block.
                 (Projection::Field(_) | Projection::Index { .. }, _) => return fate,
             };
@@ -96,12 +102,30 @@ impl<'p> Startup<'p> {
         fate
     }
 
+    fn is_reference(&self, ty: Type) -> bool {
+        match ty {
+            Type::Reference(_) => true,
+            Type::Array(id) => self.is_reference(self.program.array(id).element),
+            Type::Elementary(_)
+            | Type::Subrange(..)
+            | Type::String(_)
+            | Type::Enum(_)
+            | Type::Struct(_)
+            | Type::Block(_) => false,
+        }
+    }
+
     /// Whether the instances of a type are kept whatever their declarations say.
     fn is_retentive(&self, ty: Type) -> bool {
         match ty {
             Type::Block(id) => id.info().retention == Retention::Always,
             Type::Array(id) => self.is_retentive(self.program.array(id).element),
-            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Struct(_) => false,
+            Type::Elementary(_)
+            | Type::Reference(_)
+            | Type::Subrange(..)
+            | Type::String(_)
+            | Type::Enum(_)
+            | Type::Struct(_) => false,
         }
     }
 }

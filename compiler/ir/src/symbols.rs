@@ -9,7 +9,7 @@ use crate::startup::{self, Event, Fate, Startup};
 use crate::usage::used_globals;
 use crate::{
     Address, BlockId, Class, ClassKind, Elementary, FieldId, Program, Projection, Root, Section, StructId, Type,
-    Variable, View,
+    Variable, View, reference,
 };
 use core::fmt::{self, Write};
 use staunch_runtime::{Direction, Pin};
@@ -30,13 +30,15 @@ pub const VERSION: u32 = 1;
 /// struct     id  name  size            then its fields
 /// block      id  name  size            then its pins, as fields; only blocks in use
 /// field      name  type  offset  section  flags  address  low..high
+/// object     offset in the machine  size
 /// globals    struct:id  offset
 /// instance   number  name  program  struct:id  offset  interval in ns  priority
 /// variable   instance  name  section  type  offset in the machine  flags  address  low..high
 /// ```
 ///
 /// The flags are `retain`, `whole`, `stays`, `restarts`, `constant`, and `used`, of a global that some instance uses.
-/// A type is an IEC name, `STRING[n]`, or `enum:id`, `array:id`, `struct:id`, `block:id`. A
+/// An object is what references may name, by its number, from 1. A type is an IEC name, `STRING[n]`,
+/// `REFERENCE`, or `enum:id`, `array:id`, `struct:id`, `block:id`. A
 /// variable that lives for one call has no record.
 pub fn map_text(program: &Program, layout: &Layout) -> String {
     let (used, startup) = (used_globals(program), Startup::new(program));
@@ -84,6 +86,9 @@ impl Map<'_> {
         self.arrays()?;
         self.structs()?;
         self.blocks()?;
+        for (offset, size) in reference::objects(self.program, self.layout) {
+            writeln!(self.text, "object\t{offset}\t{size}")?;
+        }
         writeln!(self.text, "globals\tstruct:{}\t{}", self.program.globals.0, machine.globals)?;
         self.instances()
     }
@@ -229,6 +234,7 @@ impl Map<'_> {
                     ty = element;
                 }
                 (Projection::Index { .. }, _) => unreachable!("verified IR: an array is indexed"),
+                (Projection::Deref { .. }, _) => unreachable!("verified IR: a variable is behind no reference"),
             }
         }
         match variable.view {
@@ -246,7 +252,12 @@ impl Map<'_> {
                 Some((field.ty, self.attributes_of(structure, id)))
             }
             Type::Block(block) => Some((block.pin_type(id)?, Attributes::NONE)),
-            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Array(_) => None,
+            Type::Elementary(_)
+            | Type::Reference(_)
+            | Type::Subrange(..)
+            | Type::String(_)
+            | Type::Enum(_)
+            | Type::Array(_) => None,
         }
     }
 
@@ -332,6 +343,7 @@ impl fmt::Display for TypeName {
             Type::Array(id) => write!(f, "array:{}", id.0),
             Type::Struct(id) => write!(f, "struct:{}", id.0),
             Type::Block(id) => write!(f, "block:{}", id.0),
+            Type::Reference(_) => f.write_str("REFERENCE"),
         }
     }
 }
@@ -340,6 +352,7 @@ fn block_of(ty: Type) -> Option<BlockId> {
     match ty {
         Type::Block(id) => Some(id),
         Type::Elementary(_)
+        | Type::Reference(_)
         | Type::String(_)
         | Type::Enum(_)
         | Type::Subrange(..)

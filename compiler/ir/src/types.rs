@@ -19,6 +19,9 @@ pub enum Type {
     Struct(StructId),
     /// An instance of a standard function block, or a structure of the standard (COUNTER).
     Block(BlockId),
+    /// A reference: null, or an object of the program and a position in it
+    /// ([`staunch_runtime::Reference`]).
+    Reference(ReferenceId),
 }
 
 impl Type {
@@ -33,7 +36,12 @@ impl Type {
     pub const fn elementary(self) -> Option<Elementary> {
         match self {
             Self::Elementary(it) | Self::Subrange(it, _) => Some(it),
-            Self::String(_) | Self::Enum(_) | Self::Array(_) | Self::Struct(_) | Self::Block(_) => None,
+            Self::String(_)
+            | Self::Enum(_)
+            | Self::Array(_)
+            | Self::Struct(_)
+            | Self::Block(_)
+            | Self::Reference(_) => None,
         }
     }
 
@@ -47,7 +55,37 @@ impl Type {
             | Self::Enum(_)
             | Self::Array(_)
             | Self::Struct(_)
-            | Self::Block(_) => self,
+            | Self::Block(_)
+            | Self::Reference(_) => self,
+        }
+    }
+}
+
+/// The type of a reference. All are stored and followed alike; the word says how the source uses it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct RefType {
+    pub kind: RefKind,
+    /// What it is declared to point to.
+    pub target: Type,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum RefKind {
+    /// `REF_TO`
+    RefTo,
+    /// `POINTER TO`
+    PointerTo,
+    /// `REFERENCE TO`: its name stands for what it refers to.
+    ReferenceTo,
+}
+
+impl RefKind {
+    /// As the source writes it.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::RefTo => "REF_TO",
+            Self::PointerTo => "POINTER TO",
+            Self::ReferenceTo => "REFERENCE TO",
         }
     }
 }
@@ -79,6 +117,8 @@ pub(crate) use ids;
 
 ids! {
     EnumId;
+    /// Which type a reference is declared to point to; equal types have one id.
+    ReferenceId;
     /// Bounds of subranges; equal bounds have one id.
     BoundsId;
     ArrayId;

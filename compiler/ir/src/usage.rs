@@ -1,7 +1,7 @@
 //! Which global variables the instances of a program use, themselves or through what they call: those
 //! that a trace shows.
 
-use crate::{FieldId, Place, Program, Projection, Root, RoutineId, Statement, StatementKind, visit};
+use crate::{FieldId, Place, Program, Projection, Root, RoutineId, Section, Statement, StatementKind, visit};
 use std::collections::BTreeSet;
 
 /// The fields of the globals that a routine which runs reads, writes or hands on.
@@ -36,7 +36,10 @@ impl Finder<'_> {
     }
 
     fn place(&mut self, place: &Place) {
-        if let (Root::Globals, Some(Projection::Field(id))) = (place.root, place.projections.first()) {
+        if let (Root::Globals, Some(Projection::Field(id))) = (place.root, place.projections.first())
+            // What lives for one call is nobody's to look at, also where it has fixed storage.
+            && self.program.structure(self.program.globals).fields[id.index()].section != Section::Temp
+        {
             self.used.insert(*id);
         }
     }

@@ -20,6 +20,7 @@ pub fn reads(expr: &Expr, see: &mut dyn FnMut(&Place)) {
             index_reads(place, see);
             see(place);
         }
+        ExprKind::AddressOf(place) => index_reads(place, see),
         ExprKind::Apply(_, operands) | ExprKind::ApplyText(_, operands) => {
             operands.iter().for_each(|it| reads(it, see));
         }
@@ -29,9 +30,11 @@ pub fn reads(expr: &Expr, see: &mut dyn FnMut(&Place)) {
 
 /// Calls `see` for each place that finding `place` reads.
 pub fn index_reads(place: &Place, see: &mut dyn FnMut(&Place)) {
-    for projection in &place.projections {
-        if let Projection::Index { index, .. } = projection {
-            reads(index, see);
+    for (position, projection) in place.projections.iter().enumerate() {
+        match projection {
+            Projection::Field(_) => {}
+            Projection::Index { index, .. } => reads(index, see),
+            Projection::Deref { reference, .. } => see(&place.before(position, *reference)),
         }
     }
 }
@@ -121,6 +124,26 @@ pub fn values<'a>(statement: &'a Statement, see: &mut dyn FnMut(&'a Expr)) {
     }
 }
 
+/// Calls `see` for each expression that the statement itself, without the blocks in it, evaluates, and for
+/// those in them and in its places.
+pub fn all_exprs<'a>(statement: &'a Statement, see: &mut dyn FnMut(&'a Expr)) {
+    values(statement, &mut |it| within(it, see));
+    targets(statement, &mut |place| place.indices().for_each(|it| within(it, see)));
+}
+
+fn within<'a>(expr: &'a Expr, see: &mut dyn FnMut(&'a Expr)) {
+    see(expr);
+    match &expr.kind {
+        ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => {}
+        ExprKind::Load(place) => place.indices().for_each(|it| within(it, see)),
+        ExprKind::AddressOf(place) => place.indices().for_each(|it| within(it, see)),
+        ExprKind::Apply(_, operands) | ExprKind::ApplyText(_, operands) => {
+            operands.iter().for_each(|it| within(it, see));
+        }
+        ExprKind::Convert(_, value) => within(value, see),
+    }
+}
+
 /// Calls `see` for each place that the statement itself writes or hands on.
 pub fn targets<'a>(statement: &'a Statement, see: &mut dyn FnMut(&'a Place)) {
     match &statement.kind {
@@ -161,6 +184,7 @@ pub fn expr_faults(program: &Program, expr: &Expr) -> bool {
     match &expr.kind {
         ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => false,
         ExprKind::Load(place) => place_faults(program, place),
+        ExprKind::AddressOf(place) => place_faults(program, place),
         ExprKind::Apply(op, operands) => {
             op_faults(program, *op, operands) || operands.iter().any(|it| expr_faults(program, it))
         }
@@ -184,6 +208,7 @@ pub fn place_faults(program: &Program, place: &Place) -> bool {
 pub fn projection_faults(program: &Program, projection: &Projection) -> bool {
     match projection {
         Projection::Field(_) => false,
+        Projection::Deref { .. } => true,
         Projection::Index { index, .. } => index.as_const().is_none() || expr_faults(program, index),
     }
 }

@@ -67,7 +67,7 @@ impl Function<'_, '_> {
     /// An argument that the callee copies, if it is not elementary.
     fn argument(&mut self, value: &Expr) -> clif::Value {
         match value.ty {
-            Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) => self.scalar(value),
+            Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::Enum(_) => self.scalar(value),
             Type::String(_) => self.text_pointer(value),
             Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
                 let address = self.aggregate(value);

@@ -16,6 +16,7 @@ impl Function<'_, '_> {
                 Some(counter) => self.narrowed(self.lane_of(expr), counter),
                 None => self.load_place(place),
             },
+            ExprKind::AddressOf(place) => self.reference_to(place),
             ExprKind::Apply(op, operands) => self.apply(*op, operands, expr.at),
             ExprKind::ApplyText(op, operands) => self.text_scalar(*op, operands),
             ExprKind::Convert(how, operand) => self.convert(*how, operand, expr),
@@ -26,6 +27,9 @@ impl Function<'_, '_> {
     }
 
     pub(crate) fn load_place(&mut self, place: &Place) -> clif::Value {
+        if let Some(reached) = self.reached(place) {
+            return self.load_reached(reached);
+        }
         match self.place_value(place) {
             PlaceValue::Variable(variable) => self.builder.use_var(variable),
             PlaceValue::Memory(address) => self.load(place.ty, address),

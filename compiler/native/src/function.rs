@@ -180,7 +180,9 @@ impl<'a, 'p> Function<'a, 'p> {
             LocalSlot::Slot(slot) => {
                 let target = self.slot_address(slot);
                 match ty {
-                    Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) => self.store(value, target),
+                    Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::Enum(_) => {
+                        self.store(value, target)
+                    }
                     Type::String(capacity) => self.copy_text(value, target, capacity),
                     Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
                         self.copy(Address::at(value), target, ty);

@@ -380,6 +380,7 @@ pub(crate) fn block_info(place: &Place) -> &'static BlockInfo {
     match place.ty {
         staunch_ir::Type::Block(id) => id.info(),
         staunch_ir::Type::Elementary(_)
+        | staunch_ir::Type::Reference(_)
         | staunch_ir::Type::Subrange(..)
         | staunch_ir::Type::String(_)
         | staunch_ir::Type::Enum(_)

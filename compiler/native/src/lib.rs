@@ -14,6 +14,7 @@ mod module;
 mod operands;
 mod signature;
 
+mod follow;
 mod function;
 mod loops;
 mod statement;

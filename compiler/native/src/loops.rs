@@ -322,7 +322,10 @@ fn is_small(condition: &Expr) -> bool {
     fn size(expr: &Expr) -> usize {
         match &expr.kind {
             ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => 0,
+            // The call of the runtime for it is not repeated.
+            ExprKind::Load(place) if place.is_followed() => SMALL,
             ExprKind::Load(place) => 1 + place.projections.len(),
+            ExprKind::AddressOf(_) => SMALL,
             ExprKind::Apply(_, operands) => 1 + operands.iter().map(size).sum::<usize>(),
             ExprKind::ApplyText(..) => SMALL,
             ExprKind::Convert(_, operand) => 1 + size(operand),

@@ -28,6 +28,8 @@ pub(crate) struct ModuleEmitter<'p> {
     imports: HashMap<String, FuncId>,
     /// Read-only data, defined when all code is made.
     constants: HashMap<Vec<u8>, DataId>,
+    /// The table of objects, where something follows or makes a reference.
+    references: Option<DataId>,
     /// How much of the stack each function takes, in the order in which they are made.
     pub(crate) frames: Vec<u64>,
     /// The functions as text, where it is wanted.
@@ -50,6 +52,7 @@ impl<'p> ModuleEmitter<'p> {
             functions: Vec::with_capacity(program.routines.len()),
             imports: HashMap::new(),
             constants: HashMap::new(),
+            references: None,
             frames: Vec::with_capacity(program.routines.len()),
             listing: None,
         }
@@ -101,6 +104,17 @@ impl<'p> ModuleEmitter<'p> {
         let name = format!("staunch_constant_{}", self.constants.len());
         let id = self.output.declare_data(&name, Linkage::Local, false, false).expect("names of constants are counted");
         self.constants.insert(bytes, id);
+        id
+    }
+
+    /// The words of the table by which accesses through references are checked.
+    pub(crate) fn reference_table(&mut self) -> DataId {
+        if let Some(known) = self.references {
+            return known;
+        }
+        let words = staunch_ir::reference::table(self.program, &self.layout);
+        let id = self.constant(words.into_iter().flat_map(u32::to_le_bytes).collect());
+        self.references = Some(id);
         id
     }
 

@@ -17,6 +17,7 @@ pub(crate) enum PlaceValue {
 impl Function<'_, '_> {
     pub(crate) fn place_value(&mut self, place: &Place) -> PlaceValue {
         if let Root::Local(id) = place.root
+            && place.projections.is_empty()
             && let LocalSlot::Variable(variable) = self.locals[id.index()]
         {
             return PlaceValue::Variable(variable);
@@ -26,6 +27,9 @@ impl Function<'_, '_> {
 
     /// The address of a place that is not a variable of the code generator's.
     pub(crate) fn address(&mut self, place: &Place) -> Address {
+        if place.is_followed() {
+            return self.found(place);
+        }
         let mut address = self.root(place.root);
         let root_type = self.module.program.root_type(self.routine, place.root);
         let mut ty = root_type.expect("verified IR: a root that the POU has");
@@ -36,6 +40,7 @@ impl Function<'_, '_> {
                     let offset = self.module.layout.offset(ty, *field);
                     (address.plus(offset), member.expect("verified IR: a member of the type"))
                 }
+                Projection::Deref { .. } => unreachable!("a place that leads through no reference"),
                 Projection::Index { index, at } => {
                     let Type::Array(id) = ty else { unreachable!("verified IR: an index into an array") };
                     (self.element(address, id, index, *at), self.module.program.array(id).element)

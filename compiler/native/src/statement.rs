@@ -51,6 +51,13 @@ impl<'p> Function<'_, 'p> {
     }
 
     pub(crate) fn assign(&mut self, target: &Place, value: &Expr) {
+        if let Some(reached) = self.reached(target) {
+            if matches!(value.ty, Type::String(_)) {
+                return self.store_reached_text(reached, value);
+            }
+            let value = self.scalar(value);
+            return self.store_reached(reached, value);
+        }
         match self.place_value(target) {
             PlaceValue::Variable(variable) => {
                 let value = self.scalar(value);
@@ -62,7 +69,7 @@ impl<'p> Function<'_, 'p> {
 
     fn assign_to(&mut self, value: &Expr, target: Address) {
         match value.ty {
-            Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) => {
+            Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::Enum(_) => {
                 let value = self.scalar(value);
                 self.store(value, target);
             }
@@ -93,6 +100,7 @@ impl<'p> Function<'_, 'p> {
             }
             ExprKind::Const(_)
             | ExprKind::Text(_)
+            | ExprKind::AddressOf(_)
             | ExprKind::Apply(..)
             | ExprKind::ApplyText(..)
             | ExprKind::Convert(..) => {

@@ -21,10 +21,15 @@ impl Function<'_, '_> {
     pub(crate) fn text(&mut self, expr: &Expr) -> Text {
         match &expr.kind {
             ExprKind::Text(bytes) => self.text_constant(bytes),
+            ExprKind::Load(place) if place.is_followed() => {
+                let capacity = capacity(place.ty);
+                let reached = self.reached(place).expect("a string behind a reference");
+                Text { address: self.load_reached_text(reached, capacity), capacity }
+            }
             ExprKind::Load(place) => Text { address: self.address(place), capacity: capacity(place.ty) },
             ExprKind::ApplyText(op, operands) => self.text_operation(*op, operands, expr.ty),
             ExprKind::Convert(_, operand) => self.text_cut(operand, expr.ty),
-            ExprKind::Const(_) | ExprKind::Apply(..) | ExprKind::Aggregate(_) => {
+            ExprKind::Const(_) | ExprKind::AddressOf(_) | ExprKind::Apply(..) | ExprKind::Aggregate(_) => {
                 unreachable!("verified IR: an expression of a string type")
             }
         }
@@ -128,6 +133,7 @@ fn capacity(ty: Type) -> u16 {
     match ty {
         Type::String(capacity) => capacity,
         Type::Elementary(_)
+        | Type::Reference(_)
         | Type::Subrange(..)
         | Type::Enum(_)
         | Type::Array(_)

@@ -105,6 +105,7 @@ impl Maker {
             }],
             instances: instances.collect(),
             arrays: maker.arrays,
+            references: Vec::new(),
             globals,
             aliases: Vec::new(),
             structs: maker.structs,
@@ -165,6 +166,7 @@ impl Maker {
             Type::Elementary(it) => Const::Scalar(self.value(it.lane())),
             Type::Subrange(it, _) => it.lane().integer(LIMITS.0).map_or(Const::Zero, Const::Scalar),
             Type::Enum(_) => Const::Scalar(Value::I8(-3)),
+            Type::Reference(_) => Const::Zero,
             Type::String(capacity) => Const::Text(self.bytes(capacity)),
             Type::Array(id) if self.random.one_in(2) => {
                 let array = self.arrays[id.index()];
@@ -342,7 +344,7 @@ impl Maker {
                 let index = self.index(array, depth);
                 Some(place.index(index, array.element, at))
             }
-            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => None,
+            Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => None,
         }
     }
 
@@ -370,6 +372,7 @@ impl Maker {
         }
         match ty {
             Type::Elementary(it) if depth > 0 => self.computed(it, depth - 1),
+            Type::Reference(_) => Expr::new(ty, ExprKind::Const(Value::U64(0)), AT),
             Type::Elementary(it) => {
                 let value = self.value(it.lane());
                 Expr::constant(it, value, AT)
@@ -632,7 +635,7 @@ fn holds_instance(arrays: &[Array], structs: &[Struct], ty: Type) -> bool {
             is_state || structure.fields.iter().any(|it| holds_instance(arrays, structs, it.ty))
         }
         Type::Array(id) => holds_instance(arrays, structs, arrays[id.index()].element),
-        Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => false,
+        Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => false,
     }
 }
 
@@ -673,7 +676,7 @@ fn mark(program: &Program, layout: &Layout, ty: Type, offset: u64, counts: &mut 
             return;
         }
         Type::String(capacity) => return counts[usize_of(offset)..][..2 + usize::from(capacity)].fill(true),
-        Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) => {
+        Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::Enum(_) => {
             return counts[usize_of(offset)..][..usize_of(layout.size(ty))].fill(true);
         }
     };

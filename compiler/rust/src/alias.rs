@@ -51,6 +51,10 @@ struct Separator<'p> {
 
 /// Rewrites every call that Rust's rules on `&mut` would refuse.
 pub fn separate(source: &Program) -> Separated {
+    if !source.references.is_empty() {
+        // All of its storage is shared, in cells.
+        return Separated { program: source.clone(), origins: vec![Origin::Declared; source.routines.len()] };
+    }
     let effects = effects(source, &Rules::PLAIN);
     let first = Separator::new(source, effects.clone(), HashSet::new()).separated();
     let forwarding = first.known.into_keys().filter(Key::is_apart).map(|it| it.routine).collect::<HashSet<_>>();

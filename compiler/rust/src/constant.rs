@@ -23,6 +23,8 @@ impl Emitter<'_> {
             (Type::Enum(id), Const::Scalar(value)) => self.enum_value(id, *value),
             (Type::String(_), Const::Text(text)) => Code::postfix(text_new(text)),
             (Type::String(_), Const::Zero) => Code::postfix(text_new(&[])),
+            (Type::Reference(_), Const::Scalar(value)) => literal(Elementary::Lword, *value, false),
+            (Type::Reference(_), _) => literal(Elementary::Lword, Value::U64(0), false),
             (Type::Array(id), _) => self.array(id, value),
             (Type::Struct(id), _) => self.aggregate(id, value),
             (Type::Block(id), _) => Code::postfix(block(id, value)),
@@ -30,6 +32,12 @@ impl Emitter<'_> {
                 unreachable!("verified IR: constants match their types")
             }
         }
+    }
+
+    /// A constant as what a variable of the type starts with.
+    pub fn stored_constant(&self, ty: Type, value: &Const) -> TokenStream {
+        let value = self.constant(ty, value).tokens;
+        if self.is_in_cell(ty) { quote!(Cell::new(#value)) } else { value }
     }
 
     /// `Color::RED`, or `Color(7)` where no name has the value.
@@ -57,9 +65,11 @@ impl Emitter<'_> {
                 unreachable!("verified IR: constants match their types")
             }
         };
-        let element = |value: &Const| self.constant(array.element, value).tokens;
+        let element = |value: &Const| self.stored_constant(array.element, value);
         if let [(count, value)] = runs[..] {
             let (count, value) = (number(count), element(value));
+            // What has cells inside is not copied.
+            let value = if self.shared { quote!(const { #value }) } else { value };
             return Code::postfix(quote!([#value; #count]));
         }
         let runs_len = u64::try_from(runs.len()).unwrap_or(u64::MAX);
@@ -69,6 +79,7 @@ impl Emitter<'_> {
         }
         let longest = runs.iter().max_by_key(|(count, _)| *count).expect("an array has an element");
         let (len, filler) = (number(array.len()), element(longest.1));
+        let filler = if self.shared { quote!(const { #filler }) } else { filler };
         let mut at = 0;
         let mut fills = Vec::new();
         for (count, value) in &runs {
@@ -92,7 +103,7 @@ impl Emitter<'_> {
         let different: Vec<usize> = (0..fields.len()).filter(is_part).filter(differs).collect();
         let set = different.iter().map(|at| {
             let field = self.names.field(id, FieldId::next(*at));
-            let value = self.constant(fields[*at].ty, member(*at)).tokens;
+            let value = self.stored_constant(fields[*at].ty, member(*at));
             quote!(#field: #value)
         });
         Code::postfix(if different.is_empty() {

@@ -99,7 +99,10 @@ fn note_block(block: &Block, path: &mut Path, found: &mut HashMap<LocalId, Menti
     for (at, statement) in block.iter().enumerate() {
         path.push(at);
         visit::accesses(statement, &mut |place, access| {
-            if let Root::Local(id) = place.root {
+            // What lies behind a reference is not the variable that holds it.
+            if let Root::Local(id) = place.root
+                && !place.is_followed()
+            {
                 let whole = access == Access::Write && place.projections.is_empty();
                 note(found, id, path, statement, access, whole);
             }

@@ -19,13 +19,18 @@ pub struct Emitter<'p> {
     pub layout: Layout,
     /// What is no part of the state.
     pub constants: Constants,
+    /// The program has references: what several paths may reach lies in cells, and each routine is handed
+    /// the whole machine.
+    pub shared: bool,
 }
 
 impl<'p> Emitter<'p> {
     pub fn new(program: &'p Program, origins: &'p [Origin]) -> Self {
         let names = Names::new(program, origins);
         let effects = effects(program, &Rules { scans_take_all: true, ..Rules::PLAIN });
-        Self { program, origins, names, effects, layout: Layout::new(program), constants: Constants::new() }
+        let shared = !program.references.is_empty();
+        let constants = Constants::new();
+        Self { program, origins, names, effects, layout: Layout::new(program), constants, shared }
     }
 
     pub fn ty(&self, ty: Type) -> TokenStream {
@@ -45,7 +50,7 @@ impl<'p> Emitter<'p> {
             }
             Type::Array(id) => {
                 let array = self.program.array(id);
-                let (element, len) = (self.ty(array.element), number(array.len()));
+                let (element, len) = (self.stored(array.element), number(array.len()));
                 quote!([#element; #len])
             }
             Type::Struct(id) => {
@@ -53,7 +58,28 @@ impl<'p> Emitter<'p> {
                 quote!(#name)
             }
             Type::Block(id) => rust_path(id.info().rust_path, false),
+            Type::Reference(_) => quote!(u64),
         }
+    }
+
+    /// The type of a variable that holds a value of `ty`.
+    pub fn stored(&self, ty: Type) -> TokenStream {
+        let value = self.ty(ty);
+        if self.is_in_cell(ty) { quote!(Cell<#value>) } else { value }
+    }
+
+    /// Whether a variable of the type is a cell: aggregates have cells inside.
+    pub fn is_in_cell(&self, ty: Type) -> bool {
+        self.shared
+            && match ty {
+                Type::Elementary(_)
+                | Type::Reference(_)
+                | Type::Subrange(..)
+                | Type::String(_)
+                | Type::Enum(_)
+                | Type::Block(_) => true,
+                Type::Array(_) | Type::Struct(_) => false,
+            }
     }
 
     /// `.at(FILE, line, column)`, which gives a fault its place.

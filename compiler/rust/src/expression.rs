@@ -19,6 +19,7 @@ impl Function<'_> {
             ExprKind::Text(text) => self.emitter.constant(expr.ty, &staunch_ir::Const::Text(text.clone())),
             ExprKind::Aggregate(value) => self.emitter.constant(expr.ty, value),
             ExprKind::Load(place) => self.load(place),
+            ExprKind::AddressOf(place) => Code::postfix(self.reference_to(place)),
             ExprKind::Apply(op, operands) => self.apply(expr, *op, operands),
             ExprKind::ApplyText(op, operands) => self.apply_text(expr, *op, operands, false),
             ExprKind::Convert(how, value) => self.convert(*how, expr.ty, value),
@@ -32,6 +33,7 @@ impl Function<'_> {
             ExprKind::Text(_)
             | ExprKind::Aggregate(_)
             | ExprKind::Load(_)
+            | ExprKind::AddressOf(_)
             | ExprKind::Apply(..)
             | ExprKind::ApplyText(..)
             | ExprKind::Convert(..) => self.expr(expr),
@@ -42,6 +44,7 @@ impl Function<'_> {
         match ty {
             Type::Elementary(it) | Type::Subrange(it, _) => literal(it, value, suffixed),
             Type::Enum(id) => self.emitter.enum_value(id, value),
+            Type::Reference(_) => literal(staunch_ir::Elementary::Lword, value, suffixed),
             Type::String(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
                 unreachable!("verified IR: a scalar has a scalar's type")
             }
@@ -157,7 +160,9 @@ impl Function<'_> {
 
     /// What a method is called on; Rust follows a reference there by itself.
     fn receiver(&self, expr: &Expr) -> TokenStream {
-        if let ExprKind::Load(place) = &expr.kind {
+        if let ExprKind::Load(place) = &expr.kind
+            && !self.emitter.shared
+        {
             return self.place(place);
         }
         self.typed(expr).at_least(Level::Postfix)
@@ -173,6 +178,7 @@ impl Function<'_> {
                 quote!(#code.0)
             }
             Type::Elementary(_)
+            | Type::Reference(_)
             | Type::Subrange(..)
             | Type::String(_)
             | Type::Array(_)
@@ -227,6 +233,7 @@ impl Function<'_> {
                     Code::postfix(quote!(#code.0))
                 }
                 Type::Elementary(_)
+                | Type::Reference(_)
                 | Type::Subrange(..)
                 | Type::String(_)
                 | Type::Array(_)

@@ -27,6 +27,9 @@ enum Way {
 struct Unit {
     place: TokenStream,
     lane: Lane,
+    is_enumeration: bool,
+    /// It lies in a cell.
+    is_cell: bool,
 }
 
 impl Emitter<'_> {
@@ -81,11 +84,15 @@ impl Emitter<'_> {
         let fields = self.program.structure(globals).fields.iter().enumerate();
         let own = fields.filter_map(|(at, field)| {
             let name = self.names.field(globals, FieldId::next(at));
-            let place = if matches!(field.ty, Type::Enum(_)) { quote!(self.#name.0) } else { quote!(self.#name) };
-            let unit = Unit { place, lane: self.program.lane(field.ty)? };
+            let is_enumeration = matches!(field.ty, Type::Enum(_));
+            let unit = Unit { is_enumeration, ..self.unit(quote!(self.#name), self.program.lane(field.ty)?) };
             Some(Io { variable: &field.name, address: field.address?, units: vec![unit], shared: None })
         });
         own.chain(self.program.aliases.iter().filter_map(|it| self.view(it))).collect()
+    }
+
+    fn unit(&self, place: TokenStream, lane: Lane) -> Unit {
+        Unit { place, lane, is_enumeration: false, is_cell: self.shared }
     }
 
     /// A variable that shares its bits with another one.
@@ -94,14 +101,14 @@ impl Emitter<'_> {
         let Some(Projection::Field(field)) = variable.place.projections.first() else { return None };
         let name = self.names.field(self.program.globals, *field);
         let Type::Array(id) = variable.place.ty else {
-            let unit = Unit { place: quote!(self.#name), lane: self.program.lane(variable.place.ty)? };
+            let unit = self.unit(quote!(self.#name), self.program.lane(variable.place.ty)?);
             return Some(Io { variable: &variable.name, address, units: vec![unit], shared: Some(bit) });
         };
         let lane = self.program.lane(self.program.array(id).element)?;
         let size = u64::from(lane.size()) * 8;
         let unit = |number: u64| {
             let position = Literal::u64_unsuffixed(bit / size + number);
-            Unit { place: quote!(self.#name[#position]), lane }
+            self.unit(quote!(self.#name[#position]), lane)
         };
         let count = u64::from(address.width).div_ceil(size);
         let shared = (u64::from(address.width) < size).then_some(bit % size);
@@ -179,8 +186,13 @@ impl Unit {
         u64::from(self.lane.size()) * 8
     }
 
+    fn number(&self, place: TokenStream) -> TokenStream {
+        if self.is_enumeration { quote!(#place.0) } else { place }
+    }
+
     fn read(&self) -> TokenStream {
         let place = &self.place;
+        let place = self.number(if self.is_cell { quote!(#place.get()) } else { quote!(#place) });
         match self.lane {
             Lane::Bool | Lane::U8 | Lane::U16 | Lane::U32 => quote!(u64::from(#place)),
             Lane::U64 => quote!(#place),
@@ -196,6 +208,11 @@ impl Unit {
 
     fn write(&self) -> TokenStream {
         let place = &self.place;
+        let place = match (self.is_cell, self.is_enumeration) {
+            (true, false) => quote!(*#place.get_mut()),
+            (true, true) => self.number(quote!(#place.get_mut())),
+            (false, _) => self.number(quote!(#place)),
+        };
         let value = match self.lane {
             Lane::Bool => quote!(bits & 1 == 1),
             Lane::U64 => quote!(bits),

@@ -67,6 +67,7 @@ fn without_others(emitter: &Emitter<'_>, ty: Type, value: &Const, constants: &mu
         (
             Type::Array(_)
             | Type::Elementary(_)
+            | Type::Reference(_)
             | Type::Subrange(..)
             | Type::String(_)
             | Type::Enum(_)
@@ -119,6 +120,6 @@ impl Emitter<'_> {
 fn is_by_reference(ty: Type) -> bool {
     match ty {
         Type::Array(_) | Type::Struct(_) | Type::Block(_) => true,
-        Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => false,
+        Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => false,
     }
 }

@@ -92,7 +92,10 @@ fn is_type(name: &str) -> bool {
 }
 
 fn is_module(name: &str) -> bool {
-    matches!(name, "firmware" | "ops" | "text" | "time" | "iec" | "cscape" | "codesys" | "openplc" | "logix")
+    matches!(
+        name,
+        "firmware" | "ops" | "reference" | "text" | "time" | "iec" | "cscape" | "codesys" | "openplc" | "logix"
+    )
 }
 
 fn is_method(tokens: &[TokenTree], at: usize) -> bool {

@@ -19,6 +19,8 @@ pub struct Function<'a> {
     pub routine: &'a Routine,
     pub names: LocalNames,
     pub plan: Plan,
+    /// For each local, whether a call gets a reference to it.
+    pub borrowed: Vec<bool>,
     /// It returns a `Result`.
     pub faults: bool,
     pub loops: Loops,
@@ -51,7 +53,7 @@ impl<'a> Emitter<'a> {
             RoutineKind::Body => Role::Scan,
             RoutineKind::Prescan => Role::Prescan,
         };
-        let mut function = self.function(routine, role == Role::Scan || needs.faults);
+        let mut function = self.function(routine, needs, role == Role::Scan || needs.faults);
         let before = self.first_scan(id);
         let body = function.body(&routine.body);
         let signature = function.signature(self.names.routine(id), needs, role);
@@ -64,18 +66,33 @@ impl<'a> Emitter<'a> {
         let is_it = |it: &&Class| it.body == id && it.kind == ClassKind::Program;
         let prescan = self.program.classes.iter().find(is_it)?.prescan?;
         let (needs, name) = (&self.effects[prescan.index()], self.names.routine(prescan));
-        let arguments = extra_arguments(needs);
+        let arguments = self.extra_arguments(needs);
         let propagate = needs.faults.then(|| quote!(?));
         Some(quote!(if cx.first_scan { self.#name(#(#arguments),*) #propagate; }))
     }
 
-    fn function<'b>(&'b self, routine: &'b Routine, faults: bool) -> Function<'b> {
+    /// The context and the globals, where a callee wants them.
+    fn extra_arguments(&self, needs: &Effects) -> Vec<TokenStream> {
+        let context = needs.context.then(|| quote!(cx));
+        context.into_iter().chain(self.world_argument(needs)).collect()
+    }
+
+    /// The globals, where a callee wants them, or the whole machine.
+    pub fn world_argument(&self, needs: &Effects) -> Option<TokenStream> {
+        if self.shared {
+            return Some(quote!(machine));
+        }
+        needs.uses_globals().then(|| quote!(globals))
+    }
+
+    fn function<'b>(&'b self, routine: &'b Routine, needs: &Effects, faults: bool) -> Function<'b> {
         let (names, plan) = (self.names.locals(routine), plan(routine, &routine.body));
         Function {
             emitter: self,
             routine,
             names,
             plan,
+            borrowed: needs.borrowed.clone(),
             faults,
             loops: Loops::default(),
             counters: Vec::new(),
@@ -86,17 +103,12 @@ impl<'a> Emitter<'a> {
     }
 }
 
-/// The context and the globals, where a callee wants them.
-fn extra_arguments(needs: &Effects) -> Vec<TokenStream> {
-    let context = needs.context.then(|| quote!(cx));
-    let globals = needs.uses_globals().then(|| quote!(globals));
-    context.into_iter().chain(globals).collect()
-}
-
 impl Function<'_> {
     /// The context comes first and the globals last, so that arguments may read globals.
     fn signature(&self, name: &Ident, needs: &Effects, role: Role) -> TokenStream {
-        let receiver = (self.routine.kind != RoutineKind::Function).then(|| quote!(&mut self));
+        let shared = self.emitter.shared;
+        let receiver = (self.routine.kind != RoutineKind::Function)
+            .then(|| if shared { quote!(&self) } else { quote!(&mut self) });
         let context = match (needs.context, role) {
             (true, _) => Some(quote!(cx: &Context)),
             (false, Role::Scan) => Some(quote!(_cx: &Context)),
@@ -104,7 +116,11 @@ impl Function<'_> {
         };
         let params = self.params();
         let globals_type = self.emitter.ty(staunch_ir::Type::Struct(self.emitter.program.globals));
-        let globals = needs.uses_globals().then(|| quote!(globals: &mut #globals_type));
+        let globals = if shared {
+            Some(quote!(machine: &Machine))
+        } else {
+            needs.uses_globals().then(|| quote!(globals: &mut #globals_type))
+        };
         let all = receiver.into_iter().chain(context).chain(params).chain(globals);
         let result = self.result_type();
         quote!(pub fn #name(#(#all),*) #result)
@@ -116,8 +132,12 @@ impl Function<'_> {
             .map(|(param, name)| {
                 let ty = self.emitter.ty(param.ty);
                 match param.mode {
+                    Mode::Reference if self.emitter.shared => {
+                        let stored = self.emitter.stored(param.ty);
+                        quote!(#name: &#stored)
+                    }
                     Mode::Reference => quote!(#name: &mut #ty),
-                    Mode::Value(local) if self.plan.locals[local.index()].mutable => quote!(mut #name: #ty),
+                    Mode::Value(local) if self.is_mutable(local) => quote!(mut #name: #ty),
                     Mode::Value(_) => quote!(#name: #ty),
                 }
             })
@@ -149,7 +169,8 @@ impl Function<'_> {
             Some(value) => Some(if self.faults { quote!(Ok(#value)) } else { value }),
             None => self.returned(),
         };
-        quote!(#(#locals)* #statements #end)
+        let cells = self.cells();
+        quote!(#cells #(#locals)* #statements #end)
     }
 
     /// A last assignment to the result needs no variable, where nothing else mentions it.
@@ -170,6 +191,7 @@ impl Function<'_> {
         top.map(|it| {
             let local = &self.routine.locals[it.index()];
             let value = self.emitter.constant(local.ty, &local.initial).tokens;
+            let value = if self.borrowed_scalar(it) { quote!(Cell::new(#value)) } else { value };
             let left = self.let_local(it);
             quote!(#left = #value;)
         })
@@ -179,13 +201,39 @@ impl Function<'_> {
     /// `let mut name: type`.
     pub fn let_local(&self, id: LocalId) -> TokenStream {
         let (name, ty) = (&self.names.locals[id.index()], self.emitter.ty(self.routine.locals[id.index()].ty));
-        let mutable = self.plan.locals[id.index()].mutable.then(|| quote!(mut));
+        let ty = if self.borrowed_scalar(id) { quote!(Cell<#ty>) } else { ty };
+        let mutable = self.is_mutable(id).then(|| quote!(mut));
         quote!(let #mutable #name: #ty)
+    }
+
+    /// Whether the local's text has to be `mut`: what is in cells, or has them inside, does not.
+    fn is_mutable(&self, id: LocalId) -> bool {
+        let ty = self.routine.locals[id.index()].ty;
+        let is_in_cells = self.emitter.shared && (!self.emitter.is_in_cell(ty) || self.borrowed[id.index()]);
+        self.plan.locals[id.index()].mutable && !is_in_cells
+    }
+
+    /// Whether a scalar or string lies in a cell, since a call gets a reference to it.
+    pub fn borrowed_scalar(&self, id: LocalId) -> bool {
+        self.emitter.is_in_cell(self.routine.locals[id.index()].ty) && self.borrowed[id.index()]
+    }
+
+    /// Arguments that lie in cells.
+    fn cells(&self) -> TokenStream {
+        let params = self.routine.params.iter().zip(&self.names.params);
+        let cells = params.filter_map(|(param, name)| match param.mode {
+            Mode::Value(local) if self.borrowed_scalar(local) => Some(quote!(let #name = Cell::new(#name);)),
+            Mode::Value(_) | Mode::Reference => None,
+        });
+        cells.collect()
     }
 
     /// What a `return` hands back.
     pub fn returned(&self) -> Option<TokenStream> {
-        let value = self.routine.result.map(|it| &self.names.locals[it.index()]);
+        let value = self.routine.result.map(|it| {
+            let name = &self.names.locals[it.index()];
+            if self.borrowed_scalar(it) { quote!(#name.get()) } else { quote!(#name) }
+        });
         match (value, self.faults) {
             (Some(value), true) => Some(quote!(Ok(#value))),
             (None, true) => Some(quote!(Ok(()))),

@@ -30,9 +30,12 @@ pub fn emit_glue(program: &Program, code: &str, map: &str, options: &Options) ->
     });
     let scans = program.instances.iter().enumerate().map(|(at, instance)| {
         let (name, number) = (names.instance(at), Literal::usize_unsuffixed(at));
-        let globals = emitter.effects[program.class(instance.program).body.index()]
-            .uses_globals()
-            .then(|| quote!(, &mut self.globals));
+        let uses_globals = emitter.effects[program.class(instance.program).body.index()].uses_globals();
+        let globals = match (emitter.shared, uses_globals) {
+            (true, _) => Some(quote!(, self)),
+            (false, true) => Some(quote!(, &mut self.globals)),
+            (false, false) => None,
+        };
         quote!(#number => self.#name.scan(cx #globals))
     });
     let (bytes, length) = (Literal::byte_string(map.as_bytes()), Literal::usize_unsuffixed(map.len()));
@@ -42,14 +45,31 @@ pub fn emit_glue(program: &Program, code: &str, map: &str, options: &Options) ->
         quote!(assert!(core::mem::offset_of!(Machine, #name) == #offset);)
     });
     let (starts, copies) = starts(&emitter, &code);
+    let start = (!copies.is_empty()).then(|| {
+        quote! {
+            /// A start value, which is copied and never changed.
+            struct Start<T>(T);
+
+            /// # Safety
+            /// Nobody writes to one.
+            unsafe impl<T> Sync for Start<T> {}
+        }
+    });
     let machine = (!copies.is_empty()).then(|| quote!(let machine = state.cast::<Machine>();));
+    let whole = if emitter.shared {
+        quote!(use #code::Machine; #start)
+    } else {
+        quote! {
+            /// The program's whole state.
+            #[repr(C)]
+            #[derive(Clone, Copy, Debug, PartialEq)]
+            pub struct Machine { pub globals: #code::#globals, #(#members),* }
+        }
+    };
     let items = quote! {
         use #runtime::{Context, Fault};
 
-        /// The program's whole state.
-        #[repr(C)]
-        #[derive(Clone, Copy, Debug, PartialEq)]
-        pub struct Machine { pub globals: #code::#globals, #(#members),* }
+        #whole
 
         impl Machine {
             /// One scan of an instance.
@@ -121,6 +141,11 @@ fn starts(emitter: &Emitter<'_>, code: &syn::Path) -> (Vec<TokenStream>, Vec<Tok
         let bytes = &image[start..start + usize_of(layout.size(Type::Struct(id)))];
         if bytes.iter().any(|byte| *byte != 0) {
             let (ty, name) = (names.structure(id), ident(&format!("START_{}", id.0)));
+            if emitter.shared {
+                copies.push(quote!((&raw mut (*machine).#member).copy_from_nonoverlapping(&raw const #name.0, 1);));
+                statics.insert(id, quote!(static #name: Start<#code::#ty> = Start(#code::#ty::new());));
+                continue;
+            }
             copies.push(quote!((&raw mut (*machine).#member).copy_from_nonoverlapping(&raw const #name, 1);));
             statics.insert(id, quote!(static #name: #code::#ty = #code::#ty::new();));
         }

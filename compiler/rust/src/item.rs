@@ -20,7 +20,8 @@ impl Emitter<'_> {
             .map(|id| self.routine(id));
         let tables = self.tables();
         let retained = self.retained();
-        quote!(#files #tables #(#enums)* #(#structs)* #retained #(#functions)*)
+        let machine = self.shared.then(|| self.machine());
+        quote!(#files #tables #(#enums)* #(#structs)* #retained #(#functions)* #machine)
     }
 
     fn files(&self) -> TokenStream {
@@ -44,6 +45,7 @@ impl Emitter<'_> {
             enumeration.doc.as_deref(),
             &format!("TYPE {} ({})", enumeration.name, self.source(enumeration.location)),
         );
+        let shared = self.shared.then(|| quote!(reference::shared_enumeration!(#name);));
         let consts = enumeration.values.iter().enumerate().map(|(at, enumerator)| {
             let own = format!("`{}`.", enumerator.name);
             let (name, doc) = (self.names.enumerator(id, at), doc(enumerator.doc.as_deref().or(Some(&own))));
@@ -56,6 +58,7 @@ impl Emitter<'_> {
             #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
             pub struct #name(pub #base);
             impl #name { #(#consts)* }
+            #shared
         }
     }
 
@@ -68,22 +71,30 @@ impl Emitter<'_> {
             all.filter(|(at, _)| !self.constants.contains(&(id, FieldId::next(*at))))
         };
         let fields = parts().map(|(at, field)| {
-            let (name, ty) = (self.names.field(id, FieldId::next(at)), self.ty(field.ty));
+            let (name, ty) = (self.names.field(id, FieldId::next(at)), self.stored(field.ty));
             let docs = self.field_docs(id, field);
             quote!(#docs pub #name: #ty)
         });
         let values = parts().map(|(at, field)| {
             let name = self.names.field(id, FieldId::next(at));
-            let value = self.constant(field.ty, &field.initial).tokens;
+            let value = self.stored_constant(field.ty, &field.initial);
             quote!(#name: #value)
         });
         let (methods, constants) = (self.methods(id), self.constant_items(id));
+        let derives = if self.shared {
+            quote!(#[derive(Clone, Debug, PartialEq)])
+        } else {
+            quote!(#[derive(Clone, Copy, Debug, PartialEq)])
+        };
+        let names = (0..structure.fields.len()).map(|at| self.names.field(id, FieldId::next(at)));
+        let shared = self.shared.then(|| quote!(reference::shared!(#name { #(#names),* });));
         let io = (id == self.program.globals).then(|| self.io_methods());
         quote! {
             #docs
             #[repr(C)]
-            #[derive(Clone, Copy, Debug, PartialEq)]
+            #derives
             pub struct #name { #(#fields),* }
+            #shared
             impl #name {
                 #constants
                 /// With initial values.

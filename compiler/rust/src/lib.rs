@@ -20,6 +20,7 @@ mod item;
 mod loops;
 mod place;
 mod retained;
+mod shared;
 mod statement;
 mod string;
 
@@ -103,11 +104,12 @@ const ALLOWED: &[(&str, &[&str])] = &[
 pub fn emit(program: &Program, options: &Options) -> String {
     let separated = alias::separate(program);
     let mut emitter = Emitter::new(&separated.program, &separated.origins);
-    if options.state == State::Lean {
+    // References find what they lead to by the whole layout.
+    if options.state == State::Lean && !emitter.shared {
         emitter.constants = flash::constants(&emitter);
     }
     let items = emitter.items();
-    let imports = imports(&items, &options.runtime);
+    let imports = imports(&items, &options.runtime, emitter.shared);
     let body = format!("{}{}", format::format(quote!(#imports #items)), layout_asserts::layout(&emitter));
     let header = header(program);
     match &options.shape {
@@ -124,14 +126,20 @@ pub fn emit(program: &Program, options: &Options) -> String {
     }
 }
 
-fn imports(items: &proc_macro2::TokenStream, runtime: &str) -> Option<proc_macro2::TokenStream> {
+fn imports(items: &proc_macro2::TokenStream, runtime: &str, shared: bool) -> Option<proc_macro2::TokenStream> {
     let names: Vec<_> = format::imports(items).iter().map(|it| names::ident(it)).collect();
     let runtime: syn::Path = syn::parse_str(runtime).expect("the runtime's path is a Rust path");
-    match names.as_slice() {
+    let runtime = match names.as_slice() {
         [] => None,
         [name] => Some(quote!(use #runtime::#name;)),
         names => Some(quote!(use #runtime::{#(#names),*};)),
-    }
+    };
+    let cell = shared.then(|| {
+        quote!(
+            use core::cell::Cell;
+        )
+    });
+    Some(quote!(#cell #runtime))
 }
 
 fn header(program: &Program) -> String {

@@ -133,7 +133,7 @@ impl Function<'_> {
     /// Steps the counter at the end of a turn, or leaves the loop.
     fn step(&self, it: &For, last: &TokenStream, step: &TokenStream, at: Location) -> TokenStream {
         let lane = self.lane(it.counter.ty);
-        let (target, counter) = (self.target(&it.counter, self.written_place(&it.counter)), self.load(&it.counter));
+        let counter = self.load(&it.counter);
         let counter = counter.at_least(Level::Postfix);
         if lane.range() != Some(it.range) && it.may_leave_range() {
             let step = match &it.step {
@@ -143,9 +143,10 @@ impl Function<'_> {
             let (least, most) = (Literal::i128_unsuffixed(it.range.0), Literal::i128_unsuffixed(it.range.1));
             let (next, at) = (self.made_up("next", self.loops.around.len()), self.emitter.at(at));
             let counter = self.load(&it.counter).tokens;
+            let set = self.given(&it.counter, &quote!(#next));
             return quote! {
                 let Some(#next) = ops::step(#counter, #step, #last, (#least, #most)) #at? else { break };
-                #target = #next;
+                #set
             };
         }
         let (verb, step) = match &it.step {
@@ -157,16 +158,26 @@ impl Function<'_> {
         };
         if it.may_leave_range() {
             let (next, checked) = (self.made_up("next", self.loops.around.len()), ident(&format!("checked_{verb}")));
-            return quote!(let Some(#next) = #counter.#checked(#step) else { break }; #target = #next;);
+            let set = self.given(&it.counter, &quote!(#next));
+            return quote!(let Some(#next) = #counter.#checked(#step) else { break }; #set);
         }
         let wrapping = ident(&format!("wrapping_{verb}"));
-        quote!(#target = #counter.#wrapping(#step);)
+        self.given(&it.counter, &quote!(#counter.#wrapping(#step)))
+    }
+
+    /// `place = value;`
+    fn given(&self, place: &Place, value: &TokenStream) -> TokenStream {
+        if self.emitter.shared {
+            return self.set(place, value);
+        }
+        let target = self.target(place, self.written_place(place));
+        quote!(#target = #value;)
     }
 
     /// `let i = self.i;`: a copy that the optimiser sees unchanged through the body, so that a
     /// subscript's check also serves as the check of Rust's own.
     fn copy_counter(&mut self, place: &Place) -> TokenStream {
-        let value = self.place(place);
+        let (value, copied) = (self.place(place), self.load(place).tokens);
         let name = value.clone().into_iter().last().map(|it| it.to_string()).unwrap_or_default();
         let name = match self.counter_names.get(&value.to_string()) {
             Some(known) => known.clone(),
@@ -174,7 +185,7 @@ impl Function<'_> {
         };
         self.counter_names.insert(value.to_string(), name.clone());
         self.counters.push((place.clone(), name.clone()));
-        quote!(let #name = #value;)
+        quote!(let #name = #copied;)
     }
 
     /// `while` where the loop starts by leaving on a condition.

@@ -132,11 +132,14 @@ pub struct LocalNames {
 
 impl Names {
     pub fn new(program: &Program, origins: &[Origin]) -> Self {
+        let shared = !program.references.is_empty();
         let mut types = Scope::with(TYPES);
+        types.taken.extend(shared.then(|| "Cell".to_owned()));
         let structs = program.structs.iter().map(|it| types.claim_type(&camel(&it.name))).collect();
         let enums = program.enums.iter().map(|it| types.claim_type(&camel(&it.name))).collect();
         let routines = routine_names(program, origins);
         let mut locals = Scope::with(LOCALS);
+        locals.taken.extend(shared.then(|| "machine".to_owned()));
         locals.taken.extend(routines.iter().map(Ident::to_string));
         Self {
             enums,

@@ -41,6 +41,9 @@ impl Function<'_> {
     }
 
     fn place_with(&self, place: &Place, position: &mut dyn FnMut(&Expr, Type, Location) -> TokenStream) -> TokenStream {
+        if place.is_followed() {
+            return self.found(place);
+        }
         let mut tokens = self.root(place.root);
         let types = self.emitter.types_along(self.routine, place);
         for (projection, ty) in place.projections.iter().zip(types) {
@@ -53,12 +56,20 @@ impl Function<'_> {
                     let name = match ty {
                         Type::Struct(id) => self.emitter.names.field(id, *field).clone(),
                         Type::Block(id) => ident(id.info().pins[field.index()].field),
-                        Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Array(_) => {
+                        Type::Elementary(_)
+                        | Type::Reference(_)
+                        | Type::Subrange(..)
+                        | Type::String(_)
+                        | Type::Enum(_)
+                        | Type::Array(_) => {
                             unreachable!("verified IR: only structures and blocks have fields")
                         }
                     };
-                    quote!(#tokens.#name)
+                    // A block lies in its cell as a whole.
+                    let read = (self.emitter.shared && matches!(ty, Type::Block(_))).then(|| quote!(.get()));
+                    quote!(#tokens #read.#name)
                 }
+                Projection::Deref { .. } => unreachable!("a place that leads through no reference"),
                 Projection::Index { index, at } => {
                     let index = position(index, ty, *at);
                     quote!(#tokens[#index])
@@ -107,7 +118,7 @@ impl Function<'_> {
     fn root(&self, root: Root) -> TokenStream {
         let name: &Ident = match root {
             Root::Instance => return quote!(self),
-            Root::Globals => return quote!(globals),
+            Root::Globals => return crate::shared::globals(self.emitter.shared),
             Root::Local(id) => &self.names.locals[id.index()],
             Root::Param(id) => &self.names.params[id.index()],
         };
@@ -116,10 +127,14 @@ impl Function<'_> {
 
     /// Whether the place's text is a reference: a parameter, the instance or the globals.
     pub fn is_whole_param(&self, place: &Place) -> bool {
-        place.projections.is_empty() && !matches!(place.root, Root::Local(_))
+        let is_value = matches!(place.root, Root::Local(_)) || self.emitter.shared && place.root == Root::Globals;
+        place.projections.is_empty() && !is_value
     }
 
     pub fn load(&self, place: &Place) -> Code {
+        if self.emitter.shared {
+            return self.load_shared(place);
+        }
         let tokens = self.place(place);
         let types = self.emitter.types_along(self.routine, place);
         let last = place.projections.last().zip(types.last());
@@ -136,9 +151,31 @@ impl Function<'_> {
         if self.is_whole_param(place) { quote!(*#tokens) } else { tokens }
     }
 
-    /// The place handed over as `&mut`.
+    /// The place handed over as `&mut`, or as `&` where storage is shared.
     pub fn borrowed(&self, place: &Place) -> TokenStream {
+        if self.emitter.shared {
+            let tokens = self.written_place(place);
+            return if self.is_reference(place) || place.is_followed() { tokens } else { quote!(&#tokens) };
+        }
         let tokens = self.place(place);
         if self.is_whole_param(place) { tokens } else { quote!(&mut #tokens) }
+    }
+
+    fn load_shared(&self, place: &Place) -> Code {
+        let is_copy = self.counters.iter().any(|(counter, _)| counter.is_same_variable(place));
+        if is_copy || self.is_pin(place) {
+            return Code::postfix(self.place(place));
+        }
+        if let Some(value) = self.load_followed(place) {
+            return value;
+        }
+        let tokens = self.place(place);
+        Code::postfix(if self.is_cell(place) {
+            quote!(#tokens.get())
+        } else if self.emitter.is_in_cell(place.ty) {
+            tokens
+        } else {
+            quote!(#tokens.clone())
+        })
     }
 }

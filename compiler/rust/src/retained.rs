@@ -26,6 +26,12 @@ impl Target {
         Self { tokens: quote!(#whole.#name), is_reference: false }
     }
 
+    /// What lies in the cell.
+    fn opened(&self) -> Self {
+        let tokens = &self.tokens;
+        Self { tokens: quote!(#tokens.get_mut()), is_reference: true }
+    }
+
     fn borrowed(&self) -> TokenStream {
         let tokens = &self.tokens;
         if self.is_reference { quote!(#tokens) } else { quote!(&mut #tokens) }
@@ -120,7 +126,14 @@ impl Walk<'_> {
     }
 
     fn part(&mut self, ty: Type, place: &Target, path: &str, fate: Fate) -> TokenStream {
+        let opened = place.opened();
+        self.opened_part(ty, if self.emitter.is_in_cell(ty) { &opened } else { place }, path, fate)
+    }
+
+    fn opened_part(&mut self, ty: Type, place: &Target, path: &str, fate: Fate) -> TokenStream {
         match ty {
+            // They are null at every restart.
+            Type::Reference(_) => TokenStream::new(),
             Type::Struct(id) => self.fields(id, place, path, fate),
             Type::Array(id) => self.array(id, place, path, fate),
             Type::Block(id) => self.block(id, place, path, fate),
@@ -167,9 +180,9 @@ impl Walk<'_> {
     /// Whether the runtime carries arrays of the type as a whole.
     fn is_plain(&self, ty: Type) -> bool {
         match ty {
-            Type::Elementary(_) | Type::String(_) => true,
+            Type::Elementary(_) | Type::String(_) => !self.emitter.shared,
             Type::Array(id) => self.is_plain(self.emitter.program.array(id).element),
-            Type::Subrange(..) | Type::Enum(_) | Type::Struct(_) | Type::Block(_) => false,
+            Type::Subrange(..) | Type::Enum(_) | Type::Struct(_) | Type::Block(_) | Type::Reference(_) => false,
         }
     }
 
@@ -180,7 +193,7 @@ impl Walk<'_> {
             .map(|(at, pin)| {
                 let ty = id.pin_type(FieldId::next(at)).expect("position of a pin");
                 let name = ident(pin.field);
-                self.part(ty, &place.field(&name), &format!("{path}:{}.{}", info.name, pin.name), outside)
+                self.opened_part(ty, &place.field(&name), &format!("{path}:{}.{}", info.name, pin.name), outside)
             })
             .collect()
     }

@@ -98,6 +98,9 @@ impl Function<'_> {
     }
 
     fn assign(&mut self, statement: &Statement, target: &Place, value: &Expr) -> TokenStream {
+        if self.emitter.shared && !self.is_simple_target(target) {
+            return self.assign_shared(statement, target, value);
+        }
         let printed = self.expr(value).tokens;
         // Rust evaluates the value before the target's subscripts; the first fault wins here.
         if self.place_faults(target) && visit::expr_faults(self.emitter.program, value) {
@@ -108,11 +111,34 @@ impl Function<'_> {
         self.assigned(statement, target, printed)
     }
 
+    /// Whether finding the target cannot fault before its value does.
+    fn is_simple_target(&self, target: &Place) -> bool {
+        !self.place_faults(target)
+    }
+
+    /// As `assign`, where storage is shared: the target's indices and reference come first.
+    fn assign_shared(&mut self, statement: &Statement, target: &Place, value: &Expr) -> TokenStream {
+        let printed = self.expr(value).tokens;
+        if target.is_followed() || self.is_pin(target) {
+            return self.assigned(statement, target, printed);
+        }
+        // The arguments of a method call follow what it is called on.
+        let place = self.written_place(target);
+        if self.is_cell(target) {
+            return quote!(#place.set(#printed););
+        }
+        quote!(reference::Shared::assign(&#place, &#printed);)
+    }
+
     /// `target = value;`, which may declare the target.
     pub fn assigned(&self, statement: &Statement, target: &Place, value: TokenStream) -> TokenStream {
         if let Some(local) = self.plan.declares(statement, target) {
             let left = self.let_local(local);
+            let value = if self.borrowed_scalar(local) { quote!(Cell::new(#value)) } else { value };
             return quote!(#left = #value;);
+        }
+        if self.emitter.shared {
+            return self.set(target, &value);
         }
         let target = self.target(target, self.written_place(target));
         quote!(#target = #value;)
@@ -140,6 +166,7 @@ impl Function<'_> {
         let named = match selector.ty {
             Type::Enum(_) => arms.iter().flat_map(|arm| &arm.labels).all(|(first, last)| first == last),
             Type::Elementary(_)
+            | Type::Reference(_)
             | Type::Subrange(..)
             | Type::String(_)
             | Type::Array(_)
@@ -206,7 +233,7 @@ impl Function<'_> {
         let needs = &self.emitter.effects[callee.index()];
         let is_scan = self.emitter.program.routine(*callee).kind == RoutineKind::Body;
         let context = (needs.context || is_scan).then(|| quote!(cx));
-        let globals = needs.uses_globals().then(|| quote!(globals));
+        let globals = self.emitter.world_argument(needs);
         let arguments = arguments.iter().map(|it| self.argument(it));
         let all = context.into_iter().chain(arguments).chain(globals);
         let head = self.call_head(*callee, instance.as_ref());
@@ -238,12 +265,19 @@ impl Function<'_> {
         let inputs = inputs.iter().map(|it| self.expr(it).tokens);
         let context = info.needs_context.then(|| quote!(cx));
         let arguments = inputs.chain(context);
+        if self.emitter.shared {
+            let cell = self.borrowed(block);
+            return quote!({ let cell = #cell; let mut block = cell.get(); block.#method(#(#arguments),*); cell.set(block); });
+        }
         quote!(#place.#method(#(#arguments),*);)
     }
 
     fn prescan_block(&self, block: &Place, instruction: usize) -> TokenStream {
         let Some(prescan) = &block_of(block).instructions[instruction].prescan else { return TokenStream::new() };
         let (place, method) = (self.place(block), ident(prescan.method));
+        if self.emitter.shared {
+            return quote!({ let mut block = #place.get(); block.#method(); #place.set(block); });
+        }
         quote!(#place.#method();)
     }
 }

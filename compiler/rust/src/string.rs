@@ -14,6 +14,10 @@ impl Function<'_> {
     /// A string as `&Text`.
     pub fn text_reference(&self, value: &Expr) -> TokenStream {
         match &value.kind {
+            ExprKind::Load(place) if self.emitter.shared => {
+                let value = self.load(place).at_least(Level::Postfix);
+                quote!(&#value)
+            }
             ExprKind::Load(place) if self.is_whole_param(place) => self.place(place),
             ExprKind::Load(place) => {
                 let place = self.place(place);
@@ -22,6 +26,7 @@ impl Function<'_> {
             ExprKind::Const(_)
             | ExprKind::Text(_)
             | ExprKind::Aggregate(_)
+            | ExprKind::AddressOf(_)
             | ExprKind::Apply(..)
             | ExprKind::ApplyText(..)
             | ExprKind::Convert(..) => {
@@ -47,6 +52,7 @@ impl Function<'_> {
             ExprKind::Const(_)
             | ExprKind::Aggregate(_)
             | ExprKind::Load(_)
+            | ExprKind::AddressOf(_)
             | ExprKind::Apply(..)
             | ExprKind::Convert(..) => self.expr(value),
         }
@@ -59,12 +65,17 @@ impl Function<'_> {
                 let text = proc_macro2::Literal::byte_string(text);
                 quote!(#text)
             }
+            ExprKind::Load(place) if self.emitter.shared => {
+                let value = self.load(place).at_least(Level::Postfix);
+                quote!(#value.as_bytes())
+            }
             ExprKind::Load(place) => {
                 let place = self.place(place);
                 quote!(#place.as_bytes())
             }
             ExprKind::Const(_)
             | ExprKind::Aggregate(_)
+            | ExprKind::AddressOf(_)
             | ExprKind::Apply(..)
             | ExprKind::ApplyText(..)
             | ExprKind::Convert(..) => {
@@ -79,6 +90,7 @@ impl Function<'_> {
         let print = |it: &Expr| match it.ty {
             Type::String(_) => self.bytes(it),
             Type::Elementary(_)
+            | Type::Reference(_)
             | Type::Subrange(..)
             | Type::Enum(_)
             | Type::Array(_)
@@ -102,6 +114,12 @@ impl Function<'_> {
                 // A made string must outlive its bytes.
                 ExprKind::ApplyText(..) | ExprKind::Convert(..) if matches!(operand.ty, Type::String(_)) => {
                     let value = self.typed_text(operand).tokens;
+                    arguments.push(quote!(#name.as_bytes()));
+                    quote!(let #name = #value;)
+                }
+                // What lies in a cell is copied out.
+                ExprKind::Load(_) if self.emitter.shared && matches!(operand.ty, Type::String(_)) => {
+                    let value = self.expr(operand).tokens;
                     arguments.push(quote!(#name.as_bytes()));
                     quote!(let #name = #value;)
                 }

@@ -10,6 +10,8 @@
 //! - `staunch_text_{function}`, `staunch_text_copy`: strings. A string is a pointer to its header,
 //!   a `u16` length, with the bytes right after it; a string result goes to a header and a
 //!   capacity after the operands.
+//! - `staunch_reference_{address, load, store, load_text, store_text, find}`: accesses through references. They
+//!   take the words of the table, and the state; those that may fault return 0 or the fault's code.
 //! - the symbols in `BLOCKS`: instructions of the standard blocks take the instance, the context
 //!   and the rung; prescans take the instance.
 #![no_std]
@@ -17,6 +19,7 @@
 mod block;
 mod conversion;
 mod operation;
+mod reference;
 mod text;
 
 /// Calls `each` with the name and the address of every symbol, for a linker in memory.
@@ -25,4 +28,5 @@ pub fn for_each_symbol(each: &mut dyn FnMut(&'static str, *const u8)) {
     conversion::for_each_symbol(each);
     text::for_each_symbol(each);
     block::for_each_symbol(each);
+    reference::for_each_symbol(each);
 }

@@ -277,6 +277,8 @@ macro_rules! pins {
             }
         }
 
+        impl<$($generics)*> $crate::reference::Raw for $block {}
+
         impl<$($generics)*> $crate::Block for $block {
             const PINS: &'static [$crate::Pin] = &[$($($crate::Pin {
                 name: $name,

@@ -17,16 +17,28 @@ pub enum FaultKind {
     LoopBudget = 5,
     /// Numbers of a year, a month, a day or a time of day that make none, or one beyond what is reached.
     NoSuchDate = 6,
+    /// A null reference was followed.
+    NullReference = 7,
+    /// A reference was followed to outside of the object that it came from.
+    OutsideObject = 8,
+    /// A number was read or written at a position that is no multiple of its size.
+    MisalignedReference = 9,
+    /// What a reference points to may not be viewed as what was asked for.
+    ForbiddenView = 10,
 }
 
 impl FaultKind {
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 10] = [
         Self::DivideByZero,
         Self::IndexOutOfRange,
         Self::SubrangeViolated,
         Self::ZeroStep,
         Self::LoopBudget,
         Self::NoSuchDate,
+        Self::NullReference,
+        Self::OutsideObject,
+        Self::MisalignedReference,
+        Self::ForbiddenView,
     ];
 
     /// The fault with this code, as native code returns it.
@@ -43,6 +55,10 @@ impl FaultKind {
             Self::ZeroStep => "the step of a FOR loop is 0",
             Self::LoopBudget => "a loop went on past the scan's budget of turns",
             Self::NoSuchDate => "no such date or time of day",
+            Self::NullReference => "a reference is null",
+            Self::OutsideObject => "a reference points outside of its object",
+            Self::MisalignedReference => "a reference is misaligned",
+            Self::ForbiddenView => "a reference points to something of another type",
         }
     }
 }

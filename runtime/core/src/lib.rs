@@ -20,6 +20,7 @@ mod signature;
 pub mod calendar;
 pub mod format;
 pub mod literal;
+pub mod reference;
 pub mod text;
 pub mod time;
 
@@ -43,6 +44,7 @@ pub use elementary::{Class, Elementary};
 pub use family::{Family, Keeps};
 pub use fault::{Fault, FaultKind, FaultOf, Location, OrFault, Outcome};
 pub use lane::{Lane, Scalar, Value};
+pub use reference::Reference;
 pub use signature::{Kind, Parameter, Signature};
 pub use text::Text;
 pub use time::Time;

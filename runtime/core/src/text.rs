@@ -53,6 +53,29 @@ impl<const N: usize> Text<N> {
         self.destination().write(bytes);
     }
 
+    /// A byte of the string as it lies in memory: its length, then its characters.
+    pub(crate) fn raw_byte(&self, at: usize) -> u8 {
+        let [low, high] = self.len.to_ne_bytes();
+        match at {
+            0 => low,
+            1 => high,
+            at => self.bytes.get(at - 2).copied().unwrap_or_default(),
+        }
+    }
+
+    pub(crate) fn set_raw_byte(&mut self, at: usize, byte: u8) {
+        let [low, high] = self.len.to_ne_bytes();
+        match at {
+            0 => self.len = u16::from_ne_bytes([byte, high]),
+            1 => self.len = u16::from_ne_bytes([low, byte]),
+            at => {
+                if let Some(place) = self.bytes.get_mut(at - 2) {
+                    *place = byte;
+                }
+            }
+        }
+    }
+
     /// Empties the string, for writing it anew.
     #[inline]
     pub fn destination(&mut self) -> Destination<'_> {

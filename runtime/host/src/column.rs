@@ -75,7 +75,9 @@ fn split(vars: &str) -> Vec<&str> {
 
 fn expand(map: &Map, heading: String, place: Place, out: &mut Vec<Column>) {
     match place.ty {
-        Type::Elementary(_) | Type::Bit(_) | Type::String(_) | Type::Enum(_) => out.push(Column { heading, place }),
+        Type::Elementary(_) | Type::Bit(_) | Type::Reference | Type::String(_) | Type::Enum(_) => {
+            out.push(Column { heading, place })
+        }
         Type::Array(_) => elements(map, &heading, String::new(), place, out),
         Type::Struct(_) | Type::Block(_) => members(map, &heading, place, out),
     }

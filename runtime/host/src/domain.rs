@@ -197,7 +197,8 @@ impl Builder<'_> {
             Type::Elementary(it) if it.is_day() => self.push(Node::Day),
             Type::Elementary(it) if it.is_time_of_day() => self.push(Node::Clock),
             Type::Elementary(it) => self.number(it.lane(), range),
-            Type::Enum(_) | Type::Bit(_) => self.push(Node::Any),
+            // Each use of a reference is checked.
+            Type::Enum(_) | Type::Bit(_) | Type::Reference => self.push(Node::Any),
             Type::String(capacity) => self.push(Node::Text(capacity)),
             Type::Array(_) => match self.map.array(ty) {
                 Some(array) => self.array(array, range),

@@ -18,6 +18,8 @@ pub(crate) fn parse(map: &Map, place: Place, text: &str) -> Result<Vec<u8>, Stri
             let found = map.enums.get(&id).map(|it| enumerator(text, it));
             found.unwrap_or_else(|| Err("the type is not in the map".to_owned()))?
         }
+        Type::Reference if text.eq_ignore_ascii_case("null") => Value::U64(0),
+        Type::Reference => return Err("it is a reference: it can be set to null".to_owned()),
         Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
             return Err(format!("it is a whole {}: name a member or an element", map.type_name(place.ty)));
         }

@@ -23,6 +23,8 @@ pub struct Map {
     pub(crate) blocks: BTreeMap<u32, Structure>,
     /// The structure of the global variables, and where it lies.
     pub(crate) globals: Option<(Type, usize)>,
+    /// What references may name, by its number from 1: the offset and the size.
+    pub(crate) objects: Vec<(usize, usize)>,
     pub instances: Vec<Instance>,
 }
 
@@ -37,6 +39,8 @@ pub enum Type {
     Array(u32),
     Struct(u32),
     Block(u32),
+    /// A reference to a variable.
+    Reference,
 }
 
 #[derive(Clone, Debug)]
@@ -180,6 +184,10 @@ impl Map {
                 Ok(())
             }
             "field" => self.field(record, *open),
+            "object" => {
+                self.objects.push((record.number()?, record.number()?));
+                Ok(())
+            }
             "globals" => {
                 self.globals = Some((record.ty()?, record.number()?));
                 Ok(())
@@ -230,7 +238,7 @@ impl Map {
 
     fn knows(&self, ty: Type) -> bool {
         match ty {
-            Type::Elementary(_) | Type::Bit(_) | Type::String(_) => true,
+            Type::Elementary(_) | Type::Bit(_) | Type::Reference | Type::String(_) => true,
             Type::Enum(id) => self.enums.contains_key(&id),
             Type::Array(id) => self.arrays.contains_key(&id),
             Type::Struct(id) => self.structs.contains_key(&id),
@@ -243,16 +251,22 @@ impl Map {
         match ty {
             Type::Struct(id) => self.structs.get(&id),
             Type::Block(id) => self.blocks.get(&id),
-            Type::Elementary(_) | Type::Bit(_) | Type::String(_) | Type::Enum(_) | Type::Array(_) => None,
+            Type::Elementary(_) | Type::Bit(_) | Type::Reference | Type::String(_) | Type::Enum(_) | Type::Array(_) => {
+                None
+            }
         }
     }
 
     pub(crate) fn array(&self, ty: Type) -> Option<Array> {
         match ty {
             Type::Array(id) => self.arrays.get(&id).copied(),
-            Type::Elementary(_) | Type::Bit(_) | Type::String(_) | Type::Enum(_) | Type::Struct(_) | Type::Block(_) => {
-                None
-            }
+            Type::Elementary(_)
+            | Type::Bit(_)
+            | Type::String(_)
+            | Type::Enum(_)
+            | Type::Struct(_)
+            | Type::Block(_)
+            | Type::Reference => None,
         }
     }
 
@@ -269,6 +283,7 @@ impl Map {
             Type::Bit(_) => 1,
             Type::String(capacity) => 2 + usize::from(capacity).next_multiple_of(2),
             Type::Enum(id) => self.enums.get(&id).map_or(0, |it| it.lane.size() as usize),
+            Type::Reference => size_of::<u64>(),
             Type::Array(_) => self.array(ty).map_or(0, |it| it.stride * it.len()),
             Type::Struct(_) | Type::Block(_) => self.structure(ty).map_or(0, |it| it.size),
         }
@@ -279,6 +294,7 @@ impl Map {
         match ty {
             Type::Elementary(it) => it.name().to_owned(),
             Type::Bit(_) => Elementary::Bool.name().to_owned(),
+            Type::Reference => "REFERENCE".to_owned(),
             Type::String(capacity) => format!("STRING[{capacity}]"),
             Type::Enum(id) => self.enums.get(&id).map_or_else(String::new, |it| it.name.clone()),
             Type::Array(_) => self.array(ty).map_or_else(String::new, |it| {
@@ -450,6 +466,7 @@ fn type_named(text: &str) -> Option<Type> {
         Some(("struct", id)) => Some(Type::Struct(id.parse().ok()?)),
         Some(("block", id)) => Some(Type::Block(id.parse().ok()?)),
         Some(_) => None,
+        None if text == "REFERENCE" => Some(Type::Reference),
         None => Elementary::named(text).map(Type::Elementary),
     }
 }

@@ -90,6 +90,45 @@ fn steps(text: &str) -> Option<Vec<Step<'_>>> {
     }
 }
 
+/// The variable that lies at an offset of the state and has this size, by its name.
+pub(crate) fn path_at(map: &Map, offset: usize, size: usize) -> Option<String> {
+    let (globals, base) = map.globals();
+    let found = member_at(map, globals, base, offset, size);
+    found.or_else(|| {
+        map.instances.iter().find_map(|it| {
+            let members = map.structure(it.ty).map_or(&[][..], |it| &it.members);
+            let path = member_at(map, members, it.offset, offset, size)?;
+            Some(format!("{}.{path}", it.name))
+        })
+    })
+}
+
+fn member_at(map: &Map, members: &[Variable], base: usize, offset: usize, size: usize) -> Option<String> {
+    members.iter().find_map(|it| {
+        let way = way_to(map, it.ty, base + it.offset, offset, size)?;
+        Some(format!("{}{way}", it.name))
+    })
+}
+
+/// The way from a variable at `start` to its part at `offset`.
+fn way_to(map: &Map, ty: Type, start: usize, offset: usize, size: usize) -> Option<String> {
+    let length = map.size_of(ty);
+    if (start, length) == (offset, size) {
+        return Some(String::new());
+    }
+    if offset < start || start + length <= offset {
+        return None;
+    }
+    if let Some(array) = map.array(ty) {
+        let position = (offset - start).checked_div(array.stride)?;
+        let way = way_to(map, array.element, start + position * array.stride, offset, size)?;
+        let index = array.low.checked_add_unsigned(u64::try_from(position).ok()?)?;
+        return Some(format!("[{index}]{way}"));
+    }
+    let path = member_at(map, &map.structure(ty)?.members, start, offset, size)?;
+    Some(format!(".{path}"))
+}
+
 fn named<'m>(variables: &'m [Variable], name: &str) -> Option<&'m Variable> {
     variables.iter().find(|it| same(&it.name, name))
 }

@@ -1,8 +1,9 @@
 //! How values read: the cells of a trace.
 
 use crate::map::{Map, Type};
-use crate::path::resolve;
-use staunch_runtime::{Elementary, Time, Value, format};
+use crate::path::{path_at, resolve};
+use staunch_runtime::reference::ORIGIN;
+use staunch_runtime::{Elementary, Lane, Reference, Time, Value, format};
 use std::fmt::Write;
 
 /// The value of the variable that `path` names, as a cell of a trace.
@@ -35,8 +36,28 @@ pub(crate) fn format(map: &Map, ty: Type, bytes: &[u8], out: &mut String) {
                 None => format_scalar(value, out),
             }
         }
+        Type::Reference => format_reference(map, bytes, out),
         Type::Array(_) | Type::Struct(_) | Type::Block(_) => {}
     }
+}
+
+/// `null`, or the variable that is named: `&Main.buffer`, and how many bytes after its start.
+fn format_reference(map: &Map, bytes: &[u8], out: &mut String) {
+    let Value::U64(bits) = Value::read(Lane::U64, bytes) else { return };
+    if bits == 0 {
+        return out.push_str("null");
+    }
+    let reference = Reference::from_bits(bits);
+    let object = usize::try_from(reference.object).ok().and_then(|it| map.objects.get(it.checked_sub(1)?));
+    let named = object.and_then(|(offset, size)| {
+        let position = i64::from(reference.address) - i64::from(ORIGIN) - i64::try_from(*offset).ok()?;
+        Some((path_at(map, *offset, *size)?, position))
+    });
+    let _ = match named {
+        Some((path, 0)) => write!(out, "&{path}"),
+        Some((path, position)) => write!(out, "&{path}{position:+}"),
+        None => write!(out, "16#{bits:X}"),
+    };
 }
 
 fn format_scalar(value: Value, out: &mut String) {
@@ -66,6 +87,7 @@ pub(crate) fn number(map: &Map, ty: Type, bytes: &[u8]) -> Option<f64> {
         Type::Elementary(it) => it.lane(),
         Type::Bit(number) => return Some(f64::from(u8::from(bit(bytes, number)))),
         Type::Enum(id) => map.enums.get(&id)?.lane,
+        Type::Reference => return None,
         Type::String(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => return None,
     };
     Some(match Value::read(lane, bytes) {

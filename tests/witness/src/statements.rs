@@ -34,6 +34,7 @@ impl<'a> Machine<'a> {
             StatementKind::Empty => Ok(Flow::Next),
             StatementKind::Assign { target, value } => self.assign(frame, target, value),
             StatementKind::AssignAll { .. } => unknown("assignments in a row"),
+            StatementKind::Bind { .. } | StatementKind::Attempt { .. } => unknown("references"),
             StatementKind::SetReset { target, value, set } => self.set_reset(frame, target, value, *set),
             StatementKind::Expr(expr) => self.lone_call(frame, expr),
             StatementKind::If { branches, otherwise } => self.choose(frame, branches, otherwise.as_deref()),

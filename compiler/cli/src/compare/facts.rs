@@ -158,7 +158,7 @@ impl<'p> Walk<'p, '_> {
                 }
                 (Projection::Field(_), _) => return None,
                 (Projection::Index { .. }, Type::Array(id)) => self.program.array(id).element,
-                (Projection::Index { .. }, _) => return None,
+                (Projection::Index { .. } | Projection::Deref { .. }, _) => return None,
             };
         }
         name
@@ -175,6 +175,7 @@ impl<'p> Walk<'p, '_> {
             | ExprKind::Const(_)
             | ExprKind::Text(_)
             | ExprKind::Aggregate(_)
+            | ExprKind::AddressOf(_)
             | ExprKind::Apply(..)
             | ExprKind::ApplyText(..) => None,
         }
@@ -288,6 +289,7 @@ impl<'p> Walk<'p, '_> {
             ExprKind::Const(value) => self.facts.constant(Some(expr.ty), *value),
             ExprKind::Text(_) => {}
             ExprKind::Aggregate(value) => self.facts.initial(Some(expr.ty), value),
+            ExprKind::AddressOf(place) => self.indices(place),
             ExprKind::Load(place) => {
                 self.indices(place);
                 if let Some(name) = self.name(place) {
@@ -356,7 +358,11 @@ impl<'p> Walk<'p, '_> {
                     }
                 }
             }
-            ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) | ExprKind::ApplyText(..) => {}
+            ExprKind::Const(_)
+            | ExprKind::Text(_)
+            | ExprKind::Aggregate(_)
+            | ExprKind::AddressOf(_)
+            | ExprKind::ApplyText(..) => {}
         }
     }
 }

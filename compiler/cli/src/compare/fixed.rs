@@ -67,6 +67,7 @@ fn of_type<'f>(ty: &'f TypeSpec<'f>, see: &mut dyn FnMut(&'f [Name<'f>])) {
     match &ty.kind {
         TypeKind::Named(names) => see(names),
         TypeKind::Array { element, .. } => of_type(element, see),
+        TypeKind::Reference { target, .. } => of_type(target, see),
         TypeKind::Struct(fields) => fields.iter().for_each(|it| of_type(&it.ty, see)),
         TypeKind::String { .. }
         | TypeKind::Subrange { .. }

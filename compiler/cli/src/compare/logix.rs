@@ -233,7 +233,10 @@ impl Writer<'_> {
 
     fn statement(&mut self, statement: &Statement<'_>) {
         match &statement.kind {
-            StatementKind::Assign { target, value } | StatementKind::SetReset { target, value, .. } => {
+            StatementKind::Assign { target, value }
+            | StatementKind::SetReset { target, value, .. }
+            | StatementKind::Bind { target, value }
+            | StatementKind::Attempt { target, value } => {
                 self.expr(target, false);
                 self.expr(value, true);
             }

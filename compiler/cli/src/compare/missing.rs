@@ -46,6 +46,9 @@ fn lacks(program: &Program, ty: Type, to: Dialect) -> Option<(String, &'static s
         Type::Subrange(..) => {
             (to == Dialect::Logix).then(|| ("subranges".to_owned(), "the whole type, with a check of your own"))
         }
+        Type::Reference(_) => {
+            (to == Dialect::Logix).then(|| ("references".to_owned(), "the variable itself, or an index into an array"))
+        }
         Type::String(_) | Type::Struct(_) => None,
     }
 }

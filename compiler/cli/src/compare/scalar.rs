@@ -104,7 +104,7 @@ impl Walk<'_> {
 
     fn part(&mut self, path: &str, ty: Type, whole: Whole) {
         match ty {
-            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => {
+            Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => {
                 self.scalar(path, path, ty, whole)
             }
             Type::Array(id) => self.array(path, id, whole),

@@ -72,7 +72,7 @@ impl<'p> Walk<'p> {
                     return Some(Source::Pin(name?, role(block, *pin)?));
                 }
                 (Projection::Index { .. }, Type::Array(array)) => self.program.array(array).element,
-                (Projection::Field(_) | Projection::Index { .. }, _) => return None,
+                (Projection::Field(_) | Projection::Index { .. } | Projection::Deref { .. }, _) => return None,
             };
         }
         name.map(Source::Variable)

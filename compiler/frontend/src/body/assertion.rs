@@ -297,7 +297,7 @@ impl<'s> Checker<'_, 's> {
                 fields.iter().position(|it| it.name == member).map(|at| (FieldId::next(at), fields[at].ty))
             }
             Type::Struct(_) | Type::Block(_) | Type::Array(_) => None,
-            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => None,
+            Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => None,
         };
         if field.is_none() {
             let text = self.decl.log.sources.text(instance.span).to_owned();

@@ -50,7 +50,7 @@ impl<'s> Checker<'_, 's> {
             let allowed = match value.ty {
                 Type::Elementary(it) | Type::Subrange(it, _) => it.lane().is_integer() && it.is_integral(),
                 Type::Enum(_) => true,
-                Type::String(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => false,
+                Type::String(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) | Type::Reference(_) => false,
             };
             if !allowed {
                 let found = self.type_name(value.ty);

@@ -103,6 +103,13 @@ impl<'s> Checker<'_, 's> {
             return None;
         };
         let mut place = found.place;
+        if place.is_followed() {
+            self.report(
+                Diagnostic::new(Code::E0211, counter.span, "the counter of a FOR loop is a variable of its own")
+                    .label("this is behind a reference"),
+            );
+            return None;
+        }
         let ty = self.counter_type(place.ty.read(), counter.span)?;
         self.note_assigned(&place, counter.span);
         // The loop goes by one variable: what its indices are made of may change in the body.
@@ -203,6 +210,8 @@ fn has_way_out(statements: &[ast::Statement<'_>], own: bool) -> bool {
         | Ast::Assign { .. }
         | Ast::AssignAll { .. }
         | Ast::SetReset { .. }
+        | Ast::Bind { .. }
+        | Ast::Attempt { .. }
         | Ast::Expr(_)
         | Ast::Continue
         | Ast::Error => false,

@@ -37,6 +37,8 @@ impl<'s> Checker<'_, 's> {
             Ast_::Assign { target, value } => self.assignment(target, value, span),
             Ast_::AssignAll { targets, value } => self.assign_all(targets, value, span),
             Ast_::SetReset { target, value, set } => self.set_reset(target, value, *set, span),
+            Ast_::Bind { target, value } => self.bind_reference(target, value, span),
+            Ast_::Attempt { target, value } => self.attempt(target, value, span),
             Ast_::Case { selector, arms, otherwise } => self.case(selector, arms, otherwise.as_deref(), span),
             Ast_::For { counter, from, to, by, body } => self.for_loop(counter, from, to, by.as_deref(), body, span),
             Ast_::Empty
@@ -65,6 +67,8 @@ impl<'s> Checker<'_, 's> {
             | Ast_::Assign { .. }
             | Ast_::AssignAll { .. }
             | Ast_::SetReset { .. }
+            | Ast_::Bind { .. }
+            | Ast_::Attempt { .. }
             | Ast_::Case { .. }
             | Ast_::For { .. } => {}
             Ast_::Expr(expr) => self.lone_expression(expr),
@@ -114,7 +118,12 @@ impl<'s> Checker<'_, 's> {
         let instance = match found.place.ty {
             Type::Block(_) => true,
             Type::Struct(id) => self.decl.is_instance(id),
-            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Array(_) => false,
+            Type::Elementary(_)
+            | Type::Reference(_)
+            | Type::Subrange(..)
+            | Type::String(_)
+            | Type::Enum(_)
+            | Type::Array(_) => false,
         };
         let error = Diagnostic::new(Code::E0508, expr.span, "this statement has no effect");
         self.report(if instance {
@@ -132,6 +141,23 @@ impl<'s> Checker<'_, 's> {
             return self.assign_part(base, *part, value, span);
         }
         self.assigned(std::slice::from_ref(target), value, span, false).map(drop)
+    }
+
+    /// `r ?= x`: what a reference is given is known when the program is compiled, so that an attempt that
+    /// cannot succeed is refused.
+    fn attempt(&mut self, target: &ast::Expr<'s>, value: &ast::Expr<'s>, span: Span) -> Option<()> {
+        let ty = self.place(target).map(|it| it.place.ty);
+        if let Some(ty) = ty.filter(|it| !matches!(it, Type::Reference(_))) {
+            let ty = self.type_name(ty);
+            self.report(
+                Diagnostic::new(Code::E0211, target.span, format!("`?=` sets a reference, this is {ty}"))
+                    .label("expected a REF_TO")
+                    .help("assign it with `:=`"),
+            );
+            self.operand(value, None);
+            return None;
+        }
+        self.assignment(target, value, span)
     }
 
     /// `a := b := c`: each target gets what the one to its right was given.

@@ -52,7 +52,11 @@ impl<'s> Declarations<'s> {
             ExprKind::Text(bytes) if bytes.is_empty() => Some(Const::Zero),
             ExprKind::Text(bytes) => Some(Const::Text(bytes)),
             ExprKind::Aggregate(it) => Some(it),
-            ExprKind::Load(_) | ExprKind::Apply(..) | ExprKind::ApplyText(..) | ExprKind::Convert(..) => {
+            ExprKind::Load(_)
+            | ExprKind::AddressOf(_)
+            | ExprKind::Apply(..)
+            | ExprKind::ApplyText(..)
+            | ExprKind::Convert(..) => {
                 self.report(not_constant(expr.span));
                 None
             }

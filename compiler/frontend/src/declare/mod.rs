@@ -75,6 +75,7 @@ impl<'s> Declarations<'s> {
                 }
             }
         }
+        self.settle_references();
         self.declare_used_addresses();
         let uses = std::mem::take(&mut self.addresses.uses);
         address::report_second_names(self, &uses);

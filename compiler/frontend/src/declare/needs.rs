@@ -108,6 +108,11 @@ impl<'s> Needs<'_, 's> {
             TypeKind::Enum { values, .. } => {
                 values.iter().filter_map(|it| it.value.as_ref()).for_each(|it| self.expr(it));
             }
+            // A named type may hold references to itself: it is looked up when all are declared.
+            TypeKind::Reference { target, .. } => match &target.kind {
+                TypeKind::Named(_) => {}
+                _ => self.spec(target),
+            },
             TypeKind::Unsupported(_) | TypeKind::Error => {}
         }
     }

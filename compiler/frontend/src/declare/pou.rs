@@ -213,7 +213,7 @@ impl<'s> Declarations<'s> {
             decl.names.iter().for_each(|name| builder.refuse(*name));
             return;
         };
-        let is_plain = matches!(resolved.ty, Type::Elementary(_) | Type::String(_));
+        let is_plain = matches!(resolved.ty, Type::Elementary(_) | Type::Reference(_) | Type::String(_));
         if block.constant.is_some() && decl.initial.is_none() && block.kind == VarKind::Var && is_plain {
             self.report(
                 Diagnostic::new(Code::W0404, decl.span, format!("the CONSTANT `{owner}` has no value"))
@@ -257,7 +257,7 @@ impl<'s> Declarations<'s> {
             Type::Block(id) => Some(id),
             Type::Array(id) => self.remembers(self.program.array(id).element),
             Type::Struct(id) => self.program.structure(id).fields.iter().find_map(|it| self.remembers(it.ty)),
-            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => None,
+            Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => None,
         }
     }
 

@@ -8,9 +8,12 @@ use crate::names::{Entry, Found, Meaning, Sense, SpaceId};
 use crate::spelling::{Key, nearest};
 use crate::types::declarations::Declarations;
 use crate::types::scope::Scope;
-use crate::types::table::{Resolved, instance_of, scalar_initial, struct_initial};
+use crate::types::table::{PendingReference, Resolved, instance_of, scalar_initial, struct_initial};
 use crate::{Code, Diagnostic, Span};
-use staunch_ir::{Array, ArrayId, BoundsId, Const, Elementary, Enum, EnumId, Enumerator, Struct, Type, Value};
+use staunch_ir::{
+    Array, ArrayId, BoundsId, Const, Elementary, Enum, EnumId, Enumerator, RefKind, RefType, ReferenceId, Struct, Type,
+    Value,
+};
 use staunch_runtime::Family;
 use std::rc::Rc;
 
@@ -23,7 +26,7 @@ const MAX_DIMENSIONS: usize = 64;
 /// Longest string.
 const MAX_CAPACITY: i128 = 32767;
 
-const NOT_YET: [&str; 6] = ["RTC", "BLINK", "CHAR", "WCHAR", "WSTRING", "POINTER"];
+const NOT_YET: [&str; 5] = ["RTC", "BLINK", "CHAR", "WCHAR", "WSTRING"];
 
 /// What other languages call elementary types.
 const FOREIGN: [(&str, &str); 24] = [
@@ -119,9 +122,60 @@ impl<'s> Declarations<'s> {
                 self.structure(members, scope, name, doc, spec.span)
             }
             TypeKind::Enum { base, values } => self.enumeration(*base, values, scope, name, doc, spec.span),
+            TypeKind::Reference { kind, target } => self.reference(*kind, target, scope, name),
             // The parser has said so.
             TypeKind::Unsupported(_) | TypeKind::Error => None,
         }
+    }
+
+    /// What a reference points to is looked up when all is declared, where it has a name of its own.
+    fn reference(
+        &mut self,
+        kind: RefKind,
+        target: &'s ast::TypeSpec<'s>,
+        scope: &Rc<Scope<'s>>,
+        name: &str,
+    ) -> Option<Resolved> {
+        let named = match &target.kind {
+            TypeKind::Named(path) => Some(path.as_slice()),
+            _ => None,
+        };
+        if let Some(path) = named
+            && !matches!(path, [name] if Elementary::named(name.text).is_some())
+        {
+            return Some(Resolved::plain(Type::Reference(self.reference_to_named(kind, path, target.span))));
+        }
+        let target = self.resolve_type_named(target, scope, name, None)?.ty;
+        Some(Resolved::plain(self.reference_type(kind, target)))
+    }
+
+    fn reference_to_named(&mut self, kind: RefKind, path: &'s [ast::Name<'s>], span: Span) -> ReferenceId {
+        let same = |it: &&PendingReference<'s>| {
+            it.kind == kind
+                && it.path.len() == path.len()
+                && it.path.iter().zip(path).all(|(a, b)| Key(a.text) == Key(b.text))
+        };
+        if let Some(known) = self.table.pending_references.iter().find(same) {
+            return known.id;
+        }
+        let id = ReferenceId::next(self.program.references.len());
+        // It is put right by `settle_references`.
+        self.program.references.push(RefType { kind, target: Type::BOOL });
+        self.table.pending_references.push(PendingReference { id, kind, path, span });
+        id
+    }
+
+    /// Looks up what references point to, when all types are declared.
+    pub(super) fn settle_references(&mut self) {
+        for at in 0..self.table.pending_references.len() {
+            let PendingReference { id, path, span, .. } = self.table.pending_references[at];
+            if let Some(resolved) = self.resolve_path(path, span) {
+                self.program.references[id.index()].target = resolved.ty;
+            } else {
+                self.table.unknown_references.insert(id);
+            }
+        }
+        self.settled = true;
     }
 
     fn resolve_path(&mut self, path: &[ast::Name<'s>], span: Span) -> Option<Resolved> {

@@ -71,6 +71,7 @@ impl<'s> Declarations<'s> {
                 fields.find_map(|it| self.lost_counter(format!("{path}.{}", it.name), it.ty))
             }
             staunch_ir::Type::Elementary(_)
+            | staunch_ir::Type::Reference(_)
             | staunch_ir::Type::Subrange(..)
             | staunch_ir::Type::String(_)
             | staunch_ir::Type::Enum(_) => None,

@@ -90,6 +90,7 @@ codes! {
     E0208 Error "constant index out of range";
     E0209 Error "constant TIME overflows";
     E0210 Error "an instance is not a value";
+    E0211 Error "a reference is needed, or cannot be made";
     W0202 Warning "a text is cut";
     E0301 Error "unknown pin or parameter";
     E0302 Error "wrong number of arguments";

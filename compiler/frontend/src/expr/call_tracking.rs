@@ -52,7 +52,7 @@ impl Called {
 fn instance(place: &Place) -> Option<Instance> {
     let fields = place.projections.iter().map(|it| match it {
         Projection::Field(field) => Some(*field),
-        Projection::Index { .. } => None,
+        Projection::Index { .. } | Projection::Deref { .. } => None,
     });
     Some((place.root, fields.collect::<Option<_>>()?))
 }

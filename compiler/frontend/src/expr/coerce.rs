@@ -10,6 +10,9 @@ use staunch_ir::{BoundsId, Conversion, Elementary, Expr, ExprKind, Op, Type, Val
 impl<'s> Checker<'_, 's> {
     /// The value of `expr`, to be stored where `ty` is declared.
     pub(crate) fn value(&mut self, expr: &ast::Expr<'s>, ty: Type) -> Option<Expr> {
+        if let Some(bound) = self.bound_value(expr, ty) {
+            return bound;
+        }
         let operand = self.operand(expr, Some(ty.read()))?;
         self.coerce(operand, ty, expr.span)
     }
@@ -47,12 +50,21 @@ impl<'s> Checker<'_, 's> {
             (operand @ Operand::Promoted(..), _) => self.coerce(operand.cut(), to, span),
             (Operand::Typed(expr), _) => self.coerce_typed(expr.read(), to, span),
             (literal, Type::Elementary(ty)) => self.literal_as(&literal, ty, span),
+            (Operand::Integer(0), Type::Reference(_)) => Some(self.null(Some(to), span)),
             (literal, Type::Enum(id)) if self.decl.dialect(span).mixes_bits_and_integers() => {
                 let base = self.decl.program.enumeration(id).base;
                 let value = self.literal_as(&literal, base, span)?;
                 Some(self.convert(Conversion::Same, to, value))
             }
-            (_, Type::String(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_)) => {
+            (
+                _,
+                Type::String(_)
+                | Type::Enum(_)
+                | Type::Array(_)
+                | Type::Struct(_)
+                | Type::Block(_)
+                | Type::Reference(_),
+            ) => {
                 let expected = self.type_name(to);
                 let error = Diagnostic::new(Code::E0201, span, format!("expected {expected}, found a number"))
                     .label(format!("expected {expected}"));
@@ -73,6 +85,8 @@ impl<'s> Checker<'_, 's> {
             };
         }
         match (expr.ty, to) {
+            (_, Type::Reference(id)) => self.coerce_reference(expr, id, span),
+            (Type::Reference(_), Type::Elementary(into)) => self.address_as(expr, into, span),
             (Type::Elementary(from), Type::Elementary(into)) => {
                 self.may_become(from, into, span).then(|| self.convert(Conversion::Value, to, expr))
             }
@@ -126,6 +140,7 @@ impl<'s> Checker<'_, 's> {
                 outputs.map(|it| it.name.clone()).collect()
             }
             Type::Elementary(_)
+            | Type::Reference(_)
             | Type::Subrange(..)
             | Type::String(_)
             | Type::Enum(_)

@@ -33,7 +33,11 @@ fn is_constant(expr: &Expr) -> bool {
     use staunch_ir::ExprKind;
     match &expr.kind {
         ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => true,
-        ExprKind::Load(_) | ExprKind::Apply(..) | ExprKind::ApplyText(..) | ExprKind::Convert(..) => false,
+        ExprKind::Load(_)
+        | ExprKind::AddressOf(_)
+        | ExprKind::Apply(..)
+        | ExprKind::ApplyText(..)
+        | ExprKind::Convert(..) => false,
     }
 }
 

@@ -44,6 +44,7 @@ fn variable(operand: &Operand) -> Option<Type> {
     match expr.ty {
         Type::Elementary(it) if it.is_integral() && it != Elementary::Bool => Some(declared),
         Type::Elementary(_)
+        | Type::Reference(_)
         | Type::Subrange(..)
         | Type::String(_)
         | Type::Enum(_)

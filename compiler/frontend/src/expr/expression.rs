@@ -1,6 +1,7 @@
 use super::checker::{Checker, Context};
 use super::operand::{Operand, computed};
-use crate::names::{Found, Meaning, Sense};
+use super::place::{Access, Found};
+use crate::names::{self, Meaning, Sense};
 use crate::types::scope::Variable;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, UnaryOp};
@@ -54,6 +55,9 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn name(&mut self, name: ast::Name<'s>, expected: Option<Type>) -> Option<Expr> {
+        if self.is_null(name) {
+            return Some(self.null(expected, name.span));
+        }
         if let Some(found) = self.find_variable(name) {
             let variable = found?;
             return self.variable_value(&variable, name.span);
@@ -82,7 +86,8 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let (place, view) = self.decl.image.stored(&variable.place);
-        self.read(place, view, span)
+        let found = self.referred(Found { place, view, access: Access::Write }, span)?;
+        self.read(found.place, found.view, span)
     }
 
     /// Reads a CONSTANT: a scalar is its value, so that it can size an array or label a CASE.
@@ -106,7 +111,8 @@ impl<'s> Checker<'_, 's> {
         if let Ast::Name(ty) = &base.kind
             && !self.scope.is_refused(ty.text)
             && self.type_of_variable(*ty).is_none_or(|it| matches!(it, Type::Enum(_)))
-            && let Found::One(Meaning::Enumerator(_)) = self.decl.lookup(self.scope.space, &[*ty, name], Sense::Value)
+            && let names::Found::One(Meaning::Enumerator(_)) =
+                self.decl.lookup(self.scope.space, &[*ty, name], Sense::Value)
         {
             return self.enumerator(*ty, name);
         }

@@ -68,6 +68,7 @@ fn counts(ty: Type) -> bool {
     match ty {
         Type::Block(block) => block.info().pin_for(PinRole::Count).is_some_and(|it| it.direction == Direction::Output),
         Type::Elementary(_)
+        | Type::Reference(_)
         | Type::Subrange(..)
         | Type::String(_)
         | Type::Enum(_)

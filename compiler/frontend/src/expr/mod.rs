@@ -27,6 +27,7 @@ mod overload;
 mod place;
 mod promotion;
 mod real;
+mod reference;
 mod retained;
 pub(crate) mod standard;
 mod string_compare;

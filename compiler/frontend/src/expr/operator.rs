@@ -40,6 +40,10 @@ impl<'s> Checker<'_, 's> {
 
     /// The operation on two sides that have been checked.
     pub(crate) fn combine(&mut self, mut sides: Sides) -> Option<Operand> {
+        match self.reference_operation(sides.op, sides.a, sides.b, sides.span) {
+            Ok(value) => return value,
+            Err((a, b)) => (sides.a, sides.b) = (a, b),
+        }
         if sides.a.typed().is_none() && sides.b.typed().is_none() {
             if let Some(folded) = self.fold_untyped(sides.op, &sides.a, &sides.b, sides.span) {
                 return Some(folded);

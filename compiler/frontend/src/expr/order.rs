@@ -143,6 +143,7 @@ impl Checker<'_, '_> {
     /// Saves the indices that `asked` for, which is told whether they can fault. Their locals are of a
     /// subrange with the array's bounds, so that nothing checks them again.
     fn save_indices(&mut self, place: &mut Place, asked: &dyn Fn(&Self, &Expr, bool) -> bool) {
+        self.save_pointer(place, asked);
         let Some(mut ty) = self.root_type(place.root) else { return };
         for projection in &mut place.projections {
             ty = match (projection, ty) {
@@ -161,8 +162,25 @@ impl Checker<'_, '_> {
                     Some(member) => member,
                     None => return,
                 },
+                (Projection::Deref { target, .. }, _) => *target,
                 (Projection::Index { .. }, _) => return,
             };
+        }
+    }
+
+    /// Saves the last reference on the way to a place, so that the place stays what it is.
+    fn save_pointer(&mut self, place: &mut Place, asked: &dyn Fn(&Self, &Expr, bool) -> bool) {
+        let Some(position) = place.projections.iter().rposition(|it| matches!(it, Projection::Deref { .. })) else {
+            return;
+        };
+        let Projection::Deref { reference, at, .. } = place.projections[position] else { return };
+        let mut pointer = Expr::load(place.before(position, reference), at);
+        let faults = self.can_fault(&pointer);
+        if asked(self, &pointer, faults) {
+            self.save("pointer", &mut pointer);
+            let ExprKind::Load(saved) = pointer.kind else { return };
+            let way = place.projections.split_off(position);
+            *place = Place { root: saved.root, projections: way, ty: place.ty };
         }
     }
 
@@ -194,7 +212,10 @@ impl Checker<'_, '_> {
     fn held_changes(&self, effects: &[Statement], held: &Held) -> bool {
         match held {
             Held::Value(value) => self.changes(effects, value),
-            Held::Place(place) => place.indices().any(|it| self.changes(effects, it)),
+            Held::Place(place) => {
+                place.indices().any(|it| self.changes(effects, it))
+                    || place.is_followed() && self.changes(effects, &Expr::load(place.clone(), Location::default()))
+            }
         }
     }
 
@@ -217,6 +238,7 @@ impl Checker<'_, '_> {
         match &expr.kind {
             ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => false,
             ExprKind::Load(place) => self.place_can_fault(place),
+            ExprKind::AddressOf(place) => self.place_can_fault(place),
             ExprKind::Apply(op, operands) => op.can_fault() || operands.iter().any(|it| self.can_fault(it)),
             ExprKind::ApplyText(_, operands) => operands.iter().any(|it| self.can_fault(it)),
             ExprKind::Convert(_, inner) => self.can_fault(inner),
@@ -237,6 +259,7 @@ impl Checker<'_, '_> {
                     Some(member) => member,
                     None => return false,
                 },
+                (Projection::Deref { .. }, _) => return true,
                 (Projection::Index { .. }, _) => return false,
             };
         }
@@ -250,7 +273,7 @@ impl Checker<'_, '_> {
         Known { program: &self.decl.program, loops: &loops, checked: &checked }.is_within(index, array)
     }
 
-    fn root_type(&self, root: Root) -> Option<Type> {
+    pub(crate) fn root_type(&self, root: Root) -> Option<Type> {
         match root {
             Root::Local(id) => self.locals.get(id.index()).map(|it| it.ty),
             Root::Instance | Root::Globals | Root::Param(_) => self.frame().root_type(root),

@@ -241,7 +241,7 @@ impl<'s> Checker<'_, 's> {
             Type::String(_) => class.contains(Class::String),
             // It is a value of its base type where it is compared or chosen, and no number.
             Type::Enum(_) => class.contains(Class::Elementary),
-            Type::Array(_) | Type::Struct(_) | Type::Block(_) => class == Class::Any,
+            Type::Array(_) | Type::Struct(_) | Type::Block(_) | Type::Reference(_) => class == Class::Any,
         }
     }
 
@@ -391,10 +391,11 @@ fn value_of<'a, 's>(given: &Given<'a, 's>) -> Option<&'a ast::Expr<'s>> {
 }
 
 fn can_fault(expr: &Expr) -> bool {
-    let indexed = |place: &Place| place.projections.iter().any(|it| matches!(it, Projection::Index { .. }));
+    let indexed = |place: &Place| place.projections.iter().any(|it| !matches!(it, Projection::Field(_)));
     match &expr.kind {
         ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => false,
         ExprKind::Load(place) => indexed(place),
+        ExprKind::AddressOf(place) => indexed(place),
         ExprKind::Apply(op, operands) => op.can_fault() || operands.iter().any(can_fault),
         ExprKind::ApplyText(_, operands) => operands.iter().any(can_fault),
         ExprKind::Convert(_, inner) => can_fault(inner),

@@ -60,9 +60,15 @@ impl<'s> Checker<'_, 's> {
 
     /// The place that `expr` names, or the bits of it, for reading or writing.
     pub(crate) fn place_or_view(&mut self, expr: &ast::Expr<'s>) -> Option<Found<'s>> {
+        let found = self.place_of_reference(expr)?;
+        self.referred(found, expr.span)
+    }
+
+    /// The place that `expr` names; a REFERENCE TO is itself.
+    pub(crate) fn place_of_reference(&mut self, expr: &ast::Expr<'s>) -> Option<Found<'s>> {
         match &expr.kind {
             Ast::Name(name) => self.variable_place(*name),
-            Ast::Paren(inner) => self.place_or_view(inner),
+            Ast::Paren(inner) => self.place_of_reference(inner),
             Ast::Address(name) => {
                 let address = self.decl.address(*name)?;
                 let Some(place) = self.decl.at_address(address) else {
@@ -74,11 +80,7 @@ impl<'s> Checker<'_, 's> {
             }
             Ast::Member(base, name) => self.member(base, *name),
             Ast::Index(base, indices) => self.index(base, indices),
-            Ast::Deref(inner) => {
-                self.place(inner)?;
-                self.decl.not_supported(expr.span, "dereferencing");
-                None
-            }
+            Ast::Deref(inner) => self.dereferenced(inner, expr.span),
             Ast::Error(_) => {
                 self.operand(expr, None);
                 None
@@ -242,7 +244,12 @@ impl<'s> Checker<'_, 's> {
         match found.place.ty {
             Type::Struct(id) => self.struct_member(found, id, name),
             Type::Block(id) => self.pin(found, id, name),
-            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Array(_) => {
+            Type::Elementary(_)
+            | Type::Reference(_)
+            | Type::Subrange(..)
+            | Type::String(_)
+            | Type::Enum(_)
+            | Type::Array(_) => {
                 let ty = self.type_name(found.place.ty);
                 self.report(
                     Diagnostic::new(Code::E0107, name.span, format!("{ty} has no members"))
@@ -427,6 +434,7 @@ impl<'s> Checker<'_, 's> {
                         error.help(format!("a bit is written `{text}.{at}`"))
                     }
                     Type::Elementary(_)
+                    | Type::Reference(_)
                     | Type::Subrange(..)
                     | Type::Enum(_)
                     | Type::Struct(_)
@@ -620,7 +628,7 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    fn is_counter(&self, place: &Place) -> bool {
+    pub(crate) fn is_counter(&self, place: &Place) -> bool {
         let frame = self.frame();
         self.counters.iter().any(|it| alias::alias(&frame, &it.counter, place) == alias::Alias::Must)
     }

@@ -49,6 +49,7 @@ fn low_bits(value: &Expr, to: Elementary) -> Option<Expr> {
         | ExprKind::ApplyText(..)
         | ExprKind::Convert(Conversion::Same | Conversion::Truncate, _)
         | ExprKind::Load(_)
+        | ExprKind::AddressOf(_)
         | ExprKind::Text(_)
         | ExprKind::Aggregate(_) => None,
     }

@@ -242,7 +242,11 @@ fn text_depth(expr: &Expr) -> usize {
         ExprKind::ApplyText(_, operands) => 1 + operands.iter().map(text_depth).max().unwrap_or(0),
         ExprKind::Convert(_, inner) => text_depth(inner),
         ExprKind::Apply(_, operands) => operands.iter().map(text_depth).max().unwrap_or(0),
-        ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) | ExprKind::Load(_) => 0,
+        ExprKind::Const(_)
+        | ExprKind::Text(_)
+        | ExprKind::Aggregate(_)
+        | ExprKind::Load(_)
+        | ExprKind::AddressOf(_) => 0,
     }
 }
 
@@ -250,6 +254,7 @@ fn capacity(expr: &Expr) -> u16 {
     match expr.ty {
         Type::String(capacity) => capacity,
         Type::Elementary(_)
+        | Type::Reference(_)
         | Type::Subrange(..)
         | Type::Enum(_)
         | Type::Array(_)

@@ -70,7 +70,7 @@ pub(crate) fn is_element_by_element(counter: &Place, kept: &Place) -> bool {
 fn open_indices(place: &Place) -> Vec<&Expr> {
     let indices = place.projections.iter().filter_map(|it| match it {
         Projection::Index { index, .. } => Some(&**index),
-        Projection::Field(_) => None,
+        Projection::Field(_) | Projection::Deref { .. } => None,
     });
     indices.filter(|it| it.as_const().is_none()).collect()
 }
@@ -93,7 +93,8 @@ pub(crate) fn is_same_place(a: &Place, b: &Place) -> bool {
     let same = |(a, b): (&Projection, &Projection)| match (a, b) {
         (Projection::Field(a), Projection::Field(b)) => a == b,
         (Projection::Index { index: a, .. }, Projection::Index { index: b, .. }) => is_same_value(a, b),
-        (Projection::Field(_), Projection::Index { .. }) | (Projection::Index { .. }, Projection::Field(_)) => false,
+        (Projection::Deref { .. }, Projection::Deref { .. }) => true,
+        (Projection::Field(_) | Projection::Index { .. } | Projection::Deref { .. }, _) => false,
     };
     a.root == b.root && a.projections.len() == b.projections.len() && a.projections.iter().zip(&b.projections).all(same)
 }
@@ -113,7 +114,8 @@ pub(crate) fn holds_storage(whole: &Place, part: &Place) -> bool {
                 _ => true,
             }
         }
-        (Projection::Field(_), Projection::Index { .. }) | (Projection::Index { .. }, Projection::Field(_)) => false,
+        (Projection::Deref { .. }, Projection::Deref { .. }) => true,
+        (Projection::Field(_) | Projection::Index { .. } | Projection::Deref { .. }, _) => false,
     };
     whole.root == part.root
         && whole.projections.len() <= part.projections.len()

@@ -93,6 +93,6 @@ fn is_plain(expr: &Expr) -> bool {
     match &expr.kind {
         ExprKind::Load(place) => place.projections.iter().all(|it| matches!(it, Projection::Field(_))),
         ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => true,
-        ExprKind::Apply(..) | ExprKind::ApplyText(..) | ExprKind::Convert(..) => false,
+        ExprKind::AddressOf(_) | ExprKind::Apply(..) | ExprKind::ApplyText(..) | ExprKind::Convert(..) => false,
     }
 }

@@ -29,6 +29,8 @@ pub(crate) fn assemble<'s>(
     declarations.check_named_programs();
     configuration::instances(declarations, files);
     order::order(declarations, uses, stacks)?;
+    let program = std::mem::replace(&mut declarations.program, empty_program(Vec::new()));
+    declarations.program = staunch_ir::reference::fixed(program);
     declarations.check_size()?;
     Some(std::mem::replace(&mut declarations.program, empty_program(Vec::new())))
 }

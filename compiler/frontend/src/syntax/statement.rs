@@ -198,9 +198,9 @@ fn simple<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
             assignment(input, target)?
         }
         Kind::Attempt => {
-            let sign = input.take();
-            input.report(diagnostics::unsupported(sign, "the assignment attempt `?=`"));
-            assignment(input, target)?
+            input.take();
+            let value = expression(input)?;
+            StatementKind::Attempt { target, value }
         }
         Kind::Name => latch(input, target)?,
         Kind::Semicolon if misspelt::is_misspelt(input, &target) => return Err(Problem::REPORTED),
@@ -256,9 +256,8 @@ fn latch<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<StatementKi
         text if joined && text.eq_ignore_ascii_case("REF") => {
             input.take();
             input.take();
-            expression(input)?;
-            input.report(diagnostics::unsupported(word, "the reference assignment `REF=`"));
-            return Ok(StatementKind::Error);
+            let value = expression(input)?;
+            return Ok(StatementKind::Bind { target, value });
         }
         _ if matches!(target.kind, ExprKind::Call(..)) => return Ok(StatementKind::Expr(target)),
         _ => return without_effect(input, target),

@@ -7,9 +7,11 @@ use crate::{
     lex::Kind,
 };
 
+use staunch_ir::RefKind;
+
 use super::{
     combinator::{Rule, ahead, delimited, from_here, list, name, reported, rule, token, word},
-    diagnostics, doc,
+    doc,
     expression::expr,
     foreign_types,
     initial::assign,
@@ -88,17 +90,12 @@ fn enumeration<'t, 's: 't>() -> impl Rule<'t, 's, Vec<EnumValue<'s>>> {
 
 /// REF_TO, POINTER TO and REFERENCE TO are words only here.
 fn reference<'t, 's: 't>(spec: impl Rule<'t, 's, TypeSpec<'s>>) -> impl Rule<'t, 's, TypeKind<'s>> {
-    let what = choice((
-        word("POINTER").then(token(Kind::To)).to("POINTER TO"),
-        word("REFERENCE").then(token(Kind::To)).to("REFERENCE TO"),
-        word("REF_TO").then(token(Kind::To).or_not()).to("REF_TO"),
+    let kind = choice((
+        word("POINTER").then(token(Kind::To)).to(RefKind::PointerTo),
+        word("REFERENCE").then(token(Kind::To)).to(RefKind::ReferenceTo),
+        word("REF_TO").then(token(Kind::To).or_not()).to(RefKind::RefTo),
     ));
-    let refused = reported(what, |what, state, tokens| {
-        let span = state.span(tokens);
-        state.report(diagnostics::unsupported(span, what));
-        TypeKind::Unsupported(what)
-    });
-    refused.then_ignore(spec)
+    kind.then(spec).map(|(kind, target)| TypeKind::Reference { kind, target: Box::new(target) })
 }
 
 /// `STRING`, `STRING[80]`, `STRING(80)`, WSTRING alike.

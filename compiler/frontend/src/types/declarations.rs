@@ -12,7 +12,7 @@ use crate::log::Log;
 use crate::names::{Entry, Found, Meaning, Names, Sense, Site, SpaceId};
 use crate::{Code, Diagnostic, Span, ast};
 use rustc_hash::FxHashMap;
-use staunch_ir::{BlockId, Location, Program, SourceFile, StructId, Type};
+use staunch_ir::{BlockId, Location, Program, Projection, RefKind, RefType, ReferenceId, SourceFile, StructId, Type};
 use std::rc::Rc;
 
 /// A declaration, and what it was resolved to.
@@ -62,7 +62,9 @@ pub(crate) struct Declarations<'s> {
     pub named_programs: FxHashMap<usize, NamedProgram<'s>>,
     pub tests: Tests,
     pub program: Program,
-    pub table: Table,
+    pub table: Table<'s>,
+    /// What references to named types point to is known.
+    pub settled: bool,
 }
 
 impl<'s> Declarations<'s> {
@@ -83,6 +85,7 @@ impl<'s> Declarations<'s> {
             tests: Tests::default(),
             program: empty_program(files),
             table: Table::default(),
+            settled: false,
         }
     }
 
@@ -178,6 +181,28 @@ impl<'s> Declarations<'s> {
         }
     }
 
+    /// The type of references to `target`.
+    pub fn reference_type(&mut self, kind: RefKind, target: Type) -> Type {
+        let wanted = RefType { kind, target };
+        let pending = |id: ReferenceId| self.table.pending_references.iter().any(|it| it.id == id);
+        let mut known = (0..self.program.references.len()).map(ReferenceId::next);
+        let known = known.find(|id| self.program.references[id.index()] == wanted && (self.settled || !pending(*id)));
+        Type::Reference(known.unwrap_or_else(|| {
+            self.program.references.push(wanted);
+            ReferenceId::next(self.program.references.len() - 1)
+        }))
+    }
+
+    /// The type of a part.
+    pub fn part(&self, ty: Type, projection: &Projection) -> Option<Type> {
+        match (projection, ty) {
+            (Projection::Field(field), ty) => self.program.member(ty, *field),
+            (Projection::Index { .. }, Type::Array(id)) => Some(self.program.array(id).element),
+            (Projection::Index { .. }, _) => None,
+            (Projection::Deref { target, .. }, _) => Some(*target),
+        }
+    }
+
     /// Whether the structure is the state of a PROGRAM or FUNCTION_BLOCK.
     pub fn is_instance(&self, id: StructId) -> bool {
         self.table.instances.contains_key(&id)
@@ -235,6 +260,16 @@ impl<'s> Declarations<'s> {
         }
     }
 
+    /// The type that a name means.
+    pub fn type_of_name(&mut self, space: SpaceId, name: ast::Name<'_>) -> Option<Type> {
+        match self.lookup(space, &[name], Sense::Type) {
+            Found::One(Meaning::Declared(Entry::Type(at))) => self.named_type(at).map(|it| it.ty),
+            Found::One(Meaning::Declared(Entry::Pou(at))) => self.signature(at)?.state.map(Type::Struct),
+            Found::One(Meaning::Block(block)) => Some(Type::Block(block)),
+            Found::One(_) | Found::Nothing | Found::Several(_) => None,
+        }
+    }
+
     /// What the field of the global variable in a slot is called: a name that two lists have stands after
     /// its list's.
     pub fn global_field_name(&self, at: usize) -> String {
@@ -279,7 +314,12 @@ impl<'s> Declarations<'s> {
                 self.program.structure(id).fields.iter().filter(pin).map(|it| it.name.as_str()).collect()
             }
             Type::Enum(id) => self.program.enumeration(id).values.iter().map(|it| it.name.as_str()).collect(),
-            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Array(_) | Type::Block(_) => Vec::new(),
+            Type::Elementary(_)
+            | Type::Reference(_)
+            | Type::Subrange(..)
+            | Type::String(_)
+            | Type::Array(_)
+            | Type::Block(_) => Vec::new(),
         };
         (1..=12).contains(&names.len()).then(|| crate::diagnostic::wording::list(&names).replace(" or ", " and "))
     }
@@ -291,6 +331,7 @@ pub(crate) fn empty_program(files: Vec<SourceFile>) -> Program {
         enums: Vec::new(),
         bounds: Vec::new(),
         arrays: Vec::new(),
+        references: Vec::new(),
         structs: Vec::new(),
         globals: StructId(0),
         classes: Vec::new(),

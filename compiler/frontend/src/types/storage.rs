@@ -4,6 +4,7 @@ use super::address::{self, Storage};
 use super::declarations::Declarations;
 use super::table::{GLOBALS, scalar_initial};
 use crate::ast;
+use staunch_ir::layout::Shape;
 use staunch_ir::{Address, Const, Field, FieldId, Place, Root, Section, Struct, StructId, Type};
 
 impl<'s> Declarations<'s> {
@@ -37,6 +38,7 @@ impl<'s> Declarations<'s> {
     pub fn size_of(&self, ty: Type) -> u64 {
         match ty {
             Type::Elementary(it) | Type::Subrange(it, _) => u64::from(it.lane().size()),
+            Type::Reference(_) => 8,
             Type::String(capacity) => u64::from(capacity) + 2,
             Type::Enum(id) => u64::from(self.program.enumeration(id).base.lane().size()),
             Type::Struct(id) => self.table.sizes[id.index()],
@@ -44,6 +46,49 @@ impl<'s> Declarations<'s> {
             Type::Array(id) => {
                 let array = self.program.array(id);
                 array.len().saturating_mul(self.size_of(array.element))
+            }
+        }
+    }
+
+    /// SIZEOF: the bytes from where a variable's address points to its end. A string has its characters
+    /// there, and a zero.
+    pub fn sizeof(&self, ty: Type) -> u64 {
+        match ty {
+            Type::String(capacity) => u64::from(capacity) + 1,
+            Type::Elementary(_)
+            | Type::Subrange(..)
+            | Type::Reference(_)
+            | Type::Enum(_)
+            | Type::Array(_)
+            | Type::Struct(_)
+            | Type::Block(_) => self.shape(ty).size,
+        }
+    }
+
+    /// As the layout has it.
+    fn shape(&self, ty: Type) -> Shape {
+        match ty {
+            Type::Array(id) => {
+                let array = self.program.array(id);
+                let Shape { size, align } = self.shape(array.element);
+                Shape { size: array.len().saturating_mul(size), align }
+            }
+            Type::Struct(id) => {
+                let fields = self.program.structure(id).fields.iter().map(|it| self.shape(it.ty));
+                let whole = fields.fold(Shape { size: 0, align: 1 }, |whole, it| Shape {
+                    size: whole.size.next_multiple_of(it.align).saturating_add(it.size),
+                    align: whole.align.max(it.align),
+                });
+                Shape { size: whole.size.next_multiple_of(whole.align), ..whole }
+            }
+            Type::Block(id) => {
+                let info = id.info();
+                let number = |it| u64::try_from(it).unwrap_or(u64::MAX);
+                Shape { size: number(info.size), align: number(info.align) }
+            }
+            Type::String(_) => Shape { size: self.size_of(ty).next_multiple_of(2), align: 2 },
+            Type::Elementary(_) | Type::Subrange(..) | Type::Reference(_) | Type::Enum(_) => {
+                Shape { size: self.size_of(ty), align: self.size_of(ty) }
             }
         }
     }
@@ -56,9 +101,12 @@ impl<'s> Declarations<'s> {
                 let array = self.program.array(id);
                 array.len().saturating_mul(self.size_at_most(array.element))
             }
-            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Block(_) => {
-                self.size_of(ty)
-            }
+            Type::Elementary(_)
+            | Type::Reference(_)
+            | Type::Subrange(..)
+            | Type::String(_)
+            | Type::Enum(_)
+            | Type::Block(_) => self.size_of(ty),
         }
     }
 

@@ -1,7 +1,9 @@
 //! Types: what a declaration's type is, what it holds, and how large it is.
 
-use rustc_hash::FxHashMap;
-use staunch_ir::{Const, StructId, Type, Value};
+use crate::Span;
+use crate::ast::Name;
+use rustc_hash::{FxHashMap, FxHashSet};
+use staunch_ir::{Const, RefKind, ReferenceId, StructId, Type, Value};
 
 /// Stands for the globals' structure until it is made, when all declared globals are known.
 pub(crate) const GLOBALS: StructId = StructId(u32::MAX);
@@ -22,7 +24,7 @@ impl Resolved {
 
 /// What is known of the types of a program beside what the program itself says.
 #[derive(Debug, Default)]
-pub(crate) struct Table {
+pub(crate) struct Table<'s> {
     /// For each array, what its elements are.
     pub elements: Vec<Resolved>,
     /// For each structure, about how many bytes it takes.
@@ -33,6 +35,19 @@ pub(crate) struct Table {
     pub instances: FxHashMap<StructId, usize>,
     /// How many constants the initial values hold so far.
     pub constants: usize,
+    /// The references to types with names.
+    pub pending_references: Vec<PendingReference<'s>>,
+    /// Those whose targets are not known; that was reported.
+    pub unknown_references: FxHashSet<ReferenceId>,
+}
+
+/// A reference to a type that is looked up when all are declared: it may hold such a reference itself.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PendingReference<'s> {
+    pub id: ReferenceId,
+    pub kind: RefKind,
+    pub path: &'s [Name<'s>],
+    pub span: Span,
 }
 
 /// An instance of the POU with this state.

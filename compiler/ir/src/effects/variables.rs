@@ -73,7 +73,7 @@ impl Variables {
 fn first_field(place: &Place) -> Option<FieldId> {
     match place.projections.first() {
         Some(Projection::Field(field)) => Some(*field),
-        Some(Projection::Index { .. }) | None => None,
+        Some(Projection::Index { .. } | Projection::Deref { .. }) | None => None,
     }
 }
 

@@ -16,6 +16,7 @@ const MAX_OPERANDS: usize = 4;
 pub(super) trait Storage {
     fn load(&self, place: &Place) -> Result<Value, Fault>;
     fn load_text(&self, place: &Place) -> Result<Vec<u8>, Fault>;
+    fn address_of(&self, place: &Place) -> Result<Value, Fault>;
 }
 
 /// The value of an expression of an elementary or enumeration type.
@@ -23,6 +24,7 @@ pub(super) fn scalar(storage: &impl Storage, expr: &Expr) -> Result<Value, Fault
     match &expr.kind {
         ExprKind::Const(value) => Ok(*value),
         ExprKind::Load(place) => storage.load(place),
+        ExprKind::AddressOf(place) => storage.address_of(place),
         ExprKind::Apply(op, operands) => operation(storage, *op, operands, expr.at),
         ExprKind::ApplyText(op, operands) => match text_operation(storage, *op, operands, 0)? {
             TextValue::Scalar(value) => Ok(value),
@@ -53,7 +55,7 @@ pub(super) fn text(storage: &impl Storage, expr: &Expr) -> Result<Vec<u8>, Fault
             bytes.truncate(usize::from(capacity(expr.ty)));
             Ok(bytes)
         }
-        ExprKind::Const(_) | ExprKind::Apply(..) | ExprKind::Aggregate(_) => {
+        ExprKind::Const(_) | ExprKind::AddressOf(_) | ExprKind::Apply(..) | ExprKind::Aggregate(_) => {
             unreachable!("verified IR: an expression of a string type")
         }
     }
@@ -76,7 +78,9 @@ fn text_operation(storage: &impl Storage, op: TextOp, operands: &[Expr], capacit
         .iter()
         .map(|operand| match operand.ty {
             Type::String(_) => text(storage, operand).map(TextValue::Text),
-            Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) => scalar(storage, operand).map(TextValue::Scalar),
+            Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::Enum(_) => {
+                scalar(storage, operand).map(TextValue::Scalar)
+            }
             Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
                 unreachable!("verified IR: operands of a text operation")
             }
@@ -97,10 +101,11 @@ fn elementary_lane(ty: Type) -> Lane {
     ty.elementary().expect("verified IR: a conversion to an elementary type").lane()
 }
 
-fn capacity(ty: Type) -> u16 {
+pub(super) fn capacity(ty: Type) -> u16 {
     match ty {
         Type::String(capacity) => capacity,
         Type::Elementary(_)
+        | Type::Reference(_)
         | Type::Subrange(..)
         | Type::Enum(_)
         | Type::Array(_)
@@ -119,12 +124,18 @@ pub(super) struct Scope<'a> {
 
 impl Storage for Scope<'_> {
     fn load(&self, place: &Place) -> Result<Value, Fault> {
-        let at = self.resolve(place)?;
         let lane = self.interpreter.program.lane(place.ty).expect("verified IR: an elementary place");
+        if let Some(reached) = self.reached(place)? {
+            return self.load_reached(&reached, lane);
+        }
+        let at = self.resolve(place)?;
         Ok(Value::read(lane, &self.interpreter.memory[at..]))
     }
 
     fn load_text(&self, place: &Place) -> Result<Vec<u8>, Fault> {
+        if let Some(reached) = self.reached(place)? {
+            return self.load_reached_text(&reached, capacity(place.ty));
+        }
         let at = self.resolve(place)?;
         let header = &self.interpreter.memory[at..];
         let Value::U16(length) = Value::read(Lane::U16, header) else { unreachable!("read as U16") };
@@ -132,16 +143,24 @@ impl Storage for Scope<'_> {
         let length = usize::from(length.min(capacity(place.ty)));
         Ok(header[2..2 + length].to_vec())
     }
+
+    fn address_of(&self, place: &Place) -> Result<Value, Fault> {
+        self.reference_to(place)
+    }
 }
 
 impl Scope<'_> {
     /// The offset in the interpreter's memory that `place` means.
     pub(super) fn resolve(&self, place: &Place) -> Result<usize, Fault> {
+        if place.is_followed() {
+            return self.find(place);
+        }
         let (mut offset, mut ty) = self.root(place.root);
         for projection in &place.projections {
             let (step, part) = match projection {
                 Projection::Field(field) => self.field(ty, *field),
                 Projection::Index { index, at } => self.element(ty, index, *at)?,
+                Projection::Deref { .. } => unreachable!("a place that leads through no reference"),
             };
             offset += step;
             ty = part;
@@ -170,12 +189,12 @@ impl Scope<'_> {
         }
     }
 
-    fn field(&self, ty: Type, field: FieldId) -> (usize, Type) {
+    pub(super) fn field(&self, ty: Type, field: FieldId) -> (usize, Type) {
         let part = self.interpreter.program.member(ty, field).expect("verified IR: a member's id");
         (usize_of(self.interpreter.layout.offset(ty, field)), part)
     }
 
-    fn element(&self, ty: Type, index: &Expr, at: Location) -> Result<(usize, Type), Fault> {
+    pub(super) fn element(&self, ty: Type, index: &Expr, at: Location) -> Result<(usize, Type), Fault> {
         let Type::Array(id) = ty else { unreachable!("verified IR: an index into an array") };
         let Value::I64(index) = scalar(self, index)? else { unreachable!("verified IR: a LINT index") };
         let array = self.interpreter.program.array(id);

@@ -144,6 +144,9 @@ impl<'p> Interpreter<'p> {
     }
 
     fn assign(&mut self, frame: &Frame, target: &Place, value: &Expr) -> Result<(), Fault> {
+        if let Some(reached) = self.scope(frame).reached(target)? {
+            return self.assign_reached(frame, &reached, value);
+        }
         let offset = self.resolve(frame, target)?;
         self.store(frame, value, offset)
     }
@@ -151,7 +154,7 @@ impl<'p> Interpreter<'p> {
     /// Writes the value of an expression to an offset in memory.
     fn store(&mut self, frame: &Frame, value: &Expr, offset: usize) -> Result<(), Fault> {
         match value.ty {
-            Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) => {
+            Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::Enum(_) => {
                 let value = scalar(&self.scope(frame), value)?;
                 value.write(&mut self.memory[offset..]);
             }
@@ -185,6 +188,7 @@ impl<'p> Interpreter<'p> {
             }
             ExprKind::Const(_)
             | ExprKind::Text(_)
+            | ExprKind::AddressOf(_)
             | ExprKind::Apply(..)
             | ExprKind::ApplyText(..)
             | ExprKind::Convert(..) => {
@@ -279,6 +283,7 @@ fn block_id(place: &Place) -> BlockId {
     match place.ty {
         Type::Block(id) => id,
         Type::Elementary(_)
+        | Type::Reference(_)
         | Type::Subrange(..)
         | Type::String(_)
         | Type::Enum(_)

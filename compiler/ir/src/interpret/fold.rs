@@ -9,14 +9,20 @@ pub fn fold(expr: &Expr) -> Option<Result<Const, Fault>> {
     let known = match &expr.kind {
         ExprKind::Apply(_, operands) | ExprKind::ApplyText(_, operands) => operands.iter().all(is_constant),
         ExprKind::Convert(_, operand) => is_constant(operand),
-        ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) | ExprKind::Load(_) => is_constant(expr),
+        ExprKind::Const(_)
+        | ExprKind::Text(_)
+        | ExprKind::Aggregate(_)
+        | ExprKind::Load(_)
+        | ExprKind::AddressOf(_) => is_constant(expr),
     };
     known.then(|| constant(expr))
 }
 
 fn constant(expr: &Expr) -> Result<Const, Fault> {
     match expr.ty {
-        Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) => scalar(&NoStorage, expr).map(Const::Scalar),
+        Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::Enum(_) => {
+            scalar(&NoStorage, expr).map(Const::Scalar)
+        }
         Type::String(_) => text(&NoStorage, expr).map(Const::Text),
         Type::Array(_) | Type::Struct(_) | Type::Block(_) => Ok(aggregate(expr)),
     }
@@ -28,6 +34,7 @@ fn aggregate(expr: &Expr) -> Const {
         ExprKind::Const(_)
         | ExprKind::Text(_)
         | ExprKind::Load(_)
+        | ExprKind::AddressOf(_)
         | ExprKind::Apply(..)
         | ExprKind::ApplyText(..)
         | ExprKind::Convert(..) => unreachable!("verified IR: an aggregate is read or constant"),
@@ -37,7 +44,11 @@ fn aggregate(expr: &Expr) -> Const {
 fn is_constant(expr: &Expr) -> bool {
     match &expr.kind {
         ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => true,
-        ExprKind::Load(_) | ExprKind::Apply(..) | ExprKind::ApplyText(..) | ExprKind::Convert(..) => false,
+        ExprKind::Load(_)
+        | ExprKind::AddressOf(_)
+        | ExprKind::Apply(..)
+        | ExprKind::ApplyText(..)
+        | ExprKind::Convert(..) => false,
     }
 }
 
@@ -46,6 +57,10 @@ struct NoStorage;
 impl Storage for NoStorage {
     fn load(&self, _place: &Place) -> Result<Value, Fault> {
         unreachable!("a constant expression reads no place")
+    }
+
+    fn address_of(&self, _place: &Place) -> Result<Value, Fault> {
+        unreachable!("a constant expression names no place")
     }
 
     fn load_text(&self, _place: &Place) -> Result<Vec<u8>, Fault> {

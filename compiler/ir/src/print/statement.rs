@@ -128,6 +128,7 @@ impl Printer<'_> {
                 name => name,
             },
             Type::Elementary(_)
+            | Type::Reference(_)
             | Type::Subrange(..)
             | Type::String(_)
             | Type::Enum(_)

@@ -2,7 +2,7 @@
 
 use super::Verifier;
 use super::statement::Body;
-use crate::{Conversion, Expr, ExprKind, Lane, Location, Op, TextOp, Type, Value};
+use crate::{Conversion, Expr, ExprKind, Lane, Location, Op, Root, TextOp, Type, Value};
 
 impl Verifier<'_> {
     pub(super) fn expr(&mut self, body: &Body, expr: &Expr) {
@@ -23,6 +23,14 @@ impl Verifier<'_> {
             ExprKind::Load(place) => {
                 self.place(body, place, expr.at);
                 self.require(place.ty == expr.ty || place.ty.read() == expr.ty, expr.at, "a read of another type");
+            }
+            ExprKind::AddressOf(place) => {
+                self.writable(body, place, expr.at);
+                // What lives for one call has fixed storage where its address is taken.
+                let lasts = !matches!(place.root, Root::Local(_)) || place.is_followed();
+                self.require(lasts, expr.at, "the address of what lives for one call");
+                let refers = matches!(expr.ty, Type::Reference(_));
+                self.require(refers, expr.at, "an address that is no reference");
             }
             ExprKind::Apply(op, operands) => {
                 operands.iter().for_each(|operand| self.expr(body, operand));

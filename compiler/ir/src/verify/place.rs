@@ -18,6 +18,7 @@ impl Verifier<'_> {
                     self.expr_of(body, index, Type::LINT);
                     self.element(ty, *at)
                 }
+                Projection::Deref { reference, target, at } => self.target(ty, *reference, *target, *at),
             };
             let Some(part) = part else { return };
             ty = part;
@@ -51,6 +52,23 @@ impl Verifier<'_> {
         Some(self.program.array(id).element)
     }
 
+    /// What a reference leads to is of the type that it says.
+    fn target(&mut self, ty: Type, reference: Type, target: Type, at: Location) -> Option<Type> {
+        self.location(at);
+        let declared = match ty {
+            Type::Reference(id) => self.program.references.get(id.index()).map(|it| it.target),
+            Type::Elementary(_)
+            | Type::Subrange(..)
+            | Type::String(_)
+            | Type::Enum(_)
+            | Type::Array(_)
+            | Type::Struct(_)
+            | Type::Block(_) => None,
+        };
+        let holds = ty == reference && declared == Some(target);
+        self.require(holds, at, format_args!("{ty:?} does not refer to {target:?}")).then_some(target)
+    }
+
     /// `place` exists, has the type it says, and no part of the way to it is constant.
     pub(super) fn writable(&mut self, body: &Body, place: &Place, at: Location) {
         let before = self.violations.len();
@@ -74,6 +92,8 @@ impl Verifier<'_> {
                     self.program.member(ty, *field)
                 }
                 Projection::Index { at, .. } => self.element(ty, *at),
+                // A constant's address is not taken.
+                Projection::Deref { target, .. } => Some(*target),
             };
             let Some(part) = part else { return false };
             ty = part;

@@ -118,7 +118,7 @@ impl Verifier<'_> {
                 (Projection::Index { index, .. }, Some(Type::Array(id))) => {
                     constant_position(self.program, index, id).map(|_| self.program.array(id).element)
                 }
-                (Projection::Field(_) | Projection::Index { .. }, _) => None,
+                (Projection::Field(_) | Projection::Index { .. } | Projection::Deref { .. }, _) => None,
             };
         }
         self.require(ty == Some(variable.place.ty), at, format_args!("{} is of another type", variable.name));
@@ -134,7 +134,12 @@ impl Verifier<'_> {
         match ty {
             Type::Elementary(it) => it.lane().is_integer().then(|| u64::from(it.lane().size()) * 8),
             Type::Array(id) => Some(self.bits_of(self.program.array(id).element)? * self.program.array(id).len()),
-            Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Struct(_) | Type::Block(_) => None,
+            Type::Subrange(..)
+            | Type::String(_)
+            | Type::Enum(_)
+            | Type::Struct(_)
+            | Type::Block(_)
+            | Type::Reference(_) => None,
         }
     }
 }

@@ -101,6 +101,7 @@ impl<'p> Verifier<'p> {
     fn for_loop(&mut self, body: &Body<'p>, it: &For, at: Location) {
         let ty = it.counter.ty;
         self.writable(body, &it.counter, at);
+        self.require(!it.counter.is_followed(), at, "a counter behind a reference");
         self.expr_of(body, &it.first, ty);
         self.expr_of(body, &it.last, ty.read());
         self.location(it.step_at);
@@ -218,6 +219,7 @@ impl<'p> Verifier<'p> {
         match place.ty {
             Type::Block(id) => Some(id.info()),
             Type::Elementary(_)
+            | Type::Reference(_)
             | Type::Subrange(..)
             | Type::String(_)
             | Type::Enum(_)

@@ -28,6 +28,9 @@ impl Verifier<'_> {
             self.location(structure.location);
             self.structure(id, structure);
         }
+        for reference in &program.references {
+            self.declared(reference.target, Location::default());
+        }
         self.within = "globals".to_owned();
         let known = program.globals.index() < program.structs.len();
         self.require(known, Location::default(), "no such structure");
@@ -72,6 +75,7 @@ impl Verifier<'_> {
     fn part(&mut self, ty: Type, known: Known, at: Location) {
         let declared = match ty {
             Type::Elementary(_) | Type::String(_) => true,
+            Type::Reference(id) => id.index() < self.program.references.len(),
             Type::Subrange(base, id) => return self.subrange(base, id, at),
             Type::Enum(id) => id.index() < self.program.enums.len(),
             Type::Block(id) => id.index() < staunch_runtime::BLOCKS.len(),
@@ -140,7 +144,12 @@ impl Verifier<'_> {
         let expected = match ty {
             Type::Struct(id) => self.program.structure(id).fields.len(),
             Type::Block(id) => id.info().pins.len(),
-            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Array(_) => {
+            Type::Elementary(_)
+            | Type::Reference(_)
+            | Type::Subrange(..)
+            | Type::String(_)
+            | Type::Enum(_)
+            | Type::Array(_) => {
                 return self.report(at, "a structure constant of another type");
             }
         };

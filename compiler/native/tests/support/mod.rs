@@ -83,6 +83,7 @@ pub fn program(arrays: Vec<Array>, mut structs: Vec<Struct>, routines: Vec<Routi
         enums: Vec::new(),
         bounds: Vec::new(),
         arrays,
+        references: Vec::new(),
         globals: StructId::next(structs.len() - 1),
         aliases: Vec::new(),
         instances: (0..classes.len()).map(|at| instance(ClassId::next(at))).collect(),

@@ -84,5 +84,6 @@ fn step(projection: &Projection) -> Step {
     match projection {
         Projection::Field(field) => Step::Field(*field),
         Projection::Index { .. } => Step::Index,
+        Projection::Deref { .. } => unreachable!("programs with references share their storage in cells"),
     }
 }

@@ -82,7 +82,7 @@ impl Body {
 
     fn projection(&self, projection: &Projection) -> Projection {
         match projection {
-            Projection::Field(field) => Projection::Field(*field),
+            Projection::Field(_) | Projection::Deref { .. } => projection.clone(),
             Projection::Index { index, at } => Projection::Index { index: Box::new(self.expr(index)), at: *at },
         }
     }
@@ -92,6 +92,7 @@ impl Body {
         let kind = match &expr.kind {
             ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => return expr.clone(),
             ExprKind::Load(place) => ExprKind::Load(self.place(place)),
+            ExprKind::AddressOf(place) => ExprKind::AddressOf(Box::new(self.place(place))),
             ExprKind::Apply(op, operands) => ExprKind::Apply(*op, all(operands)),
             ExprKind::ApplyText(op, operands) => ExprKind::ApplyText(*op, all(operands)),
             ExprKind::Convert(how, value) => ExprKind::Convert(*how, Box::new(self.expr(value))),

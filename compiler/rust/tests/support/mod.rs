@@ -133,7 +133,7 @@ fn mark(program: &Program, layout: &Layout, ty: Type, offset: u64, mask: &mut [u
                 mark(program, layout, ty, offset + layout.offset(Type::Block(id), pin), mask);
             }
         }
-        Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) => {
+        Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::Enum(_) => {
             mask[usize_of(offset)..][..usize_of(layout.size(ty))].fill(1)
         }
         // Bytes after a string's end mean nothing.

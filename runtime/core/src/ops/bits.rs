@@ -1,3 +1,4 @@
+use super::convert::ConvertTo;
 use super::{Bits, Integer};
 
 /// `a AND b`, bit by bit.
@@ -94,4 +95,21 @@ pub fn ror<T: Integer>(value: T, count: i64) -> T {
 fn turns<T: Integer>(count: i64) -> u32 {
     // Every width is a power of two, so the mask is the euclidean remainder.
     count as u32 & (T::BITS - 1)
+}
+
+/// A [`Reference`](crate::Reference) after a step of `distance` bytes: the lower half of the bits moves,
+/// and wraps; the upper half, the object's number, stays.
+///
+/// ```
+/// use staunch_runtime::ops::advance;
+/// assert_eq!(advance(0x0000_0001_0000_0004_u64, -4), 0x0000_0001_0000_0000);
+/// assert_eq!(advance(0x0000_0001_0000_0000_u64, -1), 0x0000_0001_FFFF_FFFF);
+/// ```
+#[inline]
+pub fn advance<T: Integer + Bits>(value: T, distance: i64) -> T
+where
+    i64: ConvertTo<T>,
+{
+    let position = shr(!T::ZERO, i64::from(T::BITS / 2));
+    (value & !position) | (value.plus(super::convert(distance)) & position)
 }

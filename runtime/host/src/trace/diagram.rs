@@ -42,7 +42,9 @@ pub(super) fn kind(ty: Type) -> Kind {
     match ty {
         Type::Elementary(Elementary::Bool) | Type::Bit(_) => Kind::Bool,
         Type::Elementary(_) => Kind::Number,
-        Type::String(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => Kind::Text,
+        Type::String(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) | Type::Reference => {
+            Kind::Text
+        }
     }
 }
 

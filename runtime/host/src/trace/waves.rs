@@ -29,7 +29,7 @@ fn kind(ty: Type) -> Kind {
     match ty {
         Type::Elementary(it) if it.lane().is_float() => Kind::Real,
         Type::Elementary(it) => Kind::Bits(it.lane()),
-        Type::Bit(_) => Kind::Text,
+        Type::Bit(_) | Type::Reference => Kind::Text,
         Type::String(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => Kind::Text,
     }
 }

@@ -139,6 +139,7 @@ impl<'p> Builder<'p> {
             ty = match (projection, ty) {
                 (Projection::Field(field), _) => self.program.member(ty, *field)?,
                 (Projection::Index { .. }, Type::Array(id)) => self.program.array(id).element,
+                (Projection::Deref { target, .. }, _) => *target,
                 (Projection::Index { .. }, _) => return None,
             };
         }

@@ -10,7 +10,7 @@ use staunch_ir::{
 /// A place as another routine sees it: `load` says what its indices read.
 pub(super) fn with_indices(place: &Place, load: &dyn Fn(Place) -> Expr) -> Place {
     let projection = |it: &Projection| match it {
-        Projection::Field(field) => Projection::Field(*field),
+        Projection::Field(_) | Projection::Deref { .. } => it.clone(),
         Projection::Index { index, at } => Projection::Index { index: Box::new(with_loads(index, load)), at: *at },
     };
     Place { projections: place.projections.iter().map(projection).collect(), ..place.clone() }
@@ -21,6 +21,7 @@ fn with_loads(expr: &Expr, load: &dyn Fn(Place) -> Expr) -> Expr {
     let kind = match &expr.kind {
         ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => return expr.clone(),
         ExprKind::Load(place) => return Expr { ty: expr.ty, ..load(with_indices(place, load)) },
+        ExprKind::AddressOf(place) => ExprKind::AddressOf(Box::new(with_indices(place, load))),
         ExprKind::Apply(op, operands) => ExprKind::Apply(*op, all(operands)),
         ExprKind::ApplyText(op, operands) => ExprKind::ApplyText(*op, all(operands)),
         ExprKind::Convert(how, inner) => ExprKind::Convert(*how, Box::new(with_loads(inner, load))),
@@ -84,6 +85,11 @@ impl Guards<'_, '_> {
                     Some(array.element)
                 }
                 (Projection::Field(field), Some(ty)) => self.program.member(ty, *field),
+                // References are null then.
+                (Projection::Deref { target, .. }, _) => {
+                    self.found.push(Expr::bool(false, self.at));
+                    Some(*target)
+                }
                 (Projection::Index { .. } | Projection::Field(_), _) => None,
             };
         }
@@ -107,6 +113,7 @@ impl Guards<'_, '_> {
         match &expr.kind {
             ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => {}
             ExprKind::Load(place) => self.place(place),
+            ExprKind::AddressOf(place) => self.place(place),
             ExprKind::Apply(op, operands) => {
                 operands.iter().for_each(|it| self.expr(it));
                 self.operation(*op, operands);

@@ -89,7 +89,12 @@ impl Walk<'_, '_> {
                 let element = self.declarations.program.array(id).element;
                 self.inside(place.index(every(), element, Location::default()), fate, found);
             }
-            Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Block(_) => {}
+            Type::Elementary(_)
+            | Type::Reference(_)
+            | Type::Subrange(..)
+            | Type::String(_)
+            | Type::Enum(_)
+            | Type::Block(_) => {}
         }
     }
 }

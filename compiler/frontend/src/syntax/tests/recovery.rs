@@ -305,11 +305,11 @@ fn habits_of_other_languages() {
 fn what_is_not_supported_is_named() {
     expect(
         "FUNCTION_BLOCK ABSTRACT b EXTENDS c IMPLEMENTS d, e // E0090 E0090 E0090
-         VAR x : POINTER TO INT; y : REFERENCE TO INT; z : REF_TO INT; END_VAR // E0090 E0090 E0090
+         VAR x : POINTER TO INT; y : REFERENCE TO INT; z : REF_TO INT; END_VAR
          VAR_CONFIG x : y; END_VAR // E0090
            x := y := 1;
-           x REF= y; // E0090
-           x ?= y; // E0090
+           x REF= y;
+           x ?= y;
            JMP there; // E0090
            there: // E0090
            METHOD PUBLIC m : INT // E0090

@@ -46,6 +46,8 @@ fn statement(it: &Statement<'_>) -> String {
         StatementKind::SetReset { target, value, set } => {
             format!("{}{}{}", expr(target), if *set { " S=" } else { " R=" }, expr(value))
         }
+        StatementKind::Attempt { target, value } => format!("{} ?= {}", expr(target), expr(value)),
+        StatementKind::Bind { target, value } => format!("{} REF={}", expr(target), expr(value)),
         StatementKind::Expr(it) => expr(it),
         StatementKind::If { branches, otherwise } => {
             let branches: Vec<_> =
@@ -154,6 +156,7 @@ pub fn ty(it: &TypeSpec<'_>) -> String {
                 .collect();
             format!("array[{}] {}", bounds.join(","), ty(element))
         }
+        TypeKind::Reference { kind, target } => format!("{} {}", kind.word(), ty(target)),
         TypeKind::Struct(fields) => format!("{{{}}}", fields.iter().map(var).collect::<Vec<_>>().join(" ")),
         TypeKind::Enum { base, values } => {
             let values: Vec<_> = values

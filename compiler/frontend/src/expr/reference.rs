@@ -1,0 +1,399 @@
+//! References: what makes them, what they lead to, and how they count, compare and convert.
+//!
+//! An address counts as an integer: the lower half of what a reference holds. It compares with integers and
+//! other addresses, and converts to one of 32 bits and more; back from an integer there is no way, but for 0.
+
+use super::checker::Checker;
+use super::operand::Operand;
+use super::place::{Access, Found};
+use crate::names::{Found as Meant, Sense};
+use crate::{Code, Diagnostic, Span, ast};
+use ast::{ArgumentKind, BinaryOp, ExprKind as Ast};
+use staunch_ir::{
+    Conversion, Elementary, Expr, ExprKind, Op, RefKind, RefType, ReferenceId, Type, Value, reference::is_null,
+};
+
+/// The lower half of a reference's bits: its address.
+const ADDRESS: u64 = 0xFFFF_FFFF;
+
+/// What is called like a function, and takes a variable rather than its value.
+#[derive(Clone, Copy)]
+enum Function {
+    /// `ADR(x)`, `REF(x)`
+    Address(RefKind),
+    /// `SIZEOF(x)`
+    Size,
+    /// `__ISVALIDREF(r)`
+    IsValid,
+}
+
+fn function(name: &str) -> Option<Function> {
+    let functions = [
+        ("ADR", Function::Address(RefKind::PointerTo)),
+        ("REF", Function::Address(RefKind::RefTo)),
+        ("SIZEOF", Function::Size),
+        ("XSIZEOF", Function::Size),
+        ("__ISVALIDREF", Function::IsValid),
+    ];
+    functions.into_iter().find(|(it, _)| it.eq_ignore_ascii_case(name)).map(|(_, it)| it)
+}
+
+impl<'s> Checker<'_, 's> {
+    /// What a place stands for: a REFERENCE TO stands for what it refers to.
+    pub(crate) fn referred(&mut self, found: Found<'s>, span: Span) -> Option<Found<'s>> {
+        match self.ref_type(found.place.ty) {
+            Some((id, RefType { kind: RefKind::ReferenceTo, .. })) => self.followed(found, id, span),
+            Some(_) | None => Some(found),
+        }
+    }
+
+    fn ref_type(&self, ty: Type) -> Option<(ReferenceId, RefType)> {
+        let Type::Reference(id) = ty else { return None };
+        Some((id, self.decl.program.references[id.index()]))
+    }
+
+    fn followed(&mut self, found: Found<'s>, id: ReferenceId, span: Span) -> Option<Found<'s>> {
+        if self.decl.table.unknown_references.contains(&id) {
+            return None;
+        }
+        let at = self.at(span);
+        let target = self.decl.program.target(id);
+        Some(Found { place: found.place.deref(target, at), view: None, access: Access::Write })
+    }
+
+    /// `p^`
+    pub(crate) fn dereferenced(&mut self, inner: &ast::Expr<'s>, span: Span) -> Option<Found<'s>> {
+        let found = self.place(inner)?;
+        let Type::Reference(id) = found.place.ty else {
+            let ty = self.type_name(found.place.ty);
+            self.report(
+                Diagnostic::new(Code::E0211, span, format!("`^` follows a reference, this is {ty}"))
+                    .label("there is nothing to follow"),
+            );
+            return None;
+        };
+        self.followed(found, id, span)
+    }
+
+    /// A call of what takes a variable rather than its value; `None` where `callee` is something else.
+    pub(crate) fn reference_function(
+        &mut self,
+        callee: &ast::Expr<'s>,
+        arguments: &[ast::Argument<'s>],
+        span: Span,
+    ) -> Option<Option<Operand>> {
+        let Ast::Name(name) = &callee.kind else { return None };
+        let function = function(name.text)?;
+        let declared = self.scope.get(name.text).is_some()
+            || self.decl.lookup(self.scope.space, &[*name], Sense::Callee) != Meant::Nothing;
+        if declared {
+            return None;
+        }
+        let [ast::Argument { kind: ArgumentKind::Positional(argument), .. }] = arguments else {
+            self.report(
+                Diagnostic::new(Code::E0302, span, format!("`{}` takes 1 argument", name.text))
+                    .label("name the variable that is meant, and nothing else"),
+            );
+            return Some(None);
+        };
+        Some(match function {
+            Function::Address(kind) => self.reference_to(argument, kind).map(Operand::Typed),
+            Function::Size => self.size(argument),
+            Function::IsValid => self.is_valid(argument, span).map(Operand::Typed),
+        })
+    }
+
+    /// A reference to a variable.
+    pub(crate) fn reference_to(&mut self, expr: &ast::Expr<'s>, kind: RefKind) -> Option<Expr> {
+        let found = self.place(expr)?;
+        if self.signature.is_none() {
+            self.decl.not_supported(expr.span, "an address as an initial value");
+            return None;
+        }
+        if let Access::Constant(name) = found.access {
+            self.report(
+                Diagnostic::new(Code::E0501, expr.span, format!("`{}` is a CONSTANT", name.text))
+                    .label("it has no address: a reference could change it"),
+            );
+            return None;
+        }
+        if self.is_pin(&found) {
+            self.report(
+                Diagnostic::new(Code::E0211, expr.span, "a part of a standard block has no address of its own")
+                    .label("nobody but the block writes it")
+                    .help("take the address of the block itself, or copy the value to a variable"),
+            );
+            return None;
+        }
+        if self.is_counter(&found.place) {
+            self.report(
+                Diagnostic::new(Code::E0211, expr.span, "the counter of a loop around has no address")
+                    .label("the loop goes by it"),
+            );
+            return None;
+        }
+        // Whoever has its address may read and write it.
+        self.note_passed(&found.place, expr.span, expr.span);
+        let ty = self.decl.reference_type(kind, found.place.ty);
+        let at = self.at(expr.span);
+        Some(Expr::new(ty, ExprKind::AddressOf(Box::new(found.place)), at))
+    }
+
+    fn is_pin(&self, found: &Found<'s>) -> bool {
+        let Some(mut ty) = self.root_type(found.place.root) else { return false };
+        for projection in &found.place.projections {
+            if matches!(ty, Type::Block(_)) {
+                return true;
+            }
+            match self.decl.part(ty, projection) {
+                Some(part) => ty = part,
+                None => return false,
+            }
+        }
+        false
+    }
+
+    /// `SIZEOF(x)`, also of a type: a number that takes the type of its place.
+    fn size(&mut self, argument: &ast::Expr<'s>) -> Option<Operand> {
+        let ty = match self.type_meant(argument) {
+            Some(ty) => ty,
+            None => self.place_of_reference(argument)?.place.ty,
+        };
+        Some(Operand::Integer(i128::from(self.decl.sizeof(ty))))
+    }
+
+    /// The type that a name means where no variable has it.
+    fn type_meant(&mut self, expr: &ast::Expr<'s>) -> Option<Type> {
+        let Ast::Name(name) = &expr.kind else { return None };
+        if self.scope.get(name.text).is_some() {
+            return None;
+        }
+        if let Some(elementary) = Elementary::named(name.text) {
+            return Some(Type::Elementary(elementary));
+        }
+        self.decl.type_of_name(self.scope.space, *name)
+    }
+
+    /// `__ISVALIDREF(r)`: whether it refers to anything.
+    fn is_valid(&mut self, argument: &ast::Expr<'s>, span: Span) -> Option<Expr> {
+        let found = self.place_of_reference(argument)?;
+        if !matches!(found.place.ty, Type::Reference(_)) {
+            let ty = self.type_name(found.place.ty);
+            self.error(Code::E0211, argument.span, format!("`__ISVALIDREF` takes a reference, this is {ty}"));
+            return None;
+        }
+        let at = self.at(span);
+        let bits = self.address_bits(Expr::load(found.place, at));
+        let null = Expr::constant(Elementary::Lword, Value::U64(0), at);
+        self.apply(Op::Ne, Type::Elementary(Elementary::Lword), vec![bits, null], Type::BOOL, span)
+    }
+
+    /// `r REF= x`
+    pub(crate) fn bind_reference(&mut self, target: &ast::Expr<'s>, value: &ast::Expr<'s>, span: Span) -> Option<()> {
+        let found = self.place_of_reference(target);
+        let Some(found) = found.filter(|it| self.writable(it, target.span)) else {
+            self.operand(value, None);
+            return None;
+        };
+        let Some((_, RefType { kind, .. })) = self.ref_type(found.place.ty) else {
+            let ty = self.type_name(found.place.ty);
+            self.report(
+                Diagnostic::new(Code::E0211, target.span, format!("`REF=` sets a reference, this is {ty}"))
+                    .label("expected a REFERENCE TO"),
+            );
+            self.operand(value, None);
+            return None;
+        };
+        let mut place = found.place;
+        let ty = place.ty;
+        let value = self.after_place(&mut place, |this| {
+            if this.is_null_word(value) {
+                return this.value(value, ty);
+            }
+            // `r REF= s` of another reference takes over what that refers to.
+            let bound = this.reference_to(value, kind)?;
+            this.coerce(Operand::Typed(bound), ty, value.span)
+        })?;
+        self.note_assigned(&place, target.span);
+        self.assign(place, value, span);
+        Some(())
+    }
+
+    fn is_null_word(&self, expr: &ast::Expr<'s>) -> bool {
+        match &expr.bare().kind {
+            Ast::Name(name) => self.is_null(*name),
+            Ast::Literal(literal) => matches!(literal.value, ast::LiteralValue::Integer { value: 0, .. }),
+            _ => false,
+        }
+    }
+
+    /// Whether the name is NULL, and no variable of that name.
+    pub(crate) fn is_null(&self, name: ast::Name<'s>) -> bool {
+        name.text.eq_ignore_ascii_case("NULL") && self.scope.get(name.text).is_none()
+    }
+
+    pub(crate) fn null(&mut self, expected: Option<Type>, span: Span) -> Expr {
+        let ty = match expected {
+            Some(ty @ Type::Reference(_)) => ty,
+            Some(_) | None => self.decl.reference_type(RefKind::RefTo, Type::Elementary(Elementary::Byte)),
+        };
+        let at = self.at(span);
+        Expr::new(ty, ExprKind::Const(Value::U64(0)), at)
+    }
+
+    /// The value of an expression where a REFERENCE TO is wanted: a variable binds to it by its name.
+    pub(crate) fn bound_value(&mut self, expr: &ast::Expr<'s>, ty: Type) -> Option<Option<Expr>> {
+        let (_, RefType { kind: RefKind::ReferenceTo, .. }) = self.ref_type(ty)? else { return None };
+        if self.is_null_word(expr) || matches!(expr.bare().kind, Ast::Call(..)) {
+            return None;
+        }
+        let bound = self.reference_to(expr, RefKind::ReferenceTo);
+        Some(bound.and_then(|it| self.coerce(Operand::Typed(it), ty, expr.span)))
+    }
+
+    /// A reference where another one is declared. CODESYS gives the address of anything to any pointer; each
+    /// access is checked in any case.
+    pub(crate) fn coerce_reference(&mut self, value: Expr, to: ReferenceId, span: Span) -> Option<Expr> {
+        let ty = Type::Reference(to);
+        let Type::Reference(from) = value.ty else { return self.no_reference(value.ty, ty, span) };
+        let same = self.decl.program.target(from) == self.decl.program.target(to);
+        let loose = self.decl.dialect(span).mixes_bits_and_integers();
+        if is_null(&value) || same && value.as_const().is_some() {
+            return Some(Expr { ty, ..value });
+        }
+        if !same && !loose {
+            let (expected, found) = (self.type_name(ty), self.type_name(value.ty));
+            self.report(
+                Diagnostic::new(Code::E0201, span, format!("expected {expected}, found {found}"))
+                    .label(format!("this is {found}"))
+                    .help("a reference keeps its type; in `codesys` an address may be given to any pointer"),
+            );
+            return None;
+        }
+        Some(self.convert(Conversion::Same, ty, value))
+    }
+
+    fn no_reference(&mut self, found: Type, wanted: Type, span: Span) -> Option<Expr> {
+        let (expected, name) = (self.type_name(wanted), self.type_name(found));
+        let error = Diagnostic::new(Code::E0201, span, format!("expected {expected}, found {name}"))
+            .label(format!("this is {name}"));
+        let text = self.decl.log.sources.text(span).to_owned();
+        self.report(match found {
+            found if self.ref_type(wanted).is_some_and(|(_, it)| it.target == found) => {
+                let word = if self.decl.dialect(span).mixes_bits_and_integers() { "ADR" } else { "REF" };
+                error.help(format!("write `{word}({text})`")).fix(span, format!("{word}({text})"))
+            }
+            Type::Elementary(it) if it.lane().is_integer() => {
+                error.help("an integer is not made a reference: keep the reference itself, and add to it")
+            }
+            _ => error,
+        });
+        None
+    }
+
+    /// An address where an integer is declared, in dialects that let it be one.
+    pub(crate) fn address_as(&mut self, value: Expr, into: Elementary, span: Span) -> Option<Expr> {
+        let holds = into.lane().is_integer() && into.lane().size() >= 4 && !into.is_time();
+        if !holds || !self.decl.dialect(span).mixes_bits_and_integers() {
+            let (expected, found) = (into.name(), self.type_name(value.ty));
+            let error = Diagnostic::new(Code::E0201, span, format!("expected {expected}, found {found}"))
+                .label(format!("this is {found}"));
+            let text = self.decl.log.sources.text(span);
+            let error = if text.len() < 40 { error.help(format!("what it refers to is `{text}^`")) } else { error };
+            self.report(error);
+            return None;
+        }
+        let bits = self.address_bits(value);
+        Some(self.convert(Conversion::Value, Type::Elementary(into), bits))
+    }
+
+    /// The address as an LWORD.
+    fn address_bits(&mut self, value: Expr) -> Expr {
+        let (lword, at) = (Type::Elementary(Elementary::Lword), value.at);
+        if is_null(&value) {
+            return Expr::constant(Elementary::Lword, Value::U64(0), at);
+        }
+        let bits = self.convert(Conversion::Same, lword, value);
+        let mask = Expr::constant(Elementary::Lword, Value::U64(ADDRESS), at);
+        Expr::apply(Op::And, lword, vec![bits, mask], at)
+    }
+
+    /// Comparison and arithmetic where one side is a reference; the sides as they are where none is.
+    pub(crate) fn reference_operation(
+        &mut self,
+        op: BinaryOp,
+        a: Operand,
+        b: Operand,
+        span: Span,
+    ) -> Result<Option<Operand>, (Operand, Operand)> {
+        let is_reference = |it: &Operand| matches!(it.ty(), Some(Type::Reference(_)));
+        match (is_reference(&a), is_reference(&b), op) {
+            (false, false, _) => Err((a, b)),
+            (_, _, BinaryOp::Eq | BinaryOp::Ne | BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge) => {
+                Ok(self.compare_addresses(op, a, b, span).map(Operand::Typed))
+            }
+            (true, true, BinaryOp::Sub) => Ok(self.distance(a, b, span).map(Operand::Typed)),
+            (true, false, BinaryOp::Add | BinaryOp::Sub) => Ok(self.advance(a, b, op, span).map(Operand::Typed)),
+            (false, true, BinaryOp::Add) => Ok(self.advance(b, a, op, span).map(Operand::Typed)),
+            _ => {
+                let operands = [&a, &b].map(|it| it.ty().map_or("a number".to_owned(), |ty| self.type_name(ty)));
+                let message = format!("`{}` does not take {} and {}", op.text(), operands[0], operands[1]);
+                self.report(
+                    Diagnostic::new(Code::E0204, span, message)
+                        .label("a reference is compared, moved by a number of bytes, or subtracted from another"),
+                );
+                Ok(None)
+            }
+        }
+    }
+
+    /// An operand as an address, for a comparison.
+    fn as_address(&mut self, operand: Operand, span: Span) -> Option<Expr> {
+        let lword = Elementary::Lword;
+        match operand.cut() {
+            Operand::Typed(value) if matches!(value.ty, Type::Reference(_)) => Some(self.address_bits(value)),
+            Operand::Typed(value) => match value.ty {
+                Type::Elementary(it) if it.lane().is_integer() && !it.is_time() => {
+                    Some(self.convert(Conversion::Value, Type::Elementary(lword), value))
+                }
+                _ => self.coerce(Operand::Typed(value), Type::Elementary(lword), span),
+            },
+            number => self.coerce(number, Type::Elementary(lword), span),
+        }
+    }
+
+    fn compare_addresses(&mut self, op: BinaryOp, a: Operand, b: Operand, span: Span) -> Option<Expr> {
+        let (a, b) = (self.as_address(a, span)?, self.as_address(b, span)?);
+        let op = super::operator::comparison(op);
+        self.apply(op, Type::Elementary(Elementary::Lword), vec![a, b], Type::BOOL, span)
+    }
+
+    /// How many bytes lie between two addresses.
+    fn distance(&mut self, a: Operand, b: Operand, span: Span) -> Option<Expr> {
+        let mut number = |operand| {
+            let bits = self.as_address(operand, span)?;
+            Some(self.convert(Conversion::Value, Type::LINT, bits))
+        };
+        let (a, b) = (number(a)?, number(b)?);
+        self.apply(Op::Sub, Type::LINT, vec![a, b], Type::LINT, span)
+    }
+
+    /// A reference moved by a number of bytes.
+    fn advance(&mut self, reference: Operand, by: Operand, op: BinaryOp, span: Span) -> Option<Expr> {
+        let Operand::Typed(reference) = reference else { return None };
+        let by = match by.cut() {
+            Operand::Typed(value) if matches!(value.ty, Type::Elementary(it) if it.lane().is_integer() && !it.is_time()) => {
+                self.convert(Conversion::Value, Type::LINT, value)
+            }
+            other => self.coerce(other, Type::LINT, span)?,
+        };
+        let by = match op {
+            BinaryOp::Sub => self.apply(Op::Neg, Type::LINT, vec![by], Type::LINT, span)?,
+            _ => by,
+        };
+        let (ty, lword) = (reference.ty, Type::Elementary(Elementary::Lword));
+        let bits = self.convert(Conversion::Same, lword, reference);
+        let moved = self.apply(Op::Advance, lword, vec![bits, by], lword, span)?;
+        Some(self.convert(Conversion::Same, ty, moved))
+    }
+}

@@ -1,0 +1,149 @@
+//! References: which variables' addresses a program takes, how a place leads through a reference, and the
+//! table of objects by which every access is checked.
+
+mod fixed;
+mod table;
+
+pub use fixed::fixed;
+pub use table::{objects, table, view, wanted};
+
+use crate::{
+    Argument, BlockId, Expr, ExprKind, FieldId, Location, ParamId, Place, Program, Projection, Root, Routine,
+    RoutineId, StatementKind, StructId, Type, visit,
+};
+use std::collections::BTreeSet;
+
+/// A place behind a reference, taken apart.
+#[derive(Clone, Debug)]
+pub struct Followed<'a> {
+    /// The variable that holds the reference.
+    pub pointer: Place,
+    /// The type that it is declared to point to.
+    pub target: Type,
+    /// The way from there to what is looked at.
+    pub way: &'a [Projection],
+    /// The type of that.
+    pub ty: Type,
+    /// The pin that is meant, where a standard block is looked at.
+    pub pin: Option<(BlockId, FieldId)>,
+    /// Where the reference is followed.
+    pub at: Location,
+}
+
+/// How a place leads through its last reference; `None` where it leads through none.
+pub fn followed<'a>(program: &Program, place: &'a Place) -> Option<Followed<'a>> {
+    let position = place.projections.iter().rposition(|it| matches!(it, Projection::Deref { .. }))?;
+    let Projection::Deref { reference, target, at } = place.projections[position] else { return None };
+    let pointer = place.before(position, reference);
+    let way = &place.projections[position + 1..];
+    let mut ty = target;
+    for (length, projection) in way.iter().enumerate() {
+        if let (Type::Block(block), Projection::Field(pin)) = (ty, projection) {
+            return Some(Followed { pointer, target, way: &way[..length], ty, pin: Some((block, *pin)), at });
+        }
+        ty = part(program, ty, projection)?;
+    }
+    Some(Followed { pointer, target, way, ty: place.ty, pin: None, at })
+}
+
+/// The type of a part, without what a reference leads to.
+fn part(program: &Program, ty: Type, projection: &Projection) -> Option<Type> {
+    match (projection, ty) {
+        (Projection::Field(field), ty) => program.member(ty, *field),
+        (Projection::Index { .. }, Type::Array(id)) => Some(program.array(id).element),
+        (Projection::Index { .. }, _) => None,
+        (Projection::Deref { target, .. }, _) => Some(*target),
+    }
+}
+
+/// The variables whose addresses are taken: fields of the globals and of states.
+pub fn addressable(program: &Program) -> BTreeSet<(StructId, FieldId)> {
+    let found = Finder::search(program);
+    found.variables
+}
+
+/// For each routine, the locals whose addresses are taken, by it or by what it passes them to.
+pub(crate) fn addressed_locals(program: &Program) -> Vec<BTreeSet<crate::LocalId>> {
+    Finder::search(program).locals
+}
+
+struct Finder<'p> {
+    program: &'p Program,
+    states: BTreeSet<StructId>,
+    variables: BTreeSet<(StructId, FieldId)>,
+    locals: Vec<BTreeSet<crate::LocalId>>,
+    /// The by-reference parameters whose addresses are taken.
+    params: BTreeSet<(RoutineId, ParamId)>,
+}
+
+impl<'p> Finder<'p> {
+    /// A callee stands before its callers, so that one walk finds what is passed down.
+    fn search(program: &'p Program) -> Self {
+        let states = program.classes.iter().map(|it| it.state).chain([program.globals]).collect();
+        let locals = vec![BTreeSet::new(); program.routines.len()];
+        let mut finder = Self { program, states, variables: BTreeSet::new(), locals, params: BTreeSet::new() };
+        if !program.references.is_empty() {
+            for id in 0..program.routines.len() {
+                finder.routine(RoutineId::next(id));
+            }
+        }
+        finder
+    }
+
+    fn routine(&mut self, id: RoutineId) {
+        let routine = self.program.routine(id);
+        visit::statements(&routine.body, &mut |statement| {
+            visit::all_exprs(statement, &mut |expr| {
+                if let ExprKind::AddressOf(place) = &expr.kind {
+                    self.place(id, routine, place);
+                }
+            });
+            if let StatementKind::Call { callee, arguments, .. } = &statement.kind {
+                for (at, argument) in arguments.iter().enumerate() {
+                    match argument {
+                        Argument::Reference(place) if self.params.contains(&(*callee, ParamId::next(at))) => {
+                            self.place(id, routine, place);
+                        }
+                        Argument::Reference(_) | Argument::Value(_) => {}
+                    }
+                }
+            }
+        });
+    }
+
+    /// The innermost variable that holds the place. What lies behind a reference is known already.
+    fn place(&mut self, id: RoutineId, routine: &Routine, place: &Place) {
+        let Some(mut ty) = self.program.root_type(routine, place.root) else { return };
+        let mut variable = None;
+        for projection in &place.projections {
+            match (projection, ty) {
+                (Projection::Deref { .. }, _) => return,
+                (Projection::Field(field), Type::Struct(owner)) if self.states.contains(&owner) => {
+                    variable = Some((owner, *field));
+                }
+                (Projection::Field(_) | Projection::Index { .. }, _) => {}
+            }
+            match part(self.program, ty, projection) {
+                Some(part) => ty = part,
+                None => return,
+            }
+        }
+        match (variable, place.root) {
+            (Some(variable), _) => {
+                self.variables.insert(variable);
+            }
+            (None, Root::Local(local)) => {
+                self.locals[id.index()].insert(local);
+            }
+            (None, Root::Param(param)) => {
+                self.params.insert((id, param));
+            }
+            (None, Root::Instance | Root::Globals) => {}
+        }
+    }
+}
+
+/// Whether the expression is null, as a constant.
+pub fn is_null(expr: &Expr) -> bool {
+    matches!((&expr.kind, expr.ty), (ExprKind::Const(crate::Value::U64(0)), Type::Reference(_)))
+}

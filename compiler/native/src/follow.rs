@@ -1,0 +1,193 @@
+//! Accesses through references: calls of the runtime, which checks each by the program's table of objects.
+
+use crate::address::Address;
+use crate::function::Function;
+use crate::runtime_call::by_pointer;
+use crate::signature::clif_type;
+use cranelift_codegen::ir::{self as clif, AbiParam, InstBuilder, condcodes::IntCC, types};
+use staunch_ir::layout::{Shape, usize_of};
+use staunch_ir::reference::{Followed, followed, view, wanted};
+use staunch_ir::{ArrayId, Expr, FaultKind, Location, Place, Projection, Type};
+use staunch_runtime::Lane;
+
+/// A scalar or string that a reference leads to: the reference, and the distance from where it points.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reached {
+    reference: clif::Value,
+    distance: clif::Value,
+    ty: Type,
+    at: Location,
+}
+
+impl Function<'_, '_> {
+    /// The words of the program's table, and the state.
+    fn world(&mut self) -> [(AbiParam, clif::Value); 2] {
+        let words = self.module.reference_table();
+        let words = self.data_pointer(words);
+        let state = self.start.globals.expect("a function that follows references gets the globals");
+        [by_pointer(words), by_pointer(state)]
+    }
+
+    /// A scalar or string behind a reference, but for a standard block's pin, whose block is found whole.
+    pub(crate) fn reached(&mut self, place: &Place) -> Option<Reached> {
+        let program = self.module.program;
+        let it = followed(program, place)?;
+        let is_simple = program.lane(place.ty).is_some() || matches!(place.ty, Type::String(_));
+        if it.pin.is_some() || !is_simple {
+            return None;
+        }
+        let (reference, distance) = self.way(&it);
+        Some(Reached { reference, distance, ty: place.ty, at: it.at })
+    }
+
+    fn way(&mut self, it: &Followed<'_>) -> (clif::Value, clif::Value) {
+        let reference = self.load_place(&it.pointer);
+        let (mut fixed, mut ty) = (0, it.target);
+        let mut distance = None;
+        for projection in it.way {
+            let program = self.module.program;
+            ty = match (projection, ty) {
+                (Projection::Field(field), _) => {
+                    fixed += self.module.layout.offset(ty, *field);
+                    program.member(ty, *field).expect("verified IR: a member of the type")
+                }
+                (Projection::Index { index, at }, Type::Array(id)) => {
+                    let step = self.distance(id, index, *at);
+                    distance = Some(match distance {
+                        Some(before) => self.ins().iadd(before, step),
+                        None => step,
+                    });
+                    program.array(id).element
+                }
+                (Projection::Index { .. } | Projection::Deref { .. }, _) => {
+                    unreachable!("verified IR: the way from a reference")
+                }
+            };
+        }
+        let fixed = i64::try_from(fixed).expect("verified IR: sizes are within 1 GiB");
+        let distance = match distance {
+            Some(step) => self.ins().iadd_imm_s(step, fixed),
+            None => self.ins().iconst(types::I64, fixed),
+        };
+        (reference, distance)
+    }
+
+    /// The bytes from an array's start to an element.
+    fn distance(&mut self, id: ArrayId, index: &Expr, at: Location) -> clif::Value {
+        let bounds = self.module.program.array(id);
+        let index = self.scalar(index);
+        let position = self.ins().iadd_imm_s(index, bounds.low.wrapping_neg());
+        let last = bounds.high.abs_diff(bounds.low).cast_signed();
+        let outside = self.ins().icmp_imm_u(IntCC::UnsignedGreaterThan, position, last);
+        self.fault_if(outside, FaultKind::IndexOutOfRange, at);
+        let stride = i64::try_from(self.module.layout.stride(id)).expect("verified IR: sizes are within 1 GiB");
+        self.ins().imul_imm_s(position, stride)
+    }
+
+    /// Calls what may fault, and goes on where it does not.
+    fn checked(&mut self, symbol: &str, arguments: &[(AbiParam, clif::Value)], at: Location) {
+        let kind = self.call_runtime(symbol, arguments, Some(AbiParam::new(types::I8).uext()));
+        self.fault_of_kind(kind.expect("an access returns its fault"), at);
+    }
+
+    fn number(&mut self, value: u32) -> (AbiParam, clif::Value) {
+        let value = self.integer(types::I32, i128::from(value));
+        self.by_lane(Lane::U32, value)
+    }
+
+    fn space(&mut self, size: u64) -> (Address, clif::Value) {
+        let address = self.temporary(Shape { size, align: 8 });
+        (address, self.pointer(address))
+    }
+
+    pub(crate) fn load_reached(&mut self, it: Reached) -> clif::Value {
+        let lane = self.module.program.lane(it.ty).expect("a scalar behind a reference");
+        let (space, out) = self.space(8);
+        let arguments = self.access(it, lane, out);
+        self.checked("staunch_reference_load", &arguments, it.at);
+        self.load_as(clif_type(lane), space)
+    }
+
+    pub(crate) fn store_reached(&mut self, it: Reached, value: clif::Value) {
+        let lane = self.module.program.lane(it.ty).expect("a scalar behind a reference");
+        let (space, from) = self.space(8);
+        self.store(value, space);
+        let arguments = self.access(it, lane, from);
+        self.checked("staunch_reference_store", &arguments, it.at);
+    }
+
+    fn access(&mut self, it: Reached, lane: Lane, value: clif::Value) -> [(AbiParam, clif::Value); 7] {
+        let [words, state] = self.world();
+        let view = self.number(view(self.module.program, it.ty).code());
+        let size = self.number(lane.size());
+        let [reference, distance] = [it.reference, it.distance].map(|value| (AbiParam::new(types::I64), value));
+        [words, state, reference, distance, view, size, by_pointer(value)]
+    }
+
+    /// A copy of the string behind a reference, in the frame.
+    pub(crate) fn load_reached_text(&mut self, it: Reached, capacity: u16) -> Address {
+        let shape = self.module.layout.shape(it.ty);
+        let (space, out) = self.space(shape.size);
+        let [words, state] = self.world();
+        let limit = self.integer(types::I16, i128::from(capacity));
+        let [reference, distance] = [it.reference, it.distance].map(|value| (AbiParam::new(types::I64), value));
+        let arguments = [words, state, reference, distance, by_pointer(out), self.by_lane(Lane::U16, limit)];
+        self.checked("staunch_reference_load_text", &arguments, it.at);
+        space
+    }
+
+    /// Writes a string to behind a reference, out of a copy: it may be a part of the same memory.
+    pub(crate) fn store_reached_text(&mut self, it: Reached, value: &Expr) {
+        let shape = self.module.layout.shape(value.ty);
+        let (space, from) = self.space(shape.size);
+        self.assign_text(value, space);
+        let [words, state] = self.world();
+        let [reference, distance] = [it.reference, it.distance].map(|value| (AbiParam::new(types::I64), value));
+        let arguments = [words, state, reference, distance, by_pointer(from)];
+        self.checked("staunch_reference_store_text", &arguments, it.at);
+    }
+
+    /// Where a variable behind a reference lies, to be handed on whole.
+    pub(crate) fn found(&mut self, place: &Place) -> Address {
+        let program = self.module.program;
+        let it = followed(program, place).expect("a place that leads through a reference");
+        let (reference, distance) = self.way(&it);
+        let (space, out) = self.space(8);
+        let [words, state] = self.world();
+        let wanted = self.number(wanted(program, it.ty).code());
+        let [reference, distance] = [reference, distance].map(|value| (AbiParam::new(types::I64), value));
+        self.checked("staunch_reference_find", &[words, reference, distance, wanted, by_pointer(out)], it.at);
+        let offset = self.load_as(types::I64, space);
+        let base = self.ins().iadd(state.1, offset);
+        let pin = it.pin.map_or(0, |(block, pin)| self.module.layout.offset(Type::Block(block), pin));
+        Address::at(base).plus(pin)
+    }
+
+    /// The reference to a place.
+    pub(crate) fn reference_to(&mut self, place: &Place) -> clif::Value {
+        if let Some(it) = followed(self.module.program, place) {
+            let (reference, distance) = self.way(&it);
+            return self.advanced(reference, distance);
+        }
+        let address = self.address(place);
+        let pointer = self.pointer(address);
+        let [words, state] = self.world();
+        let offset = self.ins().isub(pointer, state.1);
+        let size = usize_of(self.module.layout.size(place.ty));
+        let size = i64::try_from(size).expect("verified IR: sizes are within 1 GiB");
+        let size = self.ins().iconst(types::I64, size);
+        let arguments = [words, (AbiParam::new(types::I64), offset), (AbiParam::new(types::I64), size)];
+        let bits = self.call_runtime("staunch_reference_address", &arguments, Some(AbiParam::new(types::I64)));
+        bits.expect("an address is returned")
+    }
+
+    /// As `ops::advance` does it.
+    fn advanced(&mut self, reference: clif::Value, distance: clif::Value) -> clif::Value {
+        let moved = self.ins().iadd(reference, distance);
+        let low = self.ins().ireduce(types::I32, moved);
+        let low = self.ins().uextend(types::I64, low);
+        let high = self.ins().ushr_imm_u(reference, 32);
+        let high = self.ins().ishl_imm_u(high, 32);
+        self.ins().bor(low, high)
+    }
+}

@@ -1,0 +1,157 @@
+//! A shim for each kind of access through references.
+//!
+//! `words` points to a program's table of objects, which has its own length as its third word; `state` to
+//! the program's whole state.
+
+use core::cell::Cell;
+use core::slice;
+
+use staunch_runtime::reference::{Table, View, Wanted};
+use staunch_runtime::{FaultKind, text};
+
+/// Offset of the first byte of a string from its header.
+const BYTES: usize = size_of::<u16>();
+
+/// # Safety
+/// `words` points to a table that lives as long as the program.
+unsafe fn table(words: *const u32) -> Table<'static> {
+    // SAFETY: the third word counts all, by the caller's promise.
+    unsafe { Table::new(slice::from_raw_parts(words, words.add(2).read() as usize)) }
+}
+
+/// # Safety
+/// `state` points to the state of the table's program, which nobody else uses during `'a` but through it.
+unsafe fn memory<'a>(table: &Table<'_>, state: *mut u8) -> &'a [Cell<u8>] {
+    // SAFETY: the table says how large the state is; a cell of a byte is laid out as the byte.
+    unsafe { slice::from_raw_parts(state.cast::<Cell<u8>>(), table.state_size()) }
+}
+
+fn code(outcome: Result<(), FaultKind>) -> u8 {
+    outcome.err().map_or(0, |it| it as u8)
+}
+
+/// The reference to `size` bytes at `offset` of the state.
+///
+/// # Safety
+/// As [`table`] says.
+#[unsafe(no_mangle)]
+unsafe extern "C" fn staunch_reference_address(words: *const u32, offset: u64, size: u64) -> u64 {
+    // SAFETY: the caller's promise.
+    unsafe { table(words) }.address(offset as usize, size as usize)
+}
+
+/// Reads a value of `size` bytes to `out`.
+///
+/// # Safety
+/// As [`table`] and [`memory`] say; `out` has `size` bytes, and is no part of the state.
+#[unsafe(no_mangle)]
+unsafe extern "C" fn staunch_reference_load(
+    words: *const u32,
+    state: *mut u8,
+    reference: u64,
+    distance: u64,
+    view: u32,
+    size: u32,
+    out: *mut u8,
+) -> u8 {
+    // SAFETY: the caller's promise.
+    let (table, out) = unsafe { (table(words), slice::from_raw_parts_mut(out, size as usize)) };
+    // SAFETY: the caller's promise.
+    let memory = unsafe { memory(&table, state) };
+    code(table.load_bytes(memory, reference, distance, View::from_code(view), out))
+}
+
+/// Writes a value of `size` bytes.
+///
+/// # Safety
+/// As [`table`] and [`memory`] say; `value` has `size` bytes, and is no part of the state.
+#[unsafe(no_mangle)]
+unsafe extern "C" fn staunch_reference_store(
+    words: *const u32,
+    state: *mut u8,
+    reference: u64,
+    distance: u64,
+    view: u32,
+    size: u32,
+    value: *const u8,
+) -> u8 {
+    // SAFETY: the caller's promise.
+    let (table, value) = unsafe { (table(words), slice::from_raw_parts(value, size as usize)) };
+    // SAFETY: the caller's promise.
+    let memory = unsafe { memory(&table, state) };
+    code(table.store_bytes(memory, reference, distance, View::from_code(view), value))
+}
+
+/// Reads a string to the one at `out`.
+///
+/// # Safety
+/// As [`table`] and [`memory`] say; `out` is a string of `capacity` bytes, and no part of the state.
+#[unsafe(no_mangle)]
+unsafe extern "C" fn staunch_reference_load_text(
+    words: *const u32,
+    state: *mut u8,
+    reference: u64,
+    distance: u64,
+    out: *mut u8,
+    capacity: u16,
+) -> u8 {
+    // SAFETY: the caller's promise; the length and the bytes do not overlap.
+    let (table, mut out) = unsafe {
+        let bytes = slice::from_raw_parts_mut(out.add(BYTES), usize::from(capacity));
+        (table(words), text::Destination::new(&mut *out.cast::<u16>(), bytes))
+    };
+    // SAFETY: the caller's promise.
+    let memory = unsafe { memory(&table, state) };
+    code(table.load_text(memory, reference, distance, &mut out))
+}
+
+/// Writes the string at `value`.
+///
+/// # Safety
+/// As [`table`] and [`memory`] say; `value` is a string, and no part of the state.
+#[unsafe(no_mangle)]
+unsafe extern "C" fn staunch_reference_store_text(
+    words: *const u32,
+    state: *mut u8,
+    reference: u64,
+    distance: u64,
+    value: *const u8,
+) -> u8 {
+    // SAFETY: the caller's promise; a string starts with its length, and has that many bytes behind it.
+    let (table, value) = unsafe {
+        let length = usize::from(value.cast::<u16>().read());
+        (table(words), slice::from_raw_parts(value.add(BYTES), length))
+    };
+    // SAFETY: the caller's promise.
+    let memory = unsafe { memory(&table, state) };
+    code(table.store_text(memory, reference, distance, value))
+}
+
+/// Writes to `out` the offset in the state of a variable of the wanted type.
+///
+/// # Safety
+/// As [`table`] says; `out` can be written.
+#[unsafe(no_mangle)]
+unsafe extern "C" fn staunch_reference_find(
+    words: *const u32,
+    reference: u64,
+    distance: u64,
+    wanted: u32,
+    out: *mut u64,
+) -> u8 {
+    // SAFETY: the caller's promise.
+    let found = unsafe { table(words) }.find(reference, distance, Wanted::from_code(wanted));
+    code(found.map(|offset| {
+        // SAFETY: the caller's promise.
+        unsafe { out.write(offset as u64) }
+    }))
+}
+
+pub(crate) fn for_each_symbol(each: &mut dyn FnMut(&'static str, *const u8)) {
+    each("staunch_reference_address", staunch_reference_address as *const u8);
+    each("staunch_reference_load", staunch_reference_load as *const u8);
+    each("staunch_reference_store", staunch_reference_store as *const u8);
+    each("staunch_reference_load_text", staunch_reference_load_text as *const u8);
+    each("staunch_reference_store_text", staunch_reference_store_text as *const u8);
+    each("staunch_reference_find", staunch_reference_find as *const u8);
+}

@@ -1,0 +1,283 @@
+//! References: checked access to the variables whose addresses a program takes.
+//!
+//! A program has no heap and no recursion, so its world is closed: the objects that references may name are
+//! known, each with its place in the program's state. A [`Reference`] is the number of an object and an
+//! address, in bytes; arithmetic moves the address and never changes the object. A [`Table`] says
+//! where the objects are and which types lie in them, and decides every access: all executors ask it, so
+//! that all fault alike.
+//!
+//! Numbers may be viewed as bytes and as one another, in the machine's byte order; a BOOL as a byte that is
+//! 0 or not. A string is viewed as its characters with a zero after the last one, from position 0.
+//! Enumerations, subranges, references and the insides of standard blocks are viewed as what they are.
+
+mod memory;
+mod table;
+
+pub use crate::{shared, shared_enumeration};
+pub use memory::{Memory, Raw, Shared, find, inside, offset, this};
+pub use table::{Part, Table, View, Wanted, encode};
+
+pub use crate::Lane;
+use crate::{FaultKind, Scalar, Text, Value};
+
+/// What a variable of a reference type holds: the object's number in the upper half, from 1, and the
+/// address in the lower. 0 is null.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reference {
+    pub object: u32,
+    pub address: u32,
+}
+
+/// The address of the state's first byte. It keeps addresses apart from null, and aligned as the state is.
+pub const ORIGIN: u32 = 0x1000;
+
+impl Reference {
+    pub const fn from_bits(bits: u64) -> Self {
+        Self { object: (bits >> 32) as u32, address: bits as u32 }
+    }
+
+    pub const fn bits(self) -> u64 {
+        (self.object as u64) << 32 | self.address as u64
+    }
+}
+
+impl<'t> Table<'t> {
+    /// The reference to what lies at `offset` in the state and has `size` bytes: into the smallest object
+    /// that holds it. Null if none does, which a compiled program excludes.
+    pub fn address(&self, offset: usize, size: usize) -> u64 {
+        let address = ORIGIN + offset as u32;
+        self.holding(offset, size).map_or(0, |object| Reference { object, address }.bits())
+    }
+
+    /// The value of type `T` at `distance` bytes from where the reference points.
+    #[inline]
+    pub fn load<T: Scalar>(
+        &self,
+        memory: &(impl Memory + ?Sized),
+        bits: u64,
+        distance: u64,
+        view: View,
+    ) -> Result<T, FaultKind> {
+        let value = self.load_value(memory, bits, distance, view, T::LANE)?;
+        Ok(T::from_value(value).unwrap_or(T::ZERO))
+    }
+
+    pub fn load_value(
+        &self,
+        memory: &(impl Memory + ?Sized),
+        bits: u64,
+        distance: u64,
+        view: View,
+        lane: Lane,
+    ) -> Result<Value, FaultKind> {
+        let mut bytes = [0; 8];
+        let wanted = bytes.get_mut(..lane.size() as usize).unwrap_or_default();
+        self.load_bytes(memory, bits, distance, view, wanted)?;
+        Ok(Value::read(lane, &bytes))
+    }
+
+    /// Reads as many bytes as a value of the view has; a BOOL is 0 or 1.
+    pub fn load_bytes(
+        &self,
+        memory: &(impl Memory + ?Sized),
+        bits: u64,
+        distance: u64,
+        view: View,
+        out: &mut [u8],
+    ) -> Result<(), FaultKind> {
+        match self.part(bits, distance, view)? {
+            Part::Bytes { at, .. } => memory.read(at, out),
+            Part::Truth { at } => {
+                memory.read(at, out);
+                out.iter_mut().for_each(|it| *it = u8::from(*it != 0));
+            }
+            Part::Characters { text, capacity, index } => {
+                out.iter_mut().for_each(|it| *it = character(memory, text, capacity, index));
+            }
+        }
+        Ok(())
+    }
+
+    #[inline]
+    pub fn store<T: Scalar>(
+        &self,
+        memory: &(impl Memory + ?Sized),
+        bits: u64,
+        distance: u64,
+        view: View,
+        value: T,
+    ) -> Result<(), FaultKind> {
+        self.store_value(memory, bits, distance, view, value.into_value())
+    }
+
+    pub fn store_value(
+        &self,
+        memory: &(impl Memory + ?Sized),
+        bits: u64,
+        distance: u64,
+        view: View,
+        value: Value,
+    ) -> Result<(), FaultKind> {
+        let mut bytes = [0; 8];
+        value.write(&mut bytes);
+        let size = value.lane().size() as usize;
+        self.store_bytes(memory, bits, distance, view, bytes.get(..size).unwrap_or_default())
+    }
+
+    /// Writes the bytes of a value of the view.
+    pub fn store_bytes(
+        &self,
+        memory: &(impl Memory + ?Sized),
+        bits: u64,
+        distance: u64,
+        view: View,
+        bytes: &[u8],
+    ) -> Result<(), FaultKind> {
+        let first = bytes.first().copied().unwrap_or_default();
+        match self.part(bits, distance, view)? {
+            Part::Bytes { at, .. } => memory.write(at, bytes),
+            Part::Truth { at } => memory.write(at, &[u8::from(first != 0)]),
+            Part::Characters { text, capacity, index } => set_character(memory, text, capacity, index, first)?,
+        }
+        Ok(())
+    }
+
+    /// The characters from where the reference points up to the first zero, as far as `out` takes them.
+    pub fn load_text(
+        &self,
+        memory: &(impl Memory + ?Sized),
+        bits: u64,
+        distance: u64,
+        out: &mut crate::text::Destination<'_>,
+    ) -> Result<(), FaultKind> {
+        match self.part(bits, distance, View::Text)? {
+            Part::Bytes { at, rest } => put_characters(at..at + rest, memory, out),
+            Part::Truth { .. } => return Err(FaultKind::ForbiddenView),
+            Part::Characters { text, capacity, index } => {
+                let start = text + HEADER + usize::from(index.min(capacity));
+                put_characters(start..text + HEADER + usize::from(length(memory, text).min(capacity)), memory, out);
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes characters to where the reference points, and ends the string there: as many as fit.
+    pub fn store_text(
+        &self,
+        memory: &(impl Memory + ?Sized),
+        bits: u64,
+        distance: u64,
+        value: &[u8],
+    ) -> Result<(), FaultKind> {
+        match self.part(bits, distance, View::Text)? {
+            Part::Bytes { at, rest } => {
+                // The last byte is for the zero that ends it.
+                let count = value.len().min(rest.saturating_sub(1));
+                memory.write(at, value.get(..count).unwrap_or_default());
+                if count < rest {
+                    memory.write(at + count, &[0]);
+                }
+            }
+            Part::Truth { .. } => return Err(FaultKind::ForbiddenView),
+            Part::Characters { text, capacity, index } => {
+                let index = index.min(capacity);
+                clear_from(memory, text, index);
+                let count = value.len().min(usize::from(capacity - index));
+                memory.write(text + HEADER + usize::from(index), value.get(..count).unwrap_or_default());
+                memory.write(text, &(index + count as u16).to_ne_bytes());
+            }
+        }
+        Ok(())
+    }
+
+    /// The variable of exactly this type that the reference leads to.
+    pub fn variable<'m, T: core::any::Any>(
+        &self,
+        machine: &'m impl Shared,
+        bits: u64,
+        distance: u64,
+        wanted: Wanted,
+    ) -> Result<&'m T, FaultKind> {
+        let offset = self.find(bits, distance, wanted)?;
+        find(machine, offset).ok_or(FaultKind::ForbiddenView)
+    }
+
+    /// What the reference points to as a string of its own.
+    pub fn string<const N: usize>(
+        &self,
+        memory: &(impl Memory + ?Sized),
+        bits: u64,
+        distance: u64,
+    ) -> Result<Text<N>, FaultKind> {
+        let mut text = Text::default();
+        self.load_text(memory, bits, distance, &mut text.destination())?;
+        Ok(text)
+    }
+}
+
+/// Bytes before the first character of a string in memory: its length.
+const HEADER: usize = size_of::<u16>();
+
+fn length(memory: &(impl Memory + ?Sized), text: usize) -> u16 {
+    let mut length = [0; HEADER];
+    memory.read(text, &mut length);
+    u16::from_ne_bytes(length)
+}
+
+/// A character of a string, by its position from 0; after its last one there are zeros.
+fn character(memory: &(impl Memory + ?Sized), text: usize, capacity: u16, index: u16) -> u8 {
+    let mut byte = [0];
+    if index < capacity {
+        memory.read(text + HEADER + usize::from(index), &mut byte);
+    }
+    byte[0]
+}
+
+/// A zero ends the string there; another byte beyond its end lengthens it, with zeros in between.
+fn set_character(
+    memory: &(impl Memory + ?Sized),
+    text: usize,
+    capacity: u16,
+    index: u16,
+    byte: u8,
+) -> Result<(), FaultKind> {
+    if index >= capacity {
+        // There the zero is that ends a string of full length.
+        return if byte == 0 { Ok(()) } else { Err(FaultKind::OutsideObject) };
+    }
+    if byte == 0 {
+        clear_from(memory, text, index);
+        return Ok(());
+    }
+    memory.write(text + HEADER + usize::from(index), &[byte]);
+    if index >= length(memory, text) {
+        memory.write(text, &(index + 1).to_ne_bytes());
+    }
+    Ok(())
+}
+
+/// Ends a string; what was after that becomes zero, as it is in every string.
+fn clear_from(memory: &(impl Memory + ?Sized), text: usize, index: u16) {
+    let length = length(memory, text);
+    for at in index..length {
+        memory.write(text + HEADER + usize::from(at), &[0]);
+    }
+    if index < length {
+        memory.write(text, &index.to_ne_bytes());
+    }
+}
+
+fn put_characters(
+    range: core::ops::Range<usize>,
+    memory: &(impl Memory + ?Sized),
+    out: &mut crate::text::Destination<'_>,
+) {
+    for at in range {
+        let mut byte = [0];
+        memory.read(at, &mut byte);
+        if byte[0] == 0 {
+            return;
+        }
+        out.write(&byte);
+    }
+}

@@ -1,0 +1,298 @@
+//! Where the objects are, and which types lie in them.
+//!
+//! A table is words, so that a back end can put it into a program as plain data: the number of objects, the
+//! node of the state, how many words there are; for each object its offset and size, in the order of their
+//! offsets; then the nodes.
+
+use super::{ORIGIN, Reference};
+use crate::{FaultKind, Lane};
+
+/// As what an access wants to see memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum View {
+    /// A BOOL.
+    Truth,
+    /// A number, of this many bytes.
+    Number(u32),
+    /// A string.
+    Text,
+    /// Exactly this: the number of a type that is viewed as nothing else.
+    Exact(u32),
+}
+
+impl View {
+    /// The view as a number, for native code.
+    pub const fn code(self) -> u32 {
+        match self {
+            Self::Truth => 0,
+            Self::Text => 1,
+            Self::Number(size) => 2 | size << 2,
+            Self::Exact(id) => 3 | id << 2,
+        }
+    }
+
+    pub const fn from_code(code: u32) -> Self {
+        match code & 3 {
+            0 => Self::Truth,
+            1 => Self::Text,
+            2 => Self::Number(code >> 2),
+            _ => Self::Exact(code >> 2),
+        }
+    }
+}
+
+/// What an access means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// Bytes at an offset of the state, and how many there are to the end of the variable.
+    Bytes { at: usize, rest: usize },
+    /// The byte of a BOOL.
+    Truth { at: usize },
+    /// The characters of the string at an offset of the state, from this one on.
+    Characters { text: usize, capacity: u16, index: u16 },
+}
+
+/// The objects of a program, by its words.
+#[derive(Clone, Copy, Debug)]
+pub struct Table<'t> {
+    words: &'t [u32],
+}
+
+/// What a table is made of: for the compiler.
+pub mod encode {
+    use crate::Lane;
+
+    pub const NUMBERS: u32 = 0;
+    pub const TRUTHS: u32 = 1;
+    pub const TEXT: u32 = 2;
+    pub const EXACT: u32 = 3;
+    pub const ARRAY: u32 = 4;
+    pub const STRUCTURE: u32 = 5;
+
+    /// Words before the objects.
+    pub const HEAD: usize = 3;
+    /// Words of an object.
+    pub const OBJECT: usize = 2;
+
+    /// A number of its own for each lane.
+    pub const fn lane(lane: Lane) -> u32 {
+        lane as u32
+    }
+}
+
+/// A node: what it is, its size, and two words whose meaning depends on what it is.
+///
+/// | kind | first | second | after it |
+/// |---|---|---|---|
+/// | `NUMBERS`, `TRUTHS` | the lane | | |
+/// | `TEXT` | the capacity | | |
+/// | `EXACT` | the type's number | | |
+/// | `ARRAY` | the type's number | the element's size | the element's node; the kind and the lane of the numbers that it consists of, through all dimensions |
+/// | `STRUCTURE` | the type's number | the number of members | for each its offset and node |
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    kind: u32,
+    size: usize,
+    first: u32,
+    second: u32,
+}
+
+/// A part of the state, with where it begins.
+#[derive(Clone, Copy, Debug)]
+struct Found {
+    node: Node,
+    /// Where its words end.
+    after: usize,
+    start: usize,
+}
+
+impl<'t> Table<'t> {
+    pub const fn new(words: &'t [u32]) -> Self {
+        Self { words }
+    }
+
+    /// How many bytes the state has.
+    pub fn state_size(&self) -> usize {
+        self.whole().map_or(0, |it| it.node.size)
+    }
+
+    fn word(&self, at: usize) -> u32 {
+        self.words.get(at).copied().unwrap_or_default()
+    }
+
+    /// An object's offset in the state, and its size.
+    pub fn object(&self, number: u32) -> Option<(usize, usize)> {
+        let position = number.checked_sub(1).filter(|it| *it < self.word(0))?;
+        let at = encode::HEAD + position as usize * encode::OBJECT;
+        Some((self.word(at) as usize, self.word(at + 1) as usize))
+    }
+
+    /// The smallest object that holds the bytes.
+    pub(super) fn holding(&self, offset: usize, size: usize) -> Option<u32> {
+        let (mut low, mut high) = (0, self.word(0));
+        while low < high {
+            let middle = low + (high - low) / 2;
+            let begins_later = self.object(middle + 1).is_some_and(|(start, _)| start > offset);
+            if begins_later { high = middle } else { low = middle + 1 }
+        }
+        // Objects that begin at one offset stand in the order of their sizes, the largest first, so that
+        // the first that is met from here holds no other.
+        (1..=low)
+            .rev()
+            .find(|number| self.object(*number).is_some_and(|(start, length)| offset + size <= start + length))
+    }
+
+    /// What lies at `distance` bytes from where a reference points, as `view` wants to see it.
+    pub fn part(&self, bits: u64, distance: u64, view: View) -> Result<Part, FaultKind> {
+        let (offset, rest) = self.locate(bits, distance)?;
+        let found = self.leaf(offset).ok_or(FaultKind::ForbiddenView)?;
+        let index = offset - found.start;
+        let left = found.node.size - index;
+        match (found.node.kind, view) {
+            (encode::TEXT, View::Number(1) | View::Text) => self.characters(found, index),
+            (encode::NUMBERS, View::Number(size)) => {
+                let size = size as usize;
+                if offset % size != 0 {
+                    return Err(FaultKind::MisalignedReference);
+                }
+                if left < size || rest < size {
+                    return Err(if rest < size { FaultKind::OutsideObject } else { FaultKind::ForbiddenView });
+                }
+                Ok(Part::Bytes { at: offset, rest: left.min(rest) })
+            }
+            (encode::NUMBERS, View::Truth) | (encode::TRUTHS, View::Truth | View::Number(1)) => {
+                Ok(Part::Truth { at: offset })
+            }
+            (encode::NUMBERS, View::Text) => Ok(Part::Bytes { at: offset, rest: left.min(rest) }),
+            (encode::EXACT, View::Exact(id)) if found.node.first == id && index == 0 => {
+                Ok(Part::Bytes { at: offset, rest: left })
+            }
+            _ => Err(FaultKind::ForbiddenView),
+        }
+    }
+
+    fn characters(&self, found: Found, index: usize) -> Result<Part, FaultKind> {
+        let capacity = found.node.first as u16;
+        // A string of full length ends with a zero, too.
+        if index > usize::from(capacity) {
+            return Err(FaultKind::OutsideObject);
+        }
+        Ok(Part::Characters { text: found.start, capacity, index: index as u16 })
+    }
+
+    /// Where a variable of exactly this type lies: the offset in the state. `lane` for a number or a BOOL,
+    /// the capacity for a string, else the type's number, which arrays and structures have, too.
+    pub fn find(&self, bits: u64, distance: u64, wanted: Wanted) -> Result<usize, FaultKind> {
+        let (offset, _) = self.locate(bits, distance)?;
+        let mut found = self.whole();
+        loop {
+            let Some(at) = found else { return Err(FaultKind::ForbiddenView) };
+            let index = offset - at.start;
+            let is_it = match (at.node.kind, wanted) {
+                (encode::NUMBERS | encode::TRUTHS, Wanted::Lane(lane)) => {
+                    at.node.first == encode::lane(lane) && index % lane.size() as usize == 0
+                }
+                (encode::TEXT, Wanted::Text(capacity)) => index == 0 && at.node.first == u32::from(capacity),
+                (encode::EXACT | encode::ARRAY | encode::STRUCTURE, Wanted::Exact(id)) => {
+                    index == 0 && at.node.first == id
+                }
+                _ => false,
+            };
+            if is_it {
+                return Ok(offset);
+            }
+            found = self.below(at, offset);
+        }
+    }
+
+    /// The offset in the state, and how many bytes of the object follow.
+    fn locate(&self, bits: u64, distance: u64) -> Result<(usize, usize), FaultKind> {
+        let reference = Reference::from_bits(bits);
+        if reference.object == 0 {
+            return Err(FaultKind::NullReference);
+        }
+        let (start, size) = self.object(reference.object).ok_or(FaultKind::OutsideObject)?;
+        let offset = (u64::from(reference.address) + distance).checked_sub(u64::from(ORIGIN));
+        let position = offset.and_then(|it| usize::try_from(it).ok()?.checked_sub(start));
+        match position {
+            Some(position) if position < size => Ok((start + position, size - position)),
+            Some(_) | None => Err(FaultKind::OutsideObject),
+        }
+    }
+
+    fn whole(&self) -> Option<Found> {
+        self.node(self.word(1) as usize, 0)
+    }
+
+    fn node(&self, at: usize, start: usize) -> Option<Found> {
+        let &[kind, size, first, second] = self.words.get(at..at + 4)? else { return None };
+        Some(Found { node: Node { kind, size: size as usize, first, second }, after: at + 4, start })
+    }
+
+    /// The part of an array or structure that holds the byte at `offset`.
+    fn below(&self, found: Found, offset: usize) -> Option<Found> {
+        let inside = offset - found.start;
+        match found.node.kind {
+            encode::ARRAY => {
+                let stride = found.node.second as usize;
+                let position = inside.checked_div(stride)?;
+                self.node(self.word(found.after) as usize, found.start + position * stride)
+            }
+            encode::STRUCTURE => {
+                let (mut low, mut high) = (0, found.node.second as usize);
+                while low < high {
+                    let middle = low + (high - low) / 2;
+                    if self.word(found.after + 2 * middle) as usize > inside { high = middle } else { low = middle + 1 }
+                }
+                let at = found.after + 2 * low.checked_sub(1)?;
+                let part = self.node(self.word(at + 1) as usize, found.start + self.word(at) as usize)?;
+                (offset < part.start + part.node.size).then_some(part)
+            }
+            _ => None,
+        }
+    }
+
+    /// The variable without parts that holds the byte, or the array of numbers.
+    fn leaf(&self, offset: usize) -> Option<Found> {
+        let mut found = self.whole()?;
+        loop {
+            match (found.node.kind, self.word(found.after + 1)) {
+                (encode::ARRAY, kind @ (encode::NUMBERS | encode::TRUTHS)) => {
+                    // Numbers one after the other are looked at as one run of them.
+                    let node = Node { kind, first: self.word(found.after + 2), ..found.node };
+                    return Some(Found { node, ..found });
+                }
+                (encode::ARRAY | encode::STRUCTURE, _) => found = self.below(found, offset)?,
+                _ => return Some(found),
+            }
+        }
+    }
+}
+
+/// The one type that a variable is wanted as, to be handed on whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    Lane(Lane),
+    Text(u16),
+    Exact(u32),
+}
+
+impl Wanted {
+    /// As a number, for native code.
+    pub const fn code(self) -> u32 {
+        match self {
+            Self::Lane(lane) => encode::lane(lane) << 2,
+            Self::Text(capacity) => 1 | (capacity as u32) << 2,
+            Self::Exact(id) => 2 | id << 2,
+        }
+    }
+
+    pub fn from_code(code: u32) -> Self {
+        let lane = || Lane::ALL.into_iter().find(|it| encode::lane(*it) == code >> 2);
+        match code & 3 {
+            0 => Self::Lane(lane().unwrap_or(Lane::U8)),
+            1 => Self::Text((code >> 2) as u16),
+            _ => Self::Exact(code >> 2),
+        }
+    }
+}
