@@ -152,7 +152,7 @@ impl<'t> Table<'t> {
             (encode::TEXT, View::Number(1) | View::Text) => self.characters(found, index),
             (encode::NUMBERS, View::Number(size)) => {
                 let size = size as usize;
-                if offset % size != 0 {
+                if offset.checked_rem(size) != Some(0) {
                     return Err(FaultKind::MisalignedReference);
                 }
                 if left < size || rest < size {
@@ -190,7 +190,7 @@ impl<'t> Table<'t> {
             let index = offset - at.start;
             let is_it = match (at.node.kind, wanted) {
                 (encode::NUMBERS | encode::TRUTHS, Wanted::Lane(lane)) => {
-                    at.node.first == encode::lane(lane) && index % lane.size() as usize == 0
+                    at.node.first == encode::lane(lane) && index.checked_rem(lane.size() as usize) == Some(0)
                 }
                 (encode::TEXT, Wanted::Text(capacity)) => index == 0 && at.node.first == u32::from(capacity),
                 (encode::EXACT | encode::ARRAY | encode::STRUCTURE, Wanted::Exact(id)) => {
