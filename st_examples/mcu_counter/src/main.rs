@@ -16,6 +16,7 @@ use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_rt::entry;
 use cortex_m_semihosting::{debug, heprintln, hprintln};
 use plc::Counter;
+use staunch_runtime::firmware::Stamp;
 use staunch_runtime::{Context, Fault};
 use stimulus::Stimulus;
 
@@ -55,7 +56,23 @@ fn follow_stimulus() -> Result<(), Fault> {
         row(scan, now, &counter);
         now += CYCLE;
     }
+    restart(&mut counter, now);
     Ok(())
+}
+
+/// What stays over a power cut. A board writes the record to flash or FRAM; here it is in memory.
+fn restart(counter: &mut Counter, now: i64) {
+    let mut record = [0xFF; plc::RETAINED_SIZE];
+    plc::save_retained(&mut record, Stamp { sequence: 1, now }, counter);
+    let mut restarted = Counter::new();
+    for task in plc::TASKS {
+        match plc::load_retained(&record, &mut restarted) {
+            Ok(stamp) => {
+                heprintln!("{} kept {} parts at {} ms", task.instance, restarted.shift.cv, stamp.now / 1_000_000)
+            }
+            Err(reason) => heprintln!("{} starts anew: {reason}", task.instance),
+        }
+    }
 }
 
 fn row(scan: u32, now: i64, counter: &Counter) {
