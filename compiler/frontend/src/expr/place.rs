@@ -2,7 +2,6 @@
 
 use super::checker::Checker;
 use super::unresolved::not_constant;
-use super::view::Bits;
 use crate::dialect::Dialect;
 use crate::names::{self, Entry, Meaning, Sense};
 use crate::spelling::nearest;
@@ -42,6 +41,13 @@ pub(crate) enum Access<'s> {
 pub(crate) struct Part {
     pub ty: Elementary,
     pub shift: u32,
+}
+
+/// Bits of one integer.
+#[derive(Clone, Copy)]
+pub(crate) struct Bits {
+    pub shift: u32,
+    pub width: u32,
 }
 
 impl Part {

@@ -1,16 +1,9 @@
 //! Variables that are some bits of another one: reading and assigning them.
 
 use super::checker::Checker;
-use super::place::Found;
+use super::place::{Bits, Found};
 use crate::{Code, Diagnostic, Span};
 use staunch_ir::{Conversion, Elementary, Expr, Op, Place, Type, Value, View};
-
-/// Bits of one integer.
-#[derive(Clone, Copy)]
-pub(crate) struct Bits {
-    pub shift: u32,
-    pub width: u32,
-}
 
 impl<'s> Checker<'_, 's> {
     /// The type of what is found: a view's own.
