@@ -54,6 +54,11 @@ impl Dialect {
         bare_block(self, name).map(|it| it.info())
     }
 
+    /// VAR_IN_OUT CONSTANT.
+    pub const fn has_constant_in_outs(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
     /// The standard's own habits, where a vendor has none.
     pub const fn is_standard(self) -> bool {
         matches!(self, Self::Iec | Self::Openplc)

@@ -67,7 +67,10 @@ impl<'s> Declarations<'s> {
     fn early_constants(&mut self, pou: &'s ast::Pou<'s>) -> Scope<'s> {
         let mut scope = Rc::new(Scope::default());
         let counted = self.table.constants;
-        let blocks = pou.blocks.iter().filter(|it| it.constant.is_some() && it.kind != VarKind::External);
+        let blocks = pou
+            .blocks
+            .iter()
+            .filter(|it| it.constant.is_some() && !matches!(it.kind, VarKind::External | VarKind::InOut));
         let named = |it: &&'s ast::VarDecl<'s>| matches!(it.ty.kind, ast::TypeKind::Named(_));
         let mut waiting: Vec<_> =
             blocks.flat_map(|block| block.vars.iter().filter(named).map(move |decl| (block, decl))).collect();
@@ -168,10 +171,7 @@ impl<'s> Declarations<'s> {
     fn check_constant_section(&mut self, kind: VarKind, span: Span) {
         let (message, help) = match kind {
             VarKind::Output => ("a VAR_OUTPUT cannot be CONSTANT", "declare it in VAR CONSTANT"),
-            VarKind::InOut if self.dialect(span) == dialect::Dialect::Codesys => {
-                self.not_supported(span, "VAR_IN_OUT CONSTANT");
-                return;
-            }
+            VarKind::InOut if self.dialect(span).has_constant_in_outs() => return,
             VarKind::InOut => ("a VAR_IN_OUT cannot be CONSTANT", "declare what is only read in VAR_INPUT"),
             VarKind::Temp => ("a VAR_TEMP cannot be CONSTANT", "declare it in VAR CONSTANT"),
             VarKind::Var | VarKind::Input | VarKind::Stat | VarKind::Global | VarKind::External => return,
@@ -351,7 +351,8 @@ impl<'s> Declarations<'s> {
         builder: &mut Builder<'s>,
     ) -> Option<Place> {
         let section = super::variable::section(block.kind);
-        let formal = |target| Formal { name, section, resolved: Rc::clone(resolved), target };
+        let constant = block.kind == VarKind::InOut && block.constant.is_some();
+        let formal = |target| Formal { name, section, constant, resolved: Rc::clone(resolved), target };
         let place = match (pou.kind, block.kind) {
             // A program has one set of variables, so they last anyway.
             (PouKind::Function | PouKind::FunctionBlock, VarKind::Stat) => {

@@ -10,7 +10,9 @@ use super::place::Found;
 use crate::diagnostic::wording::article;
 use crate::types::signature::Formal;
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{Argument, Block, Conversion, Expr, FieldId, Place, Statement, StatementKind, Type, View};
+use staunch_ir::{
+    Argument, Block, Conversion, Expr, ExprKind, FieldId, Place, Projection, Root, Statement, StatementKind, Type, View,
+};
 
 /// What a call does with one of its parts.
 #[derive(Clone, Debug)]
@@ -145,6 +147,9 @@ impl<'s> Checker<'_, 's> {
         turn: usize,
         expr: &ast::Expr<'s>,
     ) -> Option<()> {
+        if formal.constant {
+            return self.constant_in_out_part(parts, formal, turn, expr);
+        }
         let found = self.after_parts(&mut parts.written, |this| this.variable_argument(expr, formal.name.text))?;
         let (place, ty) = (found.place, formal.resolved.ty);
         if let (Type::String(_), Type::String(_)) = (place.ty, ty)
@@ -162,6 +167,53 @@ impl<'s> Checker<'_, 's> {
         self.note_passed(&place, expr.span, formal.name.span);
         parts.push(Held::Place(place), Role::Passed(turn), expr.span);
         Some(())
+    }
+
+    /// Evaluates the next part, what is given for a VAR_IN_OUT CONSTANT: a variable of its type itself, else
+    /// a copy of the value.
+    fn constant_in_out_part(
+        &mut self,
+        parts: &mut Parts,
+        formal: &Formal<'s>,
+        turn: usize,
+        expr: &ast::Expr<'s>,
+    ) -> Option<()> {
+        let ty = formal.resolved.ty;
+        let given = self.after_parts(&mut parts.written, |this| {
+            let value = this.operand(expr, Some(ty))?;
+            let place = match &value {
+                Operand::Typed(Expr { kind: ExprKind::Load(place), .. }) if place.ty == ty => Some(place.clone()),
+                Operand::Typed(_) | Operand::Promoted(..) | Operand::Integer(_) | Operand::Real { .. } => None,
+            };
+            if let Some(place) = place.filter(|it| this.may_be_lent(it)) {
+                return Some(place);
+            }
+            let value = this.coerce(value, ty, expr.span)?;
+            let copy = this.temporary(formal.name.text, ty);
+            this.assign(copy.clone(), value, expr.span);
+            Some(copy)
+        })?;
+        parts.push(Held::Place(given), Role::Passed(turn), expr.span);
+        Some(())
+    }
+
+    /// Whether a callee may be given the storage itself: what is never written has none of its own, and
+    /// the counter of a loop may be kept elsewhere.
+    fn may_be_lent(&self, place: &Place) -> bool {
+        let is_constant = match (place.root, place.projections.first()) {
+            (Root::Globals, Some(Projection::Field(id))) => {
+                let globals = self.decl.program.structure(self.decl.program.globals);
+                globals.fields.get(id.index()).is_none_or(|it| it.constant)
+            }
+            (Root::Instance, Some(Projection::Field(id))) => {
+                let state = self.signature.as_ref().and_then(|it| it.state);
+                let fields = state.map(|it| &self.decl.program.structure(it).fields);
+                fields.and_then(|it| it.get(id.index())).is_none_or(|it| it.constant)
+            }
+            (Root::Globals | Root::Instance, _) => true,
+            (Root::Local(_) | Root::Param(_), _) => false,
+        };
+        !is_constant && !self.is_counter(place)
     }
 
     pub(crate) fn report_no_variable(&mut self, formal: &Formal<'s>, owner: &str, span: Span) {

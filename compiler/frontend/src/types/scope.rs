@@ -23,9 +23,9 @@ pub(crate) struct Variable<'s> {
 }
 
 impl Variable<'_> {
-    /// The value of a CONSTANT of an elementary or enumeration type.
+    /// The value of a CONSTANT. A VAR_IN_OUT CONSTANT has the caller's.
     pub fn constant_value(&self) -> Option<Const> {
-        self.constant.then(|| self.resolved.initial.clone())
+        (self.constant && self.section != Section::InOut).then(|| self.resolved.initial.clone())
     }
 }
 

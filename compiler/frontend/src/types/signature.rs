@@ -11,6 +11,8 @@ use std::rc::Rc;
 pub(crate) struct Formal<'s> {
     pub name: ast::Name<'s>,
     pub section: Section,
+    /// Of a VAR_IN_OUT CONSTANT, which is only read.
+    pub constant: bool,
     pub resolved: Rc<Resolved>,
     pub target: Target,
 }
