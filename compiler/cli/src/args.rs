@@ -301,12 +301,34 @@ pub struct Compare {
     /// Write the program as it was rewritten for the other system
     #[arg(long, value_name = "OUT.st")]
     pub write: Option<PathBuf>,
-    /// Show every scan, not only those in which something happens
-    #[arg(long)]
-    pub trace: bool,
+    /// Show every scan, not only those in which something happens; with a file, draw both systems there
+    #[arg(long, value_name = "OUT.svg", num_args = 0..=1)]
+    pub trace: Option<Option<PathBuf>>,
     /// Show all inputs, not only those that change
     #[arg(long)]
     pub all_inputs: bool,
+}
+
+impl Compare {
+    /// What follows `--trace` is a source, unless it is a picture.
+    pub fn settled(&self) -> Self {
+        let mut settled = self.clone();
+        let is_picture = |it: &PathBuf| it.extension().is_some_and(|it| it.eq_ignore_ascii_case("svg"));
+        if let Some(Some(file)) = settled.trace.take_if(|it| it.as_ref().is_some_and(|it| !is_picture(it))) {
+            settled.files.files.push(file);
+            settled.trace = Some(None);
+        }
+        settled
+    }
+
+    pub fn shows_every_scan(&self) -> bool {
+        self.trace == Some(None)
+    }
+
+    /// Where the trace is drawn.
+    pub fn picture(&self) -> Option<&PathBuf> {
+        self.trace.as_ref().and_then(Option::as_ref)
+    }
 }
 
 #[derive(Clone, Debug, Args)]

@@ -365,6 +365,25 @@ fn the_events_of_a_stimulus_are_told_apart() {
 }
 
 #[test]
+fn both_systems_are_drawn_one_above_the_other() {
+    let picture = written("held.svg", "");
+    let out = difference(&format!("held.st --from iec --to cscape --trace {}", picture.display()));
+    assert!(out.contains("differ after 2 scans"), "{out}");
+    let svg = std::fs::read_to_string(&picture).expect("it is drawn");
+    assert_eq!((svg.matches("<svg ").count(), svg.matches("</svg>").count()), (3, 3), "{svg}");
+    let at = |text: &str| svg.find(text).unwrap_or_else(|| panic!("no {text}\n{svg}"));
+    assert!(at(">iec</text>") < at(">cscape</text>"));
+    // The count rises to 2 on one system alone, and the input does not change.
+    let lanes = |part: &str| part.matches(">parts.CV</text>").count();
+    let (iec, cscape) = svg.split_at(at(">cscape</text>"));
+    assert_eq!((lanes(iec), lanes(cscape)), (0, 1), "{svg}");
+    assert!(iec.contains("parts.CV = 1"), "{svg}");
+    // A source may follow the flag.
+    let all = difference("--trace held.st --from iec --to cscape");
+    assert!(all.contains("     1    TRUE             1                1"), "{all}");
+}
+
+#[test]
 fn accepted_findings_do_not_fail() {
     let all = written("accepted.txt", "parts 1: the barrier is never held\nparts 2: nobody reads the count\n");
     let output = run(&format!("held.st --from iec --to cscape --accept {}", all.display()));

@@ -25,6 +25,7 @@ mod search;
 mod shrink;
 mod trace;
 
+mod picture;
 mod stimulus;
 
 mod pitfall;
@@ -57,6 +58,7 @@ enum Verdict {
 }
 
 pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
+    let args = &args.settled();
     let common = Common { dialect: Some(args.from), ..common.clone() };
     let from = Session::start(&common, &args.files)?;
     fixed::check(&from.sources, args.from, "--from", args.against.is_none() && args.from != args.to)?;
@@ -101,6 +103,9 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
     } else {
         verdict(&mut pair, &world, args, &mut findings)?
     };
+    if let (Some(path), Verdict::Differs { rows, trace, .. }) = (args.picture(), &verdict) {
+        picture::draw(&mut pair, &world, args, path, (rows, trace.as_ref()))?;
+    }
     let accepted = args.accept.as_deref().map(accept::Accepted::read).transpose()?.unwrap_or_default();
     report.print(&pair, &world, &verdict, &findings, &accepted)
 }

@@ -333,7 +333,7 @@ impl Report<'_> {
     fn lines(&self, pair: &Pair, rows: &[Row], inputs: &[usize], shown: &[Matched]) -> Vec<Option<Line>> {
         let mut lines = Vec::new();
         let mut next = 0;
-        let told = if self.args.trace { (0..rows.len()).collect() } else { telling(pair, rows) };
+        let told = if self.args.shows_every_scan() { (0..rows.len()).collect() } else { telling(pair, rows) };
         for at in told {
             if at > next {
                 lines.push(None);
