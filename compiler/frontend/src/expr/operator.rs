@@ -1,5 +1,6 @@
 use super::checker::Checker;
 use super::operand::{Operand, computed};
+use super::reference::is_reference;
 use crate::types::coercion::{as_number, is_narrow, join, join_promoted};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::BinaryOp;
@@ -40,9 +41,8 @@ impl<'s> Checker<'_, 's> {
 
     /// The operation on two sides that have been checked.
     pub(crate) fn combine(&mut self, mut sides: Sides) -> Option<Operand> {
-        match self.reference_operation(sides.op, sides.a, sides.b, sides.span) {
-            Ok(value) => return value,
-            Err((a, b)) => (sides.a, sides.b) = (a, b),
+        if is_reference(&sides.a) || is_reference(&sides.b) {
+            return self.reference_operation(sides.op, sides.a, sides.b, sides.span);
         }
         if sides.a.typed().is_none() && sides.b.typed().is_none() {
             if let Some(folded) = self.fold_untyped(sides.op, &sides.a, &sides.b, sides.span) {

@@ -318,23 +318,15 @@ impl<'s> Checker<'_, 's> {
         Expr::apply(Op::And, lword, vec![bits, mask], at)
     }
 
-    /// Comparison and arithmetic where one side is a reference; the sides as they are where none is.
-    pub(crate) fn reference_operation(
-        &mut self,
-        op: BinaryOp,
-        a: Operand,
-        b: Operand,
-        span: Span,
-    ) -> Result<Option<Operand>, (Operand, Operand)> {
-        let is_reference = |it: &Operand| matches!(it.ty(), Some(Type::Reference(_)));
-        match (is_reference(&a), is_reference(&b), op) {
-            (false, false, _) => Err((a, b)),
+    /// Comparison and arithmetic where one side is a reference.
+    pub(crate) fn reference_operation(&mut self, op: BinaryOp, a: Operand, b: Operand, span: Span) -> Option<Operand> {
+        let made = match (is_reference(&a), is_reference(&b), op) {
             (_, _, BinaryOp::Eq | BinaryOp::Ne | BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge) => {
-                Ok(self.compare_addresses(op, a, b, span).map(Operand::Typed))
+                self.compare_addresses(op, a, b, span)
             }
-            (true, true, BinaryOp::Sub) => Ok(self.distance(a, b, span).map(Operand::Typed)),
-            (true, false, BinaryOp::Add | BinaryOp::Sub) => Ok(self.advance(a, b, op, span).map(Operand::Typed)),
-            (false, true, BinaryOp::Add) => Ok(self.advance(b, a, op, span).map(Operand::Typed)),
+            (true, true, BinaryOp::Sub) => self.distance(a, b, span),
+            (true, false, BinaryOp::Add | BinaryOp::Sub) => self.advance(a, b, op, span),
+            (false, true, BinaryOp::Add) => self.advance(b, a, op, span),
             _ => {
                 let operands = [&a, &b].map(|it| it.ty().map_or("a number".to_owned(), |ty| self.type_name(ty)));
                 let message = format!("`{}` does not take {} and {}", op.text(), operands[0], operands[1]);
@@ -342,9 +334,10 @@ impl<'s> Checker<'_, 's> {
                     Diagnostic::new(Code::E0204, span, message)
                         .label("a reference is compared, moved by a number of bytes, or subtracted from another"),
                 );
-                Ok(None)
+                None
             }
-        }
+        };
+        made.map(Operand::Typed)
     }
 
     /// An operand as an address, for a comparison.
@@ -396,4 +389,8 @@ impl<'s> Checker<'_, 's> {
         let moved = self.apply(Op::Advance, lword, vec![bits, by], lword, span)?;
         Some(self.convert(Conversion::Same, ty, moved))
     }
+}
+
+pub(crate) fn is_reference(operand: &Operand) -> bool {
+    matches!(operand.ty(), Some(Type::Reference(_)))
 }
