@@ -156,6 +156,11 @@ pub(crate) fn bare_block(dialect: Dialect, name: &str) -> Option<BlockId> {
     block_in(dialect.family(), name).or_else(|| shared_block(name))
 }
 
+/// What reads the scan's time.
+pub(crate) fn clock() -> Option<BlockId> {
+    block_in(Family::Iec, "__CLOCK")
+}
+
 pub(crate) fn shared_block(name: &str) -> Option<BlockId> {
     block_named(name, BlockInfo::is_shared)
 }

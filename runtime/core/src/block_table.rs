@@ -51,6 +51,9 @@ macro_rules! for_each_block {
             Iec "SR" iec::Sr {} #[in Logix "SETD with a DOMINANT_SET"] { plain "" call staunch_iec_sr; }
             Iec "RS" iec::Rs {} #[in Logix "RESD with a DOMINANT_RESET"] { plain "" call staunch_iec_rs; }
 
+            // What reads the time for TIME(); no program names it.
+            Iec "__CLOCK" iec::Clock {} { timed "" call staunch_iec_clock; }
+
             // The compiler adds RCV to the inputs of R_CTU and R_CTD.
             Cscape "CTU" cscape::Ctu {} #[counts_levels] #[stops] { plain "" call staunch_cscape_ctu; }
             Cscape "CTD" cscape::Ctd {} #[counts_levels] #[stops] { plain "" call staunch_cscape_ctd; }

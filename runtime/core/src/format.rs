@@ -39,10 +39,11 @@ pub fn duration(out: &mut impl Write, time: Time) -> Result {
     }
     for (unit, size) in UNITS {
         let size = size.unsigned_abs();
-        if rest >= size {
-            number(out, rest / size, 1)?;
+        let count = rest.checked_div(size).unwrap_or(0);
+        if count > 0 {
+            number(out, count, 1)?;
             out.write_str(unit)?;
-            rest %= size;
+            rest -= count * size;
         }
     }
     Ok(())

@@ -18,6 +18,7 @@ pub mod ops;
 mod signature;
 
 pub mod calendar;
+mod decimal;
 pub mod format;
 pub mod literal;
 pub mod reference;

@@ -102,6 +102,11 @@ pub const UNITS: [(&str, Time); 7] = [
 
 type IsByte = fn(&u8) -> bool;
 
+/// To look for a character in text. `core` looks for a `char` with code that can panic.
+pub(crate) fn is(character: char) -> impl Fn(char) -> bool {
+    move |it| it == character
+}
+
 /// The magnitude of `1_000`, `2#1010`, `8#17` or `16#FF`.
 pub fn integer(text: &str) -> Result<u64, LiteralError> {
     let error = |start, end, kind| Err(LiteralError { start, end, kind });
@@ -181,6 +186,14 @@ pub fn duration(text: &str) -> Result<Time, LiteralError> {
     Time::try_from(total).map_err(|_| long)
 }
 
+/// The type that the prefix of such a literal names: `D`, `TIME`, `LDATE_AND_TIME`.
+pub fn type_of_prefix(prefix: &str) -> Option<Elementary> {
+    let short =
+        [("T", Elementary::Time), ("LT", Elementary::Ltime), ("D", Elementary::Date), ("LD", Elementary::Ldate)];
+    let short = short.into_iter().find(|it| it.0.eq_ignore_ascii_case(prefix)).map(|it| it.1);
+    short.or_else(|| Elementary::named(prefix)).filter(|it| it.is_time())
+}
+
 /// The value of a literal of a duration, a date or a time of day: what follows its `#`.
 pub fn time(ty: Elementary, text: &str) -> Result<Time, LiteralError> {
     match ty {
@@ -219,7 +232,7 @@ fn day(text: &str) -> Result<i64, LiteralError> {
 pub fn time_of_day(text: &str) -> Result<Time, LiteralError> {
     let kind = LiteralErrorKind::TimeOfDayForm;
     let error = |start, end, kind| LiteralError { start, end, kind };
-    let (whole, fraction) = text.split_once('.').map_or((text, None), |(whole, fraction)| (whole, Some(fraction)));
+    let (whole, fraction) = text.split_once(is('.')).map_or((text, None), |(whole, fraction)| (whole, Some(fraction)));
     let Fields { values: [hour, minute, second], ends, count } = Fields::of(whole, ':', kind)?;
     let is_fraction = |it: &str| !it.is_empty() && it.bytes().all(|it| it.is_ascii_digit() || it == b'_');
     if count < 2 || fraction.is_some_and(|it| count < 3 || !is_fraction(it)) {
@@ -235,8 +248,9 @@ pub fn time_of_day(text: &str) -> Result<Time, LiteralError> {
     ];
     for (at, (value, limit, kind)) in limits.into_iter().enumerate() {
         if value >= limit {
-            let start = if at == 0 { 0 } else { ends[at - 1] + 1 };
-            return Err(error(start, ends[at], kind));
+            let end = |at: usize| ends.get(at).copied().unwrap_or(text.len());
+            let start = at.checked_sub(1).map_or(0, |before| end(before) + 1);
+            return Err(error(start, end(at), kind));
         }
     }
     Clock { hour, minute, second, nanosecond }.since_midnight().ok_or(error(0, text.len(), kind))
@@ -246,11 +260,12 @@ pub fn time_of_day(text: &str) -> Result<Time, LiteralError> {
 pub fn date_and_time(text: &str) -> Result<Time, LiteralError> {
     let whole = |kind| LiteralError { start: 0, end: text.len(), kind };
     // The last of three `-` is between the day and the hour.
-    let mut dashes = text.match_indices('-').map(|it| it.0);
+    let mut dashes = text.match_indices(is('-')).map(|it| it.0);
     let (Some(between), None) = (dashes.nth(2), dashes.next()) else {
         return Err(whole(LiteralErrorKind::DateAndTimeForm));
     };
-    let (date, clock) = (&text[..between], &text[between + 1..]);
+    let (date, clock) = text.split_at_checked(between).unwrap_or_default();
+    let clock = clock.strip_prefix('-').unwrap_or_default();
     let number = day(date)?;
     let shifted = |it: LiteralError| LiteralError { start: it.start + between + 1, end: it.end + between + 1, ..it };
     let clock = time_of_day(clock).map_err(shifted)?;
@@ -271,7 +286,7 @@ impl Fields {
         let wrong = LiteralError { start: 0, end: text.len(), kind };
         let mut fields = Self { values: [0; 3], ends: [0; 3], count: 0 };
         let mut start = 0;
-        for digits in text.split(separator) {
+        for digits in text.split(is(separator)) {
             let (Some(value), Some(end)) = (fields.values.get_mut(fields.count), fields.ends.get_mut(fields.count))
             else {
                 return Err(wrong);
@@ -306,11 +321,12 @@ fn part(text: &str, start: usize) -> Result<Part, LiteralError> {
     // `1h_30m`: the `_` is a part of neither.
     let end = text.len() - next.trim_start_matches('_').len();
     let error = |end, kind| LiteralError { start, end, kind };
-    let Some(unit) = UNITS.iter().position(|(it, _)| it.eq_ignore_ascii_case(name)) else {
+    let found = UNITS.iter().enumerate().find(|it| it.1.0.eq_ignore_ascii_case(name));
+    let Some((unit, (_, scale))) = found else {
         let kind = if name.is_empty() { LiteralErrorKind::NoUnit } else { LiteralErrorKind::UnknownUnit };
         return Err(error(end.max(start + 1).min(text.len()), kind));
     };
-    let (whole, fraction) = match number.split_once('.') {
+    let (whole, fraction) = match number.split_once(is('.')) {
         Some((whole, fraction)) => (whole, Some(fraction)),
         None => (number, None),
     };
@@ -319,7 +335,7 @@ fn part(text: &str, start: usize) -> Result<Part, LiteralError> {
     if !is_number(whole) || fraction.is_some_and(|it| !is_number(it)) {
         return Err(error(end, LiteralErrorKind::NoNumber));
     }
-    let nanoseconds = scaled(whole, fraction.unwrap_or_default(), i128::from(UNITS[unit].1));
+    let nanoseconds = scaled(whole, fraction.unwrap_or_default(), i128::from(*scale));
     Ok(Part { unit, nanoseconds, fraction: fraction.is_some(), end })
 }
 
@@ -327,7 +343,8 @@ fn part(text: &str, start: usize) -> Result<Part, LiteralError> {
 fn scaled(whole: &str, fraction: &str, scale: i128) -> i128 {
     // No unit has more than 14 decimal digits of nanoseconds.
     let (part, tenths) = digits(fraction).take(15).fold((0, 1), |(sum, tenths), it| (appended(sum, it), tenths * 10));
-    decimal(whole).saturating_mul(scale).saturating_add(part * scale / tenths)
+    let part = part.checked_mul(scale).and_then(|it| it.checked_div(tenths));
+    decimal(whole).saturating_mul(scale).saturating_add(part.unwrap_or(0))
 }
 
 /// The number that digits spell, saturating; other characters between them are passed over.
@@ -347,9 +364,10 @@ fn appended(number: i128, digit: i128) -> i128 {
 fn underscores(text: &str, before: IsByte, after: IsByte, kind: LiteralErrorKind) -> Result<(), LiteralError> {
     let bytes = text.as_bytes();
     let is = |at: Option<usize>, what: IsByte| at.and_then(|it| bytes.get(it)).is_some_and(what);
-    let loose = |at: &usize| bytes[*at] == b'_' && !(is(at.checked_sub(1), before) && is(Some(at + 1), after));
-    let Some(start) = (0..bytes.len()).find(loose) else { return Ok(()) };
-    let end = start + bytes[start..].iter().take_while(|it| **it == b'_').count();
+    let loose = |at: usize| !(is(at.checked_sub(1), before) && is(at.checked_add(1), after));
+    let mut places = bytes.iter().enumerate();
+    let Some((start, _)) = places.find(|(at, it)| **it == b'_' && loose(*at)) else { return Ok(()) };
+    let end = start + 1 + places.take_while(|it| *it.1 == b'_').count();
     Err(LiteralError { start, end, kind })
 }
 

@@ -125,6 +125,19 @@ macro_rules! for_each_text_op {
             Insert       "INSERT"    insert     (IN1: STRING, IN2: STRING, P: ANY_INT) -> STRING;
             Delete       "DELETE"    delete     (IN: STRING, L: ANY_INT, P: ANY_INT) -> STRING;
             Replace      "REPLACE"   replace    (IN1: STRING, IN2: STRING, L: ANY_INT, P: ANY_INT) -> STRING;
+            // Text of values, and values of text.
+            FromBool     "_FROM_BOOL"  from_bool  (IN: BOOL) -> STRING;
+            FromLint     "_FROM_LINT"  from_lint  (IN: LINT) -> STRING;
+            FromUlint    "_FROM_ULINT" from_ulint (IN: ULINT) -> STRING;
+            FromReal     "_FROM_REAL"  from_real  (IN: REAL) -> STRING;
+            FromLreal    "_FROM_LREAL" from_lreal (IN: LREAL) -> STRING;
+            FromTime     "_FROM_TIME"  from_time  (IN: LINT, KIND: LINT) -> STRING;
+            ToBool       "_TO_BOOL"    to_bool    (IN: STRING) -> BOOL;
+            ToLint       "_TO_LINT"    to_lint    (IN: STRING) -> LINT;
+            ToUlint      "_TO_ULINT"   to_ulint   (IN: STRING) -> ULINT;
+            ToReal       "_TO_REAL"    to_real    (IN: STRING) -> REAL;
+            ToLreal      "_TO_LREAL"   to_lreal   (IN: STRING) -> LREAL;
+            ToTime       "_TO_TIME"    to_time    (IN: STRING, KIND: LINT) -> LINT;
         }
     };
 }

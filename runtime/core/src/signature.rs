@@ -91,6 +91,18 @@ macro_rules! kind {
     (INT) => {
         $crate::Kind::Is($crate::Elementary::Int)
     };
+    (LINT) => {
+        $crate::Kind::Is($crate::Elementary::Lint)
+    };
+    (ULINT) => {
+        $crate::Kind::Is($crate::Elementary::Ulint)
+    };
+    (REAL) => {
+        $crate::Kind::Is($crate::Elementary::Real)
+    };
+    (LREAL) => {
+        $crate::Kind::Is($crate::Elementary::Lreal)
+    };
     (TIME) => {
         $crate::Kind::Is($crate::Elementary::Time)
     };
@@ -168,5 +180,17 @@ macro_rules! carried {
     };
     (ANY_INT) => {
         i64
+    };
+    (LINT) => {
+        i64
+    };
+    (ULINT) => {
+        u64
+    };
+    (REAL) => {
+        f32
+    };
+    (LREAL) => {
+        f64
     };
 }

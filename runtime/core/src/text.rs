@@ -3,6 +3,10 @@
 //! The functions count bytes, positions from 1. A count or position out of range acts as the
 //! nearest one that is in range, so a negative count acts as 0.
 
+mod conversion;
+
+pub use conversion::*;
+
 use core::fmt;
 
 /// A STRING of at most `N` bytes. The bytes past its length are zero, so equal strings are equal

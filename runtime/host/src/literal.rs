@@ -78,9 +78,7 @@ pub(crate) fn time(text: &str) -> Result<i64, String> {
 fn date(text: &str, ty: Elementary) -> Result<i64, String> {
     let wrong = || format!("`{text}` is not {} {}: ", article(ty.name()), ty.name());
     let Some((prefix, rest)) = text.split_once('#') else { return Err(wrong() + &example(ty)) };
-    let short = [("D", Elementary::Date), ("LD", Elementary::Ldate)];
-    let short = short.into_iter().find(|it| same(it.0, prefix)).map(|it| it.1);
-    let found = short.or_else(|| Elementary::named(prefix));
+    let found = literal::type_of_prefix(prefix);
     let kind = |it: Elementary| (it.is_day(), it.is_time_of_day(), it.is_date_and_time());
     if found.is_none_or(|it| kind(it) != kind(ty)) {
         return Err(wrong() + &example(ty));

@@ -2,6 +2,7 @@
 //! only while it matters.
 
 use super::scalar::Instance;
+use staunch_ir::{Local, Program, Type};
 use staunch_runtime::{Lane, Pin, Value};
 
 /// Where a timer's pins lie in a state.
@@ -59,6 +60,15 @@ impl Timer {
         };
         Value::I64(age).write(&mut state[self.start..]);
     }
+}
+
+/// The block that reads the time.
+const CLOCK: &str = "iec::Clock";
+
+/// Whether the program reads the time itself, so that a state of it means something else later.
+pub fn reads_clock(program: &Program) -> bool {
+    let is_clock = |it: &Local| matches!(it.ty, Type::Block(id) if id.info().rust_path.replace(' ', "") == CLOCK);
+    program.routines.iter().any(|it| it.locals.iter().any(is_clock))
 }
 
 pub fn timers(blocks: &[Instance]) -> Vec<Timer> {
@@ -132,7 +142,7 @@ mod tests {
     #[test]
     fn states_of_one_normal_form_behave_alike() {
         let mut compared = 0;
-        // ADVANCE_TIME of a unit test has no output, and no program names it.
+        // What reads or sets the time has no such output, and no program names it.
         let timed = |it: &BlockInfo| it.pin("Q").is_some() && it.instructions.iter().any(|it| it.needs_context);
         for (number, info) in BLOCKS.iter().enumerate().filter(|(_, it)| timed(it)) {
             let (path, key, block) = (String::new(), String::new(), BlockId::next(number));

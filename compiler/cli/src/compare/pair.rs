@@ -18,6 +18,8 @@ pub struct Side {
     drive: Drive,
     start: Bookmark,
     timers: Vec<Timer>,
+    /// States at different times are different ones.
+    reads_clock: bool,
     /// The state before the last scan.
     before: Vec<u8>,
     initial: Vec<u8>,
@@ -105,9 +107,20 @@ impl Side {
         let (machine, map) = Native::new(&program)?;
         let scalars = Scalars::of(&program);
         let drive = Drive::new(&map, cycle);
-        let timers = normal::timers(&scalars.blocks);
+        let (timers, reads_clock) = (normal::timers(&scalars.blocks), normal::reads_clock(&program));
         let (start, before) = (drive.bookmark(), machine.state().to_vec());
-        Ok(Self { dialect, program, scalars, machine, drive, start, timers, initial: before.clone(), before })
+        Ok(Self {
+            dialect,
+            program,
+            scalars,
+            machine,
+            drive,
+            start,
+            timers,
+            reads_clock,
+            initial: before.clone(),
+            before,
+        })
     }
 
     pub fn state(&self) -> &[u8] {
@@ -342,6 +355,9 @@ impl Pair {
             }
             let now = side.drive.next();
             side.timers.iter().for_each(|it| it.settle(state, now));
+            if side.reads_clock {
+                self.scratch.extend_from_slice(&now.to_ne_bytes());
+            }
         }
         for (wait, fresh) in self.sides.iter().flat_map(|it| it.drive.phases()) {
             self.scratch.extend_from_slice(&wait.to_ne_bytes());

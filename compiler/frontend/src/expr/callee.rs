@@ -173,6 +173,14 @@ impl<'s> Checker<'_, 's> {
             );
             return;
         }
+        if functions::exists(name.text) {
+            self.report(
+                Diagnostic::new(Code::E0307, name.span, format!("`{}` is a function of CODESYS", name.text))
+                    .label("this file's dialect has none of that name")
+                    .help("start the file with `{dialect 'codesys'}`, or compile with `--dialect codesys`"),
+            );
+            return;
+        }
         if not_yet(name.text) {
             self.decl.not_supported(name.span, &format!("the function {}", name.text.to_ascii_uppercase()));
             return;
@@ -201,7 +209,7 @@ impl<'s> Checker<'_, 's> {
 fn not_yet(name: &str) -> bool {
     let name = name.to_ascii_uppercase();
     let conversion = |part: &str| {
-        let texts = ["STRING", "WSTRING", "CHAR", "WCHAR", "BCD"];
+        let texts = ["WSTRING", "CHAR", "WCHAR", "BCD"];
         texts.iter().any(|it| part == *it || part.starts_with("BCD") || part.ends_with("BCD"))
     };
     let (from, to) = name.split_once("_TO_").or_else(|| Some(("", name.strip_prefix("TO_")?))).unwrap_or(("", ""));
@@ -212,7 +220,6 @@ fn not_yet(name: &str) -> bool {
         "ASSERT",
         "LOWER_BOUND",
         "UPPER_BOUND",
-        "TIME",
         "SPLIT_DATE",
         "SPLIT_TOD",
         "SPLIT_LTOD",

@@ -1,7 +1,7 @@
 //! Conversion functions: `INT_TO_REAL`, `TO_REAL`, `REAL_TRUNC_DINT`, `TRUNC`.
 
 use super::checker::Checker;
-use crate::names::functions;
+use crate::names::functions::{self, Converted};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Conversion, Elementary, Expr, Op, Type, Value};
 use staunch_runtime::Time;
@@ -15,33 +15,45 @@ impl<'s> Checker<'_, 's> {
         name: ast::Name<'s>,
     ) -> Option<Expr> {
         let value_expr = match parsed.from {
-            Some(from) => self.value(value, Type::Elementary(from))?,
+            Some(Converted::Elementary(from)) => self.value(value, Type::Elementary(from))?,
+            Some(Converted::Text) => self.text(value, name)?,
             None => self.typed(value, None)?,
         };
+        let to = match parsed.to {
+            Converted::Elementary(to) => to,
+            Converted::Text => return self.text_of(value_expr, value.span, name),
+        };
         if parsed.truncates {
-            return self.truncate(value_expr, parsed.to, value.span, name);
+            return self.truncate(value_expr, to, value.span, name);
         }
-        let from = match value_expr.ty {
-            Type::Elementary(from) => from,
+        if let Type::String(_) = value_expr.ty {
+            return self.value_of_text(value_expr, to, name.span);
+        }
+        let (number, from) = self.as_elementary(value_expr, value.span, name)?;
+        self.between(number, from, to, name.span)
+    }
+
+    /// What is converted as a value of an elementary type: an enumeration's is its number.
+    pub(super) fn as_elementary(&mut self, value: Expr, span: Span, name: ast::Name<'s>) -> Option<(Expr, Elementary)> {
+        match value.ty {
+            Type::Elementary(from) => Some((value, from)),
             Type::Enum(id) => {
                 let base = self.decl.program.enumeration(id).base;
-                let number = self.convert(Conversion::Same, Type::Elementary(base), value_expr);
-                return self.between(number, base, parsed.to, name.span);
+                Some((self.convert(Conversion::Same, Type::Elementary(base), value), base))
             }
             other => {
                 let found = self.type_name(other);
                 self.report(
-                    Diagnostic::new(Code::E0204, value.span, format!("`{}` does not take {found}", name.text))
+                    Diagnostic::new(Code::E0204, span, format!("`{}` does not take {found}", name.text))
                         .label(format!("this is {found}")),
                 );
-                return None;
+                None
             }
-        };
-        self.between(value_expr, from, parsed.to, name.span)
+        }
     }
 
     /// What a TIME carries and numbers meet at the unit in which such numbers count.
-    fn between(&mut self, value: Expr, from: Elementary, to: Elementary, span: Span) -> Option<Expr> {
+    pub(super) fn between(&mut self, value: Expr, from: Elementary, to: Elementary, span: Span) -> Option<Expr> {
         let target = Type::Elementary(to);
         match (from.counted_in(), to.counted_in()) {
             (Some(_), Some(_)) if is_the_same(from, to) => Some(self.convert(Conversion::Same, target, value)),

@@ -31,6 +31,7 @@ mod reference;
 mod retained;
 pub(crate) mod standard;
 mod string_compare;
+mod text_conversion;
 pub(crate) mod unresolved;
 pub(crate) mod uses;
 mod variadic;

@@ -278,7 +278,7 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    fn text(&mut self, value: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<Expr> {
+    pub(super) fn text(&mut self, value: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<Expr> {
         let text = self.typed(value, None)?;
         if let Type::String(_) = text.ty {
             return Some(self.shallow(text));

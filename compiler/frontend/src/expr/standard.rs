@@ -5,7 +5,8 @@ use super::checker::Checker;
 use super::operand::{Operand, computed};
 use super::overload::Resolved;
 use crate::names::functions::{self, Meaning, named};
-use crate::{Span, ast};
+use crate::types::signature::pin_place;
+use crate::{Span, ast, dialect};
 use ast::BinaryOp;
 use staunch_ir::{Arm, Conversion, Elementary, Expr, ExprKind, FaultKind, Op, Statement, StatementKind, TextOp, Type};
 use staunch_runtime::{Class, Kind, Signature, signature};
@@ -42,6 +43,7 @@ impl<'s> Checker<'_, 's> {
                 let resolved = self.resolve(signature, &values, expected, name)?;
                 self.text_function(op, resolved.operands, name.span).map(Operand::Typed)
             }
+            Meaning::Clock(ty) => self.scan_time(ty, span).map(Operand::Typed),
             Meaning::Date(function) => {
                 let operands = self.resolve(signature, &values, expected, name)?.operands;
                 let to = match signature.result {
@@ -87,6 +89,15 @@ impl<'s> Checker<'_, 's> {
         let [a, b] = <[Expr; 2]>::try_from(self.resolve(signature, values, expected, name)?.operands).ok()?;
         let side = |expr: Expr, at: usize| (Operand::Typed(expr), values[at].span);
         self.joined(operator, name.span, None, side(a, 0), side(b, 1))
+    }
+
+    /// The scan's time: a block of the runtime reads it, as all that needs it.
+    fn scan_time(&mut self, ty: Elementary, span: Span) -> Option<Expr> {
+        let id = dialect::clock()?;
+        let (block, at) = (self.temporary("clock", Type::Block(id)), self.at(span));
+        self.push(StatementKind::CallBlock { block: block.clone(), instruction: 0, inputs: Vec::new() }, span);
+        let now = Expr::load(pin_place(block, id, "NOW"), at);
+        Some(self.convert(Conversion::Same, Type::Elementary(ty), now))
     }
 
     /// An operation of the table on operands of its type.

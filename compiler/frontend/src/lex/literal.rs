@@ -39,9 +39,7 @@ pub fn duration(text: &str) -> Result<(Elementary, i64), Fault> {
 /// `D#2024-02-29`, `TIME_OF_DAY#12:30:00`, `LDT#…`: the type, and nanoseconds.
 pub fn date(text: &str) -> Result<(Elementary, i64), Fault> {
     let prefix = text.split('#').next().unwrap_or_default();
-    let short = [("D", Elementary::Date), ("LD", Elementary::Ldate)];
-    let short = short.into_iter().find(|it| it.0.eq_ignore_ascii_case(prefix)).map(|it| it.1);
-    time(text, short.or_else(|| Elementary::named(prefix)).unwrap_or(Elementary::Date))
+    time(text, literal::type_of_prefix(prefix).unwrap_or(Elementary::Date))
 }
 
 fn time(text: &str, ty: Elementary) -> Result<(Elementary, i64), Fault> {

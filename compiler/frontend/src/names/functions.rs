@@ -23,6 +23,8 @@ pub(crate) enum Meaning {
     Move,
     /// Toward zero, to the integer that its place asks for.
     Truncate,
+    /// The scan's time since the start.
+    Clock(Elementary),
     /// A date or a time of day from its parts, or a part of one.
     Date(DateFunction),
 }
@@ -98,6 +100,8 @@ const OTHERS: &[(Option<Dialect>, Signature, Meaning)] = &[
         Meaning::Date(DateFunction::Point),
     ),
     (None, signature!("DAY_OF_WEEK" (IN: LDATE) -> ANY_INT), Meaning::Date(DateFunction::Weekday)),
+    (CODESYS, signature!("TIME" () -> TIME), Meaning::Clock(Elementary::Time)),
+    (CODESYS, signature!("LTIME" () -> LTIME), Meaning::Clock(Elementary::Ltime)),
     // CODESYS's library names the parameters of the functions on strings in its own way.
     (CODESYS, signature!("LEN" (STR: STRING) -> INT), Meaning::Text(TextOp::Len)),
     (CODESYS, signature!("LEFT" (STR: STRING, SIZE: ANY_INT) -> STRING), Meaning::Text(TextOp::Left)),
@@ -136,9 +140,14 @@ pub(crate) fn named(name: &str) -> &[Function] {
     FUNCTIONS.get(&Key(name)).map_or(&[], Vec::as_slice)
 }
 
-/// Whether a standard function bears this name.
+/// Whether a function bears this name in any dialect.
 pub(crate) fn exists(name: &str) -> bool {
     !named(name).is_empty() || conversion(name).is_some()
+}
+
+/// Whether a standard function bears this name in the dialect.
+pub(crate) fn exists_in(name: &str, dialect: Dialect) -> bool {
+    named(name).iter().any(|it| it.0.is_none_or(|it| it == dialect)) || conversion(name).is_some()
 }
 
 /// The names of the standard functions, for suggestions.
@@ -172,27 +181,45 @@ fn meaning(op: Op) -> Meaning {
 /// What a conversion function's name says.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Conversion {
-    pub from: Option<Elementary>,
-    pub to: Elementary,
+    pub from: Option<Converted>,
+    pub to: Converted,
     pub truncates: bool,
+}
+
+/// What is converted, or made.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Converted {
+    Elementary(Elementary),
+    /// A STRING of any length.
+    Text,
+}
+
+impl Converted {
+    fn named(name: &str) -> Option<Self> {
+        if name == "STRING" { Some(Self::Text) } else { Elementary::named(name).map(Self::Elementary) }
+    }
+
+    fn is(self, class: fn(Elementary) -> bool) -> bool {
+        matches!(self, Self::Elementary(it) if class(it))
+    }
 }
 
 /// What the name of a conversion function says.
 pub(crate) fn conversion(name: &str) -> Option<Conversion> {
     let name = name.to_ascii_uppercase();
     if let Some(to) = name.strip_prefix("TO_") {
-        return Some(Conversion { from: None, to: Elementary::named(to)?, truncates: false });
+        return Some(Conversion { from: None, to: Converted::named(to)?, truncates: false });
     }
     if let Some(to) = name.strip_prefix("TRUNC_") {
-        let to = Elementary::named(to).filter(|it| it.is_integer())?;
+        let to = Converted::named(to).filter(|it| it.is(Elementary::is_integer))?;
         return Some(Conversion { from: None, to, truncates: true });
     }
     let (truncates, (from, to)) = match name.split_once("_TRUNC_") {
         Some(parts) => (true, parts),
         None => (false, name.split_once("_TO_")?),
     };
-    let (from, to) = (Elementary::named(from)?, Elementary::named(to)?);
-    if truncates && !(from.is_real() && to.is_integer()) {
+    let (from, to) = (Converted::named(from)?, Converted::named(to)?);
+    if truncates && !(from.is(Elementary::is_real) && to.is(Elementary::is_integer)) {
         return None;
     }
     Some(Conversion { from: Some(from), to, truncates })

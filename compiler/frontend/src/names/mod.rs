@@ -161,7 +161,7 @@ impl<'s> Names<'s> {
             Sense::Value => None,
             Sense::Callee => instruction_in(dialect.family(), name)
                 .map(|(block, instruction)| Meaning::Instruction(block, instruction))
-                .or_else(|| functions::exists(name).then_some(Meaning::Function)),
+                .or_else(|| functions::exists_in(name, dialect).then_some(Meaning::Function)),
         }
     }
 

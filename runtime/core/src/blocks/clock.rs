@@ -1,4 +1,4 @@
-//! The clock of a unit test.
+//! The scan's time: what reads it, and what lets it pass in a unit test.
 
 use crate::block::pins;
 use crate::{Context, Time};
@@ -28,4 +28,31 @@ impl AdvanceTime {
 
 pins!([] AdvanceTime {
     Input { in_: TIME = "IN" }
+});
+
+/// `now` is the scan's time, which every call in a scan sees alike: what `TIME()` and `LTIME()` read.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Clock {
+    pub now: Time,
+}
+
+impl Clock {
+    /// One call: reads the scan's time.
+    #[inline]
+    pub fn call(&mut self, cx: &Context) {
+        self.step(cx);
+    }
+
+    /// As [`call`](Self::call): there are no inputs.
+    #[inline]
+    pub fn step(&mut self, cx: &Context) {
+        self.now = cx.now();
+    }
+}
+
+pins!([] Clock {
+    Input {}
+    Output { now: TIME = "NOW" }
+    Memory {}
 });
