@@ -35,8 +35,8 @@ impl<'p> Leaves<'p> {
     fn read(&self, path: &str, ty: Type, bytes: &[u8], leaves: &mut Vec<(String, String)>) {
         match ty {
             Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::Enum(_) => {
-                let lane = self.program.lane(ty).expect("an elementary type has a lane");
-                leaves.push((path.to_owned(), scalar(Value::read(lane, bytes))));
+                let repr = self.program.repr(ty).expect("an elementary type has a repr");
+                leaves.push((path.to_owned(), scalar(Value::read(repr, bytes))));
             }
             Type::String(_) => {
                 let length = usize::from(u16::from_ne_bytes([bytes[0], bytes[1]]));
@@ -56,8 +56,8 @@ impl<'p> Leaves<'p> {
             }
             Type::Block(id) => {
                 for (at, pin) in id.info().pins.iter().enumerate() {
-                    let lane = self.program.lane(id.pin_type(FieldId::next(at)).expect("a pin of the block"));
-                    let value = Value::read(lane.expect("a pin has a lane"), &bytes[pin.offset..]);
+                    let repr = self.program.repr(id.pin_type(FieldId::next(at)).expect("a pin of the block"));
+                    let value = Value::read(repr.expect("a pin has a repr"), &bytes[pin.offset..]);
                     leaves.push((format!("{path}.{}", pin.name), scalar(value)));
                 }
             }

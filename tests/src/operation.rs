@@ -1,19 +1,19 @@
-//! A program with a PROGRAM for every operation at every lane, and one for every conversion:
+//! A program with a PROGRAM for every operation at every repr, and one for every conversion:
 //! the IR as the front end would build it, without the front end.
 
 use staunch_ir::{
-    Class, ClassId, ClassKind, Const, Conversion, Elementary, Expr, Field, FieldId, Instance, Lane, Location, Op,
-    Place, Program, Root, Routine, RoutineId, RoutineKind, Section, SourceFile, Statement, Struct, StructId, Type,
+    Class, ClassId, ClassKind, Const, Conversion, Elementary, Expr, Field, FieldId, Instance, Location, Op, Place,
+    Program, Repr, Root, Routine, RoutineId, RoutineKind, Section, SourceFile, Statement, Struct, StructId, Type,
     Value, Variable,
 };
 
 /// What one instance of the program computes from its operands.
 #[derive(Clone, Copy, Debug)]
 pub enum Task {
-    Apply(Op, Lane),
+    Apply(Op, Repr),
     /// The back ends may turn a negated comparison around.
-    NotApply(Op, Lane),
-    Convert(Conversion, Lane, Lane),
+    NotApply(Op, Repr),
+    Convert(Conversion, Repr, Repr),
 }
 
 impl Task {
@@ -21,48 +21,48 @@ impl Task {
     pub fn all() -> Vec<Self> {
         let mut tasks = Vec::new();
         for op in Op::ALL {
-            for lane in Lane::ALL.into_iter().filter(|it| op.allows(*it)) {
-                tasks.push(Self::Apply(*op, lane));
-                if op.result() == Some(Lane::Bool) {
-                    tasks.push(Self::NotApply(*op, lane));
+            for repr in Repr::ALL.into_iter().filter(|it| op.allows(*it)) {
+                tasks.push(Self::Apply(*op, repr));
+                if op.result() == Some(Repr::Bool) {
+                    tasks.push(Self::NotApply(*op, repr));
                 }
             }
         }
-        for from in Lane::ALL {
+        for from in Repr::ALL {
             tasks.extend(
-                Lane::ALL.into_iter().filter(|to| *to != from).map(|to| Self::Convert(Conversion::Value, from, to)),
+                Repr::ALL.into_iter().filter(|to| *to != from).map(|to| Self::Convert(Conversion::Value, from, to)),
             );
             if from.is_float() {
-                let integers = Lane::ALL.into_iter().filter(|it| it.is_integer());
+                let integers = Repr::ALL.into_iter().filter(|it| it.is_integer());
                 tasks.extend(integers.map(|to| Self::Convert(Conversion::Truncate, from, to)));
             }
         }
         tasks
     }
 
-    /// The lanes of the fields `a`, `b` …
-    pub fn operands(self) -> Vec<Lane> {
+    /// The reprs of the fields `a`, `b` …
+    pub fn operands(self) -> Vec<Repr> {
         match self {
-            Self::Apply(op, lane) | Self::NotApply(op, lane) => {
-                op.operands().iter().map(|it| it.unwrap_or(lane)).collect()
+            Self::Apply(op, repr) | Self::NotApply(op, repr) => {
+                op.operands().iter().map(|it| it.unwrap_or(repr)).collect()
             }
             Self::Convert(_, from, _) => vec![from],
         }
     }
 
-    /// The lane of the field after the operands.
-    pub fn result(self) -> Lane {
+    /// The repr of the field after the operands.
+    pub fn result(self) -> Repr {
         match self {
-            Self::Apply(op, lane) => op.result().unwrap_or(lane),
-            Self::NotApply(..) => Lane::Bool,
+            Self::Apply(op, repr) => op.result().unwrap_or(repr),
+            Self::NotApply(..) => Repr::Bool,
             Self::Convert(_, _, to) => to,
         }
     }
 
     pub fn name(self) -> String {
         match self {
-            Self::Apply(op, lane) => format!("{op:?}_{lane:?}"),
-            Self::NotApply(op, lane) => format!("Not{op:?}_{lane:?}"),
+            Self::Apply(op, repr) => format!("{op:?}_{repr:?}"),
+            Self::NotApply(op, repr) => format!("Not{op:?}_{repr:?}"),
             Self::Convert(how, from, to) => format!("{how:?}_{from:?}_{to:?}"),
         }
     }
@@ -70,11 +70,11 @@ impl Task {
     /// `result := op(a, b, …);`, every node at a place of its own.
     fn statement(self, state: StructId) -> Statement {
         let operands = self.operands();
-        let place = |at: usize, lane| {
+        let place = |at: usize, repr| {
             Place::root(Root::Instance, Type::Struct(state))
-                .field(FieldId::next(at), Type::Elementary(Elementary::number(lane)))
+                .field(FieldId::next(at), Type::Elementary(Elementary::number(repr)))
         };
-        let loads = operands.iter().enumerate().map(|(at, lane)| Expr::load(place(at, *lane), AT)).collect();
+        let loads = operands.iter().enumerate().map(|(at, repr)| Expr::load(place(at, *repr), AT)).collect();
         let ty = Type::Elementary(Elementary::number(self.result()));
         let value = match self {
             Self::Apply(op, _) => Expr::apply(op, ty, loads, AT),
@@ -87,7 +87,7 @@ impl Task {
     }
 }
 
-/// Where every operation stands.
+/// Where every operation is.
 pub const AT: Location = Location { file: 0, line: 7, column: 3 };
 
 pub fn program(tasks: &[Task]) -> Program {
@@ -173,23 +173,23 @@ fn instance(task: Task, program: ClassId) -> Instance {
 }
 
 /// Values at which operations are likely to differ.
-pub fn edges(lane: Lane) -> Vec<Value> {
-    match lane {
-        Lane::Bool => vec![Value::Bool(false), Value::Bool(true)],
-        Lane::F32 => FLOATS.iter().map(|it| Value::F32(*it)).chain(singles()).collect(),
-        Lane::F64 => FLOATS.iter().map(|it| Value::F64(f64::from(*it))).chain(doubles()).collect(),
-        _ => integers(lane),
+pub fn edges(repr: Repr) -> Vec<Value> {
+    match repr {
+        Repr::Bool => vec![Value::Bool(false), Value::Bool(true)],
+        Repr::F32 => FLOATS.iter().map(|it| Value::F32(*it)).chain(singles()).collect(),
+        Repr::F64 => FLOATS.iter().map(|it| Value::F64(f64::from(*it))).chain(doubles()).collect(),
+        _ => integers(repr),
     }
 }
 
-fn integers(lane: Lane) -> Vec<Value> {
-    let (low, high) = lane.range().expect("an integer lane has a range");
-    let bits = i128::from(lane.size()) * 8;
+fn integers(repr: Repr) -> Vec<Value> {
+    let (low, high) = repr.range().expect("an integer repr has a range");
+    let bits = i128::from(repr.size()) * 8;
     let near = [low, low + 1, -2, -1, 0, 1, 2, 3, 7, bits - 1, bits, bits + 1, high / 2, high / 2 + 1, high - 1, high];
     let mut values: Vec<i128> = near.into_iter().filter(|it| (low..=high).contains(it)).collect();
     values.sort_unstable();
     values.dedup();
-    values.into_iter().filter_map(|it| lane.integer(it)).collect()
+    values.into_iter().filter_map(|it| repr.integer(it)).collect()
 }
 
 const FLOATS: &[f32] = &[

@@ -8,7 +8,7 @@
 //! fault, division by zero, 12:5
 //! ```
 //!
-//! Left of `|` stands a stimulus as `staunch run` reads it; without a column `scan` the rows are
+//! Left of `|` is a stimulus as `staunch run` reads it; without a column `scan` the rows are
 //! scans 1, 2, 3. Right of it stand columns of the trace. In front of a `fault` row comes the
 //! scan that faults, which has no outputs. The place is line and column, after the file's name
 //! if that is not the case's first.

@@ -1,4 +1,4 @@
-//! Who may depend on whom, and where `unsafe` and `unwrap` may stand.
+//! Who may depend on whom, and where `unsafe` and `unwrap` may be.
 
 use serde_json::Value as Json;
 use staunch_tests::project;

@@ -1,7 +1,7 @@
 //! The Structured Text in the documentation compiles.
 //!
 //! A fence ```` ```iecst ```` holds a whole program, or statements, or declarations. After the
-//! language may stand `ignore` (a fragment), `error` (it must be refused), or a dialect's name.
+//! language may be `ignore` (a fragment), `error` (it must be refused), or a dialect's name.
 
 use staunch_frontend::{Compilation, Dialect, Format, Options, Source, Sources, Style, render};
 use staunch_tests::project;

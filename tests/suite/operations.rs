@@ -1,8 +1,8 @@
-//! Every operation at every lane, and every conversion, over all edge values: the Rust that is
+//! Every operation at every repr, and every conversion, over all edge values: the Rust that is
 //! printed for it does what the runtime's own function does.
 
 use staunch_ir::layout::{Layout, usize_of};
-use staunch_ir::{Conversion, FaultKind, FieldId, Lane, Op, Type, Value, apply};
+use staunch_ir::{Conversion, FaultKind, FieldId, Op, Repr, Type, Value, apply};
 use staunch_runtime::{Context, Fault, ops};
 use staunch_tests::execute::Executor;
 use staunch_tests::leaf::scalar;
@@ -33,7 +33,7 @@ fn compare(executor: Executor) {
             for (field, value) in operands.iter().enumerate() {
                 let mut bytes = [0; 8];
                 value.write(&mut bytes);
-                machine.write(at(field), &bytes[..value.lane().size() as usize]);
+                machine.write(at(field), &bytes[..value.repr().size() as usize]);
             }
             let end = machine.scan(number, &Context::at(0));
             let result = Value::read(task.result(), &machine.state()[at(operands.len())..]);
@@ -51,10 +51,10 @@ fn compare(executor: Executor) {
 fn expected(task: Task, operands: &[Value]) -> Result<Value, Fault> {
     let at = |kind: FaultKind| Fault { kind, at: AT };
     match task {
-        Task::Apply(op, lane) => apply(op, lane, operands).unwrap().map_err(at),
-        Task::NotApply(op, lane) => {
-            let inner = apply(op, lane, operands).unwrap().map_err(at)?;
-            apply(Op::Not, Lane::Bool, &[inner]).unwrap().map_err(at)
+        Task::Apply(op, repr) => apply(op, repr, operands).unwrap().map_err(at),
+        Task::NotApply(op, repr) => {
+            let inner = apply(op, repr, operands).unwrap().map_err(at)?;
+            apply(Op::Not, Repr::Bool, &[inner]).unwrap().map_err(at)
         }
         Task::Convert(Conversion::Truncate, _, to) => Ok(ops::trunc_value(operands[0], to)),
         Task::Convert(Conversion::Value | Conversion::Same, _, to) => Ok(ops::convert_value(operands[0], to)),
@@ -66,10 +66,10 @@ fn shown(end: Result<Value, Fault>) -> String {
 }
 
 /// Every combination of edge values.
-fn combinations(lanes: &[Lane]) -> Vec<Vec<Value>> {
-    lanes.iter().fold(vec![Vec::new()], |rows, lane| {
+fn combinations(reprs: &[Repr]) -> Vec<Vec<Value>> {
+    reprs.iter().fold(vec![Vec::new()], |rows, repr| {
         let extend =
-            |row: &Vec<Value>| edges(*lane).into_iter().map(|it| [row.as_slice(), &[it]].concat()).collect::<Vec<_>>();
+            |row: &Vec<Value>| edges(*repr).into_iter().map(|it| [row.as_slice(), &[it]].concat()).collect::<Vec<_>>();
         rows.iter().flat_map(extend).collect()
     })
 }

@@ -1,7 +1,7 @@
 //! A C header for what an object or library exports: the entry points, and the state by name.
 
 use staunch_ir::layout::Layout;
-use staunch_ir::{FaultKind, FieldId, Lane, Program, Projection, StructId, Type};
+use staunch_ir::{FaultKind, FieldId, Program, Projection, Repr, StructId, Type};
 use staunch_runtime::Context;
 use std::collections::HashSet;
 use std::fmt::Write;
@@ -116,12 +116,12 @@ impl Macros<'_> {
                     for (at, pin) in block.info().pins.iter().enumerate() {
                         let place = offset + layout.offset(field.ty, FieldId::next(at));
                         let name = self.claim(macro_name(&[owner, &field.name, pin.name]));
-                        variable(&name, pin.lane(), place, &mut self.text);
+                        variable(&name, pin.repr(), place, &mut self.text);
                     }
                 }
                 Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::Enum(_) => {
-                    if let Some(lane) = program.lane(field.ty) {
-                        variable(&name, lane, offset, &mut self.text);
+                    if let Some(repr) = program.repr(field.ty) {
+                        variable(&name, repr, offset, &mut self.text);
                     }
                 }
                 Type::String(_) | Type::Array(_) | Type::Struct(_) => {
@@ -144,19 +144,19 @@ impl Macros<'_> {
     }
 }
 
-fn variable(name: &str, lane: Lane, offset: u64, text: &mut String) {
-    let ty = match lane {
-        Lane::Bool => "bool",
-        Lane::I8 => "int8_t",
-        Lane::I16 => "int16_t",
-        Lane::I32 => "int32_t",
-        Lane::I64 => "int64_t",
-        Lane::U8 => "uint8_t",
-        Lane::U16 => "uint16_t",
-        Lane::U32 => "uint32_t",
-        Lane::U64 => "uint64_t",
-        Lane::F32 => "float",
-        Lane::F64 => "double",
+fn variable(name: &str, repr: Repr, offset: u64, text: &mut String) {
+    let ty = match repr {
+        Repr::Bool => "bool",
+        Repr::I8 => "int8_t",
+        Repr::I16 => "int16_t",
+        Repr::I32 => "int32_t",
+        Repr::I64 => "int64_t",
+        Repr::U8 => "uint8_t",
+        Repr::U16 => "uint16_t",
+        Repr::U32 => "uint32_t",
+        Repr::U64 => "uint64_t",
+        Repr::F32 => "float",
+        Repr::F64 => "double",
     };
     let _ = writeln!(text, "#define STAUNCH_{name}(state) (*({ty} *)((state) + {offset}))");
 }

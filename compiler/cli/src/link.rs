@@ -45,7 +45,7 @@ fn in_scratch(work: impl FnOnce(&Path) -> Result<(), String>) -> Result<(), Stri
     result
 }
 
-/// What stands there already is somebody else's.
+/// What is there already is somebody else's.
 fn scratch() -> Result<PathBuf, String> {
     let mut number = 0_u32;
     loop {

@@ -1,4 +1,4 @@
-//! The command `staunch`: arguments, files, exit codes. What it promises stands in `docs/cli.md`.
+//! The command `staunch`: arguments, files, exit codes. What it promises is in `docs/cli.md`.
 
 mod args;
 

@@ -156,7 +156,7 @@ fn links_in_documents_lead_somewhere() {
     let mut broken = String::new();
     for path in paths {
         let folder = path.parent().expect("a file is in a folder");
-        // What stands between backticks is code, and no link.
+        // What is between backticks is code, and no link.
         let text: String = read(&path).split('`').step_by(2).collect();
         for link in text.split("](").skip(1).filter_map(|it| it.split_once(')')).map(|it| it.0.to_owned()) {
             let target = link.split('#').next().unwrap_or_default();

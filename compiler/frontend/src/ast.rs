@@ -77,7 +77,7 @@ pub struct Pou<'s> {
     pub result: Option<TypeSpec<'s>>,
     pub blocks: Vec<VarBlock<'s>>,
     pub body: Vec<Statement<'s>>,
-    /// The comment that stands directly before the POU, cleaned of its marks.
+    /// The comment that is directly before the POU, cleaned of its marks.
     pub doc: Option<String>,
     pub span: Span,
 }
@@ -215,7 +215,7 @@ pub struct Configuration<'s> {
     pub span: Span,
 }
 
-/// A RESOURCE; tasks and programs that stand directly in a CONFIGURATION make one without a name.
+/// A RESOURCE; tasks and programs that are directly in a CONFIGURATION make one without a name.
 #[derive(Clone, Debug, Default)]
 pub struct Resource<'s> {
     pub name: Option<Name<'s>>,
@@ -277,7 +277,7 @@ pub enum StatementKind<'s> {
         target: Expr<'s>,
         value: Expr<'s>,
     },
-    /// An expression that stands alone; only a call has a meaning there.
+    /// An expression that is alone; only a call has a meaning there.
     Expr(Expr<'s>),
     /// IF and ELSIF branches, and ELSE.
     If {

@@ -39,7 +39,7 @@ pub struct Diagnostic {
     /// One sentence in Structured Text words: what is wrong.
     pub message: String,
     pub span: Span,
-    /// What stands under the caret: expected and found.
+    /// What is under the caret: expected and found.
     pub label: Option<String>,
     pub others: Vec<Label>,
     pub notes: Vec<String>,

@@ -81,7 +81,7 @@ impl<'s> Log<'s> {
         Location { file: span.file, line, column }
     }
 
-    /// The name that stands at a location.
+    /// The name that is at a location.
     pub fn name_at(&self, at: Location) -> Span {
         let source = self.sources.get(at.file);
         let range = source.line_range(at.line);

@@ -84,7 +84,7 @@ impl Source {
         Self { encoding: Encoding { mark, units }, ..Self::new(path, text) }
     }
 
-    /// Where a byte of the text stands in the file as it was read.
+    /// Where a byte of the text is in the file as it was read.
     pub fn file_offset(&self, offset: u32) -> u32 {
         let before = match self.encoding.units {
             Units::Utf8 => offset,

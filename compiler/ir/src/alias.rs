@@ -149,9 +149,9 @@ pub fn borrows_meet(a: &[Projection], b: &[Projection]) -> bool {
     })
 }
 
-/// Whether storage of one type is storage of the other. A pin's type may be said as another of its lane.
+/// Whether storage of one type is storage of the other. A pin's type may be said as another of its repr.
 fn is_same(program: &Program, a: Type, b: Type) -> bool {
-    a == b || program.lane(a).is_some_and(|lane| program.lane(b) == Some(lane))
+    a == b || program.repr(a).is_some_and(|repr| program.repr(b) == Some(repr))
 }
 
 /// Whether storage of a type is, or has in it, storage of another.
@@ -161,8 +161,8 @@ fn holds(program: &Program, whole: Type, part: Type) -> bool {
         Type::Array(id) => holds(program, program.array(id).element, part),
         Type::Struct(id) => program.structure(id).fields.iter().any(|it| holds(program, it.ty, part)),
         Type::Block(id) => {
-            let lane = program.lane(part);
-            id.info().pins.iter().any(|pin| Some(pin.ty.lane()) == lane)
+            let repr = program.repr(part);
+            id.info().pins.iter().any(|pin| Some(pin.ty.repr()) == repr)
         }
         Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => false,
     }

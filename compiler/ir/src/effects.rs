@@ -1,9 +1,9 @@
 //! What each routine does, itself or through what it calls: which variables it reads and writes, whether
 //! it takes turns or runs blocks that want the context, and whether it may fault. Found in one walk,
-//! since a callee stands before its callers.
+//! since a callee is before its callers.
 //!
 //! A back end says by its [`Rules`] what its code for operations and blocks needs; what follows from
-//! that for routines stands here alone.
+//! that for routines is here alone.
 
 mod variables;
 
@@ -123,8 +123,8 @@ impl<'a> Finder<'a> {
             }
             StatementKind::Fault(_) => self.effects.faults = true,
             StatementKind::For(it) => {
-                let lane = self.program.lane(it.counter.ty);
-                self.effects.faults |= it.step_may_fault(lane.and_then(|lane| lane.range()));
+                let repr = self.program.repr(it.counter.ty);
+                self.effects.faults |= it.step_may_fault(repr.and_then(|repr| repr.range()));
             }
             StatementKind::Assign { .. }
             | StatementKind::If { .. }

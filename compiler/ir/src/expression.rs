@@ -13,7 +13,7 @@ pub struct Expr {
 
 #[derive(Clone, Debug)]
 pub enum ExprKind {
-    /// An elementary or enumeration constant, in the lane of the expression's type.
+    /// An elementary or enumeration constant, in the repr of the expression's type.
     Const(Value),
     /// A string constant no longer than the capacity of the expression's type.
     Text(Vec<u8>),
@@ -23,7 +23,7 @@ pub enum ExprKind {
     Load(Place),
     /// A reference to a place.
     AddressOf(Box<Place>),
-    /// An operation at `lane`: that of each operand and the result which the operation's row
+    /// An operation at `repr`: that of each operand and the result which the operation's row
     /// calls `T`. Operands of a comparison may be enumerations; both then have one type.
     Apply(Op, Vec<Expr>),
     /// A string function. A string result is cut at the capacity of the expression's type.
@@ -41,7 +41,7 @@ pub enum Conversion {
     Value,
     /// `staunch_runtime::ops::trunc`: a real toward zero, saturating.
     Truncate,
-    /// Same lane, other type: WORD and UINT, LINT and TIME, an enumeration and its base.
+    /// Same repr, other type: WORD and UINT, LINT and TIME, an enumeration and its base.
     Same,
 }
 

@@ -4,7 +4,7 @@
 //! A program's whole state is one block, `Machine { globals, instance 0, instance 1, … }`.
 
 use crate::{Array, ArrayId, BlockId, Const, FieldId, Local, Location, Program, StructId, Type};
-use staunch_runtime::{Lane, Value};
+use staunch_runtime::{Repr, Value};
 
 /// The greatest size of a type, and of a program's whole state, in bytes: 1 GiB.
 pub const MAX_SIZE: u64 = 1 << 30;
@@ -39,7 +39,7 @@ pub struct Machine {
 /// The layout of every type of a program.
 #[derive(Clone, Debug)]
 pub struct Layout {
-    enums: Vec<Lane>,
+    enums: Vec<Repr>,
     arrays: Vec<Option<Shape>>,
     elements: Vec<Type>,
     structs: Vec<StructLayout>,
@@ -86,10 +86,10 @@ impl Layout {
     }
 
     /// The layout of a program's types alone, with an empty `machine`. It relies on the order
-    /// of structures and arrays (a part stands before what it is a part of) and on no routine.
+    /// of structures and arrays (a part is before what it is a part of) and on no routine.
     pub fn try_types(program: &Program) -> Result<Self, TooLarge> {
         let mut layout = Self {
-            enums: program.enums.iter().map(|it| it.base.lane()).collect(),
+            enums: program.enums.iter().map(|it| it.base.repr()).collect(),
             arrays: vec![None; program.arrays.len()],
             elements: program.arrays.iter().map(|array| array.element).collect(),
             structs: Vec::with_capacity(program.structs.len()),
@@ -145,13 +145,13 @@ impl Layout {
 
     pub fn shape(&self, ty: Type) -> Shape {
         match ty {
-            Type::Elementary(it) | Type::Subrange(it, _) => lane_shape(it.lane()),
+            Type::Elementary(it) | Type::Subrange(it, _) => repr_shape(it.repr()),
             Type::String(capacity) => text_shape(capacity),
-            Type::Enum(id) => lane_shape(self.enums[id.index()]),
+            Type::Enum(id) => repr_shape(self.enums[id.index()]),
             Type::Array(id) => self.arrays[id.index()].expect("every array has been measured"),
             Type::Struct(id) => self.structs[id.index()].shape,
             Type::Block(id) => block_shape(id),
-            Type::Reference(_) => lane_shape(Lane::U64),
+            Type::Reference(_) => repr_shape(Repr::U64),
         }
     }
 
@@ -309,8 +309,8 @@ fn state_of(program: &Program, instance: &crate::Instance) -> StructId {
     program.class(instance.program).state
 }
 
-fn lane_shape(lane: Lane) -> Shape {
-    let size = u64::from(lane.size());
+fn repr_shape(repr: Repr) -> Shape {
+    let size = u64::from(repr.size());
     Shape { size, align: size }
 }
 

@@ -1,7 +1,7 @@
 //! The typed intermediate representation: what the front end proves, and all a back end sees.
 //!
 //! A [`Program`] is a set of types, the global variables, and the program organisation units
-//! (POUs) with their bodies. What holds in it stands in [`verify`](mod@verify), and carries a
+//! (POUs) with their bodies. What holds in it is in [`verify`](mod@verify), and carries a
 //! contract: **verified IR cannot make a back end fail or panic.**
 //!
 //! 1. Every expression has one concrete type: no ANY, no untyped literal.
@@ -57,4 +57,4 @@ pub use types::{
     Struct, StructId, Type,
 };
 
-pub use staunch_runtime::{FaultKind, Lane, Location, Value};
+pub use staunch_runtime::{FaultKind, Location, Repr, Value};

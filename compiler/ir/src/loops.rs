@@ -33,7 +33,7 @@ pub fn constant_position(program: &Program, index: &Expr, array: ArrayId) -> Opt
     (array.low..=array.high).contains(&index).then(|| index.abs_diff(array.low))
 }
 
-/// What is known where an expression stands.
+/// What is known where an expression is.
 #[expect(missing_debug_implementations, reason = "it holds a function, and lives for one question")]
 #[derive(Clone, Copy)]
 pub struct Known<'a> {
@@ -82,7 +82,7 @@ impl Known<'_> {
 
     /// What an integer expression may be.
     fn range(&self, expr: &Expr) -> Option<Range> {
-        let whole = self.program.lane(expr.ty)?.range()?;
+        let whole = self.program.repr(expr.ty)?.range()?;
         let known = match &expr.kind {
             ExprKind::Const(value) => value.as_integer().map(|it| (it, it)),
             ExprKind::Load(place) => self.variable(place),

@@ -1,12 +1,12 @@
 //! The operations, made of the runtime's tables: their operands, results, and how the interpreter runs them.
 
-use staunch_runtime::{FaultKind, Lane, Outcome, Scalar, Signature, Value};
-use staunch_runtime::{carried, for_each_op, for_each_text_op, kind, ops, signature, text, with_lane};
+use staunch_runtime::{FaultKind, Outcome, Repr, Scalar, Signature, Value};
+use staunch_runtime::{carried, for_each_op, for_each_text_op, kind, ops, signature, text, with_repr};
 
 macro_rules! declare_ops {
     ($($op:ident $source:literal $function:ident ($($arg:ident: $ty:ident),*) -> $result:ident
-        [$class:ident as $lanes:ident] $outcome:ident $($extensible:ident)?;)*) => {
-        /// An operator or standard function on elementary values. What each one does stands in
+        [$class:ident as $reprs:ident] $outcome:ident $($extensible:ident)?;)*) => {
+        /// An operator or standard function on elementary values. What each one does is in
         /// [`staunch_runtime::ops`], under its [`function`](Op::function) name.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum Op { $($op),* }
@@ -28,33 +28,33 @@ macro_rules! declare_ops {
                 match self { $(Self::$op => stringify!($function)),* }
             }
 
-            /// For each operand, the lane it must have when it is not the operation's own `T`.
-            pub const fn operands(self) -> &'static [Option<Lane>] {
-                match self { $(Self::$op => const { &[$(kind!($ty).lane()),*] }),* }
+            /// For each operand, the repr it must have when it is not the operation's own `T`.
+            pub const fn operands(self) -> &'static [Option<Repr>] {
+                match self { $(Self::$op => const { &[$(kind!($ty).repr()),*] }),* }
             }
 
-            /// The result's lane when it is not the operation's own `T`.
-            pub const fn result(self) -> Option<Lane> {
-                self.signature().result.lane()
+            /// The result's repr when it is not the operation's own `T`.
+            pub const fn result(self) -> Option<Repr> {
+                self.signature().result.repr()
             }
 
             pub const fn can_fault(self) -> bool {
                 match self { $(Self::$op => outcome!($outcome)),* }
             }
 
-            /// Whether the operation exists at `lane`.
-            pub const fn allows(self, lane: Lane) -> bool {
-                match self { $(Self::$op => with_lane!($lanes lane, T => { let _: Option<T> = None; true }, false)),* }
+            /// Whether the operation exists at `repr`.
+            pub const fn allows(self, repr: Repr) -> bool {
+                match self { $(Self::$op => with_repr!($reprs repr, T => { let _: Option<T> = None; true }, false)),* }
             }
         }
 
-        /// Applies `op` at `lane` with the runtime's own function. `None` when an operand is of
-        /// the wrong lane, which verified IR excludes.
+        /// Applies `op` at `repr` with the runtime's own function. `None` when an operand is of
+        /// the wrong repr, which verified IR excludes.
         #[allow(non_snake_case, reason = "operands have the standard's names")]
-        pub fn apply(op: Op, lane: Lane, operands: &[Value]) -> Option<Result<Value, FaultKind>> {
+        pub fn apply(op: Op, repr: Repr, operands: &[Value]) -> Option<Result<Value, FaultKind>> {
             let mut operands = operands.iter().copied();
             match op {
-                $(Op::$op => with_lane!($lanes lane, T => {
+                $(Op::$op => with_repr!($reprs repr, T => {
                     $(let $arg = <carried!($ty) as Scalar>::from_value(operands.next()?)?;)*
                     let _: Option<T> = None;
                     Some(ops::$function($($arg),*).outcome().map(Scalar::into_value))
@@ -121,14 +121,14 @@ macro_rules! declare_text_ops {
                 match self { $(Self::$op => stringify!($function)),* }
             }
 
-            /// For each operand, its lane, or `None` for a string.
-            pub const fn operands(self) -> &'static [Option<Lane>] {
-                match self { $(Self::$op => const { &[$(kind!($ty).lane()),*] }),* }
+            /// For each operand, its repr, or `None` for a string.
+            pub const fn operands(self) -> &'static [Option<Repr>] {
+                match self { $(Self::$op => const { &[$(kind!($ty).repr()),*] }),* }
             }
 
-            /// The result's lane, or `None` for a string.
-            pub const fn result(self) -> Option<Lane> {
-                self.signature().result.lane()
+            /// The result's repr, or `None` for a string.
+            pub const fn result(self) -> Option<Repr> {
+                self.signature().result.repr()
             }
         }
 

@@ -26,16 +26,16 @@ pub struct Program {
     /// The lower and upper limits of subranges, each pair once.
     pub bounds: Vec<(i128, i128)>,
     pub arrays: Vec<Array>,
-    /// The types of references. What they point to may stand after what holds them.
+    /// The types of references. What they point to may be after what holds them.
     pub references: Vec<RefType>,
-    /// A structure stands after those it contains.
+    /// A structure is after those it contains.
     pub structs: Vec<Struct>,
     /// The structure that holds the global variables; it may be empty.
     pub globals: StructId,
     /// Other names of global variables: a direct address that is declared again.
     pub aliases: Vec<Variable>,
     pub classes: Vec<Class>,
-    /// In an order in which a callee stands before its callers.
+    /// In an order in which a callee is before its callers.
     pub routines: Vec<Routine>,
     /// The programs that run, in order.
     pub instances: Vec<Instance>,
@@ -350,12 +350,12 @@ impl Program {
         format!("ARRAY[{}] OF {}", bounds.join(", "), self.type_name(ty))
     }
 
-    /// The lane of an elementary, enumeration, subrange or reference type.
-    pub fn lane(&self, ty: Type) -> Option<staunch_runtime::Lane> {
+    /// The repr of an elementary, enumeration, subrange or reference type.
+    pub fn repr(&self, ty: Type) -> Option<staunch_runtime::Repr> {
         match ty {
-            Type::Elementary(it) | Type::Subrange(it, _) => Some(it.lane()),
-            Type::Enum(id) => Some(self.enumeration(id).base.lane()),
-            Type::Reference(_) => Some(staunch_runtime::Lane::U64),
+            Type::Elementary(it) | Type::Subrange(it, _) => Some(it.repr()),
+            Type::Enum(id) => Some(self.enumeration(id).base.repr()),
+            Type::Reference(_) => Some(staunch_runtime::Repr::U64),
             Type::String(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => None,
         }
     }

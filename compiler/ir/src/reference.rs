@@ -77,7 +77,7 @@ struct Finder<'p> {
 }
 
 impl<'p> Finder<'p> {
-    /// A callee stands before its callers, so that one walk finds what is passed down.
+    /// A callee is before its callers, so that one walk finds what is passed down.
     fn search(program: &'p Program) -> Self {
         let states = program.classes.iter().map(|it| it.state).chain([program.globals]).collect();
         let locals = vec![BTreeSet::new(); program.routines.len()];

@@ -172,7 +172,7 @@ const _: () = {
 };
 
 impl StatementKind {
-    /// The statements inside, in the order in which they stand.
+    /// The statements inside, in the order in which they are.
     pub fn blocks(&self) -> Vec<&Block> {
         match self {
             Self::If { condition: _, then, otherwise } => vec![then, otherwise],

@@ -25,7 +25,7 @@ pub const VERSION: u32 = 1;
 /// compiler   version
 /// machine    size  align
 /// file       number  path
-/// enum       id  name  lane's Rust name  NAME=value …
+/// enum       id  name  repr's Rust name  NAME=value …
 /// array      id  low  high  element type  stride
 /// struct     id  name  size            then its fields
 /// block      id  name  size            then its pins, as fields; only blocks in use
@@ -95,8 +95,8 @@ impl Map<'_> {
 
     fn enums(&mut self) -> fmt::Result {
         for (id, enumeration) in self.program.enums.iter().enumerate() {
-            let lane = enumeration.base.lane().rust_name();
-            write!(self.text, "enum\t{id}\t{}\t{lane}", enumeration.name)?;
+            let repr = enumeration.base.repr().rust_name();
+            write!(self.text, "enum\t{id}\t{}\t{repr}", enumeration.name)?;
             for value in &enumeration.values {
                 let number = value.value.as_integer().expect("verified IR: integer enumerators");
                 write!(self.text, "\t{}={number}", value.name)?;
@@ -278,7 +278,7 @@ impl Map<'_> {
             used: false,
             view: false,
             address: field.address,
-            // A subrange of elements stands at their array.
+            // A subrange of elements is at their array.
             range: self.program.range(ty),
         }
     }

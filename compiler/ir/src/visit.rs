@@ -1,6 +1,6 @@
 //! The one walk over statements, places and expressions, in the order of evaluation.
 
-use crate::{Argument, Expr, ExprKind, Lane, Op, Place, Program, Projection, Statement, StatementKind, Step};
+use crate::{Argument, Expr, ExprKind, Op, Place, Program, Projection, Repr, Statement, StatementKind, Step};
 
 /// What a statement does with a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -195,7 +195,7 @@ pub fn expr_faults(program: &Program, expr: &Expr) -> bool {
 
 /// The division of reals is IEEE's, and never faults.
 pub fn op_faults(program: &Program, op: Op, operands: &[Expr]) -> bool {
-    let real = operands.first().and_then(|it| program.lane(it.ty)).is_some_and(Lane::is_float);
+    let real = operands.first().and_then(|it| program.repr(it.ty)).is_some_and(Repr::is_float);
     op.can_fault() && !(real && matches!(op, Op::Div))
 }
 

@@ -7,7 +7,7 @@ use crate::place::PlaceValue;
 use crate::runtime_call::by_pointer;
 use crate::signature::result_type;
 use cranelift_codegen::ir::{self as clif, InstBuilder};
-use staunch_ir::{Argument, Expr, Lane, Place, RoutineId, Type};
+use staunch_ir::{Argument, Expr, Place, Repr, RoutineId, Type};
 use staunch_runtime::{BlockInfo, Instruction};
 
 impl Function<'_, '_> {
@@ -79,7 +79,7 @@ impl Function<'_, '_> {
     /// Where a callee puts a result that is not elementary, whether it is wanted or not.
     fn result_pointer(&mut self, callee: RoutineId, result: Option<&Place>) -> Option<clif::Value> {
         let program = self.module.program;
-        let ty = result_type(program.routine(callee)).filter(|ty| program.lane(*ty).is_none())?;
+        let ty = result_type(program.routine(callee)).filter(|ty| program.repr(*ty).is_none())?;
         let address = match result {
             Some(place) => self.address(place),
             None => {
@@ -116,7 +116,7 @@ impl Function<'_, '_> {
     fn run_instruction(&mut self, instruction: &Instruction, block: Address, rung: clif::Value) {
         let context = self.start.context.expect("a function that calls blocks gets the context");
         let block = self.pointer(block);
-        let rung = self.by_lane(Lane::Bool, rung);
+        let rung = self.by_repr(Repr::Bool, rung);
         let arguments = [by_pointer(block), by_pointer(context), rung];
         self.call_runtime(instruction.symbol, &arguments, None);
     }

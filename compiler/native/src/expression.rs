@@ -6,14 +6,14 @@ use crate::operands::Operands;
 use crate::place::PlaceValue;
 use crate::{inline_conversion, inline_op, runtime_call};
 use cranelift_codegen::ir as clif;
-use staunch_ir::{Conversion, Expr, ExprKind, Lane, Location, Op, Place};
+use staunch_ir::{Conversion, Expr, ExprKind, Location, Op, Place, Repr};
 
 impl Function<'_, '_> {
     pub(crate) fn scalar(&mut self, expr: &Expr) -> clif::Value {
         match &expr.kind {
             ExprKind::Const(value) => self.constant(*value),
             ExprKind::Load(place) => match self.counter(expr) {
-                Some(counter) => self.narrowed(self.lane_of(expr), counter),
+                Some(counter) => self.narrowed(self.repr_of(expr), counter),
                 None => self.load_place(place),
             },
             ExprKind::AddressOf(place) => self.reference_to(place),
@@ -37,10 +37,10 @@ impl Function<'_, '_> {
     }
 
     fn apply(&mut self, op: Op, operands: &[Expr], at: Location) -> clif::Value {
-        let lane = inline_op::lane(self.module.program, op, operands);
+        let repr = inline_op::repr(self.module.program, op, operands);
         let values = operands.iter().map(|operand| self.scalar(operand)).collect();
         let constants = operands.iter().map(Expr::as_const).collect();
-        let operands = Operands { lane, values, constants, at };
+        let operands = Operands { repr, values, constants, at };
         match inline_op::find(op) {
             Some(emit) => emit(self, &operands),
             None => runtime_call::operation(self, op, &operands),
@@ -50,13 +50,13 @@ impl Function<'_, '_> {
     fn convert(&mut self, how: Conversion, operand: &Expr, expr: &Expr) -> clif::Value {
         if how == Conversion::Value
             && let Some(counter) = self.counter(operand)
-            && self.lane_of(expr).is_integer()
-            && self.lane_of(expr).size() == 8
+            && self.repr_of(expr).is_integer()
+            && self.repr_of(expr).size() == 8
         {
             return counter;
         }
         let value = self.scalar(operand);
-        let (from, to) = (self.lane_of(operand), self.lane_of(expr));
+        let (from, to) = (self.repr_of(operand), self.repr_of(expr));
         match how {
             Conversion::Same => value,
             Conversion::Value => inline_conversion::convert(self, value, from, to),
@@ -64,7 +64,7 @@ impl Function<'_, '_> {
         }
     }
 
-    fn lane_of(&self, expr: &Expr) -> Lane {
-        self.module.program.lane(expr.ty).expect("verified IR: an expression of an elementary type")
+    fn repr_of(&self, expr: &Expr) -> Repr {
+        self.module.program.repr(expr.ty).expect("verified IR: an expression of an elementary type")
     }
 }

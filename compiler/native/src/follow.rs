@@ -8,7 +8,7 @@ use cranelift_codegen::ir::{self as clif, AbiParam, InstBuilder, condcodes::IntC
 use staunch_ir::layout::{Shape, usize_of};
 use staunch_ir::reference::{Followed, followed, view, wanted};
 use staunch_ir::{ArrayId, Expr, FaultKind, Location, Place, Projection, Type};
-use staunch_runtime::Lane;
+use staunch_runtime::Repr;
 
 /// A scalar or string that a reference leads to: the reference, and the distance from where it points.
 #[derive(Clone, Copy, Debug)]
@@ -32,7 +32,7 @@ impl Function<'_, '_> {
     pub(crate) fn reached(&mut self, place: &Place) -> Option<Reached> {
         let program = self.module.program;
         let it = followed(program, place)?;
-        let is_simple = program.lane(place.ty).is_some() || matches!(place.ty, Type::String(_));
+        let is_simple = program.repr(place.ty).is_some() || matches!(place.ty, Type::String(_));
         if it.pin.is_some() || !is_simple {
             return None;
         }
@@ -92,7 +92,7 @@ impl Function<'_, '_> {
 
     fn number(&mut self, value: u32) -> (AbiParam, clif::Value) {
         let value = self.integer(types::I32, i128::from(value));
-        self.by_lane(Lane::U32, value)
+        self.by_repr(Repr::U32, value)
     }
 
     fn space(&mut self, size: u64) -> (Address, clif::Value) {
@@ -101,25 +101,25 @@ impl Function<'_, '_> {
     }
 
     pub(crate) fn load_reached(&mut self, it: Reached) -> clif::Value {
-        let lane = self.module.program.lane(it.ty).expect("a scalar behind a reference");
+        let repr = self.module.program.repr(it.ty).expect("a scalar behind a reference");
         let (space, out) = self.space(8);
-        let arguments = self.access(it, lane, out);
+        let arguments = self.access(it, repr, out);
         self.checked("staunch_reference_load", &arguments, it.at);
-        self.load_as(clif_type(lane), space)
+        self.load_as(clif_type(repr), space)
     }
 
     pub(crate) fn store_reached(&mut self, it: Reached, value: clif::Value) {
-        let lane = self.module.program.lane(it.ty).expect("a scalar behind a reference");
+        let repr = self.module.program.repr(it.ty).expect("a scalar behind a reference");
         let (space, from) = self.space(8);
         self.store(value, space);
-        let arguments = self.access(it, lane, from);
+        let arguments = self.access(it, repr, from);
         self.checked("staunch_reference_store", &arguments, it.at);
     }
 
-    fn access(&mut self, it: Reached, lane: Lane, value: clif::Value) -> [(AbiParam, clif::Value); 7] {
+    fn access(&mut self, it: Reached, repr: Repr, value: clif::Value) -> [(AbiParam, clif::Value); 7] {
         let [words, state] = self.world();
         let view = self.number(view(self.module.program, it.ty).code());
-        let size = self.number(lane.size());
+        let size = self.number(repr.size());
         let [reference, distance] = [it.reference, it.distance].map(|value| (AbiParam::new(types::I64), value));
         [words, state, reference, distance, view, size, by_pointer(value)]
     }
@@ -131,7 +131,7 @@ impl Function<'_, '_> {
         let [words, state] = self.world();
         let limit = self.integer(types::I16, i128::from(capacity));
         let [reference, distance] = [it.reference, it.distance].map(|value| (AbiParam::new(types::I64), value));
-        let arguments = [words, state, reference, distance, by_pointer(out), self.by_lane(Lane::U16, limit)];
+        let arguments = [words, state, reference, distance, by_pointer(out), self.by_repr(Repr::U16, limit)];
         self.checked("staunch_reference_load_text", &arguments, it.at);
         space
     }

@@ -141,11 +141,11 @@ impl<'a, 'p> Function<'a, 'p> {
     fn place_locals(&mut self, effects: &Effects) {
         let mut variables = 0;
         for (local, is_referred) in self.routine.locals.iter().zip(&effects.borrowed) {
-            let lane = self.module.program.lane(local.ty).filter(|_| !is_referred);
-            let home = match lane {
-                Some(lane) if variables < MAX_VARIABLES => {
+            let repr = self.module.program.repr(local.ty).filter(|_| !is_referred);
+            let home = match repr {
+                Some(repr) if variables < MAX_VARIABLES => {
                     variables += 1;
-                    LocalSlot::Variable(self.builder.declare_var(clif_type(lane)))
+                    LocalSlot::Variable(self.builder.declare_var(clif_type(repr)))
                 }
                 Some(_) | None => {
                     let shape = self.module.layout.shape(local.ty);
@@ -195,10 +195,10 @@ impl<'a, 'p> Function<'a, 'p> {
     fn start_with_constant(&mut self, home: LocalSlot, ty: Type, initial: &Const) {
         match home {
             LocalSlot::Variable(variable) => {
-                let lane = self.module.program.lane(ty).expect("a variable is elementary");
+                let repr = self.module.program.repr(ty).expect("a variable is elementary");
                 let initial = match initial {
                     Const::Scalar(value) => *value,
-                    Const::Zero | Const::Text(_) | Const::Array(_) | Const::Struct(_) => lane.zero(),
+                    Const::Zero | Const::Text(_) | Const::Array(_) | Const::Struct(_) => repr.zero(),
                 };
                 let value = self.constant(initial);
                 self.builder.def_var(variable, value);
@@ -249,8 +249,8 @@ impl<'a, 'p> Function<'a, 'p> {
     /// What is returned beside a fault's code.
     pub(crate) fn no_result(&mut self) -> Option<clif::Value> {
         let (_, ty) = self.result?;
-        let lane = self.module.program.lane(ty)?;
-        Some(self.constant(lane.zero()))
+        let repr = self.module.program.repr(ty)?;
+        Some(self.constant(repr.zero()))
     }
 
     pub(crate) fn ins(&mut self) -> FuncInstBuilder<'_, 'a> {
@@ -293,7 +293,7 @@ impl Start {
         let globals = next_if(effects.uses_globals());
         let instance = next_if(routine.state.is_some());
         let params = values.by_ref().take(routine.params.len()).collect();
-        let by_pointer = result_type(routine).is_some_and(|ty| program.lane(ty).is_none());
+        let by_pointer = result_type(routine).is_some_and(|ty| program.repr(ty).is_none());
         let result = values.next().filter(|_| by_pointer);
         Self { context, globals, instance, params, result }
     }

@@ -7,7 +7,7 @@ use crate::function::Function;
 use crate::signature::clif_type;
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Type, Value as Clif, types};
-use staunch_ir::{Lane, Place};
+use staunch_ir::{Place, Repr};
 use staunch_runtime::{BlockInfo, Pin};
 
 /// Stores the inputs and does the step.
@@ -205,7 +205,7 @@ impl Counter<'_, '_, '_> {
 
     fn load(&mut self, field: &str) -> Clif {
         let pin = self.pin(field);
-        self.f.load_as(clif_type(pin.lane()), self.at.plus(offset(pin.offset)))
+        self.f.load_as(clif_type(pin.repr()), self.at.plus(offset(pin.offset)))
     }
 
     fn store(&mut self, field: &str, value: Clif) {
@@ -221,23 +221,23 @@ impl Counter<'_, '_, '_> {
         self.f.ins().band_not(input, before)
     }
 
-    fn lane(&self) -> Lane {
-        self.pin("cv").lane()
+    fn repr(&self) -> Repr {
+        self.pin("cv").repr()
     }
 
     /// Whether counts are computed at more bits than they have, where a step cannot overflow.
     fn has_room(&self) -> bool {
-        self.lane().size() < 8
+        self.repr().size() < 8
     }
 
     /// The type that counts are computed in.
     fn wide(&self) -> Type {
-        if self.lane().size() < 4 { types::I32 } else { types::I64 }
+        if self.repr().size() < 4 { types::I32 } else { types::I64 }
     }
 
     fn widen(&mut self, value: Clif) -> Clif {
         let wide = self.wide();
-        match (self.has_room(), self.lane().is_signed()) {
+        match (self.has_room(), self.repr().is_signed()) {
             (false, _) => value,
             (true, true) => self.f.ins().sextend(wide, value),
             (true, false) => self.f.ins().uextend(wide, value),
@@ -247,7 +247,7 @@ impl Counter<'_, '_, '_> {
     fn load_count(&mut self, field: &str) -> Clif {
         let from = self.at.plus(offset(self.pin(field).offset));
         let (flags, base, displacement) = (MemFlagsData::trusted(), from.base, from.displacement());
-        match (self.lane().size(), self.lane().is_signed()) {
+        match (self.repr().size(), self.repr().is_signed()) {
             (2, true) => self.f.ins().sload16(types::I32, flags, base, displacement),
             (2, false) => self.f.ins().uload16(types::I32, flags, base, displacement),
             (4, true) => self.f.ins().sload32(flags, base, displacement),
@@ -258,11 +258,11 @@ impl Counter<'_, '_, '_> {
 
     fn store_count(&mut self, field: &str, value: Clif) {
         let to = self.at.plus(offset(self.pin(field).offset));
-        self.f.store_low(self.lane(), value, to);
+        self.f.store_low(self.repr(), value, to);
     }
 
     fn limits(&self) -> (i128, i128) {
-        self.lane().range().expect("counts are integers")
+        self.repr().range().expect("counts are integers")
     }
 
     /// `cv` and one more if `edge`, unless it is at its maximum.
@@ -305,7 +305,7 @@ impl Counter<'_, '_, '_> {
 
     /// 1 for an edge while the condition holds, which is that of signed counts.
     fn step_while(&mut self, condition: IntCC, cv: Clif, limit: Clif, edge: Clif) -> Clif {
-        let condition = if self.lane().is_signed() { condition } else { condition.unsigned() };
+        let condition = if self.repr().is_signed() { condition } else { condition.unsigned() };
         let may_count = self.f.ins().icmp(condition, cv, limit);
         let counts = self.f.ins().band(edge, may_count);
         self.number(counts)
@@ -360,14 +360,14 @@ impl Counter<'_, '_, '_> {
     }
 
     fn store_at_least(&mut self, field: &str, cv: Clif, pv: Clif) {
-        let signed = self.lane().is_signed();
+        let signed = self.repr().is_signed();
         let condition = if signed { IntCC::SignedGreaterThanOrEqual } else { IntCC::UnsignedGreaterThanOrEqual };
         let holds = self.f.ins().icmp(condition, cv, pv);
         self.store(field, holds);
     }
 
     fn store_not_positive(&mut self, field: &str, cv: Clif) {
-        let signed = self.lane().is_signed();
+        let signed = self.repr().is_signed();
         let condition = if signed { IntCC::SignedLessThanOrEqual } else { IntCC::UnsignedLessThanOrEqual };
         let wide = self.wide();
         let zero = self.f.integer(wide, 0);

@@ -1,34 +1,34 @@
-//! Conversions between lanes, with the meaning of the runtime's `convert` and `trunc`.
+//! Conversions between reprs, with the meaning of the runtime's `convert` and `trunc`.
 
 use crate::function::Function;
 use crate::signature::clif_type;
 use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
 use cranelift_codegen::ir::{InstBuilder, Type, Value as Clif, types};
-use staunch_ir::Lane;
+use staunch_ir::Repr;
 
 /// `ops::convert`.
-pub(crate) fn convert(f: &mut Function<'_, '_>, value: Clif, from: Lane, to: Lane) -> Clif {
+pub(crate) fn convert(f: &mut Function<'_, '_>, value: Clif, from: Repr, to: Repr) -> Clif {
     match (from.is_float(), to.is_float()) {
         _ if from == to => value,
-        _ if to == Lane::Bool => is_not_zero(f, value, from),
+        _ if to == Repr::Bool => is_not_zero(f, value, from),
         (false, false) => resize(f, value, from, clif_type(to)),
         (false, true) => to_real(f, value, from, clif_type(to)),
         (true, false) => {
             let nearest = f.ins().nearest(value);
             saturate(f, nearest, to)
         }
-        (true, true) if to == Lane::F64 => f.ins().fpromote(types::F64, value),
+        (true, true) if to == Repr::F64 => f.ins().fpromote(types::F64, value),
         (true, true) => f.ins().fdemote(types::F32, value),
     }
 }
 
 /// `ops::trunc`.
-pub(crate) fn truncate(f: &mut Function<'_, '_>, value: Clif, from: Lane, to: Lane) -> Clif {
+pub(crate) fn truncate(f: &mut Function<'_, '_>, value: Clif, from: Repr, to: Repr) -> Clif {
     if from.is_float() && to.is_integer() { saturate(f, value, to) } else { convert(f, value, from, to) }
 }
 
 /// NaN is not zero.
-fn is_not_zero(f: &mut Function<'_, '_>, value: Clif, from: Lane) -> Clif {
+fn is_not_zero(f: &mut Function<'_, '_>, value: Clif, from: Repr) -> Clif {
     if from.is_float() {
         let zero = f.constant(from.zero());
         f.ins().fcmp(FloatCC::NotEqual, value, zero)
@@ -38,7 +38,7 @@ fn is_not_zero(f: &mut Function<'_, '_>, value: Clif, from: Lane) -> Clif {
 }
 
 /// The low bits, or the same number in more of them.
-fn resize(f: &mut Function<'_, '_>, value: Clif, from: Lane, to: Type) -> Clif {
+fn resize(f: &mut Function<'_, '_>, value: Clif, from: Repr, to: Type) -> Clif {
     match clif_type(from).bits().cmp(&to.bits()) {
         core::cmp::Ordering::Greater => f.ins().ireduce(to, value),
         core::cmp::Ordering::Equal => value,
@@ -48,23 +48,23 @@ fn resize(f: &mut Function<'_, '_>, value: Clif, from: Lane, to: Type) -> Clif {
 }
 
 /// Of what fits a signed integer of 64 bits, one conversion gives the nearest.
-fn to_real(f: &mut Function<'_, '_>, value: Clif, from: Lane, to: Type) -> Clif {
-    if from == Lane::U64 {
+fn to_real(f: &mut Function<'_, '_>, value: Clif, from: Repr, to: Type) -> Clif {
+    if from == Repr::U64 {
         return f.ins().fcvt_from_uint(to, value);
     }
-    let wide = if from == Lane::U32 || from == Lane::I64 { types::I64 } else { types::I32 };
+    let wide = if from == Repr::U32 || from == Repr::I64 { types::I64 } else { types::I32 };
     let value = resize(f, value, from, wide);
     f.ins().fcvt_from_sint(to, value)
 }
 
 /// The integer part, within the range of `to`; 0 for NaN.
-fn saturate(f: &mut Function<'_, '_>, value: Clif, to: Lane) -> Clif {
+fn saturate(f: &mut Function<'_, '_>, value: Clif, to: Repr) -> Clif {
     let ty = clif_type(to);
     if to.size() >= 4 {
         return if to.is_signed() { f.ins().fcvt_to_sint_sat(ty, value) } else { f.ins().fcvt_to_uint_sat(ty, value) };
     }
     // Small integers have no such instruction: the range is narrowed at 32 bits.
-    let (low, high) = to.range().expect("an integer lane");
+    let (low, high) = to.range().expect("an integer repr");
     let wide = f.ins().fcvt_to_sint_sat(types::I32, value);
     let low = f.integer(types::I32, low);
     let high = f.integer(types::I32, high);

@@ -6,7 +6,7 @@ use crate::operands::Operands;
 use crate::signature::clif_type;
 use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
 use cranelift_codegen::ir::{InstBuilder, Value as Clif, types};
-use staunch_ir::{Expr, FaultKind, Lane, Op, Program};
+use staunch_ir::{Expr, FaultKind, Op, Program, Repr};
 
 type Emit = fn(&mut Function<'_, '_>, &Operands) -> Clif;
 
@@ -28,12 +28,12 @@ const INLINE: &[(Op, Emit)] = &[
     // The instruction takes its count modulo the width as well.
     (Op::Rol, |f, o| f.ins().rotl(o.values[0], o.values[1])),
     (Op::Ror, |f, o| f.ins().rotr(o.values[0], o.values[1])),
-    (Op::Eq, |f, o| compare(f, o.lane, Order::Equal, o.values[0], o.values[1])),
-    (Op::Ne, |f, o| compare(f, o.lane, Order::NotEqual, o.values[0], o.values[1])),
-    (Op::Lt, |f, o| compare(f, o.lane, Order::Less, o.values[0], o.values[1])),
-    (Op::Le, |f, o| compare(f, o.lane, Order::LessOrEqual, o.values[0], o.values[1])),
-    (Op::Gt, |f, o| compare(f, o.lane, Order::Less, o.values[1], o.values[0])),
-    (Op::Ge, |f, o| compare(f, o.lane, Order::LessOrEqual, o.values[1], o.values[0])),
+    (Op::Eq, |f, o| compare(f, o.repr, Order::Equal, o.values[0], o.values[1])),
+    (Op::Ne, |f, o| compare(f, o.repr, Order::NotEqual, o.values[0], o.values[1])),
+    (Op::Lt, |f, o| compare(f, o.repr, Order::Less, o.values[0], o.values[1])),
+    (Op::Le, |f, o| compare(f, o.repr, Order::LessOrEqual, o.values[0], o.values[1])),
+    (Op::Gt, |f, o| compare(f, o.repr, Order::Less, o.values[1], o.values[0])),
+    (Op::Ge, |f, o| compare(f, o.repr, Order::LessOrEqual, o.values[1], o.values[0])),
     (Op::Max, max),
     (Op::Min, min),
     (Op::Limit, limit),
@@ -47,48 +47,48 @@ pub(crate) fn find(op: Op) -> Option<Emit> {
     INLINE.iter().find(|(known, _)| *known == op).map(|(_, emit)| *emit)
 }
 
-/// The lane that the operation's row calls `T`.
-pub(crate) fn lane(program: &Program, op: Op, operands: &[Expr]) -> Lane {
+/// The repr that the operation's row calls `T`.
+pub(crate) fn repr(program: &Program, op: Op, operands: &[Expr]) -> Repr {
     let free = op.operands().iter().zip(operands).find(|(fixed, _)| fixed.is_none());
-    let lane = free.and_then(|(_, operand)| program.lane(operand.ty));
-    lane.expect("verified IR: operands have the operation's lane")
+    let repr = free.and_then(|(_, operand)| program.repr(operand.ty));
+    repr.expect("verified IR: operands have the operation's repr")
 }
 
 /// Whether code for the operation has a way to a fault.
 pub(crate) fn may_fault(program: &Program, op: Op, operands: &[Expr]) -> bool {
     let is_division = matches!(op, Op::Div | Op::Mod);
     let is_safe = is_division
-        && (lane(program, op, operands).is_float()
+        && (repr(program, op, operands).is_float()
             || operands[1].as_const().is_some_and(|divisor| divisor.as_integer() != Some(0)));
     op.can_fault() && !is_safe
 }
 
 fn add(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
     let (a, b) = (o.values[0], o.values[1]);
-    if o.lane.is_float() { f.ins().fadd(a, b) } else { f.ins().iadd(a, b) }
+    if o.repr.is_float() { f.ins().fadd(a, b) } else { f.ins().iadd(a, b) }
 }
 
 fn sub(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
     let (a, b) = (o.values[0], o.values[1]);
-    if o.lane.is_float() { f.ins().fsub(a, b) } else { f.ins().isub(a, b) }
+    if o.repr.is_float() { f.ins().fsub(a, b) } else { f.ins().isub(a, b) }
 }
 
 fn mul(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
     let (a, b) = (o.values[0], o.values[1]);
-    if o.lane.is_float() { f.ins().fmul(a, b) } else { f.ins().imul(a, b) }
+    if o.repr.is_float() { f.ins().fmul(a, b) } else { f.ins().imul(a, b) }
 }
 
 fn neg(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
     let value = o.values[0];
-    if o.lane.is_float() { f.ins().fneg(value) } else { f.ins().ineg(value) }
+    if o.repr.is_float() { f.ins().fneg(value) } else { f.ins().ineg(value) }
 }
 
 fn abs(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
     let value = o.values[0];
-    if o.lane.is_float() {
+    if o.repr.is_float() {
         return f.ins().fabs(value);
     }
-    if !o.lane.is_signed() {
+    if !o.repr.is_signed() {
         return value;
     }
     let negated = f.ins().ineg(value);
@@ -98,11 +98,11 @@ fn abs(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
 
 fn not(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
     let value = o.values[0];
-    if o.lane == Lane::Bool { f.ins().bxor_imm_u(value, 1) } else { f.ins().bnot(value) }
+    if o.repr == Repr::Bool { f.ins().bxor_imm_u(value, 1) } else { f.ins().bnot(value) }
 }
 
 fn div(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
-    if o.lane.is_float() {
+    if o.repr.is_float() {
         return f.ins().fdiv(o.values[0], o.values[1]);
     }
     let division = Division::new(f, o);
@@ -119,7 +119,7 @@ fn modulo(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
 /// An integer division that cannot trap: the instruction does for a zero divisor, and for
 /// `MIN / -1`, which small integers avoid by being divided at 32 bits.
 struct Division {
-    lane: Lane,
+    repr: Repr,
     a: Clif,
     b: Clif,
     /// At run time the divisor may be -1, with a dividend of the same width.
@@ -133,14 +133,14 @@ impl Division {
             let is_zero = f.ins().icmp_imm_u(IntCC::Equal, o.values[1], 0);
             f.fault_if(is_zero, FaultKind::DivideByZero, o.at);
         }
-        let is_small = o.lane.size() < 4;
-        let may_overflow = o.lane.is_signed() && !is_small && divisor.is_none_or(|divisor| divisor == -1);
-        let mut wide = |value| if is_small { extend(f, o.lane, value) } else { value };
-        Self { lane: o.lane, a: wide(o.values[0]), b: wide(o.values[1]), may_overflow }
+        let is_small = o.repr.size() < 4;
+        let may_overflow = o.repr.is_signed() && !is_small && divisor.is_none_or(|divisor| divisor == -1);
+        let mut wide = |value| if is_small { extend(f, o.repr, value) } else { value };
+        Self { repr: o.repr, a: wide(o.values[0]), b: wide(o.values[1]), may_overflow }
     }
 
     fn quotient(&self, f: &mut Function<'_, '_>) -> Clif {
-        if !self.lane.is_signed() {
+        if !self.repr.is_signed() {
             return f.ins().udiv(self.a, self.b);
         }
         if !self.may_overflow {
@@ -153,7 +153,7 @@ impl Division {
     }
 
     fn remainder(&self, f: &mut Function<'_, '_>) -> Clif {
-        if !self.lane.is_signed() {
+        if !self.repr.is_signed() {
             return f.ins().urem(self.a, self.b);
         }
         if !self.may_overflow {
@@ -166,18 +166,18 @@ impl Division {
 
     fn safe_divisor(&self, f: &mut Function<'_, '_>) -> (Clif, Clif) {
         let is_minus_one = f.ins().icmp_imm_s(IntCC::Equal, self.b, -1);
-        let one = f.integer(clif_type(self.lane), 1);
+        let one = f.integer(clif_type(self.repr), 1);
         (is_minus_one, f.ins().select(is_minus_one, one, self.b))
     }
 
     fn narrowed(&self, f: &mut Function<'_, '_>, value: Clif) -> Clif {
-        if self.lane.size() < 4 { f.ins().ireduce(clif_type(self.lane), value) } else { value }
+        if self.repr.size() < 4 { f.ins().ireduce(clif_type(self.repr), value) } else { value }
     }
 }
 
 /// A small integer at 32 bits.
-fn extend(f: &mut Function<'_, '_>, lane: Lane, value: Clif) -> Clif {
-    if lane.is_signed() { f.ins().sextend(types::I32, value) } else { f.ins().uextend(types::I32, value) }
+fn extend(f: &mut Function<'_, '_>, repr: Repr, value: Clif) -> Clif {
+    if repr.is_signed() { f.ins().sextend(types::I32, value) } else { f.ins().uextend(types::I32, value) }
 }
 
 fn shl(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
@@ -192,7 +192,7 @@ fn shr(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
 /// decided around it.
 fn shift(f: &mut Function<'_, '_>, o: &Operands, by: fn(&mut Function<'_, '_>, Clif, Clif) -> Clif) -> Clif {
     let (value, count) = (o.values[0], o.values[1]);
-    let ty = clif_type(o.lane);
+    let ty = clif_type(o.repr);
     let width = i64::from(ty.bits());
     if let Some(constant) = o.constants[1].and_then(staunch_ir::Value::as_integer) {
         return match constant {
@@ -217,9 +217,9 @@ enum Order {
     LessOrEqual,
 }
 
-/// A comparison in a lane's order; with a NaN only `NotEqual` holds.
-fn compare(f: &mut Function<'_, '_>, lane: Lane, order: Order, a: Clif, b: Clif) -> Clif {
-    if lane.is_float() {
+/// A comparison in a repr's order; with a NaN only `NotEqual` holds.
+fn compare(f: &mut Function<'_, '_>, repr: Repr, order: Order, a: Clif, b: Clif) -> Clif {
+    if repr.is_float() {
         let condition = match order {
             Order::Equal => FloatCC::Equal,
             Order::NotEqual => FloatCC::NotEqual,
@@ -228,7 +228,7 @@ fn compare(f: &mut Function<'_, '_>, lane: Lane, order: Order, a: Clif, b: Clif)
         };
         return f.ins().fcmp(condition, a, b);
     }
-    let condition = match (order, lane.is_signed()) {
+    let condition = match (order, repr.is_signed()) {
         (Order::Equal, _) => IntCC::Equal,
         (Order::NotEqual, _) => IntCC::NotEqual,
         (Order::Less, true) => IntCC::SignedLessThan,
@@ -239,36 +239,36 @@ fn compare(f: &mut Function<'_, '_>, lane: Lane, order: Order, a: Clif, b: Clif)
     f.ins().icmp(condition, a, b)
 }
 
-fn less(f: &mut Function<'_, '_>, lane: Lane, a: Clif, b: Clif) -> Clif {
-    compare(f, lane, Order::Less, a, b)
+fn less(f: &mut Function<'_, '_>, repr: Repr, a: Clif, b: Clif) -> Clif {
+    compare(f, repr, Order::Less, a, b)
 }
 
 // The instructions for the minimum and maximum of reals treat NaN and -0 otherwise.
 
 fn max(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
     let (a, b) = (o.values[0], o.values[1]);
-    let is_less = less(f, o.lane, a, b);
+    let is_less = less(f, o.repr, a, b);
     f.ins().select(is_less, b, a)
 }
 
 fn min(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
     let (a, b) = (o.values[0], o.values[1]);
-    let is_less = less(f, o.lane, b, a);
+    let is_less = less(f, o.repr, b, a);
     f.ins().select(is_less, b, a)
 }
 
 fn limit(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
     let (min, value, max) = (o.values[0], o.values[1], o.values[2]);
-    let is_below = less(f, o.lane, value, min);
-    let is_above = less(f, o.lane, max, value);
+    let is_below = less(f, o.repr, value, min);
+    let is_above = less(f, o.repr, max, value);
     let lowered = f.ins().select(is_above, max, value);
     f.ins().select(is_below, min, lowered)
 }
 
 fn within(f: &mut Function<'_, '_>, o: &Operands, fault: FaultKind) -> Clif {
     let (min, value, max) = (o.values[0], o.values[1], o.values[2]);
-    let is_below = less(f, o.lane, value, min);
-    let is_above = less(f, o.lane, max, value);
+    let is_below = less(f, o.repr, value, min);
+    let is_above = less(f, o.repr, max, value);
     let is_outside = f.ins().bor(is_below, is_above);
     f.fault_if(is_outside, fault, o.at);
     value

@@ -1,4 +1,4 @@
-//! Loops. What decides whether there is a further turn stands in front of the loop and again at
+//! Loops. What decides whether there is a further turn is in front of the loop and again at
 //! its end, so that a turn costs one branch.
 
 use crate::function::{Flow, Function, LoopFrame};
@@ -7,7 +7,7 @@ use crate::signature::clif_type;
 use cranelift_codegen::ir::{self as clif, InstBuilder, MemFlagsData, condcodes::IntCC, types};
 use cranelift_frontend::Variable;
 use staunch_ir::loops::{exit_condition, running};
-use staunch_ir::{Block, Expr, ExprKind, FaultKind, For, Lane, Location, Statement, Step, Value};
+use staunch_ir::{Block, Expr, ExprKind, FaultKind, For, Location, Repr, Statement, Step, Value};
 use staunch_runtime::Context;
 
 /// Conditions of more operations than this stand once, and the loop's end jumps to them.
@@ -25,7 +25,7 @@ enum Control<'p> {
 #[derive(Clone, Copy)]
 struct Running<'p> {
     it: &'p For,
-    lane: Lane,
+    repr: Repr,
     at: Location,
     /// The counter, beside its storage, where nothing but the loop writes it.
     register: Option<Variable>,
@@ -59,18 +59,18 @@ impl<'p> Function<'_, 'p> {
     }
 
     fn start_for(&mut self, it: &'p For, at: Location) -> Running<'p> {
-        let lane = self.module.program.lane(it.counter.ty).expect("verified IR: an integer counter");
+        let repr = self.module.program.repr(it.counter.ty).expect("verified IR: an integer counter");
         self.assign(&it.counter, &it.first);
-        let last = it.last.as_const().is_none().then(|| self.wide_scalar(lane, &it.last));
+        let last = it.last.as_const().is_none().then(|| self.wide_scalar(repr, &it.last));
         let step = match &it.step {
             Step::Constant(_) => None,
-            Step::Variable(step) => Some(self.wide_scalar(lane, step)),
+            Step::Variable(step) => Some(self.wide_scalar(repr, step)),
         };
         if let Some(step) = step {
             let is_zero = self.ins().icmp_imm_u(IntCC::Equal, step, 0);
             self.fault_if(is_zero, FaultKind::ZeroStep, it.step_at);
         }
-        let mut running = Running { it, lane, at, register: None, last, step };
+        let mut running = Running { it, repr, at, register: None, last, step };
         if it.is_private {
             let value = self.counter_value(&running);
             let register = self.builder.declare_var(types::I64);
@@ -80,9 +80,9 @@ impl<'p> Function<'_, 'p> {
         running
     }
 
-    fn wide_scalar(&mut self, lane: Lane, value: &Expr) -> clif::Value {
+    fn wide_scalar(&mut self, repr: Repr, value: &Expr) -> clif::Value {
         let value = self.scalar(value);
-        self.widened(lane, value)
+        self.widened(repr, value)
     }
 
     fn counter_value(&mut self, running: &Running<'p>) -> clif::Value {
@@ -90,7 +90,7 @@ impl<'p> Function<'_, 'p> {
             Some(register) => self.builder.use_var(register),
             None => {
                 let value = self.load_place(&running.it.counter);
-                self.widened(running.lane, value)
+                self.widened(running.repr, value)
             }
         }
     }
@@ -128,7 +128,7 @@ impl<'p> Function<'_, 'p> {
         match control {
             Control::Count(running) => {
                 let (counter, last) = (self.counter_value(running), self.last(running));
-                let past = self.is_past(running, running.lane == Lane::U64, counter, last);
+                let past = self.is_past(running, running.repr == Repr::U64, counter, last);
                 self.ins().brif(past, after, &[], turn, &[]);
             }
             Control::Unless(leave) => self.test(leave, after, turn),
@@ -159,7 +159,7 @@ impl<'p> Function<'_, 'p> {
             (Step::Constant(step), _) => self.ins().icmp(if *step > 0 { above } else { below }, value, last),
             (Step::Variable(_), None) => unreachable!("a variable step is evaluated before the loop"),
             // An unsigned step leads up.
-            (Step::Variable(_), Some(_)) if !running.lane.is_signed() => self.ins().icmp(above, value, last),
+            (Step::Variable(_), Some(_)) if !running.repr.is_signed() => self.ins().icmp(above, value, last),
             (Step::Variable(_), Some(step)) => {
                 let down = self.ins().icmp_imm_s(IntCC::SignedLessThan, step, 0);
                 let (is_above, is_below) = (self.ins().icmp(above, value, last), self.ins().icmp(below, value, last));
@@ -187,23 +187,23 @@ impl<'p> Function<'_, 'p> {
         }
         match self.place_value(&running.it.counter) {
             PlaceValue::Variable(variable) => {
-                let value = self.narrowed(running.lane, value);
+                let value = self.narrowed(running.repr, value);
                 self.builder.def_var(variable, value);
             }
-            PlaceValue::Memory(address) => self.store_low(running.lane, value, address),
+            PlaceValue::Memory(address) => self.store_low(running.repr, value, address),
         }
     }
 
     /// Ends the loop, or faults, where the step would lead out of the counter's range; else flow on.
     fn unless_out_of_range(&mut self, running: &Running<'p>, counter: clif::Value) {
-        let (it, lane) = (running.it, running.lane);
+        let (it, repr) = (running.it, running.repr);
         let is_out = match &it.step {
             // From some value on, the step leads out; where that is not one of the range, always.
             Step::Constant(step) => {
                 let edge = if *step > 0 { it.range.1 - step } else { it.range.0 - step };
                 if (it.range.0..=it.range.1).contains(&edge) {
                     let edge = self.integer(types::I64, edge);
-                    self.is_past(running, lane == Lane::U64, counter, edge)
+                    self.is_past(running, repr == Repr::U64, counter, edge)
                 } else {
                     self.integer(types::I8, 1)
                 }
@@ -218,13 +218,13 @@ impl<'p> Function<'_, 'p> {
         };
         let (out, stay) = (self.builder.create_block(), self.builder.create_block());
         let after = self.turn_end();
-        if lane.range() == Some(it.range) {
+        if repr.range() == Some(it.range) {
             self.ins().brif(is_out, after, &[], stay, &[]);
         } else {
             self.ins().brif(is_out, out, &[], stay, &[]);
             self.go_on_in(out);
             let (next, last) = (self.exact_next(running, counter), self.last(running));
-            let last = self.exactly(lane, last);
+            let last = self.exactly(repr, last);
             let past = self.is_past(running, false, next, last);
             let fault = self.builder.create_block();
             self.ins().brif(past, after, &[], fault, &[]);
@@ -236,9 +236,9 @@ impl<'p> Function<'_, 'p> {
 
     /// The counter after the step, wide enough for any.
     fn exact_next(&mut self, running: &Running<'p>, counter: clif::Value) -> clif::Value {
-        let counter = self.exactly(running.lane, counter);
+        let counter = self.exactly(running.repr, counter);
         let step = match (&running.it.step, running.step) {
-            (_, Some(step)) => self.exactly(running.lane, step),
+            (_, Some(step)) => self.exactly(running.repr, step),
             (Step::Constant(step), None) => self.exact(*step),
             (Step::Variable(_), None) => unreachable!("a variable step is evaluated before the loop"),
         };
@@ -259,8 +259,8 @@ impl<'p> Function<'_, 'p> {
         }
     }
 
-    fn exactly(&mut self, lane: Lane, value: clif::Value) -> clif::Value {
-        if lane == Lane::U64 { self.ins().uextend(types::I128, value) } else { self.ins().sextend(types::I128, value) }
+    fn exactly(&mut self, repr: Repr, value: clif::Value) -> clif::Value {
+        if repr == Repr::U64 { self.ins().uextend(types::I128, value) } else { self.ins().sextend(types::I128, value) }
     }
 
     /// Takes one of the scan's turns.
@@ -282,16 +282,16 @@ impl<'p> Function<'_, 'p> {
         Some(self.builder.use_var(register))
     }
 
-    fn widened(&mut self, lane: Lane, value: clif::Value) -> clif::Value {
-        match (lane.size() == 8, lane.is_signed()) {
+    fn widened(&mut self, repr: Repr, value: clif::Value) -> clif::Value {
+        match (repr.size() == 8, repr.is_signed()) {
             (true, _) => value,
             (false, true) => self.ins().sextend(types::I64, value),
             (false, false) => self.ins().uextend(types::I64, value),
         }
     }
 
-    pub(crate) fn narrowed(&mut self, lane: Lane, value: clif::Value) -> clif::Value {
-        if lane.size() == 8 { value } else { self.ins().ireduce(clif_type(lane), value) }
+    pub(crate) fn narrowed(&mut self, repr: Repr, value: clif::Value) -> clif::Value {
+        if repr.size() == 8 { value } else { self.ins().ireduce(clif_type(repr), value) }
     }
 
     fn innermost(&mut self) -> &mut LoopFrame {

@@ -5,7 +5,7 @@ use crate::function::{Function, Temporaries};
 use crate::signature::{POINTER, clif_type};
 use cranelift_codegen::ir::{self as clif, InstBuilder, MemFlagsData, StackSlot, StackSlotData, StackSlotKind, types};
 use staunch_ir::layout::{Shape, usize_of};
-use staunch_ir::{Const, Lane, Type, Value};
+use staunch_ir::{Const, Repr, Type, Value};
 
 /// Of the part of the frame for temporaries: that of the largest elementary type.
 const TEMPORARY_ALIGN: u64 = 8;
@@ -56,8 +56,8 @@ impl Function<'_, '_> {
 
     /// Reads a value of an elementary or enumeration type.
     pub(crate) fn load(&mut self, ty: Type, from: Address) -> clif::Value {
-        let lane = self.module.program.lane(ty).expect("verified IR: an elementary type");
-        self.load_as(clif_type(lane), from)
+        let repr = self.module.program.repr(ty).expect("verified IR: an elementary type");
+        self.load_as(clif_type(repr), from)
     }
 
     pub(crate) fn load_as(&mut self, ty: clif::Type, from: Address) -> clif::Value {
@@ -68,10 +68,10 @@ impl Function<'_, '_> {
         self.ins().store(MemFlagsData::trusted(), value, to.base, to.displacement());
     }
 
-    /// Stores as many low bits of a wider value as `lane` has.
-    pub(crate) fn store_low(&mut self, lane: Lane, value: clif::Value, to: Address) {
+    /// Stores as many low bits of a wider value as `repr` has.
+    pub(crate) fn store_low(&mut self, repr: Repr, value: clif::Value, to: Address) {
         let (flags, displacement) = (MemFlagsData::trusted(), to.displacement());
-        match lane.size() {
+        match repr.size() {
             1 => self.ins().istore8(flags, value, to.base, displacement),
             2 => self.ins().istore16(flags, value, to.base, displacement),
             4 => self.ins().istore32(flags, value, to.base, displacement),
@@ -143,7 +143,7 @@ impl Function<'_, '_> {
             | Value::U32(_)
             | Value::U64(_) => {
                 let number = value.as_integer().expect("not a real");
-                self.integer(clif_type(value.lane()), number)
+                self.integer(clif_type(value.repr()), number)
             }
         }
     }

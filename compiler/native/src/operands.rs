@@ -1,13 +1,13 @@
 //! What an operation's code is made of.
 
 use cranelift_codegen::ir as clif;
-use staunch_ir::{Lane, Location, Value};
+use staunch_ir::{Location, Repr, Value};
 
 /// The operands of an operation, evaluated.
 #[derive(Debug)]
 pub(crate) struct Operands {
-    /// The lane that the operation's row calls `T`.
-    pub(crate) lane: Lane,
+    /// The repr that the operation's row calls `T`.
+    pub(crate) repr: Repr,
     pub(crate) values: Vec<clif::Value>,
     /// Where an operand is constant, what it is.
     pub(crate) constants: Vec<Option<Value>>,

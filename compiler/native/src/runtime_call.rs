@@ -5,7 +5,7 @@ use crate::operands::Operands;
 use crate::signature::{POINTER, c_value};
 use cranelift_codegen::ir::{self as clif, AbiParam, InstBuilder, types};
 use staunch_ir::layout::Shape;
-use staunch_ir::{Lane, Op};
+use staunch_ir::{Op, Repr};
 
 impl Function<'_, '_> {
     /// Calls a symbol of the runtime; gives its result if it has one.
@@ -25,12 +25,12 @@ impl Function<'_, '_> {
         self.builder.inst_results(call).first().copied()
     }
 
-    pub(crate) fn by_lane(&self, lane: Lane, value: clif::Value) -> (AbiParam, clif::Value) {
-        (self.c_param(lane), value)
+    pub(crate) fn by_repr(&self, repr: Repr, value: clif::Value) -> (AbiParam, clif::Value) {
+        (self.c_param(repr), value)
     }
 
-    pub(crate) fn c_param(&self, lane: Lane) -> AbiParam {
-        c_value(self.module.output.isa().triple(), lane)
+    pub(crate) fn c_param(&self, repr: Repr) -> AbiParam {
+        c_value(self.module.output.isa().triple(), repr)
     }
 }
 
@@ -41,11 +41,11 @@ pub(crate) fn by_pointer(value: clif::Value) -> (AbiParam, clif::Value) {
 
 /// An operation by its symbol.
 pub(crate) fn operation(f: &mut Function<'_, '_>, op: Op, operands: &Operands) -> clif::Value {
-    let lane = operands.lane;
-    let symbol = format!("staunch_{}_{}", op.function(), lane.rust_name());
-    let lanes = op.operands().iter().map(|fixed| fixed.unwrap_or(lane));
-    let mut arguments: Vec<_> = lanes.zip(&operands.values).map(|(lane, value)| f.by_lane(lane, *value)).collect();
-    let result = op.result().unwrap_or(lane);
+    let repr = operands.repr;
+    let symbol = format!("staunch_{}_{}", op.function(), repr.rust_name());
+    let reprs = op.operands().iter().map(|fixed| fixed.unwrap_or(repr));
+    let mut arguments: Vec<_> = reprs.zip(&operands.values).map(|(repr, value)| f.by_repr(repr, *value)).collect();
+    let result = op.result().unwrap_or(repr);
     if !op.can_fault() {
         let result = f.c_param(result);
         let value = f.call_runtime(&symbol, &arguments, Some(result));

@@ -7,7 +7,7 @@
 
 use cranelift_codegen::ir::{AbiParam, Signature, Type as Clif, types};
 use staunch_ir::effects::Effects;
-use staunch_ir::{Lane, Mode, Program, Routine, Type};
+use staunch_ir::{Mode, Program, Repr, Routine, Type};
 use target_lexicon::{Architecture, Triple};
 
 /// All targets are 64-bit.
@@ -15,15 +15,15 @@ pub(crate) const POINTER: Clif = types::I64;
 /// A fault's code.
 pub(crate) const CODE: Clif = types::I64;
 
-/// The type of a lane's values. A BOOL is 0 or 1.
-pub(crate) fn clif_type(lane: Lane) -> Clif {
-    match lane {
-        Lane::Bool | Lane::I8 | Lane::U8 => types::I8,
-        Lane::I16 | Lane::U16 => types::I16,
-        Lane::I32 | Lane::U32 => types::I32,
-        Lane::I64 | Lane::U64 => types::I64,
-        Lane::F32 => types::F32,
-        Lane::F64 => types::F64,
+/// The type of a repr's values. A BOOL is 0 or 1.
+pub(crate) fn clif_type(repr: Repr) -> Clif {
+    match repr {
+        Repr::Bool | Repr::I8 | Repr::U8 => types::I8,
+        Repr::I16 | Repr::U16 => types::I16,
+        Repr::I32 | Repr::U32 => types::I32,
+        Repr::I64 | Repr::U64 => types::I64,
+        Repr::F32 => types::F32,
+        Repr::F64 => types::F64,
     }
 }
 
@@ -39,16 +39,16 @@ pub(crate) fn of_routine(program: &Program, routine: &Routine, effects: &Effects
     for param in &routine.params {
         signature.params.push(AbiParam::new(param_type(program, param.ty, param.mode)));
     }
-    match result_type(routine).map(|ty| program.lane(ty)) {
-        Some(Some(lane)) => signature.returns.push(AbiParam::new(clif_type(lane))),
+    match result_type(routine).map(|ty| program.repr(ty)) {
+        Some(Some(repr)) => signature.returns.push(AbiParam::new(clif_type(repr))),
         Some(None) => signature.params.push(AbiParam::new(POINTER)),
         None => {}
     }
 }
 
 pub(crate) fn param_type(program: &Program, ty: Type, mode: Mode) -> Clif {
-    match (mode, program.lane(ty)) {
-        (Mode::Value(_), Some(lane)) => clif_type(lane),
+    match (mode, program.repr(ty)) {
+        (Mode::Value(_), Some(repr)) => clif_type(repr),
         (Mode::Value(_), None) | (Mode::Reference, _) => POINTER,
     }
 }
@@ -58,15 +58,15 @@ pub(crate) fn result_type(routine: &Routine) -> Option<Type> {
     routine.result.map(|id| routine.locals[id.index()].ty)
 }
 
-/// How a C function of the target takes and returns a lane: small integers are extended by who
+/// How a C function of the target takes and returns a repr: small integers are extended by who
 /// passes them, and RISC-V extends the sign of every 32-bit integer, also of unsigned ones.
-pub(crate) fn c_value(triple: &Triple, lane: Lane) -> AbiParam {
-    let value = AbiParam::new(clif_type(lane));
+pub(crate) fn c_value(triple: &Triple, repr: Repr) -> AbiParam {
+    let value = AbiParam::new(clif_type(repr));
     let is_riscv = matches!(triple.architecture, Architecture::Riscv64(_));
-    match lane {
-        Lane::Bool | Lane::U8 | Lane::U16 => value.uext(),
-        Lane::I8 | Lane::I16 => value.sext(),
-        Lane::I32 | Lane::U32 if is_riscv => value.sext(),
-        Lane::I32 | Lane::U32 | Lane::I64 | Lane::U64 | Lane::F32 | Lane::F64 => value,
+    match repr {
+        Repr::Bool | Repr::U8 | Repr::U16 => value.uext(),
+        Repr::I8 | Repr::I16 => value.sext(),
+        Repr::I32 | Repr::U32 if is_riscv => value.sext(),
+        Repr::I32 | Repr::U32 | Repr::I64 | Repr::U64 | Repr::F32 | Repr::F64 => value,
     }
 }

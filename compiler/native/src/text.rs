@@ -5,7 +5,7 @@ use crate::address::Address;
 use crate::function::Function;
 use crate::runtime_call::by_pointer;
 use cranelift_codegen::ir as clif;
-use staunch_ir::{Const, Expr, ExprKind, Lane, TextOp, Type};
+use staunch_ir::{Const, Expr, ExprKind, Repr, TextOp, Type};
 
 /// Up to this capacity a constant is kept as it is in memory, with the zeros after it.
 const WHOLE: u16 = 256;
@@ -62,7 +62,7 @@ impl Function<'_, '_> {
         let out = self.pointer(address);
         let limit = self.integer(clif::types::I16, i128::from(capacity));
         arguments.push(by_pointer(out));
-        arguments.push(self.by_lane(Lane::U16, limit));
+        arguments.push(self.by_repr(Repr::U16, limit));
         self.call_runtime(&symbol(op), &arguments, None);
         Text { address, capacity }
     }
@@ -70,17 +70,17 @@ impl Function<'_, '_> {
     /// A string function with an elementary result.
     pub(crate) fn text_scalar(&mut self, op: TextOp, operands: &[Expr]) -> clif::Value {
         let arguments = self.text_arguments(op, operands);
-        let lane = op.result().expect("verified IR: a text operation with an elementary result");
-        let result = self.c_param(lane);
+        let repr = op.result().expect("verified IR: a text operation with an elementary result");
+        let result = self.c_param(repr);
         let value = self.call_runtime(&symbol(op), &arguments, Some(result));
         value.expect("a function with a result")
     }
 
     fn text_arguments(&mut self, op: TextOp, operands: &[Expr]) -> Vec<(clif::AbiParam, clif::Value)> {
-        let argument = |(lane, operand): (&Option<Lane>, &Expr)| match lane {
-            Some(lane) => {
+        let argument = |(repr, operand): (&Option<Repr>, &Expr)| match repr {
+            Some(repr) => {
                 let value = self.scalar(operand);
-                self.by_lane(*lane, value)
+                self.by_repr(*repr, value)
             }
             None => by_pointer(self.text_pointer(operand)),
         };
@@ -120,7 +120,7 @@ impl Function<'_, '_> {
     pub(crate) fn copy_text(&mut self, from: clif::Value, to: Address, capacity: u16) {
         let out = self.pointer(to);
         let limit = self.integer(clif::types::I16, i128::from(capacity));
-        let arguments = [by_pointer(from), by_pointer(out), self.by_lane(Lane::U16, limit)];
+        let arguments = [by_pointer(from), by_pointer(out), self.by_repr(Repr::U16, limit)];
         self.call_runtime("staunch_text_copy", &arguments, None);
     }
 }

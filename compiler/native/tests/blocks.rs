@@ -24,38 +24,38 @@ impl Random {
     }
 
     /// Often an edge, else any bits.
-    fn value(&mut self, lane: Lane) -> Value {
-        let edges = edges(lane);
-        if lane == Lane::Bool || !self.next().is_multiple_of(4) {
+    fn value(&mut self, repr: Repr) -> Value {
+        let edges = edges(repr);
+        if repr == Repr::Bool || !self.next().is_multiple_of(4) {
             return edges[self.below(edges.len())];
         }
-        Value::read(lane, &self.next().to_ne_bytes())
+        Value::read(repr, &self.next().to_ne_bytes())
     }
 }
 
 /// The block is field 0; the inputs are the fields after it.
 fn program_of(id: BlockId, instruction: usize, is_prescan: bool) -> Program {
     let info = id.info();
-    let lanes = inputs(info, instruction);
+    let reprs = inputs(info, instruction);
     let mut fields = vec![zero("block", Type::Block(id))];
-    fields.extend(lanes.iter().map(|lane| zero("input", elementary(*lane))));
+    fields.extend(reprs.iter().map(|repr| zero("input", elementary(*repr))));
     let block = || member(StructId(0), 0, Type::Block(id));
-    let input = |(at, lane): (usize, &Lane)| load(member(StructId(0), at + 1, elementary(*lane)));
+    let input = |(at, repr): (usize, &Repr)| load(member(StructId(0), at + 1, elementary(*repr)));
     let kind = if is_prescan {
         StatementKind::PrescanBlock { block: block(), instruction }
     } else {
-        let inputs = lanes.iter().enumerate().map(input).collect();
+        let inputs = reprs.iter().enumerate().map(input).collect();
         StatementKind::CallBlock { block: block(), instruction, inputs }
     };
     let main = Routine { body: vec![stmt(kind)], ..routine(RoutineKind::Body, "Main", Some(StructId(0))) };
     program(Vec::new(), vec![structure("Main", fields)], vec![main])
 }
 
-fn inputs(info: &BlockInfo, instruction: usize) -> Vec<Lane> {
+fn inputs(info: &BlockInfo, instruction: usize) -> Vec<Repr> {
     if info.instructions[instruction].takes_rung {
-        return vec![Lane::Bool];
+        return vec![Repr::Bool];
     }
-    info.inputs().map(|pin| pin.lane()).collect()
+    info.inputs().map(|pin| pin.repr()).collect()
 }
 
 fn drive(id: BlockId, instruction: usize, is_prescan: bool, random: &mut Random) {
@@ -68,12 +68,12 @@ fn drive(id: BlockId, instruction: usize, is_prescan: bool, random: &mut Random)
         // Now and then from anywhere; mostly on from where it is.
         if turn % 7 == 0 {
             for pin in info.pins {
-                random.value(pin.lane()).write(&mut expected[pin.offset..]);
+                random.value(pin.repr()).write(&mut expected[pin.offset..]);
             }
             native.write(start, &expected);
         }
         let cx = Context::new(i64::from(turn) * 1_000_000, random.next().is_multiple_of(5));
-        let values: Vec<_> = inputs(info, instruction).into_iter().map(|lane| random.value(lane)).collect();
+        let values: Vec<_> = inputs(info, instruction).into_iter().map(|repr| random.value(repr)).collect();
         for (at, value) in values.iter().enumerate() {
             let offset = native.offset(&program, 0, at + 1);
             native.write_value(offset, *value);
@@ -82,8 +82,8 @@ fn drive(id: BlockId, instruction: usize, is_prescan: bool, random: &mut Random)
         native.scan(0, &cx).unwrap();
         run(info, instruction, is_prescan, &mut expected, &cx, &values);
         for pin in info.pins {
-            let found = Value::read(pin.lane(), &native.state()[start + pin.offset..]);
-            let wanted = Value::read(pin.lane(), &expected[pin.offset..]);
+            let found = Value::read(pin.repr(), &native.state()[start + pin.offset..]);
+            let wanted = Value::read(pin.repr(), &expected[pin.offset..]);
             assert_eq!(found, wanted, "{info:?}.{} after {values:?} from {before:?}", pin.name);
         }
     }

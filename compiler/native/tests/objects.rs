@@ -12,26 +12,26 @@ use support::*;
 
 /// One PROGRAM with every operation, conversion and block.
 fn everything() -> Program {
-    let lanes: Vec<_> = Lane::ALL.to_vec();
-    let mut fields: Vec<_> = lanes.iter().map(|lane| zero("value", elementary(*lane))).collect();
+    let reprs: Vec<_> = Repr::ALL.to_vec();
+    let mut fields: Vec<_> = reprs.iter().map(|repr| zero("value", elementary(*repr))).collect();
     fields.push(field("text", Type::String(80), Const::Text(b"start".to_vec())));
     fields.push(zero("values", Type::Array(ArrayId(0))));
     let first_block = fields.len();
     fields.extend((0..BLOCKS.len()).map(|at| zero("block", Type::Block(BlockId::next(at)))));
-    let value = |lane: Lane| {
-        let at = lanes.iter().position(|it| *it == lane).unwrap();
-        member(StructId(0), at, elementary(lane))
+    let value = |repr: Repr| {
+        let at = reprs.iter().position(|it| *it == repr).unwrap();
+        member(StructId(0), at, elementary(repr))
     };
-    let text = || member(StructId(0), lanes.len(), Type::String(80));
+    let text = || member(StructId(0), reprs.len(), Type::String(80));
     let mut body = Vec::new();
     for op in Op::ALL {
-        for lane in lanes.iter().copied().filter(|lane| op.allows(*lane)) {
-            let operands = op.operands().iter().map(|fixed| load(value(fixed.unwrap_or(lane)))).collect();
-            let result = op.result().unwrap_or(lane);
+        for repr in reprs.iter().copied().filter(|repr| op.allows(*repr)) {
+            let operands = op.operands().iter().map(|fixed| load(value(fixed.unwrap_or(repr)))).collect();
+            let result = op.result().unwrap_or(repr);
             body.push(assign(value(result), operation(*op, elementary(result), operands)));
         }
     }
-    for (from, to) in lanes.iter().flat_map(|from| lanes.iter().map(move |to| (*from, *to))) {
+    for (from, to) in reprs.iter().flat_map(|from| reprs.iter().map(move |to| (*from, *to))) {
         let convert = |how| assign(value(to), Expr::convert(how, elementary(to), load(value(from)), AT));
         body.push(convert(Conversion::Value));
         if from.is_float() && to.is_integer() {
@@ -39,14 +39,14 @@ fn everything() -> Program {
         }
     }
     for op in TextOp::ALL {
-        let operands = op.operands().iter().map(|lane| lane.map_or(load(text()), |lane| load(value(lane)))).collect();
+        let operands = op.operands().iter().map(|repr| repr.map_or(load(text()), |repr| load(value(repr)))).collect();
         let (ty, target) = match op.result() {
-            Some(lane) => (elementary(lane), value(lane)),
+            Some(repr) => (elementary(repr), value(repr)),
             None => (Type::String(80), text()),
         };
         body.push(assign(target, Expr::new(ty, ExprKind::ApplyText(*op, operands), AT)));
     }
-    let values = || member(StructId(0), lanes.len() + 1, Type::Array(ArrayId(0)));
+    let values = || member(StructId(0), reprs.len() + 1, Type::Array(ArrayId(0)));
     body.push(assign(values(), load(values())));
     body.push(assign(values(), Expr::new(values().ty, ExprKind::Aggregate(Const::Zero), AT)));
     for number in 0..BLOCKS.len() {
@@ -54,8 +54,8 @@ fn everything() -> Program {
         let block = || member(StructId(0), first_block + number, Type::Block(id));
         for (instruction, info) in id.info().instructions.iter().enumerate() {
             let inputs = match info.takes_rung {
-                true => vec![load(value(Lane::Bool))],
-                false => id.info().inputs().map(|pin| load(value(pin.lane()))).collect(),
+                true => vec![load(value(Repr::Bool))],
+                false => id.info().inputs().map(|pin| load(value(pin.repr()))).collect(),
             };
             body.push(stmt(StatementKind::CallBlock { block: block(), instruction, inputs }));
             if info.prescan.is_some() {

@@ -1,4 +1,4 @@
-//! Every operation at every lane, and every conversion, does what the runtime's function does,
+//! Every operation at every repr, and every conversion, does what the runtime's function does,
 //! over all edge values, whether its operands are variables or constants.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -14,8 +14,8 @@ type Expect = Box<dyn Fn(&[Value]) -> Result<Value, FaultKind>>;
 /// One computation: a PROGRAM of its own, with a field for each operand and one for the result.
 struct Case {
     name: String,
-    operands: Vec<Lane>,
-    result: Lane,
+    operands: Vec<Repr>,
+    result: Repr,
     /// From expressions that read the operands.
     value: Make,
     expected: Expect,
@@ -26,9 +26,9 @@ fn program_of(cases: &[Case]) -> Program {
     let mut routines = Vec::new();
     for case in cases {
         let id = StructId::next(structs.len());
-        let lanes = case.operands.iter().chain([&case.result]);
-        structs.push(structure(&case.name, lanes.map(|lane| zero("field", elementary(*lane))).collect()));
-        let operand = |(at, lane): (usize, &Lane)| load(member(id, at, elementary(*lane)));
+        let reprs = case.operands.iter().chain([&case.result]);
+        structs.push(structure(&case.name, reprs.map(|repr| zero("field", elementary(*repr))).collect()));
+        let operand = |(at, repr): (usize, &Repr)| load(member(id, at, elementary(*repr)));
         let operands = case.operands.iter().enumerate().map(operand).collect();
         let target = member(id, case.operands.len(), elementary(case.result));
         routines.push(Routine {
@@ -44,7 +44,7 @@ fn check(cases: &[Case]) {
     let program = program_of(cases);
     let mut native = Native::new(&program);
     for (number, case) in cases.iter().enumerate() {
-        let choices: Vec<_> = case.operands.iter().map(|lane| choices(*lane, case.operands.len())).collect();
+        let choices: Vec<_> = case.operands.iter().map(|repr| choices(*repr, case.operands.len())).collect();
         let mut tuple = vec![0; choices.len()];
         loop {
             let operands: Vec<_> = tuple.iter().zip(&choices).map(|(at, values)| values[*at]).collect();
@@ -57,8 +57,8 @@ fn check(cases: &[Case]) {
 }
 
 /// Fewer where there are more operands.
-fn choices(lane: Lane, operands: usize) -> Vec<Value> {
-    let all = edges(lane);
+fn choices(repr: Repr, operands: usize) -> Vec<Value> {
+    let all = edges(repr);
     let step = if operands > 2 { all.len().div_ceil(18) } else { 1 };
     all.into_iter().step_by(step).collect()
 }
@@ -80,33 +80,33 @@ fn check_one(program: &Program, native: &mut Native, number: usize, case: &Case,
     assert!(holds, "{}{operands:?}: expected {expected:?}, found {found:?}, {end:?}", case.name);
 }
 
-fn lanes_of(op: Op, lane: Lane) -> Vec<Lane> {
-    op.operands().iter().map(|fixed| fixed.unwrap_or(lane)).collect()
+fn reprs_of(op: Op, repr: Repr) -> Vec<Repr> {
+    op.operands().iter().map(|fixed| fixed.unwrap_or(repr)).collect()
 }
 
-fn result_of(op: Op, lane: Lane) -> Lane {
-    op.result().unwrap_or(lane)
+fn result_of(op: Op, repr: Repr) -> Repr {
+    op.result().unwrap_or(repr)
 }
 
-fn rows() -> impl Iterator<Item = (Op, Lane)> {
-    let lanes = |op: &'static Op| Lane::ALL.into_iter().filter(|lane| op.allows(*lane)).map(|lane| (*op, lane));
-    Op::ALL.iter().flat_map(lanes)
+fn rows() -> impl Iterator<Item = (Op, Repr)> {
+    let reprs = |op: &'static Op| Repr::ALL.into_iter().filter(|repr| op.allows(*repr)).map(|repr| (*op, repr));
+    Op::ALL.iter().flat_map(reprs)
 }
 
 #[test]
-fn every_operation_at_every_lane() {
-    let case = |(op, lane): (Op, Lane)| Case {
-        name: format!("{}_{}", op.function(), lane.rust_name()),
-        operands: lanes_of(op, lane),
-        result: result_of(op, lane),
-        value: Box::new(move |operands| operation(op, elementary(result_of(op, lane)), operands)),
-        expected: Box::new(move |operands| apply_op(op, lane, operands)),
+fn every_operation_at_every_repr() {
+    let case = |(op, repr): (Op, Repr)| Case {
+        name: format!("{}_{}", op.function(), repr.rust_name()),
+        operands: reprs_of(op, repr),
+        result: result_of(op, repr),
+        value: Box::new(move |operands| operation(op, elementary(result_of(op, repr)), operands)),
+        expected: Box::new(move |operands| apply_op(op, repr, operands)),
     };
     check(&rows().map(case).collect::<Vec<_>>());
 }
 
-fn apply_op(op: Op, lane: Lane, operands: &[Value]) -> Result<Value, FaultKind> {
-    apply(op, lane, operands).unwrap()
+fn apply_op(op: Op, repr: Repr, operands: &[Value]) -> Result<Value, FaultKind> {
+    apply(op, repr, operands).unwrap()
 }
 
 /// Operations that are emitted otherwise for a constant last operand, or improved for one.
@@ -115,18 +115,18 @@ const CONSTANT_MATTERS: &[Op] = &[Op::Mul, Op::Div, Op::Mod, Op::Shl, Op::Shr, O
 #[test]
 fn operations_with_a_constant_last_operand() {
     let mut cases = Vec::new();
-    for (op, lane) in rows().filter(|(op, _)| CONSTANT_MATTERS.contains(op)) {
-        let lanes = lanes_of(op, lane);
-        for last in edges(lanes[1]) {
+    for (op, repr) in rows().filter(|(op, _)| CONSTANT_MATTERS.contains(op)) {
+        let reprs = reprs_of(op, repr);
+        for last in edges(reprs[1]) {
             cases.push(Case {
-                name: format!("{}_{}_by_{last:?}", op.function(), lane.rust_name()),
-                operands: vec![lanes[0]],
-                result: result_of(op, lane),
+                name: format!("{}_{}_by_{last:?}", op.function(), repr.rust_name()),
+                operands: vec![reprs[0]],
+                result: result_of(op, repr),
                 value: Box::new(move |mut operands| {
                     operands.push(constant(last));
-                    operation(op, elementary(result_of(op, lane)), operands)
+                    operation(op, elementary(result_of(op, repr)), operands)
                 }),
-                expected: Box::new(move |operands| apply_op(op, lane, &[operands[0], last])),
+                expected: Box::new(move |operands| apply_op(op, repr, &[operands[0], last])),
             });
         }
     }
@@ -136,8 +136,8 @@ fn operations_with_a_constant_last_operand() {
 #[test]
 fn every_conversion() {
     let mut cases = Vec::new();
-    for from in Lane::ALL {
-        for to in Lane::ALL {
+    for from in Repr::ALL {
+        for to in Repr::ALL {
             cases.push(Case {
                 name: format!("convert_{}_{}", from.rust_name(), to.rust_name()),
                 operands: vec![from],
@@ -159,6 +159,6 @@ fn every_conversion() {
     check(&cases);
 }
 
-fn converted(how: Conversion, to: Lane, mut operands: Vec<Expr>) -> Expr {
+fn converted(how: Conversion, to: Repr, mut operands: Vec<Expr>) -> Expr {
     Expr::convert(how, elementary(to), operands.remove(0), AT)
 }

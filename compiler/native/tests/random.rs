@@ -163,8 +163,8 @@ impl Maker {
 
     fn initial(&mut self, ty: Type) -> Const {
         match ty {
-            Type::Elementary(it) => Const::Scalar(self.value(it.lane())),
-            Type::Subrange(it, _) => it.lane().integer(LIMITS.0).map_or(Const::Zero, Const::Scalar),
+            Type::Elementary(it) => Const::Scalar(self.value(it.repr())),
+            Type::Subrange(it, _) => it.repr().integer(LIMITS.0).map_or(Const::Zero, Const::Scalar),
             Type::Enum(_) => Const::Scalar(Value::I8(-3)),
             Type::Reference(_) => Const::Zero,
             Type::String(capacity) => Const::Text(self.bytes(capacity)),
@@ -186,11 +186,11 @@ impl Maker {
         }
     }
 
-    fn value(&mut self, lane: Lane) -> Value {
-        if lane.is_integer() && self.random.one_in(2) {
-            return lane.integer(i128::from(self.random.next() % 5)).unwrap();
+    fn value(&mut self, repr: Repr) -> Value {
+        if repr.is_integer() && self.random.one_in(2) {
+            return repr.integer(i128::from(self.random.next() % 5)).unwrap();
         }
-        let edges = edges(lane);
+        let edges = edges(repr);
         // The bits of a NaN are the machine's choice.
         match self.random.of(&edges) {
             Value::F32(it) if it.is_nan() => Value::F32(2.5),
@@ -374,11 +374,11 @@ impl Maker {
             Type::Elementary(it) if depth > 0 => self.computed(it, depth - 1),
             Type::Reference(_) => Expr::new(ty, ExprKind::Const(Value::U64(0)), AT),
             Type::Elementary(it) => {
-                let value = self.value(it.lane());
+                let value = self.value(it.repr());
                 Expr::constant(it, value, AT)
             }
             Type::Subrange(it, _) => {
-                let limit = |it: Elementary, number| Expr::constant(it, it.lane().integer(number).unwrap(), AT);
+                let limit = |it: Elementary, number| Expr::constant(it, it.repr().integer(number).unwrap(), AT);
                 let value = self.expr(Type::Elementary(it), depth.saturating_sub(1));
                 Expr::apply(Op::InRange, ty, vec![limit(it, LIMITS.0), value, limit(it, LIMITS.1)], AT)
             }
@@ -407,8 +407,8 @@ impl Maker {
     }
 
     fn text_operation(&mut self, op: TextOp, ty: Type, depth: usize) -> Expr {
-        let operands = op.operands().iter().map(|lane| match lane {
-            Some(lane) => self.expr(elementary(*lane), depth),
+        let operands = op.operands().iter().map(|repr| match repr {
+            Some(repr) => self.expr(elementary(*repr), depth),
             None => {
                 let ty = self.random.of(&STRINGS);
                 self.expr(ty, depth)
@@ -422,23 +422,23 @@ impl Maker {
         let result = Type::Elementary(ty);
         match self.random.below(10) {
             0 => return self.conversion(ty, depth),
-            1 if ty.lane() == Lane::I16 => {
+            1 if ty.repr() == Repr::I16 => {
                 let op = self.random.of(&[TextOp::Compare, TextOp::Len, TextOp::Find]);
                 return self.text_operation(op, result, depth);
             }
             _ => {}
         }
-        let lane = ty.lane();
+        let repr = ty.repr();
         let fits = |op: &Op| match op.result() {
-            Some(result) => result == lane,
-            None => op.allows(lane),
+            Some(result) => result == repr,
+            None => op.allows(repr),
         };
         let ops: Vec<_> = Op::ALL.iter().copied().filter(fits).collect();
         let op = self.random.of(&ops);
-        // Of a comparison any lane can be compared; else the result says it.
+        // Of a comparison any repr can be compared; else the result says it.
         let of = match op.result() {
-            Some(_) => self.random.of(&Lane::ALL),
-            None => lane,
+            Some(_) => self.random.of(&Repr::ALL),
+            None => repr,
         };
         let operands = op.operands().iter().map(|fixed| {
             let ty = elementary(fixed.unwrap_or(of));
@@ -451,7 +451,7 @@ impl Maker {
 
     fn conversion(&mut self, ty: Elementary, depth: usize) -> Expr {
         let from = self.random.of(&Elementary::ALL);
-        let how = match (from.lane() == ty.lane(), from.is_real() && ty.lane().is_integer()) {
+        let how = match (from.repr() == ty.repr(), from.is_real() && ty.repr().is_integer()) {
             (true, _) => Conversion::Same,
             (false, true) => self.random.of(&[Conversion::Value, Conversion::Truncate]),
             (false, false) => Conversion::Value,
@@ -499,9 +499,9 @@ impl Maker {
     }
 
     fn case(&mut self, depth: usize) -> StatementKind {
-        let integers: Vec<_> = Elementary::ALL.into_iter().filter(|it| it.lane().is_integer()).collect();
+        let integers: Vec<_> = Elementary::ALL.into_iter().filter(|it| it.repr().is_integer()).collect();
         let ty = self.random.of(&integers);
-        let (min, max) = ty.lane().range().unwrap();
+        let (min, max) = ty.repr().range().unwrap();
         let mut arms = Vec::new();
         // From the least on, so that labels do not overlap.
         let mut next = self.random.of(&[min, -3, 0]).max(min);
@@ -530,9 +530,9 @@ impl Maker {
         // What nobody else knows is private.
         let is_private = self.random.one_in(2);
         let counter = if is_private {
-            let lanes =
+            let reprs =
                 [Type::INT, Type::LINT, Type::Elementary(Elementary::Usint), Type::Elementary(Elementary::Ulint)];
-            let ty = self.random.of(&lanes);
+            let ty = self.random.of(&reprs);
             self.locals.push(local("counter", ty, Const::Zero));
             Place::local(LocalId::next(self.locals.len() - 1), ty)
         } else {
@@ -542,7 +542,7 @@ impl Maker {
             return None;
         }
         let Type::Elementary(ty) = counter.ty else { return None };
-        let range = ty.lane().range()?;
+        let range = ty.repr().range()?;
         let step = self.random.of(&[1, 1, -1, 3, -7, 100]);
         let step = match self.random.one_in(3) {
             true => Step::Variable(self.expr(counter.ty, 1)),
@@ -618,7 +618,7 @@ impl Maker {
         let inputs = if info.instructions[instruction].takes_rung {
             vec![self.expr(Type::BOOL, 2)]
         } else {
-            info.inputs().map(|pin| self.expr(elementary(pin.lane()), 2)).collect()
+            info.inputs().map(|pin| self.expr(elementary(pin.repr()), 2)).collect()
         };
         Some(StatementKind::CallBlock { block, instruction, inputs })
     }

@@ -100,10 +100,10 @@ fn a_large_state_is_zeroed_and_then_written() {
 }
 
 #[test]
-fn labels_at_the_ends_of_every_lane() {
-    for lane in Lane::ALL.into_iter().filter(|lane| lane.is_integer()) {
-        let ty = elementary(lane);
-        let (min, max) = lane.range().unwrap();
+fn labels_at_the_ends_of_every_repr() {
+    for repr in Repr::ALL.into_iter().filter(|repr| repr.is_integer()) {
+        let ty = elementary(repr);
+        let (min, max) = repr.range().unwrap();
         let labels = [(min, min), (min + 1, min + 30), (max - 60, max - 31), (max - 1, max)];
         let arm = |(at, label): (i16, &(i128, i128))| Arm {
             labels: vec![*label],
@@ -120,10 +120,10 @@ fn labels_at_the_ends_of_every_lane() {
             let expected =
                 labels.iter().position(|(low, high)| (*low..=*high).contains(&number)).map_or(9, |at| at + 1);
             let offset = native.offset(&program, 0, 1);
-            native.write_value(offset, lane.integer(number).unwrap());
+            native.write_value(offset, repr.integer(number).unwrap());
             native.scan(0, &Context::at(0)).unwrap();
-            let found = Value::read(Lane::I16, &native.state()[native.offset(&program, 0, 0)..]);
-            assert_eq!(found.as_integer(), Some(i128::try_from(expected).unwrap()), "{lane:?} {number}");
+            let found = Value::read(Repr::I16, &native.state()[native.offset(&program, 0, 0)..]);
+            assert_eq!(found.as_integer(), Some(i128::try_from(expected).unwrap()), "{repr:?} {number}");
         }
     }
 }

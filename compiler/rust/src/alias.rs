@@ -103,7 +103,7 @@ impl Separator<'_> {
             Origin::Declared => self.rewrite_declared(key.routine),
             Origin::Apart | Origin::Copy => self.copy(&key),
         };
-        // Its callees have taken their places meanwhile, so they stand before it.
+        // Its callees have taken their places meanwhile, so they are before it.
         let id = RoutineId::next(self.routines.len());
         self.routines.push(routine);
         self.origins.push(origin);

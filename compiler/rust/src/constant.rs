@@ -2,7 +2,7 @@
 
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
-use staunch_ir::{ArrayId, BlockId, Const, Elementary, EnumId, FieldId, Lane, StructId, Type, Value};
+use staunch_ir::{ArrayId, BlockId, Const, Elementary, EnumId, FieldId, Repr, StructId, Type, Value};
 
 use staunch_runtime::calendar::Day;
 
@@ -17,9 +17,9 @@ impl Emitter<'_> {
     /// A constant where its type is known from the surroundings.
     pub fn constant(&self, ty: Type, value: &Const) -> Code {
         match (ty, value) {
-            (Type::Elementary(it) | Type::Subrange(it, _), Const::Zero) => literal(it, it.lane().zero(), false),
+            (Type::Elementary(it) | Type::Subrange(it, _), Const::Zero) => literal(it, it.repr().zero(), false),
             (Type::Elementary(it) | Type::Subrange(it, _), Const::Scalar(value)) => literal(it, *value, false),
-            (Type::Enum(id), Const::Zero) => self.enum_value(id, self.program.enumeration(id).base.lane().zero()),
+            (Type::Enum(id), Const::Zero) => self.enum_value(id, self.program.enumeration(id).base.repr().zero()),
             (Type::Enum(id), Const::Scalar(value)) => self.enum_value(id, *value),
             (Type::String(_), Const::Text(text)) => Code::postfix(text_new(text)),
             (Type::String(_), Const::Zero) => Code::postfix(text_new(&[])),
@@ -201,7 +201,7 @@ pub fn rust_path(path: &str, expression: bool) -> TokenStream {
 fn is_zero(value: &Const) -> bool {
     match value {
         Const::Zero => true,
-        Const::Scalar(value) => same_bits(*value, value.lane().zero()),
+        Const::Scalar(value) => same_bits(*value, value.repr().zero()),
         Const::Text(text) => text.is_empty(),
         Const::Array(runs) => runs.iter().all(|(_, value)| is_zero(value)),
         Const::Struct(values) => values.iter().all(is_zero),
@@ -224,7 +224,7 @@ fn text_new(text: &[u8]) -> TokenStream {
 
 /// A literal as a person writes it; with its type's suffix where nothing else tells the type.
 pub fn literal(ty: Elementary, value: Value, suffixed: bool) -> Code {
-    let suffix = if suffixed { ty.lane().rust_name() } else { "" };
+    let suffix = if suffixed { ty.repr().rust_name() } else { "" };
     match value {
         Value::Bool(it) => Code::postfix(quote!(#it)),
         Value::I64(it) if ty.is_day() && Day::at(it).start() == Some(it) => date(it),
@@ -243,13 +243,13 @@ pub fn literal(ty: Elementary, value: Value, suffixed: bool) -> Code {
 }
 
 fn integer(ty: Elementary, value: Value, suffix: &str) -> Code {
-    let number = value.as_integer().expect("an integer lane");
+    let number = value.as_integer().expect("an integer repr");
     if ty.is_bits() && number > 9 {
         return unsigned(&format!("{number:#X}").replace("0X", "0x"), suffix);
     }
-    if ty.lane().range().is_some_and(|(least, _)| number == least && number < 0) {
-        let lane = names::ident(ty.lane().rust_name());
-        return Code::postfix(quote!(#lane::MIN));
+    if ty.repr().range().is_some_and(|(least, _)| number == least && number < 0) {
+        let repr = names::ident(ty.repr().rust_name());
+        return Code::postfix(quote!(#repr::MIN));
     }
     signed(number, suffix)
 }
@@ -261,7 +261,7 @@ pub fn signed(number: i128, suffix: &str) -> Code {
     if number < 0 { Code::new(quote!(-#magnitude), Level::Unary) } else { Code::postfix(magnitude) }
 }
 
-/// `1_000_000`; four digits stand alone.
+/// `1_000_000`; four digits are alone.
 fn grouped(number: u128) -> String {
     let digits = number.to_string();
     if digits.len() < 5 {
@@ -297,34 +297,34 @@ fn date(midnight: i64) -> Code {
     Code::postfix(quote!(time::date(#year, #month, #day)))
 }
 
-fn float(value: f64, text: String, bits: u64, lane: &str, suffix: &str) -> Code {
-    let lane_name = names::ident(lane);
+fn float(value: f64, text: String, bits: u64, repr: &str, suffix: &str) -> Code {
+    let repr_name = names::ident(repr);
     if value.is_nan() {
         let bits = Literal::u64_unsuffixed(bits);
-        return Code::postfix(quote!(#lane_name::from_bits(#bits)));
+        return Code::postfix(quote!(#repr_name::from_bits(#bits)));
     }
     if value.is_infinite() {
         let name = names::ident(if value > 0.0 { "INFINITY" } else { "NEG_INFINITY" });
-        return Code::postfix(quote!(#lane_name::#name));
+        return Code::postfix(quote!(#repr_name::#name));
     }
     let magnitude = unsigned(text.trim_start_matches('-'), suffix).tokens;
     if text.starts_with('-') { Code::new(quote!(-#magnitude), Level::Unary) } else { Code::postfix(magnitude) }
 }
 
-/// The type whose literals are plain numbers in `lane`.
-pub fn plain(lane: Lane) -> Elementary {
-    match lane {
-        Lane::Bool => Elementary::Bool,
-        Lane::I8 => Elementary::Sint,
-        Lane::I16 => Elementary::Int,
-        Lane::I32 => Elementary::Dint,
-        Lane::I64 => Elementary::Lint,
-        Lane::U8 => Elementary::Usint,
-        Lane::U16 => Elementary::Uint,
-        Lane::U32 => Elementary::Udint,
-        Lane::U64 => Elementary::Ulint,
-        Lane::F32 => Elementary::Real,
-        Lane::F64 => Elementary::Lreal,
+/// The type whose literals are plain numbers in `repr`.
+pub fn plain(repr: Repr) -> Elementary {
+    match repr {
+        Repr::Bool => Elementary::Bool,
+        Repr::I8 => Elementary::Sint,
+        Repr::I16 => Elementary::Int,
+        Repr::I32 => Elementary::Dint,
+        Repr::I64 => Elementary::Lint,
+        Repr::U8 => Elementary::Usint,
+        Repr::U16 => Elementary::Uint,
+        Repr::U32 => Elementary::Udint,
+        Repr::U64 => Elementary::Ulint,
+        Repr::F32 => Elementary::Real,
+        Repr::F64 => Elementary::Lreal,
     }
 }
 

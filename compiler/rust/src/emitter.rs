@@ -37,8 +37,8 @@ impl<'p> Emitter<'p> {
         match ty {
             Type::Elementary(it) if it.is_time() => quote!(Time),
             Type::Elementary(it) | Type::Subrange(it, _) => {
-                let lane = ident(it.lane().rust_name());
-                quote!(#lane)
+                let repr = ident(it.repr().rust_name());
+                quote!(#repr)
             }
             Type::String(capacity) => {
                 let capacity = number(u64::from(capacity));

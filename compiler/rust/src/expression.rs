@@ -3,7 +3,7 @@
 
 use proc_macro2::TokenStream;
 use quote::quote;
-use staunch_ir::{Conversion, Expr, ExprKind, Lane, Op, Type, Value};
+use staunch_ir::{Conversion, Expr, ExprKind, Op, Repr, Type, Value};
 
 use crate::constant::{literal, plain};
 use crate::function::Function;
@@ -51,14 +51,14 @@ impl Function<'_> {
         }
     }
 
-    pub fn lane(&self, ty: Type) -> Lane {
-        self.emitter.program.lane(ty).expect("verified IR: operands are scalars")
+    pub fn repr(&self, ty: Type) -> Repr {
+        self.emitter.program.repr(ty).expect("verified IR: operands are scalars")
     }
 
     fn apply(&self, expr: &Expr, op: Op, operands: &[Expr]) -> Code {
-        let lane = self.operation_lane(expr, op, operands);
-        let float = lane.is_float();
-        if lane == Lane::Bool && matches!(op, Op::And | Op::Or) {
+        let repr = self.operation_repr(expr, op, operands);
+        let float = repr.is_float();
+        if repr == Repr::Bool && matches!(op, Op::And | Op::Or) {
             return self.logical(op, operands);
         }
         if op == Op::Not {
@@ -77,10 +77,10 @@ impl Function<'_> {
         self.call_op(expr, op, operands)
     }
 
-    /// The lane of the row's `T`.
-    fn operation_lane(&self, expr: &Expr, op: Op, operands: &[Expr]) -> Lane {
+    /// The repr of the row's `T`.
+    fn operation_repr(&self, expr: &Expr, op: Op, operands: &[Expr]) -> Repr {
         let first = op.operands().iter().position(Option::is_none);
-        self.lane(first.map_or(expr.ty, |at| operands[at].ty))
+        self.repr(first.map_or(expr.ty, |at| operands[at].ty))
     }
 
     /// Operands for an operator or method: at least one says its type.
@@ -135,9 +135,9 @@ impl Function<'_> {
     /// `!value`; a comparison turns around where that says the same.
     pub fn not(&self, value: &Expr) -> Code {
         if let ExprKind::Apply(op, operands) = &value.kind {
-            let exact = operands.first().is_some_and(|it| !self.lane(it.ty).is_float());
+            let exact = operands.first().is_some_and(|it| !self.repr(it.ty).is_float());
             match op {
-                Op::Not if self.lane(value.ty) == Lane::Bool => return self.expr(&operands[0]),
+                Op::Not if self.repr(value.ty) == Repr::Bool => return self.expr(&operands[0]),
                 Op::Eq => return self.operator(Op::Ne, operands),
                 Op::Ne => return self.operator(Op::Eq, operands),
                 Op::Lt if exact => return self.operator(Op::Ge, operands),
@@ -218,13 +218,13 @@ impl Function<'_> {
                 let number = self.convert(how, base, value).tokens;
                 Code::postfix(quote!(#name(#number)))
             }
-            _ => self.convert_lane(how, self.lane(ty), value),
+            _ => self.convert_repr(how, self.repr(ty), value),
         }
     }
 
-    /// Between lanes; an enumeration gives its number.
-    fn convert_lane(&self, how: Conversion, to: Lane, value: &Expr) -> Code {
-        let from = self.lane(value.ty);
+    /// Between reprs; an enumeration gives its number.
+    fn convert_repr(&self, how: Conversion, to: Repr, value: &Expr) -> Code {
+        let from = self.repr(value.ty);
         let inner = |typed: bool| {
             let code = if typed { self.typed(value) } else { self.expr(value) };
             match value.ty {
@@ -252,7 +252,7 @@ impl Function<'_> {
                 let value = inner(true).tokens;
                 Code::postfix(quote!(#to_name::from(#value)))
             }
-            Conversion::Value | Conversion::Same if to == Lane::Bool => {
+            Conversion::Value | Conversion::Same if to == Repr::Bool => {
                 let value = inner(true).above(Level::Compare);
                 let zero = literal(plain(from), from.zero(), false).tokens;
                 Code::new(quote!(#value != #zero), Level::Compare)
@@ -307,14 +307,14 @@ fn wrapping(op: Op) -> Option<&'static str> {
     WRAPPING.iter().find(|(known, _)| *known == op).map(|(_, method)| *method)
 }
 
-/// Whether Rust has `From` between the lanes; it then means what `ops::convert` means.
-fn is_lossless(from: Lane, to: Lane) -> bool {
-    if from == Lane::Bool {
+/// Whether Rust has `From` between the reprs; it then means what `ops::convert` means.
+fn is_lossless(from: Repr, to: Repr) -> bool {
+    if from == Repr::Bool {
         return true;
     }
     if to.is_float() {
         // A mantissa holds the smaller integers exactly.
-        return from.size() < to.size() && to != Lane::Bool;
+        return from.size() < to.size() && to != Repr::Bool;
     }
     let widens = from.size() < to.size();
     from.is_integer() && to.is_integer() && widens && (from.is_unsigned() || to.is_signed())

@@ -2,7 +2,7 @@
 
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
-use staunch_ir::{Address, Area, FieldId, Lane, Projection, Type, Variable, View};
+use staunch_ir::{Address, Area, FieldId, Projection, Repr, Type, Variable, View};
 
 use crate::emitter::Emitter;
 
@@ -23,10 +23,10 @@ enum Way {
     Down,
 }
 
-/// Storage of a lane.
+/// Storage of a repr.
 struct Unit {
     place: TokenStream,
-    lane: Lane,
+    repr: Repr,
     is_enumeration: bool,
     /// It lies in a cell.
     is_cell: bool,
@@ -85,14 +85,14 @@ impl Emitter<'_> {
         let own = fields.filter_map(|(at, field)| {
             let name = self.names.field(globals, FieldId::next(at));
             let is_enumeration = matches!(field.ty, Type::Enum(_));
-            let unit = Unit { is_enumeration, ..self.unit(quote!(self.#name), self.program.lane(field.ty)?) };
+            let unit = Unit { is_enumeration, ..self.unit(quote!(self.#name), self.program.repr(field.ty)?) };
             Some(Io { variable: &field.name, address: field.address?, units: vec![unit], shared: None })
         });
         own.chain(self.program.aliases.iter().filter_map(|it| self.view(it))).collect()
     }
 
-    fn unit(&self, place: TokenStream, lane: Lane) -> Unit {
-        Unit { place, lane, is_enumeration: false, is_cell: self.shared }
+    fn unit(&self, place: TokenStream, repr: Repr) -> Unit {
+        Unit { place, repr, is_enumeration: false, is_cell: self.shared }
     }
 
     /// A variable that shares its bits with another one.
@@ -101,14 +101,14 @@ impl Emitter<'_> {
         let Some(Projection::Field(field)) = variable.place.projections.first() else { return None };
         let name = self.names.field(self.program.globals, *field);
         let Type::Array(id) = variable.place.ty else {
-            let unit = self.unit(quote!(self.#name), self.program.lane(variable.place.ty)?);
+            let unit = self.unit(quote!(self.#name), self.program.repr(variable.place.ty)?);
             return Some(Io { variable: &variable.name, address, units: vec![unit], shared: Some(bit) });
         };
-        let lane = self.program.lane(self.program.array(id).element)?;
-        let size = u64::from(lane.size()) * 8;
+        let repr = self.program.repr(self.program.array(id).element)?;
+        let size = u64::from(repr.size()) * 8;
         let unit = |number: u64| {
             let position = Literal::u64_unsuffixed(bit / size + number);
-            self.unit(quote!(self.#name[#position]), lane)
+            self.unit(quote!(self.#name[#position]), repr)
         };
         let count = u64::from(address.width).div_ceil(size);
         let shared = (u64::from(address.width) < size).then_some(bit % size);
@@ -183,7 +183,7 @@ fn shifted(bits: TokenStream, way: Way, by: u64) -> TokenStream {
 
 impl Unit {
     fn bits(&self) -> u64 {
-        u64::from(self.lane.size()) * 8
+        u64::from(self.repr.size()) * 8
     }
 
     fn number(&self, place: TokenStream) -> TokenStream {
@@ -193,14 +193,14 @@ impl Unit {
     fn read(&self) -> TokenStream {
         let place = &self.place;
         let place = self.number(if self.is_cell { quote!(#place.get()) } else { quote!(#place) });
-        match self.lane {
-            Lane::Bool | Lane::U8 | Lane::U16 | Lane::U32 => quote!(u64::from(#place)),
-            Lane::U64 => quote!(#place),
-            Lane::I64 => quote!((#place as u64)),
-            Lane::F32 => quote!(u64::from(#place.to_bits())),
-            Lane::F64 => quote!(#place.to_bits()),
-            Lane::I8 | Lane::I16 | Lane::I32 => {
-                let unsigned = format_ident!("u{}", self.lane.size() * 8);
+        match self.repr {
+            Repr::Bool | Repr::U8 | Repr::U16 | Repr::U32 => quote!(u64::from(#place)),
+            Repr::U64 => quote!(#place),
+            Repr::I64 => quote!((#place as u64)),
+            Repr::F32 => quote!(u64::from(#place.to_bits())),
+            Repr::F64 => quote!(#place.to_bits()),
+            Repr::I8 | Repr::I16 | Repr::I32 => {
+                let unsigned = format_ident!("u{}", self.repr.size() * 8);
                 quote!(u64::from(#place as #unsigned))
             }
         }
@@ -213,14 +213,14 @@ impl Unit {
             (true, true) => self.number(quote!(#place.get_mut())),
             (false, _) => self.number(quote!(#place)),
         };
-        let value = match self.lane {
-            Lane::Bool => quote!(bits & 1 == 1),
-            Lane::U64 => quote!(bits),
-            Lane::F32 => quote!(f32::from_bits(bits as u32)),
-            Lane::F64 => quote!(f64::from_bits(bits)),
-            Lane::I8 | Lane::I16 | Lane::I32 | Lane::I64 | Lane::U8 | Lane::U16 | Lane::U32 => {
-                let lane = format_ident!("{}", self.lane.rust_name());
-                quote!(bits as #lane)
+        let value = match self.repr {
+            Repr::Bool => quote!(bits & 1 == 1),
+            Repr::U64 => quote!(bits),
+            Repr::F32 => quote!(f32::from_bits(bits as u32)),
+            Repr::F64 => quote!(f64::from_bits(bits)),
+            Repr::I8 | Repr::I16 | Repr::I32 | Repr::I64 | Repr::U8 | Repr::U16 | Repr::U32 => {
+                let repr = format_ident!("{}", self.repr.rust_name());
+                quote!(bits as #repr)
             }
         };
         quote!(#place = #value)

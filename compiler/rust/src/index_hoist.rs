@@ -20,7 +20,7 @@ pub struct HoistedIndex {
     pub name: Ident,
 }
 
-/// Where a counter stands as an index of arrays of one kind of bounds.
+/// Where a counter is as an index of arrays of one kind of bounds.
 struct Use {
     index: Expr,
     array: ArrayId,

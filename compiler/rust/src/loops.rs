@@ -125,17 +125,17 @@ impl Function<'_> {
         match &it.step {
             Step::Constant(step) if *step > 0 => quote!(#counter <= #last),
             Step::Constant(_) => quote!(#counter >= #last),
-            Step::Variable(_) if !self.lane(it.counter.ty).is_signed() => quote!(#counter <= #last),
+            Step::Variable(_) if !self.repr(it.counter.ty).is_signed() => quote!(#counter <= #last),
             Step::Variable(_) => quote!(if #step > 0 { #counter <= #last } else { #counter >= #last }),
         }
     }
 
     /// Steps the counter at the end of a turn, or leaves the loop.
     fn step(&self, it: &For, last: &TokenStream, step: &TokenStream, at: Location) -> TokenStream {
-        let lane = self.lane(it.counter.ty);
+        let repr = self.repr(it.counter.ty);
         let counter = self.load(&it.counter);
         let counter = counter.at_least(Level::Postfix);
-        if lane.range() != Some(it.range) && it.may_leave_range() {
+        if repr.range() != Some(it.range) && it.may_leave_range() {
             let step = match &it.step {
                 Step::Constant(step) => Literal::i128_unsuffixed(*step).into_token_stream(),
                 Step::Variable(_) => quote!(i128::from(#step)),
@@ -200,12 +200,12 @@ impl Function<'_> {
     }
 
     pub fn leave(&self) -> TokenStream {
-        let labels = self.loops.around.last().expect("verified IR: EXIT stands in a loop");
+        let labels = self.loops.around.last().expect("verified IR: EXIT is in a loop");
         labels.leave.clone()
     }
 
     pub fn next(&self) -> TokenStream {
-        let labels = self.loops.around.last().expect("verified IR: CONTINUE stands in a loop");
+        let labels = self.loops.around.last().expect("verified IR: CONTINUE is in a loop");
         labels.next.clone()
     }
 }

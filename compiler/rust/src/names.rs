@@ -313,7 +313,7 @@ fn words(name: &str) -> Vec<String> {
     words
 }
 
-/// Whether a letter may stand in a Rust identifier.
+/// Whether a letter may be in a Rust identifier.
 fn fits(letter: char) -> bool {
     letter.is_ascii_alphanumeric()
         || letter == '_'

@@ -1,4 +1,4 @@
-//! Places: a root and the way from it. A subscript is checked where it stands.
+//! Places: a root and the way from it. A subscript is checked where it is.
 
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;

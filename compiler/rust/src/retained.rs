@@ -140,10 +140,10 @@ impl Walk<'_> {
             Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) if !fate.is_kept() => {
                 TokenStream::new()
             }
-            Type::Elementary(it) => self.value(place, path, it.name(), it.lane().size()),
+            Type::Elementary(it) => self.value(place, path, it.name(), it.repr().size()),
             Type::Subrange(it, bounds) => {
                 let (low, high) = self.emitter.program.bounds(bounds);
-                self.value(place, path, &format!("{}({low}..{high})", it.name()), it.lane().size());
+                self.value(place, path, &format!("{}({low}..{high})", it.name()), it.repr().size());
                 let (place, low, high) = (place.borrowed(), signed(low, "").tokens, signed(high, "").tokens);
                 quote!(carrier.within(#place, #low, #high);)
             }
@@ -152,7 +152,7 @@ impl Walk<'_> {
                 self.value(place, path, &format!("STRING[{capacity}]"), size)
             }
             Type::Enum(id) => {
-                let (ty, size) = (self.enumeration(id), self.emitter.program.enumeration(id).base.lane().size());
+                let (ty, size) = (self.enumeration(id), self.emitter.program.enumeration(id).base.repr().size());
                 let number = &place.tokens;
                 let number = Target { tokens: quote!(#number.0), is_reference: false };
                 self.value(&number, path, &ty, size)

@@ -56,9 +56,9 @@ impl Emitter<'_> {
 
     fn wanted(&self, ty: Type) -> TokenStream {
         match wanted(self.program, ty) {
-            Wanted::Lane(lane) => {
-                let lane = format_ident!("{lane:?}");
-                quote!(reference::Wanted::Lane(reference::Lane::#lane))
+            Wanted::Repr(repr) => {
+                let repr = format_ident!("{repr:?}");
+                quote!(reference::Wanted::Repr(reference::Repr::#repr))
             }
             Wanted::Text(capacity) => {
                 let capacity = number(capacity.into());
@@ -136,9 +136,9 @@ impl Function<'_> {
             let capacity = number(capacity.into());
             return Some(Code::postfix(quote!(REFERENCES.string::<#capacity>(machine, #reference, #distance) #at?)));
         }
-        let lane = ident(program.lane(place.ty)?.rust_name());
+        let repr = ident(program.repr(place.ty)?.rust_name());
         let ((reference, distance), view) = (self.way(&it), self.emitter.seen_as(place.ty));
-        let value = quote!(REFERENCES.load::<#lane>(machine, #reference, #distance, #view) #at?);
+        let value = quote!(REFERENCES.load::<#repr>(machine, #reference, #distance, #view) #at?);
         Some(Code::postfix(match place.ty {
             Type::Enum(id) => {
                 let name = self.emitter.names.enumeration(id);
@@ -164,10 +164,10 @@ impl Function<'_> {
                 }
             });
         }
-        let lane = ident(program.lane(place.ty)?.rust_name());
+        let repr = ident(program.repr(place.ty)?.rust_name());
         let ((reference, distance), view) = (self.way(&it), self.emitter.seen_as(place.ty));
         let value = if matches!(place.ty, Type::Enum(_)) { quote!((#value).0) } else { value.clone() };
-        Some(quote!(REFERENCES.store::<#lane>(machine, #reference, #distance, #view, #value) #at?;))
+        Some(quote!(REFERENCES.store::<#repr>(machine, #reference, #distance, #view, #value) #at?;))
     }
 
     /// The variable behind a reference, as `&T`.

@@ -3,7 +3,7 @@
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 use staunch_ir::{
-    Argument, Arm, Block, Expr, ExprKind, Lane, Location, Place, Root, RoutineId, RoutineKind, Statement,
+    Argument, Arm, Block, Expr, ExprKind, Location, Place, Repr, Root, RoutineId, RoutineKind, Statement,
     StatementKind, Type,
 };
 
@@ -162,7 +162,7 @@ impl Function<'_> {
     }
 
     fn case(&mut self, selector: &Expr, arms: &[Arm], otherwise: &Block) -> TokenStream {
-        let lane = self.lane(selector.ty);
+        let repr = self.repr(selector.ty);
         let named = match selector.ty {
             Type::Enum(_) => arms.iter().flat_map(|arm| &arm.labels).all(|(first, last)| first == last),
             Type::Elementary(_)
@@ -185,7 +185,7 @@ impl Function<'_> {
             return quote!(let _ = #on; #otherwise);
         }
         if let [Arm { labels, body }] = arms {
-            let pattern = self.pattern(labels, lane, labelled);
+            let pattern = self.pattern(labels, repr, labelled);
             let condition = match labels.as_slice() {
                 [(first, last)] if first == last => quote!(#on == #pattern),
                 _ => quote!(matches!(#on, #pattern)),
@@ -199,10 +199,10 @@ impl Function<'_> {
         }
         let mut printed = Vec::with_capacity(arms.len());
         for arm in arms {
-            let (pattern, body) = (self.pattern(&arm.labels, lane, labelled), self.block(&arm.body));
+            let (pattern, body) = (self.pattern(&arm.labels, repr, labelled), self.block(&arm.body));
             printed.push(quote!(#pattern => { #body }));
         }
-        let rest = (named || !covers(arms, lane)).then(|| {
+        let rest = (named || !covers(arms, repr)).then(|| {
             let otherwise = self.block(otherwise);
             quote!(_ => { #otherwise })
         });
@@ -210,12 +210,12 @@ impl Function<'_> {
     }
 
     /// Labels as a pattern; by name if the selector is of an enumeration.
-    fn pattern(&self, labels: &[(i128, i128)], lane: Lane, named: Option<Type>) -> TokenStream {
+    fn pattern(&self, labels: &[(i128, i128)], repr: Repr, named: Option<Type>) -> TokenStream {
         let value = |number: i128| -> TokenStream {
-            let value = lane.integer(number).expect("verified IR: a label fits its selector");
+            let value = repr.integer(number).expect("verified IR: a label fits its selector");
             match named {
                 Some(Type::Enum(id)) => self.emitter.enum_value(id, value).tokens,
-                Some(_) | None => literal(plain(lane), value, false).tokens,
+                Some(_) | None => literal(plain(repr), value, false).tokens,
             }
         };
         let labels = labels.iter().map(|(first, last)| {
@@ -288,8 +288,8 @@ fn block_of(place: &Place) -> &'static staunch_runtime::BlockInfo {
 }
 
 /// Whether the labels leave no value over.
-fn covers(arms: &[Arm], lane: Lane) -> bool {
-    let Some((least, greatest)) = lane.range() else { return false };
+fn covers(arms: &[Arm], repr: Repr) -> bool {
+    let Some((least, greatest)) = repr.range() else { return false };
     let held: i128 = arms.iter().flat_map(|arm| &arm.labels).map(|(first, last)| last - first + 1).sum();
     held == greatest - least + 1
 }

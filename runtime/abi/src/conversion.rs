@@ -1,10 +1,10 @@
-//! A shim for each conversion from lane to lane.
+//! A shim for each conversion from repr to repr.
 
 use staunch_runtime::ops;
 
 macro_rules! shims {
     ($each:ident $function:ident $from:ident: $($to:ident)*) => { $({
-        // SAFETY: the prefix belongs to this crate, and a pair of lanes comes once.
+        // SAFETY: the prefix belongs to this crate, and a pair of reprs comes once.
         #[unsafe(export_name = concat!("staunch_", stringify!($function), "_", stringify!($from), "_", stringify!($to)))]
         extern "C" fn shim(value: $from) -> $to {
             ops::$function::<$from, $to>(value)

@@ -3,7 +3,7 @@
 //!
 //! Symbols and signatures (a BOOL is a byte that is 0 or 1):
 //!
-//! - `staunch_{function}_{lane}`: a row of the operation table. A total one takes its operands and
+//! - `staunch_{function}_{repr}`: a row of the operation table. A total one takes its operands and
 //!   returns its result; one that may fault has an out pointer after its operands and returns 0,
 //!   or the fault's code and leaves the result alone.
 //! - `staunch_convert_{from}_{to}`, `staunch_trunc_{from}_{to}`: conversions.

@@ -4,7 +4,7 @@
 
 use std::collections::HashMap;
 
-use staunch_runtime::{BLOCKS, BlockInfo, Context, Direction, FaultKind, Lane, Text, Value, for_each_op, with_lane};
+use staunch_runtime::{BLOCKS, BlockInfo, Context, Direction, FaultKind, Repr, Text, Value, for_each_op, with_repr};
 
 fn symbols() -> HashMap<&'static str, *const u8> {
     let mut symbols = HashMap::new();
@@ -70,18 +70,18 @@ fn strings_pass_by_header() {
     }
 }
 
-/// The rows of the operation table, each as often as its `T` has lanes.
+/// The rows of the operation table, each as often as its `T` has reprs.
 macro_rules! count_operations {
     ($($op:ident $source:literal $function:ident ($($arg:ident: $ty:ident),*) -> $result:ident
-        [$class:ident as $lanes:ident] $outcome:ident $($extensible:ident)?;)*) => {
-        0 $(+ Lane::ALL.iter().filter(|it| with_lane!($lanes **it, T => size_of::<T>() > 0, false)).count())*
+        [$class:ident as $reprs:ident] $outcome:ident $($extensible:ident)?;)*) => {
+        0 $(+ Repr::ALL.iter().filter(|it| with_repr!($reprs **it, T => size_of::<T>() > 0, false)).count())*
     };
 }
 
 #[test]
 fn every_symbol_is_listed() {
     let symbols = symbols();
-    // Pairs of lanes.
+    // Pairs of reprs.
     let conversions = 11 * 11 + 2 * 8;
     let strings = 10 + 1;
     let instructions = BLOCKS.iter().flat_map(|block| block.instructions);
@@ -124,7 +124,7 @@ fn instructions_do_what_the_interpreter_does() {
                 shim(native.bytes().as_mut_ptr(), &now, rung);
                 (instruction.run)(interpreted.bytes(), &now, rung);
                 for pin in block.pins {
-                    let read = |instance: &mut Instance| Value::read(pin.lane(), &instance.bytes()[pin.offset..]);
+                    let read = |instance: &mut Instance| Value::read(pin.repr(), &instance.bytes()[pin.offset..]);
                     assert_eq!(read(&mut native), read(&mut interpreted), "{block:?}.{}", pin.name);
                 }
             }
@@ -136,7 +136,7 @@ fn instructions_do_what_the_interpreter_does() {
 fn set_inputs(block: &BlockInfo, random: &mut u32, native: &mut [u8], interpreted: &mut [u8]) {
     let is_set = |direction| matches!(direction, Direction::Input | Direction::Member);
     for pin in block.pins.iter().filter(|pin| is_set(pin.direction) && pin.name != "ACC") {
-        let value = pin.lane().integer(i128::from(next(random) % 2)).unwrap();
+        let value = pin.repr().integer(i128::from(next(random) % 2)).unwrap();
         value.write(&mut native[pin.offset..]);
         value.write(&mut interpreted[pin.offset..]);
     }

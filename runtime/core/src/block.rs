@@ -1,4 +1,4 @@
-use crate::{Context, Elementary, Family, Lane, Scalar, Time, Value};
+use crate::{Context, Elementary, Family, Repr, Scalar, Time, Value};
 
 /// Which way a member of a block faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -187,8 +187,8 @@ pub trait Block: Copy + Default {
 
 impl Pin {
     /// How its values are carried.
-    pub const fn lane(&self) -> Lane {
-        self.ty.lane()
+    pub const fn repr(&self) -> Repr {
+        self.ty.repr()
     }
 
     pub fn is_named(&self, name: &str) -> bool {
@@ -249,7 +249,7 @@ impl core::fmt::Debug for Prescan {
     }
 }
 
-/// The fields of a block are scalars; these read and write one through its lane.
+/// The fields of a block are scalars; these read and write one through its repr.
 pub(crate) fn load_field<T: Scalar>(bytes: &[u8], offset: usize) -> T {
     T::from_value(Value::read(T::LANE, &bytes[offset..])).unwrap_or_default()
 }
@@ -347,7 +347,7 @@ pub(crate) const fn retyped<const N: usize>(pins: &[Pin], types: &[(Elementary, 
         let mut row = 0;
         while row < types.len() {
             let (from, to) = types[row];
-            assert!(from.lane() as u8 == to.lane() as u8, "a type is carried otherwise");
+            assert!(from.repr() as u8 == to.repr() as u8, "a type is carried otherwise");
             if pins[at].ty as u8 == from as u8 {
                 retyped[at].ty = to;
                 used += 1;

@@ -1,15 +1,15 @@
 //! The elementary types of IEC 61131-3, and the classes that its generic functions name.
 
-use crate::{Lane, time};
+use crate::{Repr, time};
 
 macro_rules! elementary {
-    ($($(#[$doc:meta])* $ty:ident $name:ident $rust:ident $lane:ident $class:ident;)*) => {
+    ($($(#[$doc:meta])* $ty:ident $name:ident $rust:ident $repr:ident $class:ident;)*) => {
         /// An elementary type that a scalar carries. Ordered as the standard lists them (table 10).
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Elementary { $($(#[$doc])* $ty),* }
 
         impl Elementary {
-            pub const ALL: [Self; { [$(Lane::$lane),*].len() }] = [$(Self::$ty),*];
+            pub const ALL: [Self; { [$(Repr::$repr),*].len() }] = [$(Self::$ty),*];
 
             /// The IEC keyword.
             pub const fn name(self) -> &'static str {
@@ -17,8 +17,8 @@ macro_rules! elementary {
             }
 
             /// How its values are carried.
-            pub const fn lane(self) -> Lane {
-                match self { $(Self::$ty => Lane::$lane),* }
+            pub const fn repr(self) -> Repr {
+                match self { $(Self::$ty => Repr::$repr),* }
             }
 
             /// The narrowest class that it belongs to.
@@ -147,20 +147,20 @@ impl Elementary {
         short().or_else(long)
     }
 
-    /// The type that counts or calculates in a lane; BOOL for a `bool`.
-    pub const fn number(lane: Lane) -> Self {
-        match lane {
-            Lane::Bool => Self::Bool,
-            Lane::I8 => Self::Sint,
-            Lane::I16 => Self::Int,
-            Lane::I32 => Self::Dint,
-            Lane::I64 => Self::Lint,
-            Lane::U8 => Self::Usint,
-            Lane::U16 => Self::Uint,
-            Lane::U32 => Self::Udint,
-            Lane::U64 => Self::Ulint,
-            Lane::F32 => Self::Real,
-            Lane::F64 => Self::Lreal,
+    /// The type that counts or calculates in a repr; BOOL for a `bool`.
+    pub const fn number(repr: Repr) -> Self {
+        match repr {
+            Repr::Bool => Self::Bool,
+            Repr::I8 => Self::Sint,
+            Repr::I16 => Self::Int,
+            Repr::I32 => Self::Dint,
+            Repr::I64 => Self::Lint,
+            Repr::U8 => Self::Usint,
+            Repr::U16 => Self::Uint,
+            Repr::U32 => Self::Udint,
+            Repr::U64 => Self::Ulint,
+            Repr::F32 => Self::Real,
+            Repr::F64 => Self::Lreal,
         }
     }
 

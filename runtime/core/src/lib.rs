@@ -11,7 +11,7 @@ mod context;
 mod crc;
 mod elementary;
 mod fault;
-mod lane;
+mod repr;
 
 mod op_table;
 pub mod ops;
@@ -44,8 +44,8 @@ pub use crc::{Crc32, crc32};
 pub use elementary::{Class, Elementary};
 pub use family::{Family, Keeps};
 pub use fault::{Fault, FaultKind, FaultOf, Location, OrFault, Outcome};
-pub use lane::{Lane, Scalar, Value};
 pub use reference::Reference;
+pub use repr::{Repr, Scalar, Value};
 pub use signature::{Kind, Parameter, Signature};
 pub use text::Text;
 pub use time::Time;

@@ -4,7 +4,7 @@
 /// `staunch-runtime-abi` expands it into the C symbols that native code calls.
 ///
 /// The parameters are named as in the standard's tables. `T` is the one type of all operands that
-/// are `T`: in brackets stands its class, and the lanes that the operation exists at (`with_lane!`
+/// are `T`: in brackets is its class, and the reprs that the operation exists at (`with_repr!`
 /// lists them; they reach beyond the class where a dialect does). `faults` marks a function that
 /// returns `Result<_, FaultKind>`; a `total` one returns its value. An `extensible` one takes more
 /// operands of its last parameter's kind.
@@ -12,7 +12,7 @@
 macro_rules! for_each_op {
     ($expand:ident) => {
         $expand! {
-            // IR name  source     function       parameters                   result  T at lanes                 outcome
+            // IR name  source     function       parameters                   result  T at reprs                 outcome
             Add         "ADD"      add        (IN1: T, IN2: T) -> T                  [ANY_MAGNITUDE as number]    total extensible;
             Sub         "SUB"      sub        (IN1: T, IN2: T) -> T                  [ANY_MAGNITUDE as number]    total;
             Mul         "MUL"      mul        (IN1: T, IN2: T) -> T                  [ANY_MAGNITUDE as number]    total extensible;
@@ -73,37 +73,37 @@ macro_rules! for_each_op {
     };
 }
 
-/// Runs `$body` with `type $T` set to the lane's primitive, for the lanes of a class; `$other`
-/// for every other lane.
+/// Runs `$body` with `type $T` set to the repr's primitive, for the reprs of a class; `$other`
+/// for every other repr.
 #[macro_export]
-macro_rules! with_lane {
-    (any $lane:expr, $T:ident => $body:expr, $other:expr) => {
-        $crate::with_lane!(@ $lane, $T, $body, $other, []
+macro_rules! with_repr {
+    (any $repr:expr, $T:ident => $body:expr, $other:expr) => {
+        $crate::with_repr!(@ $repr, $T, $body, $other, []
             Bool bool, I8 i8, I16 i16, I32 i32, I64 i64, U8 u8, U16 u16, U32 u32, U64 u64, F32 f32, F64 f64)
     };
-    (number $lane:expr, $T:ident => $body:expr, $other:expr) => {
-        $crate::with_lane!(@ $lane, $T, $body, $other, [Bool]
+    (number $repr:expr, $T:ident => $body:expr, $other:expr) => {
+        $crate::with_repr!(@ $repr, $T, $body, $other, [Bool]
             I8 i8, I16 i16, I32 i32, I64 i64, U8 u8, U16 u16, U32 u32, U64 u64, F32 f32, F64 f64)
     };
-    (integer $lane:expr, $T:ident => $body:expr, $other:expr) => {
-        $crate::with_lane!(@ $lane, $T, $body, $other, [Bool F32 F64]
+    (integer $repr:expr, $T:ident => $body:expr, $other:expr) => {
+        $crate::with_repr!(@ $repr, $T, $body, $other, [Bool F32 F64]
             I8 i8, I16 i16, I32 i32, I64 i64, U8 u8, U16 u16, U32 u32, U64 u64)
     };
-    (real $lane:expr, $T:ident => $body:expr, $other:expr) => {
-        $crate::with_lane!(@ $lane, $T, $body, $other, [Bool I8 I16 I32 I64 U8 U16 U32 U64]
+    (real $repr:expr, $T:ident => $body:expr, $other:expr) => {
+        $crate::with_repr!(@ $repr, $T, $body, $other, [Bool I8 I16 I32 I64 U8 U16 U32 U64]
             F32 f32, F64 f64)
     };
-    (long $lane:expr, $T:ident => $body:expr, $other:expr) => {
-        $crate::with_lane!(@ $lane, $T, $body, $other, [Bool I8 I16 I32 U8 U16 U32 U64 F32 F64] I64 i64)
+    (long $repr:expr, $T:ident => $body:expr, $other:expr) => {
+        $crate::with_repr!(@ $repr, $T, $body, $other, [Bool I8 I16 I32 U8 U16 U32 U64 F32 F64] I64 i64)
     };
-    (bits $lane:expr, $T:ident => $body:expr, $other:expr) => {
-        $crate::with_lane!(@ $lane, $T, $body, $other, [F32 F64]
+    (bits $repr:expr, $T:ident => $body:expr, $other:expr) => {
+        $crate::with_repr!(@ $repr, $T, $body, $other, [F32 F64]
             Bool bool, I8 i8, I16 i16, I32 i32, I64 i64, U8 u8, U16 u16, U32 u32, U64 u64)
     };
-    (@ $lane:expr, $T:ident, $body:expr, $other:expr, [$($without:ident)*] $($name:ident $rust:ident),*) => {
-        match $lane {
-            $($crate::Lane::$name => { type $T = $rust; $body })*
-            $($crate::Lane::$without => $other,)*
+    (@ $repr:expr, $T:ident, $body:expr, $other:expr, [$($without:ident)*] $($name:ident $rust:ident),*) => {
+        match $repr {
+            $($crate::Repr::$name => { type $T = $rust; $body })*
+            $($crate::Repr::$without => $other,)*
         }
     };
 }

@@ -17,7 +17,7 @@ pub use crate::{shared, shared_enumeration};
 pub use memory::{Memory, Raw, Shared, find, inside, offset, this};
 pub use table::{Part, Table, View, Wanted, encode};
 
-pub use crate::Lane;
+pub use crate::Repr;
 use crate::{FaultKind, Scalar, Text, Value};
 
 /// What a variable of a reference type holds: the object's number in the upper half, from 1, and the
@@ -68,12 +68,12 @@ impl<'t> Table<'t> {
         bits: u64,
         distance: u64,
         view: View,
-        lane: Lane,
+        repr: Repr,
     ) -> Result<Value, FaultKind> {
         let mut bytes = [0; 8];
-        let wanted = bytes.get_mut(..lane.size() as usize).unwrap_or_default();
+        let wanted = bytes.get_mut(..repr.size() as usize).unwrap_or_default();
         self.load_bytes(memory, bits, distance, view, wanted)?;
-        Ok(Value::read(lane, &bytes))
+        Ok(Value::read(repr, &bytes))
     }
 
     /// Reads as many bytes as a value of the view has; a BOOL is 0 or 1.
@@ -120,7 +120,7 @@ impl<'t> Table<'t> {
     ) -> Result<(), FaultKind> {
         let mut bytes = [0; 8];
         value.write(&mut bytes);
-        let size = value.lane().size() as usize;
+        let size = value.repr().size() as usize;
         self.store_bytes(memory, bits, distance, view, bytes.get(..size).unwrap_or_default())
     }
 

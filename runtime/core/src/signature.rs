@@ -1,6 +1,6 @@
 //! What a standard function takes and gives, as the standard's tables write it.
 
-use crate::{Class, Elementary, Lane};
+use crate::{Class, Elementary, Repr};
 
 /// The signature of a standard function.
 #[derive(Clone, Copy, Debug)]
@@ -35,11 +35,11 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// The lane of what is not `T` and not a string. Where any integer is taken, a LINT comes in.
-    pub const fn lane(self) -> Option<Lane> {
+    /// The repr of what is not `T` and not a string. Where any integer is taken, a LINT comes in.
+    pub const fn repr(self) -> Option<Repr> {
         match self {
-            Self::Is(ty) => Some(ty.lane()),
-            Self::Any(_) => Some(Lane::I64),
+            Self::Is(ty) => Some(ty.repr()),
+            Self::Any(_) => Some(Repr::I64),
             Self::T | Self::String => None,
         }
     }

@@ -272,14 +272,14 @@ fn the_blocks_follow_the_rules() {
 
 fn random_calls(block: &BlockInfo, rules: Rules, dice: &mut dyn FnMut(u64) -> u64) {
     let count = block.pin_for(PinRole::Count).unwrap();
-    let limits = count.lane().range().unwrap();
+    let limits = count.repr().range().unwrap();
     let near = |dice: &mut dyn FnMut(u64) -> u64| {
         let around = [limits.0, 0, limits.1][dice(3) as usize];
         (around + i128::from(dice(7)) - 3).clamp(limits.0, limits.1)
     };
     let mut instance = vec![0; block.size];
     let start = near(dice);
-    count.lane().integer(start).unwrap().write(&mut instance[count.offset..]);
+    count.repr().integer(start).unwrap().write(&mut instance[count.offset..]);
     let mut counter = Counter {
         rules,
         limits,
@@ -307,7 +307,7 @@ fn random_calls(block: &BlockInfo, rules: Rules, dice: &mut dyn FnMut(u64) -> u6
             }
         }
         let pin = block.pin_for(PinRole::Preset).unwrap();
-        pin.lane().integer(preset).unwrap().write(&mut instance[pin.offset..]);
+        pin.repr().integer(preset).unwrap().write(&mut instance[pin.offset..]);
         (block.instructions[0].run)(&mut instance, &Context::at(0), false);
         counter.call(&Inputs { up, down, reset, load, preset });
         let both = block.pin_for(PinRole::Empty).is_some();
@@ -317,7 +317,7 @@ fn random_calls(block: &BlockInfo, rules: Rules, dice: &mut dyn FnMut(u64) -> u6
             [(PinRole::Count, counter.count), (PinRole::Done, done.into()), (PinRole::Empty, counter.empty.into())];
         for (role, expected) in expected {
             if let Some(pin) = block.pin_for(role) {
-                let found = Value::read(pin.lane(), &instance[pin.offset..]);
+                let found = Value::read(pin.repr(), &instance[pin.offset..]);
                 let found = found.as_integer().unwrap_or_else(|| i128::from(found == Value::Bool(true)));
                 assert_eq!(found, expected, "{block:?}.{}", pin.name);
             }

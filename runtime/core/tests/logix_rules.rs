@@ -304,13 +304,13 @@ fn block(name: &str) -> &'static BlockInfo {
 
 fn write(instance: &mut [u8], block: &BlockInfo, member: &str, value: i128) {
     let pin = block.pin(member).unwrap();
-    let value = pin.lane().integer(value).unwrap_or(Value::Bool(value != 0));
+    let value = pin.repr().integer(value).unwrap_or(Value::Bool(value != 0));
     value.write(&mut instance[pin.offset..]);
 }
 
 fn read(instance: &[u8], block: &BlockInfo, member: &str) -> i128 {
     let pin = block.pin(member).unwrap();
-    let value = Value::read(pin.lane(), &instance[pin.offset..]);
+    let value = Value::read(pin.repr(), &instance[pin.offset..]);
     value.as_integer().unwrap_or_else(|| i128::from(value == Value::Bool(true)))
 }
 

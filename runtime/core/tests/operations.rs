@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use staunch_runtime::ops::*;
-use staunch_runtime::{Fault, FaultKind, Lane, Location, OrFault, Value};
+use staunch_runtime::{Fault, FaultKind, Location, OrFault, Repr, Value};
 
 macro_rules! for_integers {
     ($($T:ident)*; $test:ident) => { $($test::<$T>($T::MIN, $T::MAX, 0, 1);)* };
@@ -128,13 +128,13 @@ fn other_conversions_keep_low_bits_or_round() {
 }
 
 #[test]
-fn conversions_by_lane_are_the_same() {
-    assert_eq!(convert_value(Value::F32(2.5), Lane::I16), Value::I16(2));
-    assert_eq!(convert_value(Value::I16(-1), Lane::U8), Value::U8(255));
-    assert_eq!(convert_value(Value::Bool(true), Lane::F64), Value::F64(1.0));
-    assert_eq!(trunc_value(Value::F64(-2.9), Lane::I64), Value::I64(-2));
-    for lane in Lane::ALL {
-        assert_eq!(convert_value(Value::U8(1), lane).lane(), lane);
+fn conversions_by_repr_are_the_same() {
+    assert_eq!(convert_value(Value::F32(2.5), Repr::I16), Value::I16(2));
+    assert_eq!(convert_value(Value::I16(-1), Repr::U8), Value::U8(255));
+    assert_eq!(convert_value(Value::Bool(true), Repr::F64), Value::F64(1.0));
+    assert_eq!(trunc_value(Value::F64(-2.9), Repr::I64), Value::I64(-2));
+    for repr in Repr::ALL {
+        assert_eq!(convert_value(Value::U8(1), repr).repr(), repr);
     }
 }
 

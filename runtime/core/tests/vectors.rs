@@ -7,7 +7,7 @@
 use std::collections::HashSet;
 
 use serde_json::{Map, Value as Json};
-use staunch_runtime::{BLOCKS, BlockInfo, Context, Direction, Family, Instruction, Lane, Value};
+use staunch_runtime::{BLOCKS, BlockInfo, Context, Direction, Family, Instruction, Repr, Value};
 
 const TABLES: usize = 122;
 
@@ -57,7 +57,7 @@ impl<'a> Table<'a> {
             self.run_row(object(&row["inputs"]));
             for (pin, expected) in object(&row["expect"]) {
                 let found = if pin == "RCV" { self.rcv.unwrap() } else { self.get(pin) };
-                if found != value(found.lane(), expected) {
+                if found != value(found.repr(), expected) {
                     let id = &self.json["id"];
                     failures.push(format!("{id} row {}: {pin} is {found:?}, not {expected}", number + 1));
                 }
@@ -124,8 +124,8 @@ impl<'a> Table<'a> {
     fn set_all(&mut self, pins: &Map<String, Json>) {
         for (name, json) in pins {
             if !["ctu", "ctd", "res", "prescan", "firstscan"].contains(&name.as_str()) {
-                let lane = self.block.pin(name).unwrap_or_else(|| panic!("no pin {name}")).lane();
-                self.put(name, value(lane, json));
+                let repr = self.block.pin(name).unwrap_or_else(|| panic!("no pin {name}")).repr();
+                self.put(name, value(repr, json));
             }
         }
     }
@@ -137,7 +137,7 @@ impl<'a> Table<'a> {
 
     fn get(&self, pin: &str) -> Value {
         let pin = self.block.pin(pin).unwrap();
-        Value::read(pin.lane(), &self.instance[pin.offset..])
+        Value::read(pin.repr(), &self.instance[pin.offset..])
     }
 }
 
@@ -169,14 +169,14 @@ fn object(json: &Json) -> &Map<String, Json> {
 }
 
 /// Integers above 2^53 are strings.
-fn value(lane: Lane, json: &Json) -> Value {
+fn value(repr: Repr, json: &Json) -> Value {
     let number = match json {
         Json::Bool(it) => i128::from(*it),
         Json::Number(it) => i128::from(it.as_i64().unwrap()),
         Json::String(it) => it.parse().unwrap(),
         other => panic!("not a value: {other}"),
     };
-    lane.integer(number).unwrap()
+    repr.integer(number).unwrap()
 }
 
 #[test]
@@ -185,8 +185,8 @@ fn pins_lie_as_the_struct_does() {
         let mut end = 0;
         for pin in block.pins {
             assert!(pin.offset >= end, "{block:?}.{} overlaps", pin.name);
-            assert_eq!(pin.offset % pin.lane().size() as usize, 0, "{block:?}.{}", pin.name);
-            end = pin.offset + pin.lane().size() as usize;
+            assert_eq!(pin.offset % pin.repr().size() as usize, 0, "{block:?}.{}", pin.name);
+            end = pin.offset + pin.repr().size() as usize;
         }
         assert!(end <= block.size, "{block:?}");
         let inputs_come_first = block.pins.iter().map(|pin| pin.direction != Direction::Input).is_sorted();

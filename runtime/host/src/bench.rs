@@ -182,7 +182,7 @@ impl Bench<'_> {
         end.map(|()| took)
     }
 
-    /// Scans of one program: as little as can be stands between them.
+    /// Scans of one program: as little as can be is between them.
     fn only(&mut self, count: u64, instance: usize, period: Time) -> Result<(), Error> {
         for _ in 0..count {
             self.write();

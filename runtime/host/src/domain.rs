@@ -2,7 +2,7 @@
 //! host) pass through here, so that compiled code finds values of its variables' types.
 
 use crate::map::{Array, Map, Type, Variable};
-use staunch_runtime::{Lane, Time, Value, ops};
+use staunch_runtime::{Repr, Time, Value, ops};
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -31,7 +31,7 @@ enum Node {
     /// A string of at most this many bytes.
     Text(u16),
     Subrange {
-        lane: Lane,
+        repr: Repr,
         low: i128,
         high: i128,
     },
@@ -109,7 +109,7 @@ impl Domain {
             Node::Day => settle_time(bytes, ops::start_of_day),
             Node::Clock => settle_time(bytes, ops::time_of_day),
             Node::Text(capacity) => settle_text(bytes, *capacity),
-            Node::Subrange { lane, low, high } => settle_number(bytes, *lane, *low, *high),
+            Node::Subrange { repr, low, high } => settle_number(bytes, *repr, *low, *high),
             Node::Array { element, stride, count } => {
                 let elements = Part { size: *stride, node: *element, ..part };
                 self.settle_elements(state, elements, *count, window);
@@ -163,14 +163,14 @@ fn settle_text(bytes: &mut [u8], capacity: u16) {
 }
 
 fn settle_time(bytes: &mut [u8], settled: fn(Time) -> Time) {
-    if let Value::I64(time) = Value::read(Lane::I64, bytes) {
+    if let Value::I64(time) = Value::read(Repr::I64, bytes) {
         Value::I64(settled(time)).write(bytes);
     }
 }
 
-fn settle_number(bytes: &mut [u8], lane: Lane, low: i128, high: i128) {
-    let number = Value::read(lane, bytes).as_integer().map(|it| it.max(low).min(high));
-    if let Some(value) = number.and_then(|it| lane.integer(it)) {
+fn settle_number(bytes: &mut [u8], repr: Repr, low: i128, high: i128) {
+    let number = Value::read(repr, bytes).as_integer().map(|it| it.max(low).min(high));
+    if let Some(value) = number.and_then(|it| repr.integer(it)) {
         value.write(bytes);
     }
 }
@@ -193,10 +193,10 @@ impl Builder<'_> {
             return *known;
         }
         let node = match ty {
-            Type::Elementary(it) if it.lane() == Lane::Bool => self.push(Node::Bool),
+            Type::Elementary(it) if it.repr() == Repr::Bool => self.push(Node::Bool),
             Type::Elementary(it) if it.is_day() => self.push(Node::Day),
             Type::Elementary(it) if it.is_time_of_day() => self.push(Node::Clock),
-            Type::Elementary(it) => self.number(it.lane(), range),
+            Type::Elementary(it) => self.number(it.repr(), range),
             // Each use of a reference is checked.
             Type::Enum(_) | Type::Bit(_) | Type::Reference => self.push(Node::Any),
             Type::String(capacity) => self.push(Node::Text(capacity)),
@@ -215,9 +215,9 @@ impl Builder<'_> {
         self.nodes.len() - 1
     }
 
-    fn number(&mut self, lane: Lane, range: Bounds) -> usize {
+    fn number(&mut self, repr: Repr, range: Bounds) -> usize {
         self.push(match range {
-            Some((low, high)) => Node::Subrange { lane, low, high },
+            Some((low, high)) => Node::Subrange { repr, low, high },
             None => Node::Any,
         })
     }

@@ -79,12 +79,12 @@ impl Garage {
     pub fn read(&self, path: &str) -> Value {
         let place = path::resolve(&map(), &[0], path).unwrap();
         let crate::Type::Elementary(it) = place.ty else { panic!("{path}") };
-        Value::read(it.lane(), &self.state[place.offset..])
+        Value::read(it.repr(), &self.state[place.offset..])
     }
 
     fn add(&mut self, path: &str) -> i128 {
         let number = self.read(path).as_integer().unwrap() + 1;
-        let value = self.read(path).lane().integer(number).unwrap();
+        let value = self.read(path).repr().integer(number).unwrap();
         value.write(&mut self.state[offset_of(path)..]);
         number
     }

@@ -3,7 +3,7 @@
 use crate::map::{Enum, Map, Type};
 use crate::path::{Place, nearest, same};
 use staunch_runtime::literal::{self, LiteralErrorKind, check_real, duration};
-use staunch_runtime::{Elementary, Lane, Value, ops};
+use staunch_runtime::{Elementary, Repr, Value, ops};
 
 /// The bytes that `text` stands for in a variable; the error is a sentence without a full stop.
 pub(crate) fn parse(map: &Map, place: Place, text: &str) -> Result<Vec<u8>, String> {
@@ -12,8 +12,8 @@ pub(crate) fn parse(map: &Map, place: Place, text: &str) -> Result<Vec<u8>, Stri
         Type::Elementary(it) if it.is_duration() => Value::I64(time(text)?),
         Type::Elementary(it) if it.is_time() => Value::I64(date(text, it)?),
         Type::Elementary(Elementary::Bool) | Type::Bit(_) => Value::Bool(boolean(text)?),
-        Type::Elementary(it) if it.lane().is_float() => float(text, it.name(), it.lane())?,
-        Type::Elementary(it) => integer(text, it.name(), it.lane())?,
+        Type::Elementary(it) if it.repr().is_float() => float(text, it.name(), it.repr())?,
+        Type::Elementary(it) => integer(text, it.name(), it.repr())?,
         Type::Enum(id) => {
             let found = map.enums.get(&id).map(|it| enumerator(text, it));
             found.unwrap_or_else(|| Err("the type is not in the map".to_owned()))?
@@ -29,7 +29,7 @@ pub(crate) fn parse(map: &Map, place: Place, text: &str) -> Result<Vec<u8>, Stri
             return Err(format!("`{text}` is outside the subrange {low}..{high}"));
         }
     }
-    let mut bytes = vec![0; value.lane().size() as usize];
+    let mut bytes = vec![0; value.repr().size() as usize];
     value.write(&mut bytes);
     Ok(bytes)
 }
@@ -93,7 +93,7 @@ fn example(ty: Elementary) -> String {
     format!("write `{}`", crate::format_time_as(ty, value))
 }
 
-fn float(text: &str, name: &str, lane: Lane) -> Result<Value, String> {
+fn float(text: &str, name: &str, repr: Repr) -> Result<Value, String> {
     let wrong = || format!("`{text}` is not {} {name}", article(name));
     let spelled = untyped(text, &[name]);
     // A trace can hold these; no literal has such a value.
@@ -102,9 +102,9 @@ fn float(text: &str, name: &str, lane: Lane) -> Result<Value, String> {
     }
     let digits = spelled.replace('_', "");
     let number = digits.parse::<f64>().map_err(|_| wrong())?;
-    let value = match lane {
+    let value = match repr {
         // Read as an f32 at once: by way of an f64 it could be rounded twice.
-        Lane::F32 => Value::F32(digits.parse().map_err(|_| wrong())?),
+        Repr::F32 => Value::F32(digits.parse().map_err(|_| wrong())?),
         _ => Value::F64(number),
     };
     let infinite =
@@ -115,10 +115,10 @@ fn float(text: &str, name: &str, lane: Lane) -> Result<Value, String> {
     }
 }
 
-fn integer(text: &str, name: &str, lane: Lane) -> Result<Value, String> {
+fn integer(text: &str, name: &str, repr: Repr) -> Result<Value, String> {
     let number = number(untyped(text, &[name]))
         .map_err(|kind| because(format!("`{text}` is not {} {name}", article(name)), kind))?;
-    lane.integer(number).ok_or_else(|| match lane.range() {
+    repr.integer(number).ok_or_else(|| match repr.range() {
         Some((low, high)) => format!("`{text}` does not fit {name}, which holds {low} to {high}"),
         None => format!("`{text}` does not fit {name}"),
     })
@@ -148,7 +148,7 @@ fn enumerator(text: &str, enumeration: &Enum) -> Result<Value, String> {
     let name = untyped(text, &[&enumeration.name]);
     let found = enumeration.values.iter().find(|(it, _)| same(it, name));
     let by_number = || number(name).ok().and_then(|number| enumeration.values.iter().find(|(_, it)| *it == number));
-    let value = found.or_else(by_number).and_then(|(_, number)| enumeration.lane.integer(*number));
+    let value = found.or_else(by_number).and_then(|(_, number)| enumeration.repr.integer(*number));
     value.ok_or_else(|| {
         let near = nearest(name, enumeration.values.iter().map(|(it, _)| it.as_str()));
         format!("{} has no value `{name}`{near}", enumeration.name)

@@ -1,7 +1,7 @@
 //! The map: which variable lies where. The compiler writes it as text, one record a line.
 
 use crate::Error;
-use staunch_runtime::{Elementary, Lane};
+use staunch_runtime::{Elementary, Repr};
 use std::collections::BTreeMap;
 
 /// The version of the text that this host reads.
@@ -46,7 +46,7 @@ pub enum Type {
 #[derive(Clone, Debug)]
 pub(crate) struct Enum {
     pub name: String,
-    pub lane: Lane,
+    pub repr: Repr,
     pub values: Vec<(String, i128)>,
 }
 
@@ -279,10 +279,10 @@ impl Map {
     /// Size in bytes.
     pub fn size_of(&self, ty: Type) -> usize {
         match ty {
-            Type::Elementary(it) => it.lane().size() as usize,
+            Type::Elementary(it) => it.repr().size() as usize,
             Type::Bit(_) => 1,
             Type::String(capacity) => 2 + usize::from(capacity).next_multiple_of(2),
-            Type::Enum(id) => self.enums.get(&id).map_or(0, |it| it.lane.size() as usize),
+            Type::Enum(id) => self.enums.get(&id).map_or(0, |it| it.repr.size() as usize),
             Type::Reference => size_of::<u64>(),
             Type::Array(_) => self.array(ty).map_or(0, |it| it.stride * it.len()),
             Type::Struct(_) | Type::Block(_) => self.structure(ty).map_or(0, |it| it.size),
@@ -374,14 +374,14 @@ impl<'a> Record<'a> {
     }
 
     fn enumeration(&mut self) -> Result<(u32, Enum), Error> {
-        let (id, name, lane) = (self.number()?, self.text()?.to_owned(), self.text()?);
-        let lane = Lane::ALL.into_iter().find(|it| it.rust_name() == lane);
-        let lane = lane.ok_or_else(|| self.error("an unknown lane"))?;
+        let (id, name, repr) = (self.number()?, self.text()?.to_owned(), self.text()?);
+        let repr = Repr::ALL.into_iter().find(|it| it.rust_name() == repr);
+        let repr = repr.ok_or_else(|| self.error("an unknown repr"))?;
         let values = self.cells.by_ref().filter_map(|cell| {
             let (name, value) = cell.split_once('=')?;
             Some((name.to_owned(), value.parse().ok()?))
         });
-        Ok((id, Enum { name, lane, values: values.collect() }))
+        Ok((id, Enum { name, repr, values: values.collect() }))
     }
 
     fn array(&mut self) -> Result<(u32, Array), Error> {

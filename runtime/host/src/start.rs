@@ -1,5 +1,5 @@
 //! What a program starts with after an event: the initial values, and what the event keeps. Which
-//! variables those are stands in the map; the compiler decides it.
+//! variables those are is in the map; the compiler decides it.
 
 use crate::Machine;
 use crate::map::{Map, Structure, Type, Variable};

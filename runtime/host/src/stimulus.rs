@@ -223,7 +223,7 @@ impl Parser<'_> {
     }
 
     fn write(&self, cell: &Cell, place: Place) -> Result<Write, Error> {
-        let is_real = matches!(place.ty, Type::Elementary(it) if it.lane().is_float());
+        let is_real = matches!(place.ty, Type::Elementary(it) if it.repr().is_float());
         let with_point = (self.decimal_comma && is_real).then(|| cell.text.replacen(',', ".", 1));
         let text = with_point.as_deref().unwrap_or(&cell.text);
         let bytes = literal::parse(self.map, place, text).map_err(|text| self.at(cell, text))?;

@@ -3,7 +3,7 @@
 use crate::map::{Map, Type};
 use crate::path::{path_at, resolve};
 use staunch_runtime::reference::ORIGIN;
-use staunch_runtime::{Elementary, Lane, Reference, Time, Value, format};
+use staunch_runtime::{Elementary, Reference, Repr, Time, Value, format};
 use std::fmt::Write;
 
 /// The value of the variable that `path` names, as a cell of a trace.
@@ -19,7 +19,7 @@ pub fn value_at(map: &Map, state: &[u8], path: &str) -> Result<String, String> {
 pub(crate) fn format(map: &Map, ty: Type, bytes: &[u8], out: &mut String) {
     match ty {
         Type::Elementary(it) => {
-            let value = Value::read(it.lane(), bytes);
+            let value = Value::read(it.repr(), bytes);
             match (it.is_time(), value) {
                 // Writing to a String cannot fail.
                 (true, Value::I64(time)) => _ = format::time(out, it, time),
@@ -30,7 +30,7 @@ pub(crate) fn format(map: &Map, ty: Type, bytes: &[u8], out: &mut String) {
         Type::String(_) => out.push_str(&text(bytes)),
         Type::Enum(id) => {
             let Some(enumeration) = map.enums.get(&id) else { return };
-            let value = Value::read(enumeration.lane, bytes);
+            let value = Value::read(enumeration.repr, bytes);
             match enumeration.values.iter().find(|(_, it)| Some(*it) == value.as_integer()) {
                 Some((name, _)) => out.push_str(name),
                 None => format_scalar(value, out),
@@ -43,7 +43,7 @@ pub(crate) fn format(map: &Map, ty: Type, bytes: &[u8], out: &mut String) {
 
 /// `null`, or the variable that is named: `&Main.buffer`, and how many bytes after its start.
 fn format_reference(map: &Map, bytes: &[u8], out: &mut String) {
-    let Value::U64(bits) = Value::read(Lane::U64, bytes) else { return };
+    let Value::U64(bits) = Value::read(Repr::U64, bytes) else { return };
     if bits == 0 {
         return out.push_str("null");
     }
@@ -83,14 +83,14 @@ fn bit(bytes: &[u8], number: u8) -> bool {
 
 /// The value as a number, for diagrams; `None` for a string.
 pub(crate) fn number(map: &Map, ty: Type, bytes: &[u8]) -> Option<f64> {
-    let lane = match ty {
-        Type::Elementary(it) => it.lane(),
+    let repr = match ty {
+        Type::Elementary(it) => it.repr(),
         Type::Bit(number) => return Some(f64::from(u8::from(bit(bytes, number)))),
-        Type::Enum(id) => map.enums.get(&id)?.lane,
+        Type::Enum(id) => map.enums.get(&id)?.repr,
         Type::Reference => return None,
         Type::String(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => return None,
     };
-    Some(match Value::read(lane, bytes) {
+    Some(match Value::read(repr, bytes) {
         Value::F32(it) => f64::from(it),
         Value::F64(it) => it,
         value => value.as_integer()? as f64,

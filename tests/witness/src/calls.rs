@@ -376,7 +376,7 @@ impl<'a> Machine<'a> {
         }
         (info.instructions[instruction].run)(&mut bytes, &self.context, rung);
         for (number, pin) in info.pins.iter().enumerate() {
-            self.memory[instance.at + number] = Cell::Scalar(Scalar::read(pin.ty.lane(), &bytes[pin.offset..]));
+            self.memory[instance.at + number] = Cell::Scalar(Scalar::read(pin.ty.repr(), &bytes[pin.offset..]));
         }
     }
 }

@@ -178,7 +178,7 @@ impl<'a> Declarations<'a> {
         let mut numbered = Vec::new();
         for value in values {
             next = value.value.as_ref().map_or(Ok(next), |it| self.number(it))?;
-            numbered.push((value.name.text.to_owned(), base.lane().integer(next).unwrap_or(base.lane().zero())));
+            numbered.push((value.name.text.to_owned(), base.repr().integer(next).unwrap_or(base.repr().zero())));
             next += 1;
         }
         let made = Rc::new(Enum { name: name.to_owned(), base, values: numbered });

@@ -77,7 +77,7 @@ impl<'a> Machine<'a> {
         match op {
             UnaryOp::Plus => Ok(value),
             UnaryOp::Neg => self.computed("NEG", ty, &[value.as_scalar()?], inner.span),
-            UnaryOp::Not => self.applied("NOT", ty, &[in_lane(value.as_scalar()?, ty).as_scalar()?], inner.span),
+            UnaryOp::Not => self.applied("NOT", ty, &[in_repr(value.as_scalar()?, ty).as_scalar()?], inner.span),
         }
     }
 
@@ -106,7 +106,7 @@ impl<'a> Machine<'a> {
             // Whole numbers are computed as such, whatever their place asks for: 7 / 2 is 3.
             ExprKind::Binary(..) if ty.is_real() && untyped(expr) == Some(Untyped::Integer) => {
                 let whole = self.number(expr, Elementary::Lint)?;
-                Ok(in_lane(whole.as_scalar()?, ty))
+                Ok(in_repr(whole.as_scalar()?, ty))
             }
             ExprKind::Paren(inner) => self.number(inner, ty),
             ExprKind::Literal(literal) => typed_number(&literal.value, false, ty),
@@ -197,7 +197,7 @@ fn real<'a>(digits: &str, ty: Elementary) -> Outcome<Value<'a>> {
     }
 }
 
-/// A scalar in another lane.
-pub(crate) fn in_lane<'a>(value: Scalar, ty: Elementary) -> Value<'a> {
-    Value::scalar(ty, ops::convert_value(value, ty.lane()))
+/// A scalar in another repr.
+pub(crate) fn in_repr<'a>(value: Scalar, ty: Elementary) -> Value<'a> {
+    Value::scalar(ty, ops::convert_value(value, ty.repr()))
 }

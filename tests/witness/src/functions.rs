@@ -1,7 +1,7 @@
 //! The standard's functions. Arguments are evaluated as they are written, then the function runs.
 
 use crate::calls::is_enable;
-use crate::expressions::{Untyped, default_type, in_lane, literal_number, untyped};
+use crate::expressions::{Untyped, default_type, in_repr, literal_number, untyped};
 use crate::machine::{Frame, Machine, Outcome, unknown};
 use crate::operators::operator;
 use crate::storage::{Value, integer_cell};
@@ -41,7 +41,7 @@ impl<'a> Machine<'a> {
                     None => self.value(frame, argument, asked)?,
                 };
                 let ty = value.ty.elementary().and_then(|it| it.meets(Elementary::Real)).unwrap_or(Elementary::Lreal);
-                self.applied(&upper, ty, &[in_lane(value.as_scalar()?, ty).as_scalar()?], at)
+                self.applied(&upper, ty, &[in_repr(value.as_scalar()?, ty).as_scalar()?], at)
             }
             "SHL" | "SHR" | "ROL" | "ROR" => self.shift(frame, &upper, &positions(&["IN", "N"], arguments)?, asked, at),
             "MAX" | "MIN" => self.extreme(frame, &upper, &positions(&["IN1", "IN2"], arguments)?, asked, at),
@@ -69,7 +69,7 @@ impl<'a> Machine<'a> {
         let Some(ty) = value.ty.elementary() else { return unknown("this argument") };
         match name {
             "ABS" => self.computed(name, ty, &[value.as_scalar()?], at),
-            _ => self.applied(name, ty, &[in_lane(value.as_scalar()?, ty).as_scalar()?], at),
+            _ => self.applied(name, ty, &[in_repr(value.as_scalar()?, ty).as_scalar()?], at),
         }
     }
 
@@ -196,7 +196,7 @@ impl<'a> Machine<'a> {
         }
         let (Some(value), Some(count)) = (value, count) else { return unknown("a shift without a count") };
         let Some(ty) = value.ty.elementary() else { return unknown("a shift of this type") };
-        let value = in_lane(value.as_scalar()?, ty);
+        let value = in_repr(value.as_scalar()?, ty);
         if let ("SHR", true, (..0, _)) = (name, self.is_codesys(), ty.range()) {
             // The sign is kept.
             let count = count.as_integer()?.clamp(0, 127);
@@ -314,21 +314,21 @@ impl<'a> Machine<'a> {
         let Some(from) = value.ty.base() else { return unknown("a conversion of this type") };
         let real = from.is_real() || to.is_real();
         let wide = if real { Elementary::Lreal } else { Elementary::Lint };
-        let factor = in_lane(Scalar::I64(MILLISECOND), wide).as_scalar()?;
+        let factor = in_repr(Scalar::I64(MILLISECOND), wide).as_scalar()?;
         match (from.is_time(), to.is_time()) {
             (true, false) => {
-                let count = self.applied("DIV", wide, &[in_lane(scalar, wide).as_scalar()?, factor], at)?;
-                Ok(in_lane(count.as_scalar()?, to))
+                let count = self.applied("DIV", wide, &[in_repr(scalar, wide).as_scalar()?, factor], at)?;
+                Ok(in_repr(count.as_scalar()?, to))
             }
             (false, true) => {
-                let count = self.applied("MUL", wide, &[in_lane(scalar, wide).as_scalar()?, factor], at)?;
-                Ok(in_lane(count.as_scalar()?, to))
+                let count = self.applied("MUL", wide, &[in_repr(scalar, wide).as_scalar()?, factor], at)?;
+                Ok(in_repr(count.as_scalar()?, to))
             }
             _ if to == Elementary::Bool && self.is_codesys() => Ok(Value::bool(value.as_integer()? != 0)),
             _ if to == Elementary::Bool && from.is_bits() && from != Elementary::Bool => {
                 Ok(Value::bool(value.as_integer()? & 1 == 1))
             }
-            _ => Ok(in_lane(scalar, to)),
+            _ => Ok(in_repr(scalar, to)),
         }
     }
 
@@ -360,7 +360,7 @@ impl<'a> Machine<'a> {
 }
 
 fn truncated<'a>(value: &Value<'a>, to: Elementary) -> Outcome<Value<'a>> {
-    Ok(Value::scalar(to, ops::trunc_value(value.as_scalar()?, to.lane())))
+    Ok(Value::scalar(to, ops::trunc_value(value.as_scalar()?, to.repr())))
 }
 
 /// The arguments as they are written, with the positions of their parameters.

@@ -8,7 +8,7 @@
 //! It takes programs that `check` accepts, and does not look for mistakes. Where it says
 //! [`Stop::Unknown`] it does not know a construct.
 //!
-//! It is written for reading: what a call, a FOR loop or an in-out means stands in `calls`,
+//! It is written for reading: what a call, a FOR loop or an in-out means is in `calls`,
 //! `statements` and `places`, in some twenty lines each.
 #![forbid(unsafe_code)]
 

@@ -1,12 +1,12 @@
 //! Operators: the type at which two operands meet, and the runtime's arithmetic there.
 
-use crate::expressions::{Untyped, default_type, in_lane, literal_number, untyped};
+use crate::expressions::{Untyped, default_type, in_repr, literal_number, untyped};
 use crate::machine::{Frame, Machine, Outcome, unknown};
 use crate::storage::Value;
 use crate::types::{Elementary, Type};
 use staunch_frontend::Span;
 use staunch_frontend::ast::{BinaryOp, Expr};
-use staunch_runtime::{FaultKind, Lane, Outcome as _, Scalar as _, Value as Scalar, ops, text, with_lane};
+use staunch_runtime::{FaultKind, Outcome as _, Repr, Scalar as _, Value as Scalar, ops, text, with_repr};
 
 impl<'a> Machine<'a> {
     pub(crate) fn binary(
@@ -82,10 +82,10 @@ impl<'a> Machine<'a> {
         let (Some(x), Some(y)) = (a.ty.base(), b.ty.base()) else { return unknown("these operands") };
         match op {
             BinaryOp::Power => {
-                let long = |it: Elementary| it == Elementary::Lreal || (it.is_integer() && it.lane().size() > 2);
+                let long = |it: Elementary| it == Elementary::Lreal || (it.is_integer() && it.repr().size() > 2);
                 let asks = asked.and_then(Type::elementary) == Some(Elementary::Lreal);
                 let ty = if long(x) || long(y) || asks { Elementary::Lreal } else { Elementary::Real };
-                let operands = [in_lane(a.as_scalar()?, ty).as_scalar()?, in_lane(b.as_scalar()?, ty).as_scalar()?];
+                let operands = [in_repr(a.as_scalar()?, ty).as_scalar()?, in_repr(b.as_scalar()?, ty).as_scalar()?];
                 self.applied("EXPT", ty, &operands, at)
             }
             BinaryOp::Mul | BinaryOp::Div if x.is_time() && !y.is_time() => self.scaled(op, &a, &b, at),
@@ -101,14 +101,14 @@ impl<'a> Machine<'a> {
     fn scaled(&mut self, op: BinaryOp, time: &Value<'a>, by: &Value<'a>, at: Span) -> Outcome<Value<'a>> {
         let (Some(ty), Some(other)) = (time.ty.elementary(), by.ty.elementary()) else { return unknown("a TIME") };
         let wide = if other.is_real() { Elementary::Lreal } else { Elementary::Lint };
-        let operands = [in_lane(time.as_scalar()?, wide).as_scalar()?, in_lane(by.as_scalar()?, wide).as_scalar()?];
+        let operands = [in_repr(time.as_scalar()?, wide).as_scalar()?, in_repr(by.as_scalar()?, wide).as_scalar()?];
         let scaled = self.applied(name(op), wide, &operands, at)?;
-        Ok(in_lane(scaled.as_scalar()?, ty))
+        Ok(in_repr(scaled.as_scalar()?, ty))
     }
 
     /// One of the runtime's operations at a type. A comparison gives a BOOL.
     pub(crate) fn applied(&self, name: &str, ty: Elementary, operands: &[Scalar], at: Span) -> Outcome<Value<'a>> {
-        match apply(name, ty.lane(), operands) {
+        match apply(name, ty.repr(), operands) {
             None => unknown(&format!("{name} of {ty:?}")),
             Some(Err(kind)) => Err(self.fault(kind, at)),
             Some(Ok(value)) => {
@@ -166,10 +166,10 @@ pub(crate) fn operator(name: &str) -> Option<BinaryOp> {
     all.into_iter().find(|it| self::name(*it).eq_ignore_ascii_case(name))
 }
 
-/// Calls a function of the runtime at the lane of its operands.
+/// Calls a function of the runtime at the repr of its operands.
 macro_rules! at {
-    ($class:ident $lane:ident $operands:ident $function:ident $($operand:ident)*) => {
-        with_lane!($class $lane, T => {
+    ($class:ident $repr:ident $operands:ident $function:ident $($operand:ident)*) => {
+        with_repr!($class $repr, T => {
             let mut operands = $operands.iter().copied();
             $(let $operand = <T as staunch_runtime::Scalar>::from_value(operands.next()?)?;)*
             let _: Option<T> = None;
@@ -179,8 +179,8 @@ macro_rules! at {
 }
 
 macro_rules! shifted {
-    ($lane:ident $operands:ident $function:ident) => {
-        with_lane!(integer $lane, T => {
+    ($repr:ident $operands:ident $function:ident) => {
+        with_repr!(integer $repr, T => {
             let [value, Scalar::I64(count)] = $operands else { return None };
             let value = <T as staunch_runtime::Scalar>::from_value(*value)?;
             Some(Ok(ops::$function(value, *count).into_value()))
@@ -188,45 +188,45 @@ macro_rules! shifted {
     };
 }
 
-/// The runtime's operation of this name, at a lane.
-fn apply(name: &str, lane: Lane, operands: &[Scalar]) -> Option<Result<Scalar, FaultKind>> {
+/// The runtime's operation of this name, at a repr.
+fn apply(name: &str, repr: Repr, operands: &[Scalar]) -> Option<Result<Scalar, FaultKind>> {
     match name {
-        "ADD" => at!(number lane operands add a b),
-        "SUB" => at!(number lane operands sub a b),
-        "MUL" => at!(number lane operands mul a b),
-        "DIV" => at!(number lane operands div a b),
-        "MOD" => at!(integer lane operands modulo a b),
-        "NEG" => at!(number lane operands neg a),
-        "ABS" => at!(number lane operands abs a),
-        "EXPT" => at!(real lane operands expt a b),
-        "SQRT" => at!(real lane operands sqrt a),
-        "LN" => at!(real lane operands ln a),
-        "LOG" => at!(real lane operands log a),
-        "EXP" => at!(real lane operands exp a),
-        "SIN" => at!(real lane operands sin a),
-        "COS" => at!(real lane operands cos a),
-        "TAN" => at!(real lane operands tan a),
-        "ASIN" => at!(real lane operands asin a),
-        "ACOS" => at!(real lane operands acos a),
-        "ATAN" => at!(real lane operands atan a),
-        "ATAN2" => at!(real lane operands atan2 a b),
-        "AND" => at!(bits lane operands and a b),
-        "OR" => at!(bits lane operands or a b),
-        "XOR" => at!(bits lane operands xor a b),
-        "NOT" => at!(bits lane operands not a),
-        "SHL" => shifted!(lane operands shl),
-        "SHR" => shifted!(lane operands shr),
-        "ROL" => shifted!(lane operands rol),
-        "ROR" => shifted!(lane operands ror),
-        "EQ" => at!(any lane operands eq a b),
-        "NE" => at!(any lane operands ne a b),
-        "LT" => at!(any lane operands lt a b),
-        "LE" => at!(any lane operands le a b),
-        "GT" => at!(any lane operands gt a b),
-        "GE" => at!(any lane operands ge a b),
-        "MAX" => at!(any lane operands max a b),
-        "MIN" => at!(any lane operands min a b),
-        "LIMIT" => at!(any lane operands limit a b c),
+        "ADD" => at!(number repr operands add a b),
+        "SUB" => at!(number repr operands sub a b),
+        "MUL" => at!(number repr operands mul a b),
+        "DIV" => at!(number repr operands div a b),
+        "MOD" => at!(integer repr operands modulo a b),
+        "NEG" => at!(number repr operands neg a),
+        "ABS" => at!(number repr operands abs a),
+        "EXPT" => at!(real repr operands expt a b),
+        "SQRT" => at!(real repr operands sqrt a),
+        "LN" => at!(real repr operands ln a),
+        "LOG" => at!(real repr operands log a),
+        "EXP" => at!(real repr operands exp a),
+        "SIN" => at!(real repr operands sin a),
+        "COS" => at!(real repr operands cos a),
+        "TAN" => at!(real repr operands tan a),
+        "ASIN" => at!(real repr operands asin a),
+        "ACOS" => at!(real repr operands acos a),
+        "ATAN" => at!(real repr operands atan a),
+        "ATAN2" => at!(real repr operands atan2 a b),
+        "AND" => at!(bits repr operands and a b),
+        "OR" => at!(bits repr operands or a b),
+        "XOR" => at!(bits repr operands xor a b),
+        "NOT" => at!(bits repr operands not a),
+        "SHL" => shifted!(repr operands shl),
+        "SHR" => shifted!(repr operands shr),
+        "ROL" => shifted!(repr operands rol),
+        "ROR" => shifted!(repr operands ror),
+        "EQ" => at!(any repr operands eq a b),
+        "NE" => at!(any repr operands ne a b),
+        "LT" => at!(any repr operands lt a b),
+        "LE" => at!(any repr operands le a b),
+        "GT" => at!(any repr operands gt a b),
+        "GE" => at!(any repr operands ge a b),
+        "MAX" => at!(any repr operands max a b),
+        "MIN" => at!(any repr operands min a b),
+        "LIMIT" => at!(any repr operands limit a b c),
         _ => None,
     }
 }

@@ -98,10 +98,10 @@ impl<'a> Machine<'a> {
         let part = part_named(part.text)?;
         let value = self.value_as(frame, value, &Type::Elementary(part.ty))?.as_integer()?;
         let Some(ty) = place.ty.elementary() else { return unknown("bits of what is no number") };
-        let width = ty.lane().size() * 8;
+        let width = ty.repr().size() * 8;
         let old = self.read(place).as_integer()? & mask(width);
         let new = old & !(mask(part.width) << part.shift) | (value & mask(part.width)) << part.shift;
-        let signed = if ty.lane().is_signed() && new > ty.range().1 { new - (1 << width) } else { new };
+        let signed = if ty.repr().is_signed() && new > ty.range().1 { new - (1 << width) } else { new };
         self.memory[place.at] = integer_cell(ty, signed);
         Ok(Flow::Next)
     }

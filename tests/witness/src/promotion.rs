@@ -1,7 +1,7 @@
 //! CODESYS computes integers and bit strings of fewer than 32 bits at 32. Such a value keeps the type
 //! that its operands give it, and is cut to that where it is stored: until then its cell has 32 bits.
 
-use crate::expressions::in_lane;
+use crate::expressions::in_repr;
 use crate::machine::{Machine, Outcome};
 use crate::storage::Value;
 use crate::types::{Elementary, Type};
@@ -22,7 +22,7 @@ impl<'a> Machine<'a> {
     /// one of as many.
     pub(crate) fn meeting(&self, a: Elementary, b: Elementary) -> Option<Elementary> {
         if self.promotes(a) && self.promotes(b) && !(a.is_bits() && b.is_bits()) {
-            let order = |it: &Elementary| (it.lane().size(), !it.lane().is_unsigned());
+            let order = |it: &Elementary| (it.repr().size(), !it.repr().is_unsigned());
             return [a, b].into_iter().max_by_key(order);
         }
         a.meets(b).or_else(|| self.widening(a).meets(self.widening(b)))
@@ -40,15 +40,15 @@ impl<'a> Machine<'a> {
 
     /// A value of the type, not stored yet.
     pub(crate) fn unstored(&self, value: Scalar, ty: Elementary) -> Value<'a> {
-        let lane = if self.promotes(ty) { Elementary::Dint } else { ty };
-        Value { ty: Type::Elementary(ty), ..in_lane(value, lane) }
+        let repr = if self.promotes(ty) { Elementary::Dint } else { ty };
+        Value { ty: Type::Elementary(ty), ..in_repr(value, repr) }
     }
 
     /// One of the runtime's operations, at the type or at 32 bits. A comparison gives a BOOL.
     pub(crate) fn computed(&self, name: &str, ty: Elementary, operands: &[Scalar], at: Span) -> Outcome<Value<'a>> {
-        let lane = if self.promotes(ty) { Elementary::Dint } else { ty };
-        let operands = operands.iter().map(|it| in_lane(*it, lane).as_scalar()).collect::<Outcome<Vec<_>>>()?;
-        let value = self.applied(name, lane, &operands, at)?;
+        let repr = if self.promotes(ty) { Elementary::Dint } else { ty };
+        let operands = operands.iter().map(|it| in_repr(*it, repr).as_scalar()).collect::<Outcome<Vec<_>>>()?;
+        let value = self.applied(name, repr, &operands, at)?;
         let is_test = value.ty.elementary() == Some(Elementary::Bool) && ty != Elementary::Bool;
         Ok(if is_test { value } else { Value { ty: Type::Elementary(ty), ..value } })
     }

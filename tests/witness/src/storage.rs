@@ -108,7 +108,7 @@ impl<'a> Machine<'a> {
     }
 
     pub(crate) fn widened(&self, value: &Value<'a>, to: Elementary) -> Outcome<Value<'a>> {
-        let scalar = staunch_runtime::ops::convert_value(value.as_scalar()?, to.lane());
+        let scalar = staunch_runtime::ops::convert_value(value.as_scalar()?, to.repr());
         match value.ty.elementary() {
             Some(from) if self.widens(from, to) => Ok(Value::scalar(to, scalar)),
             from => unknown(&format!("{from:?} where {to:?} is asked for")),
@@ -166,7 +166,7 @@ impl<'a> Machine<'a> {
     /// What a variable starts with that has no initial value of its own.
     fn start_unset(&mut self, frame: &Frame<'a>, place: &Place<'a>) -> Outcome<()> {
         match &place.ty {
-            Type::Elementary(it) => self.memory[place.at] = Cell::Scalar(it.lane().zero()),
+            Type::Elementary(it) => self.memory[place.at] = Cell::Scalar(it.repr().zero()),
             // Edition 2, 2.3.3.2: the leftmost value.
             Type::Subrange(base, low, _) => self.memory[place.at] = integer_cell(*base, *low),
             Type::Enum(it) => self.memory[place.at] = Cell::Scalar(it.values[0].1),
@@ -188,7 +188,7 @@ impl<'a> Machine<'a> {
             }
             Type::Block(info) => {
                 for (number, pin) in info.pins.iter().enumerate() {
-                    let value = if pin.starts_true { Scalar::Bool(true) } else { pin.ty.lane().zero() };
+                    let value = if pin.starts_true { Scalar::Bool(true) } else { pin.ty.repr().zero() };
                     self.memory[place.at + number] = Cell::Scalar(value);
                 }
             }
@@ -202,5 +202,5 @@ impl<'a> Machine<'a> {
 }
 
 pub(crate) fn integer_cell(ty: Elementary, number: i128) -> Cell {
-    Cell::Scalar(ty.lane().integer(number).unwrap_or(ty.lane().zero()))
+    Cell::Scalar(ty.repr().integer(number).unwrap_or(ty.repr().zero()))
 }

@@ -1,7 +1,7 @@
 //! Types, and which of them widen to which.
 
 use staunch_frontend::ast::Initial;
-use staunch_runtime::{BlockInfo, Lane, Value as Scalar};
+use staunch_runtime::{BlockInfo, Repr, Value as Scalar};
 use std::rc::Rc;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,24 +27,24 @@ pub(crate) enum Elementary {
 
 use Elementary as E;
 
-const ELEMENTARY: [(&str, E, Lane); 17] = [
-    ("BOOL", E::Bool, Lane::Bool),
-    ("SINT", E::Sint, Lane::I8),
-    ("INT", E::Int, Lane::I16),
-    ("DINT", E::Dint, Lane::I32),
-    ("LINT", E::Lint, Lane::I64),
-    ("USINT", E::Usint, Lane::U8),
-    ("UINT", E::Uint, Lane::U16),
-    ("UDINT", E::Udint, Lane::U32),
-    ("ULINT", E::Ulint, Lane::U64),
-    ("BYTE", E::Byte, Lane::U8),
-    ("WORD", E::Word, Lane::U16),
-    ("DWORD", E::Dword, Lane::U32),
-    ("LWORD", E::Lword, Lane::U64),
-    ("REAL", E::Real, Lane::F32),
-    ("LREAL", E::Lreal, Lane::F64),
-    ("TIME", E::Time, Lane::I64),
-    ("LTIME", E::Ltime, Lane::I64),
+const ELEMENTARY: [(&str, E, Repr); 17] = [
+    ("BOOL", E::Bool, Repr::Bool),
+    ("SINT", E::Sint, Repr::I8),
+    ("INT", E::Int, Repr::I16),
+    ("DINT", E::Dint, Repr::I32),
+    ("LINT", E::Lint, Repr::I64),
+    ("USINT", E::Usint, Repr::U8),
+    ("UINT", E::Uint, Repr::U16),
+    ("UDINT", E::Udint, Repr::U32),
+    ("ULINT", E::Ulint, Repr::U64),
+    ("BYTE", E::Byte, Repr::U8),
+    ("WORD", E::Word, Repr::U16),
+    ("DWORD", E::Dword, Repr::U32),
+    ("LWORD", E::Lword, Repr::U64),
+    ("REAL", E::Real, Repr::F32),
+    ("LREAL", E::Lreal, Repr::F64),
+    ("TIME", E::Time, Repr::I64),
+    ("LTIME", E::Ltime, Repr::I64),
 ];
 
 impl Elementary {
@@ -52,12 +52,12 @@ impl Elementary {
         ELEMENTARY.iter().find(|it| it.0.eq_ignore_ascii_case(name)).map(|it| it.1)
     }
 
-    pub fn lane(self) -> Lane {
-        ELEMENTARY.iter().find(|it| it.1 == self).map_or(Lane::Bool, |it| it.2)
+    pub fn repr(self) -> Repr {
+        ELEMENTARY.iter().find(|it| it.1 == self).map_or(Repr::Bool, |it| it.2)
     }
 
     pub fn is_real(self) -> bool {
-        self.lane().is_float()
+        self.repr().is_float()
     }
 
     pub fn is_time(self) -> bool {
@@ -81,29 +81,29 @@ impl Elementary {
 
     /// Whether this is a number or a bit string of fewer than 32 bits.
     pub fn is_narrow(self) -> bool {
-        self.lane().is_integer() && !self.is_time() && self.lane().size() < 4
+        self.repr().is_integer() && !self.is_time() && self.repr().size() < 4
     }
 
     pub fn is_integer(self) -> bool {
-        self.lane().is_integer() && !self.is_time() && !self.is_bits()
+        self.repr().is_integer() && !self.is_time() && !self.is_bits()
     }
 
     /// Whether an integer literal can have this type.
     pub fn takes_integers(self) -> bool {
-        self.is_real() || (self.lane().is_integer() && !self.is_time())
+        self.is_real() || (self.repr().is_integer() && !self.is_time())
     }
 
     pub fn holds(self, number: i128) -> bool {
-        self.is_real() || self.lane().integer(number).is_some()
+        self.is_real() || self.repr().integer(number).is_some()
     }
 
     pub fn range(self) -> (i128, i128) {
-        self.lane().range().unwrap_or_default()
+        self.repr().range().unwrap_or_default()
     }
 
     /// Whether each value of `self` is one of `to`: the standard's figure of implicit conversions.
     pub fn widens_to(self, to: Self) -> bool {
-        let bits = |it: Self| it.lane().size();
+        let bits = |it: Self| it.repr().size();
         match (self, to) {
             _ if self == to => true,
             (E::Time, E::Ltime) | (E::Real, E::Lreal) => true,

@@ -5,7 +5,7 @@ use super::assume::Assumptions;
 use super::facts::{Facts, Name, Numbers};
 use super::pair::{Input, Matched, Pair};
 use super::scalar::{Role, Scalar};
-use staunch_ir::{Elementary, Lane, Program, Type, Value};
+use staunch_ir::{Elementary, Program, Repr, Type, Value};
 
 /// Combinations of inputs that are tried in every scan of an exhaustive search.
 const MAX_VECTORS: usize = 512;
@@ -45,7 +45,7 @@ impl Alphabet {
     pub fn of(pair: &Pair, facts: [&Facts; 2], assumptions: &Assumptions) -> Self {
         let choice = |(at, input): (usize, &Input)| {
             let mut choice = choice(pair, facts, input);
-            assumptions.narrow(at, &mut choice, lane(pair, input));
+            assumptions.narrow(at, &mut choice, repr(pair, input));
             choice
         };
         let choices: Vec<Choice> = pair.inputs.iter().enumerate().map(choice).collect();
@@ -59,9 +59,9 @@ impl Alphabet {
     }
 }
 
-fn lane(pair: &Pair, input: &Input) -> Lane {
+fn repr(pair: &Pair, input: &Input) -> Repr {
     let program = &pair.sides[0].program;
-    program.lane(pair.scalar(0, input.scalars[0]).ty).unwrap_or(Lane::Bool)
+    program.repr(pair.scalar(0, input.scalars[0]).ty).unwrap_or(Repr::Bool)
 }
 
 /// The inputs by their declaration; without any, what no statement writes and some read.
@@ -78,10 +78,10 @@ pub fn inputs(pair: &Pair, facts: [&Facts; 2]) -> Vec<Input> {
     }
     let input = |scalars: Matched| {
         let [a, b] = [pair.scalar(0, scalars[0]), pair.scalar(1, scalars[1])];
-        let lane = pair.sides[0].program.lane(a.ty)?;
+        let repr = pair.sides[0].program.repr(a.ty)?;
         // Two programs number their types for themselves.
-        (pair.sides[1].program.lane(b.ty)? == lane)
-            .then(|| Input { scalars, initial: Value::read(lane, &pair.sides[0].state()[a.offset..]) })
+        (pair.sides[1].program.repr(b.ty)? == repr)
+            .then(|| Input { scalars, initial: Value::read(repr, &pair.sides[0].state()[a.offset..]) })
     };
     found.into_iter().filter_map(input).collect()
 }
@@ -123,7 +123,7 @@ fn choice(pair: &Pair, facts: [&Facts; 2], input: &Input) -> Choice {
         Some(Covered::All)
     } else if both(|facts, name| !facts.is_read(name)) {
         Some(Covered::Unread)
-    } else if both(Facts::only_compared) && !input.initial.lane().is_float() {
+    } else if both(Facts::only_compared) && !input.initial.repr().is_float() {
         Some(Covered::Compared)
     } else {
         None
@@ -139,16 +139,16 @@ fn choice(pair: &Pair, facts: [&Facts; 2], input: &Input) -> Choice {
 
 /// What to try of a type, those near a comparison first; and whether that is all of it.
 fn values(program: &Program, ty: Type, near: &Numbers) -> (Vec<Value>, bool) {
-    let Some(lane) = program.lane(ty) else { return (Vec::new(), false) };
+    let Some(repr) = program.repr(ty) else { return (Vec::new(), false) };
     match ty {
         Type::Enum(id) => (program.enumeration(id).values.iter().map(|it| it.value).collect(), true),
         Type::Elementary(Elementary::Bool) => (vec![Value::Bool(false), Value::Bool(true)], true),
-        _ if lane.is_float() => (reals(lane, near), false),
-        _ => integers(lane, program.range(ty).or(lane.range()).unwrap_or((0, 0)), ty, near),
+        _ if repr.is_float() => (reals(repr, near), false),
+        _ => integers(repr, program.range(ty).or(repr.range()).unwrap_or((0, 0)), ty, near),
     }
 }
 
-fn integers(lane: Lane, (low, high): (i128, i128), ty: Type, near: &Numbers) -> (Vec<Value>, bool) {
+fn integers(repr: Repr, (low, high): (i128, i128), ty: Type, near: &Numbers) -> (Vec<Value>, bool) {
     let inside = |it: &i128| (low..=high).contains(it);
     let whole = high - low < MAX_WHOLE;
     let times = ty.elementary().is_some_and(Elementary::is_time);
@@ -165,10 +165,10 @@ fn integers(lane: Lane, (low, high): (i128, i128), ty: Type, near: &Numbers) -> 
     if whole {
         found.extend((low..=high).filter(|it| !found.contains(it)).collect::<Vec<_>>());
     }
-    (found.into_iter().filter_map(|it| lane.integer(it)).collect(), whole)
+    (found.into_iter().filter_map(|it| repr.integer(it)).collect(), whole)
 }
 
-fn reals(lane: Lane, near: &Numbers) -> Vec<Value> {
+fn reals(repr: Repr, near: &Numbers) -> Vec<Value> {
     let mut found = Vec::new();
     for (at, limit) in near.reals.iter().enumerate() {
         let between = near.reals.get(at + 1).map(|next| f64::midpoint(*limit, *next));
@@ -177,8 +177,8 @@ fn reals(lane: Lane, near: &Numbers) -> Vec<Value> {
     }
     found.extend([0.0, 1.0, -1.0]);
     found.truncate(MAX_VALUES);
-    let value = |it: f64| match lane {
-        Lane::F32 => narrowed(it).map(Value::F32),
+    let value = |it: f64| match repr {
+        Repr::F32 => narrowed(it).map(Value::F32),
         _ => Some(Value::F64(it)),
     };
     found.into_iter().filter_map(value).collect()

@@ -4,7 +4,7 @@
 use super::alphabet::{Choice, Covered};
 use super::pair::Pair;
 use staunch_host::Event;
-use staunch_ir::{Lane, Value};
+use staunch_ir::{Repr, Value};
 use std::path::Path;
 
 #[derive(Clone, Debug, Default)]
@@ -102,18 +102,18 @@ impl Assumptions {
     }
 
     /// Takes values outside of an input's range away, and tries its ends.
-    pub fn narrow(&self, input: usize, choice: &mut Choice, lane: Lane) {
+    pub fn narrow(&self, input: usize, choice: &mut Choice, repr: Repr) {
         for (_, low, high) in self.ranges.iter().filter(|it| it.0 == input) {
             let whole = high - low < 300;
             let inside = |it: i128| (*low..=*high).contains(&it);
             let more = if whole { (*low..=*high).collect() } else { vec![*low, low + 1, high - 1, *high] };
-            for value in more.into_iter().filter_map(|it| lane.integer(it)) {
+            for value in more.into_iter().filter_map(|it| repr.integer(it)) {
                 if !choice.values.contains(&value) {
                     choice.values.push(value);
                 }
             }
             choice.values.retain(|it| it.as_integer().is_none_or(inside));
-            if whole && lane.is_integer() {
+            if whole && repr.is_integer() {
                 choice.covered = Some(Covered::All);
             }
         }
@@ -293,7 +293,7 @@ mod tests {
     fn a_range_takes_values_away_and_tries_its_ends() {
         let found = parsed("Target 1..500").unwrap();
         let mut choice = Choice { values: [0, 7, 501].map(Value::I16).to_vec(), covered: None };
-        found.narrow(2, &mut choice, Lane::I16);
+        found.narrow(2, &mut choice, Repr::I16);
         assert_eq!(choice.values, [7, 1, 2, 499, 500].map(Value::I16));
         assert_eq!(choice.covered, None);
     }

@@ -182,7 +182,7 @@ impl<'p> Walk<'p, '_> {
     }
 
     fn widens(&self, from: Type, to: Type) -> bool {
-        let range = |ty| self.program.lane(ty).and_then(staunch_runtime::Lane::range);
+        let range = |ty| self.program.repr(ty).and_then(staunch_runtime::Repr::range);
         match (range(from), range(to)) {
             (Some(from), Some(to)) => to.0 <= from.0 && from.1 <= to.1,
             _ => from == to,
@@ -382,7 +382,7 @@ impl Number {
     }
 
     fn of_type(self, program: &Program, ty: Type) -> Self {
-        let real = program.lane(ty).is_some_and(staunch_runtime::Lane::is_float);
+        let real = program.repr(ty).is_some_and(staunch_runtime::Repr::is_float);
         match (self, real) {
             (Self::Integer(it), true) => Self::Real(real_of(it)),
             (Self::Real(it), false) => Self::Integer(whole(it)),

@@ -3,7 +3,7 @@
 
 use super::scalar::Instance;
 use staunch_ir::{Local, Program, Type};
-use staunch_runtime::{Lane, Pin, Value};
+use staunch_runtime::{Pin, Repr, Value};
 
 /// Where a timer's pins lie in a state.
 #[derive(Clone, Copy, Debug)]
@@ -54,7 +54,7 @@ impl Timer {
 
     /// Writes how long before `now` the timer started over when it did.
     pub fn settle(self, state: &mut [u8], now: i64) {
-        let age = match Value::read(Lane::I64, &state[self.start..]) {
+        let age = match Value::read(Repr::I64, &state[self.start..]) {
             Value::I64(start) if self.measures(state) => now.wrapping_sub(start),
             _ => 0,
         };
@@ -159,7 +159,7 @@ mod tests {
                 }
                 let shift = numbers.below(1000) * STEP;
                 let (mut other, form) = (state.clone(), settled(timer, &state, now));
-                let start = match Value::read(Lane::I64, &form[timer.start..]) {
+                let start = match Value::read(Repr::I64, &form[timer.start..]) {
                     Value::I64(age) if timer.measures(&state) => now + shift - age,
                     _ => numbers.below(1000) * STEP,
                 };

@@ -3,7 +3,7 @@
 
 use super::pair::Pair;
 use super::scalar::Role;
-use staunch_ir::{Lane, Value};
+use staunch_ir::{Repr, Value};
 use staunch_runtime::PinRole;
 use std::cmp::Ordering;
 use std::collections::{BTreeSet, HashSet};
@@ -16,11 +16,11 @@ const MAX_RESPECTS: usize = 4096;
 #[derive(Clone, Copy, Debug)]
 enum Respect {
     /// A scalar on one side.
-    Value { side: usize, offset: usize, lane: Lane },
+    Value { side: usize, offset: usize, repr: Repr },
     /// The count against the preset, on one side.
-    Preset { side: usize, count: usize, preset: usize, lane: Lane },
+    Preset { side: usize, count: usize, preset: usize, repr: Repr },
     /// A number on one side against that of the other.
-    Sides { offsets: [usize; 2], lanes: [Lane; 2] },
+    Sides { offsets: [usize; 2], reprs: [Repr; 2] },
 }
 
 #[derive(Debug)]
@@ -39,24 +39,24 @@ impl Novelty {
         let mut respects = Vec::new();
         for [a, b] in pair.matched(|it| matches!(it.role, Role::Output(_))) {
             let scalars = [pair.scalar(0, a), pair.scalar(1, b)];
-            let lanes = [0, 1].map(|side| pair.sides[side].program.lane(scalars[side].ty));
-            if let [Some(x), Some(y)] = lanes {
-                respects.push(Respect::Sides { offsets: scalars.map(|it| it.offset), lanes: [x, y] });
+            let reprs = [0, 1].map(|side| pair.sides[side].program.repr(scalars[side].ty));
+            if let [Some(x), Some(y)] = reprs {
+                respects.push(Respect::Sides { offsets: scalars.map(|it| it.offset), reprs: [x, y] });
             }
         }
         for (number, side) in pair.sides.iter().enumerate() {
             for block in &side.scalars.blocks {
                 let pin = |role| block.block.info().pin_for(role);
                 if let (Some(count), Some(preset)) = (pin(PinRole::Count), pin(PinRole::Preset)) {
-                    let (count, preset, lane) =
-                        (block.offset + count.offset, block.offset + preset.offset, count.lane());
-                    respects.push(Respect::Preset { side: number, count, preset, lane });
+                    let (count, preset, repr) =
+                        (block.offset + count.offset, block.offset + preset.offset, count.repr());
+                    respects.push(Respect::Preset { side: number, count, preset, repr });
                 }
             }
             for scalar in &side.scalars.all {
-                let lane =
-                    side.program.lane(scalar.ty).filter(|_| matches!(scalar.role, Role::Variable | Role::Output(_)));
-                respects.extend(lane.map(|lane| Respect::Value { side: number, offset: scalar.offset, lane }));
+                let repr =
+                    side.program.repr(scalar.ty).filter(|_| matches!(scalar.role, Role::Variable | Role::Output(_)));
+                respects.extend(repr.map(|repr| Respect::Value { side: number, offset: scalar.offset, repr }));
             }
         }
         respects.truncate(MAX_RESPECTS);
@@ -102,12 +102,12 @@ const SAME: u64 = 1;
 impl Respect {
     fn value(self, states: [&[u8]; 2], limits: &[i128]) -> u64 {
         match self {
-            Self::Value { side, offset, lane } => class(Value::read(lane, &states[side][offset..]), limits),
-            Self::Preset { side, count, preset, lane } => {
-                order(Value::read(lane, &states[side][count..]), Value::read(lane, &states[side][preset..]))
+            Self::Value { side, offset, repr } => class(Value::read(repr, &states[side][offset..]), limits),
+            Self::Preset { side, count, preset, repr } => {
+                order(Value::read(repr, &states[side][count..]), Value::read(repr, &states[side][preset..]))
             }
-            Self::Sides { offsets, lanes } => {
-                let [a, b] = [0, 1].map(|side| Value::read(lanes[side], &states[side][offsets[side]..]));
+            Self::Sides { offsets, reprs } => {
+                let [a, b] = [0, 1].map(|side| Value::read(reprs[side], &states[side][offsets[side]..]));
                 order(a, b)
             }
         }

@@ -139,7 +139,7 @@ impl Side {
     fn write(&mut self, offset: usize, value: Value) {
         let mut bytes = [0; 8];
         value.write(&mut bytes);
-        let size = usize::try_from(value.lane().size()).expect("lanes are small");
+        let size = usize::try_from(value.repr().size()).expect("reprs are small");
         if self.state()[offset..offset + size] != bytes[..size] {
             self.machine.write(offset, &bytes[..size]);
         }

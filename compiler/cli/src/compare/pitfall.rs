@@ -3,7 +3,7 @@
 use super::pair::{Matched, Pair, Row};
 use super::scalar::{Instance, Role};
 use staunch_host::Event;
-use staunch_runtime::{Family, Lane, PinRole};
+use staunch_runtime::{Family, PinRole, Repr};
 
 /// One of the pitfalls of `docs/compare.md`, by its number less one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -126,7 +126,7 @@ pub struct Pins {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Kind {
     pub family: Family,
-    pub lane: Lane,
+    pub repr: Repr,
     /// It counts up only below its preset, and down only above 0.
     pub stops: bool,
 }
@@ -176,13 +176,13 @@ impl Case {
     }
 
     fn is_wider(&self) -> bool {
-        self.kinds[0].lane != self.kinds[1].lane
+        self.kinds[0].repr != self.kinds[1].repr
     }
 
     /// A count at a limit of its type is where the other goes on.
     fn at_limit(&self) -> bool {
         (0..2).any(|side| {
-            let limits = self.kinds[side].lane.range().unwrap_or((0, 0));
+            let limits = self.kinds[side].repr.range().unwrap_or((0, 0));
             let own = [self.before[side].count, self.now[side].count];
             own.iter().any(|it| *it == limits.1 || *it == limits.0 && limits.0 < 0)
         })
@@ -324,7 +324,7 @@ fn case(pair: &Pair, at: usize, states: [[&[u8]; 2]; 2], event: Option<Event>, h
 pub fn kind(instance: &Instance) -> Option<Kind> {
     let info = instance.block.info();
     let count = info.pin_for(PinRole::Count)?;
-    Some(Kind { family: info.family, lane: count.lane(), stops: info.facts.stops })
+    Some(Kind { family: info.family, repr: count.repr(), stops: info.facts.stops })
 }
 
 fn pins(instance: &Instance, state: &[u8]) -> Pins {
@@ -464,9 +464,9 @@ pub fn impossible(pitfall: Pitfall, instances: [&Instance; 2], usage: Use) -> Op
         4 => no_logix.or((!has(PinRole::Down) || has(PinRole::Up)).then_some("it is no CTD")),
         5 | 13 => no_logix,
         6 => no_logix.and(no_cscape).or((!usage.resets).then_some("nothing resets or loads it")),
-        7 => (a.lane != b.lane || same_kind || !parts(Family::Logix))
+        7 => (a.repr != b.repr || same_kind || !parts(Family::Logix))
             .then_some("both systems do the same at a limit, or have other limits"),
-        8 => (a.lane == b.lane).then_some("both systems count in the same type"),
+        8 => (a.repr == b.repr).then_some("both systems count in the same type"),
         9 => Some("its pins have the same names, or are given by position"),
         10 => no_cscape.or(usage.constant_preset.then_some("its preset is one constant")),
         11 => usage.kept_alike.then_some("both systems keep, or lose, the same of it"),
@@ -479,7 +479,7 @@ pub fn impossible(pitfall: Pitfall, instances: [&Instance; 2], usage: Use) -> Op
 
 /// Whether a count of this kind can be negative.
 fn goes_below(kind: Kind) -> bool {
-    matches!(kind.family, Family::Iec | Family::Logix) && kind.lane.is_signed()
+    matches!(kind.family, Family::Iec | Family::Logix) && kind.repr.is_signed()
 }
 
 #[cfg(test)]

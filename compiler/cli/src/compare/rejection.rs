@@ -5,7 +5,7 @@ use crate::session::Session;
 use staunch_frontend::{Code, Diagnostic, Dialect, Severity};
 use staunch_runtime::{BlockInfo, KeptCount, PinRole};
 
-/// What stands in the way, and what to do.
+/// What is in the way, and what to do.
 pub struct Rejection {
     pub pitfall: Option<Pitfall>,
     pub why: String,

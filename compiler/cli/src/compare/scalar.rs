@@ -182,7 +182,7 @@ impl Instance {
     /// The value of the pin with a role.
     pub fn pin(&self, role: PinRole, state: &[u8]) -> Option<i128> {
         let pin = self.block.info().pin_for(role)?;
-        number(Value::read(pin.lane(), &state[self.offset + pin.offset..]))
+        number(Value::read(pin.repr(), &state[self.offset + pin.offset..]))
     }
 }
 
@@ -197,8 +197,8 @@ fn number(value: Value) -> Option<i128> {
 /// Whether two systems hold the same value, by its number and not by its bits.
 pub fn equal(programs: [&Program; 2], scalars: [&Scalar; 2], states: [&[u8]; 2]) -> bool {
     let [a, b] = [0, 1].map(|side| &states[side][scalars[side].offset..scalars[side].offset + scalars[side].size]);
-    let lanes = [0, 1].map(|side| programs[side].lane(scalars[side].ty));
-    match lanes {
+    let reprs = [0, 1].map(|side| programs[side].repr(scalars[side].ty));
+    match reprs {
         [Some(x), Some(y)] if x != y => {
             let (a, b) = (Value::read(x, a), Value::read(y, b));
             number(a).is_some() && number(a) == number(b)
@@ -216,8 +216,8 @@ fn text(bytes: &[u8]) -> &[u8] {
 /// The value as a trace shows it.
 pub fn show(program: &Program, scalar: &Scalar, state: &[u8]) -> String {
     let bytes = &state[scalar.offset..scalar.offset + scalar.size];
-    match program.lane(scalar.ty) {
-        Some(lane) => spell(program, scalar.ty, Value::read(lane, bytes)),
+    match program.repr(scalar.ty) {
+        Some(repr) => spell(program, scalar.ty, Value::read(repr, bytes)),
         None => String::from_utf8_lossy(text(bytes)).into_owned(),
     }
 }

@@ -48,7 +48,7 @@ impl<'s> Checker<'_, 's> {
         let value = self.typed(selector, None);
         let value = value.and_then(|value| {
             let allowed = match value.ty {
-                Type::Elementary(it) | Type::Subrange(it, _) => it.lane().is_integer() && it.is_integral(),
+                Type::Elementary(it) | Type::Subrange(it, _) => it.repr().is_integer() && it.is_integral(),
                 Type::Enum(_) => true,
                 Type::String(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) | Type::Reference(_) => false,
             };

@@ -128,7 +128,7 @@ impl<'s> Checker<'_, 's> {
             self.block.insert(mark, start);
             first = Expr::load(place.clone(), at);
         }
-        let range = self.decl.program.range(place.ty).or(ty.lane().range())?;
+        let range = self.decl.program.range(place.ty).or(ty.repr().range())?;
         let step_at = self.at(by.unwrap_or(counter).span);
         Some(For { counter: place, first, last, step, range, is_private: false, body: Block::new(), step_at })
     }
@@ -172,7 +172,7 @@ impl<'s> Checker<'_, 's> {
             Operand::Typed(expr) | Operand::Promoted(expr, _) => expr.as_const().and_then(Value::as_integer),
             Operand::Real { .. } => None,
         };
-        let (_, most) = ty.lane().range()?;
+        let (_, most) = ty.repr().range()?;
         match constant {
             Some(0) => {
                 self.report(

@@ -85,7 +85,7 @@ impl<'s> Declarations<'s> {
         );
     }
 
-    /// What stands in the way of a new name. A global may have the name of a type, `motor : Motor`, and two
+    /// What is in the way of a new name. A global may have the name of a type, `motor : Motor`, and two
     /// lists may have variables of one name; but a list's is not hidden by what the root has.
     fn clash(&self, space: SpaceId, name: &str, entry: Entry) -> Option<Entry> {
         let root = self.names.root(name).unwrap_or_default();

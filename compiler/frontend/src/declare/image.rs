@@ -8,7 +8,7 @@ use crate::types::image::Shared;
 use crate::types::table::{GLOBALS, scalar_initial};
 use crate::{Code, Diagnostic, Span};
 use rustc_hash::FxHashSet;
-use staunch_ir::{Address, Const, Elementary, Field, FieldId, Lane, Place, Retain, Root, Section, Type, Value, View};
+use staunch_ir::{Address, Const, Elementary, Field, FieldId, Place, Repr, Retain, Root, Section, Type, Value, View};
 use std::cmp::Reverse;
 
 /// What lies at an address, among others.
@@ -126,7 +126,7 @@ impl<'s> Declarations<'s> {
     /// The bits of the integers that the type is made of.
     fn unit(&self, ty: Type) -> Option<u64> {
         match ty {
-            Type::Elementary(it) if is_of_bits(ty) => Some(u64::from(it.lane().size()) * 8),
+            Type::Elementary(it) if is_of_bits(ty) => Some(u64::from(it.repr().size()) * 8),
             Type::Array(id) => match self.program.array(id).element {
                 Type::Elementary(Elementary::Bool) | Type::Array(_) => None,
                 element => self.unit(element),
@@ -192,7 +192,7 @@ impl<'s> Declarations<'s> {
             bits |= value;
             said |= mask;
         }
-        if let Some(value) = self.program.lane(keeper.ty).and_then(|it| value_of(it, bits)) {
+        if let Some(value) = self.program.repr(keeper.ty).and_then(|it| value_of(it, bits)) {
             keeper.initial = scalar_initial(value);
         }
     }
@@ -213,7 +213,7 @@ impl<'s> Declarations<'s> {
 
 /// BOOL, integers and bit strings: all bits are values of them.
 fn is_of_bits(ty: Type) -> bool {
-    matches!(ty, Type::Elementary(it) if it == Elementary::Bool || it.lane().is_integer() && !it.is_time())
+    matches!(ty, Type::Elementary(it) if it == Elementary::Bool || it.repr().is_integer() && !it.is_time())
 }
 
 fn bits_of(value: &Const) -> u64 {
@@ -225,7 +225,7 @@ fn bits_of(value: &Const) -> u64 {
 }
 
 /// The integer of these bits.
-fn value_of(lane: Lane, bits: u64) -> Option<Value> {
-    let (number, size) = (i128::from(bits), 1i128 << (lane.size() * 8));
-    lane.integer(number).or_else(|| lane.integer(number - size))
+fn value_of(repr: Repr, bits: u64) -> Option<Value> {
+    let (number, size) = (i128::from(bits), 1i128 << (repr.size() * 8));
+    repr.integer(number).or_else(|| repr.integer(number - size))
 }

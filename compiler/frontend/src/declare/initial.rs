@@ -10,7 +10,7 @@ use crate::types::declarations::Declarations;
 use crate::types::scope::Scope;
 use crate::types::table::{Resolved, scalar_initial};
 use crate::{Code, Diagnostic, Span};
-use staunch_ir::{Array, ArrayId, Const, ExprKind, Lane, StructId, Type};
+use staunch_ir::{Array, ArrayId, Const, ExprKind, Repr, StructId, Type};
 use staunch_runtime::{BlockInfo, Pin, PinRole};
 use std::rc::Rc;
 
@@ -263,7 +263,7 @@ impl<'s> Declarations<'s> {
     /// What every start of a Cscape counter sets anew has no initial value.
     fn starts_anew(&mut self, block: &BlockInfo, pin: &Pin, span: Span) {
         let owner = format!("{}.{}", block.family.name(), block.name);
-        let start = if pin.lane() == Lane::Bool { "FALSE" } else { "0" };
+        let start = if pin.repr() == Repr::Bool { "FALSE" } else { "0" };
         let message = format!("`{}` of a {owner} starts at {start}, whatever its initial value", pin.name);
         let warning = Diagnostic::new(Code::W0305, span, message).label("this value is not used");
         self.report(match (block.facts.kept, block.pin_for(PinRole::Load)) {

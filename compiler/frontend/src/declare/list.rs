@@ -1,4 +1,4 @@
-//! Lists of global variables: whose name stands before a variable's, `GVL.x`. A file that holds nothing but
+//! Lists of global variables: whose name is before a variable's, `GVL.x`. A file that holds nothing but
 //! VAR_GLOBAL is one, by the name of the file; a pragma `{gvl 'Name'}` names the blocks that follow it.
 
 use crate::dialect::Dialect;

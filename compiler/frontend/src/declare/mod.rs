@@ -1,6 +1,6 @@
 //! Declarations: names, types, signatures and storage, all that holds before a body is read.
 //!
-//! They may stand in any order and in any file, and are resolved in the order of their needs.
+//! They may be in any order and in any file, and are resolved in the order of their needs.
 
 mod address;
 mod collect;

@@ -300,7 +300,7 @@ impl<'s> Declarations<'s> {
             }
         };
         let bounds = (self.constant_integer(low, scope)?, self.constant_integer(high, scope)?);
-        let whole = self.program.range(resolved.ty).or(made_of.lane().range())?;
+        let whole = self.program.range(resolved.ty).or(made_of.repr().range())?;
         if bounds.0 > bounds.1 || bounds.0 < whole.0 || bounds.1 > whole.1 {
             self.report(
                 Diagnostic::new(
@@ -474,7 +474,7 @@ impl<'s> Declarations<'s> {
     ) -> Option<Resolved> {
         let base = match base {
             None => Elementary::Int,
-            Some(name) => match Elementary::named(name.text).filter(|it| it.lane().is_integer() && it.is_integral()) {
+            Some(name) => match Elementary::named(name.text).filter(|it| it.repr().is_integer() && it.is_integral()) {
                 Some(base) => base,
                 None => {
                     self.error(Code::E0407, name.span, "the base of an enumeration is an integer or bit-string type");
@@ -488,7 +488,7 @@ impl<'s> Declarations<'s> {
             if let Some(expr) = &value.value {
                 next = self.constant_integer(expr, scope)?;
             }
-            let Some(number) = base.lane().integer(next) else {
+            let Some(number) = base.repr().integer(next) else {
                 self.report(
                     Diagnostic::new(Code::E0202, value.name.span, format!("{next} does not fit {}", base.name()))
                         .label(format!("the enumeration's values are of type {}", base.name())),

@@ -59,7 +59,7 @@ impl Parts {
         self.parts.push(Part { role, span });
     }
 
-    /// The instance, which stands first.
+    /// The instance, which is first.
     pub fn instance(&self) -> Option<&Place> {
         self.written.first().and_then(Written::place)
     }

@@ -9,7 +9,7 @@ use ast::{ArgumentKind, ExprKind as Ast};
 use staunch_ir::Type;
 use staunch_runtime::Family;
 
-/// What stands before the parentheses.
+/// What is before the parentheses.
 #[derive(Clone, Copy)]
 pub(crate) enum Callee<'s> {
     /// A user's FUNCTION, by its slot.

@@ -32,7 +32,7 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let at = self.at(span);
-        let limit = |number| Some(Expr::constant(made_of, made_of.lane().integer(number)?, at));
+        let limit = |number| Some(Expr::constant(made_of, made_of.repr().integer(number)?, at));
         let operands = vec![limit(low)?, value, limit(high)?];
         Some(Expr::apply(Op::InRange, to, operands, at))
     }
@@ -175,7 +175,7 @@ impl<'s> Checker<'_, 's> {
         if !self.decl.dialect(span).mixes_bits_and_integers() {
             return false;
         }
-        let (low, high) = (from.lane().range(), to.lane().range());
+        let (low, high) = (from.repr().range(), to.repr().range());
         let (Some(from_range), Some(to_range)) = (low, high) else {
             return widens(as_number(from), to) || self.loses_precision(from, to, span);
         };
@@ -185,7 +185,7 @@ impl<'s> Checker<'_, 's> {
         if from_range.0 >= to_range.0 && from_range.1 <= to_range.1 {
             return true;
         }
-        let sign_only = from.lane().size() <= to.lane().size();
+        let sign_only = from.repr().size() <= to.repr().size();
         if sign_only {
             self.report(
                 Diagnostic::new(

@@ -18,7 +18,7 @@ impl Checker<'_, '_> {
             _ => variable(&sides.b).zip(constant(&sides.a)).map(|(ty, limit)| (ty, turned(sides.op), limit)),
         };
         let Some((ty, op, limit)) = found else { return };
-        let range = self.decl.program.range(ty).or_else(|| ty.elementary()?.lane().range());
+        let range = self.decl.program.range(ty).or_else(|| ty.elementary()?.repr().range());
         let Some((low, high)) = range else { return };
         // Traps of a move between systems have a lint of their own.
         if low == 0 && limit == 0 {

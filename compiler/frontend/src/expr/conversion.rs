@@ -81,7 +81,7 @@ impl<'s> Checker<'_, 's> {
     /// The rightmost bit of a bit string or an integer; where those mix, and of a real, whether it is
     /// `<> 0`.
     fn rightmost_bit(&mut self, value: Expr, from: Elementary, span: Span) -> Option<Expr> {
-        let whole = from.lane().integer(1).filter(|_| !self.decl.dialect(span).mixes_bits_and_integers());
+        let whole = from.repr().integer(1).filter(|_| !self.decl.dialect(span).mixes_bits_and_integers());
         let rightmost = match whole {
             Some(one) if from != Elementary::Bool => {
                 let (ty, one) = (value.ty, Expr::constant(from, one, value.at));

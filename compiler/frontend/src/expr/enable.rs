@@ -144,8 +144,8 @@ impl<'s> Checker<'_, 's> {
 
     /// The value that a result starts with.
     fn zero(&self, ty: Type, at: Location) -> Expr {
-        let kind = match (self.decl.program.lane(ty), ty) {
-            (Some(lane), _) => ExprKind::Const(lane.zero()),
+        let kind = match (self.decl.program.repr(ty), ty) {
+            (Some(repr), _) => ExprKind::Const(repr.zero()),
             (None, Type::String(_)) => ExprKind::Text(Vec::new()),
             (None, _) => ExprKind::Aggregate(Const::Zero),
         };

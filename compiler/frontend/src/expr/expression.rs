@@ -41,7 +41,7 @@ impl<'s> Checker<'_, 's> {
             let text = self.decl.log.sources.text(expr.span).to_owned();
             let mut error = Diagnostic::new(Code::E0507, expr.span, format!("a condition is a BOOL, this is {name}"))
                 .label("expected BOOL");
-            if matches!(found, Type::Elementary(it) if it.lane().is_integer()) && !text.contains(' ') {
+            if matches!(found, Type::Elementary(it) if it.repr().is_integer()) && !text.contains(' ') {
                 error = error.help(format!("compare it: `{text} <> 0`")).fix(expr.span, format!("{text} <> 0"));
             } else if let Type::Block(id) = found
                 && id.info().pin("Q").is_some()
@@ -94,9 +94,9 @@ impl<'s> Checker<'_, 's> {
     fn constant_variable(&mut self, variable: &Variable<'s>, value: Const, span: Span) -> Option<Expr> {
         let at = self.at(span);
         let ty = variable.resolved.ty.read();
-        let kind = match (value, self.decl.program.lane(ty), ty) {
+        let kind = match (value, self.decl.program.repr(ty), ty) {
             (Const::Scalar(value), _, _) => ExprKind::Const(value),
-            (Const::Zero, Some(lane), _) => ExprKind::Const(lane.zero()),
+            (Const::Zero, Some(repr), _) => ExprKind::Const(repr.zero()),
             (Const::Text(bytes), _, _) => ExprKind::Text(bytes),
             (Const::Zero, None, Type::String(_)) => ExprKind::Text(Vec::new()),
             (other, _, _) if self.context != Context::Body => ExprKind::Aggregate(other),
@@ -147,7 +147,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn unary(&mut self, op: UnaryOp, inner: &ast::Expr<'s>, expected: Option<Type>, span: Span) -> Option<Operand> {
-        // The sign of `INT#-5` stands inside the literal: it is of the value that has to fit.
+        // The sign of `INT#-5` is inside the literal: it is of the value that has to fit.
         if let (UnaryOp::Neg, Ast::Literal(literal)) = (op, &inner.kind)
             && inner.span == span
             && let Some(prefix) = &literal.prefix

@@ -2,10 +2,10 @@
 
 use super::checker::Checker;
 use crate::{Code, Diagnostic, Span};
-use staunch_ir::{Const, Conversion, Expr, ExprKind, Lane, Op, Type, Value};
+use staunch_ir::{Const, Conversion, Expr, ExprKind, Op, Repr, Type, Value};
 
 impl Checker<'_, '_> {
-    /// An operation node at the lane of `operands`, folded where all operands are constant.
+    /// An operation node at the repr of `operands`, folded where all operands are constant.
     pub(crate) fn apply(
         &mut self,
         op: Op,
@@ -18,8 +18,8 @@ impl Checker<'_, '_> {
             return self.apply_to_enums(op, id, values, result, span);
         }
         let at = self.at(span);
-        let lane = self.decl.program.lane(operands)?;
-        if !op.allows(lane) {
+        let repr = self.decl.program.repr(operands)?;
+        if !op.allows(repr) {
             return None;
         }
         if values.iter().any(|it| it.as_const().is_none()) {
@@ -78,7 +78,7 @@ impl Checker<'_, '_> {
             return value;
         }
         let how = match how {
-            Conversion::Value if self.same_lane(value.ty, ty) => Conversion::Same,
+            Conversion::Value if self.same_repr(value.ty, ty) => Conversion::Same,
             other => other,
         };
         let expr = Expr::convert(how, ty, value, at);
@@ -88,8 +88,8 @@ impl Checker<'_, '_> {
         }
     }
 
-    fn same_lane(&self, a: Type, b: Type) -> bool {
-        let (a, b): (Option<Lane>, Option<Lane>) = (self.decl.program.lane(a), self.decl.program.lane(b));
+    fn same_repr(&self, a: Type, b: Type) -> bool {
+        let (a, b): (Option<Repr>, Option<Repr>) = (self.decl.program.repr(a), self.decl.program.repr(b));
         a.is_some() && a == b
     }
 }

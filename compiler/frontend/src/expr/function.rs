@@ -175,9 +175,9 @@ impl<'s> Checker<'_, 's> {
         use staunch_ir::Const;
         let at = self.at(span);
         let ty = resolved.ty;
-        let kind = match (&resolved.initial, self.decl.program.lane(ty), ty) {
+        let kind = match (&resolved.initial, self.decl.program.repr(ty), ty) {
             (Const::Scalar(value), _, _) => ExprKind::Const(*value),
-            (Const::Zero, Some(lane), _) => ExprKind::Const(lane.zero()),
+            (Const::Zero, Some(repr), _) => ExprKind::Const(repr.zero()),
             (Const::Text(bytes), _, _) => ExprKind::Text(bytes.clone()),
             (Const::Zero, None, staunch_ir::Type::String(_)) => ExprKind::Text(Vec::new()),
             (other, _, _) => ExprKind::Aggregate(other.clone()),

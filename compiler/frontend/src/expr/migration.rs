@@ -43,7 +43,7 @@ impl<'a, 's> CounterCall<'a, 's> {
     }
 }
 
-/// Whether a call does no more than reset or load a counter, or take back a timer's input: it stands beside
+/// Whether a call does no more than reset or load a counter, or take back a timer's input: it is beside
 /// the one that counts.
 pub(crate) fn only_resets(ty: Type, arguments: &[ast::Argument<'_>]) -> bool {
     let is_timer = matches!(ty, Type::Block(id) if id.info().pin("PT").is_some());
@@ -115,7 +115,7 @@ impl<'s> Checker<'_, 's> {
     /// Trap 8: an unsigned value against zero, where the outcome is always the same.
     pub(crate) fn compared_with_zero(&mut self, op: Op, ty: Elementary, sides: [&Expr; 2], span: Span) {
         let zero = |it: &Expr| it.as_const().and_then(Value::as_integer) == Some(0);
-        let unsigned = ty.lane().is_integer() && !ty.lane().is_signed() && ty != Elementary::Bool;
+        let unsigned = ty.repr().is_integer() && !ty.repr().is_signed() && ty != Elementary::Bool;
         let outcome = match (op, zero(sides[0]), zero(sides[1])) {
             (Op::Lt, false, true) | (Op::Gt, true, false) => "FALSE",
             (Op::Ge, false, true) | (Op::Le, true, false) => "TRUE",

@@ -128,13 +128,13 @@ impl<'s> Checker<'_, 's> {
             );
             return None;
         }
-        if let Some(it) = ty.lane().integer(value) {
+        if let Some(it) = ty.repr().integer(value) {
             return Some(it);
         }
         if let Some(it) = self.wrapped_bits(value, ty, span) {
             return Some(it);
         }
-        let (low, high) = ty.lane().range()?;
+        let (low, high) = ty.repr().range()?;
         self.report(
             Diagnostic::new(Code::E0202, span, format!("{value} does not fit {}", ty.name()))
                 .label(format!("{} holds {low} to {high}", ty.name())),
@@ -144,16 +144,16 @@ impl<'s> Checker<'_, 's> {
 
     /// CODESYS writes -1 to a WORD as 65535.
     fn wrapped_bits(&mut self, value: i128, ty: Elementary, span: Span) -> Option<Value> {
-        let (_, high) = ty.lane().range()?;
+        let (_, high) = ty.repr().range()?;
         let mixes = self.decl.dialect(span).mixes_bits_and_integers();
-        if !mixes || value >= 0 || ty == Elementary::Bool || !ty.lane().is_unsigned() || -value > high / 2 + 1 {
+        if !mixes || value >= 0 || ty == Elementary::Bool || !ty.repr().is_unsigned() || -value > high / 2 + 1 {
             return None;
         }
         self.report(
             Diagnostic::new(Code::W0506, span, format!("{value} becomes {} in {}", value + high + 1, ty.name()))
                 .label(format!("{} has no sign", ty.name())),
         );
-        ty.lane().integer(value + high + 1)
+        ty.repr().integer(value + high + 1)
     }
 
     fn real_as(&mut self, number: &Real, ty: Elementary, span: Span) -> Option<Value> {
@@ -165,11 +165,11 @@ impl<'s> Checker<'_, 's> {
             );
             return None;
         }
-        if !number.fits(ty.lane()) {
+        if !number.fits(ty.repr()) {
             self.error(Code::E0202, span, format!("this number is too large for {}", ty.name()));
             return None;
         }
-        number.value(ty.lane())
+        number.value(ty.repr())
     }
 }
 
@@ -186,13 +186,13 @@ fn example(ty: Elementary, number: i128) -> String {
 /// The expected type where the value fits it, else the smallest of INT, DINT, LINT, ULINT.
 fn integer_type(value: i128, expected: Option<Type>) -> Elementary {
     if let Some(Type::Elementary(expected)) = expected {
-        let fits = expected.is_real() || (expected.is_integral() && expected.lane().integer(value).is_some());
+        let fits = expected.is_real() || (expected.is_integral() && expected.repr().integer(value).is_some());
         if fits && expected != Elementary::Bool {
             return expected;
         }
     }
     let candidates = [Elementary::Int, Elementary::Dint, Elementary::Lint];
-    let fitting = candidates.into_iter().find(|it| it.lane().integer(value).is_some());
+    let fitting = candidates.into_iter().find(|it| it.repr().integer(value).is_some());
     fitting.unwrap_or(Elementary::Ulint)
 }
 

@@ -90,7 +90,7 @@ impl<'s> Checker<'_, 's> {
 
     pub(super) fn side(&mut self, operand: Operand, ty: Elementary, span: Span) -> Option<Expr> {
         match operand {
-            // The meeting of a bit string and an integer is decided; the lanes agree in size or widen.
+            // The meeting of a bit string and an integer is decided; the reprs agree in size or widen.
             Operand::Typed(expr) | Operand::Promoted(expr, _) => {
                 Some(self.convert(Conversion::Value, Type::Elementary(ty), expr))
             }
@@ -179,7 +179,7 @@ impl<'s> Checker<'_, 's> {
             }
             (Some(Type::Elementary(it)), None) if it.is_integer() && is_junction(sides.op) => {
                 let bits = ["BYTE", "WORD", "DWORD", "LWORD"];
-                let bits = bits[usize::try_from(it.lane().size().trailing_zeros()).unwrap_or(0)];
+                let bits = bits[usize::try_from(it.repr().size().trailing_zeros()).unwrap_or(0)];
                 Some(format!("write `{}`", converted(sides, it, bits, a, b)))
             }
             (Some(Type::Elementary(it)), None) if it.is_duration() => Some(format!("write the unit: `T#{b}ms`")),
@@ -263,7 +263,7 @@ impl<'s> Checker<'_, 's> {
     /// `**`: REAL or LREAL; integers are converted.
     fn power(&mut self, sides: Sides) -> Option<Expr> {
         let op_span = sides.op_span;
-        let lreal = |operand: &Operand| matches!(operand.ty(), Some(Type::Elementary(it)) if it == Elementary::Lreal || it.lane().size() > 2 && it.is_integer());
+        let lreal = |operand: &Operand| matches!(operand.ty(), Some(Type::Elementary(it)) if it == Elementary::Lreal || it.repr().size() > 2 && it.is_integer());
         let long = lreal(&sides.a) || lreal(&sides.b) || sides.hint == Some(Type::LREAL);
         let ty = if long { Elementary::Lreal } else { Elementary::Real };
         let numeric = |operand: &Operand| match operand.ty() {
@@ -388,7 +388,7 @@ impl<'s> Checker<'_, 's> {
     }
 }
 
-/// The two sides of an operator, and where they stand.
+/// The two sides of an operator, and where they are.
 pub(crate) struct Sides {
     pub a: Operand,
     pub b: Operand,
@@ -462,11 +462,11 @@ fn literal_meets(
 ) -> Option<Elementary> {
     match literal {
         Operand::Integer(value) => {
-            if ty.is_real() || ty.lane().integer(*value).is_some() {
+            if ty.is_real() || ty.repr().integer(*value).is_some() {
                 return Some(ty);
             }
             let wider = [Elementary::Int, Elementary::Dint, Elementary::Lint, Elementary::Ulint];
-            let own = wider.into_iter().find(|it| it.lane().integer(*value).is_some())?;
+            let own = wider.into_iter().find(|it| it.repr().integer(*value).is_some())?;
             join(number, own)
         }
         Operand::Real { .. } => {

@@ -55,7 +55,7 @@ impl Checker<'_, '_> {
         Place::local(id, ty)
     }
 
-    /// Runs `next`. What it hoists runs before the expression that it stands in, so of what was
+    /// Runs `next`. What it hoists runs before the expression that it is in, so of what was
     /// evaluated before, that is saved which would come out otherwise after it.
     pub(crate) fn after<T>(&mut self, done: &mut [&mut Expr], next: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
         let mark = self.block.len();

@@ -358,10 +358,10 @@ fn widened_by_literals<'o>(ty: Type, operands: impl Iterator<Item = &'o Operand>
         }
         if let Operand::Integer(value) = operand
             && ty.is_integer()
-            && ty.lane().integer(*value).is_none()
+            && ty.repr().integer(*value).is_none()
         {
             let own = [Elementary::Int, Elementary::Dint, Elementary::Lint];
-            let own = own.into_iter().find(|it| it.lane().integer(*value).is_some());
+            let own = own.into_iter().find(|it| it.repr().integer(*value).is_some());
             ty = own.and_then(|own| join(ty, own)).unwrap_or(ty);
         }
     }
@@ -371,11 +371,11 @@ fn widened_by_literals<'o>(ty: Type, operands: impl Iterator<Item = &'o Operand>
 fn literals_type<'o>(operands: impl Iterator<Item = &'o Operand> + Clone, expected: Option<Type>) -> Type {
     let real = operands.clone().any(|it| matches!(it, Operand::Real { .. }));
     match expected {
-        Some(ty @ Type::Elementary(it)) if it.is_real() || (!real && it.lane().is_integer() && it.is_integral()) => ty,
+        Some(ty @ Type::Elementary(it)) if it.is_real() || (!real && it.repr().is_integer() && it.is_integral()) => ty,
         _ if real => Type::LREAL,
         _ => {
             let fits = |ty: &Elementary| {
-                operands.clone().all(|it| matches!(it, Operand::Integer(value) if ty.lane().integer(*value).is_some()))
+                operands.clone().all(|it| matches!(it, Operand::Integer(value) if ty.repr().integer(*value).is_some()))
             };
             let ty = [Elementary::Int, Elementary::Dint, Elementary::Lint].into_iter().find(fits);
             Type::Elementary(ty.unwrap_or(Elementary::Ulint))

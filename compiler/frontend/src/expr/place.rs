@@ -52,7 +52,7 @@ pub(crate) struct Bits {
 
 impl Part {
     pub fn bits(self) -> Bits {
-        let width = if self.ty == Elementary::Bool { 1 } else { self.ty.lane().size() * 8 };
+        let width = if self.ty == Elementary::Bool { 1 } else { self.ty.repr().size() * 8 };
         Bits { shift: self.shift, width }
     }
 }
@@ -507,7 +507,7 @@ impl<'s> Checker<'_, 's> {
 
     /// Any integer as LINT; a ULINT beyond LINT becomes the largest LINT, which no array holds.
     fn as_lint(&mut self, value: Expr, span: Span) -> Option<Expr> {
-        let value = if self.decl.program.lane(value.ty) == Some(staunch_ir::Lane::U64) {
+        let value = if self.decl.program.repr(value.ty) == Some(staunch_ir::Repr::U64) {
             let (ty, at) = (value.ty, value.at);
             let most = Expr::new(ty, staunch_ir::ExprKind::Const(Value::U64(u64::MAX >> 1)), at);
             self.apply(Op::Min, ty, vec![value, most], ty, span)?
@@ -520,7 +520,7 @@ impl<'s> Checker<'_, 's> {
     /// What `.3` or `.%W1` selects from a value of type `ty`.
     pub(crate) fn find_part(&mut self, ty: Type, part: ast::Name<'s>) -> Option<Part> {
         let width = match ty {
-            Type::Elementary(it) if it.lane().is_integer() && it.is_integral() => it.lane().size() * 8,
+            Type::Elementary(it) if it.repr().is_integer() && it.is_integral() => it.repr().size() * 8,
             other => {
                 let found = self.type_name(other);
                 self.report(
@@ -539,7 +539,7 @@ impl<'s> Checker<'_, 's> {
             Some(_) => (Elementary::Bool, text),
             None => return None,
         };
-        let size = if of == Elementary::Bool { 1 } else { of.lane().size() * 8 };
+        let size = if of == Elementary::Bool { 1 } else { of.repr().size() * 8 };
         let shift = number.parse::<u32>().ok().and_then(|it| it.checked_mul(size));
         let Some(shift) = shift.filter(|it| it + size <= width) else {
             let found = self.type_name(ty);

@@ -37,7 +37,7 @@ fn low_bits(value: &Expr, to: Elementary) -> Option<Expr> {
     match &value.kind {
         ExprKind::Const(_) => Some(converted(value.clone(), to)),
         ExprKind::Convert(Conversion::Value, inner) => {
-            let from = inner.ty.elementary().filter(|it| is_narrow(*it) && it.lane().size() <= to.lane().size())?;
+            let from = inner.ty.elementary().filter(|it| is_narrow(*it) && it.repr().size() <= to.repr().size())?;
             let is_read = inner.ty == Type::Elementary(from);
             is_read.then(|| converted((**inner).clone(), to))
         }
@@ -62,9 +62,9 @@ fn converted(value: Expr, to: Elementary) -> Expr {
         return value;
     }
     if let Some(constant) = value.as_const() {
-        return Expr::constant(to, staunch_runtime::ops::convert_value(constant, to.lane()), at);
+        return Expr::constant(to, staunch_runtime::ops::convert_value(constant, to.repr()), at);
     }
-    let same = value.ty.elementary().is_some_and(|it| it.lane() == to.lane());
+    let same = value.ty.elementary().is_some_and(|it| it.repr() == to.repr());
     Expr::convert(if same { Conversion::Same } else { Conversion::Value }, ty, value, at)
 }
 
@@ -93,12 +93,12 @@ mod tests {
 
     /// A value of a narrow type at 32 bits.
     fn leaf(ty: Elementary, number: i128) -> Option<Expr> {
-        let value = Expr::constant(ty, ty.lane().integer(number)?, AT);
+        let value = Expr::constant(ty, ty.repr().integer(number)?, AT);
         Some(Expr::convert(Conversion::Value, Type::DINT, value, AT))
     }
 
     fn edges(ty: Elementary) -> Vec<Expr> {
-        let (low, high) = ty.lane().range().unwrap_or_default();
+        let (low, high) = ty.repr().range().unwrap_or_default();
         let numbers = [low, low + 1, -1, 0, 1, 2, 7, high / 2 + 1, high - 1, high];
         numbers.into_iter().filter_map(|it| leaf(ty, it)).collect()
     }
@@ -109,7 +109,7 @@ mod tests {
         let dint = |op, operands| Expr::apply(op, Type::DINT, operands, AT);
         let mut compared = 0;
         for to in narrow() {
-            let from = narrow().filter(|it| it.lane().size() <= to.lane().size());
+            let from = narrow().filter(|it| it.repr().size() <= to.repr().size());
             let leaves: Vec<_> = from.flat_map(edges).collect();
             let mut wide: Vec<_> = leaves.iter().map(|it| dint(Op::Neg, vec![it.clone()])).collect();
             for (at, a) in leaves.iter().enumerate() {

@@ -283,7 +283,7 @@ impl<'s> Checker<'_, 's> {
                 let word = if self.decl.dialect(span).mixes_bits_and_integers() { "ADR" } else { "REF" };
                 error.help(format!("write `{word}({text})`")).fix(span, format!("{word}({text})"))
             }
-            Type::Elementary(it) if it.lane().is_integer() => {
+            Type::Elementary(it) if it.repr().is_integer() => {
                 error.help("an integer is not made a reference: keep the reference itself, and add to it")
             }
             _ => error,
@@ -293,7 +293,7 @@ impl<'s> Checker<'_, 's> {
 
     /// An address where an integer is declared, in dialects that let it be one.
     pub(crate) fn address_as(&mut self, value: Expr, into: Elementary, span: Span) -> Option<Expr> {
-        let holds = into.lane().is_integer() && into.lane().size() >= 4 && !into.is_time();
+        let holds = into.repr().is_integer() && into.repr().size() >= 4 && !into.is_time();
         if !holds || !self.decl.dialect(span).mixes_bits_and_integers() {
             let (expected, found) = (into.name(), self.type_name(value.ty));
             let error = Diagnostic::new(Code::E0201, span, format!("expected {expected}, found {found}"))
@@ -346,7 +346,7 @@ impl<'s> Checker<'_, 's> {
         match operand.cut() {
             Operand::Typed(value) if matches!(value.ty, Type::Reference(_)) => Some(self.address_bits(value)),
             Operand::Typed(value) => match value.ty {
-                Type::Elementary(it) if it.lane().is_integer() && !it.is_time() => {
+                Type::Elementary(it) if it.repr().is_integer() && !it.is_time() => {
                     Some(self.convert(Conversion::Value, Type::Elementary(lword), value))
                 }
                 _ => self.coerce(Operand::Typed(value), Type::Elementary(lword), span),
@@ -375,7 +375,7 @@ impl<'s> Checker<'_, 's> {
     fn advance(&mut self, reference: Operand, by: Operand, op: BinaryOp, span: Span) -> Option<Expr> {
         let Operand::Typed(reference) = reference else { return None };
         let by = match by.cut() {
-            Operand::Typed(value) if matches!(value.ty, Type::Elementary(it) if it.lane().is_integer() && !it.is_time()) => {
+            Operand::Typed(value) if matches!(value.ty, Type::Elementary(it) if it.repr().is_integer() && !it.is_time()) => {
                 self.convert(Conversion::Value, Type::LINT, value)
             }
             other => self.coerce(other, Type::LINT, span)?,

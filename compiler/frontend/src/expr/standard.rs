@@ -110,7 +110,7 @@ impl<'s> Checker<'_, 's> {
             (Op::Max | Op::Min, Type::String(_)) => self.extreme_text(op, ty, operands, span),
             (Op::Max | Op::Min, _) => self.fold(op, ty, operands, span),
             (Op::Limit, Type::String(_)) => self.limited_text(ty, operands, span),
-            (Op::Sel, _) if self.decl.program.lane(ty).is_none() => self.select(ty, operands, span),
+            (Op::Sel, _) if self.decl.program.repr(ty).is_none() => self.select(ty, operands, span),
             (Op::Shl | Op::Shr | Op::Rol | Op::Ror, _) => {
                 let (count, value) = (operands.pop()?, operands.pop()?);
                 self.shift(op, ty, value, count, span)
@@ -160,7 +160,7 @@ impl<'s> Checker<'_, 's> {
 
     /// A count or position as a LINT; what is more than a LINT holds is its greatest value.
     fn count(&mut self, value: Expr) -> Option<Expr> {
-        let most = Elementary::Ulint.lane().integer(i128::from(i64::MAX)).filter(|_| is_wide(value.ty));
+        let most = Elementary::Ulint.repr().integer(i128::from(i64::MAX)).filter(|_| is_wide(value.ty));
         let value = match most {
             Some(most) => {
                 let (ty, at) = (value.ty, value.at);
@@ -172,7 +172,7 @@ impl<'s> Checker<'_, 's> {
         Some(self.convert(Conversion::Value, Type::LINT, value))
     }
 
-    /// `SEL(G, IN0, IN1)` of what no lane carries; both inputs are evaluated.
+    /// `SEL(G, IN0, IN1)` of what no repr carries; both inputs are evaluated.
     fn select(&mut self, ty: Type, mut operands: Vec<Expr>, span: Span) -> Option<Expr> {
         self.fault_in_order(operands.iter_mut());
         let [selector, first, second] = <[Expr; 3]>::try_from(operands).ok()?;
@@ -206,8 +206,8 @@ impl<'s> Checker<'_, 's> {
             return self.concat(operands, span);
         }
         let mut ready = Vec::new();
-        for (operand, lane) in operands.into_iter().zip(op.operands()) {
-            ready.push(if lane.is_some() { self.count(operand)? } else { operand });
+        for (operand, repr) in operands.into_iter().zip(op.operands()) {
+            ready.push(if repr.is_some() { self.count(operand)? } else { operand });
         }
         let ty = match op.result() {
             Some(_) => Type::INT,

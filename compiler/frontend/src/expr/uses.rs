@@ -26,9 +26,9 @@ pub(crate) struct Assigned {
 pub(crate) struct KeptCount {
     pub counter: Place,
     pub kept: Place,
-    /// Where it stands as RCV.
+    /// Where it is as RCV.
     pub span: Span,
-    /// The call that reaches the counter, when it does not stand in the POU itself.
+    /// The call that reaches the counter, when it is not in the POU itself.
     pub through: Option<Location>,
     /// Whether the user knows that no restart restores it.
     pub told: bool,
@@ -75,7 +75,7 @@ fn open_indices(place: &Place) -> Vec<&Expr> {
     indices.filter(|it| it.as_const().is_none()).collect()
 }
 
-/// Whether two expressions are one, but for where they stand.
+/// Whether two expressions are one, but for where they are.
 fn is_same_value(a: &Expr, b: &Expr) -> bool {
     match (&a.kind, &b.kind) {
         (ExprKind::Const(a), ExprKind::Const(b)) => a == b,

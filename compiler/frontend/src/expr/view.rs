@@ -81,7 +81,7 @@ impl<'s> Checker<'_, 's> {
         let (at, ty) = (self.at(span), place.ty.read());
         let Type::Elementary(whole) = ty else { return None };
         let unsigned = of_bits(whole);
-        let mask = unsigned.lane().integer(((1i128 << bits.width) - 1) << bits.shift)?;
+        let mask = unsigned.repr().integer(((1i128 << bits.width) - 1) << bits.shift)?;
         let mask = self.convert(Conversion::Value, ty, Expr::constant(unsigned, mask, at));
         let kept = self.apply(Op::Not, ty, vec![mask.clone()], ty, span)?;
         let old = Expr::load(place.clone(), at);
@@ -104,7 +104,7 @@ impl<'s> Checker<'_, 's> {
             return Some(self.convert(Conversion::Value, ty, shifted));
         }
         let Type::Elementary(of) = whole else { return None };
-        let one = Expr::constant(of, of.lane().integer(1)?, at);
+        let one = Expr::constant(of, of.repr().integer(1)?, at);
         let masked = self.apply(Op::And, whole, vec![shifted, one], whole, span)?;
         Some(self.convert(Conversion::Value, ty, masked))
     }
@@ -132,7 +132,7 @@ impl<'s> Checker<'_, 's> {
             return Some(vec![(place.clone(), Bits { shift: u32::try_from(view.bit).ok()?, width })]);
         };
         let (array, at) = (self.decl.program.array(id), self.at(span));
-        let size = self.decl.program.lane(array.element)?.size() * 8;
+        let size = self.decl.program.repr(array.element)?.size() * 8;
         let first = array.low.checked_add_unsigned(view.bit / u64::from(size))?;
         let shift = u32::try_from(view.bit % u64::from(size)).ok()?;
         let count = width.div_ceil(size);
@@ -146,7 +146,7 @@ impl<'s> Checker<'_, 's> {
 
 /// The bit string of the same width, whose values are all bit patterns.
 fn of_bits(ty: Elementary) -> Elementary {
-    match ty.lane().size() {
+    match ty.repr().size() {
         1 => Elementary::Byte,
         2 => Elementary::Word,
         4 => Elementary::Dword,

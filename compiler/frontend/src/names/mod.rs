@@ -66,7 +66,7 @@ impl SpaceId {
     pub const ROOT: Self = Self(0);
 }
 
-/// Where a name stands.
+/// Where a name is.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Site {
     /// The innermost namespace around it.
@@ -125,7 +125,7 @@ impl Default for Names<'_> {
 }
 
 impl<'s> Names<'s> {
-    /// What a path means where it stands, after the scope of the POU.
+    /// What a path means where it is, after the scope of the POU.
     pub fn lookup(&self, site: Site, path: &[ast::Name<'_>], sense: Sense) -> Found {
         match path {
             [] => Found::Nothing,

@@ -85,7 +85,7 @@ impl<'s> Declarations<'s> {
         self.names_once(resources.flat_map(|it| &it.programs).map(|it| it.name));
     }
 
-    /// Reports a name that stands twice among `names`.
+    /// Reports a name that is twice among `names`.
     fn names_once(&mut self, names: impl Iterator<Item = ast::Name<'s>>) {
         let mut seen: FxHashMap<Key<'s>, Span> = FxHashMap::default();
         for name in names {

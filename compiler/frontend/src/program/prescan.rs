@@ -17,7 +17,7 @@ use build::Builder;
 use named::reads_param;
 use staunch_ir::{Place, Root, Routine, RoutineKind};
 
-/// Adds the prescans, given the slots of the POUs in an order in which a callee stands before its
+/// Adds the prescans, given the slots of the POUs in an order in which a callee is before its
 /// callers. `false` if there are none.
 pub(super) fn add(declarations: &mut Declarations<'_>, mut uses: Vec<Uses>, order: &[usize]) -> bool {
     if uses.iter().all(|it| it.instructions.is_empty() && it.counts.is_empty()) {

@@ -96,7 +96,7 @@ fn close(open: &mut Vec<Kind>, end: Kind) -> usize {
     }
 }
 
-/// Takes the end of a block that was opened at `opened`, or reports what stands in its place.
+/// Takes the end of a block that was opened at `opened`, or reports what is in its place.
 pub fn close_block(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
     if let Some(closed) = input.eat(end) {
         note_columns(input, opened, closed);
@@ -115,7 +115,7 @@ pub fn close_block(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
     }
 }
 
-/// Keeps the first block whose end stands in another column: if an end is missing, it is there.
+/// Keeps the first block whose end is in another column: if an end is missing, it is there.
 fn note_columns(input: &mut In<'_, '_, '_>, opened: Span, closed: Span) {
     let state = input.state();
     if state.misaligned.is_none()

@@ -17,7 +17,7 @@ use super::{
     token_class::{ends_statements, opens_statement},
 };
 
-/// The general sentence: what was expected, and what stands there.
+/// The general sentence: what was expected, and what is there.
 pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
     let found = input.state().tokens.kinds.get(problem.at).copied().unwrap_or(Kind::End);
     // The lexer has spoken about those.
@@ -157,7 +157,7 @@ fn bracket(end: Kind) -> &'static str {
     if end == Kind::CloseBracket { "]" } else { ")" }
 }
 
-/// `word` with spaces where it would touch what stands beside `span`, which it replaces.
+/// `word` with spaces where it would touch what is beside `span`, which it replaces.
 pub fn padded(input: &mut In<'_, '_, '_>, span: Span, word: &str) -> String {
     let text = input.state().text;
     let before = text[..index(span.start)].chars().next_back();

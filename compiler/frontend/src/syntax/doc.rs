@@ -17,7 +17,7 @@ pub fn comment(state: &State<'_, '_>, tokens: SimpleSpan) -> Option<String> {
     trailing(state, last, next).or_else(|| before(state, tokens.start))
 }
 
-/// For a POU: only what stands before it.
+/// For a POU: only what is before it.
 pub fn before(state: &State<'_, '_>, first: usize) -> Option<String> {
     let start = state.place(first).start;
     let floor = if first == 0 { 0 } else { state.place(first - 1).end };
@@ -72,7 +72,7 @@ fn clean<'s>(comments: impl Iterator<Item = &'s str>) -> Option<String> {
     (!text.is_empty()).then_some(text)
 }
 
-/// What stands between the marks of a comment.
+/// What is between the marks of a comment.
 fn inner(comment: &str) -> &str {
     let body = comment.get(2..).unwrap_or_default();
     if comment.starts_with("//") {

@@ -317,7 +317,7 @@ fn is_comma_like(input: &mut In<'_, '_, '_>) -> bool {
     input.kind() == Kind::Semicolon && !input.state().breaks(here.end, next.start)
 }
 
-/// Whether one more argument stands here, and only the `,` before it is missing: the call is
+/// Whether one more argument is here, and only the `,` before it is missing: the call is
 /// closed before the statement ends.
 fn lacks_comma(input: &mut In<'_, '_, '_>, from: usize) -> bool {
     if !matches!(
@@ -488,7 +488,7 @@ fn typed<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
     let mut expr = Expr { kind: ExprKind::Literal(literal), span: span.to(input.last()) };
     if let Some((op, at)) = sign {
         input.state().height = 1;
-        // The operator stands inside the literal, so the whole has one span.
+        // The operator is inside the literal, so the whole has one span.
         expr = Expr { span: expr.span, ..negated(op, at, expr) };
     }
     Ok(expr)

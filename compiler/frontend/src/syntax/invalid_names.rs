@@ -197,7 +197,7 @@ fn used(tokens: &Tokens<'_>, at: usize, before: Option<Kind>, found: &Found<'_>)
     (found.words.contains(&word) && stands_for_name(before, word, next)).then_some(1)
 }
 
-/// Whether a reserved word stands where only a name can.
+/// Whether a reserved word is where only a name can.
 fn stands_for_name(before: Option<Kind>, word: Kind, next: Kind) -> bool {
     let operator = matches!(word, Kind::And | Kind::Or | Kind::Xor | Kind::Mod | Kind::Not);
     if matches!(word, Kind::True | Kind::False) || (operator && next == Kind::OpenParen) {
@@ -227,7 +227,7 @@ fn may_precede_parenthesis(word: Kind) -> bool {
     )
 }
 
-/// Kinds after which an operand stands.
+/// Kinds after which an operand is.
 fn wants_operand(kind: Kind) -> bool {
     matches!(
         kind,

@@ -154,7 +154,7 @@ pub fn misspelt_item(input: &mut In<'_, '_, '_>) -> Option<Kind> {
     nearest_of(input.text(span), ITEMS)
 }
 
-/// Whether a name that stands alone is a misspelt keyword.
+/// Whether a name that is alone is a misspelt keyword.
 pub fn is_misspelt(input: &mut In<'_, '_, '_>, target: &Expr<'_>) -> bool {
     let ExprKind::Name(name) = &target.kind else { return false };
     (name.text.eq_ignore_ascii_case("END") && innermost(input).is_some())

@@ -89,7 +89,7 @@ pub struct Waiting<'s> {
     pub sign: Span,
 }
 
-/// What stands beside the tokens. Productions do not go back over what they reported, so
+/// What is beside the tokens. Productions do not go back over what they reported, so
 /// nothing in it is undone.
 #[derive(Debug)]
 pub struct State<'t, 's> {
@@ -111,7 +111,7 @@ pub struct State<'t, 's> {
     pub instead: Option<Kind>,
     /// For each Pascal BEGIN: how many blocks were open there, and whether it opened a body.
     pub begins: Vec<(usize, bool)>,
-    /// What opened the blocks whose body stands in `{ … }`: they need no END_.
+    /// What opened the blocks whose body is in `{ … }`: they need no END_.
     pub braced: Vec<Span>,
     /// Pairs of braces that are no pragmas, and have been reported.
     pub braces: Vec<Span>,
@@ -119,7 +119,7 @@ pub struct State<'t, 's> {
     pub strays: Vec<VarDecl<'s>>,
     /// Number of the token after the last of them.
     pub told_at: Option<usize>,
-    /// What opened the first block of the POU whose end stands in another column.
+    /// What opened the first block of the POU whose end is in another column.
     pub misaligned: Option<Span>,
     /// An ELSE without its IF has been reported: so is the END_IF after it.
     pub orphaned: bool,

@@ -164,7 +164,7 @@ fn starts_line(input: &mut In<'_, '_, '_>) -> bool {
         && matches!(input.kind_ahead(1), Kind::Assign | Kind::OpenParen | Kind::Dot | Kind::OpenBracket | Kind::Colon)
 }
 
-/// After `ends`, if it stands before the next statement.
+/// After `ends`, if it is before the next statement.
 pub fn skip_header(input: &mut In<'_, '_, '_>, ends: Kind, opened: Span) {
     loop {
         let kind = input.kind();
@@ -216,7 +216,7 @@ pub fn starts_declaration(input: &mut In<'_, '_, '_>) -> bool {
     input.kind() == Kind::Name && matches!(input.kind_ahead(1), Kind::Colon | Kind::Comma | Kind::At)
 }
 
-/// Whether what stands in a VAR block is a statement, and the block's end is missing before it.
+/// Whether what is in a VAR block is a statement, and the block's end is missing before it.
 pub fn is_statement_in_section(input: &mut In<'_, '_, '_>) -> bool {
     let looks = input.kind() == Kind::Name
         && matches!(input.kind_ahead(1), Kind::Assign | Kind::OpenParen | Kind::Dot | Kind::OpenBracket);

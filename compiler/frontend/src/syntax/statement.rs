@@ -99,7 +99,7 @@ fn return_statement<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>>
     Ok(StatementKind::Return)
 }
 
-/// Whether a declaration stands here: names, `:`, and what can only be a type.
+/// Whether a declaration is here: names, `:`, and what can only be a type.
 fn is_declaration(input: &mut In<'_, '_, '_>) -> bool {
     let mut ahead = 1;
     while input.kind_ahead(ahead) == Kind::Comma && input.kind_ahead(ahead + 1) == Kind::Name {

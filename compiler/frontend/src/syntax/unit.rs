@@ -56,7 +56,7 @@ pub fn items<'s>(input: &mut In<'_, '_, 's>) -> Vec<Item<'s>> {
     }
 }
 
-/// Something that stands between the items of a file.
+/// Something that is between the items of a file.
 fn outside(input: &mut In<'_, '_, '_>) {
     let problem = input.problem(Expected::Block);
     diagnostics::report(input, problem);
@@ -122,7 +122,7 @@ fn bare_structure<'s>(input: &mut In<'_, '_, 's>) -> Item<'s> {
     Item::Types(vec![TypeDecl { name, ty, initial: None, doc: None, unread: Vec::new() }])
 }
 
-/// Takes a unit that stands inside another one, if the other one goes on after it.
+/// Takes a unit that is inside another one, if the other one goes on after it.
 fn nested_unit(input: &mut In<'_, '_, '_>) -> bool {
     let Some((end, opened)) = input.state().open.last().copied() else { return false };
     if !opens_item(input.kind()) || !goes_on(input, end) {

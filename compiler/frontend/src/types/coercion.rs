@@ -8,18 +8,18 @@ pub(crate) fn widens(from: Elementary, to: Elementary) -> bool {
         return true;
     }
     if from.is_bits() || to.is_bits() {
-        return from.is_bits() && to.is_bits() && from.lane().size() < to.lane().size()
+        return from.is_bits() && to.is_bits() && from.repr().size() < to.repr().size()
             || (from == Elementary::Bool && to == Elementary::Byte);
     }
     if from.is_time() || to.is_time() {
         return LONG_FORMS.contains(&(from, to));
     }
-    match (from.lane().range(), to.lane().range()) {
+    match (from.repr().range(), to.repr().range()) {
         (Some(from), Some(to)) => from.0 >= to.0 && from.1 <= to.1,
         // A REAL holds 24 bits exactly, an LREAL 53.
-        (Some(_), None) => from.lane().size() * 2 <= to.lane().size(),
+        (Some(_), None) => from.repr().size() * 2 <= to.repr().size(),
         (None, Some(_)) => false,
-        (None, None) => from.lane().size() <= to.lane().size(),
+        (None, None) => from.repr().size() <= to.repr().size(),
     }
 }
 
@@ -56,7 +56,7 @@ pub(crate) fn as_number(ty: Elementary) -> Elementary {
 
 /// Whether this is an integer or a bit string, BOOL aside, of fewer than 32 bits.
 pub(crate) fn is_narrow(ty: Elementary) -> bool {
-    as_number(ty).is_integer() && ty.lane().size() < 4
+    as_number(ty).is_integer() && ty.repr().size() < 4
 }
 
 /// The type that two operands give a value which is computed at more bits: that of more bits, the
@@ -64,7 +64,7 @@ pub(crate) fn is_narrow(ty: Elementary) -> bool {
 pub(crate) fn join_promoted(a: Elementary, b: Elementary) -> Option<Elementary> {
     let numbers = !(a.is_bits() && b.is_bits());
     if numbers && is_narrow(a) && is_narrow(b) {
-        return [as_number(a), as_number(b)].into_iter().max_by_key(|it| (it.lane().size(), !it.lane().is_unsigned()));
+        return [as_number(a), as_number(b)].into_iter().max_by_key(|it| (it.repr().size(), !it.repr().is_unsigned()));
     }
     join(a, b)
 }

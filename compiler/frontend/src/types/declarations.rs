@@ -270,7 +270,7 @@ impl<'s> Declarations<'s> {
         }
     }
 
-    /// What the field of the global variable in a slot is called: a name that two lists have stands after
+    /// What the field of the global variable in a slot is called: a name that two lists have is after
     /// its list's.
     pub fn global_field_name(&self, at: usize) -> String {
         let GlobalSlot { name, space, .. } = &self.globals[at];

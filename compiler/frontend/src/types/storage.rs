@@ -37,10 +37,10 @@ impl<'s> Declarations<'s> {
     /// About how many bytes a value of the type takes: alignment may add some.
     pub fn size_of(&self, ty: Type) -> u64 {
         match ty {
-            Type::Elementary(it) | Type::Subrange(it, _) => u64::from(it.lane().size()),
+            Type::Elementary(it) | Type::Subrange(it, _) => u64::from(it.repr().size()),
             Type::Reference(_) => 8,
             Type::String(capacity) => u64::from(capacity) + 2,
-            Type::Enum(id) => u64::from(self.program.enumeration(id).base.lane().size()),
+            Type::Enum(id) => u64::from(self.program.enumeration(id).base.repr().size()),
             Type::Struct(id) => self.table.sizes[id.index()],
             Type::Block(id) => u64::try_from(id.info().size).unwrap_or(u64::MAX),
             Type::Array(id) => {
@@ -113,7 +113,7 @@ impl<'s> Declarations<'s> {
     /// What a variable starts at that nobody gives a value: a subrange at its lower limit.
     pub fn least(&self, ty: Type) -> Const {
         let low = self.program.range(ty).map_or(0, |(low, _)| low);
-        ty.elementary().and_then(|it| it.lane().integer(low)).map_or(Const::Zero, scalar_initial)
+        ty.elementary().and_then(|it| it.repr().integer(low)).map_or(Const::Zero, scalar_initial)
     }
 
     /// Adds a field to the globals, under `field.name` or, where that is taken, one like it.

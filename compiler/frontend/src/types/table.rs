@@ -69,7 +69,7 @@ pub(crate) fn scalar_initial(value: Value) -> Const {
     let is_zero = match value {
         Value::F32(it) => it.to_bits() == 0,
         Value::F64(it) => it.to_bits() == 0,
-        other => other == other.lane().zero(),
+        other => other == other.repr().zero(),
     };
     if is_zero { Const::Zero } else { Const::Scalar(value) }
 }

@@ -4,7 +4,7 @@ use super::{Frame, Interpreter};
 use crate::layout::usize_of;
 use crate::op::TextValue;
 use crate::{
-    Conversion, Expr, ExprKind, FaultKind, FieldId, Lane, Location, Op, Place, Projection, Root, TextOp, Type, Value,
+    Conversion, Expr, ExprKind, FaultKind, FieldId, Location, Op, Place, Projection, Repr, Root, TextOp, Type, Value,
     apply, apply_text,
 };
 use staunch_runtime::{Fault, ops};
@@ -67,10 +67,10 @@ fn operation(storage: &impl Storage, op: Op, operands: &[Expr], at: Location) ->
         *value = scalar(storage, operand)?;
     }
     let values = &values[..operands.len()];
-    // The operation's lane is that of its first operand without a fixed one.
-    let lane = op.operands().iter().zip(values).find(|(fixed, _)| fixed.is_none());
-    let outcome = lane.and_then(|(_, value)| apply(op, value.lane(), values));
-    outcome.expect("verified IR: operands have the operation's lane").map_err(|kind| Fault { kind, at })
+    // The operation's repr is that of its first operand without a fixed one.
+    let repr = op.operands().iter().zip(values).find(|(fixed, _)| fixed.is_none());
+    let outcome = repr.and_then(|(_, value)| apply(op, value.repr(), values));
+    outcome.expect("verified IR: operands have the operation's repr").map_err(|kind| Fault { kind, at })
 }
 
 fn text_operation(storage: &impl Storage, op: TextOp, operands: &[Expr], capacity: u16) -> Result<TextValue, Fault> {
@@ -92,13 +92,13 @@ fn text_operation(storage: &impl Storage, op: TextOp, operands: &[Expr], capacit
 fn convert(how: Conversion, value: Value, ty: Type) -> Value {
     match how {
         Conversion::Same => value,
-        Conversion::Value => ops::convert_value(value, elementary_lane(ty)),
-        Conversion::Truncate => ops::trunc_value(value, elementary_lane(ty)),
+        Conversion::Value => ops::convert_value(value, elementary_repr(ty)),
+        Conversion::Truncate => ops::trunc_value(value, elementary_repr(ty)),
     }
 }
 
-fn elementary_lane(ty: Type) -> Lane {
-    ty.elementary().expect("verified IR: a conversion to an elementary type").lane()
+fn elementary_repr(ty: Type) -> Repr {
+    ty.elementary().expect("verified IR: a conversion to an elementary type").repr()
 }
 
 pub(super) fn capacity(ty: Type) -> u16 {
@@ -124,12 +124,12 @@ pub(super) struct Scope<'a> {
 
 impl Storage for Scope<'_> {
     fn load(&self, place: &Place) -> Result<Value, Fault> {
-        let lane = self.interpreter.program.lane(place.ty).expect("verified IR: an elementary place");
+        let repr = self.interpreter.program.repr(place.ty).expect("verified IR: an elementary place");
         if let Some(reached) = self.reached(place)? {
-            return self.load_reached(&reached, lane);
+            return self.load_reached(&reached, repr);
         }
         let at = self.resolve(place)?;
-        Ok(Value::read(lane, &self.interpreter.memory[at..]))
+        Ok(Value::read(repr, &self.interpreter.memory[at..]))
     }
 
     fn load_text(&self, place: &Place) -> Result<Vec<u8>, Fault> {
@@ -138,7 +138,7 @@ impl Storage for Scope<'_> {
         }
         let at = self.resolve(place)?;
         let header = &self.interpreter.memory[at..];
-        let Value::U16(length) = Value::read(Lane::U16, header) else { unreachable!("read as U16") };
+        let Value::U16(length) = Value::read(Repr::U16, header) else { unreachable!("read as U16") };
         // A host may have written any length.
         let length = usize::from(length.min(capacity(place.ty)));
         Ok(header[2..2 + length].to_vec())

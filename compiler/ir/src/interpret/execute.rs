@@ -139,8 +139,8 @@ impl<'p> Interpreter<'p> {
     /// Where a loop's counter is, and its value.
     fn counter(&self, frame: &Frame, it: &For) -> Result<(usize, Value), Fault> {
         let offset = self.resolve(frame, &it.counter)?;
-        let lane = self.program.lane(it.counter.ty).expect("verified IR: an integer counter");
-        Ok((offset, Value::read(lane, &self.memory[offset..])))
+        let repr = self.program.repr(it.counter.ty).expect("verified IR: an integer counter");
+        Ok((offset, Value::read(repr, &self.memory[offset..])))
     }
 
     fn assign(&mut self, frame: &Frame, target: &Place, value: &Expr) -> Result<(), Fault> {

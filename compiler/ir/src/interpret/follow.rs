@@ -4,7 +4,7 @@ use super::evaluate::{Scope, Storage, scalar, text};
 use super::{Frame, Interpreter};
 use crate::layout::usize_of;
 use crate::reference::{Followed, followed, view, wanted};
-use crate::{Expr, Lane, Location, Place, Projection, Root, Type, Value};
+use crate::{Expr, Location, Place, Projection, Repr, Root, Type, Value};
 use core::cell::Cell;
 use staunch_runtime::reference::{Memory, Table, View};
 use staunch_runtime::{Fault, FaultKind, ops, text::Destination};
@@ -79,8 +79,8 @@ impl Scope<'_> {
         Ok(offset + usize_of(pin))
     }
 
-    pub(super) fn load_reached(&self, it: &Reached, lane: Lane) -> Result<Value, Fault> {
-        let value = self.table().load_value(&self.state(), it.reference, it.distance, it.view, lane);
+    pub(super) fn load_reached(&self, it: &Reached, repr: Repr) -> Result<Value, Fault> {
+        let value = self.table().load_value(&self.state(), it.reference, it.distance, it.view, repr);
         value.map_err(|kind| Fault { kind, at: it.at })
     }
 

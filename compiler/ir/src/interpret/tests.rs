@@ -3,7 +3,7 @@
 use super::*;
 use crate::fixture::*;
 use crate::{
-    Arm, Const, Conversion, Elementary, Expr, ExprKind, FaultKind, FieldId, Lane, LocalId, Op, Statement,
+    Arm, Const, Conversion, Elementary, Expr, ExprKind, FaultKind, FieldId, LocalId, Op, Repr, Statement,
     StatementKind, TextOp, Type,
 };
 
@@ -34,13 +34,13 @@ fn scans(body: Vec<Statement>, contexts: &[Context], budget: Option<u64>) -> Run
     let frame = interpreter.enter(RoutineId(3), usize_of(interpreter.layout.machine.instances[0]));
     let read = |place: &Place| {
         let at = interpreter.resolve(&frame, place).unwrap();
-        let lane = program.lane(place.ty).unwrap();
-        Value::read(lane, &interpreter.memory[at..]).as_integer().unwrap()
+        let repr = program.repr(place.ty).unwrap();
+        Value::read(repr, &interpreter.memory[at..]).as_integer().unwrap()
     };
     let int = |place: &Place| i16::try_from(read(place)).unwrap();
     let dint = |place: &Place| i32::try_from(read(place)).unwrap();
     let text = interpreter.resolve(&frame, &name()).unwrap();
-    let length = Value::read(Lane::U16, &interpreter.memory[text..]).as_integer().unwrap();
+    let length = Value::read(Repr::U16, &interpreter.memory[text..]).as_integer().unwrap();
     let length = usize::try_from(length).unwrap();
     Run {
         end,
@@ -197,7 +197,7 @@ fn a_program_runs_its_prescan_in_the_first_scan_only() {
         + usize_of(interpreter.layout.field(crate::StructId(1), FieldId(3)));
     let mut scan = |cx| {
         interpreter.scan(0, &cx).unwrap();
-        Value::read(Lane::I16, &interpreter.state()[sum..])
+        Value::read(Repr::I16, &interpreter.state()[sum..])
     };
     assert_eq!(scan(Context::at(0)), Value::I16(11));
     assert_eq!(scan(Context::first(0)), Value::I16(102));
@@ -227,7 +227,7 @@ fn logix_instructions_take_a_rung_and_have_a_prescan() {
         contexts.iter().for_each(|cx| interpreter.scan(0, cx).unwrap());
         let offset = usize_of(interpreter.layout.machine.instances[0])
             + usize_of(interpreter.layout.field(crate::StructId(1), FieldId(5)));
-        Value::read(acc.lane(), &interpreter.state()[offset + acc.offset..]).as_integer()
+        Value::read(acc.repr(), &interpreter.state()[offset + acc.offset..]).as_integer()
     };
     assert_eq!(count(&[Context::at(0)]), Some(1));
     assert_eq!(count(&[Context::first(0)]), Some(0), "the prescan uses up an edge");

@@ -129,12 +129,12 @@ fn image_holds_initial_values() {
     assert!(inner[..2 * size_of::<Inner>()].iter().all(|byte| *byte == 0), "Zero is all zero");
     for element in 2..6 {
         let bytes = &inner[element * size_of::<Inner>()..];
-        assert_eq!(Value::read(Lane::F64, &bytes[offset_of!(Inner, wide)..]), Value::F64(1.5));
-        assert_eq!(Value::read(Lane::U16, &bytes[offset_of!(Inner, text)..]), Value::U16(2));
+        assert_eq!(Value::read(Repr::F64, &bytes[offset_of!(Inner, wide)..]), Value::F64(1.5));
+        assert_eq!(Value::read(Repr::U16, &bytes[offset_of!(Inner, text)..]), Value::U16(2));
         assert_eq!(&bytes[offset_of!(Inner, text) + 2..][..3], b"xy\0");
     }
-    assert_eq!(Value::read(Lane::I16, &second[offset_of!(Outer, color)..]), Value::I16(-2));
-    assert_eq!(Value::read(Lane::U32, &second[offset_of!(Outer, last)..]), Value::U32(77));
+    assert_eq!(Value::read(Repr::I16, &second[offset_of!(Outer, color)..]), Value::I16(-2));
+    assert_eq!(Value::read(Repr::U32, &second[offset_of!(Outer, last)..]), Value::U32(77));
 }
 
 #[test]
@@ -166,7 +166,7 @@ fn blocks_have_the_size_of_their_rust_type() {
         let shape = block_shape(id);
         assert_eq!((usize_of(shape.size), usize_of(shape.align)), (info.size, info.align), "{info:?}");
         for pin in info.pins {
-            assert!(pin.offset + usize_of(u64::from(pin.lane().size())) <= info.size, "{info:?}.{}", pin.name);
+            assert!(pin.offset + usize_of(u64::from(pin.repr().size())) <= info.size, "{info:?}.{}", pin.name);
         }
     }
 }

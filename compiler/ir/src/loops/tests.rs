@@ -60,7 +60,7 @@ fn ranges_hold_for_every_value() {
                 while if step > 0 { x <= last } else { x >= last } {
                     for y in -2..=3_i16 {
                         let y = right.as_const().unwrap_or(Value::I16(y));
-                        if let Some(Ok(found)) = apply(op, crate::Lane::I16, &[Value::I16(x), y]) {
+                        if let Some(Ok(found)) = apply(op, crate::Repr::I16, &[Value::I16(x), y]) {
                             let found = found.as_integer().unwrap();
                             assert!(
                                 (least..=most).contains(&found),

@@ -3,15 +3,15 @@
 use super::addressable;
 use crate::layout::Layout;
 use crate::{ArrayId, FieldId, Program, StructId, Type};
-use staunch_runtime::Lane;
+use staunch_runtime::Repr;
 use staunch_runtime::reference::{View, Wanted, encode};
 use std::collections::{BTreeSet, HashMap};
 
 /// How an access sees a value of the type: what it is a value of must be a scalar or string.
 pub fn view(program: &Program, ty: Type) -> View {
     match ty {
-        Type::Elementary(it) if it.lane() == Lane::Bool => View::Truth,
-        Type::Elementary(it) => View::Number(it.lane().size()),
+        Type::Elementary(it) if it.repr() == Repr::Bool => View::Truth,
+        Type::Elementary(it) => View::Number(it.repr().size()),
         Type::String(_) => View::Text,
         Type::Enum(_) | Type::Subrange(..) | Type::Reference(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
             View::Exact(exact(program, ty))
@@ -22,7 +22,7 @@ pub fn view(program: &Program, ty: Type) -> View {
 /// As what a variable of the type is handed on whole.
 pub fn wanted(program: &Program, ty: Type) -> Wanted {
     match ty {
-        Type::Elementary(it) => Wanted::Lane(it.lane()),
+        Type::Elementary(it) => Wanted::Repr(it.repr()),
         Type::String(capacity) => Wanted::Text(capacity),
         Type::Enum(_) | Type::Subrange(..) | Type::Reference(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
             Wanted::Exact(exact(program, ty))
@@ -34,7 +34,7 @@ pub fn wanted(program: &Program, ty: Type) -> Wanted {
 fn exact(program: &Program, ty: Type) -> u32 {
     let (kind, number) = match ty {
         Type::Enum(id) => (0, id.0),
-        Type::Subrange(base, id) => (1, id.0 * 16 + encode::lane(base.lane())),
+        Type::Subrange(base, id) => (1, id.0 * 16 + encode::repr(base.repr())),
         // What it points to is checked when it is followed.
         Type::Reference(_) => (2, 0),
         Type::Block(id) => (3, id.0),
@@ -153,7 +153,7 @@ impl<'p> Builder<'p> {
         }
         let size = word(self.layout.size(ty));
         let node = match ty {
-            Type::Elementary(it) => self.push(vec![numbers(it.lane()), size, encode::lane(it.lane()), 0]),
+            Type::Elementary(it) => self.push(vec![numbers(it.repr()), size, encode::repr(it.repr()), 0]),
             Type::String(capacity) => self.push(vec![encode::TEXT, size, u32::from(capacity), 0]),
             Type::Enum(_) | Type::Subrange(..) | Type::Reference(_) | Type::Block(_) => {
                 let id = exact(self.program, ty);
@@ -173,16 +173,16 @@ impl<'p> Builder<'p> {
 
     fn array(&mut self, id: ArrayId, ty: Type, size: u32) -> usize {
         let element = self.node(self.program.array(id).element);
-        let (kind, lane) = self.flat(ty).map_or((u32::MAX, 0), |lane| (numbers(lane), encode::lane(lane)));
+        let (kind, repr) = self.flat(ty).map_or((u32::MAX, 0), |repr| (numbers(repr), encode::repr(repr)));
         let stride = word(self.layout.stride(id));
-        self.push(vec![encode::ARRAY, size, exact(self.program, ty), stride, position(element), kind, lane])
+        self.push(vec![encode::ARRAY, size, exact(self.program, ty), stride, position(element), kind, repr])
     }
 
-    /// The lane of the numbers that an array consists of, through all its dimensions.
-    fn flat(&self, ty: Type) -> Option<Lane> {
+    /// The repr of the numbers that an array consists of, through all its dimensions.
+    fn flat(&self, ty: Type) -> Option<Repr> {
         match ty {
             Type::Array(id) => self.flat(self.program.array(id).element),
-            Type::Elementary(it) => Some(it.lane()),
+            Type::Elementary(it) => Some(it.repr()),
             Type::Subrange(..)
             | Type::Reference(_)
             | Type::String(_)
@@ -216,8 +216,8 @@ impl<'p> Builder<'p> {
     }
 }
 
-fn numbers(lane: Lane) -> u32 {
-    if lane == Lane::Bool { encode::TRUTHS } else { encode::NUMBERS }
+fn numbers(repr: Repr) -> u32 {
+    if repr == Repr::Bool { encode::TRUTHS } else { encode::NUMBERS }
 }
 
 fn word(size: u64) -> u32 {

@@ -2,7 +2,7 @@
 
 use super::Verifier;
 use super::statement::Body;
-use crate::{Conversion, Expr, ExprKind, Lane, Location, Op, Root, TextOp, Type, Value};
+use crate::{Conversion, Expr, ExprKind, Location, Op, Repr, Root, TextOp, Type, Value};
 
 impl Verifier<'_> {
     pub(super) fn expr(&mut self, body: &Body, expr: &Expr) {
@@ -59,10 +59,10 @@ impl Verifier<'_> {
         self.require(fits, expr.at, "a constant that is not of its type");
     }
 
-    /// The lane of an elementary or enumeration type that exists.
-    pub(super) fn lane(&self, ty: Type) -> Option<Lane> {
+    /// The repr of an elementary or enumeration type that exists.
+    pub(super) fn repr(&self, ty: Type) -> Option<Repr> {
         let exists = !matches!(ty, Type::Enum(id) if id.index() >= self.program.enums.len());
-        exists.then(|| self.program.lane(ty)).flatten()
+        exists.then(|| self.program.repr(ty)).flatten()
     }
 
     fn operation(&mut self, op: Op, operands: &[Expr], result: Type, at: Location) {
@@ -72,16 +72,16 @@ impl Verifier<'_> {
         }
         let pairs = || op.operands().iter().zip(operands);
         for (fixed, operand) in pairs() {
-            let holds = fixed.is_none() || Self::elementary_lane(operand.ty) == *fixed;
-            self.require(holds, operand.at, format_args!("{name}: an operand of the wrong lane"));
+            let holds = fixed.is_none() || Self::elementary_repr(operand.ty) == *fixed;
+            self.require(holds, operand.at, format_args!("{name}: an operand of the wrong repr"));
         }
         let free: Vec<Type> = pairs().filter(|(fixed, _)| fixed.is_none()).map(|(_, operand)| operand.ty).collect();
-        let Some(lane) = self.shared_lane(op, &free) else {
+        let Some(repr) = self.shared_repr(op, &free) else {
             return self.report(at, format_args!("{name}: operands of {free:?}"));
         };
-        self.require(op.allows(lane), at, format_args!("{name} does not exist at {lane:?}"));
-        let expected = op.result().unwrap_or(lane);
-        let holds = Self::elementary_lane(result) == Some(expected) && self.is_checked(op, operands, result);
+        self.require(op.allows(repr), at, format_args!("{name} does not exist at {repr:?}"));
+        let expected = op.result().unwrap_or(repr);
+        let holds = Self::elementary_repr(result) == Some(expected) && self.is_checked(op, operands, result);
         self.require(holds, at, format_args!("{name}: a result of {result:?}"));
     }
 
@@ -92,16 +92,16 @@ impl Verifier<'_> {
         matches!(op, Op::InRange | Op::CheckIndex) && limit(0) == Some(low) && limit(2) == Some(high)
     }
 
-    /// The lane of operands that share one. Enumerations have a lane only in a comparison of
+    /// The repr of operands that share one. Enumerations have a repr only in a comparison of
     /// two of one type.
-    fn shared_lane(&self, op: Op, operands: &[Type]) -> Option<Lane> {
+    fn shared_repr(&self, op: Op, operands: &[Type]) -> Option<Repr> {
         let first = *operands.first()?;
         if let Type::Enum(_) = first {
             let equal = is_comparison(op) && operands.iter().all(|ty| *ty == first);
-            return self.lane(first).filter(|_| equal);
+            return self.repr(first).filter(|_| equal);
         }
-        let lane = Self::elementary_lane(first)?;
-        operands.iter().all(|ty| Self::elementary_lane(*ty) == Some(lane)).then_some(lane)
+        let repr = Self::elementary_repr(first)?;
+        operands.iter().all(|ty| Self::elementary_repr(*ty) == Some(repr)).then_some(repr)
     }
 
     fn text_operation(&mut self, op: TextOp, operands: &[Expr], result: Type, at: Location) {
@@ -109,31 +109,31 @@ impl Verifier<'_> {
         let wanted = op.operands();
         self.require(operands.len() == wanted.len(), at, format_args!("{name}: operand count"));
         for (wanted, operand) in wanted.iter().zip(operands) {
-            let holds = is_text_or_lane(operand.ty, *wanted);
+            let holds = is_text_or_repr(operand.ty, *wanted);
             self.require(holds, operand.at, format_args!("{name}: an operand of {:?}", operand.ty));
         }
-        let holds = is_text_or_lane(result, op.result());
+        let holds = is_text_or_repr(result, op.result());
         self.require(holds, at, format_args!("{name}: a result of {result:?}"));
     }
 
     fn conversion(&mut self, how: Conversion, from: Type, to: Type, at: Location) {
-        let elementary = (Self::elementary_lane(from), Self::elementary_lane(to));
+        let elementary = (Self::elementary_repr(from), Self::elementary_repr(to));
         let holds = match (how, from, to) {
             (Conversion::Value, Type::String(_), Type::String(_)) => true,
             (Conversion::Value, _, _) => matches!(elementary, (Some(_), Some(_))),
             (Conversion::Truncate, _, _) => {
                 matches!(elementary, (Some(from), Some(to)) if from.is_float() && to.is_integer())
             }
-            (Conversion::Same, _, _) => self.lane(from).is_some() && self.lane(from) == self.lane(to),
+            (Conversion::Same, _, _) => self.repr(from).is_some() && self.repr(from) == self.repr(to),
         };
         let holds = holds && self.program.range(to).is_none();
         self.require(holds, at, format_args!("no conversion {how:?} from {from:?} to {to:?}"));
     }
 }
 
-fn is_text_or_lane(ty: Type, lane: Option<Lane>) -> bool {
-    match lane {
-        Some(lane) => Verifier::elementary_lane(ty) == Some(lane),
+fn is_text_or_repr(ty: Type, repr: Option<Repr>) -> bool {
+    match repr {
+        Some(repr) => Verifier::elementary_repr(ty) == Some(repr),
         None => matches!(ty, Type::String(_)),
     }
 }

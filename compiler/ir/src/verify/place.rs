@@ -23,13 +23,13 @@ impl Verifier<'_> {
             let Some(part) = part else { return };
             ty = part;
         }
-        let same = ty == place.ty || is_pin && Self::same_lane(ty, place.ty);
+        let same = ty == place.ty || is_pin && Self::same_repr(ty, place.ty);
         self.require(same, at, format_args!("a place of type {ty:?} that says {:?}", place.ty));
     }
 
-    /// A pin has a lane; whether it is a WORD or a UINT is for the front end to say.
-    fn same_lane(pin: Type, says: Type) -> bool {
-        Self::elementary_lane(pin) == Self::elementary_lane(says)
+    /// A pin has a repr; whether it is a WORD or a UINT is for the front end to say.
+    fn same_repr(pin: Type, says: Type) -> bool {
+        Self::elementary_repr(pin) == Self::elementary_repr(says)
     }
 
     fn root(&mut self, body: &Body, root: Root, at: Location) -> Option<Type> {

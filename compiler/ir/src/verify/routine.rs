@@ -132,7 +132,7 @@ impl Verifier<'_> {
     /// How many bits the views of a type may show.
     fn bits_of(&self, ty: Type) -> Option<u64> {
         match ty {
-            Type::Elementary(it) => it.lane().is_integer().then(|| u64::from(it.lane().size()) * 8),
+            Type::Elementary(it) => it.repr().is_integer().then(|| u64::from(it.repr().size()) * 8),
             Type::Array(id) => Some(self.bits_of(self.program.array(id).element)? * self.program.array(id).len()),
             Type::Subrange(..)
             | Type::String(_)

@@ -105,8 +105,8 @@ impl<'p> Verifier<'p> {
         self.expr_of(body, &it.first, ty);
         self.expr_of(body, &it.last, ty.read());
         self.location(it.step_at);
-        let lane = self.lane(ty).filter(|lane| lane.is_integer());
-        let Some((min, max)) = lane.and_then(|lane| lane.range()) else {
+        let repr = self.repr(ty).filter(|repr| repr.is_integer());
+        let Some((min, max)) = repr.and_then(|repr| repr.range()) else {
             return self.report(at, "a counter that is not an integer");
         };
         let range = self.program.range(ty).unwrap_or((min, max));
@@ -130,8 +130,8 @@ impl<'p> Verifier<'p> {
 
     fn case(&mut self, body: &Body<'p>, selector: &Expr, arms: &[Arm], at: Location) {
         self.expr(body, selector);
-        let lane = self.lane(selector.ty);
-        let range = lane.filter(|lane| lane.is_integer()).and_then(|lane| lane.range());
+        let repr = self.repr(selector.ty);
+        let range = repr.filter(|repr| repr.is_integer()).and_then(|repr| repr.range());
         let Some((min, max)) = range else {
             return self.report(selector.at, "a selector that is not an integer");
         };
@@ -154,7 +154,7 @@ impl<'p> Verifier<'p> {
         instance: Option<&Place>,
         at: Location,
     ) -> Option<&'p Routine> {
-        let before = self.require(callee < body.id, at, "a callee that does not stand before its caller");
+        let before = self.require(callee < body.id, at, "a callee that is not before its caller");
         let routine = before.then(|| self.program.routine(callee))?;
         let fits = instance.map(|it| it.ty) == routine.state.map(Type::Struct);
         let is_program = self.program.classes.iter().any(|it| it.kind == ClassKind::Program && it.body == callee);
@@ -242,11 +242,11 @@ impl<'p> Verifier<'p> {
         let Some(instruction) = info.instructions.get(instruction) else {
             return self.report(at, format_args!("{} has no such instruction", info.name));
         };
-        let found: Vec<_> = inputs.iter().map(|input| Self::elementary_lane(input.ty)).collect();
+        let found: Vec<_> = inputs.iter().map(|input| Self::elementary_repr(input.ty)).collect();
         let wanted: Vec<_> = if instruction.takes_rung {
-            vec![Some(crate::Lane::Bool)]
+            vec![Some(crate::Repr::Bool)]
         } else {
-            info.inputs().map(|pin| Some(pin.lane())).collect()
+            info.inputs().map(|pin| Some(pin.repr())).collect()
         };
         self.require(found == wanted, at, format_args!("{}: inputs in {found:?}", info.name));
     }

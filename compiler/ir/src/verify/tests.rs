@@ -216,7 +216,7 @@ fn constant_expressions() {
 #[test]
 fn operations() {
     bad_expr("ADD: operand count", apply(Op::Add, Type::INT, vec![int(1)]));
-    bad_expr("SEL: an operand of the wrong lane", apply(Op::Sel, Type::INT, vec![int(1), int(1), int(1)]));
+    bad_expr("SEL: an operand of the wrong repr", apply(Op::Sel, Type::INT, vec![int(1), int(1), int(1)]));
     bad_expr("ADD: operands of", apply(Op::Add, Type::INT, vec![int(1), lint(1)]));
     bad_expr("ADD: operands of", apply(Op::Add, Type::INT, vec![green(), green()]));
     bad_expr("ADD: operands of", apply(Op::Add, Type::INT, vec![string(b"", 1), string(b"", 1)]));

@@ -2,7 +2,7 @@
 
 use super::Verifier;
 use crate::layout::Layout;
-use crate::{Array, BoundsId, Const, Elementary, FieldId, Lane, Location, Struct, Type, Value};
+use crate::{Array, BoundsId, Const, Elementary, FieldId, Location, Repr, Struct, Type, Value};
 
 /// What may be part of a type that is being declared: ids below these.
 #[derive(Clone, Copy)]
@@ -40,11 +40,11 @@ impl Verifier<'_> {
     }
 
     fn enumeration(&mut self, enumeration: &crate::Enum) {
-        let (at, lane) = (enumeration.location, enumeration.base.lane());
-        self.require(lane.is_integer(), at, "the base type is not an integer");
+        let (at, repr) = (enumeration.location, enumeration.base.repr());
+        self.require(repr.is_integer(), at, "the base type is not an integer");
         self.require(!enumeration.values.is_empty(), at, "no values");
         for value in &enumeration.values {
-            self.require(value.value.lane() == lane, at, "a value that is not of the base type");
+            self.require(value.value.repr() == repr, at, "a value that is not of the base type");
         }
     }
 
@@ -65,7 +65,7 @@ impl Verifier<'_> {
 
     fn subrange(&mut self, base: Elementary, id: BoundsId, at: Location) {
         let bounds = self.program.bounds.get(id.index());
-        let holds = base.lane().range().filter(|_| base.is_integer());
+        let holds = base.repr().range().filter(|_| base.is_integer());
         let inside =
             bounds.zip(holds).is_some_and(|((low, high), (min, max))| min <= *low && low <= high && *high <= max);
         self.require(inside, at, "a subrange that does not fit what it is made of");
@@ -122,10 +122,10 @@ impl Verifier<'_> {
         }
     }
 
-    /// A value in the type's lane, and within the limits of a subrange.
+    /// A value in the type's repr, and within the limits of a subrange.
     pub(super) fn scalar_fits(&self, ty: Type, value: Value) -> bool {
         let inside = |(low, high): (i128, i128)| value.as_integer().is_some_and(|it| (low..=high).contains(&it));
-        self.lane(ty) == Some(value.lane()) && self.program.range(ty).is_none_or(inside)
+        self.repr(ty) == Some(value.repr()) && self.program.range(ty).is_none_or(inside)
     }
 
     fn array_constant(&mut self, ty: Type, runs: &[(u64, Const)], at: Location) {
@@ -167,8 +167,8 @@ impl Verifier<'_> {
         self.part(ty, Known { arrays: program.arrays.len(), structs: program.structs.len() }, at);
     }
 
-    /// The lane of an elementary type; any other type is none.
-    pub(super) fn elementary_lane(ty: Type) -> Option<Lane> {
-        ty.elementary().map(Elementary::lane)
+    /// The repr of an elementary type; any other type is none.
+    pub(super) fn elementary_repr(ty: Type) -> Option<Repr> {
+        ty.elementary().map(Elementary::repr)
     }
 }

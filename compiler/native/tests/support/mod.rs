@@ -13,9 +13,9 @@ pub fn line(line: u32) -> Location {
     Location { line, ..AT }
 }
 
-/// The IEC type that counts in a lane.
-pub fn elementary(lane: Lane) -> Type {
-    Type::Elementary(Elementary::number(lane))
+/// The IEC type that counts in a repr.
+pub fn elementary(repr: Repr) -> Type {
+    Type::Elementary(Elementary::number(repr))
 }
 
 pub fn field(name: &str, ty: Type, initial: Const) -> Field {
@@ -103,7 +103,7 @@ pub fn load(place: Place) -> Expr {
 }
 
 pub fn constant(value: Value) -> Expr {
-    Expr::constant(Elementary::number(value.lane()), value, AT)
+    Expr::constant(Elementary::number(value.repr()), value, AT)
 }
 
 pub fn int(value: i16) -> Expr {
@@ -165,7 +165,7 @@ impl Native {
     pub fn write_value(&mut self, offset: usize, value: Value) {
         let mut bytes = [0; 8];
         value.write(&mut bytes);
-        self.machine.write(offset, &bytes[..usize::try_from(value.lane().size()).unwrap()]);
+        self.machine.write(offset, &bytes[..usize::try_from(value.repr().size()).unwrap()]);
     }
 
     /// Offset of a field of an instance's state.
@@ -184,12 +184,12 @@ pub fn same(a: Value, b: Value) -> bool {
     }
 }
 
-/// The values of a lane at which operations differ.
-pub fn edges(lane: Lane) -> Vec<Value> {
-    if lane.is_float() {
-        return REALS.iter().map(|it| real(lane, *it)).chain(extremes(lane)).collect();
+/// The values of a repr at which operations differ.
+pub fn edges(repr: Repr) -> Vec<Value> {
+    if repr.is_float() {
+        return REALS.iter().map(|it| real(repr, *it)).chain(extremes(repr)).collect();
     }
-    let (min, max) = lane.range().unwrap();
+    let (min, max) = repr.range().unwrap();
     let mut numbers = vec![min, min + 1, max - 1, max, -2, -1, 0, 1, 2, 3, 7, 10, 100];
     numbers.extend([max / 2, max / 2 + 1, min / 2]);
     numbers.extend([8, 9, 15, 16, 17, 31, 32, 33, 63, 64, 65, 255, 256, 257, -8, -64, 1 << 32, (1 << 32) + 1]);
@@ -203,7 +203,7 @@ pub fn edges(lane: Lane) -> Vec<Value> {
     ]);
     numbers.sort_unstable();
     numbers.dedup();
-    numbers.into_iter().filter_map(|number| lane.integer(number)).collect()
+    numbers.into_iter().filter_map(|number| repr.integer(number)).collect()
 }
 
 const REALS: &[f64] = &[
@@ -262,12 +262,12 @@ const REALS: &[f64] = &[
     f64::NAN,
 ];
 
-fn real(lane: Lane, value: f64) -> Value {
-    if lane == Lane::F32 { Value::F32(value as f32) } else { Value::F64(value) }
+fn real(repr: Repr, value: f64) -> Value {
+    if repr == Repr::F32 { Value::F32(value as f32) } else { Value::F64(value) }
 }
 
-fn extremes(lane: Lane) -> Vec<Value> {
-    if lane == Lane::F32 {
+fn extremes(repr: Repr) -> Vec<Value> {
+    if repr == Repr::F32 {
         [f32::MAX, f32::MIN, f32::MIN_POSITIVE, f32::from_bits(1), -f32::NAN].map(Value::F32).to_vec()
     } else {
         [f64::MAX, f64::MIN, f64::MIN_POSITIVE, f64::from_bits(1), -f64::NAN, 1e300].map(Value::F64).to_vec()

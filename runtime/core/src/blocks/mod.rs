@@ -1,4 +1,4 @@
-//! The standard function blocks: plain structs whose members stand in the order inputs, outputs,
+//! The standard function blocks: plain structs whose members are in the order inputs, outputs,
 //! memory, with no branch in a step where a select will do. Each family's module holds what its
 //! vendor defines; `iec` also holds what all of them share.
 //!

@@ -1,10 +1,10 @@
-//! The classes of lanes that `op_table.rs` names, as traits.
+//! The classes of reprs that `op_table.rs` names, as traits.
 
 use core::ops::{BitAnd, BitOr, BitXor, Not};
 
 use crate::{FaultKind, Scalar};
 
-/// A lane with arithmetic: every lane but BOOL. The operations mean what the functions of
+/// A repr with arithmetic: every repr but BOOL. The operations mean what the functions of
 /// [`ops`](crate::ops) say.
 pub trait Number: Scalar {
     fn plus(self, other: Self) -> Self;
@@ -15,20 +15,20 @@ pub trait Number: Scalar {
     fn magnitude(self) -> Self;
 }
 
-/// A lane of whole numbers, signed or not; also what carries BYTE to LWORD, and TIME.
+/// A repr of whole numbers, signed or not; also what carries BYTE to LWORD, and TIME.
 pub trait Integer: Number + Ord {
     const BITS: u32;
 
     fn remainder(self, divisor: Self) -> Result<Self, FaultKind>;
     /// Zeros come in; `count` is below [`BITS`](Self::BITS).
     fn shifted_left(self, count: u32) -> Self;
-    /// Zeros come in, also for a signed lane; `count` is below [`BITS`](Self::BITS).
+    /// Zeros come in, also for a signed repr; `count` is below [`BITS`](Self::BITS).
     fn shifted_right(self, count: u32) -> Self;
     fn rotated_left(self, count: u32) -> Self;
     fn rotated_right(self, count: u32) -> Self;
 }
 
-/// A lane of IEEE 754 numbers. The functions are libm's, whose results do not depend on the
+/// A repr of IEEE 754 numbers. The functions are libm's, whose results do not depend on the
 /// machine.
 pub trait Real: Number {
     fn power(self, exponent: Self) -> Self;
@@ -45,7 +45,7 @@ pub trait Real: Number {
     fn arc_tangent_over(self, x: Self) -> Self;
 }
 
-/// A lane with bitwise operations; logical ones for BOOL.
+/// A repr with bitwise operations; logical ones for BOOL.
 pub trait Bits:
     Scalar + BitAnd<Output = Self> + BitOr<Output = Self> + BitXor<Output = Self> + Not<Output = Self>
 {

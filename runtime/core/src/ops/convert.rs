@@ -1,18 +1,18 @@
-use crate::{Lane, Scalar, Value, with_lane};
+use crate::{Repr, Scalar, Value, with_repr};
 
-/// A lane that converts to lane `T`; every pair does.
+/// A repr that converts to repr `T`; every pair does.
 pub trait ConvertTo<T> {
     /// See [`convert`].
     fn converted(self) -> T;
 }
 
-/// A real lane that truncates to integer lane `T`; every such pair does.
+/// A real repr that truncates to integer repr `T`; every such pair does.
 pub trait TruncateTo<T> {
     /// See [`trunc`].
     fn truncated(self) -> T;
 }
 
-/// Changes the lane of a value.
+/// Changes the repr of a value.
 ///
 /// | from | to | result |
 /// |---|---|---|
@@ -104,8 +104,8 @@ macro_rules! truncations {
 truncations!(f32: i8 i16 i32 i64 u8 u16 u32 u64);
 truncations!(f64: i8 i16 i32 i64 u8 u16 u32 u64);
 
-/// [`convert`] for a value whose lane is known at run time.
-pub fn convert_value(value: Value, to: Lane) -> Value {
+/// [`convert`] for a value whose repr is known at run time.
+pub fn convert_value(value: Value, to: Repr) -> Value {
     match value {
         Value::Bool(it) => converted(it, to),
         Value::I8(it) => converted(it, to),
@@ -121,12 +121,12 @@ pub fn convert_value(value: Value, to: Lane) -> Value {
     }
 }
 
-/// [`trunc`] for a value whose lane is known at run time. What has nothing to truncate (a value
+/// [`trunc`] for a value whose repr is known at run time. What has nothing to truncate (a value
 /// that is not a real, a target that is not an integer) is [converted](convert_value).
-pub fn trunc_value(value: Value, to: Lane) -> Value {
+pub fn trunc_value(value: Value, to: Repr) -> Value {
     match value {
-        Value::F32(it) => with_lane!(integer to, T => trunc::<f32, T>(it).into_value(), converted(it, to)),
-        Value::F64(it) => with_lane!(integer to, T => trunc::<f64, T>(it).into_value(), converted(it, to)),
+        Value::F32(it) => with_repr!(integer to, T => trunc::<f32, T>(it).into_value(), converted(it, to)),
+        Value::F64(it) => with_repr!(integer to, T => trunc::<f64, T>(it).into_value(), converted(it, to)),
         Value::Bool(_)
         | Value::I8(_)
         | Value::I16(_)
@@ -139,7 +139,7 @@ pub fn trunc_value(value: Value, to: Lane) -> Value {
     }
 }
 
-/// A lane that converts to every lane.
+/// A repr that converts to every repr.
 trait ConvertToAny:
     Scalar
     + ConvertTo<bool>
@@ -162,6 +162,6 @@ macro_rules! convert_to_any {
 
 convert_to_any!(bool i8 i16 i32 i64 u8 u16 u32 u64 f32 f64);
 
-fn converted<F: ConvertToAny>(value: F, to: Lane) -> Value {
-    with_lane!(any to, T => convert::<F, T>(value).into_value(), value.into_value())
+fn converted<F: ConvertToAny>(value: F, to: Repr) -> Value {
+    with_repr!(any to, T => convert::<F, T>(value).into_value(), value.into_value())
 }

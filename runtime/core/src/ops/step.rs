@@ -25,7 +25,7 @@ pub fn step_value(
     let number = |it: Value| it.as_integer().unwrap_or(0);
     let (next, last) = (number(counter).saturating_add(step), number(last));
     if low <= next && next <= high {
-        return Ok(counter.lane().integer(next));
+        return Ok(counter.repr().integer(next));
     }
     let is_past = if step > 0 { next > last } else { next < last };
     if is_past { Ok(None) } else { Err(FaultKind::SubrangeViolated) }

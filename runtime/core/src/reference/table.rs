@@ -5,7 +5,7 @@
 //! offsets; then the nodes.
 
 use super::{ORIGIN, Reference};
-use crate::{FaultKind, Lane};
+use crate::{FaultKind, Repr};
 
 /// As what an access wants to see memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,7 +60,7 @@ pub struct Table<'t> {
 
 /// What a table is made of: for the compiler.
 pub mod encode {
-    use crate::Lane;
+    use crate::Repr;
 
     pub const NUMBERS: u32 = 0;
     pub const TRUTHS: u32 = 1;
@@ -74,9 +74,9 @@ pub mod encode {
     /// Words of an object.
     pub const OBJECT: usize = 2;
 
-    /// A number of its own for each lane.
-    pub const fn lane(lane: Lane) -> u32 {
-        lane as u32
+    /// A number of its own for each repr.
+    pub const fn repr(repr: Repr) -> u32 {
+        repr as u32
     }
 }
 
@@ -84,10 +84,10 @@ pub mod encode {
 ///
 /// | kind | first | second | after it |
 /// |---|---|---|---|
-/// | `NUMBERS`, `TRUTHS` | the lane | | |
+/// | `NUMBERS`, `TRUTHS` | the repr | | |
 /// | `TEXT` | the capacity | | |
 /// | `EXACT` | the type's number | | |
-/// | `ARRAY` | the type's number | the element's size | the element's node; the kind and the lane of the numbers that it consists of, through all dimensions |
+/// | `ARRAY` | the type's number | the element's size | the element's node; the kind and the repr of the numbers that it consists of, through all dimensions |
 /// | `STRUCTURE` | the type's number | the number of members | for each its offset and node |
 #[derive(Clone, Copy, Debug)]
 struct Node {
@@ -180,7 +180,7 @@ impl<'t> Table<'t> {
         Ok(Part::Characters { text: found.start, capacity, index: index as u16 })
     }
 
-    /// Where a variable of exactly this type lies: the offset in the state. `lane` for a number or a BOOL,
+    /// Where a variable of exactly this type lies: the offset in the state. `repr` for a number or a BOOL,
     /// the capacity for a string, else the type's number, which arrays and structures have, too.
     pub fn find(&self, bits: u64, distance: u64, wanted: Wanted) -> Result<usize, FaultKind> {
         let (offset, _) = self.locate(bits, distance)?;
@@ -189,8 +189,8 @@ impl<'t> Table<'t> {
             let Some(at) = found else { return Err(FaultKind::ForbiddenView) };
             let index = offset - at.start;
             let is_it = match (at.node.kind, wanted) {
-                (encode::NUMBERS | encode::TRUTHS, Wanted::Lane(lane)) => {
-                    at.node.first == encode::lane(lane) && index.checked_rem(lane.size() as usize) == Some(0)
+                (encode::NUMBERS | encode::TRUTHS, Wanted::Repr(repr)) => {
+                    at.node.first == encode::repr(repr) && index.checked_rem(repr.size() as usize) == Some(0)
                 }
                 (encode::TEXT, Wanted::Text(capacity)) => index == 0 && at.node.first == u32::from(capacity),
                 (encode::EXACT | encode::ARRAY | encode::STRUCTURE, Wanted::Exact(id)) => {
@@ -272,7 +272,7 @@ impl<'t> Table<'t> {
 /// The one type that a variable is wanted as, to be handed on whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wanted {
-    Lane(Lane),
+    Repr(Repr),
     Text(u16),
     Exact(u32),
 }
@@ -281,16 +281,16 @@ impl Wanted {
     /// As a number, for native code.
     pub const fn code(self) -> u32 {
         match self {
-            Self::Lane(lane) => encode::lane(lane) << 2,
+            Self::Repr(repr) => encode::repr(repr) << 2,
             Self::Text(capacity) => 1 | (capacity as u32) << 2,
             Self::Exact(id) => 2 | id << 2,
         }
     }
 
     pub fn from_code(code: u32) -> Self {
-        let lane = || Lane::ALL.into_iter().find(|it| encode::lane(*it) == code >> 2);
+        let repr = || Repr::ALL.into_iter().find(|it| encode::repr(*it) == code >> 2);
         match code & 3 {
-            0 => Self::Lane(lane().unwrap_or(Lane::U8)),
+            0 => Self::Repr(repr().unwrap_or(Repr::U8)),
             1 => Self::Text((code >> 2) as u16),
             _ => Self::Exact(code >> 2),
         }

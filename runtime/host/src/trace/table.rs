@@ -87,7 +87,7 @@ impl Table {
 struct Printed {
     heading: String,
     width: usize,
-    /// Numbers stand at the right.
+    /// Numbers are at the right.
     right: bool,
     cells: Vec<String>,
 }

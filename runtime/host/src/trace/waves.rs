@@ -4,7 +4,7 @@ use super::{Row, Sink, Subject};
 use crate::column::Column;
 use crate::map::Type;
 use crate::value;
-use staunch_runtime::{Lane, Value};
+use staunch_runtime::{Repr, Value};
 use std::io::{self, Write};
 
 pub(super) struct Waves {
@@ -19,7 +19,7 @@ pub(super) struct Waves {
 
 /// How a viewer keeps a value.
 enum Kind {
-    Bits(Lane),
+    Bits(Repr),
     Real,
     /// An extension that all common viewers read.
     Text,
@@ -27,8 +27,8 @@ enum Kind {
 
 fn kind(ty: Type) -> Kind {
     match ty {
-        Type::Elementary(it) if it.lane().is_float() => Kind::Real,
-        Type::Elementary(it) => Kind::Bits(it.lane()),
+        Type::Elementary(it) if it.repr().is_float() => Kind::Real,
+        Type::Elementary(it) => Kind::Bits(it.repr()),
         Type::Bit(_) | Type::Reference => Kind::Text,
         Type::String(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => Kind::Text,
     }
@@ -63,8 +63,8 @@ impl Waves {
 fn declare(out: &mut dyn Write, column: &Column, name: &str, number: usize) -> io::Result<()> {
     let code = code(number);
     match kind(column.place.ty) {
-        Kind::Bits(Lane::Bool) => writeln!(out, "$var wire 1 {code} {name} $end"),
-        Kind::Bits(lane) => writeln!(out, "$var integer {} {code} {name} $end", lane.size() * 8),
+        Kind::Bits(Repr::Bool) => writeln!(out, "$var wire 1 {code} {name} $end"),
+        Kind::Bits(repr) => writeln!(out, "$var integer {} {code} {name} $end", repr.size() * 8),
         Kind::Real => writeln!(out, "$var real 64 {code} {name} $end"),
         Kind::Text => writeln!(out, "$var string 1 {code} {name} $end"),
     }
@@ -156,10 +156,10 @@ impl Sink for Waves {
 fn change(subject: &Subject<'_>, column: &Column, state: &[u8]) -> String {
     let bytes = &state[column.place.offset..];
     match kind(column.place.ty) {
-        Kind::Bits(lane) => match Value::read(lane, bytes) {
+        Kind::Bits(repr) => match Value::read(repr, bytes) {
             Value::Bool(it) => u8::from(it).to_string(),
             it => {
-                let width = lane.size() as usize * 8;
+                let width = repr.size() as usize * 8;
                 let bits = it.as_integer().unwrap_or(0) as u128 & (u128::MAX >> (128 - width));
                 format!("b{bits:b} ")
             }

@@ -2,10 +2,10 @@ use super::*;
 
 const IDLE: Pins =
     Pins { up: false, down: false, reset: false, load: false, preset: 5, count: 0, done: false, empty: false };
-const IEC: Kind = Kind { family: Family::Iec, lane: Lane::I16, stops: false };
-const CSCAPE: Kind = Kind { family: Family::Cscape, lane: Lane::I16, stops: true };
-const CODESYS: Kind = Kind { family: Family::Codesys, lane: Lane::U16, stops: false };
-const LOGIX: Kind = Kind { family: Family::Logix, lane: Lane::I32, stops: false };
+const IEC: Kind = Kind { family: Family::Iec, repr: Repr::I16, stops: false };
+const CSCAPE: Kind = Kind { family: Family::Cscape, repr: Repr::I16, stops: true };
+const CODESYS: Kind = Kind { family: Family::Codesys, repr: Repr::U16, stops: false };
+const LOGIX: Kind = Kind { family: Family::Logix, repr: Repr::I32, stops: false };
 
 fn case(to: Kind, before: Pins, now: [Pins; 2]) -> Case {
     let kinds = [IEC, to];
@@ -34,7 +34,7 @@ fn each_difference_has_its_pitfall() {
     assert_eq!(number(case(LOGIX, reset, [up, count(up, 1)])), Some(6));
     assert_eq!(number(case(CODESYS, count(IDLE, 32767), [count(up, 32767), count(up, 32768)])), Some(8));
     let last = i128::from(i32::MAX);
-    let wide = Kind { lane: Lane::I32, ..IEC };
+    let wide = Kind { repr: Repr::I32, ..IEC };
     let wraps = case(LOGIX, count(IDLE, last), [count(up, last), count(up, -last - 1)]);
     assert_eq!(number(Case { kinds: [wide, LOGIX], ..wraps }), Some(7));
     let loaded = Pins { load: true, ..IDLE };

@@ -3,7 +3,7 @@
 //! ignores (Rockwell 1756-PM014, "Major faults": array faults are cleared during prescan).
 
 use staunch_ir::{
-    Block, Const, Elementary, Expr, ExprKind, Lane, LocalId, Location, Op, Place, Program, Projection, Root, Routine,
+    Block, Const, Elementary, Expr, ExprKind, LocalId, Location, Op, Place, Program, Projection, Repr, Root, Routine,
     Statement, StatementKind, Type, Value,
 };
 
@@ -47,9 +47,9 @@ pub(super) fn before_calls(program: &Program, routine: &Routine, place: &Place) 
 /// What a local, or a part of it, holds before its routine runs; parts of aggregates count as 0.
 pub(super) fn initial(program: &Program, routine: &Routine, local: LocalId, place: &Place) -> Expr {
     let at = Location::default();
-    let kind = match (program.lane(place.ty), &routine.locals[local.index()].initial) {
+    let kind = match (program.repr(place.ty), &routine.locals[local.index()].initial) {
         (Some(_), Const::Scalar(value)) if place.projections.is_empty() => ExprKind::Const(*value),
-        (Some(lane), _) => ExprKind::Const(lane.zero()),
+        (Some(repr), _) => ExprKind::Const(repr.zero()),
         (None, Const::Text(text)) if place.projections.is_empty() => ExprKind::Text(text.clone()),
         (None, _) if matches!(place.ty, Type::String(_)) => ExprKind::Text(Vec::new()),
         (None, _) => ExprKind::Aggregate(Const::Zero),
@@ -126,8 +126,8 @@ impl Guards<'_, '_> {
     fn operation(&mut self, op: Op, operands: &[Expr]) {
         match (op, operands) {
             (Op::Div | Op::Mod, [_, divisor]) => {
-                let lane = self.program.lane(divisor.ty).filter(|it| Lane::is_integer(*it));
-                if let Some(zero) = lane.map(Lane::zero).filter(|_| divisor.as_const().is_none()) {
+                let repr = self.program.repr(divisor.ty).filter(|it| Repr::is_integer(*it));
+                if let Some(zero) = repr.map(Repr::zero).filter(|_| divisor.as_const().is_none()) {
                     let zero = Expr::new(divisor.ty, ExprKind::Const(zero), self.at);
                     self.found.push(Expr::apply(Op::Ne, Type::BOOL, vec![divisor.clone(), zero], self.at));
                 }

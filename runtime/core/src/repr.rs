@@ -1,9 +1,9 @@
 use core::fmt::Debug;
 
-/// How an elementary value is carried: a Rust primitive. Several IEC types share a lane
+/// How an elementary value is carried: a Rust primitive. Several IEC types share a repr
 /// (BYTE and USINT; LINT, TIME and LTIME).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Lane {
+pub enum Repr {
     Bool,
     I8,
     I16,
@@ -17,7 +17,7 @@ pub enum Lane {
     F64,
 }
 
-/// One value in its lane, for executors that learn the type at run time.
+/// One value in its repr, for executors that learn the type at run time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {
     Bool(bool),
@@ -35,58 +35,58 @@ pub enum Value {
 
 /// A Rust primitive that carries an elementary IEC value.
 pub trait Scalar: Copy + Default + PartialEq + PartialOrd + Debug + 'static {
-    const LANE: Lane;
+    const LANE: Repr;
     /// Zero, or FALSE.
     const ZERO: Self;
     fn into_value(self) -> Value;
-    /// `None` when `value` is of another lane.
+    /// `None` when `value` is of another repr.
     fn from_value(value: Value) -> Option<Self>;
 }
 
-macro_rules! lanes {
-    ($($rust:ident $lane:ident $size:literal;)*) => {
+macro_rules! reprs {
+    ($($rust:ident $repr:ident $size:literal;)*) => {
         $(impl Scalar for $rust {
-            const LANE: Lane = Lane::$lane;
+            const LANE: Repr = Repr::$repr;
             const ZERO: Self = zero!($rust);
             #[inline]
-            fn into_value(self) -> Value { Value::$lane(self) }
+            fn into_value(self) -> Value { Value::$repr(self) }
             #[inline]
             fn from_value(value: Value) -> Option<Self> {
-                if let Value::$lane(it) = value { Some(it) } else { None }
+                if let Value::$repr(it) = value { Some(it) } else { None }
             }
         })*
 
-        impl Lane {
-            pub const ALL: [Self; 11] = [$(Self::$lane),*];
+        impl Repr {
+            pub const ALL: [Self; 11] = [$(Self::$repr),*];
 
             /// Size in bytes, which is also the alignment.
             pub const fn size(self) -> u32 {
-                match self { $(Self::$lane => $size),* }
+                match self { $(Self::$repr => $size),* }
             }
 
             /// The Rust primitive's name.
             pub const fn rust_name(self) -> &'static str {
-                match self { $(Self::$lane => stringify!($rust)),* }
+                match self { $(Self::$repr => stringify!($rust)),* }
             }
 
             /// Zero, or FALSE.
             pub const fn zero(self) -> Value {
-                match self { $(Self::$lane => Value::$lane(zero!($rust))),* }
+                match self { $(Self::$repr => Value::$repr(zero!($rust))),* }
             }
         }
 
         impl Value {
-            pub const fn lane(self) -> Lane {
-                match self { $(Self::$lane(_) => Lane::$lane),* }
+            pub const fn repr(self) -> Repr {
+                match self { $(Self::$repr(_) => Repr::$repr),* }
             }
 
-            /// Reads a value of `lane` from the start of `bytes`, in the machine's byte order.
+            /// Reads a value of `repr` from the start of `bytes`, in the machine's byte order.
             ///
             /// # Panics
-            /// If `bytes` is shorter than the lane.
-            pub fn read(lane: Lane, bytes: &[u8]) -> Self {
-                match lane {
-                    $(lane_arm!(@pat $lane) => lane_arm!(@read $rust $lane bytes),)*
+            /// If `bytes` is shorter than the repr.
+            pub fn read(repr: Repr, bytes: &[u8]) -> Self {
+                match repr {
+                    $(repr_arm!(@pat $repr) => repr_arm!(@read $rust $repr bytes),)*
                 }
             }
 
@@ -96,7 +96,7 @@ macro_rules! lanes {
             /// If `bytes` is shorter than the value.
             pub fn write(self, bytes: &mut [u8]) {
                 match self {
-                    $(lane_arm!(@bind $lane it) => lane_arm!(@write $rust it bytes),)*
+                    $(repr_arm!(@bind $repr it) => repr_arm!(@write $rust it bytes),)*
                 }
             }
         }
@@ -119,26 +119,26 @@ macro_rules! zero {
 }
 
 // BOOL's bytes are read and written apart: any other bit pattern is not a `bool`.
-macro_rules! lane_arm {
+macro_rules! repr_arm {
     (@pat Bool) => {
-        Lane::Bool
+        Repr::Bool
     };
-    (@pat $lane:ident) => {
-        Lane::$lane
+    (@pat $repr:ident) => {
+        Repr::$repr
     };
     (@bind Bool $it:ident) => {
         Self::Bool($it)
     };
-    (@bind $lane:ident $it:ident) => {
-        Self::$lane($it)
+    (@bind $repr:ident $it:ident) => {
+        Self::$repr($it)
     };
-    (@read bool $lane:ident $bytes:ident) => {
+    (@read bool $repr:ident $bytes:ident) => {
         Self::Bool($bytes[0] != 0)
     };
-    (@read $rust:ident $lane:ident $bytes:ident) => {{
+    (@read $rust:ident $repr:ident $bytes:ident) => {{
         let mut raw = [0; size_of::<$rust>()];
         raw.copy_from_slice(&$bytes[..size_of::<$rust>()]);
-        Self::$lane($rust::from_ne_bytes(raw))
+        Self::$repr($rust::from_ne_bytes(raw))
     }};
     (@write bool $it:ident $bytes:ident) => {
         $bytes[0] = u8::from($it)
@@ -148,7 +148,7 @@ macro_rules! lane_arm {
     };
 }
 
-lanes! {
+reprs! {
     bool Bool 1;
     i8 I8 1;
     i16 I16 2;
@@ -162,7 +162,7 @@ lanes! {
     f64 F64 8;
 }
 
-impl Lane {
+impl Repr {
     pub const fn is_signed(self) -> bool {
         matches!(self, Self::I8 | Self::I16 | Self::I32 | Self::I64)
     }
@@ -179,7 +179,7 @@ impl Lane {
         matches!(self, Self::F32 | Self::F64)
     }
 
-    /// The least and greatest value of an integer lane; FALSE and TRUE count as 0 and 1.
+    /// The least and greatest value of an integer repr; FALSE and TRUE count as 0 and 1.
     pub const fn range(self) -> Option<(i128, i128)> {
         Some(match self {
             Self::Bool => (0, 1),
@@ -195,7 +195,7 @@ impl Lane {
         })
     }
 
-    /// The value of an integer lane (or BOOL) that equals `number`; `None` if it does not fit.
+    /// The value of an integer repr (or BOOL) that equals `number`; `None` if it does not fit.
     pub fn integer(self, number: i128) -> Option<Value> {
         Some(match self {
             Self::Bool => Value::Bool(match number {
