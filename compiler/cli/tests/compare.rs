@@ -374,9 +374,9 @@ fn both_systems_are_drawn_one_above_the_other() {
     let at = |text: &str| svg.find(text).unwrap_or_else(|| panic!("no {text}\n{svg}"));
     assert!(at(">iec</text>") < at(">cscape</text>"));
     // The count rises to 2 on one system alone, and the input does not change.
-    let reprs = |part: &str| part.matches(">parts.CV</text>").count();
+    let lanes = |part: &str| part.matches(">parts.CV</text>").count();
     let (iec, cscape) = svg.split_at(at(">cscape</text>"));
-    assert_eq!((reprs(iec), reprs(cscape)), (0, 1), "{svg}");
+    assert_eq!((lanes(iec), lanes(cscape)), (0, 1), "{svg}");
     assert!(iec.contains("parts.CV = 1"), "{svg}");
     // A source may follow the flag.
     let all = difference("--trace held.st --from iec --to cscape");

@@ -22,6 +22,8 @@ use std::collections::{BTreeSet, HashMap};
 /// Bytes of states that all scans together may go through; a small state counts as `SMALL`.
 const MAX_BYTES: u64 = 4 << 30;
 const SMALL: usize = 512;
+/// Scans in which a difference without events is looked for at least, once there is one with.
+const LEAST_WITHOUT_EVENTS: u64 = 20_000;
 
 /// What the search knows of the world around the programs.
 #[derive(Debug)]
@@ -92,8 +94,12 @@ pub struct Search<'p> {
     pub world: &'p World,
     /// Scans that may still be made.
     pub left: u64,
+    /// Scans of the pair when the search began.
+    before: u64,
     /// Sightings that the two systems allow: when all are known, there is nothing more to find.
     wanted: usize,
+    /// The difference that was found needs an event: until so many scans, one that needs none is looked for.
+    by_event: Option<u64>,
     /// Past the first difference, for what else there is.
     goes_on: bool,
     ended: bool,
@@ -105,8 +111,17 @@ pub fn search(pair: &mut Pair, world: &World, budget: u64, wanted: usize) -> Out
     let bytes = u64::try_from(pair.size().max(SMALL)).unwrap_or(u64::MAX);
     let budget = budget.min((MAX_BYTES / bytes).max(1000));
     let before = pair.scans;
-    let mut search =
-        Search { pair, world, left: budget, wanted, goes_on: false, ended: false, outcome: Outcome::default() };
+    let mut search = Search {
+        pair,
+        world,
+        left: budget,
+        before,
+        wanted,
+        by_event: None,
+        goes_on: false,
+        ended: false,
+        outcome: Outcome::default(),
+    };
     search.run(budget);
     search.outcome.scans = search.pair.scans - before;
     let mut outcome = search.outcome;
@@ -118,6 +133,7 @@ impl Search<'_> {
     fn run(&mut self, budget: u64) {
         let (depth, complete) = self.look(budget);
         (self.outcome.depth, self.outcome.complete) = (depth, complete);
+        self.by_event = None;
         if self.outcome.found.is_some() && self.outcome.sightings.len() < self.wanted {
             // What else there is gets its share, and no more; what parted may agree again.
             self.left = self.left.min(budget / 16);
@@ -145,7 +161,9 @@ impl Search<'_> {
 
     /// Whether there is nothing more to look for.
     pub fn is_done(&self) -> bool {
-        self.outcome.found.is_some() && (!self.goes_on || self.outcome.sightings.len() >= self.wanted)
+        self.outcome.found.is_some()
+            && self.by_event.is_none_or(|it| it <= self.pair.scans)
+            && (!self.goes_on || self.outcome.sightings.len() >= self.wanted)
     }
 
     /// One scan, and what it shows.
@@ -167,12 +185,17 @@ impl Search<'_> {
         let Outcome { found, sightings, .. } = &mut self.outcome;
         let news: Vec<_> = seen.sightings.into_iter().filter(|it| !sightings.contains_key(it)).collect();
         let first = seen.differs && found.is_none();
-        if !first && news.is_empty() {
+        let other = seen.differs && self.by_event.is_some();
+        if !first && !other && news.is_empty() {
             return;
         }
         let trace = trace();
-        if first {
+        let needs_event = trace.steps().any(|it| it.event.is_some());
+        if first || other && !needs_event {
             *found = Some(trace.clone());
+            // An event is rarer in a plant than the inputs' moves: as long again as the search has taken.
+            let more = (self.pair.scans - self.before).max(LEAST_WITHOUT_EVENTS);
+            self.by_event = needs_event.then_some(self.pair.scans.saturating_add(more));
         }
         sightings.extend(news.into_iter().map(|it| (it, trace.clone())));
     }

@@ -16,12 +16,12 @@ END_PROGRAM
 /// Works the page as a user would, and writes down what it then reads.
 const VISIT: &str = "<script>
 const said = [];
-const read = (name) => [...document.querySelectorAll('.repr')].find((it) => it.querySelector('.name').firstChild.data === name).querySelector('.value').textContent;
+const read = (name) => [...document.querySelectorAll('.lane')].find((it) => it.querySelector('.name').firstChild.data === name).querySelector('.value').textContent;
 const axis = () => document.querySelector('#axis canvas').getBoundingClientRect();
 const xOf = (time) => axis().left + (time - view.from) / (view.to - view.from) * axis().width;
-const point = (type, x, more) => document.querySelector('.repr canvas').dispatchEvent(new (type === 'wheel' ? WheelEvent : PointerEvent)(type, { bubbles: true, cancelable: true, clientX: x, ...more }));
+const point = (type, x, more) => document.querySelector('.lane canvas').dispatchEvent(new (type === 'wheel' ? WheelEvent : PointerEvent)(type, { bubbles: true, cancelable: true, clientX: x, ...more }));
 (() => {
-  said.push('reprs ' + document.querySelectorAll('.repr').length, document.querySelector('#unchanged div').textContent);
+  said.push('lanes ' + document.querySelectorAll('.lane').length, document.querySelector('#unchanged div').textContent);
   for (let turn = 0; turn < 90; turn++) point('wheel', xOf(777.765e9), { deltaY: -100 });
   drawAll();
   said.push('span ' + Math.round(view.to - view.from));
@@ -36,7 +36,7 @@ const point = (type, x, more) => document.querySelector('.repr canvas').dispatch
   document.querySelector('#all').click();
   drawAll();
   said.push('all ' + (view.from === data.start && view.to === data.end));
-  const ink = document.querySelectorAll('.repr canvas')[1].getContext('2d').getImageData(0, 0, 4000, 8).data;
+  const ink = document.querySelectorAll('.lane canvas')[1].getContext('2d').getImageData(0, 0, 4000, 8).data;
   said.push('pulse is drawn ' + ink.some((it, at) => at % 4 === 3 && it > 100));
   const out = document.createElement('pre');
   out.id = 'said';
@@ -62,7 +62,7 @@ fn a_page_zooms_moves_and_reads_values() {
     };
     let said = dom.split_once("<pre id=\"said\">").and_then(|(_, it)| it.split_once("</pre>")).map(|it| it.0);
     let said = said.unwrap_or_else(|| panic!("the page said nothing:\n{}", &dom[dom.len().saturating_sub(500)..]));
-    has(said, &["reprs 4\nfixed = 5\n", "pulse TRUE\n", "state Busy\n", "at 12 min 57.76", "scan 77777\n"]);
+    has(said, &["lanes 4\nfixed = 5\n", "pulse TRUE\n", "state Busy\n", "at 12 min 57.76", "scan 77777\n"]);
     has(said, &["moved true\n", "all true\n", "pulse is drawn true"]);
 }
 

@@ -63,7 +63,7 @@ impl<'s> Checker<'_, 's> {
         if !self.is_test() {
             return is_mock.then(|| self.outside_of_a_test(*name));
         }
-        let values = self.positional(*name, arguments)?;
+        let Some(values) = self.positional(*name, arguments) else { return Some(()) };
         let made = match (word.as_str(), &values[..]) {
             ("MOCK", [instance]) => self.mock(instance),
             ("MOCK_FUNCTION", [function, value]) => self.mock_function(function, value, span),
@@ -89,7 +89,7 @@ impl<'s> Checker<'_, 's> {
                 claim.and_then(|it| self.assert(it, message.first(), span))
             }
             _ => {
-                self.wrong_count(*name, values.len(), span);
+                self.wrong_count(*name, span);
                 None
             }
         };
@@ -106,7 +106,7 @@ impl<'s> Checker<'_, 's> {
         );
     }
 
-    fn wrong_count(&mut self, name: ast::Name<'s>, count: usize, span: Span) {
+    fn wrong_count(&mut self, name: ast::Name<'s>, span: Span) {
         let form = match name.text.to_ascii_uppercase().as_str() {
             "MOCK" => "MOCK instance;",
             "MOCK_FUNCTION" => "MOCK_FUNCTION name RETURNS value;",
@@ -119,7 +119,7 @@ impl<'s> Checker<'_, 's> {
             _ => "ASSERT_EQ(actual, expected);",
         };
         self.report(
-            Diagnostic::new(Code::E0302, span, format!("`{}` does not take {count} arguments", name.text))
+            Diagnostic::new(Code::E0302, span, format!("wrong number of arguments for `{}`", name.text))
                 .help(format!("write `{form}`; an assertion may end with a message")),
         );
     }
