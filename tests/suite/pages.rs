@@ -1,7 +1,7 @@
 //! The pages of the diagnostics: the text before has the diagnostic, the text after has none.
 
 use crate::documents::wrapped;
-use staunch_frontend::{Code, Dialect, Options, Source, Sources};
+use staunch_frontend::{Code, Dialect, Options, Severity, Source, Sources};
 
 /// What no short text shows: how much was written, or how deep.
 const WITHOUT_A_TEXT: [Code; 3] = [Code::E0030, Code::E0031, Code::E0091];
@@ -20,7 +20,11 @@ fn problems_of(code: Code) -> Vec<String> {
     let wrong = match &examples[..] {
         [before, after] => {
             let expected = [vec![code], Vec::new()];
-            let found = [before.codes(), after.codes()];
+            let mut found = [before.codes(), after.codes()];
+            if code.severity() == Severity::Error {
+                // Lints of what is refused do not count.
+                found[0].retain(|it| it.severity() == Severity::Error);
+            }
             (found != expected)
                 .then(|| format!("{}: {} before, {} after", code.name(), list(&found[0]), list(&found[1])))
         }

@@ -196,7 +196,7 @@ impl Unit {
         match self.repr {
             Repr::Bool | Repr::U8 | Repr::U16 | Repr::U32 => quote!(u64::from(#place)),
             Repr::U64 => quote!(#place),
-            Repr::I64 => quote!((#place as u64)),
+            Repr::I64 => quote!(#place as u64),
             Repr::F32 => quote!(u64::from(#place.to_bits())),
             Repr::F64 => quote!(#place.to_bits()),
             Repr::I8 | Repr::I16 | Repr::I32 => {

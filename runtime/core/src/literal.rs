@@ -342,9 +342,20 @@ fn part(text: &str, start: usize) -> Result<Part, LiteralError> {
 /// `whole.fraction` times `scale`, saturating, cut to whole nanoseconds.
 fn scaled(whole: &str, fraction: &str, scale: i128) -> i128 {
     // No unit has more than 14 decimal digits of nanoseconds.
-    let (part, tenths) = digits(fraction).take(15).fold((0, 1), |(sum, tenths), it| (appended(sum, it), tenths * 10));
-    let part = part.checked_mul(scale).and_then(|it| it.checked_div(tenths));
-    decimal(whole).saturating_mul(scale).saturating_add(part.unwrap_or(0))
+    let part = digits(fraction).take(15).fold(0, appended).saturating_mul(scale);
+    let part = digits(fraction).take(15).fold(part, |it, _| tenth(it));
+    decimal(whole).saturating_mul(scale).saturating_add(part)
+}
+
+/// A tenth of a number that is not negative, rounded down. The compiler's own division of 128 bits brings the
+/// unwinder along, which a C program that links this library does not have.
+fn tenth(number: i128) -> i128 {
+    let divide = |(quotient, rest): (i128, u64), shift: u32| {
+        let limb = u64::try_from(number >> shift & 0xFFFF_FFFF).unwrap_or(0);
+        let value = rest << 32 | limb;
+        (quotient | i128::from(value / 10) << shift, value % 10)
+    };
+    [96, 64, 32, 0].into_iter().fold((0, 0), divide).0
 }
 
 /// The number that digits spell, saturating; other characters between them are passed over.

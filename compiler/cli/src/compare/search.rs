@@ -76,6 +76,8 @@ pub struct Seen {
 pub struct Outcome {
     /// Inputs up to the first difference.
     pub found: Option<Trace>,
+    /// And up to one that needs no event, where the first does.
+    without_event: Option<Trace>,
     /// The shortest sequence that was met for each.
     pub sightings: HashMap<Sighting, Trace>,
     /// Every sequence of this many scans was tried.
@@ -125,7 +127,14 @@ pub fn search(pair: &mut Pair, world: &World, budget: u64, wanted: usize) -> Out
     search.run(budget);
     search.outcome.scans = search.pair.scans - before;
     let mut outcome = search.outcome;
-    outcome.found = outcome.found.map(|it| shrink::shrink(pair, world, shrink::Goal::Differ, it));
+    let mut shortest = |it: Trace| shrink::shrink(pair, world, shrink::Goal::Differ, it);
+    outcome.found = outcome.found.map(&mut shortest);
+    let calm = outcome.without_event.take().map(&mut shortest);
+    outcome.found = match (outcome.found, calm) {
+        // An event is rarer in a plant than the inputs' moves.
+        (Some(found), Some(calm)) if calm.scans() <= found.scans() + found.scans() / 8 => Some(calm),
+        (found, _) => found,
+    };
     outcome
 }
 
@@ -182,7 +191,7 @@ impl Search<'_> {
 
     /// Keeps what is new or shorter.
     pub fn record(&mut self, seen: Seen, trace: impl FnOnce() -> Trace) {
-        let Outcome { found, sightings, .. } = &mut self.outcome;
+        let Outcome { found, without_event, sightings, .. } = &mut self.outcome;
         let news: Vec<_> = seen.sightings.into_iter().filter(|it| !sightings.contains_key(it)).collect();
         let first = seen.differs && found.is_none();
         let other = seen.differs && self.by_event.is_some();
@@ -192,8 +201,9 @@ impl Search<'_> {
         let trace = trace();
         let needs_event = trace.steps().any(|it| it.event.is_some());
         if first || other && !needs_event {
-            *found = Some(trace.clone());
-            // An event is rarer in a plant than the inputs' moves: as long again as the search has taken.
+            let place = if first { found } else { without_event };
+            *place = Some(trace.clone());
+            // As long again as the search has taken.
             let more = (self.pair.scans - self.before).max(LEAST_WITHOUT_EVENTS);
             self.by_event = needs_event.then_some(self.pair.scans.saturating_add(more));
         }

@@ -52,6 +52,10 @@ impl Operand {
         }
     }
 
+    pub fn is_reference(&self) -> bool {
+        matches!(self.ty(), Some(Type::Reference(_)))
+    }
+
     /// The type that it counts as where it is stored, or meets another.
     pub fn ty(&self) -> Option<Type> {
         match self {

@@ -1,6 +1,5 @@
 use super::checker::Checker;
 use super::operand::{Operand, computed};
-use super::reference::is_reference;
 use crate::types::coercion::{as_number, is_narrow, join, join_promoted};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::BinaryOp;
@@ -41,7 +40,7 @@ impl<'s> Checker<'_, 's> {
 
     /// The operation on two sides that have been checked.
     pub(crate) fn combine(&mut self, mut sides: Sides) -> Option<Operand> {
-        if is_reference(&sides.a) || is_reference(&sides.b) {
+        if sides.a.is_reference() || sides.b.is_reference() {
             return self.reference_operation(sides.op, sides.a, sides.b, sides.span);
         }
         if sides.a.typed().is_none() && sides.b.typed().is_none() {

@@ -320,7 +320,7 @@ impl<'s> Checker<'_, 's> {
 
     /// Comparison and arithmetic where one side is a reference.
     pub(crate) fn reference_operation(&mut self, op: BinaryOp, a: Operand, b: Operand, span: Span) -> Option<Operand> {
-        let made = match (is_reference(&a), is_reference(&b), op) {
+        let made = match (a.is_reference(), b.is_reference(), op) {
             (_, _, BinaryOp::Eq | BinaryOp::Ne | BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge) => {
                 self.compare_addresses(op, a, b, span)
             }
@@ -389,8 +389,4 @@ impl<'s> Checker<'_, 's> {
         let moved = self.apply(Op::Advance, lword, vec![bits, by], lword, span)?;
         Some(self.convert(Conversion::Same, ty, moved))
     }
-}
-
-pub(crate) fn is_reference(operand: &Operand) -> bool {
-    matches!(operand.ty(), Some(Type::Reference(_)))
 }
