@@ -2,6 +2,7 @@
 
 mod configuration;
 mod order;
+mod pins;
 mod prescan;
 pub(crate) mod tests;
 
@@ -29,6 +30,7 @@ pub(crate) fn assemble<'s>(
     declarations.check_named_programs();
     configuration::instances(declarations, files);
     order::order(declarations, uses, stacks)?;
+    declarations.check_pins()?;
     let program = std::mem::replace(&mut declarations.program, empty_program(Vec::new()));
     declarations.program = staunch_ir::reference::fixed(program);
     declarations.check_size()?;
