@@ -161,6 +161,21 @@ TEST 'bad' ASSERT_EQ(Add(1, 2), 4); END_TEST
 }
 
 #[test]
+fn a_function_of_the_users_keeps_its_name() {
+    let tests = "VAR_GLOBAL calls : INT; END_VAR
+FUNCTION ASSERT_EQ : BOOL
+VAR_INPUT a, b : INT; END_VAR
+VAR_EXTERNAL calls : INT; END_VAR
+    calls := calls + 1;
+    ASSERT_EQ := a = b;
+END_FUNCTION
+TEST 'it is called' ASSERT_EQ(1, 2); ASSERT_TRUE(calls = 1); END_TEST
+";
+    let folder = Folder::with("tests_shadowed", &[("own.st", tests)]);
+    has(&folder.staunch("test own.st").out(0), &["1 passed, 0 failed"]);
+}
+
+#[test]
 fn mistakes_in_tests_are_told_once() {
     let tests = "SETUP
 VAR delay : TON; END_VAR

@@ -23,8 +23,23 @@ const COMPARISONS: [(&str, BinaryOp, &str); 6] = [
     ("LE", BinaryOp::Le, "to be at most {}"),
 ];
 
-const WORDS: [&str; 6] =
-    ["ASSERT_TRUE", "ASSERT_FALSE", "ASSERT_NEAR", "ADVANCE_TIME", "MOCK_VERIFY_CALLED", "MOCK_VERIFY_CALL_COUNT"];
+/// The words that only a test has: how many values each takes, and how it is written.
+const WORDS: [(&str, usize, &str); 14] = [
+    ("ASSERT_TRUE", 1, "ASSERT_TRUE(condition);"),
+    ("ASSERT_FALSE", 1, "ASSERT_FALSE(condition);"),
+    ("ASSERT_EQ", 2, "ASSERT_EQ(actual, expected);"),
+    ("ASSERT_NEQ", 2, "ASSERT_NEQ(actual, expected);"),
+    ("ASSERT_GT", 2, "ASSERT_GT(actual, expected);"),
+    ("ASSERT_LT", 2, "ASSERT_LT(actual, expected);"),
+    ("ASSERT_GE", 2, "ASSERT_GE(actual, expected);"),
+    ("ASSERT_LE", 2, "ASSERT_LE(actual, expected);"),
+    ("ASSERT_NEAR", 3, "ASSERT_NEAR(actual, expected, tolerance);"),
+    ("MOCK_VERIFY_CALLED", 1, "MOCK_VERIFY_CALLED(instance);"),
+    ("MOCK_VERIFY_CALL_COUNT", 2, "MOCK_VERIFY_CALL_COUNT(instance, count);"),
+    ("MOCK", 1, "MOCK instance;"),
+    ("MOCK_FUNCTION", 2, "MOCK_FUNCTION name RETURNS value;"),
+    ("ADVANCE_TIME", 1, "ADVANCE_TIME(T#100ms);"),
+];
 
 /// What an assertion has checked: its condition, and the variables that keep what it compared.
 struct Claim {
@@ -45,6 +60,11 @@ impl Claim {
     }
 }
 
+/// Whether a word, or how it is written, is that of an assertion: it may end with a message.
+fn is_assertion(word: &str) -> bool {
+    word.starts_with("ASSERT_") || word.starts_with("MOCK_VERIFY_")
+}
+
 impl<'s> Checker<'_, 's> {
     /// A call of what only unit tests have; `None` where it is none, or a POU of the user's has its name.
     pub(super) fn test_statement(
@@ -54,42 +74,19 @@ impl<'s> Checker<'_, 's> {
         span: Span,
     ) -> Option<()> {
         let Ast::Name(name) = &callee.kind else { return None };
-        let word = name.text.to_ascii_uppercase();
-        let comparison = COMPARISONS.iter().find(|it| word.strip_prefix("ASSERT_") == Some(it.0));
-        let is_mock = matches!(word.as_str(), "MOCK" | "MOCK_FUNCTION");
-        if !(is_mock || comparison.is_some() || WORDS.contains(&word.as_str())) || self.scope.get(name.text).is_some() {
+        let (word, count, form) = *WORDS.iter().find(|it| name.text.eq_ignore_ascii_case(it.0))?;
+        if self.is_declared(*name) {
             return None;
         }
         if !self.is_test() {
-            return is_mock.then(|| self.outside_of_a_test(*name));
+            return word.starts_with("MOCK").then(|| self.outside_of_a_test(*name));
         }
-        let Some(values) = self.positional(*name, arguments) else { return Some(()) };
-        let made = match (word.as_str(), &values[..]) {
-            ("MOCK", [instance]) => self.mock(instance),
-            ("MOCK_FUNCTION", [function, value]) => self.mock_function(function, value, span),
-            ("ADVANCE_TIME", [duration]) => self.advance_time(duration, span),
-            ("ASSERT_TRUE" | "ASSERT_FALSE", [condition, message @ ..]) if message.len() < 2 => {
-                self.claim_of(condition, word == "ASSERT_TRUE").and_then(|it| self.assert(it, message.first(), span))
-            }
-            ("ASSERT_NEAR", [actual, expected, tolerance, message @ ..]) if message.len() < 2 => {
-                let claim = self.near([actual, expected], tolerance, span);
-                claim.and_then(|it| self.assert(it, message.first(), span))
-            }
-            ("MOCK_VERIFY_CALLED", [instance, message @ ..]) if message.len() < 2 => {
-                let claim = self.called_more_than(instance, span);
-                claim.and_then(|it| self.assert(it, message.first(), span))
-            }
-            ("MOCK_VERIFY_CALL_COUNT", [instance, count, message @ ..]) if message.len() < 2 => {
-                let claim = self.call_count(instance, count, span);
-                claim.and_then(|it| self.assert(it, message.first(), span))
-            }
-            (_, [actual, expected, message @ ..]) if message.len() < 2 && comparison.is_some() => {
-                let (_, op, wants) = *comparison?;
-                let claim = self.comparison([actual, expected], op, wants, span);
-                claim.and_then(|it| self.assert(it, message.first(), span))
-            }
-            _ => {
-                self.wrong_count(*name, span);
+        let Some(given) = self.positional(*name, arguments) else { return Some(()) };
+        let made = match given.split_at_checked(count) {
+            Some((values, [])) => self.test_step(word, values, None, span),
+            Some((values, [message])) if is_assertion(word) => self.test_step(word, values, Some(message), span),
+            Some(_) | None => {
+                self.wrong_count(*name, form, span);
                 None
             }
         };
@@ -99,6 +96,36 @@ impl<'s> Checker<'_, 's> {
         Some(())
     }
 
+    /// What a word of [`WORDS`] does with as many values as it takes.
+    fn test_step(
+        &mut self,
+        word: &str,
+        values: &[&ast::Expr<'s>],
+        message: Option<&ast::Expr<'s>>,
+        span: Span,
+    ) -> Option<()> {
+        let claim = match (word, values) {
+            ("MOCK", [instance]) => return self.mock(instance),
+            ("MOCK_FUNCTION", [function, value]) => return self.mock_function(function, value, span),
+            ("ADVANCE_TIME", [duration]) => return self.advance_time(duration, span),
+            ("MOCK_VERIFY_CALLED", [instance]) => self.called_more_than(instance, span),
+            ("MOCK_VERIFY_CALL_COUNT", [instance, count]) => self.call_count(instance, count, span),
+            ("ASSERT_NEAR", [actual, expected, tolerance]) => self.near([actual, expected], tolerance, span),
+            (_, [condition]) => self.claim_of(condition, word == "ASSERT_TRUE"),
+            (_, [actual, expected]) => {
+                let (_, op, wants) = *COMPARISONS.iter().find(|it| word.strip_prefix("ASSERT_") == Some(it.0))?;
+                self.comparison([actual, expected], op, wants, span)
+            }
+            _ => None,
+        };
+        self.assert(claim?, message, span)
+    }
+
+    /// Whether the user has a variable or a POU of that name.
+    fn is_declared(&self, name: ast::Name<'s>) -> bool {
+        self.scope.get(name.text).is_some() || self.decl.declared(self.scope.space, name).is_some()
+    }
+
     fn outside_of_a_test(&mut self, name: ast::Name<'s>) {
         self.report(
             Diagnostic::new(Code::E0305, name.span, format!("`{}` belongs to a unit test", name.text))
@@ -106,22 +133,10 @@ impl<'s> Checker<'_, 's> {
         );
     }
 
-    fn wrong_count(&mut self, name: ast::Name<'s>, span: Span) {
-        let form = match name.text.to_ascii_uppercase().as_str() {
-            "MOCK" => "MOCK instance;",
-            "MOCK_FUNCTION" => "MOCK_FUNCTION name RETURNS value;",
-            "ADVANCE_TIME" => "ADVANCE_TIME(T#100ms);",
-            "ASSERT_TRUE" => "ASSERT_TRUE(condition);",
-            "ASSERT_FALSE" => "ASSERT_FALSE(condition);",
-            "ASSERT_NEAR" => "ASSERT_NEAR(actual, expected, tolerance);",
-            "MOCK_VERIFY_CALLED" => "MOCK_VERIFY_CALLED(instance);",
-            "MOCK_VERIFY_CALL_COUNT" => "MOCK_VERIFY_CALL_COUNT(instance, count);",
-            _ => "ASSERT_EQ(actual, expected);",
-        };
-        self.report(
-            Diagnostic::new(Code::E0302, span, format!("wrong number of arguments for `{}`", name.text))
-                .help(format!("write `{form}`; an assertion may end with a message")),
-        );
+    fn wrong_count(&mut self, name: ast::Name<'s>, form: &str, span: Span) {
+        let error = Diagnostic::new(Code::E0302, span, format!("wrong number of arguments for `{}`", name.text));
+        let message = if is_assertion(form) { "; a message may follow" } else { "" };
+        self.report(error.help(format!("write `{form}`{message}")));
     }
 
     fn positional<'a>(
@@ -145,7 +160,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// Leaves the test, with the number of the assertion and what it compared, unless the claim holds.
-    fn assert(&mut self, claim: Claim, message: Option<&&ast::Expr<'s>>, span: Span) -> Option<()> {
+    fn assert(&mut self, claim: Claim, message: Option<&ast::Expr<'s>>, span: Span) -> Option<()> {
         let slot = self.test_slot()?;
         let at = self.at(span);
         let number = self.decl.tests.assertions.entry(slot).or_default().len() + 1;
