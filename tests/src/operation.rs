@@ -101,6 +101,7 @@ pub fn program(tasks: &[Task]) -> Program {
         references: Vec::new(),
         globals: StructId::next(tasks.len()),
         aliases: Vec::new(),
+        reentered: std::collections::BTreeSet::new(),
         structs,
         classes: tasks
             .iter()

@@ -1,7 +1,7 @@
 //! Lints that a source allows itself: `{allow W0507}` before a statement or declaration, for all of it,
 //! and `{allow_file W0507}` anywhere, for the file.
 
-use crate::ast::{File, Item, Statement, TestUnit, TypeKind, TypeSpec, VarBlock, VarDecl, each_body};
+use crate::ast::{File, Item, Pou, Statement, TestUnit, TypeKind, TypeSpec, VarBlock, VarDecl, each_body};
 use crate::diagnostic::{Code, Diagnostic, Severity, lint};
 use crate::source::Span;
 
@@ -109,14 +109,7 @@ impl Spans {
         let mut spans = Self::default();
         for item in &file.items {
             match item {
-                Item::Pou(pou) | Item::Test(TestUnit { pou, .. }) => {
-                    let before = spans.all.len();
-                    pou.blocks.iter().for_each(|it| spans.block(it));
-                    spans.statements(&pou.body);
-                    // Its own span is its head.
-                    let end = spans.all[before..].iter().map(|it| it.1).max();
-                    spans.all.push((pou.span.start, end.unwrap_or_default().max(pou.span.end)));
-                }
+                Item::Pou(pou) | Item::Test(TestUnit { pou, .. }) => spans.pou(pou),
                 Item::Types(types) => {
                     for it in types {
                         spans.add(it.name.span.to(it.ty.span));
@@ -131,6 +124,16 @@ impl Spans {
             }
         }
         spans
+    }
+
+    fn pou(&mut self, pou: &Pou<'_>) {
+        let before = self.all.len();
+        pou.blocks.iter().for_each(|it| self.block(it));
+        self.statements(&pou.body);
+        pou.routines.iter().for_each(|it| self.pou(it));
+        // Its own span is its head.
+        let end = self.all[before..].iter().map(|it| it.1).max();
+        self.all.push((pou.span.start, end.unwrap_or_default().max(pou.span.end)));
     }
 
     fn add(&mut self, span: Span) {

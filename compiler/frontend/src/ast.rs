@@ -26,11 +26,16 @@ pub struct File<'s> {
 }
 
 impl<'s> File<'s> {
-    /// Takes out the bodies of the POUs, in order: each can be let go when it has been checked.
+    /// Takes out the bodies of the POUs, in order, each with those of its routines after it: they can be let
+    /// go when they have been checked.
     pub(crate) fn take_bodies(&mut self) -> impl Iterator<Item = Vec<Statement<'s>>> {
-        self.items.iter_mut().filter_map(|it| match it {
-            Item::Pou(pou) => Some(std::mem::take(&mut pou.body)),
+        let pous = self.items.iter_mut().filter_map(|it| match it {
+            Item::Pou(pou) => Some(pou),
             Item::Types(_) | Item::Globals(_) | Item::Configuration(_) | Item::Test(_) => None,
+        });
+        pous.flat_map(|pou| {
+            let Pou { body, routines, .. } = pou;
+            [body].into_iter().chain(routines.iter_mut().map(|it| &mut it.body)).map(std::mem::take)
         })
     }
 }
@@ -67,19 +72,71 @@ pub enum PouKind {
     Function,
     /// A TEST, with what SETUP and TEARDOWN add to it.
     Test,
+    /// A further body of a PROGRAM or FUNCTION_BLOCK.
+    Action,
+    Method,
+}
+
+impl PouKind {
+    /// The keyword.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Program => "PROGRAM",
+            Self::FunctionBlock => "FUNCTION_BLOCK",
+            Self::Function => "FUNCTION",
+            Self::Test => "TEST",
+            Self::Action => "ACTION",
+            Self::Method => "METHOD",
+        }
+    }
+
+    /// Whether its variables live for one call, and its name is its result.
+    pub const fn is_function(self) -> bool {
+        match self {
+            Self::Function | Self::Method => true,
+            Self::Program | Self::FunctionBlock | Self::Test | Self::Action => false,
+        }
+    }
+}
+
+/// The words before a METHOD's name, or a POU's.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Modifiers {
+    pub access: Option<(Access, Span)>,
+    pub is_final: Option<Span>,
+}
+
+/// From where something may be named.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Access {
+    Public,
+    Private,
+    Protected,
+    Internal,
 }
 
 #[derive(Clone, Debug)]
 pub struct Pou<'s> {
     pub kind: PouKind,
     pub name: Name<'s>,
-    /// A FUNCTION's result type; a FUNCTION may have none.
+    pub modifiers: Modifiers,
+    /// The result type of a FUNCTION or METHOD, which may have none.
     pub result: Option<TypeSpec<'s>>,
     pub blocks: Vec<VarBlock<'s>>,
     pub body: Vec<Statement<'s>>,
+    /// The METHODs and ACTIONs of a PROGRAM or FUNCTION_BLOCK.
+    pub routines: Vec<Pou<'s>>,
     /// The comment that is directly before the POU, cleaned of its marks.
     pub doc: Option<String>,
     pub span: Span,
+}
+
+impl<'s> Pou<'s> {
+    /// One without variables and statements.
+    pub fn new(kind: PouKind, name: Name<'s>, span: Span) -> Self {
+        let (blocks, body, routines) = (Vec::new(), Vec::new(), Vec::new());
+        Self { kind, name, modifiers: Modifiers::default(), result: None, blocks, body, routines, doc: None, span }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -32,6 +32,7 @@ mod mock;
 mod statement;
 
 mod configuration;
+mod routine;
 mod unit;
 
 #[cfg(test)]

@@ -44,9 +44,16 @@ impl<'p> Frame<'p> {
         }
     }
 
-    /// Whether only this body, and what it passes the place to, can write it: no POU calls itself.
-    /// Only the variable itself says so: a member of a structure that is an input is not private.
+    /// Whether only this body, and what it passes the place to, can write it: no POU calls itself, and
+    /// nobody comes back to the instance by another of its routines.
     pub fn is_private(&self, place: &Place) -> bool {
+        let is_reentered = self.state.is_some_and(|it| self.program.reentered.contains(&it));
+        self.is_own(place) && (matches!(place.root, Root::Local(_)) || !is_reentered)
+    }
+
+    /// Whether only the routines of the class, and what they pass the place to, can write it.
+    /// Only the variable itself says so: a member of a structure that is an input is not private.
+    pub fn is_own(&self, place: &Place) -> bool {
         match (place.root, place.projections.first()) {
             (Root::Local(_), _) => true,
             (Root::Instance, Some(Projection::Field(id))) => self.state.is_some_and(|state| {

@@ -23,7 +23,14 @@ pub fn exit_condition(statement: &Statement) -> Option<&Expr> {
 /// and the body neither writes it nor hands it on. A back end knows such a counter where it is read by
 /// its name, so an element of an array is none.
 pub fn is_private(frame: &Frame<'_>, counter: &Place, body: &[Statement]) -> bool {
-    counter.indices().next().is_none() && frame.is_private(counter) && !alias::writes(frame, body, counter)
+    let nobody_else = frame.is_private(counter) || frame.is_own(counter) && !calls(body);
+    counter.indices().next().is_none() && nobody_else && !alias::writes(frame, body, counter)
+}
+
+fn calls(body: &[Statement]) -> bool {
+    let mut found = false;
+    visit::statements(body, &mut |it| found |= matches!(it.kind, StatementKind::Call { .. }));
+    found
 }
 
 /// The 0-based position of an index that is constant and within the bounds.

@@ -96,10 +96,15 @@ impl Printer<'_> {
             (RoutineKind::Body, Some(ClassKind::Program)) => "program",
             (RoutineKind::Body, Some(ClassKind::FunctionBlock) | None) => "function_block",
             (RoutineKind::Function, _) => "function",
+            (RoutineKind::Method, _) => "method",
         };
         let result = routine.result.map(|id| &routine.locals[id.index()]);
         let result = result.map(|local| format!(": {}", self.program.type_name(local.ty))).unwrap_or_default();
-        self.line(format_args!("\n{kind} {}{result}", routine.name))?;
+        let name = match routine.kind {
+            RoutineKind::Method => self.program.title(routine),
+            RoutineKind::Function | RoutineKind::Body | RoutineKind::Prescan => routine.name.clone(),
+        };
+        self.line(format_args!("\n{kind} {name}{result}"))?;
         for (id, param) in routine.params.iter().enumerate() {
             let ty = self.program.type_name(param.ty);
             match param.mode {

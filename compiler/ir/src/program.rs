@@ -7,6 +7,7 @@ use crate::{
 };
 use core::fmt;
 use staunch_runtime::Family;
+use std::collections::BTreeSet;
 
 ids! {
     ClassId;
@@ -35,6 +36,9 @@ pub struct Program {
     /// Other names of global variables: a direct address that is declared again.
     pub aliases: Vec<Variable>,
     pub classes: Vec<Class>,
+    /// The states that METHODs or ACTIONs work on: while one routine of an instance runs, what it calls may
+    /// come back to the instance by another.
+    pub reentered: BTreeSet<StructId>,
     /// In an order in which a callee is before its callers.
     pub routines: Vec<Routine>,
     /// The programs that run, in order.
@@ -90,24 +94,26 @@ pub enum RoutineKind {
     Body,
     /// The prescan of a class; it has no parameters.
     Prescan,
+    /// A METHOD of a class, or an ACTION, which has the parameters of the body.
+    Method,
 }
 
 /// Something that is called: parameters, variables that live for one call, and statements.
 #[derive(Clone, Debug)]
 pub struct Routine {
     pub kind: RoutineKind,
-    /// Of the FUNCTION, or of the class.
+    /// Of the FUNCTION or METHOD, or of the class.
     pub name: String,
     pub doc: Option<String>,
     pub location: Location,
     /// The state of the instance that it works on; a FUNCTION has none.
     pub state: Option<StructId>,
-    /// What a caller passes at each call: a FUNCTION's inputs, outputs and in-outs, a
+    /// What a caller passes at each call: the inputs, outputs and in-outs of a FUNCTION or METHOD, a
     /// FUNCTION_BLOCK's in-outs.
     pub params: Vec<Param>,
     /// They start at their initial values.
     pub locals: Vec<Local>,
-    /// A FUNCTION's result: one of `locals`.
+    /// The result of a FUNCTION or METHOD: one of `locals`.
     pub result: Option<LocalId>,
     pub body: Block,
 }
@@ -274,6 +280,18 @@ impl Program {
     /// The class whose instances have the state `id`, if it is not a user's structure.
     pub fn class_of_state(&self, id: StructId) -> Option<&Class> {
         self.classes.iter().find(|class| class.state == id)
+    }
+
+    /// What a routine is called for people: `Class.Method`.
+    pub fn title(&self, routine: &Routine) -> String {
+        match routine.kind {
+            RoutineKind::Function | RoutineKind::Body => routine.name.clone(),
+            RoutineKind::Prescan => format!("{} (prescan)", routine.name),
+            RoutineKind::Method => match routine.state.and_then(|it| self.class_of_state(it)) {
+                Some(class) => format!("{}.{}", class.name, routine.name),
+                None => routine.name.clone(),
+            },
+        }
     }
 
     /// The type of a place's root in a routine; `None` when the routine has no such storage.

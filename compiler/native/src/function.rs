@@ -8,7 +8,7 @@ use cranelift_codegen::ir::{self as clif, InstBuilder, StackSlot, UserFuncName};
 use cranelift_frontend::{FuncInstBuilder, FunctionBuilder, Variable};
 use cranelift_module::{DataId, FuncId};
 use staunch_ir::effects::Effects;
-use staunch_ir::{Const, For, LocalId, Mode, Program, Routine, RoutineId, RoutineKind, Type};
+use staunch_ir::{Const, For, LocalId, Mode, Program, Routine, RoutineId, Type};
 use std::collections::{BTreeMap, HashMap};
 
 /// More variables than this make the construction of SSA form slow; the rest live in the frame.
@@ -96,10 +96,7 @@ pub(crate) fn emit(module: &mut ModuleEmitter<'_>, workspace: &mut Workspace, id
     let mut open = Function::open(module, builder, routine, &effects);
     let flow = open.block(&routine.body);
     open.close(flow, &effects);
-    let name = match routine.kind {
-        RoutineKind::Function | RoutineKind::Body => routine.name.clone(),
-        RoutineKind::Prescan => format!("{} (prescan)", routine.name),
-    };
+    let name = module.program.title(routine);
     module.define(context, function, &name)
 }
 

@@ -178,7 +178,7 @@ fn reason(error: &dyn core::error::Error) -> String {
 fn symbol(id: RoutineId, routine: &Routine) -> String {
     let name = routine.name.replace(|c: char| !c.is_ascii_alphanumeric(), "_");
     match routine.kind {
-        RoutineKind::Function | RoutineKind::Body => format!("st{}_{name}", id.0),
+        RoutineKind::Function | RoutineKind::Body | RoutineKind::Method => format!("st{}_{name}", id.0),
         RoutineKind::Prescan => format!("st{}_{name}_prescan", id.0),
     }
 }

@@ -108,6 +108,7 @@ impl Maker {
             references: Vec::new(),
             globals,
             aliases: Vec::new(),
+            reentered: std::collections::BTreeSet::new(),
             structs: maker.structs,
             classes: maker.classes,
             routines: maker.routines,

@@ -40,6 +40,8 @@ pub enum Role {
     /// A PROGRAM's or FUNCTION_BLOCK's method; its signature does not depend on its body.
     Scan,
     Prescan,
+    /// A METHOD or ACTION.
+    Method,
     Free,
 }
 
@@ -52,6 +54,7 @@ impl<'a> Emitter<'a> {
             RoutineKind::Function => Role::Free,
             RoutineKind::Body => Role::Scan,
             RoutineKind::Prescan => Role::Prescan,
+            RoutineKind::Method => Role::Method,
         };
         let mut function = self.function(routine, needs, role == Role::Scan || needs.faults);
         let before = self.first_scan(id);
@@ -112,7 +115,7 @@ impl Function<'_> {
         let context = match (needs.context, role) {
             (true, _) => Some(quote!(cx: &Context)),
             (false, Role::Scan) => Some(quote!(_cx: &Context)),
-            (false, Role::Prescan | Role::Free) => None,
+            (false, Role::Prescan | Role::Method | Role::Free) => None,
         };
         let params = self.params();
         let globals_type = self.emitter.ty(staunch_ir::Type::Struct(self.emitter.program.globals));

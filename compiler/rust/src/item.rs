@@ -166,15 +166,16 @@ impl Emitter<'_> {
             }
             (Role::Scan, Origin::Copy) => doc_line("One scan, for calls whose arguments share storage."),
             (Role::Prescan, _) => doc_line("What counters need before the first scan."),
-            (Role::Free, Origin::Declared) => {
-                let title = format!("FUNCTION {} ({})", routine.name, self.source(routine.location));
+            (Role::Free | Role::Method, Origin::Declared) => {
+                let word = if role == Role::Free { "FUNCTION" } else { "METHOD" };
+                let title = format!("{word} {} ({})", routine.name, self.source(routine.location));
                 self.docs(routine.doc.as_deref(), &title)
             }
-            (Role::Free, Origin::Apart) => {
+            (Role::Free | Role::Method, Origin::Apart) => {
                 let title = format!("{}, which is handed the globals that it uses.", self.source(routine.location));
                 self.docs(routine.doc.as_deref(), &title)
             }
-            (Role::Free, Origin::Copy) => {
+            (Role::Free | Role::Method, Origin::Copy) => {
                 let source = self.source(routine.location);
                 self.docs(
                     routine.doc.as_deref(),

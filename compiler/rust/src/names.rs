@@ -228,7 +228,7 @@ fn routine_names(program: &Program, origins: &[Origin]) -> Vec<Ident> {
             (RoutineKind::Function, _) => functions.claim(&snake(&routine.name)),
             (RoutineKind::Body, Origin::Declared) => ident("scan"),
             (RoutineKind::Prescan, Origin::Declared) => ident("prescan"),
-            (RoutineKind::Body | RoutineKind::Prescan, Origin::Apart | Origin::Copy) => {
+            (RoutineKind::Body | RoutineKind::Prescan, Origin::Apart | Origin::Copy) | (RoutineKind::Method, _) => {
                 let scope = methods.entry(routine.state).or_insert_with(|| Scope::with(METHODS));
                 scope.claim(&snake(&routine.name))
             }

@@ -67,7 +67,9 @@ fn check_body<'s>(
     let signature = decl.signature(slot)?;
     let mut checker = Checker::of_body(decl, &signature);
     checker.initial_outputs(&signature);
-    checker.own_enable(&signature, pou.name.span);
+    if pou.kind != ast::PouKind::Action {
+        checker.own_enable(&signature, pou.name.span);
+    }
     checker.edge_inputs(&signature, pou.name.span);
     checker.mocked_result(slot, pou.name.span);
     let mut body = checker.block_of(statements);
@@ -78,7 +80,11 @@ fn check_body<'s>(
     *left_out = left_out.or(checker.left_out);
     let locals = std::mem::take(&mut checker.locals);
     let location = decl.location(pou.name.span);
-    let kind = if pou.kind == ast::PouKind::Function { RoutineKind::Function } else { RoutineKind::Body };
+    let kind = match pou.kind {
+        ast::PouKind::Function => RoutineKind::Function,
+        ast::PouKind::Action | ast::PouKind::Method => RoutineKind::Method,
+        ast::PouKind::Program | ast::PouKind::FunctionBlock | ast::PouKind::Test => RoutineKind::Body,
+    };
     let body = Routine {
         kind,
         name: decl.emitted_name(slot),

@@ -95,9 +95,7 @@ impl<'s> Declarations<'s> {
             _ if block.constant.is_some() => ("a CONSTANT has no address", "delete CONSTANT, or the address"),
             (Some(PouKind::Program) | None, _) => return,
             (Some(PouKind::FunctionBlock), VarKind::Var | VarKind::Stat) if in_blocks => return,
-            (Some(PouKind::FunctionBlock | PouKind::Function | PouKind::Test), _) => {
-                ("only a PROGRAM's variables and globals have an address", global)
-            }
+            (Some(_), _) => ("only a PROGRAM's variables and globals have an address", global),
         };
         self.report(Diagnostic::new(Code::E0409, address.span, message).help(help));
     }

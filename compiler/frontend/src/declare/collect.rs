@@ -15,11 +15,13 @@ impl<'s> Declarations<'s> {
                 ast::Item::Types(decls) => decls.iter().for_each(|decl| self.collect_type(decl)),
                 ast::Item::Pou(pou) => {
                     lists.end(pou.span);
-                    self.pous.push(PouSlot { ast: pou, names_itself: false, run: None, slot: Slot::Open });
+                    self.pous.push(PouSlot::open(pou));
+                    let slot = self.pous.len() - 1;
                     // Nobody names a test.
                     if pou.kind != ast::PouKind::Test {
-                        self.enter(SpaceId::ROOT, pou.name, Entry::Pou(self.pous.len() - 1));
+                        self.enter(SpaceId::ROOT, pou.name, Entry::Pou(slot));
                     }
+                    pou.routines.iter().for_each(|it| self.collect_routine(slot, it));
                 }
                 ast::Item::Globals(block) => {
                     let list = lists.around(block.span).map(|it| self.names.list(it));
@@ -29,6 +31,26 @@ impl<'s> Declarations<'s> {
                 // They have become POUs, or are not wanted.
                 ast::Item::Test(_) => {}
             }
+        }
+    }
+
+    /// A METHOD or ACTION of the POU in a slot: its name is one among the POU's.
+    fn collect_routine(&mut self, owner: usize, routine: &'s ast::Pou<'s>) {
+        let slot = self.pous.len();
+        self.pous.push(PouSlot { owner: Some(owner), ..PouSlot::open(routine) });
+        let name = routine.name;
+        if name.text.is_empty() {
+            return;
+        }
+        self.check_spelling(name);
+        let pou = self.pous[owner].ast;
+        let variables = pou.blocks.iter().flat_map(|it| &it.vars).flat_map(|it| &it.names);
+        let variable = variables.copied().find(|it| Key(it.text) == Key(name.text));
+        let known = self.pous[owner].routines.get(&Key(name.text)).map(|it| self.pous[*it].ast.name);
+        if let Some(first) = known.or(variable) {
+            self.report(declared_twice(name, first.span));
+        } else {
+            self.pous[owner].routines.insert(Key(name.text), slot);
         }
     }
 
@@ -78,11 +100,7 @@ impl<'s> Declarations<'s> {
             return;
         };
         let first = self.span_of(first);
-        self.report(
-            Diagnostic::new(Code::E0103, name.span, format!("`{}` is declared twice", name.text))
-                .label("declared again here")
-                .other(first, "first declared here"),
-        );
+        self.report(declared_twice(name, first));
     }
 
     /// What is in the way of a new name. A global may have the name of a type, `motor : Motor`, and two
@@ -123,4 +141,10 @@ impl<'s> Declarations<'s> {
             Entry::Global(_) => false,
         }
     }
+}
+
+fn declared_twice(name: ast::Name<'_>, first: crate::Span) -> Diagnostic {
+    Diagnostic::new(Code::E0103, name.span, format!("`{}` is declared twice", name.text))
+        .label("declared again here")
+        .other(first, "first declared here")
 }

@@ -41,8 +41,7 @@ pub(crate) fn declare<'s>(
         declarations.collect(file);
     }
     for Run { pou, instance, .. } in runs {
-        let run = Some(*instance);
-        declarations.pous.push(PouSlot { ast: pou, names_itself: false, run, slot: Slot::Open });
+        declarations.pous.push(PouSlot { run: Some(*instance), ..PouSlot::open(pou) });
     }
     declarations.note_results(bodies);
     declarations.collect_addresses(bodies);
@@ -54,10 +53,10 @@ pub(crate) fn declare<'s>(
 }
 
 impl<'s> Declarations<'s> {
-    /// Which FUNCTIONs say what their result is.
+    /// Which FUNCTIONs and METHODs say what their result is.
     fn note_results(&mut self, bodies: &[Vec<ast::Statement<'s>>]) {
         for (pou, body) in self.pous.iter_mut().zip(bodies) {
-            pou.names_itself = pou.ast.kind == ast::PouKind::Function && mentions(body, pou.ast.name.text);
+            pou.names_itself = pou.ast.kind.is_function() && mentions(body, pou.ast.name.text);
         }
     }
 

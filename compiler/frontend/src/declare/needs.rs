@@ -53,7 +53,13 @@ fn needs(declarations: &Declarations<'_>, entry: Entry) -> std::vec::IntoIter<En
             decl.initial.iter().for_each(|it| needs.initial(it));
         }
         Entry::Global(at) => needs.declared(declarations.globals[at].decl),
-        Entry::Pou(at) => needs.pou(declarations.pous[at].ast),
+        Entry::Pou(at) => {
+            if let Some(owner) = declarations.pous[at].owner {
+                needs.found.push(Entry::Pou(owner));
+                needs.names_of(declarations.pous[owner].ast);
+            }
+            needs.pou(declarations.pous[at].ast);
+        }
     }
     needs.found.into_iter()
 }
@@ -70,13 +76,16 @@ struct Needs<'d, 's> {
 
 impl<'s> Needs<'_, 's> {
     fn pou(&mut self, pou: &ast::Pou<'s>) {
-        let is_external = |it: &&ast::VarBlock<'s>| it.kind == ast::VarKind::External;
-        let own = pou.blocks.iter().filter(|it| !is_external(it)).flat_map(|it| &it.vars);
-        self.own = own.flat_map(|it| &it.names).map(|it| Key(it.text)).collect();
+        self.names_of(pou);
         pou.result.iter().for_each(|it| self.spec(it));
         pou.blocks.iter().flat_map(|it| &it.vars).for_each(|it| self.declared(it));
-        let externals = pou.blocks.iter().filter(is_external).flat_map(|it| &it.vars);
+        let externals = pou.blocks.iter().filter(|it| it.kind == ast::VarKind::External).flat_map(|it| &it.vars);
         externals.flat_map(|it| &it.names).for_each(|it| self.value(*it));
+    }
+
+    fn names_of(&mut self, pou: &ast::Pou<'s>) {
+        let own = pou.blocks.iter().filter(|it| it.kind != ast::VarKind::External).flat_map(|it| &it.vars);
+        self.own.extend(own.flat_map(|it| &it.names).map(|it| Key(it.text)));
     }
 
     fn declared(&mut self, decl: &ast::VarDecl<'s>) {

@@ -27,8 +27,16 @@ struct Builder<'s> {
 impl<'s> Declarations<'s> {
     pub(super) fn build_signature(&mut self, slot: usize) -> Option<Signature<'s>> {
         let pou = self.pous[slot].ast;
+        let owner = match self.pous[slot].owner {
+            Some(owner) => Some(self.signature(owner)?),
+            None => None,
+        };
+        if let (PouKind::Action, Some(owner)) = (pou.kind, &owner) {
+            return Some(signature_of_action(owner));
+        }
+        let scope = || owner.as_ref().map_or_else(Scope::default, |it| Scope::within(Rc::clone(&it.scope)));
         let mut builder = Builder {
-            scope: Rc::new(Scope::default()),
+            scope: Rc::new(scope()),
             fields: Vec::new(),
             formals: Vec::new(),
             params: Vec::new(),
@@ -36,7 +44,7 @@ impl<'s> Declarations<'s> {
             edges: Vec::new(),
             complete: true,
         };
-        let constants = self.early_constants(pou);
+        let constants = self.early_constants(pou, scope());
         Rc::get_mut(&mut builder.scope).expect("the scope is new").constants = Some(Rc::new(constants));
         let result = self.result(pou, &mut builder);
         for block in &pou.blocks {
@@ -45,17 +53,22 @@ impl<'s> Declarations<'s> {
                 self.declare_variables(pou, block, decl, &mut builder);
             }
         }
-        let state = (pou.kind != PouKind::Function).then(|| {
-            let location = self.location(pou.name.span);
-            let mut fields = std::mem::take(&mut builder.fields);
-            fields.shrink_to_fit();
-            let name = match self.pous[slot].run {
-                Some(instance) => format!("{}_{}", pou.name.text, self.log.sources.text(instance)),
-                None => self.emitted_name(slot),
-            };
-            let id = self.push_struct(Struct { name, doc: pou.doc.clone(), location, fields });
-            self.table.instances.insert(id, slot);
-            id
+        let state = owner.map(|it| it.state).unwrap_or_else(|| {
+            (!pou.kind.is_function()).then(|| {
+                let location = self.location(pou.name.span);
+                let mut fields = std::mem::take(&mut builder.fields);
+                fields.shrink_to_fit();
+                let name = match self.pous[slot].run {
+                    Some(instance) => format!("{}_{}", pou.name.text, self.log.sources.text(instance)),
+                    None => self.emitted_name(slot),
+                };
+                let id = self.push_struct(Struct { name, doc: pou.doc.clone(), location, fields });
+                self.table.instances.insert(id, slot);
+                if !pou.routines.is_empty() {
+                    self.program.reentered.insert(id);
+                }
+                id
+            })
         });
         let Builder { scope, mut formals, params, locals, edges, complete, .. } = builder;
         formals.shrink_to_fit();
@@ -64,8 +77,8 @@ impl<'s> Declarations<'s> {
 
     /// The CONSTANTs of a POU by their values: a declaration before them may use them. What is wrong
     /// with one of them is reported when its own turn comes, but what it needs was resolved for good.
-    fn early_constants(&mut self, pou: &'s ast::Pou<'s>) -> Scope<'s> {
-        let mut scope = Rc::new(Scope::default());
+    fn early_constants(&mut self, pou: &'s ast::Pou<'s>, scope: Scope<'s>) -> Scope<'s> {
+        let mut scope = Rc::new(scope);
         let counted = self.table.constants;
         let blocks = pou
             .blocks
@@ -130,17 +143,16 @@ impl<'s> Declarations<'s> {
 
     fn check_block_qualifiers(&mut self, pou: &ast::Pou<'s>, block: &ast::VarBlock<'s>) {
         let retain = block.retain.or(block.persistent);
-        let lives_one_call =
-            block.kind == VarKind::Temp || (pou.kind == PouKind::Function && block.kind != VarKind::Stat);
+        let lives_one_call = block.kind == VarKind::Temp || (pou.kind.is_function() && block.kind != VarKind::Stat);
         if let Some(span) = retain
             && (lives_one_call || matches!(block.kind, VarKind::InOut | VarKind::External))
         {
             let what = match block.kind {
-                VarKind::Temp => "VAR_TEMP",
-                VarKind::InOut => "VAR_IN_OUT",
-                VarKind::External => "VAR_EXTERNAL",
+                VarKind::Temp => "VAR_TEMP".to_owned(),
+                VarKind::InOut => "VAR_IN_OUT".to_owned(),
+                VarKind::External => "VAR_EXTERNAL".to_owned(),
                 VarKind::Var | VarKind::Input | VarKind::Output | VarKind::Stat | VarKind::Global => {
-                    "a FUNCTION's variable"
+                    format!("a {}'s variable", pou.kind.word())
                 }
             };
             self.report(
@@ -154,12 +166,7 @@ impl<'s> Declarations<'s> {
             self.check_constant_section(block.kind, span);
         }
         if block.kind == VarKind::Global {
-            let kind = match pou.kind {
-                PouKind::Program => "PROGRAM",
-                PouKind::Function => "FUNCTION",
-                PouKind::FunctionBlock => "FUNCTION_BLOCK",
-                PouKind::Test => "TEST",
-            };
+            let kind = pou.kind.word();
             self.report(
                 Diagnostic::new(Code::E0403, block.span, format!("a {kind} has no VAR_GLOBAL"))
                     .label(format!("expected VAR: its variables belong to the {kind} `{}`", pou.name.text))
@@ -224,15 +231,15 @@ impl<'s> Declarations<'s> {
         if let Some(first) = decl.names.first() {
             self.check_retain(block, resolved.ty, *first);
         }
-        let starts_anew = block.kind == VarKind::Temp || (pou.kind == PouKind::Function && block.kind == VarKind::Var);
+        let starts_anew = block.kind == VarKind::Temp || (pou.kind.is_function() && block.kind == VarKind::Var);
         if starts_anew && let Some(id) = self.remembers(resolved.ty) {
             self.forgets(pou, decl, id);
         }
         for name in &decl.names {
-            if pou.kind == PouKind::Function && name.text.eq_ignore_ascii_case(pou.name.text) {
+            if pou.kind.is_function() && name.text.eq_ignore_ascii_case(pou.name.text) {
                 self.report(
                     Diagnostic::new(Code::E0103, name.span, format!("`{}` is declared twice", name.text))
-                        .label("inside the FUNCTION its name is its result")
+                        .label(format!("inside the {} its name is its result", pou.kind.word()))
                         .other(pou.name.span, "first declared here"),
                 );
                 builder.refuse(*name);
@@ -275,7 +282,10 @@ impl<'s> Declarations<'s> {
         };
         let (place, help) = match pou.kind {
             PouKind::Function => ("a FUNCTION", "make this a FUNCTION_BLOCK, or take the block as a VAR_IN_OUT"),
-            PouKind::Program | PouKind::FunctionBlock | PouKind::Test => ("VAR_TEMP", "declare it in VAR"),
+            PouKind::Method => ("a METHOD", "declare it in the FUNCTION_BLOCK, or take the block as a VAR_IN_OUT"),
+            PouKind::Program | PouKind::FunctionBlock | PouKind::Test | PouKind::Action => {
+                ("VAR_TEMP", "declare it in VAR")
+            }
         };
         let block = crate::diagnostic::wording::article(info.name);
         self.report(
@@ -355,7 +365,7 @@ impl<'s> Declarations<'s> {
         let formal = |target| Formal { name, section, constant, resolved: Rc::clone(resolved), target };
         let place = match (pou.kind, block.kind) {
             // A program has one set of variables, so they last anyway.
-            (PouKind::Function | PouKind::FunctionBlock, VarKind::Stat) => {
+            (PouKind::Function | PouKind::FunctionBlock | PouKind::Method, VarKind::Stat) => {
                 return Some(self.static_variable(pou, block, decl, name, resolved));
             }
             (_, VarKind::InOut) => {
@@ -363,22 +373,22 @@ impl<'s> Declarations<'s> {
                 builder.formals.push(formal(Target::Param(at)));
                 Place::root(Root::Param(ParamId::next(at)), resolved.ty)
             }
-            (PouKind::Function, VarKind::Input) => {
+            (PouKind::Function | PouKind::Method, VarKind::Input) => {
                 self.refuse_copy(resolved.ty, name, "declare it in VAR_IN_OUT")?;
                 let local = builder.local(name.text, resolved, decl.doc.clone());
                 let at = builder.param(name.text, resolved, decl, Mode::Value(local));
                 builder.formals.push(formal(Target::Param(at)));
                 Place::local(local, resolved.ty)
             }
-            (PouKind::Function, VarKind::Output) => {
+            (PouKind::Function | PouKind::Method, VarKind::Output) => {
                 let at = builder.param(name.text, resolved, decl, Mode::Reference);
                 builder.formals.push(formal(Target::Param(at)));
                 Place::root(Root::Param(ParamId::next(at)), resolved.ty)
             }
-            (PouKind::Function, _) | (_, VarKind::Temp) => {
+            (PouKind::Function | PouKind::Method, _) | (_, VarKind::Temp) => {
                 Place::local(builder.local(name.text, resolved, decl.doc.clone()), resolved.ty)
             }
-            (PouKind::Program | PouKind::FunctionBlock | PouKind::Test, _) => {
+            (PouKind::Program | PouKind::FunctionBlock | PouKind::Test | PouKind::Action, _) => {
                 let has_place = pou.kind == PouKind::Program || matches!(block.kind, VarKind::Var | VarKind::Stat);
                 let located = has_place.then(|| self.located(Some(pou.name), block, decl, name, resolved));
                 let place = match located.flatten() {
@@ -397,7 +407,7 @@ impl<'s> Declarations<'s> {
                 }
             }
         };
-        if let (Some((_, span)), true) = (decl.edge, block.kind != VarKind::Input || pou.kind == PouKind::Function) {
+        if let (Some((_, span)), true) = (decl.edge, block.kind != VarKind::Input || pou.kind.is_function()) {
             self.error(Code::E0403, span, "R_EDGE and F_EDGE belong to the inputs of a FUNCTION_BLOCK or PROGRAM");
         }
         Some(place)
@@ -465,6 +475,17 @@ impl<'s> Declarations<'s> {
         let trigger = Place::root(Root::Instance, Type::Block(block)).field(id, Type::Block(block));
         builder.edges.push(EdgeInput { input, trigger: trigger.clone() });
         Some(pin_place(trigger, block, "Q"))
+    }
+}
+
+/// An ACTION is called as its POU is, and works with what that has.
+fn signature_of_action<'s>(owner: &Signature<'s>) -> Signature<'s> {
+    Signature {
+        scope: Rc::new(Scope::within(Rc::clone(&owner.scope))),
+        locals: Vec::new(),
+        result: None,
+        edges: Vec::new(),
+        ..owner.clone()
     }
 }
 

@@ -93,14 +93,6 @@ fn run<'s>(instance: &ast::ProgramInstance<'s>, trigger: Option<&ast::Expr<'s>>)
         ];
     }
     let blocks = vec![ast::VarBlock { vars, ..ast::VarBlock::new(VarKind::Var, span) }];
-    let pou = ast::Pou {
-        kind: PouKind::Program,
-        name: instance.program,
-        result: None,
-        blocks,
-        body: Vec::new(),
-        doc: None,
-        span,
-    };
+    let pou = ast::Pou { blocks, ..ast::Pou::new(PouKind::Program, instance.program, span) };
     Run { pou, body, instance: instance.name.span }
 }

@@ -9,7 +9,7 @@ use super::place::{Access, Found};
 use crate::diagnostic::wording::article;
 use crate::types::signature::{Target, pin_place};
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{BlockId, Conversion, Expr, FieldId, Place, RoutineId, Section, StatementKind, StructId, Type};
+use staunch_ir::{Argument, BlockId, Conversion, Expr, FieldId, Place, Root, RoutineId, Section, StatementKind, Type};
 use staunch_runtime::{Direction, Family};
 
 impl<'s> Checker<'_, 's> {
@@ -25,7 +25,10 @@ impl<'s> Checker<'_, 's> {
         }
         match found.place.ty {
             Type::Block(id) => self.standard_block(found, id, arguments, callee.span, span),
-            Type::Struct(id) if self.decl.is_instance(id) => self.user_block(found, id, arguments, callee.span, span),
+            Type::Struct(id) if self.decl.is_instance(id) => {
+                let slot = self.decl.slot_of_instance(id)?;
+                self.user_block(found, slot, arguments, callee.span, span)
+            }
             Type::Array(_) => {
                 self.report_array_called(callee, arguments);
                 None
@@ -57,7 +60,7 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    fn callable(&mut self, found: &Found<'s>, span: Span) -> Option<()> {
+    pub(crate) fn callable(&mut self, found: &Found<'s>, span: Span) -> Option<()> {
         match found.access {
             Access::Constant(name) => {
                 self.error(Code::E0501, span, format!("`{}` is a CONSTANT and cannot be called", name.text));
@@ -174,16 +177,16 @@ impl<'s> Checker<'_, 's> {
         Some(())
     }
 
-    fn user_block(
+    /// A call of an instance, or of an ACTION of it: `slot` is that of its FUNCTION_BLOCK or of the ACTION.
+    pub(crate) fn user_block(
         &mut self,
         found: Found<'s>,
-        id: StructId,
+        slot: usize,
         arguments: &[ast::Argument<'s>],
         callee: Span,
         span: Span,
     ) -> Option<()> {
         self.callable(&found, callee)?;
-        let slot = self.decl.slot_of_instance(id)?;
         let signature = self.decl.signature(slot)?;
         let owner = self.decl.pous[slot].ast.name.text;
         let formals = &signature.formals;
@@ -196,6 +199,7 @@ impl<'s> Checker<'_, 's> {
             self.require_all(owner, &parameters, &given, arguments, is_optional, span)?;
         }
         let mut parts = Parts::default();
+        let is_this = found.place.root == Root::Instance && found.place.projections.is_empty();
         parts.push(Held::Place(found.place), Role::Instance, callee);
         let mut references = vec![None; formals.len()];
         let mut complete = true;
@@ -218,7 +222,9 @@ impl<'s> Checker<'_, 's> {
             complete &= made.is_some();
         }
         let in_outs = || (0..formals.len()).filter(|it| formals[*it].section == Section::InOut);
-        for at in in_outs().filter(|it| matches!(given[*it], Given::Nothing)) {
+        // An ACTION of the POU itself works with what that was given.
+        let own: Vec<_> = formals.iter().map(|it| self.passed_on(it.name).filter(|_| is_this)).collect();
+        for at in in_outs().filter(|it| matches!(given[*it], Given::Nothing) && own[*it].is_none()) {
             self.report_no_variable(&formals[at], owner, callee);
             complete = false;
         }
@@ -226,7 +232,11 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let call = |parts: &Parts| {
-            let arguments = in_outs().map(|it| Some(parts.argument(references[it]?))).collect::<Option<_>>()?;
+            let argument = |at: usize| match references[at] {
+                Some(part) => Some(parts.argument(part)),
+                None => own[at].clone().map(Argument::Reference),
+            };
+            let arguments = in_outs().map(argument).collect::<Option<_>>()?;
             let instance = Some(parts.instance()?.clone());
             Some(StatementKind::Call { callee: RoutineId::next(slot), instance, arguments, result: None })
         };

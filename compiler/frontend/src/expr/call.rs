@@ -94,7 +94,7 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let initial = match what {
-            Callee::Function(slot) => self.initial_result(slot, span),
+            Callee::Function(slot) | Callee::Routine(slot) => self.initial_result(slot, span),
             Callee::Standard(_) | Callee::Instruction(_) | Callee::Instance => None,
         };
         self.enabled_call(enable, initial, span, |this| match what {
@@ -102,7 +102,9 @@ impl<'s> Checker<'_, 's> {
                 let value = this.standard_function(name, arguments, expected, span)?;
                 this.materialise(value.cut(), expected, span).map(Some)
             }
-            Callee::Function(_) | Callee::Instruction(_) | Callee::Instance => this.call(what, callee, arguments, span),
+            Callee::Function(_) | Callee::Instruction(_) | Callee::Instance | Callee::Routine(_) => {
+                this.call(what, callee, arguments, span)
+            }
         })
     }
 
@@ -114,7 +116,8 @@ impl<'s> Checker<'_, 's> {
         span: Span,
     ) -> Option<Option<staunch_ir::Expr>> {
         match what {
-            Callee::Function(slot) => self.user_function(slot, arguments, span),
+            Callee::Function(slot) => self.user_function(slot, None, arguments, span),
+            Callee::Routine(slot) => self.routine_call(slot, callee, arguments, span),
             Callee::Instruction(name) => self.instruction(name, arguments, span).map(Some),
             Callee::Instance => self.instance_call(callee, arguments, span).map(|()| None),
             Callee::Standard(_) => None,

@@ -20,6 +20,8 @@ pub(crate) enum Callee<'s> {
     Standard(ast::Name<'s>),
     /// An instance of a block.
     Instance,
+    /// A METHOD or ACTION of an instance, by its slot.
+    Routine(usize),
 }
 
 impl<'s> Checker<'_, 's> {
@@ -39,7 +41,7 @@ impl<'s> Checker<'_, 's> {
                     self.report_family_call(family, *name);
                     return None;
                 }
-                Some(Callee::Instance)
+                Some(self.routine_of(base, *name).map_or(Callee::Instance, Callee::Routine))
             }
             Ast::Index(..) | Ast::Paren(_) | Ast::Deref(_) => Some(Callee::Instance),
             Ast::Error(_) => {
@@ -68,6 +70,9 @@ impl<'s> Checker<'_, 's> {
     }
 
     pub(crate) fn named_callee(&mut self, name: ast::Name<'s>, arguments: &[ast::Argument<'s>]) -> Option<Callee<'s>> {
+        if let Some(slot) = self.own_routine(name).filter(|_| !self.scope.is_own(name.text)) {
+            return Some(Callee::Routine(slot));
+        }
         let found = self.decl.lookup(self.scope.space, &[name], Sense::Callee);
         if let Some(variable) = self.scope.get(name.text) {
             // A variable that cannot be called does not hide a function of its name.
@@ -106,9 +111,11 @@ impl<'s> Checker<'_, 's> {
         match self.decl.pous[slot].ast.kind {
             ast::PouKind::Function => Some(Callee::Function(slot)),
             ast::PouKind::Program if self.is_callable_program(slot, name) => Some(Callee::Instance),
-            kind @ (ast::PouKind::Program | ast::PouKind::FunctionBlock | ast::PouKind::Test) => {
-                self.report_type_called(name, kind)
-            }
+            kind @ (ast::PouKind::Program
+            | ast::PouKind::FunctionBlock
+            | ast::PouKind::Test
+            | ast::PouKind::Action
+            | ast::PouKind::Method) => self.report_type_called(name, kind),
         }
     }
 

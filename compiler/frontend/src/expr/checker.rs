@@ -74,10 +74,6 @@ impl<'d, 's> Checker<'d, 's> {
         self.decl.error(code, span, message);
     }
 
-    pub fn is_function_body(&self) -> bool {
-        self.signature.as_ref().is_some_and(|it| it.state.is_none())
-    }
-
     pub(crate) fn is_test(&self) -> bool {
         self.test_slot().is_some()
     }

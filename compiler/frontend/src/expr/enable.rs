@@ -57,9 +57,9 @@ impl<'s> Checker<'_, 's> {
     /// Whether the callee has an EN and an ENO of its own.
     fn own_parameters(&mut self, what: &Callee<'s>, callee: &ast::Expr<'s>) -> (bool, bool) {
         let slot = match what {
-            Callee::Function(slot) => Some(*slot),
+            Callee::Function(slot) | Callee::Routine(slot) => Some(*slot),
             Callee::Instruction(_) | Callee::Standard(_) => None,
-            Callee::Instance => match self.type_of_instance(callee) {
+            Callee::Instance => match self.static_type(callee) {
                 Some(Type::Block(id)) => return (id.info().pin("EN").is_some(), id.info().pin("ENO").is_some()),
                 Some(Type::Struct(id)) => self.decl.slot_of_instance(id),
                 _ => None,
@@ -67,16 +67,6 @@ impl<'s> Checker<'_, 's> {
         };
         let signature = slot.and_then(|slot| self.decl.signature(slot));
         signature.map_or((false, false), |it| (own(&it, "EN").is_some(), own(&it, "ENO").is_some()))
-    }
-
-    /// The type of what is called, found without calling anything.
-    fn type_of_instance(&mut self, callee: &ast::Expr<'s>) -> Option<Type> {
-        let reported = self.decl.log.diagnostics.len();
-        let mut found = None;
-        self.nested(|this| found = this.place(callee));
-        // Whatever is wrong with it is reported when it is called.
-        self.decl.log.diagnostics.truncate(reported);
-        found.map(|it| it.place.ty)
     }
 
     /// A call with EN or ENO. EN, and what ENO is connected with, are evaluated first; where EN is

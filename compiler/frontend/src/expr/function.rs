@@ -1,8 +1,9 @@
-//! Calls of a user's own functions.
+//! Calls of a user's own functions, and of methods.
 
 use super::argument::{Parts, Role, Source, as_written};
 use super::binding::{Given, Parameter};
 use super::checker::Checker;
+use super::order::Held;
 use crate::types::signature::{Formal, Signature, Target};
 use crate::types::table::Resolved;
 use crate::{Code, Diagnostic, Span, ast};
@@ -19,9 +20,11 @@ enum Passed {
 }
 
 impl<'s> Checker<'_, 's> {
+    /// A call of the FUNCTION in a slot, or of the METHOD on an instance.
     pub(crate) fn user_function(
         &mut self,
         slot: usize,
+        instance: Option<(Place, Span)>,
         arguments: &[ast::Argument<'s>],
         span: Span,
     ) -> Option<Option<Expr>> {
@@ -36,6 +39,10 @@ impl<'s> Checker<'_, 's> {
         let is_optional = |this: &Self, at: usize| this.has_initial(&formals[at], slot);
         let enough = self.require_all(owner.text, &parameters, &given, arguments, is_optional, span).is_some();
         let mut parts = Parts::default();
+        let is_method = instance.is_some();
+        if let Some((place, callee)) = instance {
+            parts.push(Held::Place(place), Role::Instance, callee);
+        }
         let mut passed: Vec<Option<Passed>> = Vec::new();
         passed.resize_with(formals.len(), || None);
         for at in as_written(&given) {
@@ -79,7 +86,8 @@ impl<'s> Checker<'_, 's> {
             };
             let arguments = passed.iter().map(argument).collect::<Option<_>>()?;
             let result = result.clone();
-            Some(StatementKind::Call { callee: RoutineId::next(slot), instance: None, arguments, result })
+            let instance = parts.instance().filter(|_| is_method).cloned();
+            Some(StatementKind::Call { callee: RoutineId::next(slot), instance, arguments, result })
         };
         self.perform(parts, &call, span)?;
         let at = self.at(span);

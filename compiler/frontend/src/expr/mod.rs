@@ -19,6 +19,7 @@ mod fold;
 mod function;
 mod literal;
 mod logix_operands;
+mod method;
 mod migration;
 pub(crate) mod operand;
 pub(crate) mod operator;

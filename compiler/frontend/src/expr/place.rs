@@ -6,11 +6,12 @@ use crate::dialect::Dialect;
 use crate::names::{self, Entry, Meaning, Sense};
 use crate::spelling::nearest;
 use crate::types::scope::Variable;
+use crate::types::signature::Target;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::ExprKind as Ast;
 use staunch_ir::{
-    Address, Area, Array, ArrayId, BlockId, Elementary, Expr, FieldId, Op, Place, Section, StructId, Type, Value, View,
-    alias,
+    Address, Area, Array, ArrayId, BlockId, Elementary, Expr, FieldId, Op, ParamId, Place, Root, Section, StructId,
+    Type, Value, View, alias,
 };
 use staunch_runtime::Direction;
 use std::rc::Rc;
@@ -72,6 +73,9 @@ impl<'s> Checker<'_, 's> {
 
     /// The place that `expr` names; a REFERENCE TO is itself.
     pub(crate) fn place_of_reference(&mut self, expr: &ast::Expr<'s>) -> Option<Found<'s>> {
+        if let Some(this) = self.this_of(expr) {
+            return this;
+        }
         match &expr.kind {
             Ast::Name(name) => self.variable_place(*name),
             Ast::Paren(inner) => self.place_of_reference(inner),
@@ -137,7 +141,9 @@ impl<'s> Checker<'_, 's> {
     pub(crate) fn find_variable(&mut self, name: ast::Name<'s>) -> Option<Option<Rc<Variable<'s>>>> {
         if let Some(variable) = self.scope.get(name.text) {
             variable.used.set(true);
-            return Some(Some(Rc::clone(variable)));
+            let variable = Rc::clone(variable);
+            let is_outer = !self.scope.is_own(name.text);
+            return Some((!is_outer || self.is_within_reach(&variable, name)).then_some(variable));
         }
         if let Some(result) = self.result_variable(name) {
             return Some(Some(Rc::new(result)));
@@ -168,6 +174,50 @@ impl<'s> Checker<'_, 's> {
                 self.declared_but_refused(name).then_some(None)
             }
         }
+    }
+
+    /// Reports a variable of the POU around that a METHOD or ACTION cannot reach: it is there while the POU's
+    /// own body runs.
+    fn is_within_reach(&mut self, variable: &Variable<'s>, name: ast::Name<'s>) -> bool {
+        if self.scope.outer.is_none() {
+            return true;
+        }
+        let (section, help) = match variable.place.root {
+            Root::Instance | Root::Globals => return true,
+            Root::Param(_) if self.passed_on(variable.name).is_some() => return true,
+            Root::Param(_) => ("VAR_IN_OUT", "declare a VAR_IN_OUT in the METHOD, and pass the variable on"),
+            Root::Local(_) => ("VAR_TEMP", "declare it in VAR, or in the METHOD"),
+        };
+        self.report(
+            Diagnostic::new(Code::E0109, name.span, format!("`{}` is a {section} of the POU around", name.text))
+                .label("it is there during a call of the POU itself only")
+                .other(variable.name.span, "declared here")
+                .help(help),
+        );
+        false
+    }
+
+    /// What the routine was given for a VAR_IN_OUT that is declared at `name`.
+    pub(crate) fn passed_on(&self, name: ast::Name<'s>) -> Option<Place> {
+        let mut formals = self.signature.as_ref()?.formals.iter();
+        let formal = formals.find(|it| it.name.span == name.span)?;
+        let Target::Param(at) = formal.target else { return None };
+        Some(Place::root(Root::Param(ParamId::next(at)), formal.resolved.ty))
+    }
+
+    /// `THIS^.x`: a variable of the POU around.
+    fn member_of_this(&mut self, name: ast::Name<'s>) -> Option<Found<'s>> {
+        let this = self.this()?.place;
+        let scope = self.scope.outer.as_ref().unwrap_or(&self.scope);
+        let Some(variable) = scope.get(name.text).cloned() else {
+            if !scope.is_refused(name.text) {
+                let near = nearest(name.text, scope.variables.iter().map(|it| it.name.text));
+                self.decl.unknown_member(name, this.ty, near);
+            }
+            return None;
+        };
+        variable.used.set(true);
+        self.is_within_reach(&variable, name).then(|| self.found(&variable, name))
     }
 
     /// The global variable in a slot, which is used by that.
@@ -245,6 +295,10 @@ impl<'s> Checker<'_, 's> {
             && let Some(variable) = self.global_of_namespace(*owner, name)
         {
             return variable.map(|it| self.found(&it, name));
+        }
+        if let Some(this) = self.this_of(base) {
+            this?;
+            return self.member_of_this(name);
         }
         let found = self.place(base)?;
         match found.place.ty {
@@ -360,7 +414,7 @@ impl<'s> Checker<'_, 's> {
 
     /// A member that all instances share: it lies at an address, or is VAR_STAT.
     fn shared_member(&mut self, instance: &Place, id: StructId, name: ast::Name<'s>) -> Option<Option<Found<'s>>> {
-        let variable = self.seen_from_outside(id, name).filter(|it| it.place.root == staunch_ir::Root::Globals)?;
+        let variable = self.seen_from_outside(id, name).filter(|it| it.place.root == Root::Globals)?;
         // Nothing would check the index of an element whose own storage is not looked at.
         if instance.indices().any(|it| it.as_const().is_none()) {
             let owner = self.type_name(Type::Struct(id));
@@ -575,14 +629,12 @@ impl<'s> Checker<'_, 's> {
     fn address_of(&self, place: &Place) -> Option<Address> {
         let Some(staunch_ir::Projection::Field(field)) = place.projections.first() else { return None };
         match place.root {
-            staunch_ir::Root::Globals => {
-                self.decl.program.structure(self.decl.program.globals).fields.get(field.index())?.address
-            }
-            staunch_ir::Root::Instance => {
+            Root::Globals => self.decl.program.structure(self.decl.program.globals).fields.get(field.index())?.address,
+            Root::Instance => {
                 let state = self.signature.as_ref()?.state?;
                 self.decl.program.structure(state).fields.get(field.index())?.address
             }
-            staunch_ir::Root::Local(_) | staunch_ir::Root::Param(_) => None,
+            Root::Local(_) | Root::Param(_) => None,
         }
     }
 
@@ -601,7 +653,7 @@ impl<'s> Checker<'_, 's> {
                 false
             }
             // A FUNCTION's input is a copy, and CODESYS code uses it as a variable.
-            Access::OwnInput(_) if self.decl.dialect(span).assigns_inputs() && self.is_function_body() => true,
+            Access::OwnInput(_) if self.decl.dialect(span).assigns_inputs() && is_copy(found) => true,
             Access::OwnInput(name) if self.decl.dialect(span).assigns_inputs() => {
                 self.report(
                     Diagnostic::new(Code::W0504, span, format!("the input `{}` is assigned from inside", name.text))
@@ -649,6 +701,11 @@ impl<'s> Checker<'_, 's> {
         );
         lint
     }
+}
+
+/// Whether an input is the callee's own copy.
+fn is_copy(found: &Found<'_>) -> bool {
+    matches!(found.place.root, Root::Local(_))
 }
 
 fn is_pin(section: Section) -> bool {

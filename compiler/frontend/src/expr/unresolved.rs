@@ -1,7 +1,7 @@
 //! Names that are not there, and what was probably meant.
 
 use super::checker::Checker;
-use crate::diagnostic::wording::list;
+use crate::diagnostic::wording::{article, list};
 use crate::dialect::Dialect;
 use crate::names::functions;
 use crate::spelling::nearest;
@@ -126,7 +126,7 @@ impl<'s> Checker<'_, 's> {
                     error.help(format!("declare an instance: `VAR instance : {}; END_VAR`", name.text))
                 }
                 Some(ast::PouKind::Program) => error.help("share the value in a VAR_GLOBAL"),
-                Some(ast::PouKind::Test) | None => error,
+                Some(ast::PouKind::Test | ast::PouKind::Action | ast::PouKind::Method) | None => error,
             });
             return;
         }
@@ -168,6 +168,16 @@ impl<'s> Checker<'_, 's> {
             self.decl.declared(self.scope.space, name)
         {
             self.not_a_variable(name);
+            return;
+        }
+        if let Some(slot) = self.own_routine(name) {
+            let (word, call) = (self.decl.pous[slot].ast.kind.word(), format!("{}()", name.text));
+            self.report(
+                Diagnostic::new(Code::E0101, name.span, format!("`{}` is {}", name.text, article(word)))
+                    .label("a variable or a value is expected here")
+                    .help(format!("call it: `{call}`"))
+                    .fix(name.span, call),
+            );
             return;
         }
         let block = self.decl.bare_block(name).is_some();

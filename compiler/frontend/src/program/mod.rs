@@ -48,7 +48,7 @@ impl Declarations<'_> {
             ast::PouKind::Program if self.log.options.tests => ClassKind::FunctionBlock,
             ast::PouKind::Program | ast::PouKind::Test => ClassKind::Program,
             ast::PouKind::FunctionBlock => ClassKind::FunctionBlock,
-            ast::PouKind::Function => return None,
+            ast::PouKind::Function | ast::PouKind::Action | ast::PouKind::Method => return None,
         };
         let signature = self.signature(slot)?;
         let variables = match self.pous[slot].run {

@@ -80,11 +80,11 @@ fn visit(start: usize, calls: &[Vec<usize>], marks: &mut [Mark], order: &mut Vec
 }
 
 fn report_recursion(declarations: &mut Declarations<'_>, cycle: &[usize]) {
-    let name = |at: usize| declarations.pous[slot(declarations, at)].ast.name;
-    let first = name(cycle[0]);
-    let way: Vec<_> = cycle.iter().chain(&cycle[..1]).map(|at| name(*at).text).collect();
+    let title = |at: usize| declarations.title(slot(declarations, at));
+    let first = declarations.pous[slot(declarations, cycle[0])].ast.name;
+    let way: Vec<_> = cycle.iter().chain(&cycle[..1]).map(|at| title(*at)).collect();
     declarations.report(
-        Diagnostic::new(Code::E0310, first.span, format!("`{}` calls itself", first.text))
+        Diagnostic::new(Code::E0310, first.span, format!("`{}` calls itself", way[0]))
             .label("recursion has no bound on its stack")
             .note(format!("the calls go {}", way.join(" -> ")))
             .help("write it as a loop"),

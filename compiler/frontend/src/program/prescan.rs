@@ -26,6 +26,7 @@ pub(super) fn add(declarations: &mut Declarations<'_>, mut uses: Vec<Uses>, orde
     for at in order {
         reach::through_calls(&declarations.program, *at, &mut uses);
     }
+    of_their_classes(declarations, &mut uses);
     make_room(declarations);
     let open = nest::open_counts(declarations, &uses);
     kept::check(declarations, &uses, &open);
@@ -34,6 +35,25 @@ pub(super) fn add(declarations: &mut Declarations<'_>, mut uses: Vec<Uses>, orde
     }
     nest::nest(declarations, &open);
     true
+}
+
+/// What a METHOD or ACTION does with its instance, and with globals, is its POU's.
+fn of_their_classes(declarations: &Declarations<'_>, uses: &mut [Uses]) {
+    for (at, pou) in declarations.pous.iter().enumerate() {
+        let Some(owner) = pou.owner else { continue };
+        let routine = &declarations.program.routines[at];
+        let Uses { instructions, counts, assigned } = std::mem::take(&mut uses[at]);
+        for (place, instruction) in instructions.into_iter().filter(|(place, _)| lasts(place) && !reads_param(place)) {
+            let place = named::before_calls(&declarations.program, routine, &place);
+            reach::add_instruction(&mut uses[owner], place, instruction);
+        }
+        let (own, passed): (Vec<_>, Vec<_>) = counts.into_iter().partition(|it| lasts(&it.counter) && lasts(&it.kept));
+        own.into_iter().for_each(|it| reach::add_count(&mut uses[owner], it));
+        uses[at].counts = passed;
+        let (own, passed): (Vec<_>, Vec<_>) = assigned.into_iter().partition(|it| lasts(&it.place));
+        uses[owner].assigned.extend(own);
+        uses[at].assigned = passed;
+    }
 }
 
 /// Gives each slot an empty prescan.
@@ -55,8 +75,9 @@ fn make_room(declarations: &mut Declarations<'_>) {
 
 /// The prescan of what is a POU's own, or global.
 fn own(declarations: &mut Declarations<'_>, at: usize, uses: &Uses) {
-    if declarations.program.routines[at].kind == RoutineKind::Function {
-        return;
+    match declarations.program.routines[at].kind {
+        RoutineKind::Function | RoutineKind::Method => return,
+        RoutineKind::Body | RoutineKind::Prescan => {}
     }
     let mut builder = Builder::new(declarations, at);
     for (place, instruction) in uses.instructions.iter().filter(|(place, _)| lasts(place) && !reads_param(place)) {

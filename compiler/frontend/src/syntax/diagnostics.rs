@@ -1,7 +1,8 @@
 //! What is said about each mistake: one sentence, once, at the place, with what to write instead.
 
 use crate::{
-    diagnostic::{Code, Diagnostic},
+    ast::PouKind,
+    diagnostic::{Code, Diagnostic, wording::article},
     lex::{Kind, index},
     source::Span,
 };
@@ -312,6 +313,29 @@ pub fn declaration_behind_statements(span: Span) -> Diagnostic {
     Diagnostic::new(Code::E0017, span, "this declaration comes after statements")
         .label("all VAR blocks come before the first statement")
         .help("move this block to the head of its PROGRAM, FUNCTION_BLOCK or FUNCTION")
+}
+
+/// A METHOD in a FUNCTION.
+pub fn routine_of_no_class(span: Span, kind: PouKind, owner: PouKind) -> Diagnostic {
+    let (word, owner) = (kind.word(), owner.word());
+    Diagnostic::new(Code::E0403, span, format!("{} has no {word}", article(owner)))
+        .label("only a PROGRAM and a FUNCTION_BLOCK have")
+        .help(format!("write it as a FUNCTION, or move the {word} into a FUNCTION_BLOCK"))
+}
+
+/// A METHOD after its FUNCTION_BLOCK.
+pub fn routine_outside(span: Span, kind: PouKind) -> Diagnostic {
+    let word = kind.word();
+    Diagnostic::new(Code::E0403, span, format!("{} belongs to a FUNCTION_BLOCK or PROGRAM", article(word)))
+        .label("it is outside of one")
+        .help("move it before END_FUNCTION_BLOCK")
+}
+
+/// VAR in an ACTION.
+pub fn variables_of_action(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0403, span, "an ACTION has no variables of its own")
+        .label("it works with those of the POU that it belongs to")
+        .help("declare them in the POU, or make the ACTION a METHOD")
 }
 
 pub fn unsupported(span: Span, what: &str) -> Diagnostic {

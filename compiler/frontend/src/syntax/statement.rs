@@ -12,7 +12,7 @@ use super::{
     expression::{condition, expression, postfix},
     foreign_syntax, misspelt, mock,
     parser::{Expected, In, Parsed, Problem, TokenReader, too_long},
-    recovery,
+    recovery, routine,
     token_class::{closes, ends_statements, opens_statement},
     unsupported,
 };
@@ -45,6 +45,7 @@ fn list<'s>(
                 }
             }
             _ if ends(input) => return,
+            Kind::Name if routine::begins(input).is_some() => return,
             Kind::Name if unsupported::skip(input) || foreign_syntax::begin_or_end(input) => {}
             _ => statements.push(statement(input)),
         }

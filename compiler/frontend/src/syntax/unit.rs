@@ -4,8 +4,8 @@ use chumsky::prelude::*;
 
 use crate::{
     ast::{
-        Item, Name, Pou, PouKind, Statement, StatementKind, TestPart, TestUnit, TypeDecl, TypeSpec, VarBlock, VarDecl,
-        VarKind,
+        Item, Modifiers, Name, Pou, PouKind, Statement, StatementKind, TestPart, TestUnit, TypeDecl, TypeSpec,
+        VarBlock, VarDecl, VarKind,
     },
     lex::Kind,
 };
@@ -17,6 +17,7 @@ use super::{
     diagnostics, doc, foreign_types, misspelt,
     parser::{Expected, In, TokenReader},
     recovery,
+    routine::{self, modifiers},
     statement::statements,
     token_class::{closes, is_end, is_pou_end, opens_item, opens_section, opens_statement},
     type_block::types,
@@ -42,6 +43,7 @@ pub fn items<'s>(input: &mut In<'_, '_, 's>) -> Vec<Item<'s>> {
             Kind::Configuration => items.push(Item::Configuration(configuration(input))),
             Kind::VarGlobal => items.extend(section(input).map(Item::Globals)),
             kind if opens_section(kind) => bare_unit(input, &mut items),
+            Kind::Name if routine::following(input, &mut items, contents) => {}
             Kind::Name if unsupported::skip(input) => {}
             Kind::Name if begins_test(input) => items.push(test_unit(input)),
             Kind::Name if misspelt_item(input) => {}
@@ -84,15 +86,7 @@ fn is_statement(input: &mut In<'_, '_, '_>, kind: Kind) -> bool {
 fn bare_unit<'s>(input: &mut In<'_, '_, 's>, items: &mut Vec<Item<'s>>) {
     let opened = input.here();
     let name = Name { text: "", span: opened };
-    let mut pou = Pou {
-        kind: PouKind::Program,
-        name,
-        result: None,
-        blocks: Vec::new(),
-        body: Vec::new(),
-        doc: None,
-        span: opened,
-    };
+    let mut pou = Pou::new(PouKind::Program, name, opened);
     input.state().open.push((Kind::EndProgram, opened));
     contents(input, &mut pou);
     input.state().open.pop();
@@ -174,7 +168,7 @@ fn contents<'s>(input: &mut In<'_, '_, 's>, pou: &mut Pou<'s>) {
         } else {
             pou.body.append(&mut more);
         }
-        if nested_unit(input) {
+        if nested_unit(input) || routine::member(input, pou, contents) {
             continue;
         }
         if !opens_section(input.kind()) {
@@ -205,11 +199,11 @@ fn pou<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind) -> Item<'s> {
         diagnostics::misspelt_keyword(input, Kind::FunctionBlock, span);
         (kind, end) = (PouKind::FunctionBlock, Kind::EndFunctionBlock);
     }
-    let (name, parameters, result) = input.parse(head(kind)).unwrap_or_else(|problem| {
+    let (modifiers, name, parameters, result) = input.parse(head(kind)).unwrap_or_else(|problem| {
         diagnostics::report(input, problem);
         recovery::go_to(input, problem);
         recovery::skip_head(input);
-        (Name { text: "", span: opened }, None, None)
+        (Modifiers::default(), Name { text: "", span: opened }, None, None)
     });
     let span = opened.to(name.span);
     if kind != PouKind::Function && input.kind() == Kind::Colon {
@@ -221,7 +215,7 @@ fn pou<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind) -> Item<'s> {
     }
     input.eat(Kind::Semicolon);
     input.state().open.push((end, opened));
-    let mut pou = Pou { kind, name, result, blocks: Vec::new(), body: Vec::new(), doc, span };
+    let mut pou = Pou { modifiers, result, doc, ..Pou::new(kind, name, span) };
     pou.blocks.extend(parameters);
     contents(input, &mut pou);
     input.state().open.pop();
@@ -267,8 +261,7 @@ fn test_unit<'s>(input: &mut In<'_, '_, 's>) -> Item<'s> {
     let span = if part == TestPart::Test { input.take() } else { opened };
     let name = Name { text: input.text(span), span };
     let span = opened.to(span);
-    let mut pou =
-        Pou { kind: PouKind::Test, name, result: None, blocks: Vec::new(), body: Vec::new(), doc: None, span };
+    let mut pou = Pou::new(PouKind::Test, name, span);
     input.state().open.push((end, opened));
     contents(input, &mut pou);
     input.state().open.pop();
@@ -286,8 +279,8 @@ fn test_unit<'s>(input: &mut In<'_, '_, 's>) -> Item<'s> {
     Item::Test(TestUnit { part, pou })
 }
 
-/// A unit's name, what follows it in parentheses, and a function's result type.
-type Head<'s> = (Name<'s>, Option<VarBlock<'s>>, Option<TypeSpec<'s>>);
+/// The words before a unit's name, the name, what follows it in parentheses, and a function's result type.
+type Head<'s> = (Modifiers, Name<'s>, Option<VarBlock<'s>>, Option<TypeSpec<'s>>);
 
 fn head<'t, 's: 't>(kind: PouKind) -> impl Rule<'t, 's, Head<'s>> {
     let function = ahead(move |_| kind == PouKind::Function);
@@ -298,7 +291,7 @@ fn head<'t, 's: 't>(kind: PouKind) -> impl Rule<'t, 's, Head<'s>> {
     let usual = name().then_ignore(bases).then(parameters().or_not()).then(result.map(Some).or(no_result));
     let swapped = function.ignore_then(foreign_types::result_before_name());
     let head = swapped.map(|(name, ty)| (name, None, Some(ty))).or(usual.map(|((name, vars), ty)| (name, vars, ty)));
-    unsupported::modifiers().ignore_then(head)
+    modifiers().then(head).map(|(modifiers, (name, vars, ty))| (modifiers, name, vars, ty))
 }
 
 /// `(x : INT; y : REAL)` after a function's name, as other languages have it.

@@ -1,4 +1,4 @@
-//! Constructs that are known and refused by name: METHOD, INTERFACE, NAMESPACE and the like.
+//! Constructs that are known and refused by name: PROPERTY, INTERFACE, NAMESPACE and the like.
 //! Their words are names everywhere else.
 
 use chumsky::prelude::*;
@@ -13,10 +13,8 @@ use super::{
     token_class::{is_pou_end, opens_item},
 };
 
-const CONSTRUCTS: [(&str, Kind); 6] = [
-    ("METHOD", Kind::EndMethod),
+const CONSTRUCTS: [(&str, Kind); 4] = [
     ("PROPERTY", Kind::EndProperty),
-    ("ACTION", Kind::EndAction),
     ("INTERFACE", Kind::EndInterface),
     ("CLASS", Kind::EndClass),
     ("NAMESPACE", Kind::EndNamespace),
@@ -44,7 +42,7 @@ pub fn skip(input: &mut In<'_, '_, '_>) -> bool {
 }
 
 /// Behind the construct's end; a construct without one ends before the next POU.
-fn skip_construct(input: &mut In<'_, '_, '_>, end: Kind) {
+pub fn skip_construct(input: &mut In<'_, '_, '_>, end: Kind) {
     let holds_units = end == Kind::EndNamespace;
     loop {
         let kind = input.kind();
@@ -66,12 +64,6 @@ pub fn bases<'t, 's: 't>(keyword: &'static str) -> impl Rule<'t, 's, ()> {
     let separator = token(Kind::Comma).or(token(Kind::Dot));
     let bases = refused.ignore_then(name().separated_by(separator).at_least(1));
     ahead(move |input| !input.is_word(keyword)).or(bases)
-}
-
-/// `ABSTRACT`, `PUBLIC` and the like before a unit's name.
-pub fn modifiers<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
-    let word = choice(["ABSTRACT", "FINAL", "PUBLIC", "PRIVATE", "PROTECTED", "INTERNAL"].map(refused_word));
-    word.repeated()
 }
 
 /// `PUBLIC` and the like after VAR.

@@ -10,6 +10,7 @@ use super::tests::Tests;
 use crate::dialect::{self, Dialect};
 use crate::log::Log;
 use crate::names::{Entry, Found, Meaning, Names, Sense, Site, SpaceId};
+use crate::spelling::Key;
 use crate::{Code, Diagnostic, Span, ast};
 use rustc_hash::FxHashMap;
 use staunch_ir::{BlockId, Location, Program, Projection, RefKind, RefType, ReferenceId, SourceFile, StructId, Type};
@@ -34,9 +35,19 @@ pub(crate) struct PouSlot<'s> {
     pub ast: &'s ast::Pou<'s>,
     /// A FUNCTION whose body names its result.
     pub names_itself: bool,
+    /// Of a METHOD or ACTION: the slot of the POU that it belongs to.
+    pub owner: Option<usize>,
+    /// Its own METHODs and ACTIONs, by their names.
+    pub routines: FxHashMap<Key<'s>, usize>,
     /// Of a run that a CONFIGURATION writes: where the CONFIGURATION names it.
     pub run: Option<Span>,
     pub slot: Slot<Rc<Signature<'s>>>,
+}
+
+impl<'s> PouSlot<'s> {
+    pub fn open(ast: &'s ast::Pou<'s>) -> Self {
+        Self { ast, names_itself: false, owner: None, routines: FxHashMap::default(), run: None, slot: Slot::Open }
+    }
 }
 
 pub(crate) struct GlobalSlot<'s> {
@@ -124,8 +135,26 @@ impl<'s> Declarations<'s> {
         let pou = self.pous[slot].ast;
         match pou.kind {
             ast::PouKind::Test => format!("__test_{slot}"),
-            ast::PouKind::Program | ast::PouKind::FunctionBlock | ast::PouKind::Function => pou.name.text.to_owned(),
+            ast::PouKind::Program
+            | ast::PouKind::FunctionBlock
+            | ast::PouKind::Function
+            | ast::PouKind::Action
+            | ast::PouKind::Method => pou.name.text.to_owned(),
         }
+    }
+
+    /// What a POU is called for people: `Class.Method`.
+    pub fn title(&self, slot: usize) -> String {
+        let name = self.pous[slot].ast.name.text;
+        match self.pous[slot].owner {
+            Some(owner) => format!("{}.{name}", self.pous[owner].ast.name.text),
+            None => name.to_owned(),
+        }
+    }
+
+    /// The METHOD or ACTION of this name that instances with a state have.
+    pub fn routine_of(&self, state: StructId, name: &str) -> Option<usize> {
+        self.pous[self.slot_of_instance(state)?].routines.get(&Key(name)).copied()
     }
 
     /// The named type in slot `at`.
@@ -337,6 +366,7 @@ pub(crate) fn empty_program(files: Vec<SourceFile>) -> Program {
         classes: Vec::new(),
         routines: Vec::new(),
         aliases: Vec::new(),
+        reentered: std::collections::BTreeSet::new(),
         instances: Vec::new(),
     }
 }

@@ -40,6 +40,8 @@ pub(crate) struct Scope<'s> {
     refused: FxHashSet<Key<'s>>,
     /// The CONSTANTs of the POU, which size arrays wherever they are declared.
     pub constants: Option<Rc<Scope<'s>>>,
+    /// Around the scope of a METHOD or ACTION: that of its POU.
+    pub outer: Option<Rc<Scope<'s>>>,
 }
 
 impl<'s> Scope<'s> {
@@ -48,9 +50,24 @@ impl<'s> Scope<'s> {
         Self { space, ..Self::default() }
     }
 
+    /// Of a METHOD or ACTION, in the scope of its POU.
+    pub fn within(outer: Rc<Self>) -> Self {
+        Self { space: outer.space, outer: Some(outer), ..Self::default() }
+    }
+
     pub fn get(&self, name: &str) -> Option<&Rc<Variable<'s>>> {
-        let own = self.index.get(&Key(name)).map(|at| &self.variables[*at]);
-        own.or_else(|| self.constants.as_ref()?.get(name))
+        let constant = || self.constants.as_ref()?.get(name);
+        let outer = || self.outer.as_ref().filter(|_| !self.refused.contains(&Key(name)))?.get(name);
+        self.own(name).or_else(constant).or_else(outer)
+    }
+
+    fn own(&self, name: &str) -> Option<&Rc<Variable<'s>>> {
+        self.index.get(&Key(name)).map(|at| &self.variables[*at])
+    }
+
+    /// Whether a name is of the scope itself.
+    pub fn is_own(&self, name: &str) -> bool {
+        self.own(name).is_some()
     }
 
     pub fn refuse(&mut self, name: ast::Name<'s>) {
@@ -58,7 +75,8 @@ impl<'s> Scope<'s> {
     }
 
     pub fn is_refused(&self, name: &str) -> bool {
-        self.refused.contains(&Key(name))
+        let outer = || self.outer.as_ref().is_some_and(|it| it.is_refused(name));
+        self.refused.contains(&Key(name)) || !self.is_own(name) && outer()
     }
 
     pub fn has_refused(&self) -> bool {

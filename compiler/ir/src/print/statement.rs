@@ -110,7 +110,7 @@ impl Printer<'_> {
         let arguments: Vec<String> = arguments.iter().map(|it| self.argument(routine, it)).collect();
         let callee = self.program.routine(callee);
         let prescan = if callee.kind == RoutineKind::Prescan { ".prescan" } else { "" };
-        let name = &callee.name;
+        let name = if callee.kind == RoutineKind::Method { self.program.title(callee) } else { callee.name.clone() };
         format!("{target}call {name}{prescan}{instance}({})", arguments.join(", "))
     }
 

@@ -58,7 +58,7 @@ impl Verifier<'_> {
         let known = routine.state.is_some_and(|it| self.program.class_of_state(it).is_some());
         match routine.kind {
             RoutineKind::Function => self.require(routine.state.is_none(), at, "a FUNCTION has no state"),
-            RoutineKind::Body => self.require(known, at, "no state"),
+            RoutineKind::Body | RoutineKind::Method => self.require(known, at, "no state"),
             RoutineKind::Prescan => {
                 self.require(known, at, "no state");
                 self.require(routine.params.is_empty(), at, "a prescan has no parameters")
@@ -82,7 +82,7 @@ impl Verifier<'_> {
         for param in &routine.params {
             self.declared(param.ty, at);
             let Mode::Value(id) = param.mode else { continue };
-            let by_value = routine.kind == RoutineKind::Function;
+            let by_value = matches!(routine.kind, RoutineKind::Function | RoutineKind::Method);
             self.require(by_value, at, format_args!("{} is passed by value to an instance", param.name));
             let ty = routine.locals.get(id.index()).map(|local| local.ty);
             let holds = ty == Some(param.ty) && copies.insert(id);
@@ -92,8 +92,9 @@ impl Verifier<'_> {
 
     fn result(&mut self, routine: &Routine) {
         let Some(id) = routine.result else { return };
-        let holds = routine.kind == RoutineKind::Function && id.index() < routine.locals.len();
-        self.require(holds, routine.location, "a result that is not a local of a FUNCTION");
+        let may = matches!(routine.kind, RoutineKind::Function | RoutineKind::Method);
+        let holds = may && id.index() < routine.locals.len();
+        self.require(holds, routine.location, "a result that is not a local of a FUNCTION or METHOD");
     }
 
     fn instances(&mut self) {

@@ -27,11 +27,12 @@ pub fn group_name(program: &Program, source: &Routine, key: &Key, number: usize)
 /// `scan_apart`, `Swap_sharing_a_b`: what is copied, and what is special about the copy.
 pub fn copy_name(program: &Program, source: &Routine, key: &Key) -> String {
     let verb = match source.kind {
-        RoutineKind::Function => String::new(),
+        RoutineKind::Function | RoutineKind::Method => String::new(),
         RoutineKind::Body => "_scan".to_owned(),
         RoutineKind::Prescan => "_prescan".to_owned(),
     };
-    let own = key.bindings[0] == Binding::Own && source.kind != RoutineKind::Function;
+    let is_scan = matches!(source.kind, RoutineKind::Body | RoutineKind::Prescan);
+    let own = key.bindings[0] == Binding::Own && is_scan;
     let mut name = if own { verb.trim_start_matches('_').to_owned() } else { format!("{}{verb}", source.name) };
     if key.is_apart() {
         name.push_str("_apart");

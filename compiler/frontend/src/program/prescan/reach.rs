@@ -86,14 +86,14 @@ pub(super) fn joined(outer: &Place, inner: &Place) -> Place {
     Place { root: outer.root, projections, ty: inner.ty }
 }
 
-fn add_instruction(uses: &mut Uses, place: Place, instruction: usize) {
+pub(super) fn add_instruction(uses: &mut Uses, place: Place, instruction: usize) {
     let known = uses.instructions.iter().any(|(it, at)| *at == instruction && is_same_place(it, &place));
     if !known {
         uses.instructions.push((place, instruction));
     }
 }
 
-fn add_count(uses: &mut Uses, count: KeptCount) {
+pub(super) fn add_count(uses: &mut Uses, count: KeptCount) {
     let same = |it: &KeptCount| same_storage(&it.counter, &count.counter) && same_storage(&it.kept, &count.kept);
     if !uses.counts.iter().any(same) {
         uses.counts.push(count);

@@ -312,7 +312,7 @@ fn what_is_not_supported_is_named() {
            x ?= y;
            JMP there; // E0090
            there: // E0090
-           METHOD PUBLIC m : INT // E0090
+           METHOD PUBLIC m : INT
              VAR x : INT; END_VAR
              x := 1;
            END_METHOD
