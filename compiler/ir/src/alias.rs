@@ -5,6 +5,7 @@
 //! a part of the instance that its callers can name, and for what another parameter stands for; and
 //! the instance may itself lie in a global. Types decide those: what can be a part of what.
 
+use crate::shapes;
 use crate::visit::{self, Access};
 use crate::{
     Expr, Param, Place, Program, Projection, Root, Routine, Section, Statement, StatementKind, StructId, Type,
@@ -158,7 +159,8 @@ pub fn borrows_meet(a: &[Projection], b: &[Projection]) -> bool {
 
 /// Whether storage of one type is storage of the other. A pin's type may be said as another of its repr.
 fn is_same(program: &Program, a: Type, b: Type) -> bool {
-    a == b || program.repr(a).is_some_and(|repr| program.repr(b) == Some(repr))
+    let fits = shapes::fits(program, a, b) || shapes::fits(program, b, a);
+    fits || program.repr(a).is_some_and(|repr| program.repr(b) == Some(repr))
 }
 
 /// Whether storage of a type is, or has in it, storage of another.

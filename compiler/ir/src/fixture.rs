@@ -33,7 +33,7 @@ pub fn local(name: &str, ty: Type, initial: Const) -> Local {
 }
 
 pub fn param(name: &str, ty: Type, mode: Mode) -> Param {
-    Param { name: name.to_owned(), ty, doc: None, mode }
+    Param { name: name.to_owned(), ty, doc: None, mode, bounds: Vec::new() }
 }
 
 pub fn routine(kind: RoutineKind, name: &str, state: Option<StructId>) -> Routine {

@@ -35,6 +35,7 @@ pub mod interpret;
 pub mod layout;
 pub mod loops;
 pub mod reference;
+pub mod shapes;
 pub mod stack;
 pub mod startup;
 pub mod symbols;

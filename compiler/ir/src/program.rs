@@ -124,6 +124,8 @@ pub struct Param {
     pub ty: Type,
     pub doc: Option<String>,
     pub mode: Mode,
+    /// Of an `ARRAY[*]`: for each dimension, the DINT locals that stand for its lower and its upper bound.
+    pub bounds: Vec<(LocalId, LocalId)>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -261,6 +263,11 @@ impl Program {
         self.references[id.index()].target
     }
 
+    /// Whether the type is an `ARRAY[*]`.
+    pub fn is_open(&self, ty: Type) -> bool {
+        matches!(ty, Type::Array(id) if self.array(id).is_open())
+    }
+
     pub fn array(&self, id: ArrayId) -> Array {
         self.arrays[id.index()]
     }
@@ -338,6 +345,16 @@ impl Program {
         }
     }
 
+    /// The name of a standard block with a prescan that a variable of type `ty` is or holds.
+    pub fn prescanned_in(&self, ty: Type) -> Option<&'static str> {
+        match ty {
+            Type::Block(id) => id.info().instructions.iter().any(|it| it.prescan.is_some()).then_some(id.info().name),
+            Type::Struct(id) => self.structure(id).fields.iter().find_map(|it| self.prescanned_in(it.ty)),
+            Type::Array(id) => self.prescanned_in(self.array(id).element),
+            Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => None,
+        }
+    }
+
     /// The type's name as a user writes it.
     pub fn type_name(&self, ty: Type) -> String {
         match ty {
@@ -362,7 +379,7 @@ impl Program {
         let mut ty = Type::Array(id);
         while let Type::Array(id) = ty {
             let array = self.array(id);
-            bounds.push(format!("{}..{}", array.low, array.high));
+            bounds.push(if array.is_open() { "*".to_owned() } else { format!("{}..{}", array.low, array.high) });
             ty = array.element;
         }
         format!("ARRAY[{}] OF {}", bounds.join(", "), self.type_name(ty))

@@ -166,6 +166,16 @@ pub struct Array {
 }
 
 impl Array {
+    /// A dimension of `ARRAY[*]`: its bounds are those of the array that a caller passes. There are such
+    /// parameters until [`crate::shapes::settle`] copies their routines.
+    pub const fn open(element: Type) -> Self {
+        Self { low: 0, high: -1, element }
+    }
+
+    pub const fn is_open(self) -> bool {
+        self.low > self.high
+    }
+
     /// Number of elements; 2^64 of them count as one less.
     pub fn len(self) -> u64 {
         self.high.abs_diff(self.low).saturating_add(1)

@@ -1,4 +1,4 @@
-//! The one walk over statements, places and expressions, in the order of evaluation.
+//! The walks over statements, places and expressions, in the order of evaluation.
 
 use crate::{Argument, Expr, ExprKind, Op, Place, Program, Projection, Repr, Statement, StatementKind, Step};
 
@@ -10,6 +10,84 @@ pub enum Access {
     Write,
     /// It is handed to a callee that may read and write it.
     Borrow,
+}
+
+/// Changes expressions and places where they are.
+pub trait Rewrite {
+    /// The parts of the expression have been changed.
+    fn expr(&mut self, expr: &mut Expr);
+    /// The indices in the place have been changed.
+    fn place(&mut self, place: &mut Place);
+}
+
+/// Changes all of a block, inner parts before outer ones.
+pub fn rewrite(block: &mut [Statement], by: &mut impl Rewrite) {
+    for statement in block {
+        rewrite_statement(&mut statement.kind, by);
+        statement.kind.blocks_mut().into_iter().for_each(|inner| rewrite(inner, by));
+    }
+}
+
+fn rewrite_statement(kind: &mut StatementKind, by: &mut impl Rewrite) {
+    match kind {
+        StatementKind::Assign { target, value } => {
+            rewrite_place(target, by);
+            rewrite_expr(value, by);
+        }
+        StatementKind::If { condition: value, .. } | StatementKind::Case { selector: value, .. } => {
+            rewrite_expr(value, by)
+        }
+        StatementKind::For(it) => {
+            rewrite_place(&mut it.counter, by);
+            rewrite_expr(&mut it.first, by);
+            rewrite_expr(&mut it.last, by);
+            if let Step::Variable(step) = &mut it.step {
+                rewrite_expr(step, by);
+            }
+        }
+        StatementKind::Call { instance, arguments, result, .. } => {
+            instance.iter_mut().for_each(|it| rewrite_place(it, by));
+            arguments.iter_mut().for_each(|it| match it {
+                Argument::Value(value) => rewrite_expr(value, by),
+                Argument::Reference(place) => rewrite_place(place, by),
+            });
+            result.iter_mut().for_each(|it| rewrite_place(it, by));
+        }
+        StatementKind::CallBlock { block, inputs, .. } => {
+            rewrite_place(block, by);
+            inputs.iter_mut().for_each(|it| rewrite_expr(it, by));
+        }
+        StatementKind::PrescanBlock { block, .. } => rewrite_place(block, by),
+        StatementKind::Loop { .. }
+        | StatementKind::Turn
+        | StatementKind::Exit
+        | StatementKind::Continue
+        | StatementKind::Return
+        | StatementKind::Fault(_) => {}
+    }
+}
+
+fn rewrite_expr(expr: &mut Expr, by: &mut impl Rewrite) {
+    match &mut expr.kind {
+        ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => {}
+        ExprKind::Load(place) => rewrite_place(place, by),
+        ExprKind::AddressOf(place) => rewrite_place(place, by),
+        ExprKind::Apply(_, operands) | ExprKind::ApplyText(_, operands) => {
+            operands.iter_mut().for_each(|it| rewrite_expr(it, by));
+        }
+        ExprKind::Convert(_, value) => rewrite_expr(value, by),
+    }
+    by.expr(expr);
+}
+
+fn rewrite_place(place: &mut Place, by: &mut impl Rewrite) {
+    for projection in &mut place.projections {
+        match projection {
+            Projection::Index { index, .. } => rewrite_expr(index, by),
+            Projection::Field(_) | Projection::Deref { .. } => {}
+        }
+    }
+    by.place(place);
 }
 
 /// Calls `see` for each place that evaluating `expr` reads.

@@ -167,7 +167,7 @@ impl Separator<'_> {
         let first_group = body.params.len();
         for (number, ty) in key.groups.iter().enumerate() {
             let name = group_name(self.source, source, key, number);
-            body.params.push(Param { name, ty: *ty, doc: None, mode: Mode::Reference });
+            body.params.push(Param { name, ty: *ty, doc: None, mode: Mode::Reference, bounds: Vec::new() });
         }
         body.place_groups(first_group);
         let statements = self.block(&mut body, &source.body);
@@ -189,7 +189,7 @@ impl Separator<'_> {
         let declared = &self.source.structure(self.source.globals).fields[field.index()];
         let (name, ty, doc) = (declared.name.clone(), declared.ty, declared.doc.clone());
         let base = match binding {
-            Binding::Own => body.keep(&Param { name, ty, doc, mode: Mode::Reference }),
+            Binding::Own => body.keep(&Param { name, ty, doc, mode: Mode::Reference, bounds: Vec::new() }),
             Binding::Within { .. } => body.bind(binding, &name, declared.location),
         };
         body.globals.get_or_insert_default().insert(field, base);

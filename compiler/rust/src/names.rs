@@ -226,9 +226,14 @@ fn routine_names(program: &Program, origins: &[Origin]) -> Vec<Ident> {
         let routine = &program.routines[at];
         names[at] = match (routine.kind, origins[at]) {
             (RoutineKind::Function, _) => functions.claim(&snake(&routine.name)),
-            (RoutineKind::Body, Origin::Declared) => ident("scan"),
+            (RoutineKind::Body, Origin::Declared) if program.classes.iter().any(|it| it.body.index() == at) => {
+                ident("scan")
+            }
             (RoutineKind::Prescan, Origin::Declared) => ident("prescan"),
-            (RoutineKind::Body | RoutineKind::Prescan, Origin::Apart | Origin::Copy) | (RoutineKind::Method, _) => {
+            // Another shape of the body, or a copy.
+            (RoutineKind::Body, Origin::Declared)
+            | (RoutineKind::Body | RoutineKind::Prescan, Origin::Apart | Origin::Copy)
+            | (RoutineKind::Method, _) => {
                 let scope = methods.entry(routine.state).or_insert_with(|| Scope::with(METHODS));
                 scope.claim(&snake(&routine.name))
             }

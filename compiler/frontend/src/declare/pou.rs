@@ -7,7 +7,7 @@ use crate::types::signature::{EdgeInput, Formal, Signature, Target, pin_place};
 use crate::types::table::Resolved;
 use crate::{Code, Diagnostic, Span, dialect};
 use staunch_ir::{
-    BlockId, Const, Field, FieldId, Local, LocalId, Mode, Param, ParamId, Place, Root, Section, Struct, Type,
+    BlockId, Const, Field, FieldId, Local, LocalId, Mode, Param, ParamId, Place, Program, Root, Section, Struct, Type,
 };
 use staunch_runtime::Family;
 use std::rc::Rc;
@@ -212,7 +212,13 @@ impl<'s> Declarations<'s> {
             );
         }
         let reported = self.log.diagnostics.len();
-        let resolved = self.declared_type(decl, &scope, owner);
+        let resolved = match open_bounds(pou, block, decl) {
+            Some((bounds, element)) => {
+                self.check_no_initial(decl);
+                self.open_array(bounds, element, &scope, owner)
+            }
+            None => self.declared_type(decl, &scope, owner),
+        };
         drop(scope);
         // What needs the value of a CONSTANT knows none where that was refused.
         let resolved = resolved.filter(|_| block.constant.is_none() || !self.log.has_errors_since(reported));
@@ -350,6 +356,15 @@ impl<'s> Declarations<'s> {
         }
     }
 
+    /// An array of any bounds is its caller's.
+    fn check_no_initial(&mut self, decl: &ast::VarDecl<'s>) {
+        let Some(initial) = &decl.initial else { return };
+        self.report(
+            Diagnostic::new(Code::E0403, initial.span, "an array of any bounds has no initial value")
+                .label("how many elements it has is known in a call only"),
+        );
+    }
+
     /// Gives a variable its storage: a field of the instance, a local, or a parameter.
     fn place_variable(
         &mut self,
@@ -369,6 +384,12 @@ impl<'s> Declarations<'s> {
                 return Some(self.static_variable(pou, block, decl, name, resolved));
             }
             (_, VarKind::InOut) => {
+                let at = builder.param(name.text, resolved, decl, Mode::Reference);
+                builder.formals.push(formal(Target::Param(at)));
+                Place::root(Root::Param(ParamId::next(at)), resolved.ty)
+            }
+            (PouKind::Function | PouKind::Method, VarKind::Input) if self.program.is_open(resolved.ty) => {
+                self.refuse_copy(resolved.ty, name, "declare it in VAR_IN_OUT")?;
                 let at = builder.param(name.text, resolved, decl, Mode::Reference);
                 builder.formals.push(formal(Target::Param(at)));
                 Place::root(Root::Param(ParamId::next(at)), resolved.ty)
@@ -407,6 +428,9 @@ impl<'s> Declarations<'s> {
                 }
             }
         };
+        if let (Root::Param(id), true) = (place.root, self.program.is_open(resolved.ty)) {
+            builder.params[id.index()].bounds = builder.bounds(name.text, &self.program, resolved.ty);
+        }
         if let (Some((_, span)), true) = (decl.edge, block.kind != VarKind::Input || pou.kind.is_function()) {
             self.error(Code::E0403, span, "R_EDGE and F_EDGE belong to the inputs of a FUNCTION_BLOCK or PROGRAM");
         }
@@ -480,12 +504,41 @@ impl<'s> Declarations<'s> {
 
 /// An ACTION is called as its POU is, and works with what that has.
 fn signature_of_action<'s>(owner: &Signature<'s>) -> Signature<'s> {
+    // What stands for bounds is a local, of which it has its own.
+    let (mut params, mut locals) = (owner.params.clone(), Vec::new());
+    for local in params.iter_mut().flat_map(|it| &mut it.bounds).flat_map(|(low, high)| [low, high]) {
+        locals.push(owner.locals[local.index()].clone());
+        *local = LocalId::next(locals.len() - 1);
+    }
     Signature {
         scope: Rc::new(Scope::within(Rc::clone(&owner.scope))),
-        locals: Vec::new(),
+        params,
+        locals,
         result: None,
         edges: Vec::new(),
         ..owner.clone()
+    }
+}
+
+/// What `ARRAY[*]` is made of, where a parameter may be one: the standard has it for inputs, outputs and
+/// in-outs of FUNCTIONs and METHODs, and for in-outs of FUNCTION_BLOCKs.
+fn open_bounds<'s>(
+    pou: &ast::Pou<'s>,
+    block: &ast::VarBlock<'s>,
+    decl: &'s ast::VarDecl<'s>,
+) -> Option<(&'s [ast::Bound<'s>], &'s ast::TypeSpec<'s>)> {
+    let may = match pou.kind {
+        PouKind::Function | PouKind::Method => {
+            matches!(block.kind, VarKind::Input | VarKind::Output | VarKind::InOut)
+        }
+        PouKind::FunctionBlock => block.kind == VarKind::InOut,
+        PouKind::Program | PouKind::Test | PouKind::Action => false,
+    };
+    match &decl.ty.kind {
+        ast::TypeKind::Array { bounds, element } if may => {
+            bounds.iter().any(|it| matches!(it, ast::Bound::Open(_))).then_some((bounds, element))
+        }
+        _ => None,
     }
 }
 
@@ -505,7 +558,21 @@ impl<'s> Builder<'s> {
     }
 
     fn param(&mut self, name: &str, resolved: &Resolved, decl: &ast::VarDecl<'_>, mode: Mode) -> usize {
-        self.params.push(Param { name: name.to_owned(), ty: resolved.ty, doc: decl.doc.clone(), mode });
+        let (name, doc) = (name.to_owned(), decl.doc.clone());
+        self.params.push(Param { name, ty: resolved.ty, doc, mode, bounds: Vec::new() });
         self.params.len() - 1
+    }
+
+    /// The locals for the bounds of an `ARRAY[*]`.
+    fn bounds(&mut self, name: &str, program: &Program, mut ty: Type) -> Vec<(LocalId, LocalId)> {
+        let mut bounds = Vec::new();
+        while let Type::Array(id) = ty
+            && program.array(id).is_open()
+        {
+            let mut local = |end| self.local(&format!("{name}_{end}"), &Resolved::plain(Type::DINT), None);
+            bounds.push((local("low"), local("high")));
+            ty = program.array(id).element;
+        }
+        bounds
     }
 }

@@ -342,7 +342,7 @@ impl<'s> Declarations<'s> {
         for bound in bounds {
             match bound {
                 Bound::Open(span) => {
-                    self.not_supported(*span, "ARRAY[*]");
+                    self.report(open_is_for_parameters(*span));
                     resolved = None;
                 }
                 Bound::Range(low, high) => dimensions.push((low, high)),
@@ -357,6 +357,33 @@ impl<'s> Declarations<'s> {
         if self.size_of(resolved.ty) > MAX_SIZE {
             self.error(Code::E0901, span, "this array is larger than 1 GiB");
             return None;
+        }
+        Some(resolved)
+    }
+
+    /// The type of a parameter that takes arrays of any bounds.
+    pub(super) fn open_array(
+        &mut self,
+        bounds: &'s [Bound<'s>],
+        element: &'s ast::TypeSpec<'s>,
+        scope: &Rc<Scope<'s>>,
+        name: &str,
+    ) -> Option<Resolved> {
+        let mut resolved = self.resolve_type_named(element, scope, name, None)?;
+        let fixed = bounds.iter().find_map(|it| match it {
+            Bound::Range(low, high) => Some(low.span.to(high.span)),
+            Bound::Open(_) => None,
+        });
+        if let Some(span) = fixed {
+            self.error(Code::E0406, span, "of one array, all bounds are `*` or none");
+            return None;
+        }
+        if let Some(held) = self.program.prescanned_in(resolved.ty) {
+            self.not_supported(element.span, &format!("ARRAY[*] OF {held}"));
+            return None;
+        }
+        for _ in bounds {
+            resolved = Resolved::plain(self.intern_array_type(Array::open(resolved.ty), resolved));
         }
         Some(resolved)
     }
@@ -400,7 +427,10 @@ impl<'s> Declarations<'s> {
     }
 
     fn intern_array(&mut self, low: i64, high: i64, element: Resolved) -> Type {
-        let array = Array { low, high, element: element.ty };
+        self.intern_array_type(Array { low, high, element: element.ty }, element)
+    }
+
+    fn intern_array_type(&mut self, array: Array, element: Resolved) -> Type {
         let known = self.program.arrays.iter().zip(&self.table.elements);
         if let Some(at) = known.into_iter().position(|(it, of)| *it == array && *of == element) {
             return Type::Array(ArrayId::next(at));
@@ -516,6 +546,12 @@ impl<'s> Declarations<'s> {
         self.program.enums.push(Enum { name: name.to_owned(), doc, location, base, values: enumerators });
         Some(Resolved { ty: Type::Enum(id), initial: scalar_initial(first) })
     }
+}
+
+fn open_is_for_parameters(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0406, span, "an array of any bounds is the type of a parameter")
+        .label("how many elements has it here?")
+        .help("give its bounds, or declare it in VAR_IN_OUT of a FUNCTION or FUNCTION_BLOCK, or in VAR_INPUT or VAR_OUTPUT of a FUNCTION")
 }
 
 /// How many constants an initial value is written with; a repeated one counts once.

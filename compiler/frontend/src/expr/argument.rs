@@ -11,7 +11,8 @@ use crate::diagnostic::wording::article;
 use crate::types::signature::Formal;
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{
-    Argument, Block, Conversion, Expr, ExprKind, FieldId, Place, Projection, Root, Statement, StatementKind, Type, View,
+    Argument, Block, Conversion, Expr, ExprKind, FieldId, Place, Projection, Root, Section, Statement, StatementKind,
+    Type, View,
 };
 
 /// What a call does with one of its parts.
@@ -160,7 +161,9 @@ impl<'s> Checker<'_, 's> {
             parts.push(Held::Place(place), Role::Copied(copy), expr.span);
             return Some(());
         }
-        if place.ty != ty {
+        if self.decl.program.is_open(ty) {
+            self.takes(formal, place.ty, expr.span)?;
+        } else if place.ty != ty {
             self.report_other_type(formal, place.ty, expr.span);
             return None;
         }
@@ -179,6 +182,9 @@ impl<'s> Checker<'_, 's> {
         expr: &ast::Expr<'s>,
     ) -> Option<()> {
         let ty = formal.resolved.ty;
+        if self.decl.program.is_open(ty) {
+            return self.open_input_part(parts, formal, turn, expr);
+        }
         let given = self.after_parts(&mut parts.written, |this| {
             let value = this.operand(expr, Some(ty))?;
             let place = match &value {
@@ -220,9 +226,15 @@ impl<'s> Checker<'_, 's> {
         let name = formal.name.text;
         self.report(
             Diagnostic::new(Code::E0303, span, format!("`{owner}` needs a variable for `{name}`"))
-                .label("a VAR_IN_OUT is given at every call")
+                .label(match formal.section {
+                    Section::InOut => "a VAR_IN_OUT is given at every call",
+                    _ => "an array of any bounds is given at every call",
+                })
                 .other(formal.name.span, "declared here")
-                .help(format!("write `{name} := variable`")),
+                .help(match formal.section {
+                    Section::Output => format!("write `{name} => variable`"),
+                    _ => format!("write `{name} := variable`"),
+                }),
         );
     }
 

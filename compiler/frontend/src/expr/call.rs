@@ -22,6 +22,9 @@ impl<'s> Checker<'_, 's> {
         if let Some(value) = self.reference_function(callee, arguments, expr.span) {
             return value;
         }
+        if let Some(value) = self.bound_function(callee, arguments, expr.span) {
+            return value;
+        }
         let what = self.checked_callee(callee, arguments)?;
         if let Some((enable, rest)) = self.enable(&what, callee, arguments) {
             let value = self.call_if_enabled(what, enable, callee, &rest, expected, expr.span)?;

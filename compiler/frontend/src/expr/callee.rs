@@ -225,8 +225,6 @@ fn not_yet(name: &str) -> bool {
         "CEIL",
         "FLOOR",
         "ASSERT",
-        "LOWER_BOUND",
-        "UPPER_BOUND",
         "SPLIT_DATE",
         "SPLIT_TOD",
         "SPLIT_LTOD",

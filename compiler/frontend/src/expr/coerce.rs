@@ -78,6 +78,9 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn coerce_typed(&mut self, expr: Expr, to: Type, span: Span) -> Option<Expr> {
+        if self.decl.program.is_open(expr.ty) || self.decl.program.is_open(to) {
+            return self.open_is_no_value(expr.ty, span);
+        }
         if expr.ty == to {
             return match self.decl.held_instance(to) {
                 Some(message) => self.instance_is_no_value(&expr, message, span),
@@ -122,6 +125,17 @@ impl<'s> Checker<'_, 's> {
                 None
             }
         }
+    }
+
+    /// Reports an `ARRAY[*]` that is assigned, or read, as a whole.
+    fn open_is_no_value(&mut self, ty: Type, span: Span) -> Option<Expr> {
+        let ty = self.type_name(ty);
+        self.report(
+            Diagnostic::new(Code::E0201, span, "an array of any bounds is not assigned as a whole")
+                .label(format!("this is {ty}"))
+                .help("assign its elements, from LOWER_BOUND to UPPER_BOUND"),
+        );
+        None
     }
 
     /// The first members of an enumeration, for a message.

@@ -49,6 +49,13 @@ impl<'s> Checker<'_, 's> {
             let number = parts.written.len();
             let made = match given[at] {
                 Given::Value(expr) => self.given_part(&mut parts, &signature, at, expr),
+                Given::Output { target: Some(target), negated }
+                    if self.decl.program.is_open(formals[at].resolved.ty) =>
+                {
+                    let storage = self.open_output_part(&mut parts, &formals[at], target, negated);
+                    passed[at] = storage.map(Passed::Output);
+                    passed[at].is_some().then_some(())
+                }
                 Given::Output { target: Some(target), negated } => {
                     let place = self.temporary(formals[at].name.text, formals[at].resolved.ty);
                     passed[at] = Some(Passed::Output(place.clone()));
@@ -96,7 +103,8 @@ impl<'s> Checker<'_, 's> {
 
     /// The statements that give a FUNCTION's outputs their initial values: it keeps none from its last call.
     pub(crate) fn initial_outputs(&mut self, signature: &Signature<'s>) {
-        for formal in signature.formals.iter().filter(|it| it.section == Section::Output) {
+        let is_output = |it: &&Formal<'s>| it.section == Section::Output && !self.decl.program.is_open(it.resolved.ty);
+        for formal in signature.formals.iter().filter(is_output).collect::<Vec<_>>() {
             if let Target::Param(at) = formal.target {
                 let target = Place::root(Root::Param(ParamId::next(at)), formal.resolved.ty);
                 let value = self.initial_value(&formal.resolved, formal.name.span);
@@ -116,6 +124,7 @@ impl<'s> Checker<'_, 's> {
         let formal = &signature.formals[at];
         match signature.params[at].mode {
             Mode::Value(_) => self.value_part(parts, expr, formal.resolved.ty, Role::Passed(1 + at)),
+            Mode::Reference if formal.section == Section::Input => self.open_input_part(parts, formal, 1 + at, expr),
             Mode::Reference => self.in_out_part(parts, formal, 1 + at, expr),
         }
     }
@@ -128,7 +137,7 @@ impl<'s> Checker<'_, 's> {
                 self.input_left_out(formal, slot, span)?;
                 Some(Passed::Default(self.initial_value(&formal.resolved, span)))
             }
-            (Mode::Reference, Section::Output) => {
+            (Mode::Reference, Section::Output) if !self.decl.program.is_open(formal.resolved.ty) => {
                 Some(Passed::Output(self.temporary(formal.name.text, formal.resolved.ty)))
             }
             (Mode::Reference, _) => {

@@ -21,6 +21,7 @@ mod literal;
 mod logix_operands;
 mod method;
 mod migration;
+mod open_array;
 pub(crate) mod operand;
 pub(crate) mod operator;
 mod order;

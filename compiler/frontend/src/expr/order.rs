@@ -5,7 +5,8 @@ use super::checker::Checker;
 use staunch_ir::alias::{self, Frame};
 use staunch_ir::loops::Known;
 use staunch_ir::{
-    ArrayId, Elementary, Expr, ExprKind, Local, LocalId, Location, Op, Place, Projection, Root, Statement, Type, Value,
+    ArrayId, Conversion, Elementary, Expr, ExprKind, Local, LocalId, Location, Op, Place, Projection, Root, Statement,
+    Type, Value,
 };
 
 /// What is evaluated where it is written, and used later.
@@ -145,13 +146,15 @@ impl Checker<'_, '_> {
     fn save_indices(&mut self, place: &mut Place, asked: &dyn Fn(&Self, &Expr, bool) -> bool) {
         self.save_pointer(place, asked);
         let Some(mut ty) = self.root_type(place.root) else { return };
+        let mut bounds = self.bounds_of(place.root).into_iter();
         for projection in &mut place.projections {
             ty = match (projection, ty) {
                 (Projection::Index { index, at }, Type::Array(id)) => {
+                    let bounds = bounds.next();
                     let inside = self.is_inside(index, id);
                     if asked(self, index, !inside || self.can_fault(index)) {
                         if !inside {
-                            self.check_index(index, id, *at);
+                            self.check_index(index, id, bounds, *at);
                         }
                         self.save("index", index);
                         index.ty = index.ty.read();
@@ -184,9 +187,18 @@ impl Checker<'_, '_> {
         }
     }
 
-    /// An index that faults outside of the array's bounds.
-    fn check_index(&mut self, index: &mut Expr, id: ArrayId, at: Location) {
+    /// An index that faults outside of the array's bounds; those of an `ARRAY[*]` are in locals.
+    fn check_index(&mut self, index: &mut Expr, id: ArrayId, bounds: Option<(LocalId, LocalId)>, at: Location) {
         let array = self.decl.program.array(id);
+        if let (Some((low, high)), true) = (bounds, array.is_open()) {
+            let bound = |local| {
+                let bound = Expr::load(Place::local(local, Type::DINT), at);
+                Expr::convert(Conversion::Value, Type::LINT, bound, at)
+            };
+            let unchecked = std::mem::replace(index, bound(low));
+            *index = Expr::apply(Op::CheckIndex, Type::LINT, vec![bound(low), unchecked, bound(high)], at);
+            return;
+        }
         let bound = |it| Expr::constant(Elementary::Lint, Value::I64(it), at);
         let (low, high) = (bound(array.low), bound(array.high));
         let checked = Type::Subrange(Elementary::Lint, self.decl.intern_bounds((array.low.into(), array.high.into())));

@@ -532,6 +532,9 @@ impl<'s> Checker<'_, 's> {
                 return None;
             }
         };
+        if array.is_open() {
+            return self.as_lint(value, index.span);
+        }
         if let Some(number) = value.as_const().and_then(Value::as_integer)
             && !(i128::from(array.low)..=i128::from(array.high)).contains(&number)
         {

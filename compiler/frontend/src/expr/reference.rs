@@ -106,6 +106,10 @@ impl<'s> Checker<'_, 's> {
     /// A reference to a variable.
     pub(crate) fn reference_to(&mut self, expr: &ast::Expr<'s>, kind: RefKind) -> Option<Expr> {
         let found = self.place(expr)?;
+        if self.decl.program.is_open(found.place.ty) {
+            self.decl.not_supported(expr.span, "the address of a whole ARRAY[*]");
+            return None;
+        }
         if self.signature.is_none() {
             self.decl.not_supported(expr.span, "an address as an initial value");
             return None;
@@ -159,6 +163,10 @@ impl<'s> Checker<'_, 's> {
             Some(ty) => ty,
             None => self.place_of_reference(argument)?.place.ty,
         };
+        if self.decl.program.is_open(ty) {
+            self.decl.not_supported(argument.span, "SIZEOF of an ARRAY[*]");
+            return None;
+        }
         Some(Operand::Integer(i128::from(self.decl.sizeof(ty))))
     }
 

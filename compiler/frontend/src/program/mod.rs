@@ -32,7 +32,7 @@ pub(crate) fn assemble<'s>(
     order::order(declarations, uses, stacks)?;
     declarations.check_pins()?;
     let program = std::mem::replace(&mut declarations.program, empty_program(Vec::new()));
-    declarations.program = staunch_ir::reference::fixed(program);
+    declarations.program = staunch_ir::reference::fixed(staunch_ir::shapes::settle(program));
     declarations.check_size()?;
     Some(std::mem::replace(&mut declarations.program, empty_program(Vec::new())))
 }

@@ -57,7 +57,7 @@ impl Body {
         let name = format!("{name}_at");
         let local = self.local(&name, Type::LINT);
         self.subscripts.push(local);
-        self.params.push(Param { name, ty: Type::LINT, doc: None, mode: Mode::Value(local) });
+        self.params.push(Param { name, ty: Type::LINT, doc: None, mode: Mode::Value(local), bounds: Vec::new() });
         Expr::load(Place::local(local, Type::LINT), at)
     }
 
