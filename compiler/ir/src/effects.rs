@@ -35,6 +35,8 @@ pub struct Rules {
 pub struct Effects {
     pub faults: bool,
     pub context: bool,
+    /// Whether its loops take turns of the scan's.
+    pub turns: bool,
     /// What it reads or writes, and what it hands on even if the callee does neither.
     pub names: Variables,
     pub reads: Variables,
@@ -120,6 +122,7 @@ impl<'a> Finder<'a> {
             StatementKind::Turn => {
                 self.effects.faults = true;
                 self.effects.context = true;
+                self.effects.turns = true;
             }
             StatementKind::Fault(_) => self.effects.faults = true,
             StatementKind::For(it) => {
@@ -149,6 +152,7 @@ impl<'a> Finder<'a> {
         let takes_all = self.rules.scans_take_all && self.program.routine(callee).kind == RoutineKind::Body;
         self.effects.faults |= known.faults || takes_all;
         self.effects.context |= known.context || takes_all;
+        self.effects.turns |= known.turns;
         self.effects.names.add_globals(&known.names);
         self.effects.reads.add_globals(&known.reads);
         self.effects.writes.add_globals(&known.writes);

@@ -39,6 +39,7 @@ pub mod shapes;
 pub mod stack;
 pub mod startup;
 pub mod symbols;
+pub mod turns;
 pub mod usage;
 
 #[cfg(test)]

@@ -88,7 +88,7 @@ impl Known<'_> {
     }
 
     /// What an integer expression may be.
-    fn range(&self, expr: &Expr) -> Option<Range> {
+    pub fn range(&self, expr: &Expr) -> Option<Range> {
         let whole = self.program.repr(expr.ty)?.range()?;
         let known = match &expr.kind {
             ExprKind::Const(value) => value.as_integer().map(|it| (it, it)),

@@ -50,12 +50,19 @@ impl Function<'_, '_> {
     fn call_routine(&mut self, callee: RoutineId, values: &[clif::Value]) -> Option<clif::Value> {
         let function = self.module.function(callee);
         let function = self.function_ref(function);
+        let (faults, takes_turns) = (self.module.effects(callee).faults, self.module.effects(callee).turns);
+        if takes_turns {
+            self.spill_turns();
+        }
         let call = self.ins().call(function, values);
         let results = self.builder.inst_results(call).to_vec();
-        if !self.module.effects(callee).faults {
+        if !faults {
             return results.first().copied();
         }
         self.pass_fault(results[0]);
+        if takes_turns {
+            self.reload_turns();
+        }
         results.get(1).copied()
     }
 

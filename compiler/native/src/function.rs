@@ -4,6 +4,7 @@ use crate::Error;
 use crate::address::Address;
 use crate::module::{ModuleEmitter, Workspace};
 use crate::signature::{POINTER, clif_type, result_type};
+use crate::turns::Prepaid;
 use cranelift_codegen::ir::{self as clif, InstBuilder, StackSlot, UserFuncName};
 use cranelift_frontend::{FuncInstBuilder, FunctionBuilder, Variable};
 use cranelift_module::{DataId, FuncId};
@@ -22,7 +23,9 @@ pub(crate) struct Function<'a, 'p> {
     pub(crate) start: Start,
     pub(crate) locals: Vec<LocalSlot>,
     /// The innermost loop is the last.
-    pub(crate) loops: Vec<LoopFrame>,
+    pub(crate) loops: Vec<LoopFrame<'p>>,
+    /// The turns that the scan has left, while a loop runs that takes some.
+    pub(crate) turns: Option<Variable>,
     /// The FOR loops among them whose counters are in registers.
     pub(crate) counters: Vec<&'p For>,
     /// One for each of `counters`: its value, extended to 64 bits.
@@ -59,12 +62,14 @@ pub(crate) enum LocalSlot {
 
 /// A loop that is being emitted.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct LoopFrame {
+pub(crate) struct LoopFrame<'p> {
     /// Runs `continuing`.
     pub(crate) next: clif::Block,
     pub(crate) after: clif::Block,
     pub(crate) is_continued: bool,
     pub(crate) is_left: bool,
+    /// Where its turns have been taken before the first one.
+    pub(crate) prepaid: Option<Prepaid<'p>>,
 }
 
 /// The blocks that return faults, filled when the function is complete.
@@ -120,6 +125,7 @@ impl<'a, 'p> Function<'a, 'p> {
             start,
             locals: Vec::with_capacity(routine.locals.len()),
             loops: Vec::new(),
+            turns: None,
             counters: Vec::new(),
             registers: Vec::new(),
             checked: effects.checked.clone(),

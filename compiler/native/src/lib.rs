@@ -18,6 +18,7 @@ mod follow;
 mod function;
 mod loops;
 mod statement;
+mod turns;
 
 mod call;
 mod case;

@@ -4,11 +4,12 @@
 use crate::function::{Flow, Function, LoopFrame};
 use crate::place::PlaceValue;
 use crate::signature::clif_type;
-use cranelift_codegen::ir::{self as clif, InstBuilder, MemFlagsData, condcodes::IntCC, types};
+use crate::turns::{Counter, Prepaid};
+use cranelift_codegen::ir::{self as clif, InstBuilder, condcodes::IntCC, types};
 use cranelift_frontend::Variable;
 use staunch_ir::loops::{exit_condition, running};
+use staunch_ir::turns::Ahead;
 use staunch_ir::{Block, Expr, ExprKind, FaultKind, For, Location, Repr, Statement, Step, Value};
-use staunch_runtime::Context;
 
 /// Conditions of more operations than this stand once, and the loop's end jumps to them.
 const SMALL: usize = 8;
@@ -32,30 +33,39 @@ struct Running<'p> {
     /// What is not constant.
     last: Option<clif::Value>,
     step: Option<clif::Value>,
+    /// Where all turns are taken before the first one.
+    ahead: Option<Ahead<'p>>,
+    /// The last value that the turns are taken for, then.
+    limit: Option<Variable>,
 }
 
 impl<'p> Function<'_, 'p> {
     pub(crate) fn turns(&mut self, body: &'p Block, continuing: &'p Block) -> Flow {
-        match body.split_first() {
+        let opens = self.open_turns(&[body, continuing]);
+        let flow = match body.split_first() {
+            Some(_) if let Some(it) = self.linear(body).filter(|it| is_small(it.leave)) => self.linear_loop(&it),
             Some((test, rest)) if let Some(leave) = exit_condition(test).filter(|it| is_small(it)) => {
                 self.turns_under(&Control::Unless(leave), rest, continuing)
             }
             _ => self.turns_under(&Control::Always, body, continuing),
-        }
+        };
+        self.close_turns(opens, flow)
     }
 
     pub(crate) fn for_loop(&mut self, it: &'p For, at: Location) -> Flow {
+        let opens = self.open_turns(&[&it.body]);
         let running = self.start_for(it, at);
         if let Some(register) = running.register {
             self.counters.push(it);
             self.registers.push(register);
         }
-        let flow = self.turns_under(&Control::Count(running), &it.body, &[]);
+        let body = running.ahead.map_or(&*it.body, |it| it.body);
+        let flow = self.turns_under(&Control::Count(running), body, &[]);
         if running.register.is_some() {
             self.registers.pop();
             self.counters.pop();
         }
-        flow
+        self.close_turns(opens, flow)
     }
 
     fn start_for(&mut self, it: &'p For, at: Location) -> Running<'p> {
@@ -70,7 +80,11 @@ impl<'p> Function<'_, 'p> {
             let is_zero = self.ins().icmp_imm_u(IntCC::Equal, step, 0);
             self.fault_if(is_zero, FaultKind::ZeroStep, it.step_at);
         }
-        let mut running = Running { it, repr, at, register: None, last, step };
+        let ahead = self.ahead(it);
+        let mut running = Running { it, repr, at, register: None, last, step, ahead, limit: None };
+        if ahead.is_some() {
+            running.limit = Some(self.builder.declare_var(types::I64));
+        }
         if it.is_private {
             let value = self.counter_value(&running);
             let register = self.builder.declare_var(types::I64);
@@ -80,7 +94,7 @@ impl<'p> Function<'_, 'p> {
         running
     }
 
-    fn wide_scalar(&mut self, repr: Repr, value: &Expr) -> clif::Value {
+    pub(crate) fn wide_scalar(&mut self, repr: Repr, value: &Expr) -> clif::Value {
         let value = self.scalar(value);
         self.widened(repr, value)
     }
@@ -105,22 +119,61 @@ impl<'p> Function<'_, 'p> {
 
     fn turns_under(&mut self, control: &Control<'p>, body: &'p [Statement], continuing: &'p [Statement]) -> Flow {
         let [turn, next, after] = [(); 3].map(|()| self.builder.create_block());
-        self.further_turn(control, turn, after);
+        let prepaid = self.first_turn(control, turn, after);
         self.builder.switch_to_block(turn);
         let is_left = !matches!(control, Control::Always);
-        self.loops.push(LoopFrame { next, after, is_continued: false, is_left });
+        self.loops.push(LoopFrame { next, after, is_continued: false, is_left, prepaid });
         if self.block(body) == Flow::Continues {
             self.continue_loop();
         }
         if self.innermost().is_continued {
             self.go_on_in(next);
             if self.end_of_turn(control, continuing) == Flow::Continues {
-                self.further_turn(control, turn, after);
+                self.next_turn(control, turn, after);
             }
         }
         self.builder.seal_block(turn);
         let is_left = self.loops.pop().expect("pushed above").is_left;
         self.join(&[if is_left { Flow::Continues } else { Flow::Leaves }], after)
+    }
+
+    /// Into the first turn, or past the loop.
+    fn first_turn(&mut self, control: &Control<'p>, turn: clif::Block, after: clif::Block) -> Option<Prepaid<'p>> {
+        let Control::Count(running) = control else {
+            self.further_turn(control, turn, after);
+            return None;
+        };
+        let (Some(ahead), Some(limit), Some(counter)) = (running.ahead, running.limit, running.register) else {
+            self.further_turn(control, turn, after);
+            return None;
+        };
+        let pay = self.builder.create_block();
+        self.further_turn(control, pay, after);
+        self.go_on_in(pay);
+        let prepaid = Prepaid { counter: Counter::Register(counter), limit, step: ahead.step, is_stepped: false };
+        let last = self.last(running);
+        self.take_turns(&prepaid, last, ahead.at);
+        self.ins().jump(turn, &[]);
+        Some(prepaid)
+    }
+
+    /// Into a further turn, or past the loop.
+    fn next_turn(&mut self, control: &Control<'p>, turn: clif::Block, after: clif::Block) {
+        let Control::Count(running) = control else { return self.further_turn(control, turn, after) };
+        let (Some(ahead), Some(limit)) = (running.ahead, running.limit) else {
+            return self.further_turn(control, turn, after);
+        };
+        self.release_temporaries();
+        let (counter, limit) = (self.counter_value(running), self.builder.use_var(limit));
+        let past = self.is_past(running, running.repr == Repr::U64, counter, limit);
+        let end = self.builder.create_block();
+        self.ins().brif(past, end, &[], turn, &[]);
+        self.go_on_in(end);
+        // Where the turns did not suffice, the limit is before the last value.
+        let last = self.last(running);
+        let is_short = self.ins().icmp(IntCC::NotEqual, limit, last);
+        self.fault_if(is_short, FaultKind::LoopBudget, ahead.at);
+        self.ins().jump(after, &[]);
     }
 
     fn further_turn(&mut self, control: &Control<'p>, turn: clif::Block, after: clif::Block) {
@@ -263,18 +316,6 @@ impl<'p> Function<'_, 'p> {
         if repr == Repr::U64 { self.ins().uextend(types::I128, value) } else { self.ins().sextend(types::I128, value) }
     }
 
-    /// Takes one of the scan's turns.
-    pub(crate) fn take_turn(&mut self, at: Location) {
-        let context = self.start.context.expect("a function that takes turns gets the context");
-        let offset = i32::try_from(Context::TURNS_OFFSET).expect("a context is small");
-        let flags = MemFlagsData::trusted();
-        let left = self.ins().load(types::I64, flags, context, offset);
-        let is_none = self.ins().icmp_imm_u(IntCC::Equal, left, 0);
-        self.fault_if(is_none, FaultKind::LoopBudget, at);
-        let left = self.ins().iadd_imm_s(left, -1);
-        self.ins().store(flags, left, context, offset);
-    }
-
     /// The counter of a loop that is running, at 64 bits, if `expr` is one.
     pub(crate) fn counter(&mut self, expr: &Expr) -> Option<clif::Value> {
         let ExprKind::Load(place) = &expr.kind else { return None };
@@ -282,7 +323,7 @@ impl<'p> Function<'_, 'p> {
         Some(self.builder.use_var(register))
     }
 
-    fn widened(&mut self, repr: Repr, value: clif::Value) -> clif::Value {
+    pub(crate) fn widened(&mut self, repr: Repr, value: clif::Value) -> clif::Value {
         match (repr.size() == 8, repr.is_signed()) {
             (true, _) => value,
             (false, true) => self.ins().sextend(types::I64, value),
@@ -294,11 +335,13 @@ impl<'p> Function<'_, 'p> {
         if repr.size() == 8 { value } else { self.ins().ireduce(clif_type(repr), value) }
     }
 
-    fn innermost(&mut self) -> &mut LoopFrame {
+    pub(crate) fn innermost(&mut self) -> &mut LoopFrame<'p> {
         self.loops.last_mut().expect("verified IR: EXIT and CONTINUE stand in a loop")
     }
 
     pub(crate) fn leave_loop(&mut self) -> Flow {
+        let prepaid = self.innermost().prepaid;
+        self.give_back(prepaid);
         let after = self.turn_end();
         self.go(after)
     }

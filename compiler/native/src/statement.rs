@@ -32,7 +32,7 @@ impl<'p> Function<'_, 'p> {
             StatementKind::Turn => self.take_turn(statement.at),
             StatementKind::Exit => return self.leave_loop(),
             StatementKind::Continue => return self.continue_loop(),
-            StatementKind::Return => return self.go(self.exit),
+            StatementKind::Return => return self.return_from_loops(),
             StatementKind::Call { callee, instance, arguments, result } => {
                 self.call(*callee, instance.as_ref(), arguments, result.as_ref());
             }

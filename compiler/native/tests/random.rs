@@ -476,9 +476,10 @@ impl Maker {
                 otherwise: if self.random.one_in(2) { Vec::new() } else { self.statements(4, depth - 1) },
             },
             2 if depth > 0 => self.case(depth),
-            3 if depth > 0 && self.loops < 2 => match self.random.one_in(2) {
-                true => self.counted(depth).unwrap_or_else(|| self.assignment()),
-                false => self.repetition(depth),
+            3 if depth > 0 && self.loops < 2 => match self.random.below(3) {
+                0 => self.counted(depth).unwrap_or_else(|| self.assignment()),
+                1 => self.repetition(depth),
+                _ => self.linear(depth),
             },
             4 if self.loops > 0 => StatementKind::Exit,
             5 if self.loops > 0 && !self.plain => StatementKind::Continue,
@@ -574,6 +575,42 @@ impl Maker {
         self.plain = plain;
         self.loops -= 1;
         StatementKind::Loop { body, continuing }
+    }
+
+    /// `WHILE counter < n AND … DO … counter := counter + 1; … END_WHILE`, where the counter is new, and the
+    /// step may be in the midst of the body.
+    fn linear(&mut self, depth: usize) -> StatementKind {
+        let elementary = self.random.of(&[Elementary::Int, Elementary::Lint, Elementary::Usint]);
+        let (ty, is_unsigned) = (Type::Elementary(elementary), elementary == Elementary::Usint);
+        let counter = Place::local(LocalId::next(self.locals.len()), ty);
+        let number = |value: i128| elementary.repr().integer(value).unwrap();
+        let up = self.random.one_in(2);
+        let start = number(if up { 0 } else { 20 });
+        self.locals.push(local("counter", ty, Const::Scalar(start)));
+        let (op, step) = if up { (self.random.of(&[Op::Lt, Op::Le]), Op::Add) } else { (Op::Gt, Op::Sub) };
+        let by = if is_unsigned && !up { 1 } else { self.random.of(&[1, 1, 3]) };
+        let bound = match self.random.one_in(2) && by == 1 && op == Op::Lt {
+            true => self.expr(ty, 0),
+            false => Expr::constant(elementary, number(self.random.of(&[3, 9, 15])), AT),
+        };
+        let mut condition = Expr::apply(op, Type::BOOL, vec![load(counter.clone()), bound], AT);
+        if self.random.one_in(3) {
+            let other = self.expr(Type::BOOL, 1);
+            condition = Expr::apply(Op::And, Type::BOOL, vec![condition, other], AT);
+        }
+        let leave = Expr::apply(Op::Not, Type::BOOL, vec![condition], AT);
+        let exit = StatementKind::If { condition: leave, then: vec![stmt(StatementKind::Exit)], otherwise: Vec::new() };
+        let one = Expr::constant(elementary, number(by), AT);
+        let raised = Expr::apply(step, ty, vec![load(counter.clone()), one], AT);
+        self.loops += 1;
+        let plain = core::mem::replace(&mut self.plain, true);
+        let mut body = vec![stmt(exit), stmt(StatementKind::Turn)];
+        body.extend(self.statements(3, depth - 1));
+        body.push(assign(counter, raised));
+        body.extend(self.statements(2, depth - 1));
+        self.plain = plain;
+        self.loops -= 1;
+        StatementKind::Loop { body, continuing: Vec::new() }
     }
 
     fn call(&mut self) -> Option<StatementKind> {
@@ -705,7 +742,9 @@ fn check(seed: u64, tally: &mut Tally) {
     let counts = meaningful(&program, &native.layout);
     for scan in 0..SCANS {
         for instance in 0..program.instances.len() {
-            let cx = Context::new(scan * 10_000_000, scan == 0);
+            // Every other program has few turns for its loops.
+            let turns = if seed.is_multiple_of(2) { seed / 2 % 64 } else { Context::TURNS };
+            let [cx, native_cx] = [(); 2].map(|()| Context::new(scan * 10_000_000, scan == 0).with_turns(turns));
             let expected = interpreter.scan(instance, &cx);
             if expected == Err(Stop::OutOfSteps) {
                 tally.endless += 1;
@@ -716,8 +755,11 @@ fn check(seed: u64, tally: &mut Tally) {
             } else {
                 tally.faulted += 1
             }
-            let found = native.scan(instance, &cx);
+            let found = native.scan(instance, &native_cx);
             assert_eq!(expected, found.map_err(Stop::Fault), "seed {seed}, scan {scan}\n{}", print(&program));
+            if expected.is_ok() {
+                assert_eq!(cx, native_cx, "seed {seed}, scan {scan}: turns\n{}", print(&program));
+            }
             let pairs = interpreter.state().iter().zip(native.state()).zip(&counts);
             if let Some(at) = pairs.into_iter().position(|((a, b), counts)| *counts && a != b) {
                 panic!("seed {seed}, scan {scan}, byte {at} of {:?}\n{}", native.layout.machine, print(&program));

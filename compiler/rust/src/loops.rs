@@ -1,11 +1,12 @@
 //! Loops: WHILE where the shape allows, labels only where CONTINUE needs them, and counters kept
 //! where the optimiser sees them.
 
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{ToTokens, quote};
 use staunch_ir::loops::exit_condition;
+use staunch_ir::turns::{self, Ahead};
 use staunch_ir::visit::{self, Access};
-use staunch_ir::{Block, Expr, For, Location, Place, Root, Statement, StatementKind, Step, Value};
+use staunch_ir::{Block, Expr, For, Location, Place, Root, RoutineId, Statement, StatementKind, Step, Value};
 
 use crate::function::Function;
 use crate::names::ident;
@@ -16,6 +17,8 @@ use crate::precedence::Level;
 pub struct Loops {
     around: Vec<Labels>,
     made: usize,
+    /// The one that has taken its turns before the first one: these, and its counter.
+    prepaid: Option<(Ident, Place)>,
 }
 
 #[derive(Clone, Debug)]
@@ -34,6 +37,13 @@ struct Labels {
 struct Once {
     value: TokenStream,
     before: Option<TokenStream>,
+}
+
+/// The turns of a loop that are taken before the first one.
+struct Taken {
+    taken: TokenStream,
+    limit: TokenStream,
+    end: TokenStream,
 }
 
 impl Function<'_> {
@@ -60,13 +70,18 @@ impl Function<'_> {
             let (step, at) = (&step.value, self.emitter.at(it.step_at));
             quote!(if #step == 0 { return Err(FaultKind::ZeroStep)#at; })
         });
-        let condition = self.further_turn(it, &last.value, &step.value);
-        let labels = self.labels(&it.body, true);
+        let takes_turns = |callee: RoutineId| self.emitter.effects[callee.index()].turns;
+        let (ahead, number) = (turns::ahead(it, &takes_turns), self.loops.around.len());
+        let turns = ahead.map(|ahead| self.take_turns(it, &ahead, &last.value, number));
+        let limit = turns.as_ref().map_or_else(|| last.value.clone(), |it| it.limit.clone());
+        let condition = self.further_turn(it, &limit, &step.value);
+        let body = ahead.map_or(&*it.body, |it| it.body);
+        let labels = self.labels(body, true);
         let reads = it.is_private && !matches!(it.counter.root, Root::Local(_)) && mentions(&it.body, &it.counter);
         let copy = reads.then(|| self.copy_counter(&it.counter));
         let outer = self.hoisted_indices.len();
         let subscripts = if it.is_private { self.find_subscripts(it) } else { TokenStream::new() };
-        let body = self.turn(&labels, &it.body, |this| {
+        let body = self.turn(&labels, body, |this| {
             this.hoisted_indices.truncate(outer);
             if reads {
                 this.counters.pop();
@@ -74,7 +89,30 @@ impl Function<'_> {
             this.step(it, &last.value, &step.value, statement.at)
         });
         let (label, before, step_before) = (&labels.label, last.before, step.before);
-        quote!(#first #before #step_before #zero #label while #condition { #copy #subscripts #body })
+        let (taken, end) = turns.map(|it| (it.taken, it.end)).unzip();
+        if ahead.is_some() {
+            self.loops.prepaid = None;
+        }
+        quote!(#first #before #step_before #zero #taken #label while #condition { #copy #subscripts #body } #end)
+    }
+
+    /// What takes the turns of a loop before the first one, and what ends it.
+    fn take_turns(&mut self, it: &For, ahead: &Ahead<'_>, last: &TokenStream, number: usize) -> Taken {
+        let (name, at) = (self.made_up("turns", number), self.emitter.at(ahead.at));
+        let (counter, step) = (self.load(&it.counter).tokens, Literal::i128_unsuffixed(ahead.step));
+        self.loops.prepaid = Some((name.clone(), it.counter.clone()));
+        Taken {
+            taken: quote!(let #name = cx.take_turns(#counter, #last, #step)#at?;),
+            limit: quote!(#name.limit),
+            end: quote!(#name.end(cx, #counter)#at?;),
+        }
+    }
+
+    /// Before RETURN: the loop that has taken its turns gives back what it will not have.
+    pub fn give_back(&self) -> Option<TokenStream> {
+        let (turns, counter) = self.loops.prepaid.as_ref()?;
+        let counter = self.load(counter).tokens;
+        Some(quote!(#turns.give_back(cx, #counter);))
     }
 
     /// What a loop's body and its end need of labels. A block around the body is what CONTINUE

@@ -77,8 +77,8 @@ impl Function<'_> {
             StatementKind::Exit => self.leave(),
             StatementKind::Continue => self.next(),
             StatementKind::Return => {
-                let value = self.returned();
-                quote!(return #value;)
+                let (given_back, value) = (self.give_back(), self.returned());
+                quote!(#given_back return #value;)
             }
             StatementKind::Call { result: Some(result), .. } => {
                 let call = self.call(&statement.kind);

@@ -61,6 +61,16 @@ impl Context {
         self.turns.set(left.wrapping_sub(1));
         if left == 0 { Err(FaultKind::LoopBudget) } else { Ok(()) }
     }
+
+    #[inline]
+    pub(crate) fn turns_left(&self) -> u64 {
+        self.turns.get()
+    }
+
+    #[inline]
+    pub(crate) fn set_turns(&self, left: u64) {
+        self.turns.set(left);
+    }
 }
 
 impl Default for Context {

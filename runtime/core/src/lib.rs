@@ -16,6 +16,7 @@ mod repr;
 mod op_table;
 pub mod ops;
 mod signature;
+mod turns;
 
 pub mod calendar;
 mod decimal;
@@ -49,6 +50,7 @@ pub use repr::{Repr, Scalar, Value};
 pub use signature::{Kind, Parameter, Signature};
 pub use text::Text;
 pub use time::Time;
+pub use turns::Turns;
 
 /// Includes what `staunch_build` made of Structured Text, by its name there: the file's stem.
 ///

@@ -26,6 +26,10 @@ pub trait Integer: Number + Ord {
     fn shifted_right(self, count: u32) -> Self;
     fn rotated_left(self, count: u32) -> Self;
     fn rotated_right(self, count: u32) -> Self;
+    /// Its two's complement, extended to 64 bits.
+    fn extended(self) -> u64;
+    /// What has these as its lowest bits.
+    fn of_low_bits(bits: u64) -> Self;
 }
 
 /// A repr of IEEE 754 numbers. The functions are libm's, whose results do not depend on the
@@ -87,6 +91,10 @@ macro_rules! integers {
             fn rotated_left(self, count: u32) -> Self { self.rotate_left(count) }
             #[inline]
             fn rotated_right(self, count: u32) -> Self { self.rotate_right(count) }
+            #[inline]
+            fn extended(self) -> u64 { self as u64 }
+            #[inline]
+            fn of_low_bits(bits: u64) -> Self { bits as $rust }
         }
 
         impl Bits for $rust {}

@@ -1,0 +1,174 @@
+//! Which loops have a number of turns that is known when they start. Taking these turns at once, and giving
+//! back what an early end leaves, is taking them one by one, as long as nothing else takes turns meanwhile.
+
+use crate::alias::{self, Frame};
+use crate::loops::{Known, exit_condition, is_private};
+use crate::{Expr, ExprKind, For, Location, Op, Place, RoutineId, Statement, StatementKind, Step, Value, visit};
+
+/// Whether a block, or what it calls, takes turns.
+pub fn takes_turns(block: &[Statement], callee_does: &dyn Fn(RoutineId) -> bool) -> bool {
+    any(block, &|kind| match kind {
+        StatementKind::Turn => true,
+        StatementKind::Call { callee, .. } => callee_does(*callee),
+        StatementKind::Assign { .. }
+        | StatementKind::If { .. }
+        | StatementKind::Case { .. }
+        | StatementKind::Loop { .. }
+        | StatementKind::For(_)
+        | StatementKind::Exit
+        | StatementKind::Continue
+        | StatementKind::Return
+        | StatementKind::CallBlock { .. }
+        | StatementKind::PrescanBlock { .. }
+        | StatementKind::Fault(_) => false,
+    })
+}
+
+fn any(block: &[Statement], is: &dyn Fn(&StatementKind) -> bool) -> bool {
+    let mut found = false;
+    visit::statements(block, &mut |statement| found |= is(&statement.kind));
+    found
+}
+
+/// A FOR loop whose turns are known.
+#[derive(Clone, Copy, Debug)]
+pub struct Ahead<'a> {
+    pub step: i128,
+    /// The body without its `Turn`.
+    pub body: &'a [Statement],
+    /// Where that is.
+    pub at: Location,
+}
+
+/// A FOR loop whose turns are known, from its counter and the last value for it.
+pub fn ahead<'a>(it: &'a For, callee_takes: &dyn Fn(RoutineId) -> bool) -> Option<Ahead<'a>> {
+    let (turn, body) = it.body.split_first()?;
+    let Step::Constant(step) = it.step else { return None };
+    let counts = matches!(turn.kind, StatementKind::Turn) && it.is_private && !takes_turns(body, callee_takes);
+    counts.then_some(Ahead { step, body, at: turn.at })
+}
+
+/// `WHILE i < last AND other DO … i := i + 1; … END_WHILE`: a variable that nothing else writes takes one
+/// step in each turn, toward a bound that stays, and does not wrap on its way.
+#[derive(Clone, Debug)]
+pub struct Linear<'a> {
+    pub counter: &'a Place,
+    pub step: i128,
+    /// The counter is at most `bound + offset` in each turn, at least where the step is negative.
+    pub bound: &'a Expr,
+    pub offset: i128,
+    /// What has to hold besides.
+    pub others: Vec<&'a Expr>,
+    /// The whole condition on which the loop is left.
+    pub leave: &'a Expr,
+    /// The body without condition and `Turn`.
+    pub body: &'a [Statement],
+    /// Which statement of it takes the step.
+    pub steps: usize,
+    /// Where the `Turn` is.
+    pub at: Location,
+}
+
+/// A WHILE loop whose turns are known, but for an early end.
+pub fn linear<'a>(
+    known: &Known<'_>,
+    frame: &Frame<'_>,
+    body: &'a [Statement],
+    callee_takes: &dyn Fn(RoutineId) -> bool,
+) -> Option<Linear<'a>> {
+    let [test, turn, body @ ..] = body else { return None };
+    let leave = exit_condition(test)?;
+    let plain = matches!(turn.kind, StatementKind::Turn) && !takes_turns(body, callee_takes);
+    if !plain || any(body, &|kind| matches!(kind, StatementKind::Continue)) {
+        return None;
+    }
+    let ExprKind::Apply(Op::Not, stay) = &leave.kind else { return None };
+    let mut conditions = Vec::new();
+    conjuncts(&stay[0], &mut conditions);
+    (0..conditions.len()).find_map(|at| {
+        let mut others = conditions.clone();
+        let (counter, bound, ahead, offset) = compared(others.remove(at))?;
+        let (steps, step) = only_step(frame, body, counter)?;
+        let toward = (step > 0) == ahead && !alias::changes(frame, body, bound);
+        let fits = !visit::expr_faults(known.program, bound) && never_wraps(known, counter, bound, offset + step);
+        let others_hold = others.iter().all(|it| !visit::expr_faults(known.program, it));
+        (toward && fits && others_hold).then_some(Linear {
+            counter,
+            step,
+            bound,
+            offset,
+            others,
+            leave,
+            body,
+            steps,
+            at: turn.at,
+        })
+    })
+}
+
+/// The conditions that have to hold all.
+fn conjuncts<'a>(condition: &'a Expr, found: &mut Vec<&'a Expr>) {
+    match &condition.kind {
+        ExprKind::Apply(Op::And, operands) => operands.iter().for_each(|it| conjuncts(it, found)),
+        ExprKind::Apply(..)
+        | ExprKind::Const(_)
+        | ExprKind::Text(_)
+        | ExprKind::Load(_)
+        | ExprKind::AddressOf(_)
+        | ExprKind::ApplyText(..)
+        | ExprKind::Aggregate(_)
+        | ExprKind::Convert(..) => found.push(condition),
+    }
+}
+
+/// A variable and its bound; whether that is above, and how far from it the last value is.
+fn compared(condition: &Expr) -> Option<(&Place, &Expr, bool, i128)> {
+    let ExprKind::Apply(op, operands) = &condition.kind else { return None };
+    let [left, right] = operands.as_slice() else { return None };
+    let (is_above, offset) = match op {
+        Op::Lt => (true, -1),
+        Op::Le => (true, 0),
+        Op::Gt => (false, 1),
+        Op::Ge => (false, 0),
+        _ => return None,
+    };
+    match (&left.kind, &right.kind) {
+        (ExprKind::Load(place), _) if is_variable(place) => Some((place, right, is_above, offset)),
+        (_, ExprKind::Load(place)) if is_variable(place) => Some((place, left, !is_above, -offset)),
+        _ => None,
+    }
+}
+
+fn is_variable(place: &Place) -> bool {
+    !place.is_followed() && place.indices().next().is_none()
+}
+
+/// The one statement that writes `counter`, which each turn passes, and by how much it steps.
+fn only_step(frame: &Frame<'_>, body: &[Statement], counter: &Place) -> Option<(usize, i128)> {
+    let at = body.iter().position(|it| step_of(it, counter).is_some())?;
+    let (before, after) = (&body[..at], &body[at + 1..]);
+    let only = is_private(frame, counter, before) && is_private(frame, counter, after);
+    only.then_some(at).zip(step_of(&body[at], counter))
+}
+
+/// `i := i + 1`
+fn step_of(statement: &Statement, counter: &Place) -> Option<i128> {
+    let StatementKind::Assign { target, value } = &statement.kind else { return None };
+    let ExprKind::Apply(op, operands) = &value.kind else { return None };
+    let [from, by] = operands.as_slice() else { return None };
+    let ExprKind::Load(from) = &from.kind else { return None };
+    let by = by.as_const().and_then(Value::as_integer).filter(|it| *it > 0)?;
+    let steps = target.is_same_variable(counter) && from.is_same_variable(counter);
+    match op {
+        Op::Add if steps => Some(by),
+        Op::Sub if steps => Some(-by),
+        _ => None,
+    }
+}
+
+/// Whether a step from the last value leads to one of the counter's type.
+fn never_wraps(known: &Known<'_>, counter: &Place, bound: &Expr, way: i128) -> bool {
+    let whole = known.program.repr(counter.ty).and_then(|repr| repr.range());
+    let (Some((least, most)), Some(bound_range)) = (whole, known.range(bound)) else { return false };
+    bound.ty == counter.ty && least <= bound_range.0 + way.min(0) && bound_range.1 + way.max(0) <= most
+}
