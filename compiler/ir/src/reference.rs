@@ -1,6 +1,7 @@
 //! References: which variables' addresses a program takes, how a place leads through a reference, and the
 //! table of objects by which every access is checked.
 
+pub mod escape;
 mod fixed;
 mod table;
 

@@ -9,8 +9,9 @@ use crate::expr::checker::Checker;
 use crate::expr::uses::Uses;
 use crate::types::declarations::Declarations;
 use crate::{Bodies, Span, ast};
+use staunch_ir::reference::escape::moves_references;
 use staunch_ir::stack;
-use staunch_ir::{Block, Routine, RoutineKind, StatementKind};
+use staunch_ir::{Block, Program, Routine, RoutineKind, StatementKind};
 
 /// What checking all bodies gave.
 pub(crate) struct Checked {
@@ -31,26 +32,28 @@ pub(crate) fn check<'s>(decl: &mut Declarations<'s>, bodies: &mut [Vec<ast::Stat
         checked.stacks.push(stack);
         if keep == Bodies::Dropped {
             body.clear();
-            made.iter_mut().for_each(|(routine, _)| routine.body = calls(std::mem::take(&mut routine.body)));
+            made.iter_mut()
+                .for_each(|(routine, _)| routine.body = rest(&decl.program, std::mem::take(&mut routine.body)));
         }
         checked.routines.push(made);
     }
     checked
 }
 
-/// The calls in a block, which is what later checks ask of it.
-fn calls(block: Block) -> Block {
-    let mut calls = Block::new();
-    move_calls(block, &mut calls);
-    calls
+/// What later checks ask of a body: its calls, and the assignments of references.
+fn rest(program: &Program, block: Block) -> Block {
+    let mut kept = Block::new();
+    move_rest(program, block, &mut kept);
+    kept
 }
 
-fn move_calls(block: Block, calls: &mut Block) {
+fn move_rest(program: &Program, block: Block, kept: &mut Block) {
     for mut statement in block {
         let inner: Vec<_> = statement.kind.blocks_mut().into_iter().map(std::mem::take).collect();
-        inner.into_iter().for_each(|it| move_calls(it, calls));
-        if let StatementKind::Call { .. } = statement.kind {
-            calls.push(statement);
+        inner.into_iter().for_each(|it| move_rest(program, it, kept));
+        let is_call = matches!(statement.kind, StatementKind::Call { .. });
+        if is_call || !program.references.is_empty() && moves_references(program, &statement.kind) {
+            kept.push(statement);
         }
     }
 }

@@ -91,6 +91,7 @@ codes! {
     E0209 Error "constant TIME overflows";
     E0210 Error "an instance is not a value";
     E0211 Error "a reference is needed, or cannot be made";
+    E0212 Error "a reference that outlives what it refers to";
     W0202 Warning "a text is cut";
     E0301 Error "unknown pin or parameter";
     E0302 Error "wrong number of arguments";

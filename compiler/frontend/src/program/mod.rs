@@ -1,6 +1,7 @@
 //! The whole program: its instances, its order of routines, what starts it, and whether it fits.
 
 mod configuration;
+mod escape;
 mod order;
 mod pins;
 mod prescan;
@@ -31,6 +32,7 @@ pub(crate) fn assemble<'s>(
     configuration::instances(declarations, files);
     order::order(declarations, uses, stacks)?;
     declarations.check_pins()?;
+    declarations.check_escapes()?;
     let program = std::mem::replace(&mut declarations.program, empty_program(Vec::new()));
     declarations.program = staunch_ir::reference::fixed(staunch_ir::shapes::settle(program));
     declarations.check_size()?;

@@ -28,7 +28,8 @@ pub fn fixed(program: Program) -> Program {
         }
         if !moved.is_empty() {
             let routine = std::mem::replace(&mut program.routines[at], empty());
-            program.routines[at] = Mover { globals: Type::Struct(globals), moved, routine: &routine }.moved();
+            let moved = Mover { program: &program, globals: Type::Struct(globals), moved, routine: &routine }.moved();
+            program.routines[at] = moved;
         }
     }
     program
@@ -63,6 +64,7 @@ fn field_of(routine: &Routine, local: &Local) -> Field {
 }
 
 struct Mover<'r> {
+    program: &'r Program,
     globals: Type,
     moved: BTreeMap<LocalId, FieldId>,
     routine: &'r Routine,
@@ -82,7 +84,8 @@ impl Mover<'_> {
         let start = |(local, _): (&LocalId, &FieldId)| {
             let it = &self.routine.locals[local.index()];
             let is_passed = self.routine.params.iter().any(|param| param.mode == Mode::Value(*local));
-            let value = if is_passed { Expr::load(Place::local(*local, it.ty), at) } else { initial(it, at) };
+            let value =
+                if is_passed { Expr::load(Place::local(*local, it.ty), at) } else { initial(self.program, it, at) };
             Statement::assign(self.storage(*local), value, at)
         };
         self.moved.iter().map(start).collect()
@@ -200,12 +203,13 @@ impl Mover<'_> {
     }
 }
 
-fn initial(local: &Local, at: Location) -> Expr {
-    let kind = match (&local.initial, local.ty) {
-        (Const::Scalar(value), _) => ExprKind::Const(*value),
-        (Const::Text(text), _) => ExprKind::Text(text.clone()),
-        (Const::Zero, Type::String(_)) => ExprKind::Text(Vec::new()),
-        (Const::Zero | Const::Array(_) | Const::Struct(_), _) => ExprKind::Aggregate(local.initial.clone()),
+fn initial(program: &Program, local: &Local, at: Location) -> Expr {
+    let kind = match (&local.initial, local.ty, program.repr(local.ty)) {
+        (Const::Scalar(value), _, _) => ExprKind::Const(*value),
+        (Const::Text(text), _, _) => ExprKind::Text(text.clone()),
+        (Const::Zero, Type::String(_), _) => ExprKind::Text(Vec::new()),
+        (Const::Zero, _, Some(repr)) => ExprKind::Const(repr.zero()),
+        (Const::Zero | Const::Array(_) | Const::Struct(_), _, _) => ExprKind::Aggregate(local.initial.clone()),
     };
     Expr::new(local.ty, kind, at)
 }
