@@ -1,4 +1,5 @@
-//! From printed tokens to a file that reads well: source marks become comments, items get air.
+//! From printed tokens to a file that reads well and that rustfmt leaves as it is: source marks become comments,
+//! items get air, and what rustfmt would break at other places is marked to be skipped.
 
 use std::collections::BTreeSet;
 
@@ -7,32 +8,243 @@ use proc_macro2::{Delimiter, TokenStream, TokenTree};
 /// A statement that stands for a comment: the printer of syntax trees has none.
 const MARK: &str = "st_mark!(\"";
 
+/// rustfmt breaks calls, chains of calls and arrays that are wider.
+const SMALL: usize = 60;
+
+/// The same for the parts of a structure's value.
+const SMALL_STRUCTURE: usize = 18;
+
+/// The widest line.
+const WIDE: usize = 100;
+
 /// Formats items.
 ///
 /// # Panics
 /// If they are not Rust, which would be a bug in this crate.
 pub fn format(items: TokenStream) -> String {
     let file = syn::parse2(items).expect("the emitted items are Rust");
-    space(&comment(&prettyplease::unparse(&file)))
+    let mut lines = Vec::new();
+    for line in hug(&fill(&prettyplease::unparse(&file))).lines() {
+        expand(line.to_owned(), &mut lines);
+    }
+    skip(&space(&comment(&lines.join("\n"))))
 }
 
-/// Puts each mark after the line that follows it.
+/// Each mark becomes a comment: at the end of its statement, or first in the block that the statement opens.
 fn comment(text: &str) -> String {
     let mut commented = String::with_capacity(text.len());
-    let mut pending = None;
+    let mut pending: Option<(&str, usize)> = None;
     for line in text.lines() {
-        if let Some(mark) = line.trim_start().strip_prefix(MARK) {
-            pending = Some(mark.trim_end_matches("\");"));
+        let content = line.trim_start();
+        if let Some(mark) = content.strip_prefix(MARK) {
+            pending = Some((mark.trim_end_matches("\");"), line.len() - content.len()));
             continue;
         }
         commented.push_str(line);
-        if let Some(mark) = pending.take() {
-            commented.push_str(" // ");
-            commented.push_str(mark);
+        if let Some((mark, indent)) = pending
+            && line.len() - content.len() == indent
+        {
+            if opens_block(content) {
+                commented.push_str(&format!("\n{:indent$}    // {mark}", ""));
+                pending = None;
+            } else if content.ends_with([';', '}']) {
+                commented.push_str(&format!(" // {mark}"));
+                pending = None;
+            }
         }
         commented.push('\n');
     }
     commented
+}
+
+/// Whether the line is the end of the head of an IF, a loop or a `match`.
+fn opens_block(line: &str) -> bool {
+    line.ends_with('{')
+}
+
+/// Imports take the lines that they need.
+fn fill(text: &str) -> String {
+    let Some((before, rest)) = text.split_once("::{\n") else { return text.to_owned() };
+    let Some((names, after)) = rest.split_once("};\n").filter(|_| before.lines().last().is_some_and(is_import)) else {
+        return text.to_owned();
+    };
+    let names: Vec<&str> = names.split([',', '\n', ' ']).filter(|it| !it.is_empty()).collect();
+    let start = before.lines().last().unwrap_or_default();
+    let whole = names.join(", ");
+    if start.len() + whole.len() + "::{};".len() <= WIDE {
+        return format!("{before}::{{{whole}}};\n{after}");
+    }
+    let mut lines = vec![String::new()];
+    for name in names {
+        match lines.last_mut() {
+            Some(last) if last.len() + name.len() + "     ,".len() <= WIDE => last.push_str(&format!(" {name},")),
+            Some(_) | None => lines.push(format!(" {name},")),
+        }
+    }
+    format!("{before}::{{\n   {}\n}};\n{after}", lines.join("\n   "))
+}
+
+fn is_import(line: &str) -> bool {
+    line.starts_with("use ")
+}
+
+/// A table of one row is opened and closed with it.
+fn hug(text: &str) -> String {
+    let lines: Vec<&str> = text.lines().collect();
+    let mut hugged = String::with_capacity(text.len());
+    let mut at = 0;
+    while let Some(line) = lines.get(at) {
+        let end = lines[at..].iter().position(|it| *it == "];").map(|it| it + at);
+        let rows = end.filter(|_| line.ends_with("= &[") && !line.starts_with(' ')).map(|end| &lines[at + 1..end]);
+        match rows {
+            Some([first, inner @ .., last]) if is_row(first, inner, last) => {
+                hugged.push_str(&format!("{line}{}\n", first.trim_start()));
+                for it in inner {
+                    hugged.push_str(&format!("{}\n", it.strip_prefix("    ").unwrap_or(it)));
+                }
+                hugged.push_str("}];\n");
+                at += inner.len() + 4;
+            }
+            Some(_) | None => {
+                hugged.push_str(&format!("{line}\n"));
+                at += 1;
+            }
+        }
+    }
+    hugged
+}
+
+/// Gives each part of a structure's value its line, where they are too wide for one, and the ELSE of a `let`.
+fn expand(line: String, lines: &mut Vec<String>) {
+    let indent = line.len() - line.trim_start().len();
+    let (head, inner, end) = match structure(&line) {
+        Some((head, inner, end)) if is_value(head, inner) => (head, inner, end),
+        Some(_) | None => return lines.push(line),
+    };
+    let is_else = head.ends_with(" else");
+    lines.push(format!("{head} {{"));
+    for part in parts(inner) {
+        let comma = if is_else {
+            ";"
+        } else if part.starts_with("..") {
+            ""
+        } else {
+            ","
+        };
+        expand(format!("{:indent$}    {part}{comma}", ""), lines);
+    }
+    lines.push(format!("{:indent$}}}{end}", ""));
+}
+
+/// Whether the braces hold a structure's value that is too wide for one line, or the ELSE of a `let`.
+fn is_value(head: &str, inner: &str) -> bool {
+    let name = head.rsplit([' ', ':']).next().unwrap_or_default();
+    let is_structure = name.starts_with(|it: char| it.is_ascii_uppercase()) && inner.len() > SMALL_STRUCTURE;
+    head.ends_with(" else") && head.trim_start().starts_with("let ") || is_structure
+}
+
+/// What is before, in and after the first braces of a line that has them at its end.
+fn structure(line: &str) -> Option<(&str, &str, &str)> {
+    let (head, rest) = line.split_once(" { ")?;
+    let (inner, end) = rest.rsplit_once(" }")?;
+    matches!(end, "" | "," | ";").then_some((head, inner, end))
+}
+
+/// The parts of a list, which end with commas outside of brackets.
+fn parts(list: &str) -> Vec<&str> {
+    let (mut parts, mut depth, mut start) = (Vec::new(), 0_usize, 0);
+    for (at, it) in list.char_indices() {
+        match it {
+            '(' | '[' | '{' => depth += 1,
+            ')' | ']' | '}' => depth = depth.saturating_sub(1),
+            ',' if depth == 0 => {
+                parts.push(list[start..at].trim());
+                start = at + 1;
+            }
+            _ => {}
+        }
+    }
+    parts.push(list[start..].trim());
+    parts
+}
+
+/// Whether the lines are one structure in a table.
+fn is_row(first: &str, inner: &[&str], last: &str) -> bool {
+    first.ends_with(" {") && last == "    }," && inner.iter().all(|it| it.starts_with("        "))
+}
+
+/// Marks the functions and constants that rustfmt would lay out otherwise.
+fn skip(text: &str) -> String {
+    let lines: Vec<&str> = text.lines().collect();
+    let mut marked = String::with_capacity(text.len());
+    let mut at = 0;
+    while let Some(line) = lines.get(at) {
+        let indent = line.len() - line.trim_start().len();
+        let is_item = is_item(line.trim_start()) && indent <= 4;
+        let count = if is_item { item_length(&lines[at..], indent) } else { 1 };
+        let item = &lines[at..at + count];
+        if is_item && !is_plain(item, indent) {
+            marked.push_str(&format!("{:indent$}#[rustfmt::skip]\n", ""));
+        }
+        for it in item {
+            marked.push_str(it);
+            marked.push('\n');
+        }
+        at += count;
+    }
+    marked
+}
+
+fn is_item(line: &str) -> bool {
+    let line = line.strip_prefix("pub ").unwrap_or(line);
+    ["fn ", "const ", "reference::"].iter().any(|it| line.starts_with(it))
+}
+
+/// How many lines an item has that begins at this indentation.
+fn item_length(lines: &[&str], indent: usize) -> usize {
+    let ends = |line: &&str| {
+        let content = line.trim_start();
+        line.len() - content.len() == indent && content.ends_with(['}', ';'])
+    };
+    lines.iter().position(ends).map_or(1, |it| it + 1)
+}
+
+/// The parts of a line between spaces outside of brackets: no call, chain or array is wider than its part.
+fn words(code: &str) -> impl Iterator<Item = &str> {
+    let mut depth = 0_usize;
+    code.split(move |it| {
+        match it {
+            '(' | '[' => depth += 1,
+            ')' | ']' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        it == ' ' && depth == 0
+    })
+}
+
+/// Whether it is certain that rustfmt leaves the lines of an item as they are.
+fn is_plain(item: &[&str], indent: usize) -> bool {
+    let Some((head, body)) = item.split_first() else { return true };
+    let is_whole = body.is_empty() && !head.contains('{');
+    let opens = head.ends_with('{') && !head.contains("!(") || head.ends_with("= &[");
+    let head_is_plain = head.len() <= WIDE && (is_whole || opens);
+    head_is_plain && body.iter().all(|line| line.len() == indent + 1 || is_plain_line(line))
+}
+
+/// A statement, the head or the end of a block, a row of a table, or a comment, and none too wide.
+fn is_plain_line(line: &str) -> bool {
+    let content = line.trim_start();
+    if content.starts_with("//") {
+        return true;
+    }
+    let (code, mark) = content.split_once(" // ").unwrap_or((content, ""));
+    let is_whole = code.is_empty() || code.ends_with([';', '{', '}', ',', ')']);
+    is_whole
+        && words(code).all(|it| it.len() <= SMALL)
+        && line.len() - mark.len() <= WIDE
+        && !code.starts_with(['.', '|', '&', '+'])
+        && !code.contains("{} else")
+        && (!code.contains(" { ") || structure(code).is_some_and(|(_, inner, _)| inner.len() <= SMALL_STRUCTURE))
 }
 
 /// Puts an empty line before each item and method that follows another.

@@ -155,6 +155,10 @@ fn header(program: &Program) -> String {
 fn attributes(sign: &str) -> String {
     let mut text = format!("{sign}[forbid(unsafe_code)]\n");
     for (reason, lints) in ALLOWED {
+        if let [lint] = lints {
+            text.push_str(&format!("{sign}[allow({lint}, reason = \"{reason}\")]\n"));
+            continue;
+        }
         text.push_str(&format!("{sign}[allow(\n"));
         for lint in *lints {
             text.push_str(&format!("    {lint},\n"));
