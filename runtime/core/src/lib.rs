@@ -27,6 +27,7 @@ pub mod text;
 pub mod time;
 
 pub mod firmware;
+pub mod json;
 
 mod family;
 

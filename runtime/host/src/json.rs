@@ -1,27 +1,10 @@
 //! Texts as JSON writes them.
 
-use std::fmt::Write;
+use staunch_runtime::json::Quoted;
 
-/// `text` in quotes. `<` is escaped as well, so that JSON may be a part of a page.
+/// `text` in quotes.
 pub fn quote(text: &str) -> String {
-    let mut out = String::with_capacity(text.len() + 2);
-    out.push('"');
-    for character in text.chars() {
-        match character {
-            '"' => out.push_str("\\\""),
-            '\\' => out.push_str("\\\\"),
-            '\n' => out.push_str("\\n"),
-            '\r' => out.push_str("\\r"),
-            '\t' => out.push_str("\\t"),
-            it if it.is_control() || matches!(it, '<' | '\u{2028}' | '\u{2029}') => {
-                // Writing to a String does not fail.
-                let _ = write!(out, "\\u{:04x}", u32::from(it));
-            }
-            it => out.push(it),
-        }
-    }
-    out.push('"');
-    out
+    Quoted(text).to_string()
 }
 
 #[cfg(test)]

@@ -17,13 +17,16 @@ mod beyond;
 mod alphabet;
 mod assume;
 
+mod trace;
+
+mod search;
+
 mod exhaustive;
 mod guided;
 mod novelty;
 mod random;
-mod search;
 mod shrink;
-mod trace;
+mod strategy;
 
 mod picture;
 mod stimulus;
@@ -34,6 +37,7 @@ mod accept;
 mod finding;
 
 mod report;
+mod scope;
 
 use crate::args::{Common, Compare, Files, MessageFormat};
 use crate::session::Session;
@@ -170,7 +174,7 @@ fn verdict(pair: &mut Pair, world: &World, args: &Compare, findings: &mut Findin
     if args.stimulus.is_some() {
         return stimulus::follow(pair, args);
     }
-    let outcome = search::search(pair, world, args.budget, findings.open());
+    let outcome = strategy::search(pair, world, args.budget, findings.open());
     let exact = world.alphabet.is_exact() && pair.whole && !alphabet::has_untried(pair);
     findings.note(pair, world, &outcome, exact);
     if let Some(trace) = outcome.found.clone() {
@@ -180,9 +184,9 @@ fn verdict(pair: &mut Pair, world: &World, args: &Compare, findings: &mut Findin
         return Ok(Verdict::Differs { rows, trace: Some(trace), shortest });
     }
     if outcome.complete && exact {
-        return Ok(Verdict::Equal(report::every_state(pair, world, &outcome)));
+        return Ok(Verdict::Equal(scope::every_state(pair, world, &outcome)));
     }
-    Ok(report::not_found(pair, world, &outcome))
+    Ok(scope::not_found(pair, world, &outcome))
 }
 
 /// The text of a file by its number, for messages.

@@ -1,27 +1,17 @@
-//! A search for inputs that make two systems differ, and for every pitfall that the inputs can reach.
-//! The same program gives the same answer.
-//!
-//! First every sequence, shortest first; then patterns from every state that is new in some respect;
-//! then what is left of both, and random sequences from a fixed seed.
+//! What a search does with each scan: what it shows, what of that is new, and when there is nothing more to
+//! look for. The order of the scans is `strategy`'s.
 
 use super::alphabet::Alphabet;
 use super::assume::Assumptions;
 use super::beyond::Candidate;
-use super::exhaustive::Exhaustive;
-use super::guided::Guided;
 use super::pair::{Faults, Matched, Pair, Step};
 use super::pitfall::{self, Habits, Pitfall};
-use super::random;
-use super::shrink;
 use super::trace::Trace;
 use staunch_host::Event;
 use staunch_ir::{Location, Value};
 use staunch_runtime::Fault;
 use std::collections::{BTreeSet, HashMap};
 
-/// Bytes of states that all scans together may go through; a small state counts as `SMALL`.
-const MAX_BYTES: u64 = 4 << 30;
-const SMALL: usize = 512;
 /// Scans in which a difference without events is looked for at least, once there is one with.
 const LEAST_WITHOUT_EVENTS: u64 = 20_000;
 
@@ -77,7 +67,7 @@ pub struct Outcome {
     /// Inputs up to the first difference.
     pub found: Option<Trace>,
     /// And up to one that needs no event, where the first does.
-    without_event: Option<Trace>,
+    pub without_event: Option<Trace>,
     /// The shortest sequence that was met for each.
     pub sightings: HashMap<Sighting, Trace>,
     /// Every sequence of this many scans was tried.
@@ -105,67 +95,31 @@ pub struct Search<'p> {
     /// Past the first difference, for what else there is.
     goes_on: bool,
     ended: bool,
-    outcome: Outcome,
+    pub outcome: Outcome,
 }
 
-pub fn search(pair: &mut Pair, world: &World, budget: u64, wanted: usize) -> Outcome {
-    // A large state takes its time to compare and to keep.
-    let bytes = u64::try_from(pair.size().max(SMALL)).unwrap_or(u64::MAX);
-    let budget = budget.min((MAX_BYTES / bytes).max(1000));
-    let before = pair.scans;
-    let mut search = Search {
-        pair,
-        world,
-        left: budget,
-        before,
-        wanted,
-        by_event: None,
-        goes_on: false,
-        ended: false,
-        outcome: Outcome::default(),
-    };
-    search.run(budget);
-    search.outcome.scans = search.pair.scans - before;
-    let mut outcome = search.outcome;
-    let mut shortest = |it: Trace| shrink::shrink(pair, world, shrink::Goal::Differ, it);
-    outcome.found = outcome.found.map(&mut shortest);
-    let calm = outcome.without_event.take().map(&mut shortest);
-    outcome.found = match (outcome.found, calm) {
-        // An event is rarer in a plant than the inputs' moves.
-        (Some(found), Some(calm)) if calm.scans() <= found.scans() + found.scans() / 8 => Some(calm),
-        (found, _) => found,
-    };
-    outcome
-}
-
-impl Search<'_> {
-    fn run(&mut self, budget: u64) {
-        let (depth, complete) = self.look(budget);
-        (self.outcome.depth, self.outcome.complete) = (depth, complete);
-        self.by_event = None;
-        if self.outcome.found.is_some() && self.outcome.sightings.len() < self.wanted {
-            // What else there is gets its share, and no more; what parted may agree again.
-            self.left = self.left.min(budget / 16);
-            self.goes_on = true;
-            self.outcome.all_seen = self.look(self.left).1;
-        }
+impl<'p> Search<'p> {
+    /// A search that may make so many scans.
+    pub fn new(pair: &'p mut Pair, world: &'p World, budget: u64, wanted: usize) -> Self {
+        let before = pair.scans;
+        let outcome = Outcome::default();
+        Self { pair, world, left: budget, before, wanted, by_event: None, goes_on: false, ended: false, outcome }
     }
 
-    /// How many scans of every sequence were tried, and whether that was all of them.
-    fn look(&mut self, budget: u64) -> (usize, bool) {
-        let mut exhaustive = Exhaustive::new(self);
-        exhaustive.run(self, budget / 4 * 3);
-        if !exhaustive.complete && !self.is_done() {
-            let mut guided = Guided::new(self);
-            guided.run(self, budget / 4);
-            exhaustive.run(self, budget / 8);
-            if !exhaustive.complete {
-                guided.run(self, budget / 16);
-                random::walk(self, &guided);
-            }
-            self.outcome.places = guided.places();
+    /// What was found, with the scans that it took.
+    pub fn finish(self) -> Outcome {
+        Outcome { scans: self.pair.scans - self.before, ..self.outcome }
+    }
+
+    /// Goes on past the first difference with so many scans; whether there is anything left to find.
+    pub fn go_on(&mut self, scans: u64) -> bool {
+        self.by_event = None;
+        let goes_on = self.outcome.found.is_some() && self.outcome.sightings.len() < self.wanted;
+        if goes_on {
+            self.left = self.left.min(scans);
+            self.goes_on = true;
         }
-        (exhaustive.depth, exhaustive.complete)
+        goes_on
     }
 
     /// Whether there is nothing more to look for.

@@ -6,6 +6,7 @@ use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Origin, Patch,
 
 use super::{Diagnostic, Severity};
 use crate::source::{Source, Sources, Span};
+use staunch_runtime::json::Quoted;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Format {
@@ -232,7 +233,7 @@ fn json(diagnostic: &Diagnostic, sources: &Sources) -> String {
     out.push_str("],\"notes\":[");
     for (number, note) in diagnostic.notes.iter().enumerate() {
         out.push_str(if number == 0 { "" } else { "," });
-        quote(&mut out, note);
+        let _ = write!(out, "{}", Quoted(note));
     }
     out.push(']');
     optional(&mut out, "help", diagnostic.help.as_deref());
@@ -253,7 +254,7 @@ fn json(diagnostic: &Diagnostic, sources: &Sources) -> String {
 /// Bytes of the file, for an editor that applies a fix to it.
 fn json_place(out: &mut String, source: &Source, span: Span) {
     out.push_str("{\"file\":");
-    quote(out, &source.path);
+    let _ = write!(out, "{}", Quoted(&source.path));
     number(out, "byte_start", source.file_offset(span.start));
     number(out, "byte_end", source.file_offset(span.end));
 }
@@ -279,7 +280,7 @@ fn number(out: &mut String, key: &str, value: u32) {
 
 fn field(out: &mut String, key: &str, value: &str) {
     let _ = write!(out, ",\"{key}\":");
-    quote(out, value);
+    let _ = write!(out, "{}", Quoted(value));
 }
 
 fn optional(out: &mut String, key: &str, value: Option<&str>) {
@@ -289,25 +290,6 @@ fn optional(out: &mut String, key: &str, value: Option<&str>) {
             let _ = write!(out, ",\"{key}\":null");
         }
     }
-}
-
-/// A JSON string.
-fn quote(out: &mut String, text: &str) {
-    out.push('"');
-    for character in text.chars() {
-        match character {
-            '"' => out.push_str("\\\""),
-            '\\' => out.push_str("\\\\"),
-            '\n' => out.push_str("\\n"),
-            '\r' => out.push_str("\\r"),
-            '\t' => out.push_str("\\t"),
-            control if control < ' ' => {
-                let _ = write!(out, "\\u{:04x}", u32::from(control));
-            }
-            other => out.push(other),
-        }
-    }
-    out.push('"');
 }
 
 #[cfg(test)]

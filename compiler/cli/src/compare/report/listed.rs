@@ -1,0 +1,100 @@
+//! What is known of each counter, block and variable, as a list.
+
+use super::super::accept::Accepted;
+use super::super::beyond::Kind;
+use super::super::finding::{self, Finding, Findings};
+use super::super::trace::Trace;
+use super::Report;
+use staunch_ir::Location;
+use std::fmt::Write;
+
+impl Report<'_> {
+    /// `file:line`
+    pub(super) fn place(&self, at: Location) -> String {
+        let source = self.session.sources.files().get(usize::from(at.file));
+        format!("{}:{}", source.map_or("", |it| it.path.as_str()), at.line)
+    }
+
+    /// What is known of each counter, block and variable, in a line for each verdict.
+    pub(super) fn listed(&self, findings: &Findings, accepted: &Accepted) -> String {
+        let mut subjects: Vec<(&str, Kind, Option<Location>)> = Vec::new();
+        for finding in &findings.all {
+            let subject = (finding.subject.as_str(), finding.kind, finding.at);
+            if !subjects.contains(&subject) {
+                subjects.push(subject);
+            }
+        }
+        let mut known: Vec<((Kind, String), Vec<String>)> = Vec::new();
+        for (subject, kind, at) in subjects {
+            let is_own = |it: &&Finding| (it.subject.as_str(), it.kind, it.at) == (subject, kind, at);
+            let own: Vec<&Finding> = findings.all.iter().filter(is_own).collect();
+            let lines = (kind, of_subject(&own, accepted));
+            let place = at.map_or_else(String::new, |it| format!(" ({}, {})", kind.name(), self.place(it)));
+            let heading = format!("`{subject}`{place}");
+            match known.iter_mut().find(|it| it.0 == lines) {
+                Some((_, alike)) => alike.push(heading),
+                None => known.push((lines, vec![heading])),
+            }
+        }
+        let mut text = String::new();
+        for ((_, lines), headings) in known {
+            let more =
+                if headings.len() > 1 { format!(" and {} more alike", headings.len() - 1) } else { String::new() };
+            let _ = write!(text, "\n{}{more}\n{lines}", headings[0]);
+        }
+        text
+    }
+}
+
+/// What is known of one counter.
+fn of_subject(own: &[&Finding], accepted: &Accepted) -> String {
+    let mut text = String::new();
+    for finding in own {
+        if let finding::Verdict::Reachable(trace) = &finding.verdict {
+            let _ = writeln!(text, "  {}{}", reached(finding, trace.as_ref()), note(finding, accepted));
+        }
+    }
+    let undecided: Vec<&&Finding> = own.iter().filter(|it| matches!(it.verdict, finding::Verdict::Undecided)).collect();
+    let traps: Vec<String> =
+        undecided.iter().filter_map(|it| Some(format!("{}{}", it.pitfall?.number(), note(it, accepted)))).collect();
+    if !traps.is_empty() {
+        let _ = writeln!(text, "  undecided: trap {}", traps.join(", "));
+    } else if !undecided.is_empty() {
+        text.push_str("  undecided: it was not seen to differ\n");
+    }
+    text + &impossible(own)
+}
+
+fn reached(finding: &Finding, trace: Option<&Trace>) -> String {
+    let when = match trace.map(Trace::scans) {
+        Some(1) => "after 1 scan".to_owned(),
+        Some(scans) => format!("after {scans} scans"),
+        None => "in the text".to_owned(),
+    };
+    match finding.pitfall {
+        Some(pitfall) => format!("reachable {when}: trap {}. {}", pitfall.number(), pitfall.sentence()),
+        None => format!("differs {when}: {}", finding.kind.reason()),
+    }
+}
+
+fn note(finding: &Finding, accepted: &Accepted) -> &'static str {
+    if accepted.accepts(finding) { " (accepted)" } else { "" }
+}
+
+/// The pitfalls that cannot happen, by the reasons why.
+fn impossible(own: &[&Finding]) -> String {
+    let mut reasons: Vec<(&str, Vec<String>)> = Vec::new();
+    for finding in own {
+        let finding::Verdict::Impossible(why) = &finding.verdict else { continue };
+        let pitfall = finding.pitfall.map(|it| it.number().to_string());
+        match reasons.iter_mut().find(|it| it.0 == why) {
+            Some((_, pitfalls)) => pitfalls.extend(pitfall),
+            None => reasons.push((why, pitfall.into_iter().collect())),
+        }
+    }
+    let line = |(why, pitfalls): (&str, Vec<String>)| match pitfalls.as_slice() {
+        [] => format!("  does not differ: {why}\n"),
+        _ => format!("  impossible: trap {}: {why}\n", pitfalls.join(", ")),
+    };
+    reasons.into_iter().map(line).collect()
+}

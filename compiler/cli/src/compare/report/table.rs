@@ -1,0 +1,189 @@
+//! A difference as a table: the scans that tell it, with the inputs that change and what parts.
+
+use super::super::line_of;
+use super::super::pair::{Matched, Pair, Row};
+use super::super::pitfall::Cause;
+use super::super::search::World;
+use super::Report;
+use staunch_host::Event;
+use std::fmt::Write;
+
+/// Rows at the start and the end of a long trace that are shown.
+const HEAD: usize = 4;
+const TAIL: usize = 4;
+/// Variables that differ, as columns.
+pub(super) const SHOWN: usize = 3;
+
+/// One line of the table; `None` stands for rows that are left out.
+pub(super) struct Line {
+    pub scan: usize,
+    pub event: Option<Event>,
+    pub inputs: Vec<String>,
+    /// For each shown variable, the value on both sides.
+    pub cells: Vec<[String; 2]>,
+}
+
+impl Report<'_> {
+    pub(super) fn table(&self, pair: &Pair, world: &World, rows: &[Row], shortest: bool, cause: &Cause) -> String {
+        let [from, to] = self.names();
+        let Some(last) = rows.last() else { return String::new() };
+        let differences = pair.differences(last);
+        let scans = if rows.len() == 1 { "1 scan".to_owned() } else { format!("{} scans", rows.len()) };
+        let mut text = format!("{from} and {to} differ after {scans}:\n\n");
+        let shown = &differences[..differences.len().min(SHOWN)];
+        let inputs = self.inputs(pair, rows);
+        let events = rows.iter().any(|it| it.event.is_some());
+        let mut header = vec!["scan".to_owned()];
+        if events {
+            header.push("@event".to_owned());
+        }
+        header.extend(inputs.iter().map(|it| pair.path(pair.inputs[*it].scalars).to_owned()));
+        for it in shown {
+            let path = pair.path(*it);
+            header.extend([format!("{path} {from}"), format!("{path} {to}")]);
+        }
+        let mut table = vec![header];
+        for line in self.lines(pair, rows, &inputs, shown) {
+            table.push(line.map_or_else(Vec::new, |it| it.cells(events)));
+        }
+        // The last row ends in the cell where they part.
+        if let (Some(row), false) = (table.last_mut(), shown.is_empty()) {
+            let first = row.len() - 2 * shown.len() + 1;
+            row[first].push_str(" ◀");
+        }
+        text += &aligned(&table);
+        text += &self.faults(rows);
+        if inputs.len() < pair.inputs.len() {
+            let _ =
+                writeln!(text, "  {} inputs do not change; --all-inputs shows them", pair.inputs.len() - inputs.len());
+        }
+        if differences.len() > SHOWN {
+            let more = differences[SHOWN..].iter().map(|it| pair.path(*it));
+            let _ = writeln!(text, "  also different: {}", more.take(12).collect::<Vec<_>>().join(", "));
+        }
+        if shortest {
+            text.push_str("  no shorter sequence of these inputs makes a difference\n");
+        }
+        if !world.assumptions.lines.is_empty() {
+            let _ = writeln!(text, "  assumed: {}", world.assumptions.lines.join("; "));
+        }
+        text.push('\n');
+        match cause.pitfall {
+            Some(pitfall) => {
+                let counter = cause.counter.as_ref().map_or_else(String::new, |it| format!(" (`{it}`)"));
+                let _ = writeln!(text, "Trap {}{counter}: {}", pitfall.number(), pitfall.sentence());
+                let _ = writeln!(text, "What to do: {}", pitfall.advice());
+            }
+            None => text.push_str("None of the traps explains it; see `docs/compare.md`.\n"),
+        }
+        text
+    }
+
+    /// The inputs that change, or all of them.
+    fn inputs(&self, pair: &Pair, rows: &[Row]) -> Vec<usize> {
+        let value = |row: &Row, at: usize| pair.sides[0].show(pair.inputs[at].scalars[0], &row.states[0]);
+        let changes = |at: &usize| {
+            let initial = pair.sides[0].show(pair.inputs[*at].scalars[0], pair.start()[0]);
+            rows.iter().any(|row| value(row, *at) != initial)
+        };
+        let all = 0..pair.inputs.len();
+        // Few are shown whole, so that a table does not look as if it had none.
+        if self.args.all_inputs || all.len() <= 6 { all.collect() } else { all.filter(changes).collect() }
+    }
+
+    /// The rows to show; `None` where some are left out.
+    pub(super) fn lines(&self, pair: &Pair, rows: &[Row], inputs: &[usize], shown: &[Matched]) -> Vec<Option<Line>> {
+        let mut lines = Vec::new();
+        let mut next = 0;
+        let told = if self.args.shows_every_scan() { (0..rows.len()).collect() } else { telling(pair, rows) };
+        for at in told {
+            if at > next {
+                lines.push(None);
+            }
+            lines.push(Some(Line::of(pair, &rows[at], at + 1, inputs, shown)));
+            next = at + 1;
+        }
+        lines
+    }
+
+    fn faults(&self, rows: &[Row]) -> String {
+        let Some(Row { faults, .. }) = rows.last() else { return String::new() };
+        let mut text = String::new();
+        for (name, fault) in self.names().iter().zip(faults) {
+            if let Some(fault) = fault {
+                let at = fault.at;
+                let source = line_of(&self.session.sources, at.file, at.line);
+                let _ = writeln!(text, "  {name} faults in the last scan: {fault} (`{source}`)");
+            }
+        }
+        text
+    }
+}
+
+/// Which rows tell the story: all of a short trace; of a longer one those in which an input
+/// changes, and the two at its end.
+fn telling(pair: &Pair, rows: &[Row]) -> Vec<usize> {
+    if rows.len() <= HEAD + TAIL + 1 {
+        return (0..rows.len()).collect();
+    }
+    let inputs = |row: &Row| pair.inputs.iter().map(|it| pair.sides[0].show(it.scalars[0], &row.states[0])).collect();
+    let mut before: Vec<String> = Vec::new();
+    let mut told = Vec::new();
+    for (at, row) in rows.iter().enumerate() {
+        let now: Vec<String> = inputs(row);
+        if now != before || row.event.is_some() || at + 2 >= rows.len() {
+            told.push(at);
+        }
+        before = now;
+    }
+    if told.len() > HEAD + TAIL + 1 {
+        told.drain(HEAD..told.len() - TAIL);
+    }
+    told
+}
+
+impl Line {
+    fn of(pair: &Pair, row: &Row, scan: usize, inputs: &[usize], shown: &[Matched]) -> Self {
+        let show = |side: usize, scalar: usize| pair.sides[side].show(scalar, &row.states[side]);
+        Self {
+            scan,
+            event: row.event,
+            inputs: inputs.iter().map(|it| show(0, pair.inputs[*it].scalars[0])).collect(),
+            cells: shown.iter().map(|[a, b]| [show(0, *a), show(1, *b)]).collect(),
+        }
+    }
+
+    fn cells(self, events: bool) -> Vec<String> {
+        let mut cells = vec![self.scan.to_string()];
+        if events {
+            cells.push(self.event.map_or("", Event::name).to_owned());
+        }
+        cells.extend(self.inputs);
+        cells.extend(self.cells.into_iter().flatten());
+        cells
+    }
+}
+
+/// Columns at equal width, numbers and words to the right; an empty row is left out rows.
+fn aligned(table: &[Vec<String>]) -> String {
+    let columns = table[0].len();
+    let width = |at: usize| {
+        let cells = table.iter().filter_map(|row| row.get(at));
+        cells.map(|it| it.trim_end_matches(" ◀").chars().count()).max().unwrap_or(0)
+    };
+    let widths: Vec<_> = (0..columns).map(width).collect();
+    let mut text = String::new();
+    for row in table {
+        let mut line = String::new();
+        if row.is_empty() {
+            line.push_str("     …");
+        }
+        for (cell, width) in row.iter().zip(&widths) {
+            let plain = cell.trim_end_matches(" ◀");
+            let _ = write!(line, "  {plain:>width$}{}", &cell[plain.len()..]);
+        }
+        text.push_str(line.trim_end());
+        text.push('\n');
+    }
+    text
+}
