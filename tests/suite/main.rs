@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod fixes;
+mod formatted;
 mod golden;
 mod vectors;
 

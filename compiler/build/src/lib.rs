@@ -45,6 +45,7 @@ pub struct Build {
     paths: Vec<PathBuf>,
     name: Option<String>,
     runtime: Option<String>,
+    names: bool,
     dialect: Option<Dialect>,
     ctu_stop_at_pv: Option<bool>,
     levels: Vec<(Level, String)>,
@@ -123,6 +124,13 @@ impl Build {
         self
     }
 
+    /// Gives the program `NAMES`, its variables by name at run time, and `named`, which reads them.
+    #[must_use]
+    pub fn names(mut self) -> Self {
+        self.names = true;
+        self
+    }
+
     /// Compiles to `$OUT_DIR/<name>.rs`, and tells cargo when to do so again.
     ///
     /// Ends the build script with exit code 1 if the source is rejected or cannot be read.
@@ -167,6 +175,7 @@ impl Build {
         let mut options = staunch_rust::Options {
             shape: Shape::Include { module: name.clone() },
             state: State::Lean,
+            names: self.names,
             ..Default::default()
         };
         if let Some(runtime) = &self.runtime {

@@ -162,6 +162,9 @@ pub struct Build {
     /// What compiles it
     #[arg(long, value_enum, default_value_t = BuildBackend::Native)]
     pub backend: BuildBackend,
+    /// With `--emit rust`: the variables by name at run time, as a table and a function that reads them
+    #[arg(long)]
+    pub names: bool,
     /// The PROGRAM to run, where the sources hold several
     #[arg(long, value_name = "NAME")]
     pub program: Option<String>,

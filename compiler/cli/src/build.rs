@@ -11,13 +11,17 @@ use staunch_rust::State;
 use std::path::{Path, PathBuf};
 
 pub fn build(session: &Session, args: &Build) -> Result<u8, String> {
+    if args.names && args.emit != Emit::Rust {
+        return Err("`--names` goes with `--emit rust`; `--emit map` says where each variable lies".to_owned());
+    }
     let Some(program) = session.program() else { return Ok(REJECTED) };
     let out = args.output.clone().unwrap_or_else(|| default_name(session, args));
     let target = args.target.as_deref().map(full_name);
     let target = target.as_deref();
     match args.emit {
         Emit::Rust => {
-            let text = staunch_rust::emit(program, &staunch_rust::Options { state: State::Lean, ..Default::default() });
+            let options = staunch_rust::Options { state: State::Lean, names: args.names, ..Default::default() };
+            let text = staunch_rust::emit(program, &options);
             output::write(&out, text.as_bytes())?;
         }
         Emit::Map => {

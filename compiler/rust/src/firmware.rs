@@ -51,9 +51,19 @@ impl Emitter<'_> {
                 firmware::Io { address: #address, variable: #variable, area: firmware::Area::#area, bit: #bit, width: #width }
             }
         });
+        let fields = io.iter().enumerate().map(|(number, it)| {
+            let place = it.units.iter().map(|unit| unit.place.to_string()).collect::<Vec<_>>().join(", ");
+            let place = place.replace("self", "Globals").replace(' ', "");
+            let row = format!(" | {number} | `{}` | {} | `{place}` |", it.address, area_name(it.address.area));
+            quote!(#[doc = #row])
+        });
         quote! {
             #tasks
-            /// The variables at direct addresses; their numbers here are what `Globals::io` takes.
+            /// The variables at direct addresses: inputs, outputs, then memory.
+            ///
+            /// | number | address | area | field |
+            /// |---|---|---|---|
+            #(#fields)*
             pub const IO: &[firmware::Io] = &[#(#rows),*];
         }
     }
@@ -88,7 +98,13 @@ impl Emitter<'_> {
             let unit = Unit { is_enumeration, ..self.unit(quote!(self.#name), self.program.repr(field.ty)?) };
             Some(Io { variable: &field.name, address: field.address?, units: vec![unit], shared: None })
         });
-        own.chain(self.program.aliases.iter().filter_map(|it| self.view(it))).collect()
+        let mut io: Vec<_> = own.chain(self.program.aliases.iter().filter_map(|it| self.view(it))).collect();
+        io.sort_by_key(|it| match it.address.area {
+            Area::Input => 0,
+            Area::Output => 1,
+            Area::Memory => 2,
+        });
+        io
     }
 
     fn unit(&self, place: TokenStream, repr: Repr) -> Unit {
@@ -125,6 +141,24 @@ impl Emitter<'_> {
         let (reads, writes) = (io.iter().map(Io::read), io.iter().map(Io::write));
         let (reading, writing) = (numbers(), numbers());
         quote! {
+            /// Sets each input to the bits that `read` gives for it: before a scan.
+            pub fn read_inputs(&mut self, mut read: impl FnMut(&firmware::Io) -> u64) {
+                for (number, io) in IO.iter().enumerate() {
+                    if io.area == firmware::Area::Input {
+                        self.set_io(number, read(io));
+                    }
+                }
+            }
+
+            /// Hands the bits of each output to `write`: after a scan.
+            pub fn write_outputs(&self, mut write: impl FnMut(&firmware::Io, u64)) {
+                for (number, io) in IO.iter().enumerate() {
+                    if io.area == firmware::Area::Output {
+                        write(io, self.io(number));
+                    }
+                }
+            }
+
             /// The bits of the variable with this number in `IO`, the lowest first; 0 where there is none.
             pub fn io(&self, number: usize) -> u64 {
                 match number { #(#reading => #reads,)* _ => 0 }
@@ -135,6 +169,15 @@ impl Emitter<'_> {
                 match number { #(#writing => #writes,)* _ => {} }
             }
         }
+    }
+}
+
+/// As documentation has it.
+pub fn area_name(area: Area) -> &'static str {
+    match area {
+        Area::Input => "input",
+        Area::Output => "output",
+        Area::Memory => "memory",
     }
 }
 

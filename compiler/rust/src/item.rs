@@ -2,7 +2,7 @@
 
 use proc_macro2::TokenStream;
 use quote::quote;
-use staunch_ir::{ClassKind, EnumId, Field, FieldId, Retain, RoutineId, RoutineKind, Section, StructId, Type};
+use staunch_ir::{Area, ClassKind, EnumId, Field, FieldId, Retain, RoutineId, RoutineKind, Section, StructId, Type};
 
 use crate::alias::Origin;
 use crate::constant::literal;
@@ -111,6 +111,8 @@ impl Emitter<'_> {
     pub fn field_docs(&self, id: StructId, field: &Field) -> TokenStream {
         let is_state = self.program.class_of_state(id).is_some();
         let (what, is_plain) = match field.section {
+            Section::Global if field.address.is_some_and(|it| it.area == Area::Input) => ("Global input", false),
+            Section::Global if field.address.is_some_and(|it| it.area == Area::Output) => ("Global output", false),
             Section::Input => ("Input", false),
             Section::Output => ("Output", false),
             Section::InOut => ("In-out", false),

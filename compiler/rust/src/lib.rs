@@ -18,6 +18,7 @@ mod function;
 mod index_hoist;
 mod item;
 mod loops;
+mod name_table;
 mod place;
 mod retained;
 mod shared;
@@ -42,6 +43,8 @@ pub struct Options {
     pub runtime: String,
     pub shape: Shape,
     pub state: State,
+    /// A table of the variables' names, types and values at run time.
+    pub names: bool,
 }
 
 /// What is in the structures of the emitted text.
@@ -65,7 +68,7 @@ pub enum Shape {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { runtime: "staunch_runtime".to_owned(), shape: Shape::File, state: State::Mapped }
+        Self { runtime: "staunch_runtime".to_owned(), shape: Shape::File, state: State::Mapped, names: false }
     }
 }
 
@@ -108,7 +111,9 @@ pub fn emit(program: &Program, options: &Options) -> String {
     if options.state == State::Lean && !emitter.shared {
         emitter.constants = flash::constants(&emitter);
     }
+    let names = options.names.then(|| emitter.name_table());
     let items = emitter.items();
+    let items = quote!(#items #names);
     let imports = imports(&items, &options.runtime, emitter.shared);
     let body = format!("{}{}", format::format(quote!(#imports #items)), layout_asserts::layout(&emitter));
     let header = header(program);

@@ -46,11 +46,11 @@ const TYPES: &[&str] = &[
 const LOCALS: &[&str] = &["self", "cx", "globals", "out"];
 
 /// Functions and constants of the emitted text's own.
-const FUNCTIONS: &[&str] = &["save_retained", "load_retained", "retained_stamp", "carry_retained"];
-const CONSTANTS: &[&str] = &["FILES", "IO", "TASKS", "RETAINED_SIZE", "RETAINED_PROGRAM"];
+const FUNCTIONS: &[&str] = &["save_retained", "load_retained", "retained_stamp", "carry_retained", "named"];
+const CONSTANTS: &[&str] = &["FILES", "IO", "NAMES", "TASKS", "RETAINED_SIZE", "RETAINED_PROGRAM"];
 
 /// What the functions for retained variables call their own.
-const INSTANCES: &[&str] = &["globals", "bytes", "stamp", "carrier", "element"];
+const INSTANCES: &[&str] = &["globals", "bytes", "stamp", "carrier", "element", "number", "see"];
 
 /// What every structure has.
 const METHODS: &[&str] = &["new", "default", "scan", "prescan"];

@@ -21,6 +21,7 @@ impl Emitter<'_> {
         let state = |id: ClassId| self.names.structure(program.class(id).state);
         let names: Vec<_> = (0..program.instances.len()).map(|at| self.names.instance(at)).collect();
         let types = program.instances.iter().map(|it| state(it.program));
+        let docs = program.instances.iter().map(|it| format!(" PROGRAM `{}`.", it.name));
         let starts = program.instances.iter().map(|it| state(it.program));
         let words = table(program, &self.layout).into_iter().map(Literal::u32_unsuffixed);
         quote! {
@@ -29,7 +30,11 @@ impl Emitter<'_> {
             /// The program's whole state: what references may lead to.
             #[repr(C)]
             #[derive(Clone, Debug, PartialEq)]
-            pub struct Machine { pub globals: #globals, #(pub #names: #types),* }
+            pub struct Machine {
+                /// The global variables.
+                pub globals: #globals,
+                #(#[doc = #docs] pub #names: #types),*
+            }
             reference::shared!(Machine { globals, #(#names),* });
             impl Machine {
                 /// With initial values.

@@ -3,13 +3,13 @@
 
 mod support;
 
-use staunch_rust::State;
-use support::{output_of, output_with};
+use staunch_rust::{Options, State};
+use support::{output_as, output_of, output_with};
 
 const ST: &str = "
 VAR_GLOBAL
-    start AT %IX0.3 : BOOL; speed AT %IW1 : INT; level AT %ID8 : REAL; lamp AT %QX2.0 : BOOL; control AT %QW4 : WORD;
-    big AT %ML2 : LINT; memory : INT;
+    big AT %ML2 : LINT; start AT %IX0.3 : BOOL; speed AT %IW1 : INT; level AT %ID8 : REAL; lamp AT %QX2.0 : BOOL; control AT %QW4 : WORD;
+    memory : INT;
 END_VAR
 PROGRAM Main
 VAR_EXTERNAL start, lamp : BOOL; speed : INT; level : REAL; control : WORD; big : LINT; memory : INT; END_VAR
@@ -32,24 +32,25 @@ END_CONFIGURATION
 /// Sets each input by its address, scans by the table of tasks, and prints each output.
 const MAIN: &str = r#"
 use staunch_runtime::Context;
-use staunch_runtime::firmware::Area;
 
 fn main() {
     let (mut globals, mut line) = (code::Globals::new(), code::Main::new());
     for task in code::TASKS {
         println!("{} {} {:?} {}", task.instance, task.program, task.interval, task.priority);
     }
-    for (number, io) in code::IO.iter().enumerate() {
-        println!("{} {} {} {}", io.address, io.variable, io.bit, io.width);
-        if io.area == Area::Input {
-            globals.set_io(number, u64::from(1.5_f32.to_bits()) * u64::from(io.width == 32) + 0xFFFF_0000_0000_FFFD * u64::from(io.width < 32));
-        }
+    for io in code::IO {
+        println!("{} {} {:?} {} {}", io.address, io.variable, io.area, io.bit, io.width);
     }
+    globals.read_inputs(|io| match io.width {
+        32 => u64::from(1.5_f32.to_bits()),
+        _ => 0xFFFF_0000_0000_FFFD,
+    });
     globals.set_io(99, 1);
     line.scan(&Context::first(0), &mut globals).unwrap();
     for (number, io) in code::IO.iter().enumerate() {
         println!("{} {:x}", io.variable, globals.io(number));
     }
+    globals.write_outputs(|io, bits| println!("{} := {bits}", io.address));
     println!("{} {}", globals.memory, globals.io(99));
     globals.speed = 0;
     println!("{}", line.scan(&Context::at(1), &mut globals).unwrap_err().of(code::FILES));
@@ -61,18 +62,20 @@ fn tasks_addresses_and_faults() {
     let expected = "\
 Line1 Main Some(5000000) 2
 Line2 Main None 9
-%IX0.3 start 3 1
-%IW1 speed 16 16
-%ID8 level 256 32
-%QX2.0 lamp 16 1
-%QW4 control 64 16
-%ML2 big 128 64
+%IX0.3 start Input 3 1
+%IW1 speed Input 16 16
+%ID8 level Input 256 32
+%QX2.0 lamp Output 16 1
+%QW4 control Output 64 16
+%ML2 big Memory 128 64
 start 1
 speed fffd
 level 3fc00000
 lamp 1
 control 7
 big ffffffffffffffff
+%QX2.0 := 1
+%QW4 := 7
 -33 0
 case.st:11:15: division by zero
 ";
@@ -240,3 +243,80 @@ abc! Color(5) 33 1 Point {{ x: 0, y: 2 }} 2
 }
 
 const MAPPED_MAIN: &str = "fn main() { println!(\"{}\", size_of::<code::Globals>()); }";
+
+const NAMED: &str = "
+TYPE Color : (Red, Green := 5); Part : STRUCT number : UINT; row : ARRAY[1..3] OF INT; END_STRUCT; END_TYPE
+VAR_GLOBAL total : LINT := -9; END_VAR
+FUNCTION_BLOCK Station
+VAR_INPUT go : BOOL; END_VAR
+VAR c : CTU; END_VAR
+VAR CONSTANT limit : INT := 3; END_VAR
+c(CU := go, PV := limit);
+END_FUNCTION_BLOCK
+PROGRAM Main
+VAR
+    on : BOOL := TRUE; name : STRING[7] := 'it$'s'; color : Color := Green; level : REAL := 0.1; wait : TIME := T#2ms;
+    parts : ARRAY[0..1] OF Part := [(number := 7), (row := [4, 5, 6])]; stations : ARRAY[1..2] OF Station;
+    matrix : ARRAY[0..1, 1..2] OF SINT := [1, 2, 3, -4];
+END_VAR
+VAR_EXTERNAL total : LINT; END_VAR
+stations[2](go := on); total := total + 0;
+END_PROGRAM
+";
+
+/// Prints every value with its name, as a console of a firmware would.
+const NAMED_MAIN: &str = r#"
+use staunch_runtime::Context;
+
+fn main() {
+    let (mut globals, mut main) = (code::Globals::new(), code::Main::new());
+    main.scan(&Context::first(0), &mut globals).unwrap();
+    for (number, name) in code::NAMES.iter().enumerate() {
+        print!("{} {}:", name.path, name.ty);
+        for element in 0..name.elements + 1 {
+            code::named(number, element, &main, &globals, &mut |value| print!(" {value}"));
+        }
+        println!();
+    }
+    code::named(99, 0, &main, &globals, &mut |_| print!("nothing has this number"));
+}
+"#;
+
+#[test]
+fn names_are_there_at_run_time_when_asked_for() {
+    let expected = "\
+Main.on BOOL: TRUE
+Main.name STRING[7]: 'it\\'s'
+Main.color Color: 5
+Main.level REAL: 0.1
+Main.wait TIME: 2000000
+Main.parts[0..1].number UINT: 7 0
+Main.parts[0..1].row[1..3] INT: 0 0 0 4 5 6
+Main.stations[1..2].go BOOL: FALSE TRUE
+Main.stations[1..2].c.CU BOOL: FALSE TRUE
+Main.stations[1..2].c.R BOOL: FALSE FALSE
+Main.stations[1..2].c.PV INT: 0 3
+Main.stations[1..2].c.Q BOOL: FALSE FALSE
+Main.stations[1..2].c.CV INT: 0 1
+Main.matrix[0..1][1..2] SINT: 1 2 3 -4
+total LINT: -9
+";
+    for (folder, state) in [("named", State::Lean), ("named-mapped", State::Mapped)] {
+        let options = Options { state, names: true, ..Options::default() };
+        assert_eq!(output_as(folder, NAMED, NAMED_MAIN, &options), expected);
+    }
+    // What lies in cells is read out of them; the text of who asks for no names has none.
+    let options = Options { names: true, ..Options::default() };
+    let referred = format!("{NAMED}\n{REFERRED}");
+    assert_eq!(output_as("named-shared", &referred, NAMED_MAIN, &options), expected);
+    assert!(!staunch_rust::emit(&support::program(NAMED), &Options::default()).contains("NAMES"));
+}
+
+/// Turns the program's variables into cells.
+const REFERRED: &str = "
+FUNCTION_BLOCK Refer
+VAR x : INT; p : REF_TO INT; END_VAR
+p := REF(x);
+p^ := 1;
+END_FUNCTION_BLOCK
+";

@@ -1,8 +1,10 @@
 //! What a firmware asks of the program that is compiled into it: what runs when, and which variable lies at
 //! which direct address, and what it retains. Generated Rust holds the tables.
 
+mod named;
 mod retained;
 
+pub use named::{Name, Value};
 pub use retained::{Carried, Carrier, NotRetained, RECORD_OVERHEAD, Stamp, load, save, stamp};
 
 /// A PROGRAM that runs, as its TASK says.

@@ -15,8 +15,8 @@ use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_rt::entry;
 use cortex_m_semihosting::{debug, heprintln, hprintln};
-use plc::Counter;
-use staunch_runtime::firmware::Stamp;
+use plc::{Counter, Globals};
+use staunch_runtime::firmware::{Io, Stamp};
 use staunch_runtime::{Context, Fault};
 use stimulus::Stimulus;
 
@@ -34,7 +34,7 @@ fn main() -> ! {
     match ended {
         Ok(()) => debug::exit(debug::EXIT_SUCCESS),
         Err(fault) => {
-            heprintln!("{:?} in line {}", fault.kind, fault.at.line);
+            heprintln!("{}", fault.of(plc::FILES));
             debug::exit(debug::EXIT_FAILURE);
         }
     }
@@ -43,17 +43,47 @@ fn main() -> ! {
     }
 }
 
+/// The board's pins. Here a line of the stimulus sets the inputs, and a row shows the outputs; a board has
+/// its ports in their place.
+#[derive(Default)]
+struct Pins {
+    inputs: u64,
+    outputs: u64,
+}
+
+impl Pins {
+    /// What is at the address of an input.
+    fn read(&self, io: &Io) -> u64 {
+        self.inputs >> io.bit
+    }
+
+    fn write(&mut self, io: &Io, bits: u64) {
+        let mask = u64::MAX >> (64 - io.width) << io.bit;
+        self.outputs = self.outputs & !mask | bits << io.bit;
+    }
+
+    fn is_set(&self, output: u32) -> bool {
+        self.outputs >> output & 1 == 1
+    }
+}
+
+/// One scan between the pins: inputs by the program's table of addresses, then the program, then the outputs.
+fn scan(counter: &mut Counter, globals: &mut Globals, pins: &mut Pins, cx: &Context) -> Result<(), Fault> {
+    globals.read_inputs(|io| pins.read(io));
+    counter.scan(cx, globals)?;
+    globals.write_outputs(|io, bits| pins.write(io, bits));
+    Ok(())
+}
+
 /// Prints what `staunch run --trace -` prints for the same stimulus.
 fn follow_stimulus() -> Result<(), Fault> {
-    let mut counter = Counter::new();
+    let (mut counter, mut globals, mut pins) = (Counter::new(), Globals::new(), Pins::default());
     hprintln!("scan,time_ms,Arrives,Leaves,NewShift,OnBelt.CV,Shift.CV,Full,Idle,PerMinute");
     let mut now = 0;
-    for (scan, inputs) in (1_u32..).zip(Stimulus::new(STIMULUS)) {
-        counter.arrives = inputs.arrives;
-        counter.leaves = inputs.leaves;
-        counter.new_shift = inputs.new_shift;
-        counter.scan(&Context::new(now, now == 0))?;
-        row(scan, now, &counter);
+    for (number, inputs) in (1_u32..).zip(Stimulus::new(STIMULUS)) {
+        pins.inputs = inputs;
+        scan(&mut counter, &mut globals, &mut pins, &Context::new(now, now == 0))?;
+        row(number, now, &counter, &pins);
         now += CYCLE;
     }
     restart(&mut counter, now);
@@ -75,10 +105,11 @@ fn restart(counter: &mut Counter, now: i64) {
     }
 }
 
-fn row(scan: u32, now: i64, counter: &Counter) {
-    let [arrives, leaves, new_shift, full, idle] =
-        [counter.arrives, counter.leaves, counter.new_shift, counter.full, counter.idle].map(word);
-    let (on_belt, shift, per_minute) = (counter.on_belt.cv, counter.shift.cv, counter.per_minute);
+/// %IX0.0 to %IX0.2, and %QX0.0, %QX0.1 and %QW1, as they are at the pins.
+fn row(scan: u32, now: i64, counter: &Counter, pins: &Pins) {
+    let [arrives, leaves, new_shift] = [0, 1, 2].map(|pin| word(pins.inputs >> pin & 1 == 1));
+    let [full, idle] = [0, 1].map(|output| word(pins.is_set(output)));
+    let (on_belt, shift, per_minute) = (counter.on_belt.cv, counter.shift.cv, (pins.outputs >> 16) as i16);
     let time = now / 1_000_000;
     hprintln!("{scan},{time},{arrives},{leaves},{new_shift},{on_belt},{shift},{full},{idle},{per_minute}");
 }
@@ -95,16 +126,16 @@ fn measure() -> Result<(), Fault> {
     timer.set_reload(0x00FF_FFFF);
     timer.clear_current();
     timer.enable_counter();
-    let mut counter = Counter::new();
+    let (mut counter, mut globals) = (Counter::new(), Globals::new());
     let start = SYST::get_current();
     for scan in 0..MEASURED {
-        counter.arrives = scan & 1 == 0;
-        counter.leaves = scan & 2 == 0;
-        counter.scan(&Context::at(i64::from(scan) * CYCLE))?;
+        globals.arrives = scan & 1 == 0;
+        globals.leaves = scan & 2 == 0;
+        counter.scan(&Context::at(i64::from(scan) * CYCLE), &mut globals)?;
     }
     let ticks = start.wrapping_sub(SYST::get_current()) & 0x00FF_FFFF;
     let instructions = ticks * INSTRUCTIONS_PER_TICK / MEASURED;
-    heprintln!("{instructions} instructions a scan; {} bytes of state", size_of::<Counter>());
+    heprintln!("{instructions} instructions a scan; {} bytes of state", size_of::<Counter>() + size_of::<Globals>());
     Ok(())
 }
 

@@ -2,20 +2,13 @@
 
 use core::str::Lines;
 
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Inputs {
-    pub arrives: bool,
-    pub leaves: bool,
-    pub new_shift: bool,
-}
-
-/// One item a scan, up to the last row's.
+/// The board's pins in each scan, a bit a pin, up to the last row's.
 #[derive(Clone, Debug)]
 pub struct Stimulus<'t> {
     rows: Lines<'t>,
     row: Option<&'t str>,
     scan: u32,
-    inputs: Inputs,
+    pins: u64,
 }
 
 impl<'t> Stimulus<'t> {
@@ -23,29 +16,28 @@ impl<'t> Stimulus<'t> {
         let mut rows = text.lines();
         rows.next();
         let row = rows.next();
-        Self { rows, row, scan: 0, inputs: Inputs::default() }
+        Self { rows, row, scan: 0, pins: 0 }
     }
 }
 
 impl Iterator for Stimulus<'_> {
-    type Item = Inputs;
+    type Item = u64;
 
-    fn next(&mut self) -> Option<Inputs> {
+    fn next(&mut self) -> Option<u64> {
         let row = self.row?;
         self.scan += 1;
         let mut cells = row.split(',');
         let due: u32 = cells.next()?.parse().ok()?;
         if due == self.scan {
-            let Inputs { arrives, leaves, new_shift } = &mut self.inputs;
-            for (input, cell) in [arrives, leaves, new_shift].into_iter().zip(cells) {
+            for (pin, cell) in cells.enumerate() {
                 match cell {
-                    "TRUE" => *input = true,
-                    "FALSE" => *input = false,
+                    "TRUE" => self.pins |= 1 << pin,
+                    "FALSE" => self.pins &= !(1 << pin),
                     _ => {}
                 }
             }
             self.row = self.rows.next();
         }
-        Some(self.inputs)
+        Some(self.pins)
     }
 }

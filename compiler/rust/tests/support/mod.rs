@@ -43,9 +43,14 @@ pub fn output_of(name: &str, st: &str, main: &str) -> String {
 
 /// [`output_of`] with one of the forms of the state.
 pub fn output_with(name: &str, st: &str, main: &str, state: State) -> String {
+    output_as(name, st, main, &Options { state, ..Options::default() })
+}
+
+/// [`output_of`], emitted by `options`.
+pub fn output_as(name: &str, st: &str, main: &str, options: &Options) -> String {
     let program = program(st);
     let folder = folder(name);
-    write_crate(&folder, &program, &emit(&program, &Options { state, ..Options::default() }));
+    write_crate(&folder, &program, &emit(&program, options));
     lint(&folder);
     std::fs::write(folder.join("main.rs"), format!("mod code;\n{main}")).expect("the main's file");
     run_rust(&folder)

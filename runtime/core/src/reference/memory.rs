@@ -190,7 +190,7 @@ fn overlay(whole: &mut [u8], at: usize, bytes: &[u8]) {
 /// Makes a structure of emitted Rust [`Shared`], by its fields.
 #[macro_export]
 macro_rules! shared {
-    ($name:ident { $($field:ident),* }) => {
+    ($name:ident { $($field:ident),* $(,)? }) => {
         impl $crate::reference::Shared for $name {
             fn assign(&self, from: &Self) {
                 $($crate::reference::Shared::assign(&self.$field, &from.$field);)*
