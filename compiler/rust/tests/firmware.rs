@@ -308,7 +308,12 @@ total LINT: -9
     // What lies in cells is read out of them; the text of who asks for no names has none.
     let options = Options { names: true, ..Options::default() };
     let referred = format!("{NAMED}\n{REFERRED}");
-    assert_eq!(output_as("named-shared", &referred, NAMED_MAIN, &options), expected);
+    let main = NAMED_MAIN.replace(
+        "let (mut globals, mut main) = (code::Globals::new(), code::Main::new());",
+        "let machine = code::Machine::new();\n    let (main, globals) = (&machine.main, &machine.globals);",
+    );
+    let main = main.replace("&mut globals)", "&machine)").replace("&main, &globals", "main, globals");
+    assert_eq!(output_as("named-shared", &referred, &main, &options), expected);
     assert!(!staunch_rust::emit(&support::program(NAMED), &Options::default()).contains("NAMES"));
 }
 

@@ -17,6 +17,9 @@ fn every_kind_is_made_where_it_is_asked_for() {
         assert!(folder.0.join(file).metadata().unwrap().len() > 100, "{file}");
     }
     folder.staunch("build main.st --emit nonsense").err(2);
+    folder.staunch("build main.st --emit rust --names -o named.rs -q").out(0);
+    has(&folder.read("named.rs"), &["pub const NAMES", "Main.parts.CV"]);
+    has(&folder.staunch("build main.st --emit map --names").err(2), &["--emit rust"]);
 }
 
 #[test]
