@@ -94,6 +94,11 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
+    /// What a STRING holds that is declared without a length.
+    pub const fn string_capacity(self) -> u16 {
+        if self.is_standard() { 254 } else { 80 }
+    }
+
     /// A PROGRAM may be called by its name, and its variables read.
     pub const fn calls_programs(self) -> bool {
         matches!(self, Self::Codesys)

@@ -8,7 +8,7 @@ mod statement;
 use crate::expr::checker::Checker;
 use crate::expr::uses::Uses;
 use crate::types::declarations::Declarations;
-use crate::{Bodies, Span, ast};
+use crate::{Bodies, Code, Span, ast};
 use staunch_ir::reference::escape::moves_references;
 use staunch_ir::stack;
 use staunch_ir::{Block, Program, Routine, RoutineKind, StatementKind};
@@ -23,21 +23,86 @@ pub(crate) struct Checked {
     pub left_out: Option<Span>,
 }
 
-/// Checks the bodies of all POUs, in the order of their slots. A body that is not kept is let go.
+/// Checks the bodies of all POUs, in the order of their slots, and then those of the instances of generic
+/// FUNCTIONs that they ask for. A body that is not kept is let go.
 pub(crate) fn check<'s>(decl: &mut Declarations<'s>, bodies: &mut [Vec<ast::Statement<'s>>], keep: Bodies) -> Checked {
     let mut checked = Checked { routines: Vec::new(), stacks: Vec::new(), left_out: None };
     for (slot, body) in bodies.iter_mut().enumerate() {
-        let mut made = check_body(decl, slot, body, &mut checked.left_out);
-        let stack = made.as_ref().map_or(0, |(routine, _)| stack::of_body(routine, &|ty| decl.size_at_most(ty)));
-        checked.stacks.push(stack);
+        if decl.is_generic(slot) {
+            checked.push(Some((not_called(decl, slot), Uses::default())), 0);
+            continue;
+        }
+        checked.check(decl, slot, body, keep);
         if keep == Bodies::Dropped {
             body.clear();
+        }
+    }
+    let mut slot = bodies.len();
+    while let Some(instance) = decl.pous.get(slot).and_then(|it| it.instance.as_ref()) {
+        let (of, reported) = (instance.of, decl.log.diagnostics.len());
+        checked.check(decl, slot, &bodies[of], keep);
+        decl.say_of_instance(slot, reported);
+        slot += 1;
+    }
+    let uncalled: Vec<_> = (0..bodies.len()).filter(|it| decl.is_generic(*it) && !decl.has_instances(*it)).collect();
+    uncalled.into_iter().for_each(|it| check_uncalled(decl, it, bodies));
+    checked
+}
+
+impl Checked {
+    fn check<'s>(&mut self, decl: &mut Declarations<'s>, slot: usize, body: &[ast::Statement<'s>], keep: Bodies) {
+        let mut made = check_body(decl, slot, body, &mut self.left_out);
+        let stack = made.as_ref().map_or(0, |(routine, _)| stack::of_body(routine, &|ty| decl.size_at_most(ty)));
+        if keep == Bodies::Dropped {
             made.iter_mut()
                 .for_each(|(routine, _)| routine.body = rest(&decl.program, std::mem::take(&mut routine.body)));
         }
-        checked.routines.push(made);
+        self.push(made, stack);
     }
-    checked
+
+    fn push(&mut self, made: Option<(Routine, Uses)>, stack: u64) {
+        self.routines.push(made);
+        self.stacks.push(stack);
+    }
+}
+
+/// Takes the place of a generic FUNCTION as it is written: its instances are called, it is not.
+fn not_called(decl: &mut Declarations<'_>, slot: usize) -> Routine {
+    let pou = decl.pous[slot].ast;
+    Routine {
+        kind: RoutineKind::Function,
+        name: decl.emitted_name(slot),
+        doc: None,
+        location: decl.location(pou.name.span),
+        state: None,
+        params: Vec::new(),
+        locals: Vec::new(),
+        result: None,
+        body: Block::new(),
+    }
+}
+
+/// A generic FUNCTION that nothing calls: its names have to mean something, whatever its types are.
+fn check_uncalled<'s>(decl: &mut Declarations<'s>, slot: usize, bodies: &[Vec<ast::Statement<'s>>]) {
+    let (reported, known) = (decl.log.diagnostics.len(), decl.pous.len());
+    check_body(decl, slot, &bodies[slot], &mut None);
+    let mut at = known;
+    while let Some(instance) = decl.pous.get(at).and_then(|it| it.instance.as_ref()) {
+        let of = instance.of;
+        check_body(decl, at, &bodies[of], &mut None);
+        at += 1;
+    }
+    decl.forget_instances(known);
+    let is_unsure = decl.log.has_errors_since(reported);
+    if let (true, Some(signature)) = (is_unsure, decl.signature(slot)) {
+        signature.scope.variables.iter().for_each(|it| it.used.set(true));
+    }
+    decl.say_of_generic(reported, |it| is_about_names(it.code));
+}
+
+/// Whether an error is one with all types.
+fn is_about_names(code: Code) -> bool {
+    matches!(code, Code::E0101 | Code::E0108 | Code::E0301 | Code::E0304 | Code::E0305 | Code::E0307 | Code::E0310)
 }
 
 /// What later checks ask of a body: its calls, and the assignments of references.
@@ -68,7 +133,9 @@ fn check_body<'s>(
 ) -> Option<(Routine, Uses)> {
     let pou = decl.pous[slot].ast;
     let signature = decl.signature(slot)?;
+    let is_generic = decl.is_generic(slot) || decl.pous[slot].instance.is_some();
     let mut checker = Checker::of_body(decl, &signature);
+    checker.instance = is_generic.then_some(slot);
     checker.initial_outputs(&signature);
     if pou.kind != ast::PouKind::Action {
         checker.own_enable(&signature, pou.name.span);

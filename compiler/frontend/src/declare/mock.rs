@@ -13,7 +13,8 @@ impl<'s> Declarations<'s> {
     pub(super) fn declare_mocks(&mut self, names: &FxHashSet<Key<'s>>) {
         for slot in 0..self.pous.len() {
             let pou = self.pous[slot].ast;
-            if pou.kind != PouKind::Function || !names.contains(&Key(pou.name.text)) {
+            let is_mocked = names.contains(&Key(pou.name.text)) && !self.is_generic(slot);
+            if pou.kind != PouKind::Function || !is_mocked {
                 continue;
             }
             let Some(result) = self.signature(slot).and_then(|it| it.result.as_ref().map(|it| it.1.ty)) else {

@@ -4,6 +4,7 @@
 
 mod address;
 mod collect;
+mod generic;
 mod global;
 mod image;
 mod initial;
@@ -32,7 +33,7 @@ pub(crate) fn declare<'s>(
     runs: &'s [Run<'s>],
     bodies: &[Vec<ast::Statement<'s>>],
 ) -> Declarations<'s> {
-    let mut declarations = Declarations::new(log);
+    let mut declarations = Declarations::new(log, Declarations::build_signature);
     for (number, file) in files.iter().enumerate() {
         let dialect = declarations.log.read_pragmas(file);
         declarations.program.files[number].system = dialect.family();
@@ -44,6 +45,7 @@ pub(crate) fn declare<'s>(
         declarations.pous.push(PouSlot { run: Some(*instance), ..PouSlot::open(pou) });
     }
     declarations.note_results(bodies);
+    declarations.note_generics();
     declarations.collect_addresses(bodies);
     declarations.resolve_all();
     declarations.find_named_programs(bodies);

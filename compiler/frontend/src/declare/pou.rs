@@ -14,6 +14,7 @@ use std::rc::Rc;
 
 /// A signature while its variables are read.
 struct Builder<'s> {
+    slot: usize,
     scope: Rc<Scope<'s>>,
     fields: Vec<Field>,
     formals: Vec<Formal<'s>>,
@@ -25,7 +26,7 @@ struct Builder<'s> {
 }
 
 impl<'s> Declarations<'s> {
-    pub(super) fn build_signature(&mut self, slot: usize) -> Option<Signature<'s>> {
+    pub(super) fn signature_of(&mut self, slot: usize) -> Option<Signature<'s>> {
         let pou = self.pous[slot].ast;
         let owner = match self.pous[slot].owner {
             Some(owner) => Some(self.signature(owner)?),
@@ -36,6 +37,7 @@ impl<'s> Declarations<'s> {
         }
         let scope = || owner.as_ref().map_or_else(Scope::default, |it| Scope::within(Rc::clone(&it.scope)));
         let mut builder = Builder {
+            slot,
             scope: Rc::new(scope()),
             fields: Vec::new(),
             formals: Vec::new(),
@@ -259,6 +261,9 @@ impl<'s> Declarations<'s> {
             if let Some(early) = builder.scope.constants.as_ref().and_then(|it| it.get(name.text)) {
                 variable.used = Rc::clone(&early.used);
             }
+            if let Some(used) = self.used_in_generic(builder.slot, name.text) {
+                variable.used = used;
+            }
             let scope = Rc::get_mut(&mut builder.scope).expect("no one else holds the scope between declarations");
             self.enter_variable(scope, variable);
         }
@@ -377,7 +382,8 @@ impl<'s> Declarations<'s> {
     ) -> Option<Place> {
         let section = super::variable::section(block.kind);
         let constant = block.kind == VarKind::InOut && block.constant.is_some();
-        let formal = |target| Formal { name, section, constant, resolved: Rc::clone(resolved), target };
+        let word = self.word(&decl.ty);
+        let formal = |target| Formal { name, section, constant, resolved: Rc::clone(resolved), word, target };
         let place = match (pou.kind, block.kind) {
             // A program has one set of variables, so they last anyway.
             (PouKind::Function | PouKind::FunctionBlock | PouKind::Method, VarKind::Stat) => {

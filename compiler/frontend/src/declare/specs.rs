@@ -7,6 +7,7 @@ use crate::expr::unresolved::{block_of_another_dialect, no_such_block};
 use crate::names::{Entry, Found, Meaning, Sense, SpaceId};
 use crate::spelling::{Key, nearest};
 use crate::types::declarations::Declarations;
+use crate::types::generic::class_named;
 use crate::types::scope::Scope;
 use crate::types::table::{PendingReference, Resolved, instance_of, scalar_initial, struct_initial};
 use crate::{Code, Diagnostic, Span};
@@ -141,7 +142,7 @@ impl<'s> Declarations<'s> {
             _ => None,
         };
         if let Some(path) = named
-            && !matches!(path, [name] if Elementary::named(name.text).is_some())
+            && !matches!(path, [name] if Elementary::named(name.text).is_some() || self.class_word(*name).is_some())
         {
             return Some(Resolved::plain(Type::Reference(self.reference_to_named(kind, path, target.span))));
         }
@@ -216,6 +217,9 @@ impl<'s> Declarations<'s> {
             Found::One(Meaning::Declared(Entry::Pou(at))) => self.instance_type(at, name),
             Found::One(Meaning::Block(block)) => Some(block_type(block)),
             Found::One(_) | Found::Nothing | Found::Several(_) => {
+                if let Some(class) = class_named(name.text) {
+                    return self.generic_type(class, name);
+                }
                 self.report_unknown_type(name);
                 None
             }
@@ -268,8 +272,9 @@ impl<'s> Declarations<'s> {
     }
 
     fn string(&mut self, capacity: Option<&'s ast::Expr<'s>>, scope: &Rc<Scope<'s>>, span: Span) -> Option<Resolved> {
-        let default = if self.dialect(span).is_standard() { 254 } else { 80 };
-        let Some(expr) = capacity else { return Some(Resolved::plain(Type::String(default))) };
+        let Some(expr) = capacity else {
+            return Some(Resolved::plain(Type::String(self.dialect(span).string_capacity())));
+        };
         let length = self.constant_integer(expr, scope)?;
         if !(1..=MAX_CAPACITY).contains(&length) {
             self.report(

@@ -116,7 +116,7 @@ pub(crate) fn as_written(given: &[Given<'_, '_>]) -> Vec<usize> {
 }
 
 impl<'s> Checker<'_, 's> {
-    /// Evaluates the next part, a value.
+    /// Evaluates the next part, a value of this type.
     pub(crate) fn value_part(&mut self, parts: &mut Parts, expr: &ast::Expr<'s>, ty: Type, role: Role) -> Option<()> {
         let value = self.after_parts(&mut parts.written, |this| this.value(expr, ty))?;
         parts.push(Held::Value(value), role, expr.span);
@@ -151,25 +151,29 @@ impl<'s> Checker<'_, 's> {
         if formal.constant {
             return self.constant_in_out_part(parts, formal, turn, expr);
         }
-        let found = self.after_parts(&mut parts.written, |this| this.variable_argument(expr, formal.name.text))?;
-        let (place, ty) = (found.place, formal.resolved.ty);
+        let place = self.after_parts(&mut parts.written, |this| this.variable_argument(expr, formal.name.text))?.place;
+        let role = self.in_out_role(formal, &place, turn, expr.span)?;
+        parts.push(Held::Place(place), role, expr.span);
+        Some(())
+    }
+
+    /// What a call does with the variable given for a VAR_IN_OUT.
+    pub(crate) fn in_out_role(&mut self, formal: &Formal<'s>, place: &Place, turn: usize, span: Span) -> Option<Role> {
+        let ty = formal.resolved.ty;
         if let (Type::String(_), Type::String(_)) = (place.ty, ty)
             && place.ty != ty
         {
-            self.note_assigned(&place, expr.span);
-            let copy = self.temporary("text", ty);
-            parts.push(Held::Place(place), Role::Copied(copy), expr.span);
-            return Some(());
+            self.note_assigned(place, span);
+            return Some(Role::Copied(self.temporary("text", ty)));
         }
         if self.decl.program.is_open(ty) {
-            self.takes(formal, place.ty, expr.span)?;
+            self.takes(formal, place.ty, span)?;
         } else if place.ty != ty {
-            self.report_other_type(formal, place.ty, expr.span);
+            self.report_other_type(formal, place.ty, span);
             return None;
         }
-        self.note_passed(&place, expr.span, formal.name.span);
-        parts.push(Held::Place(place), Role::Passed(turn), expr.span);
-        Some(())
+        self.note_passed(place, span, formal.name.span);
+        Some(Role::Passed(turn))
     }
 
     /// Evaluates the next part, what is given for a VAR_IN_OUT CONSTANT: a variable of its type itself, else

@@ -3,6 +3,7 @@
 use super::callee::Callee;
 use super::checker::Checker;
 use super::enable::Enable;
+use super::generic_call::Called;
 use super::operand::Operand;
 use crate::diagnostic::wording::list;
 use crate::spelling::nearest;
@@ -40,7 +41,7 @@ impl<'s> Checker<'_, 's> {
                     self.report(super::unresolved::not_constant(expr.span));
                     return None;
                 }
-                let value = self.call(other, callee, arguments, expr.span)?;
+                let value = self.call(other, callee, arguments, expected, expr.span)?;
                 if value.is_none() {
                     self.report_no_value(callee, expr.span);
                 }
@@ -76,7 +77,7 @@ impl<'s> Checker<'_, 's> {
                 );
             }
             Some(other) => {
-                self.call(other, callee, arguments, expr.span);
+                self.call(other, callee, arguments, None, expr.span);
             }
             None => {}
         }
@@ -96,8 +97,8 @@ impl<'s> Checker<'_, 's> {
             self.report(super::unresolved::not_constant(span));
             return None;
         }
-        let initial = match what {
-            Callee::Function(slot) | Callee::Routine(slot) => self.initial_result(slot, span),
+        let initial = |this: &mut Self, ty| match what {
+            Callee::Function(slot) | Callee::Routine(slot) => this.initial_result(slot, ty, span),
             Callee::Standard(_) | Callee::Instruction(_) | Callee::Instance => None,
         };
         self.enabled_call(enable, initial, span, |this| match what {
@@ -106,7 +107,7 @@ impl<'s> Checker<'_, 's> {
                 this.materialise(value.cut(), expected, span).map(Some)
             }
             Callee::Function(_) | Callee::Instruction(_) | Callee::Instance | Callee::Routine(_) => {
-                this.call(what, callee, arguments, span)
+                this.call(what, callee, arguments, expected, span)
             }
         })
     }
@@ -116,10 +117,14 @@ impl<'s> Checker<'_, 's> {
         what: Callee<'s>,
         callee: &ast::Expr<'s>,
         arguments: &[ast::Argument<'s>],
+        expected: Option<Type>,
         span: Span,
     ) -> Option<Option<staunch_ir::Expr>> {
         match what {
-            Callee::Function(slot) => self.user_function(slot, None, arguments, span),
+            Callee::Function(slot) => {
+                let name = ast::Name { text: self.decl.pous[slot].ast.name.text, span: callee.span };
+                self.user_function(Called { slot, name, expected, span }, None, arguments)
+            }
             Callee::Routine(slot) => self.routine_call(slot, callee, arguments, span),
             Callee::Instruction(name) => self.instruction(name, arguments, span).map(Some),
             Callee::Instance => self.instance_call(callee, arguments, span).map(|()| None),

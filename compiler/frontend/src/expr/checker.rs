@@ -15,6 +15,8 @@ pub(crate) struct Checker<'d, 's> {
     pub scope: Rc<Scope<'s>>,
     /// Of the POU whose body this is; a constant expression has none.
     pub signature: Option<Rc<Signature<'s>>>,
+    /// The slot, where that is an instance of a generic FUNCTION, or such a FUNCTION itself.
+    pub instance: Option<usize>,
     /// The statements made so far for the innermost list; hoisted calls go to its end.
     pub block: Block,
     pub locals: Vec<Local>,
@@ -55,6 +57,7 @@ impl<'d, 's> Checker<'d, 's> {
             decl,
             scope: Rc::clone(scope),
             signature: None,
+            instance: None,
             block: Vec::new(),
             locals: Vec::new(),
             counters: Vec::new(),

@@ -74,7 +74,7 @@ impl<'s> Checker<'_, 's> {
     pub(crate) fn enabled_call(
         &mut self,
         enable: Enable<'_, 's>,
-        initial: Option<Expr>,
+        initial: impl FnOnce(&mut Self, Type) -> Option<Expr>,
         span: Span,
         call: impl FnOnce(&mut Self) -> Option<Option<Expr>>,
     ) -> Option<Option<Expr>> {
@@ -108,7 +108,8 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         if let Some(place) = &result {
-            let initial = initial.filter(|it| it.ty == place.ty).unwrap_or_else(|| self.zero(place.ty, at));
+            let initial = initial(self, place.ty).filter(|it| it.ty == place.ty);
+            let initial = initial.unwrap_or_else(|| self.zero(place.ty, at));
             self.assign(place.clone(), initial, span);
         }
         let condition = Expr::load(enabled, at);

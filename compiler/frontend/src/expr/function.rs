@@ -3,11 +3,13 @@
 use super::argument::{Parts, Role, Source, as_written};
 use super::binding::{Given, Parameter};
 use super::checker::Checker;
+use super::generic_call::Called;
 use super::order::Held;
 use crate::types::signature::{Formal, Signature, Target};
 use crate::types::table::Resolved;
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{Argument, Expr, ExprKind, Mode, ParamId, Place, Root, RoutineId, Section, StatementKind};
+use staunch_ir::{Argument, Expr, ExprKind, Mode, ParamId, Place, Root, RoutineId, Section, StatementKind, Type};
+use std::rc::Rc;
 
 /// What is passed for one parameter.
 enum Passed {
@@ -23,11 +25,11 @@ impl<'s> Checker<'_, 's> {
     /// A call of the FUNCTION in a slot, or of the METHOD on an instance.
     pub(crate) fn user_function(
         &mut self,
-        slot: usize,
+        called: Called<'s>,
         instance: Option<(Place, Span)>,
         arguments: &[ast::Argument<'s>],
-        span: Span,
     ) -> Option<Option<Expr>> {
+        let Called { slot, span, .. } = called;
         let signature = self.decl.signature(slot)?;
         let owner = self.decl.pous[slot].ast.name;
         let formals = &signature.formals;
@@ -43,44 +45,59 @@ impl<'s> Checker<'_, 's> {
         if let Some((place, callee)) = instance {
             parts.push(Held::Place(place), Role::Instance, callee);
         }
+        let mut open = Vec::new();
         let mut passed: Vec<Option<Passed>> = Vec::new();
         passed.resize_with(formals.len(), || None);
+        let mut complete = enough;
         for at in as_written(&given) {
             let number = parts.written.len();
-            let made = match given[at] {
-                Given::Value(expr) => self.given_part(&mut parts, &signature, at, expr),
-                Given::Output { target: Some(target), negated }
+            let made = match (given[at], formals[at].word) {
+                (Given::Value(expr), None) => self.given_part(&mut parts, &signature, at, expr),
+                (Given::Value(expr), Some(word)) => {
+                    self.open_part(&mut parts, &mut open, formals, (at, word), expr, called)
+                }
+                (Given::Output { target: Some(target), negated }, Some(word)) => {
+                    self.open_target(&mut parts, &mut open, (at, word), target, negated)
+                }
+                (Given::Output { target: Some(target), negated }, None)
                     if self.decl.program.is_open(formals[at].resolved.ty) =>
                 {
                     let storage = self.open_output_part(&mut parts, &formals[at], target, negated);
                     passed[at] = storage.map(Passed::Output);
                     passed[at].is_some().then_some(())
                 }
-                Given::Output { target: Some(target), negated } => {
+                (Given::Output { target: Some(target), negated }, None) => {
                     let place = self.temporary(formals[at].name.text, formals[at].resolved.ty);
                     passed[at] = Some(Passed::Output(place.clone()));
                     self.target_part(&mut parts, target, negated, Source::Variable(place))
                 }
-                Given::Nothing | Given::Output { target: None, .. } => None,
+                (Given::Nothing | Given::Output { target: None, .. }, _) => None,
             };
-            if made.is_some() && passed[at].is_none() {
-                passed[at] = Some(Passed::Part(number));
-            } else if made.is_none() {
-                passed[at] = None;
-            }
+            complete &= made.is_some();
+            passed[at].get_or_insert(Passed::Part(number));
         }
+        let missing = (0..formals.len()).filter(|at| matches!(given[*at], Given::Nothing));
+        let missing = missing.filter(|at| formals[*at].section == Section::InOut).count() > 0;
+        let (slot, signature) = if self.decl.is_generic(slot) && complete && !missing {
+            let slot = self.told_instance(&parts, &open, called)?;
+            (slot, self.decl.signature(slot)?)
+        } else {
+            (slot, Rc::clone(&signature))
+        };
         if !enough {
             return None;
         }
-        let mut complete = true;
-        for at in 0..formals.len() {
+        for at in 0..signature.formals.len() {
             if let Given::Nothing | Given::Output { target: None, .. } = given[at] {
                 passed[at] = self.left_out(&signature, at, slot, span);
+                complete &= passed[at].is_some();
             }
-            complete &= passed[at].is_some();
         }
         if !complete {
             return None;
+        }
+        for (at, place) in self.close(&mut parts, open, &signature)? {
+            passed[at] = Some(Passed::Output(place));
         }
         let result = signature.result.as_ref().map(|(_, resolved)| self.temporary(owner.text, resolved.ty));
         let call = |parts: &Parts| {
@@ -154,7 +171,7 @@ impl<'s> Checker<'_, 's> {
         }
         let owner = self.decl.pous[slot].ast.name;
         let (name, refused) = (formal.name.text, self.decl.dialect(span).wants_all_inputs());
-        let ty = self.type_name(formal.resolved.ty);
+        let ty = formal.word.map_or_else(|| self.type_name(formal.resolved.ty), |it| it.name().to_owned());
         let code = if refused { Code::E0303 } else { Code::W0304 };
         let message = format!("this call of `{}` leaves out the input `{name}`", owner.text);
         self.report(
@@ -181,7 +198,11 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// What a FUNCTION's result starts with.
-    pub(crate) fn initial_result(&mut self, slot: usize, span: Span) -> Option<Expr> {
+    pub(crate) fn initial_result(&mut self, slot: usize, ty: Type, span: Span) -> Option<Expr> {
+        if self.decl.is_generic(slot) {
+            let initial = self.decl.start_of(ty);
+            return Some(self.initial_value(&Resolved { ty, initial }, span));
+        }
         let signature = self.decl.signature(slot)?;
         let (_, resolved) = signature.result.as_ref()?;
         Some(self.initial_value(resolved, span))
@@ -196,7 +217,7 @@ impl<'s> Checker<'_, 's> {
             (Const::Scalar(value), _, _) => ExprKind::Const(*value),
             (Const::Zero, Some(repr), _) => ExprKind::Const(repr.zero()),
             (Const::Text(bytes), _, _) => ExprKind::Text(bytes.clone()),
-            (Const::Zero, None, staunch_ir::Type::String(_)) => ExprKind::Text(Vec::new()),
+            (Const::Zero, None, Type::String(_)) => ExprKind::Text(Vec::new()),
             (other, _, _) => ExprKind::Aggregate(other.clone()),
         };
         Expr::new(ty, kind, at)

@@ -1,6 +1,7 @@
 //! Calls of METHODs and ACTIONs: on which instance, and who may make them.
 
 use super::checker::Checker;
+use super::generic_call::Called;
 use super::place::{Access, Found};
 use crate::names::{self, Entry, Meaning, Sense};
 use crate::types::declarations::Slot;
@@ -36,7 +37,9 @@ impl<'s> Checker<'_, 's> {
         match self.decl.pous[slot].ast.kind {
             PouKind::Method => {
                 self.callable(&found, callee.span)?;
-                self.user_function(slot, Some((found.place, callee.span)), arguments, span)
+                let name = ast::Name { text: self.decl.pous[slot].ast.name.text, span: callee.span };
+                let called = Called { slot, name, expected: None, span };
+                self.user_function(called, Some((found.place, callee.span)), arguments)
             }
             PouKind::Action | PouKind::Program | PouKind::FunctionBlock | PouKind::Function | PouKind::Test => {
                 self.user_block(found, slot, arguments, callee.span, span).map(|()| None)

@@ -17,6 +17,7 @@ mod enable;
 mod expression;
 mod fold;
 mod function;
+mod generic_call;
 mod literal;
 mod logix_operands;
 mod method;

@@ -1,5 +1,6 @@
 //! Overloads: the arguments of a call are bound to a signature's parameters, evaluated as they are
-//! written, and brought to the one type `T` that they have in common.
+//! written, and brought to the one type that those have in common which share a generic one. So it is for the
+//! standard's functions, where that type is called `T`, and for a user's, where it is called ANY_NUM.
 
 use super::binding::{Given, Parameter};
 use super::checker::Checker;
@@ -9,6 +10,7 @@ use crate::types::coercion::{as_number, join, join_promoted};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Conversion, Elementary, Expr, ExprKind, Place, Projection, Section, Statement, Type};
 use staunch_runtime::{Class, Kind, Signature};
+use std::borrow::Cow;
 
 /// The operands of a call, in the order of its parameters, and their common type.
 pub(crate) struct Resolved {
@@ -19,7 +21,47 @@ pub(crate) struct Resolved {
     pub operands: Vec<Expr>,
 }
 
+/// What a parameter takes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Takes {
+    Type(Type),
+    /// What other parameters of the call have in common with it; the type that is expected of it.
+    Common(Option<Type>),
+    /// Any type of the class, whatever the others are.
+    Class(Class),
+    /// A character string of any length.
+    Text,
+}
+
+impl Takes {
+    fn of(kind: Kind, common: Option<Type>) -> Self {
+        match kind {
+            Kind::T => Self::Common(common),
+            Kind::Is(ty) => Self::Type(Type::Elementary(ty)),
+            Kind::Any(class) => Self::Class(class),
+            Kind::String => Self::Text,
+        }
+    }
+}
+
 impl<'s> Checker<'_, 's> {
+    /// What is given for a parameter, `parameter` in messages about the callee. What takes a type in common is
+    /// brought to that when all operands are known.
+    pub(crate) fn taken(
+        &mut self,
+        takes: Takes,
+        value: &ast::Expr<'s>,
+        parameter: &str,
+        name: ast::Name<'s>,
+    ) -> Option<Operand> {
+        match takes {
+            Takes::Common(expected) => self.operand(value, expected),
+            Takes::Type(ty) => self.value(value, ty).map(Operand::Typed),
+            Takes::Class(class) => self.of_class(class, value, parameter, name).map(Operand::Typed),
+            Takes::Text => self.text(value, name).map(Operand::Typed),
+        }
+    }
+
     /// Operands of `signature` for the arguments that were bound to its parameters.
     pub(crate) fn resolve(
         &mut self,
@@ -29,20 +71,17 @@ impl<'s> Checker<'_, 's> {
         name: ast::Name<'s>,
     ) -> Option<Resolved> {
         let hint = expected.filter(|it| signature.result == Kind::T && self.admits(signature.class, *it, name.span));
-        let operands = self.as_written(values, |this, at, side| match kind(signature, at) {
-            Kind::T => this.operand(values[at], hint.or(side)),
-            Kind::Is(ty) => this.value(values[at], Type::Elementary(ty)).map(Operand::Typed),
-            Kind::Any(class) => this.of_class(class, values[at], at, signature, name).map(Operand::Typed),
-            Kind::String => this.text(values[at], name).map(Operand::Typed),
+        let operands = self.as_written(values, |this, at, side| {
+            let parameter = parameter_name(signature, at);
+            this.taken(Takes::of(kind(signature, at), hint.or(side)), values[at], &parameter, name)
         })?;
-        let generic = |at: &usize| kind(signature, *at) == Kind::T;
-        let at_t: Vec<_> = (0..values.len()).filter(generic).collect();
-        let ty = match at_t.is_empty() {
+        let at_t = (0..values.len()).filter(|at| kind(signature, *at) == Kind::T);
+        let at_t: Vec<_> = at_t.map(|at| (&operands[at], values[at].span)).collect();
+        let own = match at_t.is_empty() {
             true => Type::BOOL,
-            false => self.common_type(signature, &at_t, &operands, values, hint, name)?,
+            false => self.common_type(signature.class, &at_t, hint, name)?,
         };
-        let own = ty;
-        let ty = self.computed_type(signature.class, own, at_t.iter().map(|at| &operands[*at]), name.span);
+        let ty = self.computed_type(signature.class, own, at_t.iter().map(|it| it.0), name.span);
         let mut done = Vec::new();
         for (at, operand) in operands.into_iter().enumerate() {
             done.push(match (operand, kind(signature, at)) {
@@ -63,7 +102,7 @@ impl<'s> Checker<'_, 's> {
         span: Span,
     ) -> Option<Vec<&'a ast::Expr<'s>>> {
         let names = parameter_names(signature, arguments.len());
-        let names: Vec<_> = names.iter().map(String::as_str).collect();
+        let names: Vec<_> = names.iter().map(|it| &**it).collect();
         let parameters: Vec<_> = names.iter().map(|name| Parameter { name, section: Section::Input }).collect();
         let given = self.bind(name.text, &parameters, arguments, |argument| {
             Diagnostic::new(Code::E0301, argument.span, format!("`{}` has no parameter `{}`", name.text, argument.text))
@@ -126,14 +165,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// An operand of a class by itself, at its own type.
-    fn of_class(
-        &mut self,
-        class: Class,
-        value: &ast::Expr<'s>,
-        at: usize,
-        signature: &Signature,
-        name: ast::Name<'s>,
-    ) -> Option<Expr> {
+    fn of_class(&mut self, class: Class, value: &ast::Expr<'s>, parameter: &str, name: ast::Name<'s>) -> Option<Expr> {
         let expr = match self.operand(value, None)? {
             Operand::Typed(expr) | Operand::Promoted(expr, _) => expr,
             literal @ Operand::Real { .. } if class != Class::Int => {
@@ -145,7 +177,6 @@ impl<'s> Checker<'_, 's> {
             return Some(expr);
         }
         let found = self.type_name(expr.ty);
-        let parameter = &parameter_names(signature, at + 1)[at];
         let message = format!("`{}` takes {} as {parameter}, this is {found}", name.text, wanted(class));
         let mut error = Diagnostic::new(Code::E0201, value.span, message).label(format!("this is {found}"));
         if let Type::Elementary(it) = expr.ty
@@ -158,21 +189,19 @@ impl<'s> Checker<'_, 's> {
         None
     }
 
-    /// The type that all operands that are `T` have in common.
-    fn common_type(
+    /// The type that operands have in common which are of one generic type, each with its place.
+    pub(crate) fn common_type(
         &mut self,
-        signature: &Signature,
-        at_t: &[usize],
-        operands: &[Operand],
-        values: &[&ast::Expr<'s>],
+        class: Class,
+        operands: &[(&Operand, Span)],
         expected: Option<Type>,
         name: ast::Name<'s>,
     ) -> Option<Type> {
         let mut common: Option<Type> = None;
-        for at in at_t {
-            let (Some(own), span) = (operands[*at].ty(), values[*at].span) else { continue };
-            if !self.admits(signature.class, own, span) && !self.becomes_real(signature.class, own, span) {
-                self.report_class(signature.class, own, span, name);
+        for (operand, span) in operands.iter().copied() {
+            let Some(own) = operand.ty() else { continue };
+            if !self.admits(class, own, span) && !self.becomes_real(class, own, span) {
+                self.report_class(class, own, span, name);
                 return None;
             }
             common = Some(match common.map(|so_far| (so_far, self.join_types(so_far, own, span))) {
@@ -184,15 +213,16 @@ impl<'s> Checker<'_, 's> {
                 }
             });
         }
-        let literals = || at_t.iter().map(|at| &operands[*at]);
+        let literals = || operands.iter().map(|it| it.0);
         let ty = match common {
             Some(ty) => widened_by_literals(ty, literals()),
-            None if signature.class == Class::Real => expected.unwrap_or(Type::LREAL),
+            None if class == Class::Real => expected.unwrap_or(Type::LREAL),
             None => literals_type(literals(), expected),
         };
-        let ty = if signature.class == Class::Real { real(ty) } else { ty };
-        if !self.admits(signature.class, ty, name.span) {
-            self.report_class(signature.class, ty, values[at_t[0]].span, name);
+        let ty = if class == Class::Real { real(ty) } else { ty };
+        if !self.admits(class, ty, name.span) {
+            let span = operands.first().map_or(name.span, |it| it.1);
+            self.report_class(class, ty, span, name);
             return None;
         }
         Some(ty)
@@ -217,7 +247,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// The operand at the type that was found for all.
-    fn at_type(&mut self, operand: Operand, ty: Type, span: Span) -> Option<Expr> {
+    pub(crate) fn at_type(&mut self, operand: Operand, ty: Type, span: Span) -> Option<Expr> {
         match operand {
             // The standard's functions of reals take integers too, a LINT as an LREAL.
             Operand::Typed(expr)
@@ -231,7 +261,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// Whether values of `ty` are of the class, also where a dialect mixes bit strings and integers.
-    fn admits(&self, class: Class, ty: Type, span: Span) -> bool {
+    pub(crate) fn admits(&self, class: Class, ty: Type, span: Span) -> bool {
         let mixes = self.decl.dialect(span).mixes_bits_and_integers();
         match ty {
             Type::Elementary(it) | Type::Subrange(it, _) => {
@@ -249,7 +279,7 @@ impl<'s> Checker<'_, 's> {
         class == Class::Real && self.admits(Class::Int, ty, span)
     }
 
-    fn report_class(&mut self, class: Class, found: Type, span: Span, name: ast::Name<'s>) {
+    pub(crate) fn report_class(&mut self, class: Class, found: Type, span: Span, name: ast::Name<'s>) {
         let found = self.type_name(found);
         let message = format!("`{}` takes {}, this is {found}", name.text, wanted(class));
         self.report(Diagnostic::new(Code::E0204, span, message).label(format!("this is {found}")));
@@ -297,18 +327,20 @@ fn kind(signature: &Signature, at: usize) -> Kind {
 }
 
 /// The names of the parameters for so many arguments: IN1, IN2, … go on as long as arguments do.
-fn parameter_names(signature: &Signature, arguments: usize) -> Vec<String> {
-    let mut names: Vec<_> = signature.parameters.iter().map(|it| it.name.to_owned()).collect();
-    if signature.extensible
-        && let Some(last) = signature.parameters.last()
-    {
-        let stem = last.name.trim_end_matches(|it: char| it.is_ascii_digit());
-        let first: usize = last.name[stem.len()..].parse().unwrap_or(0);
-        for extra in names.len()..arguments {
-            names.push(format!("{stem}{}", first + 1 + extra - signature.parameters.len()));
-        }
-    }
-    names
+fn parameter_names(signature: &Signature, arguments: usize) -> Vec<Cow<'static, str>> {
+    let own = signature.parameters.len();
+    let count = if signature.extensible { arguments.max(own) } else { own };
+    (0..count).map(|at| parameter_name(signature, at)).collect()
+}
+
+fn parameter_name(signature: &Signature, at: usize) -> Cow<'static, str> {
+    let Some(extra) = at.checked_sub(signature.parameters.len()) else {
+        return Cow::Borrowed(signature.parameters[at].name);
+    };
+    let last = signature.parameters.last().map_or("", |it| it.name);
+    let stem = last.trim_end_matches(|it: char| it.is_ascii_digit());
+    let number: usize = last[stem.len()..].parse().unwrap_or(0);
+    Cow::Owned(format!("{stem}{}", number + 1 + extra))
 }
 
 /// A class in the words of a message.

@@ -7,7 +7,7 @@ use staunch_ir::Section;
 
 /// Reports them, when all bodies have been checked: a variable may be read from outside as well.
 pub(crate) fn report(decl: &mut Declarations<'_>) {
-    for slot in 0..decl.pous.len() {
+    for slot in (0..decl.pous.len()).filter(|it| decl.pous[*it].instance.is_none()).collect::<Vec<_>>() {
         of_pou(decl, slot);
     }
 }

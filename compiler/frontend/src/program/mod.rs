@@ -73,13 +73,7 @@ impl Declarations<'_> {
     /// Whether runs of a CONFIGURATION hold the PROGRAM in a slot.
     fn is_held(&self, slot: usize) -> bool {
         let name = self.pous[slot].ast.name;
-        self.pous[slot].run.is_none()
-            && self
-                .pous
-                .iter()
-                .rev()
-                .take_while(|it| it.run.is_some())
-                .any(|it| Key(it.ast.name.text) == Key(name.text))
+        self.pous[slot].run.is_none() && self.runs().iter().any(|it| Key(it.ast.name.text) == Key(name.text))
     }
 
     /// The variables of the PROGRAM that a run holds: an in-out is what the run connects it with.

@@ -19,7 +19,8 @@ pub(super) fn order(declarations: &mut Declarations<'_>, uses: Vec<Uses>, stacks
         order = sorted(declarations, &calls)?;
     }
     let is_empty = |it: &Routine| it.kind == RoutineKind::Prescan && it.body.is_empty();
-    order.retain(|at| !is_empty(&declarations.program.routines[*at]));
+    let is_generic = |at: usize| at < declarations.pous.len() && declarations.is_generic(at);
+    order.retain(|at| !is_empty(&declarations.program.routines[*at]) && !is_generic(*at));
     check_stack(declarations, stacks, &calls, &order);
     renumber(declarations, &order);
     Some(())

@@ -1,6 +1,7 @@
 //! What a program declares: what expressions and bodies are checked against.
 
 use super::address::{self, Addresses};
+use super::generic::{Generics, Instance};
 use super::image::Image;
 use super::scope::Variable;
 use super::signature::Signature;
@@ -14,6 +15,7 @@ use crate::spelling::Key;
 use crate::{Code, Diagnostic, Span, ast};
 use rustc_hash::FxHashMap;
 use staunch_ir::{BlockId, Location, Program, Projection, RefKind, RefType, ReferenceId, SourceFile, StructId, Type};
+use staunch_runtime::Class;
 use std::rc::Rc;
 
 /// A declaration, and what it was resolved to.
@@ -41,14 +43,34 @@ pub(crate) struct PouSlot<'s> {
     pub routines: FxHashMap<Key<'s>, usize>,
     /// Of a run that a CONFIGURATION writes: where the CONFIGURATION names it.
     pub run: Option<Span>,
+    /// Of a generic FUNCTION as it is written: the words that its declarations use.
+    pub words: Vec<Class>,
+    /// Of a generic FUNCTION as calls ask for it.
+    pub instance: Option<Instance>,
     pub slot: Slot<Rc<Signature<'s>>>,
 }
 
 impl<'s> PouSlot<'s> {
     pub fn open(ast: &'s ast::Pou<'s>) -> Self {
-        Self { ast, names_itself: false, owner: None, routines: FxHashMap::default(), run: None, slot: Slot::Open }
+        Self {
+            ast,
+            names_itself: false,
+            owner: None,
+            routines: FxHashMap::default(),
+            run: None,
+            words: Vec::new(),
+            instance: None,
+            slot: Slot::Open,
+        }
+    }
+
+    fn is_written(&self) -> bool {
+        self.run.is_none() && self.instance.is_none()
     }
 }
+
+/// Makes the signature of the POU in a slot.
+type BuildSignature<'s> = fn(&mut Declarations<'s>, usize) -> Option<Signature<'s>>;
 
 pub(crate) struct GlobalSlot<'s> {
     /// The list that it is in, or the root.
@@ -76,10 +98,13 @@ pub(crate) struct Declarations<'s> {
     pub table: Table<'s>,
     /// What references to named types point to is known.
     pub settled: bool,
+    pub generics: Generics,
+    /// A call asks for an instance of a generic FUNCTION, whose signature is made as all are: by a layer above.
+    pub build_signature: BuildSignature<'s>,
 }
 
 impl<'s> Declarations<'s> {
-    pub fn new(log: Log<'s>) -> Self {
+    pub fn new(log: Log<'s>, build_signature: BuildSignature<'s>) -> Self {
         // A pragma may say another.
         let system = log.options.dialect.family();
         let files = log.sources.files().iter().map(|it| SourceFile { path: it.path.clone(), system }).collect();
@@ -97,17 +122,26 @@ impl<'s> Declarations<'s> {
             program: empty_program(files),
             table: Table::default(),
             settled: false,
+            generics: Generics::default(),
+            build_signature,
         }
     }
 
-    /// The POUs that the source writes, in its order; runs of a CONFIGURATION come after them.
+    /// The POUs that the source writes, in its order; runs of a CONFIGURATION come after them, and then instances of
+    /// generic FUNCTIONs.
     pub fn written_pous(&self) -> &[PouSlot<'s>] {
-        &self.pous[..self.pous.partition_point(|it| it.run.is_none())]
+        &self.pous[..self.pous.partition_point(PouSlot::is_written)]
+    }
+
+    /// The POUs that runs of a CONFIGURATION are.
+    pub fn runs(&self) -> &[PouSlot<'s>] {
+        let others = &self.pous[self.written_pous().len()..];
+        &others[..others.partition_point(|it| it.run.is_some())]
     }
 
     /// Whether a name is that of the PROGRAM in a run of a CONFIGURATION.
     pub fn is_run(&self, program: Span) -> bool {
-        self.pous.iter().rev().take_while(|it| it.run.is_some()).any(|it| it.ast.name.span == program)
+        self.runs().iter().any(|it| it.ast.name.span == program)
     }
 
     pub fn report(&mut self, diagnostic: Diagnostic) {
@@ -132,7 +166,10 @@ impl<'s> Declarations<'s> {
 
     /// The name that a POU has for back ends: a TEST has a title, which is none.
     pub fn emitted_name(&self, slot: usize) -> String {
-        let pou = self.pous[slot].ast;
+        let PouSlot { ast: pou, instance, .. } = &self.pous[slot];
+        if let Some(instance) = instance {
+            return instance.name.clone();
+        }
         match pou.kind {
             ast::PouKind::Test => format!("__test_{slot}"),
             ast::PouKind::Program

@@ -3,7 +3,9 @@
 pub(crate) mod address;
 pub(crate) mod coercion;
 pub(crate) mod declarations;
+pub(crate) mod generic;
 pub(crate) mod image;
+pub(crate) mod instances;
 pub(crate) mod scope;
 pub(crate) mod signature;
 mod storage;

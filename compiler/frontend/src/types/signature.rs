@@ -4,6 +4,7 @@ use super::scope::Scope;
 use super::table::Resolved;
 use crate::ast;
 use staunch_ir::{BlockId, FieldId, Local, LocalId, Param, Place, Section, StructId};
+use staunch_runtime::Class;
 use std::rc::Rc;
 
 /// A formal parameter, in declaration order.
@@ -14,6 +15,8 @@ pub(crate) struct Formal<'s> {
     /// Of a VAR_IN_OUT CONSTANT, which is only read.
     pub constant: bool,
     pub resolved: Rc<Resolved>,
+    /// Of a generic FUNCTION: the word that its type is.
+    pub word: Option<Class>,
     pub target: Target,
 }
 

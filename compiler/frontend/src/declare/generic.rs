@@ -1,0 +1,134 @@
+//! Generic FUNCTIONs: which there are, and what their declarations have to say so that each call tells the types.
+
+use crate::ast::{self, PouKind, VarKind};
+use crate::diagnostic::wording::article;
+use crate::types::declarations::Declarations;
+use crate::types::generic::names_in;
+use crate::types::instances::is_about_types;
+use crate::types::signature::Signature;
+use crate::types::table::Resolved;
+use crate::{Code, Diagnostic};
+use staunch_runtime::Class;
+
+impl<'s> Declarations<'s> {
+    /// Which FUNCTIONs are generic: those whose declarations use ANY, ANY_NUM and the like.
+    pub(super) fn note_generics(&mut self) {
+        for slot in 0..self.pous.len() {
+            let pou = self.pous[slot].ast;
+            if pou.kind == PouKind::Function {
+                self.pous[slot].words = self.words_in(pou);
+            }
+        }
+    }
+
+    fn words_in(&self, pou: &ast::Pou<'s>) -> Vec<Class> {
+        let declared = pou.blocks.iter().flat_map(|it| &it.vars).map(|it| &it.ty);
+        let mut names = Vec::new();
+        declared.chain(&pou.result).for_each(|it| names_in(it, &mut names));
+        let mut words = Vec::new();
+        for word in names.into_iter().filter_map(|it| self.class_word(*it)) {
+            if !words.contains(&word) {
+                words.push(word);
+            }
+        }
+        words
+    }
+
+    /// The signature of the POU in a slot, in which words mean what they do there.
+    pub(super) fn build_signature(&mut self, slot: usize) -> Option<Signature<'s>> {
+        let pou = self.pous[slot].ast;
+        let words = self.words_of(slot);
+        if words.is_empty() {
+            return self.signature_of(slot);
+        }
+        let is_generic = self.is_generic(slot);
+        if is_generic {
+            self.check_generic(pou)?;
+        }
+        let reported = self.log.diagnostics.len();
+        self.generics.words = words;
+        let signature = self.signature_of(slot);
+        self.generics.words = Vec::new();
+        if is_generic {
+            // Whether a value fits is known when a type is.
+            self.say_of_generic(reported, |it| !is_about_types(it.code));
+        }
+        signature
+    }
+
+    /// Reports the first word that no call gives a type, or that is where it cannot be.
+    fn check_generic(&mut self, pou: &ast::Pou<'s>) -> Option<()> {
+        let told: Vec<_> = pou
+            .blocks
+            .iter()
+            .filter(|it| matches!(it.kind, VarKind::Input | VarKind::InOut) && it.constant.is_none())
+            .flat_map(|it| &it.vars)
+            .filter_map(|it| self.word(&it.ty))
+            .collect();
+        let result = pou.result.iter().map(|it| (None, it));
+        let declared = pou.blocks.iter().flat_map(|block| block.vars.iter().map(move |it| (Some(block), &it.ty)));
+        for (block, ty) in declared.chain(result) {
+            let mut names = Vec::new();
+            names_in(ty, &mut names);
+            let Some((name, class)) = names.into_iter().find_map(|it| Some((*it, self.class_word(*it)?))) else {
+                continue;
+            };
+            if let Some(wrong) = self.wrong_word(block, ty, name, class, &told) {
+                self.report(wrong);
+                return None;
+            }
+        }
+        Some(())
+    }
+
+    fn wrong_word(
+        &self,
+        block: Option<&ast::VarBlock<'s>>,
+        ty: &ast::TypeSpec<'s>,
+        name: ast::Name<'s>,
+        class: Class,
+        told: &[Class],
+    ) -> Option<Diagnostic> {
+        let kind = block.map(|it| it.kind);
+        let error = |message: String| Diagnostic::new(Code::E0411, name.span, message);
+        let is_seen = kind.is_none_or(|it| matches!(it, VarKind::Input | VarKind::Output | VarKind::InOut));
+        if is_seen && self.word(ty).is_none() {
+            let error = error(format!("`{}` is the type of a whole parameter or result", name.text));
+            return Some(error.label("this is a part of one"));
+        }
+        if let Some(VarKind::Stat | VarKind::External | VarKind::Global) = kind {
+            let word = self.log.sources.text(block.map_or(name.span, |it| it.span));
+            let error = error(format!("a variable of {word} has one type, in all calls"));
+            return Some(error.label(format!("`{}` is another one in each", name.text)));
+        }
+        if kind == Some(VarKind::InOut) && block.is_some_and(|it| it.constant.is_some()) {
+            let error = error(format!("a VAR_IN_OUT CONSTANT is not of type {}", name.text));
+            return Some(error.label("a generic type belongs to an input here").help("declare it in VAR_INPUT"));
+        }
+        if !told.contains(&class) {
+            let error = error(format!("no call tells which type `{}` is", name.text));
+            let error = error.label("no input and no in-out is of this type");
+            return Some(match told.first() {
+                Some(told) => {
+                    error.help(format!("write `{}`, or give the FUNCTION an input of this type", told.name()))
+                }
+                None => error.help("give the FUNCTION an input of this type"),
+            });
+        }
+        None
+    }
+
+    /// The type that a word means in the FUNCTION that is declared; elsewhere it means none.
+    pub(super) fn generic_type(&mut self, class: Class, name: ast::Name<'s>) -> Option<Resolved> {
+        if let Some(ty) = self.type_of_word(class) {
+            return Some(Resolved { ty, initial: self.start_of(ty) });
+        }
+        let what = article(class.name());
+        self.report(
+            Diagnostic::new(Code::E0411, name.span, format!("`{}` is a generic type, of a FUNCTION only", name.text))
+                .label(format!("nothing says which type {what} is here"))
+                .help("write the type that is meant, or make this a FUNCTION whose inputs are generic"),
+        );
+        None
+    }
+}
