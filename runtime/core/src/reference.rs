@@ -7,8 +7,9 @@
 //! that all fault alike.
 //!
 //! Numbers may be viewed as bytes and as one another, in the machine's byte order; a BOOL as a byte that is
-//! 0 or not. A string is viewed as its characters with a zero after the last one, from position 0.
-//! Enumerations, subranges, references and the insides of standard blocks are viewed as what they are.
+//! 0 or not. A string is viewed as its characters with a zero after the last one, from position 0. Numbers side by
+//! side in a structure may be viewed as one; a byte between members is 0, and takes no write. Enumerations are
+//! viewed as what they are, and as bytes; subranges, references and standard blocks as what they are.
 
 mod memory;
 mod table;
@@ -91,6 +92,14 @@ impl<'t> Table<'t> {
                 memory.read(at, out);
                 out.iter_mut().for_each(|it| *it = u8::from(*it != 0));
             }
+            Part::Spread { at } => {
+                for (at, byte) in (at..).zip(out.chunks_mut(1)) {
+                    byte.fill(0);
+                    if self.is_number(at) {
+                        memory.read(at, byte);
+                    }
+                }
+            }
             Part::Characters { text, capacity, index } => {
                 out.iter_mut().for_each(|it| *it = character(memory, text, capacity, index));
             }
@@ -137,6 +146,11 @@ impl<'t> Table<'t> {
         match self.part(bits, distance, view)? {
             Part::Bytes { at, .. } => memory.write(at, bytes),
             Part::Truth { at } => memory.write(at, &[u8::from(first != 0)]),
+            Part::Spread { at } => {
+                for (at, byte) in (at..).zip(bytes.chunks(1)).filter(|(at, _)| self.is_number(*at)) {
+                    memory.write(at, byte);
+                }
+            }
             Part::Characters { text, capacity, index } => set_character(memory, text, capacity, index, first)?,
         }
         Ok(())
@@ -152,7 +166,7 @@ impl<'t> Table<'t> {
     ) -> Result<(), FaultKind> {
         match self.part(bits, distance, View::Text)? {
             Part::Bytes { at, rest } => put_characters(at..at + rest, memory, out),
-            Part::Truth { .. } => return Err(FaultKind::ForbiddenView),
+            Part::Truth { .. } | Part::Spread { .. } => return Err(FaultKind::ForbiddenView),
             Part::Characters { text, capacity, index } => {
                 let start = text + HEADER + usize::from(index.min(capacity));
                 put_characters(start..text + HEADER + usize::from(length(memory, text).min(capacity)), memory, out);
@@ -178,7 +192,7 @@ impl<'t> Table<'t> {
                     memory.write(at + count, &[0]);
                 }
             }
-            Part::Truth { .. } => return Err(FaultKind::ForbiddenView),
+            Part::Truth { .. } | Part::Spread { .. } => return Err(FaultKind::ForbiddenView),
             Part::Characters { text, capacity, index } => {
                 let index = index.min(capacity);
                 clear_from(memory, text, index);

@@ -23,6 +23,9 @@ impl<'s> Checker<'_, 's> {
         if let Some(value) = self.reference_function(callee, arguments, expr.span) {
             return value;
         }
+        if let Some(value) = self.memory_function(callee, arguments, expr.span) {
+            return value;
+        }
         if let Some(value) = self.bound_function(callee, arguments, expr.span) {
             return value;
         }
@@ -56,6 +59,9 @@ impl<'s> Checker<'_, 's> {
         callee: &ast::Expr<'s>,
         arguments: &[ast::Argument<'s>],
     ) {
+        if self.memory_function(callee, arguments, expr.span).is_some() {
+            return;
+        }
         let what = self.checked_callee(callee, arguments);
         if let Some(what) = &what
             && !matches!(what, Callee::Standard(_))

@@ -20,6 +20,7 @@ mod function;
 mod generic_call;
 mod literal;
 mod logix_operands;
+mod memory;
 mod method;
 mod migration;
 mod open_array;

@@ -156,8 +156,10 @@ impl<'p> Builder<'p> {
             Type::Elementary(it) => self.push(vec![numbers(it.repr()), size, encode::repr(it.repr()), 0]),
             Type::String(capacity) => self.push(vec![encode::TEXT, size, u32::from(capacity), 0]),
             Type::Enum(_) | Type::Subrange(..) | Type::Reference(_) | Type::Block(_) => {
+                // Nothing trusts the number of an enumeration.
+                let as_bytes = u32::from(matches!(ty, Type::Enum(_)));
                 let id = exact(self.program, ty);
-                self.push(vec![encode::EXACT, size, id, 0])
+                self.push(vec![encode::EXACT, size, id, as_bytes])
             }
             Type::Array(id) => self.array(id, ty, size),
             Type::Struct(id) => {

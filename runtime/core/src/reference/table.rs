@@ -48,6 +48,8 @@ pub enum Part {
     Bytes { at: usize, rest: usize },
     /// The byte of a BOOL.
     Truth { at: usize },
+    /// Bytes of several numbers, and such as belong to no variable: those are 0, and take no write.
+    Spread { at: usize },
     /// The characters of the string at an offset of the state, from this one on.
     Characters { text: usize, capacity: u16, index: u16 },
 }
@@ -86,7 +88,7 @@ pub mod encode {
 /// |---|---|---|---|
 /// | `NUMBERS`, `TRUTHS` | the repr | | |
 /// | `TEXT` | the capacity | | |
-/// | `EXACT` | the type's number | | |
+/// | `EXACT` | the type's number | 1 if it may be seen as bytes, too | |
 /// | `ARRAY` | the type's number | the element's size | the element's node; the kind and the repr of the numbers that it consists of, through all dimensions |
 /// | `STRUCTURE` | the type's number | the number of members | for each its offset and node |
 #[derive(Clone, Copy, Debug)]
@@ -145,21 +147,23 @@ impl<'t> Table<'t> {
     /// What lies at `distance` bytes from where a reference points, as `view` wants to see it.
     pub fn part(&self, bits: u64, distance: u64, view: View) -> Result<Part, FaultKind> {
         let (offset, rest) = self.locate(bits, distance)?;
-        let found = self.leaf(offset).ok_or(FaultKind::ForbiddenView)?;
+        let Some(found) = self.leaf(offset) else { return self.spread(offset, rest, view) };
         let index = offset - found.start;
         let left = found.node.size - index;
         match (found.node.kind, view) {
+            (encode::TEXT, View::Number(1)) if index > found.node.first as usize && rest > left => {
+                Ok(Part::Spread { at: offset })
+            }
             (encode::TEXT, View::Number(1) | View::Text) => self.characters(found, index),
             (encode::NUMBERS, View::Number(size)) => {
-                let size = size as usize;
-                if offset.checked_rem(size) != Some(0) {
-                    return Err(FaultKind::MisalignedReference);
+                let fits = size as usize <= left.min(rest) && offset.checked_rem(size as usize) == Some(0);
+                if fits {
+                    Ok(Part::Bytes { at: offset, rest: left.min(rest) })
+                } else {
+                    self.spread(offset, rest, view)
                 }
-                if left < size || rest < size {
-                    return Err(if rest < size { FaultKind::OutsideObject } else { FaultKind::ForbiddenView });
-                }
-                Ok(Part::Bytes { at: offset, rest: left.min(rest) })
             }
+            (encode::EXACT, View::Number(1)) if found.node.second == 1 => Ok(Part::Bytes { at: offset, rest: left }),
             (encode::NUMBERS, View::Truth) | (encode::TRUTHS, View::Truth | View::Number(1)) => {
                 Ok(Part::Truth { at: offset })
             }
@@ -169,6 +173,32 @@ impl<'t> Table<'t> {
             }
             _ => Err(FaultKind::ForbiddenView),
         }
+    }
+
+    /// A number across several variables, which are all numbers, and the bytes between them.
+    fn spread(&self, offset: usize, rest: usize, view: View) -> Result<Part, FaultKind> {
+        let View::Number(size) = view else { return Err(FaultKind::ForbiddenView) };
+        let size = size as usize;
+        if offset.checked_rem(size) != Some(0) {
+            return Err(FaultKind::MisalignedReference);
+        }
+        if rest < size {
+            return Err(FaultKind::OutsideObject);
+        }
+        let mut at = offset;
+        while at < offset + size {
+            at = match self.leaf(at) {
+                None => at + 1,
+                Some(found) if found.node.kind == encode::NUMBERS => found.start + found.node.size,
+                Some(_) => return Err(FaultKind::ForbiddenView),
+            };
+        }
+        Ok(Part::Spread { at: offset })
+    }
+
+    /// Whether the byte is a number's.
+    pub(super) fn is_number(&self, offset: usize) -> bool {
+        self.leaf(offset).is_some_and(|it| it.node.kind == encode::NUMBERS)
     }
 
     fn characters(&self, found: Found, index: usize) -> Result<Part, FaultKind> {
