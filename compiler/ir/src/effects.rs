@@ -7,11 +7,12 @@
 
 mod variables;
 
+use crate::faults::{Faults, op_faults};
 use crate::loops::{Known, checked_locals, constant_position};
 use crate::visit::{self, Access};
 use crate::{
-    Argument, ArrayId, Class, ClassKind, Expr, ExprKind, FieldId, For, LocalId, Op, ParamId, Place, Program,
-    Projection, Root, Routine, RoutineId, RoutineKind, Statement, StatementKind, StructId, Type, reference,
+    Argument, ArrayId, Class, ClassKind, Expr, ExprKind, FieldId, For, LocalId, Op, ParamId, Place, Program, Root,
+    Routine, RoutineId, RoutineKind, Statement, StatementKind, StructId, Type, reference,
 };
 use std::collections::BTreeSet;
 
@@ -107,9 +108,15 @@ impl<'a> Finder<'a> {
     }
 
     fn statement(&mut self, statement: &'a Statement) {
-        visit::values(statement, &mut |it| self.expr(it));
+        visit::values(statement, &mut |it| {
+            self.effects.faults |= self.asked(&|faults| faults.expr(it));
+            self.expr(it);
+        });
         visit::accesses(statement, &mut |place, access| self.touches(place, access));
-        visit::targets(statement, &mut |it| self.place(it));
+        visit::targets(statement, &mut |it| {
+            self.effects.faults |= self.asked(&|faults| faults.place(it));
+            self.place(it);
+        });
         match &statement.kind {
             StatementKind::Call { callee, instance, arguments, .. } => {
                 self.callee(*callee);
@@ -246,6 +253,7 @@ impl<'a> Finder<'a> {
         }
     }
 
+    /// What an expression makes or follows references to.
     fn expr(&mut self, expr: &Expr) {
         match &expr.kind {
             ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => {}
@@ -254,41 +262,38 @@ impl<'a> Finder<'a> {
                 self.place(place);
                 self.effects.reaches = true;
             }
-            ExprKind::Apply(op, operands) => {
+            ExprKind::Apply(_, operands) | ExprKind::ApplyText(_, operands) => {
                 operands.iter().for_each(|it| self.expr(it));
-                self.effects.faults |= (self.rules.operation_faults)(self.program, *op, operands);
             }
-            ExprKind::ApplyText(_, operands) => operands.iter().for_each(|it| self.expr(it)),
             ExprKind::Convert(_, operand) => self.expr(operand),
         }
+    }
+
+    fn place(&mut self, place: &Place) {
+        place.indices().for_each(|it| self.expr(it));
+        if place.is_followed() {
+            self.reaches_any();
+        }
+    }
+
+    /// What is known of faults here.
+    fn asked(&self, question: &dyn Fn(Faults<'_>) -> bool) -> bool {
+        let is_within = |index: &Expr, array: Option<ArrayId>| {
+            let Some(array) = array else { return false };
+            let is_constant = constant_position(self.program, index, array).is_some();
+            is_constant || self.rules.drops_checks && self.is_within(index, array)
+        };
+        question(Faults {
+            program: self.program,
+            root_type: &|root| self.program.root_type(self.routine, root),
+            is_within: &is_within,
+            operation: self.rules.operation_faults,
+        })
     }
 
     fn is_within(&self, index: &Expr, array: ArrayId) -> bool {
         let checked = |id: LocalId| self.effects.checked[id.index()];
         Known { program: self.program, loops: &self.loops, checked: &checked }.is_within(index, array)
-    }
-
-    /// Finding a place may fault at each of its indices.
-    fn place(&mut self, place: &Place) {
-        let mut ty = self.program.root_type(self.routine, place.root);
-        for projection in &place.projections {
-            ty = match (projection, ty) {
-                (Projection::Field(field), Some(whole)) => self.program.member(whole, *field),
-                (Projection::Index { index, .. }, Some(Type::Array(id))) => {
-                    self.expr(index);
-                    let constant = constant_position(self.program, index, id).is_some();
-                    let dropped = self.rules.drops_checks && self.is_within(index, id);
-                    self.effects.faults |= !constant && !dropped;
-                    Some(self.program.array(id).element)
-                }
-                (Projection::Deref { target, .. }, _) => {
-                    self.effects.faults = true;
-                    self.reaches_any();
-                    Some(*target)
-                }
-                (Projection::Field(_) | Projection::Index { .. }, _) => None,
-            };
-        }
     }
 }
 
@@ -299,7 +304,7 @@ impl Rules {
             let Type::Block(id) = block.ty else { unreachable!("verified IR: a block is called") };
             id.info().instructions[instruction].needs_context
         },
-        operation_faults: visit::op_faults,
+        operation_faults: op_faults,
         drops_checks: false,
         scans_take_all: false,
     };

@@ -31,6 +31,7 @@ pub mod verify;
 
 pub mod alias;
 pub mod effects;
+pub mod faults;
 pub mod interpret;
 pub mod layout;
 pub mod loops;

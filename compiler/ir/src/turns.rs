@@ -3,7 +3,9 @@
 
 use crate::alias::{self, Frame};
 use crate::loops::{Known, exit_condition, is_private};
-use crate::{Expr, ExprKind, For, Location, Op, Place, RoutineId, Statement, StatementKind, Step, Value, visit};
+use crate::{
+    Expr, ExprKind, For, Location, Op, Place, RoutineId, Statement, StatementKind, Step, Value, faults, visit,
+};
 
 /// Whether a block, or what it calls, takes turns.
 pub fn takes_turns(block: &[Statement], callee_does: &dyn Fn(RoutineId) -> bool) -> bool {
@@ -90,8 +92,8 @@ pub fn linear<'a>(
         let (counter, bound, ahead, offset) = compared(others.remove(at))?;
         let (steps, step) = only_step(frame, body, counter)?;
         let toward = (step > 0) == ahead && !alias::changes(frame, body, bound);
-        let fits = !visit::expr_faults(known.program, bound) && never_wraps(known, counter, bound, offset + step);
-        let others_hold = others.iter().all(|it| !visit::expr_faults(known.program, it));
+        let fits = !faults::expr_faults(known.program, bound) && never_wraps(known, counter, bound, offset + step);
+        let others_hold = others.iter().all(|it| !faults::expr_faults(known.program, it));
         (toward && fits && others_hold).then_some(Linear {
             counter,
             step,

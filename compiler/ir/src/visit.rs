@@ -1,6 +1,6 @@
 //! The walks over statements, places and expressions, in the order of evaluation.
 
-use crate::{Argument, Expr, ExprKind, Op, Place, Program, Projection, Repr, Statement, StatementKind, Step};
+use crate::{Argument, Expr, ExprKind, Place, Projection, Statement, StatementKind, Step};
 
 /// What a statement does with a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -254,39 +254,5 @@ pub fn statements<'a>(block: &'a [Statement], see: &mut dyn FnMut(&'a Statement)
     for statement in block {
         see(statement);
         statement.kind.blocks().into_iter().for_each(|inner| statements(inner, see));
-    }
-}
-
-/// Whether evaluating `expr` can fault.
-pub fn expr_faults(program: &Program, expr: &Expr) -> bool {
-    match &expr.kind {
-        ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => false,
-        ExprKind::Load(place) => place_faults(program, place),
-        ExprKind::AddressOf(place) => place_faults(program, place),
-        ExprKind::Apply(op, operands) => {
-            op_faults(program, *op, operands) || operands.iter().any(|it| expr_faults(program, it))
-        }
-        ExprKind::ApplyText(_, operands) => operands.iter().any(|it| expr_faults(program, it)),
-        ExprKind::Convert(_, value) => expr_faults(program, value),
-    }
-}
-
-/// The division of reals is IEEE's, and never faults.
-pub fn op_faults(program: &Program, op: Op, operands: &[Expr]) -> bool {
-    let real = operands.first().and_then(|it| program.repr(it.ty)).is_some_and(Repr::is_float);
-    op.can_fault() && !(real && matches!(op, Op::Div))
-}
-
-/// Whether finding `place` can fault.
-pub fn place_faults(program: &Program, place: &Place) -> bool {
-    place.projections.iter().any(|projection| projection_faults(program, projection))
-}
-
-/// An index that is a constant has been checked.
-pub fn projection_faults(program: &Program, projection: &Projection) -> bool {
-    match projection {
-        Projection::Field(_) => false,
-        Projection::Deref { .. } => true,
-        Projection::Index { index, .. } => index.as_const().is_none() || expr_faults(program, index),
     }
 }

@@ -9,7 +9,7 @@ use crate::constant::{literal, plain};
 use crate::function::Function;
 use crate::names::ident;
 use crate::precedence::{Code, Level};
-use staunch_ir::visit;
+use staunch_ir::faults;
 
 impl Function<'_> {
     /// An expression where its type is known from the surroundings.
@@ -114,7 +114,7 @@ impl Function<'_> {
 
     /// `a && b` where `b` cannot fault, so that nobody can tell whether it was evaluated.
     fn logical(&self, op: Op, operands: &[Expr]) -> Code {
-        if visit::expr_faults(self.emitter.program, &operands[1]) {
+        if faults::expr_faults(self.emitter.program, &operands[1]) {
             return self.operator(op, operands);
         }
         let (a, b) = (self.expr(&operands[0]), self.expr(&operands[1]));

@@ -8,7 +8,7 @@ use crate::constant::{number, signed};
 use crate::function::Function;
 use crate::names::ident;
 use crate::precedence::{Code, Level};
-use staunch_ir::visit;
+use staunch_ir::faults;
 
 impl Function<'_> {
     /// The place, as what an assignment, a borrow or a method call takes. A parameter's own name
@@ -112,7 +112,7 @@ impl Function<'_> {
             (Projection::Index { index, .. }, Type::Array(id)) => self.subscript(index, *id).is_none(),
             _ => true,
         });
-        found.any(|(projection, _)| visit::projection_faults(self.emitter.program, projection))
+        found.any(|(projection, _)| faults::projection_faults(self.emitter.program, projection))
     }
 
     fn root(&self, root: Root) -> TokenStream {

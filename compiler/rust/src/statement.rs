@@ -11,7 +11,7 @@ use crate::constant::{literal, plain};
 use crate::function::Function;
 use crate::names::ident;
 use crate::precedence::Level;
-use staunch_ir::visit;
+use staunch_ir::faults;
 
 impl Function<'_> {
     pub fn block(&mut self, block: &Block) -> TokenStream {
@@ -103,7 +103,7 @@ impl Function<'_> {
         }
         let printed = self.expr(value).tokens;
         // Rust evaluates the value before the target's subscripts; the first fault wins here.
-        if self.place_faults(target) && visit::expr_faults(self.emitter.program, value) {
+        if self.place_faults(target) && faults::expr_faults(self.emitter.program, value) {
             let mut before = Vec::new();
             let place = self.fixed_place(target, &mut before);
             return quote!(#(#before)* #place = #printed;);

@@ -8,7 +8,7 @@ use crate::constant::number;
 use crate::function::Function;
 use crate::names::ident;
 use crate::precedence::{Code, Level};
-use staunch_ir::visit;
+use staunch_ir::faults;
 
 impl Function<'_> {
     /// A string as `&Text`.
@@ -105,7 +105,7 @@ impl Function<'_> {
         let (mut before, mut arguments) = (Vec::new(), Vec::new());
         for operand in operands {
             // Each is printed once, or a long nest of them would be printed without end.
-            if !visit::expr_faults(self.emitter.program, operand) {
+            if !faults::expr_faults(self.emitter.program, operand) {
                 arguments.push(print(operand));
                 continue;
             }

@@ -3,6 +3,7 @@
 
 use super::checker::Checker;
 use staunch_ir::alias::{self, Frame};
+use staunch_ir::faults::{Faults, op_faults};
 use staunch_ir::loops::Known;
 use staunch_ir::{
     ArrayId, Conversion, Elementary, Expr, ExprKind, Local, LocalId, Location, Op, Place, Projection, Root, Statement,
@@ -247,35 +248,21 @@ impl Checker<'_, '_> {
     }
 
     pub(crate) fn can_fault(&self, expr: &Expr) -> bool {
-        match &expr.kind {
-            ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => false,
-            ExprKind::Load(place) => self.place_can_fault(place),
-            ExprKind::AddressOf(place) => self.place_can_fault(place),
-            ExprKind::Apply(op, operands) => op.can_fault() || operands.iter().any(|it| self.can_fault(it)),
-            ExprKind::ApplyText(_, operands) => operands.iter().any(|it| self.can_fault(it)),
-            ExprKind::Convert(_, inner) => self.can_fault(inner),
-        }
+        self.asked(&|faults| faults.expr(expr))
     }
 
     fn place_can_fault(&self, place: &Place) -> bool {
-        let Some(mut ty) = self.root_type(place.root) else { return false };
-        for projection in &place.projections {
-            ty = match (projection, ty) {
-                (Projection::Index { index, .. }, Type::Array(id)) => {
-                    if !self.is_inside(index, id) || self.can_fault(index) {
-                        return true;
-                    }
-                    self.decl.program.array(id).element
-                }
-                (Projection::Field(field), ty) => match self.decl.program.member(ty, *field) {
-                    Some(member) => member,
-                    None => return false,
-                },
-                (Projection::Deref { .. }, _) => return true,
-                (Projection::Index { .. }, _) => return false,
-            };
-        }
-        false
+        self.asked(&|faults| faults.place(place))
+    }
+
+    /// What is known of faults here.
+    fn asked(&self, question: &dyn Fn(Faults<'_>) -> bool) -> bool {
+        question(Faults {
+            program: &self.decl.program,
+            root_type: &|root| self.root_type(root),
+            is_within: &|index, array| array.is_none_or(|it| self.is_inside(index, it)),
+            operation: op_faults,
+        })
     }
 
     /// Whether an index is known to lie within the array's bounds.

@@ -8,7 +8,7 @@ use super::operand::Operand;
 use super::operator::beside;
 use crate::types::coercion::{as_number, join, join_promoted};
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{Conversion, Elementary, Expr, ExprKind, Place, Projection, Section, Statement, Type};
+use staunch_ir::{Conversion, Elementary, Expr, Section, Type};
 use staunch_runtime::{Class, Kind, Signature};
 use std::borrow::Cow;
 
@@ -156,11 +156,10 @@ impl<'s> Checker<'_, 's> {
     /// Evaluates now what may fault, in this order: before a branch that uses one of the operands, or
     /// where an operation would take them in another order.
     pub(crate) fn fault_in_order<'e>(&mut self, operands: impl Iterator<Item = &'e mut Expr>) {
-        for expr in operands.filter(|it| can_fault(it)) {
-            let place = self.temporary("saved", expr.ty);
-            let at = expr.at;
-            let value = std::mem::replace(expr, Expr::load(place.clone(), at));
-            self.block.push(Statement::assign(place, value, at));
+        for expr in operands {
+            if self.can_fault(expr) {
+                self.save("saved", expr);
+            }
         }
     }
 
@@ -419,17 +418,5 @@ fn value_of<'a, 's>(given: &Given<'a, 's>) -> Option<&'a ast::Expr<'s>> {
     match given {
         Given::Value(expr) => Some(expr),
         Given::Nothing | Given::Output { .. } => None,
-    }
-}
-
-fn can_fault(expr: &Expr) -> bool {
-    let indexed = |place: &Place| place.projections.iter().any(|it| !matches!(it, Projection::Field(_)));
-    match &expr.kind {
-        ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => false,
-        ExprKind::Load(place) => indexed(place),
-        ExprKind::AddressOf(place) => indexed(place),
-        ExprKind::Apply(op, operands) => op.can_fault() || operands.iter().any(can_fault),
-        ExprKind::ApplyText(_, operands) => operands.iter().any(can_fault),
-        ExprKind::Convert(_, inner) => can_fault(inner),
     }
 }
