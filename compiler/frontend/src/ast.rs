@@ -23,6 +23,24 @@ pub struct File<'s> {
     pub items: Vec<Item<'s>>,
     /// Every `{…}` in the file, in order, without its braces.
     pub pragmas: Vec<Name<'s>>,
+    /// The file as a whole, then the NAMESPACEs and POUs in it that change what a name means.
+    pub regions: Vec<Region<'s>>,
+}
+
+/// `A.B.C`
+pub type Path<'s> = Vec<Name<'s>>;
+
+/// A stretch of a file in which a name may mean more than around it. What a NAMESPACE holds is among the
+/// items of the file: where an item is says whose it is.
+#[derive(Clone, Debug)]
+pub struct Region<'s> {
+    /// Of a NAMESPACE; what a file or a POU holds is in the namespace around it.
+    pub path: Path<'s>,
+    /// Of a NAMESPACE INTERNAL.
+    pub internal: bool,
+    /// What its USING directives name.
+    pub uses: Vec<Path<'s>>,
+    pub span: Span,
 }
 
 impl<'s> File<'s> {
@@ -235,6 +253,8 @@ pub struct EnumValue<'s> {
 #[derive(Clone, Debug)]
 pub struct TypeDecl<'s> {
     pub name: Name<'s>,
+    /// In a `TYPE INTERNAL`.
+    pub internal: bool,
     pub ty: TypeSpec<'s>,
     pub initial: Option<Initial<'s>>,
     pub doc: Option<String>,
@@ -293,6 +313,8 @@ pub struct Task<'s> {
 pub struct ProgramInstance<'s> {
     pub name: Name<'s>,
     pub task: Option<Name<'s>>,
+    /// The namespace that its PROGRAM is in, as far as it is written.
+    pub namespace: Path<'s>,
     pub program: Name<'s>,
     /// What its parameters are connected with.
     pub connections: Vec<Argument<'s>>,
@@ -384,6 +406,30 @@ pub struct Label<'s> {
 pub struct Expr<'s> {
     pub kind: ExprKind<'s>,
     pub span: Span,
+}
+
+impl<'s> Expr<'s> {
+    /// The first name of a path.
+    pub(crate) fn first_name(&self) -> Option<Name<'s>> {
+        match &self.kind {
+            ExprKind::Name(name) => Some(*name),
+            ExprKind::Member(owner, _) => owner.first_name(),
+            _ => None,
+        }
+    }
+
+    /// `a.b.c`, where it is that: names and points.
+    pub(crate) fn path(&self) -> Option<Path<'s>> {
+        match &self.kind {
+            ExprKind::Name(name) => Some(vec![*name]),
+            ExprKind::Member(owner, name) => {
+                let mut path = owner.path()?;
+                path.push(*name);
+                Some(path)
+            }
+            _ => None,
+        }
+    }
 }
 
 impl Expr<'_> {

@@ -1,4 +1,4 @@
-//! Errors that follow from a construct that is refused by its name: what a PROPERTY, NAMESPACE or base class
+//! Errors that follow from a construct that is refused by its name: what a PROPERTY or base class
 //! would declare is not known, and that is said once, where the construct is.
 
 use crate::diagnostic::{Code, Diagnostic};
@@ -6,12 +6,8 @@ use crate::source::{Sources, Span};
 use rustc_hash::FxHashSet;
 
 /// Constructs that declare names, with what ends them.
-const DECLARING: [(&str, &str); 4] = [
-    ("PROPERTY", "END_PROPERTY"),
-    ("INTERFACE", "END_INTERFACE"),
-    ("CLASS", "END_CLASS"),
-    ("NAMESPACE", "END_NAMESPACE"),
-];
+const DECLARING: [(&str, &str); 3] =
+    [("PROPERTY", "END_PROPERTY"), ("INTERFACE", "END_INTERFACE"), ("CLASS", "END_CLASS")];
 
 /// Takes out what follows from the constructs that are refused.
 pub(crate) fn remove(sources: &Sources, diagnostics: &mut Vec<Diagnostic>) {

@@ -32,6 +32,7 @@ mod mock;
 mod statement;
 
 mod configuration;
+mod namespace;
 mod routine;
 mod unit;
 
@@ -77,15 +78,17 @@ pub fn parse<'s>(file: u16, text: &'s str, diagnostics: &mut Vec<Diagnostic>) ->
         misaligned: None,
         orphaned: false,
         nested: Vec::new(),
+        regions: vec![namespace::file(file, text)],
+        around: vec![0],
         ended: false,
     };
     let items = parse_items(&mut state);
-    let (mut found, braces) = (state.diagnostics, state.braces);
+    let (mut found, braces, regions) = (state.diagnostics, state.braces, state.regions);
     found.append(&mut tokens.diagnostics);
     found.sort_by_key(|it| (it.span.start, it.span.end));
     diagnostics.append(&mut found);
     tokens.pragmas.retain(|it| !braces.contains(&it.span));
-    File { items, pragmas: tokens.pragmas }
+    File { items, pragmas: tokens.pragmas, regions }
 }
 
 fn parse_items<'t, 's>(state: &mut State<'t, 's>) -> Vec<crate::ast::Item<'s>> {

@@ -123,7 +123,7 @@ impl<'s> Checker<'_, 's> {
 
     /// Whether the user has a variable or a POU of that name.
     fn is_declared(&self, name: ast::Name<'s>) -> bool {
-        self.scope.get(name.text).is_some() || self.decl.declared(self.scope.space, name).is_some()
+        self.scope.get(name.text).is_some() || self.decl.declared(name).is_some()
     }
 
     fn outside_of_a_test(&mut self, name: ast::Name<'s>) {

@@ -5,28 +5,60 @@ use crate::dialect::Dialect;
 use crate::names::{Entry, SpaceId};
 use crate::spelling::Key;
 use crate::types::declarations::{Declarations, GlobalSlot, PouSlot, Slot, TypeSlot};
-use crate::{Code, Diagnostic, ast};
+use crate::{Code, Diagnostic, Span, ast};
 
 impl<'s> Declarations<'s> {
-    pub(super) fn collect(&mut self, file: &'s ast::File<'s>) {
+    /// The namespaces of all files, and what is used where.
+    pub(super) fn collect_namespaces(&mut self, files: &'s [ast::File<'s>]) {
+        let mut regions = Vec::new();
+        for file in files {
+            let lists = self.lists(file);
+            regions.push(self.names.add_file(file, &lists));
+        }
+        for (region, id) in files.iter().zip(&regions).flat_map(|(file, ids)| file.regions.iter().zip(ids)) {
+            for path in &region.uses {
+                let Some(last) = path.last() else { continue };
+                let site = self.site(last.span);
+                if !self.names.use_space(*id, site, path) {
+                    self.report_unknown_namespace(path);
+                }
+            }
+        }
+    }
+
+    /// Where each list of global variables is.
+    fn lists(&mut self, file: &'s ast::File<'s>) -> Vec<(Span, SpaceId)> {
         let mut lists = Lists::of(self, file);
+        let mut stretches = Vec::new();
+        for item in &file.items {
+            match item {
+                ast::Item::Pou(pou) => lists.end(pou.span),
+                ast::Item::Globals(block) => {
+                    let last = block.vars.last().map_or(block.span, |it| it.span);
+                    let list = lists.around(block.span).map(|it| self.names.list(it));
+                    stretches.extend(list.map(|it| (block.span.to(last), it)));
+                }
+                ast::Item::Types(_) | ast::Item::Configuration(_) | ast::Item::Test(_) => {}
+            }
+        }
+        stretches
+    }
+
+    pub(super) fn collect(&mut self, file: &'s ast::File<'s>) {
         for item in &file.items {
             match item {
                 ast::Item::Types(decls) => decls.iter().for_each(|decl| self.collect_type(decl)),
                 ast::Item::Pou(pou) => {
-                    lists.end(pou.span);
                     self.pous.push(PouSlot::open(pou));
                     let slot = self.pous.len() - 1;
                     // Nobody names a test.
                     if pou.kind != ast::PouKind::Test {
-                        self.enter(SpaceId::ROOT, pou.name, Entry::Pou(slot));
+                        let internal = matches!(pou.modifiers.access, Some((ast::Access::Internal, _)));
+                        self.enter(pou.name, Entry::Pou(slot), internal);
                     }
                     pou.routines.iter().for_each(|it| self.collect_routine(slot, it));
                 }
-                ast::Item::Globals(block) => {
-                    let list = lists.around(block.span).map(|it| self.names.list(it));
-                    self.collect_globals(list.unwrap_or_default(), block);
-                }
+                ast::Item::Globals(block) => self.collect_globals(block),
                 ast::Item::Configuration(it) => self.collect_configuration(it),
                 // They have become POUs, or are not wanted.
                 ast::Item::Test(_) => {}
@@ -56,7 +88,7 @@ impl<'s> Declarations<'s> {
 
     fn collect_type(&mut self, decl: &'s ast::TypeDecl<'s>) {
         let slot = self.types.len();
-        self.enter(SpaceId::ROOT, decl.name, Entry::Type(slot));
+        self.enter(decl.name, Entry::Type(slot), decl.internal);
         self.names.unread.extend(decl.unread.iter().map(|it| Key(it.text)));
         if let ast::TypeKind::Enum { values, .. } = &decl.ty.kind {
             for value in values {
@@ -66,12 +98,13 @@ impl<'s> Declarations<'s> {
         self.types.push(TypeSlot { decl, slot: Slot::Open });
     }
 
-    fn collect_globals(&mut self, space: SpaceId, block: &'s ast::VarBlock<'s>) {
+    fn collect_globals(&mut self, block: &'s ast::VarBlock<'s>) {
         self.check_retain_once(block);
         for decl in &block.vars {
             self.check_one_name(decl);
             for name in &decl.names {
-                self.enter(space, *name, Entry::Global(self.globals.len()));
+                let space = self.names.space_of(name.span);
+                self.enter(*name, Entry::Global(self.globals.len()), false);
                 self.globals.push(GlobalSlot { space, name: *name, block, decl, slot: Slot::Open });
             }
         }
@@ -79,13 +112,11 @@ impl<'s> Declarations<'s> {
 
     fn collect_configuration(&mut self, configuration: &'s ast::Configuration<'s>) {
         let resources = configuration.resources.iter().flat_map(|it| &it.globals);
-        for block in configuration.globals.iter().chain(resources) {
-            self.collect_globals(SpaceId::ROOT, block);
-        }
+        configuration.globals.iter().chain(resources).for_each(|it| self.collect_globals(it));
     }
 
-    /// Enters a name in a namespace; the first declaration of a name wins.
-    fn enter(&mut self, space: SpaceId, name: ast::Name<'s>, entry: Entry) {
+    /// Enters a name in the namespace around it; the first declaration of a name wins.
+    fn enter(&mut self, name: ast::Name<'s>, entry: Entry, internal: bool) {
         if staunch_ir::Elementary::named(name.text).is_some() {
             self.error(Code::E0104, name.span, format!("`{}` is the name of an elementary type", name.text));
             return;
@@ -95,8 +126,17 @@ impl<'s> Declarations<'s> {
             return;
         }
         self.check_spelling(name);
+        let space = self.names.space_of(name.span);
+        if self.names.inner_named(space, name.text) && !matches!(entry, Entry::Global(_)) {
+            let full = self.names.in_full(space, name.text);
+            self.report(
+                Diagnostic::new(Code::E0103, name.span, format!("`{full}` is a NAMESPACE already"))
+                    .label("a namespace and what is beside it have different names"),
+            );
+            return;
+        }
         let Some(first) = self.clash(space, name.text, entry) else {
-            self.names.insert(space, name.text, entry);
+            self.names.insert(space, name.text, entry, internal);
             return;
         };
         let first = self.span_of(first);
@@ -106,13 +146,26 @@ impl<'s> Declarations<'s> {
     /// What is in the way of a new name. A global may have the name of a type, `motor : Motor`, and two
     /// lists may have variables of one name; but a list's is not hidden by what the root has.
     fn clash(&self, space: SpaceId, name: &str, entry: Entry) -> Option<Entry> {
-        let root = self.names.root(name).unwrap_or_default();
+        let around = self.names.is_list(space).then_some(SpaceId::ROOT);
+        let root = around.and_then(|it| self.names.own(it, name)).unwrap_or_default();
         let own = self.names.own(space, name).unwrap_or_default();
         let lists = if space == SpaceId::ROOT { self.names.in_lists(name) } else { &[] };
         let known = [own.value, own.ty, root.value, root.ty].into_iter().flatten().chain(lists.iter().map(|it| it.1));
         let is_global = |it| matches!(it, Entry::Global(_));
         let may_share = |it| is_global(it) && self.is_type(entry) || is_global(entry) && self.is_type(it);
         known.into_iter().find(|it| !may_share(*it))
+    }
+
+    fn report_unknown_namespace(&mut self, path: &[ast::Name<'s>]) {
+        let (Some(first), Some(last)) = (path.first(), path.last()) else { return };
+        let full = path.iter().map(|it| it.text).collect::<Vec<_>>().join(".");
+        let error = Diagnostic::new(Code::E0102, first.span.to(last.span), format!("there is no namespace `{full}`"))
+            .label("no file of the program declares it");
+        let near = crate::spelling::nearest(&full, self.names.namespaces()).map(str::to_owned);
+        self.report(match near {
+            Some(near) => error.help(format!("did you mean `{near}`?")).fix(first.span.to(last.span), near),
+            None => error,
+        });
     }
 
     /// Reports a name with underlines where the standard has none.
@@ -143,7 +196,7 @@ impl<'s> Declarations<'s> {
     }
 }
 
-fn declared_twice(name: ast::Name<'_>, first: crate::Span) -> Diagnostic {
+fn declared_twice(name: ast::Name<'_>, first: Span) -> Diagnostic {
     Diagnostic::new(Code::E0103, name.span, format!("`{}` is declared twice", name.text))
         .label("declared again here")
         .other(first, "first declared here")

@@ -8,9 +8,9 @@ use std::rc::Rc;
 
 impl<'s> Declarations<'s> {
     pub(super) fn global_variable(&mut self, at: usize) -> Option<Variable<'s>> {
-        let GlobalSlot { space, name, block, decl, .. } = self.globals[at];
+        let GlobalSlot { name, block, decl, .. } = self.globals[at];
         let reported = self.log.diagnostics.len();
-        let resolved = self.declared_type(decl, &Rc::new(Scope::of(space)), name.text)?;
+        let resolved = self.declared_type(decl, &Rc::new(Scope::default()), name.text)?;
         if block.constant.is_some() && self.log.has_errors_since(reported) {
             return None;
         }

@@ -40,6 +40,7 @@ impl<'s> Lists<'s> {
         };
         let spans: Option<Vec<_>> = file.items.iter().map(globals).collect();
         if let Some([first, ..]) = spans.as_deref()
+            && file.regions.len() <= 1
             && declarations.dialect(*first) == Dialect::Codesys
         {
             let path = declarations.log.sources.get(first.file).path.as_str();

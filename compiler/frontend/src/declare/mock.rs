@@ -1,7 +1,7 @@
 //! The globals behind the FUNCTIONs that a unit test replaces.
 
 use crate::ast::{self, PouKind};
-use crate::names::{Entry, SpaceId};
+use crate::names::Entry;
 use crate::spelling::Key;
 use crate::types::declarations::Declarations;
 use crate::types::tests::FunctionMock;
@@ -44,7 +44,7 @@ impl<'s> Declarations<'s> {
 
     /// The mock of a FUNCTION.
     pub(crate) fn mock_of(&self, name: ast::Name<'s>) -> Option<FunctionMock> {
-        let Some(Entry::Pou(slot)) = self.declared(SpaceId::ROOT, name) else { return None };
+        let Some(Entry::Pou(slot)) = self.declared(name) else { return None };
         self.tests.mocks.get(&slot).cloned()
     }
 }

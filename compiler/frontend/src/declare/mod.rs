@@ -38,6 +38,7 @@ pub(crate) fn declare<'s>(
         let dialect = declarations.log.read_pragmas(file);
         declarations.program.files[number].system = dialect.family();
     }
+    declarations.collect_namespaces(files);
     for file in files {
         declarations.collect(file);
     }

@@ -1,7 +1,7 @@
 //! PROGRAMs that others name: such a one does not run by itself. It has one instance, which the globals
 //! hold under its name.
 
-use crate::names::{Entry, SpaceId};
+use crate::names::{Entry, Found, Meaning, Sense};
 use crate::types::declarations::Declarations;
 use crate::types::scope::Variable;
 use crate::types::synthetic::NamedProgram;
@@ -24,12 +24,13 @@ impl<'s> Declarations<'s> {
                     ast::ExprKind::Call(callee, _) => (callee.bare(), true),
                     _ => (it, false),
                 };
-                if let ast::ExprKind::Name(name) = &callee.kind
-                    && let Some(Entry::Pou(slot)) = self.declared(SpaceId::ROOT, *name)
+                if let Some(path) = callee.path()
+                    && let [first, ..] = path.as_slice()
+                    && signature.scope.get(first.text).is_none()
+                    && let Found::One(Meaning::Declared(Entry::Pou(slot))) = self.lookup(&path, Sense::Value)
                     && self.pous[slot].ast.kind == ast::PouKind::Program
-                    && signature.scope.get(name.text).is_none()
                 {
-                    found.push((slot, name.span, is_called));
+                    found.push((slot, callee.span, is_called));
                 }
             });
             for (slot, span, is_called) in found {

@@ -3,7 +3,7 @@
 //! is not resolved yet has found a circle.
 
 use crate::ast::{self, ExprKind, InitialKind, TypeKind};
-use crate::names::{Entry, Found, Meaning, Sense, SpaceId};
+use crate::names::{Entry, Found, Meaning, Sense};
 use crate::spelling::Key;
 use crate::types::declarations::Declarations;
 use rustc_hash::FxHashSet;
@@ -41,11 +41,7 @@ fn visit(declarations: &Declarations<'_>, start: Entry, seen: &mut FxHashSet<Ent
 }
 
 fn needs(declarations: &Declarations<'_>, entry: Entry) -> std::vec::IntoIter<Entry> {
-    let space = match entry {
-        Entry::Global(at) => declarations.globals[at].space,
-        Entry::Type(_) | Entry::Pou(_) => SpaceId::ROOT,
-    };
-    let mut needs = Needs { declarations, space, own: FxHashSet::default(), found: Vec::new() };
+    let mut needs = Needs { declarations, own: FxHashSet::default(), found: Vec::new() };
     match entry {
         Entry::Type(at) => {
             let decl = declarations.types[at].decl;
@@ -67,8 +63,6 @@ fn needs(declarations: &Declarations<'_>, entry: Entry) -> std::vec::IntoIter<En
 /// What one declaration needs, in the order of its text.
 struct Needs<'d, 's> {
     declarations: &'d Declarations<'s>,
-    /// The namespace around it.
-    space: SpaceId,
     /// The variables of the POU itself: their names mean nothing outside.
     own: FxHashSet<Key<'s>>,
     found: Vec<Entry>,
@@ -98,7 +92,7 @@ impl<'s> Needs<'_, 's> {
 
     fn spec(&mut self, spec: &ast::TypeSpec<'s>) {
         match &spec.kind {
-            TypeKind::Named(path) => path.last().into_iter().for_each(|it| self.type_name(*it)),
+            TypeKind::Named(path) => self.path(path, Sense::Type),
             TypeKind::String { capacity, .. } => capacity.iter().for_each(|it| self.expr(it)),
             TypeKind::Subrange { base, low, high } => {
                 self.type_name(*base);
@@ -147,12 +141,8 @@ impl<'s> Needs<'_, 's> {
                 self.type_name(*name);
             }
             ExprKind::Literal(ast::Literal { prefix: Some(prefix), .. }) => self.type_name(**prefix),
-            // `GVL.x`
-            ExprKind::Member(owner, name) => {
-                if let ExprKind::Name(owner) = &owner.kind {
-                    self.path(&[*owner, *name], Sense::Value);
-                }
-            }
+            // `GVL.x`, `Plant.Color.Red`
+            ExprKind::Member(..) => it.path().iter().for_each(|it| self.value_path(it)),
             ExprKind::Literal(_)
             | ExprKind::Address(_)
             | ExprKind::Part(..)
@@ -171,8 +161,16 @@ impl<'s> Needs<'_, 's> {
     }
 
     fn path(&mut self, path: &[ast::Name<'s>], sense: Sense) {
-        match self.declarations.lookup(self.space, path, sense) {
+        match self.declarations.lookup(path, sense) {
             Found::One(Meaning::Declared(entry)) => self.found.push(entry),
+            Found::One(_) | Found::Nothing | Found::Several(_) => {}
+        }
+    }
+
+    fn value_path(&mut self, path: &[ast::Name<'s>]) {
+        match self.declarations.lookup(path, Sense::Value) {
+            Found::One(Meaning::Declared(entry)) => self.found.push(entry),
+            Found::One(Meaning::Enumerator(slot)) => self.found.push(Entry::Type(slot)),
             Found::One(_) | Found::Nothing | Found::Several(_) => {}
         }
     }
@@ -183,7 +181,7 @@ impl<'s> Needs<'_, 's> {
         if self.own.contains(&key) {
             return;
         }
-        let global = self.declarations.declared(self.space, name).filter(|it| matches!(it, Entry::Global(_)));
+        let global = self.declarations.declared(name).filter(|it| matches!(it, Entry::Global(_)));
         let types = self.declarations.names.enumerators.get(&key).into_iter().flatten();
         self.found.extend(global.into_iter().chain(types.map(|at| Entry::Type(*at))));
     }

@@ -81,7 +81,7 @@ fn run<'s>(instance: &ast::ProgramInstance<'s>, trigger: Option<&ast::Expr<'s>>)
     let named = |text| expr(ExprKind::Name(name(text)));
     let statement = |kind| ast::Statement { kind, span };
     let call = |text, arguments| statement(StatementKind::Expr(expr(ExprKind::Call(Box::new(named(text)), arguments))));
-    let mut vars = vec![variable(PROGRAM, vec![instance.program])];
+    let mut vars = vec![variable(PROGRAM, [instance.namespace.as_slice(), &[instance.program]].concat())];
     let mut body = vec![call(PROGRAM, instance.connections.clone())];
     if let Some(trigger) = trigger {
         vars.push(variable(EDGE, vec![name("IEC"), name("R_TRIG")]));

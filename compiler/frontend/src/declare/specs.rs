@@ -4,7 +4,7 @@ use crate::ast::{self, Bound, TypeKind};
 use crate::diagnostic::wording::list;
 use crate::dialect;
 use crate::expr::unresolved::{block_of_another_dialect, no_such_block};
-use crate::names::{Entry, Found, Meaning, Sense, SpaceId};
+use crate::names::{Entry, Found, Meaning, Sense};
 use crate::spelling::{Key, nearest};
 use crate::types::declarations::Declarations;
 use crate::types::generic::class_named;
@@ -62,7 +62,7 @@ impl<'s> Declarations<'s> {
         let decl = self.types[at].decl;
         let scope = Rc::new(Scope::default());
         let doc = decl.doc.clone();
-        let mut resolved = self.resolve_type_named(&decl.ty, &scope, decl.name.text, doc)?;
+        let mut resolved = self.resolve_type_named(&decl.ty, &scope, &self.name_in_full(decl.name), doc)?;
         if let Some(initial) = &decl.initial {
             resolved.initial = self.initial(initial, &resolved, &scope)?;
         }
@@ -155,6 +155,7 @@ impl<'s> Declarations<'s> {
             it.kind == kind
                 && it.path.len() == path.len()
                 && it.path.iter().zip(path).all(|(a, b)| Key(a.text) == Key(b.text))
+                && self.lookup(it.path, Sense::Type) == self.lookup(path, Sense::Type)
         };
         if let Some(known) = self.table.pending_references.iter().find(same) {
             return known.id;
@@ -183,26 +184,36 @@ impl<'s> Declarations<'s> {
         if let [name] = path {
             return self.resolve_name(*name);
         }
-        match (self.lookup(SpaceId::ROOT, path, Sense::Type), path) {
-            (Found::One(Meaning::Block(block)), _) => Some(block_type(block)),
-            (_, [family, name]) => {
-                self.report_unknown_in_family(*family, *name);
+        let (name, around) = path.split_last()?;
+        match self.lookup(path, Sense::Type) {
+            Found::One(Meaning::Declared(Entry::Type(at))) => self.named_type(at),
+            Found::One(Meaning::Declared(Entry::Pou(at))) => self.instance_type(at, *name),
+            Found::One(Meaning::Block(block)) => Some(block_type(block)),
+            Found::Several(meanings) => {
+                self.report_ambiguous(*name, &meanings);
                 None
             }
-            _ => {
-                self.error(Code::E0102, span, "a type is named by at most a family and a name");
+            Found::One(_) | Found::Nothing => {
+                self.report_unknown_qualified(around, *name, span);
                 None
             }
         }
     }
 
-    fn report_unknown_in_family(&mut self, family: ast::Name<'s>, name: ast::Name<'s>) {
-        let error = match Family::named(family.text) {
+    fn report_unknown_qualified(&mut self, around: &[ast::Name<'s>], name: ast::Name<'s>, span: Span) {
+        if self.names.space_at(self.site(name.span), around).is_some() {
+            let error = self.not_in_namespace(Code::E0102, around, name);
+            self.report(error);
+            return;
+        }
+        let full = around.iter().map(|it| it.text).collect::<Vec<_>>().join(".");
+        let error = match Family::named(&full) {
             Some(family) => no_such_block(family, name),
             None => {
-                let names = Family::ALL.map(Family::name);
-                Diagnostic::new(Code::E0102, family.span, format!("there is no block family `{}`", family.text))
-                    .help(format!("the families are {}", list(&names)))
+                let families = Family::ALL.map(Family::name);
+                let place = around.first().map_or(span, |it| it.span);
+                Diagnostic::new(Code::E0102, place, format!("there is no namespace `{full}`"))
+                    .help(format!("the families of blocks are {}", list(&families)))
             }
         };
         self.report(error);
@@ -212,14 +223,22 @@ impl<'s> Declarations<'s> {
         if let Some(elementary) = Elementary::named(name.text) {
             return Some(Resolved::plain(Type::Elementary(elementary)));
         }
-        match self.lookup(SpaceId::ROOT, &[name], Sense::Type) {
+        match self.lookup(&[name], Sense::Type) {
             Found::One(Meaning::Declared(Entry::Type(at))) => self.named_type(at),
             Found::One(Meaning::Declared(Entry::Pou(at))) => self.instance_type(at, name),
             Found::One(Meaning::Block(block)) => Some(block_type(block)),
+<<<<<<< HEAD
             Found::One(_) | Found::Nothing | Found::Several(_) => {
                 if let Some(class) = class_named(name.text) {
                     return self.generic_type(class, name);
                 }
+=======
+            Found::Several(meanings) => {
+                self.report_ambiguous(name, &meanings);
+                None
+            }
+            Found::One(_) | Found::Nothing => {
+>>>>>>> 7edcb12 (NAMESPACE and USING: a place in a file says what a name means there)
                 self.report_unknown_type(name);
                 None
             }
@@ -265,6 +284,8 @@ impl<'s> Declarations<'s> {
             Diagnostic::new(Code::E0102, name.span, format!("there is no type `{}`", name.text)).label("unknown type");
         if name.text.eq_ignore_ascii_case("VOID") {
             error = error.help("a FUNCTION without a result has no `:` and no type after its name");
+        } else if let Some(hint) = self.hint_of_namespace(name) {
+            error = error.help(hint);
         } else if let Some(near) = near {
             error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
         }

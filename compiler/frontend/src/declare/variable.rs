@@ -1,5 +1,5 @@
 use crate::ast;
-use crate::names::{Entry, Found, Meaning, Sense, SpaceId};
+use crate::names::{Entry, Found, Meaning, Sense};
 use crate::types::declarations::{Declarations, GlobalSlot};
 use crate::types::scope::{Scope, Variable};
 use crate::types::table::Resolved;
@@ -157,7 +157,7 @@ impl<'s> Declarations<'s> {
     }
 
     pub(super) fn external(&mut self, name: ast::Name<'s>) -> Option<Rc<Variable<'s>>> {
-        let found = self.lookup(SpaceId::ROOT, &[name], Sense::Value);
+        let found = self.lookup(&[name], Sense::Value);
         if let Found::Several(meanings) = &found {
             self.report_ambiguous(name, meanings);
             return None;

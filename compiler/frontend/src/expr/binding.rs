@@ -107,9 +107,7 @@ impl<'s> Checker<'_, 's> {
         let Ast::Binary(sides, ast::BinaryOp::Eq, sign) = &value.kind else { return None };
         let Ast::Name(name) = &sides[0].kind else { return None };
         let at = parameters.iter().position(|it| it.name.eq_ignore_ascii_case(name.text))?;
-        if self.scope.get(name.text).is_some()
-            || self.decl.lookup(self.scope.space, &[*name], Sense::Value) != Found::Nothing
-        {
+        if self.scope.get(name.text).is_some() || self.decl.lookup(&[*name], Sense::Value) != Found::Nothing {
             return None;
         }
         let arrow = if parameters[at].section == Section::Output { "=>" } else { ":=" };

@@ -28,21 +28,10 @@ impl<'s> Checker<'_, 's> {
     pub(crate) fn callee(&mut self, callee: &ast::Expr<'s>, arguments: &[ast::Argument<'s>]) -> Option<Callee<'s>> {
         match &callee.kind {
             Ast::Name(name) => self.named_callee(*name, arguments),
-            Ast::Member(base, name) => {
-                if let Ast::Name(owner) = &base.kind
-                    && self.scope.get(owner.text).is_none()
-                    && let Some(family) = Family::named(owner.text)
-                {
-                    if let Found::One(Meaning::Instruction(..)) =
-                        self.decl.lookup(self.scope.space, &[*owner, *name], Sense::Callee)
-                    {
-                        return Some(Callee::Instruction(*name));
-                    }
-                    self.report_family_call(family, *name);
-                    return None;
-                }
-                Some(self.routine_of(base, *name).map_or(Callee::Instance, Callee::Routine))
-            }
+            Ast::Member(base, name) => match self.qualified_callee(callee) {
+                Some(callee) => callee,
+                None => Some(self.routine_of(base, *name).map_or(Callee::Instance, Callee::Routine)),
+            },
             Ast::Index(..) | Ast::Paren(_) | Ast::Deref(_) => Some(Callee::Instance),
             Ast::Error(_) => {
                 self.operand(callee, None);
@@ -73,7 +62,7 @@ impl<'s> Checker<'_, 's> {
         if let Some(slot) = self.own_routine(name).filter(|_| !self.scope.is_own(name.text)) {
             return Some(Callee::Routine(slot));
         }
-        let found = self.decl.lookup(self.scope.space, &[name], Sense::Callee);
+        let found = self.decl.lookup(&[name], Sense::Callee);
         if let Some(variable) = self.scope.get(name.text) {
             // A variable that cannot be called does not hide a function of its name.
             let callable = matches!(variable.place.ty, Type::Block(_) | Type::Struct(_));
@@ -107,7 +96,7 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    fn called_pou(&mut self, slot: usize, name: ast::Name<'s>) -> Option<Callee<'s>> {
+    pub(super) fn called_pou(&mut self, slot: usize, name: ast::Name<'s>) -> Option<Callee<'s>> {
         match self.decl.pous[slot].ast.kind {
             ast::PouKind::Function => Some(Callee::Function(slot)),
             ast::PouKind::Program if self.is_callable_program(slot, name) => Some(Callee::Instance),
@@ -205,6 +194,8 @@ impl<'s> Checker<'_, 's> {
             error = error.help(format!("a value is converted with `TO_{}(…)`", name.text.to_ascii_uppercase()));
         } else if name.text.eq_ignore_ascii_case("POW") {
             error = error.help("write `EXPT(base, exponent)`, or `base ** exponent`");
+        } else if let Some(hint) = self.decl.hint_of_namespace(name) {
+            error = error.help(hint);
         } else if let Some(near) = near {
             error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
         }

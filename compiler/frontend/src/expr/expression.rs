@@ -1,7 +1,6 @@
 use super::checker::{Checker, Context};
 use super::operand::{Operand, computed};
 use super::place::{Access, Found};
-use crate::names::{self, Meaning, Sense};
 use crate::types::scope::Variable;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, UnaryOp};
@@ -16,7 +15,7 @@ impl<'s> Checker<'_, 's> {
             Ast::Literal(literal) => self.literal(literal, expr.span),
             Ast::Paren(inner) => self.operand(inner, expected),
             Ast::Name(name) => self.name(*name, expected).map(Operand::Typed),
-            Ast::Member(base, name) => self.member_value(expr, base, *name).map(Operand::Typed),
+            Ast::Member(..) => self.member_value(expr).map(Operand::Typed),
             Ast::Address(_) | Ast::Index(..) => self.load(expr).map(Operand::Typed),
             Ast::Part(base, part) => self.part(base, *part).map(Operand::Typed),
             Ast::Deref(_) => self.load(expr).map(Operand::Typed),
@@ -105,29 +104,16 @@ impl<'s> Checker<'_, 's> {
         Some(Expr::new(ty, kind, at))
     }
 
-    /// `a.b`, or the enumerator `Color.Red`. A variable hides a type of its name, unless it is an
-    /// enumeration, which has no members: `state := State.Idle`.
-    fn member_value(&mut self, expr: &ast::Expr<'s>, base: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<Expr> {
-        if let Ast::Name(ty) = &base.kind
-            && !self.scope.is_refused(ty.text)
-            && self.type_of_variable(*ty).is_none_or(|it| matches!(it, Type::Enum(_)))
-            && let names::Found::One(Meaning::Enumerator(_)) =
-                self.decl.lookup(self.scope.space, &[*ty, name], Sense::Value)
-        {
-            return self.enumerator(*ty, name);
+    /// `a.b`, or the enumerator `Color.Red`.
+    fn member_value(&mut self, expr: &ast::Expr<'s>) -> Option<Expr> {
+        if let Some(path) = self.path_of_enumerator(expr) {
+            return self.enumerator(&path);
         }
-        if let Ast::Name(owner) = &base.kind
-            && let Some(variable) = self.global_of_namespace(*owner, name)
-        {
+        if let Some(variable) = self.global_of_namespace(expr) {
             let variable = variable?;
             return self.variable_value(&variable, expr.span);
         }
         self.load(expr)
-    }
-
-    fn type_of_variable(&mut self, name: ast::Name<'s>) -> Option<Type> {
-        let own = self.scope.get(name.text).map(|it| it.place.ty);
-        own.or_else(|| self.decl.type_of_global(self.scope.space, name))
     }
 
     fn load(&mut self, expr: &ast::Expr<'s>) -> Option<Expr> {

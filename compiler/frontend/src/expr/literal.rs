@@ -10,7 +10,7 @@ use staunch_ir::{Elementary, Expr, ExprKind, Op, Type, Value};
 impl<'s> Checker<'_, 's> {
     pub(crate) fn literal(&mut self, literal: &ast::Literal<'s>, span: Span) -> Option<Operand> {
         match (&literal.prefix, &literal.value) {
-            (Some(prefix), LiteralValue::Enumerator(name)) => self.enumerator(**prefix, **name).map(Operand::Typed),
+            (Some(prefix), LiteralValue::Enumerator(name)) => self.enumerator(&[**prefix, **name]).map(Operand::Typed),
             (Some(prefix), value) => self.typed_literal(**prefix, value, false, span).map(Operand::Typed),
             (None, value) => self.plain_literal(value, span),
         }
@@ -89,7 +89,7 @@ impl<'s> Checker<'_, 's> {
         if prefix.text.eq_ignore_ascii_case("STRING") && matches!(value, LiteralValue::String { .. }) {
             return Some(None);
         }
-        if self.decl.names.root(prefix.text).is_some_and(|it| it.ty.is_some()) {
+        if let Found::One(Meaning::Declared(_)) = self.decl.lookup(&[prefix], Sense::Type) {
             self.report(
                 Diagnostic::new(Code::E0102, prefix.span, format!("`{}` has no literals", prefix.text))
                     .label("a literal is of an elementary type, or an enumerator"),
@@ -107,8 +107,9 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// `Color#Red` or `Color.Red`.
-    pub(crate) fn enumerator(&mut self, ty: ast::Name<'s>, name: ast::Name<'s>) -> Option<Expr> {
-        let found = self.decl.lookup(self.scope.space, &[ty, name], Sense::Value);
+    pub(crate) fn enumerator(&mut self, path: &[ast::Name<'s>]) -> Option<Expr> {
+        let [.., ty, name] = *path else { return None };
+        let found = self.decl.lookup(path, Sense::Value);
         let Found::One(Meaning::Enumerator(slot)) = found else {
             self.error(Code::E0102, ty.span, format!("there is no enumeration `{}`", ty.text));
             return None;
@@ -146,7 +147,7 @@ impl<'s> Checker<'_, 's> {
             }
             [slot] => {
                 let ty = self.decl.types[*slot].decl.name;
-                Some(self.enumerator(ty, name))
+                Some(self.enumerator(&[ty, name]))
             }
             several => {
                 let names: Vec<_> = several

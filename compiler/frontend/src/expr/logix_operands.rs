@@ -41,7 +41,7 @@ impl<'s> Checker<'_, 's> {
             _ => return false,
         };
         let is_in = |names: &[&str]| names.iter().any(|it| it.eq_ignore_ascii_case(name.text));
-        let own = self.decl.lookup(self.scope.space, &[name], Sense::Callee);
+        let own = self.decl.lookup(&[name], Sense::Callee);
         let is_own = matches!(own, Found::One(Meaning::Declared(Entry::Pou(_) | Entry::Global(_))));
         if !(is_in(&COUNTERS) || is_in(&TIMERS)) || is_own || self.scope.get(name.text).is_some() {
             return false;

@@ -117,8 +117,8 @@ impl<'s> Checker<'_, 's> {
         if is_word(name, "THIS") {
             return Some(self.this()?.place.ty);
         }
-        match self.decl.lookup(self.scope.space, &[name], Sense::Value) {
-            names::Found::One(Meaning::Declared(Entry::Global(_))) => self.decl.type_of_global(self.scope.space, name),
+        match self.decl.lookup(&[name], Sense::Value) {
+            names::Found::One(Meaning::Declared(Entry::Global(_))) => self.decl.type_of_global(name),
             names::Found::One(Meaning::Declared(Entry::Pou(slot))) if self.is_callable_program(slot, name) => {
                 Some(self.decl.program_variable(slot)?.place.ty)
             }
@@ -130,7 +130,7 @@ impl<'s> Checker<'_, 's> {
         if let Ast::Name(list) = &owner.kind
             && self.scope.get(list.text).is_none()
             && let names::Found::One(Meaning::Declared(Entry::Global(at))) =
-                self.decl.lookup(self.scope.space, &[*list, name], Sense::Value)
+                self.decl.lookup(&[*list, name], Sense::Value)
         {
             let Slot::Done(variable) = &self.decl.globals[at].slot else { return None };
             return Some(variable.place.ty);

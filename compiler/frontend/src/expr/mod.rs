@@ -30,6 +30,7 @@ mod order;
 mod overload;
 mod place;
 mod promotion;
+mod qualified;
 mod real;
 mod reference;
 mod retained;

@@ -88,7 +88,7 @@ impl<'s> Checker<'_, 's> {
                 let (place, view) = self.decl.image.stored(&place);
                 Some(Found { place, view, access: Access::Write })
             }
-            Ast::Member(base, name) => self.member(base, *name),
+            Ast::Member(base, name) => self.member(expr, base, *name),
             Ast::Index(base, indices) => self.index(base, indices),
             Ast::Deref(inner) => self.dereferenced(inner, expr.span),
             Ast::Error(_) => {
@@ -159,7 +159,7 @@ impl<'s> Checker<'_, 's> {
             );
             return Some(None);
         }
-        let found = self.decl.lookup(self.scope.space, &[name], Sense::Value);
+        let found = self.decl.lookup(&[name], Sense::Value);
         match found {
             names::Found::Several(meanings) => {
                 self.decl.report_ambiguous(name, &meanings);
@@ -221,7 +221,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// The global variable in a slot, which is used by that.
-    fn global(&mut self, at: usize) -> Option<Rc<Variable<'s>>> {
+    pub(super) fn global(&mut self, at: usize) -> Option<Rc<Variable<'s>>> {
         let variable = self.decl.global(at)?;
         variable.used.set(true);
         Some(variable)
@@ -290,10 +290,8 @@ impl<'s> Checker<'_, 's> {
         Found { place, view, access }
     }
 
-    fn member(&mut self, base: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<Found<'s>> {
-        if let Ast::Name(owner) = &base.kind
-            && let Some(variable) = self.global_of_namespace(*owner, name)
-        {
+    fn member(&mut self, whole: &ast::Expr<'s>, base: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<Found<'s>> {
+        if let Some(variable) = self.global_of_namespace(whole) {
             return variable.map(|it| self.found(&it, name));
         }
         if let Some(this) = self.this_of(base) {
@@ -317,30 +315,6 @@ impl<'s> Checker<'_, 's> {
                 );
                 None
             }
-        }
-    }
-
-    /// `GVL.x`, `Globals.x`: a global by its namespace, where no variable is called so. The inner `None`
-    /// says that it was reported.
-    pub(crate) fn global_of_namespace(
-        &mut self,
-        owner: ast::Name<'s>,
-        name: ast::Name<'s>,
-    ) -> Option<Option<Rc<Variable<'s>>>> {
-        if self.scope.get(owner.text).is_some() || self.decl.declared(self.scope.space, owner).is_some() {
-            return None;
-        }
-        match self.decl.lookup(self.scope.space, &[owner, name], Sense::Value) {
-            names::Found::One(Meaning::Declared(Entry::Global(at))) => Some(self.global(at)),
-            names::Found::Several(meanings) => {
-                self.decl.report_ambiguous(name, &meanings);
-                Some(None)
-            }
-            names::Found::Nothing if self.decl.names.list_named(owner.text).is_some() => {
-                self.not_in_list(owner, name);
-                Some(None)
-            }
-            names::Found::One(_) | names::Found::Nothing => None,
         }
     }
 

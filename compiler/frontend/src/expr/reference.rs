@@ -84,8 +84,8 @@ impl<'s> Checker<'_, 's> {
     ) -> Option<Option<Operand>> {
         let Ast::Name(name) = &callee.kind else { return None };
         let function = function(name.text)?;
-        let declared = self.scope.get(name.text).is_some()
-            || self.decl.lookup(self.scope.space, &[*name], Sense::Callee) != Meant::Nothing;
+        let declared =
+            self.scope.get(name.text).is_some() || self.decl.lookup(&[*name], Sense::Callee) != Meant::Nothing;
         if declared {
             return None;
         }
@@ -179,7 +179,7 @@ impl<'s> Checker<'_, 's> {
         if let Some(elementary) = Elementary::named(name.text) {
             return Some(Type::Elementary(elementary));
         }
-        self.decl.type_of_name(self.scope.space, *name)
+        self.decl.type_of_name(*name)
     }
 
     /// `__ISVALIDREF(r)`: whether it refers to anything.

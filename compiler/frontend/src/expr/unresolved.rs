@@ -116,7 +116,7 @@ impl<'s> Checker<'_, 's> {
         let error = Diagnostic::new(Code::E0101, name.span, format!("`{}` is not a variable", name.text));
         if !self.lacks_result_type(name) {
             let error = error.label("a variable or a value is expected here");
-            let kind = match self.decl.declared(self.scope.space, name) {
+            let kind = match self.decl.declared(name) {
                 Some(crate::names::Entry::Pou(slot)) => Some(self.decl.pous[slot].ast.kind),
                 Some(crate::names::Entry::Type(_) | crate::names::Entry::Global(_)) | None => None,
             };
@@ -141,22 +141,10 @@ impl<'s> Checker<'_, 's> {
 
     /// Whether `name` is a FUNCTION that assigns to its own name, but has no result type.
     pub(crate) fn lacks_result_type(&self, name: ast::Name<'s>) -> bool {
-        let Some(crate::names::Entry::Pou(slot)) = self.decl.declared(self.scope.space, name) else {
+        let Some(crate::names::Entry::Pou(slot)) = self.decl.declared(name) else {
             return false;
         };
         self.decl.pous[slot].names_itself && self.decl.pous[slot].ast.result.is_none()
-    }
-
-    /// `GVL.x`, where the list has no `x`.
-    pub(crate) fn not_in_list(&mut self, list: ast::Name<'s>, name: ast::Name<'s>) {
-        let message = format!("the list `{}` has no variable `{}`", list.text, name.text);
-        let error = Diagnostic::new(Code::E0101, name.span, message).label("unknown name");
-        let near =
-            self.decl.names.list_named(list.text).and_then(|it| nearest(name.text, self.decl.names.names_in(it)));
-        self.report(match near {
-            Some(near) => error.help(format!("did you mean `{near}`?")).fix(name.span, near),
-            None => error,
-        });
     }
 
     /// Reports a name that means nothing here.
@@ -164,9 +152,7 @@ impl<'s> Checker<'_, 's> {
         if self.decl.names.unread.contains(&crate::spelling::Key(name.text)) {
             return;
         }
-        if let Some(crate::names::Entry::Type(_) | crate::names::Entry::Pou(_)) =
-            self.decl.declared(self.scope.space, name)
-        {
+        if let Some(crate::names::Entry::Type(_) | crate::names::Entry::Pou(_)) = self.decl.declared(name) {
             self.not_a_variable(name);
             return;
         }

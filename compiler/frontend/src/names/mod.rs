@@ -1,24 +1,31 @@
 //! What names mean: a tree of namespaces, and the one rule by which a path is looked up in it.
 //!
-//! The root holds what files declare. In it are the lists of global variables (`GVL.x`), `Globals` (all
-//! global variables), each enumeration (`Color.Red`), and the families of blocks (`CODESYS.CTU`).
+//! The root holds what files declare outside of a NAMESPACE. In it are the namespaces, the lists of global
+//! variables (`GVL.x`), `Globals` (all global variables), each enumeration (`Color.Red`), the families of
+//! blocks (`CODESYS.CTU`), and in `codesys` the library (`Standard.TON`).
 //!
 //! **The rule.** A bare name is looked up from the inside out: among the variables of the POU (its scope),
-//! then in each namespace around it; in each first what it holds itself, then what it uses: the root uses
-//! the lists. Last comes the library: the family that the file's dialect uses, the blocks that all systems
-//! share, the standard functions. The first level that has the name, in the sense that its place asks for,
-//! decides; where the namespaces that one level uses have several, all are named and none is chosen. Of a
-//! path, all but the last name lead to a namespace, and the last is looked up in that alone.
+//! then in each namespace around it; in each first what it holds itself, then what the USING directives
+//! there name: the root uses the lists. Last comes the library: the family that the file's dialect uses, the
+//! blocks that all systems share, the standard functions. The first level that has the name, in the sense
+//! that its place asks for, decides; where the namespaces that one level uses have several, all are named
+//! and none is chosen. The first name of a path is looked up in the same order, as a namespace or an
+//! enumeration; the others lead on from there, and nowhere else.
 
 pub(crate) mod functions;
+mod region;
 
 use crate::ast;
 use crate::dialect::{self, Dialect};
+use crate::source::Span;
 use crate::spelling::Key;
+use region::{Region, Regions};
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{BlockId, Type, Value};
 use staunch_runtime::Family;
 use std::sync::LazyLock;
+
+pub(crate) use region::{RegionId, SpaceId};
 
 /// What is declared, by its slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -58,19 +65,10 @@ pub(crate) enum Found {
     Several(Vec<String>),
 }
 
-/// A declared namespace.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(crate) struct SpaceId(usize);
-
-impl SpaceId {
-    pub const ROOT: Self = Self(0);
-}
-
 /// Where a name is.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Site {
-    /// The innermost namespace around it.
-    pub space: SpaceId,
+    pub span: Span,
     pub dialect: Dialect,
 }
 
@@ -79,6 +77,8 @@ pub(crate) struct Site {
 pub(crate) struct Entries {
     pub value: Option<Entry>,
     pub ty: Option<Entry>,
+    /// Its type, or POU, is not seen from outside of the namespace.
+    pub internal: bool,
 }
 
 impl Entries {
@@ -92,18 +92,27 @@ impl Entries {
 
 #[derive(Debug, Default)]
 struct Namespace<'s> {
-    name: &'s str,
+    /// `A.B`, or a list's name.
+    name: String,
     parent: Option<SpaceId>,
+    /// Every part of it is INTERNAL.
+    internal: bool,
+    /// A list of global variables.
+    is_list: bool,
     own: FxHashMap<Key<'s>, Entries>,
-    /// What the namespaces that it uses hold.
-    used: FxHashMap<Key<'s>, Vec<(SpaceId, Entry)>>,
+    inner: FxHashMap<Key<'s>, SpaceId>,
 }
 
 /// The names of a program.
 #[derive(Debug)]
 pub(crate) struct Names<'s> {
     spaces: Vec<Namespace<'s>>,
+    regions: Regions,
     lists: FxHashMap<Key<'s>, SpaceId>,
+    /// The global variables in lists.
+    listed: FxHashMap<Key<'s>, Vec<(SpaceId, Entry)>>,
+    /// How many global variables have a name.
+    globals: FxHashMap<Key<'s>, usize>,
     /// The declarations in which a bare enumerator is named, with their type's slot.
     pub enumerators: FxHashMap<Key<'s>, Vec<usize>>,
     /// Names in type declarations that did not parse: they may be enumerators.
@@ -116,12 +125,26 @@ impl Default for Names<'_> {
     fn default() -> Self {
         Self {
             spaces: vec![Namespace::default()],
+            regions: Regions::default(),
             lists: FxHashMap::default(),
+            listed: FxHashMap::default(),
+            globals: FxHashMap::default(),
             enumerators: FxHashMap::default(),
             unread: FxHashSet::default(),
             anonymous_enumerators: FxHashMap::default(),
         }
     }
+}
+
+/// What the first name of a path leads to.
+enum Prefix {
+    Space(SpaceId),
+    Enumeration(usize),
+    /// `Globals`
+    Globals,
+    Family(Family),
+    /// What comes with CODESYS, by the name of its library.
+    Library,
 }
 
 impl<'s> Names<'s> {
@@ -130,29 +153,61 @@ impl<'s> Names<'s> {
         match path {
             [] => Found::Nothing,
             [name] => self.bare(site, name.text, sense),
-            [space, name] => self.qualified(space.text, name.text, sense),
-            // No namespace is in one of those that there are.
-            [_, _, ..] => Found::Nothing,
+            [first, between @ .., last] => self.qualified(site, first.text, between, last.text, sense),
         }
     }
 
     fn bare(&self, site: Site, name: &str, sense: Sense) -> Found {
-        let mut around = Some(site.space);
-        while let Some(id) = around {
-            let space = &self.spaces[id.0];
-            if let Some(entry) = space.own.get(&Key(name)).and_then(|it| it.of(sense)) {
+        let key = Key(name);
+        let mut regions = self.regions.around(site.span).peekable();
+        let own = |space: SpaceId| self.spaces[space.0].own.get(&key).and_then(|it| it.of(sense));
+        while let Some(region) = regions.next() {
+            let mut spaces = self.spaces_to(region.space, regions.peek().map(|it| it.space));
+            if let Some(entry) = spaces.next().and_then(own) {
                 return Found::One(Meaning::Declared(entry));
             }
-            match space.used.get(&Key(name)).map(Vec::as_slice).filter(|_| sense != Sense::Type) {
-                None | Some([]) => {}
-                Some([(_, entry)]) => return Found::One(Meaning::Declared(*entry)),
-                Some(several) => {
-                    return Found::Several(several.iter().map(|(id, _)| self.in_full(*id, name)).collect());
-                }
+            // A USING in `NAMESPACE A.B` is in B.
+            if let Some(found) = self.used(site, region, name, sense) {
+                return found;
             }
-            around = space.parent;
+            if let Some(entry) = spaces.find_map(own) {
+                return Found::One(Meaning::Declared(entry));
+            }
         }
         self.library(site.dialect, name, sense).map_or(Found::Nothing, Found::One)
+    }
+
+    /// From a namespace outward, as far as `outer`, which is not among them.
+    fn spaces_to(&self, space: SpaceId, outer: Option<SpaceId>) -> impl Iterator<Item = SpaceId> {
+        std::iter::successors(Some(space), |it| self.spaces[it.0].parent).take_while(move |it| Some(*it) != outer)
+    }
+
+    /// What the namespaces hold that a region uses.
+    fn used(&self, site: Site, region: &Region, name: &str, sense: Sense) -> Option<Found> {
+        let key = Key(name);
+        let held = region.uses.iter().filter_map(|space| {
+            let entries = self.spaces[space.0].own.get(&key)?;
+            let entry = entries.of(sense)?;
+            self.sees(site, *space, *entries, entry).then_some((*space, entry))
+        });
+        // The root uses the lists.
+        let lists = self.listed.get(&key).filter(|_| region.outer.is_none() && sense != Sense::Type);
+        let found: Vec<_> = held.chain(lists.into_iter().flatten().copied()).collect();
+        match found.as_slice() {
+            [] => None,
+            [(_, entry)] => Some(Found::One(Meaning::Declared(*entry))),
+            several => Some(Found::Several(several.iter().map(|(space, _)| self.in_full(*space, name)).collect())),
+        }
+    }
+
+    /// Whether a place sees what a namespace holds.
+    fn sees(&self, site: Site, space: SpaceId, entries: Entries, entry: Entry) -> bool {
+        !(entries.internal && entries.ty == Some(entry)) || self.is_inside(site, space)
+    }
+
+    fn is_inside(&self, site: Site, space: SpaceId) -> bool {
+        let mut around = self.regions.around(site.span);
+        around.any(|it| self.spaces_to(it.space, None).any(|it| it == space))
     }
 
     fn library(&self, dialect: Dialect, name: &str, sense: Sense) -> Option<Meaning> {
@@ -165,24 +220,74 @@ impl<'s> Names<'s> {
         }
     }
 
-    fn qualified(&self, space: &str, name: &str, sense: Sense) -> Found {
-        let found = match self.spaces[0].own.get(&Key(space)).and_then(|it| it.ty) {
-            Some(Entry::Type(slot)) => Some(Meaning::Enumerator(slot)),
-            Some(Entry::Pou(_) | Entry::Global(_)) => None,
-            None => match self.lists.get(&Key(space)) {
-                Some(list) => {
-                    self.spaces[list.0].own.get(&Key(name)).and_then(|it| it.of(sense)).map(Meaning::Declared)
-                }
-                None if space.eq_ignore_ascii_case("Globals") => return self.global(name),
-                None => Family::named(space).and_then(|it| in_family(it, name, sense)),
-            },
+    fn qualified(&self, site: Site, first: &str, between: &[ast::Name<'_>], last: &str, sense: Sense) -> Found {
+        let found = match self.prefix(site, first) {
+            Some(Prefix::Space(space)) => return self.in_space(site, space, between, last, sense),
+            _ if !between.is_empty() => None,
+            Some(Prefix::Enumeration(slot)) => Some(Meaning::Enumerator(slot)),
+            Some(Prefix::Globals) => return self.global(site, last),
+            Some(Prefix::Family(it)) => in_family(it, last, sense),
+            Some(Prefix::Library) => self.library(site.dialect, last, sense),
+            None => None,
         };
         found.map_or(Found::Nothing, Found::One)
     }
 
+    fn prefix(&self, site: Site, name: &str) -> Option<Prefix> {
+        let key = Key(name);
+        let mut regions = self.regions.around(site.span).peekable();
+        while let Some(region) = regions.next() {
+            let outer = regions.peek().map(|it| it.space);
+            for space in self.spaces_to(region.space, outer) {
+                let space = &self.spaces[space.0];
+                if let Some(inner) = space.inner.get(&key) {
+                    return Some(Prefix::Space(*inner));
+                }
+                if let Some(Entry::Type(slot)) = space.own.get(&key).and_then(|it| it.ty) {
+                    return Some(Prefix::Enumeration(slot));
+                }
+            }
+            if let Some(Found::One(Meaning::Declared(Entry::Type(slot)))) = self.used(site, region, name, Sense::Type) {
+                return Some(Prefix::Enumeration(slot));
+            }
+        }
+        if let Some(list) = self.lists.get(&key) {
+            return Some(Prefix::Space(*list));
+        }
+        // A POU has no members to be named by it.
+        if self.root(name).is_some_and(|it| it.ty.is_some()) {
+            return None;
+        }
+        if name.eq_ignore_ascii_case("Globals") {
+            return Some(Prefix::Globals);
+        }
+        let library = site.dialect == Dialect::Codesys && LIBRARIES.iter().any(|it| it.eq_ignore_ascii_case(name));
+        Family::named(name).map(Prefix::Family).or(library.then_some(Prefix::Library))
+    }
+
+    /// What a namespace holds at the end of a path.
+    fn in_space(&self, site: Site, space: SpaceId, path: &[ast::Name<'_>], last: &str, sense: Sense) -> Found {
+        let Some((first, rest)) = path.split_first() else {
+            let entries = self.spaces[space.0].own.get(&Key(last)).copied().unwrap_or_default();
+            let entry = entries.of(sense).filter(|it| self.sees(site, space, entries, *it));
+            return entry.map_or(Found::Nothing, |it| Found::One(Meaning::Declared(it)));
+        };
+        let here = &self.spaces[space.0];
+        if let Some(inner) = here.inner.get(&Key(first.text)) {
+            let hidden = self.spaces[inner.0].internal && !self.is_inside(site, space);
+            return if hidden { Found::Nothing } else { self.in_space(site, *inner, rest, last, sense) };
+        }
+        let entries = here.own.get(&Key(first.text)).copied().unwrap_or_default();
+        match entries.ty {
+            Some(entry @ Entry::Type(slot)) if rest.is_empty() && self.sees(site, space, entries, entry) => {
+                Found::One(Meaning::Enumerator(slot))
+            }
+            Some(_) | None => Found::Nothing,
+        }
+    }
+
     /// `Globals.x`
-    fn global(&self, name: &str) -> Found {
-        let site = Site { space: SpaceId::ROOT, dialect: Dialect::Iec };
+    fn global(&self, site: Site, name: &str) -> Found {
         match self.bare(site, name, Sense::Value) {
             Found::One(Meaning::Declared(entry @ Entry::Global(_))) => Found::One(Meaning::Declared(entry)),
             Found::Several(names) => Found::Several(names),
@@ -190,8 +295,67 @@ impl<'s> Names<'s> {
         }
     }
 
-    fn in_full(&self, space: SpaceId, name: &str) -> String {
-        format!("{}.{name}", self.spaces[space.0].name)
+    /// The name of what a namespace holds, with all namespaces around it.
+    pub fn in_full(&self, space: SpaceId, name: &str) -> String {
+        match self.spaces[space.0].name.as_str() {
+            "" => name.to_owned(),
+            around => format!("{around}.{name}"),
+        }
+    }
+
+    /// The namespace that a path of names leads to from a place: what stands before the last point.
+    pub fn space_at(&self, site: Site, path: &[ast::Name<'_>]) -> Option<SpaceId> {
+        let (first, rest) = path.split_first()?;
+        let Some(Prefix::Space(mut space)) = self.prefix(site, first.text) else { return None };
+        for name in rest {
+            space = *self.spaces[space.0].inner.get(&Key(name.text))?;
+        }
+        Some(space)
+    }
+
+    /// Where a place declares what it names.
+    pub fn space_of(&self, place: Span) -> SpaceId {
+        self.regions.around(place).next().map_or(SpaceId::ROOT, |it| it.space)
+    }
+
+    /// Adds the regions of the next file, and those of its lists of global variables. Those of the file are
+    /// given back in its order.
+    pub fn add_file(&mut self, file: &ast::File<'s>, lists: &[(Span, SpaceId)]) -> Vec<RegionId> {
+        let mut around: Vec<(u32, SpaceId)> = Vec::new();
+        let mut stretches = Vec::new();
+        for (at, region) in file.regions.iter().enumerate() {
+            around.retain(|it| region.span.start < it.0);
+            let outer = around.last().map_or(SpaceId::ROOT, |it| it.1);
+            let space = region.path.iter().fold(outer, |space, name| self.inner(space, name.text));
+            self.spaces[space.0].internal &= region.internal || region.path.is_empty();
+            around.push((region.span.end, space));
+            stretches.push((region.span, space, Some(at)));
+        }
+        stretches.extend(lists.iter().map(|(span, space)| (*span, *space, None)));
+        stretches.sort_by_key(|it| (it.0.start, std::cmp::Reverse(it.0.end)));
+        let ids = self.regions.add_file(stretches.iter().map(|it| (it.0, it.1)));
+        let mut own: Vec<_> = stretches.iter().zip(ids).filter_map(|(it, id)| Some((it.2?, id))).collect();
+        own.sort_by_key(|it| it.0);
+        own.into_iter().map(|it| it.1).collect()
+    }
+
+    /// What a USING directive in a region names; false where there is no such namespace.
+    pub fn use_space(&mut self, region: RegionId, site: Site, path: &[ast::Name<'_>]) -> bool {
+        let space = self.space_at(site, path);
+        space.into_iter().for_each(|it| self.regions.use_in(region, it));
+        space.is_some()
+    }
+
+    /// The namespace in another one, made where there is none.
+    fn inner(&mut self, space: SpaceId, name: &'s str) -> SpaceId {
+        let next = SpaceId(self.spaces.len());
+        let inner = *self.spaces[space.0].inner.entry(Key(name)).or_insert(next);
+        if inner == next {
+            let full = self.in_full(space, name);
+            let parent = Some(space);
+            self.spaces.push(Namespace { name: full, parent, internal: true, ..Namespace::default() });
+        }
+        inner
     }
 
     /// The list of global variables with a name, made where there is none.
@@ -199,26 +363,24 @@ impl<'s> Names<'s> {
         let next = SpaceId(self.spaces.len());
         let list = *self.lists.entry(Key(name)).or_insert(next);
         if list == next {
-            self.spaces.push(Namespace { name, parent: Some(SpaceId::ROOT), ..Namespace::default() });
+            let parent = Some(SpaceId::ROOT);
+            self.spaces.push(Namespace { name: name.to_owned(), parent, is_list: true, ..Namespace::default() });
         }
         list
     }
 
-    pub fn list_named(&self, name: &str) -> Option<SpaceId> {
-        self.lists.get(&Key(name)).copied()
-    }
-
     pub fn names_in(&self, space: SpaceId) -> impl Iterator<Item = &'s str> {
-        self.spaces[space.0].own.keys().map(|it| it.0)
+        let space = &self.spaces[space.0];
+        space.own.keys().chain(space.inner.keys()).map(|it| it.0)
     }
 
-    /// The name of a list of global variables, unless this is the root.
-    pub fn list_name(&self, space: SpaceId) -> Option<&'s str> {
-        (space != SpaceId::ROOT).then(|| self.spaces[space.0].name)
+    /// Whether a namespace is a list of global variables.
+    pub fn is_list(&self, space: SpaceId) -> bool {
+        self.spaces[space.0].is_list
     }
 
     /// What the root holds of a name, by itself.
-    pub fn root(&self, name: &str) -> Option<Entries> {
+    fn root(&self, name: &str) -> Option<Entries> {
         self.own(SpaceId::ROOT, name)
     }
 
@@ -226,32 +388,66 @@ impl<'s> Names<'s> {
         self.spaces[space.0].own.get(&Key(name)).copied()
     }
 
-    /// The global variables of that name in lists.
-    pub fn in_lists<'n>(&'n self, name: &'n str) -> &'n [(SpaceId, Entry)] {
-        self.spaces[0].used.get(&Key(name)).map_or(&[], Vec::as_slice)
+    /// The namespace of that name in another one.
+    pub fn inner_named(&self, space: SpaceId, name: &str) -> bool {
+        self.spaces[space.0].inner.contains_key(&Key(name))
     }
 
-    pub fn insert(&mut self, space: SpaceId, name: &'s str, entry: Entry) {
+    /// The global variables of that name in lists.
+    pub fn in_lists<'n>(&'n self, name: &'n str) -> &'n [(SpaceId, Entry)] {
+        self.listed.get(&Key(name)).map_or(&[], Vec::as_slice)
+    }
+
+    /// How many global variables have that name, in all namespaces.
+    pub fn globals_named(&self, name: &str) -> usize {
+        self.globals.get(&Key(name)).copied().unwrap_or_default()
+    }
+
+    pub fn insert(&mut self, space: SpaceId, name: &'s str, entry: Entry, internal: bool) {
+        let is_list = self.is_list(space);
         let entries = self.spaces[space.0].own.entry(Key(name)).or_default();
         match entry {
-            Entry::Global(_) => entries.value = Some(entry),
-            Entry::Type(_) | Entry::Pou(_) => entries.ty = Some(entry),
+            Entry::Global(_) => {
+                entries.value = Some(entry);
+                *self.globals.entry(Key(name)).or_default() += 1;
+            }
+            Entry::Type(_) | Entry::Pou(_) => {
+                entries.ty = Some(entry);
+                entries.internal = internal;
+            }
         }
-        if space != SpaceId::ROOT {
-            self.spaces[0].used.entry(Key(name)).or_default().push((space, entry));
+        if is_list {
+            self.listed.entry(Key(name)).or_default().push((space, entry));
         }
     }
 
     /// The names of all types and POUs.
     pub fn type_names(&self) -> impl Iterator<Item = &'s str> {
-        self.spaces[0].own.iter().filter(|(_, it)| it.ty.is_some()).map(|(key, _)| key.0)
+        self.spaces.iter().flat_map(|it| &it.own).filter(|(_, it)| it.ty.is_some()).map(|(key, _)| key.0)
+    }
+
+    /// The namespaces in full.
+    pub fn namespaces(&self) -> impl Iterator<Item = &str> {
+        self.spaces.iter().filter(|it| !it.name.is_empty() && !it.is_list).map(|it| it.name.as_str())
     }
 
     /// All names that files declare, but enumerators.
     pub fn all(&self) -> impl Iterator<Item = &'s str> {
         self.spaces.iter().flat_map(|it| it.own.keys()).map(|it| it.0)
     }
+
+    /// In full, the namespaces that hold a type or a POU of that name, and whether it is INTERNAL.
+    pub fn holders(&self, name: &str) -> Vec<(String, bool)> {
+        let held = |it: &Namespace<'_>| {
+            let entries = it.own.get(&Key(name)).filter(|it| it.ty.is_some())?;
+            Some((it.name.clone(), entries.internal || it.internal))
+        };
+        self.spaces.iter().skip(1).filter_map(held).collect()
+    }
 }
+
+/// Libraries of CODESYS and TwinCAT whose blocks and functions need no qualification.
+const LIBRARIES: [&str; 2] = ["Standard", "Tc2_Standard"];
 
 /// What a family's name before `name` makes of it.
 fn in_family(family: Family, name: &str, sense: Sense) -> Option<Meaning> {

@@ -3,7 +3,7 @@
 use crate::ast;
 use crate::declare::run::is_false;
 use crate::expr::constant::constant;
-use crate::names::{Entry, SpaceId};
+use crate::names::{Entry, Found, Meaning, Sense};
 use crate::spelling::{Key, nearest};
 use crate::types::declarations::Declarations;
 use crate::{Code, Diagnostic, Span};
@@ -146,7 +146,11 @@ impl<'s> Declarations<'s> {
     }
 
     fn instance(&mut self, instance: &'s ast::ProgramInstance<'s>, timing: Timing, runs: &FxHashMap<Span, usize>) {
-        let found = self.declared(SpaceId::ROOT, instance.program);
+        let path = [instance.namespace.as_slice(), &[instance.program]].concat();
+        let found = match self.lookup(&path, Sense::Value) {
+            Found::One(Meaning::Declared(entry)) => Some(entry),
+            Found::One(_) | Found::Nothing | Found::Several(_) => None,
+        };
         let program = match found {
             Some(Entry::Pou(at)) if self.pous[at].ast.kind == ast::PouKind::Program => at,
             _ => {

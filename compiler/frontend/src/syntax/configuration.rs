@@ -29,9 +29,13 @@ fn task<'t, 's: 't>() -> impl Rule<'t, 's, Task<'s>> {
 fn program<'t, 's: 't>() -> impl Rule<'t, 's, ProgramInstance<'s>> {
     let task = word("WITH").ignore_then(name()).or_not();
     let connections = rule(|input| if input.kind() == Kind::OpenParen { arguments(input) } else { Ok(Vec::new()) });
-    let program = token(Kind::Program).ignore_then(name()).then(task).then_ignore(token(Kind::Colon)).then(name());
-    let program = program.then(connections).then_ignore(end());
-    program.map(|(((name, task), program), connections)| ProgramInstance { name, task, program, connections })
+    let program = token(Kind::Program).ignore_then(name()).then(task).then_ignore(token(Kind::Colon));
+    let path = name().separated_by(token(Kind::Dot)).at_least(1).collect::<Vec<_>>();
+    let program = program.then(path).then(connections).then_ignore(end());
+    program.map(|(((name, task), mut path), connections)| {
+        let program = path.pop().unwrap_or(name);
+        ProgramInstance { name, task, namespace: path, program, connections }
+    })
 }
 
 /// `RESOURCE name ON machine`

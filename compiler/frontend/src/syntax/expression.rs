@@ -240,6 +240,15 @@ fn member<'s>(input: &mut In<'_, '_, 's>, of: Expr<'s>) -> Parsed<ExprKind<'s>> 
             foreign_syntax::point_last(input, of.span);
             Ok(ExprKind::Error(Vec::new()))
         }
+        // `Plant.Colour#Red` is `Plant.Colour.Red`.
+        Kind::Prefix if input.kind_ahead(1) == Kind::Name => {
+            let prefix = input.take();
+            let span = Span { end: prefix.end - 1, ..prefix };
+            let whole = of.span.to(span);
+            let ty = Name { text: input.text(span), span };
+            let ty = Expr { kind: ExprKind::Member(Box::new(of), ty), span: whole };
+            Ok(ExprKind::Member(Box::new(ty), input.name()?))
+        }
         _ => named_member(input, of),
     }
 }

@@ -11,7 +11,7 @@ use chumsky::{
 };
 
 use crate::{
-    ast::{BinaryOp, Expr, Item, MAX_CHAIN, MAX_DEPTH, Name, VarDecl},
+    ast::{BinaryOp, Expr, Item, MAX_CHAIN, MAX_DEPTH, Name, Region, VarDecl},
     diagnostic::{Code, Diagnostic},
     lex::{Kind, MAX_REPORTS, Tokens, index},
     source::Span,
@@ -125,6 +125,9 @@ pub struct State<'t, 's> {
     pub orphaned: bool,
     /// Units inside a POU, reported.
     pub nested: Vec<Item<'s>>,
+    pub regions: Vec<Region<'s>>,
+    /// Of these, the ones around the current place.
+    pub around: Vec<usize>,
     /// The user knows that the file ends too early.
     pub ended: bool,
 }

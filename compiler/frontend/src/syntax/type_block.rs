@@ -13,6 +13,7 @@ use super::{
     declaration::{end, type_spec},
     foreign_types,
     initial::optional_initial,
+    namespace,
     parser::{In, Parsed, Start, TokenReader},
     recovery,
     token_class::ends_declarations,
@@ -21,8 +22,9 @@ use super::{
 
 pub fn types<'s>(input: &mut In<'_, '_, 's>) -> Vec<TypeDecl<'s>> {
     let opened = input.take();
+    let internal = namespace::access(input);
     input.state().open.push((Kind::EndType, opened));
-    let mut types = Vec::new();
+    let mut types: Vec<TypeDecl<'s>> = Vec::new();
     let depth = input.state().depth;
     loop {
         input.state().depth = depth;
@@ -43,6 +45,7 @@ pub fn types<'s>(input: &mut In<'_, '_, 's>) -> Vec<TypeDecl<'s>> {
     input.state().open.pop();
     block_ends::close_block(input, Kind::EndType, opened);
     input.eat(Kind::Semicolon);
+    types.iter_mut().for_each(|it| it.internal = internal);
     types
 }
 
@@ -63,7 +66,7 @@ fn type_decl_or_name<'t, 'p, 's>(input: &mut In<'t, 'p, 's>, start: Start<'t, 'p
     let state = input.state();
     let names = (first + 1..last).filter(|at| state.tokens.kinds[*at] == Kind::Name).map(|at| state.place(at));
     let unread = names.map(|span| Name { text: state.slice(span), span }).collect();
-    Some(TypeDecl { name, ty, initial: None, doc: None, unread })
+    Some(TypeDecl { name, internal: false, ty, initial: None, doc: None, unread })
 }
 
 /// `Name : type := value;`, where a structure may do without the `;`.
@@ -76,5 +79,5 @@ fn type_decl<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeDecl<'s>> {
     if !closed || input.kind() == Kind::Semicolon {
         input.parse(end())?;
     }
-    Ok(TypeDecl { name, ty, initial, doc: input.doc(first), unread: Vec::new() })
+    Ok(TypeDecl { name, internal: false, ty, initial, doc: input.doc(first), unread: Vec::new() })
 }

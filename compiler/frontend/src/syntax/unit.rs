@@ -14,7 +14,7 @@ use super::{
     combinator::{Rule, ahead, name, reported, token},
     configuration::configuration,
     declaration::{section, structure_members, type_spec},
-    diagnostics, doc, foreign_types, misspelt,
+    diagnostics, doc, foreign_types, misspelt, namespace,
     parser::{Expected, In, TokenReader},
     recovery,
     routine::{self, modifiers},
@@ -29,7 +29,10 @@ pub fn items<'s>(input: &mut In<'_, '_, 's>) -> Vec<Item<'s>> {
     loop {
         items.append(&mut input.state().nested);
         match input.kind() {
-            Kind::End => return items,
+            Kind::End => {
+                namespace::report_open(input);
+                return items;
+            }
             Kind::Semicolon => {
                 input.take();
             }
@@ -43,6 +46,8 @@ pub fn items<'s>(input: &mut In<'_, '_, 's>) -> Vec<Item<'s>> {
             Kind::Configuration => items.push(Item::Configuration(configuration(input))),
             Kind::VarGlobal => items.extend(section(input).map(Item::Globals)),
             kind if opens_section(kind) => bare_unit(input, &mut items),
+            Kind::Name if namespace::directive(input) => {}
+            Kind::EndNamespace if namespace::end(input) => {}
             Kind::Name if routine::following(input, &mut items, contents) => {}
             Kind::Name if unsupported::skip(input) => {}
             Kind::Name if begins_test(input) => items.push(test_unit(input)),
@@ -113,7 +118,7 @@ fn bare_structure<'s>(input: &mut In<'_, '_, 's>) -> Item<'s> {
     let kind = structure_members(input);
     let ty = TypeSpec { kind, span: word.to(input.last()) };
     input.eat(Kind::Semicolon);
-    Item::Types(vec![TypeDecl { name, ty, initial: None, doc: None, unread: Vec::new() }])
+    Item::Types(vec![TypeDecl { name, internal: false, ty, initial: None, doc: None, unread: Vec::new() }])
 }
 
 /// Takes a unit that is inside another one, if the other one goes on after it.
@@ -217,7 +222,9 @@ fn pou<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind) -> Item<'s> {
     input.state().open.push((end, opened));
     let mut pou = Pou { modifiers, result, doc, ..Pou::new(kind, name, span) };
     pou.blocks.extend(parameters);
+    let region = namespace::of_pou(input, opened);
     contents(input, &mut pou);
+    namespace::close(input, region);
     input.state().open.pop();
     if input.eat(end).is_none() {
         if is_pou_end(input.kind()) {

@@ -1,4 +1,4 @@
-//! Constructs that are known and refused by name: PROPERTY, INTERFACE, NAMESPACE and the like.
+//! Constructs that are known and refused by name: PROPERTY, INTERFACE and the like.
 //! Their words are names everywhere else.
 
 use chumsky::prelude::*;
@@ -13,12 +13,8 @@ use super::{
     token_class::{is_pou_end, opens_item},
 };
 
-const CONSTRUCTS: [(&str, Kind); 4] = [
-    ("PROPERTY", Kind::EndProperty),
-    ("INTERFACE", Kind::EndInterface),
-    ("CLASS", Kind::EndClass),
-    ("NAMESPACE", Kind::EndNamespace),
-];
+const CONSTRUCTS: [(&str, Kind); 3] =
+    [("PROPERTY", Kind::EndProperty), ("INTERFACE", Kind::EndInterface), ("CLASS", Kind::EndClass)];
 
 /// Refuses and skips such a construct, if one starts here.
 pub fn skip(input: &mut In<'_, '_, '_>) -> bool {
@@ -32,9 +28,8 @@ pub fn skip(input: &mut In<'_, '_, '_>) -> bool {
         skip_construct(input, *end);
         return true;
     }
-    let jump = ["JMP", "USING"].into_iter().find(|it| word.eq_ignore_ascii_case(it));
-    if let Some(name) = jump {
-        input.report(diagnostics::unsupported(span, name));
+    if word.eq_ignore_ascii_case("JMP") {
+        input.report(diagnostics::unsupported(span, "JMP"));
         recovery::skip_statement(input, span);
         return true;
     }
@@ -43,11 +38,10 @@ pub fn skip(input: &mut In<'_, '_, '_>) -> bool {
 
 /// Behind the construct's end; a construct without one ends before the next POU.
 pub fn skip_construct(input: &mut In<'_, '_, '_>, end: Kind) {
-    let holds_units = end == Kind::EndNamespace;
     loop {
         let kind = input.kind();
         let leaves = opens_item(kind) || is_pou_end(kind);
-        if kind == Kind::End || (leaves && !holds_units) {
+        if kind == Kind::End || leaves {
             return;
         }
         input.take();

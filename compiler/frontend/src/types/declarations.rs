@@ -73,7 +73,7 @@ impl<'s> PouSlot<'s> {
 type BuildSignature<'s> = fn(&mut Declarations<'s>, usize) -> Option<Signature<'s>>;
 
 pub(crate) struct GlobalSlot<'s> {
-    /// The list that it is in, or the root.
+    /// The namespace, or list, that it is in.
     pub space: SpaceId,
     pub name: ast::Name<'s>,
     pub block: &'s ast::VarBlock<'s>,
@@ -172,20 +172,22 @@ impl<'s> Declarations<'s> {
         }
         match pou.kind {
             ast::PouKind::Test => format!("__test_{slot}"),
-            ast::PouKind::Program
-            | ast::PouKind::FunctionBlock
-            | ast::PouKind::Function
-            | ast::PouKind::Action
-            | ast::PouKind::Method => pou.name.text.to_owned(),
+            ast::PouKind::Program | ast::PouKind::FunctionBlock | ast::PouKind::Function => self.name_in_full(pou.name),
+            ast::PouKind::Action | ast::PouKind::Method => pou.name.text.to_owned(),
         }
+    }
+
+    /// The name of what is declared, with the namespaces around it.
+    pub fn name_in_full(&self, name: ast::Name<'_>) -> String {
+        self.names.in_full(self.names.space_of(name.span), name.text)
     }
 
     /// What a POU is called for people: `Class.Method`.
     pub fn title(&self, slot: usize) -> String {
-        let name = self.pous[slot].ast.name.text;
+        let name = self.pous[slot].ast.name;
         match self.pous[slot].owner {
-            Some(owner) => format!("{}.{name}", self.pous[owner].ast.name.text),
-            None => name.to_owned(),
+            Some(owner) => format!("{}.{}", self.pous[owner].ast.name.text, name.text),
+            None => name.text.to_owned(),
         }
     }
 
@@ -278,11 +280,10 @@ impl<'s> Declarations<'s> {
         self.table.instances.get(&id).copied()
     }
 
-    /// What a path means in a namespace, as the options have it.
-    pub fn lookup(&self, space: SpaceId, path: &[ast::Name<'_>], sense: Sense) -> Found {
+    /// What a path means where it is, as the options have it.
+    pub fn lookup(&self, path: &[ast::Name<'_>], sense: Sense) -> Found {
         let Some(last) = path.last() else { return Found::Nothing };
-        let site = Site { space, dialect: self.dialect(last.span) };
-        match self.names.lookup(site, path, sense) {
+        match self.names.lookup(self.site(last.span), path, sense) {
             Found::One(Meaning::Block(block)) => {
                 let block = dialect::as_options_have_it(block, |it| self.log.options.is_on(it));
                 Found::One(Meaning::Block(block))
@@ -291,9 +292,13 @@ impl<'s> Declarations<'s> {
         }
     }
 
+    pub fn site(&self, span: Span) -> Site {
+        Site { span, dialect: self.dialect(span) }
+    }
+
     /// What files declare by a name where a value is expected.
-    pub fn declared(&self, space: SpaceId, name: ast::Name<'_>) -> Option<Entry> {
-        match self.lookup(space, &[name], Sense::Value) {
+    pub fn declared(&self, name: ast::Name<'_>) -> Option<Entry> {
+        match self.lookup(&[name], Sense::Value) {
             Found::One(Meaning::Declared(entry)) => Some(entry),
             Found::One(_) | Found::Nothing | Found::Several(_) => None,
         }
@@ -301,7 +306,7 @@ impl<'s> Declarations<'s> {
 
     /// The standard block that a bare name means.
     pub fn bare_block(&self, name: ast::Name<'_>) -> Option<BlockId> {
-        match self.lookup(SpaceId::ROOT, &[name], Sense::Type) {
+        match self.lookup(&[name], Sense::Type) {
             Found::One(Meaning::Block(block)) => Some(block),
             Found::One(_) | Found::Nothing | Found::Several(_) => None,
         }
@@ -311,15 +316,15 @@ impl<'s> Declarations<'s> {
     pub fn report_ambiguous(&mut self, name: ast::Name<'_>, meanings: &[String]) {
         let names: Vec<_> = meanings.iter().map(String::as_str).collect();
         self.report(
-            Diagnostic::new(Code::E0108, name.span, format!("several global variables are called `{}`", name.text))
+            Diagnostic::new(Code::E0108, name.span, format!("`{}` may mean several things here", name.text))
                 .label("which one is meant?")
                 .help(format!("write {}", crate::diagnostic::wording::list(&names))),
         );
     }
 
     /// The type of a global variable, where it is known: in its own declaration it is not yet.
-    pub fn type_of_global(&self, space: SpaceId, name: ast::Name<'_>) -> Option<Type> {
-        let Some(Entry::Global(at)) = self.declared(space, name) else { return None };
+    pub fn type_of_global(&self, name: ast::Name<'_>) -> Option<Type> {
+        let Some(Entry::Global(at)) = self.declared(name) else { return None };
         match &self.globals[at].slot {
             Slot::Done(variable) => Some(variable.resolved.ty),
             Slot::Open | Slot::Failed => None,
@@ -327,8 +332,8 @@ impl<'s> Declarations<'s> {
     }
 
     /// The type that a name means.
-    pub fn type_of_name(&mut self, space: SpaceId, name: ast::Name<'_>) -> Option<Type> {
-        match self.lookup(space, &[name], Sense::Type) {
+    pub fn type_of_name(&mut self, name: ast::Name<'_>) -> Option<Type> {
+        match self.lookup(&[name], Sense::Type) {
             Found::One(Meaning::Declared(Entry::Type(at))) => self.named_type(at).map(|it| it.ty),
             Found::One(Meaning::Declared(Entry::Pou(at))) => self.signature(at)?.state.map(Type::Struct),
             Found::One(Meaning::Block(block)) => Some(Type::Block(block)),
@@ -336,15 +341,15 @@ impl<'s> Declarations<'s> {
         }
     }
 
-    /// What the field of the global variable in a slot is called: a name that two lists have is after
-    /// its list's.
+    /// What the field of the global variable in a slot is called: a name that several namespaces have is
+    /// after its own one's.
     pub fn global_field_name(&self, at: usize) -> String {
         let GlobalSlot { name, space, .. } = &self.globals[at];
         let own = address::field_name(name.text);
-        match self.names.list_name(*space) {
-            Some(list) if self.names.in_lists(name.text).len() > 1 => format!("{list}_{own}"),
-            Some(_) | None => own,
+        if *space != SpaceId::ROOT && self.names.globals_named(name.text) > 1 {
+            return self.names.in_full(*space, &own).replace('.', "_");
         }
+        own
     }
 
     /// The instance that the name of the PROGRAM in a slot means.

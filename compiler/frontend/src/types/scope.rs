@@ -2,7 +2,6 @@
 
 use super::table::Resolved;
 use crate::ast;
-use crate::names::SpaceId;
 use crate::spelling::Key;
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{Const, Place, Section};
@@ -32,8 +31,6 @@ impl Variable<'_> {
 /// The variables a POU can name without a qualifier.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scope<'s> {
-    /// The namespace around it.
-    pub space: SpaceId,
     pub variables: Vec<Rc<Variable<'s>>>,
     index: FxHashMap<Key<'s>, usize>,
     /// Names whose declarations were refused: what uses them is not reported again.
@@ -45,14 +42,9 @@ pub(crate) struct Scope<'s> {
 }
 
 impl<'s> Scope<'s> {
-    /// Without variables, in a namespace.
-    pub fn of(space: SpaceId) -> Self {
-        Self { space, ..Self::default() }
-    }
-
     /// Of a METHOD or ACTION, in the scope of its POU.
     pub fn within(outer: Rc<Self>) -> Self {
-        Self { space: outer.space, outer: Some(outer), ..Self::default() }
+        Self { outer: Some(outer), ..Self::default() }
     }
 
     pub fn get(&self, name: &str) -> Option<&Rc<Variable<'s>>> {

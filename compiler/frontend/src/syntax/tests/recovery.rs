@@ -321,10 +321,6 @@ fn what_is_not_supported_is_named() {
          INTERFACE i // E0090
            METHOD m END_METHOD
          END_INTERFACE
-         NAMESPACE n // E0090
-           FUNCTION f END_FUNCTION
-         END_NAMESPACE
-         USING n; // E0090
          TYPE U : UNION a : INT; END_UNION; V EXTENDS W : STRUCT END_STRUCT; END_TYPE // E0090 E0090
          PROGRAM p x := ; END_PROGRAM // E0001",
     );

@@ -1,0 +1,128 @@
+//! Names with a namespace before them: `GVL.x`, `Plant.level`, `Plant.Colour.Red`, `Plant.Scale(x)`.
+
+use super::callee::Callee;
+use super::checker::Checker;
+use crate::names::{Entry, Found, Meaning, Sense};
+use crate::spelling::nearest;
+use crate::types::scope::Variable;
+use crate::{Code, Diagnostic, ast};
+use staunch_ir::Type;
+use std::rc::Rc;
+
+impl<'s> Checker<'_, 's> {
+    /// The path that an expression is, where its first name is no variable and nothing that is declared.
+    fn namespace_path(&self, expr: &ast::Expr<'s>) -> Option<ast::Path<'s>> {
+        let first = expr.first_name()?;
+        if self.scope.get(first.text).is_some() || self.decl.declared(first).is_some() {
+            return None;
+        }
+        expr.path().filter(|it| it.len() > 1)
+    }
+
+    /// A global variable by its namespace, or a PROGRAM. The inner `None` says that it was reported.
+    pub(crate) fn global_of_namespace(&mut self, expr: &ast::Expr<'s>) -> Option<Option<Rc<Variable<'s>>>> {
+        let path = self.namespace_path(expr)?;
+        let (last, around) = path.split_last()?;
+        match self.decl.lookup(&path, Sense::Value) {
+            Found::One(Meaning::Declared(Entry::Global(at))) => Some(self.global(at)),
+            Found::One(Meaning::Declared(Entry::Pou(slot))) if self.is_callable_program(slot, *last) => {
+                Some(self.decl.program_variable(slot))
+            }
+            Found::Several(meanings) => {
+                self.decl.report_ambiguous(*last, &meanings);
+                Some(None)
+            }
+            Found::Nothing if self.decl.names.space_at(self.decl.site(last.span), around).is_some() => {
+                self.not_in_namespace(around, *last);
+                Some(None)
+            }
+            Found::One(_) | Found::Nothing => None,
+        }
+    }
+
+    /// The path of an enumerator. A variable hides a type of its name, unless it is an enumeration, which
+    /// has no members: `state := State.Idle`.
+    pub(crate) fn path_of_enumerator(&mut self, expr: &ast::Expr<'s>) -> Option<ast::Path<'s>> {
+        let first = expr.first_name()?;
+        let hides = |it| !matches!(it, Type::Enum(_));
+        if self.scope.is_refused(first.text) || self.type_of_variable(first).is_some_and(hides) {
+            return None;
+        }
+        let path = expr.path().filter(|it| it.len() > 1)?;
+        matches!(self.decl.lookup(&path, Sense::Value), Found::One(Meaning::Enumerator(_))).then_some(path)
+    }
+
+    fn type_of_variable(&mut self, name: ast::Name<'s>) -> Option<Type> {
+        let own = self.scope.get(name.text).map(|it| it.place.ty);
+        own.or_else(|| self.decl.type_of_global(name))
+    }
+
+    /// What a call names by a path; `None` where the path starts with a variable or leads to an instance,
+    /// and an inner `None` where it was reported.
+    pub(crate) fn qualified_callee(&mut self, callee: &ast::Expr<'s>) -> Option<Option<Callee<'s>>> {
+        let first = callee.first_name()?;
+        if self.scope.get(first.text).is_some() {
+            return None;
+        }
+        let path = callee.path()?;
+        let (last, around) = path.split_last()?;
+        match self.decl.lookup(&path, Sense::Callee) {
+            Found::One(Meaning::Instruction(..)) => Some(Some(Callee::Instruction(*last))),
+            Found::One(Meaning::Function) => Some(Some(Callee::Standard(*last))),
+            Found::One(Meaning::Declared(Entry::Pou(slot))) => Some(self.called_pou(slot, *last)),
+            Found::Several(meanings) => {
+                self.decl.report_ambiguous(*last, &meanings);
+                Some(None)
+            }
+            Found::Nothing if self.namespace_path(callee).is_some() => {
+                if let [family] = around
+                    && let Some(family) = staunch_runtime::Family::named(family.text)
+                {
+                    self.report_family_call(family, *last);
+                    return Some(None);
+                }
+                self.decl.names.space_at(self.decl.site(last.span), around)?;
+                self.not_in_namespace(around, *last);
+                Some(None)
+            }
+            Found::One(_) | Found::Nothing => None,
+        }
+    }
+
+    /// `GVL.x`, where the namespace has no `x`.
+    fn not_in_namespace(&mut self, around: &[ast::Name<'s>], name: ast::Name<'s>) {
+        let error = self.decl.not_in_namespace(Code::E0101, around, name);
+        self.report(error);
+    }
+}
+
+impl<'s> crate::types::declarations::Declarations<'s> {
+    /// That a namespace, or a list of global variables, holds nothing of a name.
+    pub(crate) fn not_in_namespace(&self, code: Code, around: &[ast::Name<'s>], name: ast::Name<'s>) -> Diagnostic {
+        let full = around.iter().map(|it| it.text).collect::<Vec<_>>().join(".");
+        let space = self.names.space_at(self.site(name.span), around);
+        let what = match space {
+            Some(it) if self.names.is_list(it) => format!("the list `{full}` has no variable `{}`", name.text),
+            Some(_) | None => format!("the namespace `{full}` has no `{}`", name.text),
+        };
+        let error = Diagnostic::new(code, name.span, what).label("unknown name");
+        if self.names.holders(name.text).iter().any(|(it, internal)| *internal && it.eq_ignore_ascii_case(&full)) {
+            return error.help(format!("it is INTERNAL, and not seen from outside of `{full}`"));
+        }
+        match space.and_then(|it| nearest(name.text, self.names.names_in(it))) {
+            Some(near) => error.help(format!("did you mean `{near}`?")).fix(name.span, near),
+            None => error,
+        }
+    }
+
+    /// Where a name that means nothing by itself is declared.
+    pub(crate) fn hint_of_namespace(&self, name: ast::Name<'_>) -> Option<String> {
+        let holders = self.names.holders(name.text);
+        let (space, internal) = holders.first()?;
+        Some(if *internal {
+            format!("`{space}.{}` is INTERNAL, and not seen from here", name.text)
+        } else {
+            format!("write `{space}.{}`, or `USING {space};` before it", name.text)
+        })
+    }
+}

@@ -1,0 +1,109 @@
+//! Regions: which namespace a place in a file is in, and what is used there.
+
+use crate::source::Span;
+
+/// A declared namespace.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(crate) struct SpaceId(pub(super) usize);
+
+impl SpaceId {
+    pub const ROOT: Self = Self(0);
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct RegionId(usize);
+
+/// A stretch of a file: the file, a NAMESPACE, a list of global variables, or a POU that has a USING.
+#[derive(Debug)]
+pub(super) struct Region {
+    pub space: SpaceId,
+    pub outer: Option<RegionId>,
+    /// What its USING directives name.
+    pub uses: Vec<SpaceId>,
+}
+
+/// The regions of all files.
+#[derive(Debug, Default)]
+pub(super) struct Regions {
+    all: Vec<Region>,
+    /// For each file, where the innermost region changes, in order.
+    files: Vec<Vec<(u32, RegionId)>>,
+}
+
+impl Regions {
+    /// Adds those of the next file: each with its stretch and its namespace, outer ones and earlier ones
+    /// first; the first is the file itself.
+    pub fn add_file(&mut self, stretches: impl IntoIterator<Item = (Span, SpaceId)>) -> Vec<RegionId> {
+        let mut changes: Vec<(u32, RegionId)> = Vec::new();
+        let mut open: Vec<(u32, RegionId)> = Vec::new();
+        let mut ids = Vec::new();
+        for (span, space) in stretches {
+            while open.len() > 1 && open.last().is_some_and(|it| it.0 <= span.start) {
+                end_innermost(&mut open, &mut changes);
+            }
+            let id = RegionId(self.all.len());
+            self.all.push(Region { space, outer: open.last().map(|it| it.1), uses: Vec::new() });
+            changes.push((span.start, id));
+            open.push((span.end, id));
+            ids.push(id);
+        }
+        while open.len() > 1 {
+            end_innermost(&mut open, &mut changes);
+        }
+        self.files.push(changes);
+        ids
+    }
+
+    pub fn use_in(&mut self, region: RegionId, space: SpaceId) {
+        let uses = &mut self.all[region.0].uses;
+        if !uses.contains(&space) {
+            uses.push(space);
+        }
+    }
+
+    /// The innermost region at a place.
+    pub fn at(&self, place: Span) -> Option<RegionId> {
+        let changes = self.files.get(usize::from(place.file))?;
+        let after = changes.partition_point(|it| it.0 <= place.start);
+        Some(changes.get(after.saturating_sub(1))?.1)
+    }
+
+    /// The regions around a place, the innermost first.
+    pub fn around(&self, place: Span) -> impl Iterator<Item = &Region> {
+        let first = self.at(place).map(|it| &self.all[it.0]);
+        std::iter::successors(first, |it| it.outer.map(|it| &self.all[it.0]))
+    }
+}
+
+fn end_innermost(open: &mut Vec<(u32, RegionId)>, changes: &mut Vec<(u32, RegionId)>) {
+    let Some((end, _)) = open.pop() else { return };
+    changes.extend(open.last().map(|(_, outer)| (end, *outer)));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn span(start: u32, end: u32) -> Span {
+        Span { file: 0, start, end }
+    }
+
+    #[test]
+    fn the_innermost_region_at_a_place() {
+        let mut regions = Regions::default();
+        let space = |it| SpaceId(it);
+        let stretches =
+            [(span(0, 100), space(0)), (span(10, 50), space(1)), (span(20, 30), space(2)), (span(50, 60), space(3))];
+        regions.add_file(stretches);
+        let at = |place| regions.around(span(place, place)).map(|it| it.space.0).collect::<Vec<_>>();
+        assert_eq!(at(0), [0]);
+        assert_eq!(at(10), [1, 0]);
+        assert_eq!(at(20), [2, 1, 0]);
+        assert_eq!(at(30), [1, 0]);
+        assert_eq!(at(49), [1, 0]);
+        assert_eq!(at(50), [3, 0]);
+        assert_eq!(at(60), [0]);
+        assert_eq!(at(200), [0]);
+        assert!(regions.at(Span { file: 1, start: 0, end: 0 }).is_none());
+    }
+}
