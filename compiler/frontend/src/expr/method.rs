@@ -58,17 +58,21 @@ impl<'s> Checker<'_, 's> {
         let Some((access, span)) = self.decl.pous[slot].ast.modifiers.access else { return Some(()) };
         let own = self.signature.as_ref().and_then(|it| it.state).and_then(|it| self.decl.slot_of_instance(it));
         let is_inside = own.is_some() && own == self.decl.pous[slot].owner;
-        let word = match access {
-            // A program is one library.
-            ast::Access::Public | ast::Access::Internal => return Some(()),
+        let of_namespace = self.decl.names.is_inside(name.span, self.decl.names.space_of(span));
+        let routines = "only the routines of its own FUNCTION_BLOCK call it";
+        let (word, who) = match access {
+            ast::Access::Public => return Some(()),
+            // Outside of every NAMESPACE a program is one library.
+            ast::Access::Internal if of_namespace || self.is_test() => return Some(()),
             ast::Access::Private | ast::Access::Protected if is_inside || self.is_test() => return Some(()),
-            ast::Access::Private => "PRIVATE",
-            ast::Access::Protected => "PROTECTED",
+            ast::Access::Internal => ("INTERNAL", "only what is in its own namespace calls it"),
+            ast::Access::Private => ("PRIVATE", routines),
+            ast::Access::Protected => ("PROTECTED", routines),
         };
         let title = self.decl.title(slot);
         self.report(
             Diagnostic::new(Code::E0109, name.span, format!("`{title}` is {word}"))
-                .label("only the routines of its own FUNCTION_BLOCK call it")
+                .label(who)
                 .other(span, "declared so here"),
         );
         None
@@ -127,10 +131,12 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn type_of_member(&self, owner: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<Type> {
-        if let Ast::Name(list) = &owner.kind
-            && self.scope.get(list.text).is_none()
-            && let names::Found::One(Meaning::Declared(Entry::Global(at))) =
-                self.decl.lookup(&[*list, name], Sense::Value)
+        if let Some(mut path) = owner.path()
+            && path.first().is_some_and(|it| self.scope.get(it.text).is_none())
+            && let names::Found::One(Meaning::Declared(Entry::Global(at))) = {
+                path.push(name);
+                self.decl.lookup(&path, Sense::Value)
+            }
         {
             let Slot::Done(variable) = &self.decl.globals[at].slot else { return None };
             return Some(variable.place.ty);

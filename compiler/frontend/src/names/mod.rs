@@ -202,11 +202,12 @@ impl<'s> Names<'s> {
 
     /// Whether a place sees what a namespace holds.
     fn sees(&self, site: Site, space: SpaceId, entries: Entries, entry: Entry) -> bool {
-        !(entries.internal && entries.ty == Some(entry)) || self.is_inside(site, space)
+        !(entries.internal && entries.ty == Some(entry)) || self.is_inside(site.span, space)
     }
 
-    fn is_inside(&self, site: Site, space: SpaceId) -> bool {
-        let mut around = self.regions.around(site.span);
+    /// Whether a place is in a namespace.
+    pub fn is_inside(&self, place: Span, space: SpaceId) -> bool {
+        let mut around = self.regions.around(place);
         around.any(|it| self.spaces_to(it.space, None).any(|it| it == space))
     }
 
@@ -274,7 +275,7 @@ impl<'s> Names<'s> {
         };
         let here = &self.spaces[space.0];
         if let Some(inner) = here.inner.get(&Key(first.text)) {
-            let hidden = self.spaces[inner.0].internal && !self.is_inside(site, space);
+            let hidden = self.spaces[inner.0].internal && !self.is_inside(site.span, space);
             return if hidden { Found::Nothing } else { self.in_space(site, *inner, rest, last, sense) };
         }
         let entries = here.own.get(&Key(first.text)).copied().unwrap_or_default();
