@@ -34,8 +34,8 @@ impl<'s> Checker<'_, 's> {
     ) -> Option<Option<Operand>> {
         let Ast::Name(name) = &callee.kind else { return None };
         let end = end(name.text)?;
-        let declared = self.scope.get(name.text).is_some()
-            || self.decl.lookup(self.scope.space, &[*name], Sense::Callee) != Found::Nothing;
+        let declared =
+            self.scope.get(name.text).is_some() || self.decl.lookup(&[*name], Sense::Callee) != Found::Nothing;
         if declared {
             return None;
         }
