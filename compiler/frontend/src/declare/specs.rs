@@ -227,18 +227,14 @@ impl<'s> Declarations<'s> {
             Found::One(Meaning::Declared(Entry::Type(at))) => self.named_type(at),
             Found::One(Meaning::Declared(Entry::Pou(at))) => self.instance_type(at, name),
             Found::One(Meaning::Block(block)) => Some(block_type(block)),
-<<<<<<< HEAD
-            Found::One(_) | Found::Nothing | Found::Several(_) => {
-                if let Some(class) = class_named(name.text) {
-                    return self.generic_type(class, name);
-                }
-=======
             Found::Several(meanings) => {
                 self.report_ambiguous(name, &meanings);
                 None
             }
             Found::One(_) | Found::Nothing => {
->>>>>>> 7edcb12 (NAMESPACE and USING: a place in a file says what a name means there)
+                if let Some(class) = class_named(name.text) {
+                    return self.generic_type(class, name);
+                }
                 self.report_unknown_type(name);
                 None
             }

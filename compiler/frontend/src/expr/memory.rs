@@ -59,8 +59,8 @@ impl<'s> Checker<'_, 's> {
     ) -> Option<Option<Operand>> {
         let Ast::Name(name) = &callee.kind else { return None };
         let (function, names) = function(name.text)?;
-        let declared = self.scope.get(name.text).is_some()
-            || self.decl.lookup(self.scope.space, &[*name], Sense::Callee) != Meant::Nothing;
+        let declared =
+            self.scope.get(name.text).is_some() || self.decl.lookup(&[*name], Sense::Callee) != Meant::Nothing;
         if declared || self.signature.is_none() {
             return None;
         }

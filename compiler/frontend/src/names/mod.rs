@@ -381,7 +381,7 @@ impl<'s> Names<'s> {
     }
 
     /// What the root holds of a name, by itself.
-    fn root(&self, name: &str) -> Option<Entries> {
+    pub fn root(&self, name: &str) -> Option<Entries> {
         self.own(SpaceId::ROOT, name)
     }
 

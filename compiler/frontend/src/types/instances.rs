@@ -4,6 +4,7 @@ use super::declarations::{Declarations, PouSlot, Slot};
 use super::generic::{Instance, class_named};
 use super::table::{scalar_initial, struct_initial};
 use crate::diagnostic::{Label, wording::list};
+use crate::names::{Found, Sense};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Const, Elementary, Type};
 use staunch_runtime::Class;
@@ -143,7 +144,7 @@ impl<'s> Declarations<'s> {
 
     /// `Largest_INT`; where something else has that name, one like it.
     fn instance_name(&mut self, of: usize, types: &[Type]) -> String {
-        let mut name = self.pous[of].ast.name.text.to_owned();
+        let mut name = self.name_in_full(self.pous[of].ast.name);
         for ty in types {
             let text = self.program.type_name(*ty);
             let parts = text.split(|it: char| !it.is_ascii_alphanumeric()).filter(|it| !it.is_empty());
@@ -214,7 +215,7 @@ impl<'s> Declarations<'s> {
 
     /// The class that a name means, unless something is declared by that name.
     pub fn class_word(&self, name: ast::Name<'s>) -> Option<Class> {
-        class_named(name.text).filter(|_| self.names.root(name.text).is_none())
+        class_named(name.text).filter(|_| self.lookup(&[name], Sense::Type) == Found::Nothing)
     }
 
     /// Whether variables of an instance count as used because those of the FUNCTION do.
