@@ -8,7 +8,7 @@ use std::path::Path;
 const ROOT: &str = "compiler/frontend/src";
 
 /// The folders and files at the root, from the lowest.
-const LAYERS: [&str; 19] = [
+const LAYERS: [&str; 20] = [
     "source",
     "diagnostic",
     "spelling",
@@ -21,6 +21,7 @@ const LAYERS: [&str; 19] = [
     "testing",
     "dialect",
     "log",
+    "prelude",
     "names",
     "types",
     "expr",

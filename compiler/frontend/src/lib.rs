@@ -16,6 +16,7 @@ mod follow_up;
 mod foreign;
 mod log;
 mod names;
+mod prelude;
 mod types;
 
 mod expr;
@@ -93,12 +94,12 @@ impl Compilation {
 
 /// Checks the sources as one program; the order of files does not matter.
 pub fn compile(sources: &Sources, options: &Options) -> Compilation {
-    run(sources, options, Bodies::Kept)
+    with_library(sources, options, Bodies::Kept)
 }
 
 /// What [`compile`] has to say, in less memory: each body is let go when it has been checked.
 pub fn check(sources: &Sources, options: &Options) -> Vec<Diagnostic> {
-    run(sources, options, Bodies::Dropped).diagnostics
+    with_library(sources, options, Bodies::Dropped).diagnostics
 }
 
 /// Whether the program that is made has the bodies of its POUs, or the calls in them alone.
@@ -108,6 +109,13 @@ enum Bodies {
     Dropped,
 }
 
+/// What the sources name of the library becomes a part of the program.
+fn with_library(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
+    let Some(extended) = prelude::Extended::of(sources, options) else { return run(sources, options, keep) };
+    let compilation = run(&extended.sources, options, keep);
+    Compilation { diagnostics: extended.of_the_user(compilation.diagnostics), ..compilation }
+}
+
 fn run(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
     let mut log = Log::new(sources, options);
     let Some(mut files) = parse_all(sources, &mut log.diagnostics) else {
@@ -115,7 +123,7 @@ fn run(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
     };
     // Unit tests that do not run are checked all the same.
     let tested = (!options.tests && testing::has_tests(&files))
-        .then(|| check(sources, &Options { tests: true, ..options.clone() }));
+        .then(|| run(sources, &Options { tests: true, ..options.clone() }, Bodies::Dropped).diagnostics);
     testing::expand(&mut files, options.tests);
     let allowances = allow::Allowances::read(&files, &mut log.diagnostics);
     let mut bodies: Vec<_> = files.iter_mut().flat_map(ast::File::take_bodies).collect();

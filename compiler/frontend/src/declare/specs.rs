@@ -5,6 +5,7 @@ use crate::diagnostic::wording::list;
 use crate::dialect;
 use crate::expr::unresolved::{block_of_another_dialect, no_such_block};
 use crate::names::{Entry, Found, Meaning, Sense};
+use crate::prelude;
 use crate::spelling::{Key, nearest};
 use crate::types::declarations::Declarations;
 use crate::types::generic::class_named;
@@ -27,7 +28,7 @@ const MAX_DIMENSIONS: usize = 64;
 /// Longest string.
 const MAX_CAPACITY: i128 = 32767;
 
-const NOT_YET: [&str; 5] = ["RTC", "BLINK", "CHAR", "WCHAR", "WSTRING"];
+const NOT_YET: [&str; 3] = ["CHAR", "WCHAR", "WSTRING"];
 
 /// What other languages call elementary types.
 const FOREIGN: [(&str, &str); 24] = [
@@ -261,6 +262,17 @@ impl<'s> Declarations<'s> {
     fn report_unknown_type(&mut self, name: ast::Name<'s>) {
         if NOT_YET.iter().any(|it| it.eq_ignore_ascii_case(name.text)) {
             self.not_supported(name.span, &format!("the type {}", name.text.to_ascii_uppercase()));
+            return;
+        }
+        if let Some(Some(dialect)) = prelude::unit(name.text).map(|it| it.dialect) {
+            let (system, dialect) = (dialect.family().name(), dialect.name());
+            self.report(
+                Diagnostic::new(Code::E0102, name.span, format!("`{}` is of {system}'s library", name.text))
+                    .label("this file's dialect has no type of that name")
+                    .help(format!(
+                        "start the file with `{{dialect '{dialect}'}}`, or compile with `--dialect {dialect}`"
+                    )),
+            );
             return;
         }
         if let Some(error) = block_of_another_dialect(self.dialect(name.span), name) {

@@ -3,6 +3,7 @@
 use super::checker::Checker;
 use super::unresolved::{block_of_another_dialect, no_such_block};
 use crate::names::{Entry, Found, Meaning, Sense, functions, instruction_in};
+use crate::prelude;
 use crate::spelling::nearest;
 use crate::{Code, Diagnostic, ast, dialect};
 use ast::{ArgumentKind, ExprKind as Ast};
@@ -177,6 +178,17 @@ impl<'s> Checker<'_, 's> {
             );
             return;
         }
+        if let Some(Some(dialect)) = prelude::unit(name.text).map(|it| it.dialect) {
+            let (system, dialect) = (dialect.family().name(), dialect.name());
+            self.report(
+                Diagnostic::new(Code::E0307, name.span, format!("`{}` is of {system}'s library", name.text))
+                    .label("this file's dialect has none of that name")
+                    .help(format!(
+                        "start the file with `{{dialect '{dialect}'}}`, or compile with `--dialect {dialect}`"
+                    )),
+            );
+            return;
+        }
         if not_yet(name.text) {
             self.decl.not_supported(name.span, &format!("the function {}", name.text.to_ascii_uppercase()));
             return;
@@ -211,19 +223,7 @@ fn not_yet(name: &str) -> bool {
         texts.iter().any(|it| part == *it || part.starts_with("BCD") || part.ends_with("BCD"))
     };
     let (from, to) = name.split_once("_TO_").or_else(|| Some(("", name.strip_prefix("TO_")?))).unwrap_or(("", ""));
-    let others = [
-        "ROUND",
-        "CEIL",
-        "FLOOR",
-        "ASSERT",
-        "SPLIT_DATE",
-        "SPLIT_TOD",
-        "SPLIT_LTOD",
-        "SPLIT_DT",
-        "SPLIT_LDT",
-        "CONCAT_TIME",
-        "UPPER_CASE",
-    ];
+    let others = ["ROUND", "CEIL", "FLOOR", "ASSERT", "CONCAT_TIME", "UPPER_CASE"];
     conversion(from) || conversion(to) || others.contains(&name.as_str())
 }
 

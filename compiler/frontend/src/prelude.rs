@@ -1,0 +1,348 @@
+//! The library that is written in Structured Text: a unit becomes a source of the program where one of the program's
+//! files names it, and costs nothing where none does. What a user declares by the same name wins.
+
+use crate::dialect::Dialect;
+use crate::lex::{Kind, Tokens, lex};
+use crate::spelling::Key;
+use crate::{Code, Diagnostic, Options, Severity, Source, Sources, Span};
+use rustc_hash::{FxHashMap, FxHashSet};
+use std::sync::LazyLock;
+
+/// A unit of the library.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Unit {
+    pub name: &'static str,
+    text: &'static str,
+    use_: Use,
+    /// The dialect that has it by this name; `None` for all.
+    pub dialect: Option<Dialect>,
+    /// Other units that it names.
+    needs: &'static [&'static str],
+}
+
+/// What a unit declares, and so where its name is its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Use {
+    Type,
+    Function,
+}
+
+macro_rules! units {
+    ($($use_:ident $name:literal $file:literal $([$dialect:ident])? $($need:literal)*;)*) => {
+        &[$(Unit {
+            name: $name,
+            text: include_str!(concat!("prelude/", $file, ".st")),
+            use_: Use::$use_,
+            dialect: units!(@dialect $($dialect)?),
+            needs: &[$($need),*],
+        }),*]
+    };
+    (@dialect) => {
+        None
+    };
+    (@dialect $dialect:ident) => {
+        Some(Dialect::$dialect)
+    };
+}
+
+/// Every unit.
+pub(crate) const UNITS: &[Unit] = units! {
+    Type     "BLINK"            "blink"            [Codesys];
+    Type     "GEN_MODE"         "gen_mode"         [Codesys];
+    Type     "GEN"              "gen"              [Codesys] "GEN_MODE";
+    Type     "FREQ_MEASURE"     "freq_measure"     [Codesys];
+    Type     "HYSTERESIS"       "hysteresis"       [Codesys];
+    Type     "LIMITALARM"       "limitalarm"       [Codesys];
+    Type     "DERIVATIVE"       "derivative"       [Codesys];
+    Type     "INTEGRAL"         "integral"         [Codesys];
+    Type     "LIN_TRAFO"        "lin_trafo"        [Codesys];
+    Type     "STATISTICS_INT"   "statistics_int"   [Codesys];
+    Type     "STATISTICS_REAL"  "statistics_real"  [Codesys];
+    Type     "POINT"            "point"            [Codesys];
+    Type     "CHARCURVE"        "charcurve"        [Codesys] "POINT";
+    Type     "RAMP_INT"         "ramp_int"         [Codesys];
+    Type     "RAMP_REAL"        "ramp_real"        [Codesys];
+    Type     "PD"               "pd"               [Codesys] "DERIVATIVE";
+    Type     "PID"              "pid"              [Codesys] "DERIVATIVE" "INTEGRAL";
+    Type     "UNPACK"           "unpack"           [Codesys];
+    Function "PACK"             "pack"             [Codesys];
+    Function "EXTRACT"          "extract"          [Codesys];
+    Function "PUTBIT"           "putbit"           [Codesys];
+    Function "BCD_TO_INT"       "bcd_to_int"       [Codesys];
+    Function "INT_TO_BCD"       "int_to_bcd"       [Codesys];
+    Type     "RTC"              "rtc";
+    Function "SPLIT_DATE"       "split_date";
+    Function "SPLIT_TOD"        "split_tod";
+    Function "SPLIT_LTOD"       "split_ltod";
+    Function "SPLIT_DT"         "split_dt"         "SPLIT_DATE" "SPLIT_TOD";
+    Function "SPLIT_LDT"        "split_ldt"        "SPLIT_DATE" "SPLIT_LTOD";
+    Function "IS_VALID"         "is_valid";
+    Function "IS_VALID_BCD"     "is_valid_bcd";
+    Function "BYTE_BCD_TO_USINT"  "byte_bcd_to_usint";
+    Function "WORD_BCD_TO_UINT"   "word_bcd_to_uint";
+    Function "DWORD_BCD_TO_UDINT" "dword_bcd_to_udint";
+    Function "LWORD_BCD_TO_ULINT" "lword_bcd_to_ulint";
+    Function "USINT_TO_BCD_BYTE"  "usint_to_bcd_byte";
+    Function "UINT_TO_BCD_WORD"   "uint_to_bcd_word";
+    Function "UDINT_TO_BCD_DWORD" "udint_to_bcd_dword";
+    Function "ULINT_TO_BCD_LWORD" "ulint_to_bcd_lword";
+};
+
+static BY_NAME: LazyLock<FxHashMap<Key<'static>, Unit>> =
+    LazyLock::new(|| UNITS.iter().map(|it| (Key(it.name), *it)).collect());
+
+/// The lengths of units' names, by their first letters: most words of a program are passed over by these.
+static LENGTHS: LazyLock<[u32; 26]> = LazyLock::new(|| {
+    let mut lengths = [0; 26];
+    for unit in UNITS {
+        if let Some(lengths) = unit.name.bytes().next().and_then(|it| lengths.get_mut(usize::from(it - b'A'))) {
+            *lengths |= 1 << unit.name.len();
+        }
+    }
+    lengths
+});
+
+/// The unit of a name.
+pub(crate) fn unit(name: &str) -> Option<Unit> {
+    BY_NAME.get(&Key(name)).copied()
+}
+
+/// A unit that a program names, and where it does first.
+#[derive(Clone, Copy, Debug)]
+struct Named {
+    unit: Unit,
+    at: Span,
+    dialect: Dialect,
+}
+
+/// The sources with what they name of the library after them.
+pub(crate) struct Extended {
+    pub sources: Sources,
+    named: Vec<Named>,
+}
+
+impl Extended {
+    /// `None` where the sources name nothing of the library.
+    pub fn of(sources: &Sources, options: &Options) -> Option<Self> {
+        let mut uses = Uses::default();
+        for (source, number) in sources.files().iter().zip(0u16..) {
+            if mentions_any(&source.text) {
+                uses.read(number, &source.text, options);
+            }
+        }
+        let named = uses.needed();
+        if named.is_empty() {
+            return None;
+        }
+        let mut sources = sources.clone();
+        for it in &named {
+            let text = format!("{{dialect '{}'}} {}", it.dialect.name(), it.unit.text);
+            sources.add(Source::new(format!("library/{}.st", it.unit.name.to_ascii_lowercase()), text));
+        }
+        Some(Self { sources, named })
+    }
+
+    /// What is reported of the user's own files. A unit that does not fit what the user declares is reported
+    /// where it is named.
+    pub fn of_the_user(&self, diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
+        let own = self.sources.files().len() - self.named.len();
+        let mut kept: Vec<Diagnostic> = Vec::new();
+        for mut it in diagnostics {
+            it.others.retain(|label| usize::from(label.span.file) < own);
+            match usize::from(it.span.file).checked_sub(own) {
+                None => kept.push(it),
+                Some(unit) if it.severity == Severity::Error => {
+                    let error = self.named[unit].unfit(&it);
+                    if !kept.iter().any(|known| (known.span, &known.message) == (error.span, &error.message)) {
+                        kept.push(error);
+                    }
+                }
+                Some(_) => {}
+            }
+        }
+        kept
+    }
+}
+
+impl Named {
+    fn unfit(&self, error: &Diagnostic) -> Diagnostic {
+        let name = self.unit.name;
+        Diagnostic::new(Code::E0902, self.at, format!("the library's `{name}` does not fit what you declare"))
+            .label("named here")
+            .note(format!("in it: {}", error.message))
+            .help(format!("declare a `{name}` of your own, or another name for what it uses"))
+    }
+}
+
+/// The units that files name, and the names that they declare.
+#[derive(Default)]
+struct Uses {
+    named: Vec<Named>,
+    declared: FxHashSet<&'static str>,
+}
+
+impl Uses {
+    fn read(&mut self, file: u16, text: &str, options: &Options) {
+        let tokens = lex(file, text);
+        let dialect = dialect_of(&tokens, options);
+        let mut types = TypeBlock::default();
+        for (at, kind) in tokens.kinds.iter().enumerate() {
+            types.see(*kind);
+            let word = |at: usize| tokens.places.get(at).and_then(|it| text.get(range(*it))).unwrap_or_default();
+            if *kind != Kind::Name {
+                continue;
+            }
+            let Some(unit) = unit(word(at)) else { continue };
+            let before = at.checked_sub(1).map(|it| (tokens.kinds[it], word(it)));
+            let after = tokens.kinds.get(at + 1).copied();
+            if declares(before, after, &types) {
+                self.declared.insert(unit.name);
+            } else if names(&unit, before, after) && unit.dialect.is_none_or(|it| it == dialect) {
+                let (start, end) = tokens.places[at];
+                self.named.push(Named { unit, at: Span { file, start, end }, dialect });
+            }
+        }
+    }
+
+    /// Each once, with what it needs.
+    fn needed(self) -> Vec<Named> {
+        let mut needed: Vec<Named> = Vec::new();
+        let mut waiting: Vec<Named> = self.named.into_iter().rev().collect();
+        while let Some(it) = waiting.pop() {
+            let known = needed.iter().any(|known| known.unit.name == it.unit.name);
+            if known || self.declared.contains(it.unit.name) {
+                continue;
+            }
+            needed.push(it);
+            waiting.extend(it.unit.needs.iter().filter_map(|name| Some(Named { unit: unit(name)?, ..it })));
+        }
+        needed
+    }
+}
+
+/// Whether a TYPE block is open, and how deep in structures.
+#[derive(Default)]
+struct TypeBlock {
+    open: bool,
+    structures: u32,
+}
+
+impl TypeBlock {
+    fn see(&mut self, kind: Kind) {
+        match kind {
+            Kind::Type => (self.open, self.structures) = (true, 0),
+            Kind::EndType => self.open = false,
+            Kind::Struct => self.structures += 1,
+            Kind::EndStruct => self.structures = self.structures.saturating_sub(1),
+            _ => {}
+        }
+    }
+}
+
+/// Whether a name between these tokens is declared there.
+fn declares(before: Option<(Kind, &str)>, after: Option<Kind>, types: &TypeBlock) -> bool {
+    let Some((before, word)) = before else { return false };
+    match before {
+        Kind::Function | Kind::FunctionBlock | Kind::Program => true,
+        // `FUNCTION_BLOCK PUBLIC x`, `CLASS x`
+        Kind::Name => {
+            let words = ["PUBLIC", "INTERNAL", "PRIVATE", "PROTECTED", "FINAL", "ABSTRACT", "CLASS", "INTERFACE"];
+            words.iter().any(|it| word.eq_ignore_ascii_case(it))
+        }
+        _ => types.open && types.structures == 0 && after == Some(Kind::Colon) && before != Kind::Comma,
+    }
+}
+
+/// Whether a name between these tokens means the unit.
+fn names(unit: &Unit, before: Option<(Kind, &str)>, after: Option<Kind>) -> bool {
+    let is_after = |kind: Kind| before.is_some_and(|it| it.0 == kind);
+    match unit.use_ {
+        Use::Function => after == Some(Kind::OpenParen) && !is_after(Kind::Dot),
+        Use::Type => {
+            let is_type = is_after(Kind::Colon) || is_after(Kind::Of) || is_after(Kind::To);
+            let extends = before.is_some_and(|it| it.1.eq_ignore_ascii_case("EXTENDS"));
+            (is_type || extends) && after != Some(Kind::OpenParen)
+        }
+    }
+}
+
+fn dialect_of(tokens: &Tokens<'_>, options: &Options) -> Dialect {
+    let named = |text: &str| {
+        let rest = text.trim().strip_prefix("dialect")?.trim();
+        Dialect::named(rest.trim_matches(|it| it == '\'' || it == '"'))
+    };
+    let own = tokens.pragmas.iter().find_map(|it| named(it.text)).filter(|it| options.moved_from != Some(*it));
+    own.unwrap_or(options.dialect)
+}
+
+/// Whether a text has a word that is a unit's name.
+fn mentions_any(text: &str) -> bool {
+    let is_word = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_';
+    let bytes = text.as_bytes();
+    let mut at = 0;
+    while let Some(first) = bytes.get(at) {
+        if !is_word(*first) {
+            at += 1;
+            continue;
+        }
+        let length = bytes[at..].iter().take_while(|it| is_word(**it)).count();
+        let letter = first.to_ascii_uppercase().wrapping_sub(b'A');
+        let lengths = LENGTHS.get(usize::from(letter)).copied().unwrap_or(0);
+        if length < 32 && lengths & (1 << length) != 0 && text.get(at..at + length).and_then(unit).is_some() {
+            return true;
+        }
+        at += length;
+    }
+    false
+}
+
+fn range((start, end): (u32, u32)) -> core::ops::Range<usize> {
+    let offset = |it: u32| usize::try_from(it).unwrap_or(usize::MAX);
+    offset(start)..offset(end)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Each unit alone, with what it needs, compiles without a word, and is on the page of the library.
+    #[test]
+    fn every_unit_compiles() {
+        let page = include_str!("../../../docs/library.md");
+        for unit in UNITS {
+            let dialect = unit.dialect.unwrap_or_default();
+            let call = match unit.use_ {
+                Use::Type => format!("VAR_GLOBAL it : {}; END_VAR", unit.name),
+                Use::Function => format!("PROGRAM Main {}(); END_PROGRAM", unit.name),
+            };
+            let mut sources = Sources::default();
+            sources.add(Source::new("main.st", call));
+            let options = Options { dialect, ..Options::default() };
+            let extended = Extended::of(&sources, &options).unwrap_or_else(|| panic!("{} is not found", unit.name));
+            let names: Vec<_> = extended.named.iter().map(|it| it.unit.name).collect();
+            assert_eq!(names[0], unit.name);
+            assert!(unit.needs.iter().all(|it| names.contains(it)), "{names:?}");
+            let reported = crate::run(&extended.sources, &options, crate::Bodies::Dropped).diagnostics;
+            let own = reported.iter().filter(|it| it.span.file > 0 && it.severity == Severity::Error);
+            assert_eq!(own.map(|it| it.message.as_str()).collect::<Vec<_>>(), Vec::<&str>::new(), "{}", unit.name);
+            assert!(page.contains(&format!("`{}`", unit.name)), "{} is not on the page", unit.name);
+        }
+    }
+
+    #[test]
+    fn a_name_alone_brings_nothing() {
+        let texts = [
+            "PROGRAM Main VAR pid, blink : INT; END_VAR pid := blink; END_PROGRAM",
+            "PROGRAM Main VAR x : Mine; END_VAR x.PACK(); END_PROGRAM",
+            "(* b : BLINK; *) PROGRAM Main END_PROGRAM",
+            "TYPE x : INT; POINT : STRUCT a : INT; END_STRUCT; END_TYPE VAR_GLOBAL p : POINT; END_VAR",
+            "FUNCTION_BLOCK FINAL PID END_FUNCTION_BLOCK VAR_GLOBAL p : PID; END_VAR",
+        ];
+        for text in texts {
+            let mut sources = Sources::default();
+            sources.add(Source::new("main.st", text.to_owned()));
+            let options = Options { dialect: Dialect::Codesys, ..Options::default() };
+            assert!(Extended::of(&sources, &options).is_none(), "{text}");
+        }
+    }
+}
