@@ -9,6 +9,9 @@ mod case;
 #[path = "src/operation.rs"]
 #[allow(dead_code, reason = "the crate uses more of it")]
 mod operation;
+#[path = "src/pointers.rs"]
+#[allow(dead_code, reason = "the crate uses more of it")]
+mod pointers;
 #[path = "src/random.rs"]
 #[allow(dead_code, reason = "the crate uses more of it")]
 mod random;
@@ -17,7 +20,7 @@ mod random;
 mod vector;
 
 use case::{Case, Pin};
-use staunch_frontend::{Options, Source, Sources};
+use staunch_frontend::{Dialect, Options, Source, Sources};
 use staunch_ir::Program;
 use staunch_ir::layout::Layout;
 use std::fmt::Write;
@@ -25,7 +28,16 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 fn main() {
-    for path in ["build.rs", "src/case.rs", "src/operation.rs", "src/random.rs", "src/vector.rs", "cases", "vectors"] {
+    for path in [
+        "build.rs",
+        "src/case.rs",
+        "src/operation.rs",
+        "src/pointers.rs",
+        "src/random.rs",
+        "src/vector.rs",
+        "cases",
+        "vectors",
+    ] {
         println!("cargo::rerun-if-changed={path}");
     }
     let out = PathBuf::from(std::env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
@@ -35,6 +47,8 @@ fn main() {
     cases.iter().for_each(|it| generated.case(it));
     generated.vectors();
     random::seeds().for_each(|seed| generated.text(&random::module(seed), random::program(seed), &Options::default()));
+    let codesys = Options { dialect: Dialect::Codesys, ..Options::default() };
+    (0..pointers::PRINTED).for_each(|seed| generated.text(&pointers::module(seed), pointers::program(seed), &codesys));
     generated.add("operations", &operation::program(&operation::Task::all()));
     generated.write(&out.join("generated.rs"));
     fs::write(out.join("golden_tests.rs"), golden_tests(&cases)).expect("the list of cases is written");

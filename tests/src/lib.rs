@@ -13,6 +13,7 @@ pub mod difference;
 pub mod golden;
 
 pub mod operation;
+pub mod pointers;
 pub mod random;
 pub mod vector;
 

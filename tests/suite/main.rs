@@ -9,6 +9,7 @@ mod vectors;
 mod constants;
 mod effects;
 mod operations;
+mod pointers;
 mod programs;
 mod stack;
 mod state;

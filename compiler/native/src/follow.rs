@@ -4,11 +4,16 @@ use crate::address::Address;
 use crate::function::Function;
 use crate::runtime_call::by_pointer;
 use crate::signature::clif_type;
-use cranelift_codegen::ir::{self as clif, AbiParam, InstBuilder, condcodes::IntCC, types};
+use cranelift_codegen::ir::{self as clif, AbiParam, BlockArg, InstBuilder, MemFlagsData, condcodes::IntCC, types};
 use staunch_ir::layout::{Shape, usize_of};
 use staunch_ir::reference::{Followed, followed, view, wanted};
 use staunch_ir::{ArrayId, Expr, FaultKind, Location, Place, Projection, Type};
 use staunch_runtime::Repr;
+use staunch_runtime::reference::{ORIGIN, View, encode};
+
+/// Where the table of objects has its first one, and how far they are apart, in bytes.
+const OBJECTS_AT: i32 = encode::HEAD_BYTES;
+const OBJECT_BYTES: i64 = encode::OBJECT_BYTES;
 
 /// A scalar or string that a reference leads to: the reference, and the distance from where it points.
 #[derive(Clone, Copy, Debug)]
@@ -102,14 +107,82 @@ impl Function<'_, '_> {
 
     pub(crate) fn load_reached(&mut self, it: Reached) -> clif::Value {
         let repr = self.module.program.repr(it.ty).expect("a scalar behind a reference");
+        let Some((pointer, slow)) = self.plain(it, repr) else { return self.load_by_runtime(it, repr) };
+        let done = self.builder.create_block();
+        self.builder.append_block_param(done, clif_type(repr));
+        let value = self.load_as(clif_type(repr), Address::at(pointer));
+        self.ins().jump(done, &[BlockArg::Value(value)]);
+        self.builder.switch_to_block(slow);
+        let value = self.load_by_runtime(it, repr);
+        self.ins().jump(done, &[BlockArg::Value(value)]);
+        self.go_on_in(done);
+        self.builder.block_params(done)[0]
+    }
+
+    fn load_by_runtime(&mut self, it: Reached, repr: Repr) -> clif::Value {
         let (space, out) = self.space(8);
         let arguments = self.access(it, repr, out);
         self.checked("staunch_reference_load", &arguments, it.at);
         self.load_as(clif_type(repr), space)
     }
 
+    /// Where a number lies in an object that is nothing but numbers, and the block for all else, which is still to
+    /// be filled: what the runtime says of such an object, in line.
+    fn plain(&mut self, it: Reached, repr: Repr) -> Option<(clif::Value, clif::Block)> {
+        let View::Number(size) = view(self.module.program, it.ty) else { return None };
+        let (slow, fast) = (self.builder.create_block(), self.builder.create_block());
+        self.builder.set_cold_block(slow);
+        let [words, state] = self.world().map(|it| it.1);
+        let count = i64::from(self.module.reference_objects());
+        let object = self.ins().ushr_imm_u(it.reference, 32);
+        let object = self.ins().iadd_imm_s(object, -1);
+        let is_known = self.ins().icmp_imm_u(IntCC::UnsignedLessThan, object, count);
+        let known = self.builder.create_block();
+        self.ins().brif(is_known, known, &[], slow, &[]);
+
+        self.go_on_in(known);
+        let entry = self.ins().imul_imm_s(object, OBJECT_BYTES);
+        let entry = self.ins().iadd(words, entry);
+        let start = self.ins().uload32(MemFlagsData::trusted(), entry, OBJECTS_AT);
+        let length = self.ins().uload32(MemFlagsData::trusted(), entry, OBJECTS_AT + 8);
+        let address = self.ins().ireduce(types::I32, it.reference);
+        let address = self.ins().uextend(types::I64, address);
+        let address = self.ins().iadd(address, it.distance);
+        let offset = self.ins().iadd_imm_s(address, -i64::from(ORIGIN));
+        let position = self.ins().isub(offset, start);
+        // Neither is negative where the number lies within; the sizes are far from those of 64 bits.
+        let after = self.ins().isub(length, position);
+        let after = self.ins().iadd_imm_s(after, -i64::from(size));
+        let mut wrong = self.ins().bor(position, after);
+        if repr.size() > 1 {
+            // The lowest bits, of which none may be set.
+            let low = self.ins().ishl_imm_u(offset, i64::from(64 - size.trailing_zeros()));
+            let is_misaligned = self.ins().icmp_imm_s(IntCC::NotEqual, low, 0);
+            let is_outside = self.ins().icmp_imm_s(IntCC::SignedLessThan, wrong, 0);
+            wrong = self.ins().bor(is_misaligned, is_outside);
+        } else {
+            wrong = self.ins().icmp_imm_s(IntCC::SignedLessThan, wrong, 0);
+        }
+        self.ins().brif(wrong, slow, &[], fast, &[]);
+        self.builder.seal_block(slow);
+        self.go_on_in(fast);
+        let pointer = self.ins().iadd(state, offset);
+        Some((pointer, slow))
+    }
+
     pub(crate) fn store_reached(&mut self, it: Reached, value: clif::Value) {
         let repr = self.module.program.repr(it.ty).expect("a scalar behind a reference");
+        let Some((pointer, slow)) = self.plain(it, repr) else { return self.store_by_runtime(it, repr, value) };
+        let done = self.builder.create_block();
+        self.store(value, Address::at(pointer));
+        self.ins().jump(done, &[]);
+        self.builder.switch_to_block(slow);
+        self.store_by_runtime(it, repr, value);
+        self.ins().jump(done, &[]);
+        self.go_on_in(done);
+    }
+
+    fn store_by_runtime(&mut self, it: Reached, repr: Repr, value: clif::Value) {
         let (space, from) = self.space(8);
         self.store(value, space);
         let arguments = self.access(it, repr, from);

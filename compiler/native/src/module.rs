@@ -29,7 +29,7 @@ pub(crate) struct ModuleEmitter<'p> {
     /// Read-only data, defined when all code is made.
     constants: HashMap<Vec<u8>, DataId>,
     /// The table of objects, where something follows or makes a reference.
-    references: Option<DataId>,
+    references: Option<(DataId, u32)>,
     /// How much of the stack each function takes, in the order in which they are made.
     pub(crate) frames: Vec<u64>,
     /// The functions as text, where it is wanted.
@@ -109,13 +109,22 @@ impl<'p> ModuleEmitter<'p> {
 
     /// The words of the table by which accesses through references are checked.
     pub(crate) fn reference_table(&mut self) -> DataId {
+        self.references().0
+    }
+
+    /// How many objects the table has.
+    pub(crate) fn reference_objects(&mut self) -> u32 {
+        self.references().1
+    }
+
+    fn references(&mut self) -> (DataId, u32) {
         if let Some(known) = self.references {
             return known;
         }
         let words = staunch_ir::reference::table(self.program, &self.layout);
+        let count = words.first().copied().unwrap_or_default();
         let id = self.constant(words.into_iter().flat_map(u32::to_le_bytes).collect());
-        self.references = Some(id);
-        id
+        *self.references.insert((id, count))
     }
 
     pub(crate) fn define_constants(&mut self) -> Result<(), Error> {

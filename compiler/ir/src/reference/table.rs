@@ -62,14 +62,14 @@ pub fn table(program: &Program, layout: &Layout) -> Vec<u32> {
 /// The objects that references may name, by their numbers from 1: their offsets in the state and their sizes.
 pub fn objects(program: &Program, layout: &Layout) -> Vec<(u64, u64)> {
     let objects = Builder::new(program, layout).objects;
-    objects.into_iter().map(|(offset, size)| (offset, size.0)).collect()
+    objects.into_iter().map(|(offset, size, _)| (offset, size.0)).collect()
 }
 
 struct Builder<'p> {
     program: &'p Program,
     layout: &'p Layout,
-    /// Offset, and size from the largest.
-    objects: BTreeSet<(u64, core::cmp::Reverse<u64>)>,
+    /// Offset, and size from the largest; whether all of it is numbers.
+    objects: BTreeSet<(u64, core::cmp::Reverse<u64>, bool)>,
     nodes: Vec<Vec<u32>>,
     known: HashMap<Type, usize>,
 }
@@ -100,7 +100,8 @@ impl<'p> Builder<'p> {
                     let member = FieldId::next(at);
                     let start = offset + self.layout.field(id, member);
                     if variables.contains(&(id, member)) {
-                        self.objects.insert((start, core::cmp::Reverse(self.layout.size(field.ty))));
+                        let plain = self.flat(field.ty).is_some_and(|it| it != Repr::Bool);
+                        self.objects.insert((start, core::cmp::Reverse(self.layout.size(field.ty)), plain));
                     }
                     self.find_objects(start, field.ty, variables);
                 }
@@ -205,7 +206,10 @@ impl<'p> Builder<'p> {
         }
         let at = |node: u32| positions[usize::try_from(node).expect("a u32 fits a usize")];
         let mut words = vec![position(self.objects.len()), positions[root], position(end)];
-        words.extend(self.objects.iter().flat_map(|(offset, size)| [word(*offset), word(size.0)]));
+        words.extend(self.objects.iter().flat_map(|(offset, size, plain)| {
+            let size = word(size.0);
+            [word(*offset), size, if *plain { size } else { 0 }]
+        }));
         for mut node in self.nodes {
             match node[0] {
                 encode::ARRAY => node[4] = at(node[4]),

@@ -2,7 +2,8 @@
 //!
 //! A table is words, so that a back end can put it into a program as plain data: the number of objects, the
 //! node of the state, how many words there are; for each object its offset and size, in the order of their
-//! offsets; then the nodes.
+//! offsets, and its size again where all of it is numbers, else 0; then the nodes. What lies within those may be
+//! seen as any number without a look at the nodes.
 
 use super::{ORIGIN, Reference};
 use crate::{FaultKind, Repr};
@@ -74,7 +75,11 @@ pub mod encode {
     /// Words before the objects.
     pub const HEAD: usize = 3;
     /// Words of an object.
-    pub const OBJECT: usize = 2;
+    pub const OBJECT: usize = 3;
+
+    /// The same in bytes, for native code.
+    pub const HEAD_BYTES: i32 = 4 * HEAD as i32;
+    pub const OBJECT_BYTES: i64 = 4 * OBJECT as i64;
 
     /// A number of its own for each repr.
     pub const fn repr(repr: Repr) -> u32 {
@@ -129,6 +134,12 @@ impl<'t> Table<'t> {
         Some((self.word(at) as usize, self.word(at + 1) as usize))
     }
 
+    /// Whether all of the object is numbers.
+    fn is_plain(&self, bits: u64) -> bool {
+        let position = Reference::from_bits(bits).object.wrapping_sub(1) as usize;
+        self.word(encode::HEAD + position.saturating_mul(encode::OBJECT).saturating_add(2)) > 0
+    }
+
     /// The smallest object that holds the bytes.
     pub(super) fn holding(&self, offset: usize, size: usize) -> Option<u32> {
         let (mut low, mut high) = (0, self.word(0));
@@ -147,6 +158,13 @@ impl<'t> Table<'t> {
     /// What lies at `distance` bytes from where a reference points, as `view` wants to see it.
     pub fn part(&self, bits: u64, distance: u64, view: View) -> Result<Part, FaultKind> {
         let (offset, rest) = self.locate(bits, distance)?;
+        if let View::Number(size) = view
+            && size as usize <= rest
+            && offset.checked_rem(size as usize) == Some(0)
+            && self.is_plain(bits)
+        {
+            return Ok(Part::Bytes { at: offset, rest });
+        }
         let Some(found) = self.leaf(offset) else { return self.spread(offset, rest, view) };
         let index = offset - found.start;
         let left = found.node.size - index;
