@@ -44,6 +44,10 @@ unsafe extern "C" {
     fn staunch_reference_find(words: *const u32, reference: u64, distance: u64, wanted: u32, out: *mut u64) -> u8;
 }
 
+fn index(number: u64) -> usize {
+    usize::try_from(number).unwrap()
+}
+
 /// As much as an EXACT variable's number.
 const SECRET: u32 = 9;
 
@@ -76,13 +80,14 @@ fn no_access_leaves_the_objects() {
     let bytes = state.as_mut_ptr().cast::<u8>();
     let mut done = 0;
     for _ in 0..if cfg!(miri) { 3_000 } else { 300_000 } {
-        let object = u32::try_from(next(6)).unwrap();
-        let around = ORIGIN + u32::try_from(next(40)).unwrap();
-        let address =
-            [around, around.wrapping_sub(8), u32::MAX, 0][usize::try_from(next(8).saturating_sub(4)).unwrap()];
+        // Mostly in one of the objects or near it.
+        let object = u32::try_from([1, 1, 2, 3, 3, 4, 0, 5][index(next(8))]).unwrap();
+        let start = OBJECTS.get(index(u64::from(object)).wrapping_sub(1)).map_or(0, |it| it.0);
+        let near = ORIGIN + start + u32::try_from(next(18)).unwrap();
+        let address = [near, near, near - 8, ORIGIN + start, u32::MAX, 0][index(next(6))];
         let bits = Reference { object, address }.bits();
-        let distance = [0, next(40), u64::from(u32::MAX), u64::MAX >> 1][usize::try_from(next(4)).unwrap()];
-        let size = [1, 2, 4, 8][usize::try_from(next(4)).unwrap()];
+        let distance = [0, 0, 0, next(12), u64::from(u32::MAX), u64::MAX >> 1][index(next(6))];
+        let size = [1, 2, 4, 8][index(next(4))];
         let (view, size) = match next(4) {
             0 => (View::Truth, 1),
             1 => (View::Exact(SECRET + u32::try_from(next(2)).unwrap()), 4),
@@ -91,7 +96,7 @@ fn no_access_leaves_the_objects() {
         let mut out = [0_u8; 8];
         let value = next(u64::MAX).to_ne_bytes();
         let mut text = Text::<5>::default();
-        let written = Text::<9>::new(&b"ABCDEFGHI"[..usize::try_from(next(10)).unwrap()]);
+        let written = Text::<9>::new(&b"ABCDEFGHI"[..index(next(10))]);
         let mut found = 0;
         // SAFETY: the words are a table's, the state has the 32 bytes that it says, and the others are variables of
         // their own.
@@ -103,7 +108,7 @@ fn no_access_leaves_the_objects() {
                 3 => staunch_reference_store_text(words.as_ptr(), bytes, bits, distance, (&raw const written).cast()),
                 _ => {
                     let wanted = [Wanted::Repr(Repr::U32), Wanted::Text(6), Wanted::Exact(SECRET)];
-                    let wanted = wanted[usize::try_from(next(3)).unwrap()].code();
+                    let wanted = wanted[index(next(3))].code();
                     staunch_reference_find(words.as_ptr(), bits, distance, wanted, &mut found)
                 }
             }
