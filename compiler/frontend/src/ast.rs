@@ -48,8 +48,8 @@ impl<'s> File<'s> {
     /// go when they have been checked.
     pub(crate) fn take_bodies(&mut self) -> impl Iterator<Item = Vec<Statement<'s>>> {
         let pous = self.items.iter_mut().filter_map(|it| match it {
-            Item::Pou(pou) => Some(pou),
-            Item::Types(_) | Item::Globals(_) | Item::Configuration(_) | Item::Test(_) => None,
+            Item::Pou(pou) if pou.kind != PouKind::Interface => Some(pou),
+            Item::Pou(_) | Item::Types(_) | Item::Globals(_) | Item::Configuration(_) | Item::Test(_) => None,
         });
         pous.flat_map(|pou| {
             let Pou { body, routines, .. } = pou;
@@ -87,12 +87,20 @@ pub enum TestPart {
 pub enum PouKind {
     Program,
     FunctionBlock,
+    /// A FUNCTION_BLOCK without a body.
+    Class,
+    /// Heads of METHODs and PROPERTYs that a class has.
+    Interface,
     Function,
     /// A TEST, with what SETUP and TEARDOWN add to it.
     Test,
     /// A further body of a PROGRAM or FUNCTION_BLOCK.
     Action,
     Method,
+    /// What a PROPERTY gives where it is read: its name is its result.
+    Getter,
+    /// What a PROPERTY does with a value that is assigned to it: its name is an input.
+    Setter,
 }
 
 impl PouKind {
@@ -101,19 +109,36 @@ impl PouKind {
         match self {
             Self::Program => "PROGRAM",
             Self::FunctionBlock => "FUNCTION_BLOCK",
+            Self::Class => "CLASS",
+            Self::Interface => "INTERFACE",
             Self::Function => "FUNCTION",
             Self::Test => "TEST",
             Self::Action => "ACTION",
             Self::Method => "METHOD",
+            Self::Getter | Self::Setter => "PROPERTY",
         }
     }
 
     /// Whether its variables live for one call, and its name is its result.
     pub const fn is_function(self) -> bool {
         match self {
-            Self::Function | Self::Method => true,
-            Self::Program | Self::FunctionBlock | Self::Test | Self::Action => false,
+            Self::Function | Self::Method | Self::Getter | Self::Setter => true,
+            Self::Program | Self::FunctionBlock | Self::Class | Self::Interface | Self::Test | Self::Action => false,
         }
+    }
+
+    /// Whether instances of it can be declared.
+    pub const fn is_block(self) -> bool {
+        match self {
+            Self::FunctionBlock | Self::Class => true,
+            Self::Program | Self::Interface | Self::Function | Self::Test | Self::Action => false,
+            Self::Method | Self::Getter | Self::Setter => false,
+        }
+    }
+
+    /// Whether it has METHODs, ACTIONs and PROPERTYs.
+    pub const fn has_routines(self) -> bool {
+        matches!(self, Self::Program | Self::Interface) || self.is_block()
     }
 }
 
@@ -122,6 +147,8 @@ impl PouKind {
 pub struct Modifiers {
     pub access: Option<(Access, Span)>,
     pub is_final: Option<Span>,
+    pub is_abstract: Option<Span>,
+    pub overrides: Option<Span>,
 }
 
 /// From where something may be named.
@@ -138,6 +165,16 @@ pub struct Pou<'s> {
     pub kind: PouKind,
     pub name: Name<'s>,
     pub modifiers: Modifiers,
+    /// What a class EXTENDS.
+    pub extends: Option<Name<'s>>,
+    /// What a class IMPLEMENTS, or an INTERFACE EXTENDS.
+    pub implements: Vec<Name<'s>>,
+    /// How many of the VAR blocks are the base's.
+    pub inherited: usize,
+    /// Of an inherited routine: the class whose it is.
+    pub home: Option<Name<'s>>,
+    /// An inherited routine that is overridden: only SUPER names it.
+    pub is_hidden: bool,
     /// The result type of a FUNCTION or METHOD, which may have none.
     pub result: Option<TypeSpec<'s>>,
     pub blocks: Vec<VarBlock<'s>>,
@@ -152,8 +189,22 @@ pub struct Pou<'s> {
 impl<'s> Pou<'s> {
     /// One without variables and statements.
     pub fn new(kind: PouKind, name: Name<'s>, span: Span) -> Self {
-        let (blocks, body, routines) = (Vec::new(), Vec::new(), Vec::new());
-        Self { kind, name, modifiers: Modifiers::default(), result: None, blocks, body, routines, doc: None, span }
+        Self {
+            kind,
+            name,
+            modifiers: Modifiers::default(),
+            extends: None,
+            implements: Vec::new(),
+            inherited: 0,
+            home: None,
+            is_hidden: false,
+            result: None,
+            blocks: Vec::new(),
+            body: Vec::new(),
+            routines: Vec::new(),
+            doc: None,
+            span,
+        }
     }
 }
 
@@ -165,6 +216,8 @@ pub enum VarKind {
     InOut,
     Temp,
     Stat,
+    /// Of a METHOD: one for each instance.
+    Inst,
     Global,
     External,
 }
@@ -176,6 +229,7 @@ pub struct VarBlock<'s> {
     pub retain: Option<Span>,
     pub non_retain: Option<Span>,
     pub persistent: Option<Span>,
+    pub access: Option<(Access, Span)>,
     pub vars: Vec<VarDecl<'s>>,
     /// The keyword that opens the block.
     pub span: Span,
@@ -184,7 +238,8 @@ pub struct VarBlock<'s> {
 impl VarBlock<'_> {
     /// One without qualifiers and variables.
     pub fn new(kind: VarKind, span: Span) -> Self {
-        Self { kind, constant: None, retain: None, non_retain: None, persistent: None, vars: Vec::new(), span }
+        let (constant, retain, non_retain, persistent, access) = (None, None, None, None, None);
+        Self { kind, constant, retain, non_retain, persistent, access, vars: Vec::new(), span }
     }
 }
 

@@ -14,6 +14,7 @@ mod allow;
 mod dialect;
 mod follow_up;
 mod foreign;
+mod inherit;
 mod log;
 mod names;
 mod prelude;
@@ -124,6 +125,7 @@ fn run(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
     // Unit tests that do not run are checked all the same.
     let tested = (!options.tests && testing::has_tests(&files))
         .then(|| run(sources, &Options { tests: true, ..options.clone() }, Bodies::Dropped).diagnostics);
+    inherit::expand(&mut files, sources, &mut log.diagnostics);
     testing::expand(&mut files, options.tests);
     let allowances = allow::Allowances::read(&files, &mut log.diagnostics);
     let mut bodies: Vec<_> = files.iter_mut().flat_map(ast::File::take_bodies).collect();

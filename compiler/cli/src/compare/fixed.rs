@@ -52,7 +52,10 @@ fn each_type<'f>(file: &'f File<'f>, see: &mut dyn FnMut(&'f [Name<'f>])) {
     for item in &file.items {
         match item {
             Item::Types(decls) => decls.iter().for_each(|it| of_type(&it.ty, see)),
-            Item::Pou(pou) => pou.blocks.iter().for_each(|it| of_block(it, see)),
+            Item::Pou(pou) => {
+                let blocks = pou.routines.iter().flat_map(|it| &it.blocks);
+                pou.blocks.iter().chain(blocks).for_each(|it| of_block(it, see));
+            }
             Item::Globals(block) => of_block(block, see),
             Item::Configuration(_) | Item::Test(_) => {}
         }

@@ -180,6 +180,7 @@ impl Writer<'_> {
         let outer = self.counters.clone();
         pou.blocks.iter().for_each(|it| self.block(it));
         self.statements(&pou.body);
+        pou.routines.iter().for_each(|it| self.pou(it));
         self.counters = outer;
     }
 

@@ -134,7 +134,7 @@ fn check_body<'s>(
     let pou = decl.pous[slot].ast;
     let signature = decl.signature(slot)?;
     let is_generic = decl.is_generic(slot) || decl.pous[slot].instance.is_some();
-    let mut checker = Checker::of_body(decl, &signature);
+    let mut checker = Checker::of_body(decl, slot, &signature);
     checker.instance = is_generic.then_some(slot);
     checker.initial_outputs(&signature);
     if pou.kind != ast::PouKind::Action {
@@ -152,8 +152,14 @@ fn check_body<'s>(
     let location = decl.location(pou.name.span);
     let kind = match pou.kind {
         ast::PouKind::Function => RoutineKind::Function,
-        ast::PouKind::Action | ast::PouKind::Method => RoutineKind::Method,
-        ast::PouKind::Program | ast::PouKind::FunctionBlock | ast::PouKind::Test => RoutineKind::Body,
+        ast::PouKind::Action | ast::PouKind::Method | ast::PouKind::Getter | ast::PouKind::Setter => {
+            RoutineKind::Method
+        }
+        ast::PouKind::Program
+        | ast::PouKind::FunctionBlock
+        | ast::PouKind::Class
+        | ast::PouKind::Interface
+        | ast::PouKind::Test => RoutineKind::Body,
     };
     let body = Routine {
         kind,

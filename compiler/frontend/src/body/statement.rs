@@ -186,6 +186,12 @@ impl<'s> Checker<'_, 's> {
         is_read: bool,
     ) -> Option<Expr> {
         let [target, rest @ ..] = targets else { return None };
+        if targets.len() == 1
+            && !is_read
+            && let Some(made) = self.assign_property(target, value, span)
+        {
+            return made.map(|()| Expr::bool(true, self.at(span)));
+        }
         let Some(found) = self.place_or_view(target) else {
             // What is left may hold mistakes of its own.
             rest.iter().for_each(|it| drop(self.place(it)));

@@ -7,6 +7,9 @@ use crate::spelling::Key;
 use crate::types::declarations::{Declarations, GlobalSlot, PouSlot, Slot, TypeSlot};
 use crate::{Code, Diagnostic, Span, ast};
 
+/// METHODs that CODESYS calls by itself.
+const INITIAL: [&str; 3] = ["FB_init", "FB_reinit", "FB_exit"];
+
 impl<'s> Declarations<'s> {
     /// The namespaces of all files, and what is used where.
     pub(super) fn collect_namespaces(&mut self, files: &'s [ast::File<'s>]) {
@@ -48,9 +51,15 @@ impl<'s> Declarations<'s> {
         for item in &file.items {
             match item {
                 ast::Item::Types(decls) => decls.iter().for_each(|decl| self.collect_type(decl)),
+                ast::Item::Pou(pou) if pou.kind == ast::PouKind::Interface => {
+                    self.names.interfaces.insert(Key(pou.name.text));
+                }
                 ast::Item::Pou(pou) => {
                     self.pous.push(PouSlot::open(pou));
                     let slot = self.pous.len() - 1;
+                    if pou.kind.is_block() {
+                        self.classes.insert(pou.name.span, slot);
+                    }
                     // Nobody names a test.
                     if pou.kind != ast::PouKind::Test {
                         let internal = matches!(pou.modifiers.access, Some((ast::Access::Internal, _)));
@@ -74,15 +83,25 @@ impl<'s> Declarations<'s> {
         if name.text.is_empty() {
             return;
         }
-        self.check_spelling(name);
+        if let (Some(home), true) = (routine.home, routine.is_hidden) {
+            let key = (Key(home.text), Key(name.text));
+            self.pous[owner].hidden.entry(key).or_default().set(routine.kind, slot, name.span);
+            return;
+        }
+        if INITIAL.iter().any(|it| Key(it) == Key(name.text)) && self.dialect(name.span) == Dialect::Codesys {
+            self.not_supported(name.span, &format!("{}, which the system calls at a start,", name.text));
+        }
         let pou = self.pous[owner].ast;
         let variables = pou.blocks.iter().flat_map(|it| &it.vars).flat_map(|it| &it.names);
-        let variable = variables.copied().find(|it| Key(it.text) == Key(name.text));
-        let known = self.pous[owner].routines.get(&Key(name.text)).map(|it| self.pous[*it].ast.name);
-        if let Some(first) = known.or(variable) {
-            self.report(declared_twice(name, first.span));
-        } else {
-            self.pous[owner].routines.insert(Key(name.text), slot);
+        let variable = variables.copied().find(|it| Key(it.text) == Key(name.text)).map(|it| it.span);
+        let own = &mut self.pous[owner];
+        let known = variable.or_else(|| own.routines.get(&Key(name.text))?.first(routine.kind));
+        if known.is_none() {
+            own.routines.entry(Key(name.text)).or_default().set(routine.kind, slot, name.span);
+        }
+        self.check_spelling(name);
+        if let Some(first) = known {
+            self.report(declared_twice(name, first));
         }
     }
 
@@ -190,7 +209,7 @@ impl<'s> Declarations<'s> {
     fn is_type(&self, entry: Entry) -> bool {
         match entry {
             Entry::Type(_) => true,
-            Entry::Pou(at) => self.pous.get(at).is_some_and(|it| it.ast.kind == ast::PouKind::FunctionBlock),
+            Entry::Pou(at) => self.pous.get(at).is_some_and(|it| it.ast.kind.is_block()),
             Entry::Global(_) => false,
         }
     }

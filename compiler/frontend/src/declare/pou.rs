@@ -1,11 +1,13 @@
 //! Signatures: what callers of a POU see, and where its variables live.
 
 use crate::ast::{self, PouKind, VarKind};
+use crate::diagnostic::wording::article;
 use crate::types::declarations::Declarations;
 use crate::types::scope::{Scope, Variable};
 use crate::types::signature::{EdgeInput, Formal, Signature, Target, pin_place};
 use crate::types::table::Resolved;
 use crate::{Code, Diagnostic, Span, dialect};
+use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{
     BlockId, Const, Field, FieldId, Local, LocalId, Mode, Param, ParamId, Place, Program, Root, Section, Struct, Type,
 };
@@ -33,9 +35,10 @@ impl<'s> Declarations<'s> {
             None => None,
         };
         if let (PouKind::Action, Some(owner)) = (pou.kind, &owner) {
-            return Some(signature_of_action(owner));
+            return Some(signature_of_action(owner, self.scope_around(slot, owner)));
         }
-        let scope = || owner.as_ref().map_or_else(Scope::default, |it| Scope::within(Rc::clone(&it.scope)));
+        let outer = owner.as_ref().map(|it| self.scope_around(slot, it));
+        let scope = || outer.as_ref().map_or_else(Scope::default, |it| Scope::within(Rc::clone(it)));
         let mut builder = Builder {
             slot,
             scope: Rc::new(scope()),
@@ -52,8 +55,12 @@ impl<'s> Declarations<'s> {
         for block in &pou.blocks {
             self.check_block_qualifiers(pou, block);
             for decl in &block.vars {
-                self.declare_variables(pou, block, decl, &mut builder);
+                self.declare_variables(pou, block, decl, owner.as_deref(), &mut builder);
             }
+        }
+        let mut instance_variables = FxHashMap::default();
+        if pou.kind.has_routines() {
+            self.instance_variables(pou, &mut builder, &mut instance_variables);
         }
         let state = owner.map(|it| it.state).unwrap_or_else(|| {
             (!pou.kind.is_function()).then(|| {
@@ -74,7 +81,45 @@ impl<'s> Declarations<'s> {
         });
         let Builder { scope, mut formals, params, locals, edges, complete, .. } = builder;
         formals.shrink_to_fit();
-        complete.then_some(Signature { scope, state, formals, params, locals, result, edges })
+        complete.then_some(Signature { scope, state, formals, params, locals, result, edges, instance_variables })
+    }
+
+    /// What a routine sees of its POU: one that is inherited does not see what the heirs declare.
+    fn scope_around(&self, slot: usize, owner: &Signature<'s>) -> Rc<Scope<'s>> {
+        let home = self.pous[self.home(slot)].ast;
+        let Some(class) = self.pous[slot].owner.map(|it| self.pous[it].ast) else { return Rc::clone(&owner.scope) };
+        let later: FxHashSet<_> = class.blocks.iter().skip(home.blocks.len()).map(|it| it.span).collect();
+        if later.is_empty() {
+            return Rc::clone(&owner.scope);
+        }
+        let declared = class.blocks.iter().filter(|it| later.contains(&it.span)).flat_map(|it| &it.vars);
+        let unseen: FxHashSet<_> = declared.flat_map(|it| &it.names).map(|it| it.span).collect();
+        Rc::new(owner.scope.without(&unseen))
+    }
+
+    /// VAR_INST: what a METHOD keeps in the instance, by where it is declared.
+    fn instance_variables(
+        &mut self,
+        pou: &'s ast::Pou<'s>,
+        builder: &mut Builder<'s>,
+        found: &mut FxHashMap<Span, (Place, Rc<Resolved>)>,
+    ) {
+        for routine in &pou.routines {
+            for block in routine.blocks.iter().filter(|it| it.kind == VarKind::Inst) {
+                for decl in &block.vars {
+                    let scope = Rc::clone(&builder.scope);
+                    let owner = decl.names.first().map_or(pou.name.text, |it| it.text);
+                    let Some(resolved) = self.declared_type(decl, &scope, owner).map(Rc::new) else { continue };
+                    for name in &decl.names {
+                        let place = self.push_field(block, decl, *name, &resolved, builder);
+                        if let Some(field) = builder.fields.last_mut() {
+                            field.name = format!("{}_{}", routine.name.text, name.text);
+                        }
+                        found.insert(name.span, (place, Rc::clone(&resolved)));
+                    }
+                }
+            }
+        }
     }
 
     /// The CONSTANTs of a POU by their values: a declaration before them may use them. What is wrong
@@ -145,7 +190,8 @@ impl<'s> Declarations<'s> {
 
     fn check_block_qualifiers(&mut self, pou: &ast::Pou<'s>, block: &ast::VarBlock<'s>) {
         let retain = block.retain.or(block.persistent);
-        let lives_one_call = block.kind == VarKind::Temp || (pou.kind.is_function() && block.kind != VarKind::Stat);
+        let lives_one_call = block.kind == VarKind::Temp
+            || (pou.kind.is_function() && !matches!(block.kind, VarKind::Stat | VarKind::Inst));
         if let Some(span) = retain
             && (lives_one_call || matches!(block.kind, VarKind::InOut | VarKind::External))
         {
@@ -153,7 +199,7 @@ impl<'s> Declarations<'s> {
                 VarKind::Temp => "VAR_TEMP".to_owned(),
                 VarKind::InOut => "VAR_IN_OUT".to_owned(),
                 VarKind::External => "VAR_EXTERNAL".to_owned(),
-                VarKind::Var | VarKind::Input | VarKind::Output | VarKind::Stat | VarKind::Global => {
+                VarKind::Var | VarKind::Input | VarKind::Output | VarKind::Stat | VarKind::Inst | VarKind::Global => {
                     format!("a {}'s variable", pou.kind.word())
                 }
             };
@@ -183,7 +229,9 @@ impl<'s> Declarations<'s> {
             VarKind::InOut if self.dialect(span).has_constant_in_outs() => return,
             VarKind::InOut => ("a VAR_IN_OUT cannot be CONSTANT", "declare what is only read in VAR_INPUT"),
             VarKind::Temp => ("a VAR_TEMP cannot be CONSTANT", "declare it in VAR CONSTANT"),
-            VarKind::Var | VarKind::Input | VarKind::Stat | VarKind::Global | VarKind::External => return,
+            VarKind::Var | VarKind::Input | VarKind::Stat | VarKind::Inst | VarKind::Global | VarKind::External => {
+                return;
+            }
         };
         self.report(Diagnostic::new(Code::E0403, span, message).help(help));
     }
@@ -193,11 +241,17 @@ impl<'s> Declarations<'s> {
         pou: &'s ast::Pou<'s>,
         block: &'s ast::VarBlock<'s>,
         decl: &'s ast::VarDecl<'s>,
+        owner_signature: Option<&Signature<'s>>,
         builder: &mut Builder<'s>,
     ) {
         let scope = Rc::clone(&builder.scope);
         let owner = decl.names.first().map_or(pou.name.text, |it| it.text);
         self.check_address_here(Some(pou.kind), block, decl);
+        if block.kind == VarKind::Inst {
+            drop(scope);
+            self.declare_instance_variables(pou, block, decl, owner_signature, builder);
+            return;
+        }
         if block.kind == VarKind::External {
             drop(scope);
             self.declare_externals(block, decl, builder);
@@ -244,7 +298,8 @@ impl<'s> Declarations<'s> {
             self.forgets(pou, decl, id);
         }
         for name in &decl.names {
-            if pou.kind.is_function() && name.text.eq_ignore_ascii_case(pou.name.text) {
+            let has_result = pou.kind.is_function() && pou.kind != PouKind::Setter;
+            if has_result && name.text.eq_ignore_ascii_case(pou.name.text) {
                 self.report(
                     Diagnostic::new(Code::E0103, name.span, format!("`{}` is declared twice", name.text))
                         .label(format!("inside the {} its name is its result", pou.kind.word()))
@@ -293,12 +348,17 @@ impl<'s> Declarations<'s> {
         };
         let (place, help) = match pou.kind {
             PouKind::Function => ("a FUNCTION", "make this a FUNCTION_BLOCK, or take the block as a VAR_IN_OUT"),
-            PouKind::Method => ("a METHOD", "declare it in the FUNCTION_BLOCK, or take the block as a VAR_IN_OUT"),
-            PouKind::Program | PouKind::FunctionBlock | PouKind::Test | PouKind::Action => {
-                ("VAR_TEMP", "declare it in VAR")
+            PouKind::Method | PouKind::Getter | PouKind::Setter => {
+                ("a METHOD", "declare it in the FUNCTION_BLOCK, or take the block as a VAR_IN_OUT")
             }
+            PouKind::Program
+            | PouKind::FunctionBlock
+            | PouKind::Class
+            | PouKind::Interface
+            | PouKind::Test
+            | PouKind::Action => ("VAR_TEMP", "declare it in VAR"),
         };
-        let block = crate::diagnostic::wording::article(info.name);
+        let block = article(info.name);
         self.report(
             Diagnostic::new(Code::W0303, decl.span, format!("{block} in {place} starts anew at each call"))
                 .label(format!("so {what}"))
@@ -370,6 +430,36 @@ impl<'s> Declarations<'s> {
         );
     }
 
+    /// VAR_INST of a METHOD: its owner has the storage.
+    fn declare_instance_variables(
+        &mut self,
+        pou: &ast::Pou<'s>,
+        block: &'s ast::VarBlock<'s>,
+        decl: &'s ast::VarDecl<'s>,
+        owner: Option<&Signature<'s>>,
+        builder: &mut Builder<'s>,
+    ) {
+        let Some(owner) = owner else {
+            let word = pou.kind.word();
+            self.report(
+                Diagnostic::new(Code::E0403, block.span, format!("{} has no VAR_INST", article(word)))
+                    .label("it is for what a METHOD keeps in its instance")
+                    .help("write `VAR`"),
+            );
+            decl.names.iter().for_each(|name| builder.refuse(*name));
+            return;
+        };
+        for name in &decl.names {
+            let Some((place, resolved)) = owner.instance_variables.get(&name.span).cloned() else {
+                builder.refuse(*name);
+                continue;
+            };
+            let variable = self.variable(*name, block, resolved, place);
+            let scope = Rc::get_mut(&mut builder.scope).expect("no one else holds the scope between declarations");
+            self.enter_variable(scope, variable);
+        }
+    }
+
     /// Gives a variable its storage: a field of the instance, a local, or a parameter.
     fn place_variable(
         &mut self,
@@ -384,9 +474,9 @@ impl<'s> Declarations<'s> {
         let constant = block.kind == VarKind::InOut && block.constant.is_some();
         let word = self.word(&decl.ty);
         let formal = |target| Formal { name, section, constant, resolved: Rc::clone(resolved), word, target };
-        let place = match (pou.kind, block.kind) {
+        let place = match (pou.kind.is_function(), block.kind) {
             // A program has one set of variables, so they last anyway.
-            (PouKind::Function | PouKind::FunctionBlock | PouKind::Method, VarKind::Stat) => {
+            (_, VarKind::Stat) if pou.kind.is_function() || pou.kind.is_block() => {
                 return Some(self.static_variable(pou, block, decl, name, resolved));
             }
             (_, VarKind::InOut) => {
@@ -394,28 +484,28 @@ impl<'s> Declarations<'s> {
                 builder.formals.push(formal(Target::Param(at)));
                 Place::root(Root::Param(ParamId::next(at)), resolved.ty)
             }
-            (PouKind::Function | PouKind::Method, VarKind::Input) if self.program.is_open(resolved.ty) => {
+            (true, VarKind::Input) if self.program.is_open(resolved.ty) => {
                 self.refuse_copy(resolved.ty, name, "declare it in VAR_IN_OUT")?;
                 let at = builder.param(name.text, resolved, decl, Mode::Reference);
                 builder.formals.push(formal(Target::Param(at)));
                 Place::root(Root::Param(ParamId::next(at)), resolved.ty)
             }
-            (PouKind::Function | PouKind::Method, VarKind::Input) => {
+            (true, VarKind::Input) => {
                 self.refuse_copy(resolved.ty, name, "declare it in VAR_IN_OUT")?;
                 let local = builder.local(name.text, resolved, decl.doc.clone());
                 let at = builder.param(name.text, resolved, decl, Mode::Value(local));
                 builder.formals.push(formal(Target::Param(at)));
                 Place::local(local, resolved.ty)
             }
-            (PouKind::Function | PouKind::Method, VarKind::Output) => {
+            (true, VarKind::Output) => {
                 let at = builder.param(name.text, resolved, decl, Mode::Reference);
                 builder.formals.push(formal(Target::Param(at)));
                 Place::root(Root::Param(ParamId::next(at)), resolved.ty)
             }
-            (PouKind::Function | PouKind::Method, _) | (_, VarKind::Temp) => {
+            (true, _) | (_, VarKind::Temp) => {
                 Place::local(builder.local(name.text, resolved, decl.doc.clone()), resolved.ty)
             }
-            (PouKind::Program | PouKind::FunctionBlock | PouKind::Test | PouKind::Action, _) => {
+            (false, _) => {
                 let has_place = pou.kind == PouKind::Program || matches!(block.kind, VarKind::Var | VarKind::Stat);
                 let located = has_place.then(|| self.located(Some(pou.name), block, decl, name, resolved));
                 let place = match located.flatten() {
@@ -509,21 +599,14 @@ impl<'s> Declarations<'s> {
 }
 
 /// An ACTION is called as its POU is, and works with what that has.
-fn signature_of_action<'s>(owner: &Signature<'s>) -> Signature<'s> {
+fn signature_of_action<'s>(owner: &Signature<'s>, scope: Rc<Scope<'s>>) -> Signature<'s> {
     // What stands for bounds is a local, of which it has its own.
     let (mut params, mut locals) = (owner.params.clone(), Vec::new());
     for local in params.iter_mut().flat_map(|it| &mut it.bounds).flat_map(|(low, high)| [low, high]) {
         locals.push(owner.locals[local.index()].clone());
         *local = LocalId::next(locals.len() - 1);
     }
-    Signature {
-        scope: Rc::new(Scope::within(Rc::clone(&owner.scope))),
-        params,
-        locals,
-        result: None,
-        edges: Vec::new(),
-        ..owner.clone()
-    }
+    Signature { scope: Rc::new(Scope::within(scope)), params, locals, result: None, edges: Vec::new(), ..owner.clone() }
 }
 
 /// What `ARRAY[*]` is made of, where a parameter may be one: the standard has it for inputs, outputs and
@@ -533,12 +616,10 @@ fn open_bounds<'s>(
     block: &ast::VarBlock<'s>,
     decl: &'s ast::VarDecl<'s>,
 ) -> Option<(&'s [ast::Bound<'s>], &'s ast::TypeSpec<'s>)> {
-    let may = match pou.kind {
-        PouKind::Function | PouKind::Method => {
-            matches!(block.kind, VarKind::Input | VarKind::Output | VarKind::InOut)
-        }
-        PouKind::FunctionBlock => block.kind == VarKind::InOut,
-        PouKind::Program | PouKind::Test | PouKind::Action => false,
+    let may = if pou.kind.is_function() {
+        matches!(block.kind, VarKind::Input | VarKind::Output | VarKind::InOut)
+    } else {
+        pou.kind.is_block() && block.kind == VarKind::InOut
     };
     match &decl.ty.kind {
         ast::TypeKind::Array { bounds, element } if may => {

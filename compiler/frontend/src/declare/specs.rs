@@ -246,7 +246,7 @@ impl<'s> Declarations<'s> {
     fn instance_type(&mut self, at: usize, name: ast::Name<'s>) -> Option<Resolved> {
         let pou = self.pous[at].ast;
         let is_run = pou.kind == ast::PouKind::Program && (self.log.options.tests || self.is_run(name.span));
-        if pou.kind != ast::PouKind::FunctionBlock && !is_run {
+        if !pou.kind.is_block() && !is_run {
             let kind = if pou.kind == ast::PouKind::Program { "PROGRAM" } else { "FUNCTION" };
             self.report(
                 Diagnostic::new(Code::E0102, name.span, format!("`{}` is a {kind}, not a type", name.text))
@@ -255,11 +255,23 @@ impl<'s> Declarations<'s> {
             );
             return None;
         }
+        if let Some(span) = pou.modifiers.is_abstract {
+            self.report(
+                Diagnostic::new(Code::E0102, name.span, format!("`{}` is ABSTRACT: it has no instances", name.text))
+                    .label("a FUNCTION_BLOCK that extends it is expected here")
+                    .other(span, "declared so here"),
+            );
+            return None;
+        }
         let signature = self.signature(at)?;
         Some(instance_of(&self.program, signature.state?))
     }
 
     fn report_unknown_type(&mut self, name: ast::Name<'s>) {
+        if self.names.interfaces.contains(&Key(name.text)) {
+            self.not_supported(name.span, "a variable of an INTERFACE");
+            return;
+        }
         if NOT_YET.iter().any(|it| it.eq_ignore_ascii_case(name.text)) {
             self.not_supported(name.span, &format!("the type {}", name.text.to_ascii_uppercase()));
             return;
@@ -483,15 +495,7 @@ impl<'s> Declarations<'s> {
         doc: Option<String>,
         span: Span,
     ) -> Option<Resolved> {
-        let block = ast::VarBlock {
-            kind: ast::VarKind::Var,
-            constant: None,
-            retain: None,
-            non_retain: None,
-            persistent: None,
-            vars: Vec::new(),
-            span,
-        };
+        let block = ast::VarBlock::new(ast::VarKind::Var, span);
         let mut seen = Scope::default();
         let mut fields = Vec::new();
         let mut complete = true;

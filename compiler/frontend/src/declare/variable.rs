@@ -9,7 +9,7 @@ use std::rc::Rc;
 
 pub(crate) fn section(kind: ast::VarKind) -> Section {
     match kind {
-        ast::VarKind::Var | ast::VarKind::Stat => Section::Internal,
+        ast::VarKind::Var | ast::VarKind::Stat | ast::VarKind::Inst => Section::Internal,
         ast::VarKind::Input => Section::Input,
         ast::VarKind::Output => Section::Output,
         ast::VarKind::InOut => Section::InOut,

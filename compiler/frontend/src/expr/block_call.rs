@@ -68,6 +68,7 @@ impl<'s> Checker<'_, 's> {
             }
             Access::Inner(_) => self.may_be_given_away(found, span).then_some(()),
             Access::Write | Access::OwnInput(_) | Access::Output(_) => Some(()),
+            Access::Result => self.may_be_given_away(found, span).then_some(()),
         }
     }
 
@@ -187,6 +188,14 @@ impl<'s> Checker<'_, 's> {
         span: Span,
     ) -> Option<()> {
         self.callable(&found, callee)?;
+        if self.decl.pous[slot].ast.kind == ast::PouKind::Class {
+            let name = self.decl.pous[slot].ast.name.text;
+            self.report(
+                Diagnostic::new(Code::E0305, callee, format!("`{name}` is a CLASS, which has no body"))
+                    .label("its METHODs are called"),
+            );
+            return None;
+        }
         let signature = self.decl.signature(slot)?;
         let owner = self.decl.pous[slot].ast.name.text;
         let formals = &signature.formals;

@@ -158,7 +158,7 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let found = self.callee(callee, arguments);
-        if found.is_none() {
+        if found.is_none() && !super::callee::wants_heap(callee) {
             self.check_arguments(arguments);
         }
         found

@@ -2,6 +2,7 @@
 
 use super::checker::Checker;
 use super::unresolved::{block_of_another_dialect, no_such_block};
+use crate::inherit::is_super;
 use crate::names::{Entry, Found, Meaning, Sense, functions, instruction_in};
 use crate::prelude;
 use crate::spelling::nearest;
@@ -28,6 +29,10 @@ pub(crate) enum Callee<'s> {
 impl<'s> Checker<'_, 's> {
     pub(crate) fn callee(&mut self, callee: &ast::Expr<'s>, arguments: &[ast::Argument<'s>]) -> Option<Callee<'s>> {
         match &callee.kind {
+            Ast::Name(_) | Ast::Deref(_) if is_super(callee) => {
+                self.super_callee(None, callee.span).map(Callee::Routine)
+            }
+            Ast::Member(base, name) if is_super(base) => self.super_callee(Some(*name), base.span).map(Callee::Routine),
             Ast::Name(name) => self.named_callee(*name, arguments),
             Ast::Member(base, name) => match self.qualified_callee(callee) {
                 Some(callee) => callee,
@@ -103,9 +108,13 @@ impl<'s> Checker<'_, 's> {
             ast::PouKind::Program if self.is_callable_program(slot, name) => Some(Callee::Instance),
             kind @ (ast::PouKind::Program
             | ast::PouKind::FunctionBlock
+            | ast::PouKind::Class
+            | ast::PouKind::Interface
             | ast::PouKind::Test
             | ast::PouKind::Action
-            | ast::PouKind::Method) => self.report_type_called(name, kind),
+            | ast::PouKind::Method
+            | ast::PouKind::Getter
+            | ast::PouKind::Setter) => self.report_type_called(name, kind),
         }
     }
 
@@ -189,6 +198,14 @@ impl<'s> Checker<'_, 's> {
             );
             return;
         }
+        if is_of_heap(name.text) {
+            self.report(
+                Diagnostic::new(Code::E0902, name.span, format!("`{}` is not supported", name.text))
+                    .label("a program has no heap: all of its memory is known when it is compiled")
+                    .help("declare the instances, in an ARRAY where there are several"),
+            );
+            return;
+        }
         if not_yet(name.text) {
             self.decl.not_supported(name.span, &format!("the function {}", name.text.to_ascii_uppercase()));
             return;
@@ -215,6 +232,15 @@ impl<'s> Checker<'_, 's> {
     }
 }
 
+/// Whether `__NEW` or `__DELETE` is called, which take a type.
+pub(crate) fn wants_heap(callee: &ast::Expr<'_>) -> bool {
+    matches!(&callee.kind, Ast::Name(name) if is_of_heap(name.text))
+}
+
+fn is_of_heap(name: &str) -> bool {
+    ["__NEW", "__DELETE"].iter().any(|it| it.eq_ignore_ascii_case(name))
+}
+
 /// Functions of the standard's tables, and of CODESYS, that are known to be missing.
 fn not_yet(name: &str) -> bool {
     let name = name.to_ascii_uppercase();
@@ -223,7 +249,8 @@ fn not_yet(name: &str) -> bool {
         texts.iter().any(|it| part == *it || part.starts_with("BCD") || part.ends_with("BCD"))
     };
     let (from, to) = name.split_once("_TO_").or_else(|| Some(("", name.strip_prefix("TO_")?))).unwrap_or(("", ""));
-    let others = ["ROUND", "CEIL", "FLOOR", "ASSERT", "CONCAT_TIME", "UPPER_CASE"];
+    let others =
+        ["ROUND", "CEIL", "FLOOR", "ASSERT", "CONCAT_TIME", "UPPER_CASE", "__QUERYINTERFACE", "__QUERYPOINTER"];
     conversion(from) || conversion(to) || others.contains(&name.as_str())
 }
 

@@ -13,6 +13,8 @@ use std::rc::Rc;
 pub(crate) struct Checker<'d, 's> {
     pub decl: &'d mut Declarations<'s>,
     pub scope: Rc<Scope<'s>>,
+    /// Of the POU whose body this is.
+    pub slot: Option<usize>,
     /// Of the POU whose body this is; a constant expression has none.
     pub signature: Option<Rc<Signature<'s>>>,
     /// The slot, where that is an instance of a generic FUNCTION, or such a FUNCTION itself.
@@ -45,8 +47,9 @@ pub(crate) enum Context {
 
 impl<'d, 's> Checker<'d, 's> {
     /// For the body with a signature.
-    pub fn of_body(decl: &'d mut Declarations<'s>, signature: &Rc<Signature<'s>>) -> Self {
+    pub fn of_body(decl: &'d mut Declarations<'s>, slot: usize, signature: &Rc<Signature<'s>>) -> Self {
         let mut checker = Self::new(decl, &signature.scope, Context::Body);
+        checker.slot = Some(slot);
         checker.locals.clone_from(&signature.locals);
         checker.signature = Some(Rc::clone(signature));
         checker
@@ -56,6 +59,7 @@ impl<'d, 's> Checker<'d, 's> {
         Self {
             decl,
             scope: Rc::clone(scope),
+            slot: None,
             signature: None,
             instance: None,
             block: Vec::new(),
@@ -89,7 +93,7 @@ impl<'d, 's> Checker<'d, 's> {
 
     pub fn is_function_block(&self) -> bool {
         let slot = self.signature.as_ref().and_then(|it| it.state).and_then(|it| self.decl.slot_of_instance(it));
-        slot.is_some_and(|slot| self.decl.pous[slot].ast.kind == ast::PouKind::FunctionBlock)
+        slot.is_some_and(|slot| self.decl.pous[slot].ast.kind.is_block())
     }
 
     pub fn at(&mut self, span: Span) -> Location {

@@ -57,6 +57,10 @@ impl<'s> Checker<'_, 's> {
         if self.is_null(name) {
             return Some(self.null(expected, name.span));
         }
+        let own = ast::Expr { kind: Ast::Name(name), span: name.span };
+        if self.property(&own).is_some() {
+            return self.load(&own);
+        }
         if let Some(found) = self.find_variable(name) {
             let variable = found?;
             return self.variable_value(&variable, name.span);

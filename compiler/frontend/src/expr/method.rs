@@ -1,24 +1,186 @@
-//! Calls of METHODs and ACTIONs: on which instance, and who may make them.
+//! Calls of METHODs and ACTIONs, and uses of PROPERTYs: on which instance, and who may make them.
 
 use super::checker::Checker;
 use super::generic_call::Called;
 use super::place::{Access, Found};
+use crate::inherit::is_super;
 use crate::names::{self, Entry, Meaning, Sense};
-use crate::types::declarations::Slot;
+use crate::spelling::Key;
+use crate::types::declarations::{Routines, Slot};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, PouKind};
-use staunch_ir::{Expr, FieldId, Place, RefKind, Root, Type};
+use staunch_ir::{Expr, ExprKind, FieldId, Place, RefKind, Root, StructId, Type};
 
 impl<'s> Checker<'_, 's> {
     /// The METHOD or ACTION that a bare name means: one of the POU around.
     pub(crate) fn own_routine(&self, name: ast::Name<'s>) -> Option<usize> {
-        self.decl.routine_of(self.signature.as_ref()?.state?, name.text)
+        Some(self.own_routines(name)?.called?.0)
+    }
+
+    /// The routines of the POU around that a name means. An inherited routine does not see what heirs add.
+    fn own_routines(&self, name: ast::Name<'s>) -> Option<Routines> {
+        let home = &self.decl.pous[self.decl.home(self.slot?)];
+        home.routines.get(&Key(name.text))?;
+        self.decl.routines_of(self.signature.as_ref()?.state?, name.text)
+    }
+
+    /// Whether the class around extends another, which SUPER then means.
+    pub(crate) fn extends(&self) -> bool {
+        self.slot.is_some_and(|it| self.decl.pous[self.decl.home(it)].ast.extends.is_some())
+    }
+
+    /// What SUPER means, with or without a name after it.
+    pub(crate) fn super_callee(&mut self, name: Option<ast::Name<'s>>, span: Span) -> Option<usize> {
+        let slot = self.slot?;
+        let found = self.decl.super_routines(slot, name).and_then(|it| it.called);
+        if found.is_none() {
+            let home = self.decl.pous[self.decl.home(slot)].ast;
+            let error = match (home.extends, name) {
+                (Some(base), Some(name)) => {
+                    Diagnostic::new(Code::E0107, name.span, format!("`{}` has no METHOD `{}`", base.text, name.text))
+                        .label("unknown member")
+                }
+                (Some(base), None) => {
+                    Diagnostic::new(Code::E0305, span, format!("`{}` has no body to call", base.text))
+                }
+                (None, _) => Diagnostic::new(Code::E0101, span, format!("`{}` extends nothing", home.name.text))
+                    .label("SUPER is what a FUNCTION_BLOCK extends"),
+            };
+            self.report(error);
+        }
+        found.map(|it| it.0)
+    }
+
+    /// The PROPERTY that an expression means, with the instance that is written before its name.
+    pub(crate) fn property<'a>(
+        &self,
+        expr: &'a ast::Expr<'s>,
+    ) -> Option<(Routines, ast::Name<'s>, Option<&'a ast::Expr<'s>>)> {
+        let (state, name, instance) = match &expr.kind {
+            Ast::Name(name) if self.scope.get(name.text).is_none() && !self.is_own_result(*name) => {
+                let routines = self.own_routines(*name)?;
+                return routines.is_property().then_some((routines, *name, None));
+            }
+            Ast::Member(instance, name) if is_super(instance) => {
+                let routines = self.decl.super_routines(self.slot?, Some(*name))?;
+                return routines.is_property().then_some((routines, *name, None));
+            }
+            Ast::Member(instance, name) => {
+                let Type::Struct(state) = self.static_type(instance)? else { return None };
+                (state, *name, Some(&**instance))
+            }
+            Ast::Paren(inner) => return self.property(inner),
+            Ast::Name(_)
+            | Ast::Literal(_)
+            | Ast::Address(_)
+            | Ast::Part(..)
+            | Ast::Index(..)
+            | Ast::Deref(_)
+            | Ast::Call(..)
+            | Ast::Unary(..)
+            | Ast::Binary(..)
+            | Ast::Error(_) => return None,
+        };
+        let routines = self.decl.routines_of(state, name.text)?;
+        routines.is_property().then_some((routines, name, instance))
+    }
+
+    fn is_own_result(&self, name: ast::Name<'s>) -> bool {
+        let result = self.signature.as_ref().and_then(|it| it.result.as_ref());
+        result.is_some_and(|(id, _)| self.locals[id.index()].name.eq_ignore_ascii_case(name.text))
+    }
+
+    /// What a PROPERTY gives; the inner `None` says that it was reported.
+    pub(crate) fn property_value(&mut self, expr: &ast::Expr<'s>) -> Option<Option<Found<'s>>> {
+        let (routines, name, instance) = self.property(expr)?;
+        let Some((slot, _)) = routines.getter else {
+            self.report_no_accessor(name, "GET", "read", routines.setter);
+            return Some(None);
+        };
+        Some(self.accessor(slot, name, instance, &[], expr.span).and_then(|it| self.result_place(it?, expr.span)))
+    }
+
+    /// Assigns to a PROPERTY; `None` where the target is none.
+    pub(crate) fn assign_property(
+        &mut self,
+        target: &ast::Expr<'s>,
+        value: &ast::Expr<'s>,
+        span: Span,
+    ) -> Option<Option<()>> {
+        let (routines, name, instance) = self.property(target)?;
+        let Some((slot, _)) = routines.setter else {
+            self.report_no_accessor(name, "SET", "assigned", routines.getter);
+            self.operand(value, None);
+            return Some(None);
+        };
+        let value = ast::Argument { kind: ast::ArgumentKind::Positional(value.clone()), span: value.span };
+        Some(self.accessor(slot, name, instance, &[value], span).map(drop))
+    }
+
+    fn accessor(
+        &mut self,
+        slot: usize,
+        name: ast::Name<'s>,
+        instance: Option<&ast::Expr<'s>>,
+        arguments: &[ast::Argument<'s>],
+        span: Span,
+    ) -> Option<Option<Expr>> {
+        if self.signature.is_none() {
+            self.report(super::unresolved::not_constant(span));
+            return None;
+        }
+        let found = match instance {
+            Some(instance) => {
+                self.may_call(slot, name)?;
+                self.place(instance)?
+            }
+            None => self.this()?,
+        };
+        self.callable(&found, span)?;
+        let called = Called { slot, name, expected: None, span };
+        self.user_function(called, Some((found.place, span)), arguments)
+    }
+
+    fn report_no_accessor(&mut self, name: ast::Name<'s>, word: &str, use_: &str, other: Option<(usize, Span)>) {
+        let mut error = Diagnostic::new(Code::E0504, name.span, format!("the PROPERTY `{}` has no {word}", name.text))
+            .label(format!("so it cannot be {use_}"));
+        if let Some((_, span)) = other {
+            error = error.other(span, "declared here");
+        }
+        self.report(error.help(format!("add `{word} … END_{word}` to it")));
+    }
+
+    /// The place of what a call gave: it can be read, and what it refers to be followed.
+    fn result_place(&mut self, value: Expr, span: Span) -> Option<Found<'s>> {
+        let place = match value.kind {
+            ExprKind::Load(place) => place,
+            ExprKind::Const(_)
+            | ExprKind::Text(_)
+            | ExprKind::Aggregate(_)
+            | ExprKind::AddressOf(_)
+            | ExprKind::Apply(..)
+            | ExprKind::ApplyText(..)
+            | ExprKind::Convert(..) => {
+                let place = self.temporary("result", value.ty);
+                self.assign(place.clone(), value, span);
+                place
+            }
+        };
+        Some(Found { place, view: None, access: Access::Result })
+    }
+
+    /// What a call of a FUNCTION or METHOD gives, as the start of a longer name: `a.b().c`.
+    pub(crate) fn called_place(&mut self, expr: &ast::Expr<'s>) -> Option<Option<Found<'s>>> {
+        let Ast::Call(callee, arguments) = &expr.kind else { return None };
+        self.static_type(expr)?;
+        let value = self.call_value(expr, callee, arguments, None);
+        Some(value.and_then(|it| self.materialise(it, None, expr.span)).and_then(|it| self.result_place(it, expr.span)))
     }
 
     /// The METHOD or ACTION that `instance.name` means.
     pub(crate) fn routine_of(&self, instance: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<usize> {
         let Type::Struct(state) = self.static_type(instance)? else { return None };
-        self.decl.routine_of(state, name.text)
+        Some(self.decl.routines_of(state, name.text)?.called?.0)
     }
 
     pub(crate) fn routine_call(
@@ -28,11 +190,25 @@ impl<'s> Checker<'_, 's> {
         arguments: &[ast::Argument<'s>],
         span: Span,
     ) -> Option<Option<Expr>> {
-        let found = if let Ast::Member(instance, name) = &callee.bare().kind {
-            self.may_call(slot, *name)?;
-            self.place(instance)?
-        } else {
-            self.this()?
+        let found = match &callee.bare().kind {
+            Ast::Member(instance, name) => {
+                self.may_call(slot, *name)?;
+                if is_super(instance) { self.this()? } else { self.place(instance)? }
+            }
+            Ast::Name(name) => {
+                self.may_call(slot, *name)?;
+                self.this()?
+            }
+            Ast::Literal(_)
+            | Ast::Address(_)
+            | Ast::Part(..)
+            | Ast::Index(..)
+            | Ast::Deref(_)
+            | Ast::Call(..)
+            | Ast::Unary(..)
+            | Ast::Binary(..)
+            | Ast::Paren(_)
+            | Ast::Error(_) => self.this()?,
         };
         match self.decl.pous[slot].ast.kind {
             PouKind::Method => {
@@ -41,9 +217,15 @@ impl<'s> Checker<'_, 's> {
                 let called = Called { slot, name, expected: None, span };
                 self.user_function(called, Some((found.place, callee.span)), arguments)
             }
-            PouKind::Action | PouKind::Program | PouKind::FunctionBlock | PouKind::Function | PouKind::Test => {
-                self.user_block(found, slot, arguments, callee.span, span).map(|()| None)
-            }
+            PouKind::Action
+            | PouKind::Program
+            | PouKind::FunctionBlock
+            | PouKind::Class
+            | PouKind::Interface
+            | PouKind::Function
+            | PouKind::Getter
+            | PouKind::Setter
+            | PouKind::Test => self.user_block(found, slot, arguments, callee.span, span).map(|()| None),
         }
     }
 
@@ -58,13 +240,15 @@ impl<'s> Checker<'_, 's> {
         let Some((access, span)) = self.decl.pous[slot].ast.modifiers.access else { return Some(()) };
         let own = self.signature.as_ref().and_then(|it| it.state).and_then(|it| self.decl.slot_of_instance(it));
         let is_inside = own.is_some() && own == self.decl.pous[slot].owner;
+        let is_home = self.slot.is_some_and(|it| self.decl.home(it) == self.decl.home(slot));
         let of_namespace = self.decl.names.is_inside(name.span, self.decl.names.space_of(span));
         let routines = "only the routines of its own FUNCTION_BLOCK call it";
         let (word, who) = match access {
             ast::Access::Public => return Some(()),
             // Outside of every NAMESPACE a program is one library.
             ast::Access::Internal if of_namespace || self.is_test() => return Some(()),
-            ast::Access::Private | ast::Access::Protected if is_inside || self.is_test() => return Some(()),
+            ast::Access::Private if is_inside && is_home || self.is_test() => return Some(()),
+            ast::Access::Protected if is_inside || self.is_test() => return Some(()),
             ast::Access::Internal => ("INTERNAL", "only what is in its own namespace calls it"),
             ast::Access::Private => ("PRIVATE", routines),
             ast::Access::Protected => ("PROTECTED", routines),
@@ -98,13 +282,10 @@ impl<'s> Checker<'_, 's> {
                 let Type::Reference(id) = self.static_type(inner)? else { return None };
                 self.decl.program.target(id)
             }
-            Ast::Literal(_)
-            | Ast::Address(_)
-            | Ast::Part(..)
-            | Ast::Call(..)
-            | Ast::Unary(..)
-            | Ast::Binary(..)
-            | Ast::Error(_) => return None,
+            Ast::Call(callee, _) => self.decl.result_type(self.called_slot(callee)?)?,
+            Ast::Literal(_) | Ast::Address(_) | Ast::Part(..) | Ast::Unary(..) | Ast::Binary(..) | Ast::Error(_) => {
+                return None;
+            }
         };
         match ty {
             Type::Reference(id) if self.decl.program.references[id.index()].kind == RefKind::ReferenceTo => {
@@ -114,7 +295,42 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
+    /// The FUNCTION or METHOD that is called.
+    fn called_slot(&self, callee: &ast::Expr<'s>) -> Option<usize> {
+        match &callee.kind {
+            Ast::Member(instance, name) if is_super(instance) => {
+                Some(self.decl.super_routines(self.slot?, Some(*name))?.called?.0)
+            }
+            Ast::Member(instance, name) => self.routine_of(instance, *name),
+            Ast::Name(name) => self.own_routine(*name).or_else(|| {
+                let found = self.decl.lookup(&[*name], Sense::Callee);
+                let names::Found::One(Meaning::Declared(Entry::Pou(slot))) = found else { return None };
+                (self.decl.pous[slot].ast.kind == PouKind::Function).then_some(slot)
+            }),
+            Ast::Literal(_)
+            | Ast::Address(_)
+            | Ast::Part(..)
+            | Ast::Index(..)
+            | Ast::Deref(_)
+            | Ast::Call(..)
+            | Ast::Unary(..)
+            | Ast::Binary(..)
+            | Ast::Paren(_)
+            | Ast::Error(_) => None,
+        }
+    }
+
+    /// The type of a PROPERTY that can be read.
+    fn type_of_property(&self, state: StructId, name: ast::Name<'s>) -> Option<Type> {
+        self.decl.result_type(self.decl.routines_of(state, name.text)?.getter?.0)
+    }
+
     fn type_of_name(&self, name: ast::Name<'s>) -> Option<Type> {
+        let own =
+            Some(name).filter(|it| self.scope.get(it.text).is_none()).and_then(|it| self.own_routines(it)?.getter);
+        if let Some((slot, _)) = own {
+            return self.decl.result_type(slot);
+        }
         if let Some(variable) = self.scope.get(name.text) {
             return Some(variable.place.ty);
         }
@@ -143,6 +359,9 @@ impl<'s> Checker<'_, 's> {
         }
         let ty = self.static_type(owner)?;
         let Type::Struct(id) = ty else { return None };
+        if let Some(ty) = self.type_of_property(id, name) {
+            return Some(ty);
+        }
         let fields = &self.decl.program.structure(id).fields;
         let at = fields.iter().position(|it| it.name.eq_ignore_ascii_case(name.text))?;
         self.decl.program.member(ty, FieldId::next(at))

@@ -3,6 +3,7 @@
 use super::checker::Checker;
 use super::unresolved::not_constant;
 use crate::dialect::Dialect;
+use crate::inherit::is_super;
 use crate::names::{self, Entry, Meaning, Sense};
 use crate::spelling::nearest;
 use crate::types::scope::Variable;
@@ -35,6 +36,8 @@ pub(crate) enum Access<'s> {
     Output(ast::Name<'s>),
     /// An internal variable of an instance, or what is part of one, seen from outside.
     Inner(ast::Name<'s>),
+    /// What a call or a PROPERTY gave.
+    Result,
 }
 
 /// A part of an integer or bit string: `.3`, `.%W1`.
@@ -73,8 +76,10 @@ impl<'s> Checker<'_, 's> {
 
     /// The place that `expr` names; a REFERENCE TO is itself.
     pub(crate) fn place_of_reference(&mut self, expr: &ast::Expr<'s>) -> Option<Found<'s>> {
-        if let Some(this) = self.this_of(expr) {
-            return this;
+        if let Some(found) =
+            self.this_of(expr).or_else(|| self.property_value(expr)).or_else(|| self.called_place(expr))
+        {
+            return found;
         }
         match &expr.kind {
             Ast::Name(name) => self.variable_place(*name),
@@ -251,11 +256,10 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn declared_but_refused(&self, name: ast::Name<'s>) -> bool {
-        // POUs, and the variables of a block, are in the order of the source.
+        // The variables of a block are in the order of the source.
         let place = |span: Span| (span.file, span.start);
-        let pous = self.decl.written_pous();
-        let after = pous.partition_point(|it| place(it.ast.span) <= place(name.span));
-        let pou = after.checked_sub(1).filter(|_| self.signature.is_none()).map(|at| &pous[at]);
+        let own = self.decl.written_pous().iter().filter(|it| self.signature.is_none() && it.ast.home.is_none());
+        let pou = own.filter(|it| place(it.ast.span) <= place(name.span)).max_by_key(|it| place(it.ast.span));
         pou.is_some_and(|pou| {
             pou.ast.blocks.iter().any(|block| {
                 let after = block.vars.partition_point(|it| place(it.span) <= place(name.span));
@@ -293,6 +297,9 @@ impl<'s> Checker<'_, 's> {
     fn member(&mut self, whole: &ast::Expr<'s>, base: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<Found<'s>> {
         if let Some(variable) = self.global_of_namespace(whole) {
             return variable.map(|it| self.found(&it, name));
+        }
+        if is_super(base) && self.extends() {
+            return self.member_of_this(name);
         }
         if let Some(this) = self.this_of(base) {
             this?;
@@ -346,10 +353,13 @@ impl<'s> Checker<'_, 's> {
             return None;
         };
         let (ty, section, constant) = (fields[at].ty, fields[at].section, fields[at].constant);
-        let inner = instance && !is_pin(section);
+        let inner = instance && !is_pin(section) && !self.is_public(id, name);
         // A unit test looks into everything.
         let is_test = self.is_test();
         if inner && !is_test && self.seen_from_outside(id, name).is_none() {
+            if self.is_refused_routine(id, name) {
+                return None;
+            }
             let owner = self.type_name(found.place.ty);
             self.report(
                 Diagnostic::new(
@@ -362,7 +372,7 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let access = match section {
-            _ if matches!(found.access, Access::Inner(_)) => found.access,
+            _ if matches!(found.access, Access::Inner(_) | Access::Result) => found.access,
             _ if constant => Access::Constant(name),
             _ if is_test => Access::Write,
             _ if inner => Access::Inner(name),
@@ -372,6 +382,22 @@ impl<'s> Checker<'_, 's> {
             _ => found.access,
         };
         Some(Found { place: found.place.field(FieldId::next(at), ty), view: None, access })
+    }
+
+    /// Whether a METHOD was refused since a variable has its name.
+    fn is_refused_routine(&self, id: StructId, name: ast::Name<'s>) -> bool {
+        let slot = self.decl.slot_of_instance(id);
+        let mut routines = slot.into_iter().flat_map(|it| &self.decl.pous[it].ast.routines);
+        routines.any(|it| it.name.text.eq_ignore_ascii_case(name.text))
+    }
+
+    /// Whether a variable of an instance is declared in VAR PUBLIC, or INTERNAL: a program is one library.
+    fn is_public(&self, id: StructId, name: ast::Name<'s>) -> bool {
+        let Some(slot) = self.decl.slot_of_instance(id) else { return false };
+        let is_open =
+            |it: &&ast::VarBlock<'s>| matches!(it.access, Some((ast::Access::Public | ast::Access::Internal, _)));
+        let mut open = self.decl.pous[slot].ast.blocks.iter().filter(is_open).flat_map(|it| &it.vars);
+        open.any(|it| it.names.iter().any(|it| it.text.eq_ignore_ascii_case(name.text)))
     }
 
     /// A variable of an instance that a dialect lets others read.
@@ -442,7 +468,7 @@ impl<'s> Checker<'_, 's> {
             return None;
         };
         let access = match found.access {
-            Access::Inner(_) => found.access,
+            Access::Inner(_) | Access::Result => found.access,
             _ if pins[at].direction == Direction::Output && !self.is_test() => Access::Output(name),
             Access::Write | Access::Constant(_) | Access::OwnInput(_) | Access::Output(_) => Access::Write,
         };
@@ -650,6 +676,14 @@ impl<'s> Checker<'_, 's> {
                 self.report(
                     Diagnostic::new(Code::E0504, span, format!("`{}` is an output", name.text))
                         .label("only the block itself sets its outputs"),
+                );
+                false
+            }
+            Access::Result => {
+                self.report(
+                    Diagnostic::new(Code::E0306, span, "a variable is expected here")
+                        .label("this is a value, which a call gave")
+                        .help("copy it to a variable first"),
                 );
                 false
             }

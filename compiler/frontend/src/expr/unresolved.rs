@@ -122,11 +122,19 @@ impl<'s> Checker<'_, 's> {
             };
             self.report(match kind {
                 Some(ast::PouKind::Function) => error.help(format!("call the FUNCTION: `{}(…)`", name.text)),
-                Some(ast::PouKind::FunctionBlock) => {
+                Some(ast::PouKind::FunctionBlock | ast::PouKind::Class) => {
                     error.help(format!("declare an instance: `VAR instance : {}; END_VAR`", name.text))
                 }
                 Some(ast::PouKind::Program) => error.help("share the value in a VAR_GLOBAL"),
-                Some(ast::PouKind::Test | ast::PouKind::Action | ast::PouKind::Method) | None => error,
+                Some(
+                    ast::PouKind::Test
+                    | ast::PouKind::Action
+                    | ast::PouKind::Interface
+                    | ast::PouKind::Method
+                    | ast::PouKind::Getter
+                    | ast::PouKind::Setter,
+                )
+                | None => error,
             });
             return;
         }

@@ -107,6 +107,8 @@ kinds! {
         EndMethod "END_METHOD"
         EndProperty "END_PROPERTY"
         EndAction "END_ACTION"
+        EndGet "END_GET"
+        EndSet "END_SET"
         EndInterface "END_INTERFACE"
         EndClass "END_CLASS"
         EndNamespace "END_NAMESPACE"

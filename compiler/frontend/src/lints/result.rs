@@ -5,7 +5,10 @@ use crate::{Code, Diagnostic, ast};
 
 /// The FUNCTIONs whose bodies do not name their result. What was refused may have assigned it.
 pub(crate) fn unassigned(pous: &[PouSlot<'_>]) -> Vec<Diagnostic> {
-    let unassigned = pous.iter().filter(|it| it.ast.result.is_some() && !it.names_itself).map(|it| it.ast.name);
+    let unassigned = pous
+        .iter()
+        .filter(|it| it.ast.result.is_some() && !it.names_itself && it.ast.modifiers.is_abstract.is_none())
+        .map(|it| it.ast.name);
     let lint = |name: ast::Name<'_>| {
         Diagnostic::new(Code::W0516, name.span, format!("the result of `{}` is never assigned", name.text))
             .label("each call gives its type's initial value")

@@ -186,7 +186,7 @@ impl<'s> Declarations<'s> {
 
     fn not_a_program(&mut self, name: ast::Name<'s>, at: usize) {
         let pou = self.pous[at].ast;
-        let kind = if pou.kind == ast::PouKind::Function { "FUNCTION" } else { "FUNCTION_BLOCK" };
+        let kind = pou.kind.word();
         self.report(
             Diagnostic::new(Code::E0102, name.span, format!("`{}` is a {kind}, not a PROGRAM", name.text))
                 .label("a PROGRAM is expected here")

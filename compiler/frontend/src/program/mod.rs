@@ -49,8 +49,13 @@ impl Declarations<'_> {
             // A test holds it, as it holds a FUNCTION_BLOCK.
             ast::PouKind::Program if self.log.options.tests => ClassKind::FunctionBlock,
             ast::PouKind::Program | ast::PouKind::Test => ClassKind::Program,
-            ast::PouKind::FunctionBlock => ClassKind::FunctionBlock,
-            ast::PouKind::Function | ast::PouKind::Action | ast::PouKind::Method => return None,
+            ast::PouKind::FunctionBlock | ast::PouKind::Class => ClassKind::FunctionBlock,
+            ast::PouKind::Function
+            | ast::PouKind::Interface
+            | ast::PouKind::Action
+            | ast::PouKind::Method
+            | ast::PouKind::Getter
+            | ast::PouKind::Setter => return None,
         };
         let signature = self.signature(slot)?;
         let variables = match self.pous[slot].run {

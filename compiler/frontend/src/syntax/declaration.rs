@@ -3,7 +3,7 @@
 use chumsky::prelude::*;
 
 use crate::{
-    ast::{Edge, Name, TypeKind, TypeSpec, VarBlock, VarDecl, VarKind},
+    ast::{Access, Edge, Name, TypeKind, TypeSpec, VarBlock, VarDecl, VarKind},
     lex::Kind,
     source::Span,
 };
@@ -17,7 +17,6 @@ use super::{
     recovery,
     token_class::ends_declarations,
     types::type_kind,
-    unsupported,
 };
 
 /// From VAR to END_VAR. None for a section that is refused.
@@ -45,8 +44,7 @@ enum Qualifier {
     Retain,
     NonRetain,
     Persistent,
-    /// Refused and reported.
-    Access,
+    Access(Access),
 }
 
 /// `VAR_GLOBAL CONSTANT`
@@ -58,6 +56,7 @@ fn section_head<'t, 's: 't>() -> impl Rule<'t, 's, VarBlock<'s>> {
         (Kind::VarInOut, VarKind::InOut),
         (Kind::VarTemp, VarKind::Temp),
         (Kind::VarStat, VarKind::Stat),
+        (Kind::VarInst, VarKind::Inst),
         (Kind::VarGlobal, VarKind::Global),
         (Kind::VarExternal, VarKind::External),
     ];
@@ -67,7 +66,7 @@ fn section_head<'t, 's: 't>() -> impl Rule<'t, 's, VarBlock<'s>> {
         token(Kind::Retain).map(|span| (Qualifier::Retain, span)),
         token(Kind::NonRetain).map(|span| (Qualifier::NonRetain, span)),
         token(Kind::Persistent).map(|span| (Qualifier::Persistent, span)),
-        unsupported::access().map(|span| (Qualifier::Access, span)),
+        access().map(|(access, span)| (Qualifier::Access(access), span)),
     ));
     let opened = foreign_types::section_of_two_words().or(kind).map(|(kind, span)| VarBlock::new(kind, span));
     opened.foldl(qualifier.repeated(), |mut block, (qualifier, span)| {
@@ -76,10 +75,26 @@ fn section_head<'t, 's: 't>() -> impl Rule<'t, 's, VarBlock<'s>> {
             Qualifier::Retain => block.retain = Some(span),
             Qualifier::NonRetain => block.non_retain = Some(span),
             Qualifier::Persistent => block.persistent = Some(span),
-            Qualifier::Access => {}
+            Qualifier::Access(access) => block.access = Some((access, span)),
         }
         block
     })
+}
+
+/// `PUBLIC` and the like before a name.
+pub fn access<'t, 's: 't>() -> impl Rule<'t, 's, (Access, Span)> {
+    let accesses = [
+        ("PUBLIC", Access::Public),
+        ("PRIVATE", Access::Private),
+        ("PROTECTED", Access::Protected),
+        ("INTERNAL", Access::Internal),
+    ];
+    choice(accesses.map(|(text, access)| before_name(text).map(move |span| (access, span))))
+}
+
+/// A word before a name.
+pub fn before_name<'t, 's: 't>(text: &'static str) -> impl Rule<'t, 's, Span> {
+    ahead(|input| input.kind_ahead(1) == Kind::Name).ignore_then(word(text))
 }
 
 /// What follows the `:` of a declaration.

@@ -331,6 +331,30 @@ pub fn routine_outside(span: Span, kind: PouKind) -> Diagnostic {
         .help("move it before END_FUNCTION_BLOCK")
 }
 
+/// A PROPERTY with neither GET nor SET.
+pub fn property_without_accessors(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0403, span, "a PROPERTY has GET … END_GET, SET … END_SET, or both")
+        .label("this has neither")
+        .help("write `GET … END_GET` after its head")
+}
+
+/// A statement or a VAR_INPUT in a CLASS.
+pub fn not_in_a_class(span: Span, what: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0403, span, format!("a CLASS has no {what}"))
+        .label("it has VAR, METHODs and PROPERTYs")
+        .help("make it a FUNCTION_BLOCK, or move this into a METHOD")
+}
+
+/// A second base class, or one of what is no class.
+pub fn too_many_bases(span: Span, kind: PouKind) -> Diagnostic {
+    let message = if kind.is_block() {
+        format!("{} EXTENDS one other", article(kind.word()))
+    } else {
+        format!("{} EXTENDS and IMPLEMENTS nothing", article(kind.word()))
+    };
+    Diagnostic::new(Code::E0403, span, message).label("one too many").help("delete it; INTERFACEs may be several")
+}
+
 /// VAR in an ACTION.
 pub fn variables_of_action(span: Span) -> Diagnostic {
     Diagnostic::new(Code::E0403, span, "an ACTION has no variables of its own")

@@ -1,25 +1,36 @@
-//! The routines of a PROGRAM or FUNCTION_BLOCK: METHOD and ACTION. Their words are names everywhere else.
+//! The routines of a PROGRAM or FUNCTION_BLOCK: METHOD, ACTION and PROPERTY. Their words are names everywhere else.
 
 use chumsky::prelude::*;
 
 use crate::{
-    ast::{Access, Item, Modifiers, Name, Pou, PouKind, TypeSpec},
+    ast::{Access, Item, Modifiers, Name, Pou, PouKind, TypeSpec, VarBlock, VarDecl, VarKind},
     lex::Kind,
     source::Span,
 };
 
 use super::{
-    combinator::{Rule, ahead, name, reported, rule, token, word},
-    declaration::type_spec,
+    combinator::{Rule, ahead, name, rule, token},
+    declaration::{access, before_name, type_spec},
     diagnostics, doc,
     parser::{In, TokenReader},
     recovery,
-    token_class::is_pou_end,
+    token_class::is_end,
     unsupported,
 };
 
-const ROUTINES: [(&str, PouKind, Kind); 2] =
-    [("METHOD", PouKind::Method, Kind::EndMethod), ("ACTION", PouKind::Action, Kind::EndAction)];
+const ROUTINES: [(&str, PouKind, Kind); 5] = [
+    ("METHOD", PouKind::Method, Kind::EndMethod),
+    ("ACTION", PouKind::Action, Kind::EndAction),
+    (PROPERTY, PouKind::Getter, Kind::EndProperty),
+    ("PROPERTY_GET", PouKind::Getter, Kind::EndProperty),
+    ("PROPERTY_SET", PouKind::Setter, Kind::EndProperty),
+];
+
+/// With GET and SET inside.
+const PROPERTY: &str = "PROPERTY";
+
+const ACCESSORS: [(&str, PouKind, Kind); 2] =
+    [("GET", PouKind::Getter, Kind::EndGet), ("SET", PouKind::Setter, Kind::EndSet)];
 
 /// Reads VAR blocks and statements: units hold routines, and these hold what units do.
 type Contents = for<'t, 'p, 's> fn(&mut In<'t, 'p, 's>, &mut Pou<'s>);
@@ -37,12 +48,8 @@ pub fn begins(input: &mut In<'_, '_, '_>) -> Option<(PouKind, Kind)> {
 /// Takes a routine that begins here into the unit around it.
 pub fn member<'s>(input: &mut In<'_, '_, 's>, owner: &mut Pou<'s>, contents: Contents) -> bool {
     let Some((kind, end)) = begins(input) else { return false };
-    let holds = match owner.kind {
-        PouKind::Program | PouKind::FunctionBlock => true,
-        PouKind::Function | PouKind::Test | PouKind::Action | PouKind::Method => false,
-    };
-    if holds {
-        owner.routines.push(routine(input, kind, end, contents));
+    if owner.kind.has_routines() {
+        owner.routines.extend(routine(input, kind, end, contents));
     } else {
         let span = input.here();
         input.report(diagnostics::routine_of_no_class(span, kind, owner.kind));
@@ -54,13 +61,13 @@ pub fn member<'s>(input: &mut In<'_, '_, 's>, owner: &mut Pou<'s>, contents: Con
 /// An ACTION that follows its POU, as exports of CODESYS have it. A METHOD there is misplaced.
 pub fn following<'s>(input: &mut In<'_, '_, 's>, items: &mut [Item<'s>], contents: Contents) -> bool {
     let Some((kind, end)) = begins(input) else { return false };
-    let is_class = |it: &&mut Pou<'s>| matches!(it.kind, PouKind::Program | PouKind::FunctionBlock);
+    let is_class = |it: &&mut Pou<'s>| it.kind.has_routines();
     let owner = match items.last_mut() {
         Some(Item::Pou(pou)) => Some(pou).filter(is_class),
         Some(Item::Types(_) | Item::Globals(_) | Item::Configuration(_) | Item::Test(_)) | None => None,
     };
     match owner {
-        Some(owner) if kind == PouKind::Action => owner.routines.push(routine(input, kind, end, contents)),
+        Some(owner) if kind == PouKind::Action => owner.routines.extend(routine(input, kind, end, contents)),
         Some(_) | None => {
             let span = input.here();
             input.report(diagnostics::routine_outside(span, kind));
@@ -70,7 +77,35 @@ pub fn following<'s>(input: &mut In<'_, '_, 's>, items: &mut [Item<'s>], content
     true
 }
 
-fn routine<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind, contents: Contents) -> Pou<'s> {
+/// `ACTIONS Pou … END_ACTIONS`, as RuSTy writes those of a POU; without a name, of the one before.
+pub fn actions<'s>(input: &mut In<'_, '_, 's>, items: &mut [Item<'s>], contents: Contents) -> bool {
+    if !input.is_word("ACTIONS") || input.kind_ahead(1) != Kind::Name {
+        return false;
+    }
+    let word = input.take();
+    let of = (begins(input).is_none() && !input.is_word("END_ACTIONS")).then(|| input.take());
+    let name = of.map(|it| input.text(it));
+    let is_meant =
+        |it: &&mut Pou<'s>| it.kind.has_routines() && name.is_none_or(|name| it.name.text.eq_ignore_ascii_case(name));
+    let pous = items.iter_mut().rev().filter_map(|it| match it {
+        Item::Pou(pou) => Some(pou),
+        Item::Types(_) | Item::Globals(_) | Item::Configuration(_) | Item::Test(_) => None,
+    });
+    let mut found = Vec::new();
+    while let Some((kind, end)) = begins(input) {
+        found.extend(routine(input, kind, end, contents));
+    }
+    if input.is_word("END_ACTIONS") {
+        input.take();
+    }
+    match pous.take(if name.is_some() { usize::MAX } else { 1 }).find(is_meant) {
+        Some(owner) => owner.routines.append(&mut found),
+        None => input.report(diagnostics::routine_outside(of.unwrap_or(word), PouKind::Action)),
+    }
+    true
+}
+
+fn routine<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind, contents: Contents) -> Vec<Pou<'s>> {
     let first = input.number();
     let doc = doc::before(input.state(), first);
     let opened = input.take();
@@ -82,20 +117,11 @@ fn routine<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind, contents: C
     });
     input.eat(Kind::Semicolon);
     let mut pou = Pou { modifiers, result, doc, ..Pou::new(kind, name, opened.to(name.span)) };
-    input.state().open.push((end, opened));
-    contents(input, &mut pou);
-    input.state().open.pop();
-    if input.eat(end).is_none() {
-        let found = input.kind();
-        let is_awaited = input.state().open.iter().any(|it| it.0 == found);
-        if (is_pou_end(found) || matches!(found, Kind::EndMethod | Kind::EndAction)) && !is_awaited {
-            diagnostics::wrong_end(input, end, opened);
-            input.take();
-        } else {
-            diagnostics::missing_end(input, end, opened);
-        }
+    if input.text(opened).eq_ignore_ascii_case(PROPERTY) {
+        return property(input, &pou, opened, contents);
     }
-    input.eat(Kind::Semicolon);
+    take_value(&mut pou);
+    body(input, &mut pou, end, opened, contents);
     if kind == PouKind::Action
         && let Some(block) = pou.blocks.first()
     {
@@ -103,12 +129,76 @@ fn routine<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind, contents: C
         input.report(it);
         pou.blocks.clear();
     }
-    pou
+    vec![pou]
+}
+
+/// VAR blocks and statements up to an end.
+fn body<'s>(input: &mut In<'_, '_, 's>, pou: &mut Pou<'s>, end: Kind, opened: Span, contents: Contents) {
+    input.state().open.push((end, opened));
+    contents(input, pou);
+    input.state().open.pop();
+    close(input, end, opened);
+}
+
+fn close(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
+    if input.eat(end).is_none() {
+        let found = input.kind();
+        let is_awaited = input.state().open.iter().any(|it| it.0 == found);
+        if is_end(found) && !is_awaited {
+            diagnostics::wrong_end(input, end, opened);
+            input.take();
+        } else {
+            diagnostics::missing_end(input, end, opened);
+        }
+    }
+    input.eat(Kind::Semicolon);
+}
+
+/// GET and SET, up to END_PROPERTY.
+fn property<'s>(input: &mut In<'_, '_, 's>, head: &Pou<'s>, opened: Span, contents: Contents) -> Vec<Pou<'s>> {
+    let mut accessors: Vec<Pou<'s>> = Vec::new();
+    input.state().open.push((Kind::EndProperty, opened));
+    while let Some((_, kind, end)) = ACCESSORS.iter().copied().find(|it| input.is_word(it.0)) {
+        let opened = input.take();
+        let mut pou = Pou { kind, ..head.clone() };
+        take_value(&mut pou);
+        let is_head = head_only(input);
+        if is_head {
+            input.eat(Kind::Semicolon);
+        } else {
+            body(input, &mut pou, end, opened, contents);
+        }
+        accessors.push(pou);
+    }
+    input.state().open.pop();
+    if accessors.is_empty() {
+        input.report(diagnostics::property_without_accessors(head.span));
+    }
+    close(input, Kind::EndProperty, opened);
+    accessors
+}
+
+/// Whether GET or SET has no body, as in an INTERFACE.
+fn head_only(input: &mut In<'_, '_, '_>) -> bool {
+    let next = usize::from(input.kind() == Kind::Semicolon);
+    input.kind_ahead(next) == Kind::EndProperty || ACCESSORS.iter().any(|it| next == 0 && input.is_word(it.0))
+}
+
+/// What is assigned to a PROPERTY is an input of its SET, by its own name.
+fn take_value(pou: &mut Pou<'_>) {
+    if pou.kind != PouKind::Setter {
+        return;
+    }
+    let (names, span) = (vec![pou.name], pou.name.span);
+    pou.blocks.extend(pou.result.take().map(|ty| {
+        let value = VarDecl { names, address: None, ty, edge: None, initial: None, doc: None, span };
+        VarBlock { vars: vec![value], ..VarBlock::new(VarKind::Input, span) }
+    }));
 }
 
 fn head<'t, 's: 't>(kind: PouKind) -> impl Rule<'t, 's, (Modifiers, Name<'s>, Option<TypeSpec<'s>>)> {
-    let is_method = ahead(move |_| kind == PouKind::Method);
-    let result = is_method.ignore_then(token(Kind::Colon)).ignore_then(type_spec()).map(Some);
+    let has_result = ahead(move |_| kind != PouKind::Action);
+    let result = has_result.ignore_then(token(Kind::Colon)).ignore_then(type_spec()).map(Some);
     // An ACTION's name may have a colon after it.
     let none = rule(move |input| {
         if kind == PouKind::Action {
@@ -123,32 +213,24 @@ fn head<'t, 's: 't>(kind: PouKind) -> impl Rule<'t, 's, (Modifiers, Name<'s>, Op
 
 /// `PUBLIC`, `FINAL` and the like before a name.
 pub fn modifiers<'t, 's: 't>() -> impl Rule<'t, 's, Modifiers> {
-    let accesses = [
-        ("PUBLIC", Access::Public),
-        ("PRIVATE", Access::Private),
-        ("PROTECTED", Access::Protected),
-        ("INTERNAL", Access::Internal),
-    ];
-    let access = choice(accesses.map(|(text, access)| before_name(text).map(move |span| (Some(access), span))));
-    let is_final = before_name("FINAL").map(|span| (None, span));
-    let known = access.or(is_final).map(Some);
-    let refused = choice(["ABSTRACT", "OVERRIDE"].map(|text| {
-        reported(before_name(text), move |span, state, _| {
-            state.report(diagnostics::unsupported(span, text));
-            None
-        })
-    }));
-    empty().to(Modifiers::default()).foldl(known.or(refused).repeated(), |mut all, it| {
+    let word = |text, what: fn(&mut Modifiers, Span)| before_name(text).map(move |span| (what, span));
+    let words = choice((
+        word("FINAL", |all, span| all.is_final = Some(span)),
+        word("ABSTRACT", |all, span| all.is_abstract = Some(span)),
+        word("OVERRIDE", |all, span| all.overrides = Some(span)),
+    ));
+    let set = access().map(|it| Modifier::Access(it.0, it.1)).or(words.map(|(set, span)| Modifier::Word(set, span)));
+    empty().to(Modifiers::default()).foldl(set.repeated(), |mut all, it| {
         match it {
-            Some((Some(access), span)) => all.access = Some((access, span)),
-            Some((None, span)) => all.is_final = Some(span),
-            None => {}
+            Modifier::Access(access, span) => all.access = Some((access, span)),
+            Modifier::Word(set, span) => set(&mut all, span),
         }
         all
     })
 }
 
-/// A word before a name.
-fn before_name<'t, 's: 't>(text: &'static str) -> impl Rule<'t, 's, Span> {
-    ahead(|input| input.kind_ahead(1) == Kind::Name).ignore_then(word(text))
+#[derive(Clone, Copy)]
+enum Modifier {
+    Access(Access, Span),
+    Word(fn(&mut Modifiers, Span), Span),
 }

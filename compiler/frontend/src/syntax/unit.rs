@@ -11,7 +11,7 @@ use crate::{
 };
 
 use super::{
-    combinator::{Rule, ahead, name, reported, token},
+    combinator::{Rule, ahead, name, reported, token, word},
     configuration::configuration,
     declaration::{section, structure_members, type_spec},
     diagnostics, doc, foreign_types, misspelt, namespace,
@@ -48,7 +48,14 @@ pub fn items<'s>(input: &mut In<'_, '_, 's>) -> Vec<Item<'s>> {
             kind if opens_section(kind) => bare_unit(input, &mut items),
             Kind::Name if namespace::directive(input) => {}
             Kind::EndNamespace if namespace::end(input) => {}
+            Kind::Name if input.is_word("CLASS") && input.kind_ahead(1) == Kind::Name => {
+                items.push(pou(input, PouKind::Class, Kind::EndClass));
+            }
+            Kind::Name if input.is_word("INTERFACE") && input.kind_ahead(1) == Kind::Name => {
+                items.push(pou(input, PouKind::Interface, Kind::EndInterface));
+            }
             Kind::Name if routine::following(input, &mut items, contents) => {}
+            Kind::Name if routine::actions(input, &mut items, contents) => {}
             Kind::Name if unsupported::skip(input) => {}
             Kind::Name if begins_test(input) => items.push(test_unit(input)),
             Kind::Name if misspelt_item(input) => {}
@@ -204,12 +211,13 @@ fn pou<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind) -> Item<'s> {
         diagnostics::misspelt_keyword(input, Kind::FunctionBlock, span);
         (kind, end) = (PouKind::FunctionBlock, Kind::EndFunctionBlock);
     }
-    let (modifiers, name, parameters, result) = input.parse(head(kind)).unwrap_or_else(|problem| {
-        diagnostics::report(input, problem);
-        recovery::go_to(input, problem);
-        recovery::skip_head(input);
-        (Modifiers::default(), Name { text: "", span: opened }, None, None)
-    });
+    let (modifiers, name, (extends, implements), parameters, result) =
+        input.parse(head(kind)).unwrap_or_else(|problem| {
+            diagnostics::report(input, problem);
+            recovery::go_to(input, problem);
+            recovery::skip_head(input);
+            (Modifiers::default(), Name { text: "", span: opened }, (Vec::new(), Vec::new()), None, None)
+        });
     let span = opened.to(name.span);
     if kind != PouKind::Function && input.kind() == Kind::Colon {
         let from = input.take();
@@ -220,7 +228,8 @@ fn pou<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind) -> Item<'s> {
     }
     input.eat(Kind::Semicolon);
     input.state().open.push((end, opened));
-    let mut pou = Pou { modifiers, result, doc, ..Pou::new(kind, name, span) };
+    let mut pou = Pou { modifiers, implements, result, doc, ..Pou::new(kind, name, span) };
+    bases(input, &mut pou, extends);
     pou.blocks.extend(parameters);
     let region = namespace::of_pou(input, opened);
     contents(input, &mut pou);
@@ -234,7 +243,25 @@ fn pou<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind) -> Item<'s> {
             diagnostics::missing_end(input, end, opened);
         }
     }
+    if kind == PouKind::Class {
+        report_parts_of_class(input, &mut pou);
+    }
     Item::Pou(pou)
+}
+
+/// Reports what a CLASS cannot have, and takes it out.
+fn report_parts_of_class(input: &mut In<'_, '_, '_>, pou: &mut Pou<'_>) {
+    let statement = pou.body.iter().find(|it| !matches!(it.kind, StatementKind::Empty));
+    if let Some(it) = statement {
+        input.report(diagnostics::not_in_a_class(it.span, "body"));
+    }
+    pou.body.clear();
+    let of_class = |it: &VarBlock<'_>| matches!(it.kind, VarKind::Var | VarKind::Stat | VarKind::External);
+    for block in pou.blocks.iter().filter(|it| !of_class(it)) {
+        let word = input.text(block.span).to_ascii_uppercase();
+        input.report(diagnostics::not_in_a_class(block.span, &word));
+    }
+    pou.blocks.retain(of_class);
 }
 
 /// The parts of a unit test. Their words are names everywhere else.
@@ -287,18 +314,41 @@ fn test_unit<'s>(input: &mut In<'_, '_, 's>) -> Item<'s> {
 }
 
 /// The words before a unit's name, the name, what follows it in parentheses, and a function's result type.
-type Head<'s> = (Modifiers, Name<'s>, Option<VarBlock<'s>>, Option<TypeSpec<'s>>);
+type Head<'s> = (Modifiers, Name<'s>, (Vec<Name<'s>>, Vec<Name<'s>>), Option<VarBlock<'s>>, Option<TypeSpec<'s>>);
 
 fn head<'t, 's: 't>(kind: PouKind) -> impl Rule<'t, 's, Head<'s>> {
     let function = ahead(move |_| kind == PouKind::Function);
-    let bases = unsupported::bases("EXTENDS").then(unsupported::bases("IMPLEMENTS"));
+    let bases = names_after("EXTENDS").then(names_after("IMPLEMENTS"));
     let colon = token(Kind::Colon).ignored().or(foreign_types::no_colon_in_head());
     let result = function.clone().ignore_then(colon).ignore_then(type_spec());
     let no_result = ahead(move |input| kind != PouKind::Function || input.kind() != Kind::Colon).to(None);
-    let usual = name().then_ignore(bases).then(parameters().or_not()).then(result.map(Some).or(no_result));
+    let usual = name().then(bases).then(parameters().or_not()).then(result.map(Some).or(no_result));
     let swapped = function.ignore_then(foreign_types::result_before_name());
-    let head = swapped.map(|(name, ty)| (name, None, Some(ty))).or(usual.map(|((name, vars), ty)| (name, vars, ty)));
-    modifiers().then(head).map(|(modifiers, (name, vars, ty))| (modifiers, name, vars, ty))
+    let no_bases = || (Vec::new(), Vec::new());
+    let swapped = swapped.map(move |(name, ty)| (name, no_bases(), None, Some(ty)));
+    let head = swapped.or(usual.map(|(((name, bases), vars), ty)| (name, bases, vars, ty)));
+    modifiers().then(head).map(|(modifiers, (name, bases, vars, ty))| (modifiers, name, bases, vars, ty))
+}
+
+/// `EXTENDS a, b`, if it is there: of qualified names the last parts.
+fn names_after<'t, 's: 't>(keyword: &'static str) -> impl Rule<'t, 's, Vec<Name<'s>>> {
+    let path = name().foldl(token(Kind::Dot).ignore_then(name()).repeated(), |_, last| last);
+    let names = word(keyword).ignore_then(path.separated_by(token(Kind::Comma)).at_least(1).collect());
+    names.or(ahead(move |input| !input.is_word(keyword)).map(|()| Vec::new()))
+}
+
+/// Gives a unit what it EXTENDS.
+fn bases<'s>(input: &mut In<'_, '_, 's>, pou: &mut Pou<'s>, extends: Vec<Name<'s>>) {
+    if pou.kind == PouKind::Interface {
+        pou.implements = extends;
+        return;
+    }
+    let misplaced = if pou.kind.is_block() { extends.get(1) } else { extends.first().or(pou.implements.first()) };
+    if let Some(name) = misplaced {
+        let it = diagnostics::too_many_bases(name.span, pou.kind);
+        input.report(it);
+    }
+    pou.extends = extends.first().copied().filter(|_| pou.kind.is_block());
 }
 
 /// `(x : INT; y : REAL)` after a function's name, as other languages have it.

@@ -40,7 +40,9 @@ pub(crate) struct PouSlot<'s> {
     /// Of a METHOD or ACTION: the slot of the POU that it belongs to.
     pub owner: Option<usize>,
     /// Its own METHODs and ACTIONs, by their names.
-    pub routines: FxHashMap<Key<'s>, usize>,
+    pub routines: FxHashMap<Key<'s>, Routines>,
+    /// Those that only SUPER names, by their classes and names.
+    pub hidden: FxHashMap<(Key<'s>, Key<'s>), Routines>,
     /// Of a run that a CONFIGURATION writes: where the CONFIGURATION names it.
     pub run: Option<Span>,
     /// Of a generic FUNCTION as it is written: the words that its declarations use.
@@ -50,6 +52,55 @@ pub(crate) struct PouSlot<'s> {
     pub slot: Slot<Rc<Signature<'s>>>,
 }
 
+/// What one name means among the routines of a POU: their slots, and where each is declared.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Routines {
+    /// A METHOD or ACTION.
+    pub called: Option<(usize, Span)>,
+    /// Of a PROPERTY.
+    pub getter: Option<(usize, Span)>,
+    pub setter: Option<(usize, Span)>,
+}
+
+impl Routines {
+    /// Where what another routine of this kind would clash with is declared.
+    pub fn first(&self, kind: ast::PouKind) -> Option<Span> {
+        let clash = match kind {
+            ast::PouKind::Getter => self.called.or(self.getter),
+            ast::PouKind::Setter => self.called.or(self.setter),
+            ast::PouKind::Program
+            | ast::PouKind::FunctionBlock
+            | ast::PouKind::Class
+            | ast::PouKind::Interface
+            | ast::PouKind::Function
+            | ast::PouKind::Test
+            | ast::PouKind::Action
+            | ast::PouKind::Method => self.called.or(self.getter).or(self.setter),
+        };
+        clash.map(|it| it.1)
+    }
+
+    pub fn set(&mut self, kind: ast::PouKind, slot: usize, span: Span) {
+        let place = match kind {
+            ast::PouKind::Getter => &mut self.getter,
+            ast::PouKind::Setter => &mut self.setter,
+            ast::PouKind::Program
+            | ast::PouKind::FunctionBlock
+            | ast::PouKind::Class
+            | ast::PouKind::Interface
+            | ast::PouKind::Function
+            | ast::PouKind::Test
+            | ast::PouKind::Action
+            | ast::PouKind::Method => &mut self.called,
+        };
+        *place = Some((slot, span));
+    }
+
+    pub fn is_property(&self) -> bool {
+        self.getter.is_some() || self.setter.is_some()
+    }
+}
+
 impl<'s> PouSlot<'s> {
     pub fn open(ast: &'s ast::Pou<'s>) -> Self {
         Self {
@@ -57,6 +108,7 @@ impl<'s> PouSlot<'s> {
             names_itself: false,
             owner: None,
             routines: FxHashMap::default(),
+            hidden: FxHashMap::default(),
             run: None,
             words: Vec::new(),
             instance: None,
@@ -87,6 +139,8 @@ pub(crate) struct Declarations<'s> {
     pub names: Names<'s>,
     pub types: Vec<TypeSlot<'s>>,
     pub pous: Vec<PouSlot<'s>>,
+    /// The slots of classes, by where their names are declared.
+    pub classes: FxHashMap<Span, usize>,
     pub globals: Vec<GlobalSlot<'s>>,
     pub addresses: Addresses,
     pub image: Image,
@@ -113,6 +167,7 @@ impl<'s> Declarations<'s> {
             names: Names::default(),
             types: Vec::new(),
             pous: Vec::new(),
+            classes: FxHashMap::default(),
             globals: Vec::new(),
             addresses: Addresses::default(),
             image: Image::default(),
@@ -170,9 +225,18 @@ impl<'s> Declarations<'s> {
         if let Some(instance) = instance {
             return instance.name.clone();
         }
+        if let (Some(home), true) = (pou.home, pou.is_hidden) {
+            return format!("{}_{}", home.text, pou.name.text);
+        }
         match pou.kind {
             ast::PouKind::Test => format!("__test_{slot}"),
-            ast::PouKind::Program | ast::PouKind::FunctionBlock | ast::PouKind::Function => self.name_in_full(pou.name),
+            ast::PouKind::Getter => format!("get_{}", pou.name.text),
+            ast::PouKind::Setter => format!("set_{}", pou.name.text),
+            ast::PouKind::Program
+            | ast::PouKind::FunctionBlock
+            | ast::PouKind::Class
+            | ast::PouKind::Interface
+            | ast::PouKind::Function => self.name_in_full(pou.name),
             ast::PouKind::Action | ast::PouKind::Method => pou.name.text.to_owned(),
         }
     }
@@ -186,14 +250,48 @@ impl<'s> Declarations<'s> {
     pub fn title(&self, slot: usize) -> String {
         let name = self.pous[slot].ast.name;
         match self.pous[slot].owner {
-            Some(owner) => format!("{}.{}", self.pous[owner].ast.name.text, name.text),
+            Some(owner) => {
+                let class = self.pous[slot].ast.home.unwrap_or(self.pous[owner].ast.name);
+                format!("{}.{}", class.text, name.text)
+            }
             None => name.text.to_owned(),
         }
     }
 
-    /// The METHOD or ACTION of this name that instances with a state have.
-    pub fn routine_of(&self, state: StructId, name: &str) -> Option<usize> {
+    /// The routines of this name that instances with a state have.
+    pub fn routines_of(&self, state: StructId, name: &str) -> Option<Routines> {
         self.pous[self.slot_of_instance(state)?].routines.get(&Key(name)).copied()
+    }
+
+    /// The slot of the class that a routine, or a body, is written in.
+    pub fn home(&self, slot: usize) -> usize {
+        let pou = &self.pous[slot];
+        pou.ast.home.and_then(|it| self.class_named(it)).or(pou.owner).unwrap_or(slot)
+    }
+
+    /// The class whose declaration has a name.
+    pub fn class_named(&self, name: ast::Name<'_>) -> Option<usize> {
+        self.classes.get(&name.span).copied()
+    }
+
+    /// What SUPER names in a routine, or in a body: the base's body without a name.
+    pub fn super_routines(&self, slot: usize, name: Option<ast::Name<'_>>) -> Option<Routines> {
+        let base = self.class_named(self.pous[self.home(slot)].ast.extends?)?;
+        let base = self.pous[base].ast;
+        let owner = &self.pous[self.pous[slot].owner.unwrap_or(slot)];
+        let Some(name) = name else {
+            return owner.hidden.get(&(Key(base.name.text), Key(base.name.text))).copied();
+        };
+        let named = |it: &&ast::Pou<'_>| !it.is_hidden && Key(it.name.text) == Key(name.text);
+        let home = base.routines.iter().find(named)?.home.unwrap_or(base.name);
+        let hidden = owner.hidden.get(&(Key(home.text), Key(name.text)));
+        hidden.or_else(|| owner.routines.get(&Key(name.text))).copied()
+    }
+
+    /// The type of what a call of the POU in a slot gives, where its signature is known.
+    pub fn result_type(&self, slot: usize) -> Option<Type> {
+        let Slot::Done(signature) = &self.pous[slot].slot else { return None };
+        signature.result.as_ref().map(|(_, resolved)| resolved.ty)
     }
 
     /// The named type in slot `at`.

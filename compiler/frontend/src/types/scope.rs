@@ -1,6 +1,7 @@
 //! Variables, and the names that a POU has for them.
 
 use super::table::Resolved;
+use crate::Span;
 use crate::ast;
 use crate::spelling::Key;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -45,6 +46,16 @@ impl<'s> Scope<'s> {
     /// Of a METHOD or ACTION, in the scope of its POU.
     pub fn within(outer: Rc<Self>) -> Self {
         Self { outer: Some(outer), ..Self::default() }
+    }
+
+    /// The scope without the variables that are declared in these places.
+    pub fn without(&self, declared: &FxHashSet<Span>) -> Self {
+        let mut scope = Self { refused: self.refused.clone(), ..Self::default() };
+        for variable in self.variables.iter().filter(|it| !declared.contains(&it.name.span)) {
+            // They are of one scope, so that no two have one name.
+            let _ = scope.insert(Rc::clone(variable));
+        }
+        scope
     }
 
     pub fn get(&self, name: &str) -> Option<&Rc<Variable<'s>>> {

@@ -2,7 +2,8 @@
 
 use super::scope::Scope;
 use super::table::Resolved;
-use crate::ast;
+use crate::{Span, ast};
+use rustc_hash::FxHashMap;
 use staunch_ir::{BlockId, FieldId, Local, LocalId, Param, Place, Section, StructId};
 use staunch_runtime::Class;
 use std::rc::Rc;
@@ -46,6 +47,8 @@ pub(crate) struct Signature<'s> {
     pub locals: Vec<Local>,
     pub result: Option<(LocalId, Resolved)>,
     pub edges: Vec<EdgeInput>,
+    /// VAR_INST of its METHODs, by where each is declared.
+    pub instance_variables: FxHashMap<Span, (Place, Rc<Resolved>)>,
 }
 
 /// The pin `name` of the block at `place`.

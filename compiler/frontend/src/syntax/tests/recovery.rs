@@ -304,7 +304,7 @@ fn habits_of_other_languages() {
 #[test]
 fn what_is_not_supported_is_named() {
     expect(
-        "FUNCTION_BLOCK ABSTRACT b EXTENDS c IMPLEMENTS d, e // E0090 E0090 E0090
+        "FUNCTION_BLOCK ABSTRACT b EXTENDS c IMPLEMENTS d, e
          VAR x : POINTER TO INT; y : REFERENCE TO INT; z : REF_TO INT; END_VAR
          VAR_CONFIG x : y; END_VAR // E0090
            x := y := 1;
@@ -318,7 +318,7 @@ fn what_is_not_supported_is_named() {
            END_METHOD
            x = 1; // E0008
          END_FUNCTION_BLOCK
-         INTERFACE i // E0090
+         INTERFACE i EXTENDS a, b
            METHOD m END_METHOD
          END_INTERFACE
          TYPE U : UNION a : INT; END_UNION; V EXTENDS W : STRUCT END_STRUCT; END_TYPE // E0090 E0090

@@ -1,0 +1,354 @@
+//! EXTENDS: a class is given what its base has, before anything is declared. It has the base's variables before its
+//! own, and the base's routines, each a copy that works on the class itself: so a call in it of what the class
+//! overrides is a call of that, and every call is known when the program is compiled.
+//!
+//! What is overridden is there for SUPER alone, where something calls it so.
+
+use crate::ast::{Expr, ExprKind, File, Item, Name, Pou, PouKind, each_expr};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::source::{Sources, Span};
+use crate::spelling::{Key, nearest};
+use rustc_hash::FxHashMap;
+
+/// Gives each class what it inherits.
+pub(crate) fn expand(files: &mut [File<'_>], sources: &Sources, diagnostics: &mut Vec<Diagnostic>) {
+    let classes = Classes::of(files);
+    let is_plain = |it: &Class<'_>| {
+        let Pou { extends, implements, modifiers, .. } = &it.pou;
+        extends.is_none() && implements.is_empty() && modifiers.is_abstract.is_none() && !has_abstract(&it.pou)
+    };
+    if classes.all.iter().all(is_plain) {
+        return;
+    }
+    let mut expansion = Expansion { classes: &classes, sources, diagnostics, made: FxHashMap::default() };
+    for at in 0..classes.all.len() {
+        expansion.make(at, &mut Vec::new());
+    }
+    let mut made = expansion.made;
+    for (at, class) in classes.all.iter().enumerate() {
+        if let (Item::Pou(pou), Some(new)) = (&mut files[class.file].items[class.item], made.remove(&at)) {
+            *pou = new;
+        }
+    }
+}
+
+fn has_abstract(pou: &Pou<'_>) -> bool {
+    pou.routines.iter().any(|it| it.modifiers.is_abstract.is_some() || it.modifiers.overrides.is_some())
+}
+
+struct Class<'s> {
+    file: usize,
+    item: usize,
+    /// As it is written.
+    pou: Pou<'s>,
+}
+
+struct Classes<'s> {
+    all: Vec<Class<'s>>,
+    by_name: FxHashMap<Key<'s>, usize>,
+    interfaces: FxHashMap<Key<'s>, Pou<'s>>,
+}
+
+impl<'s> Classes<'s> {
+    /// Whether there are several classes of that name, in namespaces.
+    fn is_ambiguous(&self, name: Name<'s>) -> bool {
+        self.all.iter().filter(|it| Key(it.pou.name.text) == Key(name.text)).count() > 1
+    }
+
+    fn of(files: &[File<'s>]) -> Self {
+        let mut classes = Self { all: Vec::new(), by_name: FxHashMap::default(), interfaces: FxHashMap::default() };
+        for (file, it) in files.iter().enumerate() {
+            for (item, it) in it.items.iter().enumerate() {
+                let Item::Pou(pou) = it else { continue };
+                if pou.kind == PouKind::Interface {
+                    classes.interfaces.entry(Key(pou.name.text)).or_insert_with(|| pou.clone());
+                } else if pou.kind.is_block() {
+                    classes.by_name.entry(Key(pou.name.text)).or_insert(classes.all.len());
+                    classes.all.push(Class { file, item, pou: pou.clone() });
+                }
+            }
+        }
+        classes
+    }
+}
+
+struct Expansion<'c, 's> {
+    classes: &'c Classes<'s>,
+    sources: &'c Sources,
+    diagnostics: &'c mut Vec<Diagnostic>,
+    /// Those that are whole.
+    made: FxHashMap<usize, Pou<'s>>,
+}
+
+impl<'s> Expansion<'_, 's> {
+    /// Makes the class in a place, after those that it extends; `around` are those that wait for it.
+    fn make(&mut self, at: usize, around: &mut Vec<usize>) {
+        if self.made.contains_key(&at) {
+            return;
+        }
+        let pou = &self.classes.all[at].pou;
+        around.push(at);
+        let base = pou.extends.and_then(|it| self.base(pou, it, around));
+        if let Some(base) = base {
+            self.make(base, around);
+        }
+        around.pop();
+        let base = base.and_then(|it| self.made.get(&it)).cloned();
+        let whole = match &base {
+            Some(base) => self.heir(pou, base),
+            None => {
+                for it in &pou.routines {
+                    self.check_base_of_override(it, None);
+                }
+                Pou { extends: None, ..pou.clone() }
+            }
+        };
+        self.report_abstract(&whole, base.as_ref());
+        for interface in &pou.implements {
+            self.check_interface(&whole, *interface, &mut Vec::new());
+        }
+        self.made.insert(at, whole);
+    }
+
+    fn base(&mut self, pou: &Pou<'s>, base: Name<'s>, around: &[usize]) -> Option<usize> {
+        if self.classes.is_ambiguous(base) {
+            let message = format!("extending `{}`, which several namespaces have, is not supported yet", base.text);
+            self.diagnostics.push(Diagnostic::new(Code::E0902, base.span, message).label("which one is meant?"));
+            return None;
+        }
+        let Some(at) = self.classes.by_name.get(&Key(base.text)).copied() else {
+            let names = self.classes.all.iter().map(|it| it.pou.name.text);
+            let message = format!("there is no FUNCTION_BLOCK `{}`", base.text);
+            let error = Diagnostic::new(Code::E0102, base.span, message).label("expected one to extend");
+            self.diagnostics.push(match nearest(base.text, names) {
+                Some(near) => error.help(format!("did you mean `{near}`?")).fix(base.span, near),
+                None => error,
+            });
+            return None;
+        };
+        if around.contains(&at) {
+            let way: Vec<_> = around.iter().map(|it| self.classes.all[*it].pou.name.text).collect();
+            self.diagnostics.push(
+                Diagnostic::new(Code::E0402, base.span, format!("`{}` extends itself", pou.name.text))
+                    .label("its size would be endless")
+                    .note(format!("the way goes {} -> {}", way.join(" -> "), base.text)),
+            );
+            return None;
+        }
+        if let Some(span) = self.classes.all[at].pou.modifiers.is_final {
+            self.diagnostics.push(
+                Diagnostic::new(Code::E0403, base.span, format!("`{}` is FINAL", base.text))
+                    .label("nothing extends it")
+                    .other(span, "declared so here"),
+            );
+        }
+        Some(at)
+    }
+
+    /// A class with what its base has.
+    fn heir(&mut self, own: &Pou<'s>, base: &Pou<'s>) -> Pou<'s> {
+        let mut whole = own.clone();
+        whole.blocks = base.blocks.iter().chain(&own.blocks).cloned().collect();
+        whole.inherited = base.blocks.len();
+        // By its declaration, wherever that is.
+        whole.extends = Some(base.name);
+        let mut hidden = Vec::new();
+        for routine in &base.routines {
+            let home = routine.home.unwrap_or(base.name);
+            let copy = Pou { home: Some(home), ..routine.clone() };
+            match own.routines.iter().find(|it| is_same(it, routine)) {
+                _ if routine.is_hidden => hidden.push(copy),
+                Some(new) => {
+                    self.check_override(new, routine);
+                    hidden.push(Pou { is_hidden: true, ..copy });
+                }
+                None => whole.routines.push(copy),
+            }
+        }
+        for new in &own.routines {
+            self.check_base_of_override(new, Some(base));
+        }
+        let name = base.name;
+        hidden.push(Pou {
+            kind: PouKind::Action,
+            body: base.body.clone(),
+            home: Some(name),
+            is_hidden: true,
+            doc: base.doc.clone(),
+            ..Pou::new(PouKind::Action, name, base.span)
+        });
+        self.keep_called(&mut whole, hidden);
+        whole
+    }
+
+    /// Keeps of the hidden routines those that SUPER calls, directly or through others.
+    fn keep_called(&self, whole: &mut Pou<'s>, mut hidden: Vec<Pou<'s>>) {
+        let mut wanted = Vec::new();
+        supers(&whole.body, whole.name, &mut wanted);
+        for it in &whole.routines {
+            supers(&it.body, it.home.unwrap_or(whole.name), &mut wanted);
+        }
+        while let Some((home, name)) = wanted.pop() {
+            let Some((class, name)) = self.meant(home, name) else { continue };
+            let is_it =
+                |it: &Pou<'s>| Key(it.name.text) == Key(name) && it.home.is_some_and(|it| Key(it.text) == Key(class));
+            while let Some(at) = hidden.iter().position(is_it) {
+                let routine = hidden.swap_remove(at);
+                supers(&routine.body, routine.home.unwrap_or(whole.name), &mut wanted);
+                whole.routines.push(routine);
+            }
+        }
+    }
+
+    /// The class whose routine SUPER means in a routine of another, and its name; the body has its class's.
+    fn meant(&self, home: Name<'s>, name: Option<Name<'s>>) -> Option<(&'s str, &'s str)> {
+        let base = self.classes.all[*self.classes.by_name.get(&Key(home.text))?].pou.extends?;
+        let base = self.made.get(self.classes.by_name.get(&Key(base.text))?)?;
+        let Some(name) = name else { return Some((base.name.text, base.name.text)) };
+        let routine = base.routines.iter().find(|it| !it.is_hidden && Key(it.name.text) == Key(name.text))?;
+        Some((routine.home.unwrap_or(base.name).text, routine.name.text))
+    }
+
+    fn check_override(&mut self, new: &Pou<'s>, old: &Pou<'s>) {
+        if let Some(span) = old.modifiers.is_final {
+            self.diagnostics.push(
+                Diagnostic::new(Code::E0403, new.name.span, format!("`{}` is FINAL", old.name.text))
+                    .label("it cannot be overridden")
+                    .other(span, "declared so here"),
+            );
+        }
+        if self.head(new) != self.head(old) {
+            self.diagnostics.push(
+                Diagnostic::new(Code::E0403, new.name.span, format!("`{}` overrides another head", new.name.text))
+                    .label("the parameters and the result are those of what is overridden")
+                    .other(old.name.span, "overridden here"),
+            );
+        }
+    }
+
+    /// Reports OVERRIDE where nothing is overridden.
+    fn check_base_of_override(&mut self, new: &Pou<'s>, base: Option<&Pou<'s>>) {
+        let routines = base.map_or(&[][..], |it| &it.routines);
+        if let Some(span) = new.modifiers.overrides
+            && !routines.iter().any(|it| !it.is_hidden && is_same(it, new))
+        {
+            let message = match base {
+                Some(base) => format!("`{}` has no `{}` to override", base.name.text, new.name.text),
+                None => "there is nothing to override: this FUNCTION_BLOCK extends no other".to_owned(),
+            };
+            self.diagnostics.push(Diagnostic::new(Code::E0403, span, message).help("delete OVERRIDE").fix(span, ""));
+        }
+    }
+
+    /// Reports what an INTERFACE wants and a class does not have; `seen` are those around.
+    fn check_interface(&mut self, class: &Pou<'s>, name: Name<'s>, seen: &mut Vec<Key<'s>>) {
+        let Some(interface) = self.classes.interfaces.get(&Key(name.text)) else {
+            let names = self.classes.interfaces.values().map(|it| it.name.text);
+            let near = nearest(name.text, names);
+            let message = format!("there is no INTERFACE `{}`", name.text);
+            let error = Diagnostic::new(Code::E0102, name.span, message).label("expected one");
+            self.diagnostics.push(match near {
+                Some(near) => error.help(format!("did you mean `{near}`?")).fix(name.span, near),
+                None => error,
+            });
+            return;
+        };
+        if seen.contains(&Key(name.text)) {
+            return;
+        }
+        seen.push(Key(name.text));
+        for wanted in &interface.routines {
+            let title = format!("`{}.{}`", interface.name.text, wanted.name.text);
+            let error = match class.routines.iter().find(|it| !it.is_hidden && is_same(it, wanted)) {
+                Some(it) if self.head(it) == self.head(wanted) => continue,
+                Some(it) => Diagnostic::new(Code::E0403, it.name.span, format!("{title} has another head"))
+                    .label("the parameters and the result are those of the INTERFACE"),
+                None => {
+                    let message = format!("`{}` does not have {title}", class.name.text);
+                    Diagnostic::new(Code::E0403, class.name.span, message).label("an INTERFACE is had as a whole")
+                }
+            };
+            self.diagnostics.push(error.other(wanted.name.span, "declared here"));
+        }
+        for base in &interface.implements {
+            self.check_interface(class, *base, seen);
+        }
+    }
+
+    /// The parameters and the result, as text.
+    fn head(&self, routine: &Pou<'s>) -> Vec<String> {
+        use crate::ast::VarKind::{External, Global, InOut, Input, Inst, Output, Stat, Temp, Var};
+        let text = |span: Span| {
+            let words: Vec<_> = self.sources.text(span).split_whitespace().collect();
+            words.join(" ").to_ascii_uppercase()
+        };
+        let mut head: Vec<_> = routine.result.iter().map(|it| text(it.span)).collect();
+        for block in &routine.blocks {
+            let section = match block.kind {
+                Input => "in",
+                Output => "out",
+                InOut => "in-out",
+                Var | Temp | Stat | Inst | Global | External => continue,
+            };
+            for decl in &block.vars {
+                let ty = text(decl.ty.span);
+                head.extend(decl.names.iter().map(|it| format!("{section} {}: {ty}", it.text.to_ascii_uppercase())));
+            }
+        }
+        head
+    }
+
+    /// Reports a class that is not ABSTRACT, with an ABSTRACT method that nobody has overridden.
+    fn report_abstract(&mut self, pou: &Pou<'s>, base: Option<&Pou<'s>>) {
+        if pou.modifiers.is_abstract.is_some() {
+            return;
+        }
+        // A base that is not ABSTRACT has been reported for its own.
+        let is_open = base.is_some_and(|it| it.modifiers.is_abstract.is_some());
+        for routine in pou.routines.iter().filter(|it| !it.is_hidden && (is_open || it.home.is_none())) {
+            let Some(span) = routine.modifiers.is_abstract else { continue };
+            let message = format!("`{}` is not ABSTRACT, and has no body for `{}`", pou.name.text, routine.name.text);
+            self.diagnostics.push(
+                Diagnostic::new(Code::E0403, pou.name.span, message)
+                    .label("an instance could not be called so")
+                    .other(span, "ABSTRACT here")
+                    .help(format!("override `{}`, or make the FUNCTION_BLOCK ABSTRACT", routine.name.text)),
+            );
+        }
+    }
+}
+
+/// Whether one routine overrides the other.
+fn is_same(a: &Pou<'_>, b: &Pou<'_>) -> bool {
+    let role = |kind| match kind {
+        PouKind::Getter => 1,
+        PouKind::Setter => 2,
+        PouKind::Program
+        | PouKind::FunctionBlock
+        | PouKind::Class
+        | PouKind::Interface
+        | PouKind::Function
+        | PouKind::Test
+        | PouKind::Action
+        | PouKind::Method => 0,
+    };
+    Key(a.name.text) == Key(b.name.text) && role(a.kind) == role(b.kind)
+}
+
+/// What a body calls by SUPER, with the class that the body is of; without a name its base's body.
+fn supers<'s>(body: &[crate::ast::Statement<'s>], home: Name<'s>, found: &mut Vec<(Name<'s>, Option<Name<'s>>)>) {
+    each_expr(body, &mut |it| match &it.kind {
+        ExprKind::Member(base, name) if is_super(base) => found.push((home, Some(*name))),
+        ExprKind::Call(callee, _) if is_super(callee) => found.push((home, None)),
+        _ => {}
+    });
+}
+
+/// `SUPER^`, and the standard's `SUPER`.
+pub(crate) fn is_super(expr: &Expr<'_>) -> bool {
+    match &expr.bare().kind {
+        ExprKind::Deref(inner) => is_super(inner),
+        ExprKind::Name(name) => name.text.eq_ignore_ascii_case("SUPER"),
+        _ => false,
+    }
+}
