@@ -62,7 +62,9 @@ impl Example {
     /// The diagnostics of the text, each once.
     fn codes(&self) -> Vec<Code> {
         let mut sources = Sources::default();
-        sources.add(Source::new("page.st".to_owned(), wrapped(&self.text)));
+        // The file of another system is read as it is.
+        let text = if self.text.starts_with('<') { self.text.clone() } else { wrapped(&self.text) };
+        sources.add(Source::decode("page.st", text.as_bytes()));
         let mut codes: Vec<_> = staunch_frontend::check(&sources, &self.options).iter().map(|it| it.code).collect();
         codes.dedup();
         codes

@@ -37,6 +37,6 @@ fn search(folder: &Path, cargo: &mut Instructions, found: &mut Vec<PathBuf>) -> 
 }
 
 fn is_source(path: &Path) -> bool {
-    let extension = path.extension().map(|it| it.to_ascii_lowercase());
-    extension.is_some_and(|it| it == "st" || it == "iecst")
+    let extension = path.extension().map(|it| it.to_string_lossy().to_ascii_lowercase());
+    extension.is_some_and(|it| ["st", "iecst", "tcpou", "tcgvl", "tcdut", "tcio"].contains(&it.as_str()))
 }

@@ -67,7 +67,7 @@ impl Build {
         self
     }
 
-    /// Adds every `.st` and `.iecst` file below a folder.
+    /// Adds every `.st` and `.iecst` file below a folder, and TwinCAT's `.TcPOU`, `.TcGVL`, `.TcDUT` and `.TcIO`.
     #[must_use]
     pub fn folder(self, path: impl Into<PathBuf>) -> Self {
         self.file(path)

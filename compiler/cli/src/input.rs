@@ -35,6 +35,10 @@ pub fn read(arguments: &[PathBuf]) -> Result<Sources, String> {
 }
 
 fn collect(path: &Path, depth: usize, paths: &mut Vec<PathBuf>) -> Result<(), String> {
+    if path != Path::new("-") && has_extension(path, &["plcproj"]) {
+        paths.extend(listed(path)?);
+        return Ok(());
+    }
     if path == Path::new("-") || !path.is_dir() {
         paths.push(path.to_owned());
         return Ok(());
@@ -56,31 +60,51 @@ fn collect(path: &Path, depth: usize, paths: &mut Vec<PathBuf>) -> Result<(), St
 }
 
 fn is_source(path: &Path) -> bool {
-    let extension = path.extension().map(|it| it.to_string_lossy().to_ascii_lowercase());
-    matches!(extension.as_deref(), Some("st" | "iecst")) || is_twincat(path)
+    has_extension(path, &["st", "iecst", "tcpou", "tcgvl", "tcdut", "tcio"])
 }
 
-/// A file of TwinCAT's is refused, also in a folder: a program without it would be another one.
-fn is_twincat(path: &Path) -> bool {
+fn has_extension(path: &Path, all: &[&str]) -> bool {
     let extension = path.extension().map(|it| it.to_string_lossy().to_ascii_lowercase());
-    matches!(extension.as_deref(), Some("tcpou" | "tcgvl" | "tcdut"))
+    extension.is_some_and(|it| all.contains(&it.as_str()))
+}
+
+/// The sources that a project of TwinCAT's lists.
+fn listed(path: &Path) -> Result<Vec<PathBuf>, String> {
+    let name = shown(path);
+    let list = Source::listed(&bytes(path)?.1).map_err(|it| format!("{name}: {it}"))?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let files = list.iter().map(|it| folder.join(it.replace('\\', "/")));
+    let sources: Vec<PathBuf> = files.filter(|it| is_source(it)).collect();
+    if sources.is_empty() {
+        return Err(format!("{name} lists no source file"));
+    }
+    Ok(sources)
 }
 
 fn source(path: &Path) -> Result<Source, String> {
-    let name = shown(path);
-    if path == Path::new("-") {
-        let mut bytes = Vec::new();
+    let (name, bytes) = bytes(path)?;
+    Ok(Source::decode(name, &bytes))
+}
+
+/// A file as messages name it, and what is in it.
+fn bytes(path: &Path) -> Result<(String, Vec<u8>), String> {
+    let mut bytes = Vec::new();
+    let name = if path == Path::new("-") { "<stdin>".to_owned() } else { shown(path) };
+    let read = if path == Path::new("-") {
         std::io::stdin()
             .lock()
             .take(MAX_BYTES + 1)
             .read_to_end(&mut bytes)
-            .map_err(|it| format!("standard input: {it}"))?;
-        return decode("<stdin>", &bytes);
+            .map_err(|it| format!("standard input: {it}"))
+    } else {
+        let file = fs::File::open(path).map_err(|it| format!("{name}: {it}"))?;
+        file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|it| format!("{name}: {it}"))
+    };
+    read?;
+    if u64::try_from(bytes.len()).unwrap_or(u64::MAX) > MAX_BYTES {
+        return Err(format!("{name}: a source file may have 2 GiB"));
     }
-    let file = fs::File::open(path).map_err(|it| format!("{name}: {it}"))?;
-    let mut bytes = Vec::new();
-    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|it| format!("{name}: {it}"))?;
-    decode(&name, &bytes)
+    Ok((name, bytes))
 }
 
 /// As messages and outputs have it: seen from the current folder, with the strokes of every system.
@@ -89,12 +113,4 @@ fn shown(path: &Path) -> String {
     let below = here.as_deref().and_then(|it| path.strip_prefix(it).ok());
     let parts = below.unwrap_or(path).components().filter(|it| *it != std::path::Component::CurDir);
     parts.collect::<PathBuf>().display().to_string().replace(std::path::MAIN_SEPARATOR, "/")
-}
-
-fn decode(name: &str, bytes: &[u8]) -> Result<Source, String> {
-    let too_large = u64::try_from(bytes.len()).unwrap_or(u64::MAX) > MAX_BYTES;
-    if too_large {
-        return Err(format!("{name}: a source file may have 2 GiB"));
-    }
-    Ok(Source::decode(name, bytes))
 }

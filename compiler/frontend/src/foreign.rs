@@ -50,12 +50,6 @@ fn xml(text: &str) -> Option<Kind> {
     let rest = text[start..].strip_prefix('<')?;
     rest.starts_with(|it: char| it == '?' || it == '!' || it.is_ascii_alphabetic()).then_some(())?;
     let (name, help) = match rest {
-        _ if rest.contains("TcPlcObject") => {
-            ("an XML file of TwinCAT's", "copy what is in `<Declaration>` and `<ST>` to a file .st")
-        }
-        _ if rest.contains("www.plcopen.org") => {
-            ("PLCopen XML", "copy what is in `<ST>`, with its declarations, to a file .st, or export as text")
-        }
         _ if rest.contains("RSLogix5000Content") => {
             ("an export of Studio 5000 (L5X)", "copy the lines of its Structured Text routines, and declare their tags")
         }

@@ -1,6 +1,8 @@
 //! Structured Text in, typed intermediate representation out.
 #![forbid(unsafe_code)]
 
+pub mod vendor;
+
 mod diagnostic;
 mod source;
 mod spelling;
@@ -38,6 +40,7 @@ pub use testing::{Assertion, Test};
 
 use log::Log;
 use staunch_ir::Program;
+use vendor::{Problem, Trouble};
 
 /// How to read the sources.
 #[derive(Clone, Debug, Default)]
@@ -147,6 +150,8 @@ fn run(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
     if compilation.program.is_none() {
         follow_up::remove(sources, &mut compilation.diagnostics);
     }
+    // A text of pieces is not in the order of its file.
+    compilation.diagnostics.sort_by_key(|it| (it.span.file, sources.get(it.span.file).in_file(it.span).start));
     compilation
 }
 
@@ -154,19 +159,37 @@ fn run(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
 fn parse_all<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Option<Vec<ast::File<'s>>> {
     let mut foreign = Vec::new();
     let mut files = Vec::new();
+    let mut is_broken = false;
     for (source, number) in sources.files().iter().zip(0u16..) {
         let before = diagnostics.len();
+        diagnostics.extend(source.problems().iter().map(|it| problem(number, it)));
+        if source.problems().iter().any(|it| it.trouble == Trouble::Broken) {
+            // What was read before the end says little of the rest.
+            is_broken = true;
+            continue;
+        }
         files.push(parse(number, &source.text, diagnostics));
         // Only what does not parse is looked at again.
-        if diagnostics[before..].iter().any(|it| it.severity == Severity::Error) {
+        if !source.is_assembled() && diagnostics[before..].iter().any(|it| it.severity == Severity::Error) {
             foreign.extend(foreign::recognise(number, source));
         }
     }
     if foreign.is_empty() {
-        return Some(files);
+        return (!is_broken).then_some(files);
     }
-    *diagnostics = foreign;
+    diagnostics.retain(|it| it.code == Code::E0033);
+    diagnostics.extend(foreign);
     None
+}
+
+/// What reading a file of another system's has found.
+fn problem(file: u16, problem: &Problem) -> Diagnostic {
+    let span = Span { file, start: problem.at, end: problem.at + 1 };
+    let (code, help) = match problem.trouble {
+        Trouble::Broken => (Code::E0033, "export the file again in its own system"),
+        Trouble::OtherLanguage => (Code::E0902, "write it in Structured Text, or have its own system convert it"),
+    };
+    Diagnostic::new(code, span, problem.message.clone()).help(help)
 }
 
 /// Sorts what was reported, and holds what a program promises that was accepted.

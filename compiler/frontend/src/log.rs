@@ -58,6 +58,9 @@ impl<'s> Log<'s> {
     /// Where `span` starts, for people.
     pub fn location(&mut self, span: Span) -> Location {
         let source = self.sources.get(span.file);
+        if source.is_assembled() {
+            return self.sources.location(span);
+        }
         let cache = &self.line_cache;
         let cached = cache.file == span.file && (cache.start..cache.end).contains(&span.start);
         if !cached {
@@ -84,12 +87,14 @@ impl<'s> Log<'s> {
     /// The name that is at a location.
     pub fn name_at(&self, at: Location) -> Span {
         let source = self.sources.get(at.file);
-        let range = source.line_range(at.line);
-        let (start, line) = (range.start, &source.text[range]);
+        let file = source.file();
+        let range = file.line_range(at.line);
+        let (start, line) = (range.start, &file.text[range]);
         let before = usize::from(at.column).saturating_sub(1);
         let before: usize = line.chars().take(before).map(char::len_utf8).sum();
         let name = line[before..].chars().take_while(|it| it.is_ascii_alphanumeric() || *it == '_').count();
-        let offset = |length: usize| u32::try_from(start + length).unwrap_or(u32::MAX);
-        Span { file: at.file, start: offset(before), end: offset(before + name) }
+        let offset = |length: usize| u32::try_from(length).unwrap_or(u32::MAX);
+        let start = source.in_text(offset(start + before)).unwrap_or(0);
+        Span { file: at.file, start, end: start + offset(name) }
     }
 }

@@ -1,5 +1,7 @@
-//! Source files, and positions in them.
+//! Source files, and positions in them. A text may be made of pieces of a file: what it says of places is said
+//! of the file.
 
+use crate::vendor::{self, Assembly, Piece, Problem};
 use staunch_runtime::Location;
 
 /// Bytes `start..end` of file number `file`.
@@ -29,6 +31,15 @@ pub struct Source {
     /// The characters that start before each [`CHUNK`] of bytes; empty where each is one byte.
     characters: Vec<u32>,
     encoding: Encoding,
+    origin: Option<Box<Origin>>,
+}
+
+/// The file that a text is made of.
+#[derive(Clone, Debug)]
+struct Origin {
+    file: Source,
+    pieces: Vec<Piece>,
+    problems: Vec<Problem>,
 }
 
 /// How a file's bytes hold its text.
@@ -68,11 +79,61 @@ impl Source {
         let lines =
             core::iter::once(0).chain(starts.map(|(at, _)| u32::try_from(at + 1).unwrap_or(u32::MAX))).collect();
         let characters = if text.is_ascii() { Vec::new() } else { counted(text.as_bytes()) };
-        Self { path: path.into(), text, lines, characters, encoding: Encoding::default() }
+        Self { path: path.into(), text, lines, characters, encoding: Encoding::default(), origin: None }
+    }
+
+    /// The Structured Text in a file, also in one of another system's.
+    pub fn decode(path: impl Into<String>, bytes: &[u8]) -> Self {
+        let file = Self::decoded(path, bytes);
+        match vendor::read(&file.text) {
+            Some(Assembly { text, pieces, problems }) => {
+                let path = file.path.clone();
+                Self { origin: Some(Box::new(Origin { file, pieces, problems })), ..Self::new(path, text) }
+            }
+            None => file,
+        }
+    }
+
+    /// The files that a project of TwinCAT's lists, as it writes them.
+    pub fn listed(project: &[u8]) -> Result<Vec<String>, String> {
+        vendor::listed(&Self::decoded("", project).text)
+    }
+
+    /// The file as it is, where the text is made of pieces of it.
+    pub fn file(&self) -> &Self {
+        self.origin.as_ref().map_or(self, |it| &it.file)
+    }
+
+    /// What is wrong with the file.
+    pub fn problems(&self) -> &[Problem] {
+        self.origin.as_ref().map_or(&[], |it| &it.problems)
+    }
+
+    /// A part of the text as a part of the file.
+    pub fn in_file(&self, span: Span) -> Span {
+        let Some(origin) = &self.origin else { return span };
+        let start = origin.place(span.start, false);
+        let end = if span.end > span.start { origin.place(span.end - 1, true) } else { start };
+        Span { start, end: end.max(start), ..span }
+    }
+
+    /// Whether what is at a part of the text can be replaced in the file.
+    pub fn is_verbatim(&self, span: Span) -> bool {
+        self.origin.as_ref().is_none_or(|it| {
+            let (first, last) = (it.piece(span.start), it.piece(span.end));
+            first == last && first.is_some_and(|it| it.verbatim)
+        })
+    }
+
+    /// Where a byte of the file is in the text.
+    pub fn in_text(&self, offset: u32) -> Option<u32> {
+        let Some(origin) = &self.origin else { return Some(offset) };
+        let holds = |it: &&Piece| it.verbatim && (it.at..it.end).contains(&offset);
+        origin.pieces.iter().find(holds).map(|it| it.start + (offset - it.at))
     }
 
     /// UTF-8 or UTF-16, with or without a byte order mark; any other text is read as Windows-1252.
-    pub fn decode(path: impl Into<String>, bytes: &[u8]) -> Self {
+    fn decoded(path: impl Into<String>, bytes: &[u8]) -> Self {
         if let Some((mark, text)) = utf16(bytes) {
             return Self { encoding: Encoding { mark, units: Units::Utf16 }, ..Self::new(path, text) };
         }
@@ -118,7 +179,7 @@ impl Source {
         start..start + self.text[start..end].trim_end_matches(['\r', '\n']).len()
     }
 
-    /// The bytes of a 1-based line, its line end included.
+    /// The bytes of a 1-based line of the text, its line end included.
     pub fn line_bounds(&self, line: u32) -> (u32, u32) {
         let at = usize::try_from(line).unwrap_or(usize::MAX).saturating_sub(1);
         let start = self.lines.get(at).copied().unwrap_or(0);
@@ -126,20 +187,50 @@ impl Source {
         (start, end.unwrap_or_else(|| u32::try_from(self.text.len() + 1).unwrap_or(u32::MAX)))
     }
 
+    /// Whether columns are counted in bytes of the text.
     pub fn is_ascii(&self) -> bool {
         self.characters.is_empty()
     }
 
+    /// Whether the text is made of pieces.
+    pub fn is_assembled(&self) -> bool {
+        self.origin.is_some()
+    }
+
     /// The 1-based line of a byte.
     pub fn line(&self, offset: u32) -> u32 {
+        if let Some(origin) = &self.origin {
+            return origin.file.line(origin.place(offset, false));
+        }
         u32::try_from(self.lines.partition_point(|start| *start <= offset).max(1)).unwrap_or(u32::MAX)
     }
 
     /// 1-based line, and 1-based column in characters.
     pub fn line_column(&self, offset: u32) -> (u32, u32) {
+        if let Some(origin) = &self.origin {
+            return origin.file.line_column(origin.place(offset, false));
+        }
         let line = self.lines.partition_point(|start| *start <= offset).max(1);
         let column = self.characters_before(offset) - self.characters_before(self.lines[line - 1]) + 1;
         (u32::try_from(line).unwrap_or(u32::MAX), column)
+    }
+}
+
+impl Origin {
+    /// The piece that a byte of the text is in.
+    fn piece(&self, offset: u32) -> Option<Piece> {
+        let after = self.pieces.partition_point(|it| it.start <= offset);
+        self.pieces.get(after.checked_sub(1)?).copied()
+    }
+
+    /// Where in the file a byte of the text begins, or ends.
+    fn place(&self, offset: u32, end: bool) -> u32 {
+        match self.piece(offset) {
+            Some(it) if it.verbatim => it.end.min(it.at + (offset - it.start) + u32::from(end)),
+            Some(it) if end => it.end,
+            Some(it) => it.at,
+            None => 0,
+        }
     }
 }
 
@@ -197,6 +288,11 @@ impl Sources {
 
     pub fn get(&self, file: u16) -> &Source {
         &self.files[usize::from(file)]
+    }
+
+    /// The file as it is, where a text is made of pieces of it.
+    pub fn file(&self, file: u16) -> &Source {
+        self.get(file).file()
     }
 
     pub fn text(&self, span: Span) -> &str {

@@ -191,7 +191,7 @@ fn verdict(pair: &mut Pair, world: &World, args: &Compare, findings: &mut Findin
 
 /// The text of a file by its number, for messages.
 fn line_of(sources: &Sources, file: u16, line: u32) -> String {
-    let text = &sources.get(file).text;
+    let text = &sources.file(file).text;
     let at = usize::try_from(line.saturating_sub(1)).unwrap_or(0);
     text.lines().nth(at).unwrap_or_default().trim().to_owned()
 }

@@ -109,8 +109,8 @@ fn sources_are_files_folders_and_standard_input() {
     folder.staunch("check plc/inner/twice.iecst plc/main.st").out(0);
     folder.with_input("check -", COUNTER).out(0);
     has(&folder.with_input("check -", WRONG).err(1), &["<stdin>:4:1"]);
-    folder.write("plc/other.TcPOU", "<TcPlcObject/>");
-    has(&folder.staunch("check plc").err(1), &["error[E0032]", "plc/other.TcPOU:1:1", "TwinCAT"]);
+    folder.write("plc/other.TcPOU", "<TcPlcObject>");
+    has(&folder.staunch("check plc").err(1), &["error[E0033]", "plc/other.TcPOU:1:1", "TwinCAT"]);
 }
 
 #[test]

@@ -13,6 +13,7 @@ mod retain;
 mod run;
 mod stimulus;
 mod unit_tests;
+mod vendor;
 
 use std::fs;
 use std::io::Write;

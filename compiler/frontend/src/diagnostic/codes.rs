@@ -67,6 +67,7 @@ codes! {
     E0030 Error "too many errors";
     E0031 Error "a file that is too large";
     E0032 Error "a file of another kind";
+    E0033 Error "a file of another system that cannot be read";
     E0090 Error "not supported yet";
     E0091 Error "too deep or too long";
     E0101 Error "unknown name";

@@ -1,6 +1,7 @@
 //! Diagnostics as text: for people, one line each, or one JSON object each.
 
 use core::{fmt::Write, ops::Range};
+use std::borrow::Cow;
 
 use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Origin, Patch, Renderer, Snippet};
 
@@ -25,6 +26,7 @@ pub struct Style {
 
 /// The diagnostic as `format` writes it, with a line break at the end.
 pub fn render(diagnostic: &Diagnostic, sources: &Sources, format: Format, style: Style) -> String {
+    let diagnostic = &in_files(diagnostic, sources);
     let mut text = match format {
         Format::Human => human(diagnostic, sources, style),
         Format::Short => short(diagnostic, sources),
@@ -32,6 +34,23 @@ pub fn render(diagnostic: &Diagnostic, sources: &Sources, format: Format, style:
     };
     text.push('\n');
     text
+}
+
+/// The diagnostic with its places in the files, where texts are made of pieces of them.
+fn in_files<'d>(diagnostic: &'d Diagnostic, sources: &Sources) -> Cow<'d, Diagnostic> {
+    let is_assembled = |span: Span| sources.get(span.file).is_assembled();
+    if !is_assembled(diagnostic.span) && !diagnostic.others.iter().any(|it| is_assembled(it.span)) {
+        return Cow::Borrowed(diagnostic);
+    }
+    let mut placed = diagnostic.clone();
+    let place = |span: &mut Span| *span = sources.get(span.file).in_file(*span);
+    placed.fix = placed.fix.filter(|it| sources.get(it.span.file).is_verbatim(it.span));
+    place(&mut placed.span);
+    placed.others.iter_mut().for_each(|it| place(&mut it.span));
+    if let Some(fix) = &mut placed.fix {
+        place(&mut fix.span);
+    }
+    Cow::Owned(placed)
 }
 
 const fn severity_name(severity: Severity) -> &'static str {
@@ -42,7 +61,7 @@ const fn severity_name(severity: Severity) -> &'static str {
 }
 
 fn short(diagnostic: &Diagnostic, sources: &Sources) -> String {
-    let source = sources.get(diagnostic.span.file);
+    let source = sources.file(diagnostic.span.file);
     let (line, column) = source.line_column(diagnostic.span.start);
     let severity = severity_name(diagnostic.severity);
     let code = diagnostic.code.name();
@@ -95,7 +114,7 @@ fn without_bare_marks(text: &str) -> String {
 /// The help and the line as it looks with the replacement made.
 fn patch<'a>(diagnostic: &'a Diagnostic, sources: &'a Sources) -> Option<Group<'a>> {
     let (help, fix) = (diagnostic.help.as_ref()?, diagnostic.fix.as_ref()?);
-    let source = sources.get(fix.span.file);
+    let source = sources.file(fix.span.file);
     let (line, _) = source.line_column(fix.span.start);
     let shown = source.line_range(line);
     let range = bytes(source, fix.span);
@@ -126,7 +145,7 @@ struct Excerpt<'a> {
 
 fn snippets<'a>(diagnostic: &'a Diagnostic, sources: &'a Sources) -> Vec<Excerpt<'a>> {
     let mark = |span: Span, primary, label| {
-        let (line, _) = sources.get(span.file).line_column(span.start);
+        let (line, _) = sources.file(span.file).line_column(span.start);
         Mark { span, line, primary, label }
     };
     let mut excerpts = vec![Excerpt::new(sources, mark(diagnostic.span, true, diagnostic.label.as_deref()))];
@@ -142,7 +161,7 @@ fn snippets<'a>(diagnostic: &'a Diagnostic, sources: &'a Sources) -> Vec<Excerpt
 
 impl<'a> Excerpt<'a> {
     fn new(sources: &'a Sources, mark: Mark<'a>) -> Self {
-        let source = sources.get(mark.span.file);
+        let source = sources.file(mark.span.file);
         let line = source.line_range(mark.line);
         let cut = line.len() > WIDE;
         let shown = if cut { window(source, &line, mark.span) } else { line };
@@ -240,7 +259,7 @@ fn json(diagnostic: &Diagnostic, sources: &Sources) -> String {
     out.push_str(",\"fix\":");
     match &diagnostic.fix {
         Some(fix) => {
-            json_place(&mut out, sources.get(fix.span.file), fix.span);
+            json_place(&mut out, sources.file(fix.span.file), fix.span);
             field(&mut out, "replacement", &fix.replacement);
             out.push('}');
         }
@@ -260,7 +279,7 @@ fn json_place(out: &mut String, source: &Source, span: Span) {
 }
 
 fn json_span(out: &mut String, sources: &Sources, span: Span, primary: bool, label: Option<&str>) {
-    let source = sources.get(span.file);
+    let source = sources.file(span.file);
     json_place(out, source, span);
     let (line, column) = source.line_column(span.start);
     number(out, "line_start", line);

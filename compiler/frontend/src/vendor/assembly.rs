@@ -1,0 +1,107 @@
+//! A text that is made of pieces of a file: each knows where in the file it is from.
+
+use core::ops::Range;
+
+/// A part of the text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Piece {
+    /// Where it begins in the text.
+    pub start: u32,
+    /// What it is from, in the file.
+    pub at: u32,
+    pub end: u32,
+    /// It is the file's own text, byte for byte.
+    pub verbatim: bool,
+}
+
+/// What is wrong with a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Problem {
+    /// A place in the text, whose piece says where in the file.
+    pub at: u32,
+    pub trouble: Trouble,
+    pub message: String,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Trouble {
+    /// The file cannot be read as what it is.
+    Broken,
+    /// A body in another language.
+    OtherLanguage,
+}
+
+/// The text, and what it is made of.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Assembly {
+    pub text: String,
+    /// In the order of the text; they cover all of it.
+    pub pieces: Vec<Piece>,
+    pub problems: Vec<Problem>,
+}
+
+/// A part of a file's text, or what it stands for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Chunk {
+    pub place: Range<usize>,
+    pub says: Says,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Says {
+    /// What is there.
+    Itself,
+    /// `<` for `&lt;`.
+    Symbol(char),
+    /// Words of Structured Text for what is said in another way.
+    Words(String),
+}
+
+impl Chunk {
+    pub fn verbatim(place: Range<usize>) -> Self {
+        Self { place, says: Says::Itself }
+    }
+
+    pub fn words(words: impl Into<String>, place: &Range<usize>) -> Self {
+        Self { place: place.clone(), says: Says::Words(words.into()) }
+    }
+}
+
+impl Assembly {
+    /// Takes what the chunks of the file hold.
+    pub fn copy(&mut self, file: &str, chunks: &[Chunk]) {
+        for Chunk { place, says } in chunks {
+            match says {
+                Says::Symbol(symbol) => self.write(symbol.encode_utf8(&mut [0; 4]), place),
+                Says::Words(words) => self.write(words, place),
+                Says::Itself => {
+                    self.piece(place, true);
+                    self.text.push_str(&file[place.clone()]);
+                }
+            }
+        }
+    }
+
+    /// Adds a text that the file says in another way, at `place`.
+    pub fn write(&mut self, text: &str, place: &Range<usize>) {
+        self.piece(place, false);
+        self.text.push_str(text);
+    }
+
+    /// Notes what is wrong at `place`.
+    pub fn problem(&mut self, trouble: Trouble, message: String, place: &Range<usize>) {
+        let at = offset(self.text.len());
+        self.write("\n", place);
+        self.problems.push(Problem { at, trouble, message });
+    }
+
+    fn piece(&mut self, place: &Range<usize>, verbatim: bool) {
+        let start = offset(self.text.len());
+        self.pieces.push(Piece { start, at: offset(place.start), end: offset(place.end), verbatim });
+    }
+}
+
+/// A file has at most `u32::MAX` bytes.
+fn offset(at: usize) -> u32 {
+    u32::try_from(at).unwrap_or(u32::MAX)
+}

@@ -1,0 +1,76 @@
+//! The export of CoDeSys 2 and TwinCAT 2, `.EXP`: Structured Text as it is, with what those systems note in comments;
+//! between it are sections of other kinds, and bodies in other languages.
+
+use super::assembly::{Assembly, Chunk, Trouble};
+use core::ops::Range;
+
+/// Sections that declare nothing, and how each ends.
+const SECTIONS: [(&str, &str); 6] = [
+    ("LIBRARY", "END_LIBRARY"),
+    ("VISUALISATION", "END_VISUALISATION"),
+    ("PLC_CONFIGURATION", "PLC_END"),
+    ("PLC_CONFIG", "PLC_END"),
+    ("RESOURCE", "END_RESOURCE"),
+    ("TASKCONFIG", "END_TASKCONFIG"),
+];
+
+/// What begins a body in another language.
+const BODIES: [(&str, &str); 5] = [
+    ("_LD_BODY", "a ladder diagram (LD)"),
+    ("_FBD_BODY", "a function block diagram (FBD)"),
+    ("_CFC_BODY", "a continuous function chart (CFC)"),
+    ("_SFC_BODY", "a sequential function chart (SFC)"),
+    ("_IL_BODY", "Instruction List (IL)"),
+];
+
+const ENDS: [&str; 5] = ["END_PROGRAM", "END_FUNCTION_BLOCK", "END_FUNCTION", "END_ACTION", "END_TRANSITION"];
+
+/// Whether a text begins as an export does.
+pub fn is_export(text: &str) -> bool {
+    let first = text.trim_start().strip_prefix("(*").map(str::trim_start);
+    first.is_some_and(|it| it.starts_with("@NESTEDCOMMENTS") || it.starts_with("@PATH"))
+}
+
+pub fn read(text: &str) -> Assembly {
+    let mut out = Assembly::default();
+    out.write("{dialect 'codesys'}\n", &(0..0));
+    // How what is passed over ends, and the text that is not yet taken.
+    let mut until: Option<&[&str]> = None;
+    let mut from = 0;
+    let mut at = 0;
+    for line in text.split_inclusive('\n') {
+        let (place, word) = (at..at + line.trim_end().len(), first_word(line));
+        at += line.len();
+        if let Some(ends) = until {
+            if ends.contains(&word) {
+                until = None;
+                // The end of a section is a part of it, the end of a body is one of its POU.
+                from = if ENDS.contains(&word) { place.start } else { at };
+            }
+        } else if let Some((_, end)) = SECTIONS.iter().find(|it| it.0 == word).filter(|_| is_alone(line)) {
+            take(&mut out, text, from..place.start);
+            until = Some(core::slice::from_ref(end));
+        } else if let Some((_, language)) = BODIES.iter().find(|it| it.0 == word) {
+            take(&mut out, text, from..place.start);
+            out.problem(Trouble::OtherLanguage, format!("this body is {language}, which is no text"), &place);
+            until = Some(&ENDS);
+        }
+    }
+    if until.is_none() {
+        take(&mut out, text, from..text.len());
+    }
+    out
+}
+
+fn take(out: &mut Assembly, text: &str, range: Range<usize>) {
+    out.copy(text, &[Chunk::verbatim(range)]);
+}
+
+fn first_word(line: &str) -> &str {
+    line.trim_start().split(|it: char| !it.is_ascii_alphanumeric() && it != '_').next().unwrap_or_default()
+}
+
+/// Whether nothing but a name or a number follows the word, as no statement has it.
+fn is_alone(line: &str) -> bool {
+    line.trim().bytes().all(|it| it.is_ascii_alphanumeric() || it == b'_' || it == b' ')
+}

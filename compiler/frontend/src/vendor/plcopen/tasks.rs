@@ -1,0 +1,75 @@
+//! Tasks and the programs that they run, as a CONFIGURATION with one RESOURCE.
+
+use super::super::assembly::Chunk;
+use super::super::xml::{Broken, Element, Part, Reader};
+use core::ops::Range;
+
+/// A task that was opened, to its end.
+pub fn task<'t>(
+    file: &'t str,
+    reader: &mut Reader<'t>,
+    element: &Element<'t>,
+    out: &mut Vec<Chunk>,
+) -> Result<(), Broken> {
+    let place = &element.place;
+    open(out, place);
+    let name = element.attribute_text(file, "name");
+    out.push(Chunk::words("TASK ", place));
+    out.extend(name.clone());
+    out.push(Chunk::words("(", place));
+    if let Some(interval) = element.attribute(file, "interval") {
+        out.push(Chunk::words(format!("INTERVAL := {}, ", duration(interval)), place));
+    }
+    let priority = element.attribute(file, "priority").unwrap_or("0");
+    out.push(Chunk::words(format!("PRIORITY := {priority});\n"), place));
+    while let Some(part) = reader.part()? {
+        match part {
+            Part::Open(element) => {
+                if element.name == "pouInstance" {
+                    instance(file, &element, name.as_ref(), out);
+                }
+                reader.skip()?;
+            }
+            Part::Text(_) => {}
+            Part::Close => break,
+        }
+    }
+    Ok(())
+}
+
+/// A program that runs in a task, or in none.
+pub fn instance<'t>(file: &'t str, element: &Element<'t>, task: Option<&Chunk>, out: &mut Vec<Chunk>) {
+    let place = &element.place;
+    open(out, place);
+    out.push(Chunk::words("PROGRAM ", place));
+    out.extend(element.attribute_text(file, "name"));
+    if let Some(task) = task {
+        out.extend([Chunk::words(" WITH ", place), task.clone()]);
+    }
+    out.push(Chunk::words(" : ", place));
+    // CODESYS's programs are their own instances.
+    let named = |it: &&str| element.attribute(file, it).is_some_and(|it| !it.is_empty());
+    let ty = ["typeName", "name"].into_iter().find(|it| named(it));
+    out.extend(ty.and_then(|it| element.attribute_text(file, it)));
+    out.push(Chunk::words(";\n", place));
+}
+
+fn open(out: &mut Vec<Chunk>, place: &Range<usize>) {
+    if out.is_empty() {
+        out.push(Chunk::words("CONFIGURATION Config\nRESOURCE Res ON PLC\n", place));
+    }
+}
+
+pub fn close(out: &mut Vec<Chunk>, place: &Range<usize>) {
+    if !out.is_empty() {
+        out.push(Chunk::words("END_RESOURCE\nEND_CONFIGURATION\n", place));
+    }
+}
+
+/// `T#20ms`, or ISO 8601's `PT0.02S`, as Structured Text.
+fn duration(text: &str) -> String {
+    match text.strip_prefix("PT").and_then(|it| it.strip_suffix('S')) {
+        Some(seconds) if seconds.bytes().all(|it| it.is_ascii_digit() || it == b'.') => format!("T#{seconds}s"),
+        Some(_) | None => text.to_owned(),
+    }
+}

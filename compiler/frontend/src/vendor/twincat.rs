@@ -1,0 +1,101 @@
+//! TwinCAT 3's files, `.TcPOU`, `.TcGVL`, `.TcDUT` and `.TcIO`: declarations and bodies in CDATA sections; methods,
+//! properties and actions are elements beside them, and END_… is left out.
+
+use super::assembly::{Assembly, Trouble};
+use super::unit::{Body, Unit, What};
+use super::xml::{Broken, Element, Part, Reader};
+
+/// Reads what follows the root.
+pub fn read<'t>(file: &'t str, mut reader: Reader<'t>) -> Assembly {
+    let mut out = Assembly::default();
+    if let Err(broken) = units(file, &mut reader, &mut out) {
+        let message = format!("this file of TwinCAT's is not well-formed XML: {}", broken.why);
+        out.problem(Trouble::Broken, message, &broken.place);
+    }
+    out
+}
+
+fn units<'t>(file: &'t str, reader: &mut Reader<'t>, out: &mut Assembly) -> Result<(), Broken> {
+    while let Some(part) = reader.part()? {
+        let Part::Open(element) = part else { continue };
+        match element.name {
+            "POU" | "Itf" | "DUT" | "GVL" => {
+                let is_list = element.name == "GVL";
+                let place = element.place.clone();
+                let unit = unit(file, reader, What::Unit, element)?;
+                out.write("{dialect 'codesys'}\n", &place);
+                if is_list {
+                    out.write(&format!("{{gvl '{}'}}\n", unit.name), &place);
+                }
+                unit.write(file, out);
+            }
+            _ => reader.skip()?,
+        }
+    }
+    Ok(())
+}
+
+/// A unit that was opened, to its end.
+fn unit<'t>(file: &'t str, reader: &mut Reader<'t>, what: What, element: Element<'t>) -> Result<Unit<'t>, Broken> {
+    let name = element.attribute(file, "Name").unwrap_or_default();
+    let mut unit = Unit::new(what, name, element.place);
+    while let Some(part) = reader.part()? {
+        let element = match part {
+            Part::Open(element) => element,
+            Part::Close => break,
+            Part::Text(_) => continue,
+        };
+        let inner = match element.name {
+            "Declaration" => {
+                unit.declaration = reader.content("")?;
+                continue;
+            }
+            "Implementation" => {
+                unit.body = body(reader)?;
+                continue;
+            }
+            "Method" => What::Method,
+            "Property" => What::Property,
+            "Get" => What::Get,
+            "Set" => What::Set,
+            "Action" => What::Action,
+            _ => {
+                reader.skip()?;
+                continue;
+            }
+        };
+        unit.parts.push(self::unit(file, reader, inner, element)?);
+    }
+    unit.end = reader.last();
+    Ok(unit)
+}
+
+/// The body in an `Implementation`.
+fn body(reader: &mut Reader<'_>) -> Result<Body, Broken> {
+    let mut body = Body::None;
+    while let Some(part) = reader.part()? {
+        match part {
+            Part::Open(element) if element.name == "ST" => body = Body::Text(reader.content("")?),
+            Part::Open(element) => {
+                body = Body::Other(language(element.name), element.place);
+                reader.skip()?;
+            }
+            Part::Close => break,
+            Part::Text(_) => {}
+        }
+    }
+    Ok(body)
+}
+
+/// What the elements of other languages stand for.
+fn language(element: &str) -> &'static str {
+    match element {
+        "NWL" => "a network of ladder (LD), function blocks (FBD) or instructions (IL)",
+        "SFC" => "a sequential function chart (SFC)",
+        "CFC" => "a continuous function chart (CFC)",
+        "LD" => "a ladder diagram (LD)",
+        "FBD" => "a function block diagram (FBD)",
+        "IL" => "Instruction List (IL)",
+        _ => "in a graphical language",
+    }
+}
