@@ -12,7 +12,10 @@ const EDGES: &[(&str, &[&str])] = &[
     ("staunch-runtime-abi", &["staunch-runtime"]),
     ("staunch-host", &["staunch-runtime"]),
     ("staunch-ir", &["staunch-runtime"]),
-    ("staunch-frontend", &["staunch-ir", "staunch-runtime", "logos", "rustc-hash", "chumsky", "annotate-snippets"]),
+    (
+        "staunch-frontend",
+        &["staunch-ir", "staunch-runtime", "logos", "quick-xml", "rustc-hash", "chumsky", "annotate-snippets"],
+    ),
     ("staunch-rust", &["staunch-ir", "staunch-runtime", "quote", "syn", "proc-macro2", "prettyplease"]),
     (
         "staunch-native",

@@ -63,7 +63,7 @@ impl Example {
     fn codes(&self) -> Vec<Code> {
         let mut sources = Sources::default();
         // The file of another system is read as it is.
-        let text = if self.text.starts_with('<') { self.text.clone() } else { wrapped(&self.text) };
+        let text = if self.text.trim_start().starts_with('<') { self.text.clone() } else { wrapped(&self.text) };
         sources.add(Source::decode("page.st", text.as_bytes()));
         let mut codes: Vec<_> = staunch_frontend::check(&sources, &self.options).iter().map(|it| it.code).collect();
         codes.dedup();

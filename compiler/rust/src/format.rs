@@ -226,7 +226,9 @@ fn words(code: &str) -> impl Iterator<Item = &str> {
 fn is_plain(item: &[&str], indent: usize) -> bool {
     let Some((head, body)) = item.split_first() else { return true };
     let is_whole = body.is_empty() && !head.contains('{');
-    let opens = head.ends_with('{') && !head.contains("!(") || head.ends_with("= &[");
+    // Rows that are no structures may share lines.
+    let is_table = head.ends_with("= &[") && body.first().is_some_and(|it| it.ends_with('{'));
+    let opens = head.ends_with('{') && !head.contains("!(") || is_table;
     let head_is_plain = head.len() <= WIDE && (is_whole || opens);
     head_is_plain && body.iter().all(|line| line.len() == indent + 1 || is_plain_line(line))
 }

@@ -68,6 +68,13 @@ impl<'s> Declarations<'s> {
                     pou.routines.iter().for_each(|it| self.collect_routine(slot, it));
                 }
                 ast::Item::Globals(block) => self.collect_globals(block),
+                ast::Item::Globals(block) => {
+                    let list = lists.around(block.span).map(|it| self.names.list(it));
+                    if let Some(list) = list.filter(|_| lists.is_qualified(block.span)) {
+                        self.names.qualify(list);
+                    }
+                    self.collect_globals(list.unwrap_or_default(), block);
+                }
                 ast::Item::Configuration(it) => self.collect_configuration(it),
                 // They have become POUs, or are not wanted.
                 ast::Item::Test(_) => {}
@@ -167,8 +174,10 @@ impl<'s> Declarations<'s> {
     fn clash(&self, space: SpaceId, name: &str, entry: Entry) -> Option<Entry> {
         let around = self.names.is_list(space).then_some(SpaceId::ROOT);
         let root = around.and_then(|it| self.names.own(it, name)).unwrap_or_default();
+        // What is only named after its list is in nobody's way.
+        let root = self.names.root(name).filter(|_| !self.names.is_qualified(space)).unwrap_or_default();
         let own = self.names.own(space, name).unwrap_or_default();
-        let lists = if space == SpaceId::ROOT { self.names.in_lists(name) } else { &[] };
+        let lists = if space == SpaceId::ROOT { self.names.used_by_root(name) } else { &[] };
         let known = [own.value, own.ty, root.value, root.ty].into_iter().flatten().chain(lists.iter().map(|it| it.1));
         let is_global = |it| matches!(it, Entry::Global(_));
         let may_share = |it| is_global(it) && self.is_type(entry) || is_global(entry) && self.is_type(it);

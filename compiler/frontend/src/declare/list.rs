@@ -10,13 +10,17 @@ pub(super) struct Lists<'s> {
     file: Option<&'s str>,
     /// Where each is named, in order.
     named: Vec<(u32, &'s str)>,
+    /// Where an attribute says that a list's names are used after the list's alone.
+    qualified: Vec<u32>,
     /// Where the last unit that is no list ends.
     end: u32,
 }
 
 impl<'s> Lists<'s> {
     pub fn of(declarations: &mut Declarations<'s>, file: &'s ast::File<'s>) -> Self {
-        let mut lists = Self { file: None, named: Vec::new(), end: 0 };
+        let mut lists = Self { file: None, named: Vec::new(), qualified: Vec::new(), end: 0 };
+        let attributes = file.pragmas.iter().filter(|it| is_qualified_only(it.text));
+        lists.qualified.extend(attributes.map(|it| it.span.start));
         for pragma in file.pragmas.iter().filter(|it| is_list_pragma(it.text)) {
             if declarations.dialect(pragma.span) != Dialect::Codesys {
                 declarations.report(
@@ -54,11 +58,26 @@ impl<'s> Lists<'s> {
         self.end = unit.start;
     }
 
+    /// Whether the list that a block is in is named before each of its variables: an attribute before the list's
+    /// first block says so of the whole list.
+    pub fn is_qualified(&self, block: Span) -> bool {
+        let list = self.named.iter().rev().map(|it| it.0).find(|it| *it < block.start).unwrap_or(0);
+        let start = list.max(self.end);
+        self.qualified.iter().any(|it| (start..block.start).contains(it))
+    }
+
     /// The list that a block of variables is in.
     pub fn around(&self, block: Span) -> Option<&'s str> {
         let before = self.named.iter().rev().find(|(start, _)| *start < block.start);
         before.filter(|(start, _)| *start >= self.end).map(|(_, name)| *name).or(self.file)
     }
+}
+
+/// `attribute 'qualified_only'`
+fn is_qualified_only(text: &str) -> bool {
+    let mut words = text.split_whitespace();
+    let is_attribute = words.next().is_some_and(|it| it.eq_ignore_ascii_case("attribute"));
+    is_attribute && words.next().is_some_and(|it| it.eq_ignore_ascii_case("'qualified_only'"))
 }
 
 pub(super) fn is_list_pragma(text: &str) -> bool {

@@ -191,6 +191,14 @@ impl<'s> Checker<'_, 's> {
             );
             return;
         }
+        if let Some((list, _)) = self.decl.names.in_lists(name.text).first()
+            && let Some(list) = self.decl.names.list_name(*list)
+        {
+            let full = format!("{list}.{}", name.text);
+            let help = format!("the list has the attribute 'qualified_only': write `{full}`");
+            self.report(error.help(help).fix(name.span, full));
+            return;
+        }
         let own = self.scope.variables.iter().map(|it| it.name.text);
         let near = nearest(name.text, own.chain(self.decl.names.all()));
         let enumerators = self.decl.names.enumerators.keys().map(|key| key.0);

@@ -101,6 +101,10 @@ struct Namespace<'s> {
     is_list: bool,
     own: FxHashMap<Key<'s>, Entries>,
     inner: FxHashMap<Key<'s>, SpaceId>,
+    /// What the namespaces that it uses hold.
+    used: FxHashMap<Key<'s>, Vec<(SpaceId, Entry)>>,
+    /// A list that the root does not use.
+    is_qualified: bool,
 }
 
 /// The names of a program.
@@ -113,6 +117,8 @@ pub(crate) struct Names<'s> {
     listed: FxHashMap<Key<'s>, Vec<(SpaceId, Entry)>>,
     /// How many global variables have a name.
     globals: FxHashMap<Key<'s>, usize>,
+    /// The variables of all lists, also of those that the root does not use.
+    in_lists: FxHashMap<Key<'s>, Vec<(SpaceId, Entry)>>,
     /// The declarations in which a bare enumerator is named, with their type's slot.
     pub enumerators: FxHashMap<Key<'s>, Vec<usize>>,
     pub interfaces: FxHashSet<Key<'s>>,
@@ -127,6 +133,7 @@ impl Default for Names<'_> {
         Self {
             spaces: vec![Namespace::default()],
             regions: Regions::default(),
+            in_lists: FxHashMap::default(),
             lists: FxHashMap::default(),
             listed: FxHashMap::default(),
             globals: FxHashMap::default(),
@@ -408,6 +415,26 @@ impl<'s> Names<'s> {
 
     pub fn insert(&mut self, space: SpaceId, name: &'s str, entry: Entry, internal: bool) {
         let is_list = self.is_list(space);
+    /// The global variables of that name in lists.
+    pub fn in_lists<'n>(&'n self, name: &'n str) -> &'n [(SpaceId, Entry)] {
+        self.in_lists.get(&Key(name)).map_or(&[], Vec::as_slice)
+    }
+
+    /// Of those, the ones that the root uses.
+    pub fn used_by_root<'n>(&'n self, name: &'n str) -> &'n [(SpaceId, Entry)] {
+        self.spaces[0].used.get(&Key(name)).map_or(&[], Vec::as_slice)
+    }
+
+    /// The root does not use a list: each name in it is after the list's.
+    pub fn qualify(&mut self, list: SpaceId) {
+        self.spaces[list.0].is_qualified = true;
+    }
+
+    pub fn is_qualified(&self, space: SpaceId) -> bool {
+        self.spaces[space.0].is_qualified
+    }
+
+    pub fn insert(&mut self, space: SpaceId, name: &'s str, entry: Entry) {
         let entries = self.spaces[space.0].own.entry(Key(name)).or_default();
         match entry {
             Entry::Global(_) => {
@@ -421,6 +448,11 @@ impl<'s> Names<'s> {
         }
         if is_list {
             self.listed.entry(Key(name)).or_default().push((space, entry));
+        if space != SpaceId::ROOT {
+            self.in_lists.entry(Key(name)).or_default().push((space, entry));
+            if !self.is_qualified(space) {
+                self.spaces[0].used.entry(Key(name)).or_default().push((space, entry));
+            }
         }
     }
 
