@@ -39,6 +39,9 @@ impl<'s> Declarations<'s> {
                 ast::Item::Globals(block) => {
                     let last = block.vars.last().map_or(block.span, |it| it.span);
                     let list = lists.around(block.span).map(|it| self.names.list(it));
+                    if let Some(list) = list.filter(|_| lists.is_qualified(block.span)) {
+                        self.names.qualify(list);
+                    }
                     stretches.extend(list.map(|it| (block.span.to(last), it)));
                 }
                 ast::Item::Types(_) | ast::Item::Configuration(_) | ast::Item::Test(_) => {}
@@ -68,13 +71,6 @@ impl<'s> Declarations<'s> {
                     pou.routines.iter().for_each(|it| self.collect_routine(slot, it));
                 }
                 ast::Item::Globals(block) => self.collect_globals(block),
-                ast::Item::Globals(block) => {
-                    let list = lists.around(block.span).map(|it| self.names.list(it));
-                    if let Some(list) = list.filter(|_| lists.is_qualified(block.span)) {
-                        self.names.qualify(list);
-                    }
-                    self.collect_globals(list.unwrap_or_default(), block);
-                }
                 ast::Item::Configuration(it) => self.collect_configuration(it),
                 // They have become POUs, or are not wanted.
                 ast::Item::Test(_) => {}
@@ -172,12 +168,12 @@ impl<'s> Declarations<'s> {
     /// What is in the way of a new name. A global may have the name of a type, `motor : Motor`, and two
     /// lists may have variables of one name; but a list's is not hidden by what the root has.
     fn clash(&self, space: SpaceId, name: &str, entry: Entry) -> Option<Entry> {
-        let around = self.names.is_list(space).then_some(SpaceId::ROOT);
+        // What is named after its list alone is in nobody's way.
+        let is_seen = self.names.is_list(space) && !self.names.is_qualified(space);
+        let around = is_seen.then_some(SpaceId::ROOT);
         let root = around.and_then(|it| self.names.own(it, name)).unwrap_or_default();
-        // What is only named after its list is in nobody's way.
-        let root = self.names.root(name).filter(|_| !self.names.is_qualified(space)).unwrap_or_default();
         let own = self.names.own(space, name).unwrap_or_default();
-        let lists = if space == SpaceId::ROOT { self.names.used_by_root(name) } else { &[] };
+        let lists = if space == SpaceId::ROOT { self.names.in_lists(name) } else { &[] };
         let known = [own.value, own.ty, root.value, root.ty].into_iter().flatten().chain(lists.iter().map(|it| it.1));
         let is_global = |it| matches!(it, Entry::Global(_));
         let may_share = |it| is_global(it) && self.is_type(entry) || is_global(entry) && self.is_type(it);

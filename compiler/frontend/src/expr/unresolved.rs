@@ -191,9 +191,7 @@ impl<'s> Checker<'_, 's> {
             );
             return;
         }
-        if let Some((list, _)) = self.decl.names.in_lists(name.text).first()
-            && let Some(list) = self.decl.names.list_name(*list)
-        {
+        if let Some(list) = self.decl.names.qualified_list_with(name.text) {
             let full = format!("{list}.{}", name.text);
             let help = format!("the list has the attribute 'qualified_only': write `{full}`");
             self.report(error.help(help).fix(name.span, full));

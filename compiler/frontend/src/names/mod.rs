@@ -99,12 +99,10 @@ struct Namespace<'s> {
     internal: bool,
     /// A list of global variables.
     is_list: bool,
+    /// A list whose variables are named after it alone.
+    is_qualified: bool,
     own: FxHashMap<Key<'s>, Entries>,
     inner: FxHashMap<Key<'s>, SpaceId>,
-    /// What the namespaces that it uses hold.
-    used: FxHashMap<Key<'s>, Vec<(SpaceId, Entry)>>,
-    /// A list that the root does not use.
-    is_qualified: bool,
 }
 
 /// The names of a program.
@@ -117,8 +115,6 @@ pub(crate) struct Names<'s> {
     listed: FxHashMap<Key<'s>, Vec<(SpaceId, Entry)>>,
     /// How many global variables have a name.
     globals: FxHashMap<Key<'s>, usize>,
-    /// The variables of all lists, also of those that the root does not use.
-    in_lists: FxHashMap<Key<'s>, Vec<(SpaceId, Entry)>>,
     /// The declarations in which a bare enumerator is named, with their type's slot.
     pub enumerators: FxHashMap<Key<'s>, Vec<usize>>,
     pub interfaces: FxHashSet<Key<'s>>,
@@ -133,7 +129,6 @@ impl Default for Names<'_> {
         Self {
             spaces: vec![Namespace::default()],
             regions: Regions::default(),
-            in_lists: FxHashMap::default(),
             lists: FxHashMap::default(),
             listed: FxHashMap::default(),
             globals: FxHashMap::default(),
@@ -403,7 +398,22 @@ impl<'s> Names<'s> {
         self.spaces[space.0].inner.contains_key(&Key(name))
     }
 
-    /// The global variables of that name in lists.
+    /// Makes each name of a list one that is used after the list's alone.
+    pub fn qualify(&mut self, list: SpaceId) {
+        self.spaces[list.0].is_qualified = true;
+    }
+
+    pub fn is_qualified(&self, space: SpaceId) -> bool {
+        self.spaces[space.0].is_qualified
+    }
+
+    /// The list after whose name alone a name is used.
+    pub fn qualified_list_with(&self, name: &str) -> Option<&str> {
+        let holds = |it: &&Namespace<'_>| it.is_qualified && it.own.contains_key(&Key(name));
+        self.spaces.iter().find(holds).map(|it| it.name.as_str())
+    }
+
+    /// The global variables of that name in the lists whose names are used by themselves.
     pub fn in_lists<'n>(&'n self, name: &'n str) -> &'n [(SpaceId, Entry)] {
         self.listed.get(&Key(name)).map_or(&[], Vec::as_slice)
     }
@@ -415,26 +425,6 @@ impl<'s> Names<'s> {
 
     pub fn insert(&mut self, space: SpaceId, name: &'s str, entry: Entry, internal: bool) {
         let is_list = self.is_list(space);
-    /// The global variables of that name in lists.
-    pub fn in_lists<'n>(&'n self, name: &'n str) -> &'n [(SpaceId, Entry)] {
-        self.in_lists.get(&Key(name)).map_or(&[], Vec::as_slice)
-    }
-
-    /// Of those, the ones that the root uses.
-    pub fn used_by_root<'n>(&'n self, name: &'n str) -> &'n [(SpaceId, Entry)] {
-        self.spaces[0].used.get(&Key(name)).map_or(&[], Vec::as_slice)
-    }
-
-    /// The root does not use a list: each name in it is after the list's.
-    pub fn qualify(&mut self, list: SpaceId) {
-        self.spaces[list.0].is_qualified = true;
-    }
-
-    pub fn is_qualified(&self, space: SpaceId) -> bool {
-        self.spaces[space.0].is_qualified
-    }
-
-    pub fn insert(&mut self, space: SpaceId, name: &'s str, entry: Entry) {
         let entries = self.spaces[space.0].own.entry(Key(name)).or_default();
         match entry {
             Entry::Global(_) => {
@@ -446,13 +436,8 @@ impl<'s> Names<'s> {
                 entries.internal = internal;
             }
         }
-        if is_list {
+        if is_list && !self.is_qualified(space) {
             self.listed.entry(Key(name)).or_default().push((space, entry));
-        if space != SpaceId::ROOT {
-            self.in_lists.entry(Key(name)).or_default().push((space, entry));
-            if !self.is_qualified(space) {
-                self.spaces[0].used.entry(Key(name)).or_default().push((space, entry));
-            }
         }
     }
 
