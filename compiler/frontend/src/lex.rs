@@ -2,6 +2,7 @@
 //! [`Kind::Unknown`] a run, reported here; comments and pragmas are kept aside.
 
 mod comment;
+mod conditional;
 mod kind;
 mod literal;
 
@@ -48,6 +49,7 @@ pub fn lex(file: u16, text: &str) -> Tokens<'_> {
     }
     let end = offset(text.len());
     reading.push(Kind::End, (end, end));
+    conditional::choose(&mut reading.tokens);
     reading.tokens
 }
 
