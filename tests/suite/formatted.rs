@@ -39,7 +39,7 @@ fn most_functions_are_laid_out_by_rustfmts_rules() {
 fn write(case: &Case, folder: &Path) -> Option<PathBuf> {
     let path = folder.join(format!("{}.rs", case.module()));
     // A half of them with names.
-    fs::write(&path, emitted(case, case.name.len() % 2 == 0)?).expect("a text is written");
+    fs::write(&path, emitted(case, case.name.len().is_multiple_of(2))?).expect("a text is written");
     Some(path)
 }
 
