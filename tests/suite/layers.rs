@@ -8,7 +8,7 @@ use std::path::Path;
 const ROOT: &str = "compiler/frontend/src";
 
 /// The folders and files at the root, from the lowest.
-const LAYERS: [&str; 21] = [
+const LAYERS: [&str; 22] = [
     "vendor",
     "source",
     "diagnostic",
@@ -17,6 +17,7 @@ const LAYERS: [&str; 21] = [
     "allow",
     "follow_up",
     "foreign",
+    "inherit",
     "lex",
     "syntax",
     "testing",
