@@ -212,10 +212,9 @@ impl<'s> Declarations<'s> {
     ) -> Option<Const> {
         let fields = self.program.structure(id).fields.clone();
         let mut values = parts(&target.initial, fields.len());
-        let mut seen = Vec::new();
+        let mut seen = vec![false; fields.len()];
         for (name, initial) in given {
-            let found = fields.iter().position(|it| it.name.eq_ignore_ascii_case(name.text));
-            let Some(at) = found else {
+            let Some(at) = self.field_named(id, name.text).map(staunch_ir::FieldId::index) else {
                 let near = nearest(name.text, fields.iter().map(|it| it.name.as_str()));
                 self.unknown_member(*name, target.ty, near);
                 return None;
@@ -240,7 +239,7 @@ impl<'s> Declarations<'s> {
     ) -> Option<Const> {
         let pins = id.info().pins;
         let mut values = parts(&target.initial, pins.len());
-        let mut seen = Vec::new();
+        let mut seen = vec![false; pins.len()];
         for (name, initial) in given {
             let Some(at) = pins.iter().position(|it| it.name.eq_ignore_ascii_case(name.text)) else {
                 self.unknown_member(*name, target.ty, nearest(name.text, pins.iter().map(|it| it.name)));
@@ -314,10 +313,8 @@ impl Runs {
 }
 
 /// Notes a member; false if it was there before.
-fn once(seen: &mut Vec<usize>, at: usize) -> bool {
-    let new = !seen.contains(&at);
-    seen.push(at);
-    new
+fn once(seen: &mut [bool], at: usize) -> bool {
+    !std::mem::replace(&mut seen[at], true)
 }
 
 /// The members of a structure constant.

@@ -12,6 +12,7 @@ use crate::types::generic::class_named;
 use crate::types::scope::Scope;
 use crate::types::table::{PendingReference, Resolved, instance_of, scalar_initial, struct_initial};
 use crate::{Code, Diagnostic, Span};
+use rustc_hash::FxHashMap;
 use staunch_ir::{
     Array, ArrayId, BoundsId, Const, Elementary, Enum, EnumId, Enumerator, RefKind, RefType, ReferenceId, Struct, Type,
     Value,
@@ -152,19 +153,18 @@ impl<'s> Declarations<'s> {
     }
 
     fn reference_to_named(&mut self, kind: RefKind, path: &'s [ast::Name<'s>], span: Span) -> ReferenceId {
-        let same = |it: &&PendingReference<'s>| {
-            it.kind == kind
-                && it.path.len() == path.len()
-                && it.path.iter().zip(path).all(|(a, b)| Key(a.text) == Key(b.text))
-                && self.lookup(it.path, Sense::Type) == self.lookup(path, Sense::Type)
-        };
-        if let Some(known) = self.table.pending_references.iter().find(same) {
+        let named = (kind, path.iter().map(|it| Key(it.text)).collect::<Vec<_>>());
+        let alike = self.table.references_to.get(&named).into_iter().flatten();
+        let mut alike = alike.map(|at| self.table.pending_references[*at]);
+        // A name may mean another type in another namespace.
+        if let Some(known) = alike.find(|it| self.lookup(it.path, Sense::Type) == self.lookup(path, Sense::Type)) {
             return known.id;
         }
         let id = ReferenceId::next(self.program.references.len());
+        self.table.references_to.entry(named).or_default().push(self.table.pending_references.len());
         // It is put right by `settle_references`.
         self.program.references.push(RefType { kind, target: Type::BOOL });
-        self.table.pending_references.push(PendingReference { id, kind, path, span });
+        self.table.pending_references.push(PendingReference { id, path, span });
         id
     }
 
@@ -178,7 +178,10 @@ impl<'s> Declarations<'s> {
                 self.table.unknown_references.insert(id);
             }
         }
-        self.settled = true;
+        self.table.index.references.clear();
+        for (at, reference) in self.program.references.iter().enumerate() {
+            self.table.index.references.entry(*reference).or_insert(ReferenceId::next(at));
+        }
     }
 
     fn resolve_path(&mut self, path: &[ast::Name<'s>], span: Span) -> Option<Resolved> {
@@ -368,11 +371,10 @@ impl<'s> Declarations<'s> {
 
     /// The limits of a subrange, each pair once.
     pub(crate) fn intern_bounds(&mut self, bounds: (i128, i128)) -> BoundsId {
-        let known = self.program.bounds.iter().position(|it| *it == bounds);
-        BoundsId::next(known.unwrap_or_else(|| {
+        *self.table.index.bounds.entry(bounds).or_insert_with(|| {
             self.program.bounds.push(bounds);
-            self.program.bounds.len() - 1
-        }))
+            BoundsId::next(self.program.bounds.len() - 1)
+        })
     }
 
     fn array_type(
@@ -477,11 +479,12 @@ impl<'s> Declarations<'s> {
     }
 
     fn intern_array_type(&mut self, array: Array, element: Resolved) -> Type {
-        let known = self.program.arrays.iter().zip(&self.table.elements);
-        if let Some(at) = known.into_iter().position(|(it, of)| *it == array && *of == element) {
-            return Type::Array(ArrayId::next(at));
+        let known = self.table.index.arrays.entry(array).or_default();
+        if let Some(id) = known.iter().find(|it| self.table.elements[it.index()] == element) {
+            return Type::Array(*id);
         }
         let id = ArrayId::next(self.program.arrays.len());
+        known.push(id);
         self.program.arrays.push(array);
         self.table.elements.push(element);
         Type::Array(id)
@@ -551,6 +554,7 @@ impl<'s> Declarations<'s> {
             },
         };
         let mut enumerators: Vec<Enumerator> = Vec::new();
+        let mut seen = FxHashMap::default();
         let mut next = 0i128;
         for value in values {
             if let Some(expr) = &value.value {
@@ -563,10 +567,11 @@ impl<'s> Declarations<'s> {
                 );
                 return None;
             };
-            if let Some(first) = enumerators.iter().position(|it| it.name.eq_ignore_ascii_case(value.name.text)) {
+            let first = *seen.entry(Key(value.name.text)).or_insert(value.name.span);
+            if first != value.name.span {
                 self.report(
                     Diagnostic::new(Code::E0103, value.name.span, format!("`{}` is declared twice", value.name.text))
-                        .other(values[first].name.span, "first declared here"),
+                        .other(first, "first declared here"),
                 );
             }
             enumerators.push(Enumerator { name: value.name.text.to_owned(), doc: value.doc.clone(), value: number });
@@ -581,6 +586,7 @@ impl<'s> Declarations<'s> {
             self.names.anonymous_enumerators.entry(Key(value.name.text)).or_insert((Type::Enum(id), declared.value));
         }
         let location = self.location(span);
+        self.table.index.values.add(id, values.iter().map(|it| it.name.text));
         self.program.enums.push(Enum { name: name.to_owned(), doc, location, base, values: enumerators });
         Some(Resolved { ty: Type::Enum(id), initial: scalar_initial(first) })
     }

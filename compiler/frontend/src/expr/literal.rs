@@ -119,9 +119,8 @@ impl<'s> Checker<'_, 's> {
             self.error(Code::E0102, ty.span, format!("`{}` is not an enumeration", ty.text));
             return None;
         };
-        let values = &self.decl.program.enumeration(id).values;
-        let found = values.iter().find(|it| it.name.eq_ignore_ascii_case(name.text)).map(|it| it.value);
-        let Some(value) = found else {
+        let Some(value) = self.decl.enumerator_named(id, name.text) else {
+            let values = &self.decl.program.enumeration(id).values;
             let near = crate::spelling::nearest(name.text, values.iter().map(|it| it.name.as_str())).map(str::to_owned);
             self.decl.unknown_member(name, resolved.ty, near.as_deref());
             return None;
@@ -133,11 +132,10 @@ impl<'s> Checker<'_, 's> {
     /// A bare enumerator: of the expected enumeration, or the only one of that name.
     pub(crate) fn bare_enumerator(&mut self, name: ast::Name<'s>, expected: Option<Type>) -> Option<Option<Expr>> {
         let at = self.at(name.span);
-        if let Some(Type::Enum(id)) = expected {
-            let values = &self.decl.program.enumeration(id).values;
-            if let Some(found) = values.iter().find(|it| it.name.eq_ignore_ascii_case(name.text)) {
-                return Some(Some(Expr::new(Type::Enum(id), ExprKind::Const(found.value), at)));
-            }
+        if let Some(Type::Enum(id)) = expected
+            && let Some(value) = self.decl.enumerator_named(id, name.text)
+        {
+            return Some(Some(Expr::new(Type::Enum(id), ExprKind::Const(value), at)));
         }
         let slots = self.decl.names.enumerators.get(&Key(name.text)).cloned().unwrap_or_default();
         match slots.as_slice() {

@@ -9,7 +9,7 @@ use crate::spelling::Key;
 use crate::types::declarations::{Routines, Slot};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, PouKind};
-use staunch_ir::{Expr, ExprKind, FieldId, Place, RefKind, Root, StructId, Type};
+use staunch_ir::{Expr, ExprKind, Place, RefKind, Root, StructId, Type};
 
 impl<'s> Checker<'_, 's> {
     /// The METHOD or ACTION that a bare name means: one of the POU around.
@@ -362,9 +362,8 @@ impl<'s> Checker<'_, 's> {
         if let Some(ty) = self.type_of_property(id, name) {
             return Some(ty);
         }
-        let fields = &self.decl.program.structure(id).fields;
-        let at = fields.iter().position(|it| it.name.eq_ignore_ascii_case(name.text))?;
-        self.decl.program.member(ty, FieldId::next(at))
+        let field = self.decl.field_named(id, name.text)?;
+        self.decl.program.member(ty, field)
     }
 
     /// `THIS^`, and the standard's `THIS`; the inner `None` says that it was reported.

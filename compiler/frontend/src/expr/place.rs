@@ -340,9 +340,7 @@ impl<'s> Checker<'_, 's> {
             );
             return None;
         }
-        let fields = &self.decl.program.structure(id).fields;
-        let at = fields.iter().position(|it| it.name.eq_ignore_ascii_case(name.text));
-        let Some(at) = at else {
+        let Some(at) = self.decl.field_named(id, name.text).map(FieldId::index) else {
             if let Some(shared) = self.shared_member(&found.place, id, name) {
                 return shared;
             }
@@ -352,6 +350,7 @@ impl<'s> Checker<'_, 's> {
             self.decl.unknown_member(name, found.place.ty, near.as_deref());
             return None;
         };
+        let fields = &self.decl.program.structure(id).fields;
         let (ty, section, constant) = (fields[at].ty, fields[at].section, fields[at].constant);
         let inner = instance && !is_pin(section) && !self.is_public(id, name);
         // A unit test looks into everything.

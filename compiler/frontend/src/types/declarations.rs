@@ -150,8 +150,6 @@ pub(crate) struct Declarations<'s> {
     pub tests: Tests,
     pub program: Program,
     pub table: Table<'s>,
-    /// What references to named types point to is known.
-    pub settled: bool,
     pub generics: Generics,
     /// A call asks for an instance of a generic FUNCTION, whose signature is made as all are: by a layer above.
     pub build_signature: BuildSignature<'s>,
@@ -176,7 +174,6 @@ impl<'s> Declarations<'s> {
             tests: Tests::default(),
             program: empty_program(files),
             table: Table::default(),
-            settled: false,
             generics: Generics::default(),
             build_signature,
         }
@@ -350,10 +347,7 @@ impl<'s> Declarations<'s> {
     /// The type of references to `target`.
     pub fn reference_type(&mut self, kind: RefKind, target: Type) -> Type {
         let wanted = RefType { kind, target };
-        let pending = |id: ReferenceId| self.table.pending_references.iter().any(|it| it.id == id);
-        let mut known = (0..self.program.references.len()).map(ReferenceId::next);
-        let known = known.find(|id| self.program.references[id.index()] == wanted && (self.settled || !pending(*id)));
-        Type::Reference(known.unwrap_or_else(|| {
+        Type::Reference(*self.table.index.references.entry(wanted).or_insert_with(|| {
             self.program.references.push(wanted);
             ReferenceId::next(self.program.references.len() - 1)
         }))

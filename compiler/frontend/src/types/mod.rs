@@ -5,6 +5,7 @@ pub(crate) mod coercion;
 pub(crate) mod declarations;
 pub(crate) mod generic;
 pub(crate) mod image;
+pub(crate) mod index;
 pub(crate) mod instances;
 pub(crate) mod scope;
 pub(crate) mod signature;

@@ -5,7 +5,7 @@ use super::declarations::Declarations;
 use super::table::{GLOBALS, scalar_initial};
 use crate::ast;
 use staunch_ir::layout::Shape;
-use staunch_ir::{Address, Const, Field, FieldId, Place, Root, Section, Struct, StructId, Type};
+use staunch_ir::{Address, Const, EnumId, Field, FieldId, Place, Root, Section, Struct, StructId, Type, Value};
 
 impl<'s> Declarations<'s> {
     pub fn push_struct(&mut self, structure: Struct) -> StructId {
@@ -15,8 +15,22 @@ impl<'s> Declarations<'s> {
         let rounded = |it: &Field| self.size_at_most(it.ty).checked_next_multiple_of(8).unwrap_or(u64::MAX);
         let at_most = structure.fields.iter().map(rounded).fold(0, u64::saturating_add);
         self.table.sizes_at_most.push(at_most);
+        self.table.index.fields.add(id, structure.fields.iter().map(|it| it.name.as_str()));
         self.program.structs.push(structure);
         id
+    }
+
+    /// The first field of that name.
+    pub fn field_named(&self, id: StructId, name: &str) -> Option<FieldId> {
+        let fields = &self.program.structure(id).fields;
+        self.table.index.fields.find(id, name, fields.iter().map(|it| it.name.as_str())).map(FieldId::next)
+    }
+
+    /// The value of the first enumerator of that name.
+    pub fn enumerator_named(&self, id: EnumId, name: &str) -> Option<Value> {
+        let values = &self.program.enumeration(id).values;
+        let at = self.table.index.values.find(id, name, values.iter().map(|it| it.name.as_str()));
+        at.map(|it| values[it].value)
     }
 
     /// The instance of a block that a variable of type `ty` is or holds, and the way to it.

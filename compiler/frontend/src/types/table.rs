@@ -1,7 +1,9 @@
 //! Types: what a declaration's type is, what it holds, and how large it is.
 
+use super::index::Index;
 use crate::Span;
 use crate::ast::Name;
+use crate::spelling::Key;
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{Const, RefKind, ReferenceId, StructId, Type, Value};
 
@@ -25,6 +27,7 @@ impl Resolved {
 /// What is known of the types of a program beside what the program itself says.
 #[derive(Debug, Default)]
 pub(crate) struct Table<'s> {
+    pub index: Index,
     /// For each array, what its elements are.
     pub elements: Vec<Resolved>,
     /// For each structure, about how many bytes it takes.
@@ -37,6 +40,8 @@ pub(crate) struct Table<'s> {
     pub constants: usize,
     /// The references to types with names.
     pub pending_references: Vec<PendingReference<'s>>,
+    /// Their positions by their kinds and names.
+    pub references_to: FxHashMap<(RefKind, Vec<Key<'s>>), Vec<usize>>,
     /// Those whose targets are not known; that was reported.
     pub unknown_references: FxHashSet<ReferenceId>,
 }
@@ -45,7 +50,6 @@ pub(crate) struct Table<'s> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PendingReference<'s> {
     pub id: ReferenceId,
-    pub kind: RefKind,
     pub path: &'s [Name<'s>],
     pub span: Span,
 }
