@@ -58,7 +58,8 @@ impl<'a> Machine<'a> {
                 ArgumentKind::Output { .. } | ArgumentKind::Positional(_) => {}
             }
         }
-        let result = if enabled { self.call_enabled(frame, callee, arguments, asked)? } else { self.unset(callee)? };
+        let result =
+            if enabled { self.call_enabled(frame, callee, arguments, asked)? } else { self.unset(frame, callee)? };
         if let Some((target, negated)) = eno {
             self.write(&target, &Value::bool(enabled != negated));
         }
@@ -91,9 +92,11 @@ impl<'a> Machine<'a> {
     }
 
     /// The result of a function that does not run.
-    fn unset(&mut self, callee: &Expr<'a>) -> Outcome<Option<Value<'a>>> {
+    fn unset(&mut self, frame: &Frame<'a>, callee: &Expr<'a>) -> Outcome<Option<Value<'a>>> {
         let ExprKind::Name(name) = &callee.kind else { return Ok(None) };
-        let function = self.declared.pou_named(name.text).map(|it| self.declared.pous[it].result.clone());
+        let own = frame.this.as_ref().and_then(|it| self.declared.routine_of(it.0, name.text));
+        let function =
+            own.or_else(|| self.declared.pou_named(name.text)).map(|it| self.declared.pous[it].result.clone());
         let Some(Some(slot)) = function else { return Ok(None) };
         let place = self.allocate(&slot.ty);
         self.start(&Frame::default(), &place, slot.initial)?;
@@ -111,13 +114,18 @@ impl<'a> Machine<'a> {
     ) -> Outcome<Option<Value<'a>>> {
         match &callee.kind {
             ExprKind::Name(name) => {
+                let own = frame.this.as_ref().and_then(|it| self.declared.routine_of(it.0, name.text));
+                if let (Some(own), Some((_, instance))) = (own, &frame.this) {
+                    return self.call_routine(frame, own, &instance.clone(), arguments);
+                }
                 let local = frame.names.contains_key(&name.text.to_ascii_uppercase());
                 let function = self.declared.pou_named(name.text);
                 let function = function.filter(|it| self.declared.pous[*it].kind == PouKind::Function);
                 match function {
                     Some(function) => self.call_function(frame, function, arguments),
                     None if local || self.globals.contains_key(&name.text.to_ascii_uppercase()) => {
-                        self.call_instance(frame, callee, arguments)
+                        let instance = self.place(frame, callee)?;
+                        self.call_instance(frame, &instance, arguments)
                     }
                     None => self.standard(frame, name, arguments, asked).map(Some),
                 }
@@ -126,10 +134,64 @@ impl<'a> Machine<'a> {
                 ExprKind::Name(family) if family.text.eq_ignore_ascii_case("LOGIX") => {
                     self.call_instruction(frame, name, arguments).map(Some)
                 }
-                _ => self.call_instance(frame, callee, arguments),
+                _ => {
+                    let base = self.place(frame, base)?;
+                    if let Type::Record(record) = &base.ty
+                        && let Some(routine) = record.pou.and_then(|it| self.declared.routine_of(it, name.text))
+                    {
+                        return self.call_routine(frame, routine, &base, arguments);
+                    }
+                    let Some(instance) = self.member(&base, name.text) else { return unknown("this callee") };
+                    self.call_instance(frame, &instance, arguments)
+                }
             },
-            _ => self.call_instance(frame, callee, arguments),
+            _ => {
+                let instance = self.place(frame, callee)?;
+                self.call_instance(frame, &instance, arguments)
+            }
         }
+    }
+
+    /// A METHOD is a function that sees its instance; an ACTION is another body of its POU.
+    fn call_routine(
+        &mut self,
+        frame: &Frame<'a>,
+        routine: usize,
+        instance: &Place<'a>,
+        arguments: &'a [Argument<'a>],
+    ) -> Outcome<Option<Value<'a>>> {
+        let Some(owner) = self.declared.pous[routine].owner else { return unknown("a routine without an owner") };
+        let method = self.declared.pous[routine].kind == PouKind::Method;
+        let called = if method { routine } else { owner };
+        let formals = self.formals(called);
+        let passed = self.passed(frame, &formals, arguments)?;
+        let size = self.memory.len();
+        let mut outer = self.instance_frame(instance);
+        for variable in self.declared.pous[owner].variables.iter().filter(|it| it.kind == VarKind::Stat) {
+            let key = variable.name.to_ascii_uppercase();
+            outer.names.insert(key.clone(), self.statics[&(owner, key)].clone());
+        }
+        if !method && frame.this.as_ref().is_some_and(|it| it.1.at == instance.at) {
+            // In its own POU it has the in-outs of the call that goes on.
+            for it in formals.iter().filter(|it| it.kind == VarKind::InOut) {
+                let key = it.name.to_ascii_uppercase();
+                outer.names.extend(frame.names.get(&key).map(|place| (key, place.clone())));
+            }
+        }
+        if method {
+            // Its own variables are new, and hide those of its POU.
+            for variable in &self.declared.pous[routine].variables {
+                outer.names.remove(&variable.name.to_ascii_uppercase());
+            }
+        }
+        let (own, copies) = self.enter(called, outer, &passed)?;
+        self.block(&own, self.declared.pous[routine].body)?;
+        self.copy_back(&copies);
+        let result = own.names.get(&self.declared.pous[routine].name.to_ascii_uppercase());
+        let result = result.filter(|_| method && self.declared.pous[routine].result.is_some()).map(|it| self.read(it));
+        self.connect(&own, passed)?;
+        self.memory.truncate(size);
+        Ok(result)
     }
 
     fn call_function(
@@ -154,19 +216,18 @@ impl<'a> Machine<'a> {
     fn call_instance(
         &mut self,
         frame: &Frame<'a>,
-        callee: &'a Expr<'a>,
+        instance: &Place<'a>,
         arguments: &'a [Argument<'a>],
     ) -> Outcome<Option<Value<'a>>> {
-        let instance = self.place(frame, callee)?;
         match &instance.ty {
             Type::Record(record) => {
                 let Some(pou) = record.pou else { return unknown("a call of a structure") };
                 let formals = self.formals(pou);
                 let passed = self.passed(frame, &formals, arguments)?;
-                self.run_instance(pou, &instance, passed)?;
+                self.run_instance(pou, instance, passed)?;
                 Ok(None)
             }
-            Type::Block(info) => self.call_block(frame, &instance, info, arguments).map(|()| None),
+            Type::Block(info) => self.call_block(frame, instance, info, arguments).map(|()| None),
             _ => unknown("a call of a variable"),
         }
     }

@@ -14,6 +14,8 @@ use std::rc::Rc;
 pub(crate) struct Pou<'a> {
     pub name: &'a str,
     pub kind: PouKind,
+    /// The POU that a METHOD or ACTION is of.
+    pub owner: Option<usize>,
     pub result: Option<Slot<'a>>,
     pub variables: Vec<Variable<'a>>,
     pub body: &'a [ast::Statement<'a>],
@@ -62,6 +64,9 @@ impl<'a> Declarations<'a> {
             pous: Vec::new(),
             globals: Vec::new(),
         };
+        if files.iter().any(|it| it.regions.len() > 1) {
+            return unknown("a NAMESPACE, or a USING");
+        }
         // Bare enumerators are known only when every enumeration is.
         for item in files.iter().flat_map(|it| &it.items) {
             if let Item::Types(types) = item {
@@ -74,16 +79,24 @@ impl<'a> Declarations<'a> {
                     let mut variables = this.variables(block)?;
                     this.globals.append(&mut variables);
                 }
-                Item::Pou(pou) => this.pou(pou)?,
+                Item::Pou(pou) => this.pou(pou, None)?,
                 Item::Types(_) => {}
                 Item::Configuration(_) => return unknown("a CONFIGURATION"),
                 Item::Test(_) => return unknown("a TEST"),
             }
         }
+        // They come last: instances know their POUs by number.
+        let pous = files.iter().flat_map(|it| &it.items).filter_map(|it| match it {
+            Item::Pou(pou) => Some(pou),
+            Item::Globals(_) | Item::Types(_) | Item::Configuration(_) | Item::Test(_) => None,
+        });
+        for (owner, pou) in pous.enumerate() {
+            pou.routines.iter().try_for_each(|it| this.pou(it, Some(owner)))?;
+        }
         Ok(this)
     }
 
-    fn pou(&mut self, pou: &'a ast::Pou<'a>) -> Outcome<()> {
+    fn pou(&mut self, pou: &'a ast::Pou<'a>, owner: Option<usize>) -> Outcome<()> {
         let mut variables = Vec::new();
         for block in &pou.blocks {
             // An external variable is the global of its name.
@@ -92,7 +105,7 @@ impl<'a> Declarations<'a> {
             }
         }
         let result = pou.result.as_ref().map(|it| self.slot(it, None)).transpose()?;
-        self.pous.push(Pou { name: pou.name.text, kind: pou.kind, result, variables, body: &pou.body });
+        self.pous.push(Pou { name: pou.name.text, kind: pou.kind, owner, result, variables, body: &pou.body });
         Ok(())
     }
 
@@ -305,7 +318,12 @@ impl<'a> Declarations<'a> {
     }
 
     pub fn pou_named(&self, name: &str) -> Option<usize> {
-        self.pous.iter().position(|it| it.name.eq_ignore_ascii_case(name))
+        self.pous.iter().position(|it| it.owner.is_none() && it.name.eq_ignore_ascii_case(name))
+    }
+
+    /// The METHOD or ACTION of that name.
+    pub fn routine_of(&self, owner: usize, name: &str) -> Option<usize> {
+        self.pous.iter().position(|it| it.owner == Some(owner) && it.name.eq_ignore_ascii_case(name))
     }
 }
 

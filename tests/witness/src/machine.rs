@@ -47,6 +47,8 @@ pub struct Machine<'a> {
 #[derive(Debug, Default)]
 pub(crate) struct Frame<'a> {
     pub names: HashMap<String, Place<'a>>,
+    /// The instance whose routine this is, with the number of its POU.
+    pub this: Option<(usize, Place<'a>)>,
 }
 
 impl<'a> Machine<'a> {
@@ -122,6 +124,7 @@ impl<'a> Machine<'a> {
     pub(crate) fn instance_frame(&self, instance: &Place<'a>) -> Frame<'a> {
         let mut frame = Frame::default();
         let Type::Record(record) = &instance.ty else { return frame };
+        frame.this = record.pou.map(|it| (it, instance.clone()));
         let mut offset = 0;
         for (name, slot) in &record.fields {
             frame.names.insert(name.to_ascii_uppercase(), instance.part(offset, &slot.ty));
@@ -139,7 +142,8 @@ impl<'a> Machine<'a> {
         for (number, pou) in self.declared.pous.iter().enumerate() {
             for it in pou.variables.iter().filter(|it| it.kind == VarKind::Stat) {
                 let place = &self.statics[&(number, it.name.to_ascii_uppercase())];
-                let name = format!("{}_{}", pou.name, it.name);
+                let owner = pou.owner.map_or(String::new(), |it| format!("{}_", self.declared.pous[it].name));
+                let name = format!("{owner}{}_{}", pou.name, it.name);
                 // A global of this name makes the executors take another.
                 if !self.globals.contains_key(&name.to_ascii_uppercase()) {
                     self.leaves(&format!("Globals.{name}"), place, &mut found);

@@ -18,6 +18,8 @@ impl<'a> Machine<'a> {
     pub(crate) fn place(&mut self, frame: &Frame<'a>, expr: &'a Expr<'a>) -> Outcome<Place<'a>> {
         match &expr.kind {
             ExprKind::Paren(inner) => self.place(frame, inner),
+            ExprKind::Deref(inner) if is_this(inner) => this(frame),
+            ExprKind::Name(_) if is_this(expr) => this(frame),
             ExprKind::Name(name) => {
                 self.variable(frame, name.text).map_or_else(|| unknown(&format!("the name {}", name.text)), Ok)
             }
@@ -105,6 +107,14 @@ impl<'a> Machine<'a> {
         self.memory[place.at] = integer_cell(ty, signed);
         Ok(Flow::Next)
     }
+}
+
+fn is_this(expr: &Expr<'_>) -> bool {
+    matches!(&expr.kind, ExprKind::Name(name) if name.text.eq_ignore_ascii_case("THIS"))
+}
+
+fn this<'a>(frame: &Frame<'a>) -> Outcome<Place<'a>> {
+    frame.this.as_ref().map_or_else(|| unknown("THIS without an instance"), |it| Ok(it.1.clone()))
 }
 
 fn mask(width: u32) -> i128 {

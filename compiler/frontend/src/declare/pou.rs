@@ -477,7 +477,7 @@ impl<'s> Declarations<'s> {
         let place = match (pou.kind.is_function(), block.kind) {
             // A program has one set of variables, so they last anyway.
             (_, VarKind::Stat) if pou.kind.is_function() || pou.kind.is_block() => {
-                return Some(self.static_variable(pou, block, decl, name, resolved));
+                return Some(self.static_variable(builder.slot, block, decl, name, resolved));
             }
             (_, VarKind::InOut) => {
                 let at = builder.param(name.text, resolved, decl, Mode::Reference);
@@ -551,13 +551,15 @@ impl<'s> Declarations<'s> {
     /// VAR_STAT: one variable for all calls and all instances.
     fn static_variable(
         &mut self,
-        pou: &'s ast::Pou<'s>,
+        slot: usize,
         block: &'s ast::VarBlock<'s>,
         decl: &'s ast::VarDecl<'s>,
         name: ast::Name<'s>,
         resolved: &Resolved,
     ) -> Place {
-        let spelling = format!("{}_{}", pou.name.text, name.text);
+        let around = self.pous[slot].owner.into_iter().chain([slot]).map(|it| self.emitted_name(it));
+        let around = around.collect::<Vec<_>>().join("_").replace('.', "_");
+        let spelling = format!("{around}_{}", name.text);
         let field = Field { name: spelling, section: Section::Global, ..self.field(name, resolved, block, decl) };
         let at = self.add_synthetic(field, Some(name));
         self.synthetic_place(at)

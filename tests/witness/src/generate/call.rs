@@ -8,6 +8,16 @@ pub struct Routine {
     pub name: String,
     pub result: Option<Ty>,
     pub parameters: Vec<Parameter>,
+    /// Of a block.
+    pub methods: Vec<Routine>,
+    /// The names of a block's actions.
+    pub actions: Vec<String>,
+}
+
+impl Routine {
+    pub fn new(name: String, result: Option<Ty>, parameters: Vec<Parameter>) -> Self {
+        Self { name, result, parameters, methods: Vec::new(), actions: Vec::new() }
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -44,15 +54,45 @@ impl Writer {
         if self.fuel == 0 {
             return None;
         }
-        let fitting: Vec<_> =
-            self.functions.iter().filter(|it| it.result.as_ref().is_some_and(&fits)).cloned().collect();
-        if fitting.is_empty() {
+        let fitting = |list: &[Routine]| -> Vec<Routine> {
+            list.iter().filter(|it| it.result.as_ref().is_some_and(&fits)).cloned().collect()
+        };
+        let (functions, own) = (fitting(&self.functions), fitting(&self.own.methods));
+        let of_others = self.blocks.iter().any(|it| !fitting(&it.methods).is_empty());
+        if of_others
+            && self.random.once_in(3)
+            && let Some((place, Ty::Instance(at))) = self.some_place(true, depth.saturating_sub(1), |this, it| {
+                matches!(it, Ty::Instance(at) if this.blocks.get(*at).is_some_and(|it| !fitting(&it.methods).is_empty()))
+            })
+        {
+            let methods = fitting(&self.blocks[at].methods);
+            return self.routine_call(&format!("{place}."), &methods, depth);
+        }
+        if !own.is_empty() && (functions.is_empty() || self.random.once_in(2)) {
+            let this = *self.random.one_of(&["", "", "THIS^."]);
+            return self.routine_call(this, &own, depth);
+        }
+        self.routine_call("", &functions, depth)
+    }
+
+    fn routine_call(&mut self, before: &str, routines: &[Routine], depth: usize) -> Option<String> {
+        if routines.is_empty() || self.fuel == 0 {
             return None;
         }
         self.fuel -= 1;
-        let routine = self.random.one_of(&fitting).clone();
+        let routine = self.random.one_of(routines).clone();
         let arguments = self.arguments(&routine.parameters, depth, true)?;
-        Some(format!("{}({arguments})", routine.name))
+        // What a path leads to is not looked for where EN is FALSE.
+        if !before.is_empty() && arguments.contains("EN := ") {
+            return None;
+        }
+        Some(format!("{before}{}({arguments})", routine.name))
+    }
+
+    /// A call of an action of the block that is being written.
+    pub(super) fn own_action(&mut self) -> Option<String> {
+        let actions = self.own.actions.clone();
+        (!actions.is_empty()).then(|| format!("{}()", self.random.one_of(&actions)))
     }
 
     /// A call of an instance, as a statement.
@@ -73,6 +113,13 @@ impl Writer {
             _ => return None,
         };
         let arguments = self.arguments(&parameters, 2, false)?;
+        let actions = match ty {
+            Ty::Instance(at) => self.blocks[at].actions.clone(),
+            _ => Vec::new(),
+        };
+        if !actions.is_empty() && self.random.once_in(3) {
+            return Some(format!("{place}.{}({arguments})", self.random.one_of(&actions)));
+        }
         Some(format!("{place}({arguments})"))
     }
 

@@ -37,6 +37,8 @@ struct Writer {
     functions: Vec<Routine>,
     blocks: Vec<Routine>,
     globals: Vec<Variable>,
+    /// The methods and actions of the block that is being written.
+    own: Routine,
     scope: Scope,
     /// Statements and calls that may still be written in this body.
     fuel: usize,
@@ -59,6 +61,7 @@ impl Writer {
             functions: Vec::new(),
             blocks: Vec::new(),
             globals: Vec::new(),
+            own: Routine::new(String::new(), None, Vec::new()),
             scope: Scope::default(),
             fuel: 0,
             counters: Vec::new(),
@@ -219,7 +222,7 @@ impl Writer {
         self.blank();
         let shown = self.types.name(&result);
         self.line(&format!("FUNCTION {name} : {shown}"));
-        let parameters = self.parameters(false);
+        let parameters = self.parameters("");
         self.locals("VAR", "l", 2);
         if self.random.once_in(4) {
             self.locals("VAR_STAT", "s", 2);
@@ -230,7 +233,7 @@ impl Writer {
         let value = self.expression(&result, 2);
         self.line(&format!("{name} := {value};"));
         self.line("END_FUNCTION");
-        self.functions.push(Routine { name, result: Some(result), parameters });
+        self.functions.push(Routine::new(name, Some(result), parameters));
     }
 
     fn block_type(&mut self) {
@@ -238,7 +241,7 @@ impl Writer {
         let name = format!("Blk{number}");
         self.blank();
         self.line(&format!("FUNCTION_BLOCK {name}"));
-        let parameters = self.parameters(true);
+        let parameters = self.parameters("");
         self.locals("VAR", "l", 2);
         self.line("VAR");
         for at in 0..self.random.below(3) {
@@ -247,15 +250,57 @@ impl Writer {
             self.scope.add(variable);
         }
         self.line("END_VAR");
+        let state = self.scope.without(|it| parameters.iter().any(|p| p.section == Section::InOut && p.name == it));
         if self.random.once_in(3) {
             self.locals("VAR_TEMP", "t", 1);
         }
-        self.body(4);
+        self.loop_variables();
+        let whole = std::mem::replace(&mut self.scope, state);
+        for number in 0..self.random.below(3) {
+            self.method(number);
+        }
+        if self.random.once_in(3) {
+            self.action();
+        }
+        self.scope = whole;
+        self.statements(4);
         self.line("END_FUNCTION_BLOCK");
         let pins = parameters.iter().filter(|it| it.section != Section::InOut);
         let pins = pins.map(|it| (it.name.clone(), it.ty.clone(), it.section == Section::Input));
         self.types.blocks.push(pins.collect());
-        self.blocks.push(Routine { name, result: None, parameters });
+        let own = std::mem::replace(&mut self.own, Routine::new(String::new(), None, Vec::new()));
+        self.blocks.push(Routine { name, parameters, ..own });
+    }
+
+    /// A method of the block that is being written. It sees what instances keep.
+    fn method(&mut self, number: usize) {
+        let name = format!("Do{number}");
+        let result = self.result_type();
+        let shown = self.types.name(&result);
+        self.line(&format!("METHOD {name} : {shown}"));
+        let outer = self.scope.clone();
+        let parameters = self.parameters("m");
+        self.locals("VAR", "ml", 1);
+        if self.random.once_in(4) {
+            self.locals("VAR_STAT", "ms", 1);
+        }
+        self.scope.add(Variable { name: name.clone(), ty: result.clone(), writable: true });
+        self.body(2);
+        let value = self.expression(&result, 2);
+        self.line(&format!("{name} := {value};"));
+        self.line("END_METHOD");
+        self.scope = outer;
+        self.restart_loops();
+        self.own.methods.push(Routine::new(name, Some(result), parameters));
+    }
+
+    /// An action, with the counters of its block.
+    fn action(&mut self) {
+        self.line("ACTION Act");
+        self.statements(2);
+        self.line("END_ACTION");
+        self.restart_loops();
+        self.own.actions.push("Act".to_owned());
     }
 
     fn main(&mut self) {
@@ -294,13 +339,18 @@ impl Writer {
     fn blank(&mut self) {
         self.text.push('\n');
         self.scope = Scope::new(&self.globals);
+        self.restart_loops();
+    }
+
+    fn restart_loops(&mut self) {
         self.counters.clear();
         self.counting.clear();
         self.loops = 0;
         self.whiles = 0;
     }
 
-    fn parameters(&mut self, of_block: bool) -> Vec<Parameter> {
+    /// Writes parameters, whose names begin with `prefix`.
+    fn parameters(&mut self, prefix: &str) -> Vec<Parameter> {
         let mut parameters = Vec::new();
         for (section, keyword, most) in
             [(Section::Input, "VAR_INPUT", 3), (Section::Output, "VAR_OUTPUT", 2), (Section::InOut, "VAR_IN_OUT", 2)]
@@ -311,10 +361,10 @@ impl Writer {
             }
             self.line(keyword);
             for at in 0..count {
-                let name = format!("{}{at}", section.letter());
+                let name = format!("{prefix}{}{at}", section.letter());
                 let ty = match section {
                     Section::Input | Section::Output => self.any_type(),
-                    Section::InOut => self.in_out_type(of_block),
+                    Section::InOut => self.in_out_type(),
                 };
                 if section == Section::InOut {
                     let shown = self.types.name(&ty);
@@ -376,7 +426,7 @@ impl Writer {
     }
 
     /// Of what globals and locals have, so that there is something to give.
-    fn in_out_type(&mut self, _of_block: bool) -> Ty {
+    fn in_out_type(&mut self) -> Ty {
         match self.random.below(6) {
             0 if !self.blocks.is_empty() => Ty::Instance(self.random.below(self.blocks.len())),
             0 | 1 => Ty::Array(self.random.below(3)),

@@ -10,7 +10,7 @@ pub struct Variable {
     pub writable: bool,
 }
 
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Scope {
     variables: Vec<Variable>,
 }
@@ -18,6 +18,11 @@ pub struct Scope {
 impl Scope {
     pub fn new(globals: &[Variable]) -> Self {
         Self { variables: globals.to_vec() }
+    }
+
+    /// Without the variables of some names.
+    pub fn without(&self, hidden: impl Fn(&str) -> bool) -> Self {
+        Self { variables: self.variables.iter().filter(|it| !hidden(&it.name)).cloned().collect() }
     }
 
     pub fn add(&mut self, variable: Variable) {

@@ -27,6 +27,10 @@ impl Writer {
                 Some(call) => self.line(&format!("{call};")),
                 None => self.assignment(),
             },
+            8 if self.random.once_in(3) => match self.own_action() {
+                Some(call) => self.line(&format!("{call};")),
+                None => self.assignment(),
+            },
             8 | 9 => match self.function_call(2, |_| true) {
                 Some(call) => self.line(&format!("{call};")),
                 None => self.assignment(),
