@@ -97,6 +97,11 @@ impl<'a> Declarations<'a> {
     }
 
     fn pou(&mut self, pou: &'a ast::Pou<'a>, owner: Option<usize>) -> Outcome<()> {
+        let plain = matches!(pou.kind, PouKind::Program | PouKind::FunctionBlock | PouKind::Function)
+            || matches!(pou.kind, PouKind::Method | PouKind::Action);
+        if !plain || pou.extends.is_some() || !pou.implements.is_empty() {
+            return unknown("classes, interfaces and properties");
+        }
         let mut variables = Vec::new();
         for block in &pou.blocks {
             // An external variable is the global of its name.
