@@ -36,7 +36,7 @@ const LAYERS: [&str; 22] = [
 /// The circles that there are: a module that is divided into a few files.
 const CIRCLES: [&[&str]; 4] = [
     &["diagnostic", "diagnostic::codes", "diagnostic::levels", "diagnostic::render"],
-    &["lex", "lex::comment", "lex::conditional", "lex::kind"],
+    &["lex", "lex::comment", "lex::kind"],
     &["syntax::diagnostics", "syntax::diagnostics::declared"],
     &["syntax::doc", "syntax::parser"],
 ];
