@@ -82,10 +82,10 @@ fn messages_name_the_file_with_its_lines() {
 #[test]
 fn a_project_that_cannot_be_read_is_said() {
     let folder = project("twincat-projects");
-    folder.write("Line.plcproj", &PROJECT.replace("</ItemGroup>", ""));
+    folder.write("Line.plcproj", PROJECT.replace("</ItemGroup>", ""));
     has(&folder.staunch("check Line.plcproj").err(2), &["Line.plcproj", "XML"]);
     folder.write("Line.plcproj", "<Project></Project>");
     has(&folder.staunch("check Line.plcproj").err(2), &["Line.plcproj lists no source file"]);
-    folder.write("Line.plcproj", &PROJECT.replace("MAIN.TcPOU", "NONE.TcPOU"));
+    folder.write("Line.plcproj", PROJECT.replace("MAIN.TcPOU", "NONE.TcPOU"));
     has(&folder.staunch("check Line.plcproj").err(2), &["NONE.TcPOU"]);
 }
