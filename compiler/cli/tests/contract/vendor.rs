@@ -69,7 +69,7 @@ fn a_project_of_twincat_runs_as_it_lies() {
 #[test]
 fn messages_name_the_file_with_its_lines() {
     let folder = project("twincat-messages");
-    folder.write("POUs/MAIN.TcPOU", &MAIN.replace("station.Count()", "station.Counts()"));
+    folder.write("POUs/MAIN.TcPOU", MAIN.replace("station.Count()", "station.Counts()"));
     let short = folder.staunch("check Line.plcproj --message-format short").err(1);
     has(&short, &["POUs/MAIN.TcPOU:15:27: error[E0"]);
     let json = folder.staunch("check Line.plcproj --message-format json").out(1);
