@@ -169,6 +169,8 @@ pub struct Pou<'s> {
     pub extends: Option<Name<'s>>,
     /// What a class IMPLEMENTS, or an INTERFACE EXTENDS.
     pub implements: Vec<Name<'s>>,
+    /// The names after EXTENDS and IMPLEMENTS as they are written.
+    pub bases: Vec<Path<'s>>,
     /// How many of the VAR blocks are the base's.
     pub inherited: usize,
     /// Of an inherited routine: the class whose it is.
@@ -195,6 +197,7 @@ impl<'s> Pou<'s> {
             modifiers: Modifiers::default(),
             extends: None,
             implements: Vec::new(),
+            bases: Vec::new(),
             inherited: 0,
             home: None,
             is_hidden: false,

@@ -4,11 +4,11 @@
 //!
 //! What is overridden is there for SUPER alone, where something calls it so.
 
-use crate::ast::{Expr, ExprKind, File, Item, Name, Pou, PouKind, each_expr};
+use crate::ast::{Access, Expr, ExprKind, File, Item, Name, Pou, PouKind, each_expr};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::{Sources, Span};
 use crate::spelling::{Key, nearest};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Gives each class what it inherits.
 pub(crate) fn expand(files: &mut [File<'_>], sources: &Sources, diagnostics: &mut Vec<Diagnostic>) {
@@ -46,20 +46,28 @@ struct Class<'s> {
 struct Classes<'s> {
     all: Vec<Class<'s>>,
     by_name: FxHashMap<Key<'s>, usize>,
+    /// Names that several classes, or several interfaces, have in namespaces.
+    several: FxHashSet<Key<'s>>,
     interfaces: FxHashMap<Key<'s>, Pou<'s>>,
 }
 
 impl<'s> Classes<'s> {
-    /// Whether there are several classes of that name, in namespaces.
-    fn is_ambiguous(&self, name: Name<'s>) -> bool {
-        self.all.iter().filter(|it| Key(it.pou.name.text) == Key(name.text)).count() > 1
-    }
-
     fn of(files: &[File<'s>]) -> Self {
-        let mut classes = Self { all: Vec::new(), by_name: FxHashMap::default(), interfaces: FxHashMap::default() };
+        let mut classes = Self {
+            all: Vec::new(),
+            by_name: FxHashMap::default(),
+            several: FxHashSet::default(),
+            interfaces: FxHashMap::default(),
+        };
         for (file, it) in files.iter().enumerate() {
             for (item, it) in it.items.iter().enumerate() {
                 let Item::Pou(pou) = it else { continue };
+                let key = Key(pou.name.text);
+                let known = match pou.kind {
+                    PouKind::Interface => classes.interfaces.contains_key(&key),
+                    _ => pou.kind.is_block() && classes.by_name.contains_key(&key),
+                };
+                classes.several.extend(known.then_some(key));
                 if pou.kind == PouKind::Interface {
                     classes.interfaces.entry(Key(pou.name.text)).or_insert_with(|| pou.clone());
                 } else if pou.kind.is_block() {
@@ -111,9 +119,8 @@ impl<'s> Expansion<'_, 's> {
     }
 
     fn base(&mut self, pou: &Pou<'s>, base: Name<'s>, around: &[usize]) -> Option<usize> {
-        if self.classes.is_ambiguous(base) {
-            let message = format!("extending `{}`, which several namespaces have, is not supported yet", base.text);
-            self.diagnostics.push(Diagnostic::new(Code::E0902, base.span, message).label("which one is meant?"));
+        // Bodies know whose they are by that name.
+        if self.is_of_several(base) || self.is_of_several(pou.name) {
             return None;
         }
         let Some(at) = self.classes.by_name.get(&Key(base.text)).copied() else {
@@ -143,6 +150,17 @@ impl<'s> Expansion<'_, 's> {
             );
         }
         Some(at)
+    }
+
+    /// Reports a name that several namespaces have.
+    fn is_of_several(&mut self, name: Name<'s>) -> bool {
+        let several = self.classes.several.contains(&Key(name.text));
+        if several {
+            let message =
+                format!("inheritance of `{}`, which several namespaces have, is not supported yet", name.text);
+            self.diagnostics.push(Diagnostic::new(Code::E0902, name.span, message).label("which one is meant?"));
+        }
+        several
     }
 
     /// A class with what its base has.
@@ -217,6 +235,13 @@ impl<'s> Expansion<'_, 's> {
                     .other(span, "declared so here"),
             );
         }
+        if let Some((Access::Private, span)) = old.modifiers.access {
+            self.diagnostics.push(
+                Diagnostic::new(Code::E0403, new.name.span, format!("`{}` of the base is PRIVATE", old.name.text))
+                    .label("what is PRIVATE is not overridden: give this one another name")
+                    .other(span, "declared so here"),
+            );
+        }
         if self.head(new) != self.head(old) {
             self.diagnostics.push(
                 Diagnostic::new(Code::E0403, new.name.span, format!("`{}` overrides another head", new.name.text))
@@ -253,7 +278,7 @@ impl<'s> Expansion<'_, 's> {
             });
             return;
         };
-        if seen.contains(&Key(name.text)) {
+        if seen.contains(&Key(name.text)) || self.is_of_several(name) {
             return;
         }
         seen.push(Key(name.text));

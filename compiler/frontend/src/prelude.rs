@@ -230,8 +230,8 @@ struct TypeBlock {
 impl TypeBlock {
     fn see(&mut self, kind: Kind) {
         match kind {
-            Kind::Type => (self.open, self.structures) = (true, 0),
-            Kind::EndType => self.open = false,
+            Kind::Type | Kind::VarGlobal => (self.open, self.structures) = (true, 0),
+            Kind::EndType | Kind::EndVar => self.open = false,
             Kind::Struct => self.structures += 1,
             Kind::EndStruct => self.structures = self.structures.saturating_sub(1),
             _ => {}

@@ -5,19 +5,28 @@
 use crate::interpret::fold;
 use crate::visit::{self, Rewrite};
 use crate::{
-    Argument, Array, Block, Const, Expr, ExprKind, Local, LocalId, Place, Program, Projection, Root, Routine,
+    Argument, Array, Block, Const, Expr, ExprKind, Local, LocalId, Location, Place, Program, Projection, Root, Routine,
     RoutineId, RoutineKind, StatementKind, Type, Value,
 };
 use std::collections::HashMap;
 
+/// Copies of a program's routines. Each level of calls may double their number.
+const MAX_COPIES: usize = 10_000;
+
 /// The program with a copy of each such routine for each shape.
-pub fn settle(mut program: Program) -> Program {
+///
+/// # Errors
+/// Where a routine is that would be copied once too often.
+pub fn settle(mut program: Program) -> Result<Program, Location> {
     if !program.arrays.iter().any(|it| it.is_open()) {
-        return program;
+        return Ok(program);
     }
-    let mut shaper = Shaper { source: &program, known: HashMap::new(), routines: Vec::new() };
+    let mut shaper = Shaper { source: &program, known: HashMap::new(), routines: Vec::new(), too_many: None };
     let declared: Vec<_> = (0..program.routines.len()).map(RoutineId::next).map(|id| shaper.declared(id)).collect();
     let bodies: Vec<_> = program.classes.iter().map(|it| shaper.body(it.body)).collect();
+    if let Some(id) = shaper.too_many {
+        return Err(program.routine(id).location);
+    }
     let routines = shaper.routines;
     for (class, body) in program.classes.iter_mut().zip(bodies) {
         class.body = body;
@@ -32,7 +41,7 @@ pub fn settle(mut program: Program) -> Program {
     program.routines = routines;
     // A body that nobody calls is made for one element.
     program.arrays.iter_mut().filter(|it| it.is_open()).for_each(|it| *it = Array { high: it.low, ..*it });
-    program
+    Ok(program)
 }
 
 struct Shaper<'p> {
@@ -41,6 +50,7 @@ struct Shaper<'p> {
     known: HashMap<(RoutineId, Vec<Type>), RoutineId>,
     /// A callee is before its callers.
     routines: Vec<Routine>,
+    too_many: Option<RoutineId>,
 }
 
 impl Shaper<'_> {
@@ -61,6 +71,10 @@ impl Shaper<'_> {
         let key = (id, types);
         if let Some(made) = self.known.get(&key) {
             return *made;
+        }
+        if self.too_many.is_some() || self.known.len() >= self.source.routines.len() + MAX_COPIES {
+            self.too_many = self.too_many.or(Some(id));
+            return id;
         }
         let routine = self.copy(id, &key.1);
         let made = RoutineId::next(self.routines.len());

@@ -2,7 +2,7 @@
 
 use super::list::Lists;
 use crate::dialect::Dialect;
-use crate::names::{Entry, SpaceId};
+use crate::names::{Entry, Found, Sense, SpaceId};
 use crate::spelling::Key;
 use crate::types::declarations::{Declarations, GlobalSlot, PouSlot, Slot, TypeSlot};
 use crate::{Code, Diagnostic, Span, ast};
@@ -25,6 +25,28 @@ impl<'s> Declarations<'s> {
                 if !self.names.use_space(*id, site, path) {
                     self.report_unknown_namespace(path);
                 }
+            }
+        }
+    }
+
+    /// Reports a base that is there, but not by the name that is written.
+    pub(super) fn check_bases(&mut self) {
+        let written: Vec<_> = self.pous.iter().filter(|it| it.owner.is_none()).flat_map(|it| &it.ast.bases).collect();
+        for path in written {
+            let Some((last, around)) = path.split_last() else { continue };
+            match self.lookup(path, Sense::Type) {
+                Found::Several(meanings) => self.report_ambiguous(*last, &meanings),
+                Found::Nothing if self.names.root(last.text).is_some() || !self.names.holders(last.text).is_empty() => {
+                    let full = path.iter().map(|it| it.text).collect::<Vec<_>>().join(".");
+                    let mut error = Diagnostic::new(Code::E0102, last.span, format!("there is no `{full}`"));
+                    if around.is_empty()
+                        && let Some(hint) = self.hint_of_namespace(*last)
+                    {
+                        error = error.help(hint);
+                    }
+                    self.report(error.label("not known by this name here"));
+                }
+                Found::Nothing | Found::One(_) => {}
             }
         }
     }

@@ -42,6 +42,7 @@ pub(crate) fn declare<'s>(
     for file in files {
         declarations.collect(file);
     }
+    declarations.check_bases();
     for Run { pou, instance, .. } in runs {
         declarations.pous.push(PouSlot { run: Some(*instance), ..PouSlot::open(pou) });
     }

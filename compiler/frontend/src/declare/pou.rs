@@ -557,11 +557,17 @@ impl<'s> Declarations<'s> {
         name: ast::Name<'s>,
         resolved: &Resolved,
     ) -> Place {
+        // What a class inherits is declared once, and so is its variable.
+        let is_instance = self.pous[slot].instance.is_some();
+        if let Some(at) = self.synthetic.statics.get(&name.span).copied().filter(|_| !is_instance) {
+            return self.synthetic_place(at);
+        }
         let around = self.pous[slot].owner.into_iter().chain([slot]).map(|it| self.emitted_name(it));
         let around = around.collect::<Vec<_>>().join("_").replace('.', "_");
         let spelling = format!("{around}_{}", name.text);
         let field = Field { name: spelling, section: Section::Global, ..self.field(name, resolved, block, decl) };
         let at = self.add_synthetic(field, Some(name));
+        self.synthetic.statics.insert(name.span, at);
         self.synthetic_place(at)
     }
 

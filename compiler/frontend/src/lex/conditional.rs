@@ -49,17 +49,17 @@ pub fn choose(tokens: &mut Tokens<'_>) {
     tokens.pragmas.retain(|pragma| {
         let Some(word) = word(pragma.text) else { return true };
         let active = open.last().is_none_or(|it| it.active);
+        // A condition that is not understood is refused with the other pragmas, where it would decide.
+        let mut refused = false;
         match word {
             Word::Define(name) if active => defined.push(name),
             Word::Undefine(name) if active => defined.retain(|it| !it.eq_ignore_ascii_case(name)),
             Word::Define(_) | Word::Undefine(_) => {}
-            // A condition that is not understood is refused with the other pragmas.
             Word::If(None) if active => {
                 let opened = pragma.span;
                 open.push(Branch { opened, around: true, chosen: true, active: true, otherwise: false });
                 return true;
             }
-            Word::Elsif(None) if active => return true,
             Word::If(condition) => {
                 let holds = active && condition.is_some_and(|it| it.holds(&defined));
                 let opened = pragma.span;
@@ -70,7 +70,12 @@ pub fn choose(tokens: &mut Tokens<'_>) {
             }
             Word::Elsif(condition) => {
                 if let Some(branch) = open.last_mut() {
-                    branch.active = branch.around && !branch.chosen && condition.is_some_and(|it| it.holds(&defined));
+                    if branch.otherwise {
+                        reports.push(without_if(pragma));
+                    }
+                    let decides = branch.around && !branch.chosen;
+                    refused = decides && condition.is_none();
+                    branch.active = decides && condition.is_none_or(|it| it.holds(&defined));
                     branch.chosen |= branch.active;
                 }
             }
@@ -96,7 +101,7 @@ pub fn choose(tokens: &mut Tokens<'_>) {
             }
             None | Some(_) => {}
         }
-        false
+        refused
     });
     if let Some(branch) = open.first() {
         reports.push(
@@ -163,10 +168,15 @@ impl Condition<'_> {
 
 /// `defined(A) AND NOT defined(B)`; `None` for what asks for anything else.
 fn condition(text: &str) -> Option<Condition<'_>> {
+    if text.len() > LONGEST {
+        return None;
+    }
     let (condition, rest) = disjunction(text, 0)?;
     rest.trim().is_empty().then_some(condition)
 }
 
+/// No condition of a program has more bytes.
+const LONGEST: usize = 4096;
 /// Parentheses that are nested deeper are no condition of a program.
 const DEEPEST: usize = 50;
 

@@ -15,7 +15,9 @@ use crate::types::scope::Variable;
 use crate::types::signature::Signature;
 use crate::{Code, Diagnostic, ast};
 use staunch_ir::layout::{Layout, TooLarge};
-use staunch_ir::{Argument, Block, Class, ClassId, ClassKind, Place, Program, Root, RoutineId, StatementKind, Type};
+use staunch_ir::{
+    Argument, Block, Class, ClassId, ClassKind, Location, Place, Program, Root, RoutineId, StatementKind, Type,
+};
 use std::rc::Rc;
 
 /// Puts the parts together: the classes, the instances, the order of the routines.
@@ -34,12 +36,22 @@ pub(crate) fn assemble<'s>(
     declarations.check_pins()?;
     declarations.check_escapes()?;
     let program = std::mem::replace(&mut declarations.program, empty_program(Vec::new()));
-    declarations.program = staunch_ir::reference::fixed(staunch_ir::shapes::settle(program));
+    let settled = staunch_ir::shapes::settle(program);
+    let settled = settled.map_err(|at| declarations.report_too_many_shapes(at)).ok()?;
+    declarations.program = staunch_ir::reference::fixed(settled);
     declarations.check_size()?;
     Some(std::mem::replace(&mut declarations.program, empty_program(Vec::new())))
 }
 
 impl Declarations<'_> {
+    fn report_too_many_shapes(&mut self, at: Location) {
+        let name = self.log.name_at(at);
+        self.report(
+            Diagnostic::new(Code::E0901, name, "calls give too many shapes of arrays to `ARRAY[*]` parameters")
+                .label("this is one of the routines that are made once for each shape"),
+        );
+    }
+
     /// The PROGRAM or FUNCTION_BLOCK in a slot. Its body has the slot's number until routines are put in order.
     fn class(&mut self, slot: usize) -> Option<Class> {
         let pou = self.pous[slot].ast;
@@ -89,6 +101,8 @@ impl Declarations<'_> {
         let signature = self.signature(inner)?;
         let arguments = arguments_of(&self.program.routines[slot].body, RoutineId::next(inner)).unwrap_or_default();
         let mut variables = variables(&self.image, &signature);
+        // A VAR_TEMP is there while the PROGRAM itself runs.
+        variables.retain(|it| !matches!(it.place.root, Root::Local(_)));
         for Place { root, projections, .. } in variables.iter_mut().map(|it| &mut it.place) {
             match *root {
                 Root::Instance => drop(projections.splice(0..0, held.projections.iter().cloned())),

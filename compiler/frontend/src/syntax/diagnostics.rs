@@ -338,6 +338,12 @@ pub fn property_without_accessors(span: Span) -> Diagnostic {
         .help("write `GET … END_GET` after its head")
 }
 
+pub fn property_without_type(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0403, span, "a PROPERTY has a type")
+        .label("this has none")
+        .help("write it after the name: `PROPERTY level : INT`")
+}
+
 /// A statement or a VAR_INPUT in a CLASS.
 pub fn not_in_a_class(span: Span, what: &str) -> Diagnostic {
     Diagnostic::new(Code::E0403, span, format!("a CLASS has no {what}"))

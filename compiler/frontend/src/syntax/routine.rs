@@ -3,7 +3,7 @@
 use chumsky::prelude::*;
 
 use crate::{
-    ast::{Access, Item, Modifiers, Name, Pou, PouKind, TypeSpec, VarBlock, VarDecl, VarKind},
+    ast::{Access, Item, Modifiers, Name, Pou, PouKind, TypeKind, TypeSpec, VarBlock, VarDecl, VarKind},
     lex::Kind,
     source::Span,
 };
@@ -157,6 +157,11 @@ fn close(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
 /// GET and SET, up to END_PROPERTY.
 fn property<'s>(input: &mut In<'_, '_, 's>, head: &Pou<'s>, opened: Span, contents: Contents) -> Vec<Pou<'s>> {
     let mut accessors: Vec<Pou<'s>> = Vec::new();
+    let mut head = head.clone();
+    if head.result.is_none() {
+        input.report(diagnostics::property_without_type(head.span));
+        head.result = Some(TypeSpec { kind: TypeKind::Error, span: head.span });
+    }
     input.state().open.push((Kind::EndProperty, opened));
     while let Some((_, kind, end)) = ACCESSORS.iter().copied().find(|it| input.is_word(it.0)) {
         let opened = input.take();

@@ -4,7 +4,7 @@ use chumsky::prelude::*;
 
 use crate::{
     ast::{
-        Item, Modifiers, Name, Pou, PouKind, Statement, StatementKind, TestPart, TestUnit, TypeDecl, TypeSpec,
+        Item, Modifiers, Name, Path, Pou, PouKind, Statement, StatementKind, TestPart, TestUnit, TypeDecl, TypeSpec,
         VarBlock, VarDecl, VarKind,
     },
     lex::Kind,
@@ -228,8 +228,8 @@ fn pou<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind) -> Item<'s> {
     }
     input.eat(Kind::Semicolon);
     input.state().open.push((end, opened));
-    let mut pou = Pou { modifiers, implements, result, doc, ..Pou::new(kind, name, span) };
-    bases(input, &mut pou, extends);
+    let mut pou = Pou { modifiers, result, doc, ..Pou::new(kind, name, span) };
+    bases(input, &mut pou, extends, implements);
     pou.blocks.extend(parameters);
     let region = namespace::of_pou(input, opened);
     contents(input, &mut pou);
@@ -314,7 +314,7 @@ fn test_unit<'s>(input: &mut In<'_, '_, 's>) -> Item<'s> {
 }
 
 /// The words before a unit's name, the name, what follows it in parentheses, and a function's result type.
-type Head<'s> = (Modifiers, Name<'s>, (Vec<Name<'s>>, Vec<Name<'s>>), Option<VarBlock<'s>>, Option<TypeSpec<'s>>);
+type Head<'s> = (Modifiers, Name<'s>, (Vec<Path<'s>>, Vec<Path<'s>>), Option<VarBlock<'s>>, Option<TypeSpec<'s>>);
 
 fn head<'t, 's: 't>(kind: PouKind) -> impl Rule<'t, 's, Head<'s>> {
     let function = ahead(move |_| kind == PouKind::Function);
@@ -330,15 +330,19 @@ fn head<'t, 's: 't>(kind: PouKind) -> impl Rule<'t, 's, Head<'s>> {
     modifiers().then(head).map(|(modifiers, (name, bases, vars, ty))| (modifiers, name, bases, vars, ty))
 }
 
-/// `EXTENDS a, b`, if it is there: of qualified names the last parts.
-fn names_after<'t, 's: 't>(keyword: &'static str) -> impl Rule<'t, 's, Vec<Name<'s>>> {
-    let path = name().foldl(token(Kind::Dot).ignore_then(name()).repeated(), |_, last| last);
+/// `EXTENDS a, b.c`, if it is there.
+fn names_after<'t, 's: 't>(keyword: &'static str) -> impl Rule<'t, 's, Vec<Path<'s>>> {
+    let path = name().separated_by(token(Kind::Dot)).at_least(1).collect::<Vec<_>>();
     let names = word(keyword).ignore_then(path.separated_by(token(Kind::Comma)).at_least(1).collect());
     names.or(ahead(move |input| !input.is_word(keyword)).map(|()| Vec::new()))
 }
 
 /// Gives a unit what it EXTENDS.
-fn bases<'s>(input: &mut In<'_, '_, 's>, pou: &mut Pou<'s>, extends: Vec<Name<'s>>) {
+fn bases<'s>(input: &mut In<'_, '_, 's>, pou: &mut Pou<'s>, extends: Vec<Path<'s>>, implements: Vec<Path<'s>>) {
+    pou.bases = [extends.as_slice(), implements.as_slice()].concat();
+    let last = |paths: Vec<Path<'s>>| -> Vec<Name<'s>> { paths.iter().filter_map(|it| it.last().copied()).collect() };
+    let extends = last(extends);
+    pou.implements = last(implements);
     if pou.kind == PouKind::Interface {
         pou.implements = extends;
         return;

@@ -3,6 +3,7 @@
 use super::scope::Variable;
 use crate::Span;
 use crate::ast;
+use rustc_hash::FxHashMap;
 use staunch_ir::{Field, Type};
 use std::rc::Rc;
 
@@ -11,6 +12,8 @@ pub(crate) struct Synthetic<'s> {
     pub fields: Vec<Field>,
     /// The first declaration of each, if it has one.
     pub declared: Vec<Option<ast::Name<'s>>>,
+    /// VAR_STAT by their declarations, which classes inherit.
+    pub statics: FxHashMap<Span, usize>,
 }
 
 impl<'s> Synthetic<'s> {
