@@ -204,6 +204,9 @@ impl<'s> Declarations<'s> {
 
     fn report_unknown_namespace(&mut self, path: &[ast::Name<'s>]) {
         let (Some(first), Some(last)) = (path.first(), path.last()) else { return };
+        if let Some(hidden) = self.hidden_namespace(Code::E0102, path) {
+            return self.report(hidden);
+        }
         let full = path.iter().map(|it| it.text).collect::<Vec<_>>().join(".");
         let error = Diagnostic::new(Code::E0102, first.span.to(last.span), format!("there is no namespace `{full}`"))
             .label("no file of the program declares it");

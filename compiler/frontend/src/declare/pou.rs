@@ -298,13 +298,7 @@ impl<'s> Declarations<'s> {
             self.forgets(pou, decl, id);
         }
         for name in &decl.names {
-            let has_result = pou.kind.is_function() && pou.kind != PouKind::Setter;
-            if has_result && name.text.eq_ignore_ascii_case(pou.name.text) {
-                self.report(
-                    Diagnostic::new(Code::E0103, name.span, format!("`{}` is declared twice", name.text))
-                        .label(format!("inside the {} its name is its result", pou.kind.word()))
-                        .other(pou.name.span, "first declared here"),
-                );
+            if self.is_named_as_result(pou, *name) {
                 builder.refuse(*name);
                 continue;
             }
@@ -322,6 +316,20 @@ impl<'s> Declarations<'s> {
             let scope = Rc::get_mut(&mut builder.scope).expect("no one else holds the scope between declarations");
             self.enter_variable(scope, variable);
         }
+    }
+
+    /// Reports a variable that has its FUNCTION's or METHOD's name, which is that of the result there.
+    fn is_named_as_result(&mut self, pou: &ast::Pou<'s>, name: ast::Name<'s>) -> bool {
+        let has_result = pou.kind.is_function() && pou.kind != PouKind::Setter;
+        let is_result = has_result && name.text.eq_ignore_ascii_case(pou.name.text);
+        if is_result {
+            self.report(
+                Diagnostic::new(Code::E0103, name.span, format!("`{}` is declared twice", name.text))
+                    .label(format!("inside the {} its name is its result", pou.kind.word()))
+                    .other(pou.name.span, "first declared here"),
+            );
+        }
+        is_result
     }
 
     /// The standard block in a type: it works with what it remembers of earlier calls.
@@ -450,7 +458,9 @@ impl<'s> Declarations<'s> {
             return;
         };
         for name in &decl.names {
-            let Some((place, resolved)) = owner.instance_variables.get(&name.span).cloned() else {
+            let stored = owner.instance_variables.get(&name.span).cloned();
+            let stored = stored.filter(|_| !self.is_named_as_result(pou, *name));
+            let Some((place, resolved)) = stored else {
                 builder.refuse(*name);
                 continue;
             };

@@ -242,7 +242,6 @@ impl<'s> Checker<'_, 's> {
         let is_inside = own.is_some() && own == self.decl.pous[slot].owner;
         let is_home = self.slot.is_some_and(|it| self.decl.home(it) == self.decl.home(slot));
         let of_namespace = self.decl.names.is_inside(name.span, self.decl.names.space_of(span));
-        let routines = "only the routines of its own FUNCTION_BLOCK call it";
         let (word, who) = match access {
             ast::Access::Public => return Some(()),
             // Outside of every NAMESPACE a program is one library.
@@ -250,8 +249,10 @@ impl<'s> Checker<'_, 's> {
             ast::Access::Private if is_inside && is_home || self.is_test() => return Some(()),
             ast::Access::Protected if is_inside || self.is_test() => return Some(()),
             ast::Access::Internal => ("INTERNAL", "only what is in its own namespace calls it"),
-            ast::Access::Private => ("PRIVATE", routines),
-            ast::Access::Protected => ("PROTECTED", routines),
+            ast::Access::Private => ("PRIVATE", "only the routines of its own FUNCTION_BLOCK call it"),
+            ast::Access::Protected => {
+                ("PROTECTED", "only the routines of its FUNCTION_BLOCK, and of those that extend it, call it")
+            }
         };
         let title = self.decl.title(slot);
         self.report(

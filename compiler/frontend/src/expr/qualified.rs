@@ -101,18 +101,31 @@ impl<'s> crate::types::declarations::Declarations<'s> {
     pub(crate) fn not_in_namespace(&self, code: Code, around: &[ast::Name<'s>], name: ast::Name<'s>) -> Diagnostic {
         let full = around.iter().map(|it| it.text).collect::<Vec<_>>().join(".");
         let space = self.names.space_at(self.site(name.span), around);
+        if let Some(hidden) = self.hidden_namespace(code, around) {
+            return hidden;
+        }
         let what = match space {
             Some(it) if self.names.is_list(it) => format!("the list `{full}` has no variable `{}`", name.text),
             Some(_) | None => format!("the namespace `{full}` has no `{}`", name.text),
         };
         let error = Diagnostic::new(code, name.span, what).label("unknown name");
         if self.names.holders(name.text).iter().any(|(it, internal)| *internal && it.eq_ignore_ascii_case(&full)) {
-            return error.help(format!("it is INTERNAL, and not seen from outside of `{full}`"));
+            return error.help(format!("`{full}.{}` is INTERNAL, and not seen from here", name.text));
         }
         match space.and_then(|it| nearest(name.text, self.names.names_in(it))) {
             Some(near) => error.help(format!("did you mean `{near}`?")).fix(name.span, near),
             None => error,
         }
+    }
+
+    /// That the namespace of a path is INTERNAL in another one, and not seen from here.
+    pub(crate) fn hidden_namespace(&self, code: Code, path: &[ast::Name<'s>]) -> Option<Diagnostic> {
+        let (first, last) = (path.first()?, path.last()?);
+        let site = self.site(first.span);
+        let hidden = self.names.hidden(site, self.names.space_at(site, path)?)?;
+        let around = hidden.rsplit_once('.').map_or(hidden, |it| it.0);
+        let error = Diagnostic::new(code, first.span.to(last.span), format!("the namespace `{hidden}` is INTERNAL"));
+        Some(error.label(format!("not seen from outside of `{around}`")))
     }
 
     /// Where a name that means nothing by itself is declared.

@@ -95,8 +95,8 @@ struct Namespace<'s> {
     /// `A.B`, or a list's name.
     name: String,
     parent: Option<SpaceId>,
-    /// Every part of it is INTERNAL.
-    internal: bool,
+    /// Whether every part of it is INTERNAL; of one that only paths name there is none.
+    internal: Option<bool>,
     /// A list of global variables.
     is_list: bool,
     /// A list whose variables are named after it alone.
@@ -189,11 +189,7 @@ impl<'s> Names<'s> {
     /// What the namespaces hold that a region uses.
     fn used(&self, site: Site, region: &Region, name: &str, sense: Sense) -> Option<Found> {
         let key = Key(name);
-        let held = region.uses.iter().filter_map(|space| {
-            let entries = self.spaces[space.0].own.get(&key)?;
-            let entry = entries.of(sense)?;
-            self.sees(site, *space, *entries, entry).then_some((*space, entry))
-        });
+        let held = region.uses.iter().filter_map(|space| Some((*space, self.held(site, *space, name, sense)?)));
         // The root uses the lists.
         let lists = self.listed.get(&key).filter(|_| region.outer.is_none() && sense != Sense::Type);
         let found: Vec<_> = held.chain(lists.into_iter().flatten().copied()).collect();
@@ -271,24 +267,36 @@ impl<'s> Names<'s> {
     }
 
     /// What a namespace holds at the end of a path.
-    fn in_space(&self, site: Site, space: SpaceId, path: &[ast::Name<'_>], last: &str, sense: Sense) -> Found {
-        let Some((first, rest)) = path.split_first() else {
-            let entries = self.spaces[space.0].own.get(&Key(last)).copied().unwrap_or_default();
-            let entry = entries.of(sense).filter(|it| self.sees(site, space, entries, *it));
-            return entry.map_or(Found::Nothing, |it| Found::One(Meaning::Declared(it)));
-        };
-        let here = &self.spaces[space.0];
-        if let Some(inner) = here.inner.get(&Key(first.text)) {
-            let hidden = self.spaces[inner.0].internal && !self.is_inside(site.span, space);
-            return if hidden { Found::Nothing } else { self.in_space(site, *inner, rest, last, sense) };
-        }
-        let entries = here.own.get(&Key(first.text)).copied().unwrap_or_default();
-        match entries.ty {
-            Some(entry @ Entry::Type(slot)) if rest.is_empty() && self.sees(site, space, entries, entry) => {
-                Found::One(Meaning::Enumerator(slot))
+    fn in_space(&self, site: Site, mut space: SpaceId, path: &[ast::Name<'_>], last: &str, sense: Sense) -> Found {
+        for (at, name) in path.iter().enumerate() {
+            if let Some(inner) = self.seen(site, space, name.text) {
+                space = inner;
+                continue;
             }
-            Some(_) | None => Found::Nothing,
+            // `Plant.Colour.Red`: the last namespace may be an enumeration.
+            let ty = self.held(site, space, name.text, Sense::Type).filter(|_| at + 1 == path.len());
+            return match ty {
+                Some(Entry::Type(slot)) => Found::One(Meaning::Enumerator(slot)),
+                Some(Entry::Pou(_) | Entry::Global(_)) | None => Found::Nothing,
+            };
         }
+        self.held(site, space, last, sense).map_or(Found::Nothing, |it| Found::One(Meaning::Declared(it)))
+    }
+
+    /// What a namespace holds by itself, as far as a place sees it.
+    fn held(&self, site: Site, space: SpaceId, name: &str, sense: Sense) -> Option<Entry> {
+        let entries = *self.spaces[space.0].own.get(&Key(name))?;
+        entries.of(sense).filter(|it| self.sees(site, space, entries, *it))
+    }
+
+    /// The namespace of a name in another one, unless it is INTERNAL there and the place is outside.
+    fn seen(&self, site: Site, space: SpaceId, name: &str) -> Option<SpaceId> {
+        let inner = *self.spaces[space.0].inner.get(&Key(name))?;
+        (!self.is_internal(inner) || self.is_inside(site.span, space)).then_some(inner)
+    }
+
+    fn is_internal(&self, space: SpaceId) -> bool {
+        self.spaces[space.0].internal == Some(true)
     }
 
     /// `Globals.x`
@@ -308,7 +316,7 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// The namespace that a path of names leads to from a place: what stands before the last point.
+    /// The namespace that a path of names leads to, whether or not the place sees it: what is before the last point.
     pub fn space_at(&self, site: Site, path: &[ast::Name<'_>]) -> Option<SpaceId> {
         let (first, rest) = path.split_first()?;
         let Some(Prefix::Space(mut space)) = self.prefix(site, first.text) else { return None };
@@ -332,7 +340,11 @@ impl<'s> Names<'s> {
             around.retain(|it| region.span.start < it.0);
             let outer = around.last().map_or(SpaceId::ROOT, |it| it.1);
             let space = region.path.iter().fold(outer, |space, name| self.inner(space, name.text));
-            self.spaces[space.0].internal &= region.internal || region.path.is_empty();
+            // The region of a file, or of a POU with USING, is of the namespace around it.
+            if !region.path.is_empty() {
+                let internal = &mut self.spaces[space.0].internal;
+                *internal = Some(region.internal && internal.unwrap_or(true));
+            }
             around.push((region.span.end, space));
             stretches.push((region.span, space, Some(at)));
         }
@@ -344,11 +356,21 @@ impl<'s> Names<'s> {
         own.into_iter().map(|it| it.1).collect()
     }
 
-    /// What a USING directive in a region names; false where there is no such namespace.
+    /// What a USING directive in a region names; false where there is no such namespace, or it is not seen.
     pub fn use_space(&mut self, region: RegionId, site: Site, path: &[ast::Name<'_>]) -> bool {
-        let space = self.space_at(site, path);
+        let space = self.space_at(site, path).filter(|it| self.hidden(site, *it).is_none());
         space.into_iter().for_each(|it| self.regions.use_in(region, it));
         space.is_some()
+    }
+
+    /// The INTERNAL namespace that hides another one from a place: it, or the outermost one around it.
+    pub fn hidden(&self, site: Site, space: SpaceId) -> Option<&str> {
+        let hides = |it: &SpaceId| {
+            let around = self.spaces[it.0].parent.filter(|_| self.is_internal(*it));
+            around.is_some_and(|around| around != SpaceId::ROOT && !self.is_inside(site.span, around))
+        };
+        let around = std::iter::successors(Some(space), |it| self.spaces[it.0].parent);
+        around.filter(hides).last().map(|it| self.spaces[it.0].name.as_str())
     }
 
     /// The namespace in another one, made where there is none.
@@ -358,7 +380,7 @@ impl<'s> Names<'s> {
         if inner == next {
             let full = self.in_full(space, name);
             let parent = Some(space);
-            self.spaces.push(Namespace { name: full, parent, internal: true, ..Namespace::default() });
+            self.spaces.push(Namespace { name: full, parent, ..Namespace::default() });
         }
         inner
     }
@@ -460,7 +482,7 @@ impl<'s> Names<'s> {
     pub fn holders(&self, name: &str) -> Vec<(String, bool)> {
         let held = |it: &Namespace<'_>| {
             let entries = it.own.get(&Key(name)).filter(|it| it.ty.is_some())?;
-            Some((it.name.clone(), entries.internal || it.internal))
+            Some((it.name.clone(), entries.internal || it.internal == Some(true)))
         };
         self.spaces.iter().skip(1).filter_map(held).collect()
     }
