@@ -232,6 +232,9 @@ pub struct Test {
     /// What runs them
     #[arg(long, value_enum, default_value_t = Backend::Native)]
     pub backend: Backend,
+    /// Threads that run tests [default: as many as there are processors]
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub jobs: Option<u16>,
 }
 
 #[derive(Clone, Debug, Args)]

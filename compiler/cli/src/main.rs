@@ -47,7 +47,7 @@ const INTERNAL: u8 = 101;
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
 /// Deep enough for expressions and statements at the parser's nesting limit, also unoptimised.
-const STACK: usize = 256 << 20;
+pub const STACK: usize = 256 << 20;
 
 fn main() -> ExitCode {
     let cli = match args::parse(std::env::args_os()) {

@@ -6,10 +6,9 @@ use staunch_runtime::reference::ORIGIN;
 use staunch_runtime::{Elementary, Reference, Repr, Time, Value, format};
 use std::fmt::Write;
 
-/// The value of the variable that `path` names, as a cell of a trace.
-pub fn value_at(map: &Map, state: &[u8], path: &str) -> Result<String, String> {
-    let all: Vec<usize> = (0..map.instances.len()).collect();
-    let place = resolve(map, &all, path)?;
+/// The value of the variable that `path` names, seen from the instances `running`, as a cell of a trace.
+pub fn value_at(map: &Map, running: &[usize], state: &[u8], path: &str) -> Result<String, String> {
+    let place = resolve(map, running, path)?;
     let mut text = String::new();
     format(map, place.ty, &state[place.offset..], &mut text);
     Ok(text)

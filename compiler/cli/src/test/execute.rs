@@ -9,9 +9,19 @@ use staunch_frontend::Test;
 use staunch_host::{Machine, Map, csv_cells, value_at};
 use staunch_ir::Program;
 use staunch_runtime::{Context, Fault};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
+/// What all threads share.
+pub struct Suite<'p> {
+    program: &'p Program,
+    backend: Backend,
+    /// Of the back end `rust`: an executable, which runs one test each time.
+    executable: Option<PathBuf>,
+    turns: u64,
+}
+
+/// What one thread runs its tests on.
 pub struct Executor<'p> {
     runs: Runs<'p>,
     turns: u64,
@@ -19,30 +29,51 @@ pub struct Executor<'p> {
 
 enum Runs<'p> {
     Here(Box<dyn Machine + 'p>, Box<Map>),
-    /// An executable, which runs one test each time.
-    Apart(PathBuf),
+    Apart(&'p PathBuf),
 }
 
 /// The variables of a test after its scans, by their names.
 type Values<'v> = dyn Fn(&str) -> Result<String, String> + 'v;
 
-impl<'p> Executor<'p> {
+impl<'p> Suite<'p> {
     pub fn new(session: &Session, args: &args::Test, program: &'p Program) -> Result<Self, String> {
-        let runs = match args.backend {
-            Backend::Native => {
-                let (machine, map) = Native::new(program)?;
-                Runs::Here(Box::new(machine), Box::new(map))
-            }
-            Backend::Interpret => {
-                let (machine, map) = Interpreted::new(program)?;
-                Runs::Here(Box::new(machine), Box::new(map))
-            }
-            Backend::Rust => Runs::Apart(rustc::compile(program, Kind::Executable, None)?),
+        let executable = match args.backend {
+            Backend::Rust => Some(rustc::compile(program, Kind::Executable, None)?),
+            Backend::Native | Backend::Interpret => None,
         };
         let turns = args.loop_budget.or(session.project.loop_budget).unwrap_or(Context::TURNS);
-        Ok(Self { runs, turns })
+        Ok(Self { program, backend: args.backend, executable, turns })
     }
 
+    /// An executor for the tests of the instances that are `wanted`.
+    pub fn executor(&self, wanted: impl Fn(usize) -> bool) -> Result<Executor<'_>, String> {
+        let runs = match (&self.executable, self.backend) {
+            (Some(executable), _) => Runs::Apart(executable),
+            (None, Backend::Interpret) => {
+                let (machine, map) = Interpreted::new(self.program)?;
+                Runs::Here(Box::new(machine), Box::new(map))
+            }
+            (None, Backend::Native | Backend::Rust) => {
+                let (machine, map) = Native::new(&only(self.program, wanted))?;
+                Runs::Here(Box::new(machine), Box::new(map))
+            }
+        };
+        Ok(Executor { runs, turns: self.turns })
+    }
+}
+
+/// The program with the statements of these tests alone: what no other thread's tests run is compiled
+/// once, by that thread.
+fn only(program: &Program, wanted: impl Fn(usize) -> bool) -> Program {
+    let mut program = program.clone();
+    for instance in (0..program.instances.len()).filter(|it| !wanted(*it)) {
+        let body = program.class(program.instances[instance].program).body;
+        program.routines[body.index()].body.clear();
+    }
+    program
+}
+
+impl Executor<'_> {
     pub fn run(&mut self, instance: usize, test: &Test) -> Result<Outcome, String> {
         match &mut self.runs {
             Runs::Here(machine, map) => {
@@ -52,7 +83,8 @@ impl<'p> Executor<'p> {
                     if let Err(fault) = machine.scan(instance, &cx) {
                         return Ok(Outcome::Faulted(place_of(fault, map)));
                     }
-                    let values = |name: &str| value_at(map, machine.state(), &format!("{}.{name}", test.instance));
+                    let values =
+                        |name: &str| value_at(map, &[instance], machine.state(), &format!("{}.{name}", test.instance));
                     let outcome = outcome(test, &values)?;
                     if outcome != Outcome::Passed {
                         return Ok(outcome);
@@ -80,7 +112,7 @@ fn outcome(test: &Test, values: &Values<'_>) -> Result<Outcome, String> {
     Ok(Outcome::Failed { assertion, actual, expected, message })
 }
 
-fn apart(executable: &PathBuf, test: &Test, turns: u64) -> Result<Outcome, String> {
+fn apart(executable: &Path, test: &Test, turns: u64) -> Result<Outcome, String> {
     let assertions = test.assertions.iter();
     let kept = assertions.flat_map(|it| [&it.actual, &it.expected, &it.message]).flatten();
     let names: Vec<_> = ["__failed".to_owned()].into_iter().chain(kept.cloned()).collect();

@@ -2,13 +2,15 @@
 
 mod execute;
 mod junit;
+mod parallel;
 mod report;
 
 use crate::args;
 use crate::session::Session;
 use crate::{REJECTED, output};
-use execute::Executor;
+use execute::Suite;
 use staunch_frontend::Test;
+use std::collections::HashSet;
 
 /// How a test went.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -36,12 +38,19 @@ pub fn test(session: &Session, args: &args::Test) -> Result<u8, String> {
     if chosen.is_empty() {
         return Err(format!("no test has `{wanted}` in its title; there are {} tests", session.tests.len()));
     }
-    let mut executor = Executor::new(session, args, program)?;
+    let suite = Suite::new(session, args, program)?;
     let mut report = report::Report::new(session);
-    for (instance, test) in chosen {
-        let outcome = executor.run(instance, test)?;
-        output::print(report.add(test, outcome).as_bytes())?;
-    }
+    let number = |piece: usize| chosen[piece].0;
+    parallel::in_order(
+        args.jobs.map_or_else(parallel::processors, usize::from),
+        chosen.len(),
+        |share| {
+            let own: HashSet<usize> = (0..chosen.len()).filter(|it| share.has(*it)).map(number).collect();
+            suite.executor(|instance| own.contains(&instance))
+        },
+        |executor, piece| executor.run(chosen[piece].0, chosen[piece].1),
+        |piece, outcome| output::print(report.add(chosen[piece].1, outcome).as_bytes()),
+    )?;
     output::print(report.end().as_bytes())?;
     if let Some(path) = &args.junit {
         output::write(path, junit::text(&report).as_bytes())?;

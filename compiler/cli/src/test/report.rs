@@ -59,7 +59,10 @@ impl<'s> Report<'s> {
     fn problem(&self, test: &Test, outcome: Outcome) -> Vec<String> {
         match outcome {
             Outcome::Passed => Vec::new(),
-            Outcome::Faulted(text) => text.lines().map(str::to_owned).collect(),
+            Outcome::Faulted(text) => {
+                let source = self.source_line(&text).map(str::to_owned);
+                text.lines().map(str::to_owned).chain(source).collect()
+            }
             Outcome::Failed { assertion, actual, expected, message } => {
                 let Assertion { span, wants, compares_texts, .. } = test.assertions[assertion];
                 let shown = |it: String| if compares_texts { format!("'{it}'") } else { it };
@@ -70,6 +73,16 @@ impl<'s> Report<'s> {
                 [Some(first), Some(wants), message].into_iter().flatten().collect()
             }
         }
+    }
+
+    /// The line of the source that a fault's text begins with the place of.
+    fn source_line(&self, text: &str) -> Option<&str> {
+        self.session.sources.files().iter().find_map(|it| {
+            let rest = text.strip_prefix(it.path.as_str())?.strip_prefix(':')?;
+            let line = rest.split(':').next()?.parse().ok()?;
+            let file = it.file();
+            file.text.get(file.line_range(line)).map(str::trim)
+        })
     }
 
     fn place(&self, span: Span) -> String {

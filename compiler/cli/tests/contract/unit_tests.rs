@@ -128,8 +128,10 @@ fn failures_say_what_was_expected() {
           expected 2 calls, found 0
   FAILED  a fault
           motor_test.st:19:14: index out of range
+          list[i] := 1;
   FAILED  a loop without an end
           motor_test.st:23:9: a loop went on past the scan's budget of turns
+          WHILE n < 10 DO n := 0; END_WHILE
 
 0 passed, 6 failed
 ";
@@ -137,6 +139,39 @@ fn failures_say_what_was_expected() {
         let out = folder.staunch(&format!("test . --loop-budget 1000 --backend {backend}")).out(1);
         assert_eq!(out, expected, "{backend}");
     }
+}
+
+#[test]
+fn constants_are_shown_too() {
+    let tests = "TEST 'integers' ASSERT_EQ(3, 4); END_TEST
+TEST 'times' ASSERT_GT(T#1s, T#2s); END_TEST
+TEST 'reals' ASSERT_NEAR(1.0, 1.5, 0.1); END_TEST
+TEST 'near' ASSERT_NEAR(1.0, 1.5, 0.5); END_TEST
+TEST 'equal' ASSERT_EQ(3, 3); END_TEST
+";
+    let folder = Folder::with("tests_constants", &[("tests.st", tests)]);
+    for backend in BACKENDS {
+        let out = folder.staunch(&format!("test tests.st --backend {backend}")).out(1);
+        has(&out, &["expected to be 4, found 3\n", "expected to be greater than T#2s, found T#1s\n"]);
+        has(&out, &["expected to be near 1.5, found 1.0\n", "\n2 passed, 3 failed\n"]);
+    }
+}
+
+#[test]
+fn threads_keep_the_order() {
+    let test =
+        |number: usize| format!("TEST 'number {number}' ASSERT_EQ(Add({number}, 1), {}); END_TEST\n", number % 7);
+    let tests: String = (0..60).map(test).collect();
+    let folder = Folder::with("tests_threads", &[("motor.st", SOURCE), ("motor_test.st", &tests)]);
+    for backend in ["native", "interpret"] {
+        let alone = folder.staunch(&format!("test . --jobs 1 --backend {backend}")).out(1);
+        assert!(alone.find("number 9\n").unwrap() < alone.find("number 59\n").unwrap());
+        has(&alone, &["\n6 passed, 54 failed\n"]);
+        for jobs in [2, 7, 100] {
+            assert_eq!(folder.staunch(&format!("test . -j {jobs} --backend {backend}")).out(1), alone);
+        }
+    }
+    folder.staunch("test . --jobs 0").err(2);
 }
 
 #[test]

@@ -214,10 +214,11 @@ impl<'s> Checker<'_, 's> {
             let holds = self.compare_texts(crate::expr::operator::comparison(op), a, b, span)?;
             return Some(Claim { compares_texts: true, ..Claim::of(holds, wants, actual, expected) });
         }
+        let constants = [sides.a.clone(), sides.b.clone()];
         let compared = self.combine(sides)?.typed()?.clone();
         let ExprKind::Apply(op, operands) = compared.kind else {
-            // Both sides are constants.
-            return Some(Claim::new(compared, wants));
+            let [actual, expected] = self.keep_constants(constants, [left, right])?;
+            return Some(Claim::of(compared, wants, actual, expected));
         };
         let [a, b] = <[Expr; 2]>::try_from(operands).ok()?;
         let (a, actual) = self.keep("actual", a, left.span)?;
@@ -237,24 +238,31 @@ impl<'s> Checker<'_, 's> {
     fn near(&mut self, both: [&ast::Expr<'s>; 2], tolerance: &ast::Expr<'s>, span: Span) -> Option<Claim> {
         let [left, right] = both;
         let sides = self.sides(both, BinaryOp::Sub, span)?;
+        let constants = [sides.a.clone(), sides.b.clone()];
         let difference = self.combine(sides)?;
         let difference = self.materialise(difference, None, span)?;
         let ty = difference.ty;
-        let ExprKind::Apply(op, operands) = difference.kind else {
-            self.report(
-                Diagnostic::new(Code::E0201, span, "`ASSERT_NEAR` compares a value that the program computes")
-                    .label("both sides are constants"),
-            );
-            return None;
+        let (difference, [actual, expected]) = if let ExprKind::Apply(op, operands) = difference.kind {
+            let [a, b] = <[Expr; 2]>::try_from(operands).ok()?;
+            let (a, actual) = self.keep("actual", a, left.span)?;
+            let (b, expected) = self.keep("expected", b, right.span)?;
+            (Expr::new(ty, ExprKind::Apply(op, vec![a, b]), difference.at), [actual, expected])
+        } else {
+            (difference, self.keep_constants(constants, both)?)
         };
-        let [a, b] = <[Expr; 2]>::try_from(operands).ok()?;
-        let (a, actual) = self.keep("actual", a, left.span)?;
-        let (b, expected) = self.keep("expected", b, right.span)?;
-        let difference = Expr::new(ty, ExprKind::Apply(op, vec![a, b]), difference.at);
         let distance = self.apply(Op::Abs, ty, vec![difference], ty, span)?;
         let limit = self.value(tolerance, ty)?;
         let holds = self.apply(Op::Le, ty, vec![distance, limit], Type::BOOL, span)?;
         Some(Claim::of(holds, "to be near {}", actual, expected))
+    }
+
+    /// The names of what keeps two constants, whose comparison is known.
+    fn keep_constants(&mut self, constants: [Operand; 2], both: [&ast::Expr<'s>; 2]) -> Option<[String; 2]> {
+        let [actual, expected] = constants;
+        let [left, right] = both.map(|it| it.span);
+        let actual = self.materialise(actual, None, left)?;
+        let expected = self.materialise(expected, None, right)?;
+        Some([self.keep("actual", actual, left)?.1, self.keep("expected", expected, right)?.1])
     }
 
     /// The value in a new variable of the test, and the variable's name.
