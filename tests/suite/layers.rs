@@ -15,7 +15,6 @@ const LAYERS: [&str; 22] = [
     "spelling",
     "ast",
     "allow",
-    "follow_up",
     "foreign",
     "inherit",
     "lex",

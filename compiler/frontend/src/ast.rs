@@ -313,6 +313,8 @@ pub struct TypeDecl<'s> {
     pub name: Name<'s>,
     /// In a `TYPE INTERNAL`.
     pub internal: bool,
+    /// The structure that a structure EXTENDS.
+    pub base: Option<Path<'s>>,
     pub ty: TypeSpec<'s>,
     pub initial: Option<Initial<'s>>,
     pub doc: Option<String>,

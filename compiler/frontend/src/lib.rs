@@ -14,7 +14,6 @@ mod testing;
 
 mod allow;
 mod dialect;
-mod follow_up;
 mod foreign;
 mod inherit;
 mod log;
@@ -147,9 +146,6 @@ fn run(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
     // SETUP is a part of each test.
     compilation.diagnostics.dedup_by(|a, b| (a.code, a.span) == (b.code, b.span) && a.message == b.message);
     compilation.diagnostics.retain(|it| !allowances.cover(it));
-    if compilation.program.is_none() {
-        follow_up::remove(sources, &mut compilation.diagnostics);
-    }
     // A text of pieces is not in the order of its file.
     compilation.diagnostics.sort_by_key(|it| (it.span.file, sources.get(it.span.file).in_file(it.span).start));
     compilation

@@ -246,6 +246,7 @@ impl<'a> Declarations<'a> {
                 let made = self.enumeration(declared.name.text, base.as_ref(), values)?;
                 Slot { ty: Type::Enum(made), initial: None }
             }
+            TypeKind::Struct(_) if declared.base.is_some() => return unknown("a structure with a base"),
             _ => self.spec(&declared.ty)?,
         };
         Ok(Slot { initial: declared.initial.as_ref().or(slot.initial), ..slot })

@@ -16,6 +16,7 @@ mod pou;
 mod pragma;
 pub(crate) mod run;
 mod specs;
+mod structure;
 mod variable;
 
 use crate::ast;

@@ -45,6 +45,7 @@ fn needs(declarations: &Declarations<'_>, entry: Entry) -> std::vec::IntoIter<En
     match entry {
         Entry::Type(at) => {
             let decl = declarations.types[at].decl;
+            decl.base.iter().for_each(|it| needs.path(it, Sense::Type));
             needs.spec(&decl.ty);
             decl.initial.iter().for_each(|it| needs.initial(it));
         }

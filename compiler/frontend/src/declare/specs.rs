@@ -10,12 +10,11 @@ use crate::spelling::{Key, nearest};
 use crate::types::declarations::Declarations;
 use crate::types::generic::class_named;
 use crate::types::scope::Scope;
-use crate::types::table::{PendingReference, Resolved, instance_of, scalar_initial, struct_initial};
+use crate::types::table::{PendingReference, Resolved, instance_of, scalar_initial};
 use crate::{Code, Diagnostic, Span};
 use rustc_hash::FxHashMap;
 use staunch_ir::{
-    Array, ArrayId, BoundsId, Const, Elementary, Enum, EnumId, Enumerator, RefKind, RefType, ReferenceId, Struct, Type,
-    Value,
+    Array, ArrayId, BoundsId, Const, Elementary, Enum, EnumId, Enumerator, RefKind, RefType, ReferenceId, Type, Value,
 };
 use staunch_runtime::Family;
 use std::rc::Rc;
@@ -64,7 +63,18 @@ impl<'s> Declarations<'s> {
         let decl = self.types[at].decl;
         let scope = Rc::new(Scope::default());
         let doc = decl.doc.clone();
-        let mut resolved = self.resolve_type_named(&decl.ty, &scope, &self.name_in_full(decl.name), doc)?;
+        let name = self.name_in_full(decl.name);
+        let mut resolved = match (&decl.base, &decl.ty.kind) {
+            (Some(base), TypeKind::Struct(members)) => {
+                let base = self.base_structure(base)?;
+                self.structure(members, Some(base), &scope, &name, doc, decl.ty.span)?
+            }
+            (Some(base), _) => {
+                self.report_no_structure(base);
+                return None;
+            }
+            (None, _) => self.resolve_type_named(&decl.ty, &scope, &name, doc)?,
+        };
         if let Some(initial) = &decl.initial {
             resolved.initial = self.initial(initial, &resolved, &scope)?;
         }
@@ -118,12 +128,7 @@ impl<'s> Declarations<'s> {
             TypeKind::String { wide: false, capacity } => self.string(capacity.as_deref(), scope, spec.span),
             TypeKind::Subrange { base, low, high } => self.subrange(*base, low, high, scope),
             TypeKind::Array { bounds, element } => self.array_type(bounds, element, scope, name, spec.span),
-            TypeKind::Struct(members) => {
-                for address in members.iter().filter_map(|it| it.address) {
-                    self.not_supported(address.span, "the address of a structure's member");
-                }
-                self.structure(members, scope, name, doc, spec.span)
-            }
+            TypeKind::Struct(members) => self.structure(members, None, scope, name, doc, spec.span),
             TypeKind::Enum { base, values } => self.enumeration(*base, values, scope, name, doc, spec.span),
             TypeKind::Reference { kind, target } => self.reference(*kind, target, scope, name),
             // The parser has said so.
@@ -184,7 +189,7 @@ impl<'s> Declarations<'s> {
         }
     }
 
-    fn resolve_path(&mut self, path: &[ast::Name<'s>], span: Span) -> Option<Resolved> {
+    pub(super) fn resolve_path(&mut self, path: &[ast::Name<'s>], span: Span) -> Option<Resolved> {
         if let [name] = path {
             return self.resolve_name(*name);
         }
@@ -488,41 +493,6 @@ impl<'s> Declarations<'s> {
         self.program.arrays.push(array);
         self.table.elements.push(element);
         Type::Array(id)
-    }
-
-    fn structure(
-        &mut self,
-        members: &'s [ast::VarDecl<'s>],
-        scope: &Rc<Scope<'s>>,
-        name: &str,
-        doc: Option<String>,
-        span: Span,
-    ) -> Option<Resolved> {
-        let block = ast::VarBlock::new(ast::VarKind::Var, span);
-        let mut seen = Scope::default();
-        let mut fields = Vec::new();
-        let mut complete = true;
-        for decl in members {
-            let owner = decl.names.first().map_or(name, |it| it.text);
-            let Some(resolved) = self.declared_type(decl, scope, owner).map(Rc::new) else {
-                complete = false;
-                continue;
-            };
-            for member in &decl.names {
-                let place = staunch_ir::Place::root(staunch_ir::Root::Instance, resolved.ty);
-                let variable = self.variable(*member, &block, Rc::clone(&resolved), place);
-                fields.push(self.field(*member, &resolved, &block, decl));
-                self.enter_variable(&mut seen, variable);
-            }
-        }
-        if fields.is_empty() && complete {
-            self.error(Code::E0408, span, "a structure has at least one member");
-            return None;
-        }
-        let initial = struct_initial(&fields);
-        let location = self.location(span);
-        let id = self.push_struct(Struct { name: name.to_owned(), doc, location, fields });
-        complete.then_some(Resolved { ty: Type::Struct(id), initial })
     }
 
     /// Refuses what a call would have to copy.

@@ -9,7 +9,7 @@ use crate::{
 
 use super::{
     block_ends,
-    combinator::{name, token},
+    combinator::{name, token, word},
     declaration::{end, type_spec},
     foreign_types,
     initial::optional_initial,
@@ -17,7 +17,6 @@ use super::{
     parser::{In, Parsed, Start, TokenReader},
     recovery,
     token_class::ends_declarations,
-    unsupported,
 };
 
 pub fn types<'s>(input: &mut In<'_, '_, 's>) -> Vec<TypeDecl<'s>> {
@@ -66,18 +65,20 @@ fn type_decl_or_name<'t, 'p, 's>(input: &mut In<'t, 'p, 's>, start: Start<'t, 'p
     let state = input.state();
     let names = (first + 1..last).filter(|at| state.tokens.kinds[*at] == Kind::Name).map(|at| state.place(at));
     let unread = names.map(|span| Name { text: state.slice(span), span }).collect();
-    Some(TypeDecl { name, internal: false, ty, initial: None, doc: None, unread })
+    Some(TypeDecl { name, internal: false, base: None, ty, initial: None, doc: None, unread })
 }
 
 /// `Name : type := value;`, where a structure may do without the `;`.
 fn type_decl<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeDecl<'s>> {
     let first = input.number();
     let colon = token(Kind::Colon).ignored().or(foreign_types::no_colon_in_type());
-    let head = name().then_ignore(unsupported::bases("EXTENDS")).then_ignore(colon);
-    let (name, (ty, initial)) = input.parse(head.then(type_spec().then(optional_initial())))?;
+    let path = name().separated_by(token(Kind::Dot)).at_least(1).collect();
+    let base = word("EXTENDS").ignore_then(path).or_not();
+    let head = name().then(base).then_ignore(colon);
+    let ((name, base), (ty, initial)) = input.parse(head.then(type_spec().then(optional_initial())))?;
     let closed = matches!(ty.kind, TypeKind::Struct(_) | TypeKind::Unsupported("UNION"));
     if !closed || input.kind() == Kind::Semicolon {
         input.parse(end())?;
     }
-    Ok(TypeDecl { name, internal: false, ty, initial, doc: input.doc(first), unread: Vec::new() })
+    Ok(TypeDecl { name, internal: false, base, ty, initial, doc: input.doc(first), unread: Vec::new() })
 }

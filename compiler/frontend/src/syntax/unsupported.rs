@@ -1,12 +1,9 @@
 //! Constructs that are known and refused by name: JMP and the like.
 //! Their words are names everywhere else.
 
-use chumsky::prelude::*;
-
 use crate::lex::Kind;
 
 use super::{
-    combinator::{Rule, ahead, name, reported, token, word},
     diagnostics,
     parser::{In, TokenReader},
     recovery,
@@ -42,12 +39,4 @@ pub fn skip_construct(input: &mut In<'_, '_, '_>, end: Kind) {
             return;
         }
     }
-}
-
-/// `EXTENDS a, b`, if it is there.
-pub fn bases<'t, 's: 't>(keyword: &'static str) -> impl Rule<'t, 's, ()> {
-    let refused = reported(word(keyword), move |span, state, _| state.report(diagnostics::unsupported(span, keyword)));
-    let separator = token(Kind::Comma).or(token(Kind::Dot));
-    let bases = refused.ignore_then(name().separated_by(separator).at_least(1));
-    ahead(move |input| !input.is_word(keyword)).or(bases)
 }
