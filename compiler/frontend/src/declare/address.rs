@@ -179,6 +179,7 @@ impl<'s> Declarations<'s> {
     }
 
     fn check_width(&mut self, address: Address, resolved: &Resolved, span: Span) -> u64 {
+        self.check_not_relative(resolved.ty, span);
         let bits = match resolved.ty {
             Type::Elementary(Elementary::Bool) => 1,
             other => self.size_of(other).saturating_mul(8),

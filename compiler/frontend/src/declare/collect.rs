@@ -86,7 +86,7 @@ impl<'s> Declarations<'s> {
                         self.classes.insert(pou.name.span, slot);
                     }
                     // Nobody names a test.
-                    if pou.kind != ast::PouKind::Test {
+                    if pou.kind != ast::PouKind::Test && !self.overloads_another(slot) {
                         let internal = matches!(pou.modifiers.access, Some((ast::Access::Internal, _)));
                         self.enter(pou.name, Entry::Pou(slot), internal);
                     }
@@ -245,7 +245,7 @@ impl<'s> Declarations<'s> {
     }
 }
 
-fn declared_twice(name: ast::Name<'_>, first: Span) -> Diagnostic {
+pub(super) fn declared_twice(name: ast::Name<'_>, first: Span) -> Diagnostic {
     Diagnostic::new(Code::E0103, name.span, format!("`{}` is declared twice", name.text))
         .label("declared again here")
         .other(first, "first declared here")

@@ -13,7 +13,7 @@ impl<'s> Declarations<'s> {
     pub(super) fn declare_mocks(&mut self, names: &FxHashSet<Key<'s>>) {
         for slot in 0..self.pous.len() {
             let pou = self.pous[slot].ast;
-            let is_mocked = names.contains(&Key(pou.name.text)) && !self.is_generic(slot);
+            let is_mocked = names.contains(&Key(pou.name.text)) && !self.is_generic(slot) && !self.overloads.have(slot);
             if pou.kind != PouKind::Function || !is_mocked {
                 continue;
             }

@@ -12,8 +12,10 @@ mod list;
 mod mock;
 mod named_program;
 mod needs;
+mod overload;
 mod pou;
 mod pragma;
+mod relative;
 pub(crate) mod run;
 mod specs;
 mod structure;
@@ -43,6 +45,7 @@ pub(crate) fn declare<'s>(
     for file in files {
         declarations.collect(file);
     }
+    declarations.name_overloads();
     declarations.check_bases();
     for Run { pou, instance, .. } in runs {
         declarations.pous.push(PouSlot { run: Some(*instance), ..PouSlot::open(pou) });
@@ -51,6 +54,7 @@ pub(crate) fn declare<'s>(
     declarations.note_generics();
     declarations.collect_addresses(bodies);
     declarations.resolve_all();
+    declarations.check_overloads();
     declarations.find_named_programs(bodies);
     declarations.declare_mocks(&testing::mocked_functions(bodies));
     declarations.declare_globals();

@@ -63,8 +63,8 @@ impl<'s> Declarations<'s> {
         doc: Option<String>,
         span: Span,
     ) -> Option<Resolved> {
-        for address in members.iter().filter_map(|it| it.address) {
-            self.not_supported(address.span, "the address of a structure's member");
+        for address in members.iter().filter(|_| base.is_some()).filter_map(|it| it.address) {
+            self.not_supported(address.span, "the location of a member in a structure that EXTENDS another");
         }
         let block = ast::VarBlock::new(ast::VarKind::Var, span);
         let mut seen = Scope::default();
@@ -87,9 +87,13 @@ impl<'s> Declarations<'s> {
             self.error(Code::E0408, span, "a structure has at least one member");
             return None;
         }
+        // A member that was refused has no field.
+        let has_all = complete && base.is_none();
+        let extent = if has_all { self.relative_extent(members, &fields) } else { None };
         let initial = struct_initial(&fields);
         let location = self.location(span);
         let id = self.push_struct(Struct { name: name.to_owned(), doc, location, fields });
+        self.table.relative.extend(extent.map(|it| (id, it)));
         complete.then_some(Resolved { ty: Type::Struct(id), initial })
     }
 }

@@ -109,6 +109,7 @@ codes! {
     E0314 Error "RCV shared by two counters";
     E0315 Error "RCV is assigned";
     E0316 Error "what cannot be replaced by a mock";
+    E0317 Error "which FUNCTION of a name is called";
     E0402 Error "a declaration needs itself";
     E0403 Error "qualifier does not belong here";
     E0405 Error "VAR_EXTERNAL differs from its global";

@@ -157,7 +157,10 @@ impl<'s> Checker<'_, 's> {
         if self.has_logix_operands(callee, arguments) {
             return None;
         }
-        let found = self.callee(callee, arguments);
+        let found = match self.callee(callee, arguments) {
+            Some(Callee::Function(slot)) => self.meant(slot, callee.span, arguments).map(Callee::Function),
+            other => other,
+        };
         if found.is_none() && !super::callee::wants_heap(callee) {
             self.check_arguments(arguments);
         }

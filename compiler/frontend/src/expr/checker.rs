@@ -6,8 +6,12 @@ use crate::types::declarations::Declarations;
 use crate::types::scope::Scope;
 use crate::types::signature::Signature;
 use crate::{Code, Diagnostic, Span, ast};
+use rustc_hash::FxHashMap;
 use staunch_ir::{Block, Expr, For, Local, Location, Place, Statement, StatementKind, Type};
 use std::rc::Rc;
+
+/// What was found for a call of FUNCTIONs of one name: it is looked for once, however often the call is looked at.
+pub(crate) type Choice = Result<usize, Box<Diagnostic>>;
 
 /// Checks the body of one POU, or one constant expression.
 pub(crate) struct Checker<'d, 's> {
@@ -30,6 +34,8 @@ pub(crate) struct Checker<'d, 's> {
     pub context: Context,
     /// Instances called so far on the way to this statement.
     pub called: Called,
+    /// Which of the FUNCTIONs of one name calls mean, by the places of these names.
+    pub choices: FxHashMap<Span, Choice>,
     /// The first statement that makes nothing, because something in it was refused.
     pub left_out: Option<Span>,
 }
@@ -69,6 +75,7 @@ impl<'d, 's> Checker<'d, 's> {
             uses: Uses::default(),
             context,
             called: Called::default(),
+            choices: FxHashMap::default(),
             left_out: None,
         }
     }

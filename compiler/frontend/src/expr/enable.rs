@@ -24,11 +24,6 @@ impl<'s> Checker<'_, 's> {
         callee: &ast::Expr<'s>,
         arguments: &'a [ast::Argument<'s>],
     ) -> Option<(Enable<'a, 's>, Vec<ast::Argument<'s>>)> {
-        let is_en = |it: &ast::Argument<'s>| match &it.kind {
-            ArgumentKind::Input(name, _) => name.text.eq_ignore_ascii_case("EN"),
-            ArgumentKind::Output { name, .. } => name.text.eq_ignore_ascii_case("ENO"),
-            ArgumentKind::Positional(_) => false,
-        };
         if !arguments.iter().any(is_en) {
             return None;
         }
@@ -173,5 +168,14 @@ fn place_of(formal: &Formal<'_>) -> Place {
     match formal.target {
         Target::Field(field) => Place::root(Root::Instance, Type::BOOL).field(field, Type::BOOL),
         Target::Param(at) => Place::root(Root::Param(ParamId::next(at)), Type::BOOL),
+    }
+}
+
+/// Whether a call names EN or ENO.
+pub(crate) fn is_en(argument: &ast::Argument<'_>) -> bool {
+    match &argument.kind {
+        ArgumentKind::Input(name, _) => name.text.eq_ignore_ascii_case("EN"),
+        ArgumentKind::Output { name, .. } => name.text.eq_ignore_ascii_case("ENO"),
+        ArgumentKind::Positional(_) => false,
     }
 }

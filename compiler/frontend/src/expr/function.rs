@@ -131,7 +131,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// Evaluates the next part, what is given for an input or a VAR_IN_OUT.
-    fn given_part(
+    pub(crate) fn given_part(
         &mut self,
         parts: &mut Parts,
         signature: &Signature<'s>,

@@ -306,7 +306,9 @@ impl<'s> Checker<'_, 's> {
             Ast::Name(name) => self.own_routine(*name).or_else(|| {
                 let found = self.decl.lookup(&[*name], Sense::Callee);
                 let names::Found::One(Meaning::Declared(Entry::Pou(slot))) = found else { return None };
-                (self.decl.pous[slot].ast.kind == PouKind::Function).then_some(slot)
+                // Which one of several is meant is not known without looking at the arguments.
+                let is_known = self.decl.overloads.of(slot).is_none();
+                (self.decl.pous[slot].ast.kind == PouKind::Function && is_known).then_some(slot)
             }),
             Ast::Literal(_)
             | Ast::Address(_)

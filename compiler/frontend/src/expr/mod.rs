@@ -7,6 +7,7 @@ mod block_call;
 mod call;
 pub(crate) mod call_tracking;
 mod callee;
+mod candidate;
 pub(crate) mod checker;
 mod coerce;
 pub(crate) mod constant;

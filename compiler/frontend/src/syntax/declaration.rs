@@ -66,7 +66,7 @@ fn section_head<'t, 's: 't>() -> impl Rule<'t, 's, VarBlock<'s>> {
         token(Kind::Retain).map(|span| (Qualifier::Retain, span)),
         token(Kind::NonRetain).map(|span| (Qualifier::NonRetain, span)),
         token(Kind::Persistent).map(|span| (Qualifier::Persistent, span)),
-        access().map(|(access, span)| (Qualifier::Access(access), span)),
+        section_access().map(|(access, span)| (Qualifier::Access(access), span)),
     ));
     let opened = foreign_types::section_of_two_words().or(kind).map(|(kind, span)| VarBlock::new(kind, span));
     opened.foldl(qualifier.repeated(), |mut block, (qualifier, span)| {
@@ -81,15 +81,23 @@ fn section_head<'t, 's: 't>() -> impl Rule<'t, 's, VarBlock<'s>> {
     })
 }
 
+const ACCESSES: [(&str, Access); 4] = [
+    ("PUBLIC", Access::Public),
+    ("PRIVATE", Access::Private),
+    ("PROTECTED", Access::Protected),
+    ("INTERNAL", Access::Internal),
+];
+
 /// `PUBLIC` and the like before a name.
 pub fn access<'t, 's: 't>() -> impl Rule<'t, 's, (Access, Span)> {
-    let accesses = [
-        ("PUBLIC", Access::Public),
-        ("PRIVATE", Access::Private),
-        ("PROTECTED", Access::Protected),
-        ("INTERNAL", Access::Internal),
-    ];
-    choice(accesses.map(|(text, access)| before_name(text).map(move |span| (access, span))))
+    choice(ACCESSES.map(|(text, access)| before_name(text).map(move |span| (access, span))))
+}
+
+/// `PUBLIC` and the like after `VAR`, where a variable of that name would be declared.
+fn section_access<'t, 's: 't>() -> impl Rule<'t, 's, (Access, Span)> {
+    let declares = |input: &mut In<'_, '_, '_>| matches!(input.kind_ahead(1), Kind::Colon | Kind::Comma | Kind::At);
+    let alone = move |text| ahead(move |input| !declares(input)).ignore_then(word(text));
+    choice(ACCESSES.map(|(text, access)| alone(text).map(move |span| (access, span))))
 }
 
 /// A word before a name.
@@ -218,9 +226,12 @@ fn typed<'t, 's: 't>() -> impl Rule<'t, 's, (TypeSpec<'s>, Option<(Edge, Span)>)
     colon.ignore_then(type_spec()).then(usual.or(edge))
 }
 
-/// `AT %IX0.0`
+/// `AT %IX0.0`; in a structure `AT %B4` and `AT %X0.3`.
 fn address<'t, 's: 't>() -> impl Rule<'t, 's, Option<Name<'s>>> {
-    let direct = token(Kind::Address).map_with(|span, extra| Some(Name { text: extra.state().slice(span), span }));
+    let relative = token(Kind::Part).then(token(Kind::Dot).ignore_then(token(Kind::Integer)).or_not());
+    let relative = relative.map(|(start, end)| end.map_or(start, |it| start.to(it)));
+    let place = ahead(|input| input.kind() == Kind::Part).ignore_then(relative).or(token(Kind::Address));
+    let direct = place.map_with(|span, extra| Some(Name { text: extra.state().slice(span), span }));
     let unsigned = foreign_types::address_without_sign().to(None);
     token(Kind::At).ignore_then(unsigned.or(direct)).or_not().map(Option::flatten)
 }

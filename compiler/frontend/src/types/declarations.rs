@@ -3,6 +3,7 @@
 use super::address::{self, Addresses};
 use super::generic::{Generics, Instance};
 use super::image::Image;
+use super::overloads::Overloads;
 use super::scope::Variable;
 use super::signature::Signature;
 use super::synthetic::{NamedProgram, Synthetic};
@@ -151,6 +152,7 @@ pub(crate) struct Declarations<'s> {
     pub program: Program,
     pub table: Table<'s>,
     pub generics: Generics,
+    pub overloads: Overloads,
     /// A call asks for an instance of a generic FUNCTION, whose signature is made as all are: by a layer above.
     pub build_signature: BuildSignature<'s>,
 }
@@ -175,6 +177,7 @@ impl<'s> Declarations<'s> {
             program: empty_program(files),
             table: Table::default(),
             generics: Generics::default(),
+            overloads: Overloads::default(),
             build_signature,
         }
     }
@@ -221,6 +224,9 @@ impl<'s> Declarations<'s> {
         let PouSlot { ast: pou, instance, .. } = &self.pous[slot];
         if let Some(instance) = instance {
             return instance.name.clone();
+        }
+        if let Some(name) = self.overloads.names.get(&slot) {
+            return name.clone();
         }
         if let (Some(home), true) = (pou.home, pou.is_hidden) {
             return format!("{}_{}", home.text, pou.name.text);

@@ -150,6 +150,11 @@ impl<'s> Declarations<'s> {
             let parts = text.split(|it: char| !it.is_ascii_alphanumeric()).filter(|it| !it.is_empty());
             parts.for_each(|it| name.extend(["_", it]));
         }
+        self.own_name(name)
+    }
+
+    /// A name that back ends have for nothing else, that or one like it.
+    pub fn own_name(&mut self, mut name: String) -> String {
         let taken = |this: &Self, name: &str| {
             this.names.root(name).is_some() || this.generics.names.contains(&name.to_ascii_uppercase())
         };

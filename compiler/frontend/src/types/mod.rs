@@ -7,6 +7,8 @@ pub(crate) mod generic;
 pub(crate) mod image;
 pub(crate) mod index;
 pub(crate) mod instances;
+mod overload_names;
+pub(crate) mod overloads;
 pub(crate) mod scope;
 pub(crate) mod signature;
 mod storage;

@@ -34,6 +34,8 @@ pub(crate) struct Table<'s> {
     pub sizes: Vec<u64>,
     /// And no fewer than these, whatever its alignment adds.
     pub sizes_at_most: Vec<u64>,
+    /// The bits of each structure whose members have relative locations.
+    pub relative: FxHashMap<StructId, u64>,
     /// The POU slot of each structure that is an instance's state.
     pub instances: FxHashMap<StructId, usize>,
     /// How many constants the initial values hold so far.

@@ -1,0 +1,24 @@
+//! FUNCTIONs of one name that differ in their parameters.
+
+use rustc_hash::FxHashMap;
+use std::rc::Rc;
+
+#[derive(Debug, Default)]
+pub(crate) struct Overloads {
+    /// By the slot of the first one, which the name leads to: the slots of all.
+    pub sets: FxHashMap<usize, Vec<usize>>,
+    /// What back ends call each.
+    pub names: FxHashMap<usize, String>,
+}
+
+impl Overloads {
+    /// The FUNCTIONs that the name of the one in a slot means, where there are others.
+    pub fn of(&self, slot: usize) -> Option<Rc<[usize]>> {
+        self.sets.get(&slot).map(|it| Rc::from(it.as_slice()))
+    }
+
+    /// Whether others have the name of the FUNCTION in a slot.
+    pub fn have(&self, slot: usize) -> bool {
+        self.names.contains_key(&slot)
+    }
+}
