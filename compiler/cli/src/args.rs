@@ -28,7 +28,7 @@ pub enum Command {
     Build(Build),
     /// Run scans on a virtual clock, with stimulus and trace
     Run(Run),
-    /// Run the unit tests that the sources hold
+    /// Run the unit tests that the sources hold, and the tables beside them
     Test(Test),
     /// Measure the time of a scan
     Bench(Bench),

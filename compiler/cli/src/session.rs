@@ -41,6 +41,11 @@ impl Session {
         Self::begin(common, files, compile).map(|(session, _)| session)
     }
 
+    /// The program that is not tests alone: what `run` would run. There is nothing more to say of it.
+    pub fn without_tests(&self) -> Result<Option<Program>, String> {
+        Ok(staunch_frontend::compile(&self.sources, &options(&self.common, &self.project)?).program)
+    }
+
     /// As [`start`](Self::start), but without a program at the end: the verdict alone.
     pub fn check(common: &Common, files: &Files) -> Result<u8, String> {
         let check = |sources: &_, options: &_| {
@@ -205,7 +210,11 @@ impl Session {
     /// The program with the instances that are to run: those of its CONFIGURATION, its only
     /// PROGRAM, or the one that is asked for by its own or its instance's name.
     pub fn program_to_run(&self, asked: Option<&str>) -> Result<Option<Program>, String> {
-        let Some(program) = &self.program else { return Ok(None) };
+        self.program.as_ref().map(|it| self.choose(it, asked)).transpose()
+    }
+
+    /// As [`program_to_run`](Self::program_to_run), of a program of these sources.
+    pub fn choose(&self, program: &Program, asked: Option<&str>) -> Result<Program, String> {
         let mut program = program.clone();
         let asked = asked.or(self.project.program.as_deref());
         let names: Vec<_> = program.instances.iter().map(|it| it.name.clone()).collect();
@@ -234,7 +243,7 @@ impl Session {
             }
             None => {}
         }
-        Ok(Some(program))
+        Ok(program)
     }
 
     /// Whether a CONFIGURATION says which instances run: then they bear names of their own, or

@@ -17,6 +17,7 @@ mod literal;
 mod value;
 
 mod column;
+mod expected;
 mod retain;
 mod schedule;
 mod start;
@@ -44,6 +45,7 @@ pub use csv::cells as csv_cells;
 pub use domain::Domain;
 pub use drive::{Bookmark, Drive};
 pub use error::Error;
+pub use expected::{Expectations, ExpectedCell, ExpectedRow, When};
 pub use json::quote as json_text;
 pub use map::{Instance, Map, Section, Structure, StructureKind, Type, Variable};
 pub use path::Place;

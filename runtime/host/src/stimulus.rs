@@ -63,7 +63,12 @@ enum Column {
     Time,
     Event,
     Variable(Place),
+    /// `|`: what is right of it is expected, which is no matter of a stimulus.
+    Bar,
 }
+
+/// Parts what goes in from what is expected to come out.
+pub(crate) const BAR: &str = "|";
 
 impl Stimulus {
     pub fn read(path: &Path, map: &Map, running: &[usize]) -> Result<Self, Error> {
@@ -75,7 +80,7 @@ impl Stimulus {
     /// `path` is for messages.
     pub fn parse(path: &Path, text: &str, map: &Map, running: &[usize]) -> Result<Self, Error> {
         let decimal_comma = csv::has_semicolons(text);
-        let mut parser = Parser { path, map, running, columns: Vec::new(), decimal_comma };
+        let mut parser = Parser { path, map, running, columns: Vec::new(), is_numbered: false, decimal_comma };
         let open = |(line, column)| parser.error(line, column, "a quote that is not closed".to_owned());
         let cells = csv::parse(text).map_err(open)?;
         let Some((header, rows)) = cells.split_first() else {
@@ -86,7 +91,7 @@ impl Stimulus {
             ));
         };
         parser.header(header)?;
-        let rows = rows.iter().map(|cells| parser.row(cells)).collect::<Result<Vec<_>, _>>()?;
+        let rows = (1..).zip(rows).map(|(number, cells)| parser.row(number, cells)).collect::<Result<Vec<_>, _>>()?;
         parser.in_order(&rows)?;
         Ok(Self { path: path.to_owned(), rows })
     }
@@ -130,6 +135,8 @@ struct Parser<'a> {
     map: &'a Map,
     running: &'a [usize],
     columns: Vec<Column>,
+    /// There is neither a scan nor a time: the rows are scans 1, 2, 3.
+    is_numbered: bool,
     /// Reals are written `3,5`.
     decimal_comma: bool,
 }
@@ -144,13 +151,17 @@ impl Parser<'_> {
     }
 
     fn header(&mut self, cells: &[Cell]) -> Result<(), Error> {
-        for (position, cell) in cells.iter().enumerate() {
+        let bar = cells.iter().position(|it| it.text == BAR);
+        let is_clock = |it: &Cell| same(&it.text, "scan") || same(&it.text, "time");
+        self.is_numbered = bar.is_some() && !cells.first().is_some_and(is_clock);
+        for (position, cell) in cells.iter().take(bar.unwrap_or(cells.len())).enumerate() {
             let column = self.column(position, cell)?;
             if self.columns.contains(&column) {
                 return Err(self.at(cell, format!("`{}` already has a column", cell.text)));
             }
             self.columns.push(column);
         }
+        self.columns.extend(bar.map(|_| Column::Bar));
         Ok(())
     }
 
@@ -159,11 +170,12 @@ impl Parser<'_> {
         match cell.text.as_str() {
             text if position < 2 && same(text, "scan") && !self.columns.contains(&Column::Scan) => Ok(Column::Scan),
             text if position < 2 && same(text, "time") && !self.columns.contains(&Column::Time) => Ok(Column::Time),
+            text if same(text, "@event") => Ok(Column::Event),
+            text if self.is_numbered => self.variable(cell, text),
             _ if position == 0 => {
                 Err(self.at(cell, format!("the first column is `scan` or `time`, not `{}`", cell.text)))
             }
             _ if !self.columns.iter().any(is_clock) => Err(self.at(cell, "the first column is `scan` or `time`")),
-            text if same(text, "@event") => Ok(Column::Event),
             text => self.variable(cell, text),
         }
     }
@@ -176,10 +188,15 @@ impl Parser<'_> {
         }
     }
 
-    fn row(&self, cells: &[Cell]) -> Result<Row, Error> {
+    fn row(&self, number: u64, cells: &[Cell]) -> Result<Row, Error> {
         let at = cells.first().map_or((1, 1), |it| (it.line, it.column));
-        let mut row = Row { at, ..Row::default() };
-        if let Some(surplus) = cells.get(self.columns.len()) {
+        let mut row = Row { at, scan: self.is_numbered.then_some(number), ..Row::default() };
+        if self.columns.last() == Some(&Column::Bar) {
+            let bar = self.columns.len() - 1;
+            if let Some(other) = cells.get(bar).filter(|it| it.text != BAR) {
+                return Err(self.at(other, "here is a `|` in the header"));
+            }
+        } else if let Some(surplus) = cells.get(self.columns.len()) {
             return Err(self.at(surplus, format!("the header has only {} columns", self.columns.len())));
         }
         for (cell, column) in cells.iter().zip(&self.columns).filter(|(cell, _)| !cell.is_empty()) {
@@ -191,6 +208,7 @@ impl Parser<'_> {
                 }
                 Column::Event => row.event = Some(self.event(cell)?),
                 Column::Variable(place) => row.writes.push(self.write(cell, *place)?),
+                Column::Bar => {}
             }
         }
         match (row.scan, row.time, cells.first()) {
@@ -278,6 +296,19 @@ mod tests {
         let speeds: Vec<_> = stimulus.rows.iter().map(|it| it.writes[0].bytes.clone()).collect();
         assert_eq!(speeds, [-3.5_f32, 150.0, 2.5].map(|it| it.to_ne_bytes().to_vec()));
         assert!(read("scan;c.CV\n1;4,5\n").is_err() && read("scan;speed\n1;1,2,3\n").is_err());
+    }
+
+    #[test]
+    fn what_is_right_of_a_bar_is_no_stimulus() {
+        let numbered = read("up, |, c.CV\nTRUE, |, 1\n, |,\n").unwrap();
+        assert_eq!(
+            numbered.rows.iter().map(|it| (it.scan, it.writes.len())).collect::<Vec<_>>(),
+            [(Some(1), 1), (Some(2), 0)]
+        );
+        let placed = read("scan,up,|,nonsense\n3,1,|,x\n").unwrap();
+        assert_eq!((placed.rows[0].scan, placed.rows[0].writes.len()), (Some(3), 1));
+        assert_eq!(read("|,c.CV\n|,1\n|,2\n").unwrap().rows.len(), 2);
+        assert_eq!(read("up,|,c.CV\n1,2\n").unwrap_err(), "in.csv:2:3: here is a `|` in the header");
     }
 
     #[test]

@@ -15,10 +15,10 @@ use std::process::Command;
 /// What all threads share.
 pub struct Suite<'p> {
     program: &'p Program,
-    backend: Backend,
+    pub backend: Backend,
     /// Of the back end `rust`: an executable, which runs one test each time.
     executable: Option<PathBuf>,
-    turns: u64,
+    pub turns: u64,
 }
 
 /// What one thread runs its tests on.
@@ -38,8 +38,8 @@ type Values<'v> = dyn Fn(&str) -> Result<String, String> + 'v;
 impl<'p> Suite<'p> {
     pub fn new(session: &Session, args: &args::Test, program: &'p Program) -> Result<Self, String> {
         let executable = match args.backend {
-            Backend::Rust => Some(rustc::compile(program, Kind::Executable, None)?),
-            Backend::Native | Backend::Interpret => None,
+            Backend::Rust if !program.instances.is_empty() => Some(rustc::compile(program, Kind::Executable, None)?),
+            Backend::Rust | Backend::Native | Backend::Interpret => None,
         };
         let turns = args.loop_budget.or(session.project.loop_budget).unwrap_or(Context::TURNS);
         Ok(Self { program, backend: args.backend, executable, turns })

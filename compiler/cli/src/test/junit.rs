@@ -8,7 +8,7 @@ pub fn text(report: &Report<'_>) -> String {
     text += &format!("<testsuites tests=\"{all}\" failures=\"{failed}\">\n");
     for suite in report.results.chunk_by(|a, b| a.file == b.file) {
         let failed = suite.iter().filter(|it| !it.problem.is_empty()).count();
-        let file = escaped(suite[0].file);
+        let file = escaped(&suite[0].file);
         text += &format!("  <testsuite name=\"{file}\" tests=\"{}\" failures=\"{failed}\">\n", suite.len());
         suite.iter().for_each(|it| text += &case(it));
         text += "  </testsuite>\n";
@@ -16,8 +16,8 @@ pub fn text(report: &Report<'_>) -> String {
     text + "</testsuites>\n"
 }
 
-fn case(result: &Result<'_>) -> String {
-    let (title, file) = (escaped(&result.test.title), escaped(result.file));
+fn case(result: &Result) -> String {
+    let (title, file) = (escaped(&result.title), escaped(&result.file));
     let head = format!("    <testcase name=\"{title}\" classname=\"{file}\" file=\"{file}\" line=\"{}\"", result.line);
     if result.problem.is_empty() {
         return format!("{head}/>\n");

@@ -1,16 +1,19 @@
-//! `staunch test`: each TEST of the sources runs from a fresh state.
+//! `staunch test`: each TEST of the sources, and each table beside them, runs from a fresh state.
 
 mod execute;
 mod junit;
 mod parallel;
 mod report;
+mod table;
 
 use crate::args;
 use crate::session::Session;
 use crate::{REJECTED, output};
 use execute::Suite;
+use report::Report;
 use staunch_frontend::Test;
 use std::collections::HashSet;
+use table::Table;
 
 /// How a test went.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -23,37 +26,73 @@ pub enum Outcome {
         expected: Option<String>,
         message: Option<String>,
     },
+    /// What a table expected otherwise, a line each.
+    Differs(Vec<String>),
     /// The test faulted: where, and why.
     Faulted(String),
 }
 
 pub fn test(session: &Session, args: &args::Test) -> Result<u8, String> {
     let Some(program) = session.program() else { return Ok(REJECTED) };
-    if session.tests.is_empty() {
-        return Err("the sources hold no TEST".to_owned());
+    let tables = table::tables(session)?;
+    if session.tests.is_empty() && tables.is_empty() {
+        return Err("the sources hold no TEST, and no table is beside them".to_owned());
     }
     let wanted = args.filter.as_deref().unwrap_or_default().to_lowercase();
-    let chosen: Vec<(usize, &Test)> =
-        session.tests.iter().enumerate().filter(|(_, it)| it.title.to_lowercase().contains(&wanted)).collect();
-    if chosen.is_empty() {
-        return Err(format!("no test has `{wanted}` in its title; there are {} tests", session.tests.len()));
+    let is_wanted = |title: &str| title.to_lowercase().contains(&wanted);
+    let tests: Vec<(usize, &Test)> = session.tests.iter().enumerate().filter(|it| is_wanted(&it.1.title)).collect();
+    let all = session.tests.len() + tables.len();
+    let tables: Vec<Table> = tables.into_iter().filter(|it| is_wanted(&it.title)).collect();
+    if tests.is_empty() && tables.is_empty() {
+        return Err(format!("no test has `{wanted}` in its title; there are {all} tests"));
     }
-    let suite = Suite::new(session, args, program)?;
-    let mut report = report::Report::new(session);
-    let number = |piece: usize| chosen[piece].0;
-    parallel::in_order(
-        args.jobs.map_or_else(parallel::processors, usize::from),
-        chosen.len(),
-        |share| {
-            let own: HashSet<usize> = (0..chosen.len()).filter(|it| share.has(*it)).map(number).collect();
-            suite.executor(|instance| own.contains(&instance))
-        },
-        |executor, piece| executor.run(chosen[piece].0, chosen[piece].1),
-        |piece, outcome| output::print(report.add(chosen[piece].1, outcome).as_bytes()),
-    )?;
-    output::print(report.end().as_bytes())?;
+    let mut run = Run {
+        session,
+        suite: Suite::new(session, args, program)?,
+        threads: args.jobs.map_or_else(parallel::processors, usize::from),
+        report: Report::new(session),
+    };
+    run.tests(&tests)?;
+    run.tables(&tables)?;
+    output::print(run.report.end().as_bytes())?;
     if let Some(path) = &args.junit {
-        output::write(path, junit::text(&report).as_bytes())?;
+        output::write(path, junit::text(&run.report).as_bytes())?;
     }
-    Ok(if report.failed() == 0 { 0 } else { REJECTED })
+    Ok(if run.report.failed() == 0 { 0 } else { REJECTED })
+}
+
+struct Run<'s> {
+    session: &'s Session,
+    suite: Suite<'s>,
+    threads: usize,
+    report: Report<'s>,
+}
+
+impl Run<'_> {
+    /// Runs the tests that are instances of the program, by their numbers.
+    fn tests(&mut self, tests: &[(usize, &Test)]) -> Result<(), String> {
+        let Self { suite, threads, report, .. } = self;
+        parallel::in_order(
+            *threads,
+            tests.len(),
+            |share| {
+                let own = (0..tests.len()).filter(|it| share.has(*it)).map(|it| tests[it].0);
+                let own: HashSet<usize> = own.collect();
+                suite.executor(|instance| own.contains(&instance))
+            },
+            |executor, piece| executor.run(tests[piece].0, tests[piece].1),
+            |piece, outcome| output::print(report.add_test(tests[piece].1, outcome).as_bytes()),
+        )
+    }
+
+    fn tables(&mut self, tables: &[Table]) -> Result<(), String> {
+        if tables.is_empty() {
+            return Ok(());
+        }
+        let Self { session, suite, threads, report } = self;
+        let program = session.without_tests()?.ok_or("the program without its tests is rejected")?;
+        let work = |_: &mut (), piece: usize| Ok(table::run(session, suite, &program, &tables[piece]));
+        let each = |piece: usize, outcome| output::print(report.add_table(&tables[piece], outcome).as_bytes());
+        parallel::in_order(*threads, tables.len(), |_| Ok(()), work, each)
+    }
 }

@@ -12,6 +12,7 @@ mod power;
 mod retain;
 mod run;
 mod stimulus;
+mod tables;
 mod unit_tests;
 mod vendor;
 

@@ -1,0 +1,97 @@
+//! `staunch test` with tables: a CSV file beside a source.
+
+use super::{COUNTER, Folder, has};
+
+const TABLE: &str = "pulse, reset, |, parts.CV, full
+ TRUE,      , |,        1, FALSE
+FALSE,      , |,         ,
+ TRUE,      , |,        2,     1
+     ,  TRUE, |,        0, FALSE
+";
+
+#[test]
+fn a_table_is_a_test() {
+    let folder = Folder::with("table", &[("counter.st", COUNTER), ("counter.csv", TABLE)]);
+    for backend in ["native", "interpret", "rust"] {
+        let out = folder.staunch(&format!("test . --backend {backend}")).out(0);
+        assert_eq!(out, "counter.csv\n  ok      counter\n\n1 passed, 0 failed\n");
+    }
+    let trace = folder.staunch("run counter.st --stimulus counter.csv --trace - --vars parts.CV").out(0);
+    assert_eq!(trace, "scan,time_ms,parts.CV\n1,0,1\n2,10,1\n3,20,2\n4,30,0\n");
+    folder.staunch("test . --filter other").err(2);
+}
+
+#[test]
+fn the_first_row_that_differs_is_reported() {
+    let table = TABLE.replace("2,     1", "3,     0");
+    let folder = Folder::with("table_differs", &[("counter.st", COUNTER), ("counter.csv", &table)]);
+    let expected = "counter.csv
+  FAILED  counter
+          counter.csv:4:25: parts.CV after scan 3
+          expected to be 3, found 2
+          counter.csv:4:32: full after scan 3
+          expected to be 0, found TRUE
+
+0 passed, 1 failed
+";
+    for backend in ["native", "interpret", "rust"] {
+        assert_eq!(folder.staunch(&format!("test . --junit out.xml --backend {backend}")).out(1), expected);
+    }
+    has(
+        &folder.read("out.xml"),
+        &["<testcase name=\"counter\" classname=\"counter.csv\" file=\"counter.csv\" line=\"1\">"],
+    );
+}
+
+#[test]
+fn rows_by_time_events_and_faults() {
+    let program = "PROGRAM Main
+VAR_INPUT on : BOOL; share : INT := 1; END_VAR
+VAR t : TON; n : INT; END_VAR
+VAR RETAIN kept : INT; END_VAR
+t(IN := on, PT := T#20ms);
+n := n + 10 / share;
+kept := kept + 1;
+END_PROGRAM
+";
+    let by_time =
+        "time,on,@event,|,t.Q,n,kept\nT#5ms,TRUE,,|,FALSE,20,2\nT#30ms,,,|,TRUE,40,\nT#45ms,,restart,|,FALSE,10,6\n";
+    let folder = Folder::with("table_times", &[("timed.st", program), ("timed.csv", by_time)]);
+    for backend in ["native", "interpret", "rust"] {
+        has(&folder.staunch(&format!("test . --backend {backend}")).out(0), &["1 passed, 0 failed"]);
+    }
+    folder.write("timed.csv", "share,|,n\n1,|,10\n0,|,\n");
+    for backend in ["native", "interpret", "rust"] {
+        let out = folder.staunch(&format!("test . --backend {backend}")).out(1);
+        has(&out, &["  FAILED  timed\n          timed.st:6:13: ", "division by zero"]);
+    }
+    folder.write("timed.csv", "share,|,m\n1,|,10\n");
+    has(&folder.staunch("test .").out(1), &["timed.csv:1:9: there is no variable `m`"]);
+    // Without a bar it is no test.
+    folder.write("timed.csv", "scan,share\n1,10\n");
+    has(&folder.staunch("test .").err(2), &["the sources hold no TEST, and no table is beside them"]);
+}
+
+#[test]
+fn a_table_runs_the_program_of_its_source() {
+    let program = |name: &str, by: u8| format!("PROGRAM {name}\nVAR n : INT; END_VAR\nn := n + {by};\nEND_PROGRAM\n");
+    let tests = "TEST 'beside' VAR a : A; END_VAR a(); ASSERT_EQ(a.n, 1); END_TEST\n";
+    let folder = Folder::with(
+        "table_programs",
+        &[
+            ("a.st", &program("A", 1)),
+            ("a.csv", "|,n\n|,1\n|,2\n"),
+            ("b.st", &program("B", 2)),
+            ("b.csv", "scan,|,n\n3,|,6\n"),
+            ("c.st", tests),
+            ("c.csv", "|,n\n|,1\n"),
+        ],
+    );
+    let out = folder.staunch("test .").out(1);
+    has(
+        &out,
+        &["c.st\n  ok      beside\na.csv\n  ok      a\nb.csv\n  ok      b\nc.csv\n  FAILED  c\n", "several programs"],
+    );
+    has(&folder.staunch("test a.st").out(0), &["1 passed, 0 failed"]);
+    has(&folder.staunch("test . -q").out(1), &["c.csv\n  FAILED  c\n"]);
+}
