@@ -98,6 +98,7 @@ pub fn program(tasks: &[Task]) -> Program {
         enums: Vec::new(),
         bounds: Vec::new(),
         arrays: Vec::new(),
+        interfaces: Vec::new(),
         references: Vec::new(),
         globals: StructId::next(tasks.len()),
         aliases: Vec::new(),

@@ -48,8 +48,8 @@ impl<'s> File<'s> {
     /// go when they have been checked.
     pub(crate) fn take_bodies(&mut self) -> impl Iterator<Item = Vec<Statement<'s>>> {
         let pous = self.items.iter_mut().filter_map(|it| match it {
-            Item::Pou(pou) if pou.kind != PouKind::Interface => Some(pou),
-            Item::Pou(_) | Item::Types(_) | Item::Globals(_) | Item::Configuration(_) | Item::Test(_) => None,
+            Item::Pou(pou) => Some(pou),
+            Item::Types(_) | Item::Globals(_) | Item::Configuration(_) | Item::Test(_) => None,
         });
         pous.flat_map(|pou| {
             let Pou { body, routines, .. } = pou;

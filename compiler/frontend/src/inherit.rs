@@ -6,21 +6,20 @@
 
 use crate::ast::{Access, Expr, ExprKind, File, Item, Name, Pou, PouKind, each_expr};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::source::{Sources, Span};
 use crate::spelling::{Key, nearest};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Gives each class what it inherits.
-pub(crate) fn expand(files: &mut [File<'_>], sources: &Sources, diagnostics: &mut Vec<Diagnostic>) {
+pub(crate) fn expand(files: &mut [File<'_>], diagnostics: &mut Vec<Diagnostic>) {
     let classes = Classes::of(files);
     let is_plain = |it: &Class<'_>| {
-        let Pou { extends, implements, modifiers, .. } = &it.pou;
-        extends.is_none() && implements.is_empty() && modifiers.is_abstract.is_none() && !has_abstract(&it.pou)
+        let Pou { extends, modifiers, .. } = &it.pou;
+        extends.is_none() && modifiers.is_abstract.is_none() && !has_abstract(&it.pou)
     };
     if classes.all.iter().all(is_plain) {
         return;
     }
-    let mut expansion = Expansion { classes: &classes, sources, diagnostics, made: FxHashMap::default() };
+    let mut expansion = Expansion { classes: &classes, diagnostics, made: FxHashMap::default() };
     for at in 0..classes.all.len() {
         expansion.make(at, &mut Vec::new());
     }
@@ -46,31 +45,19 @@ struct Class<'s> {
 struct Classes<'s> {
     all: Vec<Class<'s>>,
     by_name: FxHashMap<Key<'s>, usize>,
-    /// Names that several classes, or several interfaces, have in namespaces.
+    /// Names that several classes have in namespaces.
     several: FxHashSet<Key<'s>>,
-    interfaces: FxHashMap<Key<'s>, Pou<'s>>,
 }
 
 impl<'s> Classes<'s> {
     fn of(files: &[File<'s>]) -> Self {
-        let mut classes = Self {
-            all: Vec::new(),
-            by_name: FxHashMap::default(),
-            several: FxHashSet::default(),
-            interfaces: FxHashMap::default(),
-        };
+        let mut classes = Self { all: Vec::new(), by_name: FxHashMap::default(), several: FxHashSet::default() };
         for (file, it) in files.iter().enumerate() {
             for (item, it) in it.items.iter().enumerate() {
                 let Item::Pou(pou) = it else { continue };
                 let key = Key(pou.name.text);
-                let known = match pou.kind {
-                    PouKind::Interface => classes.interfaces.contains_key(&key),
-                    _ => pou.kind.is_block() && classes.by_name.contains_key(&key),
-                };
-                classes.several.extend(known.then_some(key));
-                if pou.kind == PouKind::Interface {
-                    classes.interfaces.entry(Key(pou.name.text)).or_insert_with(|| pou.clone());
-                } else if pou.kind.is_block() {
+                if pou.kind.is_block() {
+                    classes.several.extend(classes.by_name.contains_key(&key).then_some(key));
                     classes.by_name.entry(Key(pou.name.text)).or_insert(classes.all.len());
                     classes.all.push(Class { file, item, pou: pou.clone() });
                 }
@@ -82,7 +69,6 @@ impl<'s> Classes<'s> {
 
 struct Expansion<'c, 's> {
     classes: &'c Classes<'s>,
-    sources: &'c Sources,
     diagnostics: &'c mut Vec<Diagnostic>,
     /// Those that are whole.
     made: FxHashMap<usize, Pou<'s>>,
@@ -112,9 +98,6 @@ impl<'s> Expansion<'_, 's> {
             }
         };
         self.report_abstract(&whole, base.as_ref());
-        for interface in &pou.implements {
-            self.check_interface(&whole, *interface, &mut Vec::new());
-        }
         self.made.insert(at, whole);
     }
 
@@ -242,13 +225,6 @@ impl<'s> Expansion<'_, 's> {
                     .other(span, "declared so here"),
             );
         }
-        if self.head(new) != self.head(old) {
-            self.diagnostics.push(
-                Diagnostic::new(Code::E0403, new.name.span, format!("`{}` overrides another head", new.name.text))
-                    .label("the parameters and the result are those of what is overridden")
-                    .other(old.name.span, "overridden here"),
-            );
-        }
     }
 
     /// Reports OVERRIDE where nothing is overridden.
@@ -263,64 +239,6 @@ impl<'s> Expansion<'_, 's> {
             };
             self.diagnostics.push(Diagnostic::new(Code::E0403, span, message).help("delete OVERRIDE").fix(span, ""));
         }
-    }
-
-    /// Reports what an INTERFACE wants and a class does not have; `seen` are those around.
-    fn check_interface(&mut self, class: &Pou<'s>, name: Name<'s>, seen: &mut Vec<Key<'s>>) {
-        let Some(interface) = self.classes.interfaces.get(&Key(name.text)) else {
-            let names = self.classes.interfaces.values().map(|it| it.name.text);
-            let near = nearest(name.text, names);
-            let message = format!("there is no INTERFACE `{}`", name.text);
-            let error = Diagnostic::new(Code::E0102, name.span, message).label("expected one");
-            self.diagnostics.push(match near {
-                Some(near) => error.help(format!("did you mean `{near}`?")).fix(name.span, near),
-                None => error,
-            });
-            return;
-        };
-        if seen.contains(&Key(name.text)) || self.is_of_several(name) {
-            return;
-        }
-        seen.push(Key(name.text));
-        for wanted in &interface.routines {
-            let title = format!("`{}.{}`", interface.name.text, wanted.name.text);
-            let error = match class.routines.iter().find(|it| !it.is_hidden && is_same(it, wanted)) {
-                Some(it) if self.head(it) == self.head(wanted) => continue,
-                Some(it) => Diagnostic::new(Code::E0403, it.name.span, format!("{title} has another head"))
-                    .label("the parameters and the result are those of the INTERFACE"),
-                None => {
-                    let message = format!("`{}` does not have {title}", class.name.text);
-                    Diagnostic::new(Code::E0403, class.name.span, message).label("an INTERFACE is had as a whole")
-                }
-            };
-            self.diagnostics.push(error.other(wanted.name.span, "declared here"));
-        }
-        for base in &interface.implements {
-            self.check_interface(class, *base, seen);
-        }
-    }
-
-    /// The parameters and the result, as text.
-    fn head(&self, routine: &Pou<'s>) -> Vec<String> {
-        use crate::ast::VarKind::{External, Global, InOut, Input, Inst, Output, Stat, Temp, Var};
-        let text = |span: Span| {
-            let words: Vec<_> = self.sources.text(span).split_whitespace().collect();
-            words.join(" ").to_ascii_uppercase()
-        };
-        let mut head: Vec<_> = routine.result.iter().map(|it| text(it.span)).collect();
-        for block in &routine.blocks {
-            let section = match block.kind {
-                Input => "in",
-                Output => "out",
-                InOut => "in-out",
-                Var | Temp | Stat | Inst | Global | External => continue,
-            };
-            for decl in &block.vars {
-                let ty = text(decl.ty.span);
-                head.extend(decl.names.iter().map(|it| format!("{section} {}: {ty}", it.text.to_ascii_uppercase())));
-            }
-        }
-        head
     }
 
     /// Reports a class that is not ABSTRACT, with an ABSTRACT method that nobody has overridden.

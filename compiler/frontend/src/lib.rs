@@ -127,14 +127,14 @@ fn run(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
     // Unit tests that do not run are checked all the same.
     let tested = (!options.tests && testing::has_tests(&files))
         .then(|| run(sources, &Options { tests: true, ..options.clone() }, Bodies::Dropped).diagnostics);
-    inherit::expand(&mut files, sources, &mut log.diagnostics);
+    inherit::expand(&mut files, &mut log.diagnostics);
     testing::expand(&mut files, options.tests);
     let allowances = allow::Allowances::read(&files, &mut log.diagnostics);
     let mut bodies: Vec<_> = files.iter_mut().flat_map(ast::File::take_bodies).collect();
     let mut runs = declare::run::runs(&files);
     bodies.extend(runs.iter_mut().map(|it| std::mem::take(&mut it.body)));
     let mut declarations = declare::declare(log, &files, &runs, &bodies);
-    let unassigned = lints::result::unassigned(&declarations.pous);
+    let unassigned = lints::result::unassigned(&declarations);
     let checked = body::check(&mut declarations, &mut bodies, keep);
     lints::unused::report(&mut declarations);
     let left_out = checked.left_out;

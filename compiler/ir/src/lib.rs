@@ -56,8 +56,8 @@ pub use program::{
 };
 pub use statement::{Argument, Arm, Block, For, Statement, StatementKind, Step};
 pub use types::{
-    Array, ArrayId, BlockId, BoundsId, Const, Elementary, Enum, EnumId, Enumerator, RefKind, RefType, ReferenceId,
-    Struct, StructId, Type,
+    Array, ArrayId, BlockId, BoundsId, Const, Elementary, Enum, EnumId, Enumerator, InterfaceId, RefKind, RefType,
+    ReferenceId, Struct, StructId, Type,
 };
 
 pub use staunch_runtime::{FaultKind, Location, Repr, Value};

@@ -2,8 +2,8 @@
 
 use crate::types::ids;
 use crate::{
-    Array, ArrayId, Block, BoundsId, Const, Elementary, Enum, EnumId, Location, Place, RefType, ReferenceId, Root,
-    Struct, StructId, Type,
+    Array, ArrayId, Block, BoundsId, Const, Elementary, Enum, EnumId, Location, Place, RefKind, RefType, ReferenceId,
+    Root, Struct, StructId, Type,
 };
 use core::fmt;
 use staunch_runtime::Family;
@@ -27,6 +27,8 @@ pub struct Program {
     /// The lower and upper limits of subranges, each pair once.
     pub bounds: Vec<(i128, i128)>,
     pub arrays: Vec<Array>,
+    /// The names of the INTERFACEs.
+    pub interfaces: Vec<String>,
     /// The types of references. What they point to may be after what holds them.
     pub references: Vec<RefType>,
     /// A structure is after those it contains.
@@ -368,9 +370,12 @@ impl Program {
             Type::Struct(id) => self.structure(id).name.clone(),
             Type::Block(id) => id.info().name.to_owned(),
             Type::Array(id) => self.array_name(id),
-            Type::Reference(id) => {
-                format!("{} {}", self.references[id.index()].kind.word(), self.type_name(self.target(id)))
-            }
+            Type::Reference(id) => match self.references[id.index()].kind {
+                RefKind::Interface(interface) => self.interfaces[interface.index()].clone(),
+                kind @ (RefKind::RefTo | RefKind::PointerTo | RefKind::ReferenceTo) => {
+                    format!("{} {}", kind.word(), self.type_name(self.target(id)))
+                }
+            },
         }
     }
 

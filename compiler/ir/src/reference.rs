@@ -75,6 +75,8 @@ struct Finder<'p> {
     locals: Vec<BTreeSet<crate::LocalId>>,
     /// The by-reference parameters whose addresses are taken.
     params: BTreeSet<(RoutineId, ParamId)>,
+    /// The states of instances whose own routines take their addresses.
+    whole: BTreeSet<StructId>,
 }
 
 impl<'p> Finder<'p> {
@@ -82,13 +84,51 @@ impl<'p> Finder<'p> {
     fn search(program: &'p Program) -> Self {
         let states = program.classes.iter().map(|it| it.state).chain([program.globals]).collect();
         let locals = vec![BTreeSet::new(); program.routines.len()];
-        let mut finder = Self { program, states, variables: BTreeSet::new(), locals, params: BTreeSet::new() };
+        let mut finder = Self {
+            program,
+            states,
+            variables: BTreeSet::new(),
+            locals,
+            params: BTreeSet::new(),
+            whole: BTreeSet::new(),
+        };
         if !program.references.is_empty() {
             for id in 0..program.routines.len() {
                 finder.routine(RoutineId::next(id));
             }
+            finder.instances();
         }
         finder
+    }
+
+    /// The variables that hold instances whose routines take addresses: of the instance, or of what it has.
+    fn instances(&mut self) {
+        for state in self.states.clone() {
+            let fields = &self.program.structure(state).fields;
+            let holders = (0..fields.len()).filter(|at| self.holds_whole(fields[*at].ty));
+            let holders: Vec<_> = holders.map(|at| (state, FieldId::next(at))).collect();
+            self.variables.extend(holders);
+        }
+        let asked: BTreeSet<_> = self.whole.iter().copied().chain(self.variables.iter().map(|it| it.0)).collect();
+        for (routine, found) in self.program.routines.iter().zip(&mut self.locals) {
+            let holders = (0..routine.locals.len()).filter(|at| holds(self.program, routine.locals[*at].ty, &asked));
+            found.extend(holders.map(crate::LocalId::next));
+        }
+    }
+
+    /// Whether a variable, but for the variables of instances in it, holds an instance whose address is taken.
+    fn holds_whole(&self, ty: Type) -> bool {
+        match ty {
+            Type::Struct(id) if self.states.contains(&id) => self.whole.contains(&id),
+            Type::Struct(id) => self.program.structure(id).fields.iter().any(|it| self.holds_whole(it.ty)),
+            Type::Array(id) => self.holds_whole(self.program.array(id).element),
+            Type::Elementary(_)
+            | Type::Subrange(..)
+            | Type::String(_)
+            | Type::Enum(_)
+            | Type::Block(_)
+            | Type::Reference(_) => false,
+        }
     }
 
     fn routine(&mut self, id: RoutineId) {
@@ -139,8 +179,25 @@ impl<'p> Finder<'p> {
             (None, Root::Param(param)) => {
                 self.params.insert((id, param));
             }
-            (None, Root::Instance | Root::Globals) => {}
+            (None, Root::Instance) => self.whole.extend(routine.state),
+            (None, Root::Globals) => {}
         }
+    }
+}
+
+/// Whether a variable of the type is, or holds, one of these structures.
+fn holds(program: &Program, ty: Type, wanted: &BTreeSet<StructId>) -> bool {
+    match ty {
+        Type::Struct(id) => {
+            wanted.contains(&id) || program.structure(id).fields.iter().any(|it| holds(program, it.ty, wanted))
+        }
+        Type::Array(id) => holds(program, program.array(id).element, wanted),
+        Type::Elementary(_)
+        | Type::Subrange(..)
+        | Type::String(_)
+        | Type::Enum(_)
+        | Type::Block(_)
+        | Type::Reference(_) => false,
     }
 }
 

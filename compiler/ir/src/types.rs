@@ -77,15 +77,18 @@ pub enum RefKind {
     PointerTo,
     /// `REFERENCE TO`: its name stands for what it refers to.
     ReferenceTo,
+    /// A variable of an INTERFACE: it leads to instances of the classes that have it, whatever its target says.
+    Interface(InterfaceId),
 }
 
 impl RefKind {
-    /// As the source writes it.
+    /// As the source writes it, before what is pointed to.
     pub const fn word(self) -> &'static str {
         match self {
             Self::RefTo => "REF_TO",
             Self::PointerTo => "POINTER TO",
             Self::ReferenceTo => "REFERENCE TO",
+            Self::Interface(_) => "INTERFACE",
         }
     }
 }
@@ -119,6 +122,8 @@ ids! {
     EnumId;
     /// Which type a reference is declared to point to; equal types have one id.
     ReferenceId;
+    /// Index into the names of a program's INTERFACEs.
+    InterfaceId;
     /// Bounds of subranges; equal bounds have one id.
     BoundsId;
     ArrayId;

@@ -105,6 +105,7 @@ impl Maker {
             }],
             instances: instances.collect(),
             arrays: maker.arrays,
+            interfaces: Vec::new(),
             references: Vec::new(),
             globals,
             aliases: Vec::new(),

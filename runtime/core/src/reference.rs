@@ -21,8 +21,9 @@ pub use table::{Part, Table, View, Wanted, encode};
 pub use crate::Repr;
 use crate::{FaultKind, Scalar, Text, Value};
 
-/// What a variable of a reference type holds: the object's number in the upper half, from 1, and the
-/// address in the lower. 0 is null.
+/// What a variable of a reference type holds: the object's number, from 1, in the low bits of the upper half, and
+/// the address in the lower. 0 is null. The bits above the object's number are [`CLASS`]: they say which class
+/// an instance is of, for calls that depend on it, and have no part in an access.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reference {
     pub object: u32,
@@ -32,9 +33,12 @@ pub struct Reference {
 /// The address of the state's first byte. It keeps addresses apart from null, and aligned as the state is.
 pub const ORIGIN: u32 = 0x1000;
 
+/// Where the number of an instance's class begins in a reference. Below it there is room for 2^20 objects.
+pub const CLASS: u32 = 52;
+
 impl Reference {
     pub const fn from_bits(bits: u64) -> Self {
-        Self { object: (bits >> 32) as u32, address: bits as u32 }
+        Self { object: (bits >> 32) as u32 & ((1 << (CLASS - 32)) - 1), address: bits as u32 }
     }
 
     pub const fn bits(self) -> u64 {

@@ -28,7 +28,7 @@ pub(crate) struct Checked {
 pub(crate) fn check<'s>(decl: &mut Declarations<'s>, bodies: &mut [Vec<ast::Statement<'s>>], keep: Bodies) -> Checked {
     let mut checked = Checked { routines: Vec::new(), stacks: Vec::new(), left_out: None };
     for (slot, body) in bodies.iter_mut().enumerate() {
-        if decl.is_generic(slot) {
+        if decl.is_generic(slot) || decl.is_head(slot) {
             checked.push(Some((not_called(decl, slot), Uses::default())), 0);
             continue;
         }
@@ -66,7 +66,8 @@ impl Checked {
     }
 }
 
-/// Takes the place of a generic FUNCTION as it is written: its instances are called, it is not.
+/// Takes the place of what is not called itself: a generic FUNCTION as it is written, whose instances are, and
+/// what is in an INTERFACE.
 fn not_called(decl: &mut Declarations<'_>, slot: usize) -> Routine {
     let pou = decl.pous[slot].ast;
     Routine {

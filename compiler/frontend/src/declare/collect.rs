@@ -76,14 +76,16 @@ impl<'s> Declarations<'s> {
         for item in &file.items {
             match item {
                 ast::Item::Types(decls) => decls.iter().for_each(|decl| self.collect_type(decl)),
-                ast::Item::Pou(pou) if pou.kind == ast::PouKind::Interface => {
-                    self.names.interfaces.insert(Key(pou.name.text));
-                }
                 ast::Item::Pou(pou) => {
                     self.pous.push(PouSlot::open(pou));
                     let slot = self.pous.len() - 1;
                     if pou.kind.is_block() {
                         self.classes.insert(pou.name.span, slot);
+                    }
+                    if pou.kind == ast::PouKind::Interface {
+                        self.table.interfaces.slots.push(slot);
+                        let name = self.name_in_full(pou.name);
+                        self.program.interfaces.push(name);
                     }
                     // Nobody names a test.
                     if pou.kind != ast::PouKind::Test && !self.overloads_another(slot) {
@@ -239,7 +241,10 @@ impl<'s> Declarations<'s> {
     fn is_type(&self, entry: Entry) -> bool {
         match entry {
             Entry::Type(_) => true,
-            Entry::Pou(at) => self.pous.get(at).is_some_and(|it| it.ast.kind.is_block()),
+            Entry::Pou(at) => {
+                let kind = self.pous.get(at).map(|it| it.ast.kind);
+                kind.is_some_and(|it| it.is_block() || it == ast::PouKind::Interface)
+            }
             Entry::Global(_) => false,
         }
     }

@@ -6,6 +6,7 @@ mod address;
 mod collect;
 mod generic;
 mod global;
+mod heads;
 mod image;
 mod initial;
 mod list;
@@ -84,6 +85,7 @@ impl<'s> Declarations<'s> {
             }
         }
         self.settle_references();
+        self.check_heads();
         self.declare_used_addresses();
         let uses = std::mem::take(&mut self.addresses.uses);
         address::report_second_names(self, &uses);

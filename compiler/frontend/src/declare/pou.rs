@@ -62,8 +62,11 @@ impl<'s> Declarations<'s> {
         if pou.kind.has_routines() {
             self.instance_variables(pou, &mut builder, &mut instance_variables);
         }
+        if pou.kind.is_block() && builder.fields.is_empty() && !self.interfaces_of(slot).is_empty() {
+            builder.fields.push(self.presence(pou));
+        }
         let state = owner.map(|it| it.state).unwrap_or_else(|| {
-            (!pou.kind.is_function()).then(|| {
+            (!pou.kind.is_function() && pou.kind != PouKind::Interface).then(|| {
                 let location = self.location(pou.name.span);
                 let mut fields = std::mem::take(&mut builder.fields);
                 fields.shrink_to_fit();
@@ -82,6 +85,21 @@ impl<'s> Declarations<'s> {
         let Builder { scope, mut formals, params, locals, edges, complete, .. } = builder;
         formals.shrink_to_fit();
         complete.then_some(Signature { scope, state, formals, params, locals, result, edges, instance_variables })
+    }
+
+    /// What a class without variables has, so that its instances are at places of their own, to be referred to.
+    fn presence(&mut self, pou: &ast::Pou<'s>) -> Field {
+        Field {
+            name: "instance".to_owned(),
+            ty: Type::Elementary(staunch_ir::Elementary::Byte),
+            initial: Const::Zero,
+            section: Section::Internal,
+            retain: staunch_ir::Retain::Inherited,
+            constant: false,
+            address: None,
+            doc: Some("It has no variables, and is somewhere all the same".to_owned()),
+            location: self.location(pou.name.span),
+        }
     }
 
     /// What a routine sees of its POU: one that is inherited does not see what the heirs declare.

@@ -253,6 +253,9 @@ impl<'s> Declarations<'s> {
     /// The state of a FUNCTION_BLOCK: the type of its instances.
     fn instance_type(&mut self, at: usize, name: ast::Name<'s>) -> Option<Resolved> {
         let pou = self.pous[at].ast;
+        if let Some(ty) = self.interface_type(at) {
+            return Some(Resolved::plain(ty));
+        }
         let is_run = pou.kind == ast::PouKind::Program && (self.log.options.tests || self.is_run(name.span));
         if !pou.kind.is_block() && !is_run {
             let kind = if pou.kind == ast::PouKind::Program { "PROGRAM" } else { "FUNCTION" };
@@ -276,10 +279,6 @@ impl<'s> Declarations<'s> {
     }
 
     fn report_unknown_type(&mut self, name: ast::Name<'s>) {
-        if self.names.interfaces.contains(&Key(name.text)) {
-            self.not_supported(name.span, "a variable of an INTERFACE");
-            return;
-        }
         if NOT_YET.iter().any(|it| it.eq_ignore_ascii_case(name.text)) {
             self.not_supported(name.span, &format!("the type {}", name.text.to_ascii_uppercase()));
             return;

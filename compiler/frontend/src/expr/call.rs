@@ -26,6 +26,9 @@ impl<'s> Checker<'_, 's> {
         if let Some(value) = self.memory_function(callee, arguments, expr.span) {
             return value;
         }
+        if let Some(value) = self.query(callee, arguments, expr.span) {
+            return value;
+        }
         if let Some(value) = self.bound_function(callee, arguments, expr.span) {
             return value;
         }
@@ -59,7 +62,9 @@ impl<'s> Checker<'_, 's> {
         callee: &ast::Expr<'s>,
         arguments: &[ast::Argument<'s>],
     ) {
-        if self.memory_function(callee, arguments, expr.span).is_some() {
+        if self.memory_function(callee, arguments, expr.span).is_some()
+            || self.query(callee, arguments, expr.span).is_some()
+        {
             return;
         }
         let what = self.checked_callee(callee, arguments);

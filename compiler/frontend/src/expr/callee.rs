@@ -36,7 +36,11 @@ impl<'s> Checker<'_, 's> {
             Ast::Name(name) => self.named_callee(*name, arguments),
             Ast::Member(base, name) => match self.qualified_callee(callee) {
                 Some(callee) => callee,
-                None => Some(self.routine_of(base, *name).map_or(Callee::Instance, Callee::Routine)),
+                None => match self.routine_of(base, *name) {
+                    Some(slot) => Some(Callee::Routine(slot)),
+                    None if self.is_unknown_head(base, *name) => None,
+                    None => Some(Callee::Instance),
+                },
             },
             Ast::Index(..) | Ast::Paren(_) | Ast::Deref(_) => Some(Callee::Instance),
             Ast::Error(_) => {
@@ -249,8 +253,7 @@ fn not_yet(name: &str) -> bool {
         texts.iter().any(|it| part == *it || part.starts_with("BCD") || part.ends_with("BCD"))
     };
     let (from, to) = name.split_once("_TO_").or_else(|| Some(("", name.strip_prefix("TO_")?))).unwrap_or(("", ""));
-    let others =
-        ["ROUND", "CEIL", "FLOOR", "ASSERT", "CONCAT_TIME", "UPPER_CASE", "__QUERYINTERFACE", "__QUERYPOINTER"];
+    let others = ["ROUND", "CEIL", "FLOOR", "ASSERT", "CONCAT_TIME", "UPPER_CASE"];
     conversion(from) || conversion(to) || others.contains(&name.as_str())
 }
 

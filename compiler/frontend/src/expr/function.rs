@@ -42,7 +42,10 @@ impl<'s> Checker<'_, 's> {
         let enough = self.require_all(owner.text, &parameters, &given, arguments, is_optional, span).is_some();
         let mut parts = Parts::default();
         let is_method = instance.is_some();
+        let mut dispatch = None;
         if let Some((place, callee)) = instance {
+            let place = self.receiver(place, callee)?;
+            dispatch = self.dispatch(&place, slot, callee);
             parts.push(Held::Place(place), Role::Instance, callee);
         }
         let mut open = Vec::new();
@@ -108,10 +111,17 @@ impl<'s> Checker<'_, 's> {
                     Passed::Output(place) => Argument::Reference(place.clone()),
                 })
             };
-            let arguments = passed.iter().map(argument).collect::<Option<_>>()?;
+            let arguments: Vec<_> = passed.iter().map(argument).collect::<Option<_>>()?;
             let result = result.clone();
             let instance = parts.instance().filter(|_| is_method).cloned();
-            Some(StatementKind::Call { callee: RoutineId::next(slot), instance, arguments, result })
+            let call = |callee, instance| {
+                let (arguments, result) = (Vec::clone(&arguments), result.clone());
+                StatementKind::Call { callee, instance, arguments, result }
+            };
+            Some(match (&dispatch, &instance) {
+                (Some(dispatch), Some(instance)) => dispatch.statement(instance, &|to, at| call(to, Some(at))),
+                (Some(_) | None, _) => call(RoutineId::next(slot), instance),
+            })
         };
         self.perform(parts, &call, span)?;
         let at = self.at(span);

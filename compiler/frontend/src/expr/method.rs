@@ -9,7 +9,7 @@ use crate::spelling::Key;
 use crate::types::declarations::{Routines, Slot};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, PouKind};
-use staunch_ir::{Expr, ExprKind, Place, RefKind, Root, StructId, Type};
+use staunch_ir::{Expr, ExprKind, Place, RefKind, Root, Type};
 
 impl<'s> Checker<'_, 's> {
     /// The METHOD or ACTION that a bare name means: one of the POU around.
@@ -56,7 +56,7 @@ impl<'s> Checker<'_, 's> {
         &self,
         expr: &'a ast::Expr<'s>,
     ) -> Option<(Routines, ast::Name<'s>, Option<&'a ast::Expr<'s>>)> {
-        let (state, name, instance) = match &expr.kind {
+        let (ty, name, instance) = match &expr.kind {
             Ast::Name(name) if self.scope.get(name.text).is_none() && !self.is_own_result(*name) => {
                 let routines = self.own_routines(*name)?;
                 return routines.is_property().then_some((routines, *name, None));
@@ -65,10 +65,7 @@ impl<'s> Checker<'_, 's> {
                 let routines = self.decl.super_routines(self.slot?, Some(*name))?;
                 return routines.is_property().then_some((routines, *name, None));
             }
-            Ast::Member(instance, name) => {
-                let Type::Struct(state) = self.static_type(instance)? else { return None };
-                (state, *name, Some(&**instance))
-            }
+            Ast::Member(instance, name) => (self.static_type(instance)?, *name, Some(&**instance)),
             Ast::Paren(inner) => return self.property(inner),
             Ast::Name(_)
             | Ast::Literal(_)
@@ -81,7 +78,7 @@ impl<'s> Checker<'_, 's> {
             | Ast::Binary(..)
             | Ast::Error(_) => return None,
         };
-        let routines = self.decl.routines_of(state, name.text)?;
+        let routines = self.decl.routines_on(ty, name.text)?;
         routines.is_property().then_some((routines, name, instance))
     }
 
@@ -179,8 +176,7 @@ impl<'s> Checker<'_, 's> {
 
     /// The METHOD or ACTION that `instance.name` means.
     pub(crate) fn routine_of(&self, instance: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<usize> {
-        let Type::Struct(state) = self.static_type(instance)? else { return None };
-        Some(self.decl.routines_of(state, name.text)?.called?.0)
+        Some(self.decl.routines_on(self.static_type(instance)?, name.text)?.called?.0)
     }
 
     pub(crate) fn routine_call(
@@ -324,8 +320,8 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// The type of a PROPERTY that can be read.
-    fn type_of_property(&self, state: StructId, name: ast::Name<'s>) -> Option<Type> {
-        self.decl.result_type(self.decl.routines_of(state, name.text)?.getter?.0)
+    fn type_of_property(&self, ty: Type, name: ast::Name<'s>) -> Option<Type> {
+        self.decl.result_type(self.decl.routines_on(ty, name.text)?.getter?.0)
     }
 
     fn type_of_name(&self, name: ast::Name<'s>) -> Option<Type> {
@@ -361,10 +357,10 @@ impl<'s> Checker<'_, 's> {
             return Some(variable.place.ty);
         }
         let ty = self.static_type(owner)?;
-        let Type::Struct(id) = ty else { return None };
-        if let Some(ty) = self.type_of_property(id, name) {
+        if let Some(ty) = self.type_of_property(ty, name) {
             return Some(ty);
         }
+        let Type::Struct(id) = ty else { return None };
         let field = self.decl.field_named(id, name.text)?;
         self.decl.program.member(ty, field)
     }
@@ -391,7 +387,7 @@ impl<'s> Checker<'_, 's> {
 }
 
 /// Whether an expression is the word THIS.
-fn is_this(expr: &ast::Expr<'_>) -> bool {
+pub(crate) fn is_this(expr: &ast::Expr<'_>) -> bool {
     matches!(&expr.bare().kind, Ast::Name(name) if is_word(*name, "THIS"))
 }
 

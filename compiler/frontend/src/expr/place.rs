@@ -306,6 +306,9 @@ impl<'s> Checker<'_, 's> {
             return self.member_of_this(name);
         }
         let found = self.place(base)?;
+        if self.is_unknown_head(base, name) {
+            return None;
+        }
         match found.place.ty {
             Type::Struct(id) => self.struct_member(found, id, name),
             Type::Block(id) => self.pin(found, id, name),

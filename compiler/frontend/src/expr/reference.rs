@@ -4,6 +4,7 @@
 //! other addresses, and converts to one of 32 bits and more; back from an integer there is no way, but for 0.
 
 use super::checker::Checker;
+use super::method::is_this;
 use super::operand::Operand;
 use super::place::{Access, Found};
 use crate::names::{Found as Meant, Sense};
@@ -64,6 +65,10 @@ impl<'s> Checker<'_, 's> {
     /// `p^`
     pub(crate) fn dereferenced(&mut self, inner: &ast::Expr<'s>, span: Span) -> Option<Found<'s>> {
         let found = self.place(inner)?;
+        if self.decl.interface_of(found.place.ty).is_some() {
+            self.report_interface(found.place.ty, "`^` follows a reference", span);
+            return None;
+        }
         let Type::Reference(id) = found.place.ty else {
             let ty = self.type_name(found.place.ty);
             self.report(
@@ -140,7 +145,9 @@ impl<'s> Checker<'_, 's> {
         self.note_passed(&found.place, expr.span, expr.span);
         let ty = self.decl.reference_type(kind, found.place.ty);
         let at = self.at(expr.span);
-        Some(Expr::new(ty, ExprKind::AddressOf(Box::new(found.place)), at))
+        let place = found.place;
+        let reference = Expr::new(ty, ExprKind::AddressOf(Box::new(place.clone())), at);
+        Some(self.told_apart(reference, &place, expr.span))
     }
 
     fn is_pin(&self, found: &Found<'s>) -> bool {
@@ -212,6 +219,11 @@ impl<'s> Checker<'_, 's> {
             self.operand(value, None);
             return None;
         };
+        if matches!(kind, RefKind::Interface(_)) {
+            self.report_interface(found.place.ty, "`REF=` sets a reference", target.span);
+            self.operand(value, None);
+            return None;
+        }
         let mut place = found.place;
         let ty = place.ty;
         let value = self.after_place(&mut place, |this| {
@@ -251,11 +263,17 @@ impl<'s> Checker<'_, 's> {
 
     /// The value of an expression where a REFERENCE TO is wanted: a variable binds to it by its name.
     pub(crate) fn bound_value(&mut self, expr: &ast::Expr<'s>, ty: Type) -> Option<Option<Expr>> {
-        let (_, RefType { kind: RefKind::ReferenceTo, .. }) = self.ref_type(ty)? else { return None };
-        if self.is_null_word(expr) || matches!(expr.bare().kind, Ast::Call(..)) {
+        let (_, RefType { kind, .. }) = self.ref_type(ty)?;
+        if self.is_null_word(expr) {
             return None;
         }
-        let bound = self.reference_to(expr, RefKind::ReferenceTo);
+        match kind {
+            RefKind::Interface(_) => return self.interface_value(expr, ty),
+            RefKind::RefTo | RefKind::PointerTo if is_this(expr) => {}
+            RefKind::ReferenceTo if !matches!(expr.bare().kind, Ast::Call(..)) => {}
+            RefKind::RefTo | RefKind::PointerTo | RefKind::ReferenceTo => return None,
+        }
+        let bound = self.reference_to(expr, kind);
         Some(bound.and_then(|it| self.coerce(Operand::Typed(it), ty, expr.span)))
     }
 
@@ -264,9 +282,15 @@ impl<'s> Checker<'_, 's> {
     pub(crate) fn coerce_reference(&mut self, value: Expr, to: ReferenceId, span: Span) -> Option<Expr> {
         let ty = Type::Reference(to);
         let Type::Reference(from) = value.ty else { return self.no_reference(value.ty, ty, span) };
+        if is_null(&value) {
+            return Some(Expr { ty, ..value });
+        }
+        if self.decl.interface_of(ty).or(self.decl.interface_of(value.ty)).is_some() {
+            return self.coerce_interface(value, ty, span);
+        }
         let same = self.decl.program.target(from) == self.decl.program.target(to);
         let loose = self.decl.dialect(span).mixes_bits_and_integers();
-        if is_null(&value) || same && value.as_const().is_some() {
+        if same && value.as_const().is_some() {
             return Some(Expr { ty, ..value });
         }
         if !same && !loose {
@@ -307,7 +331,8 @@ impl<'s> Checker<'_, 's> {
             let error = Diagnostic::new(Code::E0201, span, format!("expected {expected}, found {found}"))
                 .label(format!("this is {found}"));
             let text = self.decl.log.sources.text(span);
-            let error = if text.len() < 40 { error.help(format!("what it refers to is `{text}^`")) } else { error };
+            let is_followed = text.len() < 40 && self.decl.interface_of(value.ty).is_none();
+            let error = if is_followed { error.help(format!("what it refers to is `{text}^`")) } else { error };
             self.report(error);
             return None;
         }
@@ -382,6 +407,10 @@ impl<'s> Checker<'_, 's> {
     /// A reference moved by a number of bytes.
     fn advance(&mut self, reference: Operand, by: Operand, op: BinaryOp, span: Span) -> Option<Expr> {
         let Operand::Typed(reference) = reference else { return None };
+        if self.decl.interface_of(reference.ty).is_some() {
+            self.report_interface(reference.ty, "a reference is moved by bytes", span);
+            return None;
+        }
         let by = match by.cut() {
             Operand::Typed(value) if matches!(value.ty, Type::Elementary(it) if it.repr().is_integer() && !it.is_time()) => {
                 self.convert(Conversion::Value, Type::LINT, value)

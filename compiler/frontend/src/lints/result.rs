@@ -1,12 +1,13 @@
 //! FUNCTIONs that never say what their result is.
 
-use crate::types::declarations::PouSlot;
+use crate::types::declarations::Declarations;
 use crate::{Code, Diagnostic, ast};
 
 /// The FUNCTIONs whose bodies do not name their result. What was refused may have assigned it.
-pub(crate) fn unassigned(pous: &[PouSlot<'_>]) -> Vec<Diagnostic> {
-    let unassigned = pous
-        .iter()
+pub(crate) fn unassigned(decl: &Declarations<'_>) -> Vec<Diagnostic> {
+    let unassigned = (0..decl.pous.len())
+        .filter(|slot| !decl.is_head(*slot))
+        .map(|slot| &decl.pous[slot])
         .filter(|it| it.ast.result.is_some() && !it.names_itself && it.ast.modifiers.is_abstract.is_none())
         .map(|it| it.ast.name);
     let lint = |name: ast::Name<'_>| {

@@ -117,7 +117,6 @@ pub(crate) struct Names<'s> {
     globals: FxHashMap<Key<'s>, usize>,
     /// The declarations in which a bare enumerator is named, with their type's slot.
     pub enumerators: FxHashMap<Key<'s>, Vec<usize>>,
-    pub interfaces: FxHashSet<Key<'s>>,
     /// Names in type declarations that did not parse: they may be enumerators.
     pub unread: FxHashSet<Key<'s>>,
     /// For each anonymous or named enumeration, in order of declaration, the enumerators.
@@ -133,7 +132,6 @@ impl Default for Names<'_> {
             listed: FxHashMap::default(),
             globals: FxHashMap::default(),
             enumerators: FxHashMap::default(),
-            interfaces: FxHashSet::default(),
             unread: FxHashSet::default(),
             anonymous_enumerators: FxHashMap::default(),
         }

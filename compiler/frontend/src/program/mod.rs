@@ -15,9 +15,11 @@ use crate::types::scope::Variable;
 use crate::types::signature::Signature;
 use crate::{Code, Diagnostic, ast};
 use staunch_ir::layout::{Layout, TooLarge};
+use staunch_ir::reference::objects;
 use staunch_ir::{
     Argument, Block, Class, ClassId, ClassKind, Location, Place, Program, Root, RoutineId, StatementKind, Type,
 };
+use staunch_runtime::reference::CLASS;
 use std::rc::Rc;
 
 /// Puts the parts together: the classes, the instances, the order of the routines.
@@ -125,7 +127,10 @@ impl Declarations<'_> {
 
     /// Whether all variables together, and each type, fit into memory.
     fn check_size(&mut self) -> Option<()> {
-        let Err(TooLarge { at, .. }) = Layout::try_new(&self.program) else { return Some(()) };
+        let at = match Layout::try_new(&self.program) {
+            Ok(layout) => return self.check_objects(&layout),
+            Err(TooLarge { at, .. }) => at,
+        };
         let program = self.program.instances.last().map(|it| self.program.class(it.program).location);
         let span = self.log.name_at(at.or(program).unwrap_or_default());
         self.report(
@@ -133,6 +138,23 @@ impl Declarations<'_> {
                 .label("too large together"),
         );
         None
+    }
+}
+
+impl Declarations<'_> {
+    /// Whether references can tell all variables apart whose addresses are taken.
+    fn check_objects(&mut self, layout: &Layout) -> Option<()> {
+        let most = (1 << (CLASS - 32)) - 1;
+        let is_too_many = !self.program.references.is_empty() && objects(&self.program, layout).len() > most;
+        if is_too_many {
+            let program = self.program.instances.last().map(|it| self.program.class(it.program).location);
+            let span = self.log.name_at(program.unwrap_or_default());
+            self.report(
+                Diagnostic::new(Code::E0901, span, format!("the addresses of more than {most} variables are taken"))
+                    .label("each element of an array of instances counts"),
+            );
+        }
+        (!is_too_many).then_some(())
     }
 }
 

@@ -19,8 +19,9 @@ pub(super) fn order(declarations: &mut Declarations<'_>, uses: Vec<Uses>, stacks
         order = sorted(declarations, &calls)?;
     }
     let is_empty = |it: &Routine| it.kind == RoutineKind::Prescan && it.body.is_empty();
-    let is_generic = |at: usize| at < declarations.pous.len() && declarations.is_generic(at);
-    order.retain(|at| !is_empty(&declarations.program.routines[*at]) && !is_generic(*at));
+    let is_called =
+        |at: usize| at >= declarations.pous.len() || !declarations.is_generic(at) && !declarations.is_head(at);
+    order.retain(|at| !is_empty(&declarations.program.routines[*at]) && is_called(*at));
     check_stack(declarations, stacks, &calls, &order);
     renumber(declarations, &order);
     Some(())

@@ -500,6 +500,7 @@ pub(crate) fn empty_program(files: Vec<SourceFile>) -> Program {
         enums: Vec::new(),
         bounds: Vec::new(),
         arrays: Vec::new(),
+        interfaces: Vec::new(),
         references: Vec::new(),
         structs: Vec::new(),
         globals: StructId(0),

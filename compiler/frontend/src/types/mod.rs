@@ -7,6 +7,7 @@ pub(crate) mod generic;
 pub(crate) mod image;
 pub(crate) mod index;
 pub(crate) mod instances;
+pub(crate) mod interfaces;
 mod overload_names;
 pub(crate) mod overloads;
 pub(crate) mod scope;

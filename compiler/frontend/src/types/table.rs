@@ -6,6 +6,7 @@ use crate::ast::Name;
 use crate::spelling::Key;
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{Const, RefKind, ReferenceId, StructId, Type, Value};
+use std::rc::Rc;
 
 /// Stands for the globals' structure until it is made, when all declared globals are known.
 pub(crate) const GLOBALS: StructId = StructId(u32::MAX);
@@ -38,6 +39,7 @@ pub(crate) struct Table<'s> {
     pub relative: FxHashMap<StructId, u64>,
     /// The POU slot of each structure that is an instance's state.
     pub instances: FxHashMap<StructId, usize>,
+    pub interfaces: Interfaces,
     /// How many constants the initial values hold so far.
     pub constants: usize,
     /// The references to types with names.
@@ -46,6 +48,20 @@ pub(crate) struct Table<'s> {
     pub references_to: FxHashMap<(RefKind, Vec<Key<'s>>), Vec<usize>>,
     /// Those whose targets are not known; that was reported.
     pub unknown_references: FxHashSet<ReferenceId>,
+}
+
+/// What is known of INTERFACEs, and of the classes that have them.
+#[derive(Debug, Default)]
+pub(crate) struct Interfaces {
+    /// The slots of the INTERFACEs, in their order.
+    pub slots: Vec<usize>,
+    /// For the slots of classes and INTERFACEs that were asked for: all that they have.
+    pub closures: FxHashMap<usize, Rc<FxHashSet<usize>>>,
+    /// For those INTERFACEs that were asked for: the slots of the classes whose instances have them.
+    pub implementers: FxHashMap<usize, Rc<[usize]>>,
+    /// The numbers of the classes that references tell apart.
+    pub numbers: FxHashMap<StructId, u64>,
+    pub is_too_many: bool,
 }
 
 /// A reference to a type that is looked up when all are declared: it may hold such a reference itself.

@@ -84,19 +84,21 @@ enum Source {
     Own(LocalId),
     /// It is, or comes with, what a caller passes.
     Param(ParamId),
+    /// It refers to the instance that the routine works on, or to a part of it.
+    Instance,
 }
 
 type Sources = BTreeSet<Source>;
 
-/// What a routine does with what it is passed.
+/// What a routine does with what it is passed, and with its instance.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Summary {
     /// Stored where it outlives the call.
-    kept: BTreeSet<ParamId>,
+    kept: Sources,
     /// What the result may hold.
-    result: BTreeSet<ParamId>,
+    result: Sources,
     /// What it stores into which of its in-outs.
-    into: BTreeSet<(ParamId, ParamId)>,
+    into: BTreeSet<(Source, ParamId)>,
 }
 
 struct Finder<'p> {
@@ -143,8 +145,8 @@ impl<'p> Finder<'p> {
                 let sources = self.sources(value);
                 self.store(target, &sources, statement.at);
             }
-            StatementKind::Call { callee, arguments, result, .. } => {
-                self.call(*callee, arguments, result.as_ref(), statement.at);
+            StatementKind::Call { callee, instance, arguments, result } => {
+                self.call(*callee, (instance.as_ref(), arguments), result.as_ref(), statement.at);
             }
             StatementKind::Assign { .. }
             | StatementKind::If { .. }
@@ -161,16 +163,26 @@ impl<'p> Finder<'p> {
         }
     }
 
-    fn call(&mut self, callee: RoutineId, arguments: &[Argument], result: Option<&Place>, at: Location) {
+    fn call(
+        &mut self,
+        callee: RoutineId,
+        (instance, arguments): (Option<&Place>, &[Argument]),
+        result: Option<&Place>,
+        at: Location,
+    ) {
         let summaries = self.summaries;
         let Some(summary) = summaries.get(callee.index()) else { return };
-        let passed = |this: &Self, id: ParamId| match &arguments.get(id.index()) {
-            Some(Argument::Value(value)) => this.sources(value),
-            Some(Argument::Reference(place)) => this.address(place),
-            None => Sources::new(),
+        let passed = |this: &Self, source: Source| match source {
+            Source::Param(id) => match arguments.get(id.index()) {
+                Some(Argument::Value(value)) => this.sources(value),
+                Some(Argument::Reference(place)) => this.address(place),
+                None => Sources::new(),
+            },
+            Source::Instance => instance.map_or_else(Sources::new, |it| this.address(it)),
+            Source::Own(_) => Sources::new(),
         };
-        for id in &summary.kept {
-            let sources = passed(self, *id);
+        for source in &summary.kept {
+            let sources = passed(self, *source);
             self.keep(&sources, at, How::KeptBy(callee));
         }
         for (from, into) in &summary.into {
@@ -201,6 +213,7 @@ impl<'p> Finder<'p> {
         match place.root {
             Root::Local(id) => self.held[id.index()].clone(),
             Root::Param(id) => Sources::from([Source::Param(id)]),
+            // What it holds outlives it, or is a part of it.
             Root::Instance | Root::Globals => Sources::new(),
         }
     }
@@ -208,8 +221,10 @@ impl<'p> Finder<'p> {
     /// What a reference to a place refers to, and what lies there.
     fn address(&self, place: &Place) -> Sources {
         let mut sources = self.contents(place);
-        if let (Root::Local(id), false) = (place.root, place.is_followed()) {
-            sources.insert(Source::Own(id));
+        match (place.root, place.is_followed()) {
+            (Root::Local(id), false) => drop(sources.insert(Source::Own(id))),
+            (Root::Instance, false) => drop(sources.insert(Source::Instance)),
+            (Root::Local(_) | Root::Instance, true) | (Root::Param(_) | Root::Globals, _) => {}
         }
         sources
     }
@@ -224,6 +239,11 @@ impl<'p> Finder<'p> {
                 self.held[id.index()].extend(sources);
             }
             Root::Param(into) if !followed => self.hand_back(sources, into, at),
+            // A reference to itself lives as long as it does.
+            Root::Instance if !followed => {
+                let others = sources.iter().copied().filter(|it| *it != Source::Instance).collect();
+                self.keep(&others, at, How::Stored);
+            }
             Root::Local(_) | Root::Param(_) | Root::Instance | Root::Globals => {
                 self.keep(sources, at, How::Stored);
             }
@@ -234,8 +254,8 @@ impl<'p> Finder<'p> {
         for source in sources {
             match source {
                 Source::Own(target) => self.report(*target, at, how),
-                Source::Param(id) => {
-                    self.summary.kept.insert(*id);
+                Source::Param(_) | Source::Instance => {
+                    self.summary.kept.insert(*source);
                 }
             }
         }
@@ -245,8 +265,8 @@ impl<'p> Finder<'p> {
         for source in sources {
             match source {
                 Source::Own(target) => self.report(*target, at, How::Returned),
-                Source::Param(id) => {
-                    self.summary.result.insert(*id);
+                Source::Param(_) | Source::Instance => {
+                    self.summary.result.insert(*source);
                 }
             }
         }
@@ -256,8 +276,8 @@ impl<'p> Finder<'p> {
         for source in sources {
             match source {
                 Source::Own(target) => self.report(*target, at, How::Stored),
-                Source::Param(id) => {
-                    self.summary.into.insert((*id, into));
+                Source::Param(_) | Source::Instance => {
+                    self.summary.into.insert((*source, into));
                 }
             }
         }

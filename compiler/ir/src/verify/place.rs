@@ -2,7 +2,7 @@
 
 use super::Verifier;
 use super::statement::Body;
-use crate::{FieldId, Location, Place, Projection, Root, Type};
+use crate::{FieldId, Location, Place, Projection, RefKind, RefType, Root, Type};
 
 impl Verifier<'_> {
     /// `place` exists and has the type it says.
@@ -56,7 +56,7 @@ impl Verifier<'_> {
     fn target(&mut self, ty: Type, reference: Type, target: Type, at: Location) -> Option<Type> {
         self.location(at);
         let declared = match ty {
-            Type::Reference(id) => self.program.references.get(id.index()).map(|it| it.target),
+            Type::Reference(id) => self.program.references.get(id.index()),
             Type::Elementary(_)
             | Type::Subrange(..)
             | Type::String(_)
@@ -65,8 +65,14 @@ impl Verifier<'_> {
             | Type::Struct(_)
             | Type::Block(_) => None,
         };
-        let holds = ty == reference && declared == Some(target);
+        let holds = ty == reference && declared.is_some_and(|it| it.target == target || self.may_be(*it, target));
         self.require(holds, at, format_args!("{ty:?} does not refer to {target:?}")).then_some(target)
+    }
+
+    /// Whether a reference may lead to an instance whose class it does not name: any access checks that.
+    fn may_be(&self, reference: RefType, target: Type) -> bool {
+        let is_instance = |ty| matches!(ty, Type::Struct(id) if self.program.class_of_state(id).is_some());
+        is_instance(target) && (matches!(reference.kind, RefKind::Interface(_)) || is_instance(reference.target))
     }
 
     /// `place` exists, has the type it says, and no part of the way to it is constant.

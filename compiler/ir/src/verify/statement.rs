@@ -4,8 +4,8 @@ use super::Verifier;
 use crate::alias::Frame;
 use crate::loops;
 use crate::{
-    Argument, Arm, Block, ClassKind, Expr, For, Location, Mode, Param, Place, Root, Routine, RoutineId, Statement,
-    StatementKind, Step, Type,
+    Argument, Arm, Block, ClassKind, Expr, ExprKind, For, Location, Mode, Param, Place, Root, Routine, RoutineId,
+    Statement, StatementKind, Step, Type,
 };
 use staunch_runtime::BlockInfo;
 
@@ -59,7 +59,10 @@ impl<'p> Verifier<'p> {
             StatementKind::Assign { target, value } => {
                 self.writable(body, target, at);
                 self.expr_of(body, value, target.ty);
-                self.copied(value.ty, at);
+                // An instance with fixed storage that lives for one call starts anew by its initial value.
+                if !matches!(value.kind, ExprKind::Aggregate(_)) {
+                    self.copied(value.ty, at);
+                }
             }
             StatementKind::If { condition, then, otherwise } => {
                 self.expr_of(body, condition, Type::BOOL);

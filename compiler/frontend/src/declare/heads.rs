@@ -1,0 +1,142 @@
+//! What a class owes to what it IMPLEMENTS and overrides: the same parameters and results, by their types.
+
+use crate::ast::{self, PouKind};
+use crate::names::{Entry, Found, Meaning, Sense};
+use crate::spelling::nearest;
+use crate::types::declarations::{Declarations, Slot};
+use crate::types::signature::Signature;
+use crate::{Code, Diagnostic};
+use staunch_ir::{Section, Type};
+use std::rc::Rc;
+
+/// CODESYS's own INTERFACE, of those that can be asked what else an instance has. Here all can.
+fn is_queryable(path: &[ast::Name<'_>]) -> bool {
+    let wanted = ["__SYSTEM", "IQUERYINTERFACE"];
+    path.len() == 2 && path.iter().zip(wanted).all(|(name, wanted)| name.text.eq_ignore_ascii_case(wanted))
+}
+
+impl<'s> Declarations<'s> {
+    /// Checks all classes, when their signatures are known.
+    pub(super) fn check_heads(&mut self) {
+        for slot in 0..self.written_pous().len() {
+            let pou = self.pous[slot].ast;
+            if pou.kind.has_routines() {
+                pou.implements.iter().for_each(|name| self.check_is_interface(pou, *name));
+            }
+            if pou.kind.is_block() {
+                self.check_interfaces(slot);
+                self.check_overrides(slot);
+            }
+        }
+    }
+
+    /// Reports a name after IMPLEMENTS, or after the EXTENDS of an INTERFACE, that is no INTERFACE's.
+    fn check_is_interface(&mut self, pou: &ast::Pou<'s>, name: ast::Name<'s>) {
+        let Some(path) = pou.bases.iter().find(|it| it.last().is_some_and(|it| it.span == name.span)) else { return };
+        if is_queryable(path) {
+            return;
+        }
+        let error = |message| Diagnostic::new(Code::E0102, name.span, message).label("expected one");
+        match self.lookup(path, Sense::Type) {
+            Found::One(Meaning::Declared(Entry::Pou(at))) if self.pous[at].ast.kind == PouKind::Interface => {}
+            Found::One(Meaning::Declared(entry)) => {
+                let declared = self.span_of(entry);
+                self.report(
+                    error(format!("`{}` is no INTERFACE", name.text))
+                        .other(declared, "declared here")
+                        .help("a FUNCTION_BLOCK that is to be had is after EXTENDS, before IMPLEMENTS"),
+                );
+            }
+            Found::One(_) => self.report(error(format!("`{}` is no INTERFACE", name.text))),
+            Found::Nothing if self.names.root(name.text).is_none() && self.names.holders(name.text).is_empty() => {
+                let names = self.table.interfaces.slots.iter().map(|it| self.pous[*it].ast.name.text);
+                let near = nearest(name.text, names).map(str::to_owned);
+                let error = error(format!("there is no INTERFACE `{}`", name.text));
+                self.report(match near {
+                    Some(near) => error.help(format!("did you mean `{near}`?")).fix(name.span, near),
+                    None => error,
+                });
+            }
+            // That has been reported.
+            Found::Nothing | Found::Several(_) => {}
+        }
+    }
+
+    /// Reports what the INTERFACEs of a class want, and it does not have. An ABSTRACT one leaves it to its heirs.
+    fn check_interfaces(&mut self, slot: usize) {
+        let base = self.base_of(slot).filter(|it| self.pous[*it].ast.modifiers.is_abstract.is_none());
+        let known = base.map(|it| self.interfaces_of(it)).unwrap_or_default();
+        let mut interfaces: Vec<_> = self.interfaces_of(slot).difference(&known).copied().collect();
+        interfaces.sort_unstable();
+        for interface in interfaces {
+            let is_head = |it: &usize| self.pous[*it].owner == Some(interface);
+            let heads: Vec<_> = (interface + 1..self.pous.len()).take_while(is_head).collect();
+            heads.into_iter().for_each(|head| self.check_head(slot, head));
+        }
+    }
+
+    fn check_head(&mut self, class: usize, head: usize) {
+        let (name, wanted) = (self.pous[class].ast.name, self.pous[head].ast.name);
+        let title = self.title(head);
+        let error = match self.routine_for(class, head) {
+            Some(routine) if self.is_alike(routine, head) => return,
+            Some(routine) => {
+                let span = self.pous[routine].ast.name.span;
+                Diagnostic::new(Code::E0403, span, format!("`{title}` has another head"))
+                    .label("the parameters and the result are those of the INTERFACE")
+            }
+            None if self.pous[class].ast.modifiers.is_abstract.is_some() || wanted.text.is_empty() => return,
+            None => {
+                let what = match self.pous[head].ast.kind {
+                    PouKind::Getter => format!("GET of `{title}`"),
+                    PouKind::Setter => format!("SET of `{title}`"),
+                    PouKind::Method
+                    | PouKind::Action
+                    | PouKind::Program
+                    | PouKind::FunctionBlock
+                    | PouKind::Class
+                    | PouKind::Interface
+                    | PouKind::Function
+                    | PouKind::Test => format!("`{title}`"),
+                };
+                Diagnostic::new(Code::E0403, name.span, format!("`{}` does not have {what}", name.text))
+                    .label("an INTERFACE is had as a whole")
+            }
+        };
+        self.report(error.other(wanted.span, "declared here"));
+    }
+
+    /// Reports routines of a class whose heads are others than those which they override.
+    fn check_overrides(&mut self, slot: usize) {
+        let Some(base) = self.base_of(slot) else { return };
+        let is_own = |it: &usize| self.pous[*it].owner == Some(slot);
+        let routines = (slot + 1..self.pous.len()).take_while(is_own);
+        let own: Vec<_> = routines.filter(|it| self.pous[*it].ast.home.is_none()).collect();
+        for new in own {
+            let Some(old) = self.routine_for(base, new).filter(|it| !self.is_alike(new, *it)) else { continue };
+            let (new, old) = (self.pous[new].ast.name, self.pous[old].ast.name);
+            self.report(
+                Diagnostic::new(Code::E0403, new.span, format!("`{}` overrides another head", new.text))
+                    .label("the parameters and the result are those of what is overridden")
+                    .other(old.span, "overridden here"),
+            );
+        }
+    }
+
+    /// Whether two routines have the same parameters and results. Of what was refused that is not known.
+    fn is_alike(&self, a: usize, b: usize) -> bool {
+        let known = |slot: usize| match &self.pous[slot].slot {
+            Slot::Done(signature) => Some(Rc::clone(signature)).filter(|it| !it.scope.has_refused()),
+            Slot::Open | Slot::Failed => None,
+        };
+        let (Some(a), Some(b)) = (known(a), known(b)) else { return true };
+        let result = |it: &Signature<'_>| it.result.as_ref().map(|it| it.1.ty);
+        let formals = |it: &Signature<'_>| -> Vec<(String, Section, bool, Type)> {
+            let formal = |it: &crate::types::signature::Formal<'_>| {
+                (it.name.text.to_ascii_uppercase(), it.section, it.constant, it.resolved.ty)
+            };
+            it.formals.iter().map(formal).collect()
+        };
+        result(&a) == result(&b) && formals(&a) == formals(&b)
+    }
+}

@@ -1,0 +1,129 @@
+//! `__QUERYINTERFACE` and `__QUERYPOINTER`: whether the instance behind a variable of an INTERFACE is of a class that
+//! has another INTERFACE, or is of a pointer's class.
+
+use super::checker::Checker;
+use super::dispatch::class_of;
+use super::operand::Operand;
+use crate::{Code, Diagnostic, Span, ast};
+use ast::{ArgumentKind, ExprKind as Ast};
+use staunch_ir::{Arm, Conversion, Expr, Place, RefKind, Statement, StatementKind, StructId, Type};
+
+fn is_query(name: &str) -> bool {
+    ["__QUERYINTERFACE", "__QUERYPOINTER"].iter().any(|it| it.eq_ignore_ascii_case(name))
+}
+
+impl<'s> Checker<'_, 's> {
+    /// A query, where `callee` names one; the inner `None` says that it was reported.
+    pub(crate) fn query(
+        &mut self,
+        callee: &ast::Expr<'s>,
+        arguments: &[ast::Argument<'s>],
+        span: Span,
+    ) -> Option<Option<Operand>> {
+        let Ast::Name(name) = &callee.kind else { return None };
+        if !is_query(name.text) || self.signature.is_none() {
+            return None;
+        }
+        let [
+            ast::Argument { kind: ArgumentKind::Positional(from), .. },
+            ast::Argument { kind: ArgumentKind::Positional(to), .. },
+        ] = arguments
+        else {
+            self.report(
+                Diagnostic::new(Code::E0302, span, format!("`{}` takes 2 arguments", name.text))
+                    .label("an instance or a variable of an INTERFACE, and the variable that is to refer to it"),
+            );
+            return Some(None);
+        };
+        Some(self.query_of(*name, from, to, span))
+    }
+
+    fn query_of(
+        &mut self,
+        name: ast::Name<'s>,
+        from: &ast::Expr<'s>,
+        to: &ast::Expr<'s>,
+        span: Span,
+    ) -> Option<Operand> {
+        let source = self.queried(from)?;
+        let pointer = self.temporary("instance", source.ty);
+        self.assign(pointer.clone(), source, from.span);
+        let found = self.place_of_reference(to)?;
+        if !self.writable(&found, to.span) {
+            return None;
+        }
+        let wants_pointer = name.text.eq_ignore_ascii_case("__QUERYPOINTER");
+        let classes = self.answering(found.place.ty, wants_pointer, to.span)?;
+        self.note_assigned(&found.place, to.span);
+        let mut numbers = Vec::new();
+        for state in classes.into_iter().filter(|it| self.decl.is_told_apart(*it)).collect::<Vec<_>>() {
+            numbers.push(self.decl.class_number(state, span));
+        }
+        Some(Operand::Typed(self.answer(&pointer, found.place, &numbers, span)))
+    }
+
+    /// The reference that is asked: a variable of an INTERFACE, or an instance.
+    fn queried(&mut self, from: &ast::Expr<'s>) -> Option<Expr> {
+        match self.static_type(from) {
+            Some(Type::Struct(state)) if self.decl.is_instance(state) => self.reference_to(from, RefKind::RefTo),
+            Some(ty) if self.decl.interface_of(ty).is_some() => self.typed(from, None),
+            Some(_) | None => {
+                let value = self.typed(from, None)?;
+                let ty = self.type_name(value.ty);
+                self.report(
+                    Diagnostic::new(Code::E0211, from.span, format!("a query is for instances, this is {ty}"))
+                        .label("expected an instance, or a variable of an INTERFACE"),
+                );
+                None
+            }
+        }
+    }
+
+    /// The states of the classes whose instances the variable may refer to.
+    fn answering(&mut self, ty: Type, wants_pointer: bool, span: Span) -> Option<Vec<StructId>> {
+        let classes = match (self.decl.interface_of(ty), ty) {
+            (Some(interface), _) if !wants_pointer => self.decl.implementers(interface).to_vec(),
+            (None, Type::Reference(id)) if wants_pointer => {
+                let target = self.decl.program.target(id);
+                let Type::Struct(state) = target else { return self.report_answer(ty, wants_pointer, span) };
+                let slot = self.decl.slot_of_instance(state);
+                slot.map_or_else(Vec::new, |it| vec![it])
+            }
+            _ => return self.report_answer(ty, wants_pointer, span),
+        };
+        Some(classes.into_iter().filter_map(|it| self.decl.signature(it)?.state).collect())
+    }
+
+    fn report_answer(&mut self, ty: Type, wants_pointer: bool, span: Span) -> Option<Vec<StructId>> {
+        let wanted = if wants_pointer { "POINTER TO a FUNCTION_BLOCK" } else { "variable of an INTERFACE" };
+        let found = self.type_name(ty);
+        self.report(
+            Diagnostic::new(Code::E0211, span, format!("a {wanted} is expected here, this is {found}"))
+                .label("it is to refer to the instance, or to nothing"),
+        );
+        None
+    }
+
+    /// Whether the instance is of one of these classes: then the target refers to it, else to nothing.
+    fn answer(&mut self, pointer: &Place, target: Place, numbers: &[u64], span: Span) -> Expr {
+        let at = self.at(span);
+        let result = self.temporary("found", Type::BOOL);
+        let same = self.convert(Conversion::Same, target.ty, Expr::load(pointer.clone(), at));
+        let null = self.null(Some(target.ty), span);
+        let set = |value, found| {
+            vec![
+                Statement::assign(target.clone(), value, at),
+                Statement::assign(result.clone(), Expr::bool(found, at), at),
+            ]
+        };
+        let (labels, nothing) = (numbers.iter().map(|it| (i128::from(*it), i128::from(*it))), set(null, false));
+        let labels: Vec<_> = labels.collect();
+        if labels.is_empty() {
+            self.block.extend(nothing);
+        } else {
+            let arms = vec![Arm { labels, body: set(same, true) }];
+            self.push(StatementKind::Case { selector: class_of(pointer, at), arms, otherwise: nothing }, span);
+        }
+        Expr::load(result, at)
+    }
+}

@@ -1,0 +1,151 @@
+//! INTERFACEs: which classes have them, and the numbers by which a reference to an instance tells its class.
+
+use super::declarations::{Declarations, Routines};
+use crate::ast::PouKind;
+use crate::names::{Entry, Found, Meaning, Sense};
+use crate::spelling::Key;
+use crate::{Code, Diagnostic, Span};
+use rustc_hash::FxHashSet;
+use staunch_ir::{Elementary, InterfaceId, RefKind, StructId, Type};
+use std::rc::Rc;
+
+/// So many classes can be told apart by references; 0 is none.
+const MAX_NUMBERS: u64 = (1 << (64 - staunch_runtime::reference::CLASS)) - 1;
+
+impl Declarations<'_> {
+    /// The type of the variables of the INTERFACE in a slot.
+    pub fn interface_type(&mut self, slot: usize) -> Option<Type> {
+        let at = self.table.interfaces.slots.binary_search(&slot).ok()?;
+        Some(self.reference_type(RefKind::Interface(InterfaceId::next(at)), Type::Elementary(Elementary::Byte)))
+    }
+
+    /// The slot of the INTERFACE whose variables have the type.
+    pub fn interface_of(&self, ty: Type) -> Option<usize> {
+        let Type::Reference(id) = ty else { return None };
+        match self.program.references[id.index()].kind {
+            RefKind::Interface(id) => self.table.interfaces.slots.get(id.index()).copied(),
+            RefKind::RefTo | RefKind::PointerTo | RefKind::ReferenceTo => None,
+        }
+    }
+
+    /// Whether a slot is that of an INTERFACE, or of a head in one: there is nothing to run.
+    pub fn is_head(&self, slot: usize) -> bool {
+        let owner = self.pous[slot].owner.unwrap_or(slot);
+        self.pous[owner].ast.kind == PouKind::Interface
+    }
+
+    /// The INTERFACEs that a class IMPLEMENTS, or an INTERFACE EXTENDS, by itself.
+    pub fn own_interfaces(&self, slot: usize) -> Vec<usize> {
+        let found = self.pous[slot].ast.bases.iter().filter_map(|path| match self.lookup(path, Sense::Type) {
+            Found::One(Meaning::Declared(Entry::Pou(at))) => Some(at),
+            Found::One(_) | Found::Nothing | Found::Several(_) => None,
+        });
+        found.filter(|it| self.pous[*it].ast.kind == PouKind::Interface).collect()
+    }
+
+    /// All INTERFACEs that a class has, by what it extends too; an INTERFACE has itself.
+    pub fn interfaces_of(&mut self, slot: usize) -> Rc<FxHashSet<usize>> {
+        let mut way = vec![slot];
+        while let Some(base) = way.last().and_then(|it| self.base_of(*it))
+            && !self.table.interfaces.closures.contains_key(&base)
+        {
+            way.push(base);
+        }
+        while let Some(at) = way.pop() {
+            let base = self.base_of(at).and_then(|it| self.table.interfaces.closures.get(&it)).cloned();
+            let mut asked = self.own_interfaces(at);
+            if self.pous[at].ast.kind == PouKind::Interface {
+                asked.push(at);
+            }
+            let mut all: FxHashSet<usize> = FxHashSet::default();
+            while let Some(interface) = asked.pop() {
+                if all.insert(interface) {
+                    asked.extend(self.own_interfaces(interface));
+                }
+            }
+            let closure = match base {
+                Some(base) if all.is_subset(&base) => base,
+                Some(base) => Rc::new(all.union(&base).copied().collect()),
+                None => Rc::new(all),
+            };
+            self.table.interfaces.closures.insert(at, closure);
+        }
+        Rc::clone(&self.table.interfaces.closures[&slot])
+    }
+
+    /// The slot of what a class EXTENDS.
+    pub fn base_of(&self, slot: usize) -> Option<usize> {
+        self.class_named(self.pous[slot].ast.extends?)
+    }
+
+    /// The classes whose instances a variable of the INTERFACE in a slot may refer to.
+    pub fn implementers(&mut self, interface: usize) -> Rc<[usize]> {
+        if let Some(known) = self.table.interfaces.implementers.get(&interface) {
+            return Rc::clone(known);
+        }
+        let is_class = |pou: &crate::ast::Pou<'_>| pou.kind.is_block() && pou.modifiers.is_abstract.is_none();
+        let classes: Vec<_> = (0..self.written_pous().len()).filter(|it| is_class(self.pous[*it].ast)).collect();
+        let found: Rc<[usize]> =
+            classes.into_iter().filter(|it| self.interfaces_of(*it).contains(&interface)).collect();
+        self.table.interfaces.implementers.insert(interface, Rc::clone(&found));
+        found
+    }
+
+    /// The routines that a name means on an instance, or on a variable of an INTERFACE.
+    pub fn routines_on(&self, ty: Type, name: &str) -> Option<Routines> {
+        match (ty, self.interface_of(ty)) {
+            (Type::Struct(state), _) => self.routines_of(state, name),
+            (_, Some(interface)) => self.routines_of_interface(interface, name),
+            (_, None) => None,
+        }
+    }
+
+    fn routines_of_interface(&self, interface: usize, name: &str) -> Option<Routines> {
+        let (mut asked, mut seen) = (vec![interface], FxHashSet::default());
+        while let Some(at) = asked.pop().filter(|it| seen.insert(*it)) {
+            if let Some(found) = self.pous[at].routines.get(&Key(name)) {
+                return Some(*found);
+            }
+            asked.extend(self.own_interfaces(at).into_iter().rev());
+        }
+        None
+    }
+
+    /// The routine of a class for a head of an INTERFACE.
+    pub fn routine_for(&self, class: usize, head: usize) -> Option<usize> {
+        let head = self.pous[head].ast;
+        let routines = self.pous[class].routines.get(&Key(head.name.text))?;
+        let found = match head.kind {
+            PouKind::Getter => routines.getter,
+            PouKind::Setter => routines.setter,
+            PouKind::Method
+            | PouKind::Action
+            | PouKind::Program
+            | PouKind::FunctionBlock
+            | PouKind::Class
+            | PouKind::Interface
+            | PouKind::Function
+            | PouKind::Test => routines.called,
+        };
+        found.map(|it| it.0)
+    }
+
+    /// Whether the classes of instances of this type may have to be told apart by a reference.
+    pub fn is_told_apart(&mut self, state: StructId) -> bool {
+        let Some(slot) = self.slot_of_instance(state) else { return false };
+        self.pous[slot].ast.kind.is_block() && !self.interfaces_of(slot).is_empty()
+    }
+
+    /// The number of a class in a reference to one of its instances.
+    pub fn class_number(&mut self, state: StructId, span: Span) -> u64 {
+        let next = u64::try_from(self.table.interfaces.numbers.len()).unwrap_or(u64::MAX) + 1;
+        let number = *self.table.interfaces.numbers.entry(state).or_insert(next);
+        if number > MAX_NUMBERS && !std::mem::replace(&mut self.table.interfaces.is_too_many, true) {
+            self.report(
+                Diagnostic::new(Code::E0901, span, format!("more than {MAX_NUMBERS} classes have INTERFACEs"))
+                    .label("references tell no more of them apart"),
+            );
+        }
+        number.min(MAX_NUMBERS)
+    }
+}
