@@ -232,6 +232,10 @@ pub struct Test {
     /// What runs them
     #[arg(long, value_enum, default_value_t = Backend::Native)]
     pub backend: Backend,
+    /// Measure what the tests execute: `table` prints it; OUT.info is for lcov, OUT.html and OUT.txt are the
+    /// annotated sources
+    #[arg(long, value_name = "table|OUT", action = ArgAction::Append)]
+    pub coverage: Vec<PathBuf>,
     /// Threads that run tests [default: as many as there are processors]
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub jobs: Option<u16>,

@@ -98,7 +98,8 @@ fn dispatch(cli: Cli) -> u8 {
         Command::Check(it) => Session::check(&cli.common, it),
         Command::Build(it) => Session::start(&cli.common, &it.files).and_then(|session| build::build(&session, it)),
         Command::Run(it) => Session::start(&cli.common, &it.files).and_then(|session| run::run(&session, it)),
-        Command::Test(it) => Session::start_tests(&cli.common, &it.files).and_then(|session| test::test(&session, it)),
+        Command::Test(it) => Session::start_tests(&cli.common, &it.files, !it.coverage.is_empty())
+            .and_then(|session| test::test(&session, it)),
         Command::Compare(it) => compare::compare(&cli.common, it),
         Command::Bench(it) => Session::start(&cli.common, &it.files).and_then(|session| bench::bench(&session, it)),
     };

@@ -4,7 +4,8 @@ use crate::args::{Color, Common, Files, MessageFormat};
 use crate::{REJECTED, input, output};
 use staunch_build::Project;
 use staunch_frontend::{
-    Compilation, Diagnostic, Dialect, Format, Level, Levels, Options, Severity, Sources, Span, Style, Test,
+    Compilation, CoveragePoint, Diagnostic, Dialect, Format, Level, Levels, Options, Severity, Sources, Span, Style,
+    Test,
 };
 use staunch_ir::Program;
 use std::io::{IsTerminal, Write};
@@ -22,6 +23,8 @@ pub struct Session {
     program: Option<Program>,
     /// The unit tests that the program's instances are.
     pub tests: Vec<Test>,
+    /// Where execution is counted.
+    pub coverage: Vec<CoveragePoint>,
     /// At their levels.
     pub diagnostics: Vec<Diagnostic>,
     pub compile_time: Duration,
@@ -34,23 +37,26 @@ impl Session {
     }
 
     /// As [`start`](Self::start), for the unit tests in the sources.
-    pub fn start_tests(common: &Common, files: &Files) -> Result<Self, String> {
-        let compile = |sources: &_, options: &Options| {
-            staunch_frontend::compile(sources, &Options { tests: true, ..options.clone() })
+    pub fn start_tests(common: &Common, files: &Files, is_covered: bool) -> Result<Self, String> {
+        let compile = |sources: &Sources, options: &Options| {
+            let coverage = covered(sources, is_covered);
+            staunch_frontend::compile(sources, &Options { tests: true, coverage, ..options.clone() })
         };
         Self::begin(common, files, compile).map(|(session, _)| session)
     }
 
     /// The program that is not tests alone: what `run` would run. There is nothing more to say of it.
-    pub fn without_tests(&self) -> Result<Option<Program>, String> {
-        Ok(staunch_frontend::compile(&self.sources, &options(&self.common, &self.project)?).program)
+    pub fn without_tests(&self, is_covered: bool) -> Result<Compilation, String> {
+        let coverage = covered(&self.sources, is_covered);
+        let options = Options { coverage, ..options(&self.common, &self.project)? };
+        Ok(staunch_frontend::compile(&self.sources, &options))
     }
 
     /// As [`start`](Self::start), but without a program at the end: the verdict alone.
     pub fn check(common: &Common, files: &Files) -> Result<u8, String> {
         let check = |sources: &_, options: &_| {
             let diagnostics = staunch_frontend::check(sources, options);
-            Compilation { program: None, diagnostics, tests: Vec::new() }
+            Compilation { program: None, diagnostics, tests: Vec::new(), coverage: Vec::new() }
         };
         let (session, errors) = Self::begin(common, files, check)?;
         if errors > 0 {
@@ -87,8 +93,17 @@ impl Session {
         let first = PathBuf::from(&sources.files()[0].path);
         let diagnostics = Vec::new();
         let common = common.with(&project);
-        let mut session =
-            Self { common, project, first, sources, program: None, tests: Vec::new(), diagnostics, compile_time };
+        let mut session = Self {
+            common,
+            project,
+            first,
+            sources,
+            program: None,
+            tests: Vec::new(),
+            coverage: Vec::new(),
+            diagnostics,
+            compile_time,
+        };
         session.say_what_was_read();
         let errors = session.accept(compilation, &levels, &[])?;
         Ok((session, errors))
@@ -144,8 +159,17 @@ impl Session {
     ) -> Result<Self, String> {
         let (common, project, first) = (self.common.clone(), self.project.clone(), self.first.clone());
         let diagnostics = Vec::new();
-        let mut session =
-            Self { common, project, first, sources, program: None, tests: Vec::new(), diagnostics, compile_time };
+        let mut session = Self {
+            common,
+            project,
+            first,
+            sources,
+            program: None,
+            tests: Vec::new(),
+            coverage: Vec::new(),
+            diagnostics,
+            compile_time,
+        };
         session.accept(compilation, &levels(&self.common, &self.project)?, known)?;
         Ok(session)
     }
@@ -161,6 +185,7 @@ impl Session {
         self.print(&new, errors)?;
         self.program = compilation.program.filter(|_| errors == 0);
         self.tests = compilation.tests;
+        self.coverage = compilation.coverage;
         self.diagnostics = diagnostics;
         Ok(errors)
     }
@@ -262,6 +287,11 @@ impl Session {
     }
 }
 
+/// The sources whose execution is counted: all that the user named.
+fn covered(sources: &Sources, is_covered: bool) -> Option<u16> {
+    is_covered.then(|| u16::try_from(sources.files().len()).unwrap_or(u16::MAX))
+}
+
 fn parent(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if folder != Path::new("") => folder,
@@ -282,7 +312,7 @@ fn options(common: &Common, project: &Project) -> Result<Options, String> {
         Some(dialect) => dialect,
         None => project.dialect()?.unwrap_or_default(),
     };
-    Ok(Options { dialect, ctu_stop_at_pv: project.ctu_stop_at_pv, moved_from: None, tests: false })
+    Ok(Options { dialect, ctu_stop_at_pv: project.ctu_stop_at_pv, moved_from: None, tests: false, coverage: None })
 }
 
 fn summary(errors: usize, warnings: usize) -> String {

@@ -36,9 +36,11 @@ pub use dialect::Dialect;
 pub use source::{Source, Sources, Span};
 pub use syntax::parse;
 pub use testing::{Assertion, Test};
+pub use types::coverage::{CoverageKind, CoveragePoint, Decision, Formula};
 
 use log::Log;
 use staunch_ir::Program;
+use types::coverage::Coverage;
 use vendor::{Problem, Trouble};
 
 /// How to read the sources.
@@ -53,6 +55,8 @@ pub struct Options {
     pub moved_from: Option<Dialect>,
     /// Each TEST becomes an instance of the program, and no other PROGRAM runs.
     pub tests: bool,
+    /// Counts what is executed of the first so many sources.
+    pub coverage: Option<u16>,
 }
 
 impl Options {
@@ -72,6 +76,8 @@ pub struct Compilation {
     pub diagnostics: Vec<Diagnostic>,
     /// The unit tests that the program's instances are.
     pub tests: Vec<Test>,
+    /// Where execution is counted.
+    pub coverage: Vec<CoveragePoint>,
 }
 
 impl Compilation {
@@ -122,7 +128,7 @@ fn with_library(sources: &Sources, options: &Options, keep: Bodies) -> Compilati
 fn run(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
     let mut log = Log::new(sources, options);
     let Some(mut files) = parse_all(sources, &mut log.diagnostics) else {
-        return Compilation { program: None, diagnostics: log.diagnostics, tests: Vec::new() };
+        return Compilation { program: None, diagnostics: log.diagnostics, tests: Vec::new(), coverage: Vec::new() };
     };
     // Unit tests that do not run are checked all the same.
     let tested = (!options.tests && testing::has_tests(&files))
@@ -134,14 +140,17 @@ fn run(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
     let mut runs = declare::run::runs(&files);
     bodies.extend(runs.iter_mut().map(|it| std::mem::take(&mut it.body)));
     let mut declarations = declare::declare(log, &files, &runs, &bodies);
+    declarations.coverage = options.coverage.map(|files| Coverage { files, ..Coverage::default() });
     let unassigned = lints::result::unassigned(&declarations);
     let checked = body::check(&mut declarations, &mut bodies, keep);
     lints::unused::report(&mut declarations);
     let left_out = checked.left_out;
     let program = program::assemble(&mut declarations, &files, checked);
     let tests = program::tests::tests(&mut declarations);
+    let coverage = declarations.coverage.take().map(|it| it.points).unwrap_or_default();
     let mut compilation = finish(program.filter(|_| keep == Bodies::Kept), declarations.log, unassigned, left_out);
     compilation.tests = tests;
+    compilation.coverage = coverage;
     compilation.add(tested.unwrap_or_default());
     // SETUP is a part of each test.
     compilation.diagnostics.dedup_by(|a, b| (a.code, a.span) == (b.code, b.span) && a.message == b.message);
@@ -209,5 +218,5 @@ fn finish(program: Option<Program>, log: Log<'_>, unassigned: Vec<Diagnostic>, l
     {
         unreachable!("the front end made IR that does not verify: {violations:?}");
     }
-    Compilation { program, diagnostics, tests: Vec::new() }
+    Compilation { program, diagnostics, tests: Vec::new(), coverage: Vec::new() }
 }

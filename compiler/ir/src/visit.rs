@@ -209,7 +209,8 @@ pub fn all_exprs<'a>(statement: &'a Statement, see: &mut dyn FnMut(&'a Expr)) {
     targets(statement, &mut |place| place.indices().for_each(|it| within(it, see)));
 }
 
-fn within<'a>(expr: &'a Expr, see: &mut dyn FnMut(&'a Expr)) {
+/// Calls `see` for the expression, and for those in it and in its places.
+pub fn within<'a>(expr: &'a Expr, see: &mut dyn FnMut(&'a Expr)) {
     see(expr);
     match &expr.kind {
         ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => {}

@@ -1,6 +1,7 @@
 //! One test on one executor: a scan for SETUP and the test itself, and one for TEARDOWN.
 
 use super::Outcome;
+use super::coverage::Counts;
 use crate::args::{self, Backend};
 use crate::machine::{Interpreted, Native};
 use crate::rustc::{self, Kind};
@@ -11,6 +12,7 @@ use staunch_ir::Program;
 use staunch_runtime::{Context, Fault};
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::Mutex;
 
 /// What all threads share.
 pub struct Suite<'p> {
@@ -19,12 +21,15 @@ pub struct Suite<'p> {
     /// Of the back end `rust`: an executable, which runs one test each time.
     executable: Option<PathBuf>,
     pub turns: u64,
+    /// What the tests execute, where it is counted.
+    pub counts: Option<&'p Mutex<Counts>>,
 }
 
 /// What one thread runs its tests on.
 pub struct Executor<'p> {
     runs: Runs<'p>,
     turns: u64,
+    counts: Option<&'p Mutex<Counts>>,
 }
 
 enum Runs<'p> {
@@ -36,13 +41,18 @@ enum Runs<'p> {
 type Values<'v> = dyn Fn(&str) -> Result<String, String> + 'v;
 
 impl<'p> Suite<'p> {
-    pub fn new(session: &Session, args: &args::Test, program: &'p Program) -> Result<Self, String> {
+    pub fn new(
+        session: &Session,
+        args: &args::Test,
+        program: &'p Program,
+        counts: Option<&'p Mutex<Counts>>,
+    ) -> Result<Self, String> {
         let executable = match args.backend {
             Backend::Rust if !program.instances.is_empty() => Some(rustc::compile(program, Kind::Executable, None)?),
             Backend::Rust | Backend::Native | Backend::Interpret => None,
         };
         let turns = args.loop_budget.or(session.project.loop_budget).unwrap_or(Context::TURNS);
-        Ok(Self { program, backend: args.backend, executable, turns })
+        Ok(Self { program, backend: args.backend, executable, turns, counts })
     }
 
     /// An executor for the tests of the instances that are `wanted`.
@@ -58,7 +68,7 @@ impl<'p> Suite<'p> {
                 Runs::Here(Box::new(machine), Box::new(map))
             }
         };
-        Ok(Executor { runs, turns: self.turns })
+        Ok(Executor { runs, turns: self.turns, counts: self.counts })
     }
 }
 
@@ -75,6 +85,14 @@ fn only(program: &Program, wanted: impl Fn(usize) -> bool) -> Program {
 
 impl Executor<'_> {
     pub fn run(&mut self, instance: usize, test: &Test) -> Result<Outcome, String> {
+        let outcome = self.outcome(instance, test)?;
+        if let (Runs::Here(machine, _), Some(counts)) = (&self.runs, self.counts) {
+            counts.lock().map_err(|_| "a thread ended early")?.add(machine.state());
+        }
+        Ok(outcome)
+    }
+
+    fn outcome(&mut self, instance: usize, test: &Test) -> Result<Outcome, String> {
         match &mut self.runs {
             Runs::Here(machine, map) => {
                 machine.init();

@@ -1,18 +1,21 @@
 //! `staunch test`: each TEST of the sources, and each table beside them, runs from a fresh state.
 
+mod coverage;
 mod execute;
 mod junit;
 mod parallel;
 mod report;
 mod table;
 
-use crate::args;
+use crate::args::{self, Backend};
 use crate::session::Session;
 use crate::{REJECTED, output};
+use coverage::{Counts, Coverage};
 use execute::Suite;
 use report::Report;
 use staunch_frontend::Test;
 use std::collections::HashSet;
+use std::sync::Mutex;
 use table::Table;
 
 /// How a test went.
@@ -46,14 +49,25 @@ pub fn test(session: &Session, args: &args::Test) -> Result<u8, String> {
     if tests.is_empty() && tables.is_empty() {
         return Err(format!("no test has `{wanted}` in its title; there are {all} tests"));
     }
+    let is_covered = !args.coverage.is_empty();
+    if is_covered && args.backend == Backend::Rust {
+        return Err("coverage is measured with --backend native or interpret".to_owned());
+    }
+    let counts = Mutex::new(Counts::of(program, &session.coverage));
     let mut run = Run {
         session,
-        suite: Suite::new(session, args, program)?,
+        suite: Suite::new(session, args, program, is_covered.then_some(&counts))?,
+        coverage: Coverage::default(),
         threads: args.jobs.map_or_else(parallel::processors, usize::from),
         report: Report::new(session),
     };
     run.tests(&tests)?;
     run.tables(&tables)?;
+    if is_covered {
+        run.coverage.add(&session.coverage, &counts);
+        let text = run.coverage.write(session, &args.coverage)?;
+        output::print(text.as_bytes())?;
+    }
     output::print(run.report.end().as_bytes())?;
     if let Some(path) = &args.junit {
         output::write(path, junit::text(&run.report).as_bytes())?;
@@ -66,6 +80,7 @@ struct Run<'s> {
     suite: Suite<'s>,
     threads: usize,
     report: Report<'s>,
+    coverage: Coverage,
 }
 
 impl Run<'_> {
@@ -89,10 +104,15 @@ impl Run<'_> {
         if tables.is_empty() {
             return Ok(());
         }
-        let Self { session, suite, threads, report } = self;
-        let program = session.without_tests()?.ok_or("the program without its tests is rejected")?;
-        let work = |_: &mut (), piece: usize| Ok(table::run(session, suite, &program, &tables[piece]));
+        let Self { session, suite, threads, report, coverage } = self;
+        let compilation = session.without_tests(suite.counts.is_some())?;
+        let program = compilation.program.ok_or("the program without its tests is rejected")?;
+        let counts = Mutex::new(Counts::of(&program, &compilation.coverage));
+        let counted = suite.counts.map(|_| &counts);
+        let work = |_: &mut (), piece: usize| Ok(table::run(session, suite, &program, &tables[piece], counted));
         let each = |piece: usize, outcome| output::print(report.add_table(&tables[piece], outcome).as_bytes());
-        parallel::in_order(*threads, tables.len(), |_| Ok(()), work, each)
+        parallel::in_order(*threads, tables.len(), |_| Ok(()), work, each)?;
+        coverage.add(&compilation.coverage, &counts);
+        Ok(())
     }
 }

@@ -1,5 +1,6 @@
 //! A table is a test too: a CSV file beside a source, with inputs left of a `|` and what is expected right of it.
 
+use super::coverage::Counts;
 use super::{Outcome, Suite};
 use crate::args::Backend;
 use crate::machine::{Interpreted, Native};
@@ -7,8 +8,10 @@ use crate::run;
 use crate::session::Session;
 use staunch_host::{Expectations, Machine, Map, Options, When, csv_cells};
 use staunch_ir::Program;
+use staunch_ir::layout::Layout;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::{fs, io};
 
@@ -52,11 +55,23 @@ fn subject(session: &Session, program: &Program, table: &Table) -> Result<Progra
 }
 
 /// Runs a table; what is wrong with the file itself fails the test, too.
-pub fn run(session: &Session, suite: &Suite<'_>, program: &Program, table: &Table) -> Outcome {
-    ran(session, suite, program, table).unwrap_or_else(|error| Outcome::Differs(vec![error]))
+pub fn run(
+    session: &Session,
+    suite: &Suite<'_>,
+    program: &Program,
+    table: &Table,
+    counts: Option<&Mutex<Counts>>,
+) -> Outcome {
+    ran(session, suite, program, table, counts).unwrap_or_else(|error| Outcome::Differs(vec![error]))
 }
 
-fn ran(session: &Session, suite: &Suite<'_>, program: &Program, table: &Table) -> Result<Outcome, String> {
+fn ran(
+    session: &Session,
+    suite: &Suite<'_>,
+    program: &Program,
+    table: &Table,
+    counts: Option<&Mutex<Counts>>,
+) -> Result<Outcome, String> {
     let program = subject(session, program, table)?;
     let bytes = fs::read(&table.path).map_err(|error| format!("{}: {error}", table.path.display()))?;
     let map = run::map(&program)?;
@@ -72,14 +87,21 @@ fn ran(session: &Session, suite: &Suite<'_>, program: &Program, table: &Table) -
         quiet: true,
         ..Options::default()
     };
+    // The instances that do not run take no part in the state's layout.
+    let layout = Layout::new(&program);
+    let count = |state: &[u8]| {
+        if let Some(Ok(mut counts)) = counts.map(Mutex::lock) {
+            counts.add_at(layout.machine.globals, state);
+        }
+    };
     let fault = match suite.backend {
         Backend::Native => {
             let (mut machine, map) = Native::new(&program)?;
-            here(&mut machine, &map, &options)?
+            here(&mut machine, &map, &options, &count)?
         }
         Backend::Interpret => {
             let (mut machine, map) = Interpreted::new(&program)?;
-            here(&mut machine, &map, &options)?
+            here(&mut machine, &map, &options, &count)?
         }
         Backend::Rust => apart(&program, &options)?,
     };
@@ -106,8 +128,15 @@ impl Drop for Scratch {
 }
 
 /// The fault that ended the run.
-fn here(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Option<String>, String> {
-    match staunch_host::run(machine, map, options) {
+fn here(
+    machine: &mut dyn Machine,
+    map: &Map,
+    options: &Options,
+    count: &dyn Fn(&[u8]),
+) -> Result<Option<String>, String> {
+    let ran = staunch_host::run(machine, map, options);
+    count(machine.state());
+    match ran {
         Ok(_) => Ok(None),
         Err(error) if error.exit_code() == crate::FAULTED => Ok(Some(error.to_string())),
         Err(error) => Err(error.to_string()),

@@ -6,6 +6,7 @@ mod build;
 #[cfg(unix)]
 mod cache;
 mod check;
+mod coverage;
 mod page;
 #[cfg(unix)]
 mod power;

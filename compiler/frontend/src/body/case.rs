@@ -3,7 +3,7 @@
 
 use crate::expr::checker::Checker;
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{Arm, StatementKind, Type, Value};
+use staunch_ir::{Arm, Block, StatementKind, Type, Value};
 use std::collections::{BTreeMap, HashMap};
 
 /// The labels that have been seen.
@@ -75,16 +75,25 @@ impl<'s> Checker<'_, 's> {
                 None => Vec::new(),
             };
             let before = self.called.len();
-            let body = self.block_of(&arm.body);
+            let label = arm.labels.first().map(|it| it.low.span);
+            let body = self.arm_of(&arm.body, label, span);
             called.extend(self.leave_branch(before, &arm.body));
             if !labels.is_empty() {
                 built.push(Arm { labels, body });
             }
         }
-        let otherwise = otherwise.map(|it| self.block_of(it)).unwrap_or_default();
+        let otherwise = self.arm_of(otherwise.unwrap_or_default(), None, span);
         self.called.append(called);
         self.push(StatementKind::Case { selector: value?, arms: built, otherwise }, span);
         Some(())
+    }
+
+    fn arm_of(&mut self, statements: &[ast::Statement<'s>], label: Option<Span>, case: Span) -> Block {
+        self.nested(|this| {
+            this.count_arm(label, case);
+            let mut block = this.block_of(statements);
+            this.block.append(&mut block);
+        })
     }
 
     /// What a label holds of the values that the ones before it leave.

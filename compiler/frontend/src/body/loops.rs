@@ -8,7 +8,10 @@ use staunch_ir::{Block, Elementary, Expr, For, Location, Op, Statement, Statemen
 impl<'s> Checker<'_, 's> {
     pub(super) fn while_loop(&mut self, condition: &ast::Expr<'s>, body: &[ast::Statement<'s>], span: Span) {
         let mut holds = None;
-        let mut block = self.nested(|this| holds = this.condition(condition));
+        let mut block = self.nested(|this| {
+            holds = this.condition(condition);
+            this.count_condition(condition, holds.as_ref());
+        });
         let mut inside = self.loop_body(body);
         let Some(holds) = holds else { return };
         if holds.as_const() == Some(Value::Bool(true)) {
@@ -26,7 +29,10 @@ impl<'s> Checker<'_, 's> {
         let mut body = self.loop_body(body);
         body.insert(0, Statement::new(StatementKind::Turn, self.at(span)));
         let mut done = None;
-        let mut continuing = self.nested(|this| done = this.condition(until));
+        let mut continuing = self.nested(|this| {
+            done = this.condition(until);
+            this.count_condition(until, done.as_ref());
+        });
         let Some(done) = done else { return };
         if done.as_const() == Some(Value::Bool(false)) {
             self.refuse_to_end(statements, until.span);

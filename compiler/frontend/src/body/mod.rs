@@ -137,6 +137,7 @@ fn check_body<'s>(
     let is_generic = decl.is_generic(slot) || decl.pous[slot].instance.is_some();
     let mut checker = Checker::of_body(decl, slot, &signature);
     checker.instance = is_generic.then_some(slot);
+    checker.is_covered = checker.decl.is_covered(slot);
     checker.initial_outputs(&signature);
     if pou.kind != ast::PouKind::Action {
         checker.own_enable(&signature, pou.name.span);

@@ -33,6 +33,9 @@ impl<'s> Checker<'_, 's> {
 
     fn statement(&mut self, statement: &ast::Statement<'s>) {
         let span = statement.span;
+        if !matches!(statement.kind, Ast_::Empty | Ast_::Error) {
+            self.count_statement(span);
+        }
         let made = match &statement.kind {
             Ast_::Assign { target, value } => self.assignment(target, value, span),
             Ast_::AssignAll { targets, value } => self.assign_all(targets, value, span),
@@ -277,6 +280,7 @@ impl<'s> Checker<'_, 's> {
         // The target is found first, as in an assignment, whether it is then written or not.
         self.freeze(&mut place, &[], true);
         let condition = self.after_place(&mut place, |this| this.condition(value))?;
+        self.count_condition(value, Some(&condition));
         let then = self.nested(|this| {
             let at = this.at(span);
             this.write(place, view, Expr::bool(set, at), span);
@@ -306,6 +310,7 @@ impl<'s> Checker<'_, 's> {
         };
         let at = condition.span;
         let value = self.condition(condition);
+        self.count_condition(condition, value.as_ref());
         let before = self.called.len();
         let then = self.block_of(body);
         let called = self.leave_branch(before, body);

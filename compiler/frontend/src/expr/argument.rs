@@ -287,7 +287,10 @@ impl<'s> Checker<'_, 's> {
         let Parts { written, .. } = &mut parts;
         self.settle(written, &draft);
         let statements = self.until_outputs(&parts, call, span)?;
-        self.block.extend(statements);
+        for statement in statements {
+            self.count_values_of(&statement);
+            self.block.push(statement);
+        }
         for at in parts.with(|it| matches!(it, Role::Target(..) | Role::Count(..))) {
             self.connect(&parts, at)?;
         }

@@ -38,6 +38,8 @@ pub(crate) struct Checker<'d, 's> {
     pub choices: FxHashMap<Span, Choice>,
     /// The first statement that makes nothing, because something in it was refused.
     pub left_out: Option<Span>,
+    /// What is executed of the body is counted.
+    pub is_covered: bool,
 }
 
 /// What a name of a variable stands for.
@@ -77,6 +79,7 @@ impl<'d, 's> Checker<'d, 's> {
             called: Called::default(),
             choices: FxHashMap::default(),
             left_out: None,
+            is_covered: false,
         }
     }
 
@@ -112,8 +115,9 @@ impl<'d, 's> Checker<'d, 's> {
     }
 
     pub fn push(&mut self, kind: StatementKind, span: Span) {
-        let at = self.at(span);
-        self.block.push(Statement::new(kind, at));
+        let statement = Statement::new(kind, self.at(span));
+        self.count_values_of(&statement);
+        self.block.push(statement);
     }
 
     pub fn assign(&mut self, target: Place, value: Expr, span: Span) {

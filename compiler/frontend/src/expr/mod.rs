@@ -13,6 +13,7 @@ mod coerce;
 pub(crate) mod constant;
 mod constant_comparison;
 mod conversion;
+mod coverage;
 mod dates;
 mod dispatch;
 mod enable;

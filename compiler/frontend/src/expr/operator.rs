@@ -372,12 +372,16 @@ impl<'s> Checker<'_, 's> {
     /// `a AND_THEN b`: `b` is evaluated only when it decides.
     fn short_circuit(&mut self, left: &ast::Expr<'s>, op: BinaryOp, right: &ast::Expr<'s>, span: Span) -> Option<Expr> {
         let a = self.condition(left);
+        self.count_operand(a.as_ref());
         let mut b = None;
-        let evaluate = self.nested(|this| b = this.condition(right));
+        let evaluate = self.nested(|this| {
+            b = this.condition(right);
+            this.count_operand(b.as_ref());
+        });
         let (a, b) = (a?, b?);
         let at = self.at(span);
         let result = self.temporary("both", Type::BOOL);
-        self.assign(result.clone(), a, span);
+        self.block.push(Statement::assign(result.clone(), a, at));
         let mut decide = evaluate;
         decide.push(Statement::assign(result.clone(), b, at));
         let condition = Expr::load(result.clone(), at);

@@ -212,6 +212,9 @@ impl Checker<'_, '_> {
         let at = expr.at;
         let place = self.temporary(name, expr.ty);
         let value = std::mem::replace(expr, Expr::load(place.clone(), at));
+        if self.is_covered {
+            self.count_value(&value);
+        }
         self.block.push(Statement::assign(place, value, at));
     }
 

@@ -1,6 +1,7 @@
 //! What a program declares: what expressions and bodies are checked against.
 
 use super::address::{self, Addresses};
+use super::coverage::Coverage;
 use super::generic::{Generics, Instance};
 use super::image::Image;
 use super::overloads::Overloads;
@@ -149,6 +150,8 @@ pub(crate) struct Declarations<'s> {
     /// By their slots.
     pub named_programs: FxHashMap<usize, NamedProgram<'s>>,
     pub tests: Tests,
+    /// Where execution is counted, if it is.
+    pub coverage: Option<Coverage>,
     pub program: Program,
     pub table: Table<'s>,
     pub generics: Generics,
@@ -174,6 +177,7 @@ impl<'s> Declarations<'s> {
             synthetic: Synthetic::default(),
             named_programs: FxHashMap::default(),
             tests: Tests::default(),
+            coverage: None,
             program: empty_program(files),
             table: Table::default(),
             generics: Generics::default(),

@@ -1,0 +1,122 @@
+//! `staunch test --coverage`: the numbers are worked out by hand.
+
+use super::{COUNTER, Folder, has};
+
+/// In the first call a is TRUE and n 5, in the second a is FALSE and n 1; b and c are FALSE.
+const SOURCE: &str = "FUNCTION_BLOCK F
+VAR_INPUT a, b, c : BOOL; m : INT; END_VAR
+VAR_OUTPUT x, y : BOOL; END_VAR
+VAR t : CTU; n : INT; END_VAR
+n := m;
+x := a AND NOT b;
+t(CU := a OR c, PV := 2);
+y := (a XOR b) = c;
+IF a AND_THEN n > 0 THEN x := FALSE; END_IF
+WHILE n > 3 AND NOT c DO n := n - 1; END_WHILE
+CASE n OF 1: x := TRUE; 2, 3: y := TRUE; ELSE n := 0; END_CASE
+CASE n OF 5: n := 6; END_CASE
+x S= a AND b;
+REPEAT n := n + 1; UNTIL n > 2 END_REPEAT
+END_FUNCTION_BLOCK
+";
+const TESTS: &str = "TEST 'two calls'
+VAR f : F; END_VAR
+f(a := TRUE, m := 5);
+f(a := FALSE, m := 1);
+END_TEST
+";
+
+/// What the two calls leave open. The WHILE takes two turns in the first call and none in the second; it leaves 3
+/// and 1 in n. In line 6 `b` would decide in the first call, but is FALSE in both; line 8 has a decision inside
+/// of a comparison; the operands of `AND_THEN` are a decision each. The REPEAT takes one turn, and two.
+const TABLE: &str = "
+coverage        statements          branches        conditions
+f.st        15 of 17  88 %    10 of 13  76 %     6 of 13  46 %
+total       15 of 17  88 %    10 of 13  76 %     6 of 13  46 %
+
+f.st:6:16: not shown to decide: b
+f.st:7:14: not shown to decide: c
+f.st:8:13: not shown to decide: b
+f.st:9:15: not shown to decide: n > 0
+f.st:10:21: not shown to decide: c
+f.st:11:1: never without a label that fits
+f.st:11:47: not executed
+f.st:12:11: never chosen: 5
+f.st:12:14: not executed
+f.st:13:6: never TRUE: a AND b
+f.st:13:6: not shown to decide: a
+f.st:13:12: not shown to decide: b
+
+1 passed, 0 failed
+";
+
+#[test]
+fn statements_branches_and_conditions() {
+    let folder = Folder::with("coverage", &[("f.st", SOURCE), ("f_test.st", TESTS)]);
+    for backend in ["native", "interpret"] {
+        let out = folder.staunch(&format!("test . -q -A warnings --coverage table --backend {backend}")).out(0);
+        assert_eq!(out, TABLE, "{backend}");
+    }
+    let all = "test . -q -A warnings --coverage out.info --coverage out.txt --coverage out.html";
+    folder.staunch(all).out(0);
+    let lcov = folder.read("out.info");
+    // A line counts as its statement that was executed most: two and two turns of the loops, two calls.
+    has(&lcov, &["SF:f.st\n", "DA:5,2\n", "DA:10,2\n", "DA:14,3\n", "LF:10\nLH:10\n", "BRF:13\nBRH:10\n"]);
+    has(&lcov, &["BRDA:9,0,0,1\nBRDA:9,0,1,1\n", "BRDA:10,2,0,2\nBRDA:10,2,1,2\n", "BRDA:11,"]);
+    has(&lcov, &["MCDC:6,2,t,1,0,a\nMCDC:6,2,f,1,0,a\nMCDC:6,2,t,0,1,b\nMCDC:6,2,f,1,1,b\n", "MCF:26\n"]);
+    let annotated = folder.read("out.txt");
+    has(&annotated, &["       2 |    12 | CASE n OF 5: n := 6; END_CASE\n         |       | ^ never chosen: 5\n"]);
+    has(&annotated, &["         |     1 | FUNCTION_BLOCK F\n"]);
+    has(&folder.read("out.html"), &["<td class=\"code\">IF a AND_THEN n &gt; 0 THEN", "15 of 17 statements"]);
+    let json = folder.staunch("test . -q -A warnings --coverage table --message-format json").out(0);
+    has(
+        &json,
+        &[
+            "{\"reason\":\"coverage\",\"file\":\"f.st\",\"statements\":[15,17],\"branches\":[10,13],\"conditions\":[6,13],",
+        ],
+    );
+    has(&json, &["{\"line\":6,\"column\":16,\"message\":\"not shown to decide: b\"}"]);
+}
+
+/// Threads, tests of several instances, a table and its power cycle sum up.
+#[test]
+fn counts_are_those_of_all_tests() {
+    let tests: String =
+        (0..9).map(|it| format!("TEST 'number {it}' VAR m : Main; END_VAR m(); m(); END_TEST\n")).collect();
+    let table = "pulse,@event,|,parts.CV\nTRUE,,|,1\nFALSE,restart,|,0\nTRUE,,|,1\n";
+    let folder = Folder::with("coverage_sum", &[("c.st", COUNTER), ("c.csv", table), ("c_test.st", &tests)]);
+    for jobs in [1, 4] {
+        folder.staunch(&format!("test . -q --coverage out.info --jobs {jobs}")).out(0);
+        // Nine tests with two calls each, and three scans.
+        has(&folder.read("out.info"), &["DA:5,21\nDA:6,21\n", "LF:2\nLH:2\n"]);
+    }
+}
+
+#[test]
+fn what_is_no_program_under_test_is_not_counted() {
+    let tests =
+        "TEST 'a mock' VAR b : Outer; END_VAR MOCK b.inner; b(); IF b.on AND b.off THEN b.on := TRUE; END_IF END_TEST
+";
+    let source = "FUNCTION_BLOCK Inner VAR n : INT; END_VAR
+n := n + 1;
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Outer VAR inner : Inner; on, off : BOOL; clock : RTC; END_VAR
+inner();
+clock();
+END_FUNCTION_BLOCK
+";
+    let folder = Folder::with("coverage_own", &[("o.st", source), ("o_test.st", tests)]);
+    let out = folder.staunch("test . -q -A warnings --coverage table").out(0);
+    has(&out, &["\no.st          2 of 3  66 %              none              none\n", "\no.st:2:1: not executed\n"]);
+    assert!(!out.contains("o_test.st") && !out.contains("library"), "{out}");
+}
+
+#[test]
+fn wrong_usage() {
+    let folder = Folder::with("coverage_usage", &[("f.st", SOURCE), ("f_test.st", TESTS)]);
+    has(&folder.staunch("test . -A warnings --coverage out.pdf").err(2), &["`table`, or a file .info, .html or .txt"]);
+    has(
+        &folder.staunch("test . -A warnings --coverage table --backend rust").err(2),
+        &["--backend native or interpret"],
+    );
+}
