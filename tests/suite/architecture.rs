@@ -14,7 +14,16 @@ const EDGES: &[(&str, &[&str])] = &[
     ("staunch-ir", &["staunch-runtime"]),
     (
         "staunch-frontend",
-        &["staunch-ir", "staunch-runtime", "logos", "quick-xml", "rustc-hash", "chumsky", "annotate-snippets"],
+        &[
+            "staunch-ir",
+            "staunch-runtime",
+            "logos",
+            "quick-xml",
+            "rustc-hash",
+            "chumsky",
+            "strsim",
+            "annotate-snippets",
+        ],
     ),
     ("staunch-rust", &["staunch-ir", "staunch-runtime", "quote", "syn", "proc-macro2", "prettyplease"]),
     (

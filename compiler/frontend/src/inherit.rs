@@ -11,14 +11,11 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Gives each class what it inherits.
 pub(crate) fn expand(files: &mut [File<'_>], diagnostics: &mut Vec<Diagnostic>) {
-    let classes = Classes::of(files);
-    let is_plain = |it: &Class<'_>| {
-        let Pou { extends, modifiers, .. } = &it.pou;
-        extends.is_none() && modifiers.is_abstract.is_none() && !has_abstract(&it.pou)
-    };
-    if classes.all.iter().all(is_plain) {
+    let needs = |it: &Item<'_>| matches!(it, Item::Pou(pou) if inherits(pou));
+    if !files.iter().flat_map(|it| &it.items).any(needs) {
         return;
     }
+    let classes = Classes::of(files);
     let mut expansion = Expansion { classes: &classes, diagnostics, made: FxHashMap::default() };
     for at in 0..classes.all.len() {
         expansion.make(at, &mut Vec::new());
@@ -29,6 +26,13 @@ pub(crate) fn expand(files: &mut [File<'_>], diagnostics: &mut Vec<Diagnostic>) 
             *pou = new;
         }
     }
+}
+
+/// Whether anything has to be given to a class, or held against what it says of itself.
+fn inherits(pou: &Pou<'_>) -> bool {
+    let Pou { kind, extends, modifiers, .. } = pou;
+    let is_whole = extends.is_none() && modifiers.is_abstract.is_none() && !has_abstract(pou);
+    kind.is_block() && !is_whole
 }
 
 fn has_abstract(pou: &Pou<'_>) -> bool {

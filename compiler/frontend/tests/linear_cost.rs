@@ -54,6 +54,12 @@ const SHAPES: &[Shape] = &[
         "END_PROGRAM",
     ),
     shape(
+        "addresses that share bits",
+        "PROGRAM Main VAR\n",
+        &["w# AT %MW# : INT; b# AT %MB# : BYTE;\n", "|END_VAR\n", "w# := 1;\n"],
+        "END_PROGRAM",
+    ),
+    shape(
         "enumerators",
         "TYPE E : (None",
         &[",\nV#", "|); END_TYPE PROGRAM Main VAR e : E; END_VAR\n", "IF e = V# THEN e := E#V#; END_IF;\n"],

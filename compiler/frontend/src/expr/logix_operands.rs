@@ -41,9 +41,12 @@ impl<'s> Checker<'_, 's> {
             _ => return false,
         };
         let is_in = |names: &[&str]| names.iter().any(|it| it.eq_ignore_ascii_case(name.text));
+        if !(is_in(&COUNTERS) || is_in(&TIMERS)) {
+            return false;
+        }
         let own = self.decl.lookup(&[name], Sense::Callee);
         let is_own = matches!(own, Found::One(Meaning::Declared(Entry::Pou(_) | Entry::Global(_))));
-        if !(is_in(&COUNTERS) || is_in(&TIMERS)) || is_own || self.scope.get(name.text).is_some() {
+        if is_own || self.scope.get(name.text).is_some() {
             return false;
         }
         let Some(given) = operands(arguments, family == Family::Logix) else { return false };

@@ -198,7 +198,9 @@ impl<'s> Checker<'_, 's> {
             return;
         }
         let own = self.scope.variables.iter().map(|it| it.name.text);
-        let near = nearest(name.text, own.chain(self.decl.names.all()));
+        // Each search goes through all names: where there are as many mistakes, no one reads what each may have meant.
+        let searched = if self.decl.log.diagnostics.len() < 1000 { usize::MAX } else { 0 };
+        let near = nearest(name.text, own.chain(self.decl.names.all()).take(searched));
         let enumerators = self.decl.names.enumerators.keys().map(|key| key.0);
         let near =
             near.or_else(|| nearest(name.text, enumerators)).or_else(|| nearest(name.text, CONSTANTS.into_iter()));

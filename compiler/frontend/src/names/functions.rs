@@ -206,6 +206,10 @@ impl Converted {
 
 /// What the name of a conversion function says.
 pub(crate) fn conversion(name: &str) -> Option<Conversion> {
+    // Most names have no underline, and this is asked of each that is called.
+    if !name.contains('_') {
+        return None;
+    }
     let name = name.to_ascii_uppercase();
     if let Some(to) = name.strip_prefix("TO_") {
         return Some(Conversion { from: None, to: Converted::named(to)?, truncates: false });

@@ -14,6 +14,7 @@ use crate::types::image::Image;
 use crate::types::scope::Variable;
 use crate::types::signature::Signature;
 use crate::{Code, Diagnostic, ast};
+use rustc_hash::FxHashSet;
 use staunch_ir::layout::{Layout, TooLarge};
 use staunch_ir::reference::objects;
 use staunch_ir::{
@@ -31,7 +32,9 @@ pub(crate) fn assemble<'s>(
     let stacks = checked.stacks;
     let (routines, uses) = checked.routines.into_iter().collect::<Option<Vec<_>>>()?.into_iter().unzip();
     declarations.program.routines = routines;
-    declarations.program.classes = (0..declarations.pous.len()).filter_map(|slot| declarations.class(slot)).collect();
+    let held = declarations.runs().iter().map(|it| Key(it.ast.name.text)).collect();
+    let slots = 0..declarations.pous.len();
+    declarations.program.classes = slots.filter_map(|slot| declarations.class(slot, &held)).collect();
     declarations.check_named_programs();
     configuration::instances(declarations, files);
     order::order(declarations, uses, stacks)?;
@@ -55,11 +58,13 @@ impl Declarations<'_> {
     }
 
     /// The PROGRAM or FUNCTION_BLOCK in a slot. Its body has the slot's number until routines are put in order.
-    fn class(&mut self, slot: usize) -> Option<Class> {
+    /// Those that runs of a CONFIGURATION hold have the names in `held`.
+    fn class(&mut self, slot: usize, held: &FxHashSet<Key<'_>>) -> Option<Class> {
         let pou = self.pous[slot].ast;
+        let is_held = self.pous[slot].run.is_none() && held.contains(&Key(pou.name.text));
         let kind = match pou.kind {
             // Who is called has an instance, as a FUNCTION_BLOCK has.
-            ast::PouKind::Program if self.is_named_program(slot) || self.is_held(slot) => ClassKind::FunctionBlock,
+            ast::PouKind::Program if self.is_named_program(slot) || is_held => ClassKind::FunctionBlock,
             // A test holds it, as it holds a FUNCTION_BLOCK.
             ast::PouKind::Program if self.log.options.tests => ClassKind::FunctionBlock,
             ast::PouKind::Program | ast::PouKind::Test => ClassKind::Program,
@@ -89,12 +94,6 @@ impl Declarations<'_> {
         })
     }
 
-    /// Whether runs of a CONFIGURATION hold the PROGRAM in a slot.
-    fn is_held(&self, slot: usize) -> bool {
-        let name = self.pous[slot].ast.name;
-        self.pous[slot].run.is_none() && self.runs().iter().any(|it| Key(it.ast.name.text) == Key(name.text))
-    }
-
     /// The variables of the PROGRAM that a run holds: an in-out is what the run connects it with.
     fn variables_of_run(&mut self, slot: usize, run: &Signature<'_>) -> Option<Vec<staunch_ir::Variable>> {
         let held = &run.scope.variables.first()?.place;
@@ -122,7 +121,7 @@ impl Declarations<'_> {
     /// The class of the PROGRAM or FUNCTION_BLOCK in a slot, while bodies have their slots' numbers.
     fn class_of_slot(&self, slot: usize) -> Option<ClassId> {
         let body = RoutineId::next(slot);
-        self.program.classes.iter().position(|it| it.body == body).map(ClassId::next)
+        self.program.classes.binary_search_by_key(&body, |it| it.body).ok().map(ClassId::next)
     }
 
     /// Whether all variables together, and each type, fit into memory.

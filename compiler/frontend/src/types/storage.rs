@@ -136,15 +136,19 @@ impl<'s> Declarations<'s> {
             field.name.push('_');
         }
         field.section = Section::Global;
+        self.synthetic.names.extend([field.name.to_ascii_uppercase()]);
         self.synthetic.fields.push(field);
         self.synthetic.declared.push(declared);
         self.synthetic.fields.len() - 1
     }
 
     /// Whether a field of the globals has the name.
-    pub fn is_global_name(&self, name: &str) -> bool {
-        self.synthetic.fields.iter().any(|it| it.name.eq_ignore_ascii_case(name))
-            || (0..self.globals.len()).any(|at| self.global_field_name(at).eq_ignore_ascii_case(name))
+    pub fn is_global_name(&mut self, name: &str) -> bool {
+        if self.synthetic.names.is_empty() {
+            let declared = (0..self.globals.len()).map(|at| self.global_field_name(at).to_ascii_uppercase());
+            self.synthetic.names = declared.collect();
+        }
+        self.synthetic.names.contains(&name.to_ascii_uppercase())
     }
 
     pub fn synthetic_place(&self, at: usize) -> Place {

@@ -3,7 +3,7 @@
 use super::scope::Variable;
 use crate::Span;
 use crate::ast;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{Field, Type};
 use std::rc::Rc;
 
@@ -12,6 +12,8 @@ pub(crate) struct Synthetic<'s> {
     pub fields: Vec<Field>,
     /// The first declaration of each, if it has one.
     pub declared: Vec<Option<ast::Name<'s>>>,
+    /// The names of all fields of the globals, in capitals: they are read off the declarations when the first is asked for.
+    pub names: FxHashSet<String>,
     /// VAR_STAT by their declarations, which classes inherit.
     pub statics: FxHashMap<Span, usize>,
 }
