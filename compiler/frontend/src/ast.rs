@@ -259,6 +259,13 @@ pub struct VarDecl<'s> {
     pub span: Span,
 }
 
+impl<'s> VarDecl<'s> {
+    /// The address, unless a VAR_CONFIG gives it: `AT %I*`.
+    pub fn known_address(&self) -> Option<Name<'s>> {
+        self.address.filter(|it| !it.text.ends_with('*'))
+    }
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edge {
     Rising,
@@ -349,7 +356,18 @@ pub struct Configuration<'s> {
     pub name: Name<'s>,
     pub globals: Vec<VarBlock<'s>>,
     pub resources: Vec<Resource<'s>>,
+    /// Of all its VAR_CONFIG.
+    pub bindings: Vec<Binding<'s>>,
     pub span: Span,
+}
+
+/// `Run.valve.open AT %QX0.1 : BOOL := FALSE;` in a VAR_CONFIG
+#[derive(Clone, Debug)]
+pub struct Binding<'s> {
+    /// `Run.valve.open`
+    pub target: Expr<'s>,
+    /// What lies at the address, which is its name.
+    pub located: VarDecl<'s>,
 }
 
 /// A RESOURCE; tasks and programs that are directly in a CONFIGURATION make one without a name.
@@ -359,6 +377,7 @@ pub struct Resource<'s> {
     pub globals: Vec<VarBlock<'s>>,
     pub tasks: Vec<Task<'s>>,
     pub programs: Vec<ProgramInstance<'s>>,
+    pub bindings: Vec<Binding<'s>>,
 }
 
 /// `TASK t (INTERVAL := T#20ms, PRIORITY := 1);`

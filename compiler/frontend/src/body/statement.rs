@@ -143,7 +143,27 @@ impl<'s> Checker<'_, 's> {
         if let Ast::Part(base, part) = &target.kind {
             return self.assign_part(base, *part, value, span);
         }
+        if self.is_run() {
+            self.check_binding(target, value)?;
+        }
         self.assigned(std::slice::from_ref(target), value, span, false).map(drop)
+    }
+
+    /// What a VAR_CONFIG binds has the type that it says. A run copies it in first, and back where it is no input.
+    fn check_binding(&mut self, target: &ast::Expr<'s>, value: &ast::Expr<'s>) -> Option<()> {
+        let (Some(to), Some(from)) = (self.static_type(target), self.static_type(value)) else { return Some(()) };
+        if to == from {
+            return Some(());
+        }
+        if let Ast::Name(address) = &value.kind {
+            let (to, from) = (self.type_name(to), self.type_name(from));
+            self.report(
+                Diagnostic::new(Code::E0409, target.span, format!("this variable is {to}"))
+                    .label(format!("what lies at `{}` is {from}", address.text))
+                    .help(format!("write `{to}` here, or change the variable")),
+            );
+        }
+        None
     }
 
     /// `r ?= x`: what a reference is given is known when the program is compiled, so that an attempt that

@@ -66,7 +66,7 @@ impl<'s> Declarations<'s> {
 
     /// Reports an address that a declaration gives to several names.
     pub(super) fn check_one_name(&mut self, decl: &ast::VarDecl<'s>) {
-        if let (Some(address), [_, second, ..]) = (decl.address, decl.names.as_slice()) {
+        if let (Some(address), [_, second, ..]) = (decl.known_address(), decl.names.as_slice()) {
             self.report(
                 Diagnostic::new(Code::E0409, second.span, "one address has one variable")
                     .label("a second name")
@@ -95,6 +95,12 @@ impl<'s> Declarations<'s> {
             _ if block.constant.is_some() => ("a CONSTANT has no address", "delete CONSTANT, or the address"),
             (Some(PouKind::Program) | None, _) => return,
             (Some(PouKind::FunctionBlock), VarKind::Var | VarKind::Stat) if in_blocks => return,
+            // Each instance has its own address, which a VAR_CONFIG gives.
+            (Some(PouKind::FunctionBlock), VarKind::Var | VarKind::Input | VarKind::Output)
+                if decl.known_address().is_none() =>
+            {
+                return;
+            }
             (Some(_), _) => ("only a PROGRAM's variables and globals have an address", global),
         };
         self.report(Diagnostic::new(Code::E0409, address.span, message).help(help));
@@ -109,7 +115,7 @@ impl<'s> Declarations<'s> {
         name: ast::Name<'s>,
         resolved: &Resolved,
     ) -> Option<Option<Place>> {
-        let declared = decl.address?;
+        let declared = decl.known_address()?;
         let address = parse(declared.text);
         let found = address.and_then(|it| self.addresses.storage.get(&it).copied());
         let place = match found {
@@ -141,7 +147,7 @@ impl<'s> Declarations<'s> {
         decl: &ast::VarDecl<'s>,
         resolved: &Resolved,
     ) {
-        let Some(name) = decl.address else { return };
+        let Some(name) = decl.known_address() else { return };
         let Some(address) = self.address(name) else { return };
         let bits = self.check_width(address, resolved, name.span);
         // What has no other name than its address is not one more name for it.

@@ -1,7 +1,11 @@
-//! What a CONFIGURATION does beside running a PROGRAM: it connects parameters, `Main(x := g)`, and a TASK's
-//! SINGLE waits for an edge. Such a run is written as a PROGRAM of its own: it holds the other one as an
-//! instance, and calls it.
+//! What a CONFIGURATION does beside running a PROGRAM: it connects parameters, `Main(x := g)`, a TASK's SINGLE
+//! waits for an edge, and a VAR_CONFIG gives variables of instances their addresses. Such a run is written as a
+//! PROGRAM of its own: it holds the other one as an instance, and calls it.
+//!
+//! What VAR_CONFIG binds is a variable of its instance, into which the run copies what lies at the address before
+//! the call; what is no input is copied back after it.
 
+use super::variable::is_declared_retain;
 use crate::spelling::Key;
 use crate::{Span, ast};
 use ast::{ExprKind, PouKind, StatementKind, VarKind};
@@ -21,36 +25,117 @@ pub(crate) struct Run<'s> {
 
 /// The runs of all configurations that take a PROGRAM of their own. Where one run of a PROGRAM does, its
 /// other ones do as well.
-pub(crate) fn runs<'s>(files: &[ast::File<'s>]) -> Vec<Run<'s>> {
+pub(crate) fn runs<'a, 's>(files: &'a [ast::File<'s>]) -> Vec<Run<'s>> {
     let items = || files.iter().flat_map(|it| &it.items);
-    let resources = items().flat_map(|it| match it {
-        ast::Item::Configuration(it) => it.resources.as_slice(),
-        ast::Item::Pou(_) | ast::Item::Types(_) | ast::Item::Globals(_) | ast::Item::Test(_) => &[],
-    });
+    let configurations = || {
+        items().filter_map(|it| match it {
+            ast::Item::Configuration(it) => Some(it),
+            ast::Item::Pou(_) | ast::Item::Types(_) | ast::Item::Globals(_) | ast::Item::Test(_) => None,
+        })
+    };
+    let resources = configurations().flat_map(|it| &it.resources);
     let listed: Vec<_> =
         resources.flat_map(|resource| resource.programs.iter().map(move |it| (resource, it))).collect();
+    let bindings: Vec<_> = configurations().flat_map(|it| &it.bindings).collect();
     if listed.is_empty() {
         return Vec::new();
     }
     let programs: FxHashMap<_, _> = items().filter_map(program).map(|it| (Key(it.name.text), it)).collect();
     let asks = |(resource, it): &&(&ast::Resource<'s>, &ast::ProgramInstance<'s>)| {
         let takes = programs.get(&Key(it.program.text)).is_some_and(|it| has_in_outs(it));
-        takes || !it.connections.is_empty() || trigger(resource, it).is_some()
+        let is_bound = bindings.iter().any(|binding| within(&binding.target, resource, it).is_some());
+        takes || is_bound || !it.connections.is_empty() || trigger(resource, it).is_some()
     };
     let wrapped: FxHashSet<_> = listed.iter().filter(asks).map(|(_, it)| Key(it.program.text)).collect();
     let known = |it: &&ast::ProgramInstance<'s>| {
         let key = Key(it.program.text);
         wrapped.contains(&key) && programs.contains_key(&key)
     };
-    listed.into_iter().filter(|(_, it)| known(it)).map(|(resource, it)| run(it, trigger(resource, it))).collect()
+    let pous: FxHashMap<_, _> = items().filter_map(pou).map(|it| (Key(it.name.text), it)).collect();
+    let run = |(resource, it): (&ast::Resource<'s>, &ast::ProgramInstance<'s>)| {
+        let bound = |binding: &&'a ast::Binding<'s>| {
+            let target = within(&binding.target, resource, it)?;
+            let is_kept = is_kept(&target, it, &pous).is_some_and(|it| it.1);
+            Some(Bound { target, located: &binding.located, is_kept })
+        };
+        run(it, trigger(resource, it), bindings.iter().filter_map(bound).collect())
+    };
+    listed.into_iter().filter(|(_, it)| known(it)).map(run).collect()
+}
+
+/// A path through an instance of the CONFIGURATION, `Run.valve.open` or `Resource.Run.valve.open`, as it is in the run.
+pub(crate) fn within<'s>(
+    path: &ast::Expr<'s>,
+    resource: &ast::Resource<'_>,
+    instance: &ast::ProgramInstance<'_>,
+) -> Option<ast::Expr<'s>> {
+    let is = |name: &ast::Name<'_>, wanted: &ast::Name<'_>| Key(name.text) == Key(wanted.text);
+    let inner = |base: &ast::Expr<'s>| match &base.kind {
+        ExprKind::Name(name) if is(name, &instance.name) => Some(held(base.span)),
+        ExprKind::Member(outer, name) if is(name, &instance.name) => match &outer.kind {
+            ExprKind::Name(first) if resource.name.is_some_and(|it| is(first, &it)) => Some(held(base.span)),
+            _ => within(base, resource, instance),
+        },
+        _ => within(base, resource, instance),
+    };
+    let kind = match &path.kind {
+        ExprKind::Member(base, name) => ExprKind::Member(Box::new(inner(base)?), *name),
+        ExprKind::Index(base, indices) => ExprKind::Index(Box::new(inner(base)?), indices.clone()),
+        _ => return None,
+    };
+    Some(ast::Expr { kind, span: path.span })
+}
+
+/// A variable of the run's instance, and what lies at its address.
+struct Bound<'a, 's> {
+    target: ast::Expr<'s>,
+    located: &'a ast::VarDecl<'s>,
+    /// The variable is RETAIN: what lies at its address outlives a restart too.
+    is_kept: bool,
+}
+
+/// The POU of which a variable is an instance, if it is one, and whether it is RETAIN.
+fn is_kept<'a, 's>(
+    path: &ast::Expr<'s>,
+    instance: &ast::ProgramInstance<'s>,
+    pous: &FxHashMap<Key<'s>, &'a ast::Pou<'s>>,
+) -> Option<(Option<&'a ast::Pou<'s>>, bool)> {
+    match &path.kind {
+        ExprKind::Name(_) => Some((pous.get(&Key(instance.program.text)).copied(), false)),
+        ExprKind::Index(base, _) => is_kept(base, instance, pous),
+        ExprKind::Member(base, name) => {
+            let (owner, outer) = is_kept(base, instance, pous)?;
+            let declares = |it: &&ast::VarDecl<'s>| it.names.iter().any(|it| Key(it.text) == Key(name.text));
+            let mut blocks = owner?.blocks.iter();
+            let (block, decl) = blocks.find_map(|block| Some((block, block.vars.iter().find(declares)?)))?;
+            let mut ty = &decl.ty.kind;
+            while let ast::TypeKind::Array { element, .. } = ty {
+                ty = &element.kind;
+            }
+            let inner = match ty {
+                ast::TypeKind::Named(path) => path.last().and_then(|it| pous.get(&Key(it.text)).copied()),
+                _ => None,
+            };
+            Some((inner, outer || is_declared_retain(block)))
+        }
+        _ => None,
+    }
+}
+
+/// The PROGRAM that a run holds.
+fn held<'s>(span: Span) -> ast::Expr<'s> {
+    ast::Expr { kind: ExprKind::Name(ast::Name { text: PROGRAM, span }), span }
+}
+
+fn pou<'a, 's>(item: &'a ast::Item<'s>) -> Option<&'a ast::Pou<'s>> {
+    match item {
+        ast::Item::Pou(pou) => Some(pou),
+        ast::Item::Types(_) | ast::Item::Globals(_) | ast::Item::Configuration(_) | ast::Item::Test(_) => None,
+    }
 }
 
 fn program<'a, 's>(item: &'a ast::Item<'s>) -> Option<&'a ast::Pou<'s>> {
-    match item {
-        ast::Item::Pou(pou) if pou.kind == PouKind::Program => Some(pou),
-        ast::Item::Pou(_) | ast::Item::Types(_) | ast::Item::Globals(_) | ast::Item::Configuration(_) => None,
-        ast::Item::Test(_) => None,
-    }
+    pou(item).filter(|it| it.kind == PouKind::Program)
 }
 
 pub(super) fn has_in_outs(pou: &ast::Pou<'_>) -> bool {
@@ -70,7 +155,16 @@ pub(crate) fn is_false(expr: &ast::Expr<'_>) -> bool {
     matches!(&expr.kind, ExprKind::Literal(it) if it.value == ast::LiteralValue::Bool(false))
 }
 
-fn run<'s>(instance: &ast::ProgramInstance<'s>, trigger: Option<&ast::Expr<'s>>) -> Run<'s> {
+/// `%IX0.0`: the program reads it alone.
+pub(crate) fn is_input(address: ast::Name<'_>) -> bool {
+    address.text.get(1..2).is_some_and(|it| it.eq_ignore_ascii_case("I"))
+}
+
+fn run<'s>(
+    instance: &ast::ProgramInstance<'s>,
+    trigger: Option<&ast::Expr<'s>>,
+    bindings: Vec<Bound<'_, 's>>,
+) -> Run<'s> {
     let span = instance.program.span;
     let name = |text: &'static str| ast::Name { text, span };
     let variable = |text, path| {
@@ -83,6 +177,23 @@ fn run<'s>(instance: &ast::ProgramInstance<'s>, trigger: Option<&ast::Expr<'s>>)
     let call = |text, arguments| statement(StatementKind::Expr(expr(ExprKind::Call(Box::new(named(text)), arguments))));
     let mut vars = vec![variable(PROGRAM, [instance.namespace.as_slice(), &[instance.program]].concat())];
     let mut body = vec![call(PROGRAM, instance.connections.clone())];
+    let mut declared = FxHashSet::default();
+    let (mut kept, mut located_vars) = (Vec::new(), Vec::new());
+    for Bound { target, located, is_kept } in bindings {
+        let Some(address) = located.address else { continue };
+        let at = ast::Expr { kind: ExprKind::Name(address), span: address.span };
+        let copy = |to: &ast::Expr<'s>, from: &ast::Expr<'s>| ast::Statement {
+            kind: StatementKind::Assign { target: to.clone(), value: from.clone() },
+            span: target.span,
+        };
+        body.insert(0, copy(&target, &at));
+        if !is_input(address) {
+            body.push(copy(&at, &target));
+        }
+        if declared.insert(Key(address.text)) {
+            if is_kept { &mut kept } else { &mut located_vars }.push(located.clone());
+        }
+    }
     if let Some(trigger) = trigger {
         vars.push(variable(EDGE, vec![name("IEC"), name("R_TRIG")]));
         let clock = ast::ArgumentKind::Input(name("CLK"), trigger.clone());
@@ -92,7 +203,10 @@ fn run<'s>(instance: &ast::ProgramInstance<'s>, trigger: Option<&ast::Expr<'s>>)
             statement(StatementKind::If { branches: vec![(rises, body)], otherwise: None }),
         ];
     }
-    let blocks = vec![ast::VarBlock { vars, ..ast::VarBlock::new(VarKind::Var, span) }];
+    vars.append(&mut located_vars);
+    let block = ast::VarBlock::new(VarKind::Var, span);
+    let retained = ast::VarBlock { vars: kept, retain: Some(span), ..block.clone() };
+    let blocks = vec![ast::VarBlock { vars, ..block }, retained];
     let pou = ast::Pou { blocks, ..ast::Pou::new(PouKind::Program, instance.program, span) };
     Run { pou, body, instance: instance.name.span }
 }

@@ -95,6 +95,11 @@ impl<'d, 's> Checker<'d, 's> {
         self.test_slot().is_some()
     }
 
+    /// Whether the body is that of a run in a CONFIGURATION.
+    pub(crate) fn is_run(&self) -> bool {
+        self.slot.is_some_and(|it| self.decl.pous[it].run.is_some())
+    }
+
     /// The slot of the TEST whose body this is.
     pub(crate) fn test_slot(&self) -> Option<usize> {
         let slot = self.decl.slot_of_instance(self.signature.as_ref()?.state?)?;

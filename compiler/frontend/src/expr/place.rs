@@ -356,9 +356,9 @@ impl<'s> Checker<'_, 's> {
         let fields = &self.decl.program.structure(id).fields;
         let (ty, section, constant) = (fields[at].ty, fields[at].section, fields[at].constant);
         let inner = instance && !is_pin(section) && !self.is_public(id, name);
-        // A unit test looks into everything.
-        let is_test = self.is_test();
-        if inner && !is_test && self.seen_from_outside(id, name).is_none() {
+        // A unit test looks into everything; a VAR_CONFIG gives an address to any variable of an instance.
+        let sees_all = self.is_test() || self.is_run();
+        if inner && !sees_all && self.seen_from_outside(id, name).is_none() {
             if self.is_refused_routine(id, name) {
                 return None;
             }
@@ -376,7 +376,7 @@ impl<'s> Checker<'_, 's> {
         let access = match section {
             _ if matches!(found.access, Access::Inner(_) | Access::Result) => found.access,
             _ if constant => Access::Constant(name),
-            _ if is_test => Access::Write,
+            _ if sees_all => Access::Write,
             _ if inner => Access::Inner(name),
             Section::Output if instance => Access::Output(name),
             // A structure in a constant stays constant; an instance's input is for its callers.

@@ -1,13 +1,14 @@
 //! CONFIGURATION, RESOURCE and TASK: which programs run, and how often.
 
 use crate::ast;
-use crate::declare::run::is_false;
+use crate::declare::run::{is_false, is_input, within};
+use crate::dialect::Dialect;
 use crate::expr::constant::constant;
 use crate::names::{Entry, Found, Meaning, Sense};
 use crate::spelling::{Key, nearest};
 use crate::types::declarations::Declarations;
 use crate::{Code, Diagnostic, Span};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{Instance, Section, Value};
 
 const LOWEST_PRIORITY: u32 = 65535;
@@ -49,6 +50,14 @@ pub(super) fn instances<'s>(declarations: &mut Declarations<'s>, files: &'s [ast
     }
 }
 
+fn last_name<'s>(path: &ast::Expr<'s>) -> Option<ast::Name<'s>> {
+    match &path.kind {
+        ast::ExprKind::Member(_, name) | ast::ExprKind::Name(name) => Some(*name),
+        ast::ExprKind::Index(base, _) => last_name(base),
+        _ => None,
+    }
+}
+
 #[derive(Clone, Copy)]
 struct Timing {
     interval: Option<i64>,
@@ -83,6 +92,64 @@ impl<'s> Declarations<'s> {
             self.names_once(resource.tasks.iter().map(|it| it.name));
         }
         self.names_once(resources.flat_map(|it| &it.programs).map(|it| it.name));
+        for configuration in configurations {
+            self.check_bindings(configuration);
+        }
+        self.check_unbound(configurations);
+    }
+
+    /// Reports what a VAR_CONFIG binds that is no variable of an instance, and an output of two variables.
+    fn check_bindings(&mut self, configuration: &'s ast::Configuration<'s>) {
+        let mut written: FxHashMap<Key<'s>, Span> = FxHashMap::default();
+        for ast::Binding { target, located } in &configuration.bindings {
+            let mut resources = configuration.resources.iter();
+            let is_known = resources
+                .any(|resource| resource.programs.iter().any(|instance| within(target, resource, instance).is_some()));
+            if !is_known {
+                let instances = configuration.resources.iter().flat_map(|it| &it.programs).map(|it| it.name.text);
+                let instances: Vec<_> = instances.collect();
+                let error = Diagnostic::new(Code::E0101, target.span, "this is no variable of an instance")
+                    .label("a path from an instance of the CONFIGURATION is expected");
+                self.report(match instances.first() {
+                    Some(_) => {
+                        error.help(format!("its instances are {}", crate::diagnostic::wording::list(&instances)))
+                    }
+                    None => error.help("run a PROGRAM in it: `PROGRAM run : Main;`"),
+                });
+            }
+            let Some(address) = located.address else { continue };
+            if is_input(address) {
+                continue;
+            }
+            if let Some(first) = written.insert(Key(address.text), address.span) {
+                self.report(
+                    Diagnostic::new(
+                        Code::E0409,
+                        address.span,
+                        format!("two variables are bound to `{}`", address.text),
+                    )
+                    .label("which of them is written there is not told")
+                    .other(first, "the other one")
+                    .help("bind one of them, and read it where the other is needed"),
+                );
+            }
+        }
+    }
+
+    /// Reports `AT %I*` where no VAR_CONFIG gives the address. CODESYS and TwinCAT keep that in the device's tree.
+    fn check_unbound(&mut self, configurations: &[&'s ast::Configuration<'s>]) {
+        let bindings = configurations.iter().flat_map(|it| &it.bindings);
+        let bound: FxHashSet<_> = bindings.filter_map(|it| last_name(&it.target)).map(|it| Key(it.text)).collect();
+        let pous = self.pous.iter().map(|it| it.ast).filter(|it| !it.kind.is_function());
+        let declared = pous.flat_map(|it| &it.blocks).flat_map(|it| &it.vars);
+        let globals = self.globals.iter().map(|it| it.decl);
+        let open = declared.chain(globals).filter(|it| it.known_address().is_none());
+        let open: Vec<_> = open.filter_map(|it| Some((it.address?, it.names.first()?))).collect();
+        for (address, name) in open {
+            if self.dialect(address.span) != Dialect::Codesys && !bound.contains(&Key(name.text)) {
+                self.report(crate::types::address::wrong(address));
+            }
+        }
     }
 
     /// Reports a name that is twice among `names`.

@@ -3,16 +3,19 @@
 use chumsky::prelude::*;
 
 use crate::{
-    ast::{Configuration, Name, ProgramInstance, Resource, Task},
+    ast::{Binding, Configuration, Name, ProgramInstance, Resource, Task, VarDecl},
     lex::Kind,
+    source::Span,
 };
 
 use super::{
+    block_ends,
     combinator::{Rule, list, name, rule, token, word},
-    declaration::section,
+    declaration::{section, type_spec},
     diagnostics,
     expression::{arguments, expr},
-    parser::{Expected, In, TokenReader},
+    initial::optional_initial,
+    parser::{Expected, In, Problem, TokenReader},
     recovery,
     token_class::{ends_statements, opens_section},
 };
@@ -54,6 +57,38 @@ fn end<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
     token(Kind::Semicolon).ignored().or(missing)
 }
 
+/// `run.valve.open AT %QX0.1 : BOOL := FALSE;`
+fn binding<'t, 's: 't>() -> impl Rule<'t, 's, Binding<'s>> {
+    let address = token(Kind::At)
+        .ignore_then(token(Kind::Address).map_with(|span, extra| Name { text: extra.state().slice(span), span }));
+    let typed = token(Kind::Colon).ignore_then(type_spec()).then(optional_initial());
+    let binding = expr().then(address).then(typed).then_ignore(end());
+    binding.map(|((target, address), (ty, initial))| {
+        let span = target.span;
+        let located =
+            VarDecl { names: vec![address], address: Some(address), ty, edge: None, initial, doc: None, span };
+        Binding { target, located }
+    })
+}
+
+/// VAR_CONFIG … END_VAR
+fn bindings<'s>(input: &mut In<'_, '_, 's>, into: &mut Vec<Binding<'s>>) {
+    let opened = input.take();
+    loop {
+        let start = input.here();
+        match input.kind() {
+            Kind::Semicolon => drop(input.take()),
+            kind if kind == Kind::EndVar || opens_section(kind) || ends_statements(kind) => break,
+            _ => match input.parse(binding()) {
+                Ok(it) => into.push(it),
+                Err(problem) => recover(input, problem, start),
+            },
+        }
+    }
+    block_ends::close_block(input, Kind::EndVar, opened);
+    input.eat(Kind::Semicolon);
+}
+
 pub fn configuration<'s>(input: &mut In<'_, '_, 's>) -> Configuration<'s> {
     let span = input.take();
     input.state().open.push((Kind::EndConfiguration, span));
@@ -61,8 +96,13 @@ pub fn configuration<'s>(input: &mut In<'_, '_, 's>) -> Configuration<'s> {
         diagnostics::report(input, problem);
         Name { text: "", span }
     });
-    let mut configuration =
-        Configuration { name, globals: Vec::new(), resources: Vec::new(), span: span.to(name.span) };
+    let mut configuration = Configuration {
+        name,
+        globals: Vec::new(),
+        resources: Vec::new(),
+        bindings: Vec::new(),
+        span: span.to(name.span),
+    };
     let mut direct = Resource::default();
     loop {
         if input.is_word("RESOURCE") && input.kind_ahead(1) == Kind::Name {
@@ -72,6 +112,10 @@ pub fn configuration<'s>(input: &mut In<'_, '_, 's>) -> Configuration<'s> {
         }
     }
     configuration.globals = core::mem::take(&mut direct.globals);
+    configuration.bindings = core::mem::take(&mut direct.bindings);
+    for resource in &mut configuration.resources {
+        configuration.bindings.append(&mut resource.bindings);
+    }
     if !direct.tasks.is_empty() || !direct.programs.is_empty() {
         configuration.resources.push(direct);
     }
@@ -112,6 +156,10 @@ fn element<'s>(input: &mut In<'_, '_, 's>, into: &mut Resource<'s>, end: Kind) -
             return true;
         }
         Kind::Program => input.parse(program()).map(|it| into.programs.push(it)),
+        Kind::VarConfig => {
+            bindings(input, &mut into.bindings);
+            return true;
+        }
         kind if opens_section(kind) => {
             into.globals.extend(section(input));
             return true;
@@ -123,13 +171,18 @@ fn element<'s>(input: &mut In<'_, '_, 's>, into: &mut Resource<'s>, end: Kind) -
         _ => Err(input.problem(Expected::Token(end))),
     };
     if let Err(problem) = result {
-        input.state().depth = 0;
-        diagnostics::report(input, problem);
-        recovery::go_to(input, problem);
-        if input.here().start == start.start {
-            input.take();
-        }
-        recovery::skip_statement(input, start);
+        recover(input, problem, start);
     }
     true
+}
+
+/// Reports what does not parse, and goes on after it.
+fn recover(input: &mut In<'_, '_, '_>, problem: Problem, start: Span) {
+    input.state().depth = 0;
+    diagnostics::report(input, problem);
+    recovery::go_to(input, problem);
+    if input.here().start == start.start {
+        input.take();
+    }
+    recovery::skip_statement(input, start);
 }

@@ -33,6 +33,9 @@ pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
     if found == Kind::End {
         span = input.state().place(problem.at.saturating_sub(1));
     }
+    if let Some(doubled) = doubled_quote(input, problem.at) {
+        return input.report(doubled);
+    }
     let shown = shown(input, found, span);
     let it = match (problem.expected, found.keyword()) {
         (Expected::Name, Some(word)) if !ends_statements(found) => {
@@ -112,6 +115,20 @@ fn behind_text(input: &mut In<'_, '_, '_>, at: usize) -> bool {
     let quotes = state.tokens.kinds.iter().zip(&state.tokens.places).skip(at);
     let open = quotes.into_iter().find(|(kind, _)| matches!(kind, Kind::OpenText | Kind::Semicolon | Kind::End));
     open.is_some_and(|(kind, place)| *kind == Kind::OpenText && !state.breaks(from, place.0))
+}
+
+/// `'it''s'`, which is two strings.
+fn doubled_quote(input: &mut In<'_, '_, '_>, at: usize) -> Option<Diagnostic> {
+    let before = at.checked_sub(1)?;
+    let state = input.state();
+    let is_text = |at| state.tokens.kinds.get(at) == Some(&Kind::Text);
+    let (first, second) = (state.place(before), state.place(at));
+    if !is_text(before) || !is_text(at) || first.end != second.start {
+        return None;
+    }
+    let quotes = Span { start: second.start - 1, end: second.start + 1, ..second };
+    let error = Diagnostic::new(Code::E0001, quotes, "two quotes end a string and begin another one");
+    Some(error.label("here").help("in a string, `$'` is a quote").fix(quotes, "$'"))
 }
 
 fn said(expected: Expected) -> String {

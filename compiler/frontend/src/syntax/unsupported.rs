@@ -1,4 +1,4 @@
-//! Constructs that are known and refused by name: JMP and the like.
+//! Constructs that are known and refused by name: JMP, and a sequential function chart's text.
 //! Their words are names everywhere else.
 
 use crate::lex::Kind;
@@ -22,7 +22,22 @@ pub fn skip(input: &mut In<'_, '_, '_>) -> bool {
         recovery::skip_statement(input, span);
         return true;
     }
+    if ["INITIAL_STEP", "STEP", "TRANSITION"].iter().any(|it| word.eq_ignore_ascii_case(it)) {
+        input.report(
+            diagnostics::unsupported(span, "a sequential function chart (SFC)")
+                .help("write it as a CASE over its steps: `CASE step OF …`"),
+        );
+        skip_chart(input);
+        return true;
+    }
     false
+}
+
+/// To the end of the POU that a chart is the body of: its steps and actions are left out with it.
+fn skip_chart(input: &mut In<'_, '_, '_>) {
+    while input.kind() != Kind::End && !opens_item(input.kind()) && !is_pou_end(input.kind()) {
+        input.take();
+    }
 }
 
 /// Behind the construct's end; a construct without one ends before the next POU.

@@ -106,9 +106,12 @@ pub(crate) fn field_name(name: &str) -> String {
 
 /// What is wrong with an address that cannot be read.
 pub(crate) fn wrong(name: ast::Name<'_>) -> Diagnostic {
-    let message = if name.text.ends_with('*') {
-        format!("`{}` is not bound to an address", name.text)
-    } else if is_hierarchical(name.text) {
+    if name.text.ends_with('*') {
+        return Diagnostic::new(Code::E0409, name.span, format!("`{}` is not bound to an address", name.text))
+            .label("a VAR_CONFIG gives the address")
+            .help("bind it in the CONFIGURATION: `VAR_CONFIG run.variable AT %IX0.0 : BOOL; END_VAR`");
+    }
+    let message = if is_hierarchical(name.text) {
         format!("`{}` has more parts than are supported yet", name.text)
     } else {
         format!("`{}` is not a direct address", name.text)
