@@ -25,7 +25,12 @@ pub(crate) struct Unit {
 enum Use {
     Type,
     Function,
+    /// A NAMESPACE, `System.Timer`, with all that is in it.
+    Space,
 }
+
+/// What the namespaces of the library are in.
+const SYSTEM: &str = "System";
 
 macro_rules! units {
     ($($use_:ident $name:literal $file:literal $([$dialect:ident])? $($need:literal)*;)*) => {
@@ -86,6 +91,9 @@ pub(crate) const UNITS: &[Unit] = units! {
     Function "UINT_TO_BCD_WORD"   "uint_to_bcd_word";
     Function "UDINT_TO_BCD_DWORD" "udint_to_bcd_dword";
     Function "ULINT_TO_BCD_LWORD" "ulint_to_bcd_lword";
+    Space    "System.Timer"     "system_timer";
+    Space    "System.Strings"   "system_strings";
+    Space    "System.Math"      "system_math";
 };
 
 static BY_NAME: LazyLock<FxHashMap<Key<'static>, Unit>> =
@@ -94,9 +102,9 @@ static BY_NAME: LazyLock<FxHashMap<Key<'static>, Unit>> =
 /// The lengths of units' names, by their first letters: most words of a program are passed over by these.
 static LENGTHS: LazyLock<[u32; 26]> = LazyLock::new(|| {
     let mut lengths = [0; 26];
-    for unit in UNITS {
-        if let Some(lengths) = unit.name.bytes().next().and_then(|it| lengths.get_mut(usize::from(it - b'A'))) {
-            *lengths |= 1 << unit.name.len();
+    for name in UNITS.iter().map(|it| it.name).filter(|it| !it.contains('.')).chain([SYSTEM]) {
+        if let Some(lengths) = name.bytes().next().and_then(|it| lengths.get_mut(usize::from(it - b'A'))) {
+            *lengths |= 1 << name.len();
         }
     }
     lengths
@@ -192,7 +200,9 @@ impl Uses {
             if *kind != Kind::Name {
                 continue;
             }
-            let Some(unit) = unit(word(at)) else { continue };
+            let is_space = is_system(word(at)) && tokens.kinds.get(at + 1) == Some(&Kind::Dot);
+            let space = is_space.then(|| format!("{SYSTEM}.{}", word(at + 2)));
+            let Some(unit) = unit(space.as_deref().unwrap_or(word(at))) else { continue };
             let before = at.checked_sub(1).map(|it| (tokens.kinds[it], word(it)));
             let after = tokens.kinds.get(at + 1).copied();
             if declares(before, after, &types) {
@@ -246,7 +256,8 @@ fn declares(before: Option<(Kind, &str)>, after: Option<Kind>, types: &TypeBlock
         Kind::Function | Kind::FunctionBlock | Kind::Program => true,
         // `FUNCTION_BLOCK PUBLIC x`, `CLASS x`
         Kind::Name => {
-            let words = ["PUBLIC", "INTERNAL", "PRIVATE", "PROTECTED", "FINAL", "ABSTRACT", "CLASS", "INTERFACE"];
+            let words =
+                ["PUBLIC", "INTERNAL", "PRIVATE", "PROTECTED", "FINAL", "ABSTRACT", "CLASS", "INTERFACE", "NAMESPACE"];
             words.iter().any(|it| word.eq_ignore_ascii_case(it))
         }
         _ => types.open && types.structures == 0 && after == Some(Kind::Colon) && before != Kind::Comma,
@@ -257,6 +268,7 @@ fn declares(before: Option<(Kind, &str)>, after: Option<Kind>, types: &TypeBlock
 fn names(unit: &Unit, before: Option<(Kind, &str)>, after: Option<Kind>) -> bool {
     let is_after = |kind: Kind| before.is_some_and(|it| it.0 == kind);
     match unit.use_ {
+        Use::Space => !is_after(Kind::Dot),
         Use::Function => after == Some(Kind::OpenParen) && !is_after(Kind::Dot),
         Use::Type => {
             let is_type = is_after(Kind::Colon) || is_after(Kind::Of) || is_after(Kind::To);
@@ -288,12 +300,21 @@ fn mentions_any(text: &str) -> bool {
         let length = bytes[at..].iter().take_while(|it| is_word(**it)).count();
         let letter = first.to_ascii_uppercase().wrapping_sub(b'A');
         let lengths = LENGTHS.get(usize::from(letter)).copied().unwrap_or(0);
-        if length < 32 && lengths & (1 << length) != 0 && text.get(at..at + length).and_then(unit).is_some() {
+        if length < 32 && lengths & (1 << length) != 0 && text.get(at..at + length).is_some_and(may_name) {
             return true;
         }
         at += length;
     }
     false
+}
+
+/// Whether a word may be a unit's name, or what its name begins with.
+fn may_name(word: &str) -> bool {
+    is_system(word) || unit(word).is_some()
+}
+
+fn is_system(word: &str) -> bool {
+    word.eq_ignore_ascii_case(SYSTEM)
 }
 
 fn range((start, end): (u32, u32)) -> core::ops::Range<usize> {
@@ -313,6 +334,7 @@ mod tests {
             let dialect = unit.dialect.unwrap_or_default();
             let call = match unit.use_ {
                 Use::Type => format!("VAR_GLOBAL it : {}; END_VAR", unit.name),
+                Use::Space => format!("USING {};", unit.name),
                 Use::Function => format!("PROGRAM Main {}(); END_PROGRAM", unit.name),
             };
             let mut sources = Sources::default();

@@ -278,7 +278,11 @@ impl<'s> Names<'s> {
                 Some(Entry::Pou(_) | Entry::Global(_)) | None => Found::Nothing,
             };
         }
-        self.held(site, space, last, sense).map_or(Found::Nothing, |it| Found::One(Meaning::Declared(it)))
+        let held = self.held(site, space, last, sense).map(Meaning::Declared);
+        // `System.Math.Sqrt` is the standard function.
+        let is_standard = sense == Sense::Callee && self.spaces[space.0].name.starts_with("System.");
+        let standard = || self.library(site.dialect, last, sense).filter(|_| is_standard);
+        held.or_else(standard).map_or(Found::Nothing, Found::One)
     }
 
     /// What a namespace holds by itself, as far as a place sees it.
