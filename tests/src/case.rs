@@ -72,7 +72,9 @@ impl Case {
         let mut sources = Sources::default();
         for path in &self.sources {
             let bytes = fs::read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-            sources.add(Source::decode(file_name(path), &bytes));
+            let source = Source::decode(file_name(path), &bytes);
+            let is_library = source.text.starts_with("// library\n");
+            sources.add(if is_library { source.of_library() } else { source });
         }
         sources
     }

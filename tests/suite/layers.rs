@@ -8,7 +8,7 @@ use std::path::Path;
 const ROOT: &str = "compiler/frontend/src";
 
 /// The folders and files at the root, from the lowest.
-const LAYERS: [&str; 21] = [
+const LAYERS: [&str; 22] = [
     "vendor",
     "source",
     "diagnostic",
@@ -28,6 +28,7 @@ const LAYERS: [&str; 21] = [
     "expr",
     "declare",
     "body",
+    "library",
     "program",
     "lints",
 ];

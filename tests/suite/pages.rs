@@ -3,8 +3,8 @@
 use crate::documents::wrapped;
 use staunch_frontend::{Code, Dialect, Options, Severity, Source, Sources};
 
-/// What no short text shows: how much was written, or how deep.
-const WITHOUT_A_TEXT: [Code; 3] = [Code::E0030, Code::E0031, Code::E0091];
+/// What no short text shows: how much was written, how deep, or what takes two files.
+const WITHOUT_A_TEXT: [Code; 4] = [Code::E0030, Code::E0031, Code::E0091, Code::E0318];
 
 #[test]
 fn pages_show_what_they_say() {

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::Failed;
 use crate::cargo::Instructions;
+use crate::{Failed, listing};
 
 /// The files that `paths` name, in order; a folder's in the order of their paths.
 pub fn find(paths: &[PathBuf], cargo: &mut Instructions) -> Result<Vec<PathBuf>, Failed> {
@@ -11,6 +11,13 @@ pub fn find(paths: &[PathBuf], cargo: &mut Instructions) -> Result<Vec<PathBuf>,
     for path in paths {
         if path.is_dir() {
             search(path, cargo, &mut found)?;
+        } else if listing::is_list(path) {
+            let (sources, lists) = listing::sources(path).map_err(|error| {
+                cargo.error(&error);
+                Failed
+            })?;
+            lists.iter().chain(&sources).for_each(|it| cargo.rerun_if_changed(it));
+            found.extend(sources);
         } else {
             cargo.rerun_if_changed(path);
             found.push(path.clone());
@@ -28,15 +35,10 @@ fn search(folder: &Path, cargo: &mut Instructions, found: &mut Vec<PathBuf>) -> 
     for path in paths {
         if path.is_dir() {
             search(&path, cargo, found)?;
-        } else if is_source(&path) {
+        } else if listing::is_source(&path) {
             cargo.rerun_if_changed(&path);
             found.push(path);
         }
     }
     Ok(())
-}
-
-fn is_source(path: &Path) -> bool {
-    let extension = path.extension().map(|it| it.to_string_lossy().to_ascii_lowercase());
-    extension.is_some_and(|it| ["st", "iecst", "tcpou", "tcgvl", "tcdut", "tcio"].contains(&it.as_str()))
 }

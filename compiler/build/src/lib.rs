@@ -17,6 +17,7 @@
 
 mod cargo;
 mod files;
+pub mod listing;
 mod project;
 
 use std::path::{Path, PathBuf};
@@ -46,6 +47,7 @@ pub struct Build {
     name: Option<String>,
     runtime: Option<String>,
     names: bool,
+    libraries: Vec<PathBuf>,
     dialect: Option<Dialect>,
     ctu_stop_at_pv: Option<bool>,
     levels: Vec<(Level, String)>,
@@ -71,6 +73,14 @@ impl Build {
     #[must_use]
     pub fn folder(self, path: impl Into<PathBuf>) -> Self {
         self.file(path)
+    }
+
+    /// Adds a library: a file, a folder or a project of TwinCAT's that the program uses and that is not its own.
+    /// Declarations in it may be without bodies, as long as the program does not call them.
+    #[must_use]
+    pub fn library(mut self, path: impl Into<PathBuf>) -> Self {
+        self.libraries.push(path.into());
+        self
     }
 
     /// Whose blocks a bare name means, in files that do not say it themselves.
@@ -150,11 +160,13 @@ impl Build {
     }
 
     fn compile_to(&self, folder: &Path, cargo: &mut cargo::Instructions) -> Result<(), Failed> {
-        let sources = self.read(cargo)?;
-        let (options, levels) = self.settings(cargo).map_err(|error| {
+        let fail = |cargo: &mut cargo::Instructions, error: String| {
             cargo.error(&error);
             Failed
-        })?;
+        };
+        let project = self.project(cargo).map_err(|error| fail(cargo, error))?;
+        let sources = self.read(&project, cargo)?;
+        let (options, levels) = self.settings(&project).map_err(|error| fail(cargo, error))?;
         let compilation = staunch_frontend::compile(&sources, &options);
         let diagnostics: Vec<_> = compilation.diagnostics.into_iter().filter_map(|it| levels.apply(it)).collect();
         let is_rejected = diagnostics.iter().any(|it| it.severity == Severity::Error);
@@ -186,8 +198,7 @@ impl Build {
         std::fs::write(&path, text).map_err(|error| cargo.failed("write", &path, &error))
     }
 
-    /// What this build says, before what its project file does.
-    fn settings(&self, cargo: &mut cargo::Instructions) -> Result<(staunch_frontend::Options, Levels), String> {
+    fn project(&self, cargo: &mut cargo::Instructions) -> Result<Project, String> {
         let first = self.paths.first().map_or(Path::new("."), PathBuf::as_path);
         let folder = if first.is_dir() { first } else { first.parent().unwrap_or(first) };
         let here = if folder == Path::new("") { Path::new(".") } else { folder };
@@ -195,7 +206,11 @@ impl Build {
         if let Some(project) = &found {
             cargo.rerun_if_changed(&project.folder.join("staunch.toml"));
         }
-        let project = found.unwrap_or_default();
+        Ok(found.unwrap_or_default())
+    }
+
+    /// What this build says, before what its project file does.
+    fn settings(&self, project: &Project) -> Result<(staunch_frontend::Options, Levels), String> {
         let options = staunch_frontend::Options {
             dialect: self.dialect.or(project.dialect()?).unwrap_or_default(),
             ctu_stop_at_pv: self.ctu_stop_at_pv.unwrap_or(project.ctu_stop_at_pv),
@@ -208,13 +223,19 @@ impl Build {
         Ok((options, levels))
     }
 
-    fn read(&self, cargo: &mut cargo::Instructions) -> Result<Sources, Failed> {
+    /// The program's own sources, and then those of its libraries.
+    fn read(&self, project: &Project, cargo: &mut cargo::Instructions) -> Result<Sources, Failed> {
         let mut sources = Sources::default();
-        for path in files::find(&self.paths, cargo)? {
-            let bytes = std::fs::read(&path).map_err(|error| cargo.failed("read", &path, &error))?;
-            sources.add(Source::decode(shown(&path), &bytes));
+        let own = files::find(&self.paths, cargo)?;
+        let libraries =
+            project.libraries.iter().map(|it| project.folder.join(it)).chain(self.libraries.iter().cloned());
+        let others = files::find(&libraries.collect::<Vec<_>>(), cargo)?;
+        for (number, path) in own.iter().chain(&others).enumerate() {
+            let bytes = std::fs::read(path).map_err(|error| cargo.failed("read", path, &error))?;
+            let source = Source::decode(shown(path), &bytes);
+            sources.add(if number < own.len() { source } else { source.of_library() });
         }
-        if sources.files().is_empty() {
+        if own.is_empty() {
             cargo.error("there is no Structured Text to compile");
             return Err(Failed);
         }

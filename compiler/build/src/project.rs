@@ -10,6 +10,8 @@ pub struct Project {
     pub folder: PathBuf,
     pub dialect: Option<String>,
     pub files: Vec<PathBuf>,
+    /// What the sources use that is not their own.
+    pub libraries: Vec<PathBuf>,
     pub program: Option<String>,
     pub cycle: Option<String>,
     pub loop_budget: Option<u64>,
@@ -80,6 +82,7 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
     match key {
         "dialect" => project.dialect = Some(text(key, value)?),
         "files" => project.files = texts(key, value)?.into_iter().map(PathBuf::from).collect(),
+        "libraries" => project.libraries = texts(key, value)?.into_iter().map(PathBuf::from).collect(),
         "program" => project.program = Some(text(key, value)?),
         "cycle" => project.cycle = Some(text(key, value)?),
         "loop-budget" => project.loop_budget = Some(number(key, value)?),
@@ -93,7 +96,7 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
         "verbose" => project.verbose = flag(key, value)?,
         _ => {
             return Err(format!(
-                "there is no setting `{key}`; there are dialect, files, program, cycle, loop-budget, ctu-stop-at-pv, warn, deny, allow, message-format, color, quiet and verbose"
+                "there is no setting `{key}`; there are dialect, files, libraries, program, cycle, loop-budget, ctu-stop-at-pv, warn, deny, allow, message-format, color, quiet and verbose"
             ));
         }
     }

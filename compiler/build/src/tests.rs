@@ -80,3 +80,25 @@ fn the_project_file_names_the_dialect() {
     assert_eq!(build.dialect(Dialect::Iec).compile_to(&folder, &mut cargo), Err(Failed));
     std::fs::remove_dir_all(folder).unwrap();
 }
+
+#[test]
+fn libraries_are_named_here_and_in_the_project_file() {
+    let main = "PROGRAM Main VAR x : INT; END_VAR x := One(1) + Two(2); END_PROGRAM";
+    let of = |name: &str, body: &str| format!("FUNCTION {name} : INT VAR_INPUT a : INT; END_VAR {body} END_FUNCTION");
+    let (one, two, stub) = (of("One", "One := a;"), of("Two", "Two := a;"), of("Two", ""));
+    let toml = "libraries = [\"lib/one.st\"]";
+    let files = [("src/plc.st", main), ("lib/one.st", &one), ("more/two.st", &two), ("stub.st", &stub)];
+    let folder = folder("libraries", &[&files[..], &[("staunch.toml", toml)]].concat());
+    let build = Build::new().folder(folder.join("src"));
+    let mut cargo = cargo::Instructions::default();
+    let with_stub = build.clone().library(folder.join("stub.st"));
+    assert_eq!(with_stub.compile_to(&folder, &mut cargo), Err(Failed));
+    assert!(cargo.lines.iter().any(|it| it.contains("`Two` has no implementation")), "{:?}", cargo.lines);
+    let mut cargo = cargo::Instructions::default();
+    assert_eq!(build.library(folder.join("more")).compile_to(&folder, &mut cargo), Ok(()), "{:?}", cargo.lines);
+    for name in ["lib/one.st", "more/two.st"] {
+        let line = format!("cargo::rerun-if-changed={}", folder.join(name).display());
+        assert!(cargo.lines.contains(&line), "{:?}", cargo.lines);
+    }
+    std::fs::remove_dir_all(folder).unwrap();
+}

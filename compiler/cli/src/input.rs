@@ -1,5 +1,6 @@
 //! Source files from the command line: named ones, folders, standard input.
 
+use staunch_build::listing;
 use staunch_frontend::{Source, Sources};
 use std::collections::HashSet;
 use std::fs;
@@ -11,32 +12,40 @@ const MAX_BYTES: u64 = 1 << 31;
 /// Folders that lie deeper than this are taken for a loop of links.
 const MAX_DEPTH: usize = 64;
 
-/// Reads every file that the arguments name, each once, folders in sorted order.
-pub fn read(arguments: &[PathBuf]) -> Result<Sources, String> {
-    let mut paths = Vec::new();
-    for argument in arguments {
-        collect(argument, 0, &mut paths)?;
-    }
-    if paths.is_empty() {
+/// Reads every file that the arguments name, each once, folders in sorted order; and then those of the libraries.
+pub fn read(arguments: &[PathBuf], libraries: &[PathBuf]) -> Result<Sources, String> {
+    let own = found(arguments)?;
+    if own.is_empty() {
         return Err("no source file was found".to_owned());
     }
-    if paths.len() > usize::from(u16::MAX) {
-        return Err(format!("{} files are more than one program may have", paths.len()));
+    let others = found(libraries)?;
+    let count = own.len() + others.len();
+    if count > usize::from(u16::MAX) {
+        return Err(format!("{count} files are more than one program may have"));
     }
     let mut seen = HashSet::new();
     let mut sources = Sources::default();
-    for path in paths {
+    for (number, path) in own.iter().chain(&others).enumerate() {
         let identity = path.canonicalize().unwrap_or_else(|_| path.clone());
         if seen.insert(identity) {
-            sources.add(source(&path)?);
+            let source = source(path)?;
+            sources.add(if number < own.len() { source } else { source.of_library() });
         }
     }
     Ok(sources)
 }
 
+fn found(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
+    let mut paths = Vec::new();
+    for argument in arguments {
+        collect(argument, 0, &mut paths)?;
+    }
+    Ok(paths)
+}
+
 fn collect(path: &Path, depth: usize, paths: &mut Vec<PathBuf>) -> Result<(), String> {
-    if path != Path::new("-") && has_extension(path, &["plcproj"]) {
-        paths.extend(listed(path)?);
+    if path != Path::new("-") && listing::is_list(path) && !path.is_dir() {
+        paths.extend(listing::sources(Path::new(&shown(path)))?.0);
         return Ok(());
     }
     if path == Path::new("-") || !path.is_dir() {
@@ -52,33 +61,11 @@ fn collect(path: &Path, depth: usize, paths: &mut Vec<PathBuf>) -> Result<(), St
     inside.sort();
     for entry in inside {
         let hidden = entry.file_name().is_some_and(|it| it.to_string_lossy().starts_with('.'));
-        if !hidden && (entry.is_dir() || is_source(&entry)) {
+        if !hidden && (entry.is_dir() || listing::is_source(&entry)) {
             collect(&entry, depth + 1, paths)?;
         }
     }
     Ok(())
-}
-
-fn is_source(path: &Path) -> bool {
-    has_extension(path, &["st", "iecst", "tcpou", "tcgvl", "tcdut", "tcio"])
-}
-
-fn has_extension(path: &Path, all: &[&str]) -> bool {
-    let extension = path.extension().map(|it| it.to_string_lossy().to_ascii_lowercase());
-    extension.is_some_and(|it| all.contains(&it.as_str()))
-}
-
-/// The sources that a project of TwinCAT's lists.
-fn listed(path: &Path) -> Result<Vec<PathBuf>, String> {
-    let name = shown(path);
-    let list = Source::listed(&bytes(path)?.1).map_err(|it| format!("{name}: {it}"))?;
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let files = list.iter().map(|it| folder.join(it.replace('\\', "/")));
-    let sources: Vec<PathBuf> = files.filter(|it| is_source(it)).collect();
-    if sources.is_empty() {
-        return Err(format!("{name} lists no source file"));
-    }
-    Ok(sources)
 }
 
 fn source(path: &Path) -> Result<Source, String> {

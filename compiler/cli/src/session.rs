@@ -75,18 +75,12 @@ impl Session {
         let near = files.files.first().filter(|it| it.as_path() != Path::new("-"));
         let folder = near.map_or(Path::new("."), |it| if it.is_dir() { it } else { parent(it) });
         let project = Project::find(folder)?.unwrap_or_default();
-        let named = if files.files.is_empty() {
-            let here = std::env::current_dir().and_then(|it| it.canonicalize());
-            let here = here.map_err(|it| format!("the current folder: {it}"))?;
-            project.files.iter().map(|it| project.seen_from(&here, it)).collect()
-        } else {
-            files.files.clone()
-        };
+        let named = if files.files.is_empty() { seen(&project, &project.files)? } else { files.files.clone() };
         if named.is_empty() {
             return Err("name a source file or folder, or list `files` in staunch.toml".to_owned());
         }
         let levels = levels(common, &project)?;
-        let sources = input::read(&named)?;
+        let sources = input::read(&named, &seen(&project, &project.libraries)?)?;
         let start = Instant::now();
         let compilation = compile(&sources, &options(common, &project)?);
         let compile_time = start.elapsed();
@@ -287,9 +281,20 @@ impl Session {
     }
 }
 
-/// The sources whose execution is counted: all that the user named.
+/// The sources whose execution is counted: the program's own, which come first.
 fn covered(sources: &Sources, is_covered: bool) -> Option<u16> {
-    is_covered.then(|| u16::try_from(sources.files().len()).unwrap_or(u16::MAX))
+    let own = sources.files().iter().filter(|it| !it.is_of_library()).count();
+    is_covered.then(|| u16::try_from(own).unwrap_or(u16::MAX))
+}
+
+/// Paths of the project file, as seen from the current folder.
+fn seen(project: &Project, paths: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
+    if paths.is_empty() {
+        return Ok(Vec::new());
+    }
+    let here = std::env::current_dir().and_then(|it| it.canonicalize());
+    let here = here.map_err(|it| format!("the current folder: {it}"))?;
+    Ok(paths.iter().map(|it| project.seen_from(&here, it)).collect())
 }
 
 fn parent(path: &Path) -> &Path {

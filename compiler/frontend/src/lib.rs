@@ -27,6 +27,8 @@ mod declare;
 
 mod body;
 
+mod library;
+
 mod program;
 
 mod lints;
@@ -130,6 +132,7 @@ fn run(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
     let Some(mut files) = parse_all(sources, &mut log.diagnostics) else {
         return Compilation { program: None, diagnostics: log.diagnostics, tests: Vec::new(), coverage: Vec::new() };
     };
+    let stubs = library::prepare(&mut files, sources);
     // Unit tests that do not run are checked all the same.
     let tested = (!options.tests && testing::has_tests(&files))
         .then(|| run(sources, &Options { tests: true, ..options.clone() }, Bodies::Dropped).diagnostics);
@@ -144,6 +147,10 @@ fn run(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
     let unassigned = lints::result::unassigned(&declarations);
     let checked = body::check(&mut declarations, &mut bodies, keep);
     lints::unused::report(&mut declarations);
+    if keep == Bodies::Kept {
+        let routines: Vec<_> = checked.routines.iter().map(|it| it.as_ref().map(|it| &it.0)).collect();
+        stubs.report_called(&mut declarations, &routines);
+    }
     let left_out = checked.left_out;
     let program = program::assemble(&mut declarations, &files, checked);
     let tests = program::tests::tests(&mut declarations);
@@ -152,6 +159,7 @@ fn run(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
     compilation.tests = tests;
     compilation.coverage = coverage;
     compilation.add(tested.unwrap_or_default());
+    library::of_own_sources(&mut compilation.diagnostics, sources);
     // SETUP is a part of each test.
     compilation.diagnostics.dedup_by(|a, b| (a.code, a.span) == (b.code, b.span) && a.message == b.message);
     compilation.diagnostics.retain(|it| !allowances.cover(it));

@@ -32,6 +32,7 @@ pub struct Source {
     characters: Vec<u32>,
     encoding: Encoding,
     origin: Option<Box<Origin>>,
+    library: bool,
 }
 
 /// The file that a text is made of.
@@ -79,7 +80,7 @@ impl Source {
         let lines =
             core::iter::once(0).chain(starts.map(|(at, _)| u32::try_from(at + 1).unwrap_or(u32::MAX))).collect();
         let characters = if text.is_ascii() { Vec::new() } else { counted(text.as_bytes()) };
-        Self { path: path.into(), text, lines, characters, encoding: Encoding::default(), origin: None }
+        Self { path: path.into(), text, lines, characters, encoding: Encoding::default(), origin: None, library: false }
     }
 
     /// The Structured Text in a file, also in one of another system's.
@@ -97,6 +98,16 @@ impl Source {
     /// The files that a project of TwinCAT's lists, as it writes them.
     pub fn listed(project: &[u8]) -> Result<Vec<String>, String> {
         vendor::listed(&Self::decoded("", project).text)
+    }
+
+    /// The same, as one that a project uses and that is not its own.
+    #[must_use]
+    pub fn of_library(self) -> Self {
+        Self { library: true, ..self }
+    }
+
+    pub fn is_of_library(&self) -> bool {
+        self.library
     }
 
     /// The file as it is, where the text is made of pieces of it.

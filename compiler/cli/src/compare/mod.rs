@@ -119,7 +119,7 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
 fn rewrite(from: &Session, args: &Compare) -> Result<Option<logix::Rewritten>, String> {
     if let Some(path) = &args.against {
         let files = Files { files: vec![path.clone()] };
-        let sources = input::read(&files.files)?;
+        let sources = input::read(&files.files, &[])?;
         fixed::check(&sources, args.to, "--to", false)?;
         return Ok(Some(logix::Rewritten::by_user(sources)));
     }

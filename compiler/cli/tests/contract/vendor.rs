@@ -89,3 +89,54 @@ fn a_project_that_cannot_be_read_is_said() {
     folder.write("Line.plcproj", PROJECT.replace("MAIN.TcPOU", "NONE.TcPOU"));
     has(&folder.staunch("check Line.plcproj").err(2), &["NONE.TcPOU"]);
 }
+
+#[test]
+fn a_solution_leads_to_its_project() {
+    let folder = project("twincat-solution");
+    let solution = "\u{feff}\nMicrosoft Visual Studio Solution File, Format Version 12.00\n\
+        Project(\"{B1E7}\") = \"Plant\", \"Plant\\Plant.tsproj\", \"{6FA2}\"\nEndProject\n\
+        Project(\"{FAE0}\") = \"View\", \"View\\View.csproj\", \"{1}\"\nEndProject\n";
+    std::fs::create_dir_all(folder.0.join("Plant/_Config/PLC")).unwrap();
+    folder.write("Plant.sln", solution);
+    let inline = |more: &str| {
+        let line = r#"<Project Name="Line" PrjFilePath="..\Line.plcproj"/>"#;
+        format!("<TcSmProject><Project><Plc>{line}{more}</Plc></Project></TcSmProject>")
+    };
+    folder.write("Plant/Plant.tsproj", inline(""));
+    has(&folder.staunch("check Plant.sln -v").err(0), &["POUs/MAIN.TcPOU"]);
+    // A part of it in a file of its own.
+    folder.write("Plant/Plant.tsproj", r#"<TcSmProject><Plc><Project File="Line.xti"/></Plc></TcSmProject>"#);
+    let part = r#"<TcSmItem><Project Name="Line" PrjFilePath="..\..\..\Line.plcproj"/></TcSmItem>"#;
+    folder.write("Plant/_Config/PLC/Line.xti", part);
+    has(&folder.staunch("check Plant.sln -v").err(0), &["POUs/MAIN.TcPOU"]);
+    // Each PLC project is a program of its own.
+    folder.write("Other.plcproj", PROJECT);
+    folder.write("Plant/Plant.tsproj", inline(r#"<Project PrjFilePath="..\Other.plcproj"/>"#));
+    let several = folder.staunch("check Plant.sln").err(2);
+    has(&several, &["2 PLC projects; name one of them: Line.plcproj, Other.plcproj"]);
+    folder.write("Plant.sln", solution.replace("tsproj", "vcxproj"));
+    has(&folder.staunch("check Plant.sln").err(2), &["Plant.sln lists no PLC project"]);
+}
+
+#[test]
+fn libraries_of_the_project_file_are_used_and_not_judged() {
+    let main = "PROGRAM Main VAR x : INT; END_VAR x := Own(1) + Vendors(2); END_PROGRAM";
+    let own = "FUNCTION Own : INT VAR_INPUT a : INT; END_VAR VAR unused : INT; END_VAR Own := a; END_FUNCTION";
+    let stub = "FUNCTION Vendors : INT VAR_INPUT a : INT; END_VAR END_FUNCTION PROGRAM Try Vendors(1); END_PROGRAM";
+    let toml = "files = [\"src\"]\nlibraries = [\"lib/own.st\", \"lib/stubs\"]\ndeny = [\"warnings\"]\n";
+    let folder = Folder::with("libraries", &[("staunch.toml", toml)]);
+    for name in ["src", "lib/stubs"] {
+        std::fs::create_dir_all(folder.0.join(name)).unwrap();
+    }
+    folder.write("src/main.st", main);
+    folder.write("lib/own.st", own);
+    folder.write("lib/stubs/vendor.st", stub);
+    folder.staunch("check").out(0);
+    // A file that is named has the libraries of the project that it lies in.
+    folder.staunch("check src/main.st").out(0);
+    let refused = folder.staunch("run --scans 1").err(1);
+    has(&refused, &["error[E0318]: `Vendors` has no implementation", "src/main.st:1:", "lib/stubs/vendor.st"]);
+    folder
+        .write("lib/stubs/vendor.st", stub.replace("END_VAR END_FUNCTION", "END_VAR Vendors := 40 + a; END_FUNCTION"));
+    assert_eq!(folder.staunch("run --scans 1 --trace -").out(0), "scan,time_ms,x\n1,0,43\n");
+}

@@ -1,0 +1,77 @@
+//! Which files are sources, and which list others: the projects and solutions of TwinCAT.
+
+use staunch_frontend::Source;
+use std::path::{Path, PathBuf};
+
+/// A solution names projects, these name PLC projects, and these sources.
+const DEEPEST: usize = 4;
+
+/// Whether a folder's file is a source by its name.
+pub fn is_source(path: &Path) -> bool {
+    has_extension(path, &["st", "iecst", "tcpou", "tcgvl", "tcdut", "tcio"])
+}
+
+/// Whether a file lists others.
+pub fn is_list(path: &Path) -> bool {
+    has_extension(path, &["plcproj", "sln", "tsproj", "tspproj", "xti"])
+}
+
+fn has_extension(path: &Path, all: &[&str]) -> bool {
+    let extension = path.extension().map(|it| it.to_string_lossy().to_ascii_lowercase());
+    extension.is_some_and(|it| all.contains(&it.as_str()))
+}
+
+/// The sources that a list of TwinCAT's leads to, and the lists on the way.
+pub fn sources(path: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), String> {
+    let mut lists = Vec::new();
+    let projects = plc_projects(path, 0, &mut lists)?;
+    let name = path.display();
+    let [(project, files)] = projects.as_slice() else {
+        if projects.is_empty() {
+            return Err(format!("{name} lists no PLC project"));
+        }
+        let all: Vec<_> = projects.iter().map(|it| it.0.display().to_string()).collect();
+        return Err(format!("{name} has {} PLC projects; name one of them: {}", all.len(), all.join(", ")));
+    };
+    let sources: Vec<_> = files.iter().filter(|it| is_source(it)).cloned().collect();
+    if sources.is_empty() {
+        return Err(format!("{} lists no source file", project.display()));
+    }
+    Ok((sources, lists))
+}
+
+/// The PLC projects that a list leads to, each with what it lists.
+fn plc_projects(path: &Path, depth: usize, lists: &mut Vec<PathBuf>) -> Result<Vec<(PathBuf, Vec<PathBuf>)>, String> {
+    let fail = |it: &dyn std::fmt::Display| format!("{}: {it}", path.display());
+    if depth > DEEPEST {
+        return Err(fail(&"projects list one another"));
+    }
+    lists.push(path.to_owned());
+    let bytes = std::fs::read(path).map_err(|it| fail(&it))?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let listed = Source::listed(&bytes).map_err(|it| fail(&it))?;
+    let files = listed.iter().map(|it| resolved(folder, it));
+    if has_extension(path, &["plcproj"]) {
+        return Ok(vec![(path.to_owned(), files.collect())]);
+    }
+    let mut projects = Vec::new();
+    for it in files.filter(|it| is_list(it)) {
+        projects.extend(plc_projects(&it, depth + 1, lists)?);
+    }
+    Ok(projects)
+}
+
+/// A path as Windows writes it, from a folder; its `..` are taken out.
+fn resolved(folder: &Path, path: &str) -> PathBuf {
+    let mut whole = folder.to_owned();
+    for part in path.split(['\\', '/']) {
+        match part {
+            "" | "." => {}
+            ".." if whole.file_name().is_some() => {
+                whole.pop();
+            }
+            part => whole.push(part),
+        }
+    }
+    whole
+}

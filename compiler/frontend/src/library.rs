@@ -1,0 +1,107 @@
+//! Sources that a project uses and that are not its own: their PROGRAMs do not run, and nothing is said of their
+//! habits. A declaration there may be without a body, of what is not in Structured Text: it is checked as any other,
+//! but a program that calls it cannot be built.
+
+use crate::ast::{File, Item, Pou, PouKind};
+use crate::types::declarations::Declarations;
+use crate::{Code, Diagnostic, Severity, Sources, Span};
+use rustc_hash::FxHashSet;
+use staunch_ir::{Location, Routine, RoutineId};
+
+/// What a library declares without a body: the places of the names.
+#[derive(Debug, Default)]
+pub(crate) struct Stubs {
+    names: FxHashSet<Span>,
+}
+
+/// Takes out of libraries what only runs by itself, and gives what is without a body.
+pub(crate) fn prepare(files: &mut [File<'_>], sources: &Sources) -> Stubs {
+    let mut stubs = Stubs::default();
+    for (file, source) in files.iter_mut().zip(sources.files()) {
+        if !source.is_of_library() {
+            continue;
+        }
+        file.items.retain(|it| match it {
+            Item::Pou(pou) => pou.kind != PouKind::Program,
+            Item::Configuration(_) | Item::Test(_) => false,
+            Item::Types(_) | Item::Globals(_) => true,
+        });
+        for item in &file.items {
+            if let Item::Pou(pou) = item
+                && is_stub(pou)
+            {
+                stubs.names.insert(pou.name.span);
+                stubs.names.extend(pou.routines.iter().map(|it| it.name.span));
+            }
+        }
+    }
+    stubs
+}
+
+/// Whether nothing of it says what it does. What only inherits does what its base does.
+fn is_stub(pou: &Pou<'_>) -> bool {
+    let is_empty = pou.body.is_empty() && pou.routines.iter().all(|it| it.body.is_empty());
+    let has_own = pou.extends.is_none() || !pou.routines.is_empty();
+    pou.kind != PouKind::Interface && is_empty && has_own
+}
+
+impl Stubs {
+    /// Reports what is called of the library and has no body, each once; `routines` are those of the POUs' slots.
+    pub fn report_called(&self, declarations: &mut Declarations<'_>, routines: &[Option<&Routine>]) {
+        if self.names.is_empty() {
+            return;
+        }
+        let sources = declarations.log.sources;
+        let is_own = |slot: &usize| !sources.get(declarations.pous[*slot].ast.span.file).is_of_library();
+        let mut reached: Vec<_> = (0..routines.len()).filter(is_own).collect();
+        let mut seen: FxHashSet<_> = reached.iter().copied().collect();
+        let mut missing = Vec::new();
+        while let Some(slot) = reached.pop() {
+            let Some(routine) = routines[slot] else { continue };
+            each_call(routine, &mut |callee, at| {
+                if seen.insert(callee.index()) {
+                    reached.push(callee.index());
+                    missing.push((callee.index(), at));
+                }
+            });
+        }
+        missing.retain(|(slot, _)| self.is_missing(declarations, *slot));
+        missing.sort_unstable_by_key(|(_, at)| (at.file, at.line, at.column));
+        // What several classes inherit is declared once.
+        let mut said = FxHashSet::default();
+        missing.retain(|(slot, _)| said.insert(declarations.pous[*slot].ast.name.span));
+        for (slot, at) in missing {
+            declarations.report_without_body(slot, at);
+        }
+    }
+
+    fn is_missing(&self, declarations: &Declarations<'_>, slot: usize) -> bool {
+        let name = declarations.pous[slot].ast.name.span;
+        self.names.contains(&name) && !declarations.tests.mocks.contains_key(&slot)
+    }
+}
+
+impl Declarations<'_> {
+    fn report_without_body(&mut self, slot: usize, at: Location) {
+        let pou = self.pous[slot].ast;
+        let (title, file) = (self.title(slot), &self.log.sources.get(pou.name.span.file).path);
+        let error = Diagnostic::new(Code::E0318, self.log.name_at(at), format!("`{title}` has no implementation"))
+            .label("called here")
+            .other(pou.name.span, "declared here, without a body")
+            .help(format!("write its body in {file}; where it is to do nothing, `RETURN;` is one"));
+        self.report(error);
+    }
+}
+
+fn each_call(routine: &Routine, see: &mut dyn FnMut(RoutineId, Location)) {
+    staunch_ir::visit::statements(&routine.body, &mut |statement| {
+        if let staunch_ir::StatementKind::Call { callee, .. } = &statement.kind {
+            see(*callee, statement.at);
+        }
+    });
+}
+
+/// Leaves out what is said of the habits of libraries.
+pub(crate) fn of_own_sources(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
+    diagnostics.retain(|it| it.severity == Severity::Error || !sources.get(it.span.file).is_of_library());
+}

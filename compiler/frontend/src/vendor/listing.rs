@@ -1,0 +1,64 @@
+//! What TwinCAT's projects list: a solution (`.sln`) its projects, such a project (`.tsproj`, with parts of it in
+//! `.xti`) its PLC projects, and a PLC project (`.plcproj`) its sources.
+
+use super::xml::{Broken, Part, Reader};
+
+/// The files that one of them lists, as it writes them.
+pub fn listed(text: &str) -> Result<Vec<String>, String> {
+    if text.trim_start().starts_with("Microsoft Visual Studio Solution File") {
+        return Ok(projects_of_a_solution(text));
+    }
+    let no_project = || "this is no project of TwinCAT's".to_owned();
+    let broken = |it: Broken| format!("the project is not well-formed XML: {}", it.why);
+    let mut reader = Reader::new(text).ok_or_else(no_project)?;
+    let root = reader.root().map_err(broken)?.ok_or_else(no_project)?;
+    let files = match root.name {
+        "Project" => sources(text, &mut reader),
+        "TcSmProject" | "TcSmItem" => plc_projects(text, &mut reader),
+        _ => return Err(no_project()),
+    };
+    files.map_err(broken)
+}
+
+/// `Project("{…}") = "Plant", "Plant\Plant.tsproj", "{…}"`: those of other kinds are passed over.
+fn projects_of_a_solution(text: &str) -> Vec<String> {
+    let lines = text.lines().filter(|it| it.trim_start().starts_with("Project("));
+    let paths = lines.filter_map(|it| it.split('"').nth(5));
+    let is_ours =
+        |it: &&str| [".tsproj", ".tspproj", ".plcproj"].iter().any(|end| it.to_ascii_lowercase().ends_with(end));
+    paths.filter(is_ours).map(str::to_owned).collect()
+}
+
+/// Of elements `Project`, what they name. One that is in a file of its own is in a folder of its own, too.
+fn plc_projects<'t>(text: &'t str, reader: &mut Reader<'t>) -> Result<Vec<String>, Broken> {
+    let mut files = Vec::new();
+    while let Some(part) = reader.part()? {
+        if let Part::Open(element) = part
+            && element.name == "Project"
+        {
+            files.extend(element.attribute(text, "PrjFilePath").map(str::to_owned));
+            files.extend(element.attribute(text, "File").map(|it| format!("_Config\\PLC\\{it}")));
+        }
+    }
+    Ok(files)
+}
+
+fn sources<'t>(text: &'t str, reader: &mut Reader<'t>) -> Result<Vec<String>, Broken> {
+    let mut files = Vec::new();
+    // Of an element of the list, whether something in it takes it out again.
+    let mut excludes = false;
+    while let Some(part) = reader.part()? {
+        match part {
+            Part::Open(element) if element.name == "Compile" => {
+                files.extend(element.attribute(text, "Include").map(str::to_owned));
+            }
+            Part::Open(element) => excludes = element.name == "ExcludeFromBuild",
+            Part::Text(chunk) if excludes && text[chunk.place.clone()].trim().eq_ignore_ascii_case("true") => {
+                files.pop();
+            }
+            Part::Text(_) => {}
+            Part::Close => excludes = false,
+        }
+    }
+    Ok(files)
+}
