@@ -2,7 +2,7 @@
 //! the bytes of a string after its length, are nobody's.
 
 use staunch_ir::layout::{Layout, usize_of};
-use staunch_ir::{FieldId, Program, Type, Value};
+use staunch_ir::{Chars, FieldId, Program, Type, Value};
 
 /// The bytes of every value in the state, in order of the layout.
 #[derive(Debug)]
@@ -38,9 +38,8 @@ impl<'p> Leaves<'p> {
                 let repr = self.program.repr(ty).expect("an elementary type has a repr");
                 leaves.push((path.to_owned(), scalar(Value::read(repr, bytes))));
             }
-            Type::String(_) => {
-                let length = usize::from(u16::from_ne_bytes([bytes[0], bytes[1]]));
-                leaves.push((path.to_owned(), format!("{:?}", String::from_utf8_lossy(&bytes[2..2 + length]))));
+            Type::String(it) => {
+                leaves.push((path.to_owned(), format!("{:?}", Chars::read(it, bytes).text())));
             }
             Type::Array(id) => {
                 let (array, stride) = (self.program.array(id), usize_of(self.layout.stride(id)));

@@ -169,9 +169,9 @@ impl Model {
             Type::Elementary(it) if it.repr() == Repr::Bool => Kind::Truth,
             Type::Elementary(_) => Kind::Number,
             Type::Enum(_) => Kind::Enumeration,
-            Type::String(capacity) => {
+            Type::String(it) => {
                 self.texts.insert(at, Vec::new());
-                Kind::Text(at, capacity.into(), at + size)
+                Kind::Text(at, it.capacity.into(), at + size)
             }
             _ => Kind::Hidden,
         };

@@ -35,7 +35,8 @@ pub fn header(program: &Program, out: &Path, source: &Path) -> String {
          /* The map: every variable with its place, type, address and whether it is RETAIN, as text. */\n\
          extern const char staunch_map[];\nextern const uint64_t staunch_map_len;\n\n\
          /* A TIME is an int64_t of nanoseconds; so are a DATE and a DT, since 1970-01-01, and a TOD, since midnight\n\
-            (a DATE is its midnight). A STRING is its length, a uint16_t, and then its bytes. */\n",
+            (a DATE is its midnight). A STRING is its length, a uint16_t, and then its bytes,\n\
+            a WSTRING its length and its UTF-16 code units. */\n",
         Context::TURNS,
         layout.machine.size,
         layout.machine.align

@@ -3,6 +3,7 @@
 //! The parser limits nesting ([`MAX_DEPTH`]), so later passes may recurse freely.
 
 use crate::source::Span;
+pub use staunch_ir::Chars;
 use staunch_runtime::Elementary;
 
 /// Nesting of expressions and statements; types and initial values nest a quarter as deep.
@@ -639,11 +640,8 @@ pub enum LiteralValue<'s> {
         ty: Elementary,
         nanoseconds: i64,
     },
-    /// The bytes of `'…'`, escapes resolved, or the UTF-16 units of `"…"` as UTF-8 text.
-    String {
-        bytes: Box<[u8]>,
-        wide: bool,
-    },
+    /// `'…'` or `"…"`, escapes resolved.
+    String(Box<Chars>),
     /// After `Color#`.
     Enumerator(Box<Name<'s>>),
     /// A literal that cannot be read; reported.

@@ -1,6 +1,6 @@
 //! Expressions: typed trees that read, compute or fault.
 
-use crate::{Const, Elementary, Location, Op, Place, TextOp, Type, Value};
+use crate::{Chars, Const, Elementary, Location, Op, Place, TextOp, Type, Value};
 
 /// A value with its type. Reads, computes or faults; changes nothing.
 #[derive(Clone, Debug)]
@@ -16,7 +16,7 @@ pub enum ExprKind {
     /// An elementary or enumeration constant, in the repr of the expression's type.
     Const(Value),
     /// A string constant no longer than the capacity of the expression's type.
-    Text(Vec<u8>),
+    Text(Chars),
     /// An array or structure constant.
     Aggregate(Const),
     /// Reads a place of the expression's type, or of a subrange that is made of it.
@@ -26,10 +26,11 @@ pub enum ExprKind {
     /// An operation at `repr`: that of each operand and the result which the operation's row
     /// calls `T`. Operands of a comparison may be enumerations; both then have one type.
     Apply(Op, Vec<Expr>),
-    /// A string function. A string result is cut at the capacity of the expression's type.
+    /// A string function, for STRINGs or WSTRINGs as its operands are. A string result is cut at the
+    /// capacity of the expression's type.
     ApplyText(TextOp, Vec<Expr>),
     /// A change of type: between elementary types, from or to an enumeration through its base
-    /// type, between string capacities.
+    /// type, between the capacities of STRINGs, and of WSTRINGs.
     Convert(Conversion, Box<Expr>),
 }
 

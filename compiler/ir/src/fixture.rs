@@ -132,7 +132,7 @@ pub fn sample(body: Block) -> Program {
             field("wide", Type::DINT, Const::Zero),
             field("values", values, Const::Array(vec![(2, int_const(1)), (1, int_const(9))])),
             field("adder", Type::Struct(StructId(0)), adder_initial),
-            field("name", Type::String(8), Const::Text(b"abc".to_vec())),
+            field("name", Type::string(8), Const::Text(Chars::Narrow(b"abc".to_vec()))),
             field("counter", Type::Block(ctu()), Const::Zero),
             field("color", COLOR, Const::Scalar(Value::I16(5))),
             Field { constant: true, ..field("limit", Type::INT, int_const(3)) },
@@ -259,7 +259,7 @@ pub fn adder() -> Place {
 }
 
 pub fn name() -> Place {
-    main_field(4, Type::String(8))
+    main_field(4, Type::string(8))
 }
 
 pub fn counter() -> Place {

@@ -4,7 +4,7 @@
 //! A program's whole state is one block, `Machine { globals, instance 0, instance 1, … }`.
 
 use crate::{Array, ArrayId, BlockId, Const, FieldId, Local, Location, Program, StructId, Type};
-use staunch_runtime::{Repr, Value};
+use staunch_runtime::Repr;
 
 /// The greatest size of a type, and of a program's whole state, in bytes: 1 GiB.
 pub const MAX_SIZE: u64 = 1 << 30;
@@ -146,7 +146,7 @@ impl Layout {
     pub fn shape(&self, ty: Type) -> Shape {
         match ty {
             Type::Elementary(it) | Type::Subrange(it, _) => repr_shape(it.repr()),
-            Type::String(capacity) => text_shape(capacity),
+            Type::String(it) => Shape { size: it.size().into(), align: 2 },
             Type::Enum(id) => repr_shape(self.enums[id.index()]),
             Type::Array(id) => self.arrays[id.index()].expect("every array has been measured"),
             Type::Struct(id) => self.structs[id.index()].shape,
@@ -230,7 +230,7 @@ impl Layout {
         match value {
             Const::Zero => bytes.fill(0),
             Const::Scalar(value) => value.write(bytes),
-            Const::Text(text) => write_text(text, bytes),
+            Const::Text(text) => text.write(bytes),
             Const::Array(runs) => self.write_array(program, ty, runs, bytes),
             Const::Struct(values) => self.write_members(program, ty, values, bytes),
         }
@@ -297,14 +297,6 @@ pub fn usize_of(size: u64) -> usize {
     usize::try_from(size).expect("sizes are below the limit of 1 GiB")
 }
 
-/// Writes a string's header and bytes to the start of `bytes`, and zeros after them.
-fn write_text(text: &[u8], bytes: &mut [u8]) {
-    let length = u16::try_from(text.len()).expect("verified IR: a string fits its capacity");
-    bytes.fill(0);
-    Value::U16(length).write(bytes);
-    bytes[2..2 + text.len()].copy_from_slice(text);
-}
-
 fn state_of(program: &Program, instance: &crate::Instance) -> StructId {
     program.class(instance.program).state
 }
@@ -312,11 +304,6 @@ fn state_of(program: &Program, instance: &crate::Instance) -> StructId {
 fn repr_shape(repr: Repr) -> Shape {
     let size = u64::from(repr.size());
     Shape { size, align: size }
-}
-
-/// `Text<N>`: a u16 length and the bytes.
-fn text_shape(capacity: u16) -> Shape {
-    Shape { size: 2 + u64::from(capacity).next_multiple_of(2), align: 2 }
 }
 
 fn block_shape(id: BlockId) -> Shape {

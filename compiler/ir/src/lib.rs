@@ -20,6 +20,7 @@
 mod program;
 mod types;
 
+mod chars;
 mod expression;
 mod op;
 mod place;
@@ -46,6 +47,7 @@ pub mod usage;
 #[cfg(test)]
 mod fixture;
 
+pub use chars::{Chars, CharsOf};
 pub use expression::{Conversion, Expr, ExprKind};
 pub use op::{Op, TextOp, apply, apply_text};
 pub use place::{Place, Projection, Root};
@@ -60,4 +62,4 @@ pub use types::{
     ReferenceId, Struct, StructId, Type,
 };
 
-pub use staunch_runtime::{FaultKind, Location, Repr, Value};
+pub use staunch_runtime::{FaultKind, Location, Repr, StringType, Value};

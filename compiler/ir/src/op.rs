@@ -1,7 +1,9 @@
 //! The operations, made of the runtime's tables: their operands, results, and how the interpreter runs them.
 
-use staunch_runtime::{FaultKind, Outcome, Repr, Scalar, Signature, Value};
-use staunch_runtime::{carried, for_each_op, for_each_text_op, kind, ops, signature, text, with_repr};
+use crate::{Chars, CharsOf, Expr};
+use staunch_runtime::{FaultKind, Kind, Outcome, Repr, Scalar, Signature, Value};
+use staunch_runtime::{carried, for_each_op, for_each_text_op, kind, ops, signature, text, with_repr, with_unit};
+use std::convert::Infallible;
 
 macro_rules! declare_ops {
     ($($op:ident $source:literal $function:ident ($($arg:ident: $ty:ident),*) -> $result:ident
@@ -94,12 +96,12 @@ impl Op {
 /// One operand or result of a text operation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TextValue {
-    Text(Vec<u8>),
+    Text(Chars),
     Scalar(Value),
 }
 
 macro_rules! declare_text_ops {
-    ($($op:ident $source:literal $function:ident ($($arg:ident: $ty:ident),*) -> $result:ident $($extensible:ident)?;)*) => {
+    ($($op:ident $source:literal $function:ident ($($arg:ident: $ty:ident),*) -> $result:ident [$units:ident] $($extensible:ident)?;)*) => {
         /// A function on character strings; see [`staunch_runtime::text`].
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum TextOp { $($op),* }
@@ -136,38 +138,62 @@ macro_rules! declare_text_ops {
         /// `None` when an operand is of the wrong kind, which verified IR excludes.
         #[allow(non_snake_case, reason = "operands have the standard's names")]
         pub fn apply_text(op: TextOp, operands: &[TextValue], capacity: u16) -> Option<TextValue> {
+            let wide = operands.iter().any(|it| matches!(it, TextValue::Text(text) if text.is_wide()));
             let mut operands = operands.iter();
             match op {
-                $(TextOp::$op => {
-                    $(let $arg = text_operand!($ty operands.next()?);)*
-                    Some(text_result!($result capacity, $function ($($arg),*)))
-                })*
+                $(TextOp::$op => with_unit!($units wide, U => {
+                    $(let $arg = text_operand!($ty U operands.next()?);)*
+                    Some(text_result!($result U capacity, $function ($($arg),*)))
+                }),)*
             }
         }
     };
 }
 
 macro_rules! text_operand {
-    (STRING $operand:expr) => {{
-        let TextValue::Text(bytes) = $operand else { return None };
-        bytes.as_slice()
-    }};
-    ($ty:ident $operand:expr) => {{
+    (ANY_STRING $unit:ident $operand:expr) => {
+        units::<$unit>($operand)?
+    };
+    (STRING $unit:ident $operand:expr) => {
+        units::<u8>($operand)?
+    };
+    (WSTRING $unit:ident $operand:expr) => {
+        units::<u16>($operand)?
+    };
+    ($ty:ident $unit:ident $operand:expr) => {{
         let TextValue::Scalar(value) = $operand else { return None };
         <carried!($ty) as Scalar>::from_value(*value)?
     }};
 }
 
+fn units<U: CharsOf>(operand: &TextValue) -> Option<&[U]> {
+    match operand {
+        TextValue::Text(text) => U::units(text),
+        TextValue::Scalar(_) => None,
+    }
+}
+
 macro_rules! text_result {
-    (STRING $capacity:expr, $function:ident ($($arg:ident),*)) => {{
-        let mut bytes = vec![0; usize::from($capacity)];
-        let mut length = 0;
-        text::$function($($arg,)* &mut text::Destination::new(&mut length, &mut bytes));
-        bytes.truncate(usize::from(length));
-        TextValue::Text(bytes)
-    }};
-    ($ty:ident $capacity:expr, $function:ident ($($arg:ident),*)) => {
+    (ANY_STRING $unit:ident $($rest:tt)*) => {
+        built!($unit $($rest)*)
+    };
+    (STRING $unit:ident $($rest:tt)*) => {
+        built!(u8 $($rest)*)
+    };
+    (WSTRING $unit:ident $($rest:tt)*) => {
+        built!(u16 $($rest)*)
+    };
+    ($ty:ident $unit:ident $capacity:expr, $function:ident ($($arg:ident),*)) => {
         TextValue::Scalar(text::$function($($arg),*).into_value())
+    };
+}
+
+macro_rules! built {
+    ($unit:ident $capacity:expr, $function:ident ($($arg:ident),*)) => {
+        TextValue::Text(Chars::build::<$unit, Infallible>($capacity, |out| {
+            text::$function($($arg,)* out);
+            Ok(())
+        }).unwrap_or_else(|never| match never {}))
     };
 }
 
@@ -176,6 +202,14 @@ for_each_text_op!(declare_text_ops);
 impl TextOp {
     pub const fn source_name(self) -> &'static str {
         self.signature().name
+    }
+
+    /// Whether the function is applied to WSTRINGs, by its operands.
+    pub fn is_wide(self, operands: &[Expr]) -> bool {
+        let strings = self.signature().parameters.iter().zip(operands);
+        strings
+            .filter(|(it, _)| it.kind == Kind::AnyString)
+            .any(|(_, it)| it.ty.string_type().is_some_and(|it| it.wide))
     }
 
     /// Finds a function by the name it is called by, in any case.

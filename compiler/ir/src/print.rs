@@ -203,7 +203,7 @@ impl Printer<'_> {
         match &expr.kind {
             ExprKind::Const(Value::Bool(value)) if expr.ty == Type::BOOL => value_text(Value::Bool(*value)),
             ExprKind::Const(value) => format!("{}#{}", ty(), value_text(*value)),
-            ExprKind::Text(bytes) => quoted(bytes),
+            ExprKind::Text(text) => text.to_string(),
             ExprKind::Aggregate(value) => format!("{}{}", ty(), constant_text(value)),
             ExprKind::Load(place) => self.place(routine, place),
             ExprKind::AddressOf(place) => format!("ADR({})", self.place(routine, place)),
@@ -252,7 +252,7 @@ fn constant_text(value: &Const) -> String {
     match value {
         Const::Zero => "0".to_owned(),
         Const::Scalar(value) => value_text(*value),
-        Const::Text(bytes) => quoted(bytes),
+        Const::Text(text) => text.to_string(),
         Const::Array(runs) => {
             let runs: Vec<String> = runs.iter().map(|(count, value)| run_text(*count, value)).collect();
             format!("[{}]", runs.join(", "))
@@ -269,10 +269,6 @@ fn run_text(count: u64, value: &Const) -> String {
         1 => constant_text(value),
         _ => format!("{count}({})", constant_text(value)),
     }
-}
-
-fn quoted(bytes: &[u8]) -> String {
-    format!("'{}'", bytes.escape_ascii())
 }
 
 fn section_word(section: Section) -> &'static str {

@@ -361,7 +361,7 @@ impl Program {
     pub fn type_name(&self, ty: Type) -> String {
         match ty {
             Type::Elementary(it) => it.name().to_owned(),
-            Type::String(capacity) => format!("STRING[{capacity}]"),
+            Type::String(it) => it.to_string(),
             Type::Enum(id) => self.enumeration(id).name.clone(),
             Type::Subrange(base, id) => {
                 let (low, high) = self.bounds(id);

@@ -338,7 +338,7 @@ impl fmt::Display for TypeName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0 {
             Type::Elementary(it) | Type::Subrange(it, _) => f.write_str(it.name()),
-            Type::String(capacity) => write!(f, "STRING[{capacity}]"),
+            Type::String(it) => write!(f, "{it}"),
             Type::Enum(id) => write!(f, "enum:{}", id.0),
             Type::Array(id) => write!(f, "array:{}", id.0),
             Type::Struct(id) => write!(f, "struct:{}", id.0),

@@ -1,6 +1,6 @@
 //! Types, constants of them, and the ids of what a program holds.
 
-use crate::{Field, FieldId, Location};
+use crate::{Chars, Field, FieldId, Location, StringType};
 use staunch_runtime::{BLOCKS, BlockInfo, Value};
 
 pub use staunch_runtime::Elementary;
@@ -9,8 +9,8 @@ pub use staunch_runtime::Elementary;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Type {
     Elementary(Elementary),
-    /// A string of at most this many bytes.
-    String(u16),
+    /// A STRING or WSTRING.
+    String(StringType),
     Enum(EnumId),
     /// An integer type within limits. What is written to such a variable is checked, or constant.
     Subrange(Elementary, BoundsId),
@@ -31,6 +31,25 @@ impl Type {
     pub const LINT: Self = Self::Elementary(Elementary::Lint);
     pub const LREAL: Self = Self::Elementary(Elementary::Lreal);
     pub const TIME: Self = Self::Elementary(Elementary::Time);
+
+    /// A STRING of at most so many bytes.
+    pub const fn string(capacity: u16) -> Self {
+        Self::String(StringType::narrow(capacity))
+    }
+
+    /// A STRING or WSTRING.
+    pub const fn string_type(self) -> Option<StringType> {
+        match self {
+            Self::String(it) => Some(it),
+            Self::Elementary(_)
+            | Self::Subrange(..)
+            | Self::Enum(_)
+            | Self::Array(_)
+            | Self::Struct(_)
+            | Self::Block(_)
+            | Self::Reference(_) => None,
+        }
+    }
 
     /// The elementary type of its values: a subrange's is the type that it is made of.
     pub const fn elementary(self) -> Option<Elementary> {
@@ -208,7 +227,7 @@ pub enum Const {
     Zero,
     /// Of an elementary or enumeration type.
     Scalar(Value),
-    Text(Vec<u8>),
+    Text(Chars),
     /// Runs of equal elements: `[4(0), 1]`. The counts add up to the array's length.
     Array(Vec<(u64, Const)>),
     /// A value for every field of a structure, or for every pin of a standard block.

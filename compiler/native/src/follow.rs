@@ -7,7 +7,7 @@ use crate::signature::clif_type;
 use cranelift_codegen::ir::{self as clif, AbiParam, BlockArg, InstBuilder, MemFlagsData, condcodes::IntCC, types};
 use staunch_ir::layout::{Shape, usize_of};
 use staunch_ir::reference::{Followed, followed, view, wanted};
-use staunch_ir::{ArrayId, Expr, FaultKind, Location, Place, Projection, Type};
+use staunch_ir::{ArrayId, Expr, FaultKind, Location, Place, Projection, StringType, Type};
 use staunch_runtime::Repr;
 use staunch_runtime::reference::{ORIGIN, View, encode};
 
@@ -198,14 +198,15 @@ impl Function<'_, '_> {
     }
 
     /// A copy of the string behind a reference, in the frame.
-    pub(crate) fn load_reached_text(&mut self, it: Reached, capacity: u16) -> Address {
+    pub(crate) fn load_reached_text(&mut self, it: Reached, ty: StringType) -> Address {
         let shape = self.module.layout.shape(it.ty);
         let (space, out) = self.space(shape.size);
         let [words, state] = self.world();
-        let limit = self.integer(types::I16, i128::from(capacity));
+        let limit = self.integer(types::I16, i128::from(ty.capacity));
         let [reference, distance] = [it.reference, it.distance].map(|value| (AbiParam::new(types::I64), value));
         let arguments = [words, state, reference, distance, by_pointer(out), self.by_repr(Repr::U16, limit)];
-        self.checked("staunch_reference_load_text", &arguments, it.at);
+        let symbol = if ty.wide { "staunch_reference_load_wide_text" } else { "staunch_reference_load_text" };
+        self.checked(symbol, &arguments, it.at);
         space
     }
 
@@ -217,7 +218,9 @@ impl Function<'_, '_> {
         let [words, state] = self.world();
         let [reference, distance] = [it.reference, it.distance].map(|value| (AbiParam::new(types::I64), value));
         let arguments = [words, state, reference, distance, by_pointer(from)];
-        self.checked("staunch_reference_store_text", &arguments, it.at);
+        let wide = value.ty.string_type().is_some_and(|it| it.wide);
+        let symbol = if wide { "staunch_reference_store_wide_text" } else { "staunch_reference_store_text" };
+        self.checked(symbol, &arguments, it.at);
     }
 
     /// Where a variable behind a reference lies, to be handed on whole.

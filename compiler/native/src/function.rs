@@ -186,7 +186,7 @@ impl<'a, 'p> Function<'a, 'p> {
                     Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::Enum(_) => {
                         self.store(value, target)
                     }
-                    Type::String(capacity) => self.copy_text(value, target, capacity),
+                    Type::String(it) => self.copy_text(value, target, it),
                     Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
                         self.copy(Address::at(value), target, ty);
                     }

@@ -1,32 +1,32 @@
-//! Strings: pointers to a length and the bytes after it. What makes a new string writes it to
+//! Strings: pointers to a length and the units after it. What makes a new string writes it to
 //! the frame, so no result overlaps an operand.
 
 use crate::address::Address;
 use crate::function::Function;
 use crate::runtime_call::by_pointer;
 use cranelift_codegen::ir as clif;
-use staunch_ir::{Const, Expr, ExprKind, Repr, TextOp, Type};
+use staunch_ir::{Chars, Const, Expr, ExprKind, Repr, StringType, TextOp, Type};
 
-/// Up to this capacity a constant is kept as it is in memory, with the zeros after it.
-const WHOLE: u16 = 256;
+/// Up to this size a constant is kept as it is in memory, with the zeros after it.
+const WHOLE: u32 = 258;
 
-/// A string that can be read, and the capacity of the storage it is in.
+/// A string that can be read, and the type of the storage it is in.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Text {
     pub(crate) address: Address,
-    capacity: u16,
+    ty: StringType,
 }
 
 impl Function<'_, '_> {
     pub(crate) fn text(&mut self, expr: &Expr) -> Text {
         match &expr.kind {
-            ExprKind::Text(bytes) => self.text_constant(bytes),
+            ExprKind::Text(text) => self.text_constant(text),
             ExprKind::Load(place) if place.is_followed() => {
-                let capacity = capacity(place.ty);
+                let ty = string_type(place.ty);
                 let reached = self.reached(place).expect("a string behind a reference");
-                Text { address: self.load_reached_text(reached, capacity), capacity }
+                Text { address: self.load_reached_text(reached, ty), ty }
             }
-            ExprKind::Load(place) => Text { address: self.address(place), capacity: capacity(place.ty) },
+            ExprKind::Load(place) => Text { address: self.address(place), ty: string_type(place.ty) },
             ExprKind::ApplyText(op, operands) => self.text_operation(*op, operands, expr.ty),
             ExprKind::Convert(_, operand) => self.text_cut(operand, expr.ty),
             ExprKind::Const(_) | ExprKind::AddressOf(_) | ExprKind::Apply(..) | ExprKind::Aggregate(_) => {
@@ -41,30 +41,25 @@ impl Function<'_, '_> {
         self.pointer(text.address)
     }
 
-    fn text_constant(&mut self, bytes: &[u8]) -> Text {
-        let capacity = u16::try_from(bytes.len()).expect("verified IR: a string fits its type");
-        let mut data = vec![0; self.size_of_text(capacity)];
-        let value = Const::Text(bytes.to_vec());
-        let module = &self.module;
-        module.layout.write_const(module.program, Type::String(capacity), &value, &mut data);
-        Text { address: self.data(data), capacity }
-    }
-
-    fn size_of_text(&self, capacity: u16) -> usize {
-        staunch_ir::layout::usize_of(self.module.layout.size(Type::String(capacity)))
+    fn text_constant(&mut self, text: &Chars) -> Text {
+        let capacity = u16::try_from(text.len()).expect("verified IR: a string fits its type");
+        let ty = StringType { wide: text.is_wide(), capacity };
+        let mut data = vec![0; staunch_ir::layout::usize_of(ty.size().into())];
+        text.write(&mut data);
+        Text { address: self.data(data), ty }
     }
 
     fn text_operation(&mut self, op: TextOp, operands: &[Expr], ty: Type) -> Text {
         let mut arguments = self.text_arguments(op, operands);
-        let capacity = capacity(ty);
         let shape = self.module.layout.shape(ty);
+        let ty = string_type(ty);
         let address = self.temporary(shape);
         let out = self.pointer(address);
-        let limit = self.integer(clif::types::I16, i128::from(capacity));
+        let limit = self.integer(clif::types::I16, i128::from(ty.capacity));
         arguments.push(by_pointer(out));
         arguments.push(self.by_repr(Repr::U16, limit));
-        self.call_runtime(&symbol(op), &arguments, None);
-        Text { address, capacity }
+        self.call_runtime(&symbol(op, operands), &arguments, None);
+        Text { address, ty }
     }
 
     /// A string function with an elementary result.
@@ -72,7 +67,7 @@ impl Function<'_, '_> {
         let arguments = self.text_arguments(op, operands);
         let repr = op.result().expect("verified IR: a text operation with an elementary result");
         let result = self.c_param(repr);
-        let value = self.call_runtime(&symbol(op), &arguments, Some(result));
+        let value = self.call_runtime(&symbol(op, operands), &arguments, Some(result));
         value.expect("a function with a result")
     }
 
@@ -90,56 +85,47 @@ impl Function<'_, '_> {
     /// A conversion between capacities: only to a smaller one is there something to do.
     fn text_cut(&mut self, operand: &Expr, ty: Type) -> Text {
         let text = self.text(operand);
-        let capacity = capacity(ty);
-        if text.capacity <= capacity {
+        let shape = self.module.layout.shape(ty);
+        let ty = string_type(ty);
+        if text.ty.capacity <= ty.capacity {
             return text;
         }
-        let shape = self.module.layout.shape(ty);
         let address = self.temporary(shape);
         let from = self.pointer(text.address);
-        self.copy_text(from, address, capacity);
-        Text { address, capacity }
+        self.copy_text(from, address, ty);
+        Text { address, ty }
     }
 
     pub(crate) fn assign_text(&mut self, value: &Expr, target: Address) {
-        let ty = value.ty;
-        if let ExprKind::Text(bytes) = &value.kind
-            && capacity(ty) <= WHOLE
+        let ty = string_type(value.ty);
+        if let ExprKind::Text(text) = &value.kind
+            && ty.size() <= WHOLE
         {
-            return self.store_const(ty, &Const::Text(bytes.clone()), target);
+            return self.store_const(value.ty, &Const::Text(text.clone()), target);
         }
         let text = self.text(value);
-        if text.capacity == capacity(ty) {
-            return self.copy(text.address, target, ty);
+        if text.ty == ty {
+            return self.copy(text.address, target, value.ty);
         }
         let from = self.pointer(text.address);
-        self.copy_text(from, target, capacity(ty));
+        self.copy_text(from, target, ty);
     }
 
     /// Copies a string out of storage of any capacity.
-    pub(crate) fn copy_text(&mut self, from: clif::Value, to: Address, capacity: u16) {
+    pub(crate) fn copy_text(&mut self, from: clif::Value, to: Address, ty: StringType) {
         let out = self.pointer(to);
-        let limit = self.integer(clif::types::I16, i128::from(capacity));
+        let limit = self.integer(clif::types::I16, i128::from(ty.capacity));
         let arguments = [by_pointer(from), by_pointer(out), self.by_repr(Repr::U16, limit)];
-        self.call_runtime("staunch_text_copy", &arguments, None);
+        let symbol = if ty.wide { "staunch_wide_text_copy" } else { "staunch_text_copy" };
+        self.call_runtime(symbol, &arguments, None);
     }
 }
 
-fn symbol(op: TextOp) -> String {
-    format!("staunch_text_{}", op.function())
+fn symbol(op: TextOp, operands: &[Expr]) -> String {
+    let wide = if op.is_wide(operands) { "wide_" } else { "" };
+    format!("staunch_{wide}text_{}", op.function())
 }
 
-fn capacity(ty: Type) -> u16 {
-    match ty {
-        Type::String(capacity) => capacity,
-        Type::Elementary(_)
-        | Type::Reference(_)
-        | Type::Subrange(..)
-        | Type::Enum(_)
-        | Type::Array(_)
-        | Type::Struct(_)
-        | Type::Block(_) => {
-            unreachable!("verified IR: an expression of a string type")
-        }
-    }
+fn string_type(ty: Type) -> StringType {
+    ty.string_type().expect("verified IR: an expression of a string type")
 }

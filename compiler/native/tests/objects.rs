@@ -6,7 +6,7 @@ mod support;
 use cranelift_object::object::{File, Object, ObjectSection, ObjectSymbol};
 use staunch_ir::*;
 use staunch_native::{Target, object};
-use staunch_runtime::BLOCKS;
+use staunch_runtime::{BLOCKS, Kind};
 use std::collections::BTreeSet;
 use support::*;
 
@@ -14,7 +14,8 @@ use support::*;
 fn everything() -> Program {
     let reprs: Vec<_> = Repr::ALL.to_vec();
     let mut fields: Vec<_> = reprs.iter().map(|repr| zero("value", elementary(*repr))).collect();
-    fields.push(field("text", Type::String(80), Const::Text(b"start".to_vec())));
+    fields.push(field("text", Type::string(80), Const::Text(Chars::Narrow(b"start".to_vec()))));
+    fields.push(zero("wide", Type::String(StringType::wide(80))));
     fields.push(zero("values", Type::Array(ArrayId(0))));
     let first_block = fields.len();
     fields.extend((0..BLOCKS.len()).map(|at| zero("block", Type::Block(BlockId::next(at)))));
@@ -22,7 +23,8 @@ fn everything() -> Program {
         let at = reprs.iter().position(|it| *it == repr).unwrap();
         member(StructId(0), at, elementary(repr))
     };
-    let text = || member(StructId(0), reprs.len(), Type::String(80));
+    let text = || member(StructId(0), reprs.len(), Type::string(80));
+    let wide = || member(StructId(0), reprs.len() + 1, Type::String(StringType::wide(80)));
     let mut body = Vec::new();
     for op in Op::ALL {
         for repr in reprs.iter().copied().filter(|repr| op.allows(*repr)) {
@@ -38,15 +40,20 @@ fn everything() -> Program {
             body.push(convert(Conversion::Truncate));
         }
     }
-    for op in TextOp::ALL {
-        let operands = op.operands().iter().map(|repr| repr.map_or(load(text()), |repr| load(value(repr)))).collect();
-        let (ty, target) = match op.result() {
-            Some(repr) => (elementary(repr), value(repr)),
-            None => (Type::String(80), text()),
+    for (op, is_wide) in TextOp::ALL.iter().flat_map(|op| [(op, false), (op, true)]) {
+        let place = |kind: Kind| match kind {
+            Kind::String => text(),
+            Kind::Wstring => wide(),
+            Kind::AnyString if is_wide => wide(),
+            Kind::AnyString => text(),
+            Kind::T | Kind::Any(_) | Kind::Is(_) => value(kind.repr().unwrap()),
         };
-        body.push(assign(target, Expr::new(ty, ExprKind::ApplyText(*op, operands), AT)));
+        let signature = op.signature();
+        let operands = signature.parameters.iter().map(|it| load(place(it.kind))).collect();
+        let target = place(signature.result);
+        body.push(assign(target.clone(), Expr::new(target.ty, ExprKind::ApplyText(*op, operands), AT)));
     }
-    let values = || member(StructId(0), reprs.len() + 1, Type::Array(ArrayId(0)));
+    let values = || member(StructId(0), reprs.len() + 2, Type::Array(ArrayId(0)));
     body.push(assign(values(), load(values())));
     body.push(assign(values(), Expr::new(values().ty, ExprKind::Aggregate(Const::Zero), AT)));
     for number in 0..BLOCKS.len() {

@@ -7,7 +7,7 @@ mod support;
 use staunch_ir::interpret::{Interpreter, Stop};
 use staunch_ir::layout::{Layout, usize_of};
 use staunch_ir::*;
-use staunch_runtime::{BLOCKS, Context};
+use staunch_runtime::{BLOCKS, Context, Kind};
 use support::*;
 
 /// How many programs, and how many scans of each.
@@ -64,7 +64,8 @@ struct Maker {
 
 /// Of the one subrange; every integer type holds them.
 const LIMITS: (i128, i128) = (3, 100);
-const STRINGS: [Type; 3] = [Type::String(4), Type::String(9), Type::String(80)];
+const STRINGS: [StringType; 5] =
+    [StringType::narrow(4), StringType::narrow(9), StringType::narrow(80), StringType::wide(5), StringType::wide(30)];
 
 impl Maker {
     fn program(seed: u64) -> Program {
@@ -129,7 +130,7 @@ impl Maker {
 
     fn part(&mut self) -> Type {
         match self.random.below(12) {
-            0 => self.random.of(&STRINGS),
+            0 => Type::String(self.random.of(&STRINGS)),
             1 if self.random.one_in(2) => Type::Enum(EnumId(0)),
             1 => Type::Subrange(Elementary::Int, BoundsId(0)),
             2 if !self.arrays.is_empty() => Type::Array(ArrayId::next(self.random.below(self.arrays.len()))),
@@ -169,7 +170,7 @@ impl Maker {
             Type::Subrange(it, _) => it.repr().integer(LIMITS.0).map_or(Const::Zero, Const::Scalar),
             Type::Enum(_) => Const::Scalar(Value::I8(-3)),
             Type::Reference(_) => Const::Zero,
-            Type::String(capacity) => Const::Text(self.bytes(capacity)),
+            Type::String(it) => Const::Text(self.chars(it)),
             Type::Array(id) if self.random.one_in(2) => {
                 let array = self.arrays[id.index()];
                 let first = self.initial(array.element);
@@ -201,9 +202,20 @@ impl Maker {
         }
     }
 
-    fn bytes(&mut self, capacity: u16) -> Vec<u8> {
-        let len = self.random.below(usize::from(capacity.min(6)) + 1);
-        (0..len).map(|_| self.random.of(b"abcx")).collect()
+    fn chars(&mut self, ty: StringType) -> Chars {
+        let len = self.random.below(usize::from(ty.capacity.min(6)) + 1);
+        if ty.wide {
+            // Half of a surrogate pair, too.
+            Chars::Wide((0..len).map(|_| self.random.of(&[0x61, 0x78, 0x20AC, 0xD83D, 0xDE00])).collect())
+        } else {
+            Chars::Narrow((0..len).map(|_| self.random.of(b"abcx\xC3\xA9")).collect())
+        }
+    }
+
+    /// A type of strings of one kind.
+    fn string_type(&mut self, wide: bool) -> StringType {
+        let of_kind: Vec<_> = STRINGS.into_iter().filter(|it| it.wide == wide).collect();
+        self.random.of(&of_kind)
     }
 
     fn at(&mut self) -> Location {
@@ -385,7 +397,7 @@ impl Maker {
                 Expr::apply(Op::InRange, ty, vec![limit(it, LIMITS.0), value, limit(it, LIMITS.1)], AT)
             }
             Type::Enum(_) => Expr::new(ty, ExprKind::Const(Value::I8(-3)), AT),
-            Type::String(capacity) => self.text(capacity, depth),
+            Type::String(it) => self.text(it, depth),
             Type::Array(_) | Type::Struct(_) | Type::Block(_) => match self.place(depth, |it| it == ty) {
                 Some(place) => load(place),
                 None => Expr::new(ty, ExprKind::Aggregate(self.initial(ty)), AT),
@@ -393,28 +405,31 @@ impl Maker {
         }
     }
 
-    fn text(&mut self, capacity: u16, depth: usize) -> Expr {
-        let ty = Type::String(capacity);
+    fn text(&mut self, string: StringType, depth: usize) -> Expr {
+        let ty = Type::String(string);
         if depth == 0 || self.random.one_in(3) {
-            return Expr::new(ty, ExprKind::Text(self.bytes(capacity)), AT);
+            return Expr::new(ty, ExprKind::Text(self.chars(string)), AT);
         }
         if self.random.one_in(3) {
-            let from = self.random.of(&STRINGS);
+            let from = Type::String(self.string_type(string.wide));
             let value = self.expr(from, depth - 1);
             return Expr::convert(Conversion::Value, ty, value, AT);
         }
-        let texts: Vec<_> = TextOp::ALL.iter().copied().filter(|op| op.result().is_none()).collect();
+        let made = if string.wide { Kind::Wstring } else { Kind::String };
+        let makes = |op: &TextOp| [made, Kind::AnyString].contains(&op.signature().result);
+        let texts: Vec<_> = TextOp::ALL.iter().copied().filter(makes).collect();
         let op = self.random.of(&texts);
-        self.text_operation(op, ty, depth - 1)
+        self.text_operation(op, ty, string.wide, depth - 1)
     }
 
-    fn text_operation(&mut self, op: TextOp, ty: Type, depth: usize) -> Expr {
-        let operands = op.operands().iter().map(|repr| match repr {
-            Some(repr) => self.expr(elementary(*repr), depth),
-            None => {
-                let ty = self.random.of(&STRINGS);
+    fn text_operation(&mut self, op: TextOp, ty: Type, wide: bool, depth: usize) -> Expr {
+        let operands = op.signature().parameters.iter().map(|it| match it.kind {
+            Kind::String | Kind::Wstring | Kind::AnyString => {
+                let wide = if it.kind == Kind::AnyString { wide } else { it.kind == Kind::Wstring };
+                let ty = Type::String(self.string_type(wide));
                 self.expr(ty, depth)
             }
+            Kind::T | Kind::Any(_) | Kind::Is(_) => self.expr(elementary(it.kind.repr().unwrap()), depth),
         });
         let operands = operands.collect();
         Expr::new(ty, ExprKind::ApplyText(op, operands), AT)
@@ -426,7 +441,8 @@ impl Maker {
             0 => return self.conversion(ty, depth),
             1 if ty.repr() == Repr::I16 => {
                 let op = self.random.of(&[TextOp::Compare, TextOp::Len, TextOp::Find]);
-                return self.text_operation(op, result, depth);
+                let wide = self.random.one_in(2);
+                return self.text_operation(op, result, wide, depth);
             }
             _ => {}
         }
@@ -714,7 +730,10 @@ fn mark(program: &Program, layout: &Layout, ty: Type, offset: u64, counts: &mut 
             }
             return;
         }
-        Type::String(capacity) => return counts[usize_of(offset)..][..2 + usize::from(capacity)].fill(true),
+        Type::String(it) => {
+            let size = 2 + usize::from(it.capacity) * usize_of(it.unit_size().into());
+            return counts[usize_of(offset)..][..size].fill(true);
+        }
         Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::Enum(_) => {
             return counts[usize_of(offset)..][..usize_of(layout.size(ty))].fill(true);
         }

@@ -2,13 +2,14 @@
 
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
-use staunch_ir::{ArrayId, BlockId, Const, Elementary, EnumId, FieldId, Repr, StructId, Type, Value};
+use staunch_ir::{ArrayId, BlockId, Chars, Const, Elementary, EnumId, FieldId, Repr, StructId, Type, Value};
 
 use staunch_runtime::calendar::Day;
 
 use crate::emitter::Emitter;
 use crate::names;
 use crate::precedence::{Code, Level};
+use crate::string;
 
 /// Arrays up to this length are written out where their elements differ.
 const SHORT_ARRAY: u64 = 64;
@@ -21,8 +22,8 @@ impl Emitter<'_> {
             (Type::Elementary(it) | Type::Subrange(it, _), Const::Scalar(value)) => literal(it, *value, false),
             (Type::Enum(id), Const::Zero) => self.enum_value(id, self.program.enumeration(id).base.repr().zero()),
             (Type::Enum(id), Const::Scalar(value)) => self.enum_value(id, *value),
-            (Type::String(_), Const::Text(text)) => Code::postfix(text_new(text)),
-            (Type::String(_), Const::Zero) => Code::postfix(text_new(&[])),
+            (Type::String(_), Const::Text(text)) => Code::postfix(text_new(ty, text)),
+            (Type::String(it), Const::Zero) => Code::postfix(text_new(ty, &Chars::empty(it))),
             (Type::Reference(_), Const::Scalar(value)) => literal(Elementary::Lword, *value, false),
             (Type::Reference(_), _) => literal(Elementary::Lword, Value::U64(0), false),
             (Type::Array(id), _) => self.array(id, value),
@@ -217,9 +218,9 @@ fn same_bits(a: Value, b: Value) -> bool {
     }
 }
 
-fn text_new(text: &[u8]) -> TokenStream {
-    let bytes = Literal::byte_string(text);
-    quote!(Text::new(#bytes))
+fn text_new(ty: Type, text: &Chars) -> TokenStream {
+    let (head, units) = (string::head(ty), string::units(text));
+    quote!(#head::new(#units))
 }
 
 /// A literal as a person writes it; with its type's suffix where nothing else tells the type.
@@ -227,6 +228,10 @@ pub fn literal(ty: Elementary, value: Value, suffixed: bool) -> Code {
     let suffix = if suffixed { ty.repr().rust_name() } else { "" };
     match value {
         Value::Bool(it) => Code::postfix(quote!(#it)),
+        Value::U8(it) if ty == Elementary::Char && it.is_ascii() => {
+            let it = Literal::byte_character(it);
+            Code::postfix(quote!(#it))
+        }
         Value::I64(it) if ty.is_day() && Day::at(it).start() == Some(it) => date(it),
         Value::I64(it) if ty.is_time() => time(it, suffix),
         Value::F32(it) => float(f64::from(it), format!("{it:?}"), u64::from(it.to_bits()), "f32", suffix),

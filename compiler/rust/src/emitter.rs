@@ -10,6 +10,7 @@ use crate::alias::{Origin, element};
 use crate::constant::{number, rust_path};
 use crate::flash::Constants;
 use crate::names::{Names, ident};
+use crate::string;
 
 pub struct Emitter<'p> {
     pub program: &'p Program,
@@ -40,9 +41,9 @@ impl<'p> Emitter<'p> {
                 let repr = ident(it.repr().rust_name());
                 quote!(#repr)
             }
-            Type::String(capacity) => {
-                let capacity = number(u64::from(capacity));
-                quote!(Text<#capacity>)
+            Type::String(it) => {
+                let (head, capacity) = (string::head(ty), number(u64::from(it.capacity)));
+                quote!(#head<#capacity>)
             }
             Type::Enum(id) => {
                 let name = self.names.enumeration(id);

@@ -9,6 +9,7 @@ use crate::constant::{literal, plain};
 use crate::function::Function;
 use crate::names::ident;
 use crate::precedence::{Code, Level};
+use crate::string;
 use staunch_ir::faults;
 
 impl Function<'_> {
@@ -205,8 +206,8 @@ impl Function<'_> {
         match (ty, value.ty) {
             (Type::String(to), Type::String(from)) if to == from => self.expr(value),
             (Type::String(_), Type::String(_)) => {
-                let value = self.text_reference(value);
-                Code::postfix(quote!(Text::from_text(#value)))
+                let (head, value) = (string::head(ty), self.text_reference(value));
+                Code::postfix(quote!(#head::from_text(#value)))
             }
             (Type::Enum(to), Type::Enum(from)) if to == from => self.expr(value),
             (Type::Enum(id), _) => {

@@ -302,7 +302,7 @@ fn collect(tokens: TokenStream, found: &mut BTreeSet<String>) {
 
 /// These names are kept from users' types.
 fn is_type(name: &str) -> bool {
-    matches!(name, "Context" | "Fault" | "FaultKind" | "Text" | "Time")
+    matches!(name, "Context" | "Fault" | "FaultKind" | "Text" | "Time" | "WideText")
 }
 
 fn is_module(name: &str) -> bool {

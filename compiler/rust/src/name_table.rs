@@ -76,7 +76,7 @@ impl Emitter<'_> {
             }
             Type::Block(id) => named_pins(id, &at, rows),
             Type::Elementary(it) | Type::Subrange(it, _) => rows.push(at.row(it.name(), quote!(#place.into()))),
-            Type::String(capacity) => rows.push(at.row(&format!("STRING[{capacity}]"), quote!((&#place).into()))),
+            Type::String(it) => rows.push(at.row(&it.to_string(), quote!((&#place).into()))),
             Type::Enum(id) => rows.push(at.row(&self.program.enumeration(id).name, quote!(#place.0.into()))),
         }
     }

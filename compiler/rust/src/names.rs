@@ -36,6 +36,7 @@ const TYPES: &[&str] = &[
     "Some",
     "String",
     "Text",
+    "WideText",
     "Time",
     "ToString",
     "Vec",

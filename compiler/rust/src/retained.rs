@@ -147,9 +147,9 @@ impl Walk<'_> {
                 let (place, low, high) = (place.borrowed(), signed(low, "").tokens, signed(high, "").tokens);
                 quote!(carrier.within(#place, #low, #high);)
             }
-            Type::String(capacity) => {
-                let size = 2 + u64::from(capacity);
-                self.value(place, path, &format!("STRING[{capacity}]"), size)
+            Type::String(it) => {
+                let size = 2 + u64::from(it.capacity) * u64::from(it.unit_size());
+                self.value(place, path, &it.to_string(), size)
             }
             Type::Enum(id) => {
                 let (ty, size) = (self.enumeration(id), self.emitter.program.enumeration(id).base.repr().size());

@@ -12,6 +12,7 @@ use crate::emitter::Emitter;
 use crate::function::Function;
 use crate::names::ident;
 use crate::precedence::Code;
+use crate::string;
 
 impl Emitter<'_> {
     /// The whole state, and the table of the objects in it.
@@ -47,7 +48,7 @@ impl Emitter<'_> {
     fn seen_as(&self, ty: Type) -> TokenStream {
         match view(self.program, ty) {
             View::Truth => quote!(reference::View::Truth),
-            View::Text => quote!(reference::View::Text),
+            View::Text { wide } => quote!(reference::View::Text { wide: #wide }),
             View::Number(size) => {
                 let size = number(size.into());
                 quote!(reference::View::Number(#size))
@@ -65,9 +66,9 @@ impl Emitter<'_> {
                 let repr = format_ident!("{repr:?}");
                 quote!(reference::Wanted::Repr(reference::Repr::#repr))
             }
-            Wanted::Text(capacity) => {
-                let capacity = number(capacity.into());
-                quote!(reference::Wanted::Text(#capacity))
+            Wanted::Text(it) => {
+                let (kind, capacity) = (ident(if it.wide { "wide" } else { "narrow" }), number(it.capacity.into()));
+                quote!(reference::Wanted::Text(text::StringType::#kind(#capacity)))
             }
             Wanted::Exact(id) => {
                 let id = number(id.into());
@@ -136,10 +137,11 @@ impl Function<'_> {
         let program = self.emitter.program;
         let it = followed(program, place).filter(|it| it.pin.is_none())?;
         let at = self.emitter.at(it.at);
-        if let Type::String(capacity) = place.ty {
+        if let Type::String(ty) = place.ty {
             let (reference, distance) = self.way(&it);
-            let capacity = number(capacity.into());
-            return Some(Code::postfix(quote!(REFERENCES.string::<#capacity>(machine, #reference, #distance) #at?)));
+            let (string, capacity) =
+                (ident(if ty.wide { "wide_string" } else { "string" }), number(ty.capacity.into()));
+            return Some(Code::postfix(quote!(REFERENCES.#string::<#capacity>(machine, #reference, #distance) #at?)));
         }
         let repr = ident(program.repr(place.ty)?.rust_name());
         let ((reference, distance), view) = (self.way(&it), self.emitter.seen_as(place.ty));
@@ -160,12 +162,12 @@ impl Function<'_> {
         let at = self.emitter.at(it.at);
         if matches!(place.ty, Type::String(_)) {
             let (reference, distance) = self.way(&it);
-            let ty = self.emitter.ty(place.ty);
+            let (ty, as_units) = (self.emitter.ty(place.ty), string::as_units(place.ty));
             return Some(quote! {
                 {
                     let (reference, distance) = (#reference, #distance);
                     let value: #ty = #value;
-                    REFERENCES.store_text(machine, reference, distance, value.as_bytes()) #at?;
+                    REFERENCES.store_text(machine, reference, distance, value.#as_units()) #at?;
                 }
             });
         }

@@ -1,11 +1,12 @@
 //! Expressions on character strings.
 
-use proc_macro2::TokenStream;
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
-use staunch_ir::{Expr, ExprKind, TextOp, Type};
+use staunch_ir::{Chars, Expr, ExprKind, StringType, TextOp, Type};
 
 use crate::constant::number;
 use crate::function::Function;
+use crate::item::readable;
 use crate::names::ident;
 use crate::precedence::{Code, Level};
 use staunch_ir::faults;
@@ -46,8 +47,8 @@ impl Function<'_> {
                 Code::postfix(quote!(#ty::from_text(#inner)))
             }
             ExprKind::Text(text) => {
-                let text = proc_macro2::Literal::byte_string(text);
-                Code::postfix(quote!(#ty::new(#text)))
+                let units = units(text);
+                Code::postfix(quote!(#ty::new(#units)))
             }
             ExprKind::Const(_)
             | ExprKind::Aggregate(_)
@@ -58,20 +59,18 @@ impl Function<'_> {
         }
     }
 
-    /// A string as a byte slice.
-    fn bytes(&self, value: &Expr) -> TokenStream {
+    /// A string as a slice of its units.
+    fn units(&self, value: &Expr) -> TokenStream {
+        let as_units = as_units(value.ty);
         match &value.kind {
-            ExprKind::Text(text) => {
-                let text = proc_macro2::Literal::byte_string(text);
-                quote!(#text)
-            }
+            ExprKind::Text(text) => units(text),
             ExprKind::Load(place) if self.emitter.shared => {
                 let value = self.load(place).at_least(Level::Postfix);
-                quote!(#value.as_bytes())
+                quote!(#value.#as_units())
             }
             ExprKind::Load(place) => {
                 let place = self.place(place);
-                quote!(#place.as_bytes())
+                quote!(#place.#as_units())
             }
             ExprKind::Const(_)
             | ExprKind::Aggregate(_)
@@ -80,7 +79,7 @@ impl Function<'_> {
             | ExprKind::ApplyText(..)
             | ExprKind::Convert(..) => {
                 let value = self.typed_text(value).at_least(Level::Postfix);
-                quote!(#value.as_bytes())
+                quote!(#value.#as_units())
             }
         }
     }
@@ -88,7 +87,7 @@ impl Function<'_> {
     pub fn apply_text(&self, expr: &Expr, op: TextOp, operands: &[Expr], typed: bool) -> Code {
         let function = ident(op.function());
         let print = |it: &Expr| match it.ty {
-            Type::String(_) => self.bytes(it),
+            Type::String(_) => self.units(it),
             Type::Elementary(_)
             | Type::Reference(_)
             | Type::Subrange(..)
@@ -110,17 +109,18 @@ impl Function<'_> {
                 continue;
             }
             let name = self.made_up("operand", before.len());
+            let as_units = as_units(operand.ty);
             before.push(match &operand.kind {
-                // A made string must outlive its bytes.
+                // A made string must outlive its units.
                 ExprKind::ApplyText(..) | ExprKind::Convert(..) if matches!(operand.ty, Type::String(_)) => {
                     let value = self.typed_text(operand).tokens;
-                    arguments.push(quote!(#name.as_bytes()));
+                    arguments.push(quote!(#name.#as_units()));
                     quote!(let #name = #value;)
                 }
                 // What lies in a cell is copied out.
                 ExprKind::Load(_) if self.emitter.shared && matches!(operand.ty, Type::String(_)) => {
                     let value = self.expr(operand).tokens;
-                    arguments.push(quote!(#name.as_bytes()));
+                    arguments.push(quote!(#name.#as_units()));
                     quote!(let #name = #value;)
                 }
                 _ => {
@@ -130,7 +130,7 @@ impl Function<'_> {
                 }
             });
         }
-        let head = if typed { typed_head(expr.ty) } else { quote!(Text) };
+        let head = if typed { typed_head(expr.ty) } else { head(expr.ty) };
         let build = quote!(#head::build(|out| text::#function(#(#arguments,)* out)));
         if before.is_empty() {
             return Code::postfix(build);
@@ -141,7 +141,40 @@ impl Function<'_> {
 
 /// `Text::<80>`.
 fn typed_head(ty: Type) -> TokenStream {
-    let Type::String(capacity) = ty else { unreachable!("verified IR: a string has a string's type") };
-    let capacity = number(u64::from(capacity));
-    quote!(Text::<#capacity>)
+    let (head, capacity) = (head(ty), number(u64::from(string_type(ty).capacity)));
+    quote!(#head::<#capacity>)
+}
+
+/// `Text`, or `WideText`.
+pub fn head(ty: Type) -> TokenStream {
+    if string_type(ty).wide { quote!(WideText) } else { quote!(Text) }
+}
+
+/// The method of a string that shows its units.
+pub fn as_units(ty: Type) -> Ident {
+    let wide = ty.string_type().is_some_and(|it| it.wide);
+    ident(if wide { "as_units" } else { "as_bytes" })
+}
+
+/// A constant as a slice: `b"abc"`, `&text::utf16!("abc")`.
+pub fn units(text: &Chars) -> TokenStream {
+    match text {
+        Chars::Narrow(bytes) => {
+            let bytes = Literal::byte_string(bytes);
+            quote!(#bytes)
+        }
+        Chars::Wide(units) if units.is_empty() => quote!(&[]),
+        Chars::Wide(units) => match String::from_utf16(units) {
+            // What turns the direction of writing is refused by rustc.
+            Ok(text) if readable(&text) == text => quote!(&text::utf16!(#text)),
+            Ok(_) | Err(_) => {
+                let units = units.iter().map(|it| Literal::u16_unsuffixed(*it));
+                quote!(&[#(#units),*])
+            }
+        },
+    }
+}
+
+fn string_type(ty: Type) -> StringType {
+    ty.string_type().expect("verified IR: a string has a string's type")
 }

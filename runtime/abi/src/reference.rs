@@ -6,11 +6,9 @@
 use core::cell::Cell;
 use core::slice;
 
+use crate::text::{destination, units};
+use staunch_runtime::FaultKind;
 use staunch_runtime::reference::{Table, View, Wanted};
-use staunch_runtime::{FaultKind, text};
-
-/// Offset of the first byte of a string from its header.
-const BYTES: usize = size_of::<u16>();
 
 /// # Safety
 /// `words` points to a table that lives as long as the program.
@@ -82,49 +80,52 @@ unsafe extern "C" fn staunch_reference_store(
     code(table.store_bytes(memory, reference, distance, View::from_code(view), value))
 }
 
-/// Reads a string to the one at `out`.
-///
-/// # Safety
-/// As [`table`] and [`memory`] say; `out` is a string of `capacity` bytes, and no part of the state.
-#[unsafe(no_mangle)]
-unsafe extern "C" fn staunch_reference_load_text(
-    words: *const u32,
-    state: *mut u8,
-    reference: u64,
-    distance: u64,
-    out: *mut u8,
-    capacity: u16,
-) -> u8 {
-    // SAFETY: the caller's promise; the length and the bytes do not overlap.
-    let (table, mut out) = unsafe {
-        let bytes = slice::from_raw_parts_mut(out.add(BYTES), usize::from(capacity));
-        (table(words), text::Destination::new(&mut *out.cast::<u16>(), bytes))
-    };
-    // SAFETY: the caller's promise.
-    let memory = unsafe { memory(&table, state) };
-    code(table.load_text(memory, reference, distance, &mut out))
+macro_rules! texts {
+    ($($unit:ident $load:ident $store:ident;)*) => { $(
+        /// Reads a string to the one at `out`.
+        ///
+        /// # Safety
+        /// As [`table`] and [`memory`] say; `out` is a string of `capacity` units, and no part of the state.
+        #[unsafe(no_mangle)]
+        unsafe extern "C" fn $load(
+            words: *const u32,
+            state: *mut u8,
+            reference: u64,
+            distance: u64,
+            out: *mut u8,
+            capacity: u16,
+        ) -> u8 {
+            // SAFETY: the caller's promise.
+            let (table, mut out) = unsafe { (table(words), destination::<$unit>(out, capacity)) };
+            // SAFETY: the caller's promise.
+            let memory = unsafe { memory(&table, state) };
+            code(table.load_text(memory, reference, distance, &mut out))
+        }
+
+        /// Writes the string at `value`.
+        ///
+        /// # Safety
+        /// As [`table`] and [`memory`] say; `value` is a string, and no part of the state.
+        #[unsafe(no_mangle)]
+        unsafe extern "C" fn $store(
+            words: *const u32,
+            state: *mut u8,
+            reference: u64,
+            distance: u64,
+            value: *const u8,
+        ) -> u8 {
+            // SAFETY: the caller's promise.
+            let (table, value) = unsafe { (table(words), units::<$unit>(value)) };
+            // SAFETY: the caller's promise.
+            let memory = unsafe { memory(&table, state) };
+            code(table.store_text(memory, reference, distance, value))
+        }
+    )* };
 }
 
-/// Writes the string at `value`.
-///
-/// # Safety
-/// As [`table`] and [`memory`] say; `value` is a string, and no part of the state.
-#[unsafe(no_mangle)]
-unsafe extern "C" fn staunch_reference_store_text(
-    words: *const u32,
-    state: *mut u8,
-    reference: u64,
-    distance: u64,
-    value: *const u8,
-) -> u8 {
-    // SAFETY: the caller's promise; a string starts with its length, and has that many bytes behind it.
-    let (table, value) = unsafe {
-        let length = usize::from(value.cast::<u16>().read());
-        (table(words), slice::from_raw_parts(value.add(BYTES), length))
-    };
-    // SAFETY: the caller's promise.
-    let memory = unsafe { memory(&table, state) };
-    code(table.store_text(memory, reference, distance, value))
+texts! {
+    u8 staunch_reference_load_text staunch_reference_store_text;
+    u16 staunch_reference_load_wide_text staunch_reference_store_wide_text;
 }
 
 /// Writes to `out` the offset in the state of a variable of the wanted type.
@@ -153,5 +154,7 @@ pub(crate) fn for_each_symbol(each: &mut dyn FnMut(&'static str, *const u8)) {
     each("staunch_reference_store", staunch_reference_store as *const u8);
     each("staunch_reference_load_text", staunch_reference_load_text as *const u8);
     each("staunch_reference_store_text", staunch_reference_store_text as *const u8);
+    each("staunch_reference_load_wide_text", staunch_reference_load_wide_text as *const u8);
+    each("staunch_reference_store_wide_text", staunch_reference_store_wide_text as *const u8);
     each("staunch_reference_find", staunch_reference_find as *const u8);
 }

@@ -1,96 +1,150 @@
 //! A shim for each string function.
 //!
-//! A result is cut at the capacity it is given; the bytes past its length become zero.
+//! A result is cut at the capacity it is given; the units past its length become zero. A function that exists for both
+//! kinds of strings has two shims.
 
 use core::slice;
 
+use staunch_runtime::text::Unit;
 use staunch_runtime::{carried, for_each_text_op, text};
 
-/// Offset of the first byte of a string from its header.
-const BYTES: usize = size_of::<u16>();
+/// Offset of the first character of a string from its header.
+const UNITS: usize = size_of::<u16>();
 
-/// The bytes of the string at `header`.
+/// The units of the string at `header`.
 ///
 /// # Safety
-/// `header` points to a string, aligned for its length, that nobody writes to during `'a`.
-unsafe fn bytes<'a>(header: *const u8) -> &'a [u8] {
-    // SAFETY: a string starts with its length, and has that many bytes after it.
-    unsafe { slice::from_raw_parts(header.add(BYTES), usize::from(header.cast::<u16>().read())) }
+/// `header` points to a string of these units, aligned for its length, that nobody writes to during `'a`.
+pub(crate) unsafe fn units<'a, U: Unit>(header: *const u8) -> &'a [U] {
+    // SAFETY: a string starts with its length, and has that many units after it; the length's alignment
+    // is theirs.
+    unsafe { slice::from_raw_parts(header.add(UNITS).cast::<U>(), usize::from(header.cast::<u16>().read())) }
 }
 
 /// The string at `header` as a destination, emptied.
 ///
 /// # Safety
-/// `header` points to a string of `capacity` bytes, aligned for its length, that nobody else
+/// `header` points to a string of `capacity` units, aligned for its length, that nobody else
 /// reads or writes during `'a`.
-unsafe fn destination<'a>(header: *mut u8, capacity: u16) -> text::Destination<'a> {
-    // SAFETY: the length and the bytes do not overlap; the rest is the caller's promise.
+pub(crate) unsafe fn destination<'a, U: Unit>(header: *mut u8, capacity: u16) -> text::Destination<'a, U> {
+    // SAFETY: the length and the units do not overlap; the rest is the caller's promise.
     unsafe {
         text::Destination::new(
             &mut *header.cast::<u16>(),
-            slice::from_raw_parts_mut(header.add(BYTES), usize::from(capacity)),
+            slice::from_raw_parts_mut(header.add(UNITS).cast::<U>(), usize::from(capacity)),
         )
     }
 }
 
-/// Assigns a string, cut at the capacity of the target; both may be the same variable.
+/// Assigns a STRING, cut at the capacity of the target; both may be the same variable.
 ///
 /// # Safety
 /// Both point to strings, aligned for their lengths; `out` has `capacity` bytes, and the strings
 /// are one or do not overlap.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn staunch_text_copy(from: *const u8, out: *mut u8, capacity: u16) {
+    // SAFETY: the caller's promise.
+    unsafe { copy::<u8>(from, out, capacity) }
+}
+
+/// The same for a WSTRING.
+///
+/// # Safety
+/// As [`staunch_text_copy`], of `capacity` units.
+#[unsafe(no_mangle)]
+unsafe extern "C" fn staunch_wide_text_copy(from: *const u8, out: *mut u8, capacity: u16) {
+    // SAFETY: the caller's promise.
+    unsafe { copy::<u16>(from, out, capacity) }
+}
+
+/// # Safety
+/// As [`staunch_text_copy`].
+unsafe fn copy<U: Unit>(from: *const u8, out: *mut u8, capacity: u16) {
     if !core::ptr::eq(from, out) {
         // SAFETY: the caller's promise, and they are not one.
-        unsafe { destination(out, capacity).write(bytes(from)) };
+        unsafe { destination::<U>(out, capacity).write(units(from)) };
     }
 }
 
 macro_rules! shims {
-    ($($op:ident $source:literal $function:ident ($($arg:ident: $ty:ident),*) -> $result:ident $($extensible:ident)?;)*) => {
+    ($($op:ident $source:literal $function:ident ($($arg:ident: $ty:ident),*) -> $result:ident [$units:ident] $($extensible:ident)?;)*) => {
         #[allow(non_snake_case, reason = "operands have the standard's names")]
+        #[allow(unused_unsafe, reason = "a function of characters alone follows no pointer")]
         pub(crate) fn for_each_symbol(each: &mut dyn FnMut(&'static str, *const u8)) {
             each("staunch_text_copy", staunch_text_copy as *const u8);
-            $(shim!($result each $function ($($arg: $ty),*));)*
+            each("staunch_wide_text_copy", staunch_wide_text_copy as *const u8);
+            $(shims!(@ $units $result each $function ($($arg: $ty),*));)*
         }
+    };
+    (@ each $result:ident $each:ident $function:ident ($($arg:ident: $ty:ident),*)) => {
+        shim!($result u8 "staunch_text_" $each $function ($($arg: $ty),*));
+        shim!($result u16 "staunch_wide_text_" $each $function ($($arg: $ty),*));
+    };
+    (@ one $result:ident $each:ident $function:ident ($($arg:ident: $ty:ident),*)) => {
+        shim!($result u8 "staunch_text_" $each $function ($($arg: $ty),*));
     };
 }
 
 macro_rules! shim {
-    (STRING $each:ident $function:ident ($($arg:ident: $ty:ident),*)) => {{
+    ($result:ident $unit:ident $prefix:literal $each:ident $function:ident ($($arg:ident: $ty:ident),*)) => {
+        string_result!($result $unit [$prefix $each $function ($($arg: $ty),*)])
+    };
+}
+
+/// What writes a string, of which units, and what returns a value.
+macro_rules! string_result {
+    (ANY_STRING $unit:ident $rest:tt) => { shim_of_string!($unit $unit $rest) };
+    (STRING $unit:ident $rest:tt) => { shim_of_string!($unit u8 $rest) };
+    (WSTRING $unit:ident $rest:tt) => { shim_of_string!($unit u16 $rest) };
+    ($result:ident $unit:ident $rest:tt) => { shim_of_value!($unit $result $rest) };
+}
+
+macro_rules! shim_of_string {
+    ($unit:ident $out:ident [$prefix:literal $each:ident $function:ident ($($arg:ident: $ty:ident),*)]) => {{
         /// # Safety
-        /// Operands point to strings, `out` to a string of `capacity` bytes that is none of them.
+        /// Operands point to strings, `out` to a string of `capacity` units that is none of them.
         // SAFETY (the symbol): the prefix belongs to this module, and a function has one row.
-        #[unsafe(export_name = concat!("staunch_text_", stringify!($function)))]
+        #[unsafe(export_name = concat!($prefix, stringify!($function)))]
         unsafe extern "C" fn shim($($arg: operand_type!($ty),)* out: *mut u8, capacity: u16) {
             // SAFETY: the caller's promise.
-            unsafe { text::$function($(operand!($ty $arg),)* &mut destination(out, capacity)) }
+            unsafe { text::$function($(operand!($ty $unit $arg),)* &mut destination::<$out>(out, capacity)) }
         }
-        $each(concat!("staunch_text_", stringify!($function)), shim as *const u8);
+        $each(concat!($prefix, stringify!($function)), shim as *const u8);
     }};
-    ($result:ident $each:ident $function:ident ($($arg:ident: $ty:ident),*)) => {{
+}
+
+macro_rules! shim_of_value {
+    ($unit:ident $result:ident [$prefix:literal $each:ident $function:ident ($($arg:ident: $ty:ident),*)]) => {{
         /// # Safety
         /// Operands point to strings.
         // SAFETY (the symbol): as for the functions with a string result.
-        #[unsafe(export_name = concat!("staunch_text_", stringify!($function)))]
+        #[unsafe(export_name = concat!($prefix, stringify!($function)))]
         unsafe extern "C" fn shim($($arg: operand_type!($ty)),*) -> carried!($result) {
             // SAFETY: the caller's promise.
-            unsafe { text::$function($(operand!($ty $arg)),*) }
+            unsafe { text::$function($(operand!($ty $unit $arg)),*) }
         }
-        $each(concat!("staunch_text_", stringify!($function)), shim as *const u8);
+        $each(concat!($prefix, stringify!($function)), shim as *const u8);
     }};
 }
 
 macro_rules! operand_type {
+    (ANY_STRING) => { *const u8 };
     (STRING) => { *const u8 };
+    (WSTRING) => { *const u8 };
     ($ty:ident) => { carried!($ty) };
 }
 
 macro_rules! operand {
-    (STRING $arg:ident) => {
-        bytes($arg)
+    (ANY_STRING $unit:ident $arg:ident) => {
+        units::<$unit>($arg)
     };
-    ($ty:ident $arg:ident) => {
+    (STRING $unit:ident $arg:ident) => {
+        units::<u8>($arg)
+    };
+    (WSTRING $unit:ident $arg:ident) => {
+        units::<u16>($arg)
+    };
+    ($ty:ident $unit:ident $arg:ident) => {
         $arg
     };
 }

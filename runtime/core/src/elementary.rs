@@ -67,6 +67,10 @@ elementary! {
     /// Nanoseconds since 1970-01-01; as LDT.
     Dt      DT      i64   I64   Date;
     Ldt     LDT     i64   I64   Date;
+    /// A character by its number: a byte, as a STRING has them.
+    Char    CHAR    u8    U8    Char;
+    /// A UTF-16 code unit, as a WSTRING has them.
+    Wchar   WCHAR   u16   U16   Char;
 }
 
 /// The types' long names.
@@ -123,6 +127,7 @@ classes! {
     Bit         "ANY_BIT"         Elementary;
     Chars       "ANY_CHARS"       Elementary;
     String      "ANY_STRING"      Chars;
+    Char        "ANY_CHAR"        Chars;
 }
 
 impl Class {
@@ -217,6 +222,11 @@ impl Elementary {
 
     pub const fn is_integer(self) -> bool {
         self.is(Class::Int)
+    }
+
+    /// CHAR or WCHAR.
+    pub const fn is_char(self) -> bool {
+        self.is(Class::Char)
     }
 
     pub const fn is_real(self) -> bool {

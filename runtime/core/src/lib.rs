@@ -49,7 +49,7 @@ pub use fault::{Fault, FaultKind, FaultOf, Location, OrFault, Outcome};
 pub use reference::Reference;
 pub use repr::{Repr, Scalar, Value};
 pub use signature::{Kind, Parameter, Signature};
-pub use text::Text;
+pub use text::{StringType, Text, WideText};
 pub use time::Time;
 pub use turns::Turns;
 

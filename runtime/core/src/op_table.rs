@@ -108,36 +108,66 @@ macro_rules! with_repr {
     };
 }
 
-/// Every function on character strings, one row each, as in [`for_each_op!`]. A STRING operand is a
-/// byte slice; a STRING result is written to a destination that cuts it at its capacity.
+/// Every function on character strings, one row each, as in [`for_each_op!`]. A string operand is a
+/// slice of units; a string result is written to a destination that cuts it at its capacity. In
+/// brackets is for which strings the function exists: `each` for STRINGs and for WSTRINGs, where
+/// ANY_STRING is the one of all operands and the result; `one` as the row says.
 #[macro_export]
 macro_rules! for_each_text_op {
     ($expand:ident) => {
         $expand! {
             // IR name   source      function   parameters                                            result
-            Compare      "_COMPARE"  compare    (IN1: STRING, IN2: STRING) -> INT;
-            Len          "LEN"       len        (IN: STRING) -> INT;
-            Find         "FIND"      find       (IN1: STRING, IN2: STRING) -> INT;
-            Left         "LEFT"      left       (IN: STRING, L: ANY_INT) -> STRING;
-            Right        "RIGHT"     right      (IN: STRING, L: ANY_INT) -> STRING;
-            Mid          "MID"       mid        (IN: STRING, L: ANY_INT, P: ANY_INT) -> STRING;
-            Concat       "CONCAT"    concat     (IN1: STRING, IN2: STRING) -> STRING extensible;
-            Insert       "INSERT"    insert     (IN1: STRING, IN2: STRING, P: ANY_INT) -> STRING;
-            Delete       "DELETE"    delete     (IN: STRING, L: ANY_INT, P: ANY_INT) -> STRING;
-            Replace      "REPLACE"   replace    (IN1: STRING, IN2: STRING, L: ANY_INT, P: ANY_INT) -> STRING;
+            Compare      "_COMPARE"  compare    (IN1: ANY_STRING, IN2: ANY_STRING) -> INT [each];
+            Len          "LEN"       len        (IN: ANY_STRING) -> INT [each];
+            Find         "FIND"      find       (IN1: ANY_STRING, IN2: ANY_STRING) -> INT [each];
+            Left         "LEFT"      left       (IN: ANY_STRING, L: ANY_INT) -> ANY_STRING [each];
+            Right        "RIGHT"     right      (IN: ANY_STRING, L: ANY_INT) -> ANY_STRING [each];
+            Mid          "MID"       mid        (IN: ANY_STRING, L: ANY_INT, P: ANY_INT) -> ANY_STRING [each];
+            Concat       "CONCAT"    concat     (IN1: ANY_STRING, IN2: ANY_STRING) -> ANY_STRING [each] extensible;
+            Insert       "INSERT"    insert     (IN1: ANY_STRING, IN2: ANY_STRING, P: ANY_INT) -> ANY_STRING [each];
+            Delete       "DELETE"    delete     (IN: ANY_STRING, L: ANY_INT, P: ANY_INT) -> ANY_STRING [each];
+            Replace      "REPLACE"   replace    (IN1: ANY_STRING, IN2: ANY_STRING, L: ANY_INT, P: ANY_INT) -> ANY_STRING [each];
             // Text of values, and values of text.
-            FromBool     "_FROM_BOOL"  from_bool  (IN: BOOL) -> STRING;
-            FromLint     "_FROM_LINT"  from_lint  (IN: LINT) -> STRING;
-            FromUlint    "_FROM_ULINT" from_ulint (IN: ULINT) -> STRING;
-            FromReal     "_FROM_REAL"  from_real  (IN: REAL) -> STRING;
-            FromLreal    "_FROM_LREAL" from_lreal (IN: LREAL) -> STRING;
-            FromTime     "_FROM_TIME"  from_time  (IN: LINT, KIND: LINT) -> STRING;
-            ToBool       "_TO_BOOL"    to_bool    (IN: STRING) -> BOOL;
-            ToLint       "_TO_LINT"    to_lint    (IN: STRING) -> LINT;
-            ToUlint      "_TO_ULINT"   to_ulint   (IN: STRING) -> ULINT;
-            ToReal       "_TO_REAL"    to_real    (IN: STRING) -> REAL;
-            ToLreal      "_TO_LREAL"   to_lreal   (IN: STRING) -> LREAL;
-            ToTime       "_TO_TIME"    to_time    (IN: STRING, KIND: LINT) -> LINT;
+            FromBool     "_FROM_BOOL"  from_bool  (IN: BOOL) -> STRING [one];
+            FromLint     "_FROM_LINT"  from_lint  (IN: LINT) -> STRING [one];
+            FromUlint    "_FROM_ULINT" from_ulint (IN: ULINT) -> STRING [one];
+            FromReal     "_FROM_REAL"  from_real  (IN: REAL) -> STRING [one];
+            FromLreal    "_FROM_LREAL" from_lreal (IN: LREAL) -> STRING [one];
+            FromTime     "_FROM_TIME"  from_time  (IN: LINT, KIND: LINT) -> STRING [one];
+            ToBool       "_TO_BOOL"    to_bool    (IN: STRING) -> BOOL [one];
+            ToLint       "_TO_LINT"    to_lint    (IN: STRING) -> LINT [one];
+            ToUlint      "_TO_ULINT"   to_ulint   (IN: STRING) -> ULINT [one];
+            ToReal       "_TO_REAL"    to_real    (IN: STRING) -> REAL [one];
+            ToLreal      "_TO_LREAL"   to_lreal   (IN: STRING) -> LREAL [one];
+            ToTime       "_TO_TIME"    to_time    (IN: STRING, KIND: LINT) -> LINT [one];
+            // Between STRING and WSTRING.
+            Widen        "_WIDEN"      widen      (IN: STRING) -> WSTRING [one];
+            Narrow       "_NARROW"     narrow     (IN: WSTRING) -> STRING [one];
+            // Characters and strings of one of them.
+            FromChar     "_FROM_CHAR"  from_char  (IN: CHAR) -> STRING [one];
+            FromWchar    "_FROM_WCHAR" from_wchar (IN: WCHAR) -> WSTRING [one];
+            ToChar       "_TO_CHAR"    to_char    (IN: STRING) -> CHAR [one];
+            ToWchar      "_TO_WCHAR"   to_wchar   (IN: WSTRING) -> WCHAR [one];
+            NarrowChar   "_NARROW_CHAR" narrow_char (IN: WCHAR) -> CHAR [one];
         }
+    };
+}
+
+/// Runs `$body` with `type $U` set to the unit of a row's strings: of each kind as `$wide` says; where a row is
+/// of `one`, it names its own.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! with_unit {
+    (each $wide:expr, $U:ident => $body:expr) => {
+        if $wide {
+            type $U = u16;
+            $body
+        } else {
+            type $U = u8;
+            $body
+        }
+    };
+    (one $wide:expr, $U:ident => $body:expr) => {
+        $body
     };
 }

@@ -19,7 +19,8 @@ pub use memory::{Memory, Raw, Shared, find, inside, offset, this};
 pub use table::{Part, Table, View, Wanted, encode};
 
 pub use crate::Repr;
-use crate::{FaultKind, Scalar, Text, Value};
+use crate::text::Unit;
+use crate::{FaultKind, Scalar, StringType, Text, Value, WideText};
 
 /// What a variable of a reference type holds: the object's number, from 1, in the low bits of the upper half, and
 /// the address in the lower. 0 is null. The bits above the object's number are [`CLASS`]: they say which class
@@ -104,8 +105,10 @@ impl<'t> Table<'t> {
                     }
                 }
             }
-            Part::Characters { text, capacity, index } => {
-                out.iter_mut().for_each(|it| *it = character(memory, text, capacity, index));
+            Part::Characters { text, ty, index } => {
+                for (at, byte) in (index..).zip(out) {
+                    *byte = character_byte(memory, text, ty, at);
+                }
             }
         }
         Ok(())
@@ -155,54 +158,68 @@ impl<'t> Table<'t> {
                     memory.write(at, byte);
                 }
             }
-            Part::Characters { text, capacity, index } => set_character(memory, text, capacity, index, first)?,
+            Part::Characters { text, ty, index } if ty.wide => {
+                // The other byte of the character stays.
+                let before = [0, 1].map(|at| character_byte(memory, text, ty, index / 2 * 2 + at));
+                let mut unit = before;
+                for (to, from) in unit.iter_mut().skip(index % 2).zip(bytes) {
+                    *to = *from;
+                }
+                // A zero byte of a character to come does not end the string: bytes may be copied downward.
+                if bytes.len() == 2 || unit != before {
+                    set_character(memory, text, ty.capacity, index / 2, u16::from_ne_bytes(unit))?;
+                }
+            }
+            Part::Characters { text, ty, index } => set_character(memory, text, ty.capacity, index, first)?,
         }
         Ok(())
     }
 
     /// The characters from where the reference points up to the first zero, as far as `out` takes them.
-    pub fn load_text(
+    pub fn load_text<U: Unit>(
         &self,
         memory: &(impl Memory + ?Sized),
         bits: u64,
         distance: u64,
-        out: &mut crate::text::Destination<'_>,
+        out: &mut crate::text::Destination<'_, U>,
     ) -> Result<(), FaultKind> {
-        match self.part(bits, distance, View::Text)? {
-            Part::Bytes { at, rest } => put_characters(at..at + rest, memory, out),
+        match self.part(bits, distance, View::Text { wide: U::SIZE == 2 })? {
+            Part::Bytes { at, rest } => put_characters(at..at + rest / U::SIZE * U::SIZE, memory, out),
             Part::Truth { .. } | Part::Spread { .. } => return Err(FaultKind::ForbiddenView),
-            Part::Characters { text, capacity, index } => {
-                let start = text + HEADER + usize::from(index.min(capacity));
-                put_characters(start..text + HEADER + usize::from(length(memory, text).min(capacity)), memory, out);
+            Part::Characters { text, ty, index } => {
+                let start = text + HEADER;
+                let used = usize::from(length(memory, text).min(ty.capacity)) * U::SIZE;
+                put_characters(start + index..start + used, memory, out);
             }
         }
         Ok(())
     }
 
     /// Writes characters to where the reference points, and ends the string there: as many as fit.
-    pub fn store_text(
+    pub fn store_text<U: Unit>(
         &self,
         memory: &(impl Memory + ?Sized),
         bits: u64,
         distance: u64,
-        value: &[u8],
+        value: &[U],
     ) -> Result<(), FaultKind> {
-        match self.part(bits, distance, View::Text)? {
+        match self.part(bits, distance, View::Text { wide: U::SIZE == 2 })? {
             Part::Bytes { at, rest } => {
-                // The last byte is for the zero that ends it.
+                let rest = rest / U::SIZE;
+                // The last place is for the zero that ends it.
                 let count = value.len().min(rest.saturating_sub(1));
-                memory.write(at, value.get(..count).unwrap_or_default());
+                write_units(memory, at, value.get(..count).unwrap_or_default());
                 if count < rest {
-                    memory.write(at + count, &[0]);
+                    write_units(memory, at + count * U::SIZE, &[U::ZERO]);
                 }
             }
             Part::Truth { .. } | Part::Spread { .. } => return Err(FaultKind::ForbiddenView),
-            Part::Characters { text, capacity, index } => {
-                let index = index.min(capacity);
-                clear_from(memory, text, index);
-                let count = value.len().min(usize::from(capacity - index));
-                memory.write(text + HEADER + usize::from(index), value.get(..count).unwrap_or_default());
-                memory.write(text, &(index + count as u16).to_ne_bytes());
+            Part::Characters { text, ty, index } => {
+                let index = (index / U::SIZE).min(usize::from(ty.capacity));
+                clear_from::<U>(memory, text, index);
+                let count = value.len().min(usize::from(ty.capacity) - index);
+                write_units(memory, text + HEADER + index * U::SIZE, value.get(..count).unwrap_or_default());
+                memory.write(text, &((index + count) as u16).to_ne_bytes());
             }
         }
         Ok(())
@@ -220,13 +237,32 @@ impl<'t> Table<'t> {
         find(machine, offset).ok_or(FaultKind::ForbiddenView)
     }
 
-    /// What the reference points to as a string of its own.
+    /// What the reference points to as a STRING of its own.
     pub fn string<const N: usize>(
         &self,
         memory: &(impl Memory + ?Sized),
         bits: u64,
         distance: u64,
     ) -> Result<Text<N>, FaultKind> {
+        self.text(memory, bits, distance)
+    }
+
+    /// As a WSTRING.
+    pub fn wide_string<const N: usize>(
+        &self,
+        memory: &(impl Memory + ?Sized),
+        bits: u64,
+        distance: u64,
+    ) -> Result<WideText<N>, FaultKind> {
+        self.text(memory, bits, distance)
+    }
+
+    fn text<const N: usize, U: Unit>(
+        &self,
+        memory: &(impl Memory + ?Sized),
+        bits: u64,
+        distance: u64,
+    ) -> Result<Text<N, U>, FaultKind> {
         let mut text = Text::default();
         self.load_text(memory, bits, distance, &mut text.destination())?;
         Ok(text)
@@ -242,60 +278,72 @@ fn length(memory: &(impl Memory + ?Sized), text: usize) -> u16 {
     u16::from_ne_bytes(length)
 }
 
-/// A character of a string, by its position from 0; after its last one there are zeros.
-fn character(memory: &(impl Memory + ?Sized), text: usize, capacity: u16, index: u16) -> u8 {
+/// A byte of a string's characters; after the last one there are zeros.
+fn character_byte(memory: &(impl Memory + ?Sized), text: usize, ty: StringType, at: usize) -> u8 {
     let mut byte = [0];
-    if index < capacity {
-        memory.read(text + HEADER + usize::from(index), &mut byte);
+    if at < usize::from(ty.capacity) * ty.unit_size() as usize {
+        memory.read(text + HEADER + at, &mut byte);
     }
     byte[0]
 }
 
-/// A zero ends the string there; another byte beyond its end lengthens it, with zeros in between.
-fn set_character(
+/// A zero ends the string there; another character beyond its end lengthens it, with zeros in between.
+fn set_character<U: Unit>(
     memory: &(impl Memory + ?Sized),
     text: usize,
     capacity: u16,
-    index: u16,
-    byte: u8,
+    index: usize,
+    unit: U,
 ) -> Result<(), FaultKind> {
-    if index >= capacity {
+    if index >= usize::from(capacity) {
         // There the zero is that ends a string of full length.
-        return if byte == 0 { Ok(()) } else { Err(FaultKind::OutsideObject) };
+        return if unit == U::ZERO { Ok(()) } else { Err(FaultKind::OutsideObject) };
     }
-    if byte == 0 {
-        clear_from(memory, text, index);
+    if unit == U::ZERO {
+        clear_from::<U>(memory, text, index);
         return Ok(());
     }
-    memory.write(text + HEADER + usize::from(index), &[byte]);
-    if index >= length(memory, text) {
-        memory.write(text, &(index + 1).to_ne_bytes());
+    write_units(memory, text + HEADER + index * U::SIZE, &[unit]);
+    if index >= usize::from(length(memory, text)) {
+        memory.write(text, &(index as u16 + 1).to_ne_bytes());
     }
     Ok(())
 }
 
 /// Ends a string; what was after that becomes zero, as it is in every string.
-fn clear_from(memory: &(impl Memory + ?Sized), text: usize, index: u16) {
-    let length = length(memory, text);
+fn clear_from<U: Unit>(memory: &(impl Memory + ?Sized), text: usize, index: usize) {
+    let length = usize::from(length(memory, text));
     for at in index..length {
-        memory.write(text + HEADER + usize::from(at), &[0]);
+        write_units(memory, text + HEADER + at * U::SIZE, &[U::ZERO]);
     }
     if index < length {
-        memory.write(text, &index.to_ne_bytes());
+        memory.write(text, &(index as u16).to_ne_bytes());
     }
 }
 
-fn put_characters(
+fn write_units<U: Unit>(memory: &(impl Memory + ?Sized), at: usize, units: &[U]) {
+    for (unit, start) in units.iter().zip((at..).step_by(U::SIZE)) {
+        for part in 0..U::SIZE {
+            memory.write(start + part, &[unit.byte(part)]);
+        }
+    }
+}
+
+fn put_characters<U: Unit>(
     range: core::ops::Range<usize>,
     memory: &(impl Memory + ?Sized),
-    out: &mut crate::text::Destination<'_>,
+    out: &mut crate::text::Destination<'_, U>,
 ) {
-    for at in range {
-        let mut byte = [0];
-        memory.read(at, &mut byte);
-        if byte[0] == 0 {
+    for at in range.step_by(U::SIZE) {
+        let mut unit = U::ZERO;
+        for part in 0..U::SIZE {
+            let mut byte = [0];
+            memory.read(at + part, &mut byte);
+            unit = unit.with_byte(part, byte[0]);
+        }
+        if unit == U::ZERO {
             return;
         }
-        out.write(&byte);
+        out.write(&[unit]);
     }
 }

@@ -30,8 +30,12 @@ pub enum Kind {
     /// Any type of the class, whatever the other operands are.
     Any(Class),
     Is(Elementary),
-    /// A character string of any length.
+    /// A STRING of any length.
     String,
+    /// A WSTRING of any length.
+    Wstring,
+    /// A STRING or a WSTRING of any length: the same of all that are this in a call.
+    AnyString,
 }
 
 impl Kind {
@@ -40,7 +44,7 @@ impl Kind {
         match self {
             Self::Is(ty) => Some(ty.repr()),
             Self::Any(_) => Some(Repr::I64),
-            Self::T | Self::String => None,
+            Self::T | Self::String | Self::Wstring | Self::AnyString => None,
         }
     }
 }
@@ -85,6 +89,12 @@ macro_rules! kind {
     (STRING) => {
         $crate::Kind::String
     };
+    (WSTRING) => {
+        $crate::Kind::Wstring
+    };
+    (ANY_STRING) => {
+        $crate::Kind::AnyString
+    };
     (BOOL) => {
         $crate::Kind::Is($crate::Elementary::Bool)
     };
@@ -108,6 +118,12 @@ macro_rules! kind {
     };
     (LTIME) => {
         $crate::Kind::Is($crate::Elementary::Ltime)
+    };
+    (CHAR) => {
+        $crate::Kind::Is($crate::Elementary::Char)
+    };
+    (WCHAR) => {
+        $crate::Kind::Is($crate::Elementary::Wchar)
     };
     (DATE) => {
         $crate::Kind::Is($crate::Elementary::Date)
@@ -192,5 +208,11 @@ macro_rules! carried {
     };
     (LREAL) => {
         f64
+    };
+    (CHAR) => {
+        u8
+    };
+    (WCHAR) => {
+        u16
     };
 }

@@ -1,31 +1,39 @@
 //! Character strings: a fixed capacity in place, no heap. Text that does not fit is cut.
 //!
-//! The functions count bytes, positions from 1. A count or position out of range acts as the
+//! The functions count units, bytes of a STRING and UTF-16 code units of a WSTRING, positions from 1. A count or position out of range acts as the
 //! nearest one that is in range, so a negative count acts as 0.
 
 mod conversion;
+mod string_type;
+mod unit;
 
+pub use crate::utf16;
 pub use conversion::*;
+pub use string_type::StringType;
+pub use unit::{Unit, characters, utf16_length, utf16_units};
 
 use core::fmt;
 
-/// A STRING of at most `N` bytes. The bytes past its length are zero, so equal strings are equal
-/// in memory.
+/// A STRING of at most `N` bytes, or a [`WideText`]. The units past its length are zero, so equal
+/// strings are equal in memory.
 #[repr(C)]
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub struct Text<const N: usize> {
+pub struct Text<const N: usize, U = u8> {
     len: u16,
-    bytes: [u8; N],
+    units: [U; N],
 }
 
-impl<const N: usize> Text<N> {
-    /// The start of `bytes`, as much as fits.
-    pub const fn new(bytes: &[u8]) -> Self {
-        const { assert!(N <= u16::MAX as usize, "a string holds at most 65535 bytes") };
-        let mut text = Self { len: 0, bytes: [0; N] };
+/// A WSTRING of at most `N` UTF-16 code units.
+pub type WideText<const N: usize> = Text<N, u16>;
+
+impl<const N: usize, U: Unit> Text<N, U> {
+    /// The start of `units`, as much as fits.
+    pub const fn new(units: &[U]) -> Self {
+        const { assert!(N <= u16::MAX as usize, "a string holds at most 65535 units") };
+        let mut text = Self { len: 0, units: [U::ZERO; N] };
         let mut at = 0;
-        while at < N && at < bytes.len() {
-            text.bytes[at] = bytes[at];
+        while at < N && at < units.len() {
+            text.units[at] = units[at];
             at += 1;
         }
         text.len = at as u16;
@@ -34,7 +42,7 @@ impl<const N: usize> Text<N> {
 
     /// What `write` puts into its destination.
     #[inline]
-    pub fn build(write: impl FnOnce(&mut Destination<'_>)) -> Self {
+    pub fn build(write: impl FnOnce(&mut Destination<'_, U>)) -> Self {
         let mut text = Self::default();
         write(&mut text.destination());
         text
@@ -42,19 +50,19 @@ impl<const N: usize> Text<N> {
 
     /// Another string, cut if it is longer than `N`.
     #[inline]
-    pub fn from_text<const M: usize>(other: &Text<M>) -> Self {
-        Self::build(|out| out.write(other.as_bytes()))
+    pub fn from_text<const M: usize>(other: &Text<M, U>) -> Self {
+        Self::build(|out| out.write(other.as_units()))
     }
 
     #[inline]
-    pub fn as_bytes(&self) -> &[u8] {
-        self.bytes.get(..usize::from(self.len)).unwrap_or(&self.bytes)
+    pub fn as_units(&self) -> &[U] {
+        self.units.get(..usize::from(self.len)).unwrap_or(&self.units)
     }
 
-    /// Becomes the start of `bytes`, as much as fits.
+    /// Becomes the start of `units`, as much as fits.
     #[inline]
-    pub fn assign(&mut self, bytes: &[u8]) {
-        self.destination().write(bytes);
+    pub fn assign(&mut self, units: &[U]) {
+        self.destination().write(units);
     }
 
     /// A byte of the string as it lies in memory: its length, then its characters.
@@ -63,7 +71,7 @@ impl<const N: usize> Text<N> {
         match at {
             0 => low,
             1 => high,
-            at => self.bytes.get(at - 2).copied().unwrap_or_default(),
+            at => self.units.get((at - 2) / U::SIZE).map_or(0, |unit| unit.byte((at - 2) % U::SIZE)),
         }
     }
 
@@ -73,8 +81,8 @@ impl<const N: usize> Text<N> {
             0 => self.len = u16::from_ne_bytes([byte, high]),
             1 => self.len = u16::from_ne_bytes([low, byte]),
             at => {
-                if let Some(place) = self.bytes.get_mut(at - 2) {
-                    *place = byte;
+                if let Some(unit) = self.units.get_mut((at - 2) / U::SIZE) {
+                    *unit = unit.with_byte((at - 2) % U::SIZE, byte);
                 }
             }
         }
@@ -82,66 +90,67 @@ impl<const N: usize> Text<N> {
 
     /// Empties the string, for writing it anew.
     #[inline]
-    pub fn destination(&mut self) -> Destination<'_> {
-        Destination::new(&mut self.len, &mut self.bytes)
+    pub fn destination(&mut self) -> Destination<'_, U> {
+        Destination::new(&mut self.len, &mut self.units)
     }
 }
 
-impl<const N: usize> Default for Text<N> {
+impl<const N: usize> Text<N> {
+    #[inline]
+    pub fn as_bytes(&self) -> &[u8] {
+        self.as_units()
+    }
+}
+
+impl<const N: usize, U: Unit> Default for Text<N, U> {
     #[inline]
     fn default() -> Self {
         Self::new(&[])
     }
 }
 
-impl<const N: usize> fmt::Debug for Text<N> {
+impl<const N: usize, U: Unit> fmt::Debug for Text<N, U> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "'{}'", self.as_bytes().escape_ascii())
+        U::debug(self.as_units(), f)
     }
 }
 
-/// Bytes that are not UTF-8 show as U+FFFD.
-impl<const N: usize> fmt::Display for Text<N> {
+/// Bytes that are not UTF-8, and surrogates without their other half, show as U+FFFD.
+impl<const N: usize, U: Unit> fmt::Display for Text<N, U> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for chunk in self.as_bytes().utf8_chunks() {
-            f.write_str(chunk.valid())?;
-            if !chunk.invalid().is_empty() {
-                f.write_str("\u{FFFD}")?;
-            }
-        }
-        Ok(())
+        U::display(self.as_units(), f)
     }
 }
 
-/// Where a string function writes: the length and the bytes of a string of any capacity.
+/// Where a string function writes: the length and the units of a string of any capacity.
 #[derive(Debug)]
-pub struct Destination<'a> {
+pub struct Destination<'a, U = u8> {
     len: &'a mut u16,
-    bytes: &'a mut [u8],
+    units: &'a mut [U],
 }
 
-impl<'a> Destination<'a> {
-    /// An empty string in `bytes`, which are set to zero.
+impl<'a, U: Unit> Destination<'a, U> {
+    /// An empty string in `units`, which are set to zero.
     #[inline]
-    pub fn new(len: &'a mut u16, bytes: &'a mut [u8]) -> Self {
+    pub fn new(len: &'a mut u16, units: &'a mut [U]) -> Self {
         *len = 0;
-        bytes.fill(0);
-        Self { len, bytes }
+        units.fill(U::ZERO);
+        Self { len, units }
     }
 
-    /// Appends as much of `bytes` as still fits.
+    /// Appends as much of `units` as still fits.
     #[inline]
-    pub fn write(&mut self, bytes: &[u8]) {
-        let free = self.bytes.get_mut(usize::from(*self.len)..).unwrap_or_default();
-        let count = free.len().min(bytes.len()).min(usize::from(u16::MAX - *self.len));
-        for (to, from) in free.iter_mut().zip(bytes).take(count) {
+    pub fn write(&mut self, units: &[U]) {
+        let free = self.units.get_mut(usize::from(*self.len)..).unwrap_or_default();
+        let count = free.len().min(units.len()).min(usize::from(u16::MAX - *self.len));
+        for (to, from) in free.iter_mut().zip(units).take(count) {
             *to = *from;
         }
         *self.len += count as u16;
     }
 }
 
-/// The order of two strings, byte by byte: -1, 0 or 1. A string comes after those it begins with.
+/// The order of two strings, unit by unit: -1, 0 or 1. A string comes after those it begins with.
 ///
 /// ```
 /// use staunch_runtime::text::compare;
@@ -149,13 +158,13 @@ impl<'a> Destination<'a> {
 /// assert_eq!(compare(b"b", b"abc"), 1);
 /// ```
 #[inline]
-pub fn compare(a: &[u8], b: &[u8]) -> i16 {
+pub fn compare<U: Unit>(a: &[U], b: &[U]) -> i16 {
     a.cmp(b) as i16
 }
 
-/// `LEN`: the number of bytes; 32767 if there are more.
+/// `LEN`: the number of units; 32767 if there are more.
 #[inline]
-pub fn len(text: &[u8]) -> i16 {
+pub fn len<U: Unit>(text: &[U]) -> i16 {
     saturated(text.len())
 }
 
@@ -168,25 +177,25 @@ pub fn len(text: &[u8]) -> i16 {
 /// assert_eq!(find(b"ABCBC", b""), 0);
 /// ```
 #[inline]
-pub fn find(text: &[u8], pattern: &[u8]) -> i16 {
+pub fn find<U: Unit>(text: &[U], pattern: &[U]) -> i16 {
     // `windows` refuses a length of zero.
     let length = pattern.len().max(1);
     text.windows(length).position(|window| window == pattern).map_or(0, |at| saturated(at + 1))
 }
 
-/// `LEFT`: the first `count` bytes.
+/// `LEFT`: the first `count` units.
 #[inline]
-pub fn left(text: &[u8], count: i64, out: &mut Destination<'_>) {
+pub fn left<U: Unit>(text: &[U], count: i64, out: &mut Destination<'_, U>) {
     out.write(split(text, count).0);
 }
 
-/// `RIGHT`: the last `count` bytes.
+/// `RIGHT`: the last `count` units.
 #[inline]
-pub fn right(text: &[u8], count: i64, out: &mut Destination<'_>) {
+pub fn right<U: Unit>(text: &[U], count: i64, out: &mut Destination<'_, U>) {
     out.write(split(text, (text.len() as i64).saturating_sub(count)).1);
 }
 
-/// `MID`: `count` bytes, the first of them at `position`.
+/// `MID`: `count` units, the first of them at `position`.
 ///
 /// ```
 /// use staunch_runtime::{Text, text::mid};
@@ -194,34 +203,34 @@ pub fn right(text: &[u8], count: i64, out: &mut Destination<'_>) {
 /// assert_eq!(text.as_bytes(), b"CD");
 /// ```
 #[inline]
-pub fn mid(text: &[u8], count: i64, position: i64, out: &mut Destination<'_>) {
+pub fn mid<U: Unit>(text: &[U], count: i64, position: i64, out: &mut Destination<'_, U>) {
     let (_, rest) = split(text, position.saturating_sub(1));
     out.write(split(rest, count).0);
 }
 
 /// `CONCAT`: `a`, then `b`.
 #[inline]
-pub fn concat(a: &[u8], b: &[u8], out: &mut Destination<'_>) {
+pub fn concat<U: Unit>(a: &[U], b: &[U], out: &mut Destination<'_, U>) {
     out.write(a);
     out.write(b);
 }
 
-/// `INSERT`: puts `inserted` after the byte at `position`; 0 puts it in front.
+/// `INSERT`: puts `inserted` after the unit at `position`; 0 puts it in front.
 #[inline]
-pub fn insert(text: &[u8], inserted: &[u8], position: i64, out: &mut Destination<'_>) {
+pub fn insert<U: Unit>(text: &[U], inserted: &[U], position: i64, out: &mut Destination<'_, U>) {
     let (before, after) = split(text, position);
     out.write(before);
     out.write(inserted);
     out.write(after);
 }
 
-/// `DELETE`: leaves out `count` bytes, the first of them at `position`.
+/// `DELETE`: leaves out `count` units, the first of them at `position`.
 #[inline]
-pub fn delete(text: &[u8], count: i64, position: i64, out: &mut Destination<'_>) {
+pub fn delete<U: Unit>(text: &[U], count: i64, position: i64, out: &mut Destination<'_, U>) {
     replace(text, &[], count, position, out);
 }
 
-/// `REPLACE`: puts `by` in the place of `count` bytes, the first of them at `position`.
+/// `REPLACE`: puts `by` in the place of `count` units, the first of them at `position`.
 ///
 /// ```
 /// use staunch_runtime::{Text, text::replace};
@@ -229,16 +238,16 @@ pub fn delete(text: &[u8], count: i64, position: i64, out: &mut Destination<'_>)
 /// assert_eq!(text.as_bytes(), b"ABXE");
 /// ```
 #[inline]
-pub fn replace(text: &[u8], by: &[u8], count: i64, position: i64, out: &mut Destination<'_>) {
+pub fn replace<U: Unit>(text: &[U], by: &[U], count: i64, position: i64, out: &mut Destination<'_, U>) {
     let (before, rest) = split(text, position.saturating_sub(1));
     out.write(before);
     out.write(by);
     out.write(split(rest, count).1);
 }
 
-/// The first `count` bytes and the others.
+/// The first `count` units and the others.
 #[inline]
-fn split(text: &[u8], count: i64) -> (&[u8], &[u8]) {
+fn split<U: Unit>(text: &[U], count: i64) -> (&[U], &[U]) {
     let count = count.clamp(0, text.len() as i64) as usize;
     text.split_at_checked(count).unwrap_or((text, &[]))
 }

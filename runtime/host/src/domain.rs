@@ -2,7 +2,7 @@
 //! host) pass through here, so that compiled code finds values of its variables' types.
 
 use crate::map::{Array, Map, Type, Variable};
-use staunch_runtime::{Repr, Time, Value, ops};
+use staunch_runtime::{Repr, StringType, Time, Value, ops};
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -29,7 +29,7 @@ enum Node {
     /// A time of day, which is less than a day.
     Clock,
     /// A string of at most this many bytes.
-    Text(u16),
+    Text(StringType),
     Subrange {
         repr: Repr,
         low: i128,
@@ -108,7 +108,7 @@ impl Domain {
             Node::Bool => bytes[0] = u8::from(bytes[0] != 0),
             Node::Day => settle_time(bytes, ops::start_of_day),
             Node::Clock => settle_time(bytes, ops::time_of_day),
-            Node::Text(capacity) => settle_text(bytes, *capacity),
+            Node::Text(ty) => settle_text(bytes, *ty),
             Node::Subrange { repr, low, high } => settle_number(bytes, *repr, *low, *high),
             Node::Array { element, stride, count } => {
                 let elements = Part { size: *stride, node: *element, ..part };
@@ -155,11 +155,11 @@ fn clear(state: &mut [u8], gap: Range<usize>, window: &Range<usize>) {
     }
 }
 
-fn settle_text(bytes: &mut [u8], capacity: u16) {
+fn settle_text(bytes: &mut [u8], ty: StringType) {
     let (header, rest) = bytes.split_at_mut(size_of::<u16>());
-    let length = u16::from_ne_bytes([header[0], header[1]]).min(capacity);
+    let length = u16::from_ne_bytes([header[0], header[1]]).min(ty.capacity);
     header.copy_from_slice(&length.to_ne_bytes());
-    rest[usize::from(length)..].fill(0);
+    rest[usize::from(length) * ty.unit_size() as usize..].fill(0);
 }
 
 fn settle_time(bytes: &mut [u8], settled: fn(Time) -> Time) {
@@ -199,7 +199,7 @@ impl Builder<'_> {
             Type::Elementary(it) => self.number(it.repr(), range),
             // Each use of a reference is checked.
             Type::Enum(_) | Type::Bit(_) | Type::Reference => self.push(Node::Any),
-            Type::String(capacity) => self.push(Node::Text(capacity)),
+            Type::String(it) => self.push(Node::Text(it)),
             Type::Array(_) => match self.map.array(ty) {
                 Some(array) => self.array(array, range),
                 None => self.push(Node::Any),

@@ -3,16 +3,17 @@
 use crate::map::{Enum, Map, Type};
 use crate::path::{Place, nearest, same};
 use staunch_runtime::literal::{self, LiteralErrorKind, check_real, duration};
-use staunch_runtime::{Elementary, Repr, Value, ops};
+use staunch_runtime::{Elementary, Repr, StringType, Value, ops};
 
 /// The bytes that `text` stands for in a variable; the error is a sentence without a full stop.
 pub(crate) fn parse(map: &Map, place: Place, text: &str) -> Result<Vec<u8>, String> {
     let value = match place.ty {
-        Type::String(capacity) => return string(text, capacity),
+        Type::String(it) => return string(text, it),
         Type::Elementary(it) if it.is_duration() => Value::I64(time(text)?),
         Type::Elementary(it) if it.is_time() => Value::I64(date(text, it)?),
         Type::Elementary(Elementary::Bool) | Type::Bit(_) => Value::Bool(boolean(text)?),
         Type::Elementary(it) if it.repr().is_float() => float(text, it.name(), it.repr())?,
+        Type::Elementary(it) if it.is_char() => character(text, it)?,
         Type::Elementary(it) => integer(text, it.name(), it.repr())?,
         Type::Enum(id) => {
             let found = map.enums.get(&id).map(|it| enumerator(text, it));
@@ -34,15 +35,40 @@ pub(crate) fn parse(map: &Map, place: Place, text: &str) -> Result<Vec<u8>, Stri
     Ok(bytes)
 }
 
-fn string(text: &str, capacity: u16) -> Result<Vec<u8>, String> {
-    let capacity = usize::from(capacity);
-    if text.len() > capacity {
-        return Err(format!("the text has {} bytes, a STRING[{capacity}] holds {capacity}", text.len()));
-    }
-    let mut bytes = vec![0; 2 + capacity];
-    Value::U16(text.len() as u16).write(&mut bytes);
-    bytes[2..2 + text.len()].copy_from_slice(text.as_bytes());
+fn string(text: &str, ty: StringType) -> Result<Vec<u8>, String> {
+    let units: Vec<u8> =
+        if ty.wide { text.encode_utf16().flat_map(u16::to_ne_bytes).collect() } else { text.as_bytes().to_vec() };
+    let length = units.len() / ty.unit_size() as usize;
+    let Some(header) = u16::try_from(length).ok().filter(|it| *it <= ty.capacity) else {
+        return Err(format!("the text has {length} {}, a {ty} holds {}", ty.units(), ty.capacity));
+    };
+    let mut bytes = header.to_ne_bytes().to_vec();
+    bytes.extend(units);
+    bytes.resize(2 + usize::from(ty.capacity) * ty.unit_size() as usize, 0);
     Ok(bytes)
+}
+
+/// `A`, `'A'`, `CHAR#'A'`, `$0A`.
+fn character(text: &str, ty: Elementary) -> Result<Value, String> {
+    let (name, quote, digits) = if ty == Elementary::Char { ("CHAR", '\'', 2) } else { ("WCHAR", '"', 4) };
+    let wrong = || format!("`{text}` is not a {name}: write `A` or `${}`", &"0041"[4 - digits..]);
+    let bare = untyped(text, &[name]);
+    let inner = bare.strip_prefix(quote).and_then(|it| it.strip_suffix(quote)).filter(|it| !it.is_empty());
+    let bare = inner.unwrap_or(bare);
+    let hexadecimal = bare.strip_prefix('$').filter(|it| it.len() == digits).map(|it| u32::from_str_radix(it, 16));
+    let number = match (hexadecimal, bare) {
+        (Some(number), _) => number.map_err(|_| wrong())?,
+        (None, "$$") => u32::from('$'),
+        (None, _) => {
+            let mut characters = bare.chars();
+            let first = characters.next().filter(|it| *it != '$').ok_or_else(wrong)?;
+            if characters.next().is_some() {
+                return Err(wrong());
+            }
+            u32::from(first)
+        }
+    };
+    ty.repr().integer(number.into()).ok_or_else(wrong)
 }
 
 /// `text` without the prefix `NAME#`, if it has that one.

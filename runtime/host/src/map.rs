@@ -1,7 +1,7 @@
 //! The map: which variable lies where. The compiler writes it as text, one record a line.
 
 use crate::Error;
-use staunch_runtime::{Elementary, Repr};
+use staunch_runtime::{Elementary, Repr, StringType};
 use std::collections::BTreeMap;
 
 /// The version of the text that this host reads.
@@ -34,7 +34,7 @@ pub enum Type {
     /// A BOOL that is this bit of a byte.
     Bit(u8),
     /// A string of at most this many bytes.
-    String(u16),
+    String(StringType),
     Enum(u32),
     Array(u32),
     Struct(u32),
@@ -281,7 +281,7 @@ impl Map {
         match ty {
             Type::Elementary(it) => it.repr().size() as usize,
             Type::Bit(_) => 1,
-            Type::String(capacity) => 2 + usize::from(capacity).next_multiple_of(2),
+            Type::String(it) => it.size() as usize,
             Type::Enum(id) => self.enums.get(&id).map_or(0, |it| it.repr.size() as usize),
             Type::Reference => size_of::<u64>(),
             Type::Array(_) => self.array(ty).map_or(0, |it| it.stride * it.len()),
@@ -295,7 +295,7 @@ impl Map {
             Type::Elementary(it) => it.name().to_owned(),
             Type::Bit(_) => Elementary::Bool.name().to_owned(),
             Type::Reference => "REFERENCE".to_owned(),
-            Type::String(capacity) => format!("STRING[{capacity}]"),
+            Type::String(it) => it.to_string(),
             Type::Enum(id) => self.enums.get(&id).map_or_else(String::new, |it| it.name.clone()),
             Type::Array(_) => self.array(ty).map_or_else(String::new, |it| {
                 format!("ARRAY[{}..{}] OF {}", it.low, it.high, self.type_name(it.element))
@@ -456,8 +456,10 @@ impl<'a> Record<'a> {
 }
 
 fn type_named(text: &str) -> Option<Type> {
-    if let Some(capacity) = text.strip_prefix("STRING[") {
-        return Some(Type::String(capacity.strip_suffix(']')?.parse().ok()?));
+    if let Some((word, capacity)) = text.split_once('[') {
+        let capacity = capacity.strip_suffix(']')?.parse().ok()?;
+        let kinds = [StringType::narrow(capacity), StringType::wide(capacity)];
+        return kinds.into_iter().find(|it| it.word() == word).map(Type::String);
     }
     match text.split_once(':') {
         Some(("bit", number)) => number.parse().ok().filter(|it| *it < 8).map(Type::Bit),

@@ -3,7 +3,8 @@
 use crate::map::{Map, Type};
 use crate::path::{path_at, resolve};
 use staunch_runtime::reference::ORIGIN;
-use staunch_runtime::{Elementary, Reference, Repr, Time, Value, format};
+use staunch_runtime::text::characters;
+use staunch_runtime::{Elementary, Reference, Repr, StringType, Time, Value, format};
 use std::fmt::Write;
 
 /// The value of the variable that `path` names, seen from the instances `running`, as a cell of a trace.
@@ -19,14 +20,15 @@ pub(crate) fn format(map: &Map, ty: Type, bytes: &[u8], out: &mut String) {
     match ty {
         Type::Elementary(it) => {
             let value = Value::read(it.repr(), bytes);
-            match (it.is_time(), value) {
+            match value {
                 // Writing to a String cannot fail.
-                (true, Value::I64(time)) => _ = format::time(out, it, time),
+                Value::I64(time) if it.is_time() => _ = format::time(out, it, time),
+                _ if it.is_char() => format_character(value, out),
                 _ => format_scalar(value, out),
             }
         }
         Type::Bit(number) => format_scalar(Value::Bool(bit(bytes, number)), out),
-        Type::String(_) => out.push_str(&text(bytes)),
+        Type::String(it) => out.push_str(&text(it, bytes)),
         Type::Enum(id) => {
             let Some(enumeration) = map.enums.get(&id) else { return };
             let value = Value::read(enumeration.repr, bytes);
@@ -96,14 +98,31 @@ pub(crate) fn number(map: &Map, ty: Type, bytes: &[u8]) -> Option<f64> {
     })
 }
 
-/// A string's characters; bytes that are not UTF-8 are read as Latin-1.
-fn text(bytes: &[u8]) -> String {
+/// A string's characters.
+fn text(ty: StringType, bytes: &[u8]) -> String {
     let Some((length, rest)) = bytes.split_at_checked(2) else { return String::new() };
-    let length = usize::from(u16::from_ne_bytes([length[0], length[1]]));
+    let length = usize::from(u16::from_ne_bytes([length[0], length[1]])) * ty.unit_size() as usize;
     let used = rest.get(..length).unwrap_or(rest);
-    match std::str::from_utf8(used) {
-        Ok(text) => text.to_owned(),
-        Err(_) => used.iter().map(|it| char::from(*it)).collect(),
+    if ty.wide {
+        let units = used.chunks_exact(2).map(|it| u16::from_ne_bytes([it[0], it[1]]));
+        return char::decode_utf16(units).map(|it| it.unwrap_or(char::REPLACEMENT_CHARACTER)).collect();
+    }
+    characters(used).collect()
+}
+
+/// `A`, or by its number what is hard to see: `$00`, `$D83D`.
+fn format_character(value: Value, out: &mut String) {
+    let (number, digits) = match value {
+        Value::U8(it) => (u32::from(it), 2),
+        Value::U16(it) => (u32::from(it), 4),
+        _ => return format_scalar(value, out),
+    };
+    match char::from_u32(number) {
+        Some('$') => out.push_str("$$"),
+        Some(it) if it.is_ascii_graphic() => out.push(it),
+        Some(it) if !it.is_ascii() && !it.is_control() && !it.is_whitespace() => out.push(it),
+        // Writing to a String cannot fail.
+        _ => _ = write!(out, "${number:0digits$X}"),
     }
 }
 
@@ -161,7 +180,11 @@ mod tests {
 
     #[test]
     fn a_string_is_its_characters() {
-        assert_eq!(text(&[3, 0, b'a', b'b', b'c', 0]), "abc");
-        assert_eq!(text(&[1, 0, 0xE9, 0]), "é");
+        let narrow = |bytes: &[u8]| text(StringType::narrow(4), bytes);
+        assert_eq!(narrow(&[3, 0, b'a', b'b', b'c', 0]), "abc");
+        assert_eq!(narrow(&[1, 0, 0xE9, 0]), "é");
+        assert_eq!(narrow(&[3, 0, 0xC3, 0xA9, 0xE9, 0]), "éé");
+        let wide: Vec<u8> = [3_u16, 0x20AC, 0xD83D, 0xDE00].into_iter().flat_map(u16::to_ne_bytes).collect();
+        assert_eq!(text(StringType::wide(3), &wide), "€😀");
     }
 }

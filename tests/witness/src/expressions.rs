@@ -3,7 +3,7 @@
 use crate::machine::{Frame, Machine, Outcome, unknown};
 use crate::storage::{Cell, Value, integer_cell};
 use crate::types::{Elementary, Type};
-use staunch_frontend::ast::{BinaryOp, Expr, ExprKind, Literal, LiteralValue, UnaryOp};
+use staunch_frontend::ast::{BinaryOp, Chars, Expr, ExprKind, Literal, LiteralValue, UnaryOp};
 use staunch_runtime::{Value as Scalar, ops};
 
 /// A number without a type of its own: it takes the one that its place asks for.
@@ -91,7 +91,11 @@ impl<'a> Machine<'a> {
                 Some(ty) => Ok(Value::scalar(ty, Scalar::I64(*nanoseconds))),
                 None => unknown("literals of dates"),
             },
-            (_, LiteralValue::String { bytes, wide: false }) => Ok(Value::text(bytes.to_vec())),
+            (None, LiteralValue::String(chars)) => match &**chars {
+                Chars::Narrow(bytes) => Ok(Value::text(bytes.clone())),
+                Chars::Wide(_) => unknown("WSTRING"),
+            },
+            (Some(_), LiteralValue::String(_)) => unknown("typed literals of text"),
             (Some(ty), value) => match Elementary::named(ty.text) {
                 Some(ty) => typed_number(value, false, ty),
                 None => unknown("the type of a literal"),

@@ -14,7 +14,8 @@ use crate::types::table::{PendingReference, Resolved, instance_of, scalar_initia
 use crate::{Code, Diagnostic, Span};
 use rustc_hash::FxHashMap;
 use staunch_ir::{
-    Array, ArrayId, BoundsId, Const, Elementary, Enum, EnumId, Enumerator, RefKind, RefType, ReferenceId, Type, Value,
+    Array, ArrayId, BoundsId, Const, Elementary, Enum, EnumId, Enumerator, RefKind, RefType, ReferenceId, StringType,
+    Type, Value,
 };
 use staunch_runtime::Family;
 use std::rc::Rc;
@@ -27,8 +28,6 @@ const MAX_CONSTANTS: usize = 1 << 20;
 const MAX_DIMENSIONS: usize = 64;
 /// Longest string.
 const MAX_CAPACITY: i128 = 32767;
-
-const NOT_YET: [&str; 3] = ["CHAR", "WCHAR", "WSTRING"];
 
 /// What other languages call elementary types.
 const FOREIGN: [(&str, &str); 24] = [
@@ -121,11 +120,7 @@ impl<'s> Declarations<'s> {
     ) -> Option<Resolved> {
         match &spec.kind {
             TypeKind::Named(path) => self.resolve_path(path, spec.span),
-            TypeKind::String { wide: true, .. } => {
-                self.not_supported(spec.span, "WSTRING");
-                None
-            }
-            TypeKind::String { wide: false, capacity } => self.string(capacity.as_deref(), scope, spec.span),
+            TypeKind::String { wide, capacity } => self.string(*wide, capacity.as_deref(), scope, spec.span),
             TypeKind::Subrange { base, low, high } => self.subrange(*base, low, high, scope),
             TypeKind::Array { bounds, element } => self.array_type(bounds, element, scope, name, spec.span),
             TypeKind::Struct(members) => self.structure(members, None, scope, name, doc, spec.span),
@@ -279,10 +274,6 @@ impl<'s> Declarations<'s> {
     }
 
     fn report_unknown_type(&mut self, name: ast::Name<'s>) {
-        if NOT_YET.iter().any(|it| it.eq_ignore_ascii_case(name.text)) {
-            self.not_supported(name.span, &format!("the type {}", name.text.to_ascii_uppercase()));
-            return;
-        }
         if let Some(Some(dialect)) = prelude::unit(name.text).map(|it| it.dialect) {
             let (system, dialect) = (dialect.family().name(), dialect.name());
             self.report(
@@ -302,7 +293,7 @@ impl<'s> Declarations<'s> {
         let blocks = staunch_runtime::BLOCKS.iter().map(|it| it.name);
         let blocks = blocks.filter(|it| dialect::bare_block(dialect, it).is_some());
         let elementary = Elementary::ALL.iter().map(|it| it.name());
-        let candidates = self.names.type_names().chain(elementary).chain(blocks).chain(["STRING"]);
+        let candidates = self.names.type_names().chain(elementary).chain(blocks).chain(["STRING", "WSTRING"]);
         let near = nearest(name.text, candidates).map(str::to_owned);
         let foreign =
             FOREIGN.iter().find(|(it, _)| it.eq_ignore_ascii_case(name.text)).map(|(_, ours)| (*ours).to_owned());
@@ -319,19 +310,25 @@ impl<'s> Declarations<'s> {
         self.report(error);
     }
 
-    fn string(&mut self, capacity: Option<&'s ast::Expr<'s>>, scope: &Rc<Scope<'s>>, span: Span) -> Option<Resolved> {
+    fn string(
+        &mut self,
+        wide: bool,
+        capacity: Option<&'s ast::Expr<'s>>,
+        scope: &Rc<Scope<'s>>,
+        span: Span,
+    ) -> Option<Resolved> {
+        let string = |capacity| Resolved::plain(Type::String(StringType { wide, capacity }));
         let Some(expr) = capacity else {
-            return Some(Resolved::plain(Type::String(self.dialect(span).string_capacity())));
+            return Some(string(self.dialect(span).string_capacity()));
         };
         let length = self.constant_integer(expr, scope)?;
         if !(1..=MAX_CAPACITY).contains(&length) {
-            self.report(
-                Diagnostic::new(Code::E0206, expr.span, format!("a STRING holds 1 to {MAX_CAPACITY} bytes"))
-                    .label(format!("this is {length}")),
-            );
+            let ty = StringType { wide, capacity: 0 };
+            let message = format!("a {} holds 1 to {MAX_CAPACITY} {}", ty.word(), ty.units());
+            self.report(Diagnostic::new(Code::E0206, expr.span, message).label(format!("this is {length}")));
             return None;
         }
-        Some(Resolved::plain(Type::String(u16::try_from(length).unwrap_or(u16::MAX))))
+        Some(string(u16::try_from(length).unwrap_or(u16::MAX)))
     }
 
     fn subrange(

@@ -160,8 +160,9 @@ impl<'s> Checker<'_, 's> {
     /// What a call does with the variable given for a VAR_IN_OUT.
     pub(crate) fn in_out_role(&mut self, formal: &Formal<'s>, place: &Place, turn: usize, span: Span) -> Option<Role> {
         let ty = formal.resolved.ty;
-        if let (Type::String(_), Type::String(_)) = (place.ty, ty)
-            && place.ty != ty
+        if let (Type::String(from), Type::String(to)) = (place.ty, ty)
+            && from.wide == to.wide
+            && from != to
         {
             self.note_assigned(place, span);
             return Some(Role::Copied(self.temporary("text", ty)));

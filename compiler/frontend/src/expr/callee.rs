@@ -248,10 +248,7 @@ fn is_of_heap(name: &str) -> bool {
 /// Functions of the standard's tables, and of CODESYS, that are known to be missing.
 fn not_yet(name: &str) -> bool {
     let name = name.to_ascii_uppercase();
-    let conversion = |part: &str| {
-        let texts = ["WSTRING", "CHAR", "WCHAR", "BCD"];
-        texts.iter().any(|it| part == *it || part.starts_with("BCD") || part.ends_with("BCD"))
-    };
+    let conversion = |part: &str| part.starts_with("BCD") || part.ends_with("BCD");
     let (from, to) = name.split_once("_TO_").or_else(|| Some(("", name.strip_prefix("TO_")?))).unwrap_or(("", ""));
     let others = ["ROUND", "CEIL", "FLOOR", "ASSERT", "CONCAT_TIME", "UPPER_CASE"];
     conversion(from) || conversion(to) || others.contains(&name.as_str())

@@ -5,7 +5,7 @@ use super::operand::Operand;
 use super::promotion::stored;
 use crate::types::coercion::{as_number, widens};
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{BoundsId, Conversion, Elementary, Expr, ExprKind, Op, Type, Value};
+use staunch_ir::{BoundsId, Chars, Conversion, Elementary, Expr, ExprKind, Op, StringType, Type, Value};
 
 impl<'s> Checker<'_, 's> {
     /// The value of `expr`, to be stored where `ty` is declared.
@@ -93,10 +93,21 @@ impl<'s> Checker<'_, 's> {
             (Type::Elementary(from), Type::Elementary(into)) => {
                 self.may_become(from, into, span).then(|| self.convert(Conversion::Value, to, expr))
             }
-            (Type::String(_), Type::String(capacity)) => {
-                self.warn_of_cut(&expr, capacity, span);
+            (Type::String(from), Type::String(into)) if from.wide == into.wide => {
+                self.warn_of_cut(&expr, into, span);
                 Some(self.convert(Conversion::Value, to, expr))
             }
+            (Type::String(_), Type::String(into)) => {
+                self.report_other_string(&expr, into, span);
+                None
+            }
+            (Type::Elementary(from), Type::String(into))
+                if from.is_char() && (from == Elementary::Wchar) == into.wide =>
+            {
+                let text = self.text_of_char(expr, from, into.wide, span)?;
+                Some(self.convert(Conversion::Value, to, text))
+            }
+            (Type::String(_), Type::Elementary(into)) if into.is_char() => self.as_character(&expr, into, span),
             (Type::Enum(id), Type::Elementary(into))
                 if self.decl.dialect(span).mixes_bits_and_integers()
                     && widens(self.decl.program.enumeration(id).base, into) =>
@@ -246,10 +257,57 @@ impl<'s> Checker<'_, 's> {
         self.report(error);
     }
 
-    fn warn_of_cut(&mut self, value: &Expr, capacity: u16, span: Span) {
-        let ExprKind::Text(bytes) = &value.kind else { return };
-        if bytes.len() > usize::from(capacity) {
-            let message = format!("this text has {} characters, and STRING[{capacity}] keeps {capacity}", bytes.len());
+    /// A literal of one character where a CHAR or WCHAR is wanted.
+    fn as_character(&mut self, value: &Expr, ty: Elementary, span: Span) -> Option<Expr> {
+        let found = match &value.kind {
+            ExprKind::Text(Chars::Narrow(bytes)) if ty == Elementary::Char => {
+                <[u8; 1]>::try_from(bytes.as_slice()).ok().map(|it| Value::U8(it[0]))
+            }
+            ExprKind::Text(Chars::Wide(units)) if ty == Elementary::Wchar => {
+                <[u16; 1]>::try_from(units.as_slice()).ok().map(|it| Value::U16(it[0]))
+            }
+            _ => None,
+        };
+        if let Some(found) = found {
+            return Some(Expr::new(Type::Elementary(ty), ExprKind::Const(found), value.at));
+        }
+        let (name, string) = (ty.name(), self.type_name(value.ty));
+        let error = Diagnostic::new(Code::E0201, span, format!("expected {name}, found {string}"));
+        self.report(match &value.kind {
+            ExprKind::Text(text) if text.is_wide() == (ty == Elementary::Wchar) => {
+                let units = if text.is_wide() { "UTF-16 code units" } else { "bytes" };
+                error.label(format!("this has {} {units}, and a {name} is one", text.len()))
+            }
+            ExprKind::Text(_) if ty == Elementary::Wchar => error.label("a WCHAR is written in double quotes: `\"A\"`"),
+            ExprKind::Text(_) => error.label("a CHAR is written in single quotes: `'A'`"),
+            _ => {
+                let text = self.decl.log.sources.text(span).to_owned();
+                let from = value.ty.string_type().map_or("STRING", StringType::word);
+                error
+                    .label(format!("this is {string}"))
+                    .help(format!("take its first character: `{from}_TO_{name}({text})`"))
+            }
+        });
+        None
+    }
+
+    /// A STRING where a WSTRING is wanted, or the other way round: the standard has no implicit conversion.
+    pub(crate) fn report_other_string(&mut self, value: &Expr, to: StringType, span: Span) {
+        let from = value.ty.string_type().map_or("STRING", StringType::word);
+        let found = self.type_name(value.ty);
+        let text = self.decl.log.sources.text(span).to_owned();
+        let error = Diagnostic::new(Code::E0201, span, format!("expected {to}, found {found}"));
+        self.report(match value.kind {
+            ExprKind::Text(_) if to.wide => error.label("a WSTRING is written in double quotes: `\"…\"`"),
+            ExprKind::Text(_) => error.label("a STRING is written in single quotes: `'…'`"),
+            _ => error.label(format!("this is {found}")).help(format!("write `{from}_TO_{}({text})`", to.word())),
+        });
+    }
+
+    fn warn_of_cut(&mut self, value: &Expr, ty: StringType, span: Span) {
+        let ExprKind::Text(text) = &value.kind else { return };
+        if !text.fits(ty) {
+            let message = format!("this text has {} characters, and {ty} keeps {}", text.len(), ty.capacity);
             self.report(Diagnostic::new(Code::W0202, span, message).label("the rest is cut off"));
         }
     }

@@ -16,12 +16,12 @@ impl<'s> Checker<'_, 's> {
     ) -> Option<Expr> {
         let value_expr = match parsed.from {
             Some(Converted::Elementary(from)) => self.value(value, Type::Elementary(from))?,
-            Some(Converted::Text) => self.text(value, name)?,
+            Some(Converted::Text { wide }) => self.text(value, Some(wide), name)?,
             None => self.typed(value, None)?,
         };
         let to = match parsed.to {
             Converted::Elementary(to) => to,
-            Converted::Text => return self.text_of(value_expr, value.span, name),
+            Converted::Text { wide } => return self.text_of(value_expr, wide, value.span, name),
         };
         if parsed.truncates {
             return self.truncate(value_expr, to, value.span, name);
@@ -55,6 +55,9 @@ impl<'s> Checker<'_, 's> {
     /// What a TIME carries and numbers meet at the unit in which such numbers count.
     pub(super) fn between(&mut self, value: Expr, from: Elementary, to: Elementary, span: Span) -> Option<Expr> {
         let target = Type::Elementary(to);
+        if from.is_char() || to.is_char() {
+            return self.character_and_number(value, from, to, span);
+        }
         match (from.counted_in(), to.counted_in()) {
             (Some(_), Some(_)) if is_the_same(from, to) => Some(self.convert(Conversion::Same, target, value)),
             (Some(_), Some(_)) => {

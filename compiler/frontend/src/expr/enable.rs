@@ -6,7 +6,9 @@ use super::checker::Checker;
 use crate::types::signature::{Formal, Signature, Target};
 use crate::{Span, ast};
 use ast::ArgumentKind;
-use staunch_ir::{Const, Expr, ExprKind, Location, ParamId, Place, Root, Section, Statement, StatementKind, Type};
+use staunch_ir::{
+    Chars, Const, Expr, ExprKind, Location, ParamId, Place, Root, Section, Statement, StatementKind, Type,
+};
 
 /// What a call gives for an EN and an ENO that its callee does not declare.
 #[derive(Clone, Copy)]
@@ -132,7 +134,7 @@ impl<'s> Checker<'_, 's> {
     fn zero(&self, ty: Type, at: Location) -> Expr {
         let kind = match (self.decl.program.repr(ty), ty) {
             (Some(repr), _) => ExprKind::Const(repr.zero()),
-            (None, Type::String(_)) => ExprKind::Text(Vec::new()),
+            (None, Type::String(it)) => ExprKind::Text(Chars::empty(it)),
             (None, _) => ExprKind::Aggregate(Const::Zero),
         };
         Expr::new(ty, kind, at)

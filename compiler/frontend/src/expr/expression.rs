@@ -4,7 +4,7 @@ use super::place::{Access, Found};
 use crate::types::scope::Variable;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, UnaryOp};
-use staunch_ir::{Const, Conversion, Elementary, Expr, ExprKind, Op, Type};
+use staunch_ir::{Chars, Const, Conversion, Elementary, Expr, ExprKind, Op, Type};
 use staunch_runtime::Class;
 
 impl<'s> Checker<'_, 's> {
@@ -12,7 +12,7 @@ impl<'s> Checker<'_, 's> {
     /// enumerators and overloaded functions listen to it.
     pub(crate) fn operand(&mut self, expr: &ast::Expr<'s>, expected: Option<Type>) -> Option<Operand> {
         let operand = match &expr.kind {
-            Ast::Literal(literal) => self.literal(literal, expr.span),
+            Ast::Literal(literal) => self.literal(literal, expected, expr.span),
             Ast::Paren(inner) => self.operand(inner, expected),
             Ast::Name(name) => self.name(*name, expected).map(Operand::Typed),
             Ast::Member(..) => self.member_value(expr).map(Operand::Typed),
@@ -101,7 +101,7 @@ impl<'s> Checker<'_, 's> {
             (Const::Scalar(value), _, _) => ExprKind::Const(value),
             (Const::Zero, Some(repr), _) => ExprKind::Const(repr.zero()),
             (Const::Text(bytes), _, _) => ExprKind::Text(bytes),
-            (Const::Zero, None, Type::String(_)) => ExprKind::Text(Vec::new()),
+            (Const::Zero, None, Type::String(it)) => ExprKind::Text(Chars::empty(it)),
             (other, _, _) if self.context != Context::Body => ExprKind::Aggregate(other),
             _ => ExprKind::Load(self.decl.image.stored(&variable.place).0),
         };

@@ -227,7 +227,7 @@ impl<'s> Checker<'_, 's> {
             (Const::Scalar(value), _, _) => ExprKind::Const(*value),
             (Const::Zero, Some(repr), _) => ExprKind::Const(repr.zero()),
             (Const::Text(bytes), _, _) => ExprKind::Text(bytes.clone()),
-            (Const::Zero, None, Type::String(_)) => ExprKind::Text(Vec::new()),
+            (Const::Zero, None, Type::String(it)) => ExprKind::Text(staunch_ir::Chars::empty(it)),
             (other, _, _) => ExprKind::Aggregate(other.clone()),
         };
         Expr::new(ty, kind, at)

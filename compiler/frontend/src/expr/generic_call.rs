@@ -130,7 +130,10 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         Some(match ty {
-            Type::String(capacity) => Type::String(capacity.max(self.literal_capacity(&operands, called.span))),
+            Type::String(it) => {
+                let written = self.literal_capacity(&operands, called.span);
+                Type::String(it.of_capacity(it.capacity.max(written)))
+            }
             other => other,
         })
     }

@@ -1,17 +1,24 @@
 use super::checker::Checker;
 use super::operand::Operand;
 use super::real::Real;
+use crate::names::functions::Converted;
 use crate::names::{Found, Meaning, Sense};
 use crate::spelling::Key;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::LiteralValue;
-use staunch_ir::{Elementary, Expr, ExprKind, Op, Type, Value};
+use staunch_ir::{Chars, Elementary, Expr, ExprKind, Op, StringType, Type, Value};
 
 impl<'s> Checker<'_, 's> {
-    pub(crate) fn literal(&mut self, literal: &ast::Literal<'s>, span: Span) -> Option<Operand> {
+    pub(crate) fn literal(
+        &mut self,
+        literal: &ast::Literal<'s>,
+        expected: Option<Type>,
+        span: Span,
+    ) -> Option<Operand> {
         match (&literal.prefix, &literal.value) {
             (Some(prefix), LiteralValue::Enumerator(name)) => self.enumerator(&[**prefix, **name]).map(Operand::Typed),
             (Some(prefix), value) => self.typed_literal(**prefix, value, false, span).map(Operand::Typed),
+            (None, LiteralValue::String(chars)) if chars.len() == 1 => Some(self.one_character(chars, expected, span)),
             (None, value) => self.plain_literal(value, span),
         }
     }
@@ -24,7 +31,7 @@ impl<'s> Checker<'_, 's> {
             LiteralValue::Integer { value, .. } => Some(Operand::Integer(i128::from(*value))),
             LiteralValue::Real(digits) => Some(Operand::Real { number: Real::Literal(digits.to_string()) }),
             LiteralValue::Time { ty, nanoseconds } => typed(*ty, Value::I64(*nanoseconds)),
-            LiteralValue::String { bytes, wide } => self.string_literal(bytes, *wide, span),
+            LiteralValue::String(chars) => Some(self.string_literal(chars, span)),
             LiteralValue::Error => None,
             LiteralValue::Enumerator(name) => {
                 self.error(Code::E0101, name.span, format!("`{}` belongs to no enumeration here", name.text));
@@ -33,18 +40,10 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    fn string_literal(&mut self, bytes: &[u8], wide: bool, span: Span) -> Option<Operand> {
-        if wide {
-            self.report(
-                Diagnostic::new(Code::E0902, span, "WSTRING literals are not supported yet")
-                    .label("text in double quotes is a WSTRING")
-                    .help("write a STRING in single quotes: `'…'`"),
-            );
-            return None;
-        }
-        let capacity = u16::try_from(bytes.len().max(1)).unwrap_or(u16::MAX);
-        let at = self.at(span);
-        Some(Operand::Typed(Expr::new(Type::String(capacity), ExprKind::Text(bytes.to_vec()), at)))
+    fn string_literal(&mut self, chars: &Chars, span: Span) -> Operand {
+        let capacity = u16::try_from(chars.len().max(1)).unwrap_or(u16::MAX);
+        let ty = Type::String(StringType { wide: chars.is_wide(), capacity });
+        Operand::Typed(Expr::new(ty, ExprKind::Text(chars.clone()), self.at(span)))
     }
 
     /// `INT#-5`, `REAL#-1.5`.
@@ -65,8 +64,9 @@ impl<'s> Checker<'_, 's> {
         is_negative: bool,
         span: Span,
     ) -> Option<Expr> {
-        let Some(ty) = self.literal_type(prefix, value)? else {
-            return self.plain_literal(value, span)?.typed().cloned();
+        let ty = match self.literal_type(prefix, value)? {
+            Converted::Elementary(ty) => ty,
+            Converted::Text { wide } => return self.string_of_kind(value, wide, span),
         };
         let operand = self.plain_literal(value, span)?;
         match operand {
@@ -81,13 +81,39 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    /// The type that a literal's prefix names; `Some(None)` for the text after `STRING#`.
-    fn literal_type(&mut self, prefix: ast::Name<'s>, value: &LiteralValue<'s>) -> Option<Option<Elementary>> {
-        if let Some(ty) = Elementary::named(prefix.text) {
-            return Some(Some(ty));
+    /// `'A'`: a CHAR where one is expected.
+    fn one_character(&mut self, chars: &Chars, expected: Option<Type>, span: Span) -> Operand {
+        let of_kind = if chars.is_wide() { Elementary::Wchar } else { Elementary::Char };
+        match (chars, expected) {
+            (Chars::Narrow(bytes), Some(Type::Elementary(ty))) if ty == of_kind => {
+                Operand::Typed(Expr::constant(ty, Value::U8(bytes[0]), self.at(span)))
+            }
+            (Chars::Wide(units), Some(Type::Elementary(ty))) if ty == of_kind => {
+                Operand::Typed(Expr::constant(ty, Value::U16(units[0]), self.at(span)))
+            }
+            _ => self.string_literal(chars, span),
         }
-        if prefix.text.eq_ignore_ascii_case("STRING") && matches!(value, LiteralValue::String { .. }) {
-            return Some(None);
+    }
+
+    /// `STRING#'abc'`, `WSTRING#"abc"`.
+    fn string_of_kind(&mut self, value: &LiteralValue<'s>, wide: bool, span: Span) -> Option<Expr> {
+        let text = self.plain_literal(value, span)?.typed().cloned()?;
+        match text.ty {
+            Type::String(it) if it.wide != wide => {
+                self.report_other_string(&text, it.of_kind(wide), span);
+                None
+            }
+            _ => Some(text),
+        }
+    }
+
+    /// What a literal's prefix names.
+    fn literal_type(&mut self, prefix: ast::Name<'s>, value: &LiteralValue<'s>) -> Option<Converted> {
+        let is_text = matches!(value, LiteralValue::String(_));
+        match Converted::named(&prefix.text.to_ascii_uppercase()) {
+            Some(Converted::Text { .. }) if !is_text => {}
+            Some(named) => return Some(named),
+            None => {}
         }
         if let Found::One(Meaning::Declared(_)) = self.decl.lookup(&[prefix], Sense::Type) {
             self.report(

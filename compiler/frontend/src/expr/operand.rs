@@ -110,6 +110,12 @@ impl<'s> Checker<'_, 's> {
         let at = self.at(span);
         let value = match operand {
             Operand::Typed(expr) | Operand::Promoted(expr, _) => return Some(expr.clone()),
+            Operand::Integer(_) | Operand::Real { .. } if ty.is_char() => {
+                let error = Diagnostic::new(Code::E0201, span, format!("expected {}, found a number", ty.name()));
+                let character = if ty == Elementary::Char { "`'A'`, or `'$41'`" } else { "`\"A\"`, or `\"$0041\"`" };
+                self.report(error.label(format!("write the character: {character}")));
+                return None;
+            }
             Operand::Integer(value) => self.integer_as(*value, ty, span)?,
             Operand::Real { number } => self.real_as(number, ty, span)?,
         };

@@ -142,6 +142,13 @@ impl<'s> Checker<'_, 's> {
             (Some(Type::String(_)), Some(Type::String(_))) if matches!(sides.op, BinaryOp::Add | BinaryOp::And) => {
                 Some(format!("write `CONCAT({a}, {b})`"))
             }
+            (Some(Type::String(x)), Some(Type::String(y))) if x.wide != y.wide => {
+                let narrow = if x.wide { b } else { a };
+                Some(match narrow.strip_prefix('\'').and_then(|it| it.strip_suffix('\'')) {
+                    Some(text) => format!("a WSTRING is written in double quotes: `\"{text}\"`"),
+                    None => format!("write `STRING_TO_WSTRING({narrow})`"),
+                })
+            }
             (Some(ty @ Type::Enum(_)), None) | (None, Some(ty @ Type::Enum(_))) => {
                 Some(format!("name a member: {}", self.members(ty)?))
             }
@@ -191,9 +198,17 @@ impl<'s> Checker<'_, 's> {
         let op = comparison(sides.op);
         let op_span = sides.op_span;
         match (sides.a.ty(), sides.b.ty()) {
-            (Some(Type::String(_)), Some(Type::String(_))) => {
+            (Some(Type::String(x)), Some(Type::String(y))) if x.wide == y.wide => {
                 let (Operand::Typed(a), Operand::Typed(b)) = (sides.a, sides.b) else { return None };
                 self.compare_texts(op, a, b, op_span)
+            }
+            (Some(Type::Elementary(it)), Some(ty @ Type::String(_))) if it.is_char() => {
+                let a = self.coerce(sides.a, ty, sides.left)?;
+                self.compare(Sides { a: Operand::Typed(a), ..sides })
+            }
+            (Some(ty @ Type::String(_)), Some(Type::Elementary(it))) if it.is_char() => {
+                let b = self.coerce(sides.b, ty, sides.right)?;
+                self.compare(Sides { b: Operand::Typed(b), ..sides })
             }
             (Some(Type::Enum(a)), Some(Type::Enum(b))) if a == b => {
                 let (Operand::Typed(a), Operand::Typed(b)) = (sides.a, sides.b) else { return None };
@@ -408,7 +423,7 @@ pub(crate) fn beside(a: &Operand, hint: Option<Type>) -> Option<Type> {
     match a.ty() {
         Some(ty @ Type::Enum(_)) => Some(ty),
         // A function of literals takes the type of the side it meets.
-        Some(ty @ Type::Elementary(it)) if it.is_integer() || it.is_real() => Some(ty),
+        Some(ty @ Type::Elementary(it)) if it.is_integer() || it.is_real() || it.is_char() => Some(ty),
         _ => hint,
     }
 }

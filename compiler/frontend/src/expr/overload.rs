@@ -29,8 +29,8 @@ pub(crate) enum Takes {
     Common(Option<Type>),
     /// Any type of the class, whatever the others are.
     Class(Class),
-    /// A character string of any length.
-    Text,
+    /// A character string of any length: a WSTRING, a STRING, or either.
+    Text(Option<bool>),
 }
 
 impl Takes {
@@ -39,7 +39,9 @@ impl Takes {
             Kind::T => Self::Common(common),
             Kind::Is(ty) => Self::Type(Type::Elementary(ty)),
             Kind::Any(class) => Self::Class(class),
-            Kind::String => Self::Text,
+            Kind::String => Self::Text(Some(false)),
+            Kind::Wstring => Self::Text(Some(true)),
+            Kind::AnyString => Self::Text(None),
         }
     }
 }
@@ -58,7 +60,7 @@ impl<'s> Checker<'_, 's> {
             Takes::Common(expected) => self.operand(value, expected),
             Takes::Type(ty) => self.value(value, ty).map(Operand::Typed),
             Takes::Class(class) => self.of_class(class, value, parameter, name).map(Operand::Typed),
-            Takes::Text => self.text(value, name).map(Operand::Typed),
+            Takes::Text(wide) => self.text(value, wide, name).map(Operand::Typed),
         }
     }
 
@@ -75,6 +77,7 @@ impl<'s> Checker<'_, 's> {
             let parameter = parameter_name(signature, at);
             this.taken(Takes::of(kind(signature, at), hint.or(side)), values[at], &parameter, name)
         })?;
+        self.of_one_kind(signature, &operands, values, name)?;
         let at_t = (0..values.len()).filter(|at| kind(signature, *at) == Kind::T);
         let at_t: Vec<_> = at_t.map(|at| (&operands[at], values[at].span)).collect();
         let own = match at_t.is_empty() {
@@ -302,19 +305,52 @@ impl<'s> Checker<'_, 's> {
                 let mixed = || dialect.mixes_bits_and_integers().then(numbers).flatten();
                 join(x, y).or_else(mixed).map(Type::Elementary)
             }
-            (Type::String(x), Type::String(y)) => Some(Type::String(x.max(y))),
+            (Type::String(x), Type::String(y)) if x.wide == y.wide => Some(Type::String(x.max(y))),
+            (Type::String(it), Type::Elementary(char)) | (Type::Elementary(char), Type::String(it))
+                if char.is_char() && (char == Elementary::Wchar) == it.wide =>
+            {
+                Some(Type::String(it))
+            }
             _ => (a == b).then_some(a),
         }
     }
 
-    pub(super) fn text(&mut self, value: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<Expr> {
+    /// Strings of a call are STRINGs or WSTRINGs, all of them.
+    fn of_one_kind(
+        &mut self,
+        signature: &Signature,
+        operands: &[Operand],
+        values: &[&ast::Expr<'s>],
+        name: ast::Name<'s>,
+    ) -> Option<()> {
+        let strings = operands.iter().enumerate().filter(|(at, _)| kind(signature, *at) == Kind::AnyString);
+        let mut strings = strings.filter_map(|(at, it)| Some((it.ty()?, values[at].span)));
+        let Some((first, _)) = strings.next() else { return Some(()) };
+        let wide = |ty: Type| ty.string_type().is_some_and(|it| it.wide);
+        let Some((other, span)) = strings.find(|it| wide(it.0) != wide(first)) else { return Some(()) };
+        self.report_apart(first, other, span, name);
+        None
+    }
+
+    /// A character string, of a kind if one is asked for; a character is a string of one.
+    pub(super) fn text(&mut self, value: &ast::Expr<'s>, wide: Option<bool>, name: ast::Name<'s>) -> Option<Expr> {
         let text = self.typed(value, None)?;
-        if let Type::String(_) = text.ty {
-            return Some(self.shallow(text));
+        let text = match text.ty {
+            Type::Elementary(it) if it.is_char() => self.text_of(text, it == Elementary::Wchar, value.span, name)?,
+            _ => text,
+        };
+        match (text.ty, wide) {
+            (Type::String(it), Some(wide)) if it.wide != wide => {
+                self.report_other_string(&text, it.of_kind(wide), value.span);
+                return None;
+            }
+            (Type::String(_), _) => return Some(self.shallow(text)),
+            _ => {}
         }
         let found = self.type_name(text.ty);
-        let message = format!("`{}` takes a STRING, this is {found}", name.text);
-        self.report(Diagnostic::new(Code::E0201, value.span, message).label("expected STRING"));
+        let wanted = if wide == Some(true) { "WSTRING" } else { "STRING" };
+        let message = format!("`{}` takes a {wanted}, this is {found}", name.text);
+        self.report(Diagnostic::new(Code::E0201, value.span, message).label(format!("expected {wanted}")));
         None
     }
 }
@@ -356,7 +392,9 @@ fn wanted(class: Class) -> &'static str {
         Class::Duration => "a TIME",
         Class::Date => "a date or a time of day",
         Class::Bit => "a BOOL or a bit string",
-        Class::Chars | Class::String => "a STRING",
+        Class::Chars => "a character or a string",
+        Class::Char => "a CHAR or WCHAR",
+        Class::String => "a STRING or WSTRING",
     }
 }
 

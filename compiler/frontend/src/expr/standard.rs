@@ -4,11 +4,14 @@
 use super::checker::Checker;
 use super::operand::{Operand, computed};
 use super::overload::Resolved;
+use super::text_conversion::MAX_CAPACITY;
 use crate::names::functions::{self, Meaning, named};
 use crate::types::signature::pin_place;
 use crate::{Span, ast, dialect};
 use ast::BinaryOp;
-use staunch_ir::{Arm, Conversion, Elementary, Expr, ExprKind, FaultKind, Op, Statement, StatementKind, TextOp, Type};
+use staunch_ir::{
+    Arm, Conversion, Elementary, Expr, ExprKind, FaultKind, Op, Statement, StatementKind, StringType, TextOp, Type,
+};
 use staunch_runtime::{Class, Kind, Signature, signature};
 
 /// The signature of every conversion, `INT_TO_REAL` and the like.
@@ -211,7 +214,7 @@ impl<'s> Checker<'_, 's> {
         }
         let ty = match op.result() {
             Some(_) => Type::INT,
-            None => Type::String(text_capacity(op, &ready)),
+            None => Type::String(made_by(op, &ready)?),
         };
         let at = self.at(span);
         self.evaluated(Expr::new(ty, ExprKind::ApplyText(op, ready), at), span)
@@ -222,7 +225,7 @@ impl<'s> Checker<'_, 's> {
         let mut operands = operands.into_iter();
         let mut result = operands.next()?;
         for operand in operands {
-            let ty = Type::String(capacity(&result).saturating_add(capacity(&operand)).min(32767));
+            let ty = Type::String(joined(result.ty.string_type()?, operand.ty.string_type()?));
             let joined = Expr::new(ty, ExprKind::ApplyText(TextOp::Concat, vec![result, operand]), at);
             let joined = self.evaluated(joined, span)?;
             result = self.shallow(joined);
@@ -261,24 +264,16 @@ fn text_depth(expr: &Expr) -> usize {
     }
 }
 
-fn capacity(expr: &Expr) -> u16 {
-    match expr.ty {
-        Type::String(capacity) => capacity,
-        Type::Elementary(_)
-        | Type::Reference(_)
-        | Type::Subrange(..)
-        | Type::Enum(_)
-        | Type::Array(_)
-        | Type::Struct(_)
-        | Type::Block(_) => 0,
-    }
+/// What holds both strings, one after the other.
+fn joined(a: StringType, b: StringType) -> StringType {
+    a.of_capacity(a.capacity.saturating_add(b.capacity).min(MAX_CAPACITY))
 }
 
-/// The longest result: what is inserted adds to the text.
-fn text_capacity(op: TextOp, operands: &[Expr]) -> u16 {
-    let own = operands.first().map_or(0, capacity);
-    match op {
-        TextOp::Insert | TextOp::Replace => own.saturating_add(operands.get(1).map_or(0, capacity)).min(32767),
+/// What holds the longest result: what is inserted adds to the text.
+fn made_by(op: TextOp, operands: &[Expr]) -> Option<StringType> {
+    let own = operands.first()?.ty.string_type()?;
+    Some(match op {
+        TextOp::Insert | TextOp::Replace => joined(own, operands.get(1)?.ty.string_type()?),
         _ => own,
-    }
+    })
 }

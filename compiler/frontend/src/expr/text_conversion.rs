@@ -1,15 +1,24 @@
 //! Text of values, and values of text: the functions of the runtime that do it, at each type.
 
 use super::checker::Checker;
-use crate::{Span, ast};
-use staunch_ir::{Conversion, Elementary, Expr, ExprKind, TextOp, Type, Value};
+use crate::{Code, Diagnostic, Span, ast};
+use staunch_ir::{Conversion, Elementary, Expr, ExprKind, StringType, TextOp, Type, Value};
+
+/// Longest string, in units.
+pub(crate) const MAX_CAPACITY: u16 = 32767;
 
 impl<'s> Checker<'_, 's> {
-    /// `x_TO_STRING`.
-    pub(super) fn text_of(&mut self, value: Expr, span: Span, name: ast::Name<'s>) -> Option<Expr> {
-        if let Type::String(_) = value.ty {
-            return Some(value);
-        }
+    /// `x_TO_STRING`, `x_TO_WSTRING`.
+    pub(super) fn text_of(&mut self, value: Expr, wide: bool, span: Span, name: ast::Name<'s>) -> Option<Expr> {
+        let text = match value.ty {
+            Type::String(_) => value,
+            Type::Elementary(it) if it.is_char() => self.text_of_char(value, it, wide, name.span)?,
+            _ => self.narrow_text_of(value, span, name)?,
+        };
+        self.of_kind(text, wide, name.span)
+    }
+
+    fn narrow_text_of(&mut self, value: Expr, span: Span, name: ast::Name<'s>) -> Option<Expr> {
         let (value, ty) = self.as_elementary(value, span, name)?;
         let (op, operand, longest) = match ty {
             Elementary::Bool => (TextOp::FromBool, Elementary::Bool, 5),
@@ -21,12 +30,38 @@ impl<'s> Checker<'_, 's> {
         };
         let mut operands = vec![self.convert(Conversion::Value, Type::Elementary(operand), value)];
         operands.extend(self.kind_of_time(op, ty, name.span));
-        let at = self.at(name.span);
-        self.evaluated(Expr::new(Type::String(longest), ExprKind::ApplyText(op, operands), at), name.span)
+        self.text_function_of(op, Type::string(longest), operands, name.span)
+    }
+
+    /// A string of one character. CHARs of a WSTRING are those of the same numbers.
+    pub(super) fn text_of_char(&mut self, value: Expr, ty: Elementary, wide: bool, span: Span) -> Option<Expr> {
+        let is_wide = wide || ty == Elementary::Wchar;
+        let string = Type::String(StringType { wide: is_wide, capacity: 1 });
+        if is_wide {
+            let value = self.convert(Conversion::Value, Type::Elementary(Elementary::Wchar), value);
+            return self.text_function_of(TextOp::FromWchar, string, vec![value], span);
+        }
+        self.text_function_of(TextOp::FromChar, string, vec![value], span)
+    }
+
+    /// The text as a STRING or WSTRING that holds all of it.
+    pub(super) fn of_kind(&mut self, text: Expr, wide: bool, span: Span) -> Option<Expr> {
+        let ty = text.ty.string_type()?;
+        let (op, capacity) = match (ty.wide, wide) {
+            // A character has no more units than bytes.
+            (false, true) => (TextOp::Widen, ty.capacity),
+            // Three bytes hold every unit, or its half of a character.
+            (true, false) => (TextOp::Narrow, ty.capacity.saturating_mul(3).min(MAX_CAPACITY)),
+            (false, false) | (true, true) => return Some(text),
+        };
+        self.text_function_of(op, Type::String(StringType { wide, capacity }), vec![text], span)
     }
 
     /// `STRING_TO_x`. An integer takes its low bits of the number that the text spells.
     pub(super) fn value_of_text(&mut self, text: Expr, to: Elementary, span: Span) -> Option<Expr> {
+        if to.is_char() {
+            return self.first_character(text, to, span);
+        }
         let (op, made) = match to {
             Elementary::Bool => (TextOp::ToBool, Elementary::Bool),
             Elementary::Real => (TextOp::ToReal, Elementary::Real),
@@ -35,12 +70,60 @@ impl<'s> Checker<'_, 's> {
             _ if to.is_time() => (TextOp::ToTime, Elementary::Lint),
             _ => (TextOp::ToLint, Elementary::Lint),
         };
-        let mut operands = vec![text];
+        let mut operands = vec![self.of_kind(text, false, span)?];
         operands.extend(self.kind_of_time(op, to, span));
-        let at = self.at(span);
-        let value = Expr::new(Type::Elementary(made), ExprKind::ApplyText(op, operands), at);
-        let value = self.evaluated(value, span)?;
+        let value = self.text_function_of(op, Type::Elementary(made), operands, span)?;
         Some(self.convert(Conversion::Value, Type::Elementary(to), value))
+    }
+
+    fn first_character(&mut self, text: Expr, to: Elementary, span: Span) -> Option<Expr> {
+        let wide = text.ty.string_type()?.wide || to == Elementary::Wchar;
+        let text = self.of_kind(text, wide, span)?;
+        let (op, ty) = if wide { (TextOp::ToWchar, Elementary::Wchar) } else { (TextOp::ToChar, Elementary::Char) };
+        let character = self.text_function_of(op, Type::Elementary(ty), vec![text], span)?;
+        self.between_characters(character, ty, to, span)
+    }
+
+    /// CHAR and WCHAR, by their numbers; a CHAR for a WCHAR that is none is `?`.
+    pub(super) fn between_characters(
+        &mut self,
+        value: Expr,
+        from: Elementary,
+        to: Elementary,
+        span: Span,
+    ) -> Option<Expr> {
+        let ty = Type::Elementary(to);
+        match (from, to) {
+            (Elementary::Wchar, Elementary::Char) => self.text_function_of(TextOp::NarrowChar, ty, vec![value], span),
+            _ => Some(self.convert(Conversion::Value, ty, value)),
+        }
+    }
+
+    /// A CHAR and a number or bit string of its bits.
+    pub(super) fn character_and_number(
+        &mut self,
+        value: Expr,
+        from: Elementary,
+        to: Elementary,
+        span: Span,
+    ) -> Option<Expr> {
+        if from.is_char() && to.is_char() {
+            return self.between_characters(value, from, to, span);
+        }
+        let counts = |it: Elementary| it.is_char() || it.is_integral() && it != Elementary::Bool;
+        if counts(from) && counts(to) {
+            return Some(self.convert(Conversion::Value, Type::Elementary(to), value));
+        }
+        let message = format!("there is no conversion from {} to {}", from.name(), to.name());
+        self.report(
+            Diagnostic::new(Code::E0204, span, message).label("a character converts to text, integers and bit strings"),
+        );
+        None
+    }
+
+    fn text_function_of(&mut self, op: TextOp, ty: Type, operands: Vec<Expr>, span: Span) -> Option<Expr> {
+        let at = self.at(span);
+        self.evaluated(Expr::new(ty, ExprKind::ApplyText(op, operands), at), span)
     }
 
     /// The number of a type among all, for the two functions that want it.

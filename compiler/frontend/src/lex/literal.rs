@@ -1,5 +1,6 @@
 //! Values of literals, read from the text of their tokens.
 
+use staunch_ir::Chars;
 use staunch_runtime::Elementary;
 use staunch_runtime::literal::{self, LiteralError, LiteralErrorKind as Kind, UNITS};
 
@@ -151,60 +152,65 @@ fn spelled(mut nanoseconds: i128) -> String {
 }
 
 /// `'…'` or `"…"`, escapes resolved; the second value names those that mean nothing.
-pub fn string(text: &str, wide: bool) -> (Vec<u8>, Vec<Fault>) {
-    let quote = &text[..1];
-    let inner = &text[1..];
+pub fn string(text: &str) -> (Chars, Vec<Fault>) {
+    let (quote, inner) = text.split_at(1);
     let inner = inner.strip_suffix(quote).unwrap_or(inner);
-    let mut bytes = Vec::with_capacity(inner.len());
+    let mut chars = if quote == "\"" { Chars::Wide(Vec::new()) } else { Chars::Narrow(Vec::new()) };
     let mut faults = Vec::new();
     let mut at = 0;
     while let Some(escape) = inner[at..].find('$') {
-        bytes.extend_from_slice(&inner.as_bytes()[at..at + escape]);
+        put(&inner[at..at + escape], &mut chars);
         at += escape;
-        match resolve(&inner[at..], wide, &mut bytes) {
-            Some(len) => at += len,
+        match resolve(&inner[at..], &mut chars) {
+            Some(length) => at += length,
             None => {
-                let len = 1 + inner[at + 1..].chars().next().map_or(0, char::len_utf8);
-                let shown = &inner[at..at + len];
-                let message = format!("`{shown}` is no escape");
-                faults.push(Fault::new(1 + at, 1 + at + len, message));
-                at += len;
+                let length = 1 + inner[at + 1..].chars().next().map_or(0, char::len_utf8);
+                let message = format!("`{}` is no escape", &inner[at..at + length]);
+                faults.push(Fault::new(1 + at, 1 + at + length, message));
+                at += length;
             }
         }
     }
-    bytes.extend_from_slice(&inner.as_bytes()[at..]);
-    (bytes, faults)
+    put(&inner[at..], &mut chars);
+    (chars, faults)
+}
+
+fn put(text: &str, chars: &mut Chars) {
+    match chars {
+        Chars::Narrow(bytes) => bytes.extend_from_slice(text.as_bytes()),
+        Chars::Wide(units) => units.extend(text.encode_utf16()),
+    }
 }
 
 /// Writes the character of the escape that `text` starts with; its length.
-fn resolve(text: &str, wide: bool, bytes: &mut Vec<u8>) -> Option<usize> {
+fn resolve(text: &str, chars: &mut Chars) -> Option<usize> {
     let plain = match text.as_bytes().get(1)? {
         letter @ (b'$' | b'\'' | b'"') => *letter,
         b'N' | b'n' | b'L' | b'l' => b'\n',
         b'P' | b'p' => 0x0c,
         b'R' | b'r' => b'\r',
         b'T' | b't' => b'\t',
-        _ => return hexadecimal(text, wide, bytes),
+        _ => return hexadecimal(text, chars),
     };
-    bytes.push(plain);
+    match chars {
+        Chars::Narrow(bytes) => bytes.push(plain),
+        Chars::Wide(units) => units.push(plain.into()),
+    }
     Some(2)
 }
 
-/// `$0A` is a byte; in a wide string `$00E4` is a UTF-16 unit, a surrogate pair two of them.
-fn hexadecimal(text: &str, wide: bool, bytes: &mut Vec<u8>) -> Option<usize> {
-    if !wide {
-        bytes.push(u8::from_str_radix(digits(text, 1, 2)?, 16).ok()?);
-        return Some(3);
+/// `$0A` is a byte; in a wide string `$00E4` is a UTF-16 code unit.
+fn hexadecimal(text: &str, chars: &mut Chars) -> Option<usize> {
+    match chars {
+        Chars::Narrow(bytes) => {
+            bytes.push(u8::from_str_radix(digits(text, 1, 2)?, 16).ok()?);
+            Some(3)
+        }
+        Chars::Wide(units) => {
+            units.push(u16::from_str_radix(digits(text, 1, 4)?, 16).ok()?);
+            Some(5)
+        }
     }
-    let unit = u16::from_str_radix(digits(text, 1, 4)?, 16).ok()?;
-    let second = text[5..].starts_with('$').then(|| digits(text, 6, 4)).flatten();
-    let second = second.and_then(|it| u16::from_str_radix(it, 16).ok());
-    let mut decoded = char::decode_utf16([unit].into_iter().chain(second));
-    let first = decoded.next()?;
-    let len = if first.is_ok() && decoded.next().is_none() && second.is_some() { 10 } else { 5 };
-    let character = first.unwrap_or(char::REPLACEMENT_CHARACTER);
-    bytes.extend_from_slice(character.encode_utf8(&mut [0; 4]).as_bytes());
-    Some(len)
 }
 
 fn digits(text: &str, start: usize, len: usize) -> Option<&str> {

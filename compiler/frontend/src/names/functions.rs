@@ -103,19 +103,57 @@ const OTHERS: &[(Option<Dialect>, Signature, Meaning)] = &[
     (CODESYS, signature!("TIME" () -> TIME), Meaning::Clock(Elementary::Time)),
     (CODESYS, signature!("LTIME" () -> LTIME), Meaning::Clock(Elementary::Ltime)),
     // CODESYS's library names the parameters of the functions on strings in its own way.
-    (CODESYS, signature!("LEN" (STR: STRING) -> INT), Meaning::Text(TextOp::Len)),
-    (CODESYS, signature!("LEFT" (STR: STRING, SIZE: ANY_INT) -> STRING), Meaning::Text(TextOp::Left)),
-    (CODESYS, signature!("RIGHT" (STR: STRING, SIZE: ANY_INT) -> STRING), Meaning::Text(TextOp::Right)),
-    (CODESYS, signature!("MID" (STR: STRING, LEN: ANY_INT, POS: ANY_INT) -> STRING), Meaning::Text(TextOp::Mid)),
-    (CODESYS, signature!("CONCAT" (STR1: STRING, STR2: STRING) -> STRING extensible), Meaning::Text(TextOp::Concat)),
-    (CODESYS, signature!("INSERT" (STR1: STRING, STR2: STRING, POS: ANY_INT) -> STRING), Meaning::Text(TextOp::Insert)),
-    (CODESYS, signature!("DELETE" (STR: STRING, LEN: ANY_INT, POS: ANY_INT) -> STRING), Meaning::Text(TextOp::Delete)),
+    (CODESYS, signature!("LEN" (STR: ANY_STRING) -> INT), Meaning::Text(TextOp::Len)),
+    (CODESYS, signature!("LEFT" (STR: ANY_STRING, SIZE: ANY_INT) -> ANY_STRING), Meaning::Text(TextOp::Left)),
+    (CODESYS, signature!("RIGHT" (STR: ANY_STRING, SIZE: ANY_INT) -> ANY_STRING), Meaning::Text(TextOp::Right)),
     (
         CODESYS,
-        signature!("REPLACE" (STR1: STRING, STR2: STRING, L: ANY_INT, P: ANY_INT) -> STRING),
+        signature!("MID" (STR: ANY_STRING, LEN: ANY_INT, POS: ANY_INT) -> ANY_STRING),
+        Meaning::Text(TextOp::Mid),
+    ),
+    (
+        CODESYS,
+        signature!("CONCAT" (STR1: ANY_STRING, STR2: ANY_STRING) -> ANY_STRING extensible),
+        Meaning::Text(TextOp::Concat),
+    ),
+    (
+        CODESYS,
+        signature!("INSERT" (STR1: ANY_STRING, STR2: ANY_STRING, POS: ANY_INT) -> ANY_STRING),
+        Meaning::Text(TextOp::Insert),
+    ),
+    (
+        CODESYS,
+        signature!("DELETE" (STR: ANY_STRING, LEN: ANY_INT, POS: ANY_INT) -> ANY_STRING),
+        Meaning::Text(TextOp::Delete),
+    ),
+    (
+        CODESYS,
+        signature!("REPLACE" (STR1: ANY_STRING, STR2: ANY_STRING, L: ANY_INT, P: ANY_INT) -> ANY_STRING),
         Meaning::Text(TextOp::Replace),
     ),
-    (CODESYS, signature!("FIND" (STR1: STRING, STR2: STRING) -> INT), Meaning::Text(TextOp::Find)),
+    (CODESYS, signature!("FIND" (STR1: ANY_STRING, STR2: ANY_STRING) -> INT), Meaning::Text(TextOp::Find)),
+    // Of its library Standard64.
+    (CODESYS, signature!("WLEN" (STR: WSTRING) -> INT), Meaning::Text(TextOp::Len)),
+    (CODESYS, signature!("WLEFT" (STR: WSTRING, SIZE: ANY_INT) -> WSTRING), Meaning::Text(TextOp::Left)),
+    (CODESYS, signature!("WRIGHT" (STR: WSTRING, SIZE: ANY_INT) -> WSTRING), Meaning::Text(TextOp::Right)),
+    (CODESYS, signature!("WMID" (STR: WSTRING, LEN: ANY_INT, POS: ANY_INT) -> WSTRING), Meaning::Text(TextOp::Mid)),
+    (CODESYS, signature!("WCONCAT" (STR1: WSTRING, STR2: WSTRING) -> WSTRING), Meaning::Text(TextOp::Concat)),
+    (
+        CODESYS,
+        signature!("WINSERT" (STR1: WSTRING, STR2: WSTRING, POS: ANY_INT) -> WSTRING),
+        Meaning::Text(TextOp::Insert),
+    ),
+    (
+        CODESYS,
+        signature!("WDELETE" (STR: WSTRING, LEN: ANY_INT, POS: ANY_INT) -> WSTRING),
+        Meaning::Text(TextOp::Delete),
+    ),
+    (
+        CODESYS,
+        signature!("WREPLACE" (STR1: WSTRING, STR2: WSTRING, L: ANY_INT, P: ANY_INT) -> WSTRING),
+        Meaning::Text(TextOp::Replace),
+    ),
+    (CODESYS, signature!("WFIND" (STR1: WSTRING, STR2: WSTRING) -> INT), Meaning::Text(TextOp::Find)),
 ];
 
 const CODESYS: Option<Dialect> = Some(Dialect::Codesys);
@@ -190,13 +228,20 @@ pub(crate) struct Conversion {
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Converted {
     Elementary(Elementary),
-    /// A STRING of any length.
-    Text,
+    /// A STRING or WSTRING of any length.
+    Text {
+        wide: bool,
+    },
 }
 
 impl Converted {
-    fn named(name: &str) -> Option<Self> {
-        if name == "STRING" { Some(Self::Text) } else { Elementary::named(name).map(Self::Elementary) }
+    /// By its name in capitals.
+    pub fn named(name: &str) -> Option<Self> {
+        match name {
+            "STRING" => Some(Self::Text { wide: false }),
+            "WSTRING" => Some(Self::Text { wide: true }),
+            _ => Elementary::named(name).map(Self::Elementary),
+        }
     }
 
     fn is(self, class: fn(Elementary) -> bool) -> bool {

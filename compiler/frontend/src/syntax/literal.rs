@@ -133,12 +133,11 @@ fn duration<'s>(state: &mut State<'_, 's>, at: usize) -> LiteralValue<'s> {
 fn string<'s>(state: &mut State<'_, 's>, at: usize) -> LiteralValue<'s> {
     let span = state.place(at);
     let text = state.slice(span);
-    let wide = text.starts_with('"');
-    let (bytes, faults) = lex::string(text, wide);
+    let (chars, faults) = lex::string(text);
     for fault in faults {
         report(state, Code::E0007, span, fault);
     }
-    LiteralValue::String { bytes: bytes.into(), wide }
+    LiteralValue::String(Box::new(chars))
 }
 
 fn date<'s>(state: &mut State<'_, 's>, at: usize) -> LiteralValue<'s> {

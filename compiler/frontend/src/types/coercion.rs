@@ -11,6 +11,9 @@ pub(crate) fn widens(from: Elementary, to: Elementary) -> bool {
         return from.is_bits() && to.is_bits() && from.repr().size() < to.repr().size()
             || (from == Elementary::Bool && to == Elementary::Byte);
     }
+    if from.is_char() || to.is_char() {
+        return false;
+    }
     if from.is_time() || to.is_time() {
         return LONG_FORMS.contains(&(from, to));
     }

@@ -26,7 +26,8 @@ fn widest(class: Class) -> Type {
         Class::Duration => Elementary::Ltime,
         Class::Date => Elementary::Ldt,
         Class::Bit => Elementary::Lword,
-        Class::Chars | Class::String => return Type::String(254),
+        Class::Char => Elementary::Wchar,
+        Class::Chars | Class::String => return Type::string(254),
     })
 }
 

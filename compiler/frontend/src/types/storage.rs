@@ -53,7 +53,7 @@ impl<'s> Declarations<'s> {
         match ty {
             Type::Elementary(it) | Type::Subrange(it, _) => u64::from(it.repr().size()),
             Type::Reference(_) => 8,
-            Type::String(capacity) => u64::from(capacity) + 2,
+            Type::String(it) => u64::from(it.size()),
             Type::Enum(id) => u64::from(self.program.enumeration(id).base.repr().size()),
             Type::Struct(id) => self.table.sizes[id.index()],
             Type::Block(id) => u64::try_from(id.info().size).unwrap_or(u64::MAX),
@@ -68,7 +68,7 @@ impl<'s> Declarations<'s> {
     /// there, and a zero.
     pub fn sizeof(&self, ty: Type) -> u64 {
         match ty {
-            Type::String(capacity) => u64::from(capacity) + 1,
+            Type::String(it) => (u64::from(it.capacity) + 1) * u64::from(it.unit_size()),
             Type::Elementary(_)
             | Type::Subrange(..)
             | Type::Reference(_)
@@ -100,7 +100,7 @@ impl<'s> Declarations<'s> {
                 let number = |it| u64::try_from(it).unwrap_or(u64::MAX);
                 Shape { size: number(info.size), align: number(info.align) }
             }
-            Type::String(_) => Shape { size: self.size_of(ty).next_multiple_of(2), align: 2 },
+            Type::String(it) => Shape { size: it.size().into(), align: 2 },
             Type::Elementary(_) | Type::Subrange(..) | Type::Reference(_) | Type::Enum(_) => {
                 Shape { size: self.size_of(ty), align: self.size_of(ty) }
             }

@@ -4,8 +4,8 @@ use super::{Frame, Interpreter};
 use crate::layout::usize_of;
 use crate::op::TextValue;
 use crate::{
-    Conversion, Expr, ExprKind, FaultKind, FieldId, Location, Op, Place, Projection, Repr, Root, TextOp, Type, Value,
-    apply, apply_text,
+    Chars, Conversion, Expr, ExprKind, FaultKind, FieldId, Location, Op, Place, Projection, Repr, Root, StringType,
+    TextOp, Type, Value, apply, apply_text,
 };
 use staunch_runtime::{Fault, ops};
 
@@ -15,7 +15,7 @@ const MAX_OPERANDS: usize = 4;
 /// Where the values of places come from.
 pub(super) trait Storage {
     fn load(&self, place: &Place) -> Result<Value, Fault>;
-    fn load_text(&self, place: &Place) -> Result<Vec<u8>, Fault>;
+    fn load_text(&self, place: &Place) -> Result<Chars, Fault>;
     fn address_of(&self, place: &Place) -> Result<Value, Fault>;
 }
 
@@ -40,20 +40,22 @@ pub(super) fn scalar(storage: &impl Storage, expr: &Expr) -> Result<Value, Fault
 }
 
 /// The value of an expression of a string type, within its capacity.
-pub(super) fn text(storage: &impl Storage, expr: &Expr) -> Result<Vec<u8>, Fault> {
+pub(super) fn text(storage: &impl Storage, expr: &Expr) -> Result<Chars, Fault> {
     match &expr.kind {
-        ExprKind::Text(bytes) => Ok(bytes.clone()),
+        ExprKind::Text(text) => Ok(text.clone()),
         ExprKind::Load(place) => storage.load_text(place),
-        ExprKind::ApplyText(op, operands) => match text_operation(storage, *op, operands, capacity(expr.ty))? {
-            TextValue::Text(bytes) => Ok(bytes),
-            TextValue::Scalar(_) => {
-                unreachable!("verified IR: a text operation with a string result")
+        ExprKind::ApplyText(op, operands) => {
+            match text_operation(storage, *op, operands, string_type(expr.ty).capacity)? {
+                TextValue::Text(text) => Ok(text),
+                TextValue::Scalar(_) => {
+                    unreachable!("verified IR: a text operation with a string result")
+                }
             }
-        },
+        }
         ExprKind::Convert(_, operand) => {
-            let mut bytes = text(storage, operand)?;
-            bytes.truncate(usize::from(capacity(expr.ty)));
-            Ok(bytes)
+            let mut text = text(storage, operand)?;
+            text.cut(string_type(expr.ty).capacity);
+            Ok(text)
         }
         ExprKind::Const(_) | ExprKind::AddressOf(_) | ExprKind::Apply(..) | ExprKind::Aggregate(_) => {
             unreachable!("verified IR: an expression of a string type")
@@ -101,19 +103,8 @@ fn elementary_repr(ty: Type) -> Repr {
     ty.elementary().expect("verified IR: a conversion to an elementary type").repr()
 }
 
-pub(super) fn capacity(ty: Type) -> u16 {
-    match ty {
-        Type::String(capacity) => capacity,
-        Type::Elementary(_)
-        | Type::Reference(_)
-        | Type::Subrange(..)
-        | Type::Enum(_)
-        | Type::Array(_)
-        | Type::Struct(_)
-        | Type::Block(_) => {
-            unreachable!("verified IR: an expression of a string type")
-        }
-    }
+pub(super) fn string_type(ty: Type) -> StringType {
+    ty.string_type().expect("verified IR: an expression of a string type")
 }
 
 /// The storage that a running routine sees.
@@ -132,16 +123,12 @@ impl Storage for Scope<'_> {
         Ok(Value::read(repr, &self.interpreter.memory[at..]))
     }
 
-    fn load_text(&self, place: &Place) -> Result<Vec<u8>, Fault> {
+    fn load_text(&self, place: &Place) -> Result<Chars, Fault> {
         if let Some(reached) = self.reached(place)? {
-            return self.load_reached_text(&reached, capacity(place.ty));
+            return self.load_reached_text(&reached, string_type(place.ty));
         }
         let at = self.resolve(place)?;
-        let header = &self.interpreter.memory[at..];
-        let Value::U16(length) = Value::read(Repr::U16, header) else { unreachable!("read as U16") };
-        // A host may have written any length.
-        let length = usize::from(length.min(capacity(place.ty)));
-        Ok(header[2..2 + length].to_vec())
+        Ok(Chars::read(string_type(place.ty), &self.interpreter.memory[at..]))
     }
 
     fn address_of(&self, place: &Place) -> Result<Value, Fault> {

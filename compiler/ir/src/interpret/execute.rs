@@ -158,22 +158,13 @@ impl<'p> Interpreter<'p> {
                 let value = scalar(&self.scope(frame), value)?;
                 value.write(&mut self.memory[offset..]);
             }
-            Type::String(capacity) => {
+            Type::String(ty) => {
                 let value = text(&self.scope(frame), value)?;
-                self.store_text(&value, capacity, offset);
+                value.write(&mut self.memory[offset..][..usize_of(ty.size().into())]);
             }
             Type::Array(_) | Type::Struct(_) | Type::Block(_) => self.store_aggregate(frame, value, offset)?,
         }
         Ok(())
-    }
-
-    /// The bytes past the length become zero, as in every executor.
-    fn store_text(&mut self, text: &[u8], capacity: u16, offset: usize) {
-        let length = u16::try_from(text.len()).expect("verified IR: a string fits its capacity");
-        let target = &mut self.memory[offset..][..2 + usize::from(capacity)];
-        Value::U16(length).write(target);
-        target[2..2 + text.len()].copy_from_slice(text);
-        target[2 + text.len()..].fill(0);
     }
 
     fn store_aggregate(&mut self, frame: &Frame, value: &Expr, offset: usize) -> Result<(), Fault> {

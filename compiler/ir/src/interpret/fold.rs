@@ -1,7 +1,7 @@
 //! Constant expressions, computed by the functions that run later.
 
 use super::evaluate::{Storage, scalar, text};
-use crate::{Const, Expr, ExprKind, Place, Type, Value};
+use crate::{Chars, Const, Expr, ExprKind, Place, Type, Value};
 use staunch_runtime::Fault;
 
 /// The value of a constant, or of an operation on constants; `None` for what is more than that.
@@ -63,7 +63,7 @@ impl Storage for NoStorage {
         unreachable!("a constant expression names no place")
     }
 
-    fn load_text(&self, _place: &Place) -> Result<Vec<u8>, Fault> {
+    fn load_text(&self, _place: &Place) -> Result<Chars, Fault> {
         unreachable!("a constant expression reads no place")
     }
 }

@@ -4,7 +4,7 @@ use super::evaluate::{Scope, Storage, scalar, text};
 use super::{Frame, Interpreter};
 use crate::layout::usize_of;
 use crate::reference::{Followed, followed, view, wanted};
-use crate::{Expr, Location, Place, Projection, Repr, Root, Type, Value};
+use crate::{Chars, Expr, Location, Place, Projection, Repr, Root, StringType, Type, Value};
 use core::cell::Cell;
 use staunch_runtime::reference::{Memory, Table, View};
 use staunch_runtime::{Fault, FaultKind, ops, text::Destination};
@@ -84,14 +84,18 @@ impl Scope<'_> {
         value.map_err(|kind| Fault { kind, at: it.at })
     }
 
-    pub(super) fn load_reached_text(&self, it: &Reached, capacity: u16) -> Result<Vec<u8>, Fault> {
-        let mut bytes = vec![0; usize::from(capacity)];
-        let mut length = 0;
-        let mut out = Destination::new(&mut length, &mut bytes);
-        let loaded = self.table().load_text(&self.state(), it.reference, it.distance, &mut out);
-        loaded.map_err(|kind| Fault { kind, at: it.at })?;
-        bytes.truncate(usize::from(length));
-        Ok(bytes)
+    pub(super) fn load_reached_text(&self, it: &Reached, ty: StringType) -> Result<Chars, Fault> {
+        let (table, state) = (self.table(), self.state());
+        let loaded = if ty.wide {
+            Chars::build(ty.capacity, |out: &mut Destination<'_, u16>| {
+                table.load_text(&state, it.reference, it.distance, out)
+            })
+        } else {
+            Chars::build(ty.capacity, |out: &mut Destination<'_>| {
+                table.load_text(&state, it.reference, it.distance, out)
+            })
+        };
+        loaded.map_err(|kind| Fault { kind, at: it.at })
     }
 
     pub(super) fn reference_to(&self, place: &Place) -> Result<Value, Fault> {
@@ -112,7 +116,10 @@ impl Interpreter<'_> {
         let stored = match value.ty {
             Type::String(_) => {
                 let value = text(&self.scope(frame), value)?;
-                self.with_table(|table, state| table.store_text(state, it.reference, it.distance, &value))
+                self.with_table(|table, state| match &value {
+                    Chars::Narrow(units) => table.store_text(state, it.reference, it.distance, units),
+                    Chars::Wide(units) => table.store_text(state, it.reference, it.distance, units),
+                })
             }
             Type::Elementary(_)
             | Type::Subrange(..)

@@ -3,7 +3,7 @@
 use super::*;
 use crate::fixture::*;
 use crate::{
-    Arm, Const, Conversion, Elementary, Expr, ExprKind, FaultKind, FieldId, LocalId, Op, Repr, Statement,
+    Arm, Chars, Const, Conversion, Elementary, Expr, ExprKind, FaultKind, FieldId, LocalId, Op, Repr, Statement,
     StatementKind, TextOp, Type,
 };
 
@@ -234,17 +234,17 @@ fn logix_instructions_take_a_rung_and_have_a_prescan() {
 }
 
 fn string(bytes: &[u8], capacity: u16) -> Expr {
-    Expr::new(Type::String(capacity), ExprKind::Text(bytes.to_vec()), AT)
+    Expr::new(Type::string(capacity), ExprKind::Text(Chars::Narrow(bytes.to_vec())), AT)
 }
 
 fn concat(a: Expr, b: Expr, capacity: u16) -> Expr {
-    Expr::new(Type::String(capacity), ExprKind::ApplyText(TextOp::Concat, vec![a, b]), AT)
+    Expr::new(Type::string(capacity), ExprKind::ApplyText(TextOp::Concat, vec![a, b]), AT)
 }
 
 #[test]
 fn strings_are_cut_at_their_capacity() {
     let joined = concat(load(name()), string(b"defghij", 7), 20);
-    let cut = Expr::convert(Conversion::Value, Type::String(8), joined, AT);
+    let cut = Expr::convert(Conversion::Value, Type::string(8), joined, AT);
     assert_eq!(run(vec![assign(name(), cut)]).name, b"abcdefgh");
     assert_eq!(run(vec![assign(name(), concat(load(name()), load(name()), 8))]).name, b"abcabc");
 }
@@ -265,7 +265,10 @@ fn folding_needs_no_program() {
     assert_eq!(fold(&divide), Some(Err(fault)));
     assert_eq!(fold(&add(int(1), divide)), None);
     assert_eq!(fold(&add(int(1), load(Place::local(LocalId(0), Type::INT)))), None);
-    assert_eq!(fold(&concat(string(b"ab", 2), string(b"cd", 2), 3)), Some(Ok(Const::Text(b"abc".to_vec()))));
+    assert_eq!(
+        fold(&concat(string(b"ab", 2), string(b"cd", 2), 3)),
+        Some(Ok(Const::Text(Chars::Narrow(b"abc".to_vec()))))
+    );
     let half = Expr::constant(Elementary::Lreal, Value::F64(2.5), AT);
     let rounded = Expr::convert(Conversion::Value, Type::INT, half.clone(), AT);
     assert_eq!(fold(&rounded), Some(Ok(int_const(2))));

@@ -1,6 +1,7 @@
 //! Sizes and offsets, against those of Rust.
 
 use super::*;
+use crate::Value;
 use crate::fixture::{self, AT, COLOR, field, routine, structure};
 use crate::{Elementary, RoutineKind, Struct};
 use core::mem::{align_of, offset_of, size_of};
@@ -50,7 +51,7 @@ fn nested() -> Program {
         vec![
             field("flag", Type::BOOL, Const::Scalar(Value::Bool(true))),
             field("wide", Type::LREAL, Const::Zero),
-            field("text", Type::String(5), Const::Text(b"abc".to_vec())),
+            field("text", Type::string(5), Const::Text(crate::Chars::Narrow(b"abc".to_vec()))),
             field("small", elementary(Elementary::Usint), Const::Scalar(Value::U8(9))),
         ],
     );
@@ -59,7 +60,7 @@ fn nested() -> Program {
         Const::Struct(vec![
             Const::Scalar(Value::Bool(true)),
             Const::Scalar(Value::F64(1.5)),
-            Const::Text(b"xy".to_vec()),
+            Const::Text(crate::Chars::Narrow(b"xy".to_vec())),
             Const::Zero,
         ]),
     )]);
@@ -69,7 +70,7 @@ fn nested() -> Program {
             field("first", elementary(Elementary::Byte), Const::Scalar(Value::U8(1))),
             field("inner", Type::Array(ArrayId(1)), Const::Array(vec![(1, Const::Zero), (2, row)])),
             field("color", COLOR, Const::Scalar(Value::I16(-2))),
-            field("text", Type::String(5), Const::Zero),
+            field("text", Type::string(5), Const::Zero),
             field("last", elementary(Elementary::Udint), Const::Scalar(Value::U32(77))),
             field("end", Type::BOOL, Const::Zero),
         ],

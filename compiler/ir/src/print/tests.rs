@@ -108,7 +108,7 @@ fn statements() {
 #[test]
 fn expressions() {
     let real = Expr::constant(Elementary::Lreal, Value::F64(-0.0), AT);
-    let text = Expr::new(Type::String(4), ExprKind::Text(b"a'\n\xff".to_vec()), AT);
+    let text = Expr::new(Type::string(4), ExprKind::Text(crate::Chars::Narrow(b"a'\n\xff".to_vec())), AT);
     let length = Expr::new(Type::INT, ExprKind::ApplyText(TextOp::Len, vec![text]), AT);
     let body = vec![
         assign(count(), Expr::convert(Conversion::Truncate, Type::INT, real, AT)),

@@ -4,8 +4,8 @@
 
 use super::addressed_locals;
 use crate::{
-    Argument, Const, Expr, ExprKind, Field, FieldId, For, Local, LocalId, Location, Mode, Place, Program, Projection,
-    Retain, Root, Routine, Section, Statement, StatementKind, Step, Type,
+    Argument, Chars, Const, Expr, ExprKind, Field, FieldId, For, Local, LocalId, Location, Mode, Place, Program,
+    Projection, Retain, Root, Routine, Section, Statement, StatementKind, Step, Type,
 };
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -207,7 +207,7 @@ fn initial(program: &Program, local: &Local, at: Location) -> Expr {
     let kind = match (&local.initial, local.ty, program.repr(local.ty)) {
         (Const::Scalar(value), _, _) => ExprKind::Const(*value),
         (Const::Text(text), _, _) => ExprKind::Text(text.clone()),
-        (Const::Zero, Type::String(_), _) => ExprKind::Text(Vec::new()),
+        (Const::Zero, Type::String(it), _) => ExprKind::Text(Chars::empty(it)),
         (Const::Zero, _, Some(repr)) => ExprKind::Const(repr.zero()),
         (Const::Zero | Const::Array(_) | Const::Struct(_), _, _) => ExprKind::Aggregate(local.initial.clone()),
     };

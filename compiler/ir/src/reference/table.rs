@@ -12,7 +12,7 @@ pub fn view(program: &Program, ty: Type) -> View {
     match ty {
         Type::Elementary(it) if it.repr() == Repr::Bool => View::Truth,
         Type::Elementary(it) => View::Number(it.repr().size()),
-        Type::String(_) => View::Text,
+        Type::String(it) => View::Text { wide: it.wide },
         Type::Enum(_) | Type::Subrange(..) | Type::Reference(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
             View::Exact(exact(program, ty))
         }
@@ -23,7 +23,7 @@ pub fn view(program: &Program, ty: Type) -> View {
 pub fn wanted(program: &Program, ty: Type) -> Wanted {
     match ty {
         Type::Elementary(it) => Wanted::Repr(it.repr()),
-        Type::String(capacity) => Wanted::Text(capacity),
+        Type::String(it) => Wanted::Text(it),
         Type::Enum(_) | Type::Subrange(..) | Type::Reference(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
             Wanted::Exact(exact(program, ty))
         }
@@ -155,7 +155,7 @@ impl<'p> Builder<'p> {
         let size = word(self.layout.size(ty));
         let node = match ty {
             Type::Elementary(it) => self.push(vec![numbers(it.repr()), size, encode::repr(it.repr()), 0]),
-            Type::String(capacity) => self.push(vec![encode::TEXT, size, u32::from(capacity), 0]),
+            Type::String(it) => self.push(vec![encode::TEXT, size, u32::from(it.capacity), u32::from(it.wide)]),
             Type::Enum(_) | Type::Subrange(..) | Type::Reference(_) | Type::Block(_) => {
                 // Nothing trusts the number of an enumeration.
                 let as_bytes = u32::from(matches!(ty, Type::Enum(_)));

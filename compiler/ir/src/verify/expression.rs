@@ -3,14 +3,15 @@
 use super::Verifier;
 use super::statement::Body;
 use crate::{Conversion, Expr, ExprKind, Location, Op, Repr, Root, TextOp, Type, Value};
+use staunch_runtime::Kind;
 
 impl Verifier<'_> {
     pub(super) fn expr(&mut self, body: &Body, expr: &Expr) {
         self.location(expr.at);
         match &expr.kind {
             ExprKind::Const(value) => self.const_expr(expr, *value),
-            ExprKind::Text(bytes) => {
-                let fits = matches!(expr.ty, Type::String(capacity) if bytes.len() <= capacity.into());
+            ExprKind::Text(text) => {
+                let fits = expr.ty.string_type().is_some_and(|it| text.fits(it));
                 self.require(fits, expr.at, "a string constant longer than its type");
             }
             ExprKind::Aggregate(value) => {
@@ -106,20 +107,21 @@ impl Verifier<'_> {
 
     fn text_operation(&mut self, op: TextOp, operands: &[Expr], result: Type, at: Location) {
         let name = op.source_name();
-        let wanted = op.operands();
+        let wanted = op.signature().parameters;
+        let wide = op.is_wide(operands);
         self.require(operands.len() == wanted.len(), at, format_args!("{name}: operand count"));
         for (wanted, operand) in wanted.iter().zip(operands) {
-            let holds = is_text_or_repr(operand.ty, *wanted);
+            let holds = is_of_kind(operand.ty, wanted.kind, wide);
             self.require(holds, operand.at, format_args!("{name}: an operand of {:?}", operand.ty));
         }
-        let holds = is_text_or_repr(result, op.result());
+        let holds = is_of_kind(result, op.signature().result, wide);
         self.require(holds, at, format_args!("{name}: a result of {result:?}"));
     }
 
     fn conversion(&mut self, how: Conversion, from: Type, to: Type, at: Location) {
         let elementary = (Self::elementary_repr(from), Self::elementary_repr(to));
         let holds = match (how, from, to) {
-            (Conversion::Value, Type::String(_), Type::String(_)) => true,
+            (Conversion::Value, Type::String(from), Type::String(to)) => from.wide == to.wide,
             (Conversion::Value, _, _) => matches!(elementary, (Some(_), Some(_))),
             (Conversion::Truncate, _, _) => {
                 matches!(elementary, (Some(from), Some(to)) if from.is_float() && to.is_integer())
@@ -131,10 +133,15 @@ impl Verifier<'_> {
     }
 }
 
-fn is_text_or_repr(ty: Type, repr: Option<Repr>) -> bool {
-    match repr {
-        Some(repr) => Verifier::elementary_repr(ty) == Some(repr),
-        None => matches!(ty, Type::String(_)),
+/// Whether an operand or result of a text operation is as its row says; `wide` is what its strings are, where they are
+/// of either kind.
+fn is_of_kind(ty: Type, kind: Kind, wide: bool) -> bool {
+    let is_string = |wide| ty.string_type().is_some_and(|it| it.wide == wide);
+    match kind {
+        Kind::AnyString => is_string(wide),
+        Kind::String => is_string(false),
+        Kind::Wstring => is_string(true),
+        Kind::T | Kind::Any(_) | Kind::Is(_) => kind.repr().is_some_and(|it| Verifier::elementary_repr(ty) == Some(it)),
     }
 }
 

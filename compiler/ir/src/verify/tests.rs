@@ -46,7 +46,7 @@ fn green() -> Expr {
 }
 
 fn string(bytes: &[u8], capacity: u16) -> Expr {
-    Expr::new(Type::String(capacity), ExprKind::Text(bytes.to_vec()), AT)
+    Expr::new(Type::string(capacity), ExprKind::Text(Chars::Narrow(bytes.to_vec())), AT)
 }
 
 #[test]
@@ -96,8 +96,8 @@ fn constants() {
         move |program: &mut Program| program.structs[1].fields[position].initial = initial
     };
     broken("not of type INT", main(0, Const::Scalar(Value::I32(0))));
-    broken("not of type INT", main(0, Const::Text(Vec::new())));
-    broken("not of type STRING[8]", main(4, Const::Text(vec![b'a'; 9])));
+    broken("not of type INT", main(0, Const::Text(Chars::Narrow(Vec::new()))));
+    broken("not of type STRING[8]", main(4, Const::Text(Chars::Narrow(vec![b'a'; 9]))));
     broken("wrong length", main(2, Const::Array(vec![(2, Const::Zero)])));
     broken("wrong length", main(2, Const::Array(vec![(u64::MAX, Const::Zero), (4, Const::Zero)])));
     broken("not of type INT", main(2, Const::Array(vec![(3, Const::Scalar(Value::Bool(true)))])));
@@ -106,7 +106,7 @@ fn constants() {
     broken("not of type INT", main(3, Const::Struct(vec![Const::Scalar(Value::U8(0))])));
     broken("wrong length", main(5, Const::Struct(Vec::new())));
     broken("structure constant of another type", main(0, Const::Struct(Vec::new())));
-    broken("not of type INT", |program| program.routines[0].locals[0].initial = Const::Text(Vec::new()));
+    broken("not of type INT", |program| program.routines[0].locals[0].initial = Const::Text(Chars::Narrow(Vec::new())));
 }
 
 #[test]
@@ -206,7 +206,7 @@ fn constant_expressions() {
     bad_expr("not of its type", Expr::new(Type::INT, ExprKind::Const(Value::I32(1)), AT));
     bad_expr("not of its type", Expr::new(Type::Enum(EnumId(7)), ExprKind::Const(Value::I16(1)), AT));
     bad("longer than its type", assign(name(), string(b"123456789", 8)));
-    bad_expr("longer than its type", Expr::new(Type::INT, ExprKind::Text(Vec::new()), AT));
+    bad_expr("longer than its type", Expr::new(Type::INT, ExprKind::Text(Chars::Narrow(Vec::new())), AT));
     bad_expr("aggregate of a simple", Expr::new(Type::INT, ExprKind::Aggregate(Const::Zero), AT));
     let short = ExprKind::Aggregate(Const::Array(vec![(1, Const::Zero)]));
     bad("wrong length", assign(values(), Expr::new(values().ty, short, AT)));
@@ -267,9 +267,9 @@ fn text_operations() {
     let text = |op, ty, operands| Expr::new(ty, ExprKind::ApplyText(op, operands), AT);
     bad_expr("LEN: operand count", text(TextOp::Len, Type::INT, Vec::new()));
     bad_expr("LEN: an operand", text(TextOp::Len, Type::INT, vec![int(1)]));
-    bad_expr("LEFT: an operand", text(TextOp::Left, Type::String(8), vec![string(b"", 1), int(1)]));
+    bad_expr("LEFT: an operand", text(TextOp::Left, Type::string(8), vec![string(b"", 1), int(1)]));
     bad_expr("LEN: a result", text(TextOp::Len, Type::DINT, vec![string(b"", 1)]));
-    good(assign(name(), text(TextOp::Left, Type::String(8), vec![string(b"abc", 3), lint(1)])));
+    good(assign(name(), text(TextOp::Left, Type::string(8), vec![string(b"abc", 3), lint(1)])));
 }
 
 #[test]
@@ -279,9 +279,9 @@ fn conversions() {
     bad_expr("no conversion", convert(Conversion::Value, Type::INT, string(b"", 1)));
     bad_expr("no conversion", convert(Conversion::Truncate, Type::INT, int(1)));
     bad_expr("no conversion", convert(Conversion::Same, Type::INT, lint(1)));
-    bad_expr("no conversion", convert(Conversion::Same, Type::String(3), string(b"", 3)));
+    bad_expr("no conversion", convert(Conversion::Same, Type::string(3), string(b"", 3)));
     good(assign(count(), convert(Conversion::Same, Type::INT, green())));
-    good(assign(name(), convert(Conversion::Value, Type::String(8), string(b"", 30))));
+    good(assign(name(), convert(Conversion::Value, Type::string(8), string(b"", 30))));
 }
 
 #[test]

@@ -110,9 +110,7 @@ impl Verifier<'_> {
         let fits = match value {
             Const::Zero => self.program.range(ty).is_none_or(|(low, high)| (low..=high).contains(&0)),
             Const::Scalar(value) => self.scalar_fits(ty, *value),
-            Const::Text(bytes) => {
-                matches!(ty, Type::String(capacity) if bytes.len() <= capacity.into())
-            }
+            Const::Text(text) => ty.string_type().is_some_and(|it| text.fits(it)),
             Const::Array(runs) => return self.array_constant(ty, runs, at),
             Const::Struct(values) => return self.struct_constant(ty, values, at),
         };

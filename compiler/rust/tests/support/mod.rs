@@ -142,10 +142,10 @@ fn mark(program: &Program, layout: &Layout, ty: Type, offset: u64, mask: &mut [u
             mask[usize_of(offset)..][..usize_of(layout.size(ty))].fill(1)
         }
         // Bytes after a string's end mean nothing.
-        Type::String(capacity) => {
+        Type::String(it) => {
             let at = usize_of(offset);
             mask[at..][..2].fill(1);
-            mask[at + 2..][..usize::from(capacity)].fill(2);
+            mask[at + 2..][..usize::from(it.capacity) * usize_of(it.unit_size().into())].fill(2);
         }
     }
 }

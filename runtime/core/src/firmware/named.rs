@@ -1,6 +1,7 @@
 //! Variables by name: what the table of a program that was emitted with names holds.
 
-use crate::Text;
+use crate::text::Unit;
+use crate::{Text, WideText};
 use core::fmt;
 
 /// A variable, or the elements of an array.
@@ -23,8 +24,10 @@ pub enum Value<'v> {
     Unsigned(u64),
     Real(f32),
     LongReal(f64),
-    /// A string's characters.
+    /// A STRING's characters.
     Text(&'v [u8]),
+    /// A WSTRING's, as UTF-16.
+    WideText(&'v [u16]),
 }
 
 impl fmt::Display for Value<'_> {
@@ -35,7 +38,8 @@ impl fmt::Display for Value<'_> {
             Self::Unsigned(value) => value.fmt(f),
             Self::Real(value) => write!(f, "{value:?}"),
             Self::LongReal(value) => write!(f, "{value:?}"),
-            Self::Text(value) => write!(f, "'{}'", value.escape_ascii()),
+            Self::Text(value) => u8::debug(value, f),
+            Self::WideText(value) => u16::debug(value, f),
         }
     }
 }
@@ -71,5 +75,12 @@ impl<'v, const N: usize> From<&'v Text<N>> for Value<'v> {
     #[inline]
     fn from(value: &'v Text<N>) -> Self {
         Self::Text(value.as_bytes())
+    }
+}
+
+impl<'v, const N: usize> From<&'v WideText<N>> for Value<'v> {
+    #[inline]
+    fn from(value: &'v WideText<N>) -> Self {
+        Self::WideText(value.as_units())
     }
 }

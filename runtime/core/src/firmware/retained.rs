@@ -3,6 +3,7 @@
 //! A record is the program's fingerprint, the stamp, the variables' values in the order of their
 //! declarations, and a CRC-32 of all that; numbers are little endian.
 
+use crate::text::Unit;
 use crate::{Text, Time, crc32};
 use core::fmt;
 
@@ -129,16 +130,16 @@ impl Carried for bool {
 }
 
 /// A length beyond the capacity is the capacity.
-impl<const N: usize> Carried for Text<N> {
+impl<const N: usize, U: Unit + Carried> Carried for Text<N, U> {
     fn carry(&mut self, carrier: &mut Carrier<'_>) {
-        let mut length = self.as_bytes().len() as u16;
-        let mut bytes = [0; N];
-        for (to, from) in bytes.iter_mut().zip(self.as_bytes()) {
+        let mut length = self.as_units().len() as u16;
+        let mut units = [U::ZERO; N];
+        for (to, from) in units.iter_mut().zip(self.as_units()) {
             *to = *from;
         }
         length.carry(carrier);
-        carrier.bytes(&mut bytes);
-        *self = Self::new(bytes.get(..usize::from(length)).unwrap_or(&bytes));
+        units.carry(carrier);
+        *self = Self::new(units.get(..usize::from(length)).unwrap_or(&units));
     }
 }
 

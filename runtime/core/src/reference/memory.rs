@@ -4,6 +4,7 @@ use core::any::{Any, TypeId};
 use core::cell::Cell;
 
 use crate::Text;
+use crate::text::Unit;
 
 /// The bytes of a state. Offsets lie within it, by the checks of a [`Table`](super::Table); what would not
 /// is left out.
@@ -160,7 +161,7 @@ impl Raw for bool {
     }
 }
 
-impl<const N: usize> Raw for Text<N> {
+impl<const N: usize, U: Unit> Raw for Text<N, U> {
     fn read(self, at: usize, out: &mut [u8]) {
         for (position, to) in (at..).zip(out) {
             *to = self.raw_byte(position);

@@ -6,7 +6,7 @@
 //! seen as any number without a look at the nodes.
 
 use super::{ORIGIN, Reference};
-use crate::{FaultKind, Repr};
+use crate::{FaultKind, Repr, StringType};
 
 /// As what an access wants to see memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,8 +15,8 @@ pub enum View {
     Truth,
     /// A number, of this many bytes.
     Number(u32),
-    /// A string.
-    Text,
+    /// A string: a WSTRING, or a STRING.
+    Text { wide: bool },
     /// Exactly this: the number of a type that is viewed as nothing else.
     Exact(u32),
 }
@@ -26,7 +26,7 @@ impl View {
     pub const fn code(self) -> u32 {
         match self {
             Self::Truth => 0,
-            Self::Text => 1,
+            Self::Text { wide } => 1 | (wide as u32) << 2,
             Self::Number(size) => 2 | size << 2,
             Self::Exact(id) => 3 | id << 2,
         }
@@ -35,7 +35,7 @@ impl View {
     pub const fn from_code(code: u32) -> Self {
         match code & 3 {
             0 => Self::Truth,
-            1 => Self::Text,
+            1 => Self::Text { wide: code >> 2 != 0 },
             2 => Self::Number(code >> 2),
             _ => Self::Exact(code >> 2),
         }
@@ -51,8 +51,8 @@ pub enum Part {
     Truth { at: usize },
     /// Bytes of several numbers, and such as belong to no variable: those are 0, and take no write.
     Spread { at: usize },
-    /// The characters of the string at an offset of the state, from this one on.
-    Characters { text: usize, capacity: u16, index: u16 },
+    /// The characters of the string at an offset of the state, from this byte of them on.
+    Characters { text: usize, ty: StringType, index: usize },
 }
 
 /// The objects of a program, by its words.
@@ -92,7 +92,7 @@ pub mod encode {
 /// | kind | first | second | after it |
 /// |---|---|---|---|
 /// | `NUMBERS`, `TRUTHS` | the repr | | |
-/// | `TEXT` | the capacity | | |
+/// | `TEXT` | the capacity | 1 for a WSTRING | |
 /// | `EXACT` | the type's number | 1 if it may be seen as bytes, too | |
 /// | `ARRAY` | the type's number | the element's size | the element's node; the kind and the repr of the numbers that it consists of, through all dimensions |
 /// | `STRUCTURE` | the type's number | the number of members | for each its offset and node |
@@ -102,6 +102,19 @@ struct Node {
     size: usize,
     first: u32,
     second: u32,
+}
+
+impl Node {
+    /// What a `TEXT` is.
+    fn string_type(self) -> StringType {
+        StringType { wide: self.second == 1, capacity: self.first as u16 }
+    }
+
+    /// Bytes of a `TEXT`'s characters.
+    fn characters(self) -> usize {
+        let ty = self.string_type();
+        usize::from(ty.capacity) * ty.unit_size() as usize
+    }
 }
 
 /// A part of the state, with where it begins.
@@ -169,10 +182,12 @@ impl<'t> Table<'t> {
         let index = offset - found.start;
         let left = found.node.size - index;
         match (found.node.kind, view) {
-            (encode::TEXT, View::Number(1)) if index > found.node.first as usize && rest > left => {
+            (encode::TEXT, View::Number(1)) if index > found.node.characters() && rest > left => {
                 Ok(Part::Spread { at: offset })
             }
-            (encode::TEXT, View::Number(1) | View::Text) => self.characters(found, index),
+            (encode::TEXT, View::Number(1)) => self.characters(found, index),
+            (encode::TEXT, View::Number(2)) if found.node.string_type().wide => self.units(found, index),
+            (encode::TEXT, View::Text { wide }) if found.node.string_type().wide == wide => self.units(found, index),
             (encode::NUMBERS, View::Number(size)) => {
                 let fits = size as usize <= left.min(rest) && offset.checked_rem(size as usize) == Some(0);
                 if fits {
@@ -185,7 +200,7 @@ impl<'t> Table<'t> {
             (encode::NUMBERS, View::Truth) | (encode::TRUTHS, View::Truth | View::Number(1)) => {
                 Ok(Part::Truth { at: offset })
             }
-            (encode::NUMBERS, View::Text) => Ok(Part::Bytes { at: offset, rest: left.min(rest) }),
+            (encode::NUMBERS, View::Text { .. }) => Ok(Part::Bytes { at: offset, rest: left.min(rest) }),
             (encode::EXACT, View::Exact(id)) if found.node.first == id && index == 0 => {
                 Ok(Part::Bytes { at: offset, rest: left })
             }
@@ -219,13 +234,22 @@ impl<'t> Table<'t> {
         self.leaf(offset).is_some_and(|it| it.node.kind == encode::NUMBERS)
     }
 
+    /// Characters from a byte of them on.
     fn characters(&self, found: Found, index: usize) -> Result<Part, FaultKind> {
-        let capacity = found.node.first as u16;
+        let ty = found.node.string_type();
         // A string of full length ends with a zero, too.
-        if index > usize::from(capacity) {
+        if index >= found.node.characters() + ty.unit_size() as usize {
             return Err(FaultKind::OutsideObject);
         }
-        Ok(Part::Characters { text: found.start, capacity, index: index as u16 })
+        Ok(Part::Characters { text: found.start, ty, index })
+    }
+
+    /// Characters from one of them on.
+    fn units(&self, found: Found, index: usize) -> Result<Part, FaultKind> {
+        if !index.is_multiple_of(found.node.string_type().unit_size() as usize) {
+            return Err(FaultKind::MisalignedReference);
+        }
+        self.characters(found, index)
     }
 
     /// Where a variable of exactly this type lies: the offset in the state. `repr` for a number or a BOOL,
@@ -240,7 +264,7 @@ impl<'t> Table<'t> {
                 (encode::NUMBERS | encode::TRUTHS, Wanted::Repr(repr)) => {
                     at.node.first == encode::repr(repr) && index.checked_rem(repr.size() as usize) == Some(0)
                 }
-                (encode::TEXT, Wanted::Text(capacity)) => index == 0 && at.node.first == u32::from(capacity),
+                (encode::TEXT, Wanted::Text(ty)) => index == 0 && at.node.string_type() == ty,
                 (encode::EXACT | encode::ARRAY | encode::STRUCTURE, Wanted::Exact(id)) => {
                     index == 0 && at.node.first == id
                 }
@@ -321,7 +345,7 @@ impl<'t> Table<'t> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wanted {
     Repr(Repr),
-    Text(u16),
+    Text(StringType),
     Exact(u32),
 }
 
@@ -330,7 +354,7 @@ impl Wanted {
     pub const fn code(self) -> u32 {
         match self {
             Self::Repr(repr) => encode::repr(repr) << 2,
-            Self::Text(capacity) => 1 | (capacity as u32) << 2,
+            Self::Text(ty) => 1 | (ty.wide as u32) << 2 | (ty.capacity as u32) << 3,
             Self::Exact(id) => 2 | id << 2,
         }
     }
@@ -339,7 +363,7 @@ impl Wanted {
         let repr = || Repr::ALL.into_iter().find(|it| encode::repr(*it) == code >> 2);
         match code & 3 {
             0 => Self::Repr(repr().unwrap_or(Repr::U8)),
-            1 => Self::Text((code >> 2) as u16),
+            1 => Self::Text(StringType { wide: code & 4 != 0, capacity: (code >> 3) as u16 }),
             _ => Self::Exact(code >> 2),
         }
     }

@@ -3,7 +3,7 @@
 //! Text is read as CODESYS and TwinCAT document it: spaces before a value are passed over, and so is what
 //! follows a number; what is no value gives 0.
 
-use super::Destination;
+use super::{Destination, characters};
 use crate::decimal::{self, Format, LREAL, REAL};
 use crate::{Elementary, Time, format, literal};
 use core::fmt::Write;
@@ -13,6 +13,66 @@ impl Write for Destination<'_> {
         self.write(text.as_bytes());
         Ok(())
     }
+}
+
+/// A STRING's characters as UTF-16.
+///
+/// ```
+/// use staunch_runtime::{WideText, text::widen, utf16};
+/// let text = WideText::<2>::build(|out| widen("aé€".as_bytes(), out));
+/// assert_eq!(text.as_units(), utf16!("aé"));
+/// ```
+#[inline]
+pub fn widen(text: &[u8], out: &mut Destination<'_, u16>) {
+    for character in characters(text) {
+        let mut units = [0; 2];
+        out.write(character.encode_utf16(&mut units));
+    }
+}
+
+/// A WSTRING's characters as UTF-8; half a surrogate pair is a `?`.
+///
+/// ```
+/// use staunch_runtime::{Text, text::narrow, utf16};
+/// let text = Text::<6>::build(|out| narrow(&utf16!("aé€"), out));
+/// assert_eq!(text.as_bytes(), "aé€".as_bytes());
+/// ```
+#[inline]
+pub fn narrow(text: &[u16], out: &mut Destination<'_>) {
+    for character in char::decode_utf16(text.iter().copied()) {
+        let mut bytes = [0; 4];
+        out.write(character.unwrap_or('?').encode_utf8(&mut bytes).as_bytes());
+    }
+}
+
+/// A STRING of one character.
+#[inline]
+pub fn from_char(value: u8, out: &mut Destination<'_>) {
+    out.write(&[value]);
+}
+
+/// A WSTRING of one character.
+#[inline]
+pub fn from_wchar(value: u16, out: &mut Destination<'_, u16>) {
+    out.write(&[value]);
+}
+
+/// The first character; 0 of an empty string.
+#[inline]
+pub fn to_char(text: &[u8]) -> u8 {
+    text.first().copied().unwrap_or_default()
+}
+
+/// The first character; 0 of an empty string.
+#[inline]
+pub fn to_wchar(text: &[u16]) -> u16 {
+    text.first().copied().unwrap_or_default()
+}
+
+/// The CHAR of that number; `?` where that takes more than a byte.
+#[inline]
+pub fn narrow_char(value: u16) -> u8 {
+    u8::try_from(value).unwrap_or(b'?')
 }
 
 /// `TRUE` or `FALSE`.

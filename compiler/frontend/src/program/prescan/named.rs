@@ -3,8 +3,8 @@
 //! ignores (Rockwell 1756-PM014, "Major faults": array faults are cleared during prescan).
 
 use staunch_ir::{
-    Block, Const, Elementary, Expr, ExprKind, LocalId, Location, Op, Place, Program, Projection, Repr, Root, Routine,
-    Statement, StatementKind, Type, Value,
+    Block, Chars, Const, Elementary, Expr, ExprKind, LocalId, Location, Op, Place, Program, Projection, Repr, Root,
+    Routine, Statement, StatementKind, Type, Value,
 };
 
 /// A place as another routine sees it: `load` says what its indices read.
@@ -51,8 +51,10 @@ pub(super) fn initial(program: &Program, routine: &Routine, local: LocalId, plac
         (Some(_), Const::Scalar(value)) if place.projections.is_empty() => ExprKind::Const(*value),
         (Some(repr), _) => ExprKind::Const(repr.zero()),
         (None, Const::Text(text)) if place.projections.is_empty() => ExprKind::Text(text.clone()),
-        (None, _) if matches!(place.ty, Type::String(_)) => ExprKind::Text(Vec::new()),
-        (None, _) => ExprKind::Aggregate(Const::Zero),
+        (None, _) => match place.ty.string_type() {
+            Some(ty) => ExprKind::Text(Chars::empty(ty)),
+            None => ExprKind::Aggregate(Const::Zero),
+        },
     };
     Expr::new(place.ty.read(), kind, at)
 }

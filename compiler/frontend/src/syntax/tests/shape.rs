@@ -123,7 +123,7 @@ fn literal(it: &Literal<'_>) -> String {
         LiteralValue::Integer { value, .. } => value.to_string(),
         LiteralValue::Real(digits) => digits.to_string(),
         LiteralValue::Time { ty, nanoseconds } => format!("{nanoseconds}ns:{}", ty.name()),
-        LiteralValue::String { bytes, .. } => format!("{:?}", String::from_utf8_lossy(bytes)),
+        LiteralValue::String(chars) => format!("{:?}", chars.text()),
         LiteralValue::Enumerator(name) => name.text.into(),
         LiteralValue::Error => "error".into(),
     };
