@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use staunch_runtime::reference::{ORIGIN, Reference, View, Wanted, encode};
-use staunch_runtime::{FaultKind, Repr, Text};
+use staunch_runtime::{FaultKind, Repr, StringType, Text};
 
 use staunch_runtime_abi as _;
 
@@ -107,7 +107,7 @@ fn no_access_leaves_the_objects() {
                 2 => staunch_reference_load_text(words.as_ptr(), bytes, bits, distance, (&raw mut text).cast(), 5),
                 3 => staunch_reference_store_text(words.as_ptr(), bytes, bits, distance, (&raw const written).cast()),
                 _ => {
-                    let wanted = [Wanted::Repr(Repr::U32), Wanted::Text(6), Wanted::Exact(SECRET)];
+                    let wanted = [Wanted::Repr(Repr::U32), Wanted::Text(StringType::narrow(6)), Wanted::Exact(SECRET)];
                     let wanted = wanted[index(next(3))].code();
                     staunch_reference_find(words.as_ptr(), bits, distance, wanted, &mut found)
                 }

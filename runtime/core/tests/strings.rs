@@ -51,7 +51,7 @@ fn equal_strings_are_equal_in_memory() {
 fn strings_are_ordered_and_searched_by_bytes() {
     assert_eq!([compare(b"", b""), compare(b"a", b"B"), compare(b"a", b"aa")], [0, 1, -1]);
     assert_eq!([find(b"ABAB", b"B"), find(b"AB", b"ABC"), find(b"", b"")], [2, 0, 0]);
-    assert_eq!([len(b""), len(b"AB"), len(&[0; 65535])], [0, 2, i16::MAX]);
+    assert_eq!([len(b""), len(b"AB"), len(&[0_u8; 65535])], [0, 2, i16::MAX]);
 }
 
 #[test]

@@ -246,7 +246,7 @@ impl<'t> Table<'t> {
 
     /// Characters from one of them on.
     fn units(&self, found: Found, index: usize) -> Result<Part, FaultKind> {
-        if !index.is_multiple_of(found.node.string_type().unit_size() as usize) {
+        if index.checked_rem(found.node.string_type().unit_size() as usize) != Some(0) {
             return Err(FaultKind::MisalignedReference);
         }
         self.characters(found, index)

@@ -142,8 +142,6 @@ pub const fn utf16_units<const N: usize>(text: &str) -> [u16; N] {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-
     #[test]
     fn constants_are_utf16() {
         const TEXT: &[u16] = &crate::utf16!("aé€😀\0");
