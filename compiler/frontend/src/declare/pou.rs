@@ -62,7 +62,7 @@ impl<'s> Declarations<'s> {
         if pou.kind.has_routines() {
             self.instance_variables(pou, &mut builder, &mut instance_variables);
         }
-        if pou.kind.is_block() && builder.fields.is_empty() && !self.interfaces_of(slot).is_empty() {
+        if pou.kind.is_block() && builder.fields.is_empty() && self.is_told_apart(slot) {
             builder.fields.push(self.presence(pou));
         }
         let state = owner.map(|it| it.state).unwrap_or_else(|| {

@@ -172,8 +172,8 @@ impl<'s> Declarations<'s> {
     pub(super) fn settle_references(&mut self) {
         for at in 0..self.table.pending_references.len() {
             let PendingReference { id, path, span, .. } = self.table.pending_references[at];
-            if let Some(resolved) = self.resolve_path(path, span) {
-                self.program.references[id.index()].target = resolved.ty;
+            if let Some(ty) = self.class_at(path).or_else(|| Some(self.resolve_path(path, span)?.ty)) {
+                self.program.references[id.index()].target = ty;
             } else {
                 self.table.unknown_references.insert(id);
             }
@@ -182,6 +182,15 @@ impl<'s> Declarations<'s> {
         for (at, reference) in self.program.references.iter().enumerate() {
             self.table.index.references.entry(*reference).or_insert(ReferenceId::next(at));
         }
+    }
+
+    /// The instances of a class that a path names; of an ABSTRACT one there are those of its heirs.
+    pub(super) fn class_at(&mut self, path: &[ast::Name<'s>]) -> Option<Type> {
+        let Found::One(Meaning::Declared(Entry::Pou(at))) = self.lookup(path, Sense::Type) else { return None };
+        if !self.pous[at].ast.kind.is_block() {
+            return None;
+        }
+        self.signature(at)?.state.map(Type::Struct)
     }
 
     pub(super) fn resolve_path(&mut self, path: &[ast::Name<'s>], span: Span) -> Option<Resolved> {

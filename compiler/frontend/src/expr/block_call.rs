@@ -209,6 +209,10 @@ impl<'s> Checker<'_, 's> {
         }
         let mut parts = Parts::default();
         let is_this = found.place.root == Root::Instance && found.place.projections.is_empty();
+        let dispatch = self.dispatch(&found.place, slot, callee);
+        if let Some(dispatch) = &dispatch {
+            self.check_in_outs(dispatch, slot, callee)?;
+        }
         parts.push(Held::Place(found.place), Role::Instance, callee);
         let mut references = vec![None; formals.len()];
         let mut complete = true;
@@ -245,9 +249,16 @@ impl<'s> Checker<'_, 's> {
                 Some(part) => Some(parts.argument(part)),
                 None => own[at].clone().map(Argument::Reference),
             };
-            let arguments = in_outs().map(argument).collect::<Option<_>>()?;
-            let instance = Some(parts.instance()?.clone());
-            Some(StatementKind::Call { callee: RoutineId::next(slot), instance, arguments, result: None })
+            let arguments: Vec<_> = in_outs().map(argument).collect::<Option<_>>()?;
+            let call = |callee, instance| {
+                let arguments = Vec::clone(&arguments);
+                StatementKind::Call { callee, instance: Some(instance), arguments, result: None }
+            };
+            let instance = parts.instance()?.clone();
+            Some(match &dispatch {
+                Some(dispatch) => dispatch.statement(&instance, &call),
+                None => call(RoutineId::next(slot), instance),
+            })
         };
         self.perform(parts, &call, span).map(drop)
     }

@@ -1,6 +1,6 @@
-//! Calls on what a variable of an INTERFACE refers to: which routine runs depends on the instance's class, whose
-//! number is a part of the reference. All classes that it may be of are known, so that the call is a CASE of direct
-//! calls, and where there is one class a direct call.
+//! Calls on what a variable of an INTERFACE refers to, or a reference to a class that others extend: which routine
+//! runs depends on the instance's class, whose number is a part of the reference. All classes that it may be of
+//! are known, so that the call is a CASE of direct calls, and where there is one class a direct call.
 
 use super::checker::Checker;
 use crate::spelling::nearest;
@@ -94,9 +94,20 @@ impl<'s> Checker<'_, 's> {
     /// What a call of a routine on an instance depends on; `None` where it is a direct one.
     pub(crate) fn dispatch(&mut self, instance: &Place, slot: usize, span: Span) -> Option<Dispatch> {
         let Some(Projection::Deref { reference, .. }) = instance.projections.last() else { return None };
-        let interface = self.decl.interface_of(*reference)?;
+        let classes = match (self.decl.interface_of(*reference), instance.ty) {
+            (Some(interface), _) => self.decl.implementers(interface).to_vec(),
+            (None, Type::Struct(state)) => {
+                let class = self.decl.slot_of_instance(state)?;
+                let kin = self.decl.kin(class);
+                if kin == [class] {
+                    return None;
+                }
+                kin
+            }
+            (None, _) => return None,
+        };
         let mut ways = Vec::new();
-        for class in self.decl.implementers(interface).iter().copied() {
+        for class in classes {
             let state = self.decl.signature(class).and_then(|it| it.state);
             let (Some(state), Some(slot)) = (state, self.decl.routine_for(class, slot)) else { continue };
             let number = self.decl.class_number(state, span);
@@ -105,12 +116,32 @@ impl<'s> Checker<'_, 's> {
         Some(Dispatch { ways, at: self.at(span) })
     }
 
+    /// Reports a body that takes more variables than a call by its base gives.
+    pub(crate) fn check_in_outs(&mut self, dispatch: &Dispatch, base: usize, span: Span) -> Option<()> {
+        let wanted = self.decl.signature(base)?.params.len();
+        for way in &dispatch.ways {
+            if self.decl.signature(way.slot)?.params.len() == wanted {
+                continue;
+            }
+            let heir = self.decl.pous[way.slot].ast.name;
+            let message = format!("`{}` needs variables that this call does not give", heir.text);
+            self.report(
+                Diagnostic::new(Code::E0303, span, message)
+                    .label("this may be an instance of it")
+                    .other(heir.span, "it declares VAR_IN_OUTs that its base does not have"),
+            );
+            return None;
+        }
+        Some(())
+    }
+
     /// A reference to an instance, with the number of its class where calls may depend on that.
     pub(crate) fn told_apart(&mut self, reference: Expr, place: &Place, span: Span) -> Expr {
         // What a reference leads to has its number there.
         let is_whole = matches!(place.projections.last(), Some(Projection::Deref { .. }));
         let Type::Struct(state) = place.ty else { return reference };
-        if is_whole || !self.decl.is_told_apart(state) {
+        let class = self.decl.slot_of_instance(state);
+        if is_whole || !class.is_some_and(|it| self.decl.is_told_apart(it)) {
             return reference;
         }
         let (ty, at, lword) = (reference.ty, reference.at, Type::Elementary(Elementary::Lword));

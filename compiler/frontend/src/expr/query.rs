@@ -55,10 +55,7 @@ impl<'s> Checker<'_, 's> {
         let wants_pointer = name.text.eq_ignore_ascii_case("__QUERYPOINTER");
         let classes = self.answering(found.place.ty, wants_pointer, to.span)?;
         self.note_assigned(&found.place, to.span);
-        let mut numbers = Vec::new();
-        for state in classes.into_iter().filter(|it| self.decl.is_told_apart(*it)).collect::<Vec<_>>() {
-            numbers.push(self.decl.class_number(state, span));
-        }
+        let numbers: Vec<_> = classes.into_iter().map(|it| self.decl.class_number(it, span)).collect();
         Some(Operand::Typed(self.answer(&pointer, found.place, &numbers, span)))
     }
 
@@ -87,7 +84,7 @@ impl<'s> Checker<'_, 's> {
                 let target = self.decl.program.target(id);
                 let Type::Struct(state) = target else { return self.report_answer(ty, wants_pointer, span) };
                 let slot = self.decl.slot_of_instance(state);
-                slot.map_or_else(Vec::new, |it| vec![it])
+                slot.map_or_else(Vec::new, |it| self.decl.kin(it))
             }
             _ => return self.report_answer(ty, wants_pointer, span),
         };

@@ -288,7 +288,8 @@ impl<'s> Checker<'_, 's> {
         if self.decl.interface_of(ty).or(self.decl.interface_of(value.ty)).is_some() {
             return self.coerce_interface(value, ty, span);
         }
-        let same = self.decl.program.target(from) == self.decl.program.target(to);
+        let targets = (self.decl.program.target(from), self.decl.program.target(to));
+        let same = targets.0 == targets.1 || self.decl.extends(targets.0, targets.1);
         let loose = self.decl.dialect(span).mixes_bits_and_integers();
         if same && value.as_const().is_some() {
             return Some(Expr { ty, ..value });

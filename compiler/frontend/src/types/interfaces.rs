@@ -1,11 +1,11 @@
-//! INTERFACEs: which classes have them, and the numbers by which a reference to an instance tells its class.
+//! INTERFACEs and bases: which classes have them, and the numbers by which a reference to an instance tells its class.
 
 use super::declarations::{Declarations, Routines};
 use crate::ast::PouKind;
 use crate::names::{Entry, Found, Meaning, Sense};
 use crate::spelling::Key;
 use crate::{Code, Diagnostic, Span};
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{Elementary, InterfaceId, RefKind, StructId, Type};
 use std::rc::Rc;
 
@@ -111,9 +111,12 @@ impl Declarations<'_> {
         None
     }
 
-    /// The routine of a class for a head of an INTERFACE.
-    pub fn routine_for(&self, class: usize, head: usize) -> Option<usize> {
-        let head = self.pous[head].ast;
+    /// What a class has for a head of an INTERFACE, or for the body or a routine of its base.
+    pub fn routine_for(&self, class: usize, slot: usize) -> Option<usize> {
+        if self.pous[slot].owner.is_none() {
+            return Some(class);
+        }
+        let head = self.pous[slot].ast;
         let routines = self.pous[class].routines.get(&Key(head.name.text))?;
         let found = match head.kind {
             PouKind::Getter => routines.getter,
@@ -130,10 +133,47 @@ impl Declarations<'_> {
         found.map(|it| it.0)
     }
 
-    /// Whether the classes of instances of this type may have to be told apart by a reference.
-    pub fn is_told_apart(&mut self, state: StructId) -> bool {
-        let Some(slot) = self.slot_of_instance(state) else { return false };
-        self.pous[slot].ast.kind.is_block() && !self.interfaces_of(slot).is_empty()
+    /// Whether the class of an instance may have to be told from its reference: others have the same INTERFACE or
+    /// base.
+    pub fn is_told_apart(&mut self, slot: usize) -> bool {
+        let is_kin = self.base_of(slot).is_some() || self.heirs().contains_key(&slot);
+        self.pous[slot].ast.kind.is_block() && (is_kin || !self.interfaces_of(slot).is_empty())
+    }
+
+    /// For the slots of bases, those of the classes that extend them directly.
+    fn heirs(&mut self) -> Rc<FxHashMap<usize, Vec<usize>>> {
+        if let Some(known) = &self.table.interfaces.heirs {
+            return Rc::clone(known);
+        }
+        let mut heirs: FxHashMap<usize, Vec<usize>> = FxHashMap::default();
+        for slot in 0..self.written_pous().len() {
+            if let Some(base) = self.base_of(slot) {
+                heirs.entry(base).or_default().push(slot);
+            }
+        }
+        Rc::clone(self.table.interfaces.heirs.insert(Rc::new(heirs)))
+    }
+
+    /// The classes whose instances a reference to this one may lead to: itself, and what extends it.
+    pub fn kin(&mut self, slot: usize) -> Vec<usize> {
+        let heirs = self.heirs();
+        let (mut asked, mut found) = (vec![slot], Vec::new());
+        while let Some(at) = asked.pop() {
+            asked.extend(heirs.get(&at).into_iter().flatten());
+            found.extend(Some(at).filter(|it| self.pous[*it].ast.modifiers.is_abstract.is_none()));
+        }
+        found.sort_unstable();
+        found
+    }
+
+    /// Whether instances of one type are of a class that extends, or is, the other's.
+    pub fn extends(&self, heir: Type, base: Type) -> bool {
+        let (Type::Struct(heir), Type::Struct(base)) = (heir, base) else { return false };
+        let (mut at, base) = (self.slot_of_instance(heir), self.slot_of_instance(base));
+        while at.is_some() && at != base {
+            at = at.and_then(|it| self.base_of(it));
+        }
+        at.is_some()
     }
 
     /// The number of a class in a reference to one of its instances.

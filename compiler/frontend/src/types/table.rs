@@ -62,6 +62,8 @@ pub(crate) struct Interfaces {
     /// The numbers of the classes that references tell apart.
     pub numbers: FxHashMap<StructId, u64>,
     pub is_too_many: bool,
+    /// When they were asked for: the classes that extend others, by these.
+    pub heirs: Option<Rc<FxHashMap<usize, Vec<usize>>>>,
 }
 
 /// A reference to a type that is looked up when all are declared: it may hold such a reference itself.
