@@ -41,8 +41,10 @@ pub use testing::{Assertion, Test};
 pub use types::coverage::{CoverageKind, CoveragePoint, Decision, Formula};
 
 use log::Log;
+use rustc_hash::FxHashSet;
 use staunch_ir::Program;
 use types::coverage::Coverage;
+use types::in_outs::{InOut, Polymorphic};
 use vendor::{Problem, Trouble};
 
 /// How to read the sources.
@@ -127,10 +129,28 @@ fn with_library(sources: &Sources, options: &Options, keep: Bodies) -> Compilati
     Compilation { diagnostics: extended.of_the_user(compilation.diagnostics), ..compilation }
 }
 
+/// Checks the program until it is known which VAR_IN_OUTs are given instances of what extends their classes: mostly once.
 fn run(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
+    let mut polymorphic = Polymorphic::default();
+    loop {
+        let (compilation, found) = run_with(sources, options, keep, &polymorphic);
+        if !polymorphic.grow(found) {
+            return compilation;
+        }
+    }
+}
+
+fn run_with(
+    sources: &Sources,
+    options: &Options,
+    keep: Bodies,
+    polymorphic: &Polymorphic,
+) -> (Compilation, FxHashSet<InOut>) {
     let mut log = Log::new(sources, options);
     let Some(mut files) = parse_all(sources, &mut log.diagnostics) else {
-        return Compilation { program: None, diagnostics: log.diagnostics, tests: Vec::new(), coverage: Vec::new() };
+        let compilation =
+            Compilation { program: None, diagnostics: log.diagnostics, tests: Vec::new(), coverage: Vec::new() };
+        return (compilation, FxHashSet::default());
     };
     let stubs = library::prepare(&mut files, sources);
     // Unit tests that do not run are checked all the same.
@@ -142,10 +162,11 @@ fn run(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
     let mut bodies: Vec<_> = files.iter_mut().flat_map(ast::File::take_bodies).collect();
     let mut runs = declare::run::runs(&files);
     bodies.extend(runs.iter_mut().map(|it| std::mem::take(&mut it.body)));
-    let mut declarations = declare::declare(log, &files, &runs, &bodies);
+    let mut declarations = declare::declare(log, polymorphic.clone(), &files, &runs, &bodies);
     declarations.coverage = options.coverage.map(|files| Coverage { files, ..Coverage::default() });
     let unassigned = lints::result::unassigned(&declarations);
     let checked = body::check(&mut declarations, &mut bodies, keep);
+    let found = declarations.polymorphic();
     lints::unused::report(&mut declarations);
     if keep == Bodies::Kept {
         let routines: Vec<_> = checked.routines.iter().map(|it| it.as_ref().map(|it| &it.0)).collect();
@@ -165,7 +186,7 @@ fn run(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
     compilation.diagnostics.retain(|it| !allowances.cover(it));
     // A text of pieces is not in the order of its file.
     compilation.diagnostics.sort_by_key(|it| (it.span.file, sources.get(it.span.file).in_file(it.span).start));
-    compilation
+    (compilation, found)
 }
 
 /// The files' trees; `None` where one is no Structured Text, of which alone is then said so.

@@ -27,17 +27,20 @@ use crate::log::Log;
 use crate::names::Entry;
 use crate::testing;
 use crate::types::declarations::{Declarations, PouSlot, Slot};
+use crate::types::in_outs::Polymorphic;
 use run::Run;
 use std::rc::Rc;
 
 /// Declares what the files do; `bodies` are those of their POUs, and then of the runs, in order.
 pub(crate) fn declare<'s>(
     log: Log<'s>,
+    polymorphic: Polymorphic,
     files: &'s [ast::File<'s>],
     runs: &'s [Run<'s>],
     bodies: &[Vec<ast::Statement<'s>>],
 ) -> Declarations<'s> {
     let mut declarations = Declarations::new(log, Declarations::build_signature);
+    declarations.table.polymorphic = polymorphic;
     for (number, file) in files.iter().enumerate() {
         let dialect = declarations.log.read_pragmas(file);
         declarations.program.files[number].system = dialect.family();

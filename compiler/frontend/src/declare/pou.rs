@@ -25,6 +25,8 @@ struct Builder<'s> {
     edges: Vec<EdgeInput>,
     /// False when the result's type was refused.
     complete: bool,
+    /// Whether what is being declared is a VAR_IN_OUT that is passed as a reference.
+    polymorphic: bool,
 }
 
 impl<'s> Declarations<'s> {
@@ -48,6 +50,7 @@ impl<'s> Declarations<'s> {
             locals: Vec::new(),
             edges: Vec::new(),
             complete: true,
+            polymorphic: false,
         };
         let constants = self.early_constants(pou, scope());
         Rc::get_mut(&mut builder.scope).expect("the scope is new").constants = Some(Rc::new(constants));
@@ -291,7 +294,10 @@ impl<'s> Declarations<'s> {
                 self.check_no_initial(decl);
                 self.open_array(bounds, element, &scope, owner)
             }
-            None => self.declared_type(decl, &scope, owner),
+            None => match self.abstract_in_out(builder.slot, block, decl) {
+                Some(ty) => Some(Resolved::plain(ty)),
+                None => self.declared_type(decl, &scope, owner),
+            },
         };
         drop(scope);
         // What needs the value of a CONSTANT knows none where that was refused.
@@ -300,6 +306,10 @@ impl<'s> Declarations<'s> {
             decl.names.iter().for_each(|name| builder.refuse(*name));
             return;
         };
+        let reference =
+            decl.names.iter().find_map(|it| self.polymorphic_type(builder.slot, block, it.text, resolved.ty));
+        builder.polymorphic = reference.is_some();
+        let resolved = reference.map_or(resolved, |ty| Rc::new(Resolved::plain(ty)));
         let is_plain = matches!(resolved.ty, Type::Elementary(_) | Type::Reference(_) | Type::String(_));
         if block.constant.is_some() && decl.initial.is_none() && block.kind == VarKind::Var && is_plain {
             self.report(
@@ -348,6 +358,15 @@ impl<'s> Declarations<'s> {
             );
         }
         is_result
+    }
+
+    /// The class of a VAR_IN_OUT that stands for instances of what extends an ABSTRACT one.
+    fn abstract_in_out(&mut self, slot: usize, block: &ast::VarBlock<'s>, decl: &ast::VarDecl<'s>) -> Option<Type> {
+        let ast::TypeKind::Named(path) = &decl.ty.kind else { return None };
+        let ty = self.class_at(path).filter(|_| self.may_be_polymorphic(slot, block))?;
+        let Type::Struct(state) = ty else { return None };
+        let class = self.slot_of_instance(state)?;
+        self.pous[class].ast.modifiers.is_abstract.is_some().then_some(ty)
     }
 
     /// The standard block in a type: it works with what it remembers of earlier calls.
@@ -506,6 +525,18 @@ impl<'s> Declarations<'s> {
             // A program has one set of variables, so they last anyway.
             (_, VarKind::Stat) if pou.kind.is_function() || pou.kind.is_block() => {
                 return Some(self.static_variable(builder.slot, block, decl, name, resolved));
+            }
+            // The instance keeps it for its ACTIONs.
+            (false, VarKind::InOut) if builder.polymorphic => {
+                let place = self.push_field(block, decl, name, resolved, builder);
+                builder.formals.push(formal(Target::Field(FieldId::next(builder.fields.len() - 1))));
+                place
+            }
+            (true, VarKind::InOut) if builder.polymorphic => {
+                let local = builder.local(name.text, resolved, decl.doc.clone());
+                let at = builder.param(name.text, resolved, decl, Mode::Value(local));
+                builder.formals.push(formal(Target::Param(at)));
+                Place::local(local, resolved.ty)
             }
             (_, VarKind::InOut) => {
                 let at = builder.param(name.text, resolved, decl, Mode::Reference);

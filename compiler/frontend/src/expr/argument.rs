@@ -8,12 +8,14 @@ use super::operand::Operand;
 use super::order::{Held, Written};
 use super::place::Found;
 use crate::diagnostic::wording::article;
-use crate::types::signature::Formal;
+use crate::types::signature::{Formal, Target};
+use crate::types::table::Resolved;
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{
-    Argument, Block, Conversion, Expr, ExprKind, FieldId, Place, Projection, Root, Section, Statement, StatementKind,
-    Type, View,
+    Argument, Block, Conversion, Expr, ExprKind, FieldId, Place, Projection, RefKind, Root, Section, Statement,
+    StatementKind, Type, View,
 };
+use std::rc::Rc;
 
 /// What a call does with one of its parts.
 #[derive(Clone, Debug)]
@@ -170,11 +172,59 @@ impl<'s> Checker<'_, 's> {
         if self.decl.program.is_open(ty) {
             self.takes(formal, place.ty, span)?;
         } else if place.ty != ty {
+            if self.decl.extends(place.ty, ty) {
+                self.decl.table.polymorphic.ask(formal.name.span);
+            }
             self.report_other_type(formal, place.ty, span);
             return None;
         }
+        self.note_kin(formal, place);
         self.note_passed(place, span, formal.name.span);
         Some(Role::Passed(turn))
+    }
+
+    /// Notes an instance that may be of another class than is declared, or comes to be if others are.
+    fn note_kin(&mut self, formal: &Formal<'s>, place: &Place) {
+        let Type::Struct(state) = place.ty else { return };
+        let Some(class) = self.decl.slot_of_instance(state) else { return };
+        match (place.root, place.projections.as_slice()) {
+            (_, [.., Projection::Deref { .. }]) if self.decl.kin(class) != [class] => {
+                self.decl.table.polymorphic.ask(formal.name.span);
+            }
+            (Root::Param(param), []) => {
+                let formals = self.signature.as_ref().map(|it| it.formals.as_slice()).unwrap_or_default();
+                let own = formals.iter().find(|it| it.target == Target::Param(param.index()));
+                if let Some(own) = own.map(|it| it.name.span) {
+                    self.decl.table.polymorphic.pass(own, formal.name.span);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Evaluates the next part, what is given for a VAR_IN_OUT that stands for instances of several classes.
+    pub(crate) fn polymorphic_part(
+        &mut self,
+        parts: &mut Parts,
+        formal: &Formal<'s>,
+        role: Role,
+        expr: &ast::Expr<'s>,
+    ) -> Option<()> {
+        let ty = formal.resolved.ty;
+        let class = self.decl.referred_class(ty)?;
+        let value = self.after_parts(&mut parts.written, |this| {
+            let place = this.static_type(expr);
+            if !place.is_some_and(|it| this.decl.extends(it, class)) {
+                let place = this.variable_argument(expr, formal.name.text)?;
+                let wanted = Formal { resolved: Rc::new(Resolved::plain(class)), ..formal.clone() };
+                this.report_other_type(&wanted, place.place.ty, expr.span);
+                return None;
+            }
+            let reference = this.reference_to(expr, RefKind::ReferenceTo)?;
+            this.coerce(Operand::Typed(reference), ty, expr.span)
+        })?;
+        parts.push(Held::Value(value), role, expr.span);
+        Some(())
     }
 
     /// Evaluates the next part, what is given for a VAR_IN_OUT CONSTANT: a variable of its type itself, else
@@ -245,10 +295,15 @@ impl<'s> Checker<'_, 's> {
 
     fn report_other_type(&mut self, formal: &Formal<'s>, ty: Type, span: Span) {
         let (wants, has) = (self.type_name(formal.resolved.ty), self.type_name(ty));
+        let is_class = matches!(formal.resolved.ty, Type::Struct(it) if self.decl.is_instance(it));
         let message = format!("`{}` is {}, found {has}", formal.name.text, article(&wants));
         self.report(
             Diagnostic::new(Code::E0201, span, message)
-                .label("a VAR_IN_OUT takes a variable of exactly its own type")
+                .label(if is_class {
+                    "a VAR_IN_OUT takes an instance of its own class, or of one that extends it"
+                } else {
+                    "a VAR_IN_OUT takes a variable of exactly its own type"
+                })
                 .other(formal.name.span, "declared here"),
         );
     }

@@ -223,6 +223,9 @@ impl<'s> Checker<'_, 's> {
                 (Target::Field(field), Given::Output { target: Some(target), negated }) => {
                     self.target_part(&mut parts, target, negated, Source::Field(field, ty))
                 }
+                (Target::Field(field), Given::Value(expr)) if formal.section == Section::InOut => {
+                    self.polymorphic_part(&mut parts, formal, Role::Stored(field, ty), expr)
+                }
                 (Target::Field(field), Given::Value(expr)) => {
                     self.value_part(&mut parts, expr, ty, Role::Stored(field, ty))
                 }
@@ -237,7 +240,10 @@ impl<'s> Checker<'_, 's> {
         let in_outs = || (0..formals.len()).filter(|it| formals[*it].section == Section::InOut);
         // An ACTION of the POU itself works with what that was given.
         let own: Vec<_> = formals.iter().map(|it| self.passed_on(it.name).filter(|_| is_this)).collect();
-        for at in in_outs().filter(|it| matches!(given[*it], Given::Nothing) && own[*it].is_none()) {
+        let is_param = |it: &usize| matches!(formals[*it].target, Target::Param(_));
+        // What an ACTION of the POU itself works with is in the instance, or passed on.
+        let is_there = |it: usize| own[it].is_some() || is_this && !is_param(&it);
+        for at in in_outs().filter(|it| matches!(given[*it], Given::Nothing) && !is_there(*it)) {
             self.report_no_variable(&formals[at], owner, callee);
             complete = false;
         }
@@ -249,7 +255,7 @@ impl<'s> Checker<'_, 's> {
                 Some(part) => Some(parts.argument(part)),
                 None => own[at].clone().map(Argument::Reference),
             };
-            let arguments: Vec<_> = in_outs().map(argument).collect::<Option<_>>()?;
+            let arguments: Vec<_> = in_outs().filter(is_param).map(argument).collect::<Option<_>>()?;
             let call = |callee, instance| {
                 let arguments = Vec::clone(&arguments);
                 StatementKind::Call { callee, instance: Some(instance), arguments, result: None }

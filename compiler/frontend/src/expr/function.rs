@@ -150,6 +150,9 @@ impl<'s> Checker<'_, 's> {
     ) -> Option<()> {
         let formal = &signature.formals[at];
         match signature.params[at].mode {
+            Mode::Value(_) if formal.section == Section::InOut => {
+                self.polymorphic_part(parts, formal, Role::Passed(1 + at), expr)
+            }
             Mode::Value(_) => self.value_part(parts, expr, formal.resolved.ty, Role::Passed(1 + at)),
             Mode::Reference if formal.section == Section::Input => self.open_input_part(parts, formal, 1 + at, expr),
             Mode::Reference => self.in_out_part(parts, formal, 1 + at, expr),
@@ -160,6 +163,10 @@ impl<'s> Checker<'_, 's> {
     fn left_out(&mut self, signature: &Signature<'s>, at: usize, slot: usize, span: Span) -> Option<Passed> {
         let formal = &signature.formals[at];
         match (signature.params[at].mode, formal.section) {
+            (Mode::Value(_), Section::InOut) => {
+                self.report_no_variable(formal, self.decl.pous[slot].ast.name.text, span);
+                None
+            }
             (Mode::Value(_), _) => {
                 self.input_left_out(formal, slot, span)?;
                 Some(Passed::Default(self.initial_value(&formal.resolved, span)))

@@ -188,6 +188,9 @@ impl<'s> Checker<'_, 's> {
             return true;
         }
         let (section, help) = match variable.place.root {
+            Root::Instance if variable.section == Section::InOut && !self.is_action() => {
+                ("VAR_IN_OUT", "declare a VAR_IN_OUT in the METHOD, and pass the variable on")
+            }
             Root::Instance | Root::Globals => return true,
             Root::Param(_) if self.passed_on(variable.name).is_some() => return true,
             Root::Param(_) => ("VAR_IN_OUT", "declare a VAR_IN_OUT in the METHOD, and pass the variable on"),
@@ -200,6 +203,10 @@ impl<'s> Checker<'_, 's> {
                 .help(help),
         );
         false
+    }
+
+    fn is_action(&self) -> bool {
+        self.slot.is_some_and(|it| self.decl.pous[it].ast.kind == ast::PouKind::Action)
     }
 
     /// What the routine was given for a VAR_IN_OUT that is declared at `name`.

@@ -1,5 +1,6 @@
 //! Types: what a declaration's type is, what it holds, and how large it is.
 
+use super::in_outs::Polymorphic;
 use super::index::Index;
 use crate::Span;
 use crate::ast::Name;
@@ -40,6 +41,7 @@ pub(crate) struct Table<'s> {
     /// The POU slot of each structure that is an instance's state.
     pub instances: FxHashMap<StructId, usize>,
     pub interfaces: Interfaces,
+    pub polymorphic: Polymorphic,
     /// How many constants the initial values hold so far.
     pub constants: usize,
     /// The references to types with names.
