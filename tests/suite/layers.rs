@@ -19,6 +19,7 @@ const LAYERS: [&str; 22] = [
     "inherit",
     "lex",
     "syntax",
+    "mutate",
     "testing",
     "dialect",
     "log",

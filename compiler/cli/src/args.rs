@@ -236,9 +236,19 @@ pub struct Test {
     /// annotated sources
     #[arg(long, value_name = "table|OUT", action = ArgAction::Append)]
     pub coverage: Vec<PathBuf>,
+    /// Run the tests on changed programs, all or N of them, and list the changes that no test notices
+    #[arg(long, value_name = "N", num_args = 0..=1, require_equals = true)]
+    pub mutants: Option<Option<usize>>,
     /// Threads that run tests [default: as many as there are processors]
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub jobs: Option<u16>,
+}
+
+impl Test {
+    /// Whether a test of this title runs.
+    pub fn wants(&self, title: &str) -> bool {
+        self.filter.as_ref().is_none_or(|it| title.to_lowercase().contains(&it.to_lowercase()))
+    }
 }
 
 #[derive(Clone, Debug, Args)]

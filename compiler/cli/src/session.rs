@@ -45,6 +45,12 @@ impl Session {
         Self::begin(common, files, compile).map(|(session, _)| session)
     }
 
+    /// Changed sources, as tests or as what `run` would run.
+    pub fn compile(&self, sources: &Sources, tests: bool) -> Result<Compilation, String> {
+        let options = Options { tests, ..options(&self.common, &self.project)? };
+        Ok(staunch_frontend::compile(sources, &options))
+    }
+
     /// The program that is not tests alone: what `run` would run. There is nothing more to say of it.
     pub fn without_tests(&self, is_covered: bool) -> Result<Compilation, String> {
         let coverage = covered(&self.sources, is_covered);

@@ -9,6 +9,7 @@ mod spelling;
 
 pub mod ast;
 mod lex;
+mod mutate;
 mod syntax;
 mod testing;
 
@@ -35,6 +36,7 @@ mod lints;
 
 pub use diagnostic::{Code, Diagnostic, Fix, Format, Label, Level, Levels, Severity, Style, render};
 pub use dialect::Dialect;
+pub use mutate::{Mutant, mutants};
 pub use source::{Source, Sources, Span};
 pub use syntax::parse;
 pub use testing::{Assertion, Test};

@@ -55,6 +55,11 @@ impl<'p> Suite<'p> {
         Ok(Self { program, backend: args.backend, executable, turns, counts })
     }
 
+    /// For a program that runs once, and is not worth to be compiled.
+    pub fn interpreted(program: &'p Program, turns: u64) -> Self {
+        Self { program, backend: Backend::Interpret, executable: None, turns, counts: None }
+    }
+
     /// An executor for the tests of the instances that are `wanted`.
     pub fn executor(&self, wanted: impl Fn(usize) -> bool) -> Result<Executor<'_>, String> {
         let runs = match (&self.executable, self.backend) {

@@ -3,6 +3,7 @@
 mod coverage;
 mod execute;
 mod junit;
+mod mutants;
 mod parallel;
 mod report;
 mod table;
@@ -41,12 +42,11 @@ pub fn test(session: &Session, args: &args::Test) -> Result<u8, String> {
     if session.tests.is_empty() && tables.is_empty() {
         return Err("the sources hold no TEST, and no table is beside them".to_owned());
     }
-    let wanted = args.filter.as_deref().unwrap_or_default().to_lowercase();
-    let is_wanted = |title: &str| title.to_lowercase().contains(&wanted);
-    let tests: Vec<(usize, &Test)> = session.tests.iter().enumerate().filter(|it| is_wanted(&it.1.title)).collect();
+    let tests: Vec<(usize, &Test)> = session.tests.iter().enumerate().filter(|it| args.wants(&it.1.title)).collect();
     let all = session.tests.len() + tables.len();
-    let tables: Vec<Table> = tables.into_iter().filter(|it| is_wanted(&it.title)).collect();
+    let tables: Vec<Table> = tables.into_iter().filter(|it| args.wants(&it.title)).collect();
     if tests.is_empty() && tables.is_empty() {
+        let wanted = args.filter.as_deref().unwrap_or_default();
         return Err(format!("no test has `{wanted}` in its title; there are {all} tests"));
     }
     let is_covered = !args.coverage.is_empty();
@@ -72,7 +72,13 @@ pub fn test(session: &Session, args: &args::Test) -> Result<u8, String> {
     if let Some(path) = &args.junit {
         output::write(path, junit::text(&run.report).as_bytes())?;
     }
-    Ok(if run.report.failed() == 0 { 0 } else { REJECTED })
+    if run.report.failed() > 0 {
+        return Ok(REJECTED);
+    }
+    if args.mutants.is_some() && mutants::run(session, args, &tables, run.threads)? > 0 {
+        return Ok(REJECTED);
+    }
+    Ok(0)
 }
 
 struct Run<'s> {
@@ -86,6 +92,9 @@ struct Run<'s> {
 impl Run<'_> {
     /// Runs the tests that are instances of the program, by their numbers.
     fn tests(&mut self, tests: &[(usize, &Test)]) -> Result<(), String> {
+        if tests.is_empty() {
+            return Ok(());
+        }
         let Self { suite, threads, report, .. } = self;
         parallel::in_order(
             *threads,

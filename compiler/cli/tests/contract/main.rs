@@ -7,6 +7,7 @@ mod build;
 mod cache;
 mod check;
 mod coverage;
+mod mutants;
 mod page;
 #[cfg(unix)]
 mod power;
