@@ -8,7 +8,7 @@ use std::path::Path;
 const ROOT: &str = "compiler/frontend/src";
 
 /// The folders and files at the root, from the lowest.
-const LAYERS: [&str; 22] = [
+const LAYERS: [&str; 23] = [
     "vendor",
     "source",
     "diagnostic",
