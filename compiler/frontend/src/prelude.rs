@@ -75,6 +75,15 @@ pub(crate) const UNITS: &[Unit] = units! {
     Function "PUTBIT"           "putbit"           [Codesys];
     Function "BCD_TO_INT"       "bcd_to_int"       [Codesys];
     Function "INT_TO_BCD"       "int_to_bcd"       [Codesys];
+    Type     "T_MaxString"      "t_maxstring"      [Codesys];
+    Function "F_ToUCase"        "f_toucase"        [Codesys] "T_MaxString";
+    Function "F_ToLCase"        "f_tolcase"        [Codesys] "T_MaxString";
+    Function "F_LTrim"          "f_ltrim"          [Codesys] "T_MaxString";
+    Function "F_RTrim"          "f_rtrim"          [Codesys] "T_MaxString";
+    Function "HOST_TO_BE16"     "host_to_be16"     [Codesys];
+    Function "HOST_TO_BE32"     "host_to_be32"     [Codesys];
+    Function "BE16_TO_HOST"     "be16_to_host"     [Codesys];
+    Function "BE32_TO_HOST"     "be32_to_host"     [Codesys];
     Type     "RTC"              "rtc";
     Function "SPLIT_DATE"       "split_date";
     Function "SPLIT_TOD"        "split_tod";
