@@ -37,6 +37,10 @@ impl Task {
                 tasks.extend(integers.map(|to| Self::Convert(Conversion::Truncate, from, to)));
             }
         }
+        for (real, bits) in [(Repr::F32, Repr::U32), (Repr::F64, Repr::U64)] {
+            tasks.push(Self::Convert(Conversion::Bits, real, bits));
+            tasks.push(Self::Convert(Conversion::Bits, bits, real));
+        }
         tasks
     }
 
@@ -92,7 +96,7 @@ pub const AT: Location = Location { file: 0, line: 7, column: 3 };
 
 pub fn program(tasks: &[Task]) -> Program {
     let mut structs: Vec<_> = tasks.iter().map(|it| structure(*it)).collect();
-    structs.push(Struct { name: "globals".to_owned(), doc: None, location: AT, fields: Vec::new() });
+    structs.push(Struct::new("globals".to_owned(), None, AT, Vec::new()));
     Program {
         files: vec![SourceFile { path: "operations.st".to_owned(), system: staunch_runtime::Family::Iec }],
         enums: Vec::new(),
@@ -134,7 +138,7 @@ fn structure(task: Task) -> Struct {
         doc: None,
         location: AT,
     };
-    Struct { name: task.name(), doc: None, location: AT, fields: fields(task).into_iter().map(field).collect() }
+    Struct::new(task.name(), None, AT, fields(task).into_iter().map(field).collect())
 }
 
 fn routine(task: Task, state: StructId) -> Routine {

@@ -57,6 +57,7 @@ fn expected(task: Task, operands: &[Value]) -> Result<Value, Fault> {
             apply(Op::Not, Repr::Bool, &[inner]).unwrap().map_err(at)
         }
         Task::Convert(Conversion::Truncate, _, to) => Ok(ops::trunc_value(operands[0], to)),
+        Task::Convert(Conversion::Bits, _, to) => Ok(ops::same_bits(operands[0], to)),
         Task::Convert(Conversion::Value | Conversion::Same, _, to) => Ok(ops::convert_value(operands[0], to)),
     }
 }

@@ -151,7 +151,7 @@ impl Spans {
     }
 
     fn members(&mut self, ty: &TypeSpec<'_>) {
-        if let TypeKind::Struct(members) = &ty.kind {
+        if let TypeKind::Struct(members) | TypeKind::Union(members) = &ty.kind {
             members.iter().for_each(|it| self.variable(it));
         }
     }

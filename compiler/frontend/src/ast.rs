@@ -296,8 +296,8 @@ pub enum TypeKind<'s> {
     Enum { base: Option<Name<'s>>, values: Vec<EnumValue<'s>> },
     /// `REF_TO T`, `POINTER TO T`, `REFERENCE TO T`
     Reference { kind: staunch_ir::RefKind, target: Box<TypeSpec<'s>> },
-    /// A construct that is parsed to be refused by name: UNION.
-    Unsupported(&'static str),
+    /// `UNION … END_UNION`: its members share their bytes.
+    Union(Vec<VarDecl<'s>>),
     /// A type that did not parse, or is not told apart any further; reported.
     Error,
 }

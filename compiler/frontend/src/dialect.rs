@@ -69,6 +69,11 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
+    /// A member of a structure may be a single bit, of the type BIT.
+    pub const fn has_bits(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
     /// Integers and bit strings of fewer than 32 bits are computed at 32, and cut where they are stored.
     pub const fn promotes_integers(self) -> bool {
         matches!(self, Self::Codesys)

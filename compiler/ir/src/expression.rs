@@ -44,6 +44,8 @@ pub enum Conversion {
     Truncate,
     /// Same repr, other type: WORD and UINT, LINT and TIME, an enumeration and its base.
     Same,
+    /// `staunch_runtime::ops::same_bits`: between a real and an unsigned number of its width.
+    Bits,
 }
 
 impl Expr {

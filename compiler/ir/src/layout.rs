@@ -106,7 +106,7 @@ impl Layout {
     }
 
     fn lay_struct(&mut self, program: &Program, structure: &crate::Struct) -> Result<StructLayout, TooLarge> {
-        let mut sequence = Sequence::new();
+        let mut sequence = Sequence { align: structure.align, ..Sequence::new() };
         let mut offsets = Vec::with_capacity(structure.fields.len());
         for field in &structure.fields {
             let shape = self.measure(program, field.ty, Some(field.location))?;

@@ -58,8 +58,8 @@ pub use program::{
 };
 pub use statement::{Argument, Arm, Block, For, Statement, StatementKind, Step};
 pub use types::{
-    Array, ArrayId, BlockId, BoundsId, Const, Elementary, Enum, EnumId, Enumerator, InterfaceId, RefKind, RefType,
-    ReferenceId, Struct, StructId, Type,
+    Array, ArrayId, BlockId, BoundsId, Const, Elementary, Enum, EnumId, Enumerator, InterfaceId, Overlay, RefKind,
+    RefType, ReferenceId, Struct, StructId, Type,
 };
 
 pub use staunch_runtime::{FaultKind, Location, Repr, StringType, Value};

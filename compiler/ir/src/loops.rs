@@ -98,7 +98,7 @@ impl Known<'_> {
                 [a, b] => self.range(a).zip(self.range(b)).and_then(|(a, b)| combined(*op, a, b)),
                 _ => None,
             },
-            ExprKind::Convert(Conversion::Truncate, _)
+            ExprKind::Convert(Conversion::Truncate | Conversion::Bits, _)
             | ExprKind::ApplyText(..)
             | ExprKind::Text(_)
             | ExprKind::AddressOf(_)

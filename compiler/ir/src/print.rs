@@ -5,8 +5,8 @@
 mod statement;
 
 use crate::{
-    ClassKind, Const, Conversion, Expr, ExprKind, Field, Mode, Place, Program, Projection, Retain, Root, Routine,
-    RoutineKind, Section, Type, Value,
+    ClassKind, Const, Conversion, Expr, ExprKind, Field, Mode, Overlay, Place, Program, Projection, Retain, Root,
+    Routine, RoutineKind, Section, Struct, Type, Value,
 };
 use core::fmt::{self, Display, Write};
 
@@ -47,6 +47,7 @@ impl Printer<'_> {
         }
         for structure in &program.structs {
             self.line(format_args!("\nstruct {}", structure.name))?;
+            structure.overlays.iter().try_for_each(|it| self.overlay(structure, it))?;
             structure.fields.iter().try_for_each(|field| self.field(field))?;
         }
         for routine in &program.routines {
@@ -60,6 +61,15 @@ impl Printer<'_> {
             enumeration.values.iter().map(|value| format!("{} = {}", value.name, value_text(value.value))).collect();
         let base = enumeration.base.name();
         self.line(format_args!("\nenum {}: {base} ({})", enumeration.name, values.join(", ")))
+    }
+
+    fn overlay(&mut self, structure: &Struct, overlay: &Overlay) -> fmt::Result {
+        let (storage, bit) = (&structure.fields[overlay.field.index()].name, overlay.bit);
+        self.line(format_args!(
+            "  overlay {}: {} = {storage} from bit {bit}",
+            overlay.name,
+            self.program.type_name(overlay.ty)
+        ))
     }
 
     fn field(&mut self, field: &Field) -> fmt::Result {
@@ -214,6 +224,7 @@ impl Printer<'_> {
                     Conversion::Value => "TO",
                     Conversion::Truncate => "TRUNC",
                     Conversion::Same => "AS",
+                    Conversion::Bits => "BITS",
                 };
                 format!("{word} {}({})", ty(), self.expr(routine, operand))
             }

@@ -347,6 +347,16 @@ impl Program {
         }
     }
 
+    /// Whether a variable of type `ty` is or holds a STRING.
+    pub fn holds_text(&self, ty: Type) -> bool {
+        match ty {
+            Type::String(_) => true,
+            Type::Array(id) => self.holds_text(self.array(id).element),
+            Type::Struct(id) => self.structure(id).fields.iter().any(|it| self.holds_text(it.ty)),
+            Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::Enum(_) | Type::Block(_) => false,
+        }
+    }
+
     /// The name of a standard block with a prescan that a variable of type `ty` is or holds.
     pub fn prescanned_in(&self, ty: Type) -> Option<&'static str> {
         match ty {

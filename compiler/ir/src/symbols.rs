@@ -123,10 +123,28 @@ impl Map<'_> {
                 let offset = self.layout.offset(ty, FieldId::next(position));
                 let used = id == self.program.globals.index() && self.used.contains(&FieldId::next(position));
                 self.field(StructId::next(id), FieldId::next(position), offset, used)?;
+                self.overlays(StructId::next(id), FieldId::next(position))?;
             }
             if id == self.program.globals.index() {
                 self.aliases()?;
             }
+        }
+        Ok(())
+    }
+
+    /// The members that are bits of fields. Texts in them are no strings as they lie elsewhere: they have no length.
+    fn overlays(&mut self, id: StructId, field: FieldId) -> fmt::Result {
+        for overlay in self.program.structure(id).overlays.iter().filter(|it| it.field == field) {
+            if self.program.holds_text(overlay.ty) {
+                continue;
+            }
+            let offset = self.layout.field(id, overlay.field) + overlay.bit / 8;
+            let ty = match overlay.is_bit {
+                true => format!("bit:{}", overlay.bit % 8),
+                false => TypeName(overlay.ty).to_string(),
+            };
+            write!(self.text, "field\t{}\t{ty}\t{offset}\tvar", overlay.name)?;
+            self.write_attributes(&Attributes { view: true, ..Attributes::NONE })?;
         }
         Ok(())
     }
@@ -160,7 +178,8 @@ impl Map<'_> {
 
     fn field(&mut self, owner: StructId, id: FieldId, offset: u64, used: bool) -> fmt::Result {
         let field = &self.program.structure(owner).fields[id.index()];
-        let section = section_name(field.section);
+        let is_storage = self.program.structure(owner).is_storage(id);
+        let section = if is_storage { "memory" } else { section_name(field.section) };
         write!(self.text, "field\t{}\t{}\t{offset}\t{section}", field.name, TypeName(field.ty))?;
         self.write_attributes(&Attributes { used, ..self.attributes_of(owner, id) })
     }

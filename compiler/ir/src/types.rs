@@ -218,6 +218,37 @@ pub struct Struct {
     pub doc: Option<String>,
     pub location: Location,
     pub fields: Vec<Field>,
+    /// What the source declares that is some bits of a field: the members of a UNION, and BITs. Such a
+    /// field is an integer or bit string, or an array of them, and has a name of its own.
+    pub overlays: Vec<Overlay>,
+    /// It lies at a multiple of so many bytes, also where its fields ask for less; a power of two.
+    pub align: u64,
+}
+
+/// A member of a structure that is some bits of a field, which other members may share.
+#[derive(Clone, Debug)]
+pub struct Overlay {
+    /// The declaration's spelling.
+    pub name: String,
+    pub ty: Type,
+    pub field: FieldId,
+    /// The first bit in the field, counted from the lowest of its first byte.
+    pub bit: u64,
+    /// One bit, of type BOOL.
+    pub is_bit: bool,
+    pub doc: Option<String>,
+    pub location: Location,
+}
+
+impl Struct {
+    pub fn new(name: String, doc: Option<String>, location: Location, fields: Vec<Field>) -> Self {
+        Self { name, doc, location, fields, overlays: Vec::new(), align: 1 }
+    }
+
+    /// Whether a field is only there to hold the bits of overlays.
+    pub fn is_storage(&self, field: FieldId) -> bool {
+        self.overlays.iter().any(|it| it.field == field)
+    }
 }
 
 /// A constant of any type: an initial value.

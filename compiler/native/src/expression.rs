@@ -60,6 +60,7 @@ impl Function<'_, '_> {
         match how {
             Conversion::Same => value,
             Conversion::Value => inline_conversion::convert(self, value, from, to),
+            Conversion::Bits => inline_conversion::same_bits(self, value, to),
             Conversion::Truncate => inline_conversion::truncate(self, value, from, to),
         }
     }

@@ -3,7 +3,7 @@
 use crate::function::Function;
 use crate::signature::clif_type;
 use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
-use cranelift_codegen::ir::{InstBuilder, Type, Value as Clif, types};
+use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Type, Value as Clif, types};
 use staunch_ir::Repr;
 
 /// `ops::convert`.
@@ -25,6 +25,11 @@ pub(crate) fn convert(f: &mut Function<'_, '_>, value: Clif, from: Repr, to: Rep
 /// `ops::trunc`.
 pub(crate) fn truncate(f: &mut Function<'_, '_>, value: Clif, from: Repr, to: Repr) -> Clif {
     if from.is_float() && to.is_integer() { saturate(f, value, to) } else { convert(f, value, from, to) }
+}
+
+/// `ops::same_bits`.
+pub(crate) fn same_bits(f: &mut Function<'_, '_>, value: Clif, to: Repr) -> Clif {
+    f.ins().bitcast(clif_type(to), MemFlagsData::new(), value)
 }
 
 /// NaN is not zero.

@@ -248,6 +248,15 @@ impl Function<'_> {
                 let value = inner(false).tokens;
                 Code::postfix(quote!(ops::trunc::<#from_name, #to_name>(#value)))
             }
+            Conversion::Bits => {
+                let value = inner(true);
+                if from.is_float() {
+                    let value = value.at_least(Level::Postfix);
+                    return Code::postfix(quote!(#value.to_bits()));
+                }
+                let value = value.tokens;
+                Code::postfix(quote!(#to_name::from_bits(#value)))
+            }
             _ if from == to => inner(true),
             Conversion::Value | Conversion::Same if is_lossless(from, to) => {
                 let value = inner(true).tokens;

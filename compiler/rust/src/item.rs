@@ -1,6 +1,6 @@
 //! Items: structures, enumerations, implementations, and the names of the source files.
 
-use proc_macro2::TokenStream;
+use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 use staunch_ir::{Area, ClassKind, EnumId, Field, FieldId, Retain, RoutineId, RoutineKind, Section, StructId, Type};
 
@@ -27,7 +27,7 @@ impl Emitter<'_> {
     fn files(&self) -> TokenStream {
         let paths = self.program.files.iter().map(|it| &it.path);
         let consts = self.program.files.iter().zip(0_u16..).map(|(_, number)| {
-            let (name, number) = (self.names.file(number), proc_macro2::Literal::u16_unsuffixed(number));
+            let (name, number) = (self.names.file(number), Literal::u16_unsuffixed(number));
             quote!(const #name: u16 = #number;)
         });
         quote! {
@@ -89,9 +89,11 @@ impl Emitter<'_> {
         let names = (0..structure.fields.len()).map(|at| self.names.field(id, FieldId::next(at)));
         let shared = self.shared.then(|| quote!(reference::shared!(#name { #(#names),* });));
         let io = (id == self.program.globals).then(|| self.io_methods());
+        let align = (structure.align > 1).then(|| Literal::u64_unsuffixed(structure.align));
+        let layout = align.map_or_else(|| quote!(#[repr(C)]), |it| quote!(#[repr(C, align(#it))]));
         quote! {
             #docs
-            #[repr(C)]
+            #layout
             #derives
             pub struct #name { #(#fields),* }
             #shared

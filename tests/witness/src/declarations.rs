@@ -154,10 +154,7 @@ impl<'a> Declarations<'a> {
             TypeKind::Array { bounds, element } => self.array(bounds, element)?,
             TypeKind::Struct(declared) => Type::Record(Rc::new(Record { pou: None, fields: self.fields(declared)? })),
             TypeKind::Enum { base, values } => Type::Enum(self.enumeration("", base.as_ref(), values)?),
-            TypeKind::String { wide: true, .. }
-            | TypeKind::Reference { .. }
-            | TypeKind::Unsupported(_)
-            | TypeKind::Error => {
+            TypeKind::String { wide: true, .. } | TypeKind::Reference { .. } | TypeKind::Union(_) | TypeKind::Error => {
                 return unknown("this type");
             }
         };

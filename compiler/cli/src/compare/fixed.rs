@@ -71,11 +71,7 @@ fn of_type<'f>(ty: &'f TypeSpec<'f>, see: &mut dyn FnMut(&'f [Name<'f>])) {
         TypeKind::Named(names) => see(names),
         TypeKind::Array { element, .. } => of_type(element, see),
         TypeKind::Reference { target, .. } => of_type(target, see),
-        TypeKind::Struct(fields) => fields.iter().for_each(|it| of_type(&it.ty, see)),
-        TypeKind::String { .. }
-        | TypeKind::Subrange { .. }
-        | TypeKind::Enum { .. }
-        | TypeKind::Unsupported(_)
-        | TypeKind::Error => {}
+        TypeKind::Struct(fields) | TypeKind::Union(fields) => fields.iter().for_each(|it| of_type(&it.ty, see)),
+        TypeKind::String { .. } | TypeKind::Subrange { .. } | TypeKind::Enum { .. } | TypeKind::Error => {}
     }
 }

@@ -3,7 +3,7 @@ use crate::expr::checker::Checker;
 use crate::expr::operand::Operand;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, StatementKind as Ast_};
-use staunch_ir::{Block, Expr, Place, StatementKind, Type};
+use staunch_ir::{Block, Expr, ExprKind, Place, StatementKind, Type};
 
 impl<'s> Checker<'_, 's> {
     /// The statements of a body, or of a branch of one.
@@ -266,18 +266,24 @@ impl<'s> Checker<'_, 's> {
         value: &ast::Expr<'s>,
         span: Span,
     ) -> Option<()> {
-        let found = self.place(base);
+        let found = self.place_or_view(base);
         let Some(found) = found.filter(|it| self.writable(it, base.span)) else {
             self.operand(value, None);
             return None;
         };
+        let ty = self.type_of(&found).read();
         let mut place = found.place;
-        let ty = place.ty.read();
         let selected = self.find_part(ty, part)?;
         let of = Type::Elementary(selected.ty);
         let value = self.after_place(&mut place, |this| this.value(value, of))?;
         self.note_assigned(&place, base.span);
-        self.merge(place, selected.bits(), value, span)
+        let Some(view) = found.view else { return self.merge(place, selected.bits(), value, span) };
+        self.fix(&mut place);
+        let mut whole = self.read(place.clone(), Some(view), span)?;
+        self.save("whole", &mut whole);
+        let ExprKind::Load(copy) = &whole.kind else { return None };
+        self.merge(copy.clone(), selected.bits(), value, span)?;
+        self.write(place, Some(view), whole, span)
     }
 
     /// `x S= c` sets, `x R= c` resets, while `c` is TRUE.

@@ -38,7 +38,7 @@ impl<'s> Declarations<'s> {
         self.program.aliases = aliases;
         self.program.globals = StructId::next(self.program.structs.len());
         let location = Location::default();
-        self.program.structs.push(Struct { name: "Globals".to_owned(), doc: None, location, fields });
+        self.program.structs.push(Struct::new("Globals".to_owned(), None, location, fields));
     }
 
     fn global_fields(&mut self) -> Vec<Field> {

@@ -5,7 +5,7 @@ use crate::ast::{self, InitialKind};
 use crate::expr::constant::constant;
 use crate::expr::unresolved::not_constant;
 use crate::names::functions;
-use crate::spelling::nearest;
+use crate::spelling::{Key, nearest};
 use crate::types::declarations::Declarations;
 use crate::types::scope::Scope;
 use crate::types::table::{Resolved, scalar_initial};
@@ -212,17 +212,25 @@ impl<'s> Declarations<'s> {
     ) -> Option<Const> {
         let fields = self.program.structure(id).fields.clone();
         let mut values = parts(&target.initial, fields.len());
-        let mut seen = vec![false; fields.len()];
+        let mut seen = Vec::new();
         for (name, initial) in given {
-            let Some(at) = self.field_named(id, name.text).map(staunch_ir::FieldId::index) else {
-                let near = nearest(name.text, fields.iter().map(|it| it.name.as_str()));
-                self.unknown_member(*name, target.ty, near);
-                return None;
-            };
-            if !once(&mut seen, at) {
+            if seen.contains(&Key(name.text)) {
                 self.given_twice(*name);
                 continue;
             }
+            seen.push(Key(name.text));
+            let overlay = self.program.structure(id).overlays.iter().find(|it| Key(&it.name) == Key(name.text));
+            if let Some(overlay) = overlay.cloned() {
+                let value = self.initial(initial, &Resolved::plain(overlay.ty), scope)?;
+                let field = overlay.field.index();
+                values[field] = self.with_overlay(fields[field].ty, &values[field], &overlay, &value);
+                continue;
+            }
+            let Some(at) = self.field_named(id, name.text).map(staunch_ir::FieldId::index) else {
+                let near = nearest(name.text, self.members_of(id)).map(str::to_owned);
+                self.unknown_member(*name, target.ty, near.as_deref());
+                return None;
+            };
             let field = &fields[at];
             let resolved = Resolved { ty: field.ty, initial: field.initial.clone() };
             values[at] = self.initial(initial, &resolved, scope)?;

@@ -108,7 +108,7 @@ impl<'s> Needs<'_, 's> {
                     }
                 }
             }
-            TypeKind::Struct(members) => members.iter().for_each(|it| self.declared(it)),
+            TypeKind::Struct(members) | TypeKind::Union(members) => members.iter().for_each(|it| self.declared(it)),
             TypeKind::Enum { values, .. } => {
                 values.iter().filter_map(|it| it.value.as_ref()).for_each(|it| self.expr(it));
             }
@@ -117,7 +117,7 @@ impl<'s> Needs<'_, 's> {
                 TypeKind::Named(_) => {}
                 _ => self.spec(target),
             },
-            TypeKind::Unsupported(_) | TypeKind::Error => {}
+            TypeKind::Error => {}
         }
     }
 

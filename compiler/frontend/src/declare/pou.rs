@@ -77,7 +77,7 @@ impl<'s> Declarations<'s> {
                     Some(instance) => format!("{}_{}", pou.name.text, self.log.sources.text(instance)),
                     None => self.emitted_name(slot),
                 };
-                let id = self.push_struct(Struct { name, doc: pou.doc.clone(), location, fields });
+                let id = self.push_struct(Struct::new(name, pou.doc.clone(), location, fields));
                 self.table.instances.insert(id, slot);
                 if !pou.routines.is_empty() {
                     self.program.reentered.insert(id);

@@ -124,10 +124,11 @@ impl<'s> Declarations<'s> {
             TypeKind::Subrange { base, low, high } => self.subrange(*base, low, high, scope),
             TypeKind::Array { bounds, element } => self.array_type(bounds, element, scope, name, spec.span),
             TypeKind::Struct(members) => self.structure(members, None, scope, name, doc, spec.span),
+            TypeKind::Union(members) => self.union(members, scope, name, doc, spec.span),
             TypeKind::Enum { base, values } => self.enumeration(*base, values, scope, name, doc, spec.span),
             TypeKind::Reference { kind, target } => self.reference(*kind, target, scope, name),
             // The parser has said so.
-            TypeKind::Unsupported(_) | TypeKind::Error => None,
+            TypeKind::Error => None,
         }
     }
 
@@ -484,7 +485,7 @@ impl<'s> Declarations<'s> {
         count
     }
 
-    fn intern_array(&mut self, low: i64, high: i64, element: Resolved) -> Type {
+    pub(super) fn intern_array(&mut self, low: i64, high: i64, element: Resolved) -> Type {
         self.intern_array_type(Array { low, high, element: element.ty }, element)
     }
 

@@ -10,10 +10,11 @@ use super::place::Found;
 use crate::diagnostic::wording::article;
 use crate::types::signature::{Formal, Target};
 use crate::types::table::Resolved;
+use crate::types::window::Window;
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{
     Argument, Block, Conversion, Expr, ExprKind, FieldId, Place, Projection, RefKind, Root, Section, Statement,
-    StatementKind, Type, View,
+    StatementKind, Type,
 };
 use std::rc::Rc;
 
@@ -25,11 +26,11 @@ pub(crate) enum Role {
     Stored(FieldId, Type),
     /// The statement of the call evaluates it, in this turn; the instance's is 0.
     Passed(usize),
-    /// A string of another capacity than the VAR_IN_OUT's: it goes in by a copy, cut where it is too
-    /// long, and comes back so.
-    Copied(Place),
+    /// A string of another capacity than the VAR_IN_OUT's, which is cut where it is too long, or what shares its
+    /// bits with others: it goes in by a copy, and comes back so.
+    Copied(Place, Option<Window>),
     /// It, or bits of it, is assigned after the call.
-    Target(Source, bool, Option<View>),
+    Target(Source, bool, Option<Window>),
     /// It keeps a standard block's count, which is assigned to it after the call.
     Count(FieldId, Type),
 }
@@ -41,6 +42,14 @@ pub(crate) enum Source {
     Field(FieldId, Type),
     /// What a FUNCTION was given for its output.
     Variable(Place),
+}
+
+/// What until a call's outputs is made of the copies of in-outs.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Copies {
+    /// One statement each, which reads and writes what the copy does.
+    Drafted,
+    Made,
 }
 
 #[derive(Clone, Debug)]
@@ -70,7 +79,7 @@ impl Parts {
     /// What is passed to the callee for a part.
     pub fn argument(&self, at: usize) -> Argument {
         match (&self.parts[at].role, &self.written[at].held) {
-            (Role::Copied(copy), _) => Argument::Reference(copy.clone()),
+            (Role::Copied(copy, _), _) => Argument::Reference(copy.clone()),
             (_, Held::Value(value)) => Argument::Value(value.clone()),
             (_, Held::Place(place)) => Argument::Reference(place.clone()),
         }
@@ -85,7 +94,7 @@ impl Parts {
     /// back, and assignments of outputs.
     fn schedule(&mut self) {
         let stored = self.with(|it| matches!(it, Role::Stored(..)));
-        let copied = self.with(|it| matches!(it, Role::Copied(_)));
+        let copied = self.with(|it| matches!(it, Role::Copied(..)));
         let targets = self.with(|it| matches!(it, Role::Target(..) | Role::Count(..)));
         let call = stored.len() + copied.len();
         for (at, part) in self.parts.iter().enumerate() {
@@ -94,7 +103,7 @@ impl Parts {
                 Role::Instance => ((0, 0), call + copied.len() + targets.len()),
                 Role::Stored(..) => ((number(&stored), 1), number(&stored)),
                 Role::Passed(turn) => ((call, turn), call),
-                Role::Copied(_) => ((stored.len() + number(&copied), 0), call + 1 + number(&copied)),
+                Role::Copied(..) => ((stored.len() + number(&copied), 0), call + 1 + number(&copied)),
                 Role::Target(..) | Role::Count(..) => {
                     let at = call + 1 + copied.len() + number(&targets);
                     ((at, 0), at)
@@ -153,10 +162,34 @@ impl<'s> Checker<'_, 's> {
         if formal.constant {
             return self.constant_in_out_part(parts, formal, turn, expr);
         }
-        let place = self.after_parts(&mut parts.written, |this| this.variable_argument(expr, formal.name.text))?.place;
-        let role = self.in_out_role(formal, &place, turn, expr.span)?;
+        let Found { mut place, view, .. } =
+            self.after_parts(&mut parts.written, |this| this.variable_or_view(expr, formal.name.text))?;
+        let role = match view {
+            Some(view) if view.address.is_some() => {
+                self.report_shared(expr.span, view);
+                return None;
+            }
+            Some(view) => self.shared_in_out(formal, &mut place, view, expr.span)?,
+            None => self.in_out_role(formal, &place, turn, expr.span)?,
+        };
         parts.push(Held::Place(place), role, expr.span);
         Some(())
+    }
+
+    /// What shares its bits has no storage of its own, which could be handed on.
+    fn shared_in_out(&mut self, formal: &Formal<'s>, place: &mut Place, view: Window, span: Span) -> Option<Role> {
+        let ty = formal.resolved.ty;
+        if self.decl.program.is_open(ty) {
+            self.decl.not_supported(span, "a member of a UNION as an ARRAY[*]");
+            return None;
+        }
+        if view.ty != ty {
+            self.report_other_type(formal, view.ty, span);
+            return None;
+        }
+        self.fix(place);
+        self.note_assigned(place, span);
+        Some(Role::Copied(self.temporary("shared", ty), Some(view)))
     }
 
     /// What a call does with the variable given for a VAR_IN_OUT.
@@ -167,7 +200,7 @@ impl<'s> Checker<'_, 's> {
             && from != to
         {
             self.note_assigned(place, span);
-            return Some(Role::Copied(self.temporary("text", ty)));
+            return Some(Role::Copied(self.temporary("text", ty), None));
         }
         if self.decl.program.is_open(ty) {
             self.takes(formal, place.ty, span)?;
@@ -310,6 +343,11 @@ impl<'s> Checker<'_, 's> {
 
     /// An argument that must be a variable which may be written.
     pub(crate) fn variable_argument(&mut self, expr: &ast::Expr<'s>, name: &str) -> Option<Found<'s>> {
+        let found = self.variable_or_view(expr, name)?;
+        self.whole(found, expr.span)
+    }
+
+    fn variable_or_view(&mut self, expr: &ast::Expr<'s>, name: &str) -> Option<Found<'s>> {
         use ast::ExprKind as Ast;
         let names_storage = matches!(
             expr.kind,
@@ -322,7 +360,7 @@ impl<'s> Checker<'_, 's> {
             );
             return None;
         }
-        let found = self.place(expr)?;
+        let found = self.place_or_view(expr)?;
         self.may_be_given_away(&found, expr.span).then_some(found)
     }
 
@@ -334,7 +372,7 @@ impl<'s> Checker<'_, 's> {
         span: Span,
     ) -> Option<Parts> {
         parts.schedule();
-        let mut draft = self.until_outputs(&parts, call, span)?;
+        let mut draft = self.until_outputs(&parts, call, span, Copies::Drafted)?;
         for at in parts.with(|it| matches!(it, Role::Target(..) | Role::Count(..))) {
             let place = parts.written[at].place()?.clone();
             let location = self.at(parts.parts[at].span);
@@ -342,7 +380,7 @@ impl<'s> Checker<'_, 's> {
         }
         let Parts { written, .. } = &mut parts;
         self.settle(written, &draft);
-        let statements = self.until_outputs(&parts, call, span)?;
+        let statements = self.until_outputs(&parts, call, span, Copies::Made)?;
         for statement in statements {
             self.count_values_of(&statement);
             self.block.push(statement);
@@ -359,6 +397,7 @@ impl<'s> Checker<'_, 's> {
         parts: &Parts,
         call: &dyn Fn(&Parts) -> Option<StatementKind>,
         span: Span,
+        copies: Copies,
     ) -> Option<Block> {
         let mut statements = Block::new();
         let mut back = Block::new();
@@ -369,16 +408,38 @@ impl<'s> Checker<'_, 's> {
             }
         }
         for (written, part) in parts.written.iter().zip(&parts.parts) {
-            if let (Role::Copied(copy), Some(place)) = (&part.role, written.place()) {
-                let at = self.at(part.span);
-                let cut = |from: &Place, ty| Expr::convert(Conversion::Value, ty, Expr::load(from.clone(), at), at);
-                statements.push(Statement::assign(copy.clone(), cut(place, copy.ty), at));
-                back.push(Statement::assign(place.clone(), cut(copy, place.ty), at));
+            if let (Role::Copied(copy, view), Some(place)) = (&part.role, written.place()) {
+                statements.extend(self.copied((place, *view), (copy, None), copies, part.span));
+                back.extend(self.copied((copy, None), (place, *view), copies, part.span));
             }
         }
         statements.push(Statement::new(call(parts)?, self.at(span)));
         statements.append(&mut back);
         Some(statements)
+    }
+
+    /// The statements that copy a variable, or what shares its bits; one where they are drafted.
+    fn copied(
+        &mut self,
+        from: (&Place, Option<Window>),
+        to: (&Place, Option<Window>),
+        copies: Copies,
+        span: Span,
+    ) -> Block {
+        let at = self.at(span);
+        let is_drafted = copies == Copies::Drafted && (from.1.is_some() || to.1.is_some());
+        if is_drafted {
+            return vec![Statement::assign(to.0.clone(), Expr::load(from.0.clone(), at), at)];
+        }
+        self.nested(|this| {
+            let Some(value) = this.read(from.0.clone(), from.1, span) else { return };
+            let ty = to.1.map_or(to.0.ty, |it| it.ty);
+            let value = match ty {
+                Type::String(_) => Expr::convert(Conversion::Value, ty, value, at),
+                _ => value,
+            };
+            this.write(to.0.clone(), to.1, value, span);
+        })
     }
 
     /// An output's value for a variable of type `ty`. It is the variable that is written at `span`, so
@@ -409,14 +470,14 @@ impl<'s> Checker<'_, 's> {
             }
             Role::Target(Source::Variable(place), negated, view) => (place.clone(), *negated, *view),
             Role::Count(field, ty) => (parts.instance()?.clone().field(*field, *ty), false, None),
-            Role::Instance | Role::Stored(..) | Role::Passed(_) | Role::Copied(_) => return None,
+            Role::Instance | Role::Stored(..) | Role::Passed(_) | Role::Copied(..) => return None,
         };
         let location = self.at(*span);
         let mut value = Expr::load(source, location).read();
         if negated {
             value = self.not(value, *span)?;
         }
-        let ty = view.map_or(target.ty, |it| Type::Elementary(it.ty));
+        let ty = view.map_or(target.ty, |it| it.ty);
         let value = self.output(value, ty, *span)?;
         self.write(target, view, value, *span)
     }

@@ -153,7 +153,7 @@ impl<'s> Checker<'_, 's> {
     fn type_of_target(&mut self, target: &ast::Expr<'s>) -> Option<Type> {
         let ty = self.tried(target.span, |this| {
             let found = this.place(target)?;
-            Some(found.view.map_or(found.place.ty, |it| Type::Elementary(it.ty)))
+            Some(found.view.map_or(found.place.ty, |it| it.ty))
         });
         ty.flatten().map(Type::read)
     }

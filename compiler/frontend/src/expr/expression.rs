@@ -2,6 +2,7 @@ use super::checker::{Checker, Context};
 use super::operand::{Operand, computed};
 use super::place::{Access, Found};
 use crate::types::scope::Variable;
+use crate::types::window::Window;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, UnaryOp};
 use staunch_ir::{Chars, Const, Conversion, Elementary, Expr, ExprKind, Op, Type};
@@ -89,6 +90,7 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let (place, view) = self.decl.image.stored(&variable.place);
+        let view = view.map(Window::from);
         let found = self.referred(Found { place, view, access: Access::Write }, span)?;
         self.read(found.place, found.view, span)
     }

@@ -30,6 +30,7 @@ mod open_array;
 pub(crate) mod operand;
 pub(crate) mod operator;
 mod order;
+mod overlay;
 mod overload;
 mod place;
 mod promotion;

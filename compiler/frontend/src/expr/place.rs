@@ -8,11 +8,12 @@ use crate::names::{self, Entry, Meaning, Sense};
 use crate::spelling::nearest;
 use crate::types::scope::Variable;
 use crate::types::signature::Target;
+use crate::types::window::Window;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::ExprKind as Ast;
 use staunch_ir::{
     Address, Area, Array, ArrayId, BlockId, Elementary, Expr, FieldId, Op, ParamId, Place, Root, Section, StructId,
-    Type, Value, View, alias,
+    Type, Value, alias,
 };
 use staunch_runtime::Direction;
 use std::rc::Rc;
@@ -22,7 +23,7 @@ use std::rc::Rc;
 pub(crate) struct Found<'s> {
     pub place: Place,
     /// The bits of the place that it is.
-    pub view: Option<View>,
+    pub view: Option<Window>,
     pub access: Access<'s>,
 }
 
@@ -91,7 +92,7 @@ impl<'s> Checker<'_, 's> {
                     return None;
                 };
                 let (place, view) = self.decl.image.stored(&place);
-                Some(Found { place, view, access: Access::Write })
+                Some(Found { place, view: view.map(Window::from), access: Access::Write })
             }
             Ast::Member(base, name) => self.member(expr, base, *name),
             Ast::Index(base, indices) => self.index(base, indices),
@@ -298,7 +299,7 @@ impl<'s> Checker<'_, 's> {
             | Section::External => Access::Write,
         };
         let (place, view) = self.decl.image.stored(&variable.place);
-        Found { place, view, access }
+        Found { place, view: view.map(Window::from), access }
     }
 
     fn member(&mut self, whole: &ast::Expr<'s>, base: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<Found<'s>> {
@@ -312,11 +313,11 @@ impl<'s> Checker<'_, 's> {
             this?;
             return self.member_of_this(name);
         }
-        let found = self.place(base)?;
+        let found = self.place_or_view(base)?;
         if self.is_unknown_head(base, name) {
             return None;
         }
-        match found.place.ty {
+        match self.type_of(&found) {
             Type::Struct(id) => self.struct_member(found, id, name),
             Type::Block(id) => self.pin(found, id, name),
             Type::Elementary(_)
@@ -325,7 +326,7 @@ impl<'s> Checker<'_, 's> {
             | Type::String(_)
             | Type::Enum(_)
             | Type::Array(_) => {
-                let ty = self.type_name(found.place.ty);
+                let ty = self.type_name(self.type_of(&found));
                 self.report(
                     Diagnostic::new(Code::E0107, name.span, format!("{ty} has no members"))
                         .label(format!("`{}` cannot be part of {ty}", name.text)),
@@ -350,16 +351,20 @@ impl<'s> Checker<'_, 's> {
             );
             return None;
         }
+        if let Some(overlay) = self.overlay(&found, id, name) {
+            return Some(overlay);
+        }
         let Some(at) = self.decl.field_named(id, name.text).map(FieldId::index) else {
             if let Some(shared) = self.shared_member(&found.place, id, name) {
                 return shared;
             }
-            let fields = &self.decl.program.structure(id).fields;
-            let visible = fields.iter().filter(|it| !instance || is_pin(it.section));
-            let near = nearest(name.text, visible.map(|it| it.name.as_str())).map(str::to_owned);
-            self.decl.unknown_member(name, found.place.ty, near.as_deref());
+            let near = nearest(name.text, self.decl.members_of(id)).map(str::to_owned);
+            self.decl.unknown_member(name, Type::Struct(id), near.as_deref());
             return None;
         };
+        if found.view.is_some() {
+            return Some(self.member_of_view(found, id, FieldId::next(at)));
+        }
         let fields = &self.decl.program.structure(id).fields;
         let (ty, section, constant) = (fields[at].ty, fields[at].section, fields[at].constant);
         let inner = instance && !is_pin(section) && !self.is_public(id, name);
@@ -448,7 +453,7 @@ impl<'s> Checker<'_, 's> {
             }
         };
         let (place, view) = self.decl.image.stored(&variable.place);
-        Some(Some(Found { place, view, access }))
+        Some(Some(Found { place, view: view.map(Window::from), access }))
     }
 
     /// Where the VAR_IN_OUT `name` of an instance is declared.
@@ -486,14 +491,14 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn index(&mut self, base: &ast::Expr<'s>, indices: &[ast::Expr<'s>]) -> Option<Found<'s>> {
-        let mut found = self.place(base)?;
+        let mut found = self.place_or_view(base)?;
         for index in indices {
-            let Type::Array(id) = found.place.ty else {
-                let ty = self.type_name(found.place.ty);
+            let Type::Array(id) = self.type_of(&found) else {
+                let ty = self.type_name(self.type_of(&found));
                 let error = Diagnostic::new(Code::E0302, index.span, format!("{ty} has no index here"))
                     .label("one index too many, or not an array");
                 let (text, at) = (self.decl.log.sources.text(base.span), self.decl.log.sources.text(index.span));
-                self.report(match found.place.ty {
+                self.report(match self.type_of(&found) {
                     Type::String(_) => {
                         let at = character(at, self.decl.dialect(index.span));
                         let reads = format!("read one character with `MID({text}, 1, {at})`");
@@ -512,10 +517,14 @@ impl<'s> Checker<'_, 's> {
                 });
                 return None;
             };
-            let Found { place, access, .. } = found;
+            let Found { place, access, view } = found;
             let mut place = place;
             let index_value = self.after_place(&mut place, |this| this.index_value(index, id))?;
             let at = self.at(index.span);
+            if view.is_some() {
+                found = self.element_of_view(Found { place, view, access }, id, index_value, at);
+                continue;
+            }
             let element = self.decl.program.array(id).element;
             found = Found { place: place.index(index_value, element, at), view: None, access };
         }
@@ -625,7 +634,7 @@ impl<'s> Checker<'_, 's> {
 
     /// Reports an assignment to what the hardware sets before each scan.
     fn is_no_input_address(&mut self, found: &Found<'s>, span: Span) -> bool {
-        let address = found.view.map(|it| it.address).or_else(|| self.address_of(&found.place));
+        let address = found.view.and_then(|it| it.address).or_else(|| self.address_of(&found.place));
         let Some(address) = address.filter(|it| it.area == Area::Input) else { return true };
         let refused = self.decl.dialect(span).protects_inputs();
         let code = if refused { Code::E0511 } else { Code::W0509 };

@@ -47,7 +47,7 @@ fn low_bits(value: &Expr, to: Elementary) -> Option<Expr> {
         }
         ExprKind::Apply(..)
         | ExprKind::ApplyText(..)
-        | ExprKind::Convert(Conversion::Same | Conversion::Truncate, _)
+        | ExprKind::Convert(Conversion::Same | Conversion::Truncate | Conversion::Bits, _)
         | ExprKind::Load(_)
         | ExprKind::AddressOf(_)
         | ExprKind::Text(_)

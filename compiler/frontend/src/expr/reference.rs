@@ -42,7 +42,7 @@ fn function(name: &str) -> Option<Function> {
 impl<'s> Checker<'_, 's> {
     /// What a place stands for: a REFERENCE TO stands for what it refers to.
     pub(crate) fn referred(&mut self, found: Found<'s>, span: Span) -> Option<Found<'s>> {
-        match self.ref_type(found.place.ty) {
+        match self.ref_type(self.type_of(&found)) {
             Some((id, RefType { kind: RefKind::ReferenceTo, .. })) => self.followed(found, id, span),
             Some(_) | None => Some(found),
         }
@@ -110,7 +110,14 @@ impl<'s> Checker<'_, 's> {
 
     /// A reference to a variable.
     pub(crate) fn reference_to(&mut self, expr: &ast::Expr<'s>, kind: RefKind) -> Option<Expr> {
-        let found = self.place(expr)?;
+        let found = self.place_or_view(expr)?;
+        let target = self.type_of(&found);
+        let found = match found.view {
+            Some(view) if view.address.is_none() && !view.is_bit => {
+                Found { place: self.first_unit(&found.place, view, expr.span), view: None, ..found }
+            }
+            Some(_) | None => self.whole(found, expr.span)?,
+        };
         if self.decl.program.is_open(found.place.ty) {
             self.decl.not_supported(expr.span, "the address of a whole ARRAY[*]");
             return None;
@@ -143,7 +150,7 @@ impl<'s> Checker<'_, 's> {
         }
         // Whoever has its address may read and write it.
         self.note_passed(&found.place, expr.span, expr.span);
-        let ty = self.decl.reference_type(kind, found.place.ty);
+        let ty = self.decl.reference_type(kind, target);
         let at = self.at(expr.span);
         let place = found.place;
         let reference = Expr::new(ty, ExprKind::AddressOf(Box::new(place.clone())), at);
@@ -168,7 +175,10 @@ impl<'s> Checker<'_, 's> {
     fn size(&mut self, argument: &ast::Expr<'s>) -> Option<Operand> {
         let ty = match self.type_meant(argument) {
             Some(ty) => ty,
-            None => self.place_of_reference(argument)?.place.ty,
+            None => {
+                let found = self.place_of_reference(argument)?;
+                self.type_of(&found)
+            }
         };
         if self.decl.program.is_open(ty) {
             self.decl.not_supported(argument.span, "SIZEOF of an ARRAY[*]");

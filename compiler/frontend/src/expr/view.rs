@@ -1,41 +1,65 @@
-//! Variables that are some bits of another one: reading and assigning them.
+//! Variables that are some bits of another one: what lies at a direct address that others share, BITs, and the
+//! members of a UNION. Reading and assigning them.
 
 use super::checker::Checker;
 use super::place::{Bits, Found};
+use crate::types::window::Window;
 use crate::{Code, Diagnostic, Span};
-use staunch_ir::{Conversion, Elementary, Expr, Op, Place, Type, Value, View};
+use staunch_ir::{Conversion, Elementary, Expr, Op, Place, Projection, Type, Value};
 
 impl<'s> Checker<'_, 's> {
     /// The type of what is found: a view's own.
     pub(crate) fn type_of(&self, found: &Found<'s>) -> Type {
-        found.view.map_or(found.place.ty, |it| Type::Elementary(it.ty))
+        found.view.map_or(found.place.ty, |it| it.ty)
     }
 
     /// What is found, unless it is a view: nothing can be handed some bits of a variable.
     pub(crate) fn whole(&mut self, found: Found<'s>, span: Span) -> Option<Found<'s>> {
-        if found.view.is_none() {
-            return Some(found);
-        }
-        let text = self.decl.log.sources.text(span).to_owned();
-        self.report(
-            Diagnostic::new(Code::E0410, span, format!("`{text}` shares its bits with another address"))
-                .label("it can be read and assigned, and be given to inputs and outputs")
-                .help("use a variable of its own here, and assign that"),
-        );
+        let Some(view) = found.view else { return Some(found) };
+        self.report_shared(span, view);
         None
     }
 
+    pub(super) fn report_shared(&mut self, span: Span, view: Window) {
+        let text = self.decl.log.sources.text(span).to_owned();
+        let with = match view.address {
+            Some(_) => "another address",
+            None => "other members",
+        };
+        self.report(
+            Diagnostic::new(Code::E0410, span, format!("`{text}` shares its bits with {with}"))
+                .label("it can be read and assigned, and be given to inputs and outputs")
+                .help("use a variable of its own here, and assign that"),
+        );
+    }
+
     /// Reads a variable, or the bits that one is.
-    pub(crate) fn read(&mut self, place: Place, view: Option<View>, span: Span) -> Option<Expr> {
+    pub(crate) fn read(&mut self, place: Place, view: Option<Window>, span: Span) -> Option<Expr> {
         let at = self.at(span);
         let Some(view) = view else { return Some(Expr::load(place, at)) };
+        match view.ty {
+            Type::Array(_) | Type::Struct(_) => self.read_whole(&place, view, span),
+            Type::String(it) => self.read_text(&place, view, it, span),
+            Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) | Type::Block(_) | Type::Reference(_) => {
+                self.read_number(place, view, span)
+            }
+        }
+    }
+
+    fn read_number(&mut self, mut place: Place, view: Window, span: Span) -> Option<Expr> {
+        let at = self.at(span);
+        self.save_last_index(&mut place, view);
         let units = self.units(&place, view, span)?;
-        let ty = Type::Elementary(view.ty);
+        if let ([(unit, bits)], true) = (units.as_slice(), view.is_bit) {
+            let value = self.unsigned(Expr::load(unit.clone(), at));
+            return self.bits(value, *bits, view.ty, span);
+        }
         if let [(unit, bits)] = units.as_slice() {
             let value = self.unsigned(Expr::load(unit.clone(), at));
-            return self.bits(value, *bits, ty, span);
+            let value = self.shifted(Op::Shr, value, bits.shift, span)?;
+            return self.of_bits(value, view.ty, span);
         }
-        let whole = Type::Elementary(of_bits(view.ty));
+        let whole = Type::Elementary(unsigned(self.decl.program.repr(view.ty)?.size()));
         let mut shift = 0;
         let mut value: Option<Expr> = None;
         for (unit, bits) in units {
@@ -48,24 +72,85 @@ impl<'s> Checker<'_, 's> {
             });
             shift += bits.width;
         }
-        Some(self.convert(Conversion::Value, ty, value?))
+        self.of_bits(value?, view.ty, span)
+    }
+
+    /// The low bits of an unsigned number, as a value of another type.
+    fn of_bits(&mut self, value: Expr, ty: Type, span: Span) -> Option<Expr> {
+        let repr = self.decl.program.repr(ty)?;
+        let low = Type::Elementary(unsigned(repr.size()));
+        match ty.read() {
+            Type::Elementary(it) if it.is_real() => {
+                let value = self.convert(Conversion::Value, low, value);
+                Some(self.convert(Conversion::Bits, ty, value))
+            }
+            Type::Elementary(Elementary::Bool) => {
+                let value = self.convert(Conversion::Value, low, value);
+                Some(self.convert(Conversion::Value, ty, value))
+            }
+            Type::Elementary(it) if it.is_day() || it.is_time_of_day() => {
+                let number = self.convert(Conversion::Value, Type::LINT, value);
+                self.as_time(number, it, span)
+            }
+            Type::Enum(id) => {
+                let base = Type::Elementary(self.decl.program.enumeration(id).base);
+                let number = self.convert(Conversion::Value, base, value);
+                Some(self.convert(Conversion::Same, ty, number))
+            }
+            read => Some(self.convert(Conversion::Value, read, value)),
+        }
+    }
+
+    /// A value as an unsigned number of its width.
+    fn as_bits(&mut self, value: Expr) -> Option<Expr> {
+        let bits = Type::Elementary(unsigned(self.decl.program.repr(value.ty)?.size()));
+        Some(match value.ty.read() {
+            Type::Elementary(it) if it.is_real() => self.convert(Conversion::Bits, bits, value),
+            Type::Enum(id) => {
+                let base = Type::Elementary(self.decl.program.enumeration(id).base);
+                let number = self.convert(Conversion::Same, base, value);
+                self.convert(Conversion::Value, bits, number)
+            }
+            _ => self.convert(Conversion::Value, bits, value),
+        })
     }
 
     /// Assigns to a variable, or to the bits that one is.
-    pub(crate) fn write(&mut self, place: Place, view: Option<View>, mut value: Expr, span: Span) -> Option<()> {
+    pub(crate) fn write(&mut self, place: Place, view: Option<Window>, value: Expr, span: Span) -> Option<()> {
         let Some(view) = view else {
             self.assign(place, value, span);
             return Some(());
         };
+        match view.ty {
+            Type::Array(_) | Type::Struct(_) => self.write_whole(&place, view, value, span),
+            Type::String(it) => self.write_text(&place, view, it, value, span),
+            Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) | Type::Block(_) | Type::Reference(_) => {
+                self.write_number(place, view, value, span)
+            }
+        }
+    }
+
+    fn write_number(&mut self, mut place: Place, view: Window, mut value: Expr, span: Span) -> Option<()> {
+        self.save_last_index(&mut place, view);
         let units = self.units(&place, view, span)?;
+        if let ([(unit, bits)], true) = (units.as_slice(), view.is_bit) {
+            return self.merge(unit.clone(), *bits, value, span);
+        }
         if let [(unit, bits)] = units.as_slice() {
+            let value = self.as_bits(value)?;
+            if bits.shift == 0 && self.decl.program.repr(unit.ty).is_some_and(|it| it.size() * 8 == bits.width) {
+                let value = self.convert(Conversion::Value, unit.ty.read(), value);
+                let value = self.coerce(super::operand::Operand::Typed(value), unit.ty, span)?;
+                self.assign(unit.clone(), value, span);
+                return Some(());
+            }
             return self.merge(unit.clone(), *bits, value, span);
         }
         // Its parts are assigned one after the other, and may be what the value is made of.
         if value.as_const().is_none() {
             self.save("shared", &mut value);
         }
-        let value = self.convert(Conversion::Value, Type::Elementary(of_bits(view.ty)), value);
+        let value = self.as_bits(value)?;
         let mut shift = 0;
         for (unit, bits) in units {
             let part = self.shifted(Op::Shr, value.clone(), shift, span)?;
@@ -80,7 +165,7 @@ impl<'s> Checker<'_, 's> {
     pub(crate) fn merge(&mut self, place: Place, bits: Bits, value: Expr, span: Span) -> Option<()> {
         let (at, ty) = (self.at(span), place.ty.read());
         let Type::Elementary(whole) = ty else { return None };
-        let unsigned = of_bits(whole);
+        let unsigned = unsigned(whole.repr().size());
         let mask = unsigned.repr().integer(((1i128 << bits.width) - 1) << bits.shift)?;
         let mask = self.convert(Conversion::Value, ty, Expr::constant(unsigned, mask, at));
         let kept = self.apply(Op::Not, ty, vec![mask.clone()], ty, span)?;
@@ -120,33 +205,88 @@ impl<'s> Checker<'_, 's> {
 
     fn unsigned(&mut self, value: Expr) -> Expr {
         match value.ty {
-            Type::Elementary(it) => self.convert(Conversion::Value, Type::Elementary(of_bits(it)), value),
+            Type::Elementary(it) => {
+                self.convert(Conversion::Value, Type::Elementary(unsigned(it.repr().size())), value)
+            }
             _ => value,
         }
     }
 
+    /// Saves the last index on the way to a view of several elements, which each of them is found by.
+    fn save_last_index(&mut self, place: &mut Place, view: Window) {
+        let unit = self.decl.program.repr(place.ty).map_or(0, |it| u64::from(it.size()));
+        let bytes = self.decl.size_of(view.ty);
+        if let Some(Projection::Index { index, .. }) = place.projections.last_mut()
+            && index.as_const().is_none()
+            && bytes > unit
+            && !view.is_bit
+        {
+            self.save("index", index);
+        }
+    }
+
     /// The integers that hold the bits of a view, the lowest first, and which bits of each.
-    fn units(&mut self, place: &Place, view: View, span: Span) -> Option<Vec<(Place, Bits)>> {
-        let width = u32::from(view.address.width);
-        let Type::Array(id) = place.ty else {
-            return Some(vec![(place.clone(), Bits { shift: u32::try_from(view.bit).ok()?, width })]);
+    fn units(&mut self, place: &Place, view: Window, span: Span) -> Option<Vec<(Place, Bits)>> {
+        let width = match view.is_bit {
+            true => 1,
+            false => self.decl.program.repr(view.ty)?.size() * 8,
         };
-        let (array, at) = (self.decl.program.array(id), self.at(span));
-        let size = self.decl.program.repr(array.element)?.size() * 8;
-        let first = array.low.checked_add_unsigned(view.bit / u64::from(size))?;
-        let shift = u32::try_from(view.bit % u64::from(size)).ok()?;
-        let count = width.div_ceil(size);
-        let unit = |number: u32| {
-            let index = Expr::constant(Elementary::Lint, Value::I64(first + i64::from(number)), at);
-            (place.clone().index(index, array.element, at), Bits { shift, width: width.min(size) })
+        let (unit, at) = (self.unit_of(place)?, self.at(span));
+        let size = unit.size() * 8;
+        let (first, shift) = (view.bit / u64::from(size), u32::try_from(view.bit % u64::from(size)).ok()?);
+        let count = (shift + width).div_ceil(size);
+        let elements = (0..u64::from(count)).map(|it| self.further(place, first + it, at));
+        Some(elements.map(|it| (it, Bits { shift, width: width.min(size) })).collect())
+    }
+
+    /// The number that a view of a UNION's member begins with.
+    pub(super) fn first_unit(&mut self, place: &Place, view: Window, span: Span) -> Place {
+        let size = self.unit_of(place).map_or(8, |it| u64::from(it.size()) * 8);
+        let at = self.at(span);
+        self.further(place, view.bit / size, at)
+    }
+
+    /// The repr of a place's elements, or of the place where it has none.
+    fn unit_of(&self, place: &Place) -> Option<staunch_ir::Repr> {
+        match place.ty {
+            Type::Array(id) => self.decl.program.repr(self.decl.program.array(id).element),
+            ty => self.decl.program.repr(ty),
+        }
+    }
+
+    /// The element that is so many after the first of an array, or after an element.
+    fn further(&self, place: &Place, count: u64, at: staunch_ir::Location) -> Place {
+        let count = i64::try_from(count).unwrap_or(i64::MAX);
+        self.moved(place, Expr::constant(Elementary::Lint, Value::I64(count), at), at)
+    }
+
+    /// The same, where the count is a LINT.
+    pub(super) fn moved(&self, place: &Place, by: Expr, at: staunch_ir::Location) -> Place {
+        let add = |to: Expr, by: Expr| match (to.as_const(), by.as_const()) {
+            (_, Some(Value::I64(0))) => to,
+            (Some(Value::I64(a)), Some(Value::I64(b))) => {
+                Expr::constant(Elementary::Lint, Value::I64(a.saturating_add(b)), at)
+            }
+            (Some(Value::I64(0)), _) => by,
+            _ => Expr::apply(Op::Add, Type::LINT, vec![to.read(), by], at),
         };
-        Some((0..count).map(unit).collect())
+        let mut place = place.clone();
+        if let Type::Array(id) = place.ty {
+            let array = self.decl.program.array(id);
+            let low = Expr::constant(Elementary::Lint, Value::I64(array.low), at);
+            return place.index(add(low, by), array.element, at);
+        }
+        if let Some(Projection::Index { index, .. }) = place.projections.last_mut() {
+            let first = std::mem::replace(&mut **index, Expr::bool(false, at));
+            **index = add(first, by);
+        }
+        place
     }
 }
 
-/// The bit string of the same width, whose values are all bit patterns.
-fn of_bits(ty: Elementary) -> Elementary {
-    match ty.repr().size() {
+/// The bit string of so many bytes, whose values are all bit patterns.
+fn unsigned(size: u32) -> Elementary {
+    match size {
         1 => Elementary::Byte,
         2 => Elementary::Word,
         4 => Elementary::Dword,

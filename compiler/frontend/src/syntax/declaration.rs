@@ -127,17 +127,16 @@ pub fn structure_members<'s>(input: &mut In<'_, '_, 's>) -> TypeKind<'s> {
     TypeKind::Struct(fields)
 }
 
-/// UNION is read to be refused by name.
+/// UNION is a word only here.
 fn union<'t, 's: 't>() -> impl Rule<'t, 's, TypeKind<'s>> {
     rule(|input| {
-        if !input.is_word("UNION") || input.kind_ahead(1) != Kind::Name {
+        if !input.is_word("UNION") || !matches!(input.kind_ahead(1), Kind::Name | Kind::EndUnion) {
             return Err(input.problem(Expected::Type));
         }
-        let span = input.take();
-        input.report(diagnostics::unsupported(span, "UNION"));
-        list(input, Kind::EndUnion, span);
-        input.eat(Kind::EndUnion);
-        Ok(TypeKind::Unsupported("UNION"))
+        let opened = input.take();
+        let members = list(input, Kind::EndUnion, opened);
+        block_ends::close_block(input, Kind::EndUnion, opened);
+        Ok(TypeKind::Union(members))
     })
 }
 

@@ -76,7 +76,7 @@ fn type_decl<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeDecl<'s>> {
     let base = word("EXTENDS").ignore_then(path).or_not();
     let head = name().then(base).then_ignore(colon);
     let ((name, base), (ty, initial)) = input.parse(head.then(type_spec().then(optional_initial())))?;
-    let closed = matches!(ty.kind, TypeKind::Struct(_) | TypeKind::Unsupported("UNION"));
+    let closed = matches!(ty.kind, TypeKind::Struct(_) | TypeKind::Union(_));
     if !closed || input.kind() == Kind::Semicolon {
         input.parse(end())?;
     }

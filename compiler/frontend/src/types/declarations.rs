@@ -479,13 +479,7 @@ impl<'s> Declarations<'s> {
     /// What can be named of a structure, enumeration or instance, for a message.
     fn member_names(&self, ty: Type) -> Option<String> {
         let names: Vec<&str> = match ty {
-            Type::Struct(id) => {
-                let instance = self.is_instance(id);
-                let pin = |it: &&staunch_ir::Field| {
-                    !instance || matches!(it.section, staunch_ir::Section::Input | staunch_ir::Section::Output)
-                };
-                self.program.structure(id).fields.iter().filter(pin).map(|it| it.name.as_str()).collect()
-            }
+            Type::Struct(id) => self.members_of(id).collect(),
             Type::Enum(id) => self.program.enumeration(id).values.iter().map(|it| it.name.as_str()).collect(),
             Type::Elementary(_)
             | Type::Reference(_)

@@ -46,12 +46,11 @@ pub(crate) fn names_in<'a, 's>(spec: &'a ast::TypeSpec<'s>, found: &mut Vec<&'a 
     match &spec.kind {
         ast::TypeKind::Named(path) => found.extend(path.iter().take(usize::from(path.len() == 1))),
         ast::TypeKind::Array { element, .. } => names_in(element, found),
-        ast::TypeKind::Struct(members) => members.iter().for_each(|it| names_in(&it.ty, found)),
+        ast::TypeKind::Struct(members) | ast::TypeKind::Union(members) => {
+            members.iter().for_each(|it| names_in(&it.ty, found))
+        }
         ast::TypeKind::Reference { target, .. } => names_in(target, found),
         ast::TypeKind::Subrange { base, .. } => found.push(base),
-        ast::TypeKind::Enum { .. }
-        | ast::TypeKind::String { .. }
-        | ast::TypeKind::Unsupported(_)
-        | ast::TypeKind::Error => {}
+        ast::TypeKind::Enum { .. } | ast::TypeKind::String { .. } | ast::TypeKind::Error => {}
     }
 }

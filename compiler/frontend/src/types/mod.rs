@@ -19,3 +19,4 @@ mod storage;
 pub(crate) mod synthetic;
 pub(crate) mod table;
 pub(crate) mod tests;
+pub(crate) mod window;

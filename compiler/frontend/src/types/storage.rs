@@ -20,10 +20,47 @@ impl<'s> Declarations<'s> {
         id
     }
 
-    /// The first field of that name.
+    /// The first field of that name that the source declares.
     pub fn field_named(&self, id: StructId, name: &str) -> Option<FieldId> {
-        let fields = &self.program.structure(id).fields;
-        self.table.index.fields.find(id, name, fields.iter().map(|it| it.name.as_str())).map(FieldId::next)
+        let structure = self.program.structure(id);
+        let names = structure.fields.iter().map(|it| it.name.as_str());
+        let field = self.table.index.fields.find(id, name, names).map(FieldId::next)?;
+        (!structure.is_storage(field)).then_some(field)
+    }
+
+    /// What can be named of a structure or an instance from outside.
+    pub fn members_of(&self, id: StructId) -> impl Iterator<Item = &str> {
+        let (structure, instance) = (self.program.structure(id), self.is_instance(id));
+        let is_seen = move |at: usize, it: &Field| match instance {
+            true => matches!(it.section, Section::Input | Section::Output),
+            false => !structure.is_storage(FieldId::next(at)),
+        };
+        let fields = structure.fields.iter().enumerate().filter(move |(at, it)| is_seen(*at, it));
+        fields.map(|(_, it)| it.name.as_str()).chain(structure.overlays.iter().map(|it| it.name.as_str()))
+    }
+
+    /// Bytes from the start of a structure to a field.
+    pub fn offset_of(&self, id: StructId, field: FieldId) -> u64 {
+        let shapes = self.program.structure(id).fields.iter().map(|it| self.shape(it.ty));
+        let mut offset = 0;
+        for (at, shape) in shapes.enumerate() {
+            offset = u64::next_multiple_of(offset, shape.align);
+            if at == field.index() {
+                break;
+            }
+            offset += shape.size;
+        }
+        offset
+    }
+
+    /// Bytes from one element of an array to the next.
+    pub fn sizeof_element(&self, id: staunch_ir::ArrayId) -> u64 {
+        self.shape(self.program.array(id).element).size
+    }
+
+    /// What the addresses of a type's variables are multiples of.
+    pub fn align_of(&self, ty: Type) -> u64 {
+        self.shape(ty).align
     }
 
     /// The value of the first enumerator of that name.
@@ -89,7 +126,8 @@ impl<'s> Declarations<'s> {
             }
             Type::Struct(id) => {
                 let fields = self.program.structure(id).fields.iter().map(|it| self.shape(it.ty));
-                let whole = fields.fold(Shape { size: 0, align: 1 }, |whole, it| Shape {
+                let empty = Shape { size: 0, align: self.program.structure(id).align };
+                let whole = fields.fold(empty, |whole, it| Shape {
                     size: whole.size.next_multiple_of(it.align).saturating_add(it.size),
                     align: whole.align.max(it.align),
                 });

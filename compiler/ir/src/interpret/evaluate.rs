@@ -95,6 +95,7 @@ fn convert(how: Conversion, value: Value, ty: Type) -> Value {
     match how {
         Conversion::Same => value,
         Conversion::Value => ops::convert_value(value, elementary_repr(ty)),
+        Conversion::Bits => ops::same_bits(value, elementary_repr(ty)),
         Conversion::Truncate => ops::trunc_value(value, elementary_repr(ty)),
     }
 }

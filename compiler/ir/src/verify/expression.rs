@@ -126,6 +126,7 @@ impl Verifier<'_> {
             (Conversion::Truncate, _, _) => {
                 matches!(elementary, (Some(from), Some(to)) if from.is_float() && to.is_integer())
             }
+            (Conversion::Bits, _, _) => matches!(elementary, (Some(from), Some(to)) if have_the_same_bits(from, to)),
             (Conversion::Same, _, _) => self.repr(from).is_some() && self.repr(from) == self.repr(to),
         };
         let holds = holds && self.program.range(to).is_none();
@@ -143,6 +144,11 @@ fn is_of_kind(ty: Type, kind: Kind, wide: bool) -> bool {
         Kind::Wstring => is_string(true),
         Kind::T | Kind::Any(_) | Kind::Is(_) => kind.repr().is_some_and(|it| Verifier::elementary_repr(ty) == Some(it)),
     }
+}
+
+fn have_the_same_bits(from: Repr, to: Repr) -> bool {
+    let (real, number) = if from.is_float() { (from, to) } else { (to, from) };
+    real.is_float() && number.is_unsigned() && real.size() == number.size()
 }
 
 fn is_comparison(op: Op) -> bool {

@@ -61,6 +61,11 @@ impl Verifier<'_> {
             self.location(field.location);
             self.part(field.ty, known, field.location);
         }
+        self.require(structure.align.is_power_of_two(), structure.location, "an alignment that is no power of two");
+        for overlay in &structure.overlays {
+            self.part(overlay.ty, known, overlay.location);
+            self.require(overlay.field.index() < structure.fields.len(), overlay.location, "no such field");
+        }
     }
 
     fn subrange(&mut self, base: Elementary, id: BoundsId, at: Location) {

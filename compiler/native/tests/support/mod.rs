@@ -37,7 +37,7 @@ pub fn zero(name: &str, ty: Type) -> Field {
 }
 
 pub fn structure(name: &str, fields: Vec<Field>) -> Struct {
-    Struct { name: name.to_owned(), doc: None, location: AT, fields }
+    Struct::new(name.to_owned(), None, AT, fields)
 }
 
 pub fn local(name: &str, ty: Type, initial: Const) -> Local {

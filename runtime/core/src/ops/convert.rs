@@ -104,6 +104,17 @@ macro_rules! truncations {
 truncations!(f32: i8 i16 i32 i64 u8 u16 u32 u64);
 truncations!(f64: i8 i16 i32 i64 u8 u16 u32 u64);
 
+/// The bits of a real as an unsigned number of its width, and back; any other value is itself.
+pub fn same_bits(value: Value, to: Repr) -> Value {
+    match (value, to) {
+        (Value::F32(it), Repr::U32) => Value::U32(it.to_bits()),
+        (Value::F64(it), Repr::U64) => Value::U64(it.to_bits()),
+        (Value::U32(it), Repr::F32) => Value::F32(f32::from_bits(it)),
+        (Value::U64(it), Repr::F64) => Value::F64(f64::from_bits(it)),
+        (other, _) => other,
+    }
+}
+
 /// [`convert`] for a value whose repr is known at run time.
 pub fn convert_value(value: Value, to: Repr) -> Value {
     match value {

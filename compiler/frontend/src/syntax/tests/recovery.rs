@@ -321,7 +321,7 @@ fn what_is_not_supported_is_named() {
          INTERFACE i EXTENDS a, b
            METHOD m END_METHOD
          END_INTERFACE
-         TYPE U : UNION a : INT; END_UNION; V EXTENDS W : STRUCT END_STRUCT; END_TYPE // E0090
+         TYPE U : UNION a : INT; END_UNION; V EXTENDS W : STRUCT END_STRUCT; END_TYPE
          PROGRAM p x := ; END_PROGRAM // E0001",
     );
 }

@@ -168,7 +168,7 @@ pub fn ty(it: &TypeSpec<'_>) -> String {
                 .collect();
             format!("enum({}){}", values.join(","), base.map_or("", |it| it.text))
         }
-        TypeKind::Unsupported(what) => (*what).into(),
+        TypeKind::Union(fields) => format!("<{}>", fields.iter().map(var).collect::<Vec<_>>().join(" ")),
         TypeKind::Error => "error".into(),
     }
 }
