@@ -323,6 +323,8 @@ pub struct TypeDecl<'s> {
     pub internal: bool,
     /// The structure that a structure EXTENDS.
     pub base: Option<Path<'s>>,
+    /// What `{attribute '…'}` says before TYPE, or before the type itself.
+    pub attributes: Vec<&'s str>,
     pub ty: TypeSpec<'s>,
     pub initial: Option<Initial<'s>>,
     pub doc: Option<String>,

@@ -69,6 +69,11 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
+    /// `p[i]` follows a POINTER TO.
+    pub const fn indexes_pointers(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
     /// A member of a structure may be a single bit, of the type BIT.
     pub const fn has_bits(self) -> bool {
         matches!(self, Self::Codesys)

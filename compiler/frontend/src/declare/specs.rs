@@ -9,7 +9,7 @@ use crate::prelude;
 use crate::spelling::{Key, nearest};
 use crate::types::declarations::Declarations;
 use crate::types::generic::class_named;
-use crate::types::scope::Scope;
+use crate::types::scope::{Scope, Variable};
 use crate::types::table::{PendingReference, Resolved, instance_of, scalar_initial};
 use crate::{Code, Diagnostic, Span};
 use rustc_hash::FxHashMap;
@@ -74,6 +74,11 @@ impl<'s> Declarations<'s> {
             }
             (None, _) => self.resolve_type_named(&decl.ty, &scope, &name, doc)?,
         };
+        if let (Type::Enum(id), TypeKind::Enum { .. }) = (resolved.ty, &decl.ty.kind) {
+            let has = |wanted: &str| decl.attributes.iter().any(|it| it.eq_ignore_ascii_case(wanted));
+            self.table.strict.extend(has("strict").then_some(id));
+            self.table.spelled.extend(has("to_string").then_some(id));
+        }
         if let Some(initial) = &decl.initial {
             resolved.initial = self.initial(initial, &resolved, &scope)?;
         }
@@ -510,6 +515,27 @@ impl<'s> Declarations<'s> {
         None
     }
 
+    /// What the value of an enumerator may name: also those before it.
+    fn scope_of_values(
+        &self,
+        around: &Rc<Scope<'s>>,
+        base: Elementary,
+        values: &[ast::EnumValue<'s>],
+        known: &[Enumerator],
+    ) -> Rc<Scope<'s>> {
+        let mut scope = Scope::within(Rc::clone(around));
+        let block = ast::VarBlock::new(ast::VarKind::Var, Span::default());
+        for (value, known) in values.iter().zip(known) {
+            let ty = Type::Elementary(base);
+            let resolved = Rc::new(Resolved { ty, initial: scalar_initial(known.value) });
+            let place = staunch_ir::Place::root(staunch_ir::Root::Instance, ty);
+            let variable = self.variable(value.name, &block, resolved, place);
+            // One that is there twice is reported where the values are declared.
+            let _ = scope.insert(Variable { constant: true, ..variable });
+        }
+        Rc::new(scope)
+    }
+
     fn enumeration(
         &mut self,
         base: Option<ast::Name<'s>>,
@@ -534,7 +560,8 @@ impl<'s> Declarations<'s> {
         let mut next = 0i128;
         for value in values {
             if let Some(expr) = &value.value {
-                next = self.constant_integer(expr, scope)?;
+                let scope = self.scope_of_values(scope, base, &values[..enumerators.len()], &enumerators);
+                next = self.constant_integer(expr, &scope)?;
             }
             let Some(number) = base.repr().integer(next) else {
                 self.report(

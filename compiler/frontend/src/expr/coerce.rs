@@ -5,7 +5,7 @@ use super::operand::Operand;
 use super::promotion::stored;
 use crate::types::coercion::{as_number, widens};
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{BoundsId, Chars, Conversion, Elementary, Expr, ExprKind, Op, StringType, Type, Value};
+use staunch_ir::{BoundsId, Chars, Conversion, Elementary, EnumId, Expr, ExprKind, Op, StringType, Type, Value};
 
 impl<'s> Checker<'_, 's> {
     /// The value of `expr`, to be stored where `ty` is declared.
@@ -51,7 +51,11 @@ impl<'s> Checker<'_, 's> {
             (Operand::Typed(expr), _) => self.coerce_typed(expr.read(), to, span),
             (literal, Type::Elementary(ty)) => self.literal_as(&literal, ty, span),
             (Operand::Integer(0), Type::Reference(_)) => Some(self.null(Some(to), span)),
-            (literal, Type::Enum(id)) if self.decl.dialect(span).mixes_bits_and_integers() => {
+            (Operand::Integer(number), Type::Enum(id)) if self.is_strict_value(id, number, span) => {
+                let value = self.decl.program.enumeration(id).base.repr().integer(number)?;
+                Some(Expr::new(to, ExprKind::Const(value), self.at(span)))
+            }
+            (literal, Type::Enum(id)) if self.counts_as_number(id, span) => {
                 let base = self.decl.program.enumeration(id).base;
                 let value = self.literal_as(&literal, base, span)?;
                 Some(self.convert(Conversion::Same, to, value))
@@ -75,6 +79,19 @@ impl<'s> Checker<'_, 's> {
                 None
             }
         }
+    }
+
+    /// Whether an enumeration takes and gives numbers here: in CODESYS, unless it is strict.
+    pub(crate) fn counts_as_number(&self, id: EnumId, span: Span) -> bool {
+        self.decl.dialect(span).mixes_bits_and_integers() && !self.decl.table.strict.contains(&id)
+    }
+
+    /// Whether a number is one of the values of a strict enumeration, which CODESYS takes for that.
+    fn is_strict_value(&self, id: EnumId, number: i128, span: Span) -> bool {
+        let mut values = self.decl.program.enumeration(id).values.iter();
+        self.decl.dialect(span).mixes_bits_and_integers()
+            && self.decl.table.strict.contains(&id)
+            && values.any(|it| it.value.as_integer() == Some(number))
     }
 
     fn coerce_typed(&mut self, expr: Expr, to: Type, span: Span) -> Option<Expr> {
@@ -109,12 +126,24 @@ impl<'s> Checker<'_, 's> {
             }
             (Type::String(_), Type::Elementary(into)) if into.is_char() => self.as_character(&expr, into, span),
             (Type::Enum(id), Type::Elementary(into))
-                if self.decl.dialect(span).mixes_bits_and_integers()
-                    && widens(self.decl.program.enumeration(id).base, into) =>
+                if self.decl.dialect(span).mixes_bits_and_integers() && as_number(into).is_integer() =>
             {
-                let base = Type::Elementary(self.decl.program.enumeration(id).base);
-                let number = self.convert(Conversion::Same, base, expr);
-                Some(self.convert(Conversion::Value, to, number))
+                if let Some(number) = expr.as_const().and_then(Value::as_integer) {
+                    return self.coerce(Operand::Integer(number), to, span);
+                }
+                let base = self.decl.program.enumeration(id).base;
+                let number = self.convert(Conversion::Same, Type::Elementary(base), expr);
+                self.may_become(base, into, span).then(|| self.convert(Conversion::Value, to, number))
+            }
+            (Type::Elementary(from), Type::Enum(id))
+                if self.counts_as_number(id, span) && as_number(from).is_integer() =>
+            {
+                let base = self.decl.program.enumeration(id).base;
+                if !self.may_become(from, base, span) {
+                    return None;
+                }
+                let number = self.convert(Conversion::Value, Type::Elementary(base), expr);
+                Some(self.convert(Conversion::Same, to, number))
             }
             _ => {
                 if let Some(message) = self.decl.held_instance(expr.ty) {

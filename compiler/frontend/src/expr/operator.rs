@@ -62,11 +62,30 @@ impl<'s> Checker<'_, 's> {
             BinaryOp::Lt | BinaryOp::Gt | BinaryOp::Le | BinaryOp::Ge | BinaryOp::Eq | BinaryOp::Ne => {
                 self.compare(sides).map(Operand::Typed)
             }
-            BinaryOp::And | BinaryOp::Or | BinaryOp::Xor => self.bitwise(sides),
-            BinaryOp::Power => self.power(sides).map(Operand::Typed),
-            BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Mod => self.arithmetic(sides),
+            BinaryOp::And | BinaryOp::Or | BinaryOp::Xor => {
+                let sides = self.counted(sides);
+                self.bitwise(sides)
+            }
+            BinaryOp::Power => {
+                let sides = self.counted(sides);
+                self.power(sides).map(Operand::Typed)
+            }
+            BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Mod => {
+                let sides = self.counted(sides);
+                self.arithmetic(sides)
+            }
             BinaryOp::AndThen | BinaryOp::OrElse => None,
         }
+    }
+
+    /// The sides of what is computed with numbers, which enumerations may be.
+    fn counted(&mut self, sides: Sides) -> Sides {
+        let is_number = |this: &Self, side: &Operand| match side.ty() {
+            Some(Type::Enum(id)) => this.counts_as_number(id, sides.span),
+            Some(_) | None => true,
+        };
+        let all = is_number(self, &sides.a) && is_number(self, &sides.b);
+        if all { self.enums_as_numbers(sides) } else { sides }
     }
 
     /// The one type of both sides, and the sides converted to it.

@@ -493,6 +493,10 @@ impl<'s> Checker<'_, 's> {
     fn index(&mut self, base: &ast::Expr<'s>, indices: &[ast::Expr<'s>]) -> Option<Found<'s>> {
         let mut found = self.place_or_view(base)?;
         for index in indices {
+            if let Some(element) = self.element_of_pointer(&found, index) {
+                found = element?;
+                continue;
+            }
             let Type::Array(id) = self.type_of(&found) else {
                 let ty = self.type_name(self.type_of(&found));
                 let error = Diagnostic::new(Code::E0302, index.span, format!("{ty} has no index here"))

@@ -11,7 +11,7 @@ use crate::names::{Found as Meant, Sense};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ArgumentKind, BinaryOp, ExprKind as Ast};
 use staunch_ir::{
-    Conversion, Elementary, Expr, ExprKind, Op, RefKind, RefType, ReferenceId, Type, Value, reference::is_null,
+    Conversion, Elementary, Expr, ExprKind, Op, Place, RefKind, RefType, ReferenceId, Type, Value, reference::is_null,
 };
 
 /// The lower half of a reference's bits: its address.
@@ -413,6 +413,38 @@ impl<'s> Checker<'_, 's> {
         };
         let (a, b) = (number(a)?, number(b)?);
         self.apply(Op::Sub, Type::LINT, vec![a, b], Type::LINT, span)
+    }
+
+    /// `p[i]` of a POINTER TO in CODESYS: what lies so many variables of its type behind where it points.
+    pub(crate) fn element_of_pointer(&mut self, found: &Found<'s>, index: &ast::Expr<'s>) -> Option<Option<Found<'s>>> {
+        let (id, RefType { kind, target }) = self.ref_type(self.type_of(found))?;
+        let is_indexed = kind == RefKind::PointerTo && self.decl.dialect(index.span).indexes_pointers();
+        is_indexed.then(|| self.indexed_pointer(found.clone(), (id, target), index))
+    }
+
+    fn indexed_pointer(
+        &mut self,
+        found: Found<'s>,
+        (id, target): (ReferenceId, Type),
+        index: &ast::Expr<'s>,
+    ) -> Option<Found<'s>> {
+        let (ty, at) = (found.place.ty, self.at(index.span));
+        let mut pointer = self.read(found.place, found.view, index.span)?;
+        let steps = self.after(&mut [&mut pointer], |this| this.operand(index, Some(Type::DINT)))?;
+        let size = i128::from(self.decl.sizeof(target));
+        let steps = match steps.cut() {
+            Operand::Integer(count) => Operand::Integer(count.checked_mul(size)?),
+            Operand::Typed(count) => {
+                let count = self.coerce(Operand::Typed(count), Type::LINT, index.span)?;
+                let size = Expr::constant(Elementary::Lint, Value::I64(i64::try_from(size).ok()?), at);
+                Operand::Typed(Expr::apply(Op::Mul, Type::LINT, vec![count, size], at))
+            }
+            other => other,
+        };
+        let mut moved = self.advance(Operand::Typed(pointer), steps, BinaryOp::Add, index.span)?;
+        self.save("pointer", &mut moved);
+        let ExprKind::Load(place) = moved.kind else { return None };
+        self.followed(Found { place: Place { ty, ..place }, view: None, access: Access::Write }, id, index.span)
     }
 
     /// A reference moved by a number of bytes.

@@ -2,7 +2,10 @@
 
 use super::checker::Checker;
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{Conversion, Elementary, Expr, ExprKind, StringType, TextOp, Type, Value};
+use staunch_ir::{
+    Arm, Chars, Conversion, Elementary, EnumId, Expr, ExprKind, Statement, StatementKind, StringType, TextOp, Type,
+    Value,
+};
 
 /// Longest string, in units.
 pub(crate) const MAX_CAPACITY: u16 = 32767;
@@ -19,6 +22,12 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn narrow_text_of(&mut self, value: Expr, span: Span, name: ast::Name<'s>) -> Option<Expr> {
+        if let Type::Enum(id) = value.ty
+            && self.decl.table.spelled.contains(&id)
+            && (value.as_const().is_some() || self.signature.is_some())
+        {
+            return self.name_of(value, id, span, name);
+        }
         let (value, ty) = self.as_elementary(value, span, name)?;
         let (op, operand, longest) = match ty {
             Elementary::Bool => (TextOp::FromBool, Elementary::Bool, 5),
@@ -55,6 +64,44 @@ impl<'s> Checker<'_, 's> {
             (false, false) | (true, true) => return Some(text),
         };
         self.text_function_of(op, Type::String(StringType { wide, capacity }), vec![text], span)
+    }
+
+    /// The name of an enumeration's value; of one that has none, its number.
+    fn name_of(&mut self, mut value: Expr, id: EnumId, span: Span, name: ast::Name<'s>) -> Option<Expr> {
+        let at = self.at(name.span);
+        let mut known = Vec::new();
+        for it in &self.decl.program.enumeration(id).values {
+            if let Some(number) = it.value.as_integer().filter(|it| known.iter().all(|(known, _)| known != it)) {
+                known.push((number, it.name.clone().into_bytes()));
+            }
+        }
+        let text = |bytes: &[u8]| {
+            let ty = Type::String(StringType::narrow(u16::try_from(bytes.len()).unwrap_or(u16::MAX)));
+            Expr::new(ty, ExprKind::Text(Chars::Narrow(bytes.to_vec())), at)
+        };
+        if let Some(number) = value.as_const().and_then(Value::as_integer) {
+            let found = known.iter().find(|it| it.0 == number);
+            return Some(text(&found.map_or_else(|| number.to_string().into_bytes(), |it| it.1.clone())));
+        }
+        // A number of 64 bits has 20 characters.
+        let longest = known.iter().map(|it| it.1.len()).max().unwrap_or_default().max(20);
+        let ty = Type::String(StringType::narrow(u16::try_from(longest).ok()?));
+        self.save("value", &mut value);
+        let spelled = self.temporary("name", ty);
+        let (number, _) = self.as_elementary(value.clone(), span, name)?;
+        let otherwise = self.nested(|this| {
+            if let Some(number) = this.narrow_text_of(number, span, name) {
+                let number = this.convert(Conversion::Value, ty, number);
+                this.assign(spelled.clone(), number, name.span);
+            }
+        });
+        let arm = |(number, it): &(i128, Vec<u8>)| {
+            let value = Expr::convert(Conversion::Value, ty, text(it), at);
+            Arm { labels: vec![(*number, *number)], body: vec![Statement::assign(spelled.clone(), value, at)] }
+        };
+        let arms = known.iter().map(arm).collect();
+        self.push(StatementKind::Case { selector: value, arms, otherwise }, name.span);
+        Some(Expr::load(spelled, at))
     }
 
     /// `STRING_TO_x`. An integer takes its low bits of the number that the text spells.

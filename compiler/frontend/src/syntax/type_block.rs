@@ -20,6 +20,7 @@ use super::{
 };
 
 pub fn types<'s>(input: &mut In<'_, '_, 's>) -> Vec<TypeDecl<'s>> {
+    let attributes = attributes_here(input);
     let opened = input.take();
     let internal = namespace::access(input);
     input.state().open.push((Kind::EndType, opened));
@@ -44,8 +45,27 @@ pub fn types<'s>(input: &mut In<'_, '_, 's>) -> Vec<TypeDecl<'s>> {
     input.state().open.pop();
     block_ends::close_block(input, Kind::EndType, opened);
     input.eat(Kind::Semicolon);
-    types.iter_mut().for_each(|it| it.internal = internal);
+    for declared in &mut types {
+        declared.internal = internal;
+        declared.attributes.extend(&attributes);
+    }
     types
+}
+
+/// The names in `{attribute 'strict'}` and its like between the last token and the next.
+fn attributes_here<'s>(input: &mut In<'_, '_, 's>) -> Vec<&'s str> {
+    let (from, to) = (input.last(), input.here());
+    let pragmas = &input.state().tokens.pragmas;
+    let after = |it: &Name<'s>| it.span.start >= from.end || from.start >= to.start;
+    let here = pragmas.iter().filter(|it| it.span.end <= to.start && after(it));
+    here.filter_map(|it| attribute(it.text)).collect()
+}
+
+/// The name in `attribute 'strict'`.
+fn attribute(text: &str) -> Option<&str> {
+    let (word, rest) = text.trim().split_once(|it: char| it.is_whitespace())?;
+    let name = rest.trim_start().strip_prefix('\'')?.split('\'').next()?;
+    word.eq_ignore_ascii_case("attribute").then_some(name)
 }
 
 /// A type, or the name of one that does not parse, with all names in it: they may be enumerators.
@@ -65,12 +85,12 @@ fn type_decl_or_name<'t, 'p, 's>(input: &mut In<'t, 'p, 's>, start: Start<'t, 'p
     let state = input.state();
     let names = (first + 1..last).filter(|at| state.tokens.kinds[*at] == Kind::Name).map(|at| state.place(at));
     let unread = names.map(|span| Name { text: state.slice(span), span }).collect();
-    Some(TypeDecl { name, internal: false, base: None, ty, initial: None, doc: None, unread })
+    Some(TypeDecl { name, internal: false, base: None, attributes: Vec::new(), ty, initial: None, doc: None, unread })
 }
 
 /// `Name : type := value;`, where a structure may do without the `;`.
 fn type_decl<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeDecl<'s>> {
-    let first = input.number();
+    let (first, attributes) = (input.number(), attributes_here(input));
     let colon = token(Kind::Colon).ignored().or(foreign_types::no_colon_in_type());
     let path = name().separated_by(token(Kind::Dot)).at_least(1).collect();
     let base = word("EXTENDS").ignore_then(path).or_not();
@@ -80,5 +100,5 @@ fn type_decl<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeDecl<'s>> {
     if !closed || input.kind() == Kind::Semicolon {
         input.parse(end())?;
     }
-    Ok(TypeDecl { name, internal: false, base, ty, initial, doc: input.doc(first), unread: Vec::new() })
+    Ok(TypeDecl { name, internal: false, base, attributes, ty, initial, doc: input.doc(first), unread: Vec::new() })
 }

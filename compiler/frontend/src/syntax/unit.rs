@@ -125,7 +125,16 @@ fn bare_structure<'s>(input: &mut In<'_, '_, 's>) -> Item<'s> {
     let kind = structure_members(input);
     let ty = TypeSpec { kind, span: word.to(input.last()) };
     input.eat(Kind::Semicolon);
-    Item::Types(vec![TypeDecl { name, internal: false, base: None, ty, initial: None, doc: None, unread: Vec::new() }])
+    Item::Types(vec![TypeDecl {
+        name,
+        internal: false,
+        base: None,
+        attributes: Vec::new(),
+        ty,
+        initial: None,
+        doc: None,
+        unread: Vec::new(),
+    }])
 }
 
 /// Takes a unit that is inside another one, if the other one goes on after it.

@@ -6,7 +6,7 @@ use crate::Span;
 use crate::ast::Name;
 use crate::spelling::Key;
 use rustc_hash::{FxHashMap, FxHashSet};
-use staunch_ir::{Const, RefKind, ReferenceId, StructId, Type, Value};
+use staunch_ir::{Const, EnumId, RefKind, ReferenceId, StructId, Type, Value};
 use std::rc::Rc;
 
 /// Stands for the globals' structure until it is made, when all declared globals are known.
@@ -42,6 +42,10 @@ pub(crate) struct Table<'s> {
     pub instances: FxHashMap<StructId, usize>,
     pub interfaces: Interfaces,
     pub polymorphic: Polymorphic,
+    /// The enumerations that take and give no numbers: `{attribute 'strict'}`.
+    pub strict: FxHashSet<EnumId>,
+    /// Those whose values TO_STRING spells by their names: `{attribute 'to_string'}`.
+    pub spelled: FxHashSet<EnumId>,
     /// How many constants the initial values hold so far.
     pub constants: usize,
     /// The references to types with names.
