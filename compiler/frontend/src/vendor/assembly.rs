@@ -29,6 +29,8 @@ pub enum Trouble {
     Broken,
     /// A body in another language.
     OtherLanguage,
+    /// A second body.
+    SecondBody,
 }
 
 /// The text, and what it is made of.

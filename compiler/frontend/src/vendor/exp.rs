@@ -38,9 +38,17 @@ pub fn read(text: &str) -> Assembly {
     let mut until: Option<&[&str]> = None;
     let mut from = 0;
     let mut at = 0;
+    let mut comments = 0;
     for line in text.split_inclusive('\n') {
         let (place, word) = (at..at + line.trim_end().len(), first_word(line));
         at += line.len();
+        let in_comment = comments > 0;
+        if until.is_none() {
+            comments = open_comments(line, comments);
+        }
+        if in_comment {
+            continue;
+        }
         if let Some(ends) = until {
             if ends.contains(&word) {
                 until = None;
@@ -64,6 +72,29 @@ pub fn read(text: &str) -> Assembly {
 
 fn take(out: &mut Assembly, text: &str, range: Range<usize>) {
     out.copy(text, &[Chunk::verbatim(range)]);
+}
+
+/// How many comments are open after a line, where so many are before it.
+fn open_comments(line: &str, before: usize) -> usize {
+    let mut open = before;
+    let mut in_text = false;
+    let mut bytes = line.bytes().peekable();
+    while let Some(byte) = bytes.next() {
+        match (byte, bytes.peek()) {
+            (b'\'', _) if open == 0 => in_text = !in_text,
+            (b'$', Some(b'\'')) if in_text => drop(bytes.next()),
+            (b'(', Some(b'*')) if !in_text => {
+                open += 1;
+                bytes.next();
+            }
+            (b'*', Some(b')')) if !in_text && open > 0 => {
+                open -= 1;
+                bytes.next();
+            }
+            _ => {}
+        }
+    }
+    open
 }
 
 fn first_word(line: &str) -> &str {

@@ -85,7 +85,8 @@ fn unit<'t>(file: &'t str, reader: &mut Reader<'t>, what: What, element: Element
                 continue;
             }
             "body" => {
-                unit.body = body(reader)?;
+                let body = body(reader)?;
+                unit.take_body(body, element.place);
                 continue;
             }
             "action" | "Action" => What::Action,

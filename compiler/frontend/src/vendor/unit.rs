@@ -35,13 +35,26 @@ pub struct Unit<'t> {
     pub end: Range<usize>,
     pub declaration: Vec<Chunk>,
     pub body: Body,
+    /// Where a second one begins.
+    pub second_body: Option<Range<usize>>,
     pub parts: Vec<Unit<'t>>,
 }
 
 impl<'t> Unit<'t> {
     pub fn new(what: What, name: &'t str, place: Range<usize>) -> Self {
         let end = place.end..place.end;
-        Self { what, name, place, end, declaration: Vec::new(), body: Body::None, parts: Vec::new() }
+        Self { what, name, place, end, declaration: Vec::new(), body: Body::None, second_body: None, parts: Vec::new() }
+    }
+
+    /// Takes a body, if it is the first.
+    pub fn take_body(&mut self, body: Body, place: Range<usize>) {
+        match (&self.body, &body) {
+            (Body::None, _) => self.body = body,
+            (_, Body::None) => {}
+            (Body::Text(_) | Body::Other(..), Body::Text(_) | Body::Other(..)) => {
+                self.second_body.get_or_insert(place);
+            }
+        }
     }
 
     /// Writes it with its parts before its body, and its end, which declarations of other systems lack.
@@ -64,6 +77,10 @@ impl<'t> Unit<'t> {
                 let message = format!("the body of `{}` is {language}, which is no text", self.name);
                 out.problem(Trouble::OtherLanguage, message, place);
             }
+        }
+        if let Some(place) = &self.second_body {
+            let message = format!("`{}` has several bodies (worksheets), of which the file says no order", self.name);
+            out.problem(Trouble::SecondBody, message, place);
         }
         let end = match self.what {
             What::Get => "END_GET",
@@ -117,20 +134,22 @@ fn first_word(text: &str) -> &str {
 }
 
 /// What follows a comment, which may hold others.
-fn after_comment(mut text: &str) -> &str {
-    let mut open = 1_usize;
-    while open > 0 {
-        match (text.find("(*"), text.find("*)")) {
-            (Some(inner), Some(end)) if inner < end => {
-                open += 1;
-                text = &text[inner + 2..];
+fn after_comment(text: &str) -> &str {
+    let bytes = text.as_bytes();
+    let (mut open, mut at) = (1_usize, 0);
+    while let Some(pair) = bytes.get(at..at + 2) {
+        match pair {
+            b"(*" => open += 1,
+            b"*)" => open -= 1,
+            _ => {
+                at += 1;
+                continue;
             }
-            (_, Some(end)) => {
-                open -= 1;
-                text = &text[end + 2..];
-            }
-            (_, None) => return "",
+        }
+        at += 2;
+        if open == 0 {
+            return &text[at..];
         }
     }
-    text
+    ""
 }
