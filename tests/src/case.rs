@@ -73,8 +73,11 @@ impl Case {
         for path in &self.sources {
             let bytes = fs::read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
             let source = Source::decode(file_name(path), &bytes);
-            let is_library = source.text.starts_with("// library\n");
-            sources.add(if is_library { source.of_library() } else { source });
+            let library = source.text.lines().next().and_then(|it| it.strip_prefix("// library ")).map(str::to_owned);
+            sources.add(match library {
+                Some(name) => source.of_library(&name),
+                None => source,
+            });
         }
         sources
     }

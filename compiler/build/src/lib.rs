@@ -229,11 +229,18 @@ impl Build {
         let own = files::find(&self.paths, cargo)?;
         let libraries =
             project.libraries.iter().map(|it| project.folder.join(it)).chain(self.libraries.iter().cloned());
-        let others = files::find(&libraries.collect::<Vec<_>>(), cargo)?;
-        for (number, path) in own.iter().chain(&others).enumerate() {
-            let bytes = std::fs::read(path).map_err(|error| cargo.failed("read", path, &error))?;
-            let source = Source::decode(shown(path), &bytes);
-            sources.add(if number < own.len() { source } else { source.of_library() });
+        let mut all: Vec<_> = own.iter().map(|it| (it.clone(), None)).collect();
+        for library in libraries {
+            let name = listing::library_name(&library);
+            all.extend(files::find(&[library], cargo)?.into_iter().map(|it| (it, Some(name.clone()))));
+        }
+        for (path, library) in all {
+            let bytes = std::fs::read(&path).map_err(|error| cargo.failed("read", &path, &error))?;
+            let source = Source::decode(shown(&path), &bytes);
+            sources.add(match library {
+                Some(name) => source.of_library(&name),
+                None => source,
+            });
         }
         if own.is_empty() {
             cargo.error("there is no Structured Text to compile");

@@ -21,6 +21,12 @@ fn has_extension(path: &Path, all: &[&str]) -> bool {
     extension.is_some_and(|it| all.contains(&it.as_str()))
 }
 
+/// What a library is called: as its file, project or folder is.
+pub fn library_name(path: &Path) -> String {
+    let name = if path.is_dir() { path.file_name() } else { path.file_stem() };
+    name.map_or_else(String::new, |it| it.to_string_lossy().into_owned())
+}
+
 /// The sources that a list of TwinCAT's leads to, and the lists on the way.
 pub fn sources(path: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), String> {
     let mut lists = Vec::new();

@@ -14,22 +14,27 @@ const MAX_DEPTH: usize = 64;
 
 /// Reads every file that the arguments name, each once, folders in sorted order; and then those of the libraries.
 pub fn read(arguments: &[PathBuf], libraries: &[PathBuf]) -> Result<Sources, String> {
-    let own = found(arguments)?;
-    if own.is_empty() {
+    let mut all: Vec<_> = found(arguments)?.into_iter().map(|it| (it, None)).collect();
+    if all.is_empty() {
         return Err("no source file was found".to_owned());
     }
-    let others = found(libraries)?;
-    let count = own.len() + others.len();
-    if count > usize::from(u16::MAX) {
-        return Err(format!("{count} files are more than one program may have"));
+    for library in libraries {
+        let name = listing::library_name(library);
+        all.extend(found(core::slice::from_ref(library))?.into_iter().map(|it| (it, Some(name.clone()))));
+    }
+    if all.len() > usize::from(u16::MAX) {
+        return Err(format!("{} files are more than one program may have", all.len()));
     }
     let mut seen = HashSet::new();
     let mut sources = Sources::default();
-    for (number, path) in own.iter().chain(&others).enumerate() {
+    for (path, library) in all {
         let identity = path.canonicalize().unwrap_or_else(|_| path.clone());
         if seen.insert(identity) {
-            let source = source(path)?;
-            sources.add(if number < own.len() { source } else { source.of_library() });
+            let source = source(&path)?;
+            sources.add(match library {
+                Some(name) => source.of_library(&name),
+                None => source,
+            });
         }
     }
     Ok(sources)

@@ -32,7 +32,8 @@ pub struct Source {
     characters: Vec<u32>,
     encoding: Encoding,
     origin: Option<Box<Origin>>,
-    library: bool,
+    /// Of a library: its name.
+    library: Option<Box<str>>,
 }
 
 /// The file that a text is made of.
@@ -80,7 +81,7 @@ impl Source {
         let lines =
             core::iter::once(0).chain(starts.map(|(at, _)| u32::try_from(at + 1).unwrap_or(u32::MAX))).collect();
         let characters = if text.is_ascii() { Vec::new() } else { counted(text.as_bytes()) };
-        Self { path: path.into(), text, lines, characters, encoding: Encoding::default(), origin: None, library: false }
+        Self { path: path.into(), text, lines, characters, encoding: Encoding::default(), origin: None, library: None }
     }
 
     /// The Structured Text in a file, also in one of another system's.
@@ -100,14 +101,19 @@ impl Source {
         vendor::listed(&Self::decoded("", project).text)
     }
 
-    /// The same, as one that a project uses and that is not its own.
+    /// The same, as one of a library, which a project uses and which is not its own.
     #[must_use]
-    pub fn of_library(self) -> Self {
-        Self { library: true, ..self }
+    pub fn of_library(self, name: &str) -> Self {
+        Self { library: Some(name.into()), ..self }
     }
 
     pub fn is_of_library(&self) -> bool {
-        self.library
+        self.library.is_some()
+    }
+
+    /// The name of the library that it is of.
+    pub fn library(&self) -> Option<&str> {
+        self.library.as_deref()
     }
 
     /// The file as it is, where the text is made of pieces of it.

@@ -45,6 +45,9 @@ pub(crate) fn declare<'s>(
         let dialect = declarations.log.read_pragmas(file);
         declarations.program.files[number].system = dialect.family();
     }
+    let mut libraries: Vec<_> = declarations.log.sources.files().iter().filter_map(|it| it.library()).collect();
+    libraries.dedup();
+    declarations.names.libraries = libraries.into_iter().map(str::to_owned).collect();
     declarations.collect_namespaces(files);
     for file in files {
         declarations.collect(file);

@@ -113,6 +113,8 @@ pub(crate) struct Names<'s> {
     lists: FxHashMap<Key<'s>, SpaceId>,
     /// The global variables in lists.
     listed: FxHashMap<Key<'s>, Vec<(SpaceId, Entry)>>,
+    /// The names of libraries, after which what the root holds can be named.
+    pub libraries: Vec<String>,
     /// How many global variables have a name.
     globals: FxHashMap<Key<'s>, usize>,
     /// The declarations in which a bare enumerator is named, with their type's slot.
@@ -130,6 +132,7 @@ impl Default for Names<'_> {
             regions: Regions::default(),
             lists: FxHashMap::default(),
             listed: FxHashMap::default(),
+            libraries: Vec::new(),
             globals: FxHashMap::default(),
             enumerators: FxHashMap::default(),
             unread: FxHashSet::default(),
@@ -256,6 +259,9 @@ impl<'s> Names<'s> {
         // A POU has no members to be named by it.
         if self.root(name).is_some_and(|it| it.ty.is_some()) {
             return None;
+        }
+        if self.libraries.iter().any(|it| it.eq_ignore_ascii_case(name)) {
+            return Some(Prefix::Space(SpaceId::ROOT));
         }
         if name.eq_ignore_ascii_case("Globals") {
             return Some(Prefix::Globals);
