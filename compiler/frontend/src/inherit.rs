@@ -9,6 +9,9 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::spelling::{Key, nearest};
 use rustc_hash::{FxHashMap, FxHashSet};
 
+/// A class extends no more than so many, one through the other.
+const MAX_DEPTH: usize = 100;
+
 /// Gives each class what it inherits.
 pub(crate) fn expand(files: &mut [File<'_>], diagnostics: &mut Vec<Diagnostic>) {
     let needs = |it: &Item<'_>| matches!(it, Item::Pou(pou) if inherits(pou));
@@ -16,9 +19,10 @@ pub(crate) fn expand(files: &mut [File<'_>], diagnostics: &mut Vec<Diagnostic>) 
         return;
     }
     let classes = Classes::of(files);
-    let mut expansion = Expansion { classes: &classes, diagnostics, made: FxHashMap::default() };
+    let mut expansion =
+        Expansion { classes: &classes, diagnostics, made: FxHashMap::default(), depths: FxHashMap::default() };
     for at in 0..classes.all.len() {
-        expansion.make(at, &mut Vec::new());
+        expansion.make_all(at);
     }
     let mut made = expansion.made;
     for (at, class) in classes.all.iter().enumerate() {
@@ -76,21 +80,31 @@ struct Expansion<'c, 's> {
     diagnostics: &'c mut Vec<Diagnostic>,
     /// Those that are whole.
     made: FxHashMap<usize, Pou<'s>>,
+    /// How many classes each extends, one through the other.
+    depths: FxHashMap<usize, usize>,
 }
 
 impl<'s> Expansion<'_, 's> {
-    /// Makes the class in a place, after those that it extends; `around` are those that wait for it.
-    fn make(&mut self, at: usize, around: &mut Vec<usize>) {
-        if self.made.contains_key(&at) {
-            return;
+    /// Makes the class in a place, after those that it extends.
+    fn make_all(&mut self, at: usize) {
+        let (mut around, mut bases) = (Vec::new(), Vec::new());
+        let mut next = Some(at).filter(|it| !self.made.contains_key(it));
+        while let Some(at) = next {
+            around.push(at);
+            let pou = &self.classes.all[at].pou;
+            let base = pou.extends.and_then(|it| self.base(pou, it, &around));
+            bases.push(base);
+            next = base.filter(|it| !self.made.contains_key(it));
         }
+        while let (Some(at), Some(base)) = (around.pop(), bases.pop()) {
+            self.make(at, base);
+        }
+    }
+
+    /// Makes the class in a place, whose base is whole.
+    fn make(&mut self, at: usize, base: Option<usize>) {
         let pou = &self.classes.all[at].pou;
-        around.push(at);
-        let base = pou.extends.and_then(|it| self.base(pou, it, around));
-        if let Some(base) = base {
-            self.make(base, around);
-        }
-        around.pop();
+        let base = base.filter(|it| self.is_near(at, *it));
         let base = base.and_then(|it| self.made.get(&it)).cloned();
         let whole = match &base {
             Some(base) => self.heir(pou, base),
@@ -103,6 +117,20 @@ impl<'s> Expansion<'_, 's> {
         };
         self.report_abstract(&whole, base.as_ref());
         self.made.insert(at, whole);
+    }
+
+    /// Whether a class is not too far from the first base; each has copies of what all before it have.
+    fn is_near(&mut self, at: usize, base: usize) -> bool {
+        let depth = self.depths.get(&base).copied().unwrap_or_default() + 1;
+        self.depths.insert(at, depth.min(MAX_DEPTH + 1));
+        // What extends one that is too far is so by that.
+        if depth == MAX_DEPTH + 1 {
+            let pou = &self.classes.all[at].pou;
+            let message = format!("`{}` is more than {MAX_DEPTH} classes away from its first base", pou.name.text);
+            let error = Diagnostic::new(Code::E0901, pou.name.span, message);
+            self.diagnostics.push(error.label("it has copies of what all of them have"));
+        }
+        depth <= MAX_DEPTH
     }
 
     fn base(&mut self, pou: &Pou<'s>, base: Name<'s>, around: &[usize]) -> Option<usize> {

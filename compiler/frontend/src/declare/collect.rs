@@ -8,7 +8,7 @@ use crate::types::declarations::{Declarations, GlobalSlot, PouSlot, Slot, TypeSl
 use crate::{Code, Diagnostic, Span, ast};
 
 /// METHODs that CODESYS calls by itself.
-const INITIAL: [&str; 3] = ["FB_init", "FB_reinit", "FB_exit"];
+pub(super) const INITIAL: [&str; 3] = ["FB_init", "FB_reinit", "FB_exit"];
 
 impl<'s> Declarations<'s> {
     /// The namespaces of all files, and what is used where.

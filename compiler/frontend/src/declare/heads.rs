@@ -1,8 +1,9 @@
 //! What a class owes to what it IMPLEMENTS and overrides: the same parameters and results, by their types.
 
+use super::collect::INITIAL;
 use crate::ast::{self, PouKind};
 use crate::names::{Entry, Found, Meaning, Sense};
-use crate::spelling::nearest;
+use crate::spelling::{Key, nearest};
 use crate::types::declarations::{Declarations, Slot};
 use crate::types::signature::Signature;
 use crate::{Code, Diagnostic};
@@ -111,7 +112,10 @@ impl<'s> Declarations<'s> {
         let Some(base) = self.base_of(slot) else { return };
         let is_own = |it: &usize| self.pous[*it].owner == Some(slot);
         let routines = (slot + 1..self.pous.len()).take_while(is_own);
-        let own: Vec<_> = routines.filter(|it| self.pous[*it].ast.home.is_none()).collect();
+        let own = routines.filter(|it| self.pous[*it].ast.home.is_none());
+        // What the system calls takes more in an heir than in its base.
+        let is_system = |it: &usize| INITIAL.iter().any(|name| Key(name) == Key(self.pous[*it].ast.name.text));
+        let own: Vec<_> = own.filter(|it| !is_system(it)).collect();
         for new in own {
             let Some(old) = self.routine_for(base, new).filter(|it| !self.is_alike(new, *it)) else { continue };
             let (new, old) = (self.pous[new].ast.name, self.pous[old].ast.name);

@@ -291,8 +291,16 @@ impl<'s> Declarations<'s> {
         };
         let named = |it: &&ast::Pou<'_>| !it.is_hidden && Key(it.name.text) == Key(name.text);
         let home = base.routines.iter().find(named)?.home.unwrap_or(base.name);
-        let hidden = owner.hidden.get(&(Key(home.text), Key(name.text)));
-        hidden.or_else(|| owner.routines.get(&Key(name.text))).copied()
+        let hidden = owner.hidden.get(&(Key(home.text), Key(name.text))).copied().unwrap_or_default();
+        // Of a PROPERTY one accessor may be overridden, and the other be the base's still.
+        let own = owner.routines.get(&Key(name.text)).copied().unwrap_or_default();
+        let inherited = |it: Option<(usize, Span)>| it.filter(|it| self.pous[it.0].ast.home.is_some());
+        let found = Routines {
+            called: hidden.called.or(inherited(own.called)),
+            getter: hidden.getter.or(inherited(own.getter)),
+            setter: hidden.setter.or(inherited(own.setter)),
+        };
+        (found.called.is_some() || found.is_property()).then_some(found)
     }
 
     /// The type of what a call of the POU in a slot gives, where its signature is known.
