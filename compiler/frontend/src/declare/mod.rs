@@ -3,6 +3,7 @@
 //! They may be in any order and in any file, and are resolved in the order of their needs.
 
 mod address;
+mod binding;
 mod collect;
 mod generic;
 mod global;
@@ -64,6 +65,7 @@ pub(crate) fn declare<'s>(
     declarations.check_overloads();
     declarations.find_named_programs(bodies);
     declarations.declare_mocks(&testing::mocked_functions(bodies));
+    declarations.start_bindings(runs);
     declarations.declare_globals();
     declarations
 }

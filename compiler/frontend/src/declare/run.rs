@@ -5,7 +5,6 @@
 //! What VAR_CONFIG binds is a variable of its instance, into which the run copies what lies at the address before
 //! the call; what is no input is copied back after it.
 
-use super::variable::is_declared_retain;
 use crate::spelling::Key;
 use crate::{Span, ast};
 use ast::{ExprKind, PouKind, StatementKind, VarKind};
@@ -19,6 +18,8 @@ const EDGE: &str = "CONFIGURATION";
 pub(crate) struct Run<'s> {
     pub pou: ast::Pou<'s>,
     pub body: Vec<ast::Statement<'s>>,
+    /// What a VAR_CONFIG binds: the variable, in the run, and its address.
+    pub bound: Vec<(ast::Expr<'s>, ast::Name<'s>)>,
     /// The name in the CONFIGURATION.
     pub instance: Span,
 }
@@ -55,8 +56,9 @@ pub(crate) fn runs<'a, 's>(files: &'a [ast::File<'s>]) -> Vec<Run<'s>> {
     let run = |(resource, it): (&ast::Resource<'s>, &ast::ProgramInstance<'s>)| {
         let bound = |binding: &&'a ast::Binding<'s>| {
             let target = within(&binding.target, resource, it)?;
-            let is_kept = is_kept(&target, it, &pous).is_some_and(|it| it.1);
-            Some(Bound { target, located: &binding.located, is_kept })
+            let decl = declaration_of(&target, it, &pous).and_then(|it| it.1);
+            // What has an address of its own is reported where the CONFIGURATION is checked.
+            decl.is_none_or(|it| it.known_address().is_none()).then_some((target, &binding.located))
         };
         run(it, trigger(resource, it), bindings.iter().filter_map(bound).collect())
     };
@@ -86,28 +88,19 @@ pub(crate) fn within<'s>(
     Some(ast::Expr { kind, span: path.span })
 }
 
-/// A variable of the run's instance, and what lies at its address.
-struct Bound<'a, 's> {
-    target: ast::Expr<'s>,
-    located: &'a ast::VarDecl<'s>,
-    /// The variable is RETAIN: what lies at its address outlives a restart too.
-    is_kept: bool,
-}
-
-/// The POU of which a variable is an instance, if it is one, and whether it is RETAIN.
-fn is_kept<'a, 's>(
+/// The POU of which the end of a path is an instance, if it is one, and the declaration of that variable.
+pub(crate) fn declaration_of<'a, 's>(
     path: &ast::Expr<'s>,
     instance: &ast::ProgramInstance<'s>,
     pous: &FxHashMap<Key<'s>, &'a ast::Pou<'s>>,
-) -> Option<(Option<&'a ast::Pou<'s>>, bool)> {
+) -> Option<(Option<&'a ast::Pou<'s>>, Option<&'a ast::VarDecl<'s>>)> {
     match &path.kind {
-        ExprKind::Name(_) => Some((pous.get(&Key(instance.program.text)).copied(), false)),
-        ExprKind::Index(base, _) => is_kept(base, instance, pous),
+        ExprKind::Name(_) => Some((pous.get(&Key(instance.program.text)).copied(), None)),
+        ExprKind::Index(base, _) => declaration_of(base, instance, pous),
         ExprKind::Member(base, name) => {
-            let (owner, outer) = is_kept(base, instance, pous)?;
+            let owner = declaration_of(base, instance, pous)?.0?;
             let declares = |it: &&ast::VarDecl<'s>| it.names.iter().any(|it| Key(it.text) == Key(name.text));
-            let mut blocks = owner?.blocks.iter();
-            let (block, decl) = blocks.find_map(|block| Some((block, block.vars.iter().find(declares)?)))?;
+            let decl = owner.blocks.iter().flat_map(|it| &it.vars).find(declares)?;
             let mut ty = &decl.ty.kind;
             while let ast::TypeKind::Array { element, .. } = ty {
                 ty = &element.kind;
@@ -116,7 +109,7 @@ fn is_kept<'a, 's>(
                 ast::TypeKind::Named(path) => path.last().and_then(|it| pous.get(&Key(it.text)).copied()),
                 _ => None,
             };
-            Some((inner, outer || is_declared_retain(block)))
+            Some((inner, Some(decl)))
         }
         _ => None,
     }
@@ -163,7 +156,7 @@ pub(crate) fn is_input(address: ast::Name<'_>) -> bool {
 fn run<'s>(
     instance: &ast::ProgramInstance<'s>,
     trigger: Option<&ast::Expr<'s>>,
-    bindings: Vec<Bound<'_, 's>>,
+    bindings: Vec<(ast::Expr<'s>, &ast::VarDecl<'s>)>,
 ) -> Run<'s> {
     let span = instance.program.span;
     let name = |text: &'static str| ast::Name { text, span };
@@ -178,8 +171,8 @@ fn run<'s>(
     let mut vars = vec![variable(PROGRAM, [instance.namespace.as_slice(), &[instance.program]].concat())];
     let mut body = vec![call(PROGRAM, instance.connections.clone())];
     let mut declared = FxHashSet::default();
-    let (mut kept, mut located_vars) = (Vec::new(), Vec::new());
-    for Bound { target, located, is_kept } in bindings {
+    let mut bound = Vec::new();
+    for (target, located) in bindings {
         let Some(address) = located.address else { continue };
         let at = ast::Expr { kind: ExprKind::Name(address), span: address.span };
         let copy = |to: &ast::Expr<'s>, from: &ast::Expr<'s>| ast::Statement {
@@ -191,8 +184,9 @@ fn run<'s>(
             body.push(copy(&at, &target));
         }
         if declared.insert(Key(address.text)) {
-            if is_kept { &mut kept } else { &mut located_vars }.push(located.clone());
+            vars.push(located.clone());
         }
+        bound.push((target, address));
     }
     if let Some(trigger) = trigger {
         vars.push(variable(EDGE, vec![name("IEC"), name("R_TRIG")]));
@@ -203,10 +197,7 @@ fn run<'s>(
             statement(StatementKind::If { branches: vec![(rises, body)], otherwise: None }),
         ];
     }
-    vars.append(&mut located_vars);
-    let block = ast::VarBlock::new(VarKind::Var, span);
-    let retained = ast::VarBlock { vars: kept, retain: Some(span), ..block.clone() };
-    let blocks = vec![ast::VarBlock { vars, ..block }, retained];
+    let blocks = vec![ast::VarBlock { vars, ..ast::VarBlock::new(VarKind::Var, span) }];
     let pou = ast::Pou { blocks, ..ast::Pou::new(PouKind::Program, instance.program, span) };
-    Run { pou, body, instance: instance.name.span }
+    Run { pou, body, bound, instance: instance.name.span }
 }

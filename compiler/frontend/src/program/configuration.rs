@@ -1,7 +1,7 @@
 //! CONFIGURATION, RESOURCE and TASK: which programs run, and how often.
 
 use crate::ast;
-use crate::declare::run::{is_false, is_input, within};
+use crate::declare::run::{declaration_of, is_false, is_input, within};
 use crate::dialect::Dialect;
 use crate::expr::constant::constant;
 use crate::names::{Entry, Found, Meaning, Sense};
@@ -101,11 +101,25 @@ impl<'s> Declarations<'s> {
     /// Reports what a VAR_CONFIG binds that is no variable of an instance, and an output of two variables.
     fn check_bindings(&mut self, configuration: &'s ast::Configuration<'s>) {
         let mut written: FxHashMap<Key<'s>, Span> = FxHashMap::default();
+        let mut bound: FxHashMap<Key<'s>, Span> = FxHashMap::default();
+        let pous = self.written_pous().iter().map(|it| (Key(it.ast.name.text), it.ast)).collect();
         for ast::Binding { target, located } in &configuration.bindings {
-            let mut resources = configuration.resources.iter();
-            let is_known = resources
-                .any(|resource| resource.programs.iter().any(|instance| within(target, resource, instance).is_some()));
-            if !is_known {
+            let instances = configuration.resources.iter();
+            let mut instances = instances.flat_map(|it| it.programs.iter().map(move |run| (it, run)));
+            let found = instances.find_map(|(it, run)| Some((within(target, it, run)?, run)));
+            if let Some((path, run)) = &found {
+                let decl = declaration_of(path, run, &pous).and_then(|it| it.1);
+                if !self.may_be_bound(target, decl, located) {
+                    continue;
+                }
+                if let Some(first) = bound.insert(Key(self.log.sources.text(target.span)), target.span) {
+                    self.report(
+                        Diagnostic::new(Code::E0409, target.span, "a variable has one address")
+                            .label("bound again here")
+                            .other(first, "first bound here"),
+                    );
+                }
+            } else {
                 let instances = configuration.resources.iter().flat_map(|it| &it.programs).map(|it| it.name.text);
                 let instances: Vec<_> = instances.collect();
                 let error = Diagnostic::new(Code::E0101, target.span, "this is no variable of an instance")
@@ -116,6 +130,7 @@ impl<'s> Declarations<'s> {
                     }
                     None => error.help("run a PROGRAM in it: `PROGRAM run : Main;`"),
                 });
+                continue;
             }
             let Some(address) = located.address else { continue };
             if is_input(address) {
@@ -134,6 +149,28 @@ impl<'s> Declarations<'s> {
                 );
             }
         }
+    }
+
+    /// Whether a variable may be at the address that a VAR_CONFIG gives it; reports if not.
+    fn may_be_bound(
+        &mut self,
+        target: &ast::Expr<'s>,
+        decl: Option<&ast::VarDecl<'s>>,
+        located: &ast::VarDecl<'s>,
+    ) -> bool {
+        let (Some(declared), Some(address)) = (decl.and_then(|it| it.address), located.address) else { return true };
+        let area = |it: ast::Name<'s>| it.text.get(1..2).map(str::to_ascii_uppercase);
+        let error = if decl.is_some_and(|it| it.known_address().is_some()) {
+            Diagnostic::new(Code::E0409, target.span, format!("this variable is at `{}`", declared.text))
+                .label("a VAR_CONFIG gives an address to what is at `%I*`, `%Q*` or `%M*`")
+        } else if area(declared) == area(address) {
+            return true;
+        } else {
+            Diagnostic::new(Code::E0409, address.span, format!("this variable is declared at `{}`", declared.text))
+                .label("an address of another area")
+        };
+        self.report(error.other(declared.span, "declared here"));
+        false
     }
 
     /// Reports `AT %I*` where no VAR_CONFIG gives the address. CODESYS and TwinCAT keep that in the device's tree.
