@@ -125,7 +125,9 @@ fn check_says_what_compile_says() {
     for case in &cases {
         let (sources, compilation) = case.compile();
         let checked = staunch_frontend::check(&sources, &case.settings().options);
-        assert_eq!(format!("{checked:?}"), format!("{:?}", compilation.diagnostics), "{}", case.name);
+        // What a library declares without a body is enough to check by.
+        let said: Vec<_> = compilation.diagnostics.iter().filter(|it| it.code != Code::E0318).collect();
+        assert_eq!(format!("{checked:?}"), format!("{said:?}"), "{}", case.name);
     }
 }
 

@@ -161,6 +161,17 @@ pub enum Access {
     Internal,
 }
 
+impl Access {
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Public => "PUBLIC",
+            Self::Private => "PRIVATE",
+            Self::Protected => "PROTECTED",
+            Self::Internal => "INTERNAL",
+        }
+    }
+}
+
 #[derive(Clone, Debug)]
 pub struct Pou<'s> {
     pub kind: PouKind,

@@ -4,7 +4,9 @@
 
 use std::collections::HashMap;
 
-use staunch_runtime::{BLOCKS, BlockInfo, Context, Direction, FaultKind, Repr, Text, Value, for_each_op, with_repr};
+use staunch_runtime::{
+    BLOCKS, BlockInfo, Context, Direction, FaultKind, Repr, Text, Value, for_each_op, for_each_text_op, with_repr,
+};
 
 fn symbols() -> HashMap<&'static str, *const u8> {
     let mut symbols = HashMap::new();
@@ -78,14 +80,23 @@ macro_rules! count_operations {
     };
 }
 
+/// The rows of the texts' table, twice those that are there for each unit.
+macro_rules! count_text_operations {
+    ($($op:ident $source:literal $function:ident ($($arg:ident: $ty:ident),*) -> $result:ident [$units:ident] $($extensible:ident)?;)*) => {
+        0 $(+ count_text_operations!(@ $units))*
+    };
+    (@ each) => { 2 };
+    (@ one) => { 1 };
+}
+
 #[test]
 fn every_symbol_is_listed() {
     let symbols = symbols();
     // Pairs of reprs.
     let conversions = 11 * 11 + 2 * 8;
-    // Functions on strings, values to text and back, and the copy.
-    let strings = 10 + 12 + 1;
-    let references = 6;
+    // The functions of texts, and a copy for each unit.
+    let strings = for_each_text_op!(count_text_operations) + 2;
+    let references = 8;
     let instructions = BLOCKS.iter().flat_map(|block| block.instructions);
     let blocks: usize = instructions.map(|it| 1 + usize::from(it.prescan.is_some())).sum();
     assert_eq!(symbols.len(), for_each_op!(count_operations) + conversions + strings + blocks + references);

@@ -306,14 +306,15 @@ impl<'a> Declarations<'a> {
         member(found, name)
     }
 
-    /// `Red`, of the enumeration that is asked for, or else of any.
+    /// `Red`, of the enumeration that is asked for, or else of the only one that has it.
     pub fn bare_enumerator(&self, name: &str, asked: Option<&Type<'a>>) -> Option<crate::storage::Value<'a>> {
         if let Some(Type::Enum(asked)) = asked
             && let Some(found) = member(asked, name)
         {
             return Some(found);
         }
-        self.enumerations.iter().find_map(|it| member(it, name))
+        let mut found = self.enumerations.iter().filter_map(|it| member(it, name));
+        found.next().filter(|_| found.next().is_none())
     }
 
     pub fn is_codesys(&self) -> bool {

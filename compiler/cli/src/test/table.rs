@@ -6,7 +6,7 @@ use crate::args::Backend;
 use crate::machine::{Interpreted, Native};
 use crate::run;
 use crate::session::Session;
-use staunch_host::{Expectations, Machine, Map, Options, When, csv_cells};
+use staunch_host::{Expectations, Machine, Map, Moment, Options, When, csv_cells};
 use staunch_ir::Program;
 use staunch_ir::layout::Layout;
 use std::path::{Path, PathBuf};
@@ -165,7 +165,10 @@ fn apart(program: &Program, options: &Options) -> Result<Option<String>, String>
 fn compared(table: &Table, expected: &Expectations, trace: &[Vec<String>], fault: Option<String>) -> Outcome {
     for row in &expected.rows {
         let scan = |it: &Vec<String>| it.first().and_then(|it| it.parse::<u64>().ok());
-        let time = |it: &Vec<String>| staunch_host::parse_duration(&format!("{}ms", it.get(1)?)).ok();
+        let time = |it: &Vec<String>| match staunch_host::parse_moment(&format!("{}ms", it.get(1)?)) {
+            Ok(Moment::Time(time)) => Some(time),
+            Ok(Moment::Scan(_)) | Err(_) => None,
+        };
         let found = trace.iter().find(|it| match row.when {
             When::Scan(number) => scan(it) == Some(number),
             When::Time(at) => time(it).is_some_and(|it| it >= at),

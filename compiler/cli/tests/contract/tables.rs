@@ -22,6 +22,14 @@ fn a_table_is_a_test() {
 }
 
 #[test]
+fn the_first_scan_is_at_time_zero() {
+    let program = "PROGRAM Main VAR_INPUT up : INT; END_VAR VAR n : INT; END_VAR n := n + up; END_PROGRAM";
+    let table = "time,up,|,n\nT#0ms,1,|,1\nT#10ms,2,|,3\n";
+    let folder = Folder::with("table_zero", &[("zero.st", program), ("zero.csv", table)]);
+    assert_eq!(folder.staunch("test .").out(0), "zero.csv\n  ok      zero\n\n1 passed, 0 failed\n");
+}
+
+#[test]
 fn the_first_row_that_differs_is_reported() {
     let table = TABLE.replace("2,     1", "3,     0");
     let folder = Folder::with("table_differs", &[("counter.st", COUNTER), ("counter.csv", &table)]);

@@ -28,6 +28,9 @@ pub(crate) struct Checked {
 pub(crate) fn check<'s>(decl: &mut Declarations<'s>, bodies: &mut [Vec<ast::Statement<'s>>], keep: Bodies) -> Checked {
     let mut checked = Checked { routines: Vec::new(), stacks: Vec::new(), left_out: None };
     for (slot, body) in bodies.iter_mut().enumerate() {
+        if decl.is_head(slot) {
+            decl.check_has_no_body(body);
+        }
         if decl.is_generic(slot) || decl.is_head(slot) {
             checked.push(Some((not_called(decl, slot), Uses::default())), 0);
             continue;

@@ -6,7 +6,8 @@ use crate::names::{Entry, Found, Meaning, Sense};
 use crate::spelling::{Key, nearest};
 use crate::types::declarations::{Declarations, Slot};
 use crate::types::signature::Signature;
-use crate::{Code, Diagnostic};
+use crate::{Code, Diagnostic, Span};
+use rustc_hash::FxHashSet;
 use staunch_ir::{Section, Type};
 use std::rc::Rc;
 
@@ -24,10 +25,50 @@ impl<'s> Declarations<'s> {
             if pou.kind.has_routines() {
                 pou.implements.iter().for_each(|name| self.check_is_interface(pou, *name));
             }
+            if pou.kind == PouKind::Interface {
+                self.check_interface(slot);
+            }
             if pou.kind.is_block() {
                 self.check_interfaces(slot);
                 self.check_overrides(slot);
             }
+        }
+    }
+
+    /// Reports an INTERFACE that extends itself, and what has no place in one.
+    fn check_interface(&mut self, slot: usize) {
+        let pou = self.pous[slot].ast;
+        let (mut asked, mut seen) = (self.own_interfaces(slot), FxHashSet::default());
+        while let Some(at) = asked.pop() {
+            if seen.insert(at) {
+                asked.extend(self.own_interfaces(at));
+            }
+        }
+        if seen.contains(&slot) {
+            let error = Diagnostic::new(Code::E0402, pou.name.span, format!("`{}` extends itself", pou.name.text));
+            self.report(error.label("it comes back to this INTERFACE"));
+        }
+        let mut refuse = |span, what: &str| {
+            self.report(Diagnostic::new(Code::E0403, span, what).label("an INTERFACE has heads alone: delete it"));
+        };
+        if let Some(block) = pou.blocks.first() {
+            refuse(block.span, "an INTERFACE has no variables");
+        }
+        for routine in &pou.routines {
+            if let Some((access @ (ast::Access::Private | ast::Access::Protected), span)) = routine.modifiers.access {
+                refuse(span, &format!("a METHOD of an INTERFACE is not {}", access.word()));
+            }
+        }
+    }
+
+    /// Reports statements in a METHOD of an INTERFACE.
+    pub(crate) fn check_has_no_body(&mut self, body: &[ast::Statement<'s>]) {
+        let mut written = body.iter().filter(|it| !matches!(it.kind, ast::StatementKind::Empty));
+        if let Some(first) = written.next() {
+            self.report(
+                Diagnostic::new(Code::E0403, first.span, "a METHOD of an INTERFACE has no body")
+                    .label("its classes have one: delete it"),
+            );
         }
     }
 
@@ -79,7 +120,16 @@ impl<'s> Declarations<'s> {
     fn check_head(&mut self, class: usize, head: usize) {
         let (name, wanted) = (self.pous[class].ast.name, self.pous[head].ast.name);
         let title = self.title(head);
-        let error = match self.routine_for(class, head) {
+        let routine = self.routine_for(class, head);
+        if let Some((access, span)) = routine.and_then(|it| self.hidden_by(it)) {
+            self.report(
+                Diagnostic::new(Code::E0403, span, format!("`{title}` is {}", access.word()))
+                    .label("what an INTERFACE wants is called from everywhere")
+                    .other(wanted.span, "declared here"),
+            );
+            return;
+        }
+        let error = match routine {
             Some(routine) if self.is_alike(routine, head) => return,
             Some(routine) => {
                 let span = self.pous[routine].ast.name.span;
@@ -105,6 +155,12 @@ impl<'s> Declarations<'s> {
             }
         };
         self.report(error.other(wanted.span, "declared here"));
+    }
+
+    /// The word by which a routine is not called from everywhere.
+    fn hidden_by(&self, routine: usize) -> Option<(ast::Access, Span)> {
+        let access = self.pous[routine].ast.modifiers.access;
+        access.filter(|it| matches!(it.0, ast::Access::Private | ast::Access::Protected))
     }
 
     /// Reports routines of a class whose heads are others than those which they override.

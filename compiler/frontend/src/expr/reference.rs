@@ -364,6 +364,17 @@ impl<'s> Checker<'_, 's> {
 
     /// Comparison and arithmetic where one side is a reference.
     pub(crate) fn reference_operation(&mut self, op: BinaryOp, a: Operand, b: Operand, span: Span) -> Option<Operand> {
+        let of_interface = |it: &Operand| it.ty().is_some_and(|ty| self.decl.interface_of(ty).is_some());
+        if super::operator::compares(op) && (of_interface(&a) || of_interface(&b)) {
+            let fits = |it: &Operand| match it {
+                Operand::Typed(value) => is_null(value) || of_interface(it),
+                Operand::Integer(number) => *number == 0,
+                _ => false,
+            };
+            if !matches!(op, BinaryOp::Eq | BinaryOp::Ne) || !fits(&a) || !fits(&b) {
+                return self.refuse_interface_operation(op, [&a, &b], span);
+            }
+        }
         let made = match (a.is_reference(), b.is_reference(), op) {
             (_, _, BinaryOp::Eq | BinaryOp::Ne | BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge) => {
                 self.compare_addresses(op, a, b, span)
@@ -382,6 +393,16 @@ impl<'s> Checker<'_, 's> {
             }
         };
         made.map(Operand::Typed)
+    }
+
+    fn refuse_interface_operation(&mut self, op: BinaryOp, sides: [&Operand; 2], span: Span) -> Option<Operand> {
+        let operands = sides.map(|it| it.ty().map_or("a number".to_owned(), |ty| self.type_name(ty)));
+        let message = format!("`{}` does not take {} and {}", op.text(), operands[0], operands[1]);
+        self.report(
+            Diagnostic::new(Code::E0204, span, message)
+                .label("a variable of an INTERFACE is compared with another one or NULL, by `=` and `<>`"),
+        );
+        None
     }
 
     /// An operand as an address, for a comparison.

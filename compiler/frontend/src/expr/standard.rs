@@ -113,7 +113,9 @@ impl<'s> Checker<'_, 's> {
             (Op::Max | Op::Min, Type::String(_)) => self.extreme_text(op, ty, operands, span),
             (Op::Max | Op::Min, _) => self.fold(op, ty, operands, span),
             (Op::Limit, Type::String(_)) => self.limited_text(ty, operands, span),
-            (Op::Sel, _) if self.decl.program.repr(ty).is_none() => self.select(ty, operands, span),
+            (Op::Sel, _) if self.decl.program.repr(ty).is_none() || matches!(ty, Type::Reference(_)) => {
+                self.select(ty, operands, span)
+            }
             (Op::Shl | Op::Shr | Op::Rol | Op::Ror, _) => {
                 let (count, value) = (operands.pop()?, operands.pop()?);
                 self.shift(op, ty, value, count, span)
