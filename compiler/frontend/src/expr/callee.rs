@@ -214,6 +214,9 @@ impl<'s> Checker<'_, 's> {
             self.decl.not_supported(name.span, &format!("the function {}", name.text.to_ascii_uppercase()));
             return;
         }
+        if self.is_of_unknown_base() {
+            return;
+        }
         let own = self.decl.pous.iter().filter(|it| it.ast.kind == ast::PouKind::Function).map(|it| it.ast.name.text);
         let instances =
             self.scope.variables.iter().filter(|it| matches!(it.place.ty, Type::Block(_) | Type::Struct(_)));

@@ -26,6 +26,8 @@ struct Candidate {
     /// What each argument is given to.
     takes: Vec<Option<Taker>>,
     leaves_out: bool,
+    /// So many inputs keep their own initial values.
+    defaults: usize,
 }
 
 /// A parameter, as far as it decides.
@@ -78,6 +80,7 @@ impl<'s> Checker<'_, 's> {
             [one] => Ok(one.slot),
             several => {
                 let best = best(several, &typed).or_else(|| best(several, &all_types));
+                let best = best.or_else(|| fewest_defaults(several, &all_types));
                 best.ok_or_else(|| Box::new(self.several_fit(several, name)))
             }
         }
@@ -99,14 +102,16 @@ impl<'s> Checker<'_, 's> {
             this.require_all(owner.text, &parameters, &given, &own, is_optional, whole)?;
             Some(given)
         })??;
-        let mut leaves_out = false;
+        let (mut leaves_out, mut defaults) = (false, 0);
         let mut takes = vec![None; arguments.len()];
         for (at, given) in given.iter().enumerate() {
             let formal = &formals[at];
             let place = match given {
                 Given::Nothing if formal.section == Section::InOut => return None,
                 Given::Nothing => {
-                    leaves_out |= formal.section == Section::Input && !self.has_initial(formal, slot);
+                    let has_initial = self.has_initial(formal, slot);
+                    leaves_out |= formal.section == Section::Input && !has_initial;
+                    defaults += usize::from(formal.section == Section::Input && has_initial);
                     continue;
                 }
                 Given::Output { target: None, .. } => continue,
@@ -123,7 +128,7 @@ impl<'s> Checker<'_, 's> {
             let (ty, is_output) = (formal.resolved.ty.read(), formal.section == Section::Output);
             takes[argument] = Some(Taker { ty, is_generic: formal.word.is_some(), is_output });
         }
-        Some(Candidate { slot, takes, leaves_out })
+        Some(Candidate { slot, takes, leaves_out, defaults })
     }
 
     /// Whether a parameter takes a value or variable as it is written.
@@ -223,6 +228,14 @@ impl<'s> Checker<'_, 's> {
 fn best(candidates: &[Candidate], given: &[Option<Type>]) -> Option<usize> {
     let beats = |it: &Candidate, other: &Candidate| std::ptr::eq(it, other) || is_better(it, other, given);
     candidates.iter().find(|it| candidates.iter().all(|other| beats(it, other))).map(|it| it.slot)
+}
+
+/// The one that leaves the fewest inputs to their initial values, where none other is closer.
+fn fewest_defaults(candidates: &[Candidate], given: &[Option<Type>]) -> Option<usize> {
+    let fewest = candidates.iter().map(|it| it.defaults).min()?;
+    let mut found = candidates.iter().filter(|it| it.defaults == fewest);
+    let one = found.next().filter(|_| found.next().is_none())?;
+    candidates.iter().all(|other| !is_better(other, one, given)).then_some(one.slot)
 }
 
 fn is_better(a: &Candidate, b: &Candidate, given: &[Option<Type>]) -> bool {

@@ -29,11 +29,16 @@ impl<'s> Checker<'_, 's> {
         self.slot.is_some_and(|it| self.decl.pous[self.decl.home(it)].ast.extends.is_some())
     }
 
+    /// Whether the class around extends what is not known.
+    pub(crate) fn is_of_unknown_base(&self) -> bool {
+        self.slot.is_some_and(|it| self.decl.has_unknown_base(self.decl.pous[it].owner.unwrap_or(it)))
+    }
+
     /// What SUPER means, with or without a name after it.
     pub(crate) fn super_callee(&mut self, name: Option<ast::Name<'s>>, span: Span) -> Option<usize> {
         let slot = self.slot?;
         let found = self.decl.super_routines(slot, name).and_then(|it| it.called);
-        if found.is_none() {
+        if found.is_none() && !self.is_of_unknown_base() {
             let home = self.decl.pous[self.decl.home(slot)].ast;
             let error = match (home.extends, name) {
                 (Some(base), Some(name)) => {

@@ -174,6 +174,9 @@ impl<'s> Checker<'_, 's> {
             );
             return;
         }
+        if self.is_of_unknown_base() {
+            return;
+        }
         let block = self.decl.bare_block(name).is_some();
         let message = if block {
             format!("`{}` is a FUNCTION_BLOCK, not an instance of one", name.text)

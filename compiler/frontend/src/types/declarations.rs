@@ -473,6 +473,10 @@ impl<'s> Declarations<'s> {
     }
 
     pub fn unknown_member(&mut self, name: ast::Name<'s>, ty: Type, near: Option<&str>) {
+        let class = if let Type::Struct(id) = ty { self.slot_of_instance(id) } else { None };
+        if class.is_some_and(|it| self.has_unknown_base(it)) {
+            return;
+        }
         let owner = self.program.type_name(ty);
         let mut error = Diagnostic::new(Code::E0107, name.span, format!("`{owner}` has no member `{}`", name.text))
             .label("unknown member");

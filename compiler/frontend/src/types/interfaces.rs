@@ -78,6 +78,16 @@ impl Declarations<'_> {
         self.class_named(self.pous[slot].ast.extends?)
     }
 
+    /// Whether a class, or one that it extends, extends what is not known: that has been reported, and what the class
+    /// would have of it is not known either.
+    pub fn has_unknown_base(&self, class: usize) -> bool {
+        let mut classes = std::iter::successors(Some(class), |it| self.base_of(*it));
+        classes.any(|it| {
+            let pou = self.pous[it].ast;
+            pou.kind.is_block() && pou.extends.is_none() && pou.bases.len() > pou.implements.len()
+        })
+    }
+
     /// The classes whose instances a variable of the INTERFACE in a slot may refer to.
     pub fn implementers(&mut self, interface: usize) -> Rc<[usize]> {
         if let Some(known) = self.table.interfaces.implementers.get(&interface) {
