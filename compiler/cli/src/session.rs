@@ -91,22 +91,16 @@ impl Session {
         let compilation = compile(&sources, &options(common, &project)?);
         let compile_time = start.elapsed();
         let first = PathBuf::from(&sources.files()[0].path);
-        let diagnostics = Vec::new();
-        let common = common.with(&project);
-        let mut session = Self {
-            common,
-            project,
-            first,
-            sources,
-            program: None,
-            tests: Vec::new(),
-            coverage: Vec::new(),
-            diagnostics,
-            compile_time,
-        };
+        let mut session = Self::new(common.with(&project), project, first, sources, compile_time);
         session.say_what_was_read();
         let errors = session.accept(compilation, &levels, &[])?;
         Ok((session, errors))
+    }
+
+    /// Of sources that nothing has been said of yet.
+    fn new(common: Common, project: Project, first: PathBuf, sources: Sources, compile_time: Duration) -> Self {
+        let (program, tests, coverage, diagnostics) = (None, Vec::new(), Vec::new(), Vec::new());
+        Self { common, project, first, sources, program, tests, coverage, diagnostics, compile_time }
     }
 
     /// With `-v`: the project file and the sources.
@@ -158,18 +152,7 @@ impl Session {
         known: &[Diagnostic],
     ) -> Result<Self, String> {
         let (common, project, first) = (self.common.clone(), self.project.clone(), self.first.clone());
-        let diagnostics = Vec::new();
-        let mut session = Self {
-            common,
-            project,
-            first,
-            sources,
-            program: None,
-            tests: Vec::new(),
-            coverage: Vec::new(),
-            diagnostics,
-            compile_time,
-        };
+        let mut session = Self::new(common, project, first, sources, compile_time);
         session.accept(compilation, &levels(&self.common, &self.project)?, known)?;
         Ok(session)
     }

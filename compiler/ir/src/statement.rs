@@ -141,6 +141,21 @@ impl For {
         zero || self.may_leave_range() && whole != Some(self.range)
     }
 
+    /// A loop over LINTs, `first` to `last`, whose body does not write the counter.
+    pub fn over(counter: Place, first: Expr, last: Expr, body: Block, at: Location) -> Statement {
+        let range = (i64::MIN.into(), i64::MAX.into());
+        let is_private = true;
+        Self { counter, first, last, step: Step::Constant(1), range, is_private, body, step_at: at }.statement(at)
+    }
+
+    /// The loop, whose body takes a turn first where it has to.
+    pub fn statement(mut self, at: Location) -> Statement {
+        if !self.is_short() {
+            self.body.insert(0, Statement::new(StatementKind::Turn, at));
+        }
+        Statement::new(StatementKind::For(Box::new(self)), at)
+    }
+
     /// Whether constants show that the loop ends after few turns.
     pub fn is_short(&self) -> bool {
         let Step::Constant(step) = self.step else { return false };

@@ -22,6 +22,36 @@ fn a_table_is_a_test() {
 }
 
 #[test]
+fn tests_and_tables_of_a_program_with_bound_addresses() {
+    let program = "FUNCTION_BLOCK Lamp
+VAR_INPUT on : BOOL; END_VAR
+VAR out AT %Q* : BOOL; END_VAR
+out := on;
+END_FUNCTION_BLOCK
+PROGRAM Main
+VAR lamp : Lamp; button AT %I* : BOOL; END_VAR
+lamp(on := NOT button);
+END_PROGRAM
+CONFIGURATION Plant
+PROGRAM run : Main;
+VAR_CONFIG run.button AT %IX0.0 : BOOL; run.lamp.out AT %QX0.0 : BOOL; END_VAR
+END_CONFIGURATION
+TEST 'a lamp by itself'
+VAR lamp : Lamp; END_VAR
+lamp(on := TRUE);
+ASSERT_TRUE(lamp.out);
+END_TEST
+";
+    let table = "%IX0.0,|,%QX0.0\nFALSE,|,TRUE\nTRUE,|,FALSE\n";
+    let folder = Folder::with("table_bound", &[("lamp.st", program), ("lamp.csv", table)]);
+    folder.staunch("check lamp.st").err(0);
+    for backend in ["native", "interpret", "rust"] {
+        let out = folder.staunch(&format!("test . --backend {backend}")).out(0);
+        has(&out, &["ok      a lamp by itself", "ok      lamp", "2 passed, 0 failed"]);
+    }
+}
+
+#[test]
 fn the_first_scan_is_at_time_zero() {
     let program = "PROGRAM Main VAR_INPUT up : INT; END_VAR VAR n : INT; END_VAR n := n + up; END_PROGRAM";
     let table = "time,up,|,n\nT#0ms,1,|,1\nT#10ms,2,|,3\n";

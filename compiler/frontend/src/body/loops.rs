@@ -86,10 +86,8 @@ impl<'s> Checker<'_, 's> {
         head.body = self.loop_body(body);
         self.counters.pop();
         head.is_private = loops::is_private(&self.frame(), &head.counter, &head.body);
-        if !head.is_short() {
-            head.body.insert(0, Statement::new(StatementKind::Turn, self.at(span)));
-        }
-        self.push(StatementKind::For(Box::new(head)), span);
+        let made = head.statement(self.at(span));
+        self.push(made.kind, span);
         Some(())
     }
 

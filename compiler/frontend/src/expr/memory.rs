@@ -7,7 +7,7 @@ use crate::names::{Found as Meant, Sense};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ArgumentKind, ExprKind as Ast};
 use staunch_ir::{
-    Block, Conversion, Elementary, Expr, For, Location, Op, Place, RefKind, Statement, StatementKind, Step, Type, Value,
+    Block, Conversion, Elementary, Expr, For, Location, Op, Place, RefKind, Statement, StatementKind, Type, Value,
 };
 
 #[derive(Clone, Copy)]
@@ -228,20 +228,7 @@ impl<'s> Checker<'_, 's> {
 
     fn each_byte(&mut self, given: &Arguments, body: Block) -> Statement {
         let at = given.at;
-        let mut turns = For {
-            counter: self.temporary("turn", Type::LINT),
-            first: lint(1, at),
-            last: given.count.clone(),
-            step: Step::Constant(1),
-            range: (i64::MIN.into(), i64::MAX.into()),
-            is_private: true,
-            body,
-            step_at: at,
-        };
-        if !turns.is_short() {
-            turns.body.insert(0, Statement::new(StatementKind::Turn, at));
-        }
-        Statement::new(StatementKind::For(Box::new(turns)), at)
+        For::over(self.temporary("turn", Type::LINT), lint(1, at), given.count.clone(), body, at)
     }
 }
 

@@ -6,8 +6,8 @@ use super::place::Found;
 use crate::types::window::Window;
 use crate::{Span, ast};
 use staunch_ir::{
-    ArrayId, Block, Chars, Elementary, Expr, ExprKind, For, Location, Op, Place, Statement, StatementKind, Step,
-    StringType, StructId, TextOp, Type, Value,
+    ArrayId, Block, Chars, Elementary, Expr, ExprKind, For, Location, Op, Place, Statement, StatementKind, StringType,
+    StructId, TextOp, Type, Value,
 };
 
 /// Arrays of no more elements are read and assigned without a loop.
@@ -175,20 +175,7 @@ impl<'s> Checker<'_, 's> {
         let counter = self.temporary(name, Type::LINT);
         let body: Block = self.nested(|this| body(this, Expr::load(counter.clone(), at)));
         let bound = |it| Expr::constant(Elementary::Lint, Value::I64(it), at);
-        let mut turns = For {
-            counter,
-            first: bound(first),
-            last: bound(last),
-            step: Step::Constant(1),
-            range: (i64::MIN.into(), i64::MAX.into()),
-            is_private: true,
-            body,
-            step_at: at,
-        };
-        if !turns.is_short() {
-            turns.body.insert(0, Statement::new(StatementKind::Turn, at));
-        }
-        Statement::new(StatementKind::For(Box::new(turns)), at)
+        For::over(counter, bound(first), bound(last), body, at)
     }
 
     /// The characters before the first zero.

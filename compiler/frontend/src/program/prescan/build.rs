@@ -6,7 +6,7 @@ use crate::types::signature::pin_place;
 use staunch_ir::startup::{Event, Fate, Startup};
 use staunch_ir::{
     Block, Const, Elementary, Expr, For, Local, LocalId, Location, Op, Place, Program, Projection, RoutineId,
-    Statement, StatementKind, Step, Type, Value,
+    Statement, StatementKind, Type, Value,
 };
 
 /// Builds the prescan of one POU.
@@ -184,20 +184,7 @@ fn where_within(indices: &[Expr], bounds: &[(i64, i64)], block: Block, at: Locat
 /// Runs `body` with each index from `low` to `high` in a local that it does not write.
 fn for_each(counter: Place, (low, high): (i64, i64), body: Block, at: Location) -> Block {
     let lint = |value| Expr::constant(Elementary::Lint, Value::I64(value), at);
-    let mut turns = For {
-        counter,
-        first: lint(low),
-        last: lint(high),
-        step: Step::Constant(1),
-        range: (i64::MIN.into(), i64::MAX.into()),
-        is_private: true,
-        body,
-        step_at: at,
-    };
-    if !turns.is_short() {
-        turns.body.insert(0, Statement::new(StatementKind::Turn, at));
-    }
-    vec![Statement::new(StatementKind::For(Box::new(turns)), at)]
+    vec![For::over(counter, lint(low), lint(high), body, at)]
 }
 
 /// The routine of the prescan of the POU in a slot, until routines are put in order.
