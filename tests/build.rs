@@ -15,6 +15,9 @@ mod pointers;
 #[path = "src/random.rs"]
 #[allow(dead_code, reason = "the crate uses more of it")]
 mod random;
+#[path = "src/rows.rs"]
+#[allow(dead_code, reason = "the crate uses more of it")]
+mod rows;
 #[path = "src/vector.rs"]
 #[allow(dead_code, reason = "the crate uses more of it")]
 mod vector;
@@ -34,6 +37,7 @@ fn main() {
         "src/operation.rs",
         "src/pointers.rs",
         "src/random.rs",
+        "src/rows.rs",
         "src/vector.rs",
         "cases",
         "vectors",
@@ -49,6 +53,7 @@ fn main() {
     random::seeds().for_each(|seed| generated.text(&random::module(seed), random::program(seed), &Options::default()));
     let codesys = Options { dialect: Dialect::Codesys, ..Options::default() };
     (0..pointers::PRINTED).for_each(|seed| generated.text(&pointers::module(seed), pointers::program(seed), &codesys));
+    generated.text("rows", rows::program(), &Options::default());
     generated.add("operations", &operation::program(&operation::Task::all()));
     generated.write(&out.join("generated.rs"));
     fs::write(out.join("golden_tests.rs"), golden_tests(&cases)).expect("the list of cases is written");

@@ -15,6 +15,7 @@ pub mod golden;
 pub mod operation;
 pub mod pointers;
 pub mod random;
+pub mod rows;
 pub mod vector;
 
 use std::path::PathBuf;

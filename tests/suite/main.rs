@@ -11,6 +11,7 @@ mod effects;
 mod operations;
 mod pointers;
 mod programs;
+mod rows;
 mod stack;
 mod state;
 

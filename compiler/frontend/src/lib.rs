@@ -37,6 +37,7 @@ mod lints;
 pub use diagnostic::{Code, Diagnostic, Fix, Format, Label, Level, Levels, Severity, Style, render};
 pub use dialect::Dialect;
 pub use mutate::{Mutant, mutants};
+pub use names::functions::standard_functions;
 pub use source::{Source, Sources, Span};
 pub use syntax::parse;
 pub use testing::{Assertion, Test};

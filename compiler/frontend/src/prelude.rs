@@ -92,14 +92,6 @@ pub(crate) const UNITS: &[Unit] = units! {
     Function "SPLIT_LDT"        "split_ldt"        "SPLIT_DATE" "SPLIT_LTOD";
     Function "IS_VALID"         "is_valid";
     Function "IS_VALID_BCD"     "is_valid_bcd";
-    Function "BYTE_BCD_TO_USINT"  "byte_bcd_to_usint";
-    Function "WORD_BCD_TO_UINT"   "word_bcd_to_uint";
-    Function "DWORD_BCD_TO_UDINT" "dword_bcd_to_udint";
-    Function "LWORD_BCD_TO_ULINT" "lword_bcd_to_ulint";
-    Function "USINT_TO_BCD_BYTE"  "usint_to_bcd_byte";
-    Function "UINT_TO_BCD_WORD"   "uint_to_bcd_word";
-    Function "UDINT_TO_BCD_DWORD" "udint_to_bcd_dword";
-    Function "ULINT_TO_BCD_LWORD" "ulint_to_bcd_lword";
     Space    "System.Timer"     "system_timer";
     Space    "System.Strings"   "system_strings";
     Space    "System.Math"      "system_math";

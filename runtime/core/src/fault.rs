@@ -25,10 +25,12 @@ pub enum FaultKind {
     MisalignedReference = 9,
     /// What a reference points to may not be viewed as what was asked for.
     ForbiddenView = 10,
+    /// The condition of an ASSERT does not hold.
+    AssertionFailed = 11,
 }
 
 impl FaultKind {
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::DivideByZero,
         Self::IndexOutOfRange,
         Self::SubrangeViolated,
@@ -39,6 +41,7 @@ impl FaultKind {
         Self::OutsideObject,
         Self::MisalignedReference,
         Self::ForbiddenView,
+        Self::AssertionFailed,
     ];
 
     /// The fault with this code, as native code returns it.
@@ -59,6 +62,7 @@ impl FaultKind {
             Self::OutsideObject => "a reference points outside of its object",
             Self::MisalignedReference => "a reference is misaligned",
             Self::ForbiddenView => "a reference points to something of another type",
+            Self::AssertionFailed => "an assertion does not hold",
         }
     }
 }

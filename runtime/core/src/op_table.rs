@@ -32,6 +32,10 @@ macro_rules! for_each_op {
             Acos        "ACOS"     acos       (IN: T) -> T                           [ANY_REAL as real]           total;
             Atan        "ATAN"     atan       (IN: T) -> T                           [ANY_REAL as real]           total;
             Atan2       "ATAN2"    atan2      (Y: T, X: T) -> T                      [ANY_REAL as real]           total;
+            // Whole numbers of the same type; TRUNC and the conversions make integers.
+            Ceil        "_CEIL"    ceil       (IN: T) -> T                           [ANY_REAL as real]           total;
+            Floor       "_FLOOR"   floor      (IN: T) -> T                           [ANY_REAL as real]           total;
+            Whole       "_WHOLE"   whole      (IN: T) -> T                           [ANY_REAL as real]           total;
             And         "AND"      and        (IN1: T, IN2: T) -> T                  [ANY_BIT as bits]            total extensible;
             Or          "OR"       or         (IN1: T, IN2: T) -> T                  [ANY_BIT as bits]            total extensible;
             Xor         "XOR"      xor        (IN1: T, IN2: T) -> T                  [ANY_BIT as bits]            total extensible;
@@ -42,6 +46,11 @@ macro_rules! for_each_op {
             Sar         "_SAR"     sar        (IN: T, N: ANY_INT) -> T               [ANY_BIT as integer]         total;
             Rol         "ROL"      rol        (IN: T, N: ANY_INT) -> T               [ANY_BIT as integer]         total;
             Ror         "ROR"      ror        (IN: T, N: ANY_INT) -> T               [ANY_BIT as integer]         total;
+            // The bytes in the other order.
+            SwapBytes   "_SWAP"    swap_bytes (IN: T) -> T                           [ANY_ELEMENTARY as any]      total;
+            // Decimal digits of four bits each.
+            FromBcd     "_FROM_BCD" from_bcd  (IN: T) -> T                           [ANY_INT as long]            total;
+            ToBcd       "_TO_BCD"  to_bcd     (IN: T) -> T                           [ANY_INT as long]            total;
             Eq          "EQ"       eq         (IN1: T, IN2: T) -> BOOL               [ANY_ELEMENTARY as any]      total extensible;
             Ne          "NE"       ne         (IN1: T, IN2: T) -> BOOL               [ANY_ELEMENTARY as any]      total;
             Lt          "LT"       lt         (IN1: T, IN2: T) -> BOOL               [ANY_ELEMENTARY as any]      total extensible;

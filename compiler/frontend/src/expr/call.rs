@@ -6,6 +6,7 @@ use super::enable::Enable;
 use super::generic_call::Called;
 use super::operand::Operand;
 use crate::diagnostic::wording::list;
+use crate::names::functions;
 use crate::spelling::nearest;
 use crate::types::signature::Formal;
 use crate::{Code, Diagnostic, Span, ast};
@@ -78,7 +79,7 @@ impl<'s> Checker<'_, 's> {
         match what {
             Some(Callee::Standard(name)) => {
                 let value = self.standard_function(name, arguments, None, expr.span);
-                if value.is_none() {
+                if value.is_none() || functions::is_statement(name.text) {
                     return;
                 }
                 self.report(

@@ -230,6 +230,8 @@ impl<'s> Checker<'_, 's> {
             error = error.help(format!("a value is converted with `TO_{}(…)`", name.text.to_ascii_uppercase()));
         } else if name.text.eq_ignore_ascii_case("POW") {
             error = error.help("write `EXPT(base, exponent)`, or `base ** exponent`");
+        } else if name.text.eq_ignore_ascii_case("ROUND") {
+            error = error.help("`REAL_TO_DINT(x)` rounds to the nearest, halves to the even one");
         } else if let Some(hint) = self.decl.hint_of_namespace(name) {
             error = error.help(hint);
         } else if let Some(near) = near {
@@ -251,10 +253,8 @@ fn is_of_heap(name: &str) -> bool {
 /// Functions of the standard's tables, and of CODESYS, that are known to be missing.
 fn not_yet(name: &str) -> bool {
     let name = name.to_ascii_uppercase();
-    let conversion = |part: &str| part.starts_with("BCD") || part.ends_with("BCD");
-    let (from, to) = name.split_once("_TO_").or_else(|| Some(("", name.strip_prefix("TO_")?))).unwrap_or(("", ""));
-    let others = ["ROUND", "CEIL", "FLOOR", "ASSERT", "CONCAT_TIME", "UPPER_CASE"];
-    conversion(from) || conversion(to) || others.contains(&name.as_str())
+    let (from, to) = name.split_once("_TO_").unwrap_or_default();
+    from == "BCD" || to == "BCD"
 }
 
 /// Whether `name` is an instruction of a structure in `family`.

@@ -1,11 +1,11 @@
 //! Conversion functions: `INT_TO_REAL`, `TO_REAL`, `REAL_TRUNC_DINT`, `TRUNC`.
 
 use super::checker::Checker;
-use crate::names::functions::{self, Converted};
+use crate::names::functions::{self, Converted, How};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Conversion, Elementary, Expr, Op, Type, Value};
-use staunch_runtime::Time;
 use staunch_runtime::time::SECOND;
+use staunch_runtime::{Class, Time};
 
 impl<'s> Checker<'_, 's> {
     pub(crate) fn conversion(
@@ -23,8 +23,11 @@ impl<'s> Checker<'_, 's> {
             Converted::Elementary(to) => to,
             Converted::Text { wide } => return self.text_of(value_expr, wide, value.span, name),
         };
-        if parsed.truncates {
-            return self.truncate(value_expr, to, value.span, name);
+        match parsed.how {
+            How::Value => {}
+            How::Truncates => return self.truncate(value_expr, to, value.span, name),
+            How::FromBcd => return self.decimal(Op::FromBcd, Class::Bit, value_expr, to, value.span, name),
+            How::ToBcd => return self.decimal(Op::ToBcd, Class::Unsigned, value_expr, to, value.span, name),
         }
         if let Type::String(_) = value_expr.ty {
             return self.value_of_text(value_expr, to, name.span);
@@ -110,6 +113,28 @@ impl<'s> Checker<'_, 's> {
         let factor = Expr::constant(Elementary::Lint, Value::I64(unit), at);
         let op = if op == Op::Div && unit == SECOND { Op::WholeUnits } else { op };
         self.apply(op, Type::LINT, vec![value, factor], Type::LINT, span)
+    }
+
+    /// Decimal digits of four bits each to their number, or back: what is more than `to` holds is cut.
+    fn decimal(
+        &mut self,
+        op: Op,
+        class: Class,
+        value: Expr,
+        to: Elementary,
+        span: Span,
+        name: ast::Name<'s>,
+    ) -> Option<Expr> {
+        if value.ty == Type::BOOL || !self.admits(class, value.ty, span) {
+            let wanted = if class == Class::Bit { "a bit string of digits" } else { "an unsigned integer" };
+            let found = self.type_name(value.ty);
+            let message = format!("`{}` takes {wanted}, this is {found}", name.text);
+            self.report(Diagnostic::new(Code::E0204, span, message).label(format!("this is {found}")));
+            return None;
+        }
+        let wide = self.convert(Conversion::Value, Type::LINT, value);
+        let made = self.apply(op, Type::LINT, vec![wide], Type::LINT, span)?;
+        Some(self.convert(Conversion::Value, Type::Elementary(to), made))
     }
 
     /// `TRUNC(x)`: to the integer type that its place asks for, DINT without one.

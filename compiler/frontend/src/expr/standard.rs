@@ -7,10 +7,11 @@ use super::overload::Resolved;
 use super::text_conversion::MAX_CAPACITY;
 use crate::names::functions::{self, Meaning, named};
 use crate::types::signature::pin_place;
-use crate::{Span, ast, dialect};
+use crate::{Code, Diagnostic, Span, ast, dialect};
 use ast::BinaryOp;
 use staunch_ir::{
     Arm, Conversion, Elementary, Expr, ExprKind, FaultKind, Op, Statement, StatementKind, StringType, TextOp, Type,
+    Value,
 };
 use staunch_runtime::{Class, Kind, Signature, signature};
 
@@ -39,12 +40,24 @@ impl<'s> Checker<'_, 's> {
             Meaning::Move => self.operand(values[0], expected),
             Meaning::Truncate => self.trunc(values[0], expected, name).map(Operand::Typed),
             Meaning::Operation(op) => {
-                let resolved = self.resolve(signature, &values, expected, name)?;
+                let mut resolved = self.resolve(signature, &values, expected, name)?;
+                if op == Op::SwapBytes {
+                    resolved = self.at_own_size(resolved, name)?;
+                }
                 self.operation(op, resolved, name.span)
             }
             Meaning::Text(op) => {
                 let resolved = self.resolve(signature, &values, expected, name)?;
                 self.text_function(op, resolved.operands, name.span).map(Operand::Typed)
+            }
+            Meaning::LittleEndian => {
+                let resolved = self.resolve(signature, &values, expected, name)?;
+                let Resolved { own, mut operands, .. } = self.at_own_size(resolved, name)?;
+                Some(computed(operands.pop()?, own))
+            }
+            Meaning::Assert => {
+                let condition = self.resolve(signature, &values, None, name)?.operands.pop()?;
+                Some(Operand::Typed(self.assured(condition, span)))
             }
             Meaning::Clock(ty) => self.scan_time(ty, span).map(Operand::Typed),
             Meaning::Date(function) => {
@@ -123,6 +136,29 @@ impl<'s> Checker<'_, 's> {
             _ => self.apply(op, ty, operands, ty, span),
         };
         Some(computed(value?, own))
+    }
+
+    /// What has an order of its bytes, as many as its type has also where it is computed at more: strings and
+    /// enumerations have none.
+    fn at_own_size(&mut self, resolved: Resolved, name: ast::Name<'s>) -> Option<Resolved> {
+        let Resolved { own: ty, operands, .. } = resolved;
+        if matches!(ty, Type::Elementary(_)) {
+            let operands = operands.into_iter().map(|it| self.convert(Conversion::Value, ty, it)).collect();
+            return Some(Resolved { ty, own: ty, operands });
+        }
+        let found = self.type_name(ty);
+        let message = format!("`{}` takes a number, a bit string, a time or a character, this is {found}", name.text);
+        self.report(Diagnostic::new(Code::E0204, name.span, message).label(format!("this is {found}")));
+        None
+    }
+
+    /// A fault where the condition does not hold.
+    fn assured(&mut self, condition: Expr, span: Span) -> Expr {
+        let at = self.at(span);
+        let fails = Expr::apply(Op::Not, Type::BOOL, vec![condition], at);
+        let then = vec![Statement::new(StatementKind::Fault(FaultKind::AssertionFailed), at)];
+        self.push(StatementKind::If { condition: fails, then, otherwise: Vec::new() }, span);
+        Expr::constant(Elementary::Bool, Value::Bool(true), at)
     }
 
     /// An extensible function folds from the left.

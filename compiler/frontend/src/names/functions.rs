@@ -5,7 +5,7 @@ use crate::dialect::Dialect;
 use crate::spelling::Key;
 use rustc_hash::FxHashMap;
 use staunch_ir::{Elementary, Op, TextOp};
-use staunch_runtime::{Signature, signature};
+use staunch_runtime::{Class, Signature, signature};
 use std::sync::LazyLock;
 
 /// What a standard function means.
@@ -23,6 +23,10 @@ pub(crate) enum Meaning {
     Move,
     /// Toward zero, to the integer that its place asks for.
     Truncate,
+    /// What the memory has already: the least significant byte first.
+    LittleEndian,
+    /// What has to hold: else the scan ends with a fault.
+    Assert,
     /// The scan's time since the start.
     Clock(Elementary),
     /// A date or a time of day from its parts, or a part of one.
@@ -100,6 +104,19 @@ const OTHERS: &[(Option<Dialect>, Signature, Meaning)] = &[
         Meaning::Date(DateFunction::Point),
     ),
     (None, signature!("DAY_OF_WEEK" (IN: LDATE) -> ANY_INT), Meaning::Date(DateFunction::Weekday)),
+    // Edition 3, table 37, by its names and by those that systems have instead.
+    (None, signature!("TO_BIG_ENDIAN" (IN: T) -> T [ANY_ELEMENTARY]), Meaning::Operation(Op::SwapBytes)),
+    (None, signature!("FROM_BIG_ENDIAN" (IN: T) -> T [ANY_ELEMENTARY]), Meaning::Operation(Op::SwapBytes)),
+    (None, signature!("BIG_ENDIAN_TO" (IN: T) -> T [ANY_ELEMENTARY]), Meaning::Operation(Op::SwapBytes)),
+    (None, signature!("TO_LITTLE_ENDIAN" (IN: T) -> T [ANY_ELEMENTARY]), Meaning::LittleEndian),
+    (None, signature!("FROM_LITTLE_ENDIAN" (IN: T) -> T [ANY_ELEMENTARY]), Meaning::LittleEndian),
+    (None, signature!("LITTLE_ENDIAN_TO" (IN: T) -> T [ANY_ELEMENTARY]), Meaning::LittleEndian),
+    // Edition 4.
+    (None, signature!("ASSERT" (IN: BOOL) -> BOOL), Meaning::Assert),
+    // TwinCAT's Tc2_Math.
+    (CODESYS, signature!("CEIL" (LR_IN: T) -> T [ANY_REAL]), Meaning::Operation(Op::Ceil)),
+    (CODESYS, signature!("FLOOR" (LR_IN: T) -> T [ANY_REAL]), Meaning::Operation(Op::Floor)),
+    (CODESYS, signature!("LTRUNC" (LR_IN: T) -> T [ANY_REAL]), Meaning::Operation(Op::Whole)),
     (CODESYS, signature!("TIME" () -> TIME), Meaning::Clock(Elementary::Time)),
     (CODESYS, signature!("LTIME" () -> LTIME), Meaning::Clock(Elementary::Ltime)),
     // CODESYS's library names the parameters of the functions on strings in its own way.
@@ -173,6 +190,11 @@ static FUNCTIONS: LazyLock<FxHashMap<Key<'static>, Vec<Function>>> = LazyLock::n
     functions
 });
 
+/// The standard functions that a dialect has, as their signatures.
+pub fn standard_functions(dialect: Dialect) -> impl Iterator<Item = &'static Signature> {
+    FUNCTIONS.values().flatten().filter(move |it| it.0.is_none_or(|it| it == dialect)).map(|it| it.1)
+}
+
 /// The standard functions of a name.
 pub(crate) fn named(name: &str) -> &[Function] {
     FUNCTIONS.get(&Key(name)).map_or(&[], Vec::as_slice)
@@ -188,9 +210,14 @@ pub(crate) fn exists_in(name: &str, dialect: Dialect) -> bool {
     named(name).iter().any(|it| it.0.is_none_or(|it| it == dialect)) || conversion(name).is_some()
 }
 
-/// The names of the standard functions, for suggestions.
+/// Whether a call of the function does something, besides its result.
+pub(crate) fn is_statement(name: &str) -> bool {
+    named(name).iter().any(|it| matches!(it.2, Meaning::Assert))
+}
+
+/// The names of the standard functions that give a value, for suggestions.
 pub(crate) fn names() -> impl Iterator<Item = &'static str> {
-    FUNCTIONS.keys().map(|it| it.0)
+    FUNCTIONS.keys().map(|it| it.0).filter(|it| !is_statement(it))
 }
 
 /// What an operation's function means: for those with an operator, the operator.
@@ -221,7 +248,20 @@ fn meaning(op: Op) -> Meaning {
 pub(crate) struct Conversion {
     pub from: Option<Converted>,
     pub to: Converted,
-    pub truncates: bool,
+    pub how: How,
+}
+
+/// How a conversion makes its result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum How {
+    /// The value, rounded.
+    Value,
+    /// A real without its fraction.
+    Truncates,
+    /// The number of decimal digits in four bits each.
+    FromBcd,
+    /// The digits of a number.
+    ToBcd,
 }
 
 /// What is converted, or made.
@@ -256,20 +296,45 @@ pub(crate) fn conversion(name: &str) -> Option<Conversion> {
         return None;
     }
     let name = name.to_ascii_uppercase();
-    if let Some(to) = name.strip_prefix("TO_") {
-        return Some(Conversion { from: None, to: Converted::named(to)?, truncates: false });
-    }
     if let Some(to) = name.strip_prefix("TRUNC_") {
-        let to = Converted::named(to).filter(|it| it.is(Elementary::is_integer))?;
-        return Some(Conversion { from: None, to, truncates: true });
+        return made(How::Truncates, "", to);
     }
-    let (truncates, (from, to)) = match name.split_once("_TRUNC_") {
-        Some(parts) => (true, parts),
-        None => (false, name.split_once("_TO_")?),
+    if let Some((from, to)) = name.split_once("_TRUNC_") {
+        return made(How::Truncates, from, to);
+    }
+    let (from, to) = name.split_once("_TO_").or_else(|| Some(("", name.strip_prefix("TO_")?)))?;
+    match (from.strip_suffix("BCD"), to.strip_prefix("BCD_")) {
+        (Some(from), None) => made(How::FromBcd, from.strip_suffix('_').unwrap_or(from), to),
+        (None, Some(to)) => made(How::ToBcd, from, to),
+        (None, None) => made(How::Value, from, to),
+        (Some(_), Some(_)) => None,
+    }
+}
+
+/// The conversion between what these words name; the first says nothing where the operand does. A name with types that
+/// the standard does not convert so is none.
+fn made(how: How, from: &str, to: &str) -> Option<Conversion> {
+    let (takes, gives): (Set, Set) = match how {
+        How::Value => (|_| true, |_| true),
+        How::Truncates => (Elementary::is_real, Elementary::is_integer),
+        How::FromBcd => (is_bit_string, is_unsigned),
+        How::ToBcd => (is_unsigned, is_bit_string),
     };
-    let (from, to) = (Converted::named(from)?, Converted::named(to)?);
-    if truncates && !(from.is(Elementary::is_real) && to.is(Elementary::is_integer)) {
-        return None;
-    }
-    Some(Conversion { from: Some(from), to, truncates })
+    let named = |word: &str, class| Converted::named(word).filter(|it| how == How::Value || it.is(class));
+    let from = match from {
+        "" => None,
+        from => Some(named(from, takes)?),
+    };
+    Some(Conversion { from, to: named(to, gives)?, how })
+}
+
+/// Some of the elementary types.
+type Set = fn(Elementary) -> bool;
+
+fn is_bit_string(ty: Elementary) -> bool {
+    ty.is_bits() && ty != Elementary::Bool
+}
+
+fn is_unsigned(ty: Elementary) -> bool {
+    ty.is(Class::Unsigned)
 }

@@ -1,5 +1,6 @@
 use super::convert::ConvertTo;
 use super::{Bits, Integer};
+use crate::{Scalar, Value};
 
 /// `a AND b`, bit by bit.
 #[inline]
@@ -112,4 +113,56 @@ where
 {
     let position = shr(!T::ZERO, i64::from(T::BITS / 2));
     (value & !position) | (value.plus(super::convert(distance)) & position)
+}
+
+/// The bytes of `value` in the other order; what has one byte stays.
+///
+/// ```
+/// use staunch_runtime::ops::swap_bytes;
+/// assert_eq!(swap_bytes(0x1234_u16), 0x3412);
+/// assert_eq!(swap_bytes(true), true);
+/// ```
+#[inline]
+pub fn swap_bytes<T: Scalar>(value: T) -> T {
+    let own = value.into_value();
+    let swapped = match own {
+        Value::Bool(_) | Value::I8(_) | Value::U8(_) => own,
+        Value::I16(it) => Value::I16(it.swap_bytes()),
+        Value::I32(it) => Value::I32(it.swap_bytes()),
+        Value::I64(it) => Value::I64(it.swap_bytes()),
+        Value::U16(it) => Value::U16(it.swap_bytes()),
+        Value::U32(it) => Value::U32(it.swap_bytes()),
+        Value::U64(it) => Value::U64(it.swap_bytes()),
+        Value::F32(it) => Value::F32(f32::from_bits(it.to_bits().swap_bytes())),
+        Value::F64(it) => Value::F64(f64::from_bits(it.to_bits().swap_bytes())),
+    };
+    T::from_value(swapped).unwrap_or(value)
+}
+
+/// The number of 16 decimal digits, each in four bits; four bits that are no digit count as what they are.
+///
+/// ```
+/// use staunch_runtime::ops::from_bcd;
+/// assert_eq!(from_bcd(0x0369), 369);
+/// ```
+#[inline]
+pub fn from_bcd(digits: i64) -> i64 {
+    (0..16).rev().fold(0, |number, at| number * 10 + ((digits >> (4 * at)) & 0xF))
+}
+
+/// The last 16 decimal digits of an unsigned number, each in four bits.
+///
+/// ```
+/// use staunch_runtime::ops::to_bcd;
+/// assert_eq!(to_bcd(369), 0x0369);
+/// ```
+#[inline]
+pub fn to_bcd(number: i64) -> i64 {
+    let mut rest = number as u64;
+    let mut digits = 0;
+    for at in 0..16 {
+        digits |= (rest % 10) << (4 * at);
+        rest /= 10;
+    }
+    digits as i64
 }

@@ -47,6 +47,9 @@ pub trait Real: Number {
     fn arc_cosine(self) -> Self;
     fn arc_tangent(self) -> Self;
     fn arc_tangent_over(self, x: Self) -> Self;
+    fn rounded_up(self) -> Self;
+    fn rounded_down(self) -> Self;
+    fn rounded_to_zero(self) -> Self;
 }
 
 /// A repr with bitwise operations; logical ones for BOOL.
@@ -123,7 +126,8 @@ integers! {
 
 macro_rules! reals {
     ($($rust:ident: $abs:ident $pow:ident $sqrt:ident $log:ident $log10:ident $exp:ident
-        $sin:ident $cos:ident $tan:ident $asin:ident $acos:ident $atan:ident $atan2:ident;)*) => { $(
+        $sin:ident $cos:ident $tan:ident $asin:ident $acos:ident $atan:ident $atan2:ident
+        $ceil:ident $floor:ident $trunc:ident;)*) => { $(
         impl Number for $rust {
             #[inline]
             fn plus(self, other: Self) -> Self { self + other }
@@ -164,11 +168,17 @@ macro_rules! reals {
             fn arc_tangent(self) -> Self { libm::$atan(self) }
             #[inline]
             fn arc_tangent_over(self, x: Self) -> Self { libm::$atan2(self, x) }
+            #[inline]
+            fn rounded_up(self) -> Self { libm::$ceil(self) }
+            #[inline]
+            fn rounded_down(self) -> Self { libm::$floor(self) }
+            #[inline]
+            fn rounded_to_zero(self) -> Self { libm::$trunc(self) }
         }
     )* };
 }
 
 reals! {
-    f32: fabsf powf sqrtf logf log10f expf sinf cosf tanf asinf acosf atanf atan2f;
-    f64: fabs pow sqrt log log10 exp sin cos tan asin acos atan atan2;
+    f32: fabsf powf sqrtf logf log10f expf sinf cosf tanf asinf acosf atanf atan2f ceilf floorf truncf;
+    f64: fabs pow sqrt log log10 exp sin cos tan asin acos atan atan2 ceil floor trunc;
 }

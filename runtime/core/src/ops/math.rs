@@ -75,3 +75,21 @@ pub fn atan<T: Real>(value: T) -> T {
 pub fn atan2<T: Real>(y: T, x: T) -> T {
     y.arc_tangent_over(x)
 }
+
+/// The least whole number that is not below the value; infinities and NaN stay.
+#[inline]
+pub fn ceil<T: Real>(value: T) -> T {
+    value.rounded_up()
+}
+
+/// The greatest whole number that is not above the value; infinities and NaN stay.
+#[inline]
+pub fn floor<T: Real>(value: T) -> T {
+    value.rounded_down()
+}
+
+/// The value without its fraction; infinities and NaN stay.
+#[inline]
+pub fn whole<T: Real>(value: T) -> T {
+    value.rounded_to_zero()
+}
