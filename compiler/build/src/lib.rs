@@ -69,7 +69,8 @@ impl Build {
         self
     }
 
-    /// Adds every `.st` and `.iecst` file below a folder, and TwinCAT's `.TcPOU`, `.TcGVL`, `.TcDUT` and `.TcIO`.
+    /// Adds every `.st` and `.iecst` file below a folder, and TwinCAT's `.TcPOU`, `.TcGVL`, `.TcDUT` and `.TcIO`,
+    /// and Rockwell's `.L5X`.
     #[must_use]
     pub fn folder(self, path: impl Into<PathBuf>) -> Self {
         self.file(path)

@@ -139,8 +139,13 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
-    /// Assigning an input from inside, or a FOR counter in its loop, is a lint, not an error.
+    /// Assigning an input from inside is a lint, not an error.
     pub const fn assigns_inputs(self) -> bool {
+        matches!(self, Self::Codesys | Self::Logix)
+    }
+
+    /// Assigning a FOR counter in its loop is a lint, not an error.
+    pub const fn assigns_counters(self) -> bool {
         matches!(self, Self::Codesys)
     }
 }

@@ -50,9 +50,6 @@ fn xml(text: &str) -> Option<Kind> {
     let rest = text[start..].strip_prefix('<')?;
     rest.starts_with(|it: char| it == '?' || it == '!' || it.is_ascii_alphabetic()).then_some(())?;
     let (name, help) = match rest {
-        _ if rest.contains("RSLogix5000Content") => {
-            ("an export of Studio 5000 (L5X)", "copy the lines of its Structured Text routines, and declare their tags")
-        }
         _ if rest.contains("SW.Blocks.") => {
             ("XML of TIA Portal", "generate a source (.scl) from the block, and move that")
         }
@@ -67,7 +64,7 @@ fn logix(text: &str) -> Option<Kind> {
     text.contains("END_CONTROLLER").then_some(Kind {
         name: "neutral text of Logix (L5K)",
         at,
-        help: "copy the lines of its Structured Text routines, without the `'` before them, and declare their tags",
+        help: "export it as L5X, and check that",
     })
 }
 

@@ -3,6 +3,7 @@
 
 mod assembly;
 mod exp;
+mod l5x;
 mod listing;
 mod plcopen;
 mod twincat;
@@ -23,6 +24,7 @@ pub fn read(text: &str) -> Option<Assembly> {
     let root = reader.root().ok()??;
     match root.name {
         "TcPlcObject" => Some(twincat::read(text, reader)),
+        "RSLogix5000Content" => Some(l5x::read(text, reader)),
         "project" if text[root.place].contains("www.plcopen.org") => Some(plcopen::read(text, reader)),
         _ => None,
     }

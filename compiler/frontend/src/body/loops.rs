@@ -81,7 +81,7 @@ impl<'s> Checker<'_, 's> {
             return None;
         };
         // As far as it is known before the body: a dialect may let that write the counter.
-        head.is_private = self.frame().is_private(&head.counter) && !self.decl.dialect(counter.span).assigns_inputs();
+        head.is_private = self.frame().is_private(&head.counter) && !self.decl.dialect(counter.span).assigns_counters();
         self.counters.push(head.clone());
         head.body = self.loop_body(body);
         self.counters.pop();

@@ -725,7 +725,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn report_counter(&mut self, span: Span) -> bool {
-        let lint = self.decl.dialect(span).assigns_inputs();
+        let lint = self.decl.dialect(span).assigns_counters();
         let code = if lint { Code::W0505 } else { Code::E0503 };
         self.report(
             Diagnostic::new(code, span, "the counter of a FOR loop is assigned inside the loop")

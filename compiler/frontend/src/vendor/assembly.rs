@@ -31,6 +31,8 @@ pub enum Trouble {
     OtherLanguage,
     /// A second body.
     SecondBody,
+    /// What has no words in Structured Text here.
+    NotSupported,
 }
 
 /// The text, and what it is made of.

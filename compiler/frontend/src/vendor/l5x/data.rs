@@ -1,0 +1,266 @@
+//! Decorated data: the values of tags, with the types that they have.
+
+use super::super::assembly::Chunk;
+use super::super::xml::{Broken, Element, Part, Reader};
+use super::names::plain;
+use core::ops::Range;
+
+/// What a tag, a member or an element has as its value.
+#[derive(Clone, Debug)]
+pub struct Value<'t> {
+    pub ty: &'t str,
+    /// The lengths of an array's dimensions.
+    pub dimensions: &'t str,
+    pub place: Range<usize>,
+    pub what: What<'t>,
+}
+
+#[derive(Clone, Debug)]
+pub enum What<'t> {
+    /// A number in Structured Text, and whether it is 0.
+    Number(String, bool),
+    Text(Chunk, bool),
+    List(Vec<Value<'t>>),
+    Members(Vec<(Chunk, &'t str, Value<'t>)>),
+}
+
+/// The value in an element that was opened, to the element's end.
+pub fn within<'t>(file: &'t str, reader: &mut Reader<'t>) -> Result<Option<Value<'t>>, Broken> {
+    let mut value = None;
+    while let Some(part) = reader.part()? {
+        match part {
+            Part::Open(element) => value = Some(read(file, reader, &element, "")?),
+            Part::Text(_) => {}
+            Part::Close => break,
+        }
+    }
+    Ok(value)
+}
+
+/// A value that was opened, to its end; `ty` is that of an array's elements.
+fn read<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, ty: &'t str) -> Result<Value<'t>, Broken> {
+    let ty = element.attribute(file, "DataType").unwrap_or(ty);
+    let place = element.place.clone();
+    let mut value = Value { ty, dimensions: "", place: place.clone(), what: What::Number("0".to_owned(), true) };
+    match element.name {
+        "Array" | "ArrayMember" => {
+            value.dimensions = element.attribute(file, "Dimensions").unwrap_or_default();
+            value.what = What::List(inner(file, reader, ty)?.into_iter().map(|it| it.2).collect());
+        }
+        "Structure" | "StructureMember" => {
+            let members = inner(file, reader, "")?;
+            // A string is its length and its characters, which are one text.
+            let text =
+                members.iter().find(|it| it.1.eq_ignore_ascii_case("DATA") && matches!(it.2.what, What::Text(..)));
+            value.what = match text {
+                Some((_, _, text)) => text.what.clone(),
+                None => What::Members(members),
+            };
+        }
+        _ => {
+            let written = element.attribute(file, "Value");
+            let (held, text) = content(file, reader, ty)?;
+            value.what = match (written, held, text) {
+                (Some(written), ..) => number(ty, written),
+                (None, Some(held), _) => return Ok(Value { place, ..held }),
+                (None, None, Some(text)) => characters(file, ty, text),
+                (None, None, None) => value.what,
+            };
+        }
+    }
+    Ok(value)
+}
+
+/// The members or elements of an element that was opened, to its end.
+type Inner<'t> = Vec<(Chunk, &'t str, Value<'t>)>;
+
+fn inner<'t>(file: &'t str, reader: &mut Reader<'t>, ty: &'t str) -> Result<Inner<'t>, Broken> {
+    let mut all = Vec::new();
+    while let Some(part) = reader.part()? {
+        match part {
+            Part::Open(element) => {
+                let name = element.attribute(file, "Name").unwrap_or_default();
+                let chunk = element.attribute_text(file, "Name").unwrap_or_else(|| Chunk::words("", &element.place));
+                all.push((chunk, name, read(file, reader, &element, ty)?));
+            }
+            Part::Text(_) => {}
+            Part::Close => break,
+        }
+    }
+    Ok(all)
+}
+
+/// The structure or the text in an element that was opened, to its end.
+fn content<'t>(
+    file: &'t str,
+    reader: &mut Reader<'t>,
+    ty: &'t str,
+) -> Result<(Option<Value<'t>>, Option<Chunk>), Broken> {
+    let (mut value, mut text) = (None, None);
+    while let Some(part) = reader.part()? {
+        match part {
+            Part::Open(element) => value = Some(read(file, reader, &element, ty)?),
+            Part::Text(chunk) if !file[chunk.place.clone()].trim().is_empty() => text = Some(chunk),
+            Part::Text(_) => {}
+            Part::Close => break,
+        }
+    }
+    Ok((value, text))
+}
+
+/// What is in quotes: the text of a string, else one character after the other of a number.
+fn characters<'t>(file: &str, ty: &str, chunk: Chunk) -> What<'t> {
+    let text = file[chunk.place.clone()].trim();
+    if bits(ty).is_some() { number(ty, text) } else { What::Text(chunk, text == "''") }
+}
+
+/// The text of a string: `<Data Format="String"><![CDATA['…']]></Data>`.
+pub fn text<'t>(file: &'t str, reader: &mut Reader<'t>, place: &Range<usize>) -> Result<Option<Value<'t>>, Broken> {
+    let (_, text) = content(file, reader, "STRING")?;
+    let what = |chunk| characters(file, "STRING", chunk);
+    Ok(text.map(|it| Value { ty: "STRING", dimensions: "", place: place.clone(), what: what(it) }))
+}
+
+/// A number of the older form, which is positions without names: one alone is a value.
+pub fn plain_number<'t>(
+    file: &'t str,
+    reader: &mut Reader<'t>,
+    ty: &'t str,
+    place: &Range<usize>,
+) -> Result<Option<Value<'t>>, Broken> {
+    let (_, text) = content(file, reader, ty)?;
+    let text = text.map(|it| file[it.place].trim()).filter(|it| !it.starts_with(['[', '\'']));
+    Ok(text.map(|it| Value { ty, dimensions: "", place: place.clone(), what: number(ty, it) }))
+}
+
+/// The bits of an integer's type, and whether it has a sign.
+fn bits(ty: &str) -> Option<(u32, bool)> {
+    Some(match ty {
+        "SINT" => (8, true),
+        "INT" => (16, true),
+        "DINT" => (32, true),
+        "LINT" => (64, true),
+        "USINT" => (8, false),
+        "UINT" => (16, false),
+        "UDINT" => (32, false),
+        "ULINT" => (64, false),
+        _ => return None,
+    })
+}
+
+/// A number as Structured Text has it. What is in no form that is known stays as it is, to be refused.
+fn number<'t>(ty: &str, written: &str) -> What<'t> {
+    let written = written.trim();
+    if matches!(ty, "BOOL" | "BIT") {
+        let is_set = !matches!(written, "0" | "false" | "2#0");
+        return What::Number(if is_set { "TRUE" } else { "FALSE" }.to_owned(), !is_set);
+    }
+    let Some((bits, is_signed)) = bits(ty) else { return real(written) };
+    let Some(value) = integer(written) else { return What::Number(written.to_owned(), false) };
+    // Digits of other bases are the bits.
+    let limit = 1_i128 << bits;
+    let value = if is_signed && value >= limit / 2 && value < limit { value - limit } else { value };
+    What::Number(value.to_string(), value == 0)
+}
+
+fn real<'t>(written: &str) -> What<'t> {
+    let value: Option<f64> = written.parse().ok();
+    let text = if written.contains(['.', 'e', 'E', '#']) { written.to_owned() } else { format!("{written}.0") };
+    // The sign of a zero is a value, too.
+    What::Number(text, value.is_some_and(|it| it == 0.0 && it.is_sign_positive()))
+}
+
+fn integer(written: &str) -> Option<i128> {
+    if let Some(inner) = written.strip_prefix('\'') {
+        return of_characters(inner.strip_suffix('\'')?);
+    }
+    let (base, digits) = match written.split_once('#') {
+        Some((base, digits)) => (base.parse().ok().filter(|it| (2..=16).contains(it))?, digits),
+        None => (10, written),
+    };
+    i128::from_str_radix(&digits.replace('_', ""), base).ok()
+}
+
+/// `$00$41`, `A$r`: the first is the highest byte.
+fn of_characters(text: &str) -> Option<i128> {
+    let mut value: i128 = 0;
+    let mut rest = text.chars();
+    while let Some(it) = rest.next() {
+        let byte = if it == '$' { escaped(&mut rest)? } else { u8::try_from(it).ok()? };
+        value = value.checked_mul(256)? + i128::from(byte);
+    }
+    Some(value)
+}
+
+fn escaped(rest: &mut core::str::Chars<'_>) -> Option<u8> {
+    Some(match rest.next()? {
+        'r' | 'R' => 13,
+        'n' | 'N' | 'l' | 'L' => 10,
+        't' | 'T' => 9,
+        'p' | 'P' => 12,
+        it @ ('$' | '\'') => u8::try_from(it).ok()?,
+        high => u8::try_from(high.to_digit(16)? * 16 + rest.next()?.to_digit(16)?).ok()?,
+    })
+}
+
+impl Value<'_> {
+    pub fn is_zero(&self) -> bool {
+        match &self.what {
+            What::Number(_, is_zero) | What::Text(_, is_zero) => *is_zero,
+            What::List(elements) => elements.iter().all(Self::is_zero),
+            What::Members(members) => members.iter().all(|it| it.2.is_zero()),
+        }
+    }
+
+    /// Writes it as an initial value; of a structure what is 0 may be left out, unless `all` is wanted, and what is
+    /// `hidden`, a member of a type, always is.
+    pub fn write(&self, all: bool, hidden: &dyn Fn(&str, &str) -> bool, out: &mut Vec<Chunk>) {
+        let place = &self.place;
+        match &self.what {
+            What::Number(text, _) => out.push(Chunk::words(text.clone(), place)),
+            What::Text(chunk, _) => out.push(chunk.clone()),
+            What::List(elements) => {
+                for (at, element) in elements.iter().enumerate() {
+                    out.push(Chunk::words(if at == 0 { "[" } else { ", " }, place));
+                    element.write(all, hidden, out);
+                }
+                out.push(Chunk::words("]", place));
+            }
+            What::Members(members) => {
+                let mut before = "(";
+                for (at, (name, text, member)) in members.iter().enumerate() {
+                    let is_said = all || !member.is_zero() || (at == 0 && self.is_zero());
+                    if is_said && !hidden(self.ty, text) {
+                        out.extend([Chunk::words(before, place), name.clone(), Chunk::words(" := ", place)]);
+                        member.write(all, hidden, out);
+                        before = ", ";
+                    }
+                }
+                out.push(Chunk::words(")", place));
+            }
+        }
+    }
+}
+
+/// A type's name in Structured Text. A string of Logix has 82 characters.
+pub fn ty_text(ty: &str) -> Option<String> {
+    match ty {
+        "BIT" => Some("BOOL".to_owned()),
+        "STRING" => Some("STRING[82]".to_owned()),
+        _ => ty.contains(':').then(|| plain(ty)),
+    }
+}
+
+/// What an element is called, in Structured Text.
+pub fn name_of<'t>(file: &'t str, element: &Element<'t>) -> Option<Chunk> {
+    let place = element.attribute_place(file, "Name")?;
+    let name = &file[place.clone()];
+    Some(if name.contains(':') { Chunk::words(plain(name), &place) } else { Chunk::verbatim(place) })
+}
+
+/// `ARRAY[0..9, 0..4] OF ` for `10 5`; nothing where all are 0.
+pub fn array_of(dimensions: &str) -> String {
+    let lengths: Vec<u32> = dimensions.split([' ', ',']).filter_map(|it| it.parse().ok()).collect();
+    let bounds: Vec<_> = lengths.iter().filter_map(|it| it.checked_sub(1)).map(|it| format!("0..{it}")).collect();
+    if bounds.is_empty() { String::new() } else { format!("ARRAY[{}] OF ", bounds.join(", ")) }
+}

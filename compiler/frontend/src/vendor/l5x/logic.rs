@@ -1,0 +1,246 @@
+//! Statements of a routine: Structured Text but for its operands. An alias is written as what it names, a module's tag as
+//! its variable, `JSR(Fill)` as `Fill()`, and a call of an Add-On Instruction, `Valve(valve_1, open, closed)`, as one of
+//! its tag: `valve_1(EnableIn := TRUE, Open := open, Closed => closed)`.
+
+use super::super::assembly::{Assembly, Chunk, Says, Trouble};
+use super::names::{Names, Operand, Scope, key, plain};
+use core::ops::Range;
+use rustc_hash::FxHashMap;
+
+/// What the operands of a program or an instruction are.
+pub struct Logic<'a> {
+    pub file: &'a str,
+    pub names: &'a Names,
+    pub scope: &'a Scope,
+    /// Routines, and the actions that they are.
+    pub actions: FxHashMap<String, String>,
+}
+
+/// Writes the chunks of a routine.
+pub fn write(logic: &Logic<'_>, chunks: &[Chunk], out: &mut Assembly) {
+    let mut writer = Writer { logic, out, comment: None, depth: 0, calls: Vec::new(), after_dot: false };
+    for chunk in chunks {
+        match chunk.says {
+            Says::Itself => writer.line(chunk.place.clone()),
+            Says::Symbol(_) | Says::Words(_) => writer.out.copy(logic.file, core::slice::from_ref(chunk)),
+        }
+    }
+}
+
+struct Writer<'a, 'o> {
+    logic: &'a Logic<'a>,
+    out: &'o mut Assembly,
+    /// How the comment ends that is open.
+    comment: Option<&'static str>,
+    /// How many parentheses and brackets are open.
+    depth: usize,
+    calls: Vec<Call<'a>>,
+    after_dot: bool,
+}
+
+/// A call of an Add-On Instruction that is open.
+struct Call<'a> {
+    operands: core::slice::Iter<'a, Operand>,
+    depth: usize,
+    has_operands: bool,
+}
+
+/// A piece of a line, and what is written for it.
+enum Piece {
+    Itself,
+    Words(String),
+    /// Why it is refused; it is left out.
+    Refused(String),
+    /// Why it is refused; it is kept, so that what is around it can be read.
+    Kept(String),
+}
+
+impl<'a> Writer<'a, '_> {
+    fn line(&mut self, place: Range<usize>) {
+        let text = &self.logic.file[place.clone()];
+        // What is not yet copied.
+        let mut from = 0;
+        let mut at = 0;
+        while at < text.len() {
+            let (length, piece) = self.token(text, at);
+            let token = at..at + length.max(1);
+            at = token.end;
+            let words = match &piece {
+                Piece::Itself => continue,
+                Piece::Words(words) => Ok(words.clone()),
+                Piece::Refused(message) | Piece::Kept(message) => Err(message.clone()),
+            };
+            let keeps = matches!(piece, Piece::Kept(_));
+            self.copy(&place, from..if keeps { token.end } else { token.start });
+            let token = place.start + token.start..place.start + token.end;
+            match words {
+                Ok(words) => self.out.write(&words, &token),
+                Err(message) => self.out.problem(Trouble::NotSupported, message, &token),
+            }
+            from = at;
+        }
+        self.copy(&place, from..text.len());
+    }
+
+    fn copy(&mut self, place: &Range<usize>, part: Range<usize>) {
+        if !part.is_empty() {
+            let part = place.start + part.start..place.start + part.end;
+            self.out.copy(self.logic.file, &[Chunk::verbatim(part)]);
+        }
+    }
+
+    /// The length of what begins at a byte of a line, and what is written for it.
+    fn token(&mut self, text: &str, at: usize) -> (usize, Piece) {
+        let rest = &text[at..];
+        if let Some(close) = self.comment {
+            let end = rest.find(close).map(|it| it + close.len());
+            self.comment = if end.is_some() { None } else { Some(close) };
+            return (end.unwrap_or(rest.len()), Piece::Itself);
+        }
+        let after_dot = core::mem::take(&mut self.after_dot);
+        let first = rest.bytes().next().unwrap_or_default();
+        match first {
+            b'/' if rest.starts_with("//") => (rest.find('\n').unwrap_or(rest.len()), Piece::Itself),
+            b'#' if rest.starts_with("#region") || rest.starts_with("#endregion") => {
+                (rest.find('\n').unwrap_or(rest.len()), Piece::Words(String::new()))
+            }
+            b'(' | b'/' if rest.starts_with("(*") || rest.starts_with("/*") => {
+                self.comment = Some(if first == b'(' { "*)" } else { "*/" });
+                (2, Piece::Itself)
+            }
+            b'\'' => (string(rest), Piece::Itself),
+            b'(' | b'[' => {
+                self.depth += 1;
+                (1, Piece::Itself)
+            }
+            b')' | b']' => (1, self.close()),
+            b',' => (1, self.comma()),
+            b'.' => {
+                self.after_dot = true;
+                (1, Piece::Itself)
+            }
+            b'0'..=b'9' => (word(rest, "_#"), Piece::Itself),
+            b'A'..=b'Z' | b'a'..=b'z' | b'_' if after_dot => (word(rest, "_"), Piece::Itself),
+            b'A'..=b'Z' | b'a'..=b'z' | b'_' => self.name(rest),
+            b' ' | b'\t' => {
+                self.after_dot = after_dot;
+                (1, Piece::Itself)
+            }
+            _ => (rest.chars().next().map_or(1, char::len_utf8), Piece::Itself),
+        }
+    }
+
+    fn name(&mut self, rest: &str) -> (usize, Piece) {
+        let name = &rest[..word(rest, "_")];
+        let after = rest[name.len()..].trim_start();
+        let scope = self.logic.scope;
+        if let Some((length, variable)) = self.module(rest) {
+            return (length, Piece::Words(variable));
+        }
+        if after.starts_with('(') && !scope.tags.contains(&key(name)) {
+            let open = rest.len() - after.len() + 1;
+            if let Some(operands) = self.logic.names.instructions.get(&key(name)) {
+                self.depth += 1;
+                self.calls.push(Call { operands: operands.iter(), depth: self.depth, has_operands: false });
+                return (open, Piece::Words(String::new()));
+            }
+            if let Some(close) = closing(&rest[open..]) {
+                let inside = &rest[open..open + close];
+                let piece = match name.to_ascii_uppercase().as_str() {
+                    "JSR" => self.subroutine(inside),
+                    "RET" if inside.trim().is_empty() => Piece::Words("RETURN".to_owned()),
+                    "SBR" | "NOP" if inside.trim().is_empty() => Piece::Words(String::new()),
+                    "RET" | "SBR" => Piece::Refused("a subroutine's parameters are not supported".to_owned()),
+                    _ => return (name.len(), Piece::Itself),
+                };
+                return (open + close + 1, piece);
+            }
+        }
+        let piece = self.logic.names.meaning(name, scope).map_or(Piece::Itself, Piece::Words);
+        (name.len(), piece)
+    }
+
+    /// `Local:1:I`. One that the file does not describe is an unknown name; `Filling:` before a statement is a label.
+    fn module(&self, rest: &str) -> Option<(usize, String)> {
+        let name = rest[..word(rest, "_:")].trim_end_matches(':');
+        if !name.contains(':') {
+            return None;
+        }
+        let known = self.logic.names.modules.get(&key(name)).cloned();
+        let last = name.rsplit(':').next().unwrap_or_default();
+        let is_connection = last.starts_with(['I', 'O', 'C', 'S']) && last[1..].bytes().all(|it| it.is_ascii_digit());
+        let is_one = is_connection && name.matches(':').count() == 2;
+        let variable = known.or_else(|| is_one.then(|| plain(name)))?;
+        Some((name.len(), variable))
+    }
+
+    /// `Fill` or `Fill, 0`: what is in the parentheses of a JSR.
+    fn subroutine(&self, inside: &str) -> Piece {
+        let mut operands = inside.split(',').map(str::trim);
+        let name = operands.next().unwrap_or_default();
+        if !operands.all(|it| it == "0") {
+            return Piece::Refused(format!("`{name}` is called with parameters, which subroutines cannot have here"));
+        }
+        let action = self.logic.actions.get(&key(name)).map_or(name, String::as_str);
+        Piece::Words(format!("{action}()"))
+    }
+
+    fn close(&mut self) -> Piece {
+        let call = self.calls.pop_if(|it| it.depth == self.depth);
+        self.depth = self.depth.saturating_sub(1);
+        match call {
+            Some(mut call) => match call.operands.next() {
+                Some(it) => Piece::Kept(format!("the operand `{}` is left out", it.name)),
+                None if call.has_operands => Piece::Itself,
+                None => Piece::Words("(EnableIn := TRUE)".to_owned()),
+            },
+            None => Piece::Itself,
+        }
+    }
+
+    fn comma(&mut self) -> Piece {
+        let depth = self.depth;
+        let Some(call) = self.calls.last_mut().filter(|it| it.depth == depth) else { return Piece::Itself };
+        let before = if core::mem::replace(&mut call.has_operands, true) { ", " } else { "(EnableIn := TRUE, " };
+        Piece::Words(match call.operands.next() {
+            Some(it) => format!("{before}{} {} ", it.name, if it.is_output { "=>" } else { ":=" }),
+            // No parameter has such a name: one operand too many is reported.
+            None => format!("{before}One_more := "),
+        })
+    }
+}
+
+/// The length of a word that a line begins with.
+fn word(rest: &str, more: &str) -> usize {
+    rest.find(|it: char| !it.is_ascii_alphanumeric() && !more.contains(it)).unwrap_or(rest.len())
+}
+
+/// The length of the string that a line begins with; one that does not end is left to be reported.
+fn string(rest: &str) -> usize {
+    let mut is_escaped = false;
+    for (at, it) in rest.char_indices().skip(1) {
+        match it {
+            _ if is_escaped => is_escaped = false,
+            '$' => is_escaped = true,
+            '\'' => return at + 1,
+            _ => {}
+        }
+    }
+    rest.len()
+}
+
+/// Where the parenthesis ends that is open before a text.
+fn closing(text: &str) -> Option<usize> {
+    let mut depth = 1_usize;
+    for (at, it) in text.bytes().enumerate() {
+        match it {
+            b'(' => depth += 1,
+            b')' => depth -= 1,
+            _ => {}
+        }
+        if depth == 0 {
+            return Some(at);
+        }
+    }
+    None
+}

@@ -1,0 +1,135 @@
+//! Types and tags: the members of structures, the variables of controllers, programs and instructions.
+
+use super::super::assembly::Chunk;
+use super::super::xml::{Broken, Element, Part, Reader};
+use super::data::{self, Value, array_of, name_of, ty_text};
+use super::names::{Names, Scope, key};
+
+type Chunks = Result<Vec<Chunk>, Broken>;
+
+/// `TYPE name : STRUCT … END_STRUCT; END_TYPE`. A bit is a BOOL: the hidden member that holds it can be reached by
+/// no name. A structure of the family of strings is a string.
+pub fn data_type<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, names: &mut Names) -> Chunks {
+    let place = &element.place;
+    // Modules describe theirs again.
+    names.module_types.insert(key(element.attribute(file, "Name").unwrap_or_default()));
+    let is_text = element.attribute(file, "Family") == Some("StringFamily");
+    let mut chunks = vec![Chunk::words("TYPE ", place)];
+    chunks.extend(name_of(file, element));
+    chunks.push(Chunk::words(if is_text { " : STRING[" } else { " :\nSTRUCT\n" }, place));
+    let mut open = 1_usize;
+    while open > 0 {
+        match reader.part()? {
+            Some(Part::Open(member)) if member.name == "Member" => {
+                let attribute = |it: &str| member.attribute(file, it).unwrap_or_default();
+                let dimension = attribute("Dimension");
+                if is_text && attribute("Name") == "DATA" {
+                    chunks.extend(member.attribute_text(file, "Dimension"));
+                } else if !is_text && attribute("Hidden") != "true" {
+                    chunks.extend(declared(file, &member, dimension));
+                    chunks.push(Chunk::words(";\n", &member.place));
+                }
+                reader.skip()?;
+            }
+            Some(Part::Open(member)) if member.name == "Members" => open += 1,
+            Some(Part::Open(_)) => reader.skip()?,
+            Some(Part::Close) => open -= 1,
+            Some(Part::Text(_)) => {}
+            None => break,
+        }
+    }
+    chunks.push(Chunk::words(if is_text { "];\nEND_TYPE\n" } else { "END_STRUCT;\nEND_TYPE\n" }, &reader.last()));
+    Ok(chunks)
+}
+
+/// `name : ARRAY[0..9] OF type`
+fn declared<'t>(file: &'t str, element: &Element<'t>, dimensions: &str) -> Vec<Chunk> {
+    let place = &element.place;
+    let mut chunks: Vec<Chunk> = name_of(file, element).into_iter().collect();
+    chunks.push(Chunk::words(format!(" : {}", array_of(dimensions)), place));
+    chunks.extend(ty(file, element));
+    chunks
+}
+
+fn ty<'t>(file: &'t str, element: &Element<'t>) -> Option<Chunk> {
+    let place = element.attribute_place(file, "DataType")?;
+    Some(match ty_text(&file[place.clone()]) {
+        Some(text) => Chunk::words(text, &place),
+        None => Chunk::verbatim(place),
+    })
+}
+
+/// The tags in an element that was opened, to its end; aliases are noted, to be written as what they name.
+pub fn tags<'t>(file: &'t str, reader: &mut Reader<'t>, head: &str, names: &Names, scope: &mut Scope) -> Chunks {
+    let mut chunks = Vec::new();
+    while let Some(part) = reader.part()? {
+        match part {
+            Part::Open(element) if matches!(element.name, "Tag" | "LocalTag") => {
+                let name = key(element.attribute(file, "Name").unwrap_or_default());
+                match element.attribute(file, "AliasFor") {
+                    Some(target) => {
+                        scope.aliases.insert(name, target.to_owned());
+                        reader.skip()?;
+                    }
+                    None => {
+                        scope.tags.insert(name);
+                        let is_constant = element.attribute(file, "Constant") == Some("true");
+                        let head = if is_constant { format!("{head} CONSTANT ") } else { format!("{head} ") };
+                        chunks.extend(tag(file, reader, &element, head, names)?);
+                    }
+                }
+            }
+            Part::Open(_) => reader.skip()?,
+            Part::Text(_) => {}
+            Part::Close => break,
+        }
+    }
+    Ok(chunks)
+}
+
+pub fn controller_tags<'t>(file: &'t str, reader: &mut Reader<'t>, names: &mut Names) -> Chunks {
+    let mut scope = core::mem::take(&mut names.controller);
+    let chunks = tags(file, reader, "VAR_GLOBAL", names, &mut scope);
+    names.controller = scope;
+    chunks
+}
+
+/// A tag or a parameter that was opened, to its end: a section of its own.
+pub fn tag<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, head: String, names: &Names) -> Chunks {
+    let place = &element.place;
+    let dimensions = element.attribute(file, "Dimensions").unwrap_or_default();
+    let mut chunks = vec![Chunk::words(head, place)];
+    chunks.extend(declared(file, element, dimensions));
+    let value = initial(file, reader, element.attribute(file, "DataType").unwrap_or_default())?;
+    // An instruction's parameters start at their defaults, unless its tag says otherwise.
+    let says_all = |it: &Value| names.instructions.contains_key(&key(it.ty));
+    let value = value.filter(|it| !it.is_zero() || says_all(it));
+    if let Some(value) = value {
+        chunks.push(Chunk::words(" := ", place));
+        let is_hidden = |ty: &str, member: &str| names.alias_parameters.contains(&(key(ty), key(member)));
+        value.write(says_all(&value), &is_hidden, &mut chunks);
+    }
+    chunks.push(Chunk::words("; END_VAR\n", place));
+    Ok(chunks)
+}
+
+/// The value in a tag that was opened, to the tag's end: decorated data before the older form.
+fn initial<'t>(file: &'t str, reader: &mut Reader<'t>, ty: &'t str) -> Result<Option<Value<'t>>, Broken> {
+    let (mut decorated, mut older) = (None, None);
+    while let Some(part) = reader.part()? {
+        match part {
+            Part::Open(element) if matches!(element.name, "Data" | "DefaultData") => {
+                match element.attribute(file, "Format") {
+                    Some("Decorated") => decorated = data::within(file, reader)?,
+                    Some("String") => decorated = data::text(file, reader, &element.place)?,
+                    Some("L5K") => older = data::plain_number(file, reader, ty, &element.place)?,
+                    _ => reader.skip()?,
+                }
+            }
+            Part::Open(_) => reader.skip()?,
+            Part::Text(_) => {}
+            Part::Close => break,
+        }
+    }
+    Ok(decorated.or(older))
+}
