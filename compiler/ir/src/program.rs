@@ -400,6 +400,12 @@ impl Program {
         format!("ARRAY[{}] OF {}", bounds.join(", "), self.type_name(ty))
     }
 
+    /// The type that a FOR counts in: an enumeration's base, a subrange's, any other as it is.
+    pub fn counted(&self, counter: Type) -> Type {
+        let Type::Enum(id) = counter else { return counter.read() };
+        Type::Elementary(self.enumeration(id).base)
+    }
+
     /// The repr of an elementary, enumeration, subrange or reference type.
     pub fn repr(&self, ty: Type) -> Option<staunch_runtime::Repr> {
         match ty {

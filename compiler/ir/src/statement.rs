@@ -81,11 +81,11 @@ pub enum StatementKind {
 /// else it faults with SubrangeViolated. A variable step of 0 faults with ZeroStep before the first turn.
 #[derive(Clone, Debug)]
 pub struct For {
-    /// An integer or bit string; its indices do not change while the loop runs.
+    /// An integer, bit string or enumeration; its indices do not change while the loop runs.
     pub counter: Place,
     /// Of the counter's type, and within `range`.
     pub first: Expr,
-    /// Of the counter's type.
+    /// Of the counter's type; of its base, where that is an enumeration.
     pub last: Expr,
     pub step: Step,
     /// The values that the counter may take: those of its type, or of its subrange.
@@ -103,7 +103,7 @@ pub struct For {
 pub enum Step {
     /// Not 0, and no further than from 0 to the greatest value of the counter's type.
     Constant(i128),
-    /// Of the counter's type.
+    /// Of the type of `last`.
     Variable(Expr),
 }
 

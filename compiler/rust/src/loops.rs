@@ -6,11 +6,11 @@ use quote::{ToTokens, quote};
 use staunch_ir::loops::exit_condition;
 use staunch_ir::turns::{self, Ahead};
 use staunch_ir::visit::{self, Access};
-use staunch_ir::{Block, Expr, For, Location, Place, Root, RoutineId, Statement, StatementKind, Step, Value};
+use staunch_ir::{Block, Expr, For, Location, Place, Root, RoutineId, Statement, StatementKind, Step, Type, Value};
 
 use crate::function::Function;
 use crate::names::ident;
-use crate::precedence::Level;
+use crate::precedence::{Code, Level};
 
 /// The labels of the loops around a statement, innermost last.
 #[derive(Debug, Default)]
@@ -99,7 +99,7 @@ impl Function<'_> {
     /// What takes the turns of a loop before the first one, and what ends it.
     fn take_turns(&mut self, it: &For, ahead: &Ahead<'_>, last: &TokenStream, number: usize) -> Taken {
         let (name, at) = (self.made_up("turns", number), self.emitter.at(ahead.at));
-        let (counter, step) = (self.load(&it.counter).tokens, Literal::i128_unsuffixed(ahead.step));
+        let (counter, step) = (self.count(&it.counter).tokens, Literal::i128_unsuffixed(ahead.step));
         self.loops.prepaid = Some((name.clone(), it.counter.clone()));
         Taken {
             taken: quote!(let #name = cx.take_turns(#counter, #last, #step)#at?;),
@@ -111,7 +111,7 @@ impl Function<'_> {
     /// Before RETURN: the loop that has taken its turns gives back what it will not have.
     pub fn give_back(&self) -> Option<TokenStream> {
         let (turns, counter) = self.loops.prepaid.as_ref()?;
-        let counter = self.load(counter).tokens;
+        let counter = self.count(counter).tokens;
         Some(quote!(#turns.give_back(cx, #counter);))
     }
 
@@ -159,7 +159,7 @@ impl Function<'_> {
     }
 
     fn further_turn(&self, it: &For, last: &TokenStream, step: &TokenStream) -> TokenStream {
-        let counter = self.load(&it.counter).above(Level::Compare);
+        let counter = self.count(&it.counter).above(Level::Compare);
         match &it.step {
             Step::Constant(step) if *step > 0 => quote!(#counter <= #last),
             Step::Constant(_) => quote!(#counter >= #last),
@@ -171,7 +171,7 @@ impl Function<'_> {
     /// Steps the counter at the end of a turn, or leaves the loop.
     fn step(&self, it: &For, last: &TokenStream, step: &TokenStream, at: Location) -> TokenStream {
         let repr = self.repr(it.counter.ty);
-        let counter = self.load(&it.counter);
+        let counter = self.count(&it.counter);
         let counter = counter.at_least(Level::Postfix);
         if repr.range() != Some(it.range) && it.may_leave_range() {
             let step = match &it.step {
@@ -180,7 +180,7 @@ impl Function<'_> {
             };
             let (least, most) = (Literal::i128_unsuffixed(it.range.0), Literal::i128_unsuffixed(it.range.1));
             let (next, at) = (self.made_up("next", self.loops.around.len()), self.emitter.at(at));
-            let counter = self.load(&it.counter).tokens;
+            let counter = self.count(&it.counter).tokens;
             let set = self.given(&it.counter, &quote!(#next));
             return quote! {
                 let Some(#next) = ops::step(#counter, #step, #last, (#least, #most)) #at? else { break };
@@ -203,10 +203,31 @@ impl Function<'_> {
         self.given(&it.counter, &quote!(#counter.#wrapping(#step)))
     }
 
-    /// `place = value;`
-    fn given(&self, place: &Place, value: &TokenStream) -> TokenStream {
+    /// The counter's value, as a number.
+    fn count(&self, counter: &Place) -> Code {
+        let value = self.load(counter);
+        let Type::Enum(_) = counter.ty else { return value };
+        let value = value.at_least(Level::Postfix);
+        Code::postfix(quote!(#value.0))
+    }
+
+    /// `counter = number;`
+    fn given(&self, place: &Place, number: &TokenStream) -> TokenStream {
+        let value = match place.ty {
+            Type::Enum(id) => {
+                let name = self.emitter.names.enumeration(id);
+                quote!(#name(#number))
+            }
+            Type::Elementary(_)
+            | Type::Subrange(..)
+            | Type::Reference(_)
+            | Type::String(_)
+            | Type::Array(_)
+            | Type::Struct(_)
+            | Type::Block(_) => number.clone(),
+        };
         if self.emitter.shared {
-            return self.set(place, value);
+            return self.set(place, &value);
         }
         let target = self.target(place, self.written_place(place));
         quote!(#target = #value;)

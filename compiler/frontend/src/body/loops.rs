@@ -3,7 +3,7 @@
 use crate::expr::checker::Checker;
 use crate::expr::operand::Operand;
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{Block, Elementary, Expr, For, Location, Op, Statement, StatementKind, Step, Type, Value, loops};
+use staunch_ir::{Block, Conversion, Elementary, Expr, For, Location, Op, Statement, StatementKind, Step, Type, Value, loops};
 
 impl<'s> Checker<'_, 's> {
     pub(super) fn while_loop(&mut self, condition: &ast::Expr<'s>, body: &[ast::Statement<'s>], span: Span) {
@@ -121,10 +121,15 @@ impl<'s> Checker<'_, 's> {
         // Each part is checked, whatever is wrong with another.
         let first = self.value(from, place.ty);
         let mark = self.block.len();
-        let mut last = self.value(to, Type::Elementary(ty));
+        let mut last = self.value(to, place.ty.read());
         let mut done: Vec<_> = last.iter_mut().collect();
         let step = self.after(&mut done, |this| this.step(by, ty));
         let (mut first, last, step) = (first?, last?, step?);
+        let last = match place.ty {
+            Type::Enum(_) => self.convert(Conversion::Same, Type::Elementary(ty), last),
+            Type::Elementary(_) | Type::Subrange(..) | Type::Reference(_) | Type::String(_) | Type::Array(_)
+            | Type::Struct(_) | Type::Block(_) => last,
+        };
         if self.block.len() > mark {
             // The counter has its first value when the calls in the other parts are made.
             let at = first.at;
@@ -140,13 +145,8 @@ impl<'s> Checker<'_, 's> {
     fn counter_type(&mut self, ty: Type, span: Span) -> Option<Elementary> {
         match ty {
             Type::Elementary(it) if it.is_integer() || self.counts(it, span) => Some(it),
-            Type::Enum(_) if self.decl.dialect(span).counts_by_enumerations() => {
-                self.report(
-                    Diagnostic::new(Code::E0902, span, "a FOR that counts by an enumeration is not supported yet")
-                        .label(format!("this is {}", self.type_name(ty)))
-                        .help("count in an INT, and choose the enumeration's value by a CASE of it"),
-                );
-                None
+            Type::Enum(id) if self.decl.dialect(span).counts_by_enumerations() => {
+                Some(self.decl.program.enumeration(id).base)
             }
             other => {
                 let name = self.type_name(other);

@@ -106,7 +106,8 @@ impl<'p> Verifier<'p> {
         self.writable(body, &it.counter, at);
         self.require(!it.counter.is_followed(), at, "a counter behind a reference");
         self.expr_of(body, &it.first, ty);
-        self.expr_of(body, &it.last, ty.read());
+        let number = self.program.counted(ty);
+        self.expr_of(body, &it.last, number);
         self.location(it.step_at);
         let repr = self.repr(ty).filter(|repr| repr.is_integer());
         let Some((min, max)) = repr.and_then(|repr| repr.range()) else {
@@ -122,7 +123,7 @@ impl<'p> Verifier<'p> {
                     "a step that is 0, or greater than the counter's type",
                 );
             }
-            Step::Variable(step) => self.expr_of(body, step, ty.read()),
+            Step::Variable(step) => self.expr_of(body, step, number),
         }
         let frame = Frame::of(self.program, body.routine);
         let private = !it.is_private || loops::is_private(&frame, &it.counter, &it.body);
