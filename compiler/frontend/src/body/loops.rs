@@ -3,7 +3,9 @@
 use crate::expr::checker::Checker;
 use crate::expr::operand::Operand;
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{Block, Conversion, Elementary, Expr, For, Location, Op, Statement, StatementKind, Step, Type, Value, loops};
+use staunch_ir::{
+    Block, Conversion, Elementary, Expr, For, Location, Op, Statement, StatementKind, Step, Type, Value, loops,
+};
 
 impl<'s> Checker<'_, 's> {
     pub(super) fn while_loop(&mut self, condition: &ast::Expr<'s>, body: &[ast::Statement<'s>], span: Span) {
@@ -127,8 +129,13 @@ impl<'s> Checker<'_, 's> {
         let (mut first, last, step) = (first?, last?, step?);
         let last = match place.ty {
             Type::Enum(_) => self.convert(Conversion::Same, Type::Elementary(ty), last),
-            Type::Elementary(_) | Type::Subrange(..) | Type::Reference(_) | Type::String(_) | Type::Array(_)
-            | Type::Struct(_) | Type::Block(_) => last,
+            Type::Elementary(_)
+            | Type::Subrange(..)
+            | Type::Reference(_)
+            | Type::String(_)
+            | Type::Array(_)
+            | Type::Struct(_)
+            | Type::Block(_) => last,
         };
         if self.block.len() > mark {
             // The counter has its first value when the calls in the other parts are made.

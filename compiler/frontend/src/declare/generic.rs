@@ -9,6 +9,7 @@ use crate::types::signature::Signature;
 use crate::types::table::Resolved;
 use crate::{Code, Diagnostic};
 use staunch_runtime::Class;
+use std::rc::Rc;
 
 impl<'s> Declarations<'s> {
     /// Which FUNCTIONs are generic: those whose declarations use ANY, ANY_NUM and the like.
@@ -32,6 +33,12 @@ impl<'s> Declarations<'s> {
             }
         }
         words
+    }
+
+    /// The signature of an instance of a generic FUNCTION, which is made when all declarations are resolved.
+    pub(super) fn build_instance(&mut self, slot: usize) -> Option<Rc<Signature<'s>>> {
+        let signature = self.build_signature(slot)?;
+        Some(self.with_externals(slot, Rc::new(signature)))
     }
 
     /// The signature of the POU in a slot, in which words mean what they do there.

@@ -5,6 +5,7 @@
 mod address;
 mod binding;
 mod collect;
+mod external;
 mod generic;
 mod global;
 mod heads;
@@ -40,7 +41,7 @@ pub(crate) fn declare<'s>(
     runs: &'s [Run<'s>],
     bodies: &[Vec<ast::Statement<'s>>],
 ) -> Declarations<'s> {
-    let mut declarations = Declarations::new(log, Declarations::build_signature);
+    let mut declarations = Declarations::new(log, Declarations::build_instance);
     declarations.table.polymorphic = polymorphic;
     for (number, file) in files.iter().enumerate() {
         let dialect = declarations.log.read_pragmas(file);
@@ -92,6 +93,7 @@ impl<'s> Declarations<'s> {
                 }
             }
         }
+        self.declare_late_externals();
         self.settle_references();
         self.check_heads();
         self.declare_used_addresses();

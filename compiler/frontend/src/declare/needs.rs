@@ -73,9 +73,15 @@ impl<'s> Needs<'_, 's> {
     fn pou(&mut self, pou: &ast::Pou<'s>) {
         self.names_of(pou);
         pou.result.iter().for_each(|it| self.spec(it));
-        pou.blocks.iter().flat_map(|it| &it.vars).for_each(|it| self.declared(it));
-        let externals = pou.blocks.iter().filter(|it| it.kind == ast::VarKind::External).flat_map(|it| &it.vars);
-        externals.flat_map(|it| &it.names).for_each(|it| self.value(*it));
+        for block in &pou.blocks {
+            let is_external = block.kind == ast::VarKind::External;
+            for decl in block.vars.iter().filter(|it| !is_external || self.declarations.is_early_external(it)) {
+                self.declared(decl);
+                if is_external {
+                    decl.names.iter().for_each(|it| self.value(*it));
+                }
+            }
+        }
     }
 
     fn names_of(&mut self, pou: &ast::Pou<'s>) {

@@ -3,7 +3,7 @@
 use crate::ast::{self, PouKind, VarKind};
 use crate::diagnostic::wording::article;
 use crate::types::declarations::Declarations;
-use crate::types::scope::{Scope, Variable};
+use crate::types::scope::Scope;
 use crate::types::signature::{EdgeInput, Formal, Signature, Target, pin_place};
 use crate::types::table::Resolved;
 use crate::{Code, Diagnostic, Span, dialect};
@@ -106,7 +106,7 @@ impl<'s> Declarations<'s> {
     }
 
     /// What a routine sees of its POU: one that is inherited does not see what the heirs declare.
-    fn scope_around(&self, slot: usize, owner: &Signature<'s>) -> Rc<Scope<'s>> {
+    pub(super) fn scope_around(&self, slot: usize, owner: &Signature<'s>) -> Rc<Scope<'s>> {
         let home = self.pous[self.home(slot)].ast;
         let Some(class) = self.pous[slot].owner.map(|it| self.pous[it].ast) else { return Rc::clone(&owner.scope) };
         let later: FxHashSet<_> = class.blocks.iter().skip(home.blocks.len()).map(|it| it.span).collect();
@@ -275,7 +275,10 @@ impl<'s> Declarations<'s> {
         }
         if block.kind == VarKind::External {
             drop(scope);
-            self.declare_externals(block, decl, builder);
+            if self.is_early_external(decl) {
+                let scope = Rc::get_mut(&mut builder.scope).expect("no one else holds the scope between declarations");
+                self.declare_externals(block, decl, scope);
+            }
             return;
         }
         self.check_one_name(decl);
@@ -409,61 +412,6 @@ impl<'s> Declarations<'s> {
                 .label(format!("so {what}"))
                 .help(help),
         );
-    }
-
-    /// Reports what only the declaration of a global says: its value, and that it is no constant.
-    fn check_external(&mut self, block: &ast::VarBlock<'s>, decl: &ast::VarDecl<'s>, global: &Variable<'s>) {
-        if let Some(initial) = &decl.initial {
-            let whole = Span { start: decl.ty.span.end, ..initial.span };
-            self.report(
-                Diagnostic::new(Code::E0405, initial.span, "a VAR_EXTERNAL has no initial value")
-                    .label("the value belongs to the global variable")
-                    .other(global.name.span, "the global variable")
-                    .help("delete it here")
-                    .fix(whole, ""),
-            );
-        }
-        if let (Some(constant), false) = (block.constant, global.constant) {
-            let message = format!("the global `{}` is not CONSTANT", global.name.text);
-            self.report(
-                Diagnostic::new(Code::E0405, constant, message)
-                    .label("this says that it never changes")
-                    .other(global.name.span, "the global variable")
-                    .help("delete CONSTANT here, or declare it in VAR_GLOBAL CONSTANT"),
-            );
-        }
-    }
-
-    fn declare_externals(&mut self, block: &ast::VarBlock<'s>, decl: &'s ast::VarDecl<'s>, builder: &mut Builder<'s>) {
-        let wanted = self.resolve_spec(&decl.ty, &Rc::new(Scope::default()), "external");
-        for name in &decl.names {
-            let Some(global) = self.external(*name) else {
-                builder.refuse(*name);
-                continue;
-            };
-            if let Some(wanted) = &wanted
-                && wanted.ty != global.resolved.ty
-            {
-                let (found, ours) = (self.program.type_name(global.resolved.ty), self.program.type_name(wanted.ty));
-                self.report(
-                    Diagnostic::new(
-                        Code::E0405,
-                        decl.ty.span,
-                        format!("the global `{}` is of type {found}", name.text),
-                    )
-                    .label(format!("declared as {ours} here"))
-                    .other(global.name.span, "the global variable")
-                    .help(format!("write `{} : {found}` here, or change the global variable", name.text)),
-                );
-                // Which of the two types is meant is not known: no use of it is judged.
-                builder.refuse(*name);
-                continue;
-            }
-            self.check_external(block, decl, &global);
-            let variable = Variable { name: *name, section: Section::External, ..Variable::clone(&global) };
-            let scope = Rc::get_mut(&mut builder.scope).expect("no one else holds the scope between declarations");
-            self.enter_variable(scope, variable);
-        }
     }
 
     /// An array of any bounds is its caller's.

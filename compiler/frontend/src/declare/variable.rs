@@ -1,6 +1,5 @@
 use crate::ast;
-use crate::names::{Entry, Found, Meaning, Sense};
-use crate::types::declarations::{Declarations, GlobalSlot};
+use crate::types::declarations::Declarations;
 use crate::types::scope::{Scope, Variable};
 use crate::types::table::Resolved;
 use staunch_ir::{Field, Place, Section};
@@ -154,28 +153,5 @@ impl<'s> Declarations<'s> {
                     .other(first.span, "first declared here"),
             );
         }
-    }
-
-    pub(super) fn external(&mut self, name: ast::Name<'s>) -> Option<Rc<Variable<'s>>> {
-        let found = self.lookup(&[name], Sense::Value);
-        if let Found::Several(meanings) = &found {
-            self.report_ambiguous(name, meanings);
-            return None;
-        }
-        let Found::One(Meaning::Declared(Entry::Global(at))) = found else {
-            let near = crate::spelling::nearest(name.text, self.globals.iter().map(|it: &GlobalSlot<'s>| it.name.text));
-            let mut error = crate::Diagnostic::new(
-                crate::Code::E0101,
-                name.span,
-                format!("there is no global variable `{}`", name.text),
-            )
-            .label("VAR_EXTERNAL names a variable of a VAR_GLOBAL");
-            if let Some(near) = near {
-                error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
-            }
-            self.report(error);
-            return None;
-        };
-        self.global(at)
     }
 }

@@ -124,7 +124,7 @@ impl<'s> PouSlot<'s> {
 }
 
 /// Makes the signature of the POU in a slot.
-type BuildSignature<'s> = fn(&mut Declarations<'s>, usize) -> Option<Signature<'s>>;
+type BuildSignature<'s> = fn(&mut Declarations<'s>, usize) -> Option<Rc<Signature<'s>>>;
 
 pub(crate) struct GlobalSlot<'s> {
     /// The namespace, or list, that it is in.

@@ -108,7 +108,7 @@ impl<'s> Declarations<'s> {
         self.pous.push(PouSlot { names_itself, instance: Some(instance), ..PouSlot::open(ast) });
         self.generics.slots.insert((of, types), slot);
         let reported = self.log.diagnostics.len();
-        let signature = (self.build_signature)(self, slot).map(Rc::new);
+        let signature = (self.build_signature)(self, slot);
         self.pous[slot].slot = signature.map_or(Slot::Failed, Slot::Done);
         self.say_of_instance(slot, reported);
         matches!(self.pous[slot].slot, Slot::Done(_)).then_some(slot)
