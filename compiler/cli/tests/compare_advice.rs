@@ -122,6 +122,16 @@ const TAKEN: &[Taken] = &[
         moved: "e(CLK := pulse); c(CD := e.Q AND c.CV > -3, LD := load, PV := 2); low := c.CV < -1;",
         advised: "e(CLK := pulse); IF load THEN n := 2; ELSIF e.Q AND n > -3 THEN n := n - 1; END_IF low := n < -1;",
     },
+    Taken {
+        trap: 16,
+        from: "iec",
+        to: "openplc",
+        vars: "full",
+        declared: "VAR_INPUT sensor : BOOL; END_VAR VAR full, fell, before : BOOL; c : CTU; e : F_TRIG; END_VAR",
+        original: "e(CLK := sensor); c(CU := e.Q AND NOT full, R := FALSE, PV := 3); full := c.Q;",
+        moved: "e(CLK := sensor); c(CU := e.Q AND NOT full, R := FALSE, PV := 3); full := c.Q;",
+        advised: "fell := before AND NOT sensor; before := sensor; c(CU := fell AND NOT full, R := FALSE, PV := 3); full := c.Q;",
+    },
 ];
 
 fn scratch() -> PathBuf {

@@ -90,6 +90,7 @@ macro_rules! for_each_block {
             Openplc "CTU_ULINT" openplc::Ctu<u64> {} #[stops] { plain "" call staunch_openplc_ctu_ulint; }
             Openplc "CTD_ULINT" openplc::Ctd<u64> {} #[stops] { plain "" call staunch_openplc_ctd_ulint; }
             Openplc "CTUD_ULINT" openplc::Ctud<u64> {} #[stops] { plain "" call staunch_openplc_ctud_ulint; }
+            Openplc "F_TRIG" openplc::FTrig {} #[in Logix "OSFI with an FBD_ONESHOT"] { plain "" call staunch_openplc_f_trig; }
 
             Logix "COUNTER" logix::Counter {} {
                 rung "CTU" ctu staunch_logix_counter_ctu, prescan prescan_ctu staunch_logix_counter_prescan_ctu;

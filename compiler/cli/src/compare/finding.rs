@@ -80,7 +80,7 @@ impl Findings {
         let mut all = Vec::new();
         for (at, usage) in uses.iter().enumerate() {
             let instances = pair.instances(at);
-            for pitfall in Pitfall::all() {
+            for pitfall in Pitfall::of_counters() {
                 let verdict = match pitfall::impossible(pitfall, instances, *usage) {
                     _ if pitfall.number() == 9 && renamed > 0 => Verdict::Reachable(None),
                     Some(why) => Verdict::Impossible(why.to_owned()),
@@ -140,7 +140,7 @@ impl Findings {
             };
             traces.insert(*sighting, shown);
         }
-        let per_counter = Pitfall::all().count();
+        let per_counter = Pitfall::of_counters().count();
         for (sighting, trace) in &traces {
             if let (Subject::Counter(at), Some(pitfall)) = sighting {
                 self.all[at * per_counter + pitfall.number() - 1].verdict = Verdict::Reachable(Some(trace.clone()));

@@ -397,6 +397,13 @@ impl Pair {
         self.all_equal(&self.block_bytes)
     }
 
+    /// Whether a one-shot is another block on the other system: F_TRIG is on OPENPLC.
+    pub fn is_other_one_shot(&self, at: usize) -> bool {
+        let [a, b] = self.blocks[at];
+        let [a, b] = [&self.sides[0].scalars.blocks[a], &self.sides[1].scalars.blocks[b]];
+        a.block != b.block && a.block.info().pin("CLK").is_some()
+    }
+
     /// Whether all that is compared was the same before the last scan.
     pub fn agreed_in_all(&self) -> bool {
         self.compared.iter().all(|it| self.agreed(*it))

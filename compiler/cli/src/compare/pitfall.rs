@@ -17,7 +17,7 @@ struct Text {
     advice: &'static str,
 }
 
-const PITFALLS: [Text; 15] = [
+const PITFALLS: [Text; 16] = [
     Text {
         sentence: "CU held TRUE counts once everywhere except CSCAPE, where it counts every call.",
         advice: "Feed the counter from an R_TRIG: `e(CLK := sensor); c(CU := e.Q, …)`.",
@@ -81,10 +81,16 @@ const PITFALLS: [Text; 15] = [
         sentence: "OPENPLC stops at PV and at 0: `CV > PV` never holds, as on CSCAPE, and no count goes below 0.",
         advice: "Let PV be 32767, which no INT passes, and compare the count yourself; count below 0 in a variable of your own.",
     },
+    Text {
+        sentence: "F_TRIG called first with CLK FALSE: OPENPLC sees an edge, the others do not.",
+        advice: "Find the edge yourself: `fell := before AND NOT sensor; before := sensor;`.",
+    },
 ];
 
 impl Pitfall {
     pub const RESTART: Self = Self::numbered(11);
+    /// Of F_TRIG; all others are of counters.
+    pub const FIRST_FALL: Self = Self::numbered(16);
     const WIDTHS: Self = Self::numbered(8);
 
     /// Its number, from 1.
@@ -97,8 +103,13 @@ impl Pitfall {
         Self(number - 1)
     }
 
+    #[cfg(test)]
     pub fn all() -> impl Iterator<Item = Self> {
         (0..PITFALLS.len()).map(Self)
+    }
+
+    pub fn of_counters() -> impl Iterator<Item = Self> {
+        (0..Self::FIRST_FALL.0).map(Self)
     }
 
     pub fn sentence(self) -> &'static str {

@@ -195,12 +195,13 @@ pub fn look(pair: &Pair, world: &World, event: Option<Event>, faults: Faults) ->
 
 /// The blocks that have parted in the last scan, by an event or by what they are given.
 fn blocks_seen(pair: &Pair, event: Option<Event>) -> Vec<Sighting> {
-    let pitfall = (event.is_some() || pair.is_restarted()).then_some(Pitfall::RESTART);
+    let restarted = (event.is_some() || pair.is_restarted()).then_some(Pitfall::RESTART);
+    let pitfall = |at: usize| if pair.is_other_one_shot(at) { Some(Pitfall::FIRST_FALL) } else { restarted };
     let parted = |outputs: &[Matched]| {
         outputs.iter().any(|it| pair.newly_differs(*it)) && outputs.iter().all(|it| pair.agreed(*it))
     };
     let blocks = (0..pair.blocks.len()).filter(|at| parted(&pair.block_outputs[*at]));
-    blocks.map(|at| (Subject::Block(at), pitfall)).collect()
+    blocks.map(|at| (Subject::Block(at), pitfall(at))).collect()
 }
 
 /// The variables that have parted by how they are computed: all that they are made of was the same.

@@ -11,7 +11,6 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{
     BlockId, Const, Field, FieldId, Local, LocalId, Mode, Param, ParamId, Place, Program, Root, Section, Struct, Type,
 };
-use staunch_runtime::Family;
 use std::rc::Rc;
 
 /// A signature while its variables are read.
@@ -591,10 +590,11 @@ impl<'s> Declarations<'s> {
             self.error(Code::E0403, span, "R_EDGE and F_EDGE are for inputs of type BOOL");
             return None;
         }
-        let block = match edge {
-            ast::Edge::Rising => dialect::block_in(Family::Iec, "R_TRIG")?,
-            ast::Edge::Falling => dialect::block_in(Family::Iec, "F_TRIG")?,
+        let name_of_block = match edge {
+            ast::Edge::Rising => "R_TRIG",
+            ast::Edge::Falling => "F_TRIG",
         };
+        let block = dialect::bare_block(self.dialect(span), name_of_block)?;
         let id = FieldId::next(builder.fields.len());
         builder.fields.push(Field {
             name: format!("{}_edge", name.text),

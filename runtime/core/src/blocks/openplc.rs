@@ -1,6 +1,7 @@
 //! OpenPLC v3, OpenPLC Editor and Beremiz, whose library is MATIEC's. Its counters are those of
 //! [`iec`](super::iec) but for one rule: an edge counts up only while `cv < pv`, and down only
-//! while `cv > 0`, as the count was before the call. A count that is beyond already stays.
+//! while `cv > 0`, as the count was before the call. A count that is beyond already stays. Its
+//! `F_TRIG` is the second edition's text, which sees an edge in a first call with FALSE.
 
 use super::iec::Count;
 use crate::Context;
@@ -143,4 +144,45 @@ pins!([T: Count] Ctud<T> {
     }
     Output { qu: BOOL = "QU" as Done, qd: BOOL = "QD" as Empty, cv: T = "CV" as Count }
     Memory { cu_before: BOOL = "cu_before", cd_before: BOOL = "cd_before" }
+});
+
+/// `F_TRIG`: `q` in the call in which `clk` becomes FALSE, and in a first call in which it is FALSE: what is
+/// remembered is `NOT clk`, which starts as FALSE (IEC 61131-3, second edition, 2.5.2.3.2).
+///
+/// ```
+/// let mut falling = staunch_runtime::openplc::FTrig::default();
+/// falling.call(false);
+/// assert!(falling.q);
+/// falling.call(false);
+/// assert!(!falling.q);
+/// ```
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FTrig {
+    pub clk: bool,
+    pub q: bool,
+    /// Memory: whether `clk` was FALSE in the last call.
+    pub low_before: bool,
+}
+
+impl FTrig {
+    /// One call: sets the input and looks for an edge.
+    #[inline]
+    pub fn call(&mut self, clk: bool) {
+        self.clk = clk;
+        self.step(&Context::at(0));
+    }
+
+    /// One call with the input as it is.
+    #[inline]
+    pub fn step(&mut self, _: &Context) {
+        self.q = !self.clk & !self.low_before;
+        self.low_before = !self.clk;
+    }
+}
+
+pins!([] FTrig {
+    Input { clk: BOOL = "CLK" }
+    Output { q: BOOL = "Q" }
+    Memory { low_before: BOOL = "low_before" }
 });

@@ -98,12 +98,26 @@ pub fn cause(pair: &Pair, rows: &[Row], differences: &[Matched], habits: &[Habit
     if let Some(counter) = held_through_reset(pair, rows, habits) {
         return Cause { counter: Some(counter), pitfall: Some(Pitfall::numbered(6)) };
     }
+    if let Some(block) = first_fall(pair, rows) {
+        return Cause { counter: Some(block), pitfall: Some(Pitfall::FIRST_FALL) };
+    }
     let widths = differences.iter().any(|[a, b]| {
         let [a, b] = [pair.scalar(0, *a), pair.scalar(1, *b)];
         matches!(a.role, Role::Variable) && a.ty.elementary() != b.ty.elementary()
     });
     let pitfall = (counter.is_none() && widths).then_some(Pitfall::WIDTHS);
     Cause { counter, pitfall }
+}
+
+/// The first F_TRIG that comes to differ because it is another block on the other system.
+fn first_fall(pair: &Pair, rows: &[Row]) -> Option<String> {
+    let parts = |at: usize, block: usize| {
+        let outputs = &pair.block_outputs[block];
+        outputs.iter().all(|it| agrees(pair, rows, at, *it)) && outputs.iter().any(|it| !pair.same(*it, &rows[at]))
+    };
+    let others: Vec<_> = (0..pair.blocks.len()).filter(|it| pair.is_other_one_shot(*it)).collect();
+    let first = (0..rows.len()).find_map(|at| others.iter().copied().find(|it| parts(at, *it)))?;
+    Some(pair.sides[0].scalars.blocks[pair.blocks[first][0]].path.clone())
 }
 
 /// Whether these agreed before a row.
