@@ -171,6 +171,7 @@ fn class(task: Task, state: StructId, body: RoutineId) -> Class {
         variables: fields(task).into_iter().enumerate().map(variable).collect(),
         body,
         prescan: None,
+        start: None,
     }
 }
 

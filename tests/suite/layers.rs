@@ -8,7 +8,7 @@ use std::path::Path;
 const ROOT: &str = "compiler/frontend/src";
 
 /// The folders and files at the root, from the lowest.
-const LAYERS: [&str; 23] = [
+const LAYERS: [&str; 24] = [
     "vendor",
     "source",
     "diagnostic",
@@ -16,11 +16,12 @@ const LAYERS: [&str; 23] = [
     "ast",
     "allow",
     "foreign",
-    "inherit",
     "lex",
     "syntax",
     "mutate",
     "testing",
+    "start",
+    "inherit",
     "dialect",
     "log",
     "prelude",

@@ -195,6 +195,8 @@ pub struct Pou<'s> {
     pub body: Vec<Statement<'s>>,
     /// The METHODs and ACTIONs of a PROGRAM or FUNCTION_BLOCK.
     pub routines: Vec<Pou<'s>>,
+    /// What `{attribute '…'}` says before it.
+    pub attributes: Vec<&'s str>,
     /// The comment that is directly before the POU, cleaned of its marks.
     pub doc: Option<String>,
     pub span: Span,
@@ -217,6 +219,7 @@ impl<'s> Pou<'s> {
             blocks: Vec::new(),
             body: Vec::new(),
             routines: Vec::new(),
+            attributes: Vec::new(),
             doc: None,
             span,
         }
@@ -265,6 +268,7 @@ pub struct VarDecl<'s> {
     pub address: Option<Name<'s>>,
     pub ty: TypeSpec<'s>,
     pub edge: Option<(Edge, Span)>,
+    pub construction: Option<Box<Construction<'s>>>,
     pub initial: Option<Initial<'s>>,
     /// The comment on the declaration's line or directly before it.
     pub doc: Option<String>,
@@ -276,6 +280,15 @@ impl<'s> VarDecl<'s> {
     pub fn known_address(&self) -> Option<Name<'s>> {
         self.address.filter(|it| !it.text.ends_with('*'))
     }
+}
+
+/// What a declaration gives to the FB_init of its instances: `Motor(limit := 5)`, `ARRAY[1..2] OF Motor[(5), (6)]`.
+#[derive(Clone, Debug)]
+pub struct Construction<'s> {
+    /// One list, or one for each element of an array.
+    pub lists: Vec<Vec<Argument<'s>>>,
+    pub is_of_elements: bool,
+    pub span: Span,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

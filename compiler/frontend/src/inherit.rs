@@ -7,6 +7,7 @@
 use crate::ast::{Access, Expr, ExprKind, File, Item, Name, Pou, PouKind, each_expr};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::spelling::{Key, nearest};
+use crate::start::is_initial;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// A class extends no more than so many, one through the other.
@@ -214,9 +215,12 @@ impl<'s> Expansion<'_, 's> {
         whole
     }
 
-    /// Keeps of the hidden routines those that SUPER calls, directly or through others.
-    fn keep_called(&self, whole: &mut Pou<'s>, mut hidden: Vec<Pou<'s>>) {
+    /// Keeps of the hidden routines those that SUPER calls, directly or through others, and FB_init.
+    fn keep_called(&self, whole: &mut Pou<'s>, hidden: Vec<Pou<'s>>) {
         let mut wanted = Vec::new();
+        // They run one after the other.
+        let (initial, mut hidden): (Vec<_>, Vec<_>) = hidden.into_iter().partition(|it| is_initial(it.name));
+        whole.routines.extend(initial);
         supers(&whole.body, whole.name, &mut wanted);
         for it in &whole.routines {
             supers(&it.body, it.home.unwrap_or(whole.name), &mut wanted);

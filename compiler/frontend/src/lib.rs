@@ -10,6 +10,7 @@ mod spelling;
 pub mod ast;
 mod lex;
 mod mutate;
+mod start;
 mod syntax;
 mod testing;
 
@@ -161,6 +162,7 @@ fn run_with(
         .then(|| run(sources, &Options { tests: true, ..options.clone() }, Bodies::Dropped).diagnostics);
     inherit::expand(&mut files, &mut log.diagnostics);
     testing::expand(&mut files, options.tests);
+    start::expand(&mut files);
     let allowances = allow::Allowances::read(&files, &mut log.diagnostics);
     let mut bodies: Vec<_> = files.iter_mut().flat_map(ast::File::take_bodies).collect();
     let mut runs = declare::run::runs(&files);

@@ -132,12 +132,13 @@ fn can_be_mocked(pou: &mut Pou<'_>) {
     pou.body.insert(0, Statement { kind, span: at });
 }
 
-fn variables<'s>(wanted: &[(&'static str, &[&'static str])], at: Span) -> VarBlock<'s> {
+pub(crate) fn variables<'s>(wanted: &[(&'static str, &[&'static str])], at: Span) -> VarBlock<'s> {
     let variable = |(name, ty): &(&'static str, &[&'static str])| VarDecl {
         names: vec![Name { text: name, span: at }],
         address: None,
         ty: TypeSpec { kind: TypeKind::Named(ty.iter().map(|text| Name { text, span: at }).collect()), span: at },
         edge: None,
+        construction: None,
         initial: None,
         doc: None,
         span: at,
@@ -145,15 +146,15 @@ fn variables<'s>(wanted: &[(&'static str, &[&'static str])], at: Span) -> VarBlo
     VarBlock { vars: wanted.iter().map(variable).collect(), ..VarBlock::new(VarKind::Var, at) }
 }
 
-fn named(name: &'static str, at: Span) -> Expr<'static> {
+pub(crate) fn named(name: &'static str, at: Span) -> Expr<'static> {
     Expr { kind: ExprKind::Name(Name { text: name, span: at }), span: at }
 }
 
-fn literal<'s>(value: LiteralValue<'s>, at: Span) -> Expr<'s> {
+pub(crate) fn literal<'s>(value: LiteralValue<'s>, at: Span) -> Expr<'s> {
     Expr { kind: ExprKind::Literal(Literal { prefix: None, value }), span: at }
 }
 
-fn assign<'s>(name: &'static str, value: Expr<'s>) -> Statement<'s> {
+pub(crate) fn assign<'s>(name: &'static str, value: Expr<'s>) -> Statement<'s> {
     let span = value.span;
     Statement { kind: StatementKind::Assign { target: named(name, span), value }, span }
 }

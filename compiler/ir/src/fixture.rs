@@ -88,6 +88,7 @@ fn classes(routines: &[Routine]) -> Vec<Class> {
             variables: Vec::new(),
             body: find(RoutineKind::Body, it.state).unwrap(),
             prescan: find(RoutineKind::Prescan, it.state),
+            start: None,
         })
         .collect();
     classes.last_mut().unwrap().kind = ClassKind::Program;

@@ -96,6 +96,10 @@ impl<'p> Interpreter<'p> {
         self.steps_left = self.budget;
         let class = self.program.class(self.program.instances[instance].program);
         let state = usize_of(self.layout.machine.instances[instance]);
+        let starts = if cx.first_scan { self.program.starts() } else { Vec::new() };
+        for (at, start) in starts {
+            self.run(start, usize_of(self.layout.machine.instances[at]), cx)?;
+        }
         if let Some(prescan) = class.prescan.filter(|_| cx.first_scan) {
             self.run(prescan, state, cx)?;
         }

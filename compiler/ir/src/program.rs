@@ -87,6 +87,9 @@ pub struct Class {
     /// Runs at the start of the first scan, before the body of a PROGRAM: what some systems do to
     /// counters at a restart. It covers the instances that the state contains.
     pub prescan: Option<RoutineId>,
+    /// Of a PROGRAM with instances that have a start: a METHOD that starts them, if that has not been done. The body calls
+    /// it; where several PROGRAMs run, all of theirs run before the first scan of any.
+    pub start: Option<RoutineId>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -238,6 +241,13 @@ pub enum Area {
 }
 
 impl Program {
+    /// What is to run before any PROGRAM does: for those that run, by their numbers, what starts their instances. One that
+    /// runs alone does it itself.
+    pub fn starts(&self) -> Vec<(usize, RoutineId)> {
+        let starts = self.instances.iter().enumerate().filter_map(|(at, it)| Some((at, self.class(it.program).start?)));
+        if self.instances.len() > 1 { starts.collect() } else { Vec::new() }
+    }
+
     pub fn enumeration(&self, id: EnumId) -> &Enum {
         &self.enums[id.index()]
     }

@@ -31,6 +31,7 @@ pub fn settle(mut program: Program) -> Result<Program, Location> {
     for (class, body) in program.classes.iter_mut().zip(bodies) {
         class.body = body;
         class.prescan = class.prescan.and_then(|it| declared[it.index()]);
+        class.start = class.start.and_then(|it| declared[it.index()]);
         let params = &routines[body.index()].params;
         for variable in &mut class.variables {
             if let (Root::Param(id), true) = (variable.place.root, variable.place.projections.is_empty()) {

@@ -10,7 +10,7 @@ pub fn used_globals(program: &Program) -> BTreeSet<FieldId> {
     for instance in &program.instances {
         let class = program.class(instance.program);
         finder.routine(class.body);
-        class.prescan.into_iter().for_each(|it| finder.routine(it));
+        class.prescan.into_iter().chain(class.start).for_each(|it| finder.routine(it));
     }
     finder.used
 }

@@ -92,6 +92,7 @@ fn scan(module: &mut ModuleEmitter<'_>, builder: &mut FunctionBuilder<'_>, value
     let &[state, context, instance] = values else { unreachable!("as many as declared above") };
     let done = builder.create_block();
     builder.append_block_param(done, CODE);
+    Scan { module, builder, state, context, done }.starts();
     let otherwise = builder.create_block();
     let blocks: Vec<_> = module.program.instances.iter().map(|_| builder.create_block()).collect();
     let mut switch = Switch::new();
@@ -121,6 +122,14 @@ struct Scan<'s, 'p, 'b> {
 }
 
 impl Scan<'_, '_, '_> {
+    /// Before the first scan of any PROGRAM, what starts the instances of all.
+    fn starts(&mut self) {
+        for (number, start) in self.module.program.starts() {
+            let at = Address::at(self.state).plus(self.module.layout.machine.instances[number]);
+            self.prescan(start, at);
+        }
+    }
+
     fn instance(&mut self, number: usize) {
         let class = self.module.program.class(self.module.program.instances[number].program);
         let at = Address::at(self.state).plus(self.module.layout.machine.instances[number]);

@@ -82,6 +82,7 @@ impl<'p> Separator<'p> {
         for class in &mut program.classes {
             class.body = ids[class.body.index()];
             class.prescan = class.prescan.map(|it| ids[it.index()]);
+            class.start = class.start.map(|it| ids[it.index()]);
         }
         Pass { separated: Separated { program, origins: self.origins }, known: self.known }
     }

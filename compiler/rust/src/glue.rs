@@ -38,13 +38,14 @@ pub fn emit_glue(program: &Program, code: &str, map: &str, options: &Options) ->
         };
         quote!(#number => self.#name.scan(cx #globals))
     });
+    let starts = before_the_first_scan(&emitter);
     let (bytes, length) = (Literal::byte_string(map.as_bytes()), Literal::usize_unsuffixed(map.len()));
     let size = Literal::u64_unsuffixed(emitter.layout.machine.size);
     let offsets = program.instances.iter().enumerate().map(|(at, _)| {
         let (name, offset) = (names.instance(at), Literal::u64_unsuffixed(emitter.layout.machine.instances[at]));
         quote!(assert!(core::mem::offset_of!(Machine, #name) == #offset);)
     });
-    let (starts, copies) = starts(&emitter, &code);
+    let (statics, copies) = statics(&emitter, &code);
     let start = (!copies.is_empty()).then(|| {
         quote! {
             /// A start value, which is copied and never changed.
@@ -74,6 +75,7 @@ pub fn emit_glue(program: &Program, code: &str, map: &str, options: &Options) ->
         impl Machine {
             /// One scan of an instance.
             pub fn scan(&mut self, cx: &Context, instance: u32) -> Result<(), Fault> {
+                #starts
                 match instance { #(#scans,)* _ => Ok(()) }
             }
         }
@@ -90,7 +92,7 @@ pub fn emit_glue(program: &Program, code: &str, map: &str, options: &Options) ->
         #[unsafe(no_mangle)]
         pub static staunch_map_len: usize = #length;
 
-        #(#starts)*
+        #(#statics)*
 
         /// Writes the initial state, in place: it may be larger than the stack.
         ///
@@ -125,9 +127,27 @@ pub fn emit_glue(program: &Program, code: &str, map: &str, options: &Options) ->
     text
 }
 
+/// What starts the instances of all PROGRAMs, where several run.
+fn before_the_first_scan(emitter: &Emitter<'_>) -> Option<TokenStream> {
+    let starts = emitter.program.starts();
+    let calls = starts.iter().map(|(at, start)| {
+        let (name, method) = (emitter.names.instance(*at), emitter.names.routine(*start));
+        let needs = &emitter.effects[start.index()];
+        let context = needs.context.then(|| quote!(cx));
+        let world = match (emitter.shared, needs.uses_globals()) {
+            (true, _) => Some(quote!(self)),
+            (false, true) => Some(quote!(&mut self.globals)),
+            (false, false) => None,
+        };
+        let (arguments, propagate) = (context.into_iter().chain(world), needs.faults.then(|| quote!(?)));
+        quote!(self.#name.#method(#(#arguments),*) #propagate;)
+    });
+    (!starts.is_empty()).then(|| quote!(if cx.first_scan { #(#calls)* }))
+}
+
 /// For each structure that does not start with zeros alone, a static with its initial values; and
 /// the copies of them into the state.
-fn starts(emitter: &Emitter<'_>, code: &syn::Path) -> (Vec<TokenStream>, Vec<TokenStream>) {
+fn statics(emitter: &Emitter<'_>, code: &syn::Path) -> (Vec<TokenStream>, Vec<TokenStream>) {
     let (program, names, layout) = (emitter.program, &emitter.names, &emitter.layout);
     let image = layout.image(program);
     let instances = program.instances.iter().enumerate().map(|(at, instance)| {

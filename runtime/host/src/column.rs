@@ -43,7 +43,9 @@ fn used_globals(map: &Map, running: &[usize], out: &mut Vec<Column>) {
     let (globals, base) = map.globals();
     let own = running.iter().flat_map(|at| &map.instances[*at].variables).map(|it| (it.offset, it.ty));
     let own: HashSet<(usize, Type)> = own.collect();
-    for variable in globals.iter().filter(|it| it.used && !it.constant) {
+    // A name that begins so is the compiler's own.
+    let is_shown = |it: &&Variable| it.used && !it.constant && !it.name.starts_with("__");
+    for variable in globals.iter().filter(is_shown) {
         let place = Place::of(variable, base);
         if !own.contains(&(place.offset, place.ty)) {
             expand(map, global_heading(variable), place, out);

@@ -3,6 +3,7 @@
 mod assertion;
 mod case;
 mod loops;
+mod start;
 mod statement;
 
 use crate::expr::checker::Checker;
@@ -147,6 +148,7 @@ fn check_body<'s>(
     }
     checker.edge_inputs(&signature, pou.name.span);
     checker.mocked_result(slot, pou.name.span);
+    checker.start_locals(&signature);
     let mut body = checker.block_of(statements);
     checker.migration_lints(statements);
     let mut whole = std::mem::take(&mut checker.block);

@@ -1,3 +1,4 @@
+use super::start::is_start_of_members;
 use crate::expr::call_tracking::Instance;
 use crate::expr::checker::Checker;
 use crate::expr::operand::Operand;
@@ -99,7 +100,9 @@ impl<'s> Checker<'_, 's> {
     fn lone_expression(&mut self, expr: &ast::Expr<'s>) {
         match &expr.kind {
             Ast::Call(callee, arguments) => {
-                if self.test_statement(callee, arguments, expr.span).is_none() {
+                if is_start_of_members(callee) {
+                    self.start_members(expr.span);
+                } else if self.test_statement(callee, arguments, expr.span).is_none() {
                     self.call_statement(expr, callee, arguments);
                 }
             }

@@ -7,9 +7,6 @@ use crate::spelling::Key;
 use crate::types::declarations::{Declarations, GlobalSlot, PouSlot, Slot, TypeSlot};
 use crate::{Code, Diagnostic, Span, ast};
 
-/// METHODs that CODESYS calls by itself.
-pub(super) const INITIAL: [&str; 3] = ["FB_init", "FB_reinit", "FB_exit"];
-
 impl<'s> Declarations<'s> {
     /// The namespaces of all files, and what is used where.
     pub(super) fn collect_namespaces(&mut self, files: &'s [ast::File<'s>]) {
@@ -114,9 +111,6 @@ impl<'s> Declarations<'s> {
             let key = (Key(home.text), Key(name.text));
             self.pous[owner].hidden.entry(key).or_default().set(routine.kind, slot, name.span);
             return;
-        }
-        if INITIAL.iter().any(|it| Key(it) == Key(name.text)) && self.dialect(name.span) == Dialect::Codesys {
-            self.not_supported(name.span, &format!("{}, which the system calls at a start,", name.text));
         }
         let pou = self.pous[owner].ast;
         let variables = pou.blocks.iter().flat_map(|it| &it.vars).flat_map(|it| &it.names);

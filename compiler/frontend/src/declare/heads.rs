@@ -1,9 +1,9 @@
 //! What a class owes to what it IMPLEMENTS and overrides: the same parameters and results, by their types.
 
-use super::collect::INITIAL;
 use crate::ast::{self, PouKind};
 use crate::names::{Entry, Found, Meaning, Sense};
 use crate::spelling::{Key, nearest};
+use crate::start::INITIAL;
 use crate::types::declarations::{Declarations, Slot};
 use crate::types::signature::Signature;
 use crate::{Code, Diagnostic, Span};
@@ -31,6 +31,7 @@ impl<'s> Declarations<'s> {
             if pou.kind.is_block() {
                 self.check_interfaces(slot);
                 self.check_overrides(slot);
+                self.check_started(slot);
             }
         }
     }

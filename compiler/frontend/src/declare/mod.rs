@@ -21,6 +21,7 @@ mod pragma;
 mod relative;
 pub(crate) mod run;
 mod specs;
+pub(crate) mod starts;
 mod structure;
 mod variable;
 
@@ -59,6 +60,7 @@ pub(crate) fn declare<'s>(
     for Run { pou, instance, .. } in runs {
         declarations.pous.push(PouSlot { run: Some(*instance), ..PouSlot::open(pou) });
     }
+    declarations.note_starts();
     declarations.note_results(bodies);
     declarations.note_generics();
     declarations.collect_addresses(bodies);

@@ -78,7 +78,8 @@ impl<'s> Declarations<'s> {
                 };
                 let id = self.push_struct(Struct::new(name, pou.doc.clone(), location, fields));
                 self.table.instances.insert(id, slot);
-                if !pou.routines.is_empty() {
+                // What starts an instance does not come back to it.
+                if pou.routines.iter().any(|it| it.name.text != crate::start::START) {
                     self.program.reentered.insert(id);
                 }
                 id

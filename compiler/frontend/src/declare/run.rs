@@ -162,7 +162,16 @@ fn run<'s>(
     let name = |text: &'static str| ast::Name { text, span };
     let variable = |text, path| {
         let ty = ast::TypeSpec { kind: ast::TypeKind::Named(path), span };
-        ast::VarDecl { names: vec![name(text)], address: None, ty, edge: None, initial: None, doc: None, span }
+        ast::VarDecl {
+            names: vec![name(text)],
+            address: None,
+            ty,
+            edge: None,
+            construction: None,
+            initial: None,
+            doc: None,
+            span,
+        }
     };
     let expr = |kind| ast::Expr { kind, span };
     let named = |text| expr(ExprKind::Name(name(text)));

@@ -93,6 +93,7 @@ impl<'s> Declarations<'s> {
         name: &str,
     ) -> Option<Resolved> {
         let mut resolved = self.resolve_type_named(&decl.ty, scope, name, None)?;
+        self.check_construction(decl, resolved.ty);
         if let Some(initial) = &decl.initial {
             // A refused value has been reported; the type is known all the same.
             let value = self.initial(initial, &resolved, scope);

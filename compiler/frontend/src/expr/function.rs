@@ -5,6 +5,7 @@ use super::binding::{Given, Parameter};
 use super::checker::Checker;
 use super::generic_call::Called;
 use super::order::Held;
+use crate::start::is_initial;
 use crate::types::signature::{Formal, Signature, Target};
 use crate::types::table::Resolved;
 use crate::{Code, Diagnostic, Span, ast};
@@ -190,6 +191,16 @@ impl<'s> Checker<'_, 's> {
         let (name, refused) = (formal.name.text, self.decl.dialect(span).wants_all_inputs());
         let ty = formal.word.map_or_else(|| self.type_name(formal.resolved.ty), |it| it.name().to_owned());
         let code = if refused { Code::E0303 } else { Code::W0304 };
+        if is_initial(owner) {
+            let message = format!("FB_init is given nothing for `{name}`");
+            self.report(
+                Diagnostic::new(Code::E0303, span, message)
+                    .label("it runs at the start")
+                    .other(formal.name.span, "declared here, without an initial value")
+                    .help(format!("write it after the type of the instance: `: Type({name} := …)`")),
+            );
+            return None;
+        }
         let message = format!("this call of `{}` leaves out the input `{name}`", owner.text);
         self.report(
             Diagnostic::new(code, span, message)

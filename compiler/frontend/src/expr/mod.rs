@@ -20,7 +20,7 @@ mod enable;
 mod expression;
 mod fold;
 mod function;
-mod generic_call;
+pub(crate) mod generic_call;
 mod literal;
 mod logix_operands;
 mod memory;

@@ -663,6 +663,11 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
+    /// Whether the body is that of FB_init, which gives an instance its first values.
+    fn is_start(&self) -> bool {
+        self.slot.is_some_and(|it| crate::start::is_initial(self.decl.pous[it].ast.name))
+    }
+
     /// Whether a place may be given to a call that may write to it.
     pub(crate) fn may_be_given_away(&mut self, found: &Found<'s>, span: Span) -> bool {
         if self.is_counter(&found.place) {
@@ -678,7 +683,9 @@ impl<'s> Checker<'_, 's> {
                 false
             }
             // A FUNCTION's input is a copy, and CODESYS code uses it as a variable.
-            Access::OwnInput(_) if self.decl.dialect(span).assigns_inputs() && is_copy(found) => true,
+            Access::OwnInput(_) if self.decl.dialect(span).assigns_inputs() && (is_copy(found) || self.is_start()) => {
+                true
+            }
             Access::OwnInput(name) if self.decl.dialect(span).assigns_inputs() => {
                 self.report(
                     Diagnostic::new(Code::W0504, span, format!("the input `{}` is assigned from inside", name.text))

@@ -1,5 +1,7 @@
 //! FUNCTIONs that never say what their result is.
 
+use crate::spelling::Key;
+use crate::start::INITIAL;
 use crate::types::declarations::Declarations;
 use crate::{Code, Diagnostic, ast};
 
@@ -8,6 +10,8 @@ pub(crate) fn unassigned(decl: &Declarations<'_>) -> Vec<Diagnostic> {
     let unassigned = (0..decl.pous.len())
         .filter(|slot| !decl.is_head(*slot))
         .map(|slot| &decl.pous[slot])
+        // The system asks for no result.
+        .filter(|it| !INITIAL.iter().any(|name| Key(name) == Key(it.ast.name.text)))
         .filter(|it| it.ast.result.is_some() && !it.names_itself && it.ast.modifiers.is_abstract.is_none())
         .map(|it| it.ast.name);
     let lint = |name: ast::Name<'_>| {

@@ -91,6 +91,7 @@ impl Declarations<'_> {
             variables: variables.into_iter().chain(kept).collect(),
             body: RoutineId::next(slot),
             prescan: None,
+            start: None,
         })
     }
 
@@ -162,7 +163,7 @@ fn variables(image: &Image, signature: &Signature<'_>) -> Vec<staunch_ir::Variab
         let (place, view) = image.stored(&it.place);
         staunch_ir::Variable { name: it.name.text.to_owned(), section: it.section, place, view }
     };
-    signature.scope.variables.iter().map(variable).collect()
+    signature.scope.variables.iter().filter(|it| !crate::start::is_hidden(it.name.text)).map(variable).collect()
 }
 
 /// What the call of a routine in the block passes.

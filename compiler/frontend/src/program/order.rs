@@ -19,8 +19,10 @@ pub(super) fn order(declarations: &mut Declarations<'_>, uses: Vec<Uses>, stacks
         order = sorted(declarations, &calls)?;
     }
     let is_empty = |it: &Routine| it.kind == RoutineKind::Prescan && it.body.is_empty();
-    let is_called =
-        |at: usize| at >= declarations.pous.len() || !declarations.is_generic(at) && !declarations.is_head(at);
+    let is_called = |at: usize| {
+        at >= declarations.pous.len()
+            || !declarations.is_generic(at) && !declarations.is_head(at) && !declarations.starts_nothing(at)
+    };
     order.retain(|at| !is_empty(&declarations.program.routines[*at]) && is_called(*at));
     check_stack(declarations, stacks, &calls, &order);
     renumber(declarations, &order);
@@ -128,6 +130,8 @@ fn slot(declarations: &Declarations<'_>, routine: usize) -> usize {
 
 fn renumber(declarations: &mut Declarations<'_>, order: &[usize]) {
     let slots = declarations.pous.len();
+    let bodies = declarations.program.classes.iter().map(|it| it.body.index());
+    let starts: Vec<_> = bodies.map(|it| declarations.start_of_program(it)).collect();
     let program = &mut declarations.program;
     let mut new = vec![None; program.routines.len()];
     for (position, at) in order.iter().enumerate() {
@@ -139,7 +143,8 @@ fn renumber(declarations: &mut Declarations<'_>, order: &[usize]) {
     for routine in &mut program.routines {
         each_call(&mut routine.body, &mut |id| *id = renamed(*id));
     }
-    for class in &mut program.classes {
+    for (class, start) in program.classes.iter_mut().zip(starts) {
+        class.start = start.and_then(|it| new[it]);
         class.prescan = new.get(slots + class.body.index()).copied().flatten();
         class.body = renamed(class.body);
     }

@@ -65,8 +65,16 @@ fn binding<'t, 's: 't>() -> impl Rule<'t, 's, Binding<'s>> {
     let binding = expr().then(address).then(typed).then_ignore(end());
     binding.map(|((target, address), (ty, initial))| {
         let span = target.span;
-        let located =
-            VarDecl { names: vec![address], address: Some(address), ty, edge: None, initial, doc: None, span };
+        let located = VarDecl {
+            names: vec![address],
+            address: Some(address),
+            ty,
+            edge: None,
+            construction: None,
+            initial,
+            doc: None,
+            span,
+        };
         Binding { target, located }
     })
 }

@@ -3,15 +3,17 @@
 use chumsky::prelude::*;
 
 use crate::{
-    ast::{Access, Edge, Name, TypeKind, TypeSpec, VarBlock, VarDecl, VarKind},
+    ast::{Access, Construction, Edge, Name, TypeKind, TypeSpec, VarBlock, VarDecl, VarKind},
     lex::Kind,
     source::Span,
 };
 
 use super::{
     block_ends,
-    combinator::{Rule, ahead, name, nested, rule, token, word},
-    diagnostics, foreign_types,
+    combinator::{Rule, ahead, delimited, list as list_of, name, nested, rule, token, word},
+    diagnostics,
+    expression::arguments,
+    foreign_types,
     initial::optional_initial,
     parser::{Expected, In, Parsed, Start, TokenReader},
     recovery,
@@ -180,7 +182,7 @@ fn declaration_or_names<'t, 'p, 's>(input: &mut In<'t, 'p, 's>, start: Start<'t,
     }
     let span = from.to(input.last());
     let ty = TypeSpec { kind: TypeKind::Error, span };
-    Some(VarDecl { names, address: None, ty, edge: None, initial: None, doc: None, span })
+    Some(VarDecl { names, address: None, ty, edge: None, construction: None, initial: None, doc: None, span })
 }
 
 /// `names` holds what was read of the names, also if the rest does not parse.
@@ -197,15 +199,24 @@ pub fn declaration<'s>(input: &mut In<'_, '_, 's>, names: &mut Vec<Name<'s>>) ->
     if nameless {
         names.extend(address);
     }
-    let ((ty, edge), initial) = match swapped {
+    let (((ty, construction), edge), initial) = match swapped {
         Some(named) => {
             *names = named.names;
-            ((named.ty, None), input.parse(optional_initial().then_ignore(end()))?)
+            (((named.ty, None), None), input.parse(optional_initial().then_ignore(end()))?)
         }
         None => input.parse(typed().then(optional_initial()).then_ignore(end()))?,
     };
     let doc = input.doc(first);
-    Ok(VarDecl { names: std::mem::take(names), address, ty, edge, initial, doc, span: start.to(input.last()) })
+    Ok(VarDecl {
+        names: std::mem::take(names),
+        address,
+        ty,
+        edge,
+        construction,
+        initial,
+        doc,
+        span: start.to(input.last()),
+    })
 }
 
 /// `a, b`
@@ -214,15 +225,32 @@ fn declared_names<'t, 's: 't>() -> impl Rule<'t, 's, (Name<'s>, Vec<Name<'s>>)> 
     first.then(token(Kind::Comma).ignore_then(name()).repeated().collect())
 }
 
+type Typed<'s> = ((TypeSpec<'s>, Option<Box<Construction<'s>>>), Option<(Edge, Span)>);
+
 /// `: BOOL R_EDGE`
-fn typed<'t, 's: 't>() -> impl Rule<'t, 's, (TypeSpec<'s>, Option<(Edge, Span)>)> {
+fn typed<'t, 's: 't>() -> impl Rule<'t, 's, Typed<'s>> {
     // These two are names everywhere else.
     let rising = word("R_EDGE").map(|span| (Edge::Rising, span));
     let falling = word("F_EDGE").map(|span| (Edge::Falling, span));
     let colon = token(Kind::Colon).ignored().or(foreign_types::no_colon_in_declaration());
     let edge = rising.or(falling).or_not().then_ignore(foreign_types::address_after_type().or_not());
     let usual = ahead(|input| matches!(input.kind(), Kind::Semicolon | Kind::Assign)).to(None);
-    colon.ignore_then(type_spec()).then(usual.or(edge))
+    colon.ignore_then(type_spec().then(rule(construction))).then(usual.or(edge))
+}
+
+/// `(5)` after the type of an instance, `[(5), (6)]` after that of an array of them.
+fn construction<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Box<Construction<'s>>>> {
+    let start = input.here();
+    let is_of_elements = match (input.kind(), input.kind_ahead(1)) {
+        (Kind::OpenParen, _) => false,
+        (Kind::OpenBracket, Kind::OpenParen) => true,
+        _ => return Ok(None),
+    };
+    let lists = match is_of_elements {
+        false => vec![arguments(input)?],
+        true => input.parse(delimited(Kind::OpenBracket, list_of(rule(arguments)), Kind::CloseBracket))?,
+    };
+    Ok(Some(Box::new(Construction { lists, is_of_elements, span: start.to(input.last()) })))
 }
 
 /// `AT %IX0.0`; in a structure `AT %B4` and `AT %X0.3`.

@@ -15,6 +15,7 @@ use super::{
     parser::{In, TokenReader},
     recovery,
     token_class::is_end,
+    type_block::attributes_here,
     unsupported,
 };
 
@@ -108,6 +109,7 @@ pub fn actions<'s>(input: &mut In<'_, '_, 's>, items: &mut [Item<'s>], contents:
 fn routine<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind, contents: Contents) -> Vec<Pou<'s>> {
     let first = input.number();
     let doc = doc::before(input.state(), first);
+    let attributes = attributes_here(input);
     let opened = input.take();
     let (modifiers, name, result) = input.parse(head(kind)).unwrap_or_else(|problem| {
         diagnostics::report(input, problem);
@@ -116,7 +118,7 @@ fn routine<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind, contents: C
         (Modifiers::default(), Name { text: "", span: opened }, None)
     });
     input.eat(Kind::Semicolon);
-    let mut pou = Pou { modifiers, result, doc, ..Pou::new(kind, name, opened.to(name.span)) };
+    let mut pou = Pou { modifiers, result, attributes, doc, ..Pou::new(kind, name, opened.to(name.span)) };
     if input.text(opened).eq_ignore_ascii_case(PROPERTY) {
         return property(input, &pou, opened, contents);
     }
@@ -196,7 +198,8 @@ fn take_value(pou: &mut Pou<'_>) {
     }
     let (names, span) = (vec![pou.name], pou.name.span);
     pou.blocks.extend(pou.result.take().map(|ty| {
-        let value = VarDecl { names, address: None, ty, edge: None, initial: None, doc: None, span };
+        let value =
+            VarDecl { names, address: None, ty, edge: None, construction: None, initial: None, doc: None, span };
         VarBlock { vars: vec![value], ..VarBlock::new(VarKind::Input, span) }
     }));
 }

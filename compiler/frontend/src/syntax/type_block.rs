@@ -53,7 +53,7 @@ pub fn types<'s>(input: &mut In<'_, '_, 's>) -> Vec<TypeDecl<'s>> {
 }
 
 /// The names in `{attribute 'strict'}` and its like between the last token and the next.
-fn attributes_here<'s>(input: &mut In<'_, '_, 's>) -> Vec<&'s str> {
+pub fn attributes_here<'s>(input: &mut In<'_, '_, 's>) -> Vec<&'s str> {
     let (from, to) = (input.last(), input.here());
     let pragmas = &input.state().tokens.pragmas;
     let after = |it: &Name<'s>| it.span.start >= from.end || from.start >= to.start;

@@ -7,7 +7,7 @@ use crate::{
     lex::Kind,
 };
 
-use staunch_ir::RefKind;
+use staunch_ir::{Elementary, RefKind};
 
 use super::{
     combinator::{Rule, ahead, delimited, from_here, list, name, reported, rule, token, word},
@@ -41,6 +41,11 @@ fn plain<'t, 's: 't>() -> impl Rule<'t, 's, TypeKind<'s>> {
 
 fn is_string(input: &mut In<'_, '_, '_>) -> bool {
     input.is_word("STRING") || input.is_word("WSTRING")
+}
+
+fn is_elementary(input: &mut In<'_, '_, '_>) -> bool {
+    let here = input.here();
+    !is_string(input) && Elementary::named(input.text(here)).is_some()
 }
 
 /// `ARRAY[1..3, 0..4] OF T`
@@ -127,11 +132,17 @@ fn named<'t, 's: 't>() -> impl Rule<'t, 's, TypeKind<'s>> {
     let values = lists.clone().ignore_then(enumeration()).map(Suffix::Values);
     let range = expr().then_ignore(token(Kind::DotDot)).then(expr());
     let range = range.delimited_by(token(Kind::OpenParen), token(Kind::CloseParen));
-    let range = lists.not().ignore_then(range).map(|(low, high)| Suffix::Range(low, high));
+    let any_range = range.map(|(low, high)| Suffix::Range(low, high));
+    let range = lists.not().ignore_then(any_range.clone());
     let members = token(Kind::Dot).ignore_then(name()).repeated().collect().map(Suffix::Members);
     let no_more = ahead(|input| input.kind() != Kind::OpenParen);
-    let suffix = choice((values, range, foreign_types::length().to(Suffix::Foreign), members.then_ignore(no_more)));
-    ahead(|input| !is_string(input)).ignore_then(name()).then(suffix).map(|(name, suffix)| match suffix {
+    let length = foreign_types::length().to(Suffix::Foreign);
+    let of_number = choice((values, range.clone(), length.clone(), members.clone().then_ignore(no_more)));
+    // What is in parentheses after another name may be for the FB_init of an instance.
+    let of_other = choice((any_range, length, members));
+    let number = ahead(is_elementary).ignore_then(name()).then(of_number);
+    let other = ahead(|input| !is_elementary(input) && !is_string(input)).ignore_then(name()).then(of_other);
+    number.or(other).map(|(name, suffix)| match suffix {
         Suffix::Values(values) => TypeKind::Enum { base: Some(name), values },
         Suffix::Range(low, high) => TypeKind::Subrange { base: name, low: Box::new(low), high: Box::new(high) },
         Suffix::Members(mut members) => {

@@ -20,7 +20,7 @@ use super::{
     routine::{self, modifiers},
     statement::statements,
     token_class::{closes, is_end, is_pou_end, opens_item, opens_section, opens_statement},
-    type_block::types,
+    type_block::{attributes_here, types},
     unsupported,
 };
 
@@ -213,6 +213,7 @@ fn contents<'s>(input: &mut In<'_, '_, 's>, pou: &mut Pou<'s>) {
 fn pou<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind) -> Item<'s> {
     let first = input.number();
     let doc = doc::before(input.state(), first);
+    let attributes = attributes_here(input);
     let opened = input.take();
     let (mut kind, mut end) = (kind, end);
     if kind == PouKind::Function && input.is_word("BLOCK") && input.kind_ahead(1) == Kind::Name {
@@ -237,7 +238,7 @@ fn pou<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind) -> Item<'s> {
     }
     input.eat(Kind::Semicolon);
     input.state().open.push((end, opened));
-    let mut pou = Pou { modifiers, result, doc, ..Pou::new(kind, name, span) };
+    let mut pou = Pou { modifiers, result, attributes, doc, ..Pou::new(kind, name, span) };
     bases(input, &mut pou, extends, implements);
     pou.blocks.extend(parameters);
     let region = namespace::of_pou(input, opened);
@@ -370,7 +371,7 @@ fn parameters<'t, 's: 't>() -> impl Rule<'t, 's, VarBlock<'s>> {
     let vars = names.then_ignore(token(Kind::Colon)).then(type_spec()).map_with(|(names, ty), extra| {
         let tokens = extra.span();
         let span = extra.state().span(tokens);
-        VarDecl { names, address: None, ty, edge: None, initial: None, doc: None, span }
+        VarDecl { names, address: None, ty, edge: None, construction: None, initial: None, doc: None, span }
     });
     let separator = token(Kind::Semicolon).or(token(Kind::Comma)).or_not();
     let vars = vars.then_ignore(separator).repeated().collect::<Vec<_>>();

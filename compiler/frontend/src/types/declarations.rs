@@ -7,6 +7,7 @@ use super::image::Image;
 use super::overloads::Overloads;
 use super::scope::Variable;
 use super::signature::Signature;
+use super::starts::Starts;
 use super::synthetic::{NamedProgram, Synthetic};
 use super::table::{Resolved, Table};
 use super::tests::Tests;
@@ -14,7 +15,7 @@ use crate::dialect::{self, Dialect};
 use crate::log::Log;
 use crate::names::{Entry, Found, Meaning, Names, Sense, Site, SpaceId};
 use crate::spelling::Key;
-use crate::{Code, Diagnostic, Span, ast};
+use crate::{Code, Diagnostic, Span, ast, start};
 use rustc_hash::FxHashMap;
 use staunch_ir::{BlockId, Location, Program, Projection, RefKind, RefType, ReferenceId, SourceFile, StructId, Type};
 use staunch_runtime::Class;
@@ -156,6 +157,8 @@ pub(crate) struct Declarations<'s> {
     pub table: Table<'s>,
     pub generics: Generics,
     pub overloads: Overloads,
+    /// What declarations say of the start of instances.
+    pub starts: Starts<'s>,
     /// A call asks for an instance of a generic FUNCTION, whose signature is made as all are: by a layer above.
     pub build_signature: BuildSignature<'s>,
 }
@@ -182,6 +185,7 @@ impl<'s> Declarations<'s> {
             table: Table::default(),
             generics: Generics::default(),
             overloads: Overloads::default(),
+            starts: Starts::default(),
             build_signature,
         }
     }
@@ -243,8 +247,17 @@ impl<'s> Declarations<'s> {
             | ast::PouKind::FunctionBlock
             | ast::PouKind::Class
             | ast::PouKind::Interface
+            | ast::PouKind::Function
+                if emitted(pou.name.text) != pou.name.text =>
+            {
+                emitted(pou.name.text).to_owned()
+            }
+            ast::PouKind::Program
+            | ast::PouKind::FunctionBlock
+            | ast::PouKind::Class
+            | ast::PouKind::Interface
             | ast::PouKind::Function => self.name_in_full(pou.name),
-            ast::PouKind::Action | ast::PouKind::Method => pou.name.text.to_owned(),
+            ast::PouKind::Action | ast::PouKind::Method => emitted(pou.name.text).to_owned(),
         }
     }
 
@@ -501,6 +514,15 @@ impl<'s> Declarations<'s> {
             | Type::Block(_) => Vec::new(),
         };
         (1..=12).contains(&names.len()).then(|| crate::diagnostic::wording::list(&names).replace(" or ", " and "))
+    }
+}
+
+/// A name of the compiler's own, as those may read it who read what is emitted.
+fn emitted(name: &str) -> &str {
+    match name {
+        start::START => "start",
+        start::GLOBALS => "start_globals",
+        _ => name,
     }
 }
 

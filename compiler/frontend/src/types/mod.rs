@@ -15,6 +15,7 @@ pub(crate) mod overloads;
 pub(crate) mod polymorphic;
 pub(crate) mod scope;
 pub(crate) mod signature;
+pub(crate) mod starts;
 mod storage;
 pub(crate) mod synthetic;
 pub(crate) mod table;

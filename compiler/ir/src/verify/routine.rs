@@ -40,6 +40,9 @@ impl Verifier<'_> {
             if let Some(prescan) = class.prescan {
                 self.member(class, prescan, RoutineKind::Prescan);
             }
+            if let Some(start) = class.start {
+                self.member(class, start, RoutineKind::Method);
+            }
         }
     }
 

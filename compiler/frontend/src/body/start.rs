@@ -1,0 +1,422 @@
+//! The start of instances: the instances inside of each first, then its FB_init, the values that its declaration
+//! gives, and its METHODs with `call_after_init`.
+
+use crate::ast::{self, ArgumentKind, InitialKind, LiteralValue, PouKind};
+use crate::declare::starts::OF_THE_SYSTEM;
+use crate::expr::checker::Checker;
+use crate::expr::generic_call::Called;
+use crate::spelling::Key;
+use crate::start::{GLOBALS, KEPT, MEMBERS, RETAINS, START};
+use crate::testing::{literal, named};
+use crate::types::declarations::Slot;
+use crate::types::scope::Variable;
+use crate::types::signature::Signature;
+use crate::types::table::Resolved;
+use crate::{Code, Diagnostic, Span};
+use staunch_ir::{
+    Block, Const, Elementary, Expr, FieldId, For, Local, LocalId, Op, Place, Root, RoutineId, Section, Statement,
+    StatementKind, StructId, Type, Value,
+};
+use std::rc::Rc;
+
+pub(super) fn is_start_of_members(callee: &ast::Expr<'_>) -> bool {
+    matches!(&callee.kind, ast::ExprKind::Name(name) if name.text == MEMBERS)
+}
+
+/// What a declaration says of an instance, or of what holds some.
+#[derive(Clone)]
+struct Given<'a, 's> {
+    /// What its FB_init is given.
+    arguments: &'a [ast::Argument<'s>],
+    /// One list of them for each element.
+    lists: Option<&'a ast::Construction<'s>>,
+    initial: Option<&'a ast::Initial<'s>>,
+    /// What it starts as, by its type and by the declaration.
+    default: Const,
+    value: Const,
+    span: Span,
+}
+
+/// A variable that FB_init may write, and what the declaration gives it.
+struct Assigned {
+    place: Place,
+    default: Const,
+    value: Const,
+}
+
+impl<'s> Checker<'_, 's> {
+    /// Starts the instances that live for one call.
+    pub(super) fn start_locals(&mut self, signature: &Signature<'s>) {
+        if !self.decl.starts.is_any {
+            return;
+        }
+        let is_local = |it: &&Rc<Variable<'s>>| matches!(it.place.root, Root::Local(_)) && it.section != Section::InOut;
+        let locals: Vec<_> = signature.scope.variables.iter().filter(is_local).map(Rc::clone).collect();
+        for variable in locals {
+            self.start_variable(&variable);
+        }
+    }
+
+    /// Starts what the POU around holds; the FUNCTION for that starts what is global.
+    pub(super) fn start_members(&mut self, span: Span) {
+        let covered = std::mem::replace(&mut self.is_covered, false);
+        let Some(slot) = self.slot else { return };
+        let owner = self.decl.pous[slot].owner.unwrap_or(slot);
+        let kind = self.decl.pous[owner].ast.kind;
+        let variables = match kind {
+            PouKind::Function => self.global_instances(),
+            PouKind::Program
+            | PouKind::FunctionBlock
+            | PouKind::Class
+            | PouKind::Interface
+            | PouKind::Test
+            | PouKind::Action
+            | PouKind::Method
+            | PouKind::Getter
+            | PouKind::Setter => self.own_instances(owner),
+        };
+        if matches!(kind, PouKind::Program | PouKind::Test) {
+            self.start_globals(span);
+        }
+        let kept = KEPT[usize::from(kind == PouKind::Function)];
+        let (kept_ones, anew): (Vec<_>, Vec<_>) = variables.into_iter().partition(|it| it.retain);
+        anew.iter().for_each(|it| self.start_variable(it));
+        let once = self.nested(|this| kept_ones.iter().for_each(|it| this.start_variable(it)));
+        self.start_once(kept, once, span);
+        self.is_covered = covered;
+    }
+
+    /// What RETAIN keeps is started when it has its initial values, and not again.
+    fn start_once(&mut self, flag: &'static str, mut then: Block, span: Span) {
+        if then.is_empty() {
+            return;
+        }
+        let Some(flag) = self.place(&named(flag, span)).map(|it| it.place) else { return };
+        let at = self.at(span);
+        let truth = Expr::bool(true, at);
+        then.push(Statement::assign(flag.clone(), truth, at));
+        let condition = Expr::apply(Op::Not, Type::BOOL, vec![Expr::load(flag, at)], at);
+        self.push(StatementKind::If { condition, then, otherwise: Vec::new() }, span);
+    }
+
+    /// The instances in the state of the POU in a slot.
+    fn own_instances(&mut self, slot: usize) -> Vec<Rc<Variable<'s>>> {
+        let Some(signature) = self.decl.signature(slot) else { return Vec::new() };
+        let mut found: Vec<_> =
+            signature.scope.variables.iter().filter(|it| is_held(it, Root::Instance)).cloned().collect();
+        let routines = (slot + 1..self.decl.pous.len()).take_while(|it| self.decl.pous[*it].owner == Some(slot));
+        for routine in routines.collect::<Vec<_>>() {
+            let Some(signature) = self.decl.signature(routine) else { continue };
+            if self.decl.pous[routine].ast.kind != PouKind::Action {
+                found.extend(signature.scope.variables.iter().filter(|it| is_held(it, Root::Instance)).cloned());
+            }
+        }
+        found.sort_by_key(|it| it.place.projections.first().and_then(field));
+        found.dedup_by_key(|it| it.place.projections.first().and_then(field));
+        found
+    }
+
+    /// Those among the globals: declared ones, PROGRAMs that are named, and VAR_STAT.
+    fn global_instances(&mut self) -> Vec<Rc<Variable<'s>>> {
+        let known = self.decl.globals.iter().filter_map(|it| match &it.slot {
+            Slot::Done(variable) => Some(Rc::clone(variable)),
+            Slot::Open | Slot::Failed => None,
+        });
+        let mut found: Vec<_> = known.collect();
+        let mut programs: Vec<_> = self.decl.named_programs.iter().collect();
+        programs.sort_by_key(|it| it.0);
+        found.extend(programs.into_iter().map(|it| Rc::clone(&it.1.variable)));
+        for slot in 0..self.decl.written_pous().len() {
+            let Some(signature) = self.decl.signature(slot) else { continue };
+            let is_static = |it: &&Rc<Variable<'s>>| is_held(it, Root::Globals) && it.section == Section::Internal;
+            found.extend(signature.scope.variables.iter().filter(is_static).cloned());
+        }
+        let mut seen = rustc_hash::FxHashSet::default();
+        found.retain(|it| seen.insert(it.place.projections.first().and_then(field)));
+        found
+    }
+
+    fn start_globals(&mut self, span: Span) {
+        let is_it = |pou: &crate::types::declarations::PouSlot<'s>| {
+            pou.ast.kind == PouKind::Function && pou.ast.name.text == GLOBALS
+        };
+        let Some(slot) = self.decl.pous.iter().position(is_it) else { return };
+        let callee = RoutineId::next(slot);
+        self.push(StatementKind::Call { callee, instance: None, arguments: Vec::new(), result: None }, span);
+    }
+
+    fn start_variable(&mut self, variable: &Variable<'s>) {
+        if !self.decl.is_started(variable.place.ty) {
+            return;
+        }
+        let at = self.at(variable.name.span);
+        let declared = self.decl.starts.declared.get(&at).copied();
+        let (span, value) = (variable.name.span, variable.resolved.initial.clone());
+        self.start_declared(variable.place.clone(), declared, value, span);
+    }
+
+    /// Starts what a declaration declares.
+    fn start_declared(&mut self, place: Place, declared: Option<&'s ast::VarDecl<'s>>, value: Const, span: Span) {
+        let construction = declared.and_then(|it| it.construction.as_deref());
+        let arguments = construction.filter(|it| !it.is_of_elements).and_then(|it| it.lists.first());
+        let given = Given {
+            arguments: arguments.map_or(&[], Vec::as_slice),
+            lists: construction.filter(|it| it.is_of_elements),
+            initial: declared.and_then(|it| it.initial.as_ref()),
+            default: self.decl.start_of(place.ty),
+            value,
+            span: construction.map_or(span, |it| it.span),
+        };
+        self.start_place(place, &given);
+    }
+
+    fn start_place(&mut self, place: Place, given: &Given<'_, 's>) {
+        if !self.decl.is_started(place.ty) {
+            return;
+        }
+        match place.ty {
+            Type::Struct(id) => match self.decl.slot_of_instance(id) {
+                Some(class) => self.start_instance(place, id, class, given),
+                None => self.start_structure(place, id, given),
+            },
+            Type::Array(_) => self.start_elements(place, given),
+            Type::Elementary(_)
+            | Type::Subrange(..)
+            | Type::String(_)
+            | Type::Enum(_)
+            | Type::Reference(_)
+            | Type::Block(_) => {}
+        }
+    }
+
+    fn start_instance(&mut self, place: Place, id: StructId, class: usize, given: &Given<'_, 's>) {
+        let initial = self.decl.initial_methods(class);
+        let mut values = Vec::new();
+        if let Some(written) = given.initial.filter(|_| !initial.is_empty()) {
+            self.values_given(place.clone(), written, (&given.default, &given.value), &mut values);
+        }
+        for Assigned { place, default, .. } in &values {
+            self.assign_constant(place, default, given.span);
+        }
+        if self.decl.pous[class].ast.kind == PouKind::Program || self.decl.has_started_members(id) {
+            self.call_start(class, place.clone(), given.span);
+        }
+        for method in initial {
+            let arguments = self.arguments_of(method, given);
+            self.call_system(method, place.clone(), &arguments, given.span);
+        }
+        for Assigned { place, value, .. } in &values {
+            self.assign_constant(place, value, given.span);
+        }
+        for method in self.decl.methods_after(class) {
+            // Another one has been reported.
+            if self.decl.signature(method).is_some_and(|it| !it.formals.is_empty()) {
+                continue;
+            }
+            self.call_system(method, place.clone(), &[], given.span);
+        }
+    }
+
+    /// Calls the METHOD that starts what is in an instance.
+    fn call_start(&mut self, class: usize, place: Place, span: Span) {
+        let start = self.decl.pous[class].routines.get(&Key(START)).and_then(|it| it.called);
+        let Some((slot, _)) = start else { return };
+        let callee = RoutineId::next(slot);
+        self.push(StatementKind::Call { callee, instance: Some(place), arguments: Vec::new(), result: None }, span);
+    }
+
+    fn call_system(&mut self, slot: usize, place: Place, arguments: &[ast::Argument<'s>], span: Span) {
+        let name = ast::Name { text: self.decl.pous[slot].ast.name.text, span };
+        let called = Called { slot, name, expected: None, span };
+        self.user_function(called, Some((place, span)), arguments);
+    }
+
+    /// What FB_init is given: of what the declaration writes, a base's takes what it knows.
+    fn arguments_of(&mut self, method: usize, given: &Given<'_, 's>) -> Vec<ast::Argument<'s>> {
+        let Some(signature) = self.decl.signature(method) else { return Vec::new() };
+        let has = |name: &str| signature.formals.iter().any(|it| Key(it.name.text) == Key(name));
+        let span = given.span;
+        let told = self.scope_has_retains(span);
+        let values = [told, literal(LiteralValue::Bool(false), span)];
+        let of_system = OF_THE_SYSTEM.into_iter().zip(values).filter(|(name, _)| has(name));
+        let mut arguments: Vec<_> = of_system
+            .map(|(text, value)| ast::Argument { kind: ArgumentKind::Input(ast::Name { text, span }, value), span })
+            .collect();
+        let is_base = self.decl.pous[method].ast.is_hidden;
+        let own = signature.formals.len().saturating_sub(arguments.len());
+        for (at, argument) in given.arguments.iter().enumerate() {
+            let is_known = match &argument.kind {
+                ArgumentKind::Positional(_) => at < own,
+                ArgumentKind::Input(name, _) | ArgumentKind::Output { name, .. } => has(name.text),
+            };
+            if is_known || !is_base {
+                arguments.push(argument.clone());
+            }
+        }
+        arguments
+    }
+
+    /// What `bInitRetains` is: whether what is retained has its initial values.
+    fn scope_has_retains(&mut self, span: Span) -> ast::Expr<'s> {
+        let is_it = |it: &crate::types::declarations::GlobalSlot<'s>| it.name.text == RETAINS;
+        match self.decl.globals.iter().any(is_it) {
+            true => named(RETAINS, span),
+            false => literal(LiteralValue::Bool(true), span),
+        }
+    }
+
+    fn start_structure(&mut self, place: Place, id: StructId, given: &Given<'_, 's>) {
+        let fields = self.decl.program.structure(id).fields.clone();
+        for (at, field) in fields.into_iter().enumerate() {
+            if !self.decl.is_started(field.ty) {
+                continue;
+            }
+            let member = place.clone().field(FieldId::next(at), field.ty);
+            let declared = self.decl.starts.declared.get(&field.location).copied();
+            let initial = given.initial.and_then(|it| member_of(it, &field.name));
+            let (default, value) = (part(&given.default, at), part(&given.value, at));
+            match initial {
+                Some(initial) => {
+                    let construction = declared.and_then(|it| it.construction.as_deref());
+                    let list = construction.filter(|it| !it.is_of_elements).and_then(|it| it.lists.first());
+                    let lists = construction.filter(|it| it.is_of_elements);
+                    let arguments = list.map_or(&[][..], Vec::as_slice);
+                    let initial = Some(initial);
+                    self.start_place(member, &Given { arguments, lists, initial, default, value, span: given.span });
+                }
+                None => self.start_declared(member, declared, value, given.span),
+            }
+        }
+    }
+
+    /// Elements that are given something are started one by one, others in a loop.
+    fn start_elements(&mut self, place: Place, given: &Given<'_, 's>) {
+        let mut shape = Vec::new();
+        let mut ty = place.ty;
+        while let Type::Array(id) = ty {
+            let array = self.decl.program.array(id);
+            shape.push((array.low, array.high, array.element));
+            ty = array.element;
+        }
+        let at = self.at(given.span);
+        if given.lists.is_none() && given.initial.is_none() {
+            let nested = Given { lists: None, initial: None, ..given.clone() };
+            return self.start_in_loops(place, &shape, &nested);
+        }
+        let total: i64 = shape.iter().map(|(low, high, _)| high - low + 1).product();
+        if let Some(lists) = given.lists.filter(|it| i64::try_from(it.lists.len()).ok() != Some(total)) {
+            let count = lists.lists.len();
+            self.report(
+                Diagnostic::new(Code::E0206, lists.span, format!("{count} lists of arguments for {total} elements"))
+                    .label("FB_init of each element has one"),
+            );
+            return;
+        }
+        for number in 0..total {
+            let (mut element, mut rest, mut stride) = (place.clone(), number, total);
+            let (mut default, mut value) = (given.default.clone(), given.value.clone());
+            for (low, high, ty) in &shape {
+                stride /= high - low + 1;
+                let index = rest / stride;
+                rest %= stride;
+                let position = usize::try_from(index).unwrap_or_default();
+                (default, value) = (part(&default, position), part(&value, position));
+                let lint = Expr::constant(Elementary::Lint, Value::I64(low + index), at);
+                element = element.index(lint, *ty, at);
+            }
+            let position = usize::try_from(number).unwrap_or_default();
+            let list = given.lists.and_then(|it| it.lists.get(position));
+            let arguments = list.map_or(given.arguments, Vec::as_slice);
+            let initial = given.initial.and_then(|it| element_of(it, position));
+            let span = list.and_then(|it| it.first()).map_or(given.span, |it| it.span);
+            self.start_place(element, &Given { arguments, lists: None, initial, default, value, span });
+        }
+    }
+
+    fn start_in_loops(&mut self, place: Place, shape: &[(i64, i64, Type)], given: &Given<'_, 's>) {
+        let Some(((low, high, element), inner)) = shape.split_first() else { return self.start_place(place, given) };
+        let at = self.at(given.span);
+        let counter = LocalId::next(self.locals.len());
+        self.locals.push(Local { name: "element".to_owned(), ty: Type::LINT, initial: Const::Zero, doc: None });
+        let counter = Place::local(counter, Type::LINT);
+        let one = place.index(Expr::load(counter.clone(), at), *element, at);
+        let body = self.nested(|this| this.start_in_loops(one, inner, given));
+        let lint = |value| Expr::constant(Elementary::Lint, Value::I64(value), at);
+        self.block.push(For::over(counter, lint(*low), lint(*high), body, at));
+    }
+
+    /// The variables of an instance that its declaration gives values.
+    fn values_given(
+        &self,
+        place: Place,
+        written: &ast::Initial<'s>,
+        (default, value): (&Const, &Const),
+        found: &mut Vec<Assigned>,
+    ) {
+        if let (InitialKind::Fields(fields), Type::Struct(id)) = (&written.kind, place.ty) {
+            for (name, written) in fields {
+                let Some(field) = self.decl.field_named(id, name.text) else { continue };
+                let Some(ty) = self.decl.program.member(place.ty, field) else { continue };
+                let parts = (&part(default, field.index()), &part(value, field.index()));
+                self.values_given(place.clone().field(field, ty), written, parts, found);
+            }
+            return;
+        }
+        // An instance is no value.
+        if self.decl.program.instance_in(place.ty, &|it| self.decl.is_instance(it)).is_none() {
+            found.push(Assigned { place, default: default.clone(), value: value.clone() });
+        }
+    }
+
+    fn assign_constant(&mut self, place: &Place, value: &Const, span: Span) {
+        let resolved = Resolved { ty: place.ty, initial: value.clone() };
+        let value = self.initial_value(&resolved, span);
+        self.assign(place.clone(), value, span);
+    }
+}
+
+/// Whether a variable is storage of its own below a root.
+fn is_held(variable: &Variable<'_>, root: Root) -> bool {
+    let is_own = matches!(variable.section, Section::Internal | Section::Input | Section::Output | Section::Global);
+    is_own && variable.place.root == root
+}
+
+fn field(projection: &staunch_ir::Projection) -> Option<FieldId> {
+    match projection {
+        staunch_ir::Projection::Field(field) => Some(*field),
+        staunch_ir::Projection::Index { .. } | staunch_ir::Projection::Deref { .. } => None,
+    }
+}
+
+/// What an initial value says of a member.
+fn member_of<'a, 's>(initial: &'a ast::Initial<'s>, name: &str) -> Option<&'a ast::Initial<'s>> {
+    let InitialKind::Fields(fields) = &initial.kind else { return None };
+    fields.iter().find(|(it, _)| Key(it.text) == Key(name)).map(|it| &it.1)
+}
+
+/// What an initial value says of an element, where it lists them one by one.
+fn element_of<'a, 's>(initial: &'a ast::Initial<'s>, position: usize) -> Option<&'a ast::Initial<'s>> {
+    let InitialKind::Elements(elements) = &initial.kind else { return None };
+    match elements.get(position)? {
+        ast::Element { count: None, values } if elements.iter().all(|it| it.count.is_none()) => values.first(),
+        ast::Element { .. } => None,
+    }
+}
+
+/// A part of a constant by its position.
+fn part(whole: &Const, at: usize) -> Const {
+    match whole {
+        Const::Struct(values) => values.get(at).cloned().unwrap_or(Const::Zero),
+        Const::Array(runs) => {
+            let mut left = u64::try_from(at).unwrap_or(u64::MAX);
+            for (count, value) in runs {
+                if left < *count {
+                    return value.clone();
+                }
+                left -= count;
+            }
+            Const::Zero
+        }
+        Const::Zero | Const::Scalar(_) | Const::Text(_) => Const::Zero,
+    }
+}

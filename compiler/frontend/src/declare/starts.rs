@@ -1,0 +1,206 @@
+//! What declarations say of the start of instances: the METHODs that it calls, the values, and the arguments of FB_init.
+
+use crate::ast::{PouKind, TypeKind, TypeSpec, VarDecl, VarKind};
+use crate::dialect::Dialect;
+use crate::spelling::Key;
+use crate::start::{AFTER, INIT, INITIAL, START, is_after, is_initial};
+use crate::types::declarations::Declarations;
+use crate::types::starts::Starts;
+use crate::{Code, Diagnostic};
+use staunch_ir::{StructId, Type};
+
+/// The inputs that every FB_init has.
+pub(crate) const OF_THE_SYSTEM: [&str; 2] = ["bInitRetains", "bInCopyCode"];
+
+impl<'s> Declarations<'s> {
+    /// Finds the declarations that the start of instances has to know.
+    pub(super) fn note_starts(&mut self) {
+        if !self.pous.iter().any(|it| is_initial(it.ast.name) || is_after(it.ast)) {
+            return;
+        }
+        let mut declared: Vec<&'s VarDecl<'s>> = self.globals.iter().map(|it| it.decl).collect();
+        declared.extend(self.pous.iter().flat_map(|it| &it.ast.blocks).flat_map(|it| &it.vars));
+        self.types.iter().for_each(|it| members(&it.decl.ty, &mut declared));
+        let mut starts = Starts { is_any: true, ..Starts::default() };
+        for decl in declared.into_iter().filter(|it| it.construction.is_some() || it.initial.is_some()) {
+            for name in &decl.names {
+                let at = self.location(name.span);
+                starts.declared.insert(at, decl);
+            }
+        }
+        self.starts = starts;
+    }
+
+    /// The METHODs FB_init of the class in a slot, in the order in which they run: its first base's first.
+    pub(crate) fn initial_methods(&self, class: usize) -> Vec<usize> {
+        let mut homes = vec![class];
+        let mut at = class;
+        while let Some(base) = self.pous[at].ast.extends.and_then(|it| self.class_named(it)) {
+            homes.push(base);
+            at = base;
+        }
+        homes.into_iter().rev().filter_map(|home| self.initial_method_of(class, home)).collect()
+    }
+
+    /// FB_init as a class wrote it, in the class that has it from there.
+    fn initial_method_of(&self, class: usize, home: usize) -> Option<usize> {
+        let name = self.pous[home].ast.name;
+        let own = &self.pous[class];
+        let hidden = own.hidden.get(&(Key(name.text), Key(INIT)));
+        let routines = hidden.or_else(|| own.routines.get(&Key(INIT)))?;
+        let (slot, span) = routines.called?;
+        let written = self.pous[slot].ast.home.map_or(class, |it| self.class_named(it).unwrap_or(class));
+        (written == home && self.dialect(span) == Dialect::Codesys).then_some(slot)
+    }
+
+    /// The METHODs with `call_after_init` of the class in a slot.
+    pub(crate) fn methods_after(&self, class: usize) -> Vec<usize> {
+        let is_own = |it: &usize| self.pous[*it].owner == Some(class);
+        let is_called = |it: &usize| {
+            let pou = self.pous[*it].ast;
+            is_after(pou) && !pou.is_hidden && self.dialect(pou.name.span) == Dialect::Codesys
+        };
+        (class + 1..self.pous.len()).take_while(is_own).filter(is_called).collect()
+    }
+
+    /// Whether the start of a variable of this type does anything.
+    pub(crate) fn is_started(&mut self, ty: Type) -> bool {
+        match ty {
+            Type::Struct(id) => self.is_structure_started(id),
+            Type::Array(id) => self.is_started(self.program.array(id).element),
+            Type::Elementary(_)
+            | Type::Subrange(..)
+            | Type::String(_)
+            | Type::Enum(_)
+            | Type::Reference(_)
+            | Type::Block(_) => false,
+        }
+    }
+
+    fn is_structure_started(&mut self, id: StructId) -> bool {
+        if !self.starts.is_any {
+            return false;
+        }
+        if let Some(known) = self.starts.known.get(&id) {
+            return *known;
+        }
+        let class = self.slot_of_instance(id);
+        let own = class.is_some_and(|it| !self.initial_methods(it).is_empty() || !self.methods_after(it).is_empty());
+        let found = own || self.has_started_members(id);
+        self.starts.known.insert(id, found);
+        found
+    }
+
+    /// Whether something in a structure has a start.
+    pub(crate) fn has_started_members(&mut self, id: StructId) -> bool {
+        let types: Vec<_> = self.program.structure(id).fields.iter().map(|it| it.ty).collect();
+        types.into_iter().any(|it| self.is_started(it))
+    }
+
+    /// Reports arguments for instances that take none.
+    pub(super) fn check_construction(&mut self, decl: &VarDecl<'s>, mut ty: Type) {
+        let Some(construction) = &decl.construction else { return };
+        let is_array = matches!(ty, Type::Array(_));
+        while let Type::Array(id) = ty {
+            ty = self.program.array(id).element;
+        }
+        let class = if let Type::Struct(id) = ty { self.slot_of_instance(id) } else { None };
+        let name = self.program.type_name(ty);
+        if class.is_none_or(|it| self.initial_methods(it).is_empty()) {
+            let label = match class {
+                Some(_) => "these would be for its METHOD FB_init, which CODESYS has",
+                None => "only instances of a FUNCTION_BLOCK with a METHOD FB_init take some",
+            };
+            self.report(
+                Diagnostic::new(
+                    Code::E0304,
+                    construction.span,
+                    format!("a variable of type `{name}` takes no arguments"),
+                )
+                .label(label)
+                .help("initial values are after `:=`: `: Type := (member := value)`"),
+            );
+        } else if is_array != construction.is_of_elements {
+            let label = match is_array {
+                true => "write one list for each element: `[(…), (…)]`",
+                false => "write one list: `(…)`",
+            };
+            self.report(Diagnostic::new(Code::E0304, construction.span, "FB_init runs for each instance").label(label));
+        }
+    }
+
+    /// Reports METHODs that the start calls, and cannot.
+    pub(super) fn check_started(&mut self, class: usize) {
+        for slot in self.initial_methods(class) {
+            let pou = self.pous[slot].ast;
+            if pou.home.is_some() {
+                continue;
+            }
+            let inputs = pou.blocks.iter().filter(|it| it.kind == VarKind::Input).flat_map(|it| &it.vars);
+            let names: Vec<_> = inputs.flat_map(|it| &it.names).map(|it| Key(it.text)).collect();
+            let missing = OF_THE_SYSTEM.iter().find(|it| !names.contains(&Key(it)));
+            if let Some(missing) = missing {
+                self.report(
+                    Diagnostic::new(Code::E0403, pou.name.span, format!("this FB_init has no input `{missing}`"))
+                        .label("the system says by its inputs what start it is")
+                        .help("declare `VAR_INPUT bInitRetains : BOOL; bInCopyCode : BOOL; END_VAR` in it"),
+                );
+            }
+        }
+        for slot in self.methods_after(class) {
+            let (pou, owner) = (self.pous[slot].ast, self.pous[class].ast);
+            if let Some(block) = pou.blocks.iter().find(|it| matches!(it.kind, VarKind::Input | VarKind::InOut)) {
+                self.report(
+                    Diagnostic::new(Code::E0403, block.span, "a METHOD that runs after the start has no inputs")
+                        .label("the system calls it, and has nothing to give")
+                        .other(pou.name.span, format!("`{AFTER}` is before this METHOD")),
+                );
+            }
+            if INITIAL.iter().any(|it| Key(it) == Key(pou.name.text)) {
+                let message = format!("`{}` is called by the system already", pou.name.text);
+                self.report(Diagnostic::new(Code::E0403, pou.name.span, message).label(format!("without `{AFTER}`")));
+            } else if !owner.attributes.iter().any(|it| it.eq_ignore_ascii_case(AFTER)) {
+                let message = format!("`{}` has not the attribute of its METHOD `{}`", owner.name.text, pou.name.text);
+                self.report(
+                    Diagnostic::new(Code::E0403, owner.name.span, message)
+                        .label("so CODESYS and TwinCAT do not call the METHOD")
+                        .other(pou.name.span, "this METHOD is to run after the start")
+                        .help(format!("write `{{attribute '{AFTER}'}}` before the {}, too", owner.kind.word())),
+                );
+            }
+        }
+    }
+
+    /// The METHOD that starts what is in the PROGRAM in a slot.
+    pub(crate) fn start_of_program(&self, slot: usize) -> Option<usize> {
+        let pou = &self.pous[slot];
+        let start = pou.routines.get(&Key(START)).and_then(|it| it.called)?;
+        (pou.ast.kind == PouKind::Program).then_some(start.0)
+    }
+
+    /// Whether a routine is one that starts what is in a class, and there is nothing.
+    pub(crate) fn starts_nothing(&self, slot: usize) -> bool {
+        let pou = self.pous[slot].ast;
+        let owner = self.pous[slot].owner.filter(|it| self.pous[*it].ast.kind != PouKind::Program);
+        pou.name.text == START && owner.is_some() && self.program.routines[slot].body.is_empty()
+    }
+}
+
+/// The declarations of a structure's members.
+fn members<'s>(ty: &'s TypeSpec<'s>, found: &mut Vec<&'s VarDecl<'s>>) {
+    match &ty.kind {
+        TypeKind::Struct(members) | TypeKind::Union(members) => {
+            for member in members {
+                found.push(member);
+                self::members(&member.ty, found);
+            }
+        }
+        TypeKind::Array { element, .. } => members(element, found),
+        TypeKind::Named(_)
+        | TypeKind::String { .. }
+        | TypeKind::Subrange { .. }
+        | TypeKind::Enum { .. }
+        | TypeKind::Reference { .. }
+        | TypeKind::Error => {}
+    }
+}

@@ -1,0 +1,164 @@
+//! What runs before the first scan: METHODs FB_init and those with `call_after_init`, of all instances. The state of each
+//! class gets a METHOD that starts the instances inside of it; a PROGRAM's runs before its body does, once after each
+//! start, after a FUNCTION for the instances that are global. Which instances there are is known when types are: then
+//! a call of [`MEMBERS`] becomes what is to be done.
+
+use crate::Span;
+use crate::ast::{
+    Expr, ExprKind, File, Item, LiteralValue, Name, Pou, PouKind, Statement, StatementKind, UnaryOp, VarBlock, VarKind,
+    each_expr,
+};
+use crate::spelling::Key;
+use crate::testing::{assign, literal, named, variables};
+
+/// METHODs that CODESYS calls by itself.
+pub(crate) const INITIAL: [&str; 3] = [INIT, "FB_reinit", "FB_exit"];
+pub(crate) const INIT: &str = "FB_init";
+/// Of a METHOD that runs when its instance has its values.
+pub(crate) const AFTER: &str = "call_after_init";
+/// The METHOD that starts what is in an instance.
+pub(crate) const START: &str = "__start";
+/// The FUNCTION that starts what is global.
+pub(crate) const GLOBALS: &str = "__start_globals";
+/// Stands for the statements that start what a POU holds.
+pub(crate) const MEMBERS: &str = "__start_members";
+/// TRUE when that has been done since the last start.
+pub(crate) const STARTED: [&str; 2] = ["__started", "__globals_started"];
+/// The same of what is RETAIN, in a variable that is RETAIN.
+pub(crate) const KEPT: [&str; 2] = ["__kept", "__globals_kept"];
+/// What `bInitRetains` is, where something asks for it.
+pub(crate) const RETAINS: &str = "__init_retains";
+const ASKED: &str = "bInitRetains";
+
+/// Whether a name is one of those that are made here: no trace shows them.
+pub(crate) fn is_hidden(name: &str) -> bool {
+    STARTED.contains(&name) || KEPT.contains(&name) || name == RETAINS
+}
+
+pub(crate) fn is_initial(name: Name<'_>) -> bool {
+    Key(name.text) == Key(INIT)
+}
+
+/// Adds to all POUs what starts their instances, where a program has any that ask for it.
+pub(crate) fn expand(files: &mut [File<'_>]) {
+    let routines = || files.iter().flat_map(|it| &it.items).filter_map(pou).flat_map(|it| &it.routines);
+    let asks = |it: &Pou<'_>| is_initial(it.name) || is_after(it);
+    let Some(at) = routines().find(|it| asks(it)).map(|it| it.name.span) else { return };
+    let tells = routines().filter(|it| is_initial(it.name)).any(|it| mentions(&it.body, ASKED));
+    let keeps = files.iter().flat_map(|it| &it.items).any(|it| blocks(it).iter().any(is_retain));
+    for item in files.iter_mut().flat_map(|it| &mut it.items) {
+        if let Item::Pou(pou) = item {
+            starts(pou);
+        }
+    }
+    if let Some(file) = files.get_mut(usize::from(at.file)) {
+        file.items.extend(of_globals(at, tells, keeps));
+    }
+}
+
+pub(crate) fn is_after(routine: &Pou<'_>) -> bool {
+    routine.kind == PouKind::Method && routine.attributes.iter().any(|it| it.eq_ignore_ascii_case(AFTER))
+}
+
+fn pou<'a, 's>(item: &'a Item<'s>) -> Option<&'a Pou<'s>> {
+    match item {
+        Item::Pou(pou) => Some(pou),
+        Item::Types(_) | Item::Globals(_) | Item::Configuration(_) | Item::Test(_) => None,
+    }
+}
+
+/// The global variables in an item.
+fn blocks<'a, 's>(item: &'a Item<'s>) -> &'a [VarBlock<'s>] {
+    match item {
+        Item::Globals(block) => std::slice::from_ref(block),
+        Item::Configuration(it) => &it.globals,
+        Item::Pou(_) | Item::Types(_) | Item::Test(_) => &[],
+    }
+}
+
+fn is_retain(block: &VarBlock<'_>) -> bool {
+    block.retain.or(block.persistent).is_some()
+}
+
+fn mentions(body: &[Statement<'_>], name: &str) -> bool {
+    let mut found = false;
+    each_expr(body, &mut |it| found |= matches!(&it.kind, ExprKind::Name(it) if it.text.eq_ignore_ascii_case(name)));
+    found
+}
+
+/// Adds to a POU what starts the instances in it.
+fn starts(pou: &mut Pou<'_>) {
+    let at = pou.name.span;
+    let (flag, kept) = (STARTED[0], KEPT[0]);
+    if pou.kind.is_block() || matches!(pou.kind, PouKind::Program | PouKind::Test) {
+        let retains = pou.blocks.iter().any(is_retain);
+        pou.blocks.extend(retains.then(|| retained(&[(kept, &["BOOL"])], VarKind::Var, at)));
+    }
+    match pou.kind {
+        PouKind::Program => {
+            pou.blocks.push(variables(&[(flag, &["BOOL"])], at));
+            pou.routines.push(method(once(flag, at), at, OF_PROGRAM));
+            pou.body.insert(0, call(START, at));
+        }
+        PouKind::Test => {
+            pou.blocks.push(variables(&[(flag, &["BOOL"])], at));
+            pou.body.splice(0..0, once(flag, at));
+        }
+        PouKind::FunctionBlock | PouKind::Class => pou.routines.push(method(vec![call(MEMBERS, at)], at, OF_INSTANCE)),
+        PouKind::Interface
+        | PouKind::Function
+        | PouKind::Action
+        | PouKind::Method
+        | PouKind::Getter
+        | PouKind::Setter => {}
+    }
+}
+
+const OF_INSTANCE: &str = "Before the first scan: starts the instances inside.";
+const OF_PROGRAM: &str = "Before the first scan: starts the instances that are global, and those inside, if that has not been done.\nA scan begins with it; where several PROGRAMs run, call it of all before the first scan of any.";
+
+fn method<'s>(body: Vec<Statement<'s>>, at: Span, doc: &str) -> Pou<'s> {
+    let doc = Some(doc.to_owned());
+    Pou { body, doc, ..Pou::new(PouKind::Method, Name { text: START, span: at }, at) }
+}
+
+/// `IF NOT flag THEN __start_members(); flag := TRUE; END_IF`
+fn once<'s>(flag: &'static str, at: Span) -> Vec<Statement<'s>> {
+    let done = assign(flag, literal(LiteralValue::Bool(true), at));
+    let open = Expr { kind: ExprKind::Unary(UnaryOp::Not, Box::new(named(flag, at))), span: at };
+    let kind = StatementKind::If { branches: vec![(open, vec![call(MEMBERS, at), done])], otherwise: None };
+    vec![Statement { kind, span: at }]
+}
+
+fn call<'s>(name: &'static str, span: Span) -> Statement<'s> {
+    let kind = ExprKind::Call(Box::new(named(name, span)), Vec::new());
+    Statement { kind: StatementKind::Expr(Expr { kind, span }), span }
+}
+
+fn retained<'s>(wanted: &[(&'static str, &[&'static str])], kind: VarKind, at: Span) -> VarBlock<'s> {
+    VarBlock { kind, retain: Some(at), ..variables(wanted, at) }
+}
+
+/// The FUNCTION that starts the global instances, and its variables. `tells` where something reads `bInitRetains`,
+/// `keeps` where some global variables are RETAIN.
+fn of_globals<'s>(at: Span, tells: bool, keeps: bool) -> Vec<Item<'s>> {
+    let ([_, flag], [_, kept]) = (STARTED, KEPT);
+    let mut own = variables(&[(flag, &["BOOL"])], at);
+    let mut body = once(flag, at);
+    if tells {
+        own.vars.extend(variables(&[(RETAINS, &["BOOL"])], at).vars);
+        let fresh = Expr { kind: ExprKind::Unary(UnaryOp::Not, Box::new(named(kept, at))), span: at };
+        let told = assign(RETAINS, fresh);
+        if let Some(Statement { kind: StatementKind::If { branches, .. }, .. }) = body.first_mut()
+            && let Some((_, statements)) = branches.first_mut()
+        {
+            statements.insert(0, told);
+            statements.push(assign(kept, literal(LiteralValue::Bool(true), at)));
+        }
+    }
+    own.kind = VarKind::Global;
+    let function = Pou { body, ..Pou::new(PouKind::Function, Name { text: GLOBALS, span: at }, at) };
+    let mut items = vec![Item::Globals(own), Item::Pou(function)];
+    items.extend((tells || keeps).then(|| Item::Globals(retained(&[(kept, &["BOOL"])], VarKind::Global, at))));
+    items
+}

@@ -1,0 +1,15 @@
+//! What the start of instances goes by.
+
+use crate::ast;
+use rustc_hash::FxHashMap;
+use staunch_ir::{Location, StructId};
+
+#[derive(Debug, Default)]
+pub(crate) struct Starts<'s> {
+    /// Whether anything has a start: some FB_init, or a METHOD with `call_after_init`.
+    pub is_any: bool,
+    /// The declarations with values, or arguments, for the variables in these places.
+    pub declared: FxHashMap<Location, &'s ast::VarDecl<'s>>,
+    /// Whether starting a structure does anything, for those that were asked about.
+    pub known: FxHashMap<StructId, bool>,
+}
