@@ -70,7 +70,7 @@ pub fn instance(program: ClassId) -> Instance {
 pub fn class(kind: ClassKind, routines: &[Routine], body: RoutineId, prescan: Option<RoutineId>) -> Class {
     let routine = &routines[body.index()];
     let (name, state) = (routine.name.clone(), routine.state.unwrap());
-    Class { kind, name, doc: None, location: AT, state, variables: Vec::new(), body, prescan }
+    Class { kind, name, doc: None, location: AT, state, variables: Vec::new(), body, prescan, start: None }
 }
 
 /// A program of PROGRAMs that have one instance each, in order.
