@@ -157,6 +157,11 @@ macro_rules! for_each_text_op {
             FromWchar    "_FROM_WCHAR" from_wchar (IN: WCHAR) -> WSTRING [one];
             ToChar       "_TO_CHAR"    to_char    (IN: STRING) -> CHAR [one];
             ToWchar      "_TO_WCHAR"   to_wchar   (IN: WSTRING) -> WCHAR [one];
+            // A character by the number of those before it, and the string with another one there.
+            CharAt       "_CHAR_AT"    char_at    (IN: STRING, P: LINT) -> CHAR [one];
+            WcharAt      "_WCHAR_AT"   wchar_at   (IN: WSTRING, P: LINT) -> WCHAR [one];
+            WithChar     "_WITH_CHAR"  with_char  (IN: STRING, P: LINT, C: CHAR) -> STRING [one];
+            WithWchar    "_WITH_WCHAR" with_wchar (IN: WSTRING, P: LINT, C: WCHAR) -> WSTRING [one];
             NarrowChar   "_NARROW_CHAR" narrow_char (IN: WCHAR) -> CHAR [one];
         }
     };

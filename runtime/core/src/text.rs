@@ -245,6 +245,61 @@ pub fn replace<U: Unit>(text: &[U], by: &[U], count: i64, position: i64, out: &m
     out.write(split(rest, count).1);
 }
 
+#[inline]
+fn unit_at<U: Unit>(text: &[U], position: i64) -> U {
+    usize::try_from(position).ok().and_then(|it| text.get(it)).copied().unwrap_or(U::ZERO)
+}
+
+/// A STRING's byte after the first `position` ones; 0 where the text has ended.
+#[inline]
+pub fn char_at(text: &[u8], position: i64) -> u8 {
+    unit_at(text, position)
+}
+
+/// A WSTRING's code unit after the first `position` ones; 0 where the text has ended.
+#[inline]
+pub fn wchar_at(text: &[u16], position: i64) -> u16 {
+    unit_at(text, position)
+}
+
+/// A STRING with another byte after the first `position` ones: a 0 ends it there, another one beyond its end lengthens
+/// it, with zeros in between, as far as there is room for all of it.
+///
+/// ```
+/// use staunch_runtime::{Text, text::with_char};
+/// let changed = |position, byte| Text::<8>::build(|out| with_char(b"ABC", position, byte, out));
+/// assert_eq!(changed(1, b'x').as_bytes(), b"AxC");
+/// assert_eq!(changed(1, 0).as_bytes(), b"A");
+/// assert_eq!(changed(4, b'x').as_bytes(), b"ABC\0x");
+/// assert_eq!(changed(8, b'x').as_bytes(), b"ABC");
+/// ```
+#[inline]
+pub fn with_char(text: &[u8], position: i64, byte: u8, out: &mut Destination<'_>) {
+    with_unit(text, position, byte, out);
+}
+
+/// The same of a WSTRING and a code unit.
+#[inline]
+pub fn with_wchar(text: &[u16], position: i64, unit: u16, out: &mut Destination<'_, u16>) {
+    with_unit(text, position, unit, out);
+}
+
+#[inline]
+fn with_unit<U: Unit>(text: &[U], position: i64, unit: U, out: &mut Destination<'_, U>) {
+    let (before, rest) = split(text, position);
+    let fits = position < out.units.len() as i64;
+    match (unit == U::ZERO, fits) {
+        (true, _) => out.write(before),
+        (false, false) => out.write(text),
+        (false, true) => {
+            out.write(before);
+            (before.len() as i64..position).for_each(|_| out.write(&[U::ZERO]));
+            out.write(&[unit]);
+            out.write(split(rest, 1).1);
+        }
+    }
+}
+
 /// The first `count` units and the others.
 #[inline]
 fn split<U: Unit>(text: &[U], count: i64) -> (&[U], &[U]) {

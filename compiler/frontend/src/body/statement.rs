@@ -146,6 +146,9 @@ impl<'s> Checker<'_, 's> {
         if let Ast::Part(base, part) = &target.kind {
             return self.assign_part(base, *part, value, span);
         }
+        if let Some((text, index)) = self.character_of(target) {
+            return self.assign_character(text, index, value, span);
+        }
         if self.is_run() {
             self.check_binding(target, value)?;
         }
@@ -287,6 +290,33 @@ impl<'s> Checker<'_, 's> {
         let ExprKind::Load(copy) = &whole.kind else { return None };
         self.merge(copy.clone(), selected.bits(), value, span)?;
         self.write(place, Some(view), whole, span)
+    }
+
+    /// `s[i] := value;` assigns the string with another character.
+    fn assign_character(
+        &mut self,
+        text: &ast::Expr<'s>,
+        index: &ast::Expr<'s>,
+        value: &ast::Expr<'s>,
+        span: Span,
+    ) -> Option<()> {
+        let found = self.place(text);
+        let Some(found) = found.filter(|it| self.writable(it, text.span)) else {
+            self.operand(value, None);
+            return None;
+        };
+        let ty = found.place.ty.string_type()?;
+        let of = self.character_type(ty, index.span);
+        let mut place = found.place;
+        let (position, value) = self.after_place(&mut place, |this| {
+            let mut position = this.character_index(index, ty)?;
+            let value = this.after(&mut [&mut position], |this| this.value(value, of))?;
+            Some((position, value))
+        })?;
+        self.note_assigned(&place, text.span);
+        let whole = Expr::load(place.clone(), self.at(span));
+        let changed = self.with_character(whole, position, value, span)?;
+        self.write(place, None, changed, span)
     }
 
     /// `x S= c` sets, `x R= c` resets, while `c` is TRUE.

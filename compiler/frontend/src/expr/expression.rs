@@ -17,7 +17,10 @@ impl<'s> Checker<'_, 's> {
             Ast::Paren(inner) => self.operand(inner, expected),
             Ast::Name(name) => self.name(*name, expected).map(Operand::Typed),
             Ast::Member(..) => self.member_value(expr).map(Operand::Typed),
-            Ast::Address(_) | Ast::Index(..) => self.load(expr).map(Operand::Typed),
+            Ast::Address(_) | Ast::Index(..) => match self.character_of(expr) {
+                Some((text, index)) => self.character_value(text, index).map(Operand::Typed),
+                None => self.load(expr).map(Operand::Typed),
+            },
             Ast::Part(base, part) => self.part(base, *part).map(Operand::Typed),
             Ast::Deref(_) => self.load(expr).map(Operand::Typed),
             Ast::Call(callee, arguments) => self.call_value(expr, callee, arguments, expected),

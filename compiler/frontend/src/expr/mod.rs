@@ -8,6 +8,7 @@ mod call;
 pub(crate) mod call_tracking;
 mod callee;
 mod candidate;
+mod character;
 pub(crate) mod checker;
 mod coerce;
 pub(crate) mod constant;

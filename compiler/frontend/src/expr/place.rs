@@ -1,8 +1,8 @@
 //! Storage that an expression names.
 
+use super::character::has_characters;
 use super::checker::Checker;
 use super::unresolved::not_constant;
-use crate::dialect::Dialect;
 use crate::inherit::is_super;
 use crate::names::{self, Entry, Meaning, Sense};
 use crate::spelling::nearest;
@@ -503,8 +503,13 @@ impl<'s> Checker<'_, 's> {
                     .label("one index too many, or not an array");
                 let (text, at) = (self.decl.log.sources.text(base.span), self.decl.log.sources.text(index.span));
                 self.report(match self.type_of(&found) {
+                    Type::String(_) if indices.len() == 1 && has_characters(self.decl.dialect(index.span)) => {
+                        Diagnostic::new(Code::E0306, index.span, format!("`{text}[{at}]` is no variable of its own"))
+                            .label("a character of a string: it can be read, and assigned with `:=`")
+                            .help("use a variable here, and assign that")
+                    }
                     Type::String(_) => {
-                        let at = character(at, self.decl.dialect(index.span));
+                        let at = character(at);
                         let reads = format!("read one character with `MID({text}, 1, {at})`");
                         error.help(format!("{reads}, change it with `{text} := REPLACE({text}, 'x', 1, {at})`"))
                     }
@@ -538,22 +543,7 @@ impl<'s> Checker<'_, 's> {
     /// An index as LINT; a constant one is checked now.
     fn index_value(&mut self, index: &ast::Expr<'s>, id: ArrayId) -> Option<Expr> {
         let array = self.decl.program.array(id);
-        let value = self.typed(index, None)?;
-        let value = match value.ty {
-            Type::Elementary(it) if it.is_integer() || (it.is_bits() && it != Elementary::Bool) => value,
-            Type::Enum(id) if self.decl.dialect(index.span).counts_by_enumerations() => {
-                let base = Type::Elementary(self.decl.program.enumeration(id).base);
-                self.convert(staunch_ir::Conversion::Same, base, value)
-            }
-            other => {
-                let found = self.type_name(other);
-                self.report(
-                    Diagnostic::new(Code::E0201, index.span, format!("an index is an integer, this is {found}"))
-                        .label("expected an integer"),
-                );
-                return None;
-            }
-        };
+        let value = self.integer_index(index)?;
         if array.is_open() {
             return self.as_lint(value, index.span);
         }
@@ -568,6 +558,26 @@ impl<'s> Checker<'_, 's> {
         }
         self.index_of_subrange(&value, array, index.span);
         self.as_lint(value, index.span)
+    }
+
+    /// An integer that chooses something.
+    pub(super) fn integer_index(&mut self, index: &ast::Expr<'s>) -> Option<Expr> {
+        let value = self.typed(index, None)?;
+        match value.ty {
+            Type::Elementary(it) if it.is_integer() || (it.is_bits() && it != Elementary::Bool) => Some(value),
+            Type::Enum(id) if self.decl.dialect(index.span).counts_by_enumerations() => {
+                let base = Type::Elementary(self.decl.program.enumeration(id).base);
+                Some(self.convert(staunch_ir::Conversion::Same, base, value))
+            }
+            other => {
+                let found = self.type_name(other);
+                self.report(
+                    Diagnostic::new(Code::E0201, index.span, format!("an index is an integer, this is {found}"))
+                        .label("expected an integer"),
+                );
+                None
+            }
+        }
     }
 
     /// Reports an index whose subrange holds values that the array has not.
@@ -585,7 +595,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// Any integer as LINT; a ULINT beyond LINT becomes the largest LINT, which no array holds.
-    fn as_lint(&mut self, value: Expr, span: Span) -> Option<Expr> {
+    pub(super) fn as_lint(&mut self, value: Expr, span: Span) -> Option<Expr> {
         let value = if self.decl.program.repr(value.ty) == Some(staunch_ir::Repr::U64) {
             let (ty, at) = (value.ty, value.at);
             let most = Expr::new(ty, staunch_ir::ExprKind::Const(Value::U64(u64::MAX >> 1)), at);
@@ -752,12 +762,7 @@ fn is_pin(section: Section) -> bool {
     matches!(section, Section::Input | Section::Output)
 }
 
-/// The place that functions on text count from 1, for an index. CODESYS counts its indices from 0; in the
-/// standard 0 is no index, and stands for the first character.
-fn character(index: &str, dialect: Dialect) -> String {
-    match index.trim().parse::<u32>() {
-        Ok(number) if number == 0 || dialect == Dialect::Codesys => format!("{}", number.saturating_add(1)),
-        Err(_) if dialect == Dialect::Codesys => format!("{index} + 1"),
-        Ok(_) | Err(_) => index.to_owned(),
-    }
+/// The place that functions on text count from 1, for an index: 0 stands for the first character.
+fn character(index: &str) -> &str {
+    if index.trim() == "0" { "1" } else { index }
 }
