@@ -215,6 +215,19 @@ t(IN := a, PT := T#30ms); latch(t.Q, FALSE); mask := 3;",
     {
         assert!(text.contains(&format!("{}:3: {line}", path.display())), "{line}\n{text}");
     }
+    let wide = program(
+        "second_edition",
+        "VAR_INPUT a : BOOL; END_VAR\nVAR t : LTIME; w : WSTRING; END_VAR\nt := t + LTIME#1ms;",
+    );
+    let (code, text) = compare(&wide, "iec", "openplc", &[]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.contains("OPENPLC has no LTIME (`t`): there it is TIME"), "{text}");
+    assert!(text.contains("OPENPLC has no WSTRING (`w`)"), "{text}");
+    let (_, text) = compare(&wide, "iec", "cscape", &[]);
+    assert!(
+        text.contains("Not known: no public document says whether CSCAPE has LTIME (`t`), WSTRING (`w`)."),
+        "{text}"
+    );
     let path = program("no_ctud", "VAR_INPUT a : BOOL; END_VAR\nVAR c : CTUD; END_VAR\nc(a, FALSE, FALSE, FALSE, 3);");
     let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
     let output =

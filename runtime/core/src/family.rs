@@ -63,6 +63,12 @@ impl Family {
             (Self::Logix, Elementary::Word) => Some("INT"),
             (Self::Logix, Elementary::Dword) => Some("DINT"),
             (Self::Logix, Elementary::Lword) => Some("LINT"),
+            // MATIEC has the types of the second edition.
+            (Self::Openplc, Elementary::Ltime) => Some("TIME"),
+            (Self::Openplc, Elementary::Ldate) => Some("DATE"),
+            (Self::Openplc, Elementary::Ltod) => Some("TOD"),
+            (Self::Openplc, Elementary::Ldt) => Some("DT"),
+            (Self::Openplc, Elementary::Char | Elementary::Wchar) => Some("STRING[1]"),
             (Self::Iec | Self::Cscape | Self::Codesys | Self::Openplc | Self::Logix, _) => None,
         }
     }

@@ -2,7 +2,7 @@
 //! goes on, and the user is told at each place.
 
 use staunch_frontend::{Dialect, Sources};
-use staunch_ir::{Program, Type};
+use staunch_ir::{Elementary, Program, Type};
 
 /// A variable whose type the other system has not.
 #[derive(Clone, Debug)]
@@ -31,6 +31,29 @@ pub fn find(sources: &Sources, program: &Program, to: Dialect) -> Vec<Missing> {
     found
 }
 
+/// Variables of types of which no public document says whether the other system has them, with those.
+pub fn unknown(program: &Program, to: Dialect) -> Vec<(String, String)> {
+    if to != Dialect::Cscape {
+        return Vec::new();
+    }
+    let fields = program.structs.iter().flat_map(|it| &it.fields);
+    fields.filter_map(|it| Some((it.name.clone(), uncommon(program, it.ty)?))).collect()
+}
+
+/// The name of a type that is not in a small controller's everyday set.
+fn uncommon(program: &Program, ty: Type) -> Option<String> {
+    match ty {
+        Type::Elementary(it) => {
+            (it.repr().size() > 4 && it != Elementary::Time || it.is_char()).then(|| it.name().to_owned())
+        }
+        Type::String(it) => it.wide.then(|| "WSTRING".to_owned()),
+        Type::Reference(_) => Some("references".to_owned()),
+        Type::Array(id) => uncommon(program, program.array(id).element),
+        Type::Subrange(it, _) => uncommon(program, Type::Elementary(it)),
+        Type::Enum(_) | Type::Struct(_) | Type::Block(_) => None,
+    }
+}
+
 /// By what is known of the system as a whole, and of each block.
 fn lacks(program: &Program, ty: Type, to: Dialect) -> Option<(String, &'static str)> {
     match ty {
@@ -49,6 +72,7 @@ fn lacks(program: &Program, ty: Type, to: Dialect) -> Option<(String, &'static s
         Type::Reference(_) => {
             (to == Dialect::Logix).then(|| ("references".to_owned(), "the variable itself, or an index into an array"))
         }
-        Type::String(_) | Type::Struct(_) => None,
+        Type::String(it) => (it.wide && to == Dialect::Openplc).then(|| ("WSTRING".to_owned(), "a STRING")),
+        Type::Struct(_) => None,
     }
 }

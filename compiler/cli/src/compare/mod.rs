@@ -84,7 +84,8 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
     };
     let renamed = to.diagnostics.iter().filter(|it| it.code == Code::W0609).count();
     let missing = if args.against.is_some() { Vec::new() } else { missing::find(&from.sources, &program, args.to) };
-    let report = report::Report { session: &from, args, notes, renamed, missing };
+    let unknown = if args.against.is_some() { Vec::new() } else { missing::unknown(&program, args.to) };
+    let report = report::Report { session: &from, args, notes, renamed, missing, unknown };
     let moved = match to.program_to_run(args.program.as_deref())? {
         Some(moved) => moved,
         None => return report.rejection(&rejection::find(&to, args.from, args.to)),

@@ -26,6 +26,8 @@ pub struct Report<'s> {
     /// Names of pins that the move changes.
     pub renamed: usize,
     pub missing: Vec<Missing>,
+    /// Variables, and their types that the other system may have or not.
+    pub unknown: Vec<(String, String)>,
 }
 
 impl Report<'_> {
@@ -129,6 +131,11 @@ impl Report<'_> {
                 it.subject,
                 it.instead
             );
+        }
+        if !self.unknown.is_empty() {
+            let each: Vec<_> = self.unknown.iter().map(|(name, ty)| format!("{ty} (`{name}`)")).collect();
+            let to = to.to_ascii_uppercase();
+            let _ = writeln!(text, "Not known: no public document says whether {to} has {}.", each.join(", "));
         }
         match verdict {
             Verdict::Differs { rows, shortest, .. } => text += &self.table(pair, world, rows, *shortest, cause),

@@ -36,6 +36,14 @@ impl Report<'_> {
                 quoted(&format!("{}: {to} has no {}: there it is {}", it.at, it.what, it.instead))
             );
         }
+        for (name, ty) in &self.unknown {
+            let _ = writeln!(
+                text,
+                "{{\"reason\":\"finding\",\"from\":\"{from}\",\"to\":\"{to}\",\"counter\":{},\"trap\":null,\"verdict\":\"unknown\",\"scans\":null,\"stimulus\":null,\"why\":{},\"accepted\":false}}",
+                quoted(name),
+                quoted(&format!("no public document says whether {to} has {ty}"))
+            );
+        }
         let rewritten: Vec<_> =
             self.notes.iter().map(|(before, after)| format!("[{},{}]", quoted(before), quoted(after))).collect();
         let name = match verdict {
