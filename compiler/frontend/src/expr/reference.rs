@@ -7,11 +7,12 @@ use super::checker::Checker;
 use super::method::is_this;
 use super::operand::Operand;
 use super::place::{Access, Found};
-use crate::names::{Found as Meant, Sense};
+use crate::names::{Entry, Found as Meant, Meaning, Sense};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ArgumentKind, BinaryOp, ExprKind as Ast};
 use staunch_ir::{
-    Conversion, Elementary, Expr, ExprKind, Op, Place, RefKind, RefType, ReferenceId, Type, Value, reference::is_null,
+    Conversion, Elementary, Expr, ExprKind, Op, Place, RefKind, RefType, ReferenceId, Section, Type, Value,
+    reference::is_null,
 };
 
 /// The lower half of a reference's bits: its address.
@@ -234,6 +235,10 @@ impl<'s> Checker<'_, 's> {
             self.operand(value, None);
             return None;
         }
+        if self.refuse_to_bind_instance(target).is_some() {
+            self.operand(value, None);
+            return None;
+        }
         let mut place = found.place;
         let ty = place.ty;
         let value = self.after_place(&mut place, |this| {
@@ -246,6 +251,24 @@ impl<'s> Checker<'_, 's> {
         })?;
         self.note_assigned(&place, target.span);
         self.assign(place, value, span);
+        Some(())
+    }
+
+    /// Reports a VAR_IN_OUT that is a reference because heirs are passed for it: it is the caller's instance.
+    fn refuse_to_bind_instance(&mut self, target: &ast::Expr<'s>) -> Option<()> {
+        let Ast::Name(name) = &target.bare().kind else { return None };
+        let variable = self.scope.get(name.text).filter(|it| it.section == Section::InOut)?;
+        let declared = self.decl.pous.iter().flat_map(|it| &it.ast.blocks).flat_map(|it| &it.vars);
+        let decl = declared.into_iter().find(|it| it.names.iter().any(|it| it.span == variable.name.span))?;
+        let ast::TypeKind::Named(path) = &decl.ty.kind else { return None };
+        let ty = path.last().map(|it| it.text)?;
+        let Meant::One(Meaning::Declared(Entry::Pou(_))) = self.decl.lookup(path, Sense::Type) else { return None };
+        self.report(
+            Diagnostic::new(Code::E0211, target.span, format!("`REF=` sets a reference, this is {ty}"))
+                .label("a VAR_IN_OUT is the caller's instance")
+                .other(decl.span, "declared here")
+                .help(format!("declare it as `REFERENCE TO {ty}` in VAR_INPUT")),
+        );
         Some(())
     }
 

@@ -83,7 +83,7 @@ fn section_head<'t, 's: 't>() -> impl Rule<'t, 's, VarBlock<'s>> {
     })
 }
 
-const ACCESSES: [(&str, Access); 4] = [
+pub const ACCESSES: [(&str, Access); 4] = [
     ("PUBLIC", Access::Public),
     ("PRIVATE", Access::Private),
     ("PROTECTED", Access::Protected),

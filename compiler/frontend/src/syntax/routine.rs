@@ -10,7 +10,7 @@ use crate::{
 
 use super::{
     combinator::{Rule, ahead, name, rule, token},
-    declaration::{access, before_name, type_spec},
+    declaration::{ACCESSES, access, before_name, type_spec},
     diagnostics, doc,
     parser::{In, TokenReader},
     recovery,
@@ -38,7 +38,12 @@ type Contents = for<'t, 'p, 's> fn(&mut In<'t, 'p, 's>, &mut Pou<'s>);
 
 /// The routine that begins here, with its end.
 pub fn begins(input: &mut In<'_, '_, '_>) -> Option<(PouKind, Kind)> {
-    if input.kind() != Kind::Name || input.kind_ahead(1) != Kind::Name {
+    let next = input.kind_ahead(1);
+    // A reserved word in the place of the name is reported where it is read.
+    let at = input.number();
+    let (here, after) = (input.state().place(at), input.state().place(at + 1));
+    let is_reserved = next.keyword().is_some() && !input.state().breaks(here.end, after.start);
+    if input.kind() != Kind::Name || next != Kind::Name && !is_reserved {
         return None;
     }
     let word = input.here();
@@ -168,6 +173,10 @@ fn property<'s>(input: &mut In<'_, '_, 's>, head: &Pou<'s>, opened: Span, conten
     while let Some((_, kind, end)) = ACCESSORS.iter().copied().find(|it| input.is_word(it.0)) {
         let opened = input.take();
         let mut pou = Pou { kind, ..head.clone() };
+        // TwinCAT's accessors may have words of their own.
+        while let Some((_, access)) = ACCESSES.iter().copied().find(|it| input.is_word(it.0) && !is_assigned(input)) {
+            pou.modifiers.access = Some((access, input.take()));
+        }
         take_value(&mut pou);
         let is_head = head_only(input);
         if is_head {
@@ -183,6 +192,11 @@ fn property<'s>(input: &mut In<'_, '_, 's>, head: &Pou<'s>, opened: Span, conten
     }
     close(input, Kind::EndProperty, opened);
     accessors
+}
+
+/// Whether the word here is a name that a statement begins with.
+fn is_assigned(input: &mut In<'_, '_, '_>) -> bool {
+    matches!(input.kind_ahead(1), Kind::Assign | Kind::Dot | Kind::OpenParen | Kind::OpenBracket | Kind::Caret)
 }
 
 /// Whether GET or SET has no body, as in an INTERFACE.
