@@ -229,6 +229,9 @@ pub struct Test {
     /// Turns that the loops of one test may take together [default: 10000000]
     #[arg(long, value_name = "N")]
     pub loop_budget: Option<u64>,
+    /// Scans that a suite of TcUnit may take until its tests are finished [default: 10000]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub scans: Option<u64>,
     /// What runs them
     #[arg(long, value_enum, default_value_t = Backend::Native)]
     pub backend: Backend,
@@ -248,6 +251,14 @@ impl Test {
     /// Whether a test of this title runs.
     pub fn wants(&self, title: &str) -> bool {
         self.filter.as_ref().is_none_or(|it| title.to_lowercase().contains(&it.to_lowercase()))
+    }
+
+    /// Whether a test runs, or one of a suite's may.
+    pub fn wants_of(&self, test: &staunch_frontend::Test) -> bool {
+        let Some(suite) = &test.suite else { return self.wants(&test.title) };
+        self.filter.is_none()
+            || suite.is_open
+            || suite.titles.iter().any(|it| self.wants(&format!("{}.{}", test.title, it.0)))
     }
 }
 

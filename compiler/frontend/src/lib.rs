@@ -9,10 +9,11 @@ mod spelling;
 
 pub mod ast;
 mod lex;
-mod mutate;
-mod start;
 mod syntax;
 mod testing;
+
+mod mutate;
+mod start;
 
 mod allow;
 mod dialect;
@@ -41,7 +42,7 @@ pub use mutate::{Mutant, mutants};
 pub use names::functions::standard_functions;
 pub use source::{Source, Sources, Span};
 pub use syntax::parse;
-pub use testing::{Assertion, Test};
+pub use testing::{Assertion, Suite, Test};
 pub use types::coverage::{CoverageKind, CoveragePoint, Decision, Formula};
 
 use log::Log;
@@ -160,8 +161,9 @@ fn run_with(
     // Unit tests that do not run are checked all the same.
     let tested = (!options.tests && testing::has_tests(&files))
         .then(|| run(sources, &Options { tests: true, ..options.clone() }, Bodies::Dropped).diagnostics);
+    testing::suite::qualify(&mut files);
     inherit::expand(&mut files, &mut log.diagnostics);
-    testing::expand(&mut files, options.tests);
+    let suites = testing::expand(&mut files, options.tests);
     start::expand(&mut files);
     let allowances = allow::Allowances::read(&files, &mut log.diagnostics);
     let mut bodies: Vec<_> = files.iter_mut().flat_map(ast::File::take_bodies).collect();
@@ -179,7 +181,7 @@ fn run_with(
     }
     let left_out = checked.left_out;
     let program = program::assemble(&mut declarations, &files, checked);
-    let tests = program::tests::tests(&mut declarations);
+    let tests = program::tests::tests(&mut declarations, suites);
     let coverage = declarations.coverage.take().map(|it| it.points).unwrap_or_default();
     let mut compilation = finish(program.filter(|_| keep == Bodies::Kept), declarations.log, unassigned, left_out);
     compilation.tests = tests;

@@ -5,6 +5,8 @@ use crate::ast::{
     Argument, ArgumentKind, BinaryOp, Expr, ExprKind, Item, Literal, LiteralValue, Pou, Statement, StatementKind,
     UnaryOp, each_body, each_expr,
 };
+use crate::spelling::Key;
+use crate::testing::suite;
 use crate::{Source, Sources, Span, parse};
 
 /// One change of the sources.
@@ -21,13 +23,14 @@ const EDGES: [&str; 9] = ["CU", "CD", "CLK", "R", "LD", "RESET", "LOAD", "S", "S
 /// The changes of the POUs that are no tests, in the order of the sources.
 pub fn mutants(sources: &Sources) -> Vec<Mutant> {
     let mut mutants = Mutants { sources, all: Vec::new() };
-    for (source, number) in sources.files().iter().zip(0u16..) {
-        let file = parse(number, &source.text, &mut Vec::new());
-        for item in &file.items {
-            match item {
-                Item::Pou(pou) => mutants.pou(pou),
-                Item::Types(_) | Item::Globals(_) | Item::Configuration(_) | Item::Test(_) => {}
-            }
+    let files = sources.files().iter().zip(0u16..);
+    let files: Vec<_> = files.map(|(source, number)| parse(number, &source.text, &mut Vec::new())).collect();
+    let tests = suite::names(&files);
+    for item in files.iter().flat_map(|it| &it.items) {
+        match item {
+            Item::Pou(pou) if tests.contains(&Key(pou.name.text)) => {}
+            Item::Pou(pou) => mutants.pou(pou),
+            Item::Types(_) | Item::Globals(_) | Item::Configuration(_) | Item::Test(_) => {}
         }
     }
     mutants.all.sort_by_key(|it| (it.span.file, it.span.start, it.span.end));

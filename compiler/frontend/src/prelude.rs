@@ -1,6 +1,8 @@
 //! The library that is written in Structured Text: a unit becomes a source of the program where one of the program's
 //! files names it, and costs nothing where none does. What a user declares by the same name wins.
 
+mod tcunit;
+
 use crate::dialect::Dialect;
 use crate::lex::{Kind, Tokens, lex};
 use crate::spelling::Key;
@@ -29,18 +31,26 @@ enum Use {
     Space,
 }
 
+const LINE_END: &str = "\n";
+
 /// What the namespaces of the library are in.
 const SYSTEM: &str = "System";
 
 macro_rules! units {
-    ($($use_:ident $name:literal $file:literal $([$dialect:ident])? $($need:literal)*;)*) => {
+    ($($use_:ident $name:literal $file:tt $([$dialect:ident])? $($need:literal)*;)*) => {
         &[$(Unit {
             name: $name,
-            text: include_str!(concat!("prelude/", $file, ".st")),
+            text: units!(@text $file),
             use_: Use::$use_,
             dialect: units!(@dialect $($dialect)?),
             needs: &[$($need),*],
         }),*]
+    };
+    (@text ($text:expr)) => {
+        $text
+    };
+    (@text $file:literal) => {
+        include_str!(concat!("prelude/", $file, ".st"))
     };
     (@dialect) => {
         None
@@ -95,6 +105,9 @@ pub(crate) const UNITS: &[Unit] = units! {
     Space    "System.Timer"     "system_timer";
     Space    "System.Strings"   "system_strings";
     Space    "System.Math"      "system_math";
+    Space    "TcUnit"           (tcunit::TEXT);
+    // Without its namespace, as TwinCAT takes it.
+    Type     "FB_TestSuite"     (LINE_END) "TcUnit";
 };
 
 static BY_NAME: LazyLock<FxHashMap<Key<'static>, Unit>> =

@@ -9,7 +9,7 @@ use crate::ast::{
     each_expr,
 };
 use crate::spelling::Key;
-use crate::testing::{assign, literal, named, variables};
+use crate::testing::tree::{assign, literal, named, variables};
 
 /// METHODs that CODESYS calls by itself.
 pub(crate) const INITIAL: [&str; 3] = [INIT, "FB_reinit", "FB_exit"];

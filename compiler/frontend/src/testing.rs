@@ -1,13 +1,20 @@
 //! Unit tests in Structured Text. Each TEST becomes a POU of its own, with the variables and statements of
 //! its file's SETUP before its own; a second scan runs TEARDOWN. The rest of a test is an ordinary body.
 
+pub(crate) mod suite;
+pub(crate) mod tree;
+
+pub use suite::Suite;
+
 use crate::Span;
 use crate::ast::{
-    ArgumentKind, BinaryOp, Expr, ExprKind, File, Item, Literal, LiteralValue, Name, Pou, PouKind, Statement,
-    StatementKind, TestPart, TypeKind, TypeSpec, UnaryOp, VarBlock, VarDecl, VarKind, each_expr,
+    ArgumentKind, BinaryOp, Expr, ExprKind, File, Item, LiteralValue, Pou, PouKind, Statement, StatementKind, TestPart,
+    UnaryOp, each_expr,
 };
 use crate::spelling::Key;
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
+use std::sync::Arc;
+use tree::{assign, literal, named, variables};
 
 /// TRUE once SETUP has run, so that the next scan is for TEARDOWN.
 const BEGUN: &str = "__begun";
@@ -27,11 +34,15 @@ pub struct Test {
     pub span: Span,
     /// The instance of the program that is this test.
     pub instance: String,
-    /// `__failed` is the number of one of them, from 1, or 0.
-    pub assertions: Vec<Assertion>,
+    /// `failed` is the number of one of them, from 1, or 0.
+    pub assertions: Arc<[Assertion]>,
+    /// The variable that says which assertion failed.
+    pub failed: String,
+    /// A suite of TcUnit, which has tests of its own.
+    pub suite: Option<Suite>,
 }
 
-/// An assertion, and the variables of the test that hold what it compared when it failed.
+/// An assertion, and the variables that hold what it compared when it failed.
 #[derive(Clone, Debug)]
 pub struct Assertion {
     pub span: Span,
@@ -44,12 +55,12 @@ pub struct Assertion {
     pub message: Option<String>,
 }
 
-/// The tests of the files become POUs, or, where they do not run, are left out.
-pub(crate) fn expand(files: &mut [File<'_>], run: bool) {
+/// The tests of the files become POUs, or, where they do not run, are left out; the suites, by their names' places.
+pub(crate) fn expand(files: &mut [File<'_>], run: bool) -> FxHashMap<Span, Suite> {
     let is_test = |it: &Item<'_>| matches!(it, Item::Test(_));
     if !run {
         files.iter_mut().for_each(|it| it.items.retain(|it| !is_test(it)));
-        return;
+        return FxHashMap::default();
     }
     if files.iter().flat_map(|it| &it.items).any(mocks_an_instance) {
         let pous = files.iter_mut().flat_map(|it| &mut it.items).filter_map(|it| match it {
@@ -58,7 +69,7 @@ pub(crate) fn expand(files: &mut [File<'_>], run: bool) {
         });
         pous.for_each(can_be_mocked);
     }
-    for file in files {
+    for file in files.iter_mut() {
         // What a CONFIGURATION runs does not run beside the tests.
         let configurations = file.items.iter_mut().filter_map(|it| match it {
             Item::Configuration(it) => Some(it),
@@ -69,6 +80,7 @@ pub(crate) fn expand(files: &mut [File<'_>], run: bool) {
         file.items = items;
         file.items.extend(whole_tests(tests).map(Item::Pou));
     }
+    suite::expand(files)
 }
 
 /// Whether the sources hold unit tests.
@@ -130,33 +142,6 @@ fn can_be_mocked(pou: &mut Pou<'_>) {
     let counted = vec![assign(CALLS, more), Statement { kind: StatementKind::Return, span: at }];
     let kind = StatementKind::If { branches: vec![(named(MOCKED, at), counted)], otherwise: None };
     pou.body.insert(0, Statement { kind, span: at });
-}
-
-pub(crate) fn variables<'s>(wanted: &[(&'static str, &[&'static str])], at: Span) -> VarBlock<'s> {
-    let variable = |(name, ty): &(&'static str, &[&'static str])| VarDecl {
-        names: vec![Name { text: name, span: at }],
-        address: None,
-        ty: TypeSpec { kind: TypeKind::Named(ty.iter().map(|text| Name { text, span: at }).collect()), span: at },
-        edge: None,
-        construction: None,
-        initial: None,
-        doc: None,
-        span: at,
-    };
-    VarBlock { vars: wanted.iter().map(variable).collect(), ..VarBlock::new(VarKind::Var, at) }
-}
-
-pub(crate) fn named(name: &'static str, at: Span) -> Expr<'static> {
-    Expr { kind: ExprKind::Name(Name { text: name, span: at }), span: at }
-}
-
-pub(crate) fn literal<'s>(value: LiteralValue<'s>, at: Span) -> Expr<'s> {
-    Expr { kind: ExprKind::Literal(Literal { prefix: None, value }), span: at }
-}
-
-pub(crate) fn assign<'s>(name: &'static str, value: Expr<'s>) -> Statement<'s> {
-    let span = value.span;
-    Statement { kind: StatementKind::Assign { target: named(name, span), value }, span }
 }
 
 /// The FUNCTIONs that some test replaces, by the bodies of all POUs.

@@ -48,7 +48,7 @@ pub use error::Error;
 pub use expected::{Expectations, ExpectedCell, ExpectedRow, When};
 pub use json::quote as json_text;
 pub use map::{Instance, Map, Section, Structure, StructureKind, Type, Variable};
-pub use path::Place;
+pub use path::{Place, resolve as place_of};
 pub use run::{Moment, Options, RealTime, Summary, run};
 pub use start::Event;
 pub use value::{format_time, format_time_as, value_at};

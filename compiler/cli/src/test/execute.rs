@@ -1,17 +1,19 @@
-//! One test on one executor: a scan for SETUP and the test itself, and one for TEARDOWN.
+//! One test on one executor: a scan for SETUP and the test itself, and one for TEARDOWN; of a suite as many as it takes.
 
-use super::Outcome;
+use super::apart;
 use super::coverage::Counts;
+use super::suite::{self, Ran};
+use super::{Case, Outcome};
 use crate::args::{self, Backend};
 use crate::machine::{Interpreted, Native};
+use crate::run;
 use crate::rustc::{self, Kind};
 use crate::session::Session;
 use staunch_frontend::Test;
-use staunch_host::{Machine, Map, csv_cells, value_at};
+use staunch_host::{Machine, Map, value_at};
 use staunch_ir::Program;
 use staunch_runtime::{Context, Fault};
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::PathBuf;
 use std::sync::Mutex;
 
 /// What all threads share.
@@ -21,14 +23,33 @@ pub struct Suite<'p> {
     /// Of the back end `rust`: an executable, which runs one test each time.
     executable: Option<PathBuf>,
     pub turns: u64,
+    /// What scans of a TcUnit suite there are.
+    pub pace: Pace,
     /// What the tests execute, where it is counted.
     pub counts: Option<&'p Mutex<Counts>>,
+}
+
+/// The scans of a suite.
+#[derive(Clone, Copy, Debug)]
+pub struct Pace {
+    /// How many it may take.
+    pub scans: u64,
+    /// Between two of them, in nanoseconds.
+    pub cycle: i64,
+}
+
+impl Pace {
+    pub fn of(session: &Session, args: &args::Test) -> Result<Self, String> {
+        let cycle = run::cycle(session, None)?.unwrap_or(10_000_000);
+        Ok(Self { scans: args.scans.unwrap_or(10_000), cycle })
+    }
 }
 
 /// What one thread runs its tests on.
 pub struct Executor<'p> {
     runs: Runs<'p>,
     turns: u64,
+    pace: Pace,
     counts: Option<&'p Mutex<Counts>>,
 }
 
@@ -38,7 +59,7 @@ enum Runs<'p> {
 }
 
 /// The variables of a test after its scans, by their names.
-type Values<'v> = dyn Fn(&str) -> Result<String, String> + 'v;
+pub type Values<'v> = dyn Fn(&str) -> Result<String, String> + 'v;
 
 impl<'p> Suite<'p> {
     pub fn new(
@@ -52,12 +73,12 @@ impl<'p> Suite<'p> {
             Backend::Rust | Backend::Native | Backend::Interpret => None,
         };
         let turns = args.loop_budget.or(session.project.loop_budget).unwrap_or(Context::TURNS);
-        Ok(Self { program, backend: args.backend, executable, turns, counts })
+        Ok(Self { program, backend: args.backend, executable, turns, pace: Pace::of(session, args)?, counts })
     }
 
     /// For a program that runs once, and is not worth to be compiled.
-    pub fn interpreted(program: &'p Program, turns: u64) -> Self {
-        Self { program, backend: Backend::Interpret, executable: None, turns, counts: None }
+    pub fn interpreted(program: &'p Program, turns: u64, pace: Pace) -> Self {
+        Self { program, backend: Backend::Interpret, executable: None, turns, pace, counts: None }
     }
 
     /// An executor for the tests of the instances that are `wanted`.
@@ -73,7 +94,7 @@ impl<'p> Suite<'p> {
                 Runs::Here(Box::new(machine), Box::new(map))
             }
         };
-        Ok(Executor { runs, turns: self.turns, counts: self.counts })
+        Ok(Executor { runs, turns: self.turns, pace: self.pace, counts: self.counts })
     }
 }
 
@@ -89,12 +110,29 @@ fn only(program: &Program, wanted: impl Fn(usize) -> bool) -> Program {
 }
 
 impl Executor<'_> {
-    pub fn run(&mut self, instance: usize, test: &Test) -> Result<Outcome, String> {
-        let outcome = self.outcome(instance, test)?;
+    /// The results of a test, or of those tests of a suite that are wanted.
+    pub fn run(&mut self, instance: usize, test: &Test, wants: &dyn Fn(&str) -> bool) -> Result<Vec<Case>, String> {
+        let Some(suite) = &test.suite else {
+            let outcome = self.outcome(instance, test)?;
+            self.count()?;
+            return Ok(vec![Case { title: test.title.clone(), span: test.span, outcome }]);
+        };
+        let mut is_first = true;
+        suite::cases(test, suite, self.pace, wants, &mut |wanted, see| {
+            let run = self.suite(instance, test, wanted, see);
+            // Another run of the same is no more.
+            if std::mem::take(&mut is_first) {
+                self.count()?;
+            }
+            run
+        })
+    }
+
+    fn count(&self) -> Result<(), String> {
         if let (Runs::Here(machine, _), Some(counts)) = (&self.runs, self.counts) {
             counts.lock().map_err(|_| "a thread ended early")?.add(machine.state());
         }
-        Ok(outcome)
+        Ok(())
     }
 
     fn outcome(&mut self, instance: usize, test: &Test) -> Result<Outcome, String> {
@@ -106,16 +144,41 @@ impl Executor<'_> {
                     if let Err(fault) = machine.scan(instance, &cx) {
                         return Ok(Outcome::Faulted(place_of(fault, map)));
                     }
-                    let values =
-                        |name: &str| value_at(map, &[instance], machine.state(), &format!("{}.{name}", test.instance));
-                    let outcome = outcome(test, &values)?;
+                    let values = |name: &str| value_at(map, &[instance], machine.state(), name);
+                    let outcome = failed(test, &values)?;
                     if outcome != Outcome::Passed {
                         return Ok(outcome);
                     }
                 }
                 Ok(Outcome::Passed)
             }
-            Runs::Apart(executable) => apart(executable, test, self.turns),
+            Runs::Apart(executable) => apart::test(executable, test, self.turns),
+        }
+    }
+
+    /// Runs a suite, such that what fails first in the test of a number is kept; 0 for any.
+    fn suite(&mut self, instance: usize, test: &Test, wanted: usize, see: &mut suite::See<'_>) -> Result<(), String> {
+        let (turns, Pace { scans, cycle }) = (self.turns, self.pace);
+        match &mut self.runs {
+            Runs::Here(machine, map) => {
+                machine.init();
+                let (over, asked) = (format!("{}.__over", test.instance), suite::variable(test, "__wanted"));
+                let asked = staunch_host::place_of(map, &[instance], &asked)?;
+                let number = i32::try_from(wanted).map_err(|error| error.to_string())?;
+                machine.write(asked.offset, &number.to_le_bytes());
+                let (mut now, mut fault) = (0_i64, None);
+                for scan in 0..scans {
+                    let cx = Context::new(now, scan == 0).with_turns(turns);
+                    fault = machine.scan(instance, &cx).err().map(|it| place_of(it, map));
+                    if fault.is_some() || value_at(map, &[instance], machine.state(), &over)? == "TRUE" {
+                        break;
+                    }
+                    now = now.saturating_add(cycle);
+                }
+                let values = |name: &str| value_at(map, &[instance], machine.state(), name);
+                see(&Ran { values: &values, fault })
+            }
+            Runs::Apart(executable) => apart::suite(executable, test, turns, self.pace, wanted, see),
         }
     }
 }
@@ -125,48 +188,13 @@ fn place_of(fault: Fault, map: &Map) -> String {
     fault.of(&files).to_string()
 }
 
-fn outcome(test: &Test, values: &Values<'_>) -> Result<Outcome, String> {
-    let failed = values("__failed")?;
-    let Some(number) = failed.parse::<usize>().ok().filter(|it| *it > 0) else { return Ok(Outcome::Passed) };
-    let assertion = number - 1;
+/// The assertion that failed, with what is kept of it.
+pub fn failed(test: &Test, values: &Values<'_>) -> Result<Outcome, String> {
+    // A suite without assertions has no such variable.
+    let number = if test.failed.is_empty() { 0 } else { values(&test.failed)?.parse::<usize>().unwrap_or(0) };
+    let Some(assertion) = number.checked_sub(1) else { return Ok(Outcome::Passed) };
     let made = test.assertions.get(assertion).ok_or_else(|| format!("assertion {number} is not known"))?;
     let shown = |name: &Option<String>| name.as_deref().map(values).transpose();
     let (actual, expected, message) = (shown(&made.actual)?, shown(&made.expected)?, shown(&made.message)?);
     Ok(Outcome::Failed { assertion, actual, expected, message })
-}
-
-fn apart(executable: &Path, test: &Test, turns: u64) -> Result<Outcome, String> {
-    let assertions = test.assertions.iter();
-    let kept = assertions.flat_map(|it| [&it.actual, &it.expected, &it.message]).flatten();
-    let names: Vec<_> = ["__failed".to_owned()].into_iter().chain(kept.cloned()).collect();
-    let mut command = Command::new(executable);
-    command.args(["--program", &test.instance, "--scans", "2", "--trace", "-", "--vars", &names.join(",")]);
-    command.args(["--loop-budget", &turns.to_string()]);
-    let ran = command.output().map_err(|error| format!("cannot run {}: {error}", executable.display()))?;
-    let text = String::from_utf8_lossy(&ran.stdout);
-    let rows = csv_cells(&text).unwrap_or_default();
-    let Some((heading, rows)) = rows.split_first() else {
-        return Err(String::from_utf8_lossy(&ran.stderr).into_owned());
-    };
-    for row in rows {
-        let values = |name: &str| {
-            let at = heading.iter().position(|it| it == name);
-            at.and_then(|at| row.get(at)).cloned().ok_or_else(|| format!("the trace has no `{name}`"))
-        };
-        let outcome = outcome(test, &values)?;
-        if outcome != Outcome::Passed {
-            return Ok(outcome);
-        }
-    }
-    match ran.status.code() {
-        Some(0) => Ok(Outcome::Passed),
-        _ => Ok(Outcome::Faulted(fault_in(&String::from_utf8_lossy(&ran.stderr)))),
-    }
-}
-
-/// The place and the kind of a fault, without the scan and the program that an executable adds.
-fn fault_in(text: &str) -> String {
-    let text = text.trim();
-    let text = text.strip_prefix("error: ").unwrap_or(text).replacen(": fault: ", ": ", 1);
-    text.rsplit_once(" (scan ").map_or(text.clone(), |it| it.0.to_owned())
 }

@@ -19,6 +19,9 @@ pub fn text(report: &Report<'_>) -> String {
 fn case(result: &Result) -> String {
     let (title, file) = (escaped(&result.title), escaped(&result.file));
     let head = format!("    <testcase name=\"{title}\" classname=\"{file}\" file=\"{file}\" line=\"{}\"", result.line);
+    if let Some(why) = &result.skipped {
+        return format!("{head}>\n      <skipped message=\"{}\"/>\n    </testcase>\n", escaped(why));
+    }
     if result.problem.is_empty() {
         return format!("{head}/>\n");
     }

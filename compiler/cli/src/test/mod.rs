@@ -1,11 +1,13 @@
 //! `staunch test`: each TEST of the sources, and each table beside them, runs from a fresh state.
 
+mod apart;
 mod coverage;
 mod execute;
 mod junit;
 mod mutants;
 mod parallel;
 mod report;
+mod suite;
 mod table;
 
 use crate::args::{self, Backend};
@@ -14,7 +16,7 @@ use crate::{REJECTED, output};
 use coverage::{Counts, Coverage};
 use execute::Suite;
 use report::Report;
-use staunch_frontend::Test;
+use staunch_frontend::{Span, Test};
 use std::collections::HashSet;
 use std::sync::Mutex;
 use table::Table;
@@ -34,6 +36,22 @@ pub enum Outcome {
     Differs(Vec<String>),
     /// The test faulted: where, and why.
     Faulted(String),
+    /// The test did not run: why.
+    Skipped(String),
+}
+
+impl Outcome {
+    /// Whether nothing is wrong.
+    pub fn is_fine(&self) -> bool {
+        matches!(self, Self::Passed | Self::Skipped(_))
+    }
+}
+
+/// A test that has run: a TEST, or one of a suite's.
+pub struct Case {
+    pub title: String,
+    pub span: Span,
+    pub outcome: Outcome,
 }
 
 pub fn test(session: &Session, args: &args::Test) -> Result<u8, String> {
@@ -42,7 +60,7 @@ pub fn test(session: &Session, args: &args::Test) -> Result<u8, String> {
     if session.tests.is_empty() && tables.is_empty() {
         return Err("the sources hold no TEST, and no table is beside them".to_owned());
     }
-    let tests: Vec<(usize, &Test)> = session.tests.iter().enumerate().filter(|it| args.wants(&it.1.title)).collect();
+    let tests: Vec<(usize, &Test)> = session.tests.iter().enumerate().filter(|it| args.wants_of(it.1)).collect();
     let all = session.tests.len() + tables.len();
     let tables: Vec<Table> = tables.into_iter().filter(|it| args.wants(&it.title)).collect();
     if tests.is_empty() && tables.is_empty() {
@@ -61,7 +79,7 @@ pub fn test(session: &Session, args: &args::Test) -> Result<u8, String> {
         threads: args.jobs.map_or_else(parallel::processors, usize::from),
         report: Report::new(session),
     };
-    run.tests(&tests)?;
+    run.tests(&tests, &|it| args.wants(it))?;
     run.tables(&tables)?;
     if is_covered {
         run.coverage.add(&session.coverage, &counts);
@@ -91,7 +109,7 @@ struct Run<'s> {
 
 impl Run<'_> {
     /// Runs the tests that are instances of the program, by their numbers.
-    fn tests(&mut self, tests: &[(usize, &Test)]) -> Result<(), String> {
+    fn tests(&mut self, tests: &[(usize, &Test)], wants: &(dyn Fn(&str) -> bool + Sync)) -> Result<(), String> {
         if tests.is_empty() {
             return Ok(());
         }
@@ -104,8 +122,11 @@ impl Run<'_> {
                 let own: HashSet<usize> = own.collect();
                 suite.executor(|instance| own.contains(&instance))
             },
-            |executor, piece| executor.run(tests[piece].0, tests[piece].1),
-            |piece, outcome| output::print(report.add_test(tests[piece].1, outcome).as_bytes()),
+            |executor, piece| executor.run(tests[piece].0, tests[piece].1, wants),
+            |piece, cases| {
+                let mut cases = cases.into_iter();
+                cases.try_for_each(|it| output::print(report.add_test(tests[piece].1, it).as_bytes()))
+            },
         )
     }
 

@@ -1,7 +1,7 @@
 //! `--mutants`: the tests run on changed programs. A change that no test notices is reported.
 
 use super::coverage::Counts;
-use super::execute::Suite;
+use super::execute::{Pace, Suite};
 use super::table::{self, Table};
 use super::{Outcome, parallel};
 use crate::args::{self, MessageFormat};
@@ -76,13 +76,14 @@ fn fate(session: &Session, args: &args::Test, tables: &[Table], sources: &Source
     let turns = args.loop_budget.or(session.project.loop_budget).unwrap_or(TURNS);
     let compilation = session.compile(sources, true)?;
     let Some(program) = compilation.program else { return Ok(Fate::Refused) };
-    let suite = Suite::interpreted(&program, turns);
-    let wanted: Vec<_> = compilation.tests.iter().enumerate().filter(|it| args.wants(&it.1.title)).collect();
+    let suite = Suite::interpreted(&program, turns, Pace::of(session, args)?);
+    let wanted: Vec<_> = compilation.tests.iter().enumerate().filter(|it| args.wants_of(it.1)).collect();
     // Without tests the program is empty.
     if !wanted.is_empty() {
         let mut executor = suite.executor(|_| true)?;
         for (instance, test) in wanted {
-            if executor.run(instance, test)? != Outcome::Passed {
+            let cases = executor.run(instance, test, &|it| args.wants(it))?;
+            if cases.iter().any(|it| !it.outcome.is_fine()) {
                 return Ok(Fate::Killed);
             }
         }

@@ -1,7 +1,7 @@
 //! A line for each test, and what went wrong below it; or one JSON object a line.
 
-use super::Outcome;
 use super::table::Table;
+use super::{Case, Outcome};
 use crate::args::MessageFormat;
 use crate::session::Session;
 use staunch_frontend::{Assertion, Span, Test};
@@ -22,6 +22,8 @@ pub struct Result {
     /// What went wrong, a line each; empty where the test passed.
     pub problem: Vec<String>,
     pub faulted: bool,
+    /// Why it did not run.
+    pub skipped: Option<String>,
 }
 
 impl<'s> Report<'s> {
@@ -33,19 +35,36 @@ impl<'s> Report<'s> {
         self.results.iter().filter(|it| !it.problem.is_empty()).count()
     }
 
+    pub fn skipped(&self) -> usize {
+        self.results.iter().filter(|it| it.skipped.is_some()).count()
+    }
+
     /// Notes a test's result; the text that it is shown by.
-    pub fn add_test(&mut self, test: &Test, outcome: Outcome) -> String {
-        let source = self.session.sources.get(test.span.file);
-        let (title, file, line) = (test.title.clone(), source.path.clone(), source.line_column(test.span.start).0);
-        let faulted = matches!(outcome, Outcome::Faulted(_));
-        let problem = self.problem(&test.assertions, outcome);
-        self.add(Result { title, file, line, problem, faulted })
+    pub fn add_test(&mut self, test: &Test, case: Case) -> String {
+        let source = self.session.sources.get(case.span.file);
+        let (file, line) = (source.path.clone(), source.line_column(case.span.start).0);
+        self.add_outcome(case.title, file, line, &test.assertions, case.outcome)
     }
 
     pub fn add_table(&mut self, table: &Table, outcome: Outcome) -> String {
+        self.add_outcome(table.title.clone(), table.file(), 1, &[], outcome)
+    }
+
+    fn add_outcome(
+        &mut self,
+        title: String,
+        file: String,
+        line: u32,
+        assertions: &[Assertion],
+        outcome: Outcome,
+    ) -> String {
         let faulted = matches!(outcome, Outcome::Faulted(_));
-        let problem = self.problem(&[], outcome);
-        self.add(Result { title: table.title.clone(), file: table.file(), line: 1, problem, faulted })
+        let skipped = match &outcome {
+            Outcome::Skipped(why) => Some(why.clone()),
+            Outcome::Passed | Outcome::Differs(_) | Outcome::Faulted(_) | Outcome::Failed { .. } => None,
+        };
+        let problem = self.problem(assertions, outcome);
+        self.add(Result { title, file, line, problem, faulted, skipped })
     }
 
     fn add(&mut self, result: Result) -> String {
@@ -68,6 +87,9 @@ impl<'s> Report<'s> {
             self.file.clone_from(&result.file);
             text += &format!("{}\n", result.file);
         }
+        if let Some(why) = &result.skipped {
+            return text + &format!("  skipped {}: {why}\n", result.title);
+        }
         let word = if passed { "ok" } else { "FAILED" };
         text += &format!("  {word:<6}  {}\n", result.title);
         result.problem.iter().for_each(|it| text += &format!("          {it}\n"));
@@ -75,18 +97,23 @@ impl<'s> Report<'s> {
     }
 
     pub fn end(&self) -> String {
-        let (failed, all) = (self.failed(), self.results.len());
+        let (failed, skipped) = (self.failed(), self.skipped());
+        let passed = self.results.len() - failed - skipped;
+        let (as_json, as_text) = match skipped {
+            0 => (String::new(), String::new()),
+            _ => (format!(",\"skipped\":{skipped}"), format!(", {skipped} skipped")),
+        };
         match self.session.common.format() {
             MessageFormat::Json => {
-                format!("{{\"reason\":\"tests\",\"passed\":{},\"failed\":{failed}}}\n", all - failed)
+                format!("{{\"reason\":\"tests\",\"passed\":{passed},\"failed\":{failed}{as_json}}}\n")
             }
-            MessageFormat::Human | MessageFormat::Short => format!("\n{} passed, {failed} failed\n", all - failed),
+            MessageFormat::Human | MessageFormat::Short => format!("\n{passed} passed, {failed} failed{as_text}\n"),
         }
     }
 
     fn problem(&self, assertions: &[Assertion], outcome: Outcome) -> Vec<String> {
         match outcome {
-            Outcome::Passed => Vec::new(),
+            Outcome::Passed | Outcome::Skipped(_) => Vec::new(),
             Outcome::Differs(lines) => lines,
             Outcome::Faulted(text) => {
                 let source = self.source_line(&text).map(str::to_owned);
@@ -99,6 +126,7 @@ impl<'s> Report<'s> {
                 let found = actual.map(|it| format!(", found {}", shown(it))).unwrap_or_default();
                 let wants = format!("expected {wants}{found}");
                 let first = format!("{}: {}", self.place(span), self.session.sources.text(span));
+                let message = message.filter(|it| !it.is_empty());
                 [Some(first), Some(wants), message].into_iter().flatten().collect()
             }
         }
@@ -124,16 +152,18 @@ impl<'s> Report<'s> {
 impl Result {
     fn json(&self) -> String {
         let result = match (self.problem.is_empty(), self.faulted) {
+            _ if self.skipped.is_some() => "skipped",
             (true, _) => "passed",
             (false, false) => "failed",
             (false, true) => "faulted",
         };
+        let message = self.skipped.clone().unwrap_or_else(|| self.problem.join("\n"));
         format!(
             "{{\"reason\":\"test\",\"title\":{},\"file\":{},\"line\":{},\"result\":\"{result}\",\"message\":{}}}\n",
             json_text(&self.title),
             json_text(&self.file),
             self.line,
-            json_text(&self.problem.join("\n"))
+            json_text(&message)
         )
     }
 }

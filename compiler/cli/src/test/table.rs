@@ -111,10 +111,10 @@ fn ran(
 }
 
 /// A file of this process alone, which goes when it has been read.
-struct Scratch(PathBuf);
+pub struct Scratch(pub PathBuf);
 
 impl Scratch {
-    fn new() -> Self {
+    pub fn new() -> Self {
         static NUMBER: AtomicUsize = AtomicUsize::new(0);
         let number = NUMBER.fetch_add(1, Ordering::Relaxed);
         Self(std::env::temp_dir().join(format!("staunch-{}-{number}.csv", std::process::id())))

@@ -15,6 +15,7 @@ mod retain;
 mod run;
 mod stimulus;
 mod tables;
+mod tcunit;
 mod unit_tests;
 mod vendor;
 

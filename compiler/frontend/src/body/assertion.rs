@@ -42,20 +42,20 @@ const WORDS: [(&str, usize, &str); 14] = [
 ];
 
 /// What an assertion has checked: its condition, and the variables that keep what it compared.
-struct Claim {
-    holds: Expr,
-    wants: &'static str,
-    actual: Option<String>,
-    expected: Option<String>,
-    compares_texts: bool,
+pub(super) struct Claim {
+    pub holds: Expr,
+    pub wants: &'static str,
+    pub actual: Option<String>,
+    pub expected: Option<String>,
+    pub compares_texts: bool,
 }
 
 impl Claim {
-    fn new(holds: Expr, wants: &'static str) -> Self {
+    pub fn new(holds: Expr, wants: &'static str) -> Self {
         Self { holds, wants, actual: None, expected: None, compares_texts: false }
     }
 
-    fn of(holds: Expr, wants: &'static str, actual: String, expected: String) -> Self {
+    pub fn of(holds: Expr, wants: &'static str, actual: String, expected: String) -> Self {
         Self { actual: Some(actual), expected: Some(expected), ..Self::new(holds, wants) }
     }
 }
@@ -191,7 +191,7 @@ impl<'s> Checker<'_, 's> {
         Some(())
     }
 
-    fn claim_of(&mut self, condition: &ast::Expr<'s>, wanted: bool) -> Option<Claim> {
+    pub(super) fn claim_of(&mut self, condition: &ast::Expr<'s>, wanted: bool) -> Option<Claim> {
         let value = self.condition(condition)?;
         let at = value.at;
         let holds = if wanted { value } else { Expr::apply(Op::Not, Type::BOOL, vec![value], at) };
@@ -199,7 +199,7 @@ impl<'s> Checker<'_, 's> {
         Some(Claim::new(holds, wants))
     }
 
-    fn comparison(
+    pub(super) fn comparison(
         &mut self,
         [left, right]: [&ast::Expr<'s>; 2],
         op: BinaryOp,
@@ -235,7 +235,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// `ABS(actual - expected) <= tolerance`.
-    fn near(&mut self, both: [&ast::Expr<'s>; 2], tolerance: &ast::Expr<'s>, span: Span) -> Option<Claim> {
+    pub(super) fn near(&mut self, both: [&ast::Expr<'s>; 2], tolerance: &ast::Expr<'s>, span: Span) -> Option<Claim> {
         let [left, right] = both;
         let sides = self.sides(both, BinaryOp::Sub, span)?;
         let constants = [sides.a.clone(), sides.b.clone()];
@@ -266,7 +266,10 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// The value in a new variable of the test, and the variable's name.
-    fn keep(&mut self, what: &str, value: Expr, span: Span) -> Option<(Expr, String)> {
+    pub(super) fn keep(&mut self, what: &str, value: Expr, span: Span) -> Option<(Expr, String)> {
+        if !self.is_test() {
+            return Some(self.note(what, value));
+        }
         let slot = self.test_slot()?;
         let state = self.signature.as_ref()?.state?;
         let at = self.at(span);

@@ -5,6 +5,7 @@ mod case;
 mod loops;
 mod start;
 mod statement;
+mod suite;
 
 use crate::expr::checker::Checker;
 use crate::expr::uses::Uses;
@@ -141,7 +142,7 @@ fn check_body<'s>(
     let is_generic = decl.is_generic(slot) || decl.pous[slot].instance.is_some();
     let mut checker = Checker::of_body(decl, slot, &signature);
     checker.instance = is_generic.then_some(slot);
-    checker.is_covered = checker.decl.is_covered(slot);
+    checker.is_covered = checker.decl.is_covered(slot) && !checker.is_suite();
     checker.initial_outputs(&signature);
     if pou.kind != ast::PouKind::Action {
         checker.own_enable(&signature, pou.name.span);

@@ -7,7 +7,7 @@ use crate::expr::checker::Checker;
 use crate::expr::generic_call::Called;
 use crate::spelling::Key;
 use crate::start::{GLOBALS, KEPT, MEMBERS, RETAINS, START};
-use crate::testing::{literal, named};
+use crate::testing::tree::{literal, named};
 use crate::types::declarations::Slot;
 use crate::types::scope::Variable;
 use crate::types::signature::Signature;

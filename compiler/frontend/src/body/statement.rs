@@ -102,7 +102,9 @@ impl<'s> Checker<'_, 's> {
             Ast::Call(callee, arguments) => {
                 if is_start_of_members(callee) {
                     self.start_members(expr.span);
-                } else if self.test_statement(callee, arguments, expr.span).is_none() {
+                } else if self.test_statement(callee, arguments, expr.span).is_none()
+                    && self.suite_statement(callee, arguments, expr.span).is_none()
+                {
                     self.call_statement(expr, callee, arguments);
                 }
             }

@@ -2,6 +2,7 @@
 
 use super::call_tracking::Called;
 use super::uses::Uses;
+use crate::testing::suite::WANTED;
 use crate::types::declarations::Declarations;
 use crate::types::scope::Scope;
 use crate::types::signature::Signature;
@@ -40,6 +41,8 @@ pub(crate) struct Checker<'d, 's> {
     pub left_out: Option<Span>,
     /// What is executed of the body is counted.
     pub is_covered: bool,
+    /// What an assertion of a suite compares: the globals that keep it if the assertion fails.
+    pub compared: Vec<(Place, Expr)>,
 }
 
 /// What a name of a variable stands for.
@@ -80,6 +83,7 @@ impl<'d, 's> Checker<'d, 's> {
             choices: FxHashMap::default(),
             left_out: None,
             is_covered: false,
+            compared: Vec::new(),
         }
     }
 
@@ -93,6 +97,11 @@ impl<'d, 's> Checker<'d, 's> {
 
     pub(crate) fn is_test(&self) -> bool {
         self.test_slot().is_some()
+    }
+
+    /// Whether the body is one of a TcUnit suite.
+    pub(crate) fn is_suite(&self) -> bool {
+        self.scope.get(WANTED).is_some()
     }
 
     /// Whether the body is that of a run in a CONFIGURATION.

@@ -25,7 +25,7 @@ pub(crate) mod generic_call;
 mod literal;
 mod logix_operands;
 mod memory;
-mod method;
+pub(crate) mod method;
 mod migration;
 mod open_array;
 pub(crate) mod operand;

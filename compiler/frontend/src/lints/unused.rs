@@ -1,10 +1,11 @@
 //! Variables that nothing reads or writes.
 
 use crate::ast::PouKind;
+use crate::testing;
 use crate::types::declarations::Declarations;
 use crate::{Code, Diagnostic, Span};
 use rustc_hash::FxHashSet;
-use staunch_ir::Section;
+use staunch_ir::{Section, Type};
 
 /// Reports them, when all bodies have been checked: a variable may be read from outside as well.
 pub(crate) fn report(decl: &mut Declarations<'_>) {
@@ -31,6 +32,7 @@ fn of_pou(decl: &mut Declarations<'_>, slot: usize, used: &FxHashSet<Span>) {
             && own(variable.name.span)
             && !used.contains(&variable.name.span)
             && !variable.name.text.starts_with(['_', '%'])
+            && !is_suite(decl, variable.place.ty)
         {
             decl.report(
                 Diagnostic::new(Code::W0501, variable.name.span, format!("`{}` is never used", variable.name.text))
@@ -38,4 +40,11 @@ fn of_pou(decl: &mut Declarations<'_>, slot: usize, used: &FxHashSet<Span>) {
             );
         }
     }
+}
+
+/// Whether it is a suite of TcUnit, which runs where there is an instance of it.
+fn is_suite(decl: &Declarations<'_>, ty: Type) -> bool {
+    let Type::Struct(state) = ty else { return false };
+    let slot = decl.slot_of_instance(state);
+    slot.is_some_and(|it| testing::suite::is_suite(decl.pous[it].ast))
 }

@@ -11,6 +11,10 @@ pub(crate) struct Tests {
     pub kept: FxHashMap<usize, Vec<Variable>>,
     /// The assertions of a TEST, in order: the first is number 1.
     pub assertions: FxHashMap<usize, Vec<Assertion>>,
+    /// The assertions of TcUnit's suites and AxUnit's fixtures, in order.
+    pub shared: Vec<Assertion>,
+    /// The global that is the number of the first of these that failed.
+    pub broken: Option<(String, Place)>,
     /// The FUNCTIONs that some test replaces.
     pub mocks: FxHashMap<usize, FunctionMock>,
 }

@@ -1,0 +1,103 @@
+//! Tests in an executable of their own, which the back end `rust` makes: what it traces says how they went.
+
+use super::Outcome;
+use super::execute::{Pace, failed};
+use super::suite::{self, Ran, See};
+use super::table::Scratch;
+use staunch_frontend::Test;
+use staunch_host::csv_cells;
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+/// A trace: its heading and rows, and the fault that ended it.
+struct Trace {
+    heading: Vec<String>,
+    rows: Vec<Vec<String>>,
+    fault: Option<String>,
+}
+
+impl Trace {
+    fn value(&self, row: &[String], name: &str) -> Result<String, String> {
+        let at = self.heading.iter().position(|it| it == name);
+        at.and_then(|at| row.get(at)).cloned().ok_or_else(|| format!("the trace has no `{name}`"))
+    }
+}
+
+fn trace(mut command: Command, test: &Test, scans: u64, turns: u64, names: &[String]) -> Result<Trace, String> {
+    command.args(["--program", &test.instance, "--scans", &scans.to_string(), "--trace", "-"]);
+    command.args(["--vars", &names.join(","), "--loop-budget", &turns.to_string()]);
+    let ran = command.output().map_err(|error| format!("cannot run {:?}: {error}", command.get_program()))?;
+    let text = String::from_utf8_lossy(&ran.stdout);
+    let mut rows = csv_cells(&text).unwrap_or_default();
+    if rows.is_empty() {
+        return Err(String::from_utf8_lossy(&ran.stderr).into_owned());
+    }
+    let fault = (ran.status.code() != Some(0)).then(|| fault_in(&String::from_utf8_lossy(&ran.stderr)));
+    Ok(Trace { heading: rows.remove(0), rows, fault })
+}
+
+pub fn test(executable: &Path, test: &Test, turns: u64) -> Result<Outcome, String> {
+    let assertions = test.assertions.iter();
+    let kept = assertions.flat_map(|it| [&it.actual, &it.expected, &it.message]).flatten();
+    let names: Vec<_> = [test.failed.clone()].into_iter().chain(kept.cloned()).collect();
+    let traced = trace(Command::new(executable), test, 2, turns, &names)?;
+    for row in &traced.rows {
+        let outcome = failed(test, &|name| traced.value(row, name))?;
+        if outcome != Outcome::Passed {
+            return Ok(outcome);
+        }
+    }
+    Ok(traced.fault.map_or(Outcome::Passed, Outcome::Faulted))
+}
+
+/// Runs a suite once to see when it is finished and how many tests it has, and then for the values that are asked for.
+pub fn suite(
+    executable: &Path,
+    test: &Test,
+    turns: u64,
+    pace: Pace,
+    wanted: usize,
+    see: &mut See<'_>,
+) -> Result<(), String> {
+    let stimulus = Scratch::new();
+    let text = format!("scan,{}\n1,{wanted}\n", suite::variable(test, "__wanted"));
+    fs::write(&stimulus.0, text).map_err(|error| format!("{}: {error}", stimulus.0.display()))?;
+    let traced = |scans: u64, names: &[String]| {
+        let mut command = Command::new(executable);
+        command.arg("--stimulus").arg(&stimulus.0).arg(format!("--cycle={}ns", pace.cycle));
+        trace(command, test, scans, turns, names)
+    };
+    let (over, count) = (format!("{}.__over", test.instance), suite::variable(test, "__count"));
+    let first = traced(pace.scans, &[over.clone(), count.clone()])?;
+    let end = first.rows.iter().position(|it| first.value(it, &over).is_ok_and(|it| it == "TRUE"));
+    let scans = end.map_or(pace.scans, |it| u64::try_from(it + 1).unwrap_or(pace.scans));
+    let last = first.rows.last().map_or_else(|| Ok(String::from("0")), |it| first.value(it, &count))?;
+    let names = suite::variables(test, last.parse().unwrap_or(0));
+    let second = traced(scans, &names)?;
+    let row = second.rows.last().ok_or("the trace is empty")?;
+    let more: RefCell<HashMap<String, String>> = RefCell::default();
+    let values = |name: &str| {
+        if let Ok(known) = second.value(row, name) {
+            return Ok(known);
+        }
+        if let Some(known) = more.borrow().get(name) {
+            return Ok(known.clone());
+        }
+        let traced = traced(scans, &[name.to_owned()])?;
+        let value =
+            traced.rows.last().map_or_else(|| Err("the trace is empty".to_owned()), |it| traced.value(it, name))?;
+        more.borrow_mut().insert(name.to_owned(), value.clone());
+        Ok(value)
+    };
+    see(&Ran { values: &values, fault: first.fault.clone() })
+}
+
+/// The place and the kind of a fault, without the scan and the program that an executable adds.
+fn fault_in(text: &str) -> String {
+    let text = text.trim();
+    let text = text.strip_prefix("error: ").unwrap_or(text).replacen(": fault: ", ": ", 1);
+    text.rsplit_once(" (scan ").map_or(text.clone(), |it| it.0.to_owned())
+}

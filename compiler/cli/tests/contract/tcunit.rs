@@ -1,0 +1,166 @@
+//! `staunch test` on suites of TcUnit.
+
+use super::{Folder, has};
+
+/// What a test is expected to do is in its title.
+const SUITE: &str = "{dialect 'codesys'}
+FUNCTION_BLOCK Parts
+VAR_INPUT part : BOOL; END_VAR
+VAR_OUTPUT count : INT; level : LREAL; END_VAR
+    IF part THEN count := count + 1; level := level + 0.5; END_IF
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK PartsTest EXTENDS TcUnit.FB_TestSuite
+VAR delay : TON; parts : Parts; END_VAR
+    One(); Arrays(); Later(); Never(); Disabled(); Twice();
+    METHOD PRIVATE One
+        TEST('passes');
+        parts(part := TRUE);
+        AssertEquals_INT(Expected := 1, Actual := parts.count, Message := 'one');
+        AssertEquals(parts.count, 1, 'any');
+        AssertEquals_LREAL(0.4, parts.level, 0.11, 'near');
+        TEST_FINISHED();
+        Check('first of two', 3);
+        Check('second of two', 5);
+    END_METHOD
+    METHOD PRIVATE Check
+    VAR_INPUT title : STRING; wanted : INT; END_VAR
+    VAR i : INT; END_VAR
+        TEST(title);
+        FOR i := 1 TO wanted DO
+            AssertTrue(i < wanted, Message := 'a message');
+            AssertEquals_INT(wanted, i + 1, title);
+        END_FOR
+        TEST_FINISHED();
+    END_METHOD
+    METHOD PRIVATE Arrays
+    VAR a : ARRAY[1..3] OF INT := [1, 2, 3]; b : ARRAY[0..2] OF INT := [1, 2, 4]; END_VAR
+        TEST('arrays');
+        AssertArrayEquals_INT(a, b, 'differ');
+        TEST_FINISHED();
+    END_METHOD
+    METHOD PRIVATE Later
+        TEST('after a second');
+        delay(IN := TRUE, PT := T#1s);
+        IF delay.Q THEN
+            AssertEquals_TIME(T#1s, delay.ET, 'exactly');
+            TEST_FINISHED();
+        END_IF
+    END_METHOD
+    METHOD PRIVATE Never
+        TEST('never ends');
+    END_METHOD
+    METHOD PRIVATE Disabled
+        TEST('disabled_off');
+        AssertTrue(FALSE, 'not counted');
+        TEST_FINISHED();
+    END_METHOD
+    METHOD PRIVATE Twice
+        TEST('twice'); TEST_FINISHED();
+        TEST('twice'); TEST_FINISHED();
+    END_METHOD
+    METHOD PRIVATE Forgotten
+        TEST('forgotten'); TEST_FINISHED();
+    END_METHOD
+END_FUNCTION_BLOCK
+PROGRAM Main
+VAR tests : PartsTest; END_VAR
+    TcUnit.RUN();
+END_PROGRAM
+";
+
+const WANTED: [&str; 19] = [
+    "  ok      PartsTest.passes",
+    "  FAILED  PartsTest.first of two",
+    "26:13: AssertEquals_INT(wanted, i + 1, title)",
+    "expected to be 3, found 2",
+    "          first of two",
+    "  FAILED  PartsTest.second of two",
+    "expected to be 5, found 2",
+    "  FAILED  PartsTest.arrays",
+    "expected [3] = 3, found [2] = 4",
+    "  ok      PartsTest.after a second",
+    "  FAILED  PartsTest.never ends",
+    "not finished within 200 scans (T#2s)",
+    "a test ends with TEST_FINISHED()",
+    "  skipped PartsTest.off: it is disabled",
+    "  FAILED  PartsTest.twice",
+    "begins a test of this title twice",
+    "  skipped PartsTest.forgotten: the suite never begins it",
+    "2 passed, 5 failed, 2 skipped",
+    "",
+];
+
+#[test]
+fn a_suite_runs_as_it_is_on_every_back_end() {
+    let folder = Folder::new("a_tcunit_suite");
+    folder.write("parts.st", SUITE);
+    for backend in ["interpret", "native", "rust"] {
+        let ran = folder.staunch(&format!("test parts.st --scans 200 --junit junit.xml --backend {backend}"));
+        assert_eq!(ran.code, 1, "{}", ran.err);
+        let mut rest = ran.out.as_str();
+        for line in WANTED {
+            let at = rest.find(line).unwrap_or_else(|| panic!("{backend}: no `{line}` in\n{rest}"));
+            rest = &rest[at + line.len()..];
+        }
+        let junit = folder.read("junit.xml");
+        has(&junit, &["tests=\"9\" failures=\"5\""]);
+        has(&junit, &["name=\"PartsTest.off\""]);
+        has(&junit, &["<skipped message=\"it is disabled\"/>"]);
+        assert!(!ran.err.contains("never used"), "{}", ran.err);
+    }
+}
+
+#[test]
+fn a_filter_chooses_among_the_tests_of_a_suite() {
+    let folder = Folder::new("a_filtered_tcunit_suite");
+    folder.write("parts.st", SUITE);
+    let ran = folder.staunch("test parts.st --scans 200 --filter partstest.after");
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    has(&ran.out, &["1 passed, 0 failed"]);
+}
+
+#[test]
+fn a_fault_is_of_the_tests_that_it_ends() {
+    let folder = Folder::new("a_faulting_tcunit_suite");
+    let source = "{dialect 'codesys'}
+FUNCTION_BLOCK T EXTENDS FB_TestSuite
+VAR zero : INT; END_VAR
+    TEST('before'); TEST_FINISHED();
+    TEST('in it'); zero := 1 / zero; TEST_FINISHED();
+    TEST('after'); TEST_FINISHED();
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK U EXTENDS T
+    SUPER^();
+END_FUNCTION_BLOCK
+";
+    folder.write("t.st", source);
+    let ran = folder.staunch("test t.st");
+    assert_eq!(ran.code, 1, "{}", ran.err);
+    // T is there for U to extend.
+    for line in
+        ["ok      U.before", "FAILED  U.in it", "t.st:5:30: division by zero", "FAILED  U.after", "1 passed, 2 failed"]
+    {
+        has(&ran.out, &[line]);
+    }
+}
+
+#[test]
+fn a_suite_tells_mutants_apart_and_is_not_changed_itself() {
+    let folder = Folder::new("mutants_of_a_tcunit_suite");
+    let source = "{dialect 'codesys'}
+FUNCTION Twice : INT
+VAR_INPUT x : INT; END_VAR
+    Twice := x * 2;
+END_FUNCTION
+FUNCTION_BLOCK T EXTENDS TcUnit.FB_TestSuite
+    TEST('twice');
+    AssertEquals_INT(6, Twice(3), '');
+    TEST_FINISHED();
+END_FUNCTION_BLOCK
+";
+    folder.write("t.st", source);
+    let ran = folder.staunch("test t.st --mutants --coverage table");
+    assert_eq!(ran.code, 0, "{}{}", ran.out, ran.err);
+    has(&ran.out, &["1 of 1 100 %"]);
+    has(&ran.out, &[", 0 survived"]);
+}
