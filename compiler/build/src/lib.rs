@@ -70,7 +70,7 @@ impl Build {
     }
 
     /// Adds every `.st` and `.iecst` file below a folder, and TwinCAT's `.TcPOU`, `.TcGVL`, `.TcDUT` and `.TcIO`,
-    /// and Rockwell's `.L5X`.
+    /// Rockwell's `.L5X` and Siemens' `.scl`.
     #[must_use]
     pub fn folder(self, path: impl Into<PathBuf>) -> Self {
         self.file(path)

@@ -48,7 +48,7 @@ pub enum Command {
 #[derive(Clone, Debug, Args)]
 pub struct Common {
     /// Whose counters a bare name means, and what is allowed beyond the standard
-    #[arg(long, global = true, value_parser = dialect, value_name = "iec|cscape|codesys|openplc|logix")]
+    #[arg(long, global = true, value_parser = dialect, value_name = "iec|cscape|codesys|openplc|logix|siemens")]
     pub dialect: Option<Dialect>,
     /// How diagnostics are written
     #[arg(long, global = true, value_enum)]
@@ -388,7 +388,7 @@ pub struct New {
 }
 
 fn dialect(name: &str) -> Result<Dialect, String> {
-    Dialect::named(name).ok_or_else(|| "the dialects are iec, cscape, codesys, openplc and logix".to_owned())
+    Dialect::named(name).ok_or_else(|| "the dialects are iec, cscape, codesys, openplc, logix and siemens".to_owned())
 }
 
 /// The arguments of this process.

@@ -20,10 +20,12 @@ pub enum Dialect {
     Openplc,
     /// Rockwell Logix 5000.
     Logix,
+    /// SCL of Siemens' S7-1200 and S7-1500: as `Iec`, without counters by their bare names.
+    Siemens,
 }
 
 impl Dialect {
-    pub const ALL: [Self; 5] = [Self::Iec, Self::Cscape, Self::Codesys, Self::Openplc, Self::Logix];
+    pub const ALL: [Self; 6] = [Self::Iec, Self::Cscape, Self::Codesys, Self::Openplc, Self::Logix, Self::Siemens];
 
     pub const fn name(self) -> &'static str {
         match self {
@@ -32,6 +34,7 @@ impl Dialect {
             Self::Codesys => "codesys",
             Self::Openplc => "openplc",
             Self::Logix => "logix",
+            Self::Siemens => "siemens",
         }
     }
 
@@ -39,9 +42,10 @@ impl Dialect {
         Self::ALL.into_iter().find(|it| it.name().eq_ignore_ascii_case(name))
     }
 
+    /// Whose rules its variables follow; SCL has no counters of its own here, and starts as the standard does.
     pub const fn family(self) -> Family {
         match self {
-            Self::Iec => Family::Iec,
+            Self::Iec | Self::Siemens => Family::Iec,
             Self::Cscape => Family::Cscape,
             Self::Codesys => Family::Codesys,
             Self::Openplc => Family::Openplc,
@@ -61,7 +65,7 @@ impl Dialect {
 
     /// The standard's own habits, where a vendor has none.
     pub const fn is_standard(self) -> bool {
-        matches!(self, Self::Iec | Self::Openplc)
+        matches!(self, Self::Iec | Self::Openplc | Self::Siemens)
     }
 
     /// Bit strings count as unsigned integers, and same-size sign changes are implicit.
@@ -173,7 +177,8 @@ pub(crate) fn block_in(family: Family, name: &str) -> Option<BlockId> {
 /// What the bare `name` means under `dialect`, and what its family's name before it means: the
 /// family's own block, or what all systems share.
 pub(crate) fn bare_block(dialect: Dialect, name: &str) -> Option<BlockId> {
-    block_in(dialect.family(), name).or_else(|| shared_block(name))
+    let own = if dialect == Dialect::Siemens { None } else { block_in(dialect.family(), name) };
+    own.or_else(|| shared_block(name))
 }
 
 /// What reads the scan's time.

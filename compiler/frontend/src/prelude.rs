@@ -94,6 +94,7 @@ pub(crate) const UNITS: &[Unit] = units! {
     Function "HOST_TO_BE32"     "host_to_be32"     [Codesys];
     Function "BE16_TO_HOST"     "be16_to_host"     [Codesys];
     Function "BE32_TO_HOST"     "be32_to_host"     [Codesys];
+    Type     "IEC_TIMER"        "iec_timer"        [Siemens];
     Type     "RTC"              "rtc";
     Function "SPLIT_DATE"       "split_date";
     Function "SPLIT_TOD"        "split_tod";

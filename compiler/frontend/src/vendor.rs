@@ -6,6 +6,7 @@ mod exp;
 mod l5x;
 mod listing;
 mod plcopen;
+mod scl;
 mod twincat;
 mod unit;
 mod xml;
@@ -19,6 +20,9 @@ use xml::Reader;
 pub fn read(text: &str) -> Option<Assembly> {
     if exp::is_export(text) {
         return Some(exp::read(text));
+    }
+    if scl::is_source(text) {
+        return Some(scl::read(text));
     }
     let mut reader = Reader::new(text)?;
     let root = reader.root().ok()??;

@@ -1,0 +1,318 @@
+//! Sources of Siemens' SCL for S7-1200 and S7-1500: blocks whose names are in quotes and whose local names have a `#`
+//! before them, with what TIA Portal notes between their heads and their declarations. Data blocks become variables.
+
+mod data_block;
+mod token;
+
+use super::assembly::{Assembly, Chunk, Trouble};
+use core::ops::Range;
+use rustc_hash::FxHashMap;
+use token::{Kind, Token};
+
+/// Heads of blocks, as the language has them, and how they end in Structured Text.
+const BLOCKS: [(&str, &str, &str); 5] = [
+    ("FUNCTION_BLOCK", "FUNCTION_BLOCK", "END_FUNCTION_BLOCK"),
+    ("FUNCTION", "FUNCTION", "END_FUNCTION"),
+    ("ORGANIZATION_BLOCK", "PROGRAM", "END_PROGRAM"),
+    ("DATA_BLOCK", "", ""),
+    ("TYPE", "TYPE", "END_TYPE"),
+];
+
+/// What is noted in a head, before a value.
+const NOTES: [&str; 5] = ["VERSION", "TITLE", "AUTHOR", "FAMILY", "NAME"];
+
+const COUNTERS: [&str; 10] = [
+    "IEC_COUNTER",
+    "IEC_SCOUNTER",
+    "IEC_DCOUNTER",
+    "IEC_LCOUNTER",
+    "IEC_UCOUNTER",
+    "IEC_USCOUNTER",
+    "IEC_UDCOUNTER",
+    "IEC_ULCOUNTER",
+    "CTU",
+    "CTD",
+];
+
+/// Whether a text begins as such a source does: with a block whose name is in quotes, or one that no other system has.
+pub fn is_source(text: &str) -> bool {
+    // What is not SCL is not to be read as a whole to be told so.
+    let mut tokens = token::Tokens::new(text).filter(|it| it.kind != Kind::Pragma);
+    let Some(head) = tokens.next().filter(|it| it.kind == Kind::Word) else { return false };
+    let word = &text[head.place];
+    let is = |it: &str| word.eq_ignore_ascii_case(it);
+    let mut names_a_block = || tokens.next().is_some_and(|it| it.kind == Kind::Quoted);
+    BLOCKS.iter().any(|it| is(it.0)) && (is("ORGANIZATION_BLOCK") || is("DATA_BLOCK") || names_a_block())
+}
+
+pub fn read(file: &str) -> Assembly {
+    let mut out = Assembly::default();
+    out.write("{dialect 'siemens'}\n", &(0..0));
+    let tokens = token::Tokens::new(file).collect();
+    let mut reader = Scl { file, tokens, at: 0, copied: 0, out, is_body: false, locals: FxHashMap::default() };
+    while reader.at < reader.tokens.len() {
+        reader.block();
+    }
+    reader.copy_to(file.len());
+    reader.out
+}
+
+struct Scl<'t> {
+    file: &'t str,
+    tokens: Vec<Token>,
+    /// The next token.
+    at: usize,
+    /// How far the file has been taken.
+    copied: usize,
+    out: Assembly,
+    /// Whether the declarations are over.
+    is_body: bool,
+    /// What the block declares, and its type, both in lower case.
+    locals: FxHashMap<String, String>,
+}
+
+impl<'t> Scl<'t> {
+    fn token(&self, at: usize) -> Option<&Token> {
+        self.tokens.get(at)
+    }
+
+    fn text(&self, at: usize) -> &'t str {
+        self.token(at).map_or("", |it| &self.file[it.place.clone()])
+    }
+
+    fn is(&self, at: usize, word: &str) -> bool {
+        self.token(at).is_some_and(|it| it.kind == Kind::Word) && self.text(at).eq_ignore_ascii_case(word)
+    }
+
+    fn place(&self, at: usize) -> Range<usize> {
+        let end = self.file.len();
+        self.token(at).map_or(end..end, |it| it.place.clone())
+    }
+
+    /// Takes the file up to a place as it is.
+    fn copy_to(&mut self, end: usize) {
+        if end > self.copied {
+            self.out.copy(self.file, &[Chunk::verbatim(self.copied..end)]);
+            self.copied = end;
+        }
+    }
+
+    /// Writes words for what is at a place.
+    fn replace(&mut self, place: Range<usize>, words: &str) {
+        self.copy_to(place.start);
+        if !words.is_empty() {
+            self.out.write(words, &place);
+        }
+        self.copied = place.end;
+    }
+
+    fn refuse(&mut self, place: Range<usize>, message: String) {
+        self.copy_to(place.start);
+        self.out.problem(Trouble::NotSupported, message, &place);
+        self.copied = place.end;
+    }
+
+    /// A name as Structured Text has it.
+    fn name(&self, at: usize) -> String {
+        token::name(self.text(at))
+    }
+
+    fn block(&mut self) {
+        let Some(block) = BLOCKS.iter().find(|it| self.is(self.at, it.0)) else { return self.simple() };
+        self.locals.clear();
+        self.is_body = false;
+        if block.0 == "DATA_BLOCK" {
+            return self.data_block();
+        }
+        let head = self.place(self.at);
+        self.replace(head, block.1);
+        let (name, place) = (self.name(self.at + 1), self.place(self.at + 1));
+        if block.0 == "ORGANIZATION_BLOCK" && !["main", "ob1"].contains(&name.to_ascii_lowercase().as_str()) {
+            let message = format!("the source does not say which event starts `{name}`");
+            self.refuse(place.start..place.start, message);
+        }
+        self.replace(place.clone(), &name);
+        self.at += 2;
+        self.result();
+        if block.0 == "TYPE" {
+            self.out.write(" : ", &place);
+        }
+        self.notes();
+        while self.at < self.tokens.len() {
+            let end = self.text(self.at);
+            if end.len() > 4 && end[..4].eq_ignore_ascii_case("END_") && end[4..].eq_ignore_ascii_case(block.0) {
+                let place = self.place(self.at);
+                self.replace(place, block.2);
+                self.at += 1;
+                return;
+            }
+            self.simple();
+        }
+    }
+
+    /// The type of a function's result; `Void` is none.
+    fn result(&mut self) {
+        if self.text(self.at) != ":" {
+            return;
+        }
+        if self.is(self.at + 1, "VOID") {
+            let place = self.place(self.at).start..self.place(self.at + 1).end;
+            self.replace(place, "");
+            self.at += 2;
+        } else {
+            self.at += 1;
+            self.simple();
+        }
+    }
+
+    /// Passes over what is noted between a head and what it declares.
+    fn notes(&mut self) {
+        loop {
+            let start = self.place(self.at);
+            if self.is(self.at, "TITLE") {
+                // Its text needs no quotes, and ends with its line.
+                let end = self.file[start.start..].find('\n').map_or(self.file.len(), |it| start.start + it);
+                while self.token(self.at).is_some_and(|it| it.place.start < end) {
+                    self.at += 1;
+                }
+                self.replace(start.start..end.max(self.copied), "");
+            } else if NOTES.iter().any(|it| self.is(self.at, it)) && self.text(self.at + 1) == ":" {
+                let end = self.place(self.at + 2).end;
+                self.replace(start.start..end, "");
+                self.at += 3;
+            } else if self.is(self.at, "KNOW_HOW_PROTECT")
+                || self.token(self.at).is_some_and(|it| it.kind == Kind::Pragma)
+            {
+                self.replace(start, "");
+                self.at += 1;
+            } else {
+                return;
+            }
+        }
+    }
+
+    /// A token of declarations or statements.
+    fn simple(&mut self) {
+        let Some(Token { kind, place }) = self.token(self.at).cloned() else { return };
+        let at = self.at;
+        self.at += 1;
+        let after_dot = at > 0 && self.text(at - 1) == ".";
+        match kind {
+            Kind::Pragma => self.replace(place, ""),
+            Kind::Local => {
+                let name = self.name(at);
+                self.replace(place, &name);
+            }
+            Kind::Quoted => {
+                let name = self.name(at);
+                if !self.is_body && self.declares(at) {
+                    self.locals.insert(name.to_ascii_lowercase(), String::new());
+                }
+                let is_hidden = !after_dot && self.locals.contains_key(&name.to_ascii_lowercase());
+                let name = if is_hidden && self.is_body { format!("Globals.{name}") } else { name };
+                self.replace(place, &name);
+            }
+            Kind::Address if !after_dot || self.text(at).to_ascii_uppercase().starts_with("%DB") => {
+                let address = self.text(at).to_ascii_uppercase();
+                self.refuse(
+                    place.start..place.start,
+                    format!("`{address}` is an address: blocks share no memory but by name"),
+                );
+                // What reads on finds an operand of the same size.
+                let of_a_block = address.split_once(".DB").map(|it| it.1);
+                if let Some(size) = of_a_block.or_else(|| address.strip_prefix("%DB")) {
+                    let size = size.get(..1).unwrap_or("X");
+                    self.replace(place, &if size == "X" { "%MX0.0".to_owned() } else { format!("%M{size}0") });
+                }
+            }
+            Kind::Literal => self.literal(place),
+            Kind::Word if after_dot => self.timer(at, place),
+            Kind::Word => self.word(at, place),
+            Kind::Address | Kind::Other => {}
+        }
+    }
+
+    fn word(&mut self, at: usize, place: Range<usize>) {
+        let word = self.text(at).to_ascii_uppercase();
+        match word.as_str() {
+            "REGION" => {
+                let end = self.file[place.start..].find('\n').map_or(self.file.len(), |it| place.start + it);
+                while self.token(self.at).is_some_and(|it| it.place.start < end) {
+                    self.at += 1;
+                }
+                self.replace(place.start..end, "");
+            }
+            "END_REGION" => {
+                let has_end = self.text(self.at) == ";";
+                let end = if has_end { self.place(self.at).end } else { place.end };
+                self.at += usize::from(has_end);
+                self.replace(place.start..end, "");
+            }
+            "BEGIN" => {
+                self.is_body = true;
+                self.replace(place, "");
+            }
+            "DB_SPECIFIC" => self.replace(place, ""),
+            "GOTO" => {
+                let label = self.text(self.at).to_owned();
+                let end = self.place(self.at).end;
+                self.at += 1;
+                self.refuse(place.start..end, format!("`GOTO {label}` jumps, and there are no labels"));
+            }
+            _ if !self.is_body && self.declares(at) => {
+                let ty = self.text(self.after(at) + 1).to_ascii_lowercase();
+                self.locals.insert(word.to_ascii_lowercase(), ty);
+            }
+            _ if self.text(at.wrapping_sub(1)) == ":" && is_counter(&word) => {
+                let message = format!(
+                    "`{word}` is a counter of S7, whose rules its documents leave open: a family has others, `IEC.CTU`"
+                );
+                self.refuse(place.start..place.start, message);
+                self.replace(place, "IEC.CTU");
+            }
+            _ => {}
+        }
+    }
+
+    /// Whether a name is before its type.
+    fn declares(&self, at: usize) -> bool {
+        let colon = self.after(at);
+        self.text(colon) == ":" && self.text(colon + 1) != "="
+    }
+
+    /// The token after a name and what is noted of it.
+    fn after(&self, at: usize) -> usize {
+        (at + 1..).find(|it| self.token(*it).is_none_or(|it| it.kind != Kind::Pragma)).unwrap_or(at)
+    }
+
+    /// `#delay.TON(…)` of a TON_TIME is a call of it.
+    fn timer(&mut self, at: usize, place: Range<usize>) {
+        let is_call = self.text(at + 1) == "(" && at > 2;
+        let ty = self.locals.get(&self.name(at.saturating_sub(2)).to_ascii_lowercase());
+        let called = format!("{}_time", self.text(at).to_ascii_lowercase());
+        if is_call && self.text(at.saturating_sub(3)) != "." && ty.is_some_and(|it| *it == called) {
+            let dot = self.place(at - 1).start;
+            self.replace(dot..place.end, "");
+        }
+    }
+
+    /// `W#16#FF`
+    fn literal(&mut self, place: Range<usize>) {
+        let Some((prefix, _)) = self.file[place.clone()].split_once('#') else { return };
+        let long = match prefix.to_ascii_uppercase().as_str() {
+            "B" => "BYTE",
+            "W" => "WORD",
+            "DW" => "DWORD",
+            "LW" => "LWORD",
+            "L" => "DINT",
+            _ => return,
+        };
+        self.replace(place.start..place.start + prefix.len(), long);
+    }
+}
+
+/// Whether a type is one of the system's counters.
+fn is_counter(ty: &str) -> bool {
+    let is_variant = |name: &str| ty.strip_prefix(name).is_some_and(|it| it.is_empty() || it.starts_with('_'));
+    COUNTERS.contains(&ty) || ["CTU", "CTD", "CTUD"].iter().any(|it| is_variant(it))
+}

@@ -1,0 +1,191 @@
+//! A data block: a variable of its structure, or of the type or block that it names.
+
+use super::super::assembly::{Assembly, Chunk};
+use super::{Kind, Scl};
+use core::ops::Range;
+
+/// The values of a data block's members, by their names.
+#[derive(Default)]
+struct Values {
+    members: Vec<(String, Range<usize>, Value)>,
+}
+
+enum Value {
+    /// What the file says.
+    Written(Range<usize>),
+    Members(Values),
+}
+
+impl Scl<'_> {
+    /// `DATA_BLOCK "Plant" … BEGIN … END_DATA_BLOCK`
+    pub fn data_block(&mut self) {
+        let head = self.place(self.at);
+        let (name, place) = (self.name(self.at + 1), self.place(self.at + 1));
+        self.replace(head.start..place.end, "");
+        self.at += 2;
+        let mut is_retained = self.attributes();
+        let ty = if self.is(self.at, "VAR") || self.is(self.at, "STRUCT") {
+            self.out.write(&format!("TYPE {name}_data : STRUCT\n"), &place);
+            is_retained |= self.structure();
+            self.out.write("END_STRUCT; END_TYPE\n", &place);
+            format!("{name}_data")
+        } else {
+            let mut ty = self.name(self.at);
+            let place = self.place(self.at);
+            if super::is_counter(&ty.to_ascii_uppercase()) {
+                let message = format!(
+                    "`{ty}` is a counter of S7, whose rules its documents leave open: a family has others, `IEC.CTU`"
+                );
+                self.refuse(place, message);
+                ty = "IEC.CTU".to_owned();
+            } else {
+                self.replace(place, "");
+            }
+            self.at += 1;
+            ty
+        };
+        let values = self.values();
+        let retain = if is_retained { "RETAIN " } else { "" };
+        self.out.write(&format!("VAR_GLOBAL {retain}"), &place);
+        self.out.write(&name, &place);
+        self.out.write(" : ", &place);
+        self.out.write(&ty, &place);
+        if !values.members.is_empty() {
+            self.out.write(" := ", &place);
+            values.write(self.file, &mut self.out);
+        }
+        self.out.write("; END_VAR\n", &place);
+    }
+
+    /// Passes over what is noted in the head; whether all of the block is retained.
+    fn attributes(&mut self) -> bool {
+        let mut is_retained = false;
+        loop {
+            self.notes();
+            if !["NON_RETAIN", "RETAIN", "READ_ONLY", "UNLINKED"].iter().any(|it| self.is(self.at, it)) {
+                return is_retained;
+            }
+            is_retained |= self.is(self.at, "RETAIN");
+            let place = self.place(self.at);
+            self.replace(place, "");
+            self.at += 1;
+        }
+    }
+
+    /// The members, in one structure or in sections; whether they are retained.
+    fn structure(&mut self) -> bool {
+        let (mut plain, mut retained) = (false, false);
+        while !self.is(self.at, "BEGIN") && !self.is(self.at, "END_DATA_BLOCK") && self.at < self.tokens.len() {
+            let start = self.place(self.at);
+            let is_section = self.is(self.at, "VAR");
+            let end = if is_section { "END_VAR" } else { "END_STRUCT" };
+            self.at += 1;
+            let retains = is_section && self.is(self.at, "RETAIN");
+            let has_word = retains || self.is(self.at, "NON_RETAIN");
+            let opened = if has_word { self.place(self.at).end } else { start.end };
+            self.at += usize::from(has_word);
+            self.replace(start.start..opened, "");
+            (plain, retained) = (plain || !retains, retained || retains);
+            let mut depth = 0_usize;
+            while self.at < self.tokens.len() && !(depth == 0 && self.is(self.at, end)) {
+                depth += usize::from(self.is(self.at, "STRUCT"));
+                depth = depth.saturating_sub(usize::from(self.is(self.at, "END_STRUCT")));
+                self.simple();
+            }
+            let close = self.place(self.at);
+            self.at += 1;
+            let has_sign = self.text(self.at) == ";";
+            let end = if has_sign { self.place(self.at).end } else { close.end };
+            self.at += usize::from(has_sign);
+            self.replace(close.start..end, "");
+            self.notes();
+        }
+        if plain && retained {
+            let place = self.place(self.at);
+            self.refuse(
+                place.start..place.start,
+                "a part of this data block is retained, and a part is not".to_owned(),
+            );
+        }
+        retained
+    }
+
+    /// `a := 1; b.c := 2;` between BEGIN and the end.
+    fn values(&mut self) -> Values {
+        let mut values = Values::default();
+        let from = self.place(self.at).start;
+        self.at += usize::from(self.is(self.at, "BEGIN"));
+        while self.at < self.tokens.len() && !self.is(self.at, "END_DATA_BLOCK") {
+            let start = self.at;
+            let mut sign = None;
+            while self.at < self.tokens.len() && self.text(self.at) != ";" && !self.is(self.at, "END_DATA_BLOCK") {
+                if sign.is_none() && self.text(self.at) == ":" && self.text(self.at + 1) == "=" {
+                    sign = Some(self.at);
+                }
+                self.at += 1;
+            }
+            let end = self.at;
+            self.at += usize::from(self.text(self.at) == ";");
+            if let Some(sign) = sign {
+                self.value(&mut values, start..sign, sign + 2..end);
+            }
+        }
+        let end = self.place(self.at).end;
+        self.at += 1;
+        self.replace(from..end, "");
+        values
+    }
+
+    /// A value for a path of members; an element of an array has none alone.
+    fn value(&mut self, values: &mut Values, path: Range<usize>, value: Range<usize>) {
+        let place = self.place(path.start).start..self.place(path.end - 1).end;
+        let names: Vec<_> = path.clone().step_by(2).map(|at| (self.name(at), self.place(at))).collect();
+        let is_path = path.clone().skip(1).step_by(2).all(|at| self.text(at) == ".");
+        let is_plain = value
+            .clone()
+            .all(|at| matches!(self.token(at).map(|it| it.kind), Some(Kind::Other | Kind::Word | Kind::Literal)));
+        if !is_path || !is_plain || value.is_empty() {
+            let text = &self.file[place.clone()];
+            // What is before it is written with the variable.
+            self.copied = place.start;
+            return self
+                .refuse(place, format!("the initial value of `{text}` is not read: declare it with its variable"));
+        }
+        let written = self.place(value.start).start..self.place(value.end - 1).end;
+        values.set(names.into_iter(), written);
+    }
+}
+
+impl Values {
+    fn set(&mut self, mut path: impl Iterator<Item = (String, Range<usize>)>, written: Range<usize>) {
+        let Some((name, place)) = path.next() else { return };
+        let mut rest = path.peekable();
+        if rest.peek().is_none() {
+            self.members.push((name, place, Value::Written(written)));
+            return;
+        }
+        let known = self.members.iter().position(|it| it.0.eq_ignore_ascii_case(&name));
+        let at = known.unwrap_or_else(|| {
+            self.members.push((name, place, Value::Members(Self::default())));
+            self.members.len() - 1
+        });
+        if let Value::Members(inner) = &mut self.members[at].2 {
+            inner.set(&mut rest as &mut dyn Iterator<Item = _>, written);
+        }
+    }
+
+    fn write(&self, file: &str, out: &mut Assembly) {
+        for (at, (name, place, value)) in self.members.iter().enumerate() {
+            out.write(if at == 0 { "(" } else { ", " }, place);
+            out.write(name, place);
+            out.write(" := ", place);
+            match value {
+                Value::Written(written) => out.copy(file, &[Chunk::verbatim(written.clone())]),
+                Value::Members(inner) => inner.write(file, out),
+            }
+            if at + 1 == self.members.len() {
+                out.write(")", place);
+            }
+        }
+    }
+}
