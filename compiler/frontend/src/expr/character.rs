@@ -91,6 +91,6 @@ const fn first_character(dialect: Dialect) -> Option<i64> {
     match dialect {
         Dialect::Iec | Dialect::Openplc => Some(1),
         Dialect::Codesys => Some(0),
-        Dialect::Cscape | Dialect::Logix => None,
+        Dialect::Cscape | Dialect::Logix | Dialect::Siemens => None,
     }
 }
