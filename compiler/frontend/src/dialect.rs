@@ -53,6 +53,11 @@ impl Dialect {
         }
     }
 
+    /// Whose blocks its bare names mean before those that all systems share.
+    pub fn own_blocks(self) -> Option<Family> {
+        (self != Self::Siemens).then(|| self.family())
+    }
+
     /// The standard block that a bare `name` means.
     pub fn block(self, name: &str) -> Option<&'static BlockInfo> {
         bare_block(self, name).map(|it| it.info())
@@ -177,8 +182,7 @@ pub(crate) fn block_in(family: Family, name: &str) -> Option<BlockId> {
 /// What the bare `name` means under `dialect`, and what its family's name before it means: the
 /// family's own block, or what all systems share.
 pub(crate) fn bare_block(dialect: Dialect, name: &str) -> Option<BlockId> {
-    let own = if dialect == Dialect::Siemens { None } else { block_in(dialect.family(), name) };
-    own.or_else(|| shared_block(name))
+    dialect.own_blocks().and_then(|it| block_in(it, name)).or_else(|| shared_block(name))
 }
 
 /// What reads the scan's time.

@@ -10,6 +10,7 @@ use crate::types::declarations::{Declarations, GlobalSlot, Slot};
 use crate::types::scope::{Scope, Variable};
 use crate::types::signature::Signature;
 use crate::{Code, Diagnostic, Span};
+use rustc_hash::FxHashMap;
 use staunch_ir::Section;
 use std::rc::Rc;
 
@@ -50,6 +51,9 @@ impl<'s> Declarations<'s> {
         for (block, decl) in late {
             self.declare_externals(block, decl, &mut scope);
         }
+        let declared: FxHashMap<_, _> =
+            pou.blocks.iter().flat_map(|it| &it.vars).flat_map(|it| &it.names).map(|it| it.span).zip(1..).collect();
+        scope.reorder(|it| declared.get(&it.name.span).copied().unwrap_or(0));
         Rc::new(Signature { scope: Rc::new(scope), ..Signature::clone(&signature) })
     }
 

@@ -36,7 +36,7 @@ pub(crate) fn block_of_another_dialect(dialect: Dialect, name: ast::Name<'_>) ->
     let system = dialect.family().name();
     let qualified: Vec<_> = owners.iter().map(|it| format!("{}.{}", it.name(), name.text)).collect();
     let qualified: Vec<_> = qualified.iter().map(String::as_str).collect();
-    let others: Vec<_> = Dialect::ALL.iter().filter(|it| owners.contains(&it.family())).map(|it| it.name()).collect();
+    let others = dialects_of(&owners);
     let error = Diagnostic::new(Code::E0309, name.span, format!("{system} documents no `{}`", name.text))
         .label(format!("under `--dialect {}` this name has no block", dialect.name()))
         .note(format!("the dialect {} has it", list(&others)));
@@ -88,7 +88,13 @@ fn dialects_with_pin(block: BlockId, name: &str) -> Vec<&'static str> {
     let info = block.info();
     let same = BLOCKS.iter().filter(|it| it.family != info.family && it.name.eq_ignore_ascii_case(info.name));
     let owners: Vec<_> = same.filter(|it| it.pin(name).is_some()).map(|it| it.family).collect();
-    Dialect::ALL.iter().filter(|it| owners.contains(&it.family())).map(|it| it.name()).collect()
+    dialects_of(&owners)
+}
+
+/// The dialects whose bare names mean the blocks of one of these families.
+fn dialects_of(families: &[Family]) -> Vec<&'static str> {
+    let owns = |it: &&Dialect| it.own_blocks().is_some_and(|family| families.contains(&family));
+    Dialect::ALL.iter().filter(owns).map(|it| it.name()).collect()
 }
 
 /// Values that are no names, for suggestions.

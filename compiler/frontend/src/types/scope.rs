@@ -86,6 +86,12 @@ impl<'s> Scope<'s> {
         !self.refused.is_empty()
     }
 
+    /// Lists the variables by these positions, those of one position as they were.
+    pub fn reorder(&mut self, position: impl Fn(&Variable<'s>) -> usize) {
+        self.variables.sort_by_key(|it| position(it));
+        self.index = self.variables.iter().enumerate().map(|(at, it)| (Key(it.name.text), at)).collect();
+    }
+
     /// The earlier variable of that name, if there is one.
     pub fn insert(&mut self, variable: impl Into<Rc<Variable<'s>>>) -> Result<(), ast::Name<'s>> {
         let variable = variable.into();
