@@ -149,6 +149,18 @@ impl<'s> Checker<'_, 's> {
         if !self.decl.is_started(variable.place.ty) {
             return;
         }
+        if variable.constant && variable.section != Section::InOut {
+            let name = variable.name;
+            return self.report(
+                Diagnostic::new(
+                    Code::E0403,
+                    name.span,
+                    format!("`{}` is started by FB_init, and is CONSTANT", name.text),
+                )
+                .label("FB_init writes to it")
+                .help("declare it without CONSTANT"),
+            );
+        }
         let at = self.at(variable.name.span);
         let declared = self.decl.starts.declared.get(&at).copied();
         let (span, value) = (variable.name.span, variable.resolved.initial.clone());

@@ -3,6 +3,7 @@
 use crate::expr::uses::Uses;
 use crate::types::declarations::Declarations;
 use crate::{Code, Diagnostic};
+use rustc_hash::FxHashSet;
 use staunch_ir::stack;
 use staunch_ir::{Block, Routine, RoutineId, RoutineKind, Statement, StatementKind};
 
@@ -19,9 +20,11 @@ pub(super) fn order(declarations: &mut Declarations<'_>, uses: Vec<Uses>, stacks
         order = sorted(declarations, &calls)?;
     }
     let is_empty = |it: &Routine| it.kind == RoutineKind::Prescan && it.body.is_empty();
+    // What starts nothing is called where a mistake has left its statements out.
+    let called: FxHashSet<usize> = order.iter().flat_map(|it| &calls[*it]).copied().collect();
     let is_called = |at: usize| {
-        at >= declarations.pous.len()
-            || !declarations.is_generic(at) && !declarations.is_head(at) && !declarations.starts_nothing(at)
+        let is_idle = || declarations.starts_nothing(at) && !called.contains(&at);
+        at >= declarations.pous.len() || !declarations.is_generic(at) && !declarations.is_head(at) && !is_idle()
     };
     order.retain(|at| !is_empty(&declarations.program.routines[*at]) && is_called(*at));
     check_stack(declarations, stacks, &calls, &order);

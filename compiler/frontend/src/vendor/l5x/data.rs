@@ -45,7 +45,16 @@ fn read<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, ty: &
     match element.name {
         "Array" | "ArrayMember" => {
             value.dimensions = element.attribute(file, "Dimensions").unwrap_or_default();
-            value.what = What::List(inner(file, reader, ty)?.into_iter().map(|it| it.2).collect());
+            let elements = inner(file, reader, ty)?;
+            let mut due = vec![0; lengths(value.dimensions).len()];
+            for (_, index, element) in &elements {
+                if !index.is_empty() && lengths(index) != due {
+                    let why = format!("the element {index} of an array, where the element {due:?} is due");
+                    return Err(Broken { place: element.place.clone(), why });
+                }
+                advance(&mut due, &lengths(value.dimensions));
+            }
+            value.what = What::List(elements.into_iter().map(|it| it.2).collect());
         }
         "Structure" | "StructureMember" => {
             let members = inner(file, reader, "")?;
@@ -71,7 +80,23 @@ fn read<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, ty: &
     Ok(value)
 }
 
-/// The members or elements of an element that was opened, to its end.
+/// The numbers of `2,3` or `[0,1]`.
+fn lengths(text: &str) -> Vec<u64> {
+    text.split(|it: char| !it.is_ascii_digit()).filter_map(|it| it.parse().ok()).collect()
+}
+
+/// The index of the next element, the last dimension first.
+fn advance(index: &mut [u64], lengths: &[u64]) {
+    for (at, length) in index.iter_mut().zip(lengths).rev() {
+        *at += 1;
+        if *at < *length {
+            return;
+        }
+        *at = 0;
+    }
+}
+
+/// The members, by their names, or elements, by their indices, of an element that was opened, to its end.
 type Inner<'t> = Vec<(Chunk, &'t str, Value<'t>)>;
 
 fn inner<'t>(file: &'t str, reader: &mut Reader<'t>, ty: &'t str) -> Result<Inner<'t>, Broken> {
@@ -79,7 +104,8 @@ fn inner<'t>(file: &'t str, reader: &mut Reader<'t>, ty: &'t str) -> Result<Inne
     while let Some(part) = reader.part()? {
         match part {
             Part::Open(element) => {
-                let name = element.attribute(file, "Name").unwrap_or_default();
+                let name =
+                    element.attribute(file, "Name").or_else(|| element.attribute(file, "Index")).unwrap_or_default();
                 let chunk = element.attribute_text(file, "Name").unwrap_or_else(|| Chunk::words("", &element.place));
                 all.push((chunk, name, read(file, reader, &element, ty)?));
             }
