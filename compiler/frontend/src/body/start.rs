@@ -213,6 +213,8 @@ impl<'s> Checker<'_, 's> {
         if self.decl.pous[class].ast.kind == PouKind::Program || self.decl.has_started_members(id) {
             self.call_start(class, place.clone(), given.span);
         }
+        let named = self.by_name(initial.last().copied(), given.arguments);
+        let given = &Given { arguments: &named, ..given.clone() };
         for method in initial {
             let arguments = self.arguments_of(method, given);
             self.call_system(method, place.clone(), &arguments, given.span);
@@ -243,6 +245,21 @@ impl<'s> Checker<'_, 's> {
         self.user_function(called, Some((place, span)), arguments);
     }
 
+    /// Arguments by position are those of the last FB_init: a base's takes what it has by the same name.
+    fn by_name(&mut self, last: Option<usize>, arguments: &[ast::Argument<'s>]) -> Vec<ast::Argument<'s>> {
+        let Some(signature) = last.and_then(|it| self.decl.signature(it)) else { return arguments.to_vec() };
+        let is_own = |name: &&str| !OF_THE_SYSTEM.iter().any(|it| Key(it) == Key(name));
+        let names: Vec<_> = signature.formals.iter().map(|it| it.name.text).filter(is_own).collect();
+        let named = |(at, argument): (usize, &ast::Argument<'s>)| match (&argument.kind, names.get(at)) {
+            (ArgumentKind::Positional(value), Some(text)) => {
+                let name = ast::Name { text, span: argument.span };
+                ast::Argument { kind: ArgumentKind::Input(name, value.clone()), span: argument.span }
+            }
+            _ => argument.clone(),
+        };
+        arguments.iter().enumerate().map(named).collect()
+    }
+
     /// What FB_init is given: of what the declaration writes, a base's takes what it knows.
     fn arguments_of(&mut self, method: usize, given: &Given<'_, 's>) -> Vec<ast::Argument<'s>> {
         let Some(signature) = self.decl.signature(method) else { return Vec::new() };
@@ -255,10 +272,9 @@ impl<'s> Checker<'_, 's> {
             .map(|(text, value)| ast::Argument { kind: ArgumentKind::Input(ast::Name { text, span }, value), span })
             .collect();
         let is_base = self.decl.pous[method].ast.is_hidden;
-        let own = signature.formals.len().saturating_sub(arguments.len());
-        for (at, argument) in given.arguments.iter().enumerate() {
+        for argument in given.arguments {
             let is_known = match &argument.kind {
-                ArgumentKind::Positional(_) => at < own,
+                ArgumentKind::Positional(_) => false,
                 ArgumentKind::Input(name, _) | ArgumentKind::Output { name, .. } => has(name.text),
             };
             if is_known || !is_base {
