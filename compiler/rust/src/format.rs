@@ -24,7 +24,7 @@ const WIDE: usize = 100;
 pub fn format(items: TokenStream) -> String {
     let file = syn::parse2(items).expect("the emitted items are Rust");
     let mut lines = Vec::new();
-    for line in hug(&fill(&prettyplease::unparse(&file))).lines() {
+    for line in hug(&heads(&fill(&prettyplease::unparse(&file)))).lines() {
         expand(line.to_owned(), &mut lines);
     }
     skip(&space(&comment(&lines.join("\n"))))
@@ -86,6 +86,40 @@ fn fill(text: &str) -> String {
 
 fn is_import(line: &str) -> bool {
     line.starts_with("use ")
+}
+
+/// Gives the head of a function one line, where it fits: rustfmt's lines are wider than the printer's.
+fn heads(text: &str) -> String {
+    let lines: Vec<&str> = text.lines().collect();
+    let mut joined = String::with_capacity(text.len());
+    let mut at = 0;
+    while let Some(line) = lines.get(at) {
+        let head = &lines[at..at + head_length(&lines[at..])];
+        let whole = match head {
+            [first, parameters @ .., last] => {
+                let parameters: Vec<_> = parameters.iter().map(|it| it.trim_start()).collect();
+                format!("{first}{}{}", parameters.join(" ").trim_end_matches(','), last.trim_start())
+            }
+            [] | [_] => (*line).to_owned(),
+        };
+        if whole.len() <= WIDE {
+            joined.push_str(&format!("{whole}\n"));
+        } else {
+            head.iter().for_each(|it| joined.push_str(&format!("{it}\n")));
+        }
+        at += head.len();
+    }
+    joined
+}
+
+/// How many lines the head of a function has that begins here, one for each parameter; 1 where none begins.
+fn head_length(lines: &[&str]) -> usize {
+    let Some(first) = lines.first() else { return 0 };
+    let content = first.trim_start();
+    let indent = first.len() - content.len();
+    let is_broken = is_item(content) && content.contains("fn ") && content.ends_with('(');
+    let ends = |it: &&str| it.len() - it.trim_start().len() == indent && it.trim_start().starts_with(')');
+    lines.iter().position(ends).filter(|_| is_broken).map_or(1, |it| it + 1)
 }
 
 /// A table of one row is opened and closed with it.
@@ -224,13 +258,16 @@ fn words(code: &str) -> impl Iterator<Item = &str> {
 
 /// Whether it is certain that rustfmt leaves the lines of an item as they are.
 fn is_plain(item: &[&str], indent: usize) -> bool {
+    let (broken, item) = item.split_at(head_length(item).saturating_sub(1));
     let Some((head, body)) = item.split_first() else { return true };
     let is_whole = body.is_empty() && !head.contains('{');
     // Rows that are no structures may share lines.
     let is_table = head.ends_with("= &[") && body.first().is_some_and(|it| it.ends_with('{'));
     let opens = head.ends_with('{') && !head.contains("!(") || is_table;
     let head_is_plain = head.len() <= WIDE && (is_whole || opens);
-    head_is_plain && body.iter().all(|line| line.len() == indent + 1 || is_plain_line(line))
+    head_is_plain
+        && broken.iter().all(|it| it.len() <= WIDE)
+        && body.iter().all(|line| line.len() == indent + 1 || is_plain_line(line))
 }
 
 /// A statement, the head or the end of a block, a row of a table, or a comment, and none too wide.

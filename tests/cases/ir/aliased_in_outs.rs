@@ -127,11 +127,7 @@ pub fn swap(a: &mut i16, b: &mut i16) -> bool {
 ///
 /// In-outs that may be one variable share their storage; others are plain references.
 #[rustfmt::skip]
-pub fn swap_sharing_a_b(
-    a_at: i64,
-    b_at: i64,
-    shared_a_b: &mut [i16; 4],
-) -> Result<bool, Fault> {
+pub fn swap_sharing_a_b(a_at: i64, b_at: i64, shared_a_b: &mut [i16; 4]) -> Result<bool, Fault> {
     let result: bool = false;
     let t: i16 = shared_a_b[ops::index(a_at, 0, 3).at(ALIASED_IN_OUTS_ST, 2, 10)?]; // :5
     let index = ops::index(a_at, 0, 3).at(ALIASED_IN_OUTS_ST, 2, 10)?;
