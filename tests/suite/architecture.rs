@@ -34,6 +34,7 @@ const EDGES: &[(&str, &[&str])] = &[
     ("staunch-witness", &["staunch-frontend", "staunch-runtime"]),
     ("staunch-build", &["staunch-frontend", "staunch-ir", "staunch-rust", "toml"]),
     ("staunch-example-build-script", &["staunch-runtime", "staunch-build"]),
+    ("staunch-example-external-rust", &["staunch-runtime", "staunch-build"]),
 ];
 
 /// What a user's build script must never compile.

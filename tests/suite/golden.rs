@@ -52,6 +52,7 @@ fn every_form_of_statement_is_pinned_as_ir() {
         "call a block",
         "prescan a block",
         "fault",
+        "external",
         "hand over a value",
         "hand over a text",
         "hand over a variable",
@@ -77,6 +78,7 @@ fn form(kind: &StatementKind) -> &'static str {
         StatementKind::CallBlock { .. } => "call a block",
         StatementKind::PrescanBlock { .. } => "prescan a block",
         StatementKind::Fault(_) => "fault",
+        StatementKind::External(_) => "external",
     }
 }
 

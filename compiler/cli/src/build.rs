@@ -49,6 +49,11 @@ fn runnable(session: &Session, args: &Build) -> Result<Program, String> {
 fn compile(program: &Program, args: &Build, target: Option<&str>, out: &Path) -> Result<(), String> {
     match args.backend {
         BuildBackend::Native => native(program, args.emit, target, out),
+        BuildBackend::Rust if !program.externals().is_empty() => Err(
+            "what is `{external}` is implemented by a crate around the emitted Rust: use `--emit rust`, or `--backend native` \
+             and implement it in C"
+                .to_owned(),
+        ),
         BuildBackend::Rust => rust(program, args.emit, target, out),
     }
 }

@@ -1,5 +1,6 @@
 //! A C header for what an object or library exports: the entry points, and the state by name.
 
+use crate::prototype::{c_type, prototypes};
 use staunch_ir::layout::Layout;
 use staunch_ir::{FaultKind, FieldId, Program, Projection, Repr, StructId, Type};
 use staunch_runtime::Context;
@@ -44,7 +45,7 @@ pub fn header(program: &Program, out: &Path, source: &Path) -> String {
     let taken = OWN.into_iter().chain(guard.strip_prefix("STAUNCH_")).map(str::to_owned).collect();
     let mut macros = Macros { program, layout: &layout, taken, text };
     macros.instances();
-    macros.text + "\n#ifdef __cplusplus\n}\n#endif\n#endif\n"
+    macros.text + &prototypes(program, &layout) + "\n#ifdef __cplusplus\n}\n#endif\n#endif\n"
 }
 
 fn guard(out: &Path, source: &Path) -> String {
@@ -146,19 +147,7 @@ impl Macros<'_> {
 }
 
 fn variable(name: &str, repr: Repr, offset: u64, text: &mut String) {
-    let ty = match repr {
-        Repr::Bool => "bool",
-        Repr::I8 => "int8_t",
-        Repr::I16 => "int16_t",
-        Repr::I32 => "int32_t",
-        Repr::I64 => "int64_t",
-        Repr::U8 => "uint8_t",
-        Repr::U16 => "uint16_t",
-        Repr::U32 => "uint32_t",
-        Repr::U64 => "uint64_t",
-        Repr::F32 => "float",
-        Repr::F64 => "double",
-    };
+    let ty = c_type(repr);
     let _ = writeln!(text, "#define STAUNCH_{name}(state) (*({ty} *)((state) + {offset}))");
 }
 

@@ -25,8 +25,9 @@ mod manual;
 mod new;
 
 mod output;
+mod prototype;
 
-use args::{Cli, Command, MessageFormat};
+use args::{Cli, Command, Emit, MessageFormat};
 use session::Session;
 use std::io::Write as _;
 use std::process::ExitCode;
@@ -96,7 +97,10 @@ fn dispatch(cli: Cli) -> u8 {
         Command::Man(it) => manual::pages(it),
         Command::New(it) => new::new(it, &cli.common),
         Command::Check(it) => Session::check(&cli.common, it),
-        Command::Build(it) => Session::start(&cli.common, &it.files).and_then(|session| build::build(&session, it)),
+        Command::Build(it) => {
+            let start = if it.emit == Emit::Exe { Session::start } else { Session::start_to_build };
+            start(&cli.common, &it.files).and_then(|session| build::build(&session, it))
+        }
         Command::Run(it) => Session::start(&cli.common, &it.files).and_then(|session| run::run(&session, it)),
         Command::Test(it) => Session::start_tests(&cli.common, &it.files, !it.coverage.is_empty())
             .and_then(|session| test::test(&session, it)),

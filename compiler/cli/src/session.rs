@@ -36,6 +36,14 @@ impl Session {
         Self::begin(common, files, staunch_frontend::compile).map(|(session, _)| session)
     }
 
+    /// As [`start`](Self::start), for a program that others finish: what is `{external}` is theirs.
+    pub fn start_to_build(common: &Common, files: &Files) -> Result<Self, String> {
+        let compile = |sources: &Sources, options: &Options| {
+            staunch_frontend::compile(sources, &Options { is_run: false, ..options.clone() })
+        };
+        Self::begin(common, files, compile).map(|(session, _)| session)
+    }
+
     /// As [`start`](Self::start), for the unit tests in the sources.
     pub fn start_tests(common: &Common, files: &Files, is_covered: bool) -> Result<Self, String> {
         let compile = |sources: &Sources, options: &Options| {
@@ -60,8 +68,8 @@ impl Session {
 
     /// As [`start`](Self::start), but without a program at the end: the verdict alone.
     pub fn check(common: &Common, files: &Files) -> Result<u8, String> {
-        let check = |sources: &_, options: &_| {
-            let diagnostics = staunch_frontend::check(sources, options);
+        let check = |sources: &Sources, options: &Options| {
+            let diagnostics = staunch_frontend::check(sources, &Options { is_run: false, ..Options::clone(options) });
             Compilation { program: None, diagnostics, tests: Vec::new(), coverage: Vec::new() }
         };
         let (session, errors) = Self::begin(common, files, check)?;
@@ -306,7 +314,14 @@ fn options(common: &Common, project: &Project) -> Result<Options, String> {
         Some(dialect) => dialect,
         None => project.dialect()?.unwrap_or_default(),
     };
-    Ok(Options { dialect, ctu_stop_at_pv: project.ctu_stop_at_pv, moved_from: None, tests: false, coverage: None })
+    Ok(Options {
+        dialect,
+        ctu_stop_at_pv: project.ctu_stop_at_pv,
+        moved_from: None,
+        tests: false,
+        is_run: true,
+        coverage: None,
+    })
 }
 
 fn summary(errors: usize, warnings: usize) -> String {

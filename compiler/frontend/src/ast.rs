@@ -197,8 +197,18 @@ pub struct Pou<'s> {
     pub routines: Vec<Pou<'s>>,
     /// What `{attribute '…'}` says before it.
     pub attributes: Vec<&'s str>,
+    /// `{external}` before it: it is implemented outside of Structured Text.
+    pub external: Option<External<'s>>,
     /// The comment that is directly before the POU, cleaned of its marks.
     pub doc: Option<String>,
+    pub span: Span,
+}
+
+/// `{external}`, or `{external 'symbol'}`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct External<'s> {
+    /// What C calls it; else its own name.
+    pub symbol: Option<&'s str>,
     pub span: Span,
 }
 
@@ -220,6 +230,7 @@ impl<'s> Pou<'s> {
             body: Vec::new(),
             routines: Vec::new(),
             attributes: Vec::new(),
+            external: None,
             doc: None,
             span,
         }

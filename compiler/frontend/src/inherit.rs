@@ -158,6 +158,14 @@ impl<'s> Expansion<'_, 's> {
             );
             return None;
         }
+        if self.classes.all[at].pou.external.is_some() {
+            self.diagnostics.push(
+                Diagnostic::new(Code::E0319, base.span, format!("`{}` is `{{external}}`", base.text))
+                    .label("nothing extends it")
+                    .help("declare an instance of it in this FUNCTION_BLOCK"),
+            );
+            return None;
+        }
         if let Some(span) = self.classes.all[at].pou.modifiers.is_final {
             self.diagnostics.push(
                 Diagnostic::new(Code::E0403, base.span, format!("`{}` is FINAL", base.text))

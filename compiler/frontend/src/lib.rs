@@ -64,6 +64,8 @@ pub struct Options {
     pub moved_from: Option<Dialect>,
     /// Each TEST becomes an instance of the program, and no other PROGRAM runs.
     pub tests: bool,
+    /// It runs as it is: what is declared `{external}` is not there, and a call of it faults.
+    pub is_run: bool,
     /// Counts what is executed of the first so many sources.
     pub coverage: Option<u16>,
 }
@@ -178,6 +180,7 @@ fn run_with(
     if keep == Bodies::Kept {
         let routines: Vec<_> = checked.routines.iter().map(|it| it.as_ref().map(|it| &it.0)).collect();
         stubs.report_called(&mut declarations, &routines);
+        declarations.report_not_there(&routines);
     }
     let left_out = checked.left_out;
     let program = program::assemble(&mut declarations, &files, checked);

@@ -42,7 +42,7 @@ pub(crate) fn prepare(files: &mut [File<'_>], sources: &Sources) -> Stubs {
 fn is_stub(pou: &Pou<'_>) -> bool {
     let is_empty = pou.body.is_empty() && pou.routines.iter().all(|it| it.body.is_empty());
     let has_own = pou.extends.is_none() || !pou.routines.is_empty();
-    pou.kind != PouKind::Interface && is_empty && has_own
+    pou.kind != PouKind::Interface && pou.external.is_none() && is_empty && has_own
 }
 
 impl Stubs {
@@ -53,20 +53,8 @@ impl Stubs {
         }
         let sources = declarations.log.sources;
         let is_own = |slot: &usize| !sources.get(declarations.pous[*slot].ast.span.file).is_of_library();
-        let mut reached: Vec<_> = (0..routines.len()).filter(is_own).collect();
-        let mut seen: FxHashSet<_> = reached.iter().copied().collect();
-        let mut missing = Vec::new();
-        while let Some(slot) = reached.pop() {
-            let Some(routine) = routines[slot] else { continue };
-            each_call(routine, &mut |callee, at| {
-                if seen.insert(callee.index()) {
-                    reached.push(callee.index());
-                    missing.push((callee.index(), at));
-                }
-            });
-        }
+        let mut missing = called((0..routines.len()).filter(is_own).collect(), routines);
         missing.retain(|(slot, _)| self.is_missing(declarations, *slot));
-        missing.sort_unstable_by_key(|(_, at)| (at.file, at.line, at.column));
         // What several classes inherit is declared once.
         let mut said = FxHashSet::default();
         missing.retain(|(slot, _)| said.insert(declarations.pous[*slot].ast.name.span));
@@ -88,9 +76,57 @@ impl Declarations<'_> {
         let error = Diagnostic::new(Code::E0318, self.log.name_at(at), format!("`{title}` has no implementation"))
             .label("called here")
             .other(pou.name.span, "declared here, without a body")
-            .help(format!("write its body in {file}; where it is to do nothing, `RETURN;` is one"));
+            .help(format!(
+                "write its body in {file}, `RETURN;` where it is to do nothing, or `{{external}}` before it, and implement it in \
+                 Rust or C"
+            ));
         self.report(error);
     }
+}
+
+impl Declarations<'_> {
+    /// Where the program is to run as it is: reports what the PROGRAMs call that is implemented outside. A unit test may
+    /// have a mock in its place, and else faults.
+    pub(crate) fn report_not_there(&mut self, routines: &[Option<&Routine>]) {
+        if !self.log.options.is_run || self.log.options.tests {
+            return;
+        }
+        let is_program = |slot: &usize| self.pous[*slot].ast.kind == PouKind::Program;
+        let mut outside = called((0..routines.len()).filter(is_program).collect(), routines);
+        outside.retain(|(slot, _)| self.pous[*slot].ast.external.is_some());
+        for (slot, at) in outside {
+            let name = self.pous[slot].ast.name;
+            let error = Diagnostic::new(
+                Code::E0318,
+                self.log.name_at(at),
+                format!("`{}` has no implementation here", self.title(slot)),
+            )
+            .label("called here")
+            .other(name.span, "declared `{external}` here: it is implemented in Rust or C")
+            .help(
+                "build the program with `--emit rust`, `obj` or `lib` for what implements it, or test it with `MOCK_FUNCTION` \
+                 or `MOCK` in its place",
+            );
+            self.report(error);
+        }
+    }
+}
+
+/// What routines call, each once, with a place, in the order of the source.
+fn called(mut reached: Vec<usize>, routines: &[Option<&Routine>]) -> Vec<(usize, Location)> {
+    let mut seen: FxHashSet<_> = reached.iter().copied().collect();
+    let mut found = Vec::new();
+    while let Some(slot) = reached.pop() {
+        let Some(routine) = routines[slot] else { continue };
+        each_call(routine, &mut |callee, at| {
+            if seen.insert(callee.index()) {
+                reached.push(callee.index());
+                found.push((callee.index(), at));
+            }
+        });
+    }
+    found.sort_unstable_by_key(|(_, at)| (at.file, at.line, at.column));
+    found
 }
 
 fn each_call(routine: &Routine, see: &mut dyn FnMut(RoutineId, Location)) {

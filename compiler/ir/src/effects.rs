@@ -126,6 +126,11 @@ impl<'a> Finder<'a> {
                 self.reads_and_writes(block);
                 self.effects.context |= (self.rules.block_takes_context)(block, *instruction);
             }
+            StatementKind::External(it) => {
+                it.arguments.iter().filter_map(Argument::place).for_each(|place| self.reads_and_writes(place));
+                it.instance.iter().for_each(|place| self.reads_and_writes(place));
+                self.effects.context |= it.instance.is_some();
+            }
             StatementKind::Turn => {
                 self.effects.faults = true;
                 self.effects.context = true;

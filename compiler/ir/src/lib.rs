@@ -22,6 +22,7 @@ mod types;
 
 mod chars;
 mod expression;
+mod external;
 mod op;
 mod place;
 mod statement;
@@ -49,6 +50,7 @@ mod fixture;
 
 pub use chars::{Chars, CharsOf};
 pub use expression::{Conversion, Expr, ExprKind};
+pub use external::{External, ExternalCall, ExternalParam};
 pub use op::{Op, TextOp, apply, apply_text};
 pub use place::{Place, Projection, Root};
 pub use print::print;

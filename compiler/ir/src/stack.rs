@@ -70,6 +70,7 @@ impl Taken<'_> {
             // A constant goes to its target.
             StatementKind::Assign { value, .. } if matches!(value.kind, ExprKind::Aggregate(_)) => {}
             StatementKind::Call { arguments, .. } => arguments.iter().for_each(|it| self.argument(it)),
+            StatementKind::External(it) => it.arguments.iter().for_each(|it| self.argument(it)),
             StatementKind::For(_) => {
                 // Counter, end and step.
                 self.values += 3;

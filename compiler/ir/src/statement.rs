@@ -1,6 +1,6 @@
 //! Statements, and what each of them means.
 
-use crate::{Expr, FaultKind, Location, Place, RoutineId, Value};
+use crate::{Expr, ExternalCall, FaultKind, Location, Place, RoutineId, Value};
 
 pub type Block = Vec<Statement>;
 
@@ -56,6 +56,8 @@ pub enum StatementKind {
         /// Where a FUNCTION's result goes: a local of the result's type.
         result: Option<Place>,
     },
+    /// Calls what is implemented outside of the program.
+    External(Box<ExternalCall>),
     /// Runs an instruction of a standard block. `inputs` are evaluated left to right; then they
     /// become the block's input pins, in order (or the instruction's rung condition).
     CallBlock {
@@ -172,6 +174,24 @@ pub enum Argument {
     Reference(Place),
 }
 
+impl Argument {
+    /// What is passed by value.
+    pub fn value(&self) -> Option<&Expr> {
+        match self {
+            Self::Value(value) => Some(value),
+            Self::Reference(_) => None,
+        }
+    }
+
+    /// What is passed by reference.
+    pub fn place(&self) -> Option<&Place> {
+        match self {
+            Self::Value(_) => None,
+            Self::Reference(place) => Some(place),
+        }
+    }
+}
+
 #[derive(Clone, Debug)]
 pub struct Arm {
     /// Inclusive ranges of the selector's numeric value; a single label is a range of one.
@@ -202,6 +222,7 @@ impl StatementKind {
             | Self::Continue
             | Self::Return
             | Self::Call { .. }
+            | Self::External(_)
             | Self::CallBlock { .. }
             | Self::PrescanBlock { .. }
             | Self::Fault(_) => Vec::new(),
@@ -222,6 +243,7 @@ impl StatementKind {
             | Self::Continue
             | Self::Return
             | Self::Call { .. }
+            | Self::External(_)
             | Self::CallBlock { .. }
             | Self::PrescanBlock { .. }
             | Self::Fault(_) => Vec::new(),

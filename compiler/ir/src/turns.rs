@@ -20,6 +20,7 @@ pub fn takes_turns(block: &[Statement], callee_does: &dyn Fn(RoutineId) -> bool)
         | StatementKind::Exit
         | StatementKind::Continue
         | StatementKind::Return
+        | StatementKind::External(_)
         | StatementKind::CallBlock { .. }
         | StatementKind::PrescanBlock { .. }
         | StatementKind::Fault(_) => false,

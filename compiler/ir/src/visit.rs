@@ -47,11 +47,13 @@ fn rewrite_statement(kind: &mut StatementKind, by: &mut impl Rewrite) {
         }
         StatementKind::Call { instance, arguments, result, .. } => {
             instance.iter_mut().for_each(|it| rewrite_place(it, by));
-            arguments.iter_mut().for_each(|it| match it {
-                Argument::Value(value) => rewrite_expr(value, by),
-                Argument::Reference(place) => rewrite_place(place, by),
-            });
+            arguments.iter_mut().for_each(|it| rewrite_argument(it, by));
             result.iter_mut().for_each(|it| rewrite_place(it, by));
+        }
+        StatementKind::External(it) => {
+            it.instance.iter_mut().for_each(|it| rewrite_place(it, by));
+            it.arguments.iter_mut().for_each(|it| rewrite_argument(it, by));
+            it.result.iter_mut().for_each(|it| rewrite_place(it, by));
         }
         StatementKind::CallBlock { block, inputs, .. } => {
             rewrite_place(block, by);
@@ -64,6 +66,13 @@ fn rewrite_statement(kind: &mut StatementKind, by: &mut impl Rewrite) {
         | StatementKind::Continue
         | StatementKind::Return
         | StatementKind::Fault(_) => {}
+    }
+}
+
+fn rewrite_argument(argument: &mut Argument, by: &mut impl Rewrite) {
+    match argument {
+        Argument::Value(value) => rewrite_expr(value, by),
+        Argument::Reference(place) => rewrite_place(place, by),
     }
 }
 
@@ -133,6 +142,11 @@ pub fn accesses(statement: &Statement, see: &mut dyn FnMut(&Place, Access)) {
             arguments.iter().for_each(|argument| argument_accesses(argument, see));
             result.iter().for_each(|place| see(place, Access::Write));
         }
+        StatementKind::External(it) => {
+            it.instance.iter().for_each(|place| borrow(place, see));
+            it.arguments.iter().for_each(|argument| argument_accesses(argument, see));
+            it.result.iter().for_each(|place| see(place, Access::Write));
+        }
         StatementKind::CallBlock { block, inputs, .. } => {
             borrow(block, see);
             inputs.iter().for_each(|it| reads(it, &mut |place| see(place, Access::Read)));
@@ -183,14 +197,8 @@ pub fn values<'a>(statement: &'a Statement, see: &mut dyn FnMut(&'a Expr)) {
                 see(step);
             }
         }
-        StatementKind::Call { arguments, .. } => {
-            for argument in arguments {
-                match argument {
-                    Argument::Value(value) => see(value),
-                    Argument::Reference(_) => {}
-                }
-            }
-        }
+        StatementKind::Call { arguments, .. } => arguments.iter().filter_map(Argument::value).for_each(see),
+        StatementKind::External(it) => it.arguments.iter().filter_map(Argument::value).for_each(see),
         StatementKind::CallBlock { inputs, .. } => inputs.iter().for_each(see),
         StatementKind::Loop { .. }
         | StatementKind::Turn
@@ -230,13 +238,13 @@ pub fn targets<'a>(statement: &'a Statement, see: &mut dyn FnMut(&'a Place)) {
         StatementKind::For(it) => see(&it.counter),
         StatementKind::Call { instance, arguments, result, .. } => {
             instance.iter().for_each(&mut *see);
-            for argument in arguments {
-                match argument {
-                    Argument::Value(_) => {}
-                    Argument::Reference(place) => see(place),
-                }
-            }
+            arguments.iter().filter_map(Argument::place).for_each(&mut *see);
             result.iter().for_each(see);
+        }
+        StatementKind::External(it) => {
+            it.instance.iter().for_each(&mut *see);
+            it.arguments.iter().filter_map(Argument::place).for_each(&mut *see);
+            it.result.iter().for_each(see);
         }
         StatementKind::CallBlock { block, .. } | StatementKind::PrescanBlock { block, .. } => see(block),
         StatementKind::If { .. }

@@ -66,13 +66,13 @@ impl Function<'_, '_> {
         results.get(1).copied()
     }
 
-    fn reference(&mut self, place: &Place) -> clif::Value {
+    pub(crate) fn reference(&mut self, place: &Place) -> clif::Value {
         let address = self.address(place);
         self.pointer(address)
     }
 
     /// An argument that the callee copies, if it is not elementary.
-    fn argument(&mut self, value: &Expr) -> clif::Value {
+    pub(crate) fn argument(&mut self, value: &Expr) -> clif::Value {
         match value.ty {
             Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::Enum(_) => self.scalar(value),
             Type::String(_) => self.text_pointer(value),

@@ -9,6 +9,8 @@ pub enum Error {
     Target(String),
     /// The code generator refused a function: it is too large for it.
     Code { function: String, reason: String },
+    /// What is implemented outside is not in memory; its name.
+    External(String),
     /// The object or the memory for the code cannot be made.
     Output(String),
 }
@@ -18,6 +20,7 @@ impl fmt::Display for Error {
         match self {
             Self::Target(sentence) => f.write_str(sentence),
             Self::Code { function, reason } => write!(f, "no native code for {function}: {reason}"),
+            Self::External(name) => write!(f, "{name} is implemented outside: make an object, and link it"),
             Self::Output(reason) => write!(f, "no native code: {reason}"),
         }
     }

@@ -32,8 +32,12 @@ impl Jit {
     /// Compiles a verified program for this machine.
     ///
     /// # Errors
-    /// If there is no back end for this machine, or a function is too large for it.
+    /// If there is no back end for this machine, a function is too large for it, or something is called that is
+    /// implemented outside.
     pub fn new(program: &Program) -> Result<Self, Error> {
+        if let Some(external) = program.externals().first() {
+            return Err(Error::External(external.name.clone()));
+        }
         let isa = target::native_isa()?;
         let mut builder = JITBuilder::with_isa(isa, default_libcall_names());
         staunch_runtime_abi::for_each_symbol(&mut |name, address| {

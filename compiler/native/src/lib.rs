@@ -23,6 +23,7 @@ mod turns;
 mod call;
 mod case;
 mod expression;
+mod external;
 mod place;
 mod text;
 

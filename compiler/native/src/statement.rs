@@ -36,6 +36,7 @@ impl<'p> Function<'_, 'p> {
             StatementKind::Call { callee, instance, arguments, result } => {
                 self.call(*callee, instance.as_ref(), arguments, result.as_ref());
             }
+            StatementKind::External(it) => self.external(it),
             StatementKind::CallBlock { block, instruction, inputs } => {
                 self.call_block(block, *instruction, inputs);
             }

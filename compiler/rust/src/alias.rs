@@ -20,8 +20,8 @@ use std::collections::{HashMap, HashSet};
 
 use staunch_ir::effects::{Effects, Rules, effects};
 use staunch_ir::{
-    Argument, Block, Expr, FieldId, For, Mode, Param, ParamId, Place, Program, Projection, Root, Routine, RoutineId,
-    RoutineKind, Statement, StatementKind, Type,
+    Argument, Block, Expr, ExternalCall, FieldId, For, Mode, Param, ParamId, Place, Program, Projection, Root, Routine,
+    RoutineId, RoutineKind, Statement, StatementKind, Type,
 };
 
 use call::Call;
@@ -245,6 +245,12 @@ impl Separator<'_> {
                 let call = Call { callee: *callee, instance, arguments, globals: Vec::new(), result, at };
                 return self.call(body, call, out);
             }
+            StatementKind::External(it) => StatementKind::External(Box::new(ExternalCall {
+                external: it.external.clone(),
+                instance: it.instance.as_ref().map(|it| body.place(it)),
+                arguments: it.arguments.iter().map(|it| body.argument(it)).collect(),
+                result: it.result.as_ref().map(|it| body.place(it)),
+            })),
             StatementKind::CallBlock { block, instruction, inputs } => StatementKind::CallBlock {
                 block: body.place(block),
                 instruction: *instruction,

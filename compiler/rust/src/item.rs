@@ -190,7 +190,7 @@ impl Emitter<'_> {
     }
 
     /// What the declaration is, and what its author wrote about it.
-    fn docs(&self, written: Option<&str>, title: &str) -> TokenStream {
+    pub fn docs(&self, written: Option<&str>, title: &str) -> TokenStream {
         let title = doc_line(title);
         match written {
             Some(_) => {

@@ -12,6 +12,7 @@ mod precedence;
 
 mod constant;
 mod expression;
+mod external;
 mod firmware;
 mod flash;
 mod function;
@@ -114,7 +115,9 @@ pub fn emit(program: &Program, options: &Options) -> String {
     let names = options.names.then(|| emitter.name_table());
     let items = emitter.items();
     let items = quote!(#items #names);
-    let imports = imports(&items, &options.runtime, emitter.shared);
+    let externals = emitter.externals();
+    let imports = imports(&quote!(#items #externals), &options.runtime, emitter.shared, externals.is_some());
+    let items = quote!(#externals #items);
     let body = format!("{}{}", format::format(quote!(#imports #items)), layout_asserts::layout(&emitter));
     let header = header(program);
     match &options.shape {
@@ -131,8 +134,18 @@ pub fn emit(program: &Program, options: &Options) -> String {
     }
 }
 
-fn imports(items: &proc_macro2::TokenStream, runtime: &str, shared: bool) -> Option<proc_macro2::TokenStream> {
+fn imports(
+    items: &proc_macro2::TokenStream,
+    runtime: &str,
+    shared: bool,
+    calls_out: bool,
+) -> Option<proc_macro2::TokenStream> {
     let names: Vec<_> = format::imports(items).iter().map(|it| names::ident(it)).collect();
+    let externals = calls_out.then(|| {
+        quote!(
+            use super::Externals;
+        )
+    });
     let runtime: syn::Path = syn::parse_str(runtime).expect("the runtime's path is a Rust path");
     let runtime = match names.as_slice() {
         [] => None,
@@ -144,7 +157,7 @@ fn imports(items: &proc_macro2::TokenStream, runtime: &str, shared: bool) -> Opt
             use core::cell::Cell;
         )
     });
-    Some(quote!(#cell #runtime))
+    Some(quote!(#cell #externals #runtime))
 }
 
 fn header(program: &Program) -> String {

@@ -4,7 +4,7 @@
 use std::collections::{HashMap, HashSet};
 
 use proc_macro2::{Ident, Span};
-use staunch_ir::{FieldId, LocalId, ParamId, Program, Routine, RoutineId, RoutineKind, StructId};
+use staunch_ir::{External, FieldId, LocalId, Location, ParamId, Program, Routine, RoutineId, RoutineKind, StructId};
 
 use crate::alias::Origin;
 
@@ -73,8 +73,13 @@ pub struct Scope {
 }
 
 impl Scope {
-    fn with(reserved: &[&str]) -> Self {
+    pub fn with(reserved: &[&str]) -> Self {
         Self { taken: reserved.iter().map(|it| (*it).to_owned()).collect() }
+    }
+
+    /// A variable's name, in Rust's case.
+    pub fn claim_variable(&mut self, name: &str) -> Ident {
+        self.claim(&snake(name))
     }
 
     /// `wanted`, or `wanted_2` and so on where that is taken.
@@ -119,6 +124,8 @@ pub struct Names {
     routines: Vec<Ident>,
     files: Vec<Ident>,
     instances: Vec<Ident>,
+    /// By where they are declared.
+    externals: HashMap<Location, Ident>,
     /// What a local may not be called.
     locals: Scope,
 }
@@ -136,6 +143,12 @@ impl Names {
         let shared = !program.references.is_empty();
         let mut types = Scope::with(TYPES);
         types.taken.extend(shared.then(|| "Cell".to_owned()));
+        let externals = program.externals();
+        if !externals.is_empty() {
+            types.taken.extend(["External", "Externals"].map(str::to_owned));
+        }
+        let functions = claim_all(Scope::default(), externals.iter().map(|it| snake(&it.name)));
+        let externals = externals.iter().map(|it| it.location).zip(functions).collect();
         let structs = program.structs.iter().map(|it| types.claim_type(&camel(&it.name))).collect();
         let enums = program.enums.iter().map(|it| types.claim_type(&camel(&it.name))).collect();
         let routines = routine_names(program, origins);
@@ -158,8 +171,14 @@ impl Names {
             routines,
             files: claim_all(Scope::with(CONSTANTS), program.files.iter().map(|it| screaming(base_name(&it.path)))),
             instances: claim_all(Scope::with(INSTANCES), program.instances.iter().map(|it| snake(&it.name))),
+            externals,
             locals,
         }
+    }
+
+    /// The function of the trait that the crate implements.
+    pub fn external(&self, it: &External) -> &Ident {
+        &self.externals[&it.location]
     }
 
     pub fn enumeration(&self, id: staunch_ir::EnumId) -> &Ident {

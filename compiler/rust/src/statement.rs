@@ -88,6 +88,7 @@ impl Function<'_> {
                 let call = self.call(&statement.kind);
                 quote!(#call;)
             }
+            StatementKind::External(it) => self.external(statement, it),
             StatementKind::CallBlock { block, instruction, inputs } => self.call_block(block, *instruction, inputs),
             StatementKind::PrescanBlock { block, instruction } => self.prescan_block(block, *instruction),
             StatementKind::Fault(kind) => {
@@ -252,7 +253,7 @@ impl Function<'_> {
         }
     }
 
-    fn argument(&self, argument: &Argument) -> TokenStream {
+    pub fn argument(&self, argument: &Argument) -> TokenStream {
         match argument {
             Argument::Value(value) => self.expr(value).tokens,
             Argument::Reference(place) => self.borrowed(place),

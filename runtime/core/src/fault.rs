@@ -27,10 +27,12 @@ pub enum FaultKind {
     ForbiddenView = 10,
     /// The condition of an ASSERT does not hold.
     AssertionFailed = 11,
+    /// What is called is implemented outside of Structured Text, and is not there.
+    NotImplemented = 12,
 }
 
 impl FaultKind {
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::DivideByZero,
         Self::IndexOutOfRange,
         Self::SubrangeViolated,
@@ -42,6 +44,7 @@ impl FaultKind {
         Self::MisalignedReference,
         Self::ForbiddenView,
         Self::AssertionFailed,
+        Self::NotImplemented,
     ];
 
     /// The fault with this code, as native code returns it.
@@ -63,6 +66,7 @@ impl FaultKind {
             Self::MisalignedReference => "a reference is misaligned",
             Self::ForbiddenView => "a reference points to something of another type",
             Self::AssertionFailed => "an assertion does not hold",
+            Self::NotImplemented => "an `{external}` is not implemented here",
         }
     }
 }

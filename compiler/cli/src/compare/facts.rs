@@ -227,6 +227,7 @@ impl<'p> Walk<'p, '_> {
             | StatementKind::Exit
             | StatementKind::Continue
             | StatementKind::Return
+            | StatementKind::External(_)
             | StatementKind::PrescanBlock { .. }
             | StatementKind::Fault(_) => {}
         }

@@ -7,6 +7,7 @@ mod build;
 mod cache;
 mod check;
 mod coverage;
+mod external;
 mod mutants;
 mod page;
 #[cfg(unix)]

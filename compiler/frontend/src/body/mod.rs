@@ -2,6 +2,7 @@
 
 mod assertion;
 mod case;
+mod external;
 mod loops;
 mod start;
 mod statement;
@@ -150,7 +151,13 @@ fn check_body<'s>(
     checker.edge_inputs(&signature, pou.name.span);
     checker.mocked_result(slot, pou.name.span);
     checker.start_locals(&signature);
-    let mut body = checker.block_of(statements);
+    let mut body = match pou.external {
+        Some(_) => {
+            checker.external_body(slot, &signature, statements);
+            Block::new()
+        }
+        None => checker.block_of(statements),
+    };
     checker.migration_lints(statements);
     let mut whole = std::mem::take(&mut checker.block);
     whole.append(&mut body);

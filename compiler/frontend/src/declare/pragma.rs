@@ -6,7 +6,7 @@ use crate::spelling::nearest;
 use crate::{Code, Diagnostic, Span, ast};
 
 /// Pragmas that change what a program means: to pass over them would compile another program.
-const DECIDING_PRAGMAS: [&str; 7] = ["external", "if", "elsif", "else", "end_if", "define", "undefine"];
+const DECIDING_PRAGMAS: [&str; 6] = ["if", "elsif", "else", "end_if", "define", "undefine"];
 /// Pragmas for editors and other tools.
 const HARMLESS_PRAGMAS: [&str; 12] = [
     "attribute",
@@ -28,7 +28,7 @@ impl Log<'_> {
         let mut found: Option<(Dialect, Span)> = None;
         for pragma in &file.pragmas {
             let Some(name) = dialect_pragma(pragma.text) else {
-                self.check_pragma(*pragma);
+                self.check_pragma(file, *pragma);
                 continue;
             };
             let Some(dialect) = Dialect::named(name) else {
@@ -61,19 +61,38 @@ impl Log<'_> {
     }
 
     /// What a pragma that does not name a dialect is good for.
-    fn check_pragma(&mut self, pragma: ast::Name<'_>) {
+    fn check_pragma(&mut self, file: &ast::File<'_>, pragma: ast::Name<'_>) {
         let word: String =
             pragma.text.trim().chars().take_while(|it| it.is_ascii_alphanumeric() || *it == '_').collect();
         let word = word.to_ascii_lowercase();
         if super::list::is_list_pragma(pragma.text) {
             return;
         }
-        if DECIDING_PRAGMAS.contains(&word.as_str()) {
+        if word == "external" {
+            self.check_external_pragma(file, pragma.span);
+        } else if DECIDING_PRAGMAS.contains(&word.as_str()) {
             self.not_supported(pragma.span, &format!("the pragma `{word}`"));
         } else if !HARMLESS_PRAGMAS.contains(&word.as_str()) && !crate::allow::is_allowance(pragma.text) {
             self.report(
                 Diagnostic::new(Code::W0102, pragma.span, format!("the pragma `{word}` is not known"))
                     .label("it has no effect"),
+            );
+        }
+    }
+}
+
+impl Log<'_> {
+    /// It says something of the unit that follows it.
+    fn check_external_pragma(&mut self, file: &ast::File<'_>, span: Span) {
+        let is_of = |it: &ast::Item<'_>| match it {
+            ast::Item::Pou(pou) => pou.external.is_some_and(|it| it.span == span),
+            ast::Item::Types(_) | ast::Item::Globals(_) | ast::Item::Configuration(_) | ast::Item::Test(_) => false,
+        };
+        if !file.items.iter().any(is_of) {
+            self.report(
+                Diagnostic::new(Code::E0319, span, "`{external}` belongs to nothing")
+                    .label("expected before a FUNCTION or FUNCTION_BLOCK, alone or with a symbol")
+                    .help("write `{external}` or `{external 'symbol'}` directly before the unit"),
             );
         }
     }

@@ -111,6 +111,7 @@ codes! {
     E0316 Error "what cannot be replaced by a mock";
     E0317 Error "which FUNCTION of a name is called";
     E0318 Error "a call of what has no body";
+    E0319 Error "what cannot be implemented outside";
     E0402 Error "a declaration needs itself";
     E0403 Error "qualifier does not belong here";
     E0405 Error "VAR_EXTERNAL differs from its global";

@@ -14,7 +14,8 @@ pub(crate) fn report(decl: &mut Declarations<'_>) {
         let Some(signature) = decl.signature(slot) else { continue };
         used.extend(signature.scope.variables.iter().filter(|it| it.used.get()).map(|it| it.name.span));
     }
-    let is_written = |it: &usize| decl.pous[*it].instance.is_none() && !decl.is_head(*it);
+    let is_written =
+        |it: &usize| decl.pous[*it].instance.is_none() && !decl.is_head(*it) && decl.pous[*it].ast.external.is_none();
     for slot in (0..decl.pous.len()).filter(is_written).collect::<Vec<_>>() {
         of_pou(decl, slot, &used);
     }

@@ -3,6 +3,7 @@
 use chumsky::prelude::*;
 
 use crate::{
+    ast::External,
     ast::{Name, TypeDecl, TypeKind, TypeSpec},
     lex::Kind,
 };
@@ -54,11 +55,21 @@ pub fn types<'s>(input: &mut In<'_, '_, 's>) -> Vec<TypeDecl<'s>> {
 
 /// The names in `{attribute 'strict'}` and its like between the last token and the next.
 pub fn attributes_here<'s>(input: &mut In<'_, '_, 's>) -> Vec<&'s str> {
+    pragmas_here(input).into_iter().filter_map(|it| attribute(it.text)).collect()
+}
+
+/// `{external}` between the last token and the next.
+pub fn external_here<'s>(input: &mut In<'_, '_, 's>) -> Option<External<'s>> {
+    pragmas_here(input).into_iter().find_map(external)
+}
+
+/// The pragmas between the last token and the next.
+fn pragmas_here<'s>(input: &mut In<'_, '_, 's>) -> Vec<Name<'s>> {
     let (from, to) = (input.last(), input.here());
     let pragmas = &input.state().tokens.pragmas;
     let after = |it: &Name<'s>| it.span.start >= from.end || from.start >= to.start;
     let here = pragmas.iter().filter(|it| it.span.end <= to.start && after(it));
-    here.filter_map(|it| attribute(it.text)).collect()
+    here.copied().collect()
 }
 
 /// The name in `attribute 'strict'`.
@@ -66,6 +77,16 @@ fn attribute(text: &str) -> Option<&str> {
     let (word, rest) = text.trim().split_once(|it: char| it.is_whitespace())?;
     let name = rest.trim_start().strip_prefix('\'')?.split('\'').next()?;
     word.eq_ignore_ascii_case("attribute").then_some(name)
+}
+
+/// `external`, with or without a symbol in quotes.
+fn external(pragma: Name<'_>) -> Option<External<'_>> {
+    let text = pragma.text.trim();
+    let (word, rest) = text.split_at_checked("external".len())?;
+    let rest = rest.trim();
+    let symbol = rest.strip_prefix('\'').and_then(|it| it.strip_suffix('\''));
+    let fits = word.eq_ignore_ascii_case("external") && (rest.is_empty() || symbol.is_some());
+    fits.then_some(External { symbol, span: pragma.span })
 }
 
 /// A type, or the name of one that does not parse, with all names in it: they may be enumerators.

@@ -148,6 +148,8 @@ pub(crate) struct Declarations<'s> {
     pub addresses: Addresses,
     pub image: Image,
     pub synthetic: Synthetic<'s>,
+    /// The symbols of what is implemented outside, and where each is declared.
+    pub externals: FxHashMap<String, Span>,
     /// By their slots.
     pub named_programs: FxHashMap<usize, NamedProgram<'s>>,
     pub tests: Tests,
@@ -178,6 +180,7 @@ impl<'s> Declarations<'s> {
             addresses: Addresses::default(),
             image: Image::default(),
             synthetic: Synthetic::default(),
+            externals: FxHashMap::default(),
             named_programs: FxHashMap::default(),
             tests: Tests::default(),
             coverage: None,

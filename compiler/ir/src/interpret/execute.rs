@@ -55,6 +55,10 @@ impl<'p> Interpreter<'p> {
                 self.block(&inner, &self.program.routine(*callee).body, cx)?;
                 self.close(frame, &inner, result.as_ref())?;
             }
+            // What is outside is not here.
+            StatementKind::External(_) => {
+                return Err(Fault { kind: FaultKind::NotImplemented, at: statement.at }.into());
+            }
             StatementKind::CallBlock { block, instruction, inputs } => {
                 self.call_block(frame, block, *instruction, inputs, cx)?;
             }

@@ -2,7 +2,8 @@
 
 use super::Printer;
 use crate::{
-    Argument, Arm, Block, Expr, For, Place, Routine, RoutineId, RoutineKind, Statement, StatementKind, Step, Type,
+    Argument, Arm, Block, Expr, ExternalCall, For, Place, Routine, RoutineId, RoutineKind, Statement, StatementKind,
+    Step, Type,
 };
 use core::fmt;
 
@@ -38,6 +39,7 @@ impl Printer<'_> {
             | StatementKind::Continue
             | StatementKind::Return
             | StatementKind::Call { .. }
+            | StatementKind::External(_)
             | StatementKind::CallBlock { .. }
             | StatementKind::PrescanBlock { .. }
             | StatementKind::Fault(_) => Ok(()),
@@ -75,6 +77,7 @@ impl Printer<'_> {
             StatementKind::Call { callee, instance, arguments, result } => {
                 self.call_head(routine, *callee, instance.as_ref(), arguments, result.as_ref())
             }
+            StatementKind::External(it) => self.external_head(routine, it),
             StatementKind::CallBlock { block, instruction, inputs } => {
                 self.block_head(routine, block, *instruction, inputs)
             }
@@ -112,6 +115,13 @@ impl Printer<'_> {
         let prescan = if callee.kind == RoutineKind::Prescan { ".prescan" } else { "" };
         let name = if callee.kind == RoutineKind::Method { self.program.title(callee) } else { callee.name.clone() };
         format!("{target}call {name}{prescan}{instance}({})", arguments.join(", "))
+    }
+
+    fn external_head(&self, routine: &Routine, it: &ExternalCall) -> String {
+        let target = it.result.as_ref().map(|place| format!("{} := ", self.place(routine, place))).unwrap_or_default();
+        let instance = it.instance.as_ref().map(|place| format!(" {}", self.place(routine, place))).unwrap_or_default();
+        let arguments: Vec<String> = it.arguments.iter().map(|it| self.argument(routine, it)).collect();
+        format!("{target}external {}{instance}({})", it.external.symbol, arguments.join(", "))
     }
 
     fn argument(&self, routine: &Routine, argument: &Argument) -> String {

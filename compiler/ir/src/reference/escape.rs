@@ -62,6 +62,7 @@ pub fn moves_references(program: &Program, statement: &StatementKind) -> bool {
         | StatementKind::Continue
         | StatementKind::Return
         | StatementKind::Call { .. }
+        | StatementKind::External(_)
         | StatementKind::CallBlock { .. }
         | StatementKind::PrescanBlock { .. }
         | StatementKind::Fault(_) => false,
@@ -157,6 +158,8 @@ impl<'p> Finder<'p> {
             | StatementKind::Exit
             | StatementKind::Continue
             | StatementKind::Return
+            // No reference is passed to what is outside.
+            | StatementKind::External(_)
             | StatementKind::CallBlock { .. }
             | StatementKind::PrescanBlock { .. }
             | StatementKind::Fault(_) => {}

@@ -142,6 +142,14 @@ impl Mover<'_> {
                     return out.push(Statement::assign(self.storage(local), back, statement.at));
                 }
             }
+            StatementKind::External(it) => {
+                it.instance.iter_mut().for_each(|it| self.place(it));
+                it.arguments.iter_mut().for_each(|it| match it {
+                    Argument::Value(value) => self.expr(value),
+                    Argument::Reference(place) => self.place(place),
+                });
+                it.result.iter_mut().for_each(|it| self.place(it));
+            }
             StatementKind::CallBlock { block, inputs, .. } => {
                 self.place(block);
                 inputs.iter_mut().for_each(|it| self.expr(it));

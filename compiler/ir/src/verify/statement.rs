@@ -4,8 +4,8 @@ use super::Verifier;
 use crate::alias::Frame;
 use crate::loops;
 use crate::{
-    Argument, Arm, Block, ClassKind, Expr, ExprKind, For, Location, Mode, Param, Place, Root, Routine, RoutineId,
-    Statement, StatementKind, Step, Type,
+    Argument, Arm, Block, ClassKind, Expr, ExprKind, ExternalCall, For, Location, Mode, Param, Place, Root, Routine,
+    RoutineId, Statement, StatementKind, Step, Type,
 };
 use staunch_runtime::BlockInfo;
 
@@ -92,6 +92,7 @@ impl<'p> Verifier<'p> {
                 self.call(body, *callee, instance.as_ref(), arguments, at);
                 self.call_result(body, *callee, result.as_ref(), at);
             }
+            StatementKind::External(it) => self.external(body, it, at),
             StatementKind::CallBlock { block, instruction, inputs } => {
                 self.call_block(body, block, *instruction, inputs, at);
             }
@@ -198,6 +199,38 @@ impl<'p> Verifier<'p> {
                 self.report(at, format_args!("{}: passed the wrong way", param.name));
             }
         }
+    }
+
+    /// What is passed is of the declared types, and no two of it share storage: all but a single reference are the
+    /// instance and locals.
+    fn external(&mut self, body: &Body<'p>, it: &ExternalCall, at: Location) {
+        let external = &it.external;
+        self.location(external.location);
+        if let Some(instance) = &it.instance {
+            self.writable(body, instance, at);
+        }
+        let state = it.instance.as_ref().map(|it| it.ty);
+        self.require(state == external.state.map(Type::Struct), at, "an external block without its instance");
+        let mut references = usize::from(it.instance.is_some());
+        self.require(it.arguments.len() == external.params.len(), at, "an external's argument count");
+        for (param, argument) in external.params.iter().zip(&it.arguments) {
+            match argument {
+                Argument::Value(value) => self.expr_of(body, value, param.ty),
+                Argument::Reference(place) => {
+                    self.writable(body, place, at);
+                    references += usize::from(!matches!(place.root, Root::Local(_)));
+                }
+            }
+            let ty = argument.value().map(|it| it.ty).or(argument.place().map(|it| it.ty));
+            let fits = ty == Some(param.ty) && argument.place().is_some() == param.by_reference;
+            self.require(fits, at, format_args!("{}: passed the wrong way", param.name));
+        }
+        self.require(references < 2, at, "what an external is passed may share storage");
+        if let Some(target) = &it.result {
+            self.place(body, target, at);
+        }
+        let result = it.result.as_ref().map(|it| it.ty);
+        self.require(result == external.result, at, "an external's result of another type");
     }
 
     /// What holds an instance of a block is not copied.

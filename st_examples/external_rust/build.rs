@@ -1,0 +1,3 @@
+fn main() {
+    staunch_build::compile("src/scale.st");
+}
