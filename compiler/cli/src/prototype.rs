@@ -1,7 +1,7 @@
 //! The part of a C header for what a program calls and C implements: prototypes, and the structures that they name.
 
 use staunch_ir::layout::Layout;
-use staunch_ir::{External, Program, Repr, Struct, StructId, Type};
+use staunch_ir::{External, Program, Repr, StructId, Type};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
@@ -137,12 +137,19 @@ impl Types<'_> {
             Type::Array(id) => self.element(self.program.array(id).element),
             Type::String(it) if it.wide => format!("struct staunch_wstring_{}", it.capacity),
             Type::String(it) => format!("struct staunch_string_{}", it.capacity),
-            Type::Struct(id) => format!("struct {}", tag(self.program.structure(id))),
+            Type::Struct(id) => format!("struct {}", self.tag(id)),
             Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) | Type::Reference(_) => {
                 self.program.repr(ty).map_or("void", c_type).to_owned()
             }
             Type::Block(id) => unreachable!("verified IR: {} is not passed outside", id.info().name),
         }
+    }
+
+    /// With its number, where another one has the same name in C: `A.B` and `A_B`.
+    fn tag(&self, id: StructId) -> String {
+        let name = plain(&self.program.structure(id).name);
+        let others = &self.program.structs[..id.index()];
+        if others.iter().any(|it| plain(&it.name) == name) { format!("{name}_{}", id.0) } else { name }
     }
 
     fn prototype(&self, it: &External) -> String {
@@ -152,7 +159,7 @@ impl Types<'_> {
             params.push("const staunch_context *cx".to_owned());
         }
         for param in &it.params {
-            let (ty, name) = (self.element(param.ty), variable(&param.name));
+            let (ty, name) = (self.element(param.ty), parameter(&param.name));
             params.push(match (param.by_reference, self.program.repr(param.ty)) {
                 (true, _) => format!("{ty} *{name}"),
                 (false, Some(_)) => format!("{ty} {name}"),
@@ -174,16 +181,23 @@ impl Types<'_> {
     }
 }
 
-fn tag(structure: &Struct) -> String {
-    structure.name.chars().map(|it| if it.is_ascii_alphanumeric() { it } else { '_' }).collect()
+/// A name in letters of C.
+fn plain(name: &str) -> String {
+    name.chars().map(|it| if it.is_ascii_alphanumeric() { it } else { '_' }).collect()
 }
 
 fn variable(name: &str) -> String {
-    let mut name: String = name.chars().map(|it| if it.is_ascii_alphanumeric() { it } else { '_' }).collect();
+    let mut name = plain(name);
     if WORDS.contains(&name.as_str()) {
         name.push('_');
     }
     name
+}
+
+/// The instance, the context and the result have names of their own.
+fn parameter(name: &str) -> String {
+    let name = variable(name);
+    if ["block", "cx", "result"].contains(&name.as_str()) { format!("{name}_") } else { name }
 }
 
 /// The type of C that has a repr's values.
