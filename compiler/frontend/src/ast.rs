@@ -3,7 +3,7 @@
 //! The parser limits nesting ([`MAX_DEPTH`]), so later passes may recurse freely.
 
 use crate::source::Span;
-pub use staunch_ir::Chars;
+pub use staunch_ir::{Chars, RefKind};
 use staunch_runtime::Elementary;
 
 /// Nesting of expressions and statements; types and initial values nest a quarter as deep.
@@ -330,7 +330,7 @@ pub enum TypeKind<'s> {
     /// `(Red, Green := 5) INT`, also `INT (Red, Green)`.
     Enum { base: Option<Name<'s>>, values: Vec<EnumValue<'s>> },
     /// `REF_TO T`, `POINTER TO T`, `REFERENCE TO T`
-    Reference { kind: staunch_ir::RefKind, target: Box<TypeSpec<'s>> },
+    Reference { kind: RefKind, target: Box<TypeSpec<'s>> },
     /// `UNION … END_UNION`: its members share their bytes.
     Union(Vec<VarDecl<'s>>),
     /// A type that did not parse, or is not told apart any further; reported.

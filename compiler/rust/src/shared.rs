@@ -223,9 +223,9 @@ impl Function<'_> {
         quote!(reference::Shared::assign(#target, &#value);)
     }
 
-    /// Whether the place's text is a reference.
+    /// Whether the place's text is a reference: what is found through one is, a member of it too.
     pub fn is_reference(&self, place: &Place) -> bool {
-        self.is_whole_param(place) || matches!(place.projections.last(), Some(Projection::Deref { .. }))
+        self.is_whole_param(place) || followed(self.emitter.program, place).is_some_and(|it| it.pin.is_none())
     }
 }
 

@@ -1,6 +1,7 @@
 //! Calls. Instance, arguments and the places of in-outs and outputs are found from left to right as
 //! they are written, each once, before anything is passed.
 
+use crate::classes::is_super;
 use crate::declarations::Variable;
 use crate::machine::{Frame, Machine, Outcome, unknown};
 use crate::places::pin_type;
@@ -35,6 +36,12 @@ struct Formal<'a> {
     ty: Type<'a>,
 }
 
+impl<'a> Passed<'a> {
+    pub fn value(name: &'a str, value: Value<'a>) -> Self {
+        Self { name, given: Given::Value(value) }
+    }
+}
+
 impl<'a> Machine<'a> {
     /// A call of a function or an instance; the value of a function that has one.
     ///
@@ -61,6 +68,7 @@ impl<'a> Machine<'a> {
         let result =
             if enabled { self.call_enabled(frame, callee, arguments, asked)? } else { self.unset(frame, callee)? };
         if let Some((target, negated)) = eno {
+            let target = self.checked(target)?;
             self.write(&target, &Value::bool(enabled != negated));
         }
         Ok(result)
@@ -94,7 +102,7 @@ impl<'a> Machine<'a> {
     /// The result of a function that does not run.
     fn unset(&mut self, frame: &Frame<'a>, callee: &Expr<'a>) -> Outcome<Option<Value<'a>>> {
         let ExprKind::Name(name) = &callee.kind else { return Ok(None) };
-        let own = frame.this.as_ref().and_then(|it| self.declared.routine_of(it.0, name.text));
+        let own = self.own_routine(frame, name.text).map(|it| it.0);
         let function =
             own.or_else(|| self.declared.pou_named(name.text)).map(|it| self.declared.pous[it].result.clone());
         let Some(Some(slot)) = function else { return Ok(None) };
@@ -114,9 +122,8 @@ impl<'a> Machine<'a> {
     ) -> Outcome<Option<Value<'a>>> {
         match &callee.kind {
             ExprKind::Name(name) => {
-                let own = frame.this.as_ref().and_then(|it| self.declared.routine_of(it.0, name.text));
-                if let (Some(own), Some((_, instance))) = (own, &frame.this) {
-                    return self.call_routine(frame, own, &instance.clone(), arguments);
+                if let Some((own, instance)) = self.own_routine(frame, name.text) {
+                    return self.call_routine(frame, own, &instance, arguments);
                 }
                 let local = frame.names.contains_key(&name.text.to_ascii_uppercase());
                 let function = self.declared.pou_named(name.text);
@@ -135,9 +142,11 @@ impl<'a> Machine<'a> {
                     self.call_instruction(frame, name, arguments).map(Some)
                 }
                 _ => {
-                    let base = self.place(frame, base)?;
+                    let above = if is_super(base) { Some(self.above(frame)?) } else { None };
+                    let base = self.receiver(frame, base)?;
                     if let Type::Record(record) = &base.ty
-                        && let Some(routine) = record.pou.and_then(|it| self.declared.routine_of(it, name.text))
+                        && let Some(class) = above.or(record.pou)
+                        && let Some(routine) = self.declared.routine_of(class, name.text)
                     {
                         return self.call_routine(frame, routine, &base, arguments);
                     }
@@ -145,6 +154,7 @@ impl<'a> Machine<'a> {
                     self.call_instance(frame, &instance, arguments)
                 }
             },
+            ExprKind::Deref(inner) if is_super(inner) && arguments.is_empty() => self.call_above(frame).map(|()| None),
             _ => {
                 let instance = self.place(frame, callee)?;
                 self.call_instance(frame, &instance, arguments)
@@ -160,13 +170,32 @@ impl<'a> Machine<'a> {
         instance: &Place<'a>,
         arguments: &'a [Argument<'a>],
     ) -> Outcome<Option<Value<'a>>> {
-        let Some(owner) = self.declared.pous[routine].owner else { return unknown("a routine without an owner") };
-        let method = self.declared.pous[routine].kind == PouKind::Method;
-        let called = if method { routine } else { owner };
-        let formals = self.formals(called);
+        let formals = self.formals(self.bearer(routine));
         let passed = self.passed(frame, &formals, arguments)?;
+        let instance = self.checked(instance.clone())?;
+        self.run_routine(frame, routine, &instance, passed)
+    }
+
+    /// Whose parameters a call of a routine has: an ACTION those of its POU.
+    fn bearer(&self, routine: usize) -> usize {
+        let pou = &self.declared.pous[routine];
+        pou.owner.filter(|_| pou.kind == PouKind::Action).unwrap_or(routine)
+    }
+
+    /// One call of a routine whose arguments have been found.
+    pub(crate) fn run_routine(
+        &mut self,
+        frame: &Frame<'a>,
+        routine: usize,
+        instance: &Place<'a>,
+        passed: Vec<Passed<'a>>,
+    ) -> Outcome<Option<Value<'a>>> {
+        let Some(owner) = self.declared.pous[routine].owner else { return unknown("a routine without an owner") };
+        let method = self.declared.pous[routine].kind != PouKind::Action;
+        let called = self.bearer(routine);
+        let formals = self.formals(called);
         let size = self.memory.len();
-        let mut outer = self.instance_frame(instance);
+        let mut outer = self.frame_of(instance, owner);
         for variable in self.declared.pous[owner].variables.iter().filter(|it| it.kind == VarKind::Stat) {
             let key = variable.name.to_ascii_uppercase();
             outer.names.insert(key.clone(), self.statics[&(owner, key)].clone());
@@ -224,6 +253,7 @@ impl<'a> Machine<'a> {
                 let Some(pou) = record.pou else { return unknown("a call of a structure") };
                 let formals = self.formals(pou);
                 let passed = self.passed(frame, &formals, arguments)?;
+                let instance = &self.checked(instance.clone())?;
                 self.run_instance(pou, instance, passed)?;
                 Ok(None)
             }
@@ -245,7 +275,7 @@ impl<'a> Machine<'a> {
 
     /// The callee's names: an instance's are there already; others are made anew for this call. A
     /// text of another capacity is passed as a copy, of which the second list tells.
-    fn enter(
+    pub(crate) fn enter(
         &mut self,
         pou: usize,
         mut own: Frame<'a>,
@@ -272,6 +302,13 @@ impl<'a> Machine<'a> {
                 self.write(&place, value);
             }
         }
+        // An in-out that a reference leads to is looked at when the inputs have their values.
+        for variable in &self.declared.pous[pou].variables {
+            let given = passed.iter().find(|it| it.name.eq_ignore_ascii_case(variable.name));
+            if let Some(Passed { given: Given::Place(place), .. }) = given {
+                self.checked(place.clone())?;
+            }
+        }
         let pou = &self.declared.pous[pou];
         if let Some(slot) = pou.result.clone() {
             let name = pou.name.to_ascii_uppercase();
@@ -294,7 +331,7 @@ impl<'a> Machine<'a> {
         }
     }
 
-    fn copy_back(&mut self, copies: &[(Place<'a>, Place<'a>)]) {
+    pub(crate) fn copy_back(&mut self, copies: &[(Place<'a>, Place<'a>)]) {
         for (copy, given) in copies {
             if let Type::Text(capacity) = given.ty {
                 self.memory[given.at] = cut(&self.memory[copy.at], capacity);
@@ -319,6 +356,7 @@ impl<'a> Machine<'a> {
             _ => value,
         };
         let value = self.converted(value, &target.ty, span)?;
+        let target = &self.checked(target.clone())?;
         self.write(target, &value);
         Ok(())
     }
@@ -451,9 +489,9 @@ pub(crate) fn is_enable(argument: &Argument<'_>) -> bool {
     }
 }
 
-fn cut(text: &Cell, capacity: usize) -> Cell {
+fn cut<'a>(text: &Cell<'a>, capacity: usize) -> Cell<'a> {
     match text {
         Cell::Text(bytes) => Cell::Text(bytes.iter().copied().take(capacity).collect()),
-        Cell::Scalar(_) => text.clone(),
+        Cell::Scalar(_) | Cell::Reference(_) => text.clone(),
     }
 }

@@ -1,7 +1,8 @@
 //! What the files declare: types, POUs and global variables, resolved by name.
 
+use crate::classes::pou_of;
 use crate::machine::{Outcome, unknown};
-use crate::types::{Array, Elementary, Enum, Record, Slot, Type};
+use crate::types::{Array, Elementary, Enum, Record, RefKind, Reference, Slot, Type};
 use staunch_frontend::ast::{
     self, BinaryOp, Expr, ExprKind, Initial, InitialKind, Item, LiteralValue, TypeKind, UnaryOp,
 };
@@ -14,8 +15,14 @@ use std::rc::Rc;
 pub(crate) struct Pou<'a> {
     pub name: &'a str,
     pub kind: PouKind,
-    /// The POU that a METHOD or ACTION is of.
+    /// The POU that a METHOD, ACTION or accessor is of.
     pub owner: Option<usize>,
+    /// What it EXTENDS.
+    pub base: Option<usize>,
+    /// What it IMPLEMENTS, or an INTERFACE EXTENDS.
+    pub implements: &'a [ast::Name<'a>],
+    /// How many variables its instances keep.
+    pub fields: usize,
     pub result: Option<Slot<'a>>,
     pub variables: Vec<Variable<'a>>,
     pub body: &'a [ast::Statement<'a>],
@@ -97,21 +104,45 @@ impl<'a> Declarations<'a> {
     }
 
     fn pou(&mut self, pou: &'a ast::Pou<'a>, owner: Option<usize>) -> Outcome<()> {
-        let plain = matches!(pou.kind, PouKind::Program | PouKind::FunctionBlock | PouKind::Function)
-            || matches!(pou.kind, PouKind::Method | PouKind::Action);
-        if !plain || pou.extends.is_some() || !pou.implements.is_empty() {
-            return unknown("classes, interfaces and properties");
+        let (name, kind, body, implements) = (pou.name.text, pou.kind, pou.body.as_slice(), pou.implements.as_slice());
+        if kind == PouKind::Interface {
+            let (base, result, variables) = (None, None, Vec::new());
+            self.pous.push(Pou { name, kind, owner, base, implements, fields: 0, result, variables, body });
+            return Ok(());
         }
-        let mut variables = Vec::new();
+        let variables = self.variables_of(pou)?;
+        let base = match &pou.extends {
+            Some(base) => Some(pou_of(self.files, base.text).map_or_else(|| unknown("this base"), |it| Ok(it.0))?),
+            None => None,
+        };
+        let fields = variables.iter().filter(|it| is_field(it.kind)).count();
+        let result = pou.result.as_ref().map(|it| self.slot(it, None)).transpose()?;
+        self.pous.push(Pou { name, kind, owner, base, implements, fields, result, variables, body });
+        Ok(())
+    }
+
+    /// A POU's variables, after those of its base.
+    fn variables_of(&mut self, pou: &'a ast::Pou<'a>) -> Outcome<Vec<Variable<'a>>> {
+        let mut variables = match &pou.extends {
+            Some(base) => match pou_of(self.files, base.text) {
+                Some((_, base)) => self.variables_of(base)?,
+                None => return unknown("this base"),
+            },
+            None => Vec::new(),
+        };
+        if variables.iter().any(|it| it.kind == VarKind::Stat) {
+            return unknown("VAR_STAT of a base");
+        }
         for block in &pou.blocks {
+            if block.kind == VarKind::Inst {
+                return unknown("VAR_INST");
+            }
             // An external variable is the global of its name.
             if block.kind != VarKind::External {
                 variables.extend(self.variables(block)?);
             }
         }
-        let result = pou.result.as_ref().map(|it| self.slot(it, None)).transpose()?;
-        self.pous.push(Pou { name: pou.name.text, kind: pou.kind, owner, result, variables, body: &pou.body });
-        Ok(())
+        Ok(variables)
     }
 
     fn variables(&mut self, block: &'a ast::VarBlock<'a>) -> Outcome<Vec<Variable<'a>>> {
@@ -136,6 +167,9 @@ impl<'a> Declarations<'a> {
     fn spec(&mut self, spec: &'a ast::TypeSpec<'a>) -> Outcome<Slot<'a>> {
         let ty = match &spec.kind {
             TypeKind::Named(names) => match names.as_slice() {
+                [name] if self.is_interface(name.text) => {
+                    Type::Reference(Reference { kind: RefKind::Interface, target: Some(spec) })
+                }
                 [name] => return self.named(name.text),
                 [family, name] => match Family::named(family.text) {
                     Some(family) => Type::Block(block(family, name.text)?),
@@ -154,7 +188,15 @@ impl<'a> Declarations<'a> {
             TypeKind::Array { bounds, element } => self.array(bounds, element)?,
             TypeKind::Struct(declared) => Type::Record(Rc::new(Record { pou: None, fields: self.fields(declared)? })),
             TypeKind::Enum { base, values } => Type::Enum(self.enumeration("", base.as_ref(), values)?),
-            TypeKind::String { wide: true, .. } | TypeKind::Reference { .. } | TypeKind::Union(_) | TypeKind::Error => {
+            TypeKind::Reference { kind, target } => {
+                let kind = match kind {
+                    ast::RefKind::RefTo | ast::RefKind::PointerTo => RefKind::Pointer,
+                    ast::RefKind::ReferenceTo => RefKind::Alias,
+                    ast::RefKind::Interface(_) => RefKind::Interface,
+                };
+                Type::Reference(Reference { kind, target: Some(target) })
+            }
+            TypeKind::String { wide: true, .. } | TypeKind::Union(_) | TypeKind::Error => {
                 return unknown("this type");
             }
         };
@@ -251,8 +293,14 @@ impl<'a> Declarations<'a> {
 
     /// What an instance of a POU keeps. `number` counts the POUs in the order of their files.
     fn instance(&mut self, pou: &'a ast::Pou<'a>, number: usize) -> Outcome<Type<'a>> {
-        let mut fields = Vec::new();
-        for block in pou.blocks.iter().filter(|it| matches!(it.kind, VarKind::Input | VarKind::Output | VarKind::Var)) {
+        let mut fields = match &pou.extends {
+            Some(base) => match self.named(base.text)?.ty {
+                Type::Record(record) => record.fields.clone(),
+                _ => return unknown("this base"),
+            },
+            None => Vec::new(),
+        };
+        for block in pou.blocks.iter().filter(|it| is_field(it.kind)) {
             fields.extend(self.fields(&block.vars)?);
         }
         Ok(Type::Record(Rc::new(Record { pou: Some(number), fields })))
@@ -325,9 +373,26 @@ impl<'a> Declarations<'a> {
         self.pous.iter().position(|it| it.owner.is_none() && it.name.eq_ignore_ascii_case(name))
     }
 
-    /// The METHOD or ACTION of that name.
-    pub fn routine_of(&self, owner: usize, name: &str) -> Option<usize> {
-        self.pous.iter().position(|it| it.owner == Some(owner) && it.name.eq_ignore_ascii_case(name))
+    fn is_interface(&self, name: &str) -> bool {
+        pou_of(self.files, name).is_some_and(|it| it.1.kind == PouKind::Interface)
+    }
+
+    /// The type that a reference's target is declared with.
+    pub fn type_of(&mut self, spec: &'a ast::TypeSpec<'a>) -> Outcome<Type<'a>> {
+        Ok(self.spec(spec)?.ty)
+    }
+}
+
+/// Whether instances keep a variable of this section.
+fn is_field(kind: VarKind) -> bool {
+    matches!(kind, VarKind::Input | VarKind::Output | VarKind::Var)
+}
+
+/// The name that a type is written with, if it is one.
+pub(crate) fn name_of<'a>(spec: &'a ast::TypeSpec<'a>) -> Option<&'a str> {
+    match &spec.kind {
+        TypeKind::Named(names) => names.last().map(|it| it.text),
+        _ => None,
     }
 }
 

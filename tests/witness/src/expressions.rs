@@ -1,6 +1,8 @@
 //! Expressions: each operand in its turn, from left to right.
 
+use crate::classes::{is_super, is_this};
 use crate::machine::{Frame, Machine, Outcome, unknown};
+use crate::references::{is_null, null};
 use crate::storage::{Cell, Value, integer_cell};
 use crate::types::{Elementary, Type};
 use staunch_frontend::ast::{BinaryOp, Chars, Expr, ExprKind, Literal, LiteralValue, UnaryOp};
@@ -16,8 +18,18 @@ pub(crate) enum Untyped {
 impl<'a> Machine<'a> {
     /// The value for a place of type `ty`.
     pub(crate) fn value_as(&mut self, frame: &Frame<'a>, expr: &'a Expr<'a>, ty: &Type<'a>) -> Outcome<Value<'a>> {
+        if let Type::Reference(_) = ty {
+            return self.reference_value(frame, expr, ty);
+        }
         let value = self.value(frame, expr, Some(ty))?;
         self.converted(value, ty, expr.span)
+    }
+
+    /// What a variable holds.
+    fn stored(&mut self, frame: &Frame<'a>, expr: &'a Expr<'a>) -> Outcome<Value<'a>> {
+        let place = self.place(frame, expr)?;
+        let place = self.checked(place)?;
+        Ok(self.read(&place))
     }
 
     /// The value, of its own type. Only what has none takes the type that is `asked` for.
@@ -35,20 +47,36 @@ impl<'a> Machine<'a> {
             ExprKind::Paren(inner) => self.value(frame, inner, asked),
             ExprKind::Literal(literal) => self.literal(literal),
             ExprKind::Name(name) => match self.variable(frame, name.text) {
-                Some(place) => Ok(self.read(&place)),
-                None => self
-                    .declared
-                    .bare_enumerator(name.text, asked)
-                    .map_or_else(|| unknown(&format!("the name {}", name.text)), Ok),
+                Some(_) => self.stored(frame, expr),
+                None if is_null(expr) => Ok(null()),
+                None if is_this(expr) => {
+                    let place = self.place(frame, expr)?;
+                    Ok(Value { cells: vec![Cell::Reference(Some(Box::new(place)))], ..null() })
+                }
+                None => match self.property(frame, expr)? {
+                    Some((name, class, instance)) => self.got(name, class, &instance),
+                    None => self
+                        .declared
+                        .bare_enumerator(name.text, asked)
+                        .map_or_else(|| unknown(&format!("the name {}", name.text)), Ok),
+                },
             },
             ExprKind::Member(base, name) => match &base.kind {
-                ExprKind::Name(ty) if self.variable(frame, ty.text).is_none() => self
-                    .declared
-                    .enumerator(ty.text, name.text)
-                    .map_or_else(|| unknown(&format!("the name {}", ty.text)), Ok),
-                _ => self.place(frame, expr).map(|it| self.read(&it)),
+                ExprKind::Name(ty) if self.variable(frame, ty.text).is_none() && !is_this(base) && !is_super(base) => {
+                    match self.property(frame, base)? {
+                        Some(_) => self.stored(frame, expr),
+                        None => self
+                            .declared
+                            .enumerator(ty.text, name.text)
+                            .map_or_else(|| unknown(&format!("the name {}", ty.text)), Ok),
+                    }
+                }
+                _ => match self.property(frame, expr)? {
+                    Some((name, class, instance)) => self.got(name, class, &instance),
+                    None => self.stored(frame, expr),
+                },
             },
-            ExprKind::Index(..) => self.place(frame, expr).map(|it| self.read(&it)),
+            ExprKind::Index(..) | ExprKind::Deref(_) => self.stored(frame, expr),
             ExprKind::Part(base, part) => self.part(frame, base, part),
             ExprKind::Call(callee, arguments) => match self.call(frame, callee, arguments, asked)? {
                 Some(value) => Ok(value),
@@ -56,7 +84,7 @@ impl<'a> Machine<'a> {
             },
             ExprKind::Unary(op, inner) => self.unary(frame, *op, inner, asked),
             ExprKind::Binary(sides, op, at) => self.binary(frame, *op, &sides[0], &sides[1], *at, asked),
-            ExprKind::Address(_) | ExprKind::Deref(_) | ExprKind::Error(_) => unknown("this expression"),
+            ExprKind::Address(_) | ExprKind::Error(_) => unknown("this expression"),
         }
     }
 

@@ -24,6 +24,9 @@ impl<'a> Machine<'a> {
     ) -> Outcome<Value<'a>> {
         let upper = name.text.to_ascii_uppercase();
         let at = name.span;
+        if let Some(value) = self.reference_function(frame, &upper, arguments)? {
+            return Ok(value);
+        }
         match upper.as_str() {
             "MOVE" => self.value(frame, self.only(arguments)?, asked),
             "NOT" => {

@@ -21,11 +21,13 @@ mod machine;
 mod statements;
 
 mod calls;
+mod classes;
 mod expressions;
 mod functions;
 mod operators;
 mod places;
 mod promotion;
+mod references;
 
 pub mod generate;
 pub mod random;

@@ -32,13 +32,15 @@ const STEPS: u32 = 20_000;
 pub struct Machine<'a> {
     pub(crate) declared: Declarations<'a>,
     sources: &'a Sources,
-    pub(crate) memory: Vec<Cell>,
+    pub(crate) memory: Vec<Cell<'a>>,
     pub(crate) globals: HashMap<String, Place<'a>>,
     /// VAR_STAT, by POU and name.
     pub(crate) statics: HashMap<(usize, String), Place<'a>>,
     /// The PROGRAM, and where its instance lies.
     main: usize,
     instance: Place<'a>,
+    /// The PROGRAMs beside it, which it calls.
+    programs: Vec<(usize, Place<'a>)>,
     pub(crate) context: Context,
     steps: u32,
 }
@@ -47,8 +49,10 @@ pub struct Machine<'a> {
 #[derive(Debug, Default)]
 pub(crate) struct Frame<'a> {
     pub names: HashMap<String, Place<'a>>,
-    /// The instance whose routine this is, with the number of its POU.
+    /// The instance whose routine this is, with the number of its own class.
     pub this: Option<(usize, Place<'a>)>,
+    /// The class whose text runs: the instance's, or one above it.
+    pub class: Option<usize>,
 }
 
 impl<'a> Machine<'a> {
@@ -58,8 +62,10 @@ impl<'a> Machine<'a> {
     /// What the witness does not know.
     pub fn new(sources: &'a Sources, files: &'a [File<'a>]) -> Result<Self, Stop> {
         let mut declared = Declarations::new(files)?;
-        let main = declared.pous.iter().position(|it| it.kind == PouKind::Program);
-        let Some(main) = main else { return unknown("sources without a PROGRAM") };
+        let programs: Vec<_> =
+            (0..declared.pous.len()).filter(|it| declared.pous[*it].kind == PouKind::Program).collect();
+        let is_main = |it: &&usize| programs.len() == 1 || declared.pous[**it].name.eq_ignore_ascii_case("Main");
+        let Some(&main) = programs.iter().find(is_main) else { return unknown("which PROGRAM runs") };
         let ty = declared.instance_of(main)?;
         let mut this = Self {
             declared,
@@ -68,14 +74,30 @@ impl<'a> Machine<'a> {
             globals: HashMap::new(),
             statics: HashMap::new(),
             main,
-            instance: Place { at: 0, ty: ty.clone() },
+            instance: Place { at: 0, ty: ty.clone(), nowhere: None },
+            programs: Vec::new(),
             context: Context::default(),
             steps: 0,
         };
         this.start_globals()?;
+        this.start_programs(programs)?;
         this.instance = this.allocate(&ty);
         this.start(&Frame::default(), &this.instance.clone(), None)?;
         Ok(this)
+    }
+
+    /// The PROGRAMs that others call and read by their names.
+    fn start_programs(&mut self, programs: Vec<usize>) -> Outcome<()> {
+        for number in programs {
+            if number != self.main {
+                let ty = self.declared.instance_of(number)?;
+                let place = self.allocate(&ty);
+                self.start(&Frame::default(), &place, None)?;
+                self.globals.insert(self.declared.pous[number].name.to_ascii_uppercase(), place.clone());
+                self.programs.push((number, place));
+            }
+        }
+        Ok(())
     }
 
     fn start_globals(&mut self) -> Outcome<()> {
@@ -122,11 +144,20 @@ impl<'a> Machine<'a> {
 
     /// The names of an instance's own variables.
     pub(crate) fn instance_frame(&self, instance: &Place<'a>) -> Frame<'a> {
+        match &instance.ty {
+            Type::Record(record) => record.pou.map_or_else(Frame::default, |it| self.frame_of(instance, it)),
+            _ => Frame::default(),
+        }
+    }
+
+    /// The names that the text of a class has in an instance of it or of an heir, whose own come after them.
+    pub(crate) fn frame_of(&self, instance: &Place<'a>, class: usize) -> Frame<'a> {
         let mut frame = Frame::default();
         let Type::Record(record) = &instance.ty else { return frame };
         frame.this = record.pou.map(|it| (it, instance.clone()));
+        frame.class = Some(class);
         let mut offset = 0;
-        for (name, slot) in &record.fields {
+        for (name, slot) in record.fields.iter().take(self.declared.pous[class].fields) {
             frame.names.insert(name.to_ascii_uppercase(), instance.part(offset, &slot.ty));
             offset += slot.ty.size();
         }
@@ -150,6 +181,9 @@ impl<'a> Machine<'a> {
                 }
             }
         }
+        for (number, place) in &self.programs {
+            self.leaves(self.declared.pous[*number].name, place, &mut found);
+        }
         self.leaves(self.declared.pous[self.main].name, &self.instance, &mut found);
         found
     }
@@ -172,6 +206,8 @@ impl<'a> Machine<'a> {
                     offset += slot.ty.size();
                 }
             }
+            // The executors' own numbers are not compared.
+            Type::Reference(_) => {}
             Type::Block(info) => {
                 for (number, pin) in info.pins.iter().enumerate() {
                     found.push((format!("{path}.{}", pin.name), shown(&self.memory[place.at + number])));
@@ -182,11 +218,12 @@ impl<'a> Machine<'a> {
 }
 
 /// A value as its bits, but for a NaN: which one it is, processors decide.
-fn shown(cell: &Cell) -> String {
+fn shown(cell: &Cell<'_>) -> String {
     match cell {
         Cell::Scalar(Scalar::F32(it)) if it.is_nan() => "NaN".to_owned(),
         Cell::Scalar(Scalar::F64(it)) if it.is_nan() => "NaN".to_owned(),
         Cell::Scalar(it) => format!("{it:?}"),
+        Cell::Reference(_) => "a reference".to_owned(),
         Cell::Text(bytes) => format!("{:?}", String::from_utf8_lossy(bytes)),
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::expressions::{Untyped, default_type, in_repr, literal_number, untyped};
 use crate::machine::{Frame, Machine, Outcome, unknown};
+use crate::references::null;
 use crate::storage::Value;
 use crate::types::{Elementary, Type};
 use staunch_frontend::Span;
@@ -50,6 +51,9 @@ impl<'a> Machine<'a> {
             }
             (None, Some(kind)) => {
                 let a = self.value(frame, left, asked)?;
+                if matches!(a.ty, Type::Reference(_)) {
+                    return Ok((a, null()));
+                }
                 let ty = beside(&a.ty, kind, literal_number(right), asked)?;
                 let b = self.number(right, ty)?;
                 Ok((a, b))
@@ -78,6 +82,9 @@ impl<'a> Machine<'a> {
         if let (Type::Text(_), Type::Text(_)) = (&a.ty, &b.ty) {
             let order = Scalar::I16(text::compare(a.as_text()?, b.as_text()?));
             return self.applied(name(op), Elementary::Int, &[order, Scalar::I16(0)], at);
+        }
+        if let (Type::Reference(_), Type::Reference(_)) = (&a.ty, &b.ty) {
+            return self.same_place(op, &a, &b);
         }
         let (Some(x), Some(y)) = (a.ty.base(), b.ty.base()) else { return unknown("these operands") };
         match op {

@@ -1,9 +1,10 @@
 //! Places: where a variable, or a part of one, lies. Each index is evaluated and checked in its turn.
 
+use crate::classes::{is_super, is_this};
 use crate::machine::{Frame, Machine, Outcome, unknown};
 use crate::statements::Flow;
 use crate::storage::{Place, Value, integer_cell};
-use crate::types::{Elementary, Type};
+use crate::types::{Elementary, RefKind, Type};
 use staunch_frontend::ast::{Expr, ExprKind, Name};
 use staunch_runtime::{BlockInfo, Direction, FaultKind};
 
@@ -15,16 +16,31 @@ struct Part {
 }
 
 impl<'a> Machine<'a> {
+    /// What a REFERENCE TO leads to is found where its name is.
     pub(crate) fn place(&mut self, frame: &Frame<'a>, expr: &'a Expr<'a>) -> Outcome<Place<'a>> {
+        let place = self.unfollowed(frame, expr)?;
+        match place.ty {
+            Type::Reference(it) if it.kind == RefKind::Alias => {
+                let place = self.checked(place)?;
+                let cell = self.memory[place.at].clone();
+                self.followed(cell, it, expr.span)
+            }
+            _ => Ok(place),
+        }
+    }
+
+    /// The variable itself, where it is a REFERENCE TO.
+    pub(crate) fn unfollowed(&mut self, frame: &Frame<'a>, expr: &'a Expr<'a>) -> Outcome<Place<'a>> {
         match &expr.kind {
-            ExprKind::Paren(inner) => self.place(frame, inner),
-            ExprKind::Deref(inner) if is_this(inner) => this(frame),
-            ExprKind::Name(_) if is_this(expr) => this(frame),
+            ExprKind::Paren(inner) => self.unfollowed(frame, inner),
+            ExprKind::Deref(inner) if is_this(inner) || is_super(inner) => this(frame),
+            ExprKind::Name(_) if is_this(expr) || is_super(expr) => this(frame),
+            ExprKind::Deref(inner) => self.dereferenced(frame, inner, expr.span),
             ExprKind::Name(name) => {
                 self.variable(frame, name.text).map_or_else(|| unknown(&format!("the name {}", name.text)), Ok)
             }
             ExprKind::Member(base, name) => {
-                let base = self.place(frame, base)?;
+                let base = self.receiver(frame, base)?;
                 self.member(&base, name.text).map_or_else(|| unknown(&format!("the member {}", name.text)), Ok)
             }
             ExprKind::Index(base, indices) => {
@@ -37,7 +53,6 @@ impl<'a> Machine<'a> {
             ExprKind::Literal(_)
             | ExprKind::Address(_)
             | ExprKind::Part(..)
-            | ExprKind::Deref(_)
             | ExprKind::Call(..)
             | ExprKind::Unary(..)
             | ExprKind::Binary(..)
@@ -67,7 +82,7 @@ impl<'a> Machine<'a> {
                 let at = info.pins.iter().position(|it| visible(it) && it.name.eq_ignore_ascii_case(name))?;
                 Some(base.part(at, &pin_type(info, at)))
             }
-            Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) | Type::Text(_) | Type::Array(_) => None,
+            _ => None,
         }
     }
 
@@ -101,16 +116,13 @@ impl<'a> Machine<'a> {
         let value = self.value_as(frame, value, &Type::Elementary(part.ty))?.as_integer()?;
         let Some(ty) = place.ty.elementary() else { return unknown("bits of what is no number") };
         let width = ty.repr().size() * 8;
+        let place = &self.checked(place.clone())?;
         let old = self.read(place).as_integer()? & mask(width);
         let new = old & !(mask(part.width) << part.shift) | (value & mask(part.width)) << part.shift;
         let signed = if ty.repr().is_signed() && new > ty.range().1 { new - (1 << width) } else { new };
         self.memory[place.at] = integer_cell(ty, signed);
         Ok(Flow::Next)
     }
-}
-
-fn is_this(expr: &Expr<'_>) -> bool {
-    matches!(&expr.kind, ExprKind::Name(name) if name.text.eq_ignore_ascii_case("THIS"))
 }
 
 fn this<'a>(frame: &Frame<'a>) -> Outcome<Place<'a>> {

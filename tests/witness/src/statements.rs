@@ -34,7 +34,8 @@ impl<'a> Machine<'a> {
             StatementKind::Empty => Ok(Flow::Next),
             StatementKind::Assign { target, value } => self.assign(frame, target, value),
             StatementKind::AssignAll { .. } => unknown("assignments in a row"),
-            StatementKind::Bind { .. } | StatementKind::Attempt { .. } => unknown("references"),
+            StatementKind::Bind { target, value } => self.bind(frame, target, value),
+            StatementKind::Attempt { target, value } => self.attempt(frame, target, value),
             StatementKind::SetReset { target, value, set } => self.set_reset(frame, target, value, *set),
             StatementKind::Expr(expr) => self.lone_call(frame, expr),
             StatementKind::If { branches, otherwise } => self.choose(frame, branches, otherwise.as_deref()),
@@ -59,8 +60,17 @@ impl<'a> Machine<'a> {
             let place = self.place(frame, base)?;
             return self.assign_part(frame, &place, part, value);
         }
-        let place = self.place(frame, target)?;
+        if let Some(property) = self.property(frame, target)? {
+            self.set(frame, property, value)?;
+            return Ok(Flow::Next);
+        }
+        let mut place = self.place(frame, target)?;
+        if matches!(place.ty, Type::Array(_) | Type::Record(_)) {
+            // What is copied as a whole is looked at on both sides first, the target before the value.
+            place = self.checked(place)?;
+        }
         let value = self.value_as(frame, value, &place.ty)?;
+        let place = self.checked(place)?;
         self.write(&place, &value);
         Ok(Flow::Next)
     }
@@ -69,6 +79,7 @@ impl<'a> Machine<'a> {
     fn set_reset(&mut self, frame: &Frame<'a>, target: &'a Expr<'a>, value: &'a Expr<'a>, set: bool) -> Outcome<Flow> {
         let place = self.place(frame, target)?;
         if self.value_as(frame, value, &Type::BOOL)?.as_bool()? {
+            let place = self.checked(place)?;
             self.write(&place, &Value::bool(set));
         }
         Ok(Flow::Next)
@@ -137,6 +148,7 @@ impl<'a> Machine<'a> {
         at: Span,
     ) -> Outcome<Flow> {
         let place = self.place(frame, counter)?;
+        let place = self.checked(place)?;
         let Some(base) = place.ty.elementary() else { return unknown("a counter that is no integer") };
         let first = self.value_as(frame, from, &place.ty)?;
         self.write(&place, &first);

@@ -7,23 +7,27 @@ use staunch_frontend::Span;
 use staunch_frontend::ast::{Initial, InitialKind};
 use staunch_runtime::{FaultKind, Value as Scalar};
 
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Cell {
+#[derive(Clone, Debug)]
+pub(crate) enum Cell<'a> {
     Scalar(Scalar),
     Text(Vec<u8>),
+    /// What a reference leads to, as it was declared there: an instance's own class.
+    Reference(Option<Box<Place<'a>>>),
 }
 
 /// A value with its type; a whole array or structure has many cells.
 #[derive(Clone, Debug)]
 pub(crate) struct Value<'a> {
     pub ty: Type<'a>,
-    pub cells: Vec<Cell>,
+    pub cells: Vec<Cell<'a>>,
 }
 
 #[derive(Clone, Debug)]
 pub(crate) struct Place<'a> {
     pub at: usize,
     pub ty: Type<'a>,
+    /// Where a reference to nothing was followed: the place faults when it is used.
+    pub nowhere: Option<Span>,
 }
 
 impl<'a> Value<'a> {
@@ -69,7 +73,7 @@ impl<'a> Value<'a> {
 impl<'a> Place<'a> {
     /// A part that starts `offset` cells in.
     pub fn part(&self, offset: usize, ty: &Type<'a>) -> Self {
-        Self { at: self.at + offset, ty: ty.clone() }
+        Self { at: self.at + offset, ty: ty.clone(), nowhere: self.nowhere }
     }
 }
 
@@ -103,6 +107,7 @@ impl<'a> Machine<'a> {
                 bytes.truncate(*capacity);
                 Ok(Value { ty: ty.clone(), cells: vec![Cell::Text(bytes)] })
             }
+            Type::Reference(_) => Ok(Value { ty: ty.clone(), cells: value.cells }),
             Type::Enum(_) | Type::Array(_) | Type::Record(_) | Type::Block(_) => Ok(value),
         }
     }
@@ -119,7 +124,7 @@ impl<'a> Machine<'a> {
     pub(crate) fn allocate(&mut self, ty: &Type<'a>) -> Place<'a> {
         let at = self.memory.len();
         self.memory.resize(at + ty.size(), Cell::Scalar(Scalar::Bool(false)));
-        Place { at, ty: ty.clone() }
+        Place { at, ty: ty.clone(), nowhere: None }
     }
 
     /// Gives a variable its initial value.
@@ -171,6 +176,7 @@ impl<'a> Machine<'a> {
             Type::Subrange(base, low, _) => self.memory[place.at] = integer_cell(*base, *low),
             Type::Enum(it) => self.memory[place.at] = Cell::Scalar(it.values[0].1),
             Type::Text(_) => self.memory[place.at] = Cell::Text(Vec::new()),
+            Type::Reference(_) => self.memory[place.at] = Cell::Reference(None),
             Type::Array(array) => {
                 let size = array.element.ty.size();
                 for number in 0..array.count() {
@@ -201,6 +207,6 @@ impl<'a> Machine<'a> {
     }
 }
 
-pub(crate) fn integer_cell(ty: Elementary, number: i128) -> Cell {
+pub(crate) fn integer_cell<'a>(ty: Elementary, number: i128) -> Cell<'a> {
     Cell::Scalar(ty.repr().integer(number).unwrap_or(ty.repr().zero()))
 }

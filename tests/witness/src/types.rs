@@ -1,6 +1,6 @@
 //! Types, and which of them widen to which.
 
-use staunch_frontend::ast::Initial;
+use staunch_frontend::ast::{Initial, TypeSpec};
 use staunch_runtime::{BlockInfo, Repr, Value as Scalar};
 use std::rc::Rc;
 
@@ -142,6 +142,24 @@ pub(crate) enum Type<'a> {
     /// A structure, or an instance of a user's POU.
     Record(Rc<Record<'a>>),
     Block(&'static BlockInfo),
+    Reference(Reference<'a>),
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reference<'a> {
+    pub kind: RefKind,
+    /// What it refers to as that is declared: an INTERFACE, where it is a variable of one.
+    pub target: Option<&'a TypeSpec<'a>>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum RefKind {
+    /// REF_TO, POINTER TO: `^` leads on.
+    Pointer,
+    /// REFERENCE TO: its name stands for what it refers to.
+    Alias,
+    /// A variable of an INTERFACE.
+    Interface,
 }
 
 #[derive(Debug)]
@@ -179,7 +197,7 @@ impl Type<'_> {
     /// Cells of memory that a value takes.
     pub fn size(&self) -> usize {
         match self {
-            Self::Elementary(_) | Self::Subrange(..) | Self::Enum(_) | Self::Text(_) => 1,
+            Self::Elementary(_) | Self::Subrange(..) | Self::Enum(_) | Self::Text(_) | Self::Reference(_) => 1,
             Self::Array(it) => it.element.ty.size() * it.count(),
             Self::Record(it) => it.fields.iter().map(|(_, slot)| slot.ty.size()).sum(),
             Self::Block(info) => info.pins.len(),
@@ -190,7 +208,9 @@ impl Type<'_> {
     pub fn elementary(&self) -> Option<Elementary> {
         match self {
             Self::Elementary(it) | Self::Subrange(it, ..) => Some(*it),
-            Self::Enum(_) | Self::Text(_) | Self::Array(_) | Self::Record(_) | Self::Block(_) => None,
+            Self::Enum(_) | Self::Text(_) | Self::Array(_) | Self::Record(_) | Self::Block(_) | Self::Reference(_) => {
+                None
+            }
         }
     }
 

@@ -213,7 +213,7 @@ fn suffixes<'s>(input: &mut In<'_, '_, 's>, mut expr: Expr<'s>) -> Parsed<Expr<'
             Kind::OpenParen => ExprKind::Call(Box::new(expr), arguments(input)?),
             Kind::Minus if foreign_syntax::arrow(input) => named_member(input, expr)?,
             // Nothing is dereferenced before an operand.
-            Kind::Caret if matches!(input.kind_ahead(1), Kind::Integer | Kind::Real | Kind::Name) => break,
+            Kind::Caret if before_operand(input) => break,
             Kind::Caret => {
                 input.take();
                 ExprKind::Deref(Box::new(expr))
@@ -227,6 +227,23 @@ fn suffixes<'s>(input: &mut In<'_, '_, 's>, mut expr: Expr<'s>) -> Parsed<Expr<'
     }
     input.state().height = height;
     Ok(expr)
+}
+
+/// Whether an operand follows `^`, which is a power in other languages: not the `S=` of `p^ S= b`.
+fn before_operand(input: &mut In<'_, '_, '_>) -> bool {
+    match input.kind_ahead(1) {
+        Kind::Integer | Kind::Real => true,
+        Kind::Name => !is_latch(input, 1),
+        _ => false,
+    }
+}
+
+/// Whether `S=`, `R=` or `REF=` is so many tokens ahead: the letters mean this only with the `=` directly after them.
+pub fn is_latch(input: &mut In<'_, '_, '_>, ahead: usize) -> bool {
+    let number = input.number() + ahead;
+    let (word, sign) = (input.state().place(number), input.state().place(number + 1));
+    let is_word = ["S", "R", "REF"].iter().any(|it| input.text(word).eq_ignore_ascii_case(it));
+    is_word && input.kind_ahead(ahead + 1) == Kind::Equal && sign.start == word.end
 }
 
 fn member<'s>(input: &mut In<'_, '_, 's>, of: Expr<'s>) -> Parsed<ExprKind<'s>> {

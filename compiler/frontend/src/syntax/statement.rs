@@ -9,7 +9,7 @@ use crate::{
 
 use super::{
     block_ends, declaration, diagnostics,
-    expression::{condition, expression, postfix},
+    expression::{condition, expression, is_latch, postfix},
     foreign_syntax, misspelt, mock,
     parser::{Expected, In, Parsed, Problem, TokenReader, too_long},
     recovery, routine,
@@ -244,29 +244,22 @@ fn split_assign<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<Stat
     Err(input.problem(Expected::Action))
 }
 
-/// `a S= b`, `a R= b`, `a REF= b`: the letters mean this only with the `=` directly after them.
+/// `a S= b`, `a R= b`, `a REF= b`
 fn latch<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<StatementKind<'s>> {
-    let word = input.here();
-    let joined = input.kind_ahead(1) == Kind::Equal && {
-        let sign = input.number() + 1;
-        input.state().place(sign).start == word.end
-    };
-    let set = match input.text(word) {
-        "S" | "s" if joined => true,
-        "R" | "r" if joined => false,
-        text if joined && text.eq_ignore_ascii_case("REF") => {
-            input.take();
-            input.take();
-            let value = expression(input)?;
-            return Ok(StatementKind::Bind { target, value });
-        }
-        _ if matches!(target.kind, ExprKind::Call(..)) => return Ok(StatementKind::Expr(target)),
-        _ => return without_effect(input, target),
-    };
-    input.take();
+    if !is_latch(input, 0) {
+        return match target.kind {
+            ExprKind::Call(..) => Ok(StatementKind::Expr(target)),
+            _ => without_effect(input, target),
+        };
+    }
+    let word = input.take();
     input.take();
     let value = expression(input)?;
-    Ok(StatementKind::SetReset { target, value, set })
+    Ok(match input.text(word) {
+        "S" | "s" => StatementKind::SetReset { target, value, set: true },
+        "R" | "r" => StatementKind::SetReset { target, value, set: false },
+        _ => StatementKind::Bind { target, value },
+    })
 }
 
 /// Something that is neither an assignment nor a call.

@@ -147,6 +147,7 @@ impl Writer {
             let has_names = positional == 0 || arguments.len() > positional;
             let left_out = match parameter.section {
                 // A FUNCTION of CODESYS is given all inputs.
+                Section::Input if matches!(parameter.ty, Ty::Pointer(_)) => false,
                 Section::Input if of_function && self.codesys => false,
                 Section::Input => has_names && self.random.once_in(if of_function { 6 } else { 3 }),
                 Section::Output => self.random.once_in(3),
@@ -185,9 +186,9 @@ impl Writer {
             Section::InOut => {
                 let place = match ty {
                     Ty::Text(_) if self.random.once_in(3) => {
-                        self.some_place(true, depth, |_, it| matches!(it, Ty::Text(_))).map(|it| it.0)
+                        self.in_out_place(depth, |_, it| matches!(it, Ty::Text(_)))
                     }
-                    _ => self.place_of(ty, true, depth),
+                    _ => self.in_out_place(depth, |_, it| it == ty),
                 };
                 Some((false, place?))
             }

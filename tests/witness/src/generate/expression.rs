@@ -24,6 +24,7 @@ impl Writer {
             Ty::Level(at) => self.level(*at, depth),
             Ty::Color => self.color(depth),
             Ty::Array(_) | Ty::Record(_) => self.leaf(ty),
+            Ty::Pointer(to) => self.reference(to, depth),
             Ty::Instance(_) | Ty::Standard(_) => unreachable!("an instance is no value"),
         }
     }
@@ -45,7 +46,7 @@ impl Writer {
     }
 
     fn leaf(&mut self, ty: &Ty) -> String {
-        if self.random.once_in(4) && !matches!(ty, Ty::Array(_) | Ty::Record(_)) {
+        if self.random.once_in(4) && !matches!(ty, Ty::Array(_) | Ty::Record(_) | Ty::Pointer(_)) {
             return self.literal(ty);
         }
         self.variable(ty, 0)
@@ -82,6 +83,7 @@ impl Writer {
                 let (_, low, high) = self.types.levels[*at];
                 self.random.one_of(&[low, low + 1, high]).to_string()
             }
+            Ty::Pointer(_) => "NULL".to_owned(),
             Ty::Array(_) | Ty::Record(_) | Ty::Instance(_) | Ty::Standard(_) => unreachable!("no literal of this type"),
         }
     }
@@ -92,9 +94,26 @@ impl Writer {
             Ty::Number(at) => format!("{}#{literal}", NUMBERS[*at].name),
             Ty::Bits(at) => format!("{}#{literal}", BITS[*at]),
             Ty::Level(at) => format!("{}#{literal}", NUMBERS[self.types.levels[*at].0].name),
-            Ty::Bool | Ty::Time | Ty::Text(_) | Ty::Color => literal,
+            Ty::Bool | Ty::Time | Ty::Text(_) | Ty::Color | Ty::Pointer(_) => literal,
             Ty::Array(_) | Ty::Record(_) | Ty::Instance(_) | Ty::Standard(_) => unreachable!("no literal of this type"),
         }
+    }
+
+    /// Mostly one that leads somewhere.
+    fn reference(&mut self, to: &Ty, depth: usize) -> String {
+        let whole = Ty::Pointer(Box::new(to.clone()));
+        match self.random.below(8) {
+            0 if self.random.once_in(8) => "NULL".to_owned(),
+            0..=2 => self.variable(&whole, depth),
+            _ => self.address_of(to, depth).unwrap_or_else(|| self.variable(&whole, depth)),
+        }
+    }
+
+    /// Whether two references, or one and nothing, are the same.
+    fn same(&mut self, depth: usize) -> Option<String> {
+        let (a, ty) = self.some_place(false, depth, |_, it| matches!(it, Ty::Pointer(_)))?;
+        let b = if self.random.once_in(2) { "NULL".to_owned() } else { self.expression(&ty, depth - 1) };
+        Some(format!("({a} {} {b})", self.random.one_of(&["=", "<>"])))
     }
 
     fn number_type(&mut self) -> Ty {
@@ -162,11 +181,7 @@ impl Writer {
                 format!("{}_TO_{}({value})", self.types.name(&from), self.types.name(ty))
             }
             17 => match self.random.below(4) {
-                0 => {
-                    format!("LEN({})", self.string(depth - 1))
-                        .replace("LEN", &format!("INT_TO_{}(LEN", NUMBERS[at].name))
-                        + ")"
-                }
+                0 => format!("INT_TO_{}(LEN({}))", NUMBERS[at].name, self.string(depth - 1)),
                 1 => format!("TO_{}({})", NUMBERS[at].name, self.operand(&Ty::Color, depth - 1)),
                 2 => format!("TIME_TO_{}({})", NUMBERS[at].name, self.operand(&Ty::Time, depth - 1)),
                 _ => format!("REAL_TRUNC_{}({})", NUMBERS[at].name, self.operand(&Ty::Number(8), depth - 1)),
@@ -196,7 +211,11 @@ impl Writer {
     }
 
     fn condition(&mut self, depth: usize) -> String {
-        match self.random.below(15) {
+        match self.random.below(16) {
+            15 => match self.same(depth) {
+                Some(it) => it,
+                None => self.variable(&Ty::Bool, depth),
+            },
             14 => match self.some_place(true, depth, |_, it| matches!(it, Ty::Standard(at) if pins(*at).is_empty())) {
                 Some((tag, _)) => self.instruction(&tag),
                 None => self.variable(&Ty::Bool, depth),

@@ -19,6 +19,7 @@ use types::{Catalogue, NUMBERS, Ty};
 pub fn program(seed: u64) -> String {
     let mut writer = Writer::new(seed);
     writer.codesys = seed % 3 == 2;
+    writer.types.codesys = writer.codesys;
     if writer.codesys {
         writer.line("{dialect 'codesys'}");
     }
@@ -175,6 +176,11 @@ impl Writer {
                 _ => self.any_type(),
             };
             let variable = self.declare(&format!("g{number}"), ty);
+            self.globals.push(Variable { lasts: true, ..variable });
+        }
+        for number in 0..2 {
+            let ty = self.pointer_type();
+            let variable = self.declare(&format!("gp{number}"), ty);
             self.globals.push(variable);
         }
         self.line("END_VAR");
@@ -182,7 +188,7 @@ impl Writer {
         for (number, ty, value) in [(0, 2, "7"), (1, 1, "3"), (2, 8, "16777216.0"), (3, 0, "100")] {
             let name = format!("k{number}");
             self.line(&format!("    {name} : {} := {value};", NUMBERS[ty].name));
-            self.globals.push(Variable { name, ty: Ty::Number(ty), writable: false });
+            self.globals.push(Variable { name, ty: Ty::Number(ty), writable: false, lasts: true });
         }
         self.line("END_VAR");
     }
@@ -194,7 +200,7 @@ impl Writer {
             let shown = this.types.name(&ty);
             this.line(&format!("{name} : {shown}{initial};"));
         });
-        Variable { name: name.to_owned(), ty, writable: true }
+        Variable { name: name.to_owned(), ty, writable: true, lasts: false }
     }
 
     fn initial(&mut self, ty: &Ty) -> String {
@@ -222,13 +228,13 @@ impl Writer {
         self.blank();
         let shown = self.types.name(&result);
         self.line(&format!("FUNCTION {name} : {shown}"));
-        let parameters = self.parameters("");
+        let parameters = self.parameters("", true);
         self.locals("VAR", "l", 2);
         if self.random.once_in(4) {
             self.locals("VAR_STAT", "s", 2);
         }
         // A function's result is a variable in its body.
-        self.scope.add(Variable { name: name.clone(), ty: result.clone(), writable: true });
+        self.scope.add(Variable { name: name.clone(), ty: result.clone(), writable: true, lasts: false });
         self.body(3);
         let value = self.expression(&result, 2);
         self.line(&format!("{name} := {value};"));
@@ -241,7 +247,7 @@ impl Writer {
         let name = format!("Blk{number}");
         self.blank();
         self.line(&format!("FUNCTION_BLOCK {name}"));
-        let parameters = self.parameters("");
+        let parameters = self.parameters("", false);
         self.locals("VAR", "l", 2);
         self.line("VAR");
         for at in 0..self.random.below(3) {
@@ -279,12 +285,12 @@ impl Writer {
         let shown = self.types.name(&result);
         self.line(&format!("METHOD {name} : {shown}"));
         let outer = self.scope.clone();
-        let parameters = self.parameters("m");
+        let parameters = self.parameters("m", true);
         self.locals("VAR", "ml", 1);
         if self.random.once_in(4) {
             self.locals("VAR_STAT", "ms", 1);
         }
-        self.scope.add(Variable { name: name.clone(), ty: result.clone(), writable: true });
+        self.scope.add(Variable { name: name.clone(), ty: result.clone(), writable: true, lasts: false });
         self.body(2);
         let value = self.expression(&result, 2);
         self.line(&format!("{name} := {value};"));
@@ -310,7 +316,7 @@ impl Writer {
         self.inside(|this| {
             this.line("tick : DINT;");
         });
-        self.scope.add(Variable { name: "tick".to_owned(), ty: Ty::Number(2), writable: false });
+        self.scope.add(Variable { name: "tick".to_owned(), ty: Ty::Number(2), writable: false, lasts: true });
         let (arrays, records) = (self.types.arrays.len(), self.types.records.len());
         for at in 0..12 {
             let ty = match at {
@@ -324,6 +330,12 @@ impl Writer {
                 _ => self.any_type(),
             };
             let variable = self.declare(&format!("v{at}"), ty);
+            self.scope.add(Variable { lasts: true, ..variable });
+        }
+        for at in 0..2 {
+            let to = self.scope.types(&self.types, |it| it.lasts && it.writable);
+            let ty = Ty::Pointer(Box::new(self.random.one_of(&to).clone()));
+            let variable = self.declare(&format!("p{at}"), ty);
             self.scope.add(variable);
         }
         self.line("END_VAR");
@@ -332,8 +344,28 @@ impl Writer {
         }
         self.loop_variables();
         self.line("tick := tick + 1;");
+        self.point_somewhere();
         self.statements(9);
         self.line("END_PROGRAM");
+    }
+
+    /// A reference to what globals have.
+    fn pointer_type(&mut self) -> Ty {
+        let scope = Scope::new(&self.globals);
+        let to = scope.types(&self.types, |it| it.lasts && it.writable);
+        Ty::Pointer(Box::new(self.random.one_of(&to).clone()))
+    }
+
+    /// Gives most references something to lead to in the first scan.
+    fn point_somewhere(&mut self) {
+        self.line("IF tick = 1 THEN");
+        for (name, to) in self.scope.pointers() {
+            let address = self.address_of(&to, 1).filter(|_| !self.random.once_in(30));
+            if let Some(address) = address {
+                self.line(&format!("    {name} := {address};"));
+            }
+        }
+        self.line("END_IF");
     }
 
     fn blank(&mut self) {
@@ -349,8 +381,8 @@ impl Writer {
         self.whiles = 0;
     }
 
-    /// Writes parameters, whose names begin with `prefix`.
-    fn parameters(&mut self, prefix: &str) -> Vec<Parameter> {
+    /// Writes parameters, whose names begin with `prefix`. Those of a call live as long as it goes on.
+    fn parameters(&mut self, prefix: &str, of_call: bool) -> Vec<Parameter> {
         let mut parameters = Vec::new();
         for (section, keyword, most) in
             [(Section::Input, "VAR_INPUT", 3), (Section::Output, "VAR_OUTPUT", 2), (Section::InOut, "VAR_IN_OUT", 2)]
@@ -363,6 +395,7 @@ impl Writer {
             for at in 0..count {
                 let name = format!("{prefix}{}{at}", section.letter());
                 let ty = match section {
+                    Section::Input if of_call && self.random.once_in(6) => self.pointer_type(),
                     Section::Input | Section::Output => self.any_type(),
                     Section::InOut => self.in_out_type(),
                 };
@@ -372,7 +405,12 @@ impl Writer {
                 } else {
                     self.declare(&name, ty.clone());
                 }
-                self.scope.add(Variable { name: name.clone(), ty: ty.clone(), writable: section != Section::Input });
+                self.scope.add(Variable {
+                    name: name.clone(),
+                    ty: ty.clone(),
+                    writable: section != Section::Input,
+                    lasts: false,
+                });
                 parameters.push(Parameter { name, ty, section });
             }
             self.line("END_VAR");

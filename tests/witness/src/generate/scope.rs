@@ -1,13 +1,15 @@
 //! The variables that a body can name, and places among them.
 
 use super::Writer;
-use super::types::{Piece, Shape, Ty};
+use super::types::{Catalogue, Piece, Shape, Ty};
 
 #[derive(Clone, Debug)]
 pub struct Variable {
     pub name: String,
     pub ty: Ty,
     pub writable: bool,
+    /// Whether it is there from scan to scan, so that references may be kept of it.
+    pub lasts: bool,
 }
 
 #[derive(Clone, Default)]
@@ -25,6 +27,24 @@ impl Scope {
         Self { variables: self.variables.iter().filter(|it| !hidden(&it.name)).cloned().collect() }
     }
 
+    /// The types of those variables and of their parts.
+    pub fn types(&self, types: &Catalogue, chosen: impl Fn(&Variable) -> bool) -> Vec<Ty> {
+        let shapes = self.variables.iter().filter(|it| chosen(it)).flat_map(|it| types.shapes(&it.ty));
+        shapes
+            .filter(|it| !it.through && !it.is_pin && it.writable && !matches!(it.ty, Ty::Pointer(_)))
+            .map(|it| it.ty)
+            .collect()
+    }
+
+    /// The variables that are references, and to what.
+    pub fn pointers(&self) -> Vec<(String, Ty)> {
+        let pointers = self.variables.iter().filter_map(|it| match &it.ty {
+            Ty::Pointer(to) if it.writable => Some((it.name.clone(), (**to).clone())),
+            _ => None,
+        });
+        pointers.collect()
+    }
+
     pub fn add(&mut self, variable: Variable) {
         self.variables.push(variable);
     }
@@ -38,13 +58,40 @@ impl Writer {
         depth: usize,
         fits: impl Fn(&Self, &Ty) -> bool,
     ) -> Option<(String, Ty)> {
+        self.some_shape(to_write, depth, |this, _, shape| fits(this, &shape.ty))
+    }
+
+    /// A variable or part of one that is named without a reference.
+    pub(super) fn direct_place(&mut self, depth: usize, fits: impl Fn(&Self, &Ty) -> bool) -> Option<(String, Ty)> {
+        self.some_shape(true, depth, |this, _, shape| !shape.through && fits(this, &shape.ty))
+    }
+
+    /// `REF(x)`, where something of the type lasts.
+    pub(super) fn address_of(&mut self, ty: &Ty, depth: usize) -> Option<String> {
+        let place = self
+            .some_shape(true, depth, |_, variable, it| variable.lasts && !it.through && !it.is_pin && it.ty == *ty)?
+            .0;
+        Some(format!("{}({place})", if self.codesys { "ADR" } else { "REF" }))
+    }
+
+    /// What can be given to an in-out: not a pin, in a program with references.
+    pub(super) fn in_out_place(&mut self, depth: usize, fits: impl Fn(&Self, &Ty) -> bool) -> Option<String> {
+        self.some_shape(true, depth, |this, _, shape| !shape.is_pin && fits(this, &shape.ty)).map(|it| it.0)
+    }
+
+    fn some_shape(
+        &mut self,
+        to_write: bool,
+        depth: usize,
+        fits: impl Fn(&Self, &Variable, &Shape) -> bool,
+    ) -> Option<(String, Ty)> {
         let mut found: Vec<(String, Shape)> = Vec::new();
         for variable in &self.scope.variables {
             if to_write && (!variable.writable || self.counters.contains(&variable.name)) {
                 continue;
             }
             for shape in self.types.shapes(&variable.ty) {
-                if fits(self, &shape.ty) && (shape.writable || !to_write) {
+                if fits(self, variable, &shape) && (shape.writable || !to_write) {
                     found.push((variable.name.clone(), shape));
                 }
             }
@@ -70,6 +117,7 @@ impl Writer {
                     text.push('.');
                     text.push_str(name);
                 }
+                Piece::Deref => text.push('^'),
                 Piece::Index(bounds) => {
                     let indices: Vec<_> = bounds.iter().map(|it| self.index(*it, depth)).collect();
                     text.push_str(&format!("[{}]", indices.join(", ")));

@@ -127,7 +127,7 @@ impl Writer {
         if self.loops >= 2 {
             return self.assignment();
         }
-        let found = self.some_place(true, 0, |_, it| it.is_integer() || matches!(it, Ty::Level(_)));
+        let found = self.direct_place(0, |_, it| it.is_integer() || matches!(it, Ty::Level(_)));
         let Some((counter, ty)) = found else { return self.assignment() };
         let base = match &ty {
             Ty::Level(at) => Ty::Number(self.types.levels[*at].0),

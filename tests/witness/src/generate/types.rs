@@ -22,6 +22,8 @@ pub enum Ty {
     Instance(usize),
     /// An instance of a standard block: a row of the runtime's table.
     Standard(usize),
+    /// What leads to a variable of a type.
+    Pointer(Box<Self>),
 }
 
 pub struct Number {
@@ -79,7 +81,8 @@ impl Ty {
             | Self::Array(_)
             | Self::Record(_)
             | Self::Instance(_)
-            | Self::Standard(_) => None,
+            | Self::Standard(_)
+            | Self::Pointer(_) => None,
         }
     }
 
@@ -110,6 +113,8 @@ impl Ty {
 #[derive(Clone, Debug)]
 pub enum Piece {
     Member(String),
+    /// `^`
+    Deref,
     /// An index for each pair of bounds.
     Index(Vec<(i64, i64)>),
 }
@@ -120,10 +125,16 @@ pub struct Shape {
     pub pieces: Vec<Piece>,
     pub ty: Ty,
     pub writable: bool,
+    /// Whether it is reached by a reference, so that its address is another's.
+    pub through: bool,
+    /// Whether it is a standard block's, and has no address.
+    pub is_pin: bool,
 }
 
 #[derive(Default)]
 pub struct Catalogue {
+    /// Whether references are written as CODESYS does.
+    pub codesys: bool,
     /// Base, and bounds.
     pub levels: Vec<(usize, i64, i64)>,
     pub arrays: Vec<(Vec<(i64, i64)>, Ty)>,
@@ -146,6 +157,7 @@ impl Catalogue {
             Ty::Record(at) => format!("Rec{at}"),
             Ty::Instance(at) => format!("Blk{at}"),
             Ty::Standard(at) => standard_name(&BLOCKS[*at]),
+            Ty::Pointer(to) => format!("{} {}", if self.codesys { "POINTER TO" } else { "REF_TO" }, self.name(to)),
         }
     }
 
@@ -156,12 +168,14 @@ impl Catalogue {
             Ty::Array(at) => self.is_value(&self.arrays[*at].1),
             Ty::Record(at) => self.records[*at].iter().all(|(_, ty)| self.is_value(ty)),
             Ty::Bool | Ty::Number(_) | Ty::Bits(_) | Ty::Time | Ty::Text(_) | Ty::Color | Ty::Level(_) => true,
+            Ty::Pointer(_) => true,
         }
     }
 
     /// The variable itself and all its parts.
     pub fn shapes(&self, ty: &Ty) -> Vec<Shape> {
-        let mut shapes = vec![Shape { pieces: Vec::new(), ty: ty.clone(), writable: true }];
+        let mut shapes =
+            vec![Shape { pieces: Vec::new(), ty: ty.clone(), writable: true, through: false, is_pin: false }];
         let within = |piece: Piece, ty: &Ty, writable: bool, shapes: &mut Vec<Shape>| {
             for mut shape in self.shapes(ty) {
                 shape.pieces.insert(0, piece.clone());
@@ -188,6 +202,11 @@ impl Catalogue {
                 for (name, ty, is_input) in pins(*at) {
                     within(Piece::Member(name), &ty, is_input, &mut shapes);
                 }
+                shapes.iter_mut().skip(1).for_each(|it| it.is_pin = true);
+            }
+            Ty::Pointer(to) => {
+                within(Piece::Deref, to, true, &mut shapes);
+                shapes.iter_mut().skip(1).for_each(|it| it.through = true);
             }
             Ty::Bool | Ty::Number(_) | Ty::Bits(_) | Ty::Time | Ty::Text(_) | Ty::Color | Ty::Level(_) => {}
         }
