@@ -4,7 +4,7 @@
 //!
 //! What is overridden is there for SUPER alone, where something calls it so.
 
-use crate::ast::{Access, Expr, ExprKind, File, Item, Name, Pou, PouKind, each_expr};
+use crate::ast::{Access, Expr, ExprKind, File, Item, Name, Pou, PouKind, VarKind, each_expr};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::spelling::{Key, nearest};
 use crate::start::is_initial;
@@ -213,6 +213,8 @@ impl<'s> Expansion<'_, 's> {
         let name = base.name;
         hidden.push(Pou {
             kind: PouKind::Action,
+            // They live as long as the body runs.
+            blocks: base.blocks.iter().filter(|it| it.kind == VarKind::Temp).cloned().collect(),
             body: base.body.clone(),
             home: Some(name),
             is_hidden: true,

@@ -64,12 +64,12 @@ impl Effects {
 /// For each routine of a verified program.
 pub fn effects(program: &Program, rules: &Rules) -> Vec<Effects> {
     let mut known: Vec<Effects> = Vec::with_capacity(program.routines.len());
-    let addressable = reference::addressable(program);
+    let reached = reference::reached(program);
     for routine in &program.routines {
         let (borrowed, checked) = (vec![false; routine.locals.len()], checked_locals(routine));
         let effects = Effects { borrowed, checked, ..Effects::default() };
         let mut finder =
-            Finder { program, rules, known: &known, addressable: &addressable, routine, loops: Vec::new(), effects };
+            Finder { program, rules, known: &known, reached: &reached, routine, loops: Vec::new(), effects };
         finder.block(&routine.body);
         let mut effects = finder.effects;
         effects.calls.sort_unstable();
@@ -95,7 +95,8 @@ struct Finder<'a> {
     program: &'a Program,
     rules: &'a Rules,
     known: &'a [Effects],
-    addressable: &'a BTreeSet<(StructId, FieldId)>,
+    /// What references may lead into.
+    reached: &'a BTreeSet<(StructId, FieldId)>,
     routine: &'a Routine,
     /// The loops around, with private counters.
     loops: Vec<&'a For>,
@@ -197,7 +198,7 @@ impl<'a> Finder<'a> {
             return;
         }
         let roots = [(Root::Globals, Some(self.program.globals)), (Root::Instance, self.routine.state)];
-        for (owner, field) in self.addressable {
+        for (owner, field) in self.reached {
             for (root, _) in roots.iter().filter(|(_, of)| *of == Some(*owner)) {
                 let ty = self.program.structure(*owner).fields[field.index()].ty;
                 let variable = Place::root(*root, Type::Struct(*owner)).field(*field, ty);

@@ -63,6 +63,20 @@ pub fn addressable(program: &Program) -> BTreeSet<(StructId, FieldId)> {
     found.variables
 }
 
+/// The variables that references may lead into: those whose addresses are taken, and those that hold an instance
+/// of which a variable's address is.
+pub(crate) fn reached(program: &Program) -> BTreeSet<(StructId, FieldId)> {
+    let found = Finder::search(program);
+    let owners: BTreeSet<_> = found.variables.iter().map(|it| it.0).collect();
+    let mut all = found.variables;
+    for state in found.states {
+        let fields = program.structure(state).fields.iter().enumerate();
+        let holders = fields.filter(|(_, it)| holds(program, it.ty, &owners));
+        all.extend(holders.map(|(at, _)| (state, FieldId::next(at))));
+    }
+    all
+}
+
 /// For each routine, the locals whose addresses are taken, by it or by what it passes them to.
 pub(crate) fn addressed_locals(program: &Program) -> Vec<BTreeSet<crate::LocalId>> {
     Finder::search(program).locals

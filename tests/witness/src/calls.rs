@@ -170,16 +170,19 @@ impl<'a> Machine<'a> {
         instance: &Place<'a>,
         arguments: &'a [Argument<'a>],
     ) -> Outcome<Option<Value<'a>>> {
-        let formals = self.formals(self.bearer(routine));
+        let formals = self.formals(self.bearer(routine, instance));
         let passed = self.passed(frame, &formals, arguments)?;
         let instance = self.checked(instance.clone())?;
         self.run_routine(frame, routine, &instance, passed)
     }
 
-    /// Whose parameters a call of a routine has: an ACTION those of its POU.
-    fn bearer(&self, routine: usize) -> usize {
-        let pou = &self.declared.pous[routine];
-        pou.owner.filter(|_| pou.kind == PouKind::Action).unwrap_or(routine)
+    /// Whose parameters a call of a routine has: an ACTION those of its instance's class.
+    fn bearer(&self, routine: usize, instance: &Place<'a>) -> usize {
+        let class = match &instance.ty {
+            Type::Record(record) => record.pou,
+            _ => None,
+        };
+        class.filter(|_| self.declared.pous[routine].kind == PouKind::Action).unwrap_or(routine)
     }
 
     /// One call of a routine whose arguments have been found.
@@ -192,10 +195,10 @@ impl<'a> Machine<'a> {
     ) -> Outcome<Option<Value<'a>>> {
         let Some(owner) = self.declared.pous[routine].owner else { return unknown("a routine without an owner") };
         let method = self.declared.pous[routine].kind != PouKind::Action;
-        let called = self.bearer(routine);
+        let called = self.bearer(routine, instance);
         let formals = self.formals(called);
         let size = self.memory.len();
-        let mut outer = self.frame_of(instance, owner);
+        let mut outer = Frame { class: Some(owner), ..self.frame_of(instance, if method { owner } else { called }) };
         for variable in self.declared.pous[owner].variables.iter().filter(|it| it.kind == VarKind::Stat) {
             let key = variable.name.to_ascii_uppercase();
             outer.names.insert(key.clone(), self.statics[&(owner, key)].clone());

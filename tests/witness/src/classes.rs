@@ -4,11 +4,11 @@
 //! a place of the heir's type. So what is called is what the place's own type has.
 
 use crate::calls::Passed;
-use crate::declarations::Declarations;
+use crate::declarations::{Declarations, name_of};
 use crate::machine::{Frame, Machine, Outcome, unknown};
 use crate::storage::{Place, Value};
 use crate::types::{RefKind, Type};
-use staunch_frontend::ast::{Expr, ExprKind, Item, Pou, PouKind, VarKind};
+use staunch_frontend::ast::{Expr, ExprKind, Item, Pou, PouKind, TypeSpec, VarKind};
 
 impl<'a> Declarations<'a> {
     /// A class, and those above it.
@@ -43,6 +43,14 @@ impl<'a> Declarations<'a> {
             let pou = &self.pous[it];
             pou.name.eq_ignore_ascii_case(name) || pou.implements.iter().any(|it| self.interface_is(it.text, name))
         })
+    }
+
+    /// A class that has an interface, for what a call through it is given.
+    pub fn implementer(&mut self, interface: &'a TypeSpec<'a>) -> Outcome<Type<'a>> {
+        let name = name_of(interface).unwrap_or_default();
+        let mut classes = (0..self.pous.len()).filter(|it| self.pous[*it].owner.is_none());
+        let found = classes.find(|it| self.pous[*it].kind != PouKind::Interface && self.is_a(*it, name));
+        found.map_or_else(|| unknown("an interface that no class has"), |it| self.instance_of(it))
     }
 
     fn interface_is(&self, interface: &str, name: &str) -> bool {
@@ -132,8 +140,8 @@ impl<'a> Machine<'a> {
     pub(crate) fn got(&mut self, name: &str, class: usize, instance: &Place<'a>) -> Outcome<Value<'a>> {
         let getter = self.declared.accessor_of(class, name, PouKind::Getter);
         let Some(getter) = getter else { return unknown("a PROPERTY without GET") };
-        let frame = Frame::default();
-        match self.run_routine(&frame, getter, instance, Vec::new())? {
+        let instance = self.checked(instance.clone())?;
+        match self.run_routine(&Frame::default(), getter, &instance, Vec::new())? {
             Some(value) => Ok(value),
             None => unknown("a GET without a value"),
         }
@@ -151,6 +159,7 @@ impl<'a> Machine<'a> {
         let input = self.declared.pous[setter].variables.iter().find(|it| it.name.eq_ignore_ascii_case(name));
         let Some((input, ty)) = input.map(|it| (it.name, it.slot.ty.clone())) else { return unknown("this SET") };
         let value = self.value_as(frame, value, &ty)?;
+        let instance = self.checked(instance)?;
         self.run_routine(&Frame::default(), setter, &instance, vec![Passed::value(input, value)])?;
         Ok(())
     }

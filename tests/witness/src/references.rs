@@ -15,10 +15,12 @@ impl<'a> Machine<'a> {
     pub(crate) fn followed(&mut self, cell: Cell<'a>, reference: Reference<'a>, span: Span) -> Outcome<Place<'a>> {
         match cell {
             Cell::Reference(Some(place)) => Ok(*place),
-            _ if reference.kind == RefKind::Interface => Err(self.fault(FaultKind::NullReference, span)),
             _ => match reference.target {
                 Some(target) => {
-                    let ty = self.declared.type_of(target)?;
+                    let ty = match reference.kind {
+                        RefKind::Interface => self.declared.implementer(target)?,
+                        RefKind::Pointer | RefKind::Alias => self.declared.type_of(target)?,
+                    };
                     Ok(Place { at: 0, ty, nowhere: Some(span) })
                 }
                 None => unknown("a reference to nothing"),

@@ -36,7 +36,8 @@ impl<'s> Declarations<'s> {
             None => None,
         };
         if let (PouKind::Action, Some(owner)) = (pou.kind, &owner) {
-            return Some(signature_of_action(owner, self.scope_around(slot, owner)));
+            let signature = signature_of_action(owner, self.scope_around(slot, owner));
+            return Some(self.with_temporaries(slot, owner, signature));
         }
         let outer = owner.as_ref().map(|it| self.scope_around(slot, it));
         let scope = || outer.as_ref().map_or_else(Scope::default, |it| Scope::within(Rc::clone(it)));
@@ -88,6 +89,29 @@ impl<'s> Declarations<'s> {
         let Builder { scope, mut formals, params, locals, edges, complete, .. } = builder;
         formals.shrink_to_fit();
         complete.then_some(Signature { scope, state, formals, params, locals, result, edges, instance_variables })
+    }
+
+    /// A base's body, which SUPER calls as an ACTION, has the VAR_TEMP that are the body's own.
+    fn with_temporaries(&mut self, slot: usize, owner: &Signature<'s>, signature: Signature<'s>) -> Signature<'s> {
+        let pou = self.pous[slot].ast;
+        let mut builder = Builder {
+            slot,
+            scope: signature.scope,
+            fields: Vec::new(),
+            formals: signature.formals,
+            params: signature.params,
+            locals: signature.locals,
+            edges: signature.edges,
+            complete: true,
+            polymorphic: false,
+        };
+        for block in &pou.blocks {
+            for decl in &block.vars {
+                self.declare_variables(pou, block, decl, Some(owner), &mut builder);
+            }
+        }
+        let Builder { scope, formals, params, locals, edges, .. } = builder;
+        Signature { scope, formals, params, locals, edges, ..signature }
     }
 
     /// What a class without variables has, so that its instances are at places of their own, to be referred to.

@@ -1,6 +1,7 @@
 //! Calls: arguments by name, by position and mixed, in any order.
 
 use super::Writer;
+use super::scope::Variable;
 use super::types::{Ty, pins, standard_blocks};
 
 #[derive(Clone, Debug)]
@@ -12,11 +13,19 @@ pub struct Routine {
     pub methods: Vec<Routine>,
     /// The names of a block's actions.
     pub actions: Vec<String>,
+    pub properties: Vec<(String, Ty)>,
+    /// How many blocks a block has above it.
+    pub level: usize,
+    /// What instances of a block keep.
+    pub state: Vec<Variable>,
+    /// Whether a call may lead to an heir of what an in-out is declared with.
+    pub tainted: bool,
 }
 
 impl Routine {
     pub fn new(name: String, result: Option<Ty>, parameters: Vec<Parameter>) -> Self {
-        Self { name, result, parameters, methods: Vec::new(), actions: Vec::new() }
+        let (methods, actions, properties, state) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        Self { name, result, parameters, methods, actions, properties, level: 0, state, tainted: false }
     }
 }
 
@@ -42,6 +51,14 @@ impl Section {
             Self::InOut => "io",
         }
     }
+
+    pub fn keyword(self) -> &'static str {
+        match self {
+            Self::Input => "VAR_INPUT",
+            Self::Output => "VAR_OUTPUT",
+            Self::InOut => "VAR_IN_OUT",
+        }
+    }
 }
 
 impl Writer {
@@ -54,18 +71,33 @@ impl Writer {
         if self.fuel == 0 {
             return None;
         }
+        let is_heir = self.is_heir;
         let fitting = |list: &[Routine]| -> Vec<Routine> {
-            list.iter().filter(|it| it.result.as_ref().is_some_and(&fits)).cloned().collect()
+            let callable = |it: &&Routine| !(is_heir && it.tainted);
+            list.iter().filter(callable).filter(|it| it.result.as_ref().is_some_and(&fits)).cloned().collect()
         };
         let (functions, own) = (fitting(&self.functions), fitting(&self.own.methods));
+        let of_interface: Vec<_> =
+            self.interface_method.clone().into_iter().filter(|it| it.result.as_ref().is_some_and(&fits)).collect();
+        if !of_interface.is_empty()
+            && self.random.once_in(2)
+            && let Some((place, _)) = self.some_place(false, depth.saturating_sub(1), |_, it| *it == Ty::Interface)
+        {
+            return self.routine_call(&format!("{place}."), &of_interface, depth);
+        }
+        let above = fitting(&self.above);
+        if !above.is_empty() && self.random.once_in(2) {
+            return self.routine_call("SUPER^.", &above, depth);
+        }
         let of_others = self.blocks.iter().any(|it| !fitting(&it.methods).is_empty());
         if of_others
             && self.random.once_in(3)
             && let Some((place, Ty::Instance(at))) = self.some_place(true, depth.saturating_sub(1), |this, it| {
-                matches!(it, Ty::Instance(at) if this.blocks.get(*at).is_some_and(|it| !fitting(&it.methods).is_empty()))
+                matches!(it, Ty::Instance(at) if this.may_call(*at) && this.blocks.get(*at).is_some_and(|it| !fitting(&it.methods).is_empty()))
             })
         {
             let methods = fitting(&self.blocks[at].methods);
+            self.tainted |= self.blocks[at].tainted;
             return self.routine_call(&format!("{place}."), &methods, depth);
         }
         if !own.is_empty() && (functions.is_empty() || self.random.once_in(2)) {
@@ -81,6 +113,7 @@ impl Writer {
         }
         self.fuel -= 1;
         let routine = self.random.one_of(routines).clone();
+        self.tainted |= routine.tainted;
         let arguments = self.arguments(&routine.parameters, depth, true)?;
         // What a path leads to is not looked for where EN is FALSE.
         if !before.is_empty() && arguments.contains("EN := ") {
@@ -97,7 +130,13 @@ impl Writer {
 
     /// A call of an instance, as a statement.
     pub(super) fn block_call(&mut self) -> Option<String> {
-        let (place, ty) = self.some_place(true, 2, |_, it| matches!(it, Ty::Instance(_) | Ty::Standard(_)))?;
+        let (place, ty) = self.some_place(true, 2, |this, it| match it {
+            Ty::Instance(at) => this.may_call(*at),
+            _ => matches!(it, Ty::Standard(_)),
+        })?;
+        if let Ty::Instance(at) = ty {
+            self.tainted |= self.blocks[at].tainted;
+        }
         let parameters = match &ty {
             // A block that is being written cannot hold or be given itself.
             Ty::Instance(at) => self.blocks.get(*at)?.parameters.clone(),
@@ -112,14 +151,16 @@ impl Writer {
                 .collect(),
             _ => return None,
         };
-        let arguments = self.arguments(&parameters, 2, false)?;
         let actions = match ty {
             Ty::Instance(at) => self.blocks[at].actions.clone(),
             _ => Vec::new(),
         };
         if !actions.is_empty() && self.random.once_in(3) {
+            // By name: an heir's action has more inputs than that of the declared block.
+            let arguments = self.named_arguments(&parameters)?;
             return Some(format!("{place}.{}({arguments})", self.random.one_of(&actions)));
         }
+        let arguments = self.arguments(&parameters, 2, false)?;
         Some(format!("{place}({arguments})"))
     }
 
@@ -129,13 +170,27 @@ impl Writer {
         format!("LOGIX.{name}(Counter := {tag}, RungIn := {})", self.expression(&Ty::Bool, 1))
     }
 
+    fn named_arguments(&mut self, parameters: &[Parameter]) -> Option<String> {
+        self.arguments_after(0, parameters, 2, false)
+    }
+
     /// `None` where there is nothing to give to an in-out.
     fn arguments(&mut self, parameters: &[Parameter], depth: usize, of_function: bool) -> Option<String> {
+        let positional = if self.random.once_in(2) { self.random.below(parameters.len() + 1) } else { 0 };
+        self.arguments_after(positional, parameters, depth, of_function)
+    }
+
+    /// So many come first and without names; the others follow in any order.
+    fn arguments_after(
+        &mut self,
+        positional: usize,
+        parameters: &[Parameter],
+        depth: usize,
+        of_function: bool,
+    ) -> Option<String> {
         let depth = depth.saturating_sub(1);
         let mut order: Vec<&Parameter> = parameters.iter().filter(|it| it.section != Section::Output).collect();
         order.extend(parameters.iter().filter(|it| it.section == Section::Output));
-        // So many come first and without names; the others follow in any order.
-        let positional = if self.random.once_in(2) { self.random.below(order.len() + 1) } else { 0 };
         let mut named: Vec<&Parameter> = order.split_off(positional);
         self.shuffle(&mut named);
         let mut arguments = Vec::new();
@@ -188,6 +243,10 @@ impl Writer {
                     Ty::Text(_) if self.random.once_in(3) => {
                         self.in_out_place(depth, |_, it| matches!(it, Ty::Text(_)))
                     }
+                    Ty::Instance(base) => self.in_out_place(
+                        depth,
+                        |this, it| matches!(it, Ty::Instance(at) if this.types.is_heir(*at, *base)),
+                    ),
                     _ => self.in_out_place(depth, |_, it| it == ty),
                 };
                 Some((false, place?))

@@ -25,6 +25,7 @@ impl Writer {
             Ty::Color => self.color(depth),
             Ty::Array(_) | Ty::Record(_) => self.leaf(ty),
             Ty::Pointer(to) => self.reference(to, depth),
+            Ty::Interface => self.implementer(depth),
             Ty::Instance(_) | Ty::Standard(_) => unreachable!("an instance is no value"),
         }
     }
@@ -46,7 +47,7 @@ impl Writer {
     }
 
     fn leaf(&mut self, ty: &Ty) -> String {
-        if self.random.once_in(4) && !matches!(ty, Ty::Array(_) | Ty::Record(_) | Ty::Pointer(_)) {
+        if self.random.once_in(4) && !matches!(ty, Ty::Array(_) | Ty::Record(_) | Ty::Pointer(_) | Ty::Interface) {
             return self.literal(ty);
         }
         self.variable(ty, 0)
@@ -83,7 +84,7 @@ impl Writer {
                 let (_, low, high) = self.types.levels[*at];
                 self.random.one_of(&[low, low + 1, high]).to_string()
             }
-            Ty::Pointer(_) => "NULL".to_owned(),
+            Ty::Pointer(_) | Ty::Interface => "NULL".to_owned(),
             Ty::Array(_) | Ty::Record(_) | Ty::Instance(_) | Ty::Standard(_) => unreachable!("no literal of this type"),
         }
     }
@@ -94,7 +95,7 @@ impl Writer {
             Ty::Number(at) => format!("{}#{literal}", NUMBERS[*at].name),
             Ty::Bits(at) => format!("{}#{literal}", BITS[*at]),
             Ty::Level(at) => format!("{}#{literal}", NUMBERS[self.types.levels[*at].0].name),
-            Ty::Bool | Ty::Time | Ty::Text(_) | Ty::Color | Ty::Pointer(_) => literal,
+            Ty::Bool | Ty::Time | Ty::Text(_) | Ty::Color | Ty::Pointer(_) | Ty::Interface => literal,
             Ty::Array(_) | Ty::Record(_) | Ty::Instance(_) | Ty::Standard(_) => unreachable!("no literal of this type"),
         }
     }

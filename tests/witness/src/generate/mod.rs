@@ -4,6 +4,7 @@
 //! callees write, indices that depend on what a call changes, and faults in the midst of it all.
 
 mod call;
+mod class;
 mod expression;
 mod scope;
 mod statement;
@@ -49,6 +50,15 @@ struct Writer {
     counting: Vec<(String, bool)>,
     loops: usize,
     whiles: usize,
+    /// How the names of the block's own counters of WHILE begin.
+    loop_prefix: String,
+    /// Whether the block that is being written has a base.
+    is_heir: bool,
+    /// Whether what is being written calls what may lead to an heir.
+    tainted: bool,
+    /// What `SUPER^` has for the method that is being written.
+    above: Vec<Routine>,
+    interface_method: Option<Routine>,
 }
 
 impl Writer {
@@ -69,6 +79,11 @@ impl Writer {
             counting: Vec::new(),
             loops: 0,
             whiles: 0,
+            loop_prefix: String::new(),
+            is_heir: false,
+            tainted: false,
+            above: Vec::new(),
+            interface_method: None,
         }
     }
 
@@ -79,12 +94,16 @@ impl Writer {
         for _ in 0..2 + self.random.below(2) {
             self.function();
         }
-        for _ in 0..1 + self.random.below(2) {
+        for _ in 0..1 + self.random.below(3) {
             self.block_type();
             self.function();
         }
         self.declare_composites_of_blocks();
-        self.main();
+        let blocks = self.blocks.len();
+        if self.codesys && self.random.once_in(2) {
+            self.sub_program();
+        }
+        self.main(blocks);
     }
 
     fn line(&mut self, text: &str) {
@@ -226,6 +245,7 @@ impl Writer {
         let name = format!("Fun{number}");
         let result = self.result_type();
         self.blank();
+        self.tainted = false;
         let shown = self.types.name(&result);
         self.line(&format!("FUNCTION {name} : {shown}"));
         let parameters = self.parameters("", true);
@@ -239,65 +259,8 @@ impl Writer {
         let value = self.expression(&result, 2);
         self.line(&format!("{name} := {value};"));
         self.line("END_FUNCTION");
-        self.functions.push(Routine::new(name, Some(result), parameters));
-    }
-
-    fn block_type(&mut self) {
-        let number = self.blocks.len();
-        let name = format!("Blk{number}");
-        self.blank();
-        self.line(&format!("FUNCTION_BLOCK {name}"));
-        let parameters = self.parameters("", false);
-        self.locals("VAR", "l", 2);
-        self.line("VAR");
-        for at in 0..self.random.below(3) {
-            let ty = if number > 0 && self.random.once_in(2) { Ty::Instance(0) } else { self.standard_type() };
-            let variable = self.declare(&format!("b{at}"), ty);
-            self.scope.add(variable);
-        }
-        self.line("END_VAR");
-        let state = self.scope.without(|it| parameters.iter().any(|p| p.section == Section::InOut && p.name == it));
-        if self.random.once_in(3) {
-            self.locals("VAR_TEMP", "t", 1);
-        }
-        self.loop_variables();
-        let whole = std::mem::replace(&mut self.scope, state);
-        for number in 0..self.random.below(3) {
-            self.method(number);
-        }
-        if self.random.once_in(3) {
-            self.action();
-        }
-        self.scope = whole;
-        self.statements(4);
-        self.line("END_FUNCTION_BLOCK");
-        let pins = parameters.iter().filter(|it| it.section != Section::InOut);
-        let pins = pins.map(|it| (it.name.clone(), it.ty.clone(), it.section == Section::Input));
-        self.types.blocks.push(pins.collect());
-        let own = std::mem::replace(&mut self.own, Routine::new(String::new(), None, Vec::new()));
-        self.blocks.push(Routine { name, parameters, ..own });
-    }
-
-    /// A method of the block that is being written. It sees what instances keep.
-    fn method(&mut self, number: usize) {
-        let name = format!("Do{number}");
-        let result = self.result_type();
-        let shown = self.types.name(&result);
-        self.line(&format!("METHOD {name} : {shown}"));
-        let outer = self.scope.clone();
-        let parameters = self.parameters("m", true);
-        self.locals("VAR", "ml", 1);
-        if self.random.once_in(4) {
-            self.locals("VAR_STAT", "ms", 1);
-        }
-        self.scope.add(Variable { name: name.clone(), ty: result.clone(), writable: true, lasts: false });
-        self.body(2);
-        let value = self.expression(&result, 2);
-        self.line(&format!("{name} := {value};"));
-        self.line("END_METHOD");
-        self.scope = outer;
-        self.restart_loops();
-        self.own.methods.push(Routine::new(name, Some(result), parameters));
+        let tainted = self.tainted || parameters.iter().any(|it| matches!(it.ty, Ty::Instance(_)));
+        self.functions.push(Routine { tainted, ..Routine::new(name, Some(result), parameters) });
     }
 
     /// An action, with the counters of its block.
@@ -309,7 +272,25 @@ impl Writer {
         self.own.actions.push("Act".to_owned());
     }
 
-    fn main(&mut self) {
+    /// A PROGRAM that Main calls by its name: for its body it is an instance that is there.
+    fn sub_program(&mut self) {
+        self.blank();
+        self.line("PROGRAM Sub");
+        let mut parameters = self.new_parameters("", false);
+        parameters.retain(|it| it.section != Section::InOut);
+        self.declare_sections(&parameters, true);
+        self.locals("VAR", "l", 3);
+        self.loop_variables();
+        self.statements(4);
+        self.line("END_PROGRAM");
+        let pins = parameters.iter().map(|it| (it.name.clone(), it.ty.clone(), it.section == Section::Input));
+        self.types.blocks.push(pins.collect());
+        self.types.properties.push(Vec::new());
+        self.types.bases.push(None);
+        self.blocks.push(Routine::new("Sub".to_owned(), None, parameters));
+    }
+
+    fn main(&mut self, blocks: usize) {
         self.blank();
         self.line("PROGRAM Main");
         self.line("VAR");
@@ -320,7 +301,7 @@ impl Writer {
         let (arrays, records) = (self.types.arrays.len(), self.types.records.len());
         for at in 0..12 {
             let ty = match at {
-                0 => Ty::Instance(self.random.below(self.blocks.len())),
+                0 => Ty::Instance(self.random.below(blocks)),
                 1 => Ty::Array(arrays - 1),
                 2 => Ty::Array(arrays - 2),
                 3 => Ty::Record(records - 1),
@@ -332,11 +313,21 @@ impl Writer {
             let variable = self.declare(&format!("v{at}"), ty);
             self.scope.add(Variable { lasts: true, ..variable });
         }
+        if blocks < self.blocks.len() {
+            let ty = Ty::Instance(blocks);
+            self.scope.add(Variable { name: "Sub".to_owned(), ty, writable: true, lasts: false });
+        }
         for at in 0..2 {
             let to = self.scope.types(&self.types, |it| it.lasts && it.writable);
             let ty = Ty::Pointer(Box::new(self.random.one_of(&to).clone()));
             let variable = self.declare(&format!("p{at}"), ty);
             self.scope.add(variable);
+        }
+        if self.interface_method.is_some() {
+            for name in ["it0", "it1"] {
+                let variable = self.declare(name, Ty::Interface);
+                self.scope.add(variable);
+            }
         }
         self.line("END_VAR");
         if self.random.once_in(4) {
@@ -346,6 +337,9 @@ impl Writer {
         self.line("tick := tick + 1;");
         self.point_somewhere();
         self.statements(9);
+        if blocks < self.blocks.len() {
+            self.line("Sub();");
+        }
         self.line("END_PROGRAM");
     }
 
@@ -365,6 +359,12 @@ impl Writer {
                 self.line(&format!("    {name} := {address};"));
             }
         }
+        if self.interface_method.is_some() {
+            for name in ["it0", "it1"] {
+                let value = self.implementer(1);
+                self.line(&format!("    {name} := {value};"));
+            }
+        }
         self.line("END_IF");
     }
 
@@ -381,41 +381,53 @@ impl Writer {
         self.whiles = 0;
     }
 
-    /// Writes parameters, whose names begin with `prefix`. Those of a call live as long as it goes on.
+    /// Writes new parameters, whose names begin with `prefix`. Those of a call live as long as it goes on.
     fn parameters(&mut self, prefix: &str, of_call: bool) -> Vec<Parameter> {
+        let parameters = self.new_parameters(prefix, of_call);
+        self.declare_sections(&parameters, true);
+        parameters
+    }
+
+    fn new_parameters(&mut self, prefix: &str, of_call: bool) -> Vec<Parameter> {
         let mut parameters = Vec::new();
-        for (section, keyword, most) in
-            [(Section::Input, "VAR_INPUT", 3), (Section::Output, "VAR_OUTPUT", 2), (Section::InOut, "VAR_IN_OUT", 2)]
-        {
-            let count = self.random.below(most + 1);
-            if count == 0 {
-                continue;
-            }
-            self.line(keyword);
-            for at in 0..count {
+        for (section, most) in [(Section::Input, 3), (Section::Output, 2), (Section::InOut, 2)] {
+            for at in 0..self.random.below(most + 1) {
                 let name = format!("{prefix}{}{at}", section.letter());
                 let ty = match section {
                     Section::Input if of_call && self.random.once_in(6) => self.pointer_type(),
                     Section::Input | Section::Output => self.any_type(),
                     Section::InOut => self.in_out_type(),
                 };
-                if section == Section::InOut {
-                    let shown = self.types.name(&ty);
+                parameters.push(Parameter { name, ty, section });
+            }
+        }
+        parameters
+    }
+
+    /// Parameters of what may be overridden: without initial values, which are no part of what is inherited.
+    fn declare_parameters(&mut self, parameters: &[Parameter]) {
+        self.declare_sections(parameters, false);
+    }
+
+    fn declare_sections(&mut self, parameters: &[Parameter], with_initial: bool) {
+        for section in [Section::Input, Section::Output, Section::InOut] {
+            let own: Vec<_> = parameters.iter().filter(|it| it.section == section).collect();
+            if own.is_empty() {
+                continue;
+            }
+            self.line(section.keyword());
+            for Parameter { name, ty, .. } in own {
+                if section == Section::InOut || !with_initial {
+                    let shown = self.types.name(ty);
                     self.inside(|this| this.line(&format!("{name} : {shown};")));
                 } else {
-                    self.declare(&name, ty.clone());
+                    self.declare(name, ty.clone());
                 }
-                self.scope.add(Variable {
-                    name: name.clone(),
-                    ty: ty.clone(),
-                    writable: section != Section::Input,
-                    lasts: false,
-                });
-                parameters.push(Parameter { name, ty, section });
+                let writable = section != Section::Input;
+                self.scope.add(Variable { name: name.clone(), ty: ty.clone(), writable, lasts: false });
             }
             self.line("END_VAR");
         }
-        parameters
     }
 
     fn locals(&mut self, keyword: &str, letter: &str, count: usize) {
@@ -431,7 +443,8 @@ impl Writer {
     /// Counters of WHILE and REPEAT, which nothing else assigns.
     fn loop_variables(&mut self) {
         self.line("VAR");
-        self.line("    w0, w1, w2, w3 : INT;");
+        let of = |number: usize| format!("{}w{number}", self.loop_prefix);
+        self.line(&format!("    {}, {}, {}, {} : INT;", of(0), of(1), of(2), of(3)));
         self.line("END_VAR");
     }
 

@@ -1,6 +1,7 @@
 //! The variables that a body can name, and places among them.
 
 use super::Writer;
+use super::call::{Parameter, Section};
 use super::types::{Catalogue, Piece, Shape, Ty};
 
 #[derive(Clone, Debug)]
@@ -43,6 +44,21 @@ impl Scope {
             _ => None,
         });
         pointers.collect()
+    }
+
+    pub fn len(&self) -> usize {
+        self.variables.len()
+    }
+
+    /// The variables after the first so many.
+    pub fn from(&self, first: usize) -> Vec<Variable> {
+        self.variables[first..].to_vec()
+    }
+
+    pub fn add_in_outs(&mut self, parameters: &[Parameter]) {
+        for it in parameters.iter().filter(|it| it.section == Section::InOut) {
+            self.add(Variable { name: it.name.clone(), ty: it.ty.clone(), writable: true, lasts: false });
+        }
     }
 
     pub fn add(&mut self, variable: Variable) {

@@ -35,6 +35,7 @@ impl Writer {
                 Some(call) => self.line(&format!("{call};")),
                 None => self.assignment(),
             },
+            10 if self.random.once_in(4) => self.assign_property(),
             10 => self.bit_or_set(),
             11 | 12 => self.choice(depth),
             13 => self.case(depth),
@@ -176,7 +177,7 @@ impl Writer {
         if self.loops >= 2 || self.whiles >= 4 {
             return self.assignment();
         }
-        let counter = format!("w{}", self.whiles);
+        let counter = format!("{}w{}", self.loop_prefix, self.whiles);
         self.whiles += 1;
         self.loops += 1;
         self.line(&format!("{counter} := 0;"));

@@ -24,6 +24,8 @@ pub enum Ty {
     Standard(usize),
     /// What leads to a variable of a type.
     Pointer(Box<Self>),
+    /// A variable of the program's interface.
+    Interface,
 }
 
 pub struct Number {
@@ -82,7 +84,8 @@ impl Ty {
             | Self::Record(_)
             | Self::Instance(_)
             | Self::Standard(_)
-            | Self::Pointer(_) => None,
+            | Self::Pointer(_)
+            | Self::Interface => None,
         }
     }
 
@@ -141,6 +144,10 @@ pub struct Catalogue {
     pub records: Vec<Vec<(String, Ty)>>,
     /// The inputs and outputs of the program's own blocks: name, type, and whether it is an input.
     pub blocks: Vec<Vec<(String, Ty, bool)>>,
+    /// The properties of each block, its base's too.
+    pub properties: Vec<Vec<(String, Ty)>>,
+    /// The block that each extends.
+    pub bases: Vec<Option<usize>>,
 }
 
 impl Catalogue {
@@ -157,8 +164,14 @@ impl Catalogue {
             Ty::Record(at) => format!("Rec{at}"),
             Ty::Instance(at) => format!("Blk{at}"),
             Ty::Standard(at) => standard_name(&BLOCKS[*at]),
+            Ty::Interface => "IDo".to_owned(),
             Ty::Pointer(to) => format!("{} {}", if self.codesys { "POINTER TO" } else { "REF_TO" }, self.name(to)),
         }
+    }
+
+    /// Whether a block is another, or extends it.
+    pub fn is_heir(&self, block: usize, of: usize) -> bool {
+        block == of || self.bases.get(block).copied().flatten().is_some_and(|it| self.is_heir(it, of))
     }
 
     /// Whether a value of the type can be copied.
@@ -168,7 +181,7 @@ impl Catalogue {
             Ty::Array(at) => self.is_value(&self.arrays[*at].1),
             Ty::Record(at) => self.records[*at].iter().all(|(_, ty)| self.is_value(ty)),
             Ty::Bool | Ty::Number(_) | Ty::Bits(_) | Ty::Time | Ty::Text(_) | Ty::Color | Ty::Level(_) => true,
-            Ty::Pointer(_) => true,
+            Ty::Pointer(_) | Ty::Interface => true,
         }
     }
 
@@ -197,6 +210,10 @@ impl Catalogue {
                 for (name, ty, is_input) in &self.blocks[*at] {
                     within(Piece::Member(name.clone()), ty, *is_input, &mut shapes);
                 }
+                for (name, ty) in &self.properties[*at] {
+                    let pieces = vec![Piece::Member(name.clone())];
+                    shapes.push(Shape { pieces, ty: ty.clone(), writable: false, through: true, is_pin: false });
+                }
             }
             Ty::Standard(at) => {
                 for (name, ty, is_input) in pins(*at) {
@@ -209,6 +226,7 @@ impl Catalogue {
                 shapes.iter_mut().skip(1).for_each(|it| it.through = true);
             }
             Ty::Bool | Ty::Number(_) | Ty::Bits(_) | Ty::Time | Ty::Text(_) | Ty::Color | Ty::Level(_) => {}
+            Ty::Interface => {}
         }
         shapes
     }
@@ -230,7 +248,13 @@ pub fn pins(block: usize) -> Vec<(String, Ty, bool)> {
 /// Blocks that stand for themselves: not those of an option, or with a variable outside of them.
 pub fn standard_blocks() -> Vec<usize> {
     let fits = |it: &BlockInfo| {
-        it.facts.option.is_none() && it.facts.kept.is_none() && !it.name.starts_with("LT") && it.name != "FBD_COUNTER"
+        // What tests advance time with is no part of the language.
+        let is_hidden = it.name.starts_with("__");
+        !is_hidden
+            && it.facts.option.is_none()
+            && it.facts.kept.is_none()
+            && !it.name.starts_with("LT")
+            && it.name != "FBD_COUNTER"
     };
     (0..BLOCKS.len()).filter(|at| fits(&BLOCKS[*at])).collect()
 }

@@ -59,6 +59,10 @@ pub fn compare(text: &str, with_native: bool) -> Verdict {
         let shown = shown.split_once("error").map_or(shown.clone(), |it| it.1.to_owned());
         return Verdict::Rejected(shown.trim().to_owned());
     };
+    // The witness runs one, which calls the others.
+    if program.instances.len() > 1 {
+        return Verdict::Rejected("several PROGRAMs run by themselves".to_owned());
+    }
     let witnessed = match witnessed(&sources, text) {
         Ok(scans) => scans,
         Err(verdict) => return verdict,
