@@ -20,7 +20,7 @@ pub(crate) const AFTER: &str = "call_after_init";
 pub(crate) const START: &str = "__start";
 /// The FUNCTION that starts what is global.
 pub(crate) const GLOBALS: &str = "__start_globals";
-/// Stands for the statements that start what a POU holds.
+/// Stands for the statements that start what a POU holds; in the body of a PROGRAM, for the call of what does.
 pub(crate) const MEMBERS: &str = "__start_members";
 /// TRUE when that has been done since the last start.
 pub(crate) const STARTED: [&str; 2] = ["__started", "__globals_started"];
@@ -98,7 +98,7 @@ fn starts(pou: &mut Pou<'_>) {
         PouKind::Program => {
             pou.blocks.push(variables(&[(flag, &["BOOL"])], at));
             pou.routines.push(method(once(flag, at), at, OF_PROGRAM));
-            pou.body.insert(0, call(START, at));
+            pou.body.insert(0, call(MEMBERS, at));
         }
         PouKind::Test => {
             pou.blocks.push(variables(&[(flag, &["BOOL"])], at));

@@ -63,6 +63,12 @@ impl<'s> Checker<'_, 's> {
         let Some(slot) = self.slot else { return };
         let owner = self.decl.pous[slot].owner.unwrap_or(slot);
         let kind = self.decl.pous[owner].ast.kind;
+        let is_named = self.decl.named_programs.contains_key(&owner);
+        if kind == PouKind::Program && slot == owner {
+            self.start_program(owner, is_named, span);
+            self.is_covered = covered;
+            return;
+        }
         let variables = match kind {
             PouKind::Function => self.global_instances(),
             PouKind::Program
@@ -75,7 +81,7 @@ impl<'s> Checker<'_, 's> {
             | PouKind::Getter
             | PouKind::Setter => self.own_instances(owner),
         };
-        if matches!(kind, PouKind::Program | PouKind::Test) {
+        if matches!(kind, PouKind::Program | PouKind::Test) && !is_named {
             self.start_globals(span);
         }
         let kept = KEPT[usize::from(kind == PouKind::Function)];
@@ -84,6 +90,15 @@ impl<'s> Checker<'_, 's> {
         let once = self.nested(|this| kept_ones.iter().for_each(|it| this.start_variable(it)));
         self.start_once(kept, once, span);
         self.is_covered = covered;
+    }
+
+    /// A PROGRAM that others name is one of the globals, and starts with them.
+    fn start_program(&mut self, slot: usize, is_named: bool, span: Span) {
+        let state = self.decl.signature(slot).and_then(|it| it.state).filter(|_| !is_named);
+        match state {
+            Some(state) => self.call_start(slot, Place::root(Root::Instance, Type::Struct(state)), span),
+            None => self.start_globals(span),
+        }
     }
 
     /// What RETAIN keeps is started when it has its initial values, and not again.
