@@ -379,6 +379,8 @@ pub enum InitialKind<'s> {
     Value(Expr<'s>),
     Elements(Vec<Element<'s>>),
     Fields(Vec<(Name<'s>, Initial<'s>)>),
+    /// `REF= x`
+    Bind(Expr<'s>),
 }
 
 /// `x`, or `n(x, y, …)`: the values `count` times over. A repeat without values, `4()`, repeats

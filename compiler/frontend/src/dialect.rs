@@ -113,6 +113,26 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
+    /// ADR takes a CONSTANT of a FUNCTION or METHOD.
+    pub const fn has_addresses_of_constants(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
+    /// METHODs of an instance's internal instances may be called from outside.
+    pub const fn calls_inner_methods(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
+    /// An instance of a FUNCTION_BLOCK of Structured Text may be copied, unless it holds one of the system's blocks.
+    pub const fn copies_instances(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
+    /// `TRUNC` takes whole numbers, which it leaves as they are.
+    pub const fn truncates_integers(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
     /// What a STRING holds that is declared without a length.
     pub const fn string_capacity(self) -> u16 {
         if self.is_standard() { 254 } else { 80 }

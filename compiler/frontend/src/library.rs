@@ -2,7 +2,7 @@
 //! habits. A declaration there may be without a body, of what is not in Structured Text: it is checked as any other,
 //! but a program that calls it cannot be built.
 
-use crate::ast::{File, Item, Pou, PouKind};
+use crate::ast::{ExprKind, File, Item, Pou, PouKind, each_expr};
 use crate::types::declarations::Declarations;
 use crate::{Code, Diagnostic, Severity, Sources, Span};
 use rustc_hash::FxHashSet;
@@ -17,12 +17,13 @@ pub(crate) struct Stubs {
 /// Takes out of libraries what only runs by itself, and gives what is without a body.
 pub(crate) fn prepare(files: &mut [File<'_>], sources: &Sources) -> Stubs {
     let mut stubs = Stubs::default();
+    let named = programs_named(files);
     for (file, source) in files.iter_mut().zip(sources.files()) {
         if !source.is_of_library() {
             continue;
         }
         file.items.retain(|it| match it {
-            Item::Pou(pou) => pou.kind != PouKind::Program,
+            Item::Pou(pou) => pou.kind != PouKind::Program || named.contains(&pou.name.text.to_ascii_lowercase()),
             Item::Configuration(_) | Item::Test(_) => false,
             Item::Types(_) | Item::Globals(_) => true,
         });
@@ -36,6 +37,32 @@ pub(crate) fn prepare(files: &mut [File<'_>], sources: &Sources) -> Stubs {
         }
     }
     stubs
+}
+
+/// The PROGRAMs that some body may name, in small letters: those of a library are called then, or their METHODs are.
+fn programs_named(files: &[File<'_>]) -> FxHashSet<String> {
+    let pous = || files.iter().flat_map(|it| &it.items).filter_map(pou);
+    let mut left: FxHashSet<_> =
+        pous().filter(|it| it.kind == PouKind::Program).map(|it| it.name.text.to_ascii_lowercase()).collect();
+    let mut named = FxHashSet::default();
+    if left.is_empty() {
+        return named;
+    }
+    for pou in pous().flat_map(|it| std::iter::once(it).chain(&it.routines)) {
+        each_expr(&pou.body, &mut |it| {
+            if let ExprKind::Name(name) | ExprKind::Member(_, name) = &it.kind {
+                named.extend(left.take(&name.text.to_ascii_lowercase()));
+            }
+        });
+    }
+    named
+}
+
+fn pou<'a, 's>(item: &'a Item<'s>) -> Option<&'a Pou<'s>> {
+    match item {
+        Item::Pou(pou) => Some(pou),
+        Item::Types(_) | Item::Globals(_) | Item::Configuration(_) | Item::Test(_) => None,
+    }
 }
 
 /// Whether nothing of it says what it does. What only inherits does what its base does.

@@ -3,6 +3,8 @@
 //! start, after a FUNCTION for the instances that are global. Which instances there are is known when types are: then
 //! a call of [`MEMBERS`] becomes what is to be done.
 
+mod addresses;
+
 use crate::Span;
 use crate::ast::{
     Expr, ExprKind, File, Item, LiteralValue, Name, Pou, PouKind, Statement, StatementKind, UnaryOp, VarBlock, VarKind,
@@ -10,6 +12,7 @@ use crate::ast::{
 };
 use crate::spelling::Key;
 use crate::testing::tree::{assign, literal, named, variables};
+use addresses::Addresses;
 
 /// METHODs that CODESYS calls by itself.
 pub(crate) const INITIAL: [&str; 3] = [INIT, "FB_reinit", "FB_exit"];
@@ -22,6 +25,8 @@ pub(crate) const START: &str = "__start";
 pub(crate) const GLOBALS: &str = "__start_globals";
 /// Stands for the statements that start what a POU holds; in the body of a PROGRAM, for the call of what does.
 pub(crate) const MEMBERS: &str = "__start_members";
+/// Marks one of a class that assigns initial values.
+pub(crate) const ADDRESSES: &str = "__addresses";
 /// TRUE when that has been done since the last start.
 pub(crate) const STARTED: [&str; 2] = ["__started", "__globals_started"];
 /// The same of what is RETAIN, in a variable that is RETAIN.
@@ -39,20 +44,43 @@ pub(crate) fn is_initial(name: Name<'_>) -> bool {
     Key(name.text) == Key(INIT)
 }
 
-/// Adds to all POUs what starts their instances, where a program has any that ask for it.
+/// Adds to all POUs what starts their instances, where a program has any that ask for it, and assigns the initial
+/// values that are addresses.
 pub(crate) fn expand(files: &mut [File<'_>]) {
-    let routines = || files.iter().flat_map(|it| &it.items).filter_map(pou).flat_map(|it| &it.routines);
-    let asks = |it: &Pou<'_>| is_initial(it.name) || is_after(it);
-    let Some(at) = routines().find(|it| asks(it)).map(|it| it.name.span) else { return };
-    let tells = routines().filter(|it| is_initial(it.name)).any(|it| mentions(&it.body, ASKED));
-    let keeps = files.iter().flat_map(|it| &it.items).any(|it| blocks(it).iter().any(is_retain));
+    let mut states = Vec::new();
+    let mut of_globals_alone = Addresses::default();
+    let mut first = None;
     for item in files.iter_mut().flat_map(|it| &mut it.items) {
-        if let Item::Pou(pou) = item {
-            starts(pou);
+        match item {
+            Item::Pou(pou) => {
+                addresses::of_calls(pou);
+                let found = if has_state(pou.kind) { addresses::of_state(pou) } else { Addresses::default() };
+                first = first.or((!found.is_empty()).then_some(pou.name.span));
+                states.push(found);
+            }
+            Item::Globals(_) | Item::Configuration(_) => {
+                let found = addresses::taken(blocks_of(item).iter_mut());
+                first = first.or(found.before.first().map(|it| it.span));
+                of_globals_alone.before.extend(found.before);
+                of_globals_alone.after.extend(found.after);
+            }
+            Item::Types(_) | Item::Test(_) => {}
         }
     }
+    let routines = || files.iter().flat_map(|it| &it.items).filter_map(pou).flat_map(|it| &it.routines);
+    let asks = |it: &Pou<'_>| is_initial(it.name) || is_after(it);
+    let Some(at) = routines().find(|it| asks(it)).map(|it| it.name.span).or(first) else { return };
+    let tells = routines().filter(|it| is_initial(it.name)).any(|it| mentions(&it.body, ASKED));
+    let keeps = files.iter().flat_map(|it| &it.items).any(|it| blocks(it).iter().any(is_retain));
+    let pous = files.iter_mut().flat_map(|it| &mut it.items).filter_map(|it| match it {
+        Item::Pou(pou) => Some(pou),
+        Item::Types(_) | Item::Globals(_) | Item::Configuration(_) | Item::Test(_) => None,
+    });
+    for (pou, addresses) in pous.zip(states) {
+        starts(pou, addresses);
+    }
     if let Some(file) = files.get_mut(usize::from(at.file)) {
-        file.items.extend(of_globals(at, tells, keeps));
+        file.items.extend(of_globals(at, tells, keeps, of_globals_alone));
     }
 }
 
@@ -76,6 +104,18 @@ fn blocks<'a, 's>(item: &'a Item<'s>) -> &'a [VarBlock<'s>] {
     }
 }
 
+fn blocks_of<'a, 's>(item: &'a mut Item<'s>) -> &'a mut [VarBlock<'s>] {
+    match item {
+        Item::Globals(block) => std::slice::from_mut(block),
+        Item::Configuration(it) => &mut it.globals,
+        Item::Pou(_) | Item::Types(_) | Item::Test(_) => &mut [],
+    }
+}
+
+fn has_state(kind: PouKind) -> bool {
+    kind.is_block() || matches!(kind, PouKind::Program | PouKind::Test)
+}
+
 fn is_retain(block: &VarBlock<'_>) -> bool {
     block.retain.or(block.persistent).is_some()
 }
@@ -87,24 +127,28 @@ fn mentions(body: &[Statement<'_>], name: &str) -> bool {
 }
 
 /// Adds to a POU what starts the instances in it.
-fn starts(pou: &mut Pou<'_>) {
+fn starts<'s>(pou: &mut Pou<'s>, addresses: Addresses<'s>) {
     let at = pou.name.span;
     let (flag, kept) = (STARTED[0], KEPT[0]);
-    if pou.kind.is_block() || matches!(pou.kind, PouKind::Program | PouKind::Test) {
+    if has_state(pou.kind) {
         let retains = pou.blocks.iter().any(is_retain);
         pou.blocks.extend(retains.then(|| retained(&[(kept, &["BOOL"])], VarKind::Var, at)));
     }
     match pou.kind {
         PouKind::Program => {
             pou.blocks.push(variables(&[(flag, &["BOOL"])], at));
-            pou.routines.push(method(once(flag, at), at, OF_PROGRAM));
+            pou.routines.push(method(once(flag, at, addresses), at, OF_PROGRAM));
             pou.body.insert(0, call(MEMBERS, at));
         }
         PouKind::Test => {
             pou.blocks.push(variables(&[(flag, &["BOOL"])], at));
-            pou.body.splice(0..0, once(flag, at));
+            pou.body.splice(0..0, once(flag, at, addresses));
         }
-        PouKind::FunctionBlock | PouKind::Class => pou.routines.push(method(vec![call(MEMBERS, at)], at, OF_INSTANCE)),
+        PouKind::FunctionBlock | PouKind::Class => {
+            let marks = if addresses.is_empty() { Vec::new() } else { vec![ADDRESSES] };
+            let body = addresses.around(vec![call(MEMBERS, at)]);
+            pou.routines.push(Pou { attributes: marks, ..method(body, at, OF_INSTANCE) });
+        }
         PouKind::Interface
         | PouKind::Function
         | PouKind::Action
@@ -122,11 +166,13 @@ fn method<'s>(body: Vec<Statement<'s>>, at: Span, doc: &str) -> Pou<'s> {
     Pou { body, doc, ..Pou::new(PouKind::Method, Name { text: START, span: at }, at) }
 }
 
-/// `IF NOT flag THEN __start_members(); flag := TRUE; END_IF`
-fn once<'s>(flag: &'static str, at: Span) -> Vec<Statement<'s>> {
+/// `IF NOT flag THEN __start_members(); flag := TRUE; END_IF`, with the addresses that are assigned.
+fn once<'s>(flag: &'static str, at: Span, addresses: Addresses<'s>) -> Vec<Statement<'s>> {
     let done = assign(flag, literal(LiteralValue::Bool(true), at));
     let open = Expr { kind: ExprKind::Unary(UnaryOp::Not, Box::new(named(flag, at))), span: at };
-    let kind = StatementKind::If { branches: vec![(open, vec![call(MEMBERS, at), done])], otherwise: None };
+    let mut then = addresses.around(vec![call(MEMBERS, at)]);
+    then.push(done);
+    let kind = StatementKind::If { branches: vec![(open, then)], otherwise: None };
     vec![Statement { kind, span: at }]
 }
 
@@ -141,10 +187,10 @@ fn retained<'s>(wanted: &[(&'static str, &[&'static str])], kind: VarKind, at: S
 
 /// The FUNCTION that starts the global instances, and its variables. `tells` where something reads `bInitRetains`,
 /// `keeps` where some global variables are RETAIN.
-fn of_globals<'s>(at: Span, tells: bool, keeps: bool) -> Vec<Item<'s>> {
+fn of_globals(at: Span, tells: bool, keeps: bool, addresses: Addresses<'_>) -> Vec<Item<'_>> {
     let ([_, flag], [_, kept]) = (STARTED, KEPT);
     let mut own = variables(&[(flag, &["BOOL"])], at);
-    let mut body = once(flag, at);
+    let mut body = once(flag, at, addresses);
     if tells {
         own.vars.extend(variables(&[(RETAINS, &["BOOL"])], at).vars);
         let fresh = Expr { kind: ExprKind::Unary(UnaryOp::Not, Box::new(named(kept, at))), span: at };

@@ -339,8 +339,8 @@ impl Program {
     }
 
     /// The first instance of a block that a variable of type `ty` is or holds, with the way to it:
-    /// `.motor`, `[…].timer`. What holds an instance is never copied. `is_state` tells the states of
-    /// POUs from structures.
+    /// `.motor`, `[…].timer`. `is_state` tells the states of POUs, which are instances, from
+    /// structures, which are looked into.
     pub fn instance_in(&self, ty: Type, is_state: &impl Fn(StructId) -> bool) -> Option<(String, Type)> {
         match ty {
             Type::Block(_) => Some((String::new(), ty)),

@@ -157,6 +157,7 @@ impl<'a> Machine<'a> {
                 }
                 Ok(())
             }
+            Some(InitialKind::Bind(_)) => Err(Stop::Unknown("REF= as an initial value".into())),
             Some(InitialKind::Fields(fields)) => {
                 self.start_unset(frame, place)?;
                 for (name, initial) in fields {

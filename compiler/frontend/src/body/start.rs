@@ -45,12 +45,13 @@ struct Assigned {
 }
 
 impl<'s> Checker<'_, 's> {
-    /// Starts the instances that live for one call.
+    /// Starts the instances that live for one call, but for those that it is given.
     pub(super) fn start_locals(&mut self, signature: &Signature<'s>) {
         if !self.decl.starts.is_any {
             return;
         }
-        let is_local = |it: &&Rc<Variable<'s>>| matches!(it.place.root, Root::Local(_)) && it.section != Section::InOut;
+        let is_given = |it: &Variable<'s>| matches!(it.section, Section::InOut | Section::Input);
+        let is_local = |it: &&Rc<Variable<'s>>| matches!(it.place.root, Root::Local(_)) && !is_given(it);
         let locals: Vec<_> = signature.scope.variables.iter().filter(is_local).map(Rc::clone).collect();
         for variable in locals {
             self.start_variable(&variable);
@@ -225,7 +226,7 @@ impl<'s> Checker<'_, 's> {
         for Assigned { place, default, .. } in &values {
             self.assign_constant(place, default, given.span);
         }
-        if self.decl.pous[class].ast.kind == PouKind::Program || self.decl.has_started_members(id) {
+        if self.decl.pous[class].ast.kind == PouKind::Program || self.decl.has_started_parts(id) {
             self.call_start(class, place.clone(), given.span);
         }
         let named = self.by_name(initial.last().copied(), given.arguments);

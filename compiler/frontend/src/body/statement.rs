@@ -254,7 +254,7 @@ impl<'s> Checker<'_, 's> {
 
     /// A block's state is not copied over another's.
     fn refuse_instance(&mut self, place: &Place, span: Span) -> Option<()> {
-        let (way, instance) = self.decl.instance_in(place.ty)?;
+        let (way, instance) = self.decl.instance_not_copied(place.ty, span)?;
         let (ty, instance) = (self.type_name(place.ty), self.type_name(instance));
         let error = match way.as_str() {
             "" => Diagnostic::new(Code::E0210, span, format!("an instance of {instance} cannot be assigned to"))

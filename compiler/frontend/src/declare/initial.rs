@@ -30,6 +30,10 @@ impl<'s> Declarations<'s> {
     ) -> Option<Const> {
         match (&initial.kind, target.ty) {
             (InitialKind::Value(expr), _) => self.initial_value(expr, target, scope),
+            (InitialKind::Bind(expr), _) => {
+                self.not_supported(expr.span, "an address as an initial value here");
+                None
+            }
             (InitialKind::Elements(elements), Type::Array(id)) => self.initial_array(elements, id, scope, initial.span),
             (InitialKind::Fields(fields), Type::Struct(id)) => self.initial_struct(fields, id, target, scope),
             (InitialKind::Fields(fields), Type::Block(id)) => self.initial_block(fields, id, target, scope),

@@ -72,6 +72,9 @@ struct Needs<'d, 's> {
 impl<'s> Needs<'_, 's> {
     fn pou(&mut self, pou: &ast::Pou<'s>) {
         self.names_of(pou);
+        // A VAR_INST of its METHODs is a variable of the instance.
+        let kept = pou.routines.iter().flat_map(|it| &it.blocks).filter(|it| it.kind == ast::VarKind::Inst);
+        kept.flat_map(|it| &it.vars).for_each(|it| self.declared(it));
         pou.result.iter().for_each(|it| self.spec(it));
         for block in &pou.blocks {
             let is_external = block.kind == ast::VarKind::External;
@@ -129,7 +132,7 @@ impl<'s> Needs<'_, 's> {
 
     fn initial(&mut self, initial: &ast::Initial<'s>) {
         match &initial.kind {
-            InitialKind::Value(expr) => self.expr(expr),
+            InitialKind::Value(expr) | InitialKind::Bind(expr) => self.expr(expr),
             InitialKind::Elements(elements) => {
                 for element in elements {
                     element.count.iter().for_each(|it| self.expr(it));

@@ -509,7 +509,7 @@ impl<'s> Declarations<'s> {
 
     /// Refuses what a call would have to copy.
     pub(super) fn refuse_copy(&mut self, ty: Type, name: ast::Name<'s>, help: &str) -> Option<()> {
-        let Some(message) = self.held_instance(ty) else { return Some(()) };
+        let Some(message) = self.held_not_copied(ty, name.span) else { return Some(()) };
         self.report(
             Diagnostic::new(Code::E0210, name.span, message).label("a call would copy it").help(help.to_owned()),
         );

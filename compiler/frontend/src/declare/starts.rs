@@ -3,7 +3,7 @@
 use crate::ast::{PouKind, TypeKind, TypeSpec, VarDecl, VarKind};
 use crate::dialect::Dialect;
 use crate::spelling::Key;
-use crate::start::{AFTER, INIT, INITIAL, START, is_after, is_initial};
+use crate::start::{ADDRESSES, AFTER, GLOBALS, INIT, INITIAL, START, is_after};
 use crate::types::declarations::Declarations;
 use crate::types::starts::Starts;
 use crate::{Code, Diagnostic};
@@ -15,7 +15,7 @@ pub(crate) const OF_THE_SYSTEM: [&str; 2] = ["bInitRetains", "bInCopyCode"];
 impl<'s> Declarations<'s> {
     /// Finds the declarations that the start of instances has to know.
     pub(super) fn note_starts(&mut self) {
-        if !self.pous.iter().any(|it| is_initial(it.ast.name) || is_after(it.ast)) {
+        if !self.pous.iter().any(|it| it.ast.name.text == GLOBALS) {
             return;
         }
         let mut declared: Vec<&'s VarDecl<'s>> = self.globals.iter().map(|it| it.decl).collect();
@@ -86,13 +86,17 @@ impl<'s> Declarations<'s> {
         }
         let class = self.slot_of_instance(id);
         let own = class.is_some_and(|it| !self.initial_methods(it).is_empty() || !self.methods_after(it).is_empty());
-        let found = own || self.has_started_members(id);
+        let found = own || self.has_started_parts(id);
         self.starts.known.insert(id, found);
         found
     }
 
-    /// Whether something in a structure has a start.
-    pub(crate) fn has_started_members(&mut self, id: StructId) -> bool {
+    /// Whether something in a structure has a start, or an address as its initial value.
+    pub(crate) fn has_started_parts(&mut self, id: StructId) -> bool {
+        let start = self.slot_of_instance(id).and_then(|it| self.pous[it].routines.get(&Key(START))?.called);
+        if start.is_some_and(|(slot, _)| self.pous[slot].ast.attributes.contains(&ADDRESSES)) {
+            return true;
+        }
         let types: Vec<_> = self.program.structure(id).fields.iter().map(|it| it.ty).collect();
         types.into_iter().any(|it| self.is_started(it))
     }

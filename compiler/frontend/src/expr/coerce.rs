@@ -99,7 +99,7 @@ impl<'s> Checker<'_, 's> {
             return self.open_is_no_value(expr.ty, span);
         }
         if expr.ty == to {
-            return match self.decl.held_instance(to) {
+            return match self.decl.held_not_copied(to, span) {
                 Some(message) => self.instance_is_no_value(&expr, message, span),
                 None => Some(expr),
             };

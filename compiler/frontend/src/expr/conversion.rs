@@ -144,6 +144,10 @@ impl<'s> Checker<'_, 's> {
             _ => Elementary::Dint,
         };
         let number = self.typed(value, None)?;
+        let is_whole = matches!(number.ty, Type::Elementary(it) if it.is_integer());
+        if is_whole && self.decl.dialect(name.span).truncates_integers() {
+            return Some(self.convert(Conversion::Value, Type::Elementary(to), number));
+        }
         self.truncate(number, to, value.span, name)
     }
 

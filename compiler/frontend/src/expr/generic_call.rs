@@ -124,7 +124,7 @@ impl<'s> Checker<'_, 's> {
         }
         let ty = self.common_type(word, &operands, self.expected_of(word, called), called.name)?.read();
         self.is_one_type(ty, operands[0].1)?;
-        if let Some(message) = self.decl.held_instance(ty) {
+        if let Some(message) = self.decl.held_not_copied(ty, operands[0].1) {
             let error = Diagnostic::new(Code::E0210, operands[0].1, message).label("a call would copy it");
             self.report(error.help("declare the parameter in VAR_IN_OUT"));
             return None;

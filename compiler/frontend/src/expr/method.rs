@@ -138,9 +138,16 @@ impl<'s> Checker<'_, 's> {
             }
             None => self.this()?,
         };
-        self.callable(&found, span)?;
+        self.may_call_method(&found, span)?;
         let called = Called { slot, name, expected: None, span };
         self.user_function(called, Some((found.place, span)), arguments)
+    }
+
+    fn may_call_method(&mut self, found: &Found<'s>, span: Span) -> Option<()> {
+        match found.access {
+            Access::Inner(_) if self.decl.dialect(span).calls_inner_methods() => Some(()),
+            _ => self.callable(found, span),
+        }
     }
 
     fn report_no_accessor(&mut self, name: ast::Name<'s>, word: &str, use_: &str, other: Option<(usize, Span)>) {
@@ -213,7 +220,7 @@ impl<'s> Checker<'_, 's> {
         };
         match self.decl.pous[slot].ast.kind {
             PouKind::Method => {
-                self.callable(&found, callee.span)?;
+                self.may_call_method(&found, callee.span)?;
                 let name = ast::Name { text: self.decl.pous[slot].ast.name.text, span: callee.span };
                 let called = Called { slot, name, expected: None, span };
                 self.user_function(called, Some((found.place, callee.span)), arguments)

@@ -369,7 +369,7 @@ impl<'s> Checker<'_, 's> {
         let (ty, section, constant) = (fields[at].ty, fields[at].section, fields[at].constant);
         let inner = instance && !is_pin(section) && !self.is_public(id, name);
         // A unit test looks into everything; a VAR_CONFIG gives an address to any variable of an instance.
-        let sees_all = self.is_test() || self.is_run();
+        let sees_all = self.is_test() || self.is_run() || self.is_suite();
         if inner && !sees_all && self.seen_from_outside(id, name).is_none() {
             if self.is_refused_routine(id, name) {
                 return None;

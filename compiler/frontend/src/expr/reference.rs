@@ -124,10 +124,14 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         if self.signature.is_none() {
-            self.decl.not_supported(expr.span, "an address as an initial value");
+            self.decl.not_supported(expr.span, "an address as an initial value here");
             return None;
         }
-        if let Access::Constant(name) = found.access {
+        // CODESYS replaces a constant by its value where it is read, so what is written to its address changes none.
+        let is_local = matches!(found.place.root, staunch_ir::Root::Local(_));
+        if let Access::Constant(name) = found.access
+            && !(is_local && self.decl.dialect(expr.span).has_addresses_of_constants())
+        {
             self.report(
                 Diagnostic::new(Code::E0501, expr.span, format!("`{}` is a CONSTANT", name.text))
                     .label("it has no address: a reference could change it"),

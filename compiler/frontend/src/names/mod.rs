@@ -299,7 +299,9 @@ impl<'s> Names<'s> {
 
     /// The namespace of a name in another one, unless it is INTERNAL there and the place is outside.
     fn seen(&self, site: Site, space: SpaceId, name: &str) -> Option<SpaceId> {
-        let inner = *self.spaces[space.0].inner.get(&Key(name))?;
+        // After the name of a library there are its lists, too.
+        let lists = || self.lists.get(&Key(name)).filter(|_| space == SpaceId::ROOT);
+        let inner = *self.spaces[space.0].inner.get(&Key(name)).or_else(lists)?;
         (!self.is_internal(inner) || self.is_inside(site.span, space)).then_some(inner)
     }
 

@@ -34,7 +34,7 @@ pub(super) fn instances<'s>(declarations: &mut Declarations<'s>, files: &'s [ast
         return;
     }
     let is_program = |at: &usize| declarations.pous[*at].ast.kind == ast::PouKind::Program;
-    let runs = |at: &usize| is_program(at) && !declarations.is_named_program(*at);
+    let runs = |at: &usize| is_program(at) && !declarations.is_of_library(*at) && !declarations.is_named_program(*at);
     let programs: Vec<_> = (0..declarations.written_pous().len()).filter(runs).collect();
     for at in programs {
         if declarations.report_not_connected(at) {
@@ -340,10 +340,16 @@ impl<'s> Declarations<'s> {
         timing
     }
 
+    /// Whether the POU in a slot is of a library: a PROGRAM of one does not run by itself.
+    pub(super) fn is_of_library(&self, slot: usize) -> bool {
+        self.log.sources.get(self.pous[slot].ast.span.file).is_of_library()
+    }
+
     /// Reports PROGRAMs whose variables are read, but which nobody calls: they run by themselves, and
     /// their variables belong to those runs.
     pub(super) fn check_named_programs(&mut self) {
-        let mut alone: Vec<_> = self.named_programs.iter().filter(|(_, it)| !it.is_called).collect();
+        let mut alone: Vec<_> =
+            self.named_programs.iter().filter(|(at, it)| !it.is_called && !self.is_of_library(**at)).collect();
         alone.sort_by_key(|(slot, _)| **slot);
         let alone: Vec<_> = alone.into_iter().map(|(_, it)| (it.variable.name, it.first)).collect();
         for (name, span) in alone {

@@ -64,7 +64,9 @@ impl Declarations<'_> {
         let is_held = self.pous[slot].run.is_none() && held.contains(&Key(pou.name.text));
         let kind = match pou.kind {
             // Who is called has an instance, as a FUNCTION_BLOCK has.
-            ast::PouKind::Program if self.is_named_program(slot) || is_held => ClassKind::FunctionBlock,
+            ast::PouKind::Program if self.is_named_program(slot) || is_held || self.is_of_library(slot) => {
+                ClassKind::FunctionBlock
+            }
             // A test holds it, as it holds a FUNCTION_BLOCK.
             ast::PouKind::Program if self.log.options.tests => ClassKind::FunctionBlock,
             ast::PouKind::Program | ast::PouKind::Test => ClassKind::Program,

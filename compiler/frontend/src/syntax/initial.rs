@@ -15,10 +15,21 @@ use super::{
     parser::{In, Parsed, TokenReader},
 };
 
-/// `:= value`, if it is there.
+/// `:= value` or `REF= x`, if it is there.
 pub fn optional_initial<'t, 's: 't>() -> impl Rule<'t, 's, Option<Initial<'s>>> {
-    let none = ahead(|input| !matches!(input.kind(), Kind::Assign | Kind::Equal)).to(None);
-    none.or(assign().ignore_then(value_or_elements()).map(Some))
+    let none = ahead(|input| !binds(input) && !matches!(input.kind(), Kind::Assign | Kind::Equal)).to(None);
+    let bound = ahead(binds).ignore_then(token(Kind::Name)).ignore_then(token(Kind::Equal)).ignore_then(expr());
+    let bound = bound.map(|it| Some(Initial { span: it.span, kind: InitialKind::Bind(it) }));
+    none.or(bound).or(assign().ignore_then(value_or_elements()).map(Some))
+}
+
+/// `REF=`, with nothing between.
+fn binds(input: &mut In<'_, '_, '_>) -> bool {
+    let word = input.here();
+    let sign = input.number() + 1;
+    input.kind_ahead(1) == Kind::Equal
+        && input.text(word).eq_ignore_ascii_case("REF")
+        && input.state().place(sign).start == word.end
 }
 
 /// `:=`, also as the `=` of other languages.

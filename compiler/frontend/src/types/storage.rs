@@ -75,14 +75,31 @@ impl<'s> Declarations<'s> {
         self.program.instance_in(ty, &|id| self.is_instance(id))
     }
 
-    /// What `ty` holds that is never copied, in a sentence.
+    /// The instance that a variable of type `ty` is or holds, and that is not copied at a place.
+    pub fn instance_not_copied(&self, ty: Type, span: crate::Span) -> Option<(String, Type)> {
+        if !self.dialect(span).copies_instances() {
+            return self.instance_in(ty);
+        }
+        let is_block = |id| self.slot_of_instance(id).is_none_or(|it| self.pous[it].ast.kind.is_block());
+        self.program.instance_in(ty, &|id| self.is_instance(id) && !is_block(id))
+    }
+
+    /// What `ty` holds that is not copied at a place, in a sentence.
+    pub fn held_not_copied(&self, ty: Type, span: crate::Span) -> Option<String> {
+        self.instance_not_copied(ty, span).map(|it| self.say_held(ty, it))
+    }
+
+    /// What instance `ty` holds, in a sentence.
     pub fn held_instance(&self, ty: Type) -> Option<String> {
-        let (way, instance) = self.instance_in(ty)?;
+        self.instance_in(ty).map(|it| self.say_held(ty, it))
+    }
+
+    fn say_held(&self, ty: Type, (way, instance): (String, Type)) -> String {
         let (name, instance) = (self.program.type_name(ty), self.program.type_name(instance));
-        Some(match way.as_str() {
+        match way.as_str() {
             "" => format!("an instance of {instance} is not a value"),
             way => format!("{name} holds an instance of {instance}, at `{way}`, which is never copied"),
-        })
+        }
     }
 
     /// About how many bytes a value of the type takes: alignment may add some.

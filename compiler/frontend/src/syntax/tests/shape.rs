@@ -176,6 +176,7 @@ pub fn ty(it: &TypeSpec<'_>) -> String {
 fn initial(it: &Initial<'_>) -> String {
     match &it.kind {
         InitialKind::Value(it) => expr(it),
+        InitialKind::Bind(it) => format!("REF= {}", expr(it)),
         InitialKind::Elements(elements) => {
             let elements: Vec<_> = elements
                 .iter()

@@ -1,0 +1,217 @@
+//! Initial values that are addresses: nothing knows them before the program runs, so they are assigned. In a routine, and
+//! in VAR_TEMP, that is at the start of each call; elsewhere with the start of instances.
+
+use crate::Span;
+use crate::ast::{
+    BinaryOp, Bound, Element, Expr, ExprKind, Initial, InitialKind, LiteralValue, Name, Pou, PouKind, Statement,
+    StatementKind, TypeKind, TypeSpec, VarBlock, VarKind, each_part,
+};
+use crate::testing::tree::literal;
+
+/// What is assigned before the instances start, whose FB_init may be given it, and after: values of their own
+/// variables come after FB_init.
+#[derive(Default)]
+pub(super) struct Addresses<'s> {
+    pub before: Vec<Statement<'s>>,
+    pub after: Vec<Statement<'s>>,
+}
+
+impl<'s> Addresses<'s> {
+    pub fn is_empty(&self) -> bool {
+        self.before.is_empty() && self.after.is_empty()
+    }
+
+    /// `body` with what is assigned around it.
+    pub fn around(self, body: Vec<Statement<'s>>) -> Vec<Statement<'s>> {
+        let Self { mut before, after } = self;
+        before.extend(body);
+        before.extend(after);
+        before
+    }
+
+    fn add(&mut self, target: Expr<'s>, value: Expr<'s>, is_bound: bool, is_member: bool) {
+        let span = value.span;
+        let kind = match is_bound {
+            true => StatementKind::Bind { target, value },
+            false => StatementKind::Assign { target, value },
+        };
+        let statement = Statement { kind, span };
+        if is_member {
+            self.after.push(statement.clone());
+        }
+        self.before.push(statement);
+    }
+}
+
+/// Takes out of a POU the addresses that its calls assign, and puts them before its statements.
+pub(super) fn of_calls(pou: &mut Pou<'_>) {
+    let is_of_calls = |kind: PouKind, block: &VarBlock<'_>| match kind {
+        PouKind::Function | PouKind::Method | PouKind::Getter | PouKind::Setter => {
+            matches!(block.kind, VarKind::Var | VarKind::Temp)
+        }
+        PouKind::Program | PouKind::FunctionBlock | PouKind::Test => block.kind == VarKind::Temp,
+        PouKind::Class | PouKind::Interface | PouKind::Action => false,
+    };
+    for routine in &mut pou.routines {
+        of_calls(routine);
+    }
+    let kind = pou.kind;
+    let found = taken(pou.blocks.iter_mut().filter(|it| is_of_calls(kind, it)));
+    pou.body.splice(0..0, found.before);
+}
+
+/// Takes out of a POU with a state the addresses that its start assigns.
+pub(super) fn of_state<'s>(pou: &mut Pou<'s>) -> Addresses<'s> {
+    let is_state = |it: &&mut VarBlock<'s>| matches!(it.kind, VarKind::Var | VarKind::Input | VarKind::Output);
+    taken(pou.blocks.iter_mut().filter(is_state))
+}
+
+/// Takes the addresses out of declarations.
+pub(super) fn taken<'a, 's: 'a>(blocks: impl Iterator<Item = &'a mut VarBlock<'s>>) -> Addresses<'s> {
+    let mut found = Addresses::default();
+    // What writes to a CONSTANT is refused.
+    for decl in blocks.filter(|it| it.constant.is_none()).flat_map(|it| &mut it.vars) {
+        if decl.initial.as_ref().is_none_or(|it| !holds_address(it)) {
+            continue;
+        }
+        let names = decl.names.clone();
+        let initial = decl.initial.take();
+        for name in names {
+            let target = Expr { kind: ExprKind::Name(name), span: name.span };
+            decl.initial = initial.clone().and_then(|it| rest(it, &target, Some(&decl.ty), false, &mut found));
+        }
+    }
+    found
+}
+
+fn holds_address(initial: &Initial<'_>) -> bool {
+    match &initial.kind {
+        InitialKind::Bind(_) => true,
+        InitialKind::Value(value) => is_address(value),
+        InitialKind::Elements(elements) => elements.iter().flat_map(|it| &it.values).any(holds_address),
+        InitialKind::Fields(fields) => fields.iter().any(|(_, it)| holds_address(it)),
+    }
+}
+
+fn is_address(value: &Expr<'_>) -> bool {
+    let mut found = false;
+    each_part(value, &mut |it| {
+        found |= matches!(&it.kind, ExprKind::Call(callee, _)
+            if matches!(&callee.kind, ExprKind::Name(it) if ["ADR", "REF"].iter().any(|name| name.eq_ignore_ascii_case(it.text))));
+    });
+    found
+}
+
+/// What is left of an initial value without its addresses, which are assigned to parts of `target`.
+fn rest<'s>(
+    initial: Initial<'s>,
+    target: &Expr<'s>,
+    ty: Option<&TypeSpec<'s>>,
+    is_member: bool,
+    found: &mut Addresses<'s>,
+) -> Option<Initial<'s>> {
+    let span = initial.span;
+    let kind = match initial.kind {
+        InitialKind::Bind(value) => {
+            found.add(target.clone(), value, true, is_member);
+            return None;
+        }
+        InitialKind::Value(value) if is_address(&value) => {
+            found.add(target.clone(), value, false, is_member);
+            return None;
+        }
+        InitialKind::Value(value) => InitialKind::Value(value),
+        InitialKind::Fields(fields) => InitialKind::Fields(of_fields(fields, target, found)),
+        InitialKind::Elements(elements) => match one_row(ty) {
+            Some((low, element)) if elements.iter().all(|it| count(it).is_some()) => {
+                InitialKind::Elements(of_elements(elements, target, (low, element), is_member, found))
+            }
+            _ => InitialKind::Elements(elements),
+        },
+    };
+    match &kind {
+        InitialKind::Fields(fields) if fields.is_empty() => None,
+        _ => Some(Initial { kind, span }),
+    }
+}
+
+fn of_fields<'s>(
+    fields: Vec<(Name<'s>, Initial<'s>)>,
+    target: &Expr<'s>,
+    found: &mut Addresses<'s>,
+) -> Vec<(Name<'s>, Initial<'s>)> {
+    let one = |(name, initial): (Name<'s>, Initial<'s>)| {
+        let member = Expr { kind: ExprKind::Member(Box::new(target.clone()), name), span: name.span };
+        Some((name, rest(initial, &member, None, true, found)?))
+    };
+    fields.into_iter().filter_map(one).collect()
+}
+
+fn of_elements<'s>(
+    elements: Vec<Element<'s>>,
+    target: &Expr<'s>,
+    (low, ty): (&Expr<'s>, &TypeSpec<'s>),
+    is_member: bool,
+    found: &mut Addresses<'s>,
+) -> Vec<Element<'s>> {
+    let mut at = 0;
+    let mut left = Vec::new();
+    for element in elements {
+        if !element.values.iter().any(holds_address) {
+            at += count(&element).unwrap_or_default() * u64::try_from(element.values.len().max(1)).unwrap_or_default();
+            left.push(element);
+            continue;
+        }
+        for _ in 0..count(&element).unwrap_or_default() {
+            for value in &element.values {
+                let span = value.span;
+                let one = Expr { kind: ExprKind::Index(Box::new(target.clone()), vec![index(low, at, span)]), span };
+                let values: Vec<_> = rest(value.clone(), &one, Some(ty), is_member, found).into_iter().collect();
+                // A repeat without values has those of the element's type.
+                let single = literal(LiteralValue::Integer { value: 1, based: false }, span);
+                left.push(Element { count: values.is_empty().then_some(single), values });
+                at += 1;
+            }
+        }
+    }
+    left
+}
+
+/// The element `at` places after the first.
+fn index<'s>(low: &Expr<'s>, at: u64, span: Span) -> Expr<'s> {
+    let distance = literal(LiteralValue::Integer { value: at, based: false }, span);
+    Expr { kind: ExprKind::Binary(Box::new([low.clone(), distance]), BinaryOp::Add, span), span }
+}
+
+/// The lower bound and the elements' type of an array of one dimension.
+fn one_row<'a, 's>(ty: Option<&'a TypeSpec<'s>>) -> Option<(&'a Expr<'s>, &'a TypeSpec<'s>)> {
+    match &ty?.kind {
+        TypeKind::Array { bounds, element } => match bounds.as_slice() {
+            [Bound::Range(low, _)] => Some((low, element)),
+            _ => None,
+        },
+        TypeKind::Named(_)
+        | TypeKind::String { .. }
+        | TypeKind::Subrange { .. }
+        | TypeKind::Struct(_)
+        | TypeKind::Enum { .. }
+        | TypeKind::Reference { .. }
+        | TypeKind::Union(_)
+        | TypeKind::Error => None,
+    }
+}
+
+/// How often the values of an element are there, where a number says it.
+fn count(element: &Element<'_>) -> Option<u64> {
+    match &element.count {
+        None => Some(1),
+        Some(Expr { kind: ExprKind::Literal(it), .. }) => match it.value {
+            LiteralValue::Integer { value, .. } => Some(value).filter(|it| *it <= MOST),
+            _ => None,
+        },
+        Some(_) => None,
+    }
+}
+
+/// Repeats of an address that are written out.
+const MOST: u64 = 1000;
