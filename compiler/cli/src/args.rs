@@ -255,6 +255,9 @@ impl Test {
 
     /// Whether a test runs, or one of a suite's may.
     pub fn wants_of(&self, test: &staunch_frontend::Test) -> bool {
+        if let Some(fixture) = &test.fixture {
+            return fixture.cases.iter().any(|it| self.wants(&format!("{}{}", test.title, it.title)));
+        }
         let Some(suite) = &test.suite else { return self.wants(&test.title) };
         self.filter.is_none()
             || suite.is_open

@@ -24,8 +24,18 @@ pub struct File<'s> {
     pub items: Vec<Item<'s>>,
     /// Every `{…}` in the file, in order, without its braces.
     pub pragmas: Vec<Name<'s>>,
+    /// Each `{Test}` and `{Test(x := 1)}` of them, with its arguments.
+    pub test_pragmas: Vec<TestPragma<'s>>,
     /// The file as a whole, then the NAMESPACEs and POUs in it that change what a name means.
     pub regions: Vec<Region<'s>>,
+}
+
+/// One test of the METHOD or FUNCTION after it, as Siemens AX has them.
+#[derive(Clone, Debug)]
+pub struct TestPragma<'s> {
+    /// Without its braces.
+    pub span: Span,
+    pub arguments: Vec<Argument<'s>>,
 }
 
 /// `A.B.C`

@@ -42,7 +42,7 @@ pub use mutate::{Mutant, mutants};
 pub use names::functions::standard_functions;
 pub use source::{Source, Sources, Span};
 pub use syntax::parse;
-pub use testing::{Assertion, Suite, Test};
+pub use testing::{Assertion, Fixture, FixtureCase, Suite, Test};
 pub use types::coverage::{CoverageKind, CoveragePoint, Decision, Formula};
 
 use log::Log;
@@ -165,7 +165,7 @@ fn run_with(
         .then(|| run(sources, &Options { tests: true, ..options.clone() }, Bodies::Dropped).diagnostics);
     testing::suite::qualify(&mut files);
     inherit::expand(&mut files, &mut log.diagnostics);
-    let suites = testing::expand(&mut files, options.tests);
+    let groups = testing::expand(&mut files, options.tests, sources, &mut log.diagnostics);
     start::expand(&mut files);
     let allowances = allow::Allowances::read(&files, &mut log.diagnostics);
     let mut bodies: Vec<_> = files.iter_mut().flat_map(ast::File::take_bodies).collect();
@@ -173,6 +173,8 @@ fn run_with(
     bodies.extend(runs.iter_mut().map(|it| std::mem::take(&mut it.body)));
     let mut declarations = declare::declare(log, polymorphic.clone(), &files, &runs, &bodies);
     declarations.coverage = options.coverage.map(|files| Coverage { files, ..Coverage::default() });
+    declarations.tests.fixtures = groups.fixtures.keys().copied().collect();
+    declarations.tests.callers = testing::fixture::callers(&files);
     let unassigned = lints::result::unassigned(&declarations);
     let checked = body::check(&mut declarations, &mut bodies, keep);
     let found = declarations.polymorphic();
@@ -184,7 +186,7 @@ fn run_with(
     }
     let left_out = checked.left_out;
     let program = program::assemble(&mut declarations, &files, checked);
-    let tests = program::tests::tests(&mut declarations, suites);
+    let tests = program::tests::tests(&mut declarations, groups);
     let coverage = declarations.coverage.take().map(|it| it.points).unwrap_or_default();
     let mut compilation = finish(program.filter(|_| keep == Bodies::Kept), declarations.log, unassigned, left_out);
     compilation.tests = tests;

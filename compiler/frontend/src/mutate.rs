@@ -6,7 +6,7 @@ use crate::ast::{
     UnaryOp, each_body, each_expr,
 };
 use crate::spelling::Key;
-use crate::testing::suite;
+use crate::testing::{fixture, suite};
 use crate::{Source, Sources, Span, parse};
 
 /// One change of the sources.
@@ -25,10 +25,10 @@ pub fn mutants(sources: &Sources) -> Vec<Mutant> {
     let mut mutants = Mutants { sources, all: Vec::new() };
     let files = sources.files().iter().zip(0u16..);
     let files: Vec<_> = files.map(|(source, number)| parse(number, &source.text, &mut Vec::new())).collect();
-    let tests = suite::names(&files);
+    let (tests, fixtures) = (suite::names(&files), fixture::places(&files));
     for item in files.iter().flat_map(|it| &it.items) {
         match item {
-            Item::Pou(pou) if tests.contains(&Key(pou.name.text)) => {}
+            Item::Pou(pou) if tests.contains(&Key(pou.name.text)) || fixtures.contains(&pou.name.span) => {}
             Item::Pou(pou) => mutants.pou(pou),
             Item::Types(_) | Item::Globals(_) | Item::Configuration(_) | Item::Test(_) => {}
         }

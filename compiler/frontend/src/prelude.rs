@@ -29,6 +29,8 @@ enum Use {
     Function,
     /// A NAMESPACE, `System.Timer`, with all that is in it.
     Space,
+    /// The same, where a program adds to what is in it.
+    Open,
 }
 
 const LINE_END: &str = "\n";
@@ -106,6 +108,7 @@ pub(crate) const UNITS: &[Unit] = units! {
     Space    "System.Timer"     "system_timer";
     Space    "System.Strings"   "system_strings";
     Space    "System.Math"      "system_math";
+    Open     "AxUnit"           "axunit"           [Iec];
     Space    "TcUnit"           (tcunit::TEXT);
     // Without its namespace, as TwinCAT takes it.
     Type     "FB_TestSuite"     (LINE_END) "TcUnit";
@@ -220,7 +223,7 @@ impl Uses {
             let Some(unit) = unit(space.as_deref().unwrap_or(word(at))) else { continue };
             let before = at.checked_sub(1).map(|it| (tokens.kinds[it], word(it)));
             let after = tokens.kinds.get(at + 1).copied();
-            if declares(before, after, &types) {
+            if declares(before, after, &types) && unit.use_ != Use::Open {
                 self.declared.insert(unit.name);
             } else if names(&unit, before, after) && unit.dialect.is_none_or(|it| it == dialect) {
                 let (start, end) = tokens.places[at];
@@ -283,7 +286,7 @@ fn declares(before: Option<(Kind, &str)>, after: Option<Kind>, types: &TypeBlock
 fn names(unit: &Unit, before: Option<(Kind, &str)>, after: Option<Kind>) -> bool {
     let is_after = |kind: Kind| before.is_some_and(|it| it.0 == kind);
     match unit.use_ {
-        Use::Space => !is_after(Kind::Dot),
+        Use::Space | Use::Open => !is_after(Kind::Dot),
         Use::Function => after == Some(Kind::OpenParen) && !is_after(Kind::Dot),
         Use::Type => {
             let is_type = is_after(Kind::Colon) || is_after(Kind::Of) || is_after(Kind::To);
@@ -349,7 +352,7 @@ mod tests {
             let dialect = unit.dialect.unwrap_or_default();
             let call = match unit.use_ {
                 Use::Type => format!("VAR_GLOBAL it : {}; END_VAR", unit.name),
-                Use::Space => format!("USING {};", unit.name),
+                Use::Space | Use::Open => format!("USING {};", unit.name),
                 Use::Function => format!("PROGRAM Main {}(); END_PROGRAM", unit.name),
             };
             let mut sources = Sources::default();

@@ -34,6 +34,7 @@ mod statement;
 mod configuration;
 mod namespace;
 mod routine;
+mod test_pragma;
 mod unit;
 
 #[cfg(test)]
@@ -59,36 +60,15 @@ pub fn parse<'s>(file: u16, text: &'s str, diagnostics: &mut Vec<Diagnostic>) ->
     }
     let mut tokens = lex(file, text);
     invalid_names::mend(&mut tokens, text, file);
-    let mut state = State {
-        file,
-        text,
-        tokens: &tokens,
-        diagnostics: Vec::new(),
-        open: Vec::new(),
-        depth: 0,
-        height: 0,
-        stopped: false,
-        waiting: Vec::new(),
-        instead: None,
-        begins: Vec::new(),
-        braced: Vec::new(),
-        braces: Vec::new(),
-        strays: Vec::new(),
-        told_at: None,
-        misaligned: None,
-        orphaned: false,
-        nested: Vec::new(),
-        regions: vec![namespace::file(file, text)],
-        around: vec![0],
-        ended: false,
-    };
+    let mut state = State::new(file, text, &tokens);
     let items = parse_items(&mut state);
     let (mut found, braces, regions) = (state.diagnostics, state.braces, state.regions);
     found.append(&mut tokens.diagnostics);
+    tokens.pragmas.retain(|it| !braces.contains(&it.span));
+    let test_pragmas = test_pragma::read(file, text, &tokens.pragmas, &mut found);
     found.sort_by_key(|it| (it.span.start, it.span.end));
     diagnostics.append(&mut found);
-    tokens.pragmas.retain(|it| !braces.contains(&it.span));
-    File { items, pragmas: tokens.pragmas, regions }
+    File { items, pragmas: tokens.pragmas, test_pragmas, regions }
 }
 
 fn parse_items<'t, 's>(state: &mut State<'t, 's>) -> Vec<crate::ast::Item<'s>> {

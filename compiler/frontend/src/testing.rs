@@ -1,17 +1,19 @@
 //! Unit tests in Structured Text. Each TEST becomes a POU of its own, with the variables and statements of
 //! its file's SETUP before its own; a second scan runs TEARDOWN. The rest of a test is an ordinary body.
 
+pub(crate) mod fixture;
 pub(crate) mod suite;
 pub(crate) mod tree;
 
+pub use fixture::{Fixture, FixtureCase};
 pub use suite::Suite;
 
-use crate::Span;
 use crate::ast::{
     ArgumentKind, BinaryOp, Expr, ExprKind, File, Item, LiteralValue, Pou, PouKind, Statement, StatementKind, TestPart,
     UnaryOp, each_expr,
 };
 use crate::spelling::Key;
+use crate::{Diagnostic, Sources, Span};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
 use tree::{assign, literal, named, variables};
@@ -40,6 +42,15 @@ pub struct Test {
     pub failed: String,
     /// A suite of TcUnit, which has tests of its own.
     pub suite: Option<Suite>,
+    /// A fixture of AxUnit, which has tests of its own.
+    pub fixture: Option<Fixture>,
+}
+
+/// The tests that have tests of their own, by their names' places.
+#[derive(Default)]
+pub(crate) struct Groups {
+    pub suites: FxHashMap<Span, Suite>,
+    pub fixtures: FxHashMap<Span, Fixture>,
 }
 
 /// An assertion, and the variables that hold what it compared when it failed.
@@ -55,12 +66,18 @@ pub struct Assertion {
     pub message: Option<String>,
 }
 
-/// The tests of the files become POUs, or, where they do not run, are left out; the suites, by their names' places.
-pub(crate) fn expand(files: &mut [File<'_>], run: bool) -> FxHashMap<Span, Suite> {
+/// The tests of the files become POUs, or, where they do not run, are left out.
+pub(crate) fn expand(
+    files: &mut [File<'_>],
+    run: bool,
+    sources: &Sources,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Groups {
     let is_test = |it: &Item<'_>| matches!(it, Item::Test(_));
     if !run {
         files.iter_mut().for_each(|it| it.items.retain(|it| !is_test(it)));
-        return FxHashMap::default();
+        fixture::leave_out(files);
+        return Groups::default();
     }
     if files.iter().flat_map(|it| &it.items).any(mocks_an_instance) {
         let pous = files.iter_mut().flat_map(|it| &mut it.items).filter_map(|it| match it {
@@ -80,12 +97,12 @@ pub(crate) fn expand(files: &mut [File<'_>], run: bool) -> FxHashMap<Span, Suite
         file.items = items;
         file.items.extend(whole_tests(tests).map(Item::Pou));
     }
-    suite::expand(files)
+    Groups { fixtures: fixture::expand(files, sources, diagnostics), suites: suite::expand(files) }
 }
 
 /// Whether the sources hold unit tests.
 pub(crate) fn has_tests(files: &[File<'_>]) -> bool {
-    files.iter().flat_map(|it| &it.items).any(|it| matches!(it, Item::Test(_)))
+    files.iter().flat_map(|it| &it.items).any(|it| matches!(it, Item::Test(_))) || !fixture::places(files).is_empty()
 }
 
 fn whole_tests<'s>(items: Vec<Item<'s>>) -> impl Iterator<Item = Pou<'s>> {

@@ -2,6 +2,7 @@
 
 use super::Outcome;
 use super::execute::{Pace, failed};
+use super::fixture::Step;
 use super::suite::{self, Ran, See};
 use super::table::Scratch;
 use staunch_frontend::Test;
@@ -51,6 +52,39 @@ pub fn test(executable: &Path, test: &Test, turns: u64) -> Result<Outcome, Strin
         }
     }
     Ok(traced.fault.map_or(Outcome::Passed, Outcome::Faulted))
+}
+
+/// Runs tests of a fixture, up to a fault: once to see which assertions fail, and then for what these compared.
+pub fn fixture(executable: &Path, test: &Test, turns: u64, pace: Pace, steps: &[Step]) -> Result<Vec<Outcome>, String> {
+    let columns: Vec<_> = steps.iter().map(|it| it.values(test)).collect();
+    let heading = columns.first().into_iter().flatten().map(|it| format!(",{}", it.0));
+    let mut text = format!("scan{}\n", heading.collect::<String>());
+    for (values, scan) in columns.iter().zip(1u32..) {
+        let cells = values.iter().map(|it| format!(",{}", it.1.text()));
+        text += &format!("{scan}{}\n", cells.collect::<String>());
+    }
+    let stimulus = Scratch::new();
+    fs::write(&stimulus.0, text).map_err(|error| format!("{}: {error}", stimulus.0.display()))?;
+    let traced = |names: &[String]| {
+        let mut command = Command::new(executable);
+        command.arg("--stimulus").arg(&stimulus.0).arg(format!("--cycle={}ns", pace.cycle));
+        trace(command, test, u64::try_from(steps.len()).unwrap_or(u64::MAX), turns, names)
+    };
+    // Without assertions there is no variable that says which has failed.
+    let seen = if test.failed.is_empty() { &columns[0][0].0 } else { &test.failed };
+    let first = traced(std::slice::from_ref(seen))?;
+    let failures = first.rows.iter().filter_map(|it| it.last()?.parse::<usize>().ok()?.checked_sub(1));
+    let kept = failures.filter_map(|it| test.assertions.get(it));
+    let kept = kept.flat_map(|it| [&it.actual, &it.expected, &it.message]).flatten().cloned();
+    let mut names: Vec<_> = kept.chain([seen.clone()]).collect();
+    names.sort_unstable();
+    names.dedup();
+    let second = if names.len() > 1 { traced(&names)? } else { first };
+    // The row of a scan that faults is not written.
+    let of_row = |row: &Vec<String>| failed(test, &|name| second.value(row, name));
+    let mut outcomes = second.rows.iter().map(of_row).collect::<Result<Vec<_>, _>>()?;
+    outcomes.extend(second.fault.clone().map(Outcome::Faulted));
+    Ok(outcomes)
 }
 
 /// Runs a suite once to see when it is finished and how many tests it has, and then for the values that are asked for.

@@ -2,6 +2,7 @@
 
 use super::apart;
 use super::coverage::Counts;
+use super::fixture::{self, Step};
 use super::suite::{self, Ran};
 use super::{Case, Outcome};
 use crate::args::{self, Backend};
@@ -112,6 +113,11 @@ fn only(program: &Program, wanted: impl Fn(usize) -> bool) -> Program {
 impl Executor<'_> {
     /// The results of a test, or of those tests of a suite that are wanted.
     pub fn run(&mut self, instance: usize, test: &Test, wants: &dyn Fn(&str) -> bool) -> Result<Vec<Case>, String> {
+        if let Some(it) = &test.fixture {
+            let cases = fixture::cases(test, it, wants, &mut |steps| self.fixture(instance, test, steps))?;
+            self.count()?;
+            return Ok(cases);
+        }
         let Some(suite) = &test.suite else {
             let outcome = self.outcome(instance, test)?;
             self.count()?;
@@ -153,6 +159,33 @@ impl Executor<'_> {
                 Ok(Outcome::Passed)
             }
             Runs::Apart(executable) => apart::test(executable, test, self.turns),
+        }
+    }
+
+    /// Runs these tests of a fixture on one instance of it, up to a fault.
+    fn fixture(&mut self, instance: usize, test: &Test, steps: &[Step]) -> Result<Vec<Outcome>, String> {
+        let (turns, cycle) = (self.turns, self.pace.cycle);
+        match &mut self.runs {
+            Runs::Here(machine, map) => {
+                machine.init();
+                let (mut now, mut outcomes) = (0_i64, Vec::new());
+                for step in steps {
+                    for (name, value) in step.values(test) {
+                        let place = staunch_host::place_of(map, &[instance], &name)?;
+                        machine.write(place.offset, &value.bytes());
+                    }
+                    let cx = Context::new(now, now == 0).with_turns(turns);
+                    if let Err(fault) = machine.scan(instance, &cx) {
+                        outcomes.push(Outcome::Faulted(place_of(fault, map)));
+                        break;
+                    }
+                    let values = |name: &str| value_at(map, &[instance], machine.state(), name);
+                    outcomes.push(failed(test, &values)?);
+                    now = now.saturating_add(cycle);
+                }
+                Ok(outcomes)
+            }
+            Runs::Apart(executable) => apart::fixture(executable, test, turns, self.pace, steps),
         }
     }
 

@@ -3,6 +3,7 @@
 mod apart;
 mod coverage;
 mod execute;
+mod fixture;
 mod junit;
 mod mutants;
 mod parallel;

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod axunit;
 mod build;
 #[cfg(unix)]
 mod cache;

@@ -160,7 +160,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// Leaves the test, with the number of the assertion and what it compared, unless the claim holds.
-    fn assert(&mut self, claim: Claim, message: Option<&ast::Expr<'s>>, span: Span) -> Option<()> {
+    pub(super) fn assert(&mut self, claim: Claim, message: Option<&ast::Expr<'s>>, span: Span) -> Option<()> {
         let slot = self.test_slot()?;
         let at = self.at(span);
         let number = self.decl.tests.assertions.entry(slot).or_default().len() + 1;

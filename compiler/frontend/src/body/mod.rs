@@ -1,6 +1,7 @@
 //! Bodies: statements, and the routines that they become.
 
 mod assertion;
+mod axunit;
 mod case;
 mod external;
 mod loops;

@@ -104,6 +104,7 @@ impl<'s> Checker<'_, 's> {
                     self.start_members(expr.span);
                 } else if self.test_statement(callee, arguments, expr.span).is_none()
                     && self.suite_statement(callee, arguments, expr.span).is_none()
+                    && self.axunit_statement(callee, arguments, expr.span).is_none()
                 {
                     self.call_statement(expr, callee, arguments);
                 }

@@ -232,6 +232,17 @@ impl<'s> Checker<'_, 's> {
 
     /// Notes an assertion that fails, and goes on.
     fn assert_in_suite(&mut self, claim: Claim, message: Option<&ast::Expr<'s>>, span: Span) -> Option<()> {
+        self.assert_shared(claim, message, |this| this.condition(&call(FAILS, Vec::new(), span)), span)
+    }
+
+    /// Where an assertion fails and `is_kept` says so, keeps which it is and what it compared.
+    pub(super) fn assert_shared(
+        &mut self,
+        claim: Claim,
+        message: Option<&ast::Expr<'s>>,
+        is_kept: impl FnOnce(&mut Self) -> Option<Expr>,
+        span: Span,
+    ) -> Option<()> {
         let compared = std::mem::take(&mut self.compared);
         let at = self.at(span);
         let Claim { holds, wants, actual, expected, compares_texts } = claim;
@@ -240,7 +251,7 @@ impl<'s> Checker<'_, 's> {
         let number = self.decl.tests.shared.len() + 1;
         let mut is_whole = Some(());
         let then = self.nested(|this| {
-            let fails = this.condition(&call(FAILS, Vec::new(), span));
+            let fails = is_kept(this);
             let kept = this.nested(|this| {
                 if let Some(message) = message {
                     is_whole = this.keep_message(message).map(|it| shown = Some(it));
@@ -284,7 +295,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// The global that is the number of the assertion that failed.
-    fn broken(&mut self, at: staunch_ir::Location) -> Place {
+    pub(super) fn broken(&mut self, at: staunch_ir::Location) -> Place {
         if let Some((_, place)) = &self.decl.tests.broken {
             return place.clone();
         }

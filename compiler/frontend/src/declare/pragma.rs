@@ -72,7 +72,10 @@ impl Log<'_> {
             self.check_external_pragma(file, pragma.span);
         } else if DECIDING_PRAGMAS.contains(&word.as_str()) {
             self.not_supported(pragma.span, &format!("the pragma `{word}`"));
-        } else if !HARMLESS_PRAGMAS.contains(&word.as_str()) && !crate::allow::is_allowance(pragma.text) {
+        } else if !HARMLESS_PRAGMAS.contains(&word.as_str())
+            && !crate::allow::is_allowance(pragma.text)
+            && !crate::testing::fixture::is_pragma(pragma.text)
+        {
             self.report(
                 Diagnostic::new(Code::W0102, pragma.span, format!("the pragma `{word}` is not known"))
                     .label("it has no effect"),

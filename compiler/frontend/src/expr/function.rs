@@ -6,10 +6,13 @@ use super::checker::Checker;
 use super::generic_call::Called;
 use super::order::Held;
 use crate::start::is_initial;
+use crate::testing::fixture::Caller;
 use crate::types::signature::{Formal, Signature, Target};
 use crate::types::table::Resolved;
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{Argument, Expr, ExprKind, Mode, ParamId, Place, Root, RoutineId, Section, StatementKind, Type};
+use staunch_ir::{
+    Argument, Chars, Expr, ExprKind, Mode, ParamId, Place, Root, RoutineId, Section, StatementKind, Type,
+};
 use std::rc::Rc;
 
 /// What is passed for one parameter.
@@ -168,6 +171,9 @@ impl<'s> Checker<'_, 's> {
                 self.report_no_variable(formal, self.decl.pous[slot].ast.name.text, span);
                 None
             }
+            (Mode::Value(_), Section::Input) if self.decl.tests.callers.contains_key(&formal.name.span) => {
+                Some(Passed::Default(self.place_of_call(formal, span)))
+            }
             (Mode::Value(_), _) => {
                 self.input_left_out(formal, slot, span)?;
                 Some(Passed::Default(self.initial_value(&formal.resolved, span)))
@@ -179,6 +185,28 @@ impl<'s> Checker<'_, 's> {
                 self.report_no_variable(formal, self.decl.pous[slot].ast.name.text, span);
                 None
             }
+        }
+    }
+
+    /// For an input that AxUnit's pragma gives the line or the file of the call.
+    fn place_of_call(&mut self, formal: &Formal<'s>, span: Span) -> Expr {
+        let (at, ty) = (self.at(span), formal.resolved.ty);
+        let source = self.decl.log.sources.get(span.file);
+        let line = source.line_column(span.start).0;
+        match (self.decl.tests.callers.get(&formal.name.span), ty) {
+            (Some(Caller::Path), Type::String(it)) => {
+                let chars = if it.wide {
+                    Chars::Wide(source.path.encode_utf16().take(usize::from(it.capacity)).collect())
+                } else {
+                    Chars::Narrow(source.path.bytes().take(usize::from(it.capacity)).collect())
+                };
+                Expr::new(ty, ExprKind::Text(chars), at)
+            }
+            (Some(Caller::Line), Type::Elementary(it)) => match it.repr().integer(i128::from(line)) {
+                Some(value) => Expr::constant(it, value, at),
+                None => self.initial_value(&formal.resolved, span),
+            },
+            (Some(Caller::Line | Caller::Path) | None, _) => self.initial_value(&formal.resolved, span),
         }
     }
 
@@ -222,7 +250,9 @@ impl<'s> Checker<'_, 's> {
         let given = declared
             .filter(|it| it.names.iter().any(|name| name.span == formal.name.span))
             .any(|it| it.initial.is_some());
-        given || !matches!(formal.resolved.initial, staunch_ir::Const::Zero)
+        given
+            || self.decl.tests.callers.contains_key(&formal.name.span)
+            || !matches!(formal.resolved.initial, staunch_ir::Const::Zero)
     }
 
     /// What a FUNCTION's result starts with.
@@ -245,7 +275,7 @@ impl<'s> Checker<'_, 's> {
             (Const::Scalar(value), _, _) => ExprKind::Const(*value),
             (Const::Zero, Some(repr), _) => ExprKind::Const(repr.zero()),
             (Const::Text(bytes), _, _) => ExprKind::Text(bytes.clone()),
-            (Const::Zero, None, Type::String(it)) => ExprKind::Text(staunch_ir::Chars::empty(it)),
+            (Const::Zero, None, Type::String(it)) => ExprKind::Text(Chars::empty(it)),
             (other, _, _) => ExprKind::Aggregate(other.clone()),
         };
         Expr::new(ty, kind, at)

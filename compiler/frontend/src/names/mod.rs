@@ -252,6 +252,10 @@ impl<'s> Names<'s> {
             if let Some(Found::One(Meaning::Declared(Entry::Type(slot)))) = self.used(site, region, name, Sense::Type) {
                 return Some(Prefix::Enumeration(slot));
             }
+            // After `USING AxUnit;` it is `Assert.Equal`.
+            if let Some(inner) = self.inner_of_used(site, region, name) {
+                return Some(Prefix::Space(inner));
+            }
         }
         if let Some(list) = self.lists.get(&key) {
             return Some(Prefix::Space(*list));
@@ -268,6 +272,13 @@ impl<'s> Names<'s> {
         }
         let library = site.dialect == Dialect::Codesys && LIBRARIES.iter().any(|it| it.eq_ignore_ascii_case(name));
         Family::named(name).map(Prefix::Family).or(library.then_some(Prefix::Library))
+    }
+
+    /// The namespace of a name in one that a region uses, if it is in one of them alone.
+    fn inner_of_used(&self, site: Site, region: &Region, name: &str) -> Option<SpaceId> {
+        let mut found = region.uses.iter().filter_map(|space| self.seen(site, *space, name));
+        let first = found.next()?;
+        found.all(|it| it == first).then_some(first)
     }
 
     /// What a namespace holds at the end of a path.

@@ -1,23 +1,23 @@
 //! The unit tests of a program, for who runs them.
 
-use crate::Span;
 use crate::ast::PouKind;
-use crate::testing::{Assertion, FAILED, Suite, Test};
+use crate::testing::{Assertion, FAILED, Groups, Test};
 use crate::types::declarations::Declarations;
-use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
-/// The tests that were declared, in the order of their instances. `suites` are those of TcUnit, by their names' places.
-pub(crate) fn tests(declarations: &mut Declarations<'_>, mut suites: FxHashMap<Span, Suite>) -> Vec<Test> {
+/// The tests that were declared, in the order of their instances.
+pub(crate) fn tests(declarations: &mut Declarations<'_>, mut groups: Groups) -> Vec<Test> {
     let slots = (0..declarations.pous.len()).filter(|it| declarations.pous[*it].ast.kind == PouKind::Test);
     let shared: Arc<[Assertion]> = declarations.tests.shared.as_slice().into();
     let broken = declarations.tests.broken.as_ref().map_or_else(String::new, |it| it.0.clone());
     let test = |slot: usize| {
         let name = declarations.pous[slot].ast.name;
         let instance = declarations.emitted_name(slot);
-        if let Some(suite) = suites.remove(&name.span) {
-            let (title, assertions) = (name.text.to_owned(), Arc::clone(&shared));
-            return Test { title, span: name.span, instance, assertions, failed: broken.clone(), suite: Some(suite) };
+        let (suite, fixture) = (groups.suites.remove(&name.span), groups.fixtures.remove(&name.span));
+        if suite.is_some() || fixture.is_some() {
+            let in_full = fixture.is_some().then(|| declarations.name_in_full(name));
+            let (title, assertions) = (in_full.unwrap_or_else(|| name.text.to_owned()), Arc::clone(&shared));
+            return Test { title, span: name.span, instance, assertions, failed: broken.clone(), suite, fixture };
         }
         let title = name.text.get(1..name.text.len() - 1).unwrap_or_default().to_owned();
         let failed = format!("{instance}.{FAILED}");
@@ -28,7 +28,7 @@ pub(crate) fn tests(declarations: &mut Declarations<'_>, mut suites: FxHashMap<S
             message: in_test(&it.message),
             ..it.clone()
         });
-        Test { title, span: name.span, assertions: own.collect(), failed, instance, suite: None }
+        Test { title, span: name.span, assertions: own.collect(), failed, instance, suite: None, fixture: None }
     };
     slots.map(test).collect()
 }

@@ -17,7 +17,7 @@ use crate::{
     source::Span,
 };
 
-use super::doc;
+use super::{doc, namespace};
 
 pub type Extra<'t, 's> = extra::Full<Problem, State<'t, 's>, ()>;
 /// What a production reads from: `'t` are the tokens, `'s` is the text.
@@ -130,6 +130,35 @@ pub struct State<'t, 's> {
     pub around: Vec<usize>,
     /// The user knows that the file ends too early.
     pub ended: bool,
+}
+
+impl<'t, 's> State<'t, 's> {
+    /// Before the first token.
+    pub fn new(file: u16, text: &'s str, tokens: &'t Tokens<'s>) -> Self {
+        Self {
+            file,
+            text,
+            tokens,
+            diagnostics: Vec::new(),
+            open: Vec::new(),
+            depth: 0,
+            height: 0,
+            stopped: false,
+            waiting: Vec::new(),
+            instead: None,
+            begins: Vec::new(),
+            braced: Vec::new(),
+            braces: Vec::new(),
+            strays: Vec::new(),
+            told_at: None,
+            misaligned: None,
+            orphaned: false,
+            nested: Vec::new(),
+            regions: vec![namespace::file(file, text)],
+            around: vec![0],
+            ended: false,
+        }
+    }
 }
 
 impl<'t, 's> Inspector<'t, &'t [Kind]> for State<'t, 's> {

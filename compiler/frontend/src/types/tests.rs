@@ -1,7 +1,9 @@
 //! What unit tests add to a program: variables that keep what assertions compared, and mocks.
 
+use crate::Span;
 use crate::testing::Assertion;
-use rustc_hash::FxHashMap;
+use crate::testing::fixture::Caller;
+use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{Place, Variable};
 
 /// By the slots of POUs.
@@ -15,6 +17,10 @@ pub(crate) struct Tests {
     pub shared: Vec<Assertion>,
     /// The global that is the number of the first of these that failed.
     pub broken: Option<(String, Place)>,
+    /// Where the names of AxUnit's fixtures are.
+    pub fixtures: FxHashSet<Span>,
+    /// The inputs that have the place of a call, by their names' places.
+    pub callers: FxHashMap<Span, Caller>,
     /// The FUNCTIONs that some test replaces.
     pub mocks: FxHashMap<usize, FunctionMock>,
 }

@@ -1,0 +1,161 @@
+//! `staunch test` on fixtures of AxUnit.
+
+use super::{Folder, has};
+
+const FIXTURE: &str = "USING AxUnit.Assert;
+USING AxUnit.ResultFunctions;
+NAMESPACE Line
+    TYPE Mode : (Idle, Busy) := Idle; END_TYPE
+    CLASS Counter
+        VAR n : INT; END_VAR
+        METHOD PUBLIC Add VAR_INPUT step : INT; END_VAR
+            n := n + step;
+        END_METHOD
+        METHOD PUBLIC Count : INT
+            Count := n;
+        END_METHOD
+    END_CLASS
+END_NAMESPACE
+NAMESPACE AxUnit.Assert
+    FUNCTION Equal
+    VAR_INPUT expected, actual : Line.Mode; {CallerFilePath} file : WSTRING[1024]; {CallerLineNumber} line : INT; END_VAR
+        IF expected = actual THEN
+            axunit_Succeed();
+        ELSE
+            axunit_Fail('other modes', file, line);
+        END_IF;
+    END_FUNCTION
+END_NAMESPACE
+NAMESPACE Line.Tests
+    {TestFixture}
+    CLASS CounterTest
+        VAR c : Counter; setups, fixtures, torn : INT; m : Mode; END_VAR
+        {FixtureSetup} METHOD PUBLIC Once fixtures := fixtures + 1; END_METHOD
+        {TestSetup} METHOD PUBLIC Before setups := setups + 1; END_METHOD
+        {TestTearDown} METHOD PUBLIC After torn := torn + 1; END_METHOD
+        {Test} METHOD PUBLIC B_sees_what_A_left
+            Equal(expected := 3, actual := c.Count());
+            NotEqual(expected := 2, actual := c.Count());
+        END_METHOD
+        {Test} METHOD PUBLIC A_passes
+            c.Add(2);
+            Equal(expected := 2, actual := c.Count());
+            AxUnit.Assert.Equal(expected := 0, actual := torn);
+            Equal(expected := 'ab', actual := CONCAT('a', 'b'));
+        END_METHOD
+        {Test} METHOD PUBLIC C_faults
+            setups := setups / (fixtures - 1);
+        END_METHOD
+        {Test} METHOD PUBLIC D_begins_anew
+            Equal(0, c.Count());
+            Equal(expected := 1, actual := setups);
+            Equal(expected := 1, actual := fixtures);
+        END_METHOD
+        {Test} METHOD PUBLIC E_of_its_own
+            m := Mode#Busy;
+            Equal(expected := Mode#Idle, actual := m);
+        END_METHOD
+        {Test(a := 1, b := 2, sum := 3)}
+        {Test(a := -1, b := 2,
+              sum := 2)}
+        METHOD PUBLIC F_adds
+        VAR_INPUT a, b, sum : INT; END_VAR
+            Equal(expected := sum, actual := a + b);
+            GreaterOrEqual(left := b, right := a);
+        END_METHOD
+        {FixtureTearDown} METHOD PUBLIC Last LessThan(left := torn, right := 4); END_METHOD
+    END_CLASS
+    {Test(x := 1.0)}
+    {Test(x := 2.5)}
+    FUNCTION Halves
+    VAR_INPUT x : REAL; END_VAR
+        LessOrEqual(left := x / 2.0, right := 1.0);
+    END_FUNCTION
+END_NAMESPACE
+";
+
+const WANTED: [&str; 18] = [
+    "  ok      Line.Tests.CounterTest.A_passes",
+    "  FAILED  Line.Tests.CounterTest.B_sees_what_A_left",
+    "33:13: Equal(expected := 3, actual := c.Count())",
+    "expected to be 3, found 2",
+    "  FAILED  Line.Tests.CounterTest.C_faults",
+    "43:30: division by zero",
+    "  ok      Line.Tests.CounterTest.D_begins_anew",
+    "  FAILED  Line.Tests.CounterTest.E_of_its_own",
+    "axunit_Fail('other modes', file, line)",
+    "expected to succeed, where line 52 calls it",
+    "other modes",
+    "  ok      Line.Tests.CounterTest.F_adds(a := 1, b := 2, sum := 3)",
+    "  FAILED  Line.Tests.CounterTest.F_adds(a := -1, b := 2, sum := 2)",
+    "expected to be 2, found 1",
+    "  ok      Line.Tests.Halves(x := 1.0)",
+    "  FAILED  Line.Tests.Halves(x := 2.5)",
+    "expected to be at most 1.0, found 1.25",
+    "4 passed, 5 failed",
+];
+
+#[test]
+fn fixtures_run_as_they_are_on_every_back_end() {
+    let folder = Folder::new("an_axunit_fixture");
+    folder.write("counter.st", FIXTURE);
+    for backend in ["interpret", "native", "rust"] {
+        let ran = folder.staunch(&format!("test counter.st --junit junit.xml --backend {backend}"));
+        assert_eq!(ran.code, 1, "{}", ran.err);
+        let mut rest = ran.out.as_str();
+        for line in WANTED {
+            let at = rest.find(line).unwrap_or_else(|| panic!("{backend}: no `{line}` in\n{rest}"));
+            rest = &rest[at + line.len()..];
+        }
+        let junit = folder.read("junit.xml");
+        has(
+            &junit,
+            &["tests=\"9\" failures=\"5\"", "name=\"Line.Tests.CounterTest.F_adds(a := 1, b := 2, sum := 3)\""],
+        );
+    }
+}
+
+#[test]
+fn a_filter_chooses_among_the_tests_of_a_fixture() {
+    let folder = Folder::new("a_filtered_axunit_fixture");
+    folder.write("counter.st", FIXTURE);
+    let ran = folder.staunch("test counter.st --filter begins_anew");
+    assert_eq!(ran.code, 0, "{}{}", ran.out, ran.err);
+    has(&ran.out, &["1 passed, 0 failed"]);
+}
+
+#[test]
+fn fixtures_are_no_part_of_the_program() {
+    let folder = Folder::new("an_axunit_fixture_left_out");
+    folder.write("counter.st", FIXTURE);
+    assert_eq!(folder.staunch("build counter.st --emit rust -o out.rs").code, 0);
+    let emitted = folder.read("out.rs");
+    assert!(!emitted.contains("CounterTest") && emitted.contains("Counter"), "{emitted}");
+    // What is wrong in them is said all the same.
+    folder.write("counter.st", FIXTURE.replace("Equal(0, c.Count());", "Equal(0, c.Total());"));
+    let checked = folder.staunch("check counter.st");
+    assert_eq!(checked.code, 1);
+    has(&checked.err, &["Total"]);
+}
+
+#[test]
+fn fixtures_are_neither_covered_nor_changed() {
+    let folder = Folder::new("an_axunit_fixture_measured");
+    folder.write("counter.st", &FIXTURE[..FIXTURE.find("NAMESPACE AxUnit").unwrap_or(0)]);
+    let test = "USING AxUnit.Assert;
+NAMESPACE Line.Tests
+    {TestFixture}
+    CLASS CounterTest
+        VAR c : Counter; END_VAR
+        {Test} METHOD PUBLIC Adds
+            c.Add(2);
+            Equal(expected := 2, actual := c.Count());
+        END_METHOD
+    END_CLASS
+END_NAMESPACE
+";
+    folder.write("test.st", test);
+    let ran = folder.staunch("test counter.st test.st --coverage table --mutants");
+    assert_eq!(ran.code, 0, "{}{}", ran.out, ran.err);
+    has(&ran.out, &["2 of 2 100 %", "3 mutants killed, 0 survived"]);
+}
