@@ -234,6 +234,7 @@ fn problem(file: u16, problem: &Problem) -> Diagnostic {
     let (code, help) = match problem.trouble {
         Trouble::Broken => (Code::E0033, "export the file again in its own system"),
         Trouble::SecondBody => (Code::E0902, "put its worksheets into one in its own system"),
+        Trouble::Odd => (Code::E0033, "correct it in its own system, and export the file again"),
         Trouble::NotSupported => (Code::E0902, "write what it does in Structured Text"),
         Trouble::OtherLanguage => (Code::E0902, "write it in Structured Text, or have its own system convert it"),
     };

@@ -215,8 +215,9 @@ impl<'s> Declarations<'s> {
 
     /// Reports a name with underlines where the standard has none.
     pub(super) fn check_spelling(&mut self, name: ast::Name<'s>) {
-        // The compiler's own name.
-        if self.log.sources.text(name.span) != name.text {
+        // The compiler's own name, or one of Logix that is no name here.
+        let is_made = self.dialect(name.span) == Dialect::Logix && self.log.sources.get(name.span.file).is_assembled();
+        if is_made || self.log.sources.text(name.span) != name.text {
             return;
         }
         let wrong = if name.text.contains("__") {

@@ -33,6 +33,8 @@ pub enum Trouble {
     SecondBody,
     /// What has no words in Structured Text here.
     NotSupported,
+    /// What the system itself does not write.
+    Odd,
 }
 
 /// The text, and what it is made of.
@@ -59,6 +61,8 @@ pub enum Says {
     Symbol(char),
     /// Words of Structured Text for what is said in another way.
     Words(String),
+    /// Nothing, and why what is there is wrong.
+    Wrong(Trouble, String),
 }
 
 impl Chunk {
@@ -69,6 +73,11 @@ impl Chunk {
     pub fn words(words: impl Into<String>, place: &Range<usize>) -> Self {
         Self { place: place.clone(), says: Says::Words(words.into()) }
     }
+
+    /// What is there is not what its system writes.
+    pub fn odd(message: impl Into<String>, place: &Range<usize>) -> Self {
+        Self { place: place.clone(), says: Says::Wrong(Trouble::Odd, message.into()) }
+    }
 }
 
 impl Assembly {
@@ -78,6 +87,7 @@ impl Assembly {
             match says {
                 Says::Symbol(symbol) => self.write(symbol.encode_utf8(&mut [0; 4]), place),
                 Says::Words(words) => self.write(words, place),
+                Says::Wrong(trouble, message) => self.problem(*trouble, message.clone(), place),
                 Says::Itself => {
                     self.piece(place, true);
                     self.text.push_str(&file[place.clone()]);

@@ -107,6 +107,7 @@ fn end(file: &str, declaration: &[Chunk]) -> &'static str {
         .map(|it| match &it.says {
             Says::Itself | Says::Symbol(_) => &file[it.place.clone()],
             Says::Words(words) => words.as_str(),
+            Says::Wrong(..) => "",
         })
         .collect();
     let word = first_word(&text);

@@ -2,7 +2,7 @@
 
 use super::super::assembly::Chunk;
 use super::super::xml::{Broken, Element, Part, Reader};
-use super::names::plain;
+use super::names::{legal, plain};
 use core::ops::Range;
 
 /// What a tag, a member or an element has as its value.
@@ -19,6 +19,8 @@ pub struct Value<'t> {
 pub enum What<'t> {
     /// A number in Structured Text, and whether it is 0.
     Number(String, bool),
+    /// What is no value of its type.
+    Odd,
     Text(Chunk, bool),
     List(Vec<Value<'t>>),
     Members(Vec<(Chunk, &'t str, Value<'t>)>),
@@ -45,6 +47,10 @@ fn read<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, ty: &
     match element.name {
         "Array" | "ArrayMember" => {
             value.dimensions = element.attribute(file, "Dimensions").unwrap_or_default();
+            if array_of(value.dimensions).is_none() {
+                let why = format!("`{}` are no dimensions of an array", value.dimensions);
+                return Err(Broken { place, why });
+            }
             let elements = inner(file, reader, ty)?;
             let mut due = vec![0; lengths(value.dimensions).len()];
             for (_, index, element) in &elements {
@@ -106,7 +112,7 @@ fn inner<'t>(file: &'t str, reader: &mut Reader<'t>, ty: &'t str) -> Result<Inne
             Part::Open(element) => {
                 let name =
                     element.attribute(file, "Name").or_else(|| element.attribute(file, "Index")).unwrap_or_default();
-                let chunk = element.attribute_text(file, "Name").unwrap_or_else(|| Chunk::words("", &element.place));
+                let chunk = name_of(file, &element).unwrap_or_else(|| Chunk::words("", &element.place));
                 all.push((chunk, name, read(file, reader, &element, ty)?));
             }
             Part::Text(_) => {}
@@ -147,16 +153,26 @@ pub fn text<'t>(file: &'t str, reader: &mut Reader<'t>, place: &Range<usize>) ->
     Ok(text.map(|it| Value { ty: "STRING", dimensions: "", place: place.clone(), what: what(it) }))
 }
 
-/// A number of the older form, which is positions without names: one alone is a value.
-pub fn plain_number<'t>(
+/// Numbers of the older form, which is positions without names: one alone, or those of an array.
+pub fn plain_numbers<'t>(
     file: &'t str,
     reader: &mut Reader<'t>,
     ty: &'t str,
     place: &Range<usize>,
 ) -> Result<Option<Value<'t>>, Broken> {
     let (_, text) = content(file, reader, ty)?;
-    let text = text.map(|it| file[it.place].trim()).filter(|it| !it.starts_with(['[', '\'']));
-    Ok(text.map(|it| Value { ty, dimensions: "", place: place.clone(), what: number(ty, it) }))
+    let is_number = bits(ty).is_some() || matches!(ty, "BOOL" | "REAL" | "LREAL");
+    let Some(text) = text.map(|it| file[it.place].trim()).filter(|it| is_number && !it.starts_with('\'')) else {
+        return Ok(None);
+    };
+    let value = |what| Value { ty, dimensions: "", place: place.clone(), what };
+    if !text.starts_with('[') {
+        return Ok(Some(value(number(ty, text))));
+    }
+    // The elements of several dimensions are in one row, as an initial value has them.
+    let elements = text.split(['[', ']', ',']).map(str::trim).filter(|it| !it.is_empty());
+    let elements = elements.map(|it| value(number(ty, it))).collect();
+    Ok(Some(value(What::List(elements))))
 }
 
 /// The bits of an integer's type, and whether it has a sign.
@@ -174,15 +190,18 @@ fn bits(ty: &str) -> Option<(u32, bool)> {
     })
 }
 
-/// A number as Structured Text has it. What is in no form that is known stays as it is, to be refused.
+/// A number as Structured Text has it.
 fn number<'t>(ty: &str, written: &str) -> What<'t> {
     let written = written.trim();
     if matches!(ty, "BOOL" | "BIT") {
-        let is_set = !matches!(written, "0" | "false" | "2#0");
-        return What::Number(if is_set { "TRUE" } else { "FALSE" }.to_owned(), !is_set);
+        return match (written, integer(written)) {
+            ("true", _) | (_, Some(1)) => What::Number("TRUE".to_owned(), false),
+            ("false", _) | (_, Some(0)) => What::Number("FALSE".to_owned(), true),
+            _ => What::Odd,
+        };
     }
     let Some((bits, is_signed)) = bits(ty) else { return real(written) };
-    let Some(value) = integer(written) else { return What::Number(written.to_owned(), false) };
+    let Some(value) = integer(written) else { return What::Odd };
     // Digits of other bases are the bits.
     let limit = 1_i128 << bits;
     let value = if is_signed && value >= limit / 2 && value < limit { value - limit } else { value };
@@ -190,10 +209,11 @@ fn number<'t>(ty: &str, written: &str) -> What<'t> {
 }
 
 fn real<'t>(written: &str) -> What<'t> {
-    let value: Option<f64> = written.parse().ok();
+    // Logix writes what is no number as `1.#QNAN` and the like, which has no literal.
+    let Ok(value) = written.parse::<f64>() else { return What::Odd };
     let text = if written.contains(['.', 'e', 'E', '#']) { written.to_owned() } else { format!("{written}.0") };
     // The sign of a zero is a value, too.
-    What::Number(text, value.is_some_and(|it| it == 0.0 && it.is_sign_positive()))
+    What::Number(text, value == 0.0 && value.is_sign_positive())
 }
 
 fn integer(written: &str) -> Option<i128> {
@@ -233,6 +253,7 @@ impl Value<'_> {
     pub fn is_zero(&self) -> bool {
         match &self.what {
             What::Number(_, is_zero) | What::Text(_, is_zero) => *is_zero,
+            What::Odd => false,
             What::List(elements) => elements.iter().all(Self::is_zero),
             What::Members(members) => members.iter().all(|it| it.2.is_zero()),
         }
@@ -244,6 +265,10 @@ impl Value<'_> {
         let place = &self.place;
         match &self.what {
             What::Number(text, _) => out.push(Chunk::words(text.clone(), place)),
+            What::Odd => {
+                out.push(Chunk::odd(format!("this is no value of the type {}", self.ty), place));
+                out.push(Chunk::words("0", place));
+            }
             What::Text(chunk, _) => out.push(chunk.clone()),
             What::List(elements) => {
                 for (at, element) in elements.iter().enumerate() {
@@ -281,12 +306,22 @@ pub fn ty_text(ty: &str) -> Option<String> {
 pub fn name_of<'t>(file: &'t str, element: &Element<'t>) -> Option<Chunk> {
     let place = element.attribute_place(file, "Name")?;
     let name = &file[place.clone()];
-    Some(if name.contains(':') { Chunk::words(plain(name), &place) } else { Chunk::verbatim(place) })
+    Some(match legal(name) {
+        Some(legal) => Chunk::words(legal, &place),
+        None if name.contains(':') => Chunk::words(plain(name), &place),
+        None => Chunk::verbatim(place),
+    })
 }
 
-/// `ARRAY[0..9, 0..4] OF ` for `10 5`; nothing where all are 0.
-pub fn array_of(dimensions: &str) -> String {
-    let lengths: Vec<u32> = dimensions.split([' ', ',']).filter_map(|it| it.parse().ok()).collect();
-    let bounds: Vec<_> = lengths.iter().filter_map(|it| it.checked_sub(1)).map(|it| format!("0..{it}")).collect();
-    if bounds.is_empty() { String::new() } else { format!("ARRAY[{}] OF ", bounds.join(", ")) }
+/// `ARRAY[0..9, 0..4] OF ` for `10 5`; nothing where all are 0, and `None` where these are no lengths.
+pub fn array_of(dimensions: &str) -> Option<String> {
+    let parts = dimensions.split([' ', ',']).filter(|it| !it.is_empty());
+    let lengths: Vec<u32> = parts.map(|it| it.parse().ok()).collect::<Option<_>>()?;
+    let used = lengths.iter().position(|it| *it == 0).unwrap_or(lengths.len());
+    // Dimensions that are not there are 0, the last ones.
+    if lengths[used..].iter().any(|it| *it > 0) {
+        return None;
+    }
+    let bounds: Vec<_> = lengths[..used].iter().map(|it| format!("0..{}", it - 1)).collect();
+    Some(if bounds.is_empty() { String::new() } else { format!("ARRAY[{}] OF ", bounds.join(", ")) })
 }

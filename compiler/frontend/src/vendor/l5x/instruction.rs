@@ -3,7 +3,7 @@
 use super::super::assembly::{Assembly, Chunk, Trouble};
 use super::super::xml::{Broken, Element, Part, Reader};
 use super::logic::Logic;
-use super::names::{Names, Operand, Scope, key};
+use super::names::{Names, Operand, Scope, key, legal};
 use super::program::{Body, Routine, routines};
 use super::tag;
 use core::ops::Range;
@@ -115,7 +115,7 @@ impl<'t> Instruction<'t> {
         self.scope.tags.insert(key(name));
         let is_output = usage == "Output";
         if attribute("Required") == "true" || usage == "InOut" {
-            self.operands.push(Operand { name: name.to_owned(), is_output });
+            self.operands.push(Operand { name: legal(name).unwrap_or_else(|| name.to_owned()), is_output });
         }
         let head = match usage {
             "Output" => "VAR_OUTPUT ",
@@ -137,7 +137,7 @@ impl<'t> Instruction<'t> {
             let message = format!("an operand of `{}` is an alias of a part of a local tag", self.name);
             out.problem(Trouble::NotSupported, message, place);
         }
-        let logic = Logic { file, names, scope: &self.scope, actions: FxHashMap::default() };
+        let logic = Logic { file, names, scope: &self.scope, actions: FxHashMap::default(), main: "" };
         for routine in &self.routines {
             if routine.name.eq_ignore_ascii_case("Logic") {
                 out.write("EnableOut := EnableIn;\n", &routine.place);

@@ -3,7 +3,7 @@
 //! its tag: `valve_1(EnableIn := TRUE, Open := open, Closed => closed)`.
 
 use super::super::assembly::{Assembly, Chunk, Says, Trouble};
-use super::names::{Names, Operand, Scope, key, plain};
+use super::names::{Names, Operand, Scope, key, legal, plain};
 use core::ops::Range;
 use rustc_hash::FxHashMap;
 
@@ -14,6 +14,8 @@ pub struct Logic<'a> {
     pub scope: &'a Scope,
     /// Routines, and the actions that they are.
     pub actions: FxHashMap<String, String>,
+    /// The main routine of a program.
+    pub main: &'a str,
 }
 
 /// Writes the chunks of a routine.
@@ -22,7 +24,9 @@ pub fn write(logic: &Logic<'_>, chunks: &[Chunk], out: &mut Assembly) {
     for chunk in chunks {
         match chunk.says {
             Says::Itself => writer.line(chunk.place.clone()),
-            Says::Symbol(_) | Says::Words(_) => writer.out.copy(logic.file, core::slice::from_ref(chunk)),
+            Says::Symbol(_) | Says::Words(_) | Says::Wrong(..) => {
+                writer.out.copy(logic.file, core::slice::from_ref(chunk))
+            }
         }
     }
 }
@@ -53,6 +57,8 @@ enum Piece {
     Refused(String),
     /// Why it is refused; it is kept, so that what is around it can be read.
     Kept(String),
+    /// Why it is refused, and what is read in its place.
+    Instead(String, &'static str),
 }
 
 impl<'a> Writer<'a, '_> {
@@ -65,17 +71,24 @@ impl<'a> Writer<'a, '_> {
             let (length, piece) = self.token(text, at);
             let token = at..at + length.max(1);
             at = token.end;
-            let words = match &piece {
+            let copied = match &piece {
                 Piece::Itself => continue,
-                Piece::Words(words) => Ok(words.clone()),
-                Piece::Refused(message) | Piece::Kept(message) => Err(message.clone()),
+                Piece::Kept(_) => token.end,
+                Piece::Words(_) | Piece::Refused(_) | Piece::Instead(..) => token.start,
             };
-            let keeps = matches!(piece, Piece::Kept(_));
-            self.copy(&place, from..if keeps { token.end } else { token.start });
+            self.copy(&place, from..copied);
             let token = place.start + token.start..place.start + token.end;
-            match words {
-                Ok(words) => self.out.write(&words, &token),
-                Err(message) => self.out.problem(Trouble::NotSupported, message, &token),
+            let (message, words) = match piece {
+                Piece::Itself => (None, String::new()),
+                Piece::Words(words) => (None, words),
+                Piece::Refused(message) | Piece::Kept(message) => (Some(message), String::new()),
+                Piece::Instead(message, words) => (Some(message), words.to_owned()),
+            };
+            if let Some(message) = message {
+                self.out.problem(Trouble::NotSupported, message, &token);
+            }
+            if !words.is_empty() {
+                self.out.write(&words, &token);
             }
             from = at;
         }
@@ -109,6 +122,15 @@ impl<'a> Writer<'a, '_> {
                 (2, Piece::Itself)
             }
             b'\'' => (string(rest), Piece::Itself),
+            b'[' if rest.starts_with("[:=]") => {
+                let message = "an assignment `[:=]`, which is reset when its step or the controller starts again";
+                (4, Piece::Instead(format!("{message}, is not supported"), ":="))
+            }
+            b'\\' => {
+                let name = &rest[..1 + word(&rest[1..], "_.")];
+                let message = format!("`{name}` is a tag of another program, which cannot be reached here");
+                (name.len(), Piece::Instead(message, "0"))
+            }
             b'(' | b'[' => {
                 self.depth += 1;
                 (1, Piece::Itself)
@@ -120,7 +142,10 @@ impl<'a> Writer<'a, '_> {
                 (1, Piece::Itself)
             }
             b'0'..=b'9' => (word(rest, "_#"), Piece::Itself),
-            b'A'..=b'Z' | b'a'..=b'z' | b'_' if after_dot => (word(rest, "_"), Piece::Itself),
+            b'A'..=b'Z' | b'a'..=b'z' | b'_' if after_dot => {
+                let length = word(rest, "_");
+                (length, legal(&rest[..length]).map_or(Piece::Itself, Piece::Words))
+            }
             b'A'..=b'Z' | b'a'..=b'z' | b'_' => self.name(rest),
             b' ' | b'\t' => {
                 self.after_dot = after_dot;
@@ -134,6 +159,10 @@ impl<'a> Writer<'a, '_> {
         let name = &rest[..word(rest, "_")];
         let after = rest[name.len()..].trim_start();
         let scope = self.logic.scope;
+        if let Some(flag) = status_flag(rest) {
+            let message = format!("`{flag}`, a status flag of the controller, is not supported");
+            return (flag.len(), Piece::Instead(message, "FALSE"));
+        }
         if let Some((length, variable)) = self.module(rest) {
             return (length, Piece::Words(variable));
         }
@@ -156,7 +185,9 @@ impl<'a> Writer<'a, '_> {
                 return (open + close + 1, piece);
             }
         }
-        let piece = self.logic.names.meaning(name, scope).map_or(Piece::Itself, Piece::Words);
+        let is_tag = |it: &Scope| it.tags.contains(&key(name));
+        let own = || legal(name).filter(|_| is_tag(scope) || is_tag(&self.logic.names.controller));
+        let piece = self.logic.names.meaning(name, scope).or_else(own).map_or(Piece::Itself, Piece::Words);
         (name.len(), piece)
     }
 
@@ -181,8 +212,13 @@ impl<'a> Writer<'a, '_> {
         if !operands.all(|it| it == "0") {
             return Piece::Refused(format!("`{name}` is called with parameters, which subroutines cannot have here"));
         }
-        let action = self.logic.actions.get(&key(name)).map_or(name, String::as_str);
-        Piece::Words(format!("{action}()"))
+        if name.eq_ignore_ascii_case(self.logic.main) {
+            return Piece::Refused(format!("`{name}` is the main routine, which would call itself"));
+        }
+        match self.logic.actions.get(&key(name)) {
+            Some(action) => Piece::Words(format!("{action}()")),
+            None => Piece::Refused(format!("the program has no routine `{name}`")),
+        }
     }
 
     fn close(&mut self) -> Piece {
@@ -208,6 +244,13 @@ impl<'a> Writer<'a, '_> {
             None => format!("{before}One_more := "),
         })
     }
+}
+
+/// `S:FS`, the flag of the first scan, and the flags of the last operation.
+fn status_flag(rest: &str) -> Option<&str> {
+    let name = &rest[..word(rest, "_:")];
+    let flags = ["S:FS", "S:N", "S:Z", "S:V", "S:C", "S:MINOR"];
+    flags.iter().any(|it| it.eq_ignore_ascii_case(name)).then_some(name)
 }
 
 /// The length of a word that a line begins with.

@@ -96,7 +96,7 @@ fn declare(file: &str, name: &str, value: &Value<'_>, names: &mut Names, out: &m
 /// Declares the structures that a value is of, each once.
 fn types(value: &Value<'_>, names: &mut Names, out: &mut Vec<Chunk>) {
     match &value.what {
-        What::Number(..) | What::Text(..) => {}
+        What::Number(..) | What::Text(..) | What::Odd => {}
         What::List(elements) => elements.iter().take(1).for_each(|it| types(it, names, out)),
         What::Members(members) => {
             members.iter().for_each(|it| types(&it.2, names, out));
@@ -115,5 +115,6 @@ fn types(value: &Value<'_>, names: &mut Names, out: &mut Vec<Chunk>) {
 
 fn spelled(value: &Value<'_>) -> String {
     let ty = ty_text(value.ty).unwrap_or_else(|| value.ty.to_owned());
-    format!("{}{ty}", array_of(value.dimensions))
+    // Dimensions of data that are none end the reading of it.
+    format!("{}{ty}", array_of(value.dimensions).unwrap_or_default())
 }

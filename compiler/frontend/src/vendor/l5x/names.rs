@@ -1,6 +1,7 @@
 //! What a project's names stand for where they are written, in any case.
 
 use rustc_hash::{FxHashMap, FxHashSet};
+use staunch_ir::Elementary;
 
 /// What is known of a project when its logic is read.
 #[derive(Debug, Default)]
@@ -16,6 +17,7 @@ pub struct Names {
     pub controller: Scope,
     /// Programs that are not disabled, and what they are called in Structured Text.
     pub programs: FxHashMap<String, String>,
+    pub disabled_programs: FxHashSet<String>,
 }
 
 /// A parameter that each call gives.
@@ -42,12 +44,104 @@ pub fn plain(name: &str) -> String {
     name.replace(':', "_")
 }
 
+/// Words of Structured Text that are names in Logix, beside those of types.
+const WORDS: [&str; 38] = [
+    "ACTION",
+    "AND_THEN",
+    "ARRAY",
+    "AT",
+    "CLASS",
+    "CONFIGURATION",
+    "CONSTANT",
+    "END_VAR",
+    "FUNCTION",
+    "FUNCTION_BLOCK",
+    "GET",
+    "INTERFACE",
+    "METHOD",
+    "NAMESPACE",
+    "NON_RETAIN",
+    "NULL",
+    "OR_ELSE",
+    "PERSISTENT",
+    "PROGRAM",
+    "PROPERTY",
+    "RETAIN",
+    "SET",
+    "STRUCT",
+    "SUPER",
+    "TASK",
+    "TEST",
+    "THIS",
+    "TYPE",
+    "UNION",
+    "USING",
+    "VAR",
+    "VAR_ACCESS",
+    "VAR_CONFIG",
+    "VAR_EXTERNAL",
+    "VAR_GLOBAL",
+    "VAR_INPUT",
+    "VAR_OUTPUT",
+    "VAR_TEMP",
+];
+
+/// What a tag or member is called whose name means something else in Structured Text. Logix has no names that end so.
+pub fn legal(name: &str) -> Option<String> {
+    let is_word = WORDS.iter().any(|it| it.eq_ignore_ascii_case(name));
+    (is_word || Elementary::named(name).is_some()).then(|| format!("{name}_"))
+}
+
+/// Whether a text is a tag or a part of one: `Line.Speeds[1].3`, `Local:1:I.Data.0`, `\\Filling.Level`.
+pub fn is_operand(text: &str) -> bool {
+    let (base, mut rest) = split(text.strip_prefix('\\').unwrap_or(text));
+    if !base.starts_with(|it: char| it.is_ascii_alphabetic() || it == '_') {
+        return false;
+    }
+    while !rest.is_empty() {
+        let part = if let Some(inner) = rest.strip_prefix('[') {
+            let Some((indices, after)) = inner.split_once(']') else { return false };
+            rest = after;
+            indices.split(',').all(|it| !it.is_empty() && it.bytes().all(|it| it.is_ascii_digit()))
+        } else if let Some(inner) = rest.strip_prefix('.') {
+            let end = inner.find(['.', '[']).unwrap_or(inner.len());
+            rest = &inner[end..];
+            end > 0 && inner[..end].bytes().all(|it| it.is_ascii_alphanumeric() || it == b'_')
+        } else {
+            false
+        };
+        if !part {
+            return false;
+        }
+    }
+    true
+}
+
+/// A path with each name in it as it is called in Structured Text.
+fn legal_path(path: &str) -> String {
+    let name = |it: &str| legal(it).unwrap_or_else(|| it.to_owned());
+    path.split('.').map(name).collect::<Vec<_>>().join(".")
+}
+
 /// A name that no tag has.
 pub fn free(name: &str, kind: &str, tags: &FxHashSet<String>) -> String {
     if tags.contains(&key(name)) { format!("{name}_{kind}") } else { name.to_owned() }
 }
 
 impl Names {
+    /// Whether an alias stands for itself, by others.
+    pub fn leads_to_itself(&self, alias: &str, scope: &Scope) -> bool {
+        let mut name = alias.to_owned();
+        for _ in 0..=scope.aliases.len() {
+            let Some(target) = scope.aliases.get(&name) else { return false };
+            name = key(split(target).0);
+            if name == alias {
+                return true;
+            }
+        }
+        false
+    }
+
     /// What a name in a program's or an instruction's logic stands for, where that is another name.
     pub fn meaning(&self, name: &str, scope: &Scope) -> Option<String> {
         let mut name = key(name);
@@ -66,8 +160,9 @@ impl Names {
             let path = said.as_deref().map_or("", |it| split(it).1);
             let base_is_hidden = is_controllers && scope.tags.contains(&key(base));
             let prefix = if base_is_hidden { "Globals." } else { "" };
-            let shown = self.modules.get(&key(base)).cloned().unwrap_or_else(|| plain(base));
-            said = Some(format!("{prefix}{shown}{rest}{path}"));
+            let own = || legal(base).unwrap_or_else(|| plain(base));
+            let shown = self.modules.get(&key(base)).cloned().unwrap_or_else(own);
+            said = Some(format!("{prefix}{shown}{}{path}", legal_path(rest)));
             if base_is_hidden {
                 return said;
             }

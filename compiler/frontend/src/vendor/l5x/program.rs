@@ -56,7 +56,11 @@ pub fn read<'t>(
     out.copy(file, &head);
     out.copy(file, &sections);
     let actions = routines.iter().map(|it| (key(it.name), free(it.name, "routine", &scope.tags))).collect();
-    let logic = Logic { file, names, scope: &scope, actions };
+    let logic = Logic { file, names, scope: &scope, actions, main };
+    if !main.is_empty() && !routines.iter().any(|it| it.name.eq_ignore_ascii_case(main)) {
+        let place = element.attribute_place(file, "MainRoutineName").unwrap_or_else(|| element.place.clone());
+        out.problem(Trouble::Odd, format!("the program `{name}` has no routine `{main}`"), &place);
+    }
     for routine in routines.iter().filter(|it| !it.name.eq_ignore_ascii_case(main)) {
         out.write("ACTION ", &routine.place);
         let called = logic.actions.get(&key(routine.name)).filter(|it| *it != routine.name);
@@ -73,7 +77,9 @@ pub fn read<'t>(
         main.write(name, &logic, out);
     }
     out.write("END_PROGRAM\n", &reader.last());
-    if element.attribute(file, "Disabled") != Some("true") {
+    if element.attribute(file, "Disabled") == Some("true") {
+        names.disabled_programs.insert(key(name));
+    } else {
         names.programs.insert(key(name), called);
     }
     Ok(())

@@ -3,7 +3,7 @@
 use super::super::assembly::Chunk;
 use super::super::xml::{Broken, Element, Part, Reader};
 use super::data::{self, Value, array_of, name_of, ty_text};
-use super::names::{Names, Scope, key};
+use super::names::{Names, Scope, is_operand, key};
 
 type Chunks = Result<Vec<Chunk>, Broken>;
 
@@ -46,7 +46,14 @@ pub fn data_type<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'
 fn declared<'t>(file: &'t str, element: &Element<'t>, dimensions: &str) -> Vec<Chunk> {
     let place = &element.place;
     let mut chunks: Vec<Chunk> = name_of(file, element).into_iter().collect();
-    chunks.push(Chunk::words(format!(" : {}", array_of(dimensions)), place));
+    match array_of(dimensions) {
+        Some(array) => chunks.push(Chunk::words(format!(" : {array}"), place)),
+        None => {
+            let at = ["Dimensions", "Dimension"].iter().find_map(|it| element.attribute_place(file, it));
+            let message = format!("`{dimensions}` are no dimensions of an array");
+            chunks.extend([Chunk::odd(message, &at.unwrap_or_else(|| place.clone())), Chunk::words(" : ", place)]);
+        }
+    }
     chunks.extend(ty(file, element));
     chunks
 }
@@ -68,7 +75,7 @@ pub fn tags<'t>(file: &'t str, reader: &mut Reader<'t>, head: &str, names: &Name
                 let name = key(element.attribute(file, "Name").unwrap_or_default());
                 match element.attribute(file, "AliasFor") {
                     Some(target) => {
-                        scope.aliases.insert(name, target.to_owned());
+                        chunks.extend(alias(file, &element, name, target, names, scope));
                         reader.skip()?;
                     }
                     None => {
@@ -85,6 +92,24 @@ pub fn tags<'t>(file: &'t str, reader: &mut Reader<'t>, head: &str, names: &Name
         }
     }
     Ok(chunks)
+}
+
+/// Notes an alias; what is wrong with it.
+fn alias<'t>(
+    file: &'t str,
+    element: &Element<'t>,
+    name: String,
+    target: &str,
+    names: &Names,
+    scope: &mut Scope,
+) -> Option<Chunk> {
+    let place = element.attribute_place(file, "AliasFor")?;
+    if !is_operand(target) {
+        return Some(Chunk::odd(format!("an alias is for a tag or a part of one, not for `{target}`"), &place));
+    }
+    scope.aliases.insert(name.clone(), target.to_owned());
+    let leads_to_itself = names.leads_to_itself(&name, scope);
+    leads_to_itself.then(|| Chunk::odd(format!("this alias stands for itself, by way of `{target}`"), &place))
 }
 
 pub fn controller_tags<'t>(file: &'t str, reader: &mut Reader<'t>, names: &mut Names) -> Chunks {
@@ -122,7 +147,7 @@ fn initial<'t>(file: &'t str, reader: &mut Reader<'t>, ty: &'t str) -> Result<Op
                 match element.attribute(file, "Format") {
                     Some("Decorated") => decorated = data::within(file, reader)?,
                     Some("String") => decorated = data::text(file, reader, &element.place)?,
-                    Some("L5K") => older = data::plain_number(file, reader, ty, &element.place)?,
+                    Some("L5K") => older = data::plain_numbers(file, reader, ty, &element.place)?,
                     _ => reader.skip()?,
                 }
             }

@@ -16,7 +16,7 @@ pub fn read<'t>(
 ) -> Result<(), Broken> {
     let place = &element.place;
     let name: Vec<Chunk> = element.attribute_text(file, "Name").into_iter().collect();
-    let programs = programs(file, reader, names)?;
+    let programs = programs(file, reader, names, out)?;
     if element.attribute(file, "InhibitTask") == Some("true") || programs.is_empty() {
         return Ok(());
     }
@@ -46,7 +46,12 @@ pub fn read<'t>(
 }
 
 /// The programs of a task that was opened, to its end: where each is named, and its type.
-fn programs<'t>(file: &'t str, reader: &mut Reader<'t>, names: &Names) -> Result<Vec<(Range<usize>, String)>, Broken> {
+fn programs<'t>(
+    file: &'t str,
+    reader: &mut Reader<'t>,
+    names: &Names,
+    out: &mut Assembly,
+) -> Result<Vec<(Range<usize>, String)>, Broken> {
     let mut programs = Vec::new();
     let mut open = 1_usize;
     while open > 0 {
@@ -55,9 +60,16 @@ fn programs<'t>(file: &'t str, reader: &mut Reader<'t>, names: &Names) -> Result
                 open += 1;
                 if element.name == "ScheduledProgram"
                     && let Some(at) = element.attribute_place(file, "Name")
-                    && let Some(ty) = names.programs.get(&key(&file[at.clone()]))
                 {
-                    programs.push((at, ty.clone()));
+                    let name = key(&file[at.clone()]);
+                    match names.programs.get(&name) {
+                        Some(ty) => programs.push((at, ty.clone())),
+                        None if names.disabled_programs.contains(&name) => {}
+                        None => {
+                            let message = format!("there is no program `{}`", &file[at.clone()]);
+                            out.problem(Trouble::Odd, message, &at);
+                        }
+                    }
                 }
             }
             Some(Part::Close) => open -= 1,
