@@ -161,7 +161,7 @@ fn can_be_mocked(pou: &mut Pou<'_>) {
     pou.body.insert(0, Statement { kind, span: at });
 }
 
-/// The FUNCTIONs that some test replaces, by the bodies of all POUs.
+/// The last names of the FUNCTIONs that some test replaces, by the bodies of all POUs.
 pub(crate) fn mocked_functions<'s>(bodies: &[Vec<Statement<'s>>]) -> FxHashSet<Key<'s>> {
     let mut names = FxHashSet::default();
     for body in bodies {
@@ -170,7 +170,7 @@ pub(crate) fn mocked_functions<'s>(bodies: &[Vec<Statement<'s>>]) -> FxHashSet<K
             if let [function, _] = &arguments[..]
                 && is_named(callee, "MOCK_FUNCTION")
                 && let ArgumentKind::Positional(function) = &function.kind
-                && let ExprKind::Name(name) = &function.kind
+                && let ExprKind::Name(name) | ExprKind::Member(_, name) = &function.kind
             {
                 names.insert(Key(name.text));
             }

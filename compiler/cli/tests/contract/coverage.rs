@@ -120,3 +120,21 @@ fn wrong_usage() {
         &["--backend native or interpret"],
     );
 }
+
+#[test]
+fn a_condition_is_shown_from_its_start() {
+    let folder = Folder::new("a_negated_condition");
+    let source = "FUNCTION_BLOCK F
+VAR_INPUT a, b : BOOL; END_VAR
+VAR_OUTPUT q : BOOL; END_VAR
+    IF NOT (a AND b) THEN q := TRUE; END_IF
+END_FUNCTION_BLOCK
+TEST 't'
+VAR f : F; END_VAR
+    f(a := TRUE, b := FALSE);
+END_TEST
+";
+    folder.write("f.st", source);
+    let ran = folder.staunch("test f.st --coverage table");
+    has(&ran.out, &["f.st:4:8: never FALSE: NOT (a AND b)", "f.st:4:13: not shown to decide: a"]);
+}

@@ -231,3 +231,61 @@ wrong.st:8:5: error[E0305]: `MOCK` belongs to a unit test
     assert_eq!(folder.staunch("check wrong.st --message-format short").err(1), expected);
     assert_eq!(folder.staunch("test wrong.st --message-format short").err(1), expected);
 }
+
+#[test]
+fn functions_in_namespaces_and_of_one_name_can_be_mocked() {
+    let folder = Folder::new("mocks_by_their_paths");
+    let source = "NAMESPACE Plant
+FUNCTION Twice : INT VAR_INPUT x : INT; END_VAR Twice := x * 2; END_FUNCTION
+FUNCTION Scale : INT VAR_INPUT x : INT; END_VAR Scale := x; END_FUNCTION
+FUNCTION Scale : LREAL VAR_INPUT x : LREAL; END_VAR Scale := x; END_FUNCTION
+END_NAMESPACE
+FUNCTION Twice : INT VAR_INPUT x : INT; END_VAR Twice := x + x; END_FUNCTION
+TEST 'by its path'
+    MOCK_FUNCTION Plant.Twice RETURNS 7;
+    ASSERT_EQ(Plant.Twice(1), 7);
+    ASSERT_EQ(Twice(1), 2);
+END_TEST
+TEST 'by USING'
+    USING Plant;
+    VAR x : LREAL := 1.5; END_VAR
+    MOCK_FUNCTION Scale RETURNS 3;
+    ASSERT_EQ(Scale(1), 3);
+    ASSERT_EQ(Scale(x), 3.0);
+END_TEST
+";
+    folder.write("mocks.st", source);
+    for backend in ["interpret", "native", "rust"] {
+        let ran = folder.staunch(&format!("test mocks.st --backend {backend} -A W0503"));
+        assert_eq!(ran.code, 0, "{backend}: {}{}", ran.out, ran.err);
+        has(&ran.out, &["2 passed, 0 failed"]);
+    }
+}
+
+#[test]
+fn time_does_not_go_back_and_references_have_no_numbers() {
+    let folder = Folder::new("negative_time");
+    let source = "FUNCTION_BLOCK A END_FUNCTION_BLOCK
+TEST 'back'
+VAR n : LINT; t : TIME; END_VAR
+    ADVANCE_TIME(t);
+    ADVANCE_TIME(n - 1);
+END_TEST
+TEST 'references'
+VAR a, b : A; x, y : REF_TO A; END_VAR
+    x := REF(a);
+    y := REF(a);
+    ASSERT_EQ(x, y);
+    ASSERT_NEQ(x, y);
+END_TEST
+";
+    folder.write("back.st", source);
+    let ran = folder.staunch("test back.st");
+    assert_eq!(ran.code, 1, "{}", ran.err);
+    has(&ran.out, &["back.st:5:18: n - 1", "since time does not go back, found T#-1ns"]);
+    has(&ran.out, &["ASSERT_NEQ(x, y)", "expected to refer to another object\n"]);
+    folder.write("back.st", "TEST 'constant' ADVANCE_TIME(T#-3s); END_TEST");
+    let ran = folder.staunch("test back.st");
+    assert_eq!(ran.code, 1);
+    has(&ran.err, &["time does not go back"]);
+}

@@ -215,7 +215,13 @@ impl<'s> Checker<'_, 's> {
             return Some(Claim { compares_texts: true, ..Claim::of(holds, wants, actual, expected) });
         }
         let constants = [sides.a.clone(), sides.b.clone()];
+        let are_references = matches!(sides.a.ty(), Some(Type::Reference(_)));
         let compared = self.combine(sides)?.typed()?.clone();
+        if are_references {
+            // Which objects they are, no number says.
+            let wants = if op == BinaryOp::Eq { "to refer to the same object" } else { "to refer to another object" };
+            return Some(Claim::new(compared, wants));
+        }
         let ExprKind::Apply(op, operands) = compared.kind else {
             let [actual, expected] = self.keep_constants(constants, [left, right])?;
             return Some(Claim::of(compared, wants, actual, expected));
@@ -306,12 +312,36 @@ impl<'s> Checker<'_, 's> {
                 self.convert(Conversion::Same, time, number)
             }
         };
+        let value = self.time_to_come(value, duration.span)?;
         let clock = ast::Name { text: CLOCK, span };
         let clock = ast::Expr { kind: Ast::Name(clock), span };
         let place = self.place(&clock)?.place;
         let Type::Block(block) = place.ty else { return None };
         self.assign(pin_place(place, block, "IN"), value, span);
         self.instance_call(&clock, &[], span)
+    }
+
+    /// Time does not go back: a constant that would is refused, and a value fails the test.
+    fn time_to_come(&mut self, duration: Expr, span: Span) -> Option<Expr> {
+        if let Some(value) = duration.as_const() {
+            if matches!(value, Value::I64(it) if it < 0) {
+                self.report(
+                    Diagnostic::new(Code::E0202, span, "time does not go back")
+                        .label("this duration is less than nothing")
+                        .help("write what passes until then: `ADVANCE_TIME(T#100ms)`"),
+                );
+                return None;
+            }
+            return Some(duration);
+        }
+        let (time, at) = (Type::Elementary(Elementary::Time), self.at(span));
+        let (duration, actual) = self.keep("actual", duration, span)?;
+        let none = Expr::constant(Elementary::Time, Value::I64(0), at);
+        let holds = self.apply(Op::Ge, time, vec![duration.clone(), none], Type::BOOL, span)?;
+        let claim =
+            Claim { actual: Some(actual), ..Claim::new(holds, "to be a duration, since time does not go back") };
+        self.assert(claim, None, span)?;
+        Some(duration)
     }
 
     /// A hidden variable of a FUNCTION_BLOCK's instance.
@@ -369,21 +399,25 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn mock_function(&mut self, function: &ast::Expr<'s>, value: &ast::Expr<'s>, span: Span) -> Option<()> {
-        let Ast::Name(name) = &function.kind else {
+        let Some(path) = function.path() else {
             self.report(Diagnostic::new(Code::E0316, function.span, "the name of a FUNCTION is expected here"));
             return None;
         };
-        let Some(mock) = self.decl.mock_of(*name) else {
+        let mocks = self.decl.mocks_of(&path);
+        if mocks.is_empty() {
+            let name = self.decl.log.sources.text(function.span).to_owned();
             self.report(
-                Diagnostic::new(Code::E0316, name.span, format!("`{}` cannot be replaced by a mock", name.text))
+                Diagnostic::new(Code::E0316, function.span, format!("`{name}` cannot be replaced by a mock"))
                     .label("it is no FUNCTION with a result that the sources declare"),
             );
             return None;
-        };
-        let value = self.value(value, mock.value.ty)?;
+        }
         let at = self.at(span);
-        self.assign(mock.value, value, span);
-        self.assign(mock.active, Expr::bool(true, at), span);
+        for mock in mocks {
+            let value = self.value(value, mock.value.ty)?;
+            self.assign(mock.value, value, span);
+            self.assign(mock.active, Expr::bool(true, at), span);
+        }
         Some(())
     }
 

@@ -139,18 +139,20 @@ impl<'s> Checker<'_, 's> {
         if let Some(value) = value.filter(|_| self.is_covered && !self.is_made_up(written.span)) {
             // The operands are decisions of their own.
             let is_known = matches!(written.bare().kind, Ast::Binary(_, BinaryOp::AndThen | BinaryOp::OrElse, _));
-            self.count_decision(value, true, is_known);
+            let at = self.at(written.span);
+            self.count_decision(value, Some(at), is_known);
         }
     }
 
     /// An operand of AND_THEN or OR_ELSE is a decision of its own: the second may not be evaluated.
     pub(crate) fn count_operand(&mut self, value: Option<&Expr>) {
         if let Some(value) = value.filter(|_| self.is_covered) {
-            self.count_decision(value, false, false);
+            self.count_decision(value, None, false);
         }
     }
 
-    fn count_decision(&mut self, value: &Expr, branches: bool, is_known: bool) {
+    /// `branch` is where the condition is written, if one of a branch is.
+    fn count_decision(&mut self, value: &Expr, branch: Option<Location>, is_known: bool) {
         let mut conditions = Conditions::default();
         let mut formula = conditions.formula(value);
         if conditions.all.len() > MOST_CONDITIONS {
@@ -159,11 +161,13 @@ impl<'s> Checker<'_, 's> {
         let all = conditions.all;
         let Some(rows) = u32::try_from(all.len()).ok().filter(|it| *it > 0).map(|it| 1_i64 << it) else { return };
         let places: Vec<_> = all.iter().map(|it| start(it)).collect();
+        let branches = branch.is_some();
         let key = if branches { places.iter().copied().chain([Location::default()]).collect() } else { places.clone() };
         let conditions = if is_known { Vec::new() } else { places };
         let kind = CoverageKind::Decision(Decision { branches, conditions, formula });
         let counters = self.decl.counters(rows);
-        let Some(field) = self.decl.counter(Sort::Decision, start(value), key, counters, kind) else { return };
+        let at = branch.unwrap_or_else(|| start(value));
+        let Some(field) = self.decl.counter(Sort::Decision, at, key, counters, kind) else { return };
         let kept = self.temporary("row", Type::LINT);
         self.block.push(Statement::assign(kept.clone(), row(&all, value.at), value.at));
         let row = Expr::load(kept, value.at);
@@ -192,7 +196,7 @@ impl<'s> Checker<'_, 's> {
         match conditions.all.as_slice() {
             [] => {}
             [one] => self.count_within(one),
-            [_, _, ..] => self.count_decision(value, false, false),
+            [_, _, ..] => self.count_decision(value, None, false),
         }
     }
 

@@ -307,7 +307,9 @@ fn test_unit<'s>(input: &mut In<'_, '_, 's>) -> Item<'s> {
     let span = opened.to(span);
     let mut pou = Pou::new(PouKind::Test, name, span);
     input.state().open.push((end, opened));
+    let region = namespace::of_pou(input, opened);
     contents(input, &mut pou);
+    namespace::close(input, region);
     input.state().open.pop();
     if input.eat(end).is_none() {
         if is_end(input.kind()) {

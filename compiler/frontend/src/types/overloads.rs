@@ -16,9 +16,4 @@ impl Overloads {
     pub fn of(&self, slot: usize) -> Option<Rc<[usize]>> {
         self.sets.get(&slot).map(|it| Rc::from(it.as_slice()))
     }
-
-    /// Whether others have the name of the FUNCTION in a slot.
-    pub fn have(&self, slot: usize) -> bool {
-        self.names.contains_key(&slot)
-    }
 }

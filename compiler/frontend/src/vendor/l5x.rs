@@ -36,7 +36,7 @@ fn controller<'t>(file: &'t str, reader: &mut Reader<'t>, names: &mut Names, out
             "DataType" => out.copy(file, &tag::data_type(file, reader, &element, names)?),
             "Module" => module::read(file, reader, &element, names, out)?,
             "AddOnInstructionDefinitions" => instruction::all(file, reader, names, out)?,
-            "Tags" => out.copy(file, &tag::controller_tags(file, reader, names)?),
+            "Tags" => tag::controller_tags(file, reader, names, out)?,
             "Program" => program::read(file, reader, &element, names, out)?,
             "Task" => task::read(file, reader, &element, names, &mut tasks, out)?,
             "ParameterConnection" => {

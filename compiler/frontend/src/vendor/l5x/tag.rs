@@ -1,6 +1,6 @@
 //! Types and tags: the members of structures, the variables of controllers, programs and instructions.
 
-use super::super::assembly::Chunk;
+use super::super::assembly::{Assembly, Chunk};
 use super::super::xml::{Broken, Element, Part, Reader};
 use super::data::{self, Value, array_of, name_of, ty_text};
 use super::names::{Names, Scope, is_operand, key};
@@ -68,21 +68,33 @@ fn ty<'t>(file: &'t str, element: &Element<'t>) -> Option<Chunk> {
 
 /// The tags in an element that was opened, to its end; aliases are noted, to be written as what they name.
 pub fn tags<'t>(file: &'t str, reader: &mut Reader<'t>, head: &str, names: &Names, scope: &mut Scope) -> Chunks {
-    let mut chunks = Vec::new();
+    let mut all = Vec::new();
+    each_tag(file, reader, head, names, scope, &mut |chunks| all.extend(chunks))?;
+    Ok(all)
+}
+
+fn each_tag<'t>(
+    file: &'t str,
+    reader: &mut Reader<'t>,
+    head: &str,
+    names: &Names,
+    scope: &mut Scope,
+    write: &mut dyn FnMut(Vec<Chunk>),
+) -> Result<(), Broken> {
     while let Some(part) = reader.part()? {
         match part {
             Part::Open(element) if matches!(element.name, "Tag" | "LocalTag") => {
                 let name = key(element.attribute(file, "Name").unwrap_or_default());
                 match element.attribute(file, "AliasFor") {
                     Some(target) => {
-                        chunks.extend(alias(file, &element, name, target, names, scope));
+                        write(alias(file, &element, name, target, names, scope).into_iter().collect());
                         reader.skip()?;
                     }
                     None => {
                         scope.tags.insert(name);
                         let is_constant = element.attribute(file, "Constant") == Some("true");
                         let head = if is_constant { format!("{head} CONSTANT ") } else { format!("{head} ") };
-                        chunks.extend(tag(file, reader, &element, head, names)?);
+                        write(tag(file, reader, &element, head, names)?);
                     }
                 }
             }
@@ -91,7 +103,7 @@ pub fn tags<'t>(file: &'t str, reader: &mut Reader<'t>, head: &str, names: &Name
             Part::Close => break,
         }
     }
-    Ok(chunks)
+    Ok(())
 }
 
 /// Notes an alias; what is wrong with it.
@@ -112,11 +124,17 @@ fn alias<'t>(
     leads_to_itself.then(|| Chunk::odd(format!("this alias stands for itself, by way of `{target}`"), &place))
 }
 
-pub fn controller_tags<'t>(file: &'t str, reader: &mut Reader<'t>, names: &mut Names) -> Chunks {
+/// Those of a controller, which may be many: each is written when it has been read.
+pub fn controller_tags<'t>(
+    file: &'t str,
+    reader: &mut Reader<'t>,
+    names: &mut Names,
+    out: &mut Assembly,
+) -> Result<(), Broken> {
     let mut scope = core::mem::take(&mut names.controller);
-    let chunks = tags(file, reader, "VAR_GLOBAL", names, &mut scope);
+    let read = each_tag(file, reader, "VAR_GLOBAL", names, &mut scope, &mut |chunks| out.copy(file, &chunks));
     names.controller = scope;
-    chunks
+    read
 }
 
 /// A tag or a parameter that was opened, to its end: a section of its own.
