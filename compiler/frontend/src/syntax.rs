@@ -60,7 +60,7 @@ pub fn parse<'s>(file: u16, text: &'s str, diagnostics: &mut Vec<Diagnostic>) ->
     }
     let mut tokens = lex(file, text);
     invalid_names::mend(&mut tokens, text, file);
-    let mut state = State::new(file, text, &tokens);
+    let mut state = State::new(file, text, &tokens, namespace::file(file, text));
     let items = parse_items(&mut state);
     let (mut found, braces, regions) = (state.diagnostics, state.braces, state.regions);
     found.append(&mut tokens.diagnostics);

@@ -17,7 +17,7 @@ use crate::{
     source::Span,
 };
 
-use super::{doc, namespace};
+use super::doc;
 
 pub type Extra<'t, 's> = extra::Full<Problem, State<'t, 's>, ()>;
 /// What a production reads from: `'t` are the tokens, `'s` is the text.
@@ -133,8 +133,8 @@ pub struct State<'t, 's> {
 }
 
 impl<'t, 's> State<'t, 's> {
-    /// Before the first token.
-    pub fn new(file: u16, text: &'s str, tokens: &'t Tokens<'s>) -> Self {
+    /// Before the first token of a file, which is that region.
+    pub fn new(file: u16, text: &'s str, tokens: &'t Tokens<'s>, whole: Region<'s>) -> Self {
         Self {
             file,
             text,
@@ -154,7 +154,7 @@ impl<'t, 's> State<'t, 's> {
             misaligned: None,
             orphaned: false,
             nested: Vec::new(),
-            regions: vec![namespace::file(file, text)],
+            regions: vec![whole],
             around: vec![0],
             ended: false,
         }

@@ -1,7 +1,7 @@
 //! `{Test}` and `{Test(value := 1, limit := 2.5)}`: pragmas with the arguments of a call.
 
-use super::expression;
 use super::parser::{Extra, State, TokenReader};
+use super::{expression, namespace};
 use crate::ast::{Argument, Name, TestPragma};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::lex::{Kind, lex};
@@ -44,7 +44,7 @@ fn arguments<'s>(
     }
     // What cannot be a token is said here alone: places in it are those of the part.
     let is_lexed = tokens.diagnostics.is_empty();
-    let mut state = State::new(file, text, &tokens);
+    let mut state = State::new(file, text, &tokens, namespace::file(file, text));
     let kinds: &[Kind] = &tokens.kinds;
     let whole = custom(|input: &mut InputRef<'_, '_, &[Kind], Extra<'_, 's>>| {
         let arguments = expression::arguments(input).ok().filter(|_| input.kind() == Kind::End);
