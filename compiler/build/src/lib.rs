@@ -243,6 +243,11 @@ impl Build {
                 None => source,
             });
         }
+        for list in self.paths.iter().filter(|it| listing::is_list(it)) {
+            if let Ok((_, lists)) = listing::sources(list) {
+                sources.refer(listing::references(&lists));
+            }
+        }
         if own.is_empty() {
             cargo.error("there is no Structured Text to compile");
             return Err(Failed);

@@ -1,6 +1,6 @@
 //! Which files are sources, and which list others: the projects and solutions of TwinCAT.
 
-use staunch_frontend::Source;
+use staunch_frontend::{Reference, Source};
 use std::path::{Path, PathBuf};
 
 /// A solution names projects, these name PLC projects, and these sources.
@@ -44,6 +44,12 @@ pub fn sources(path: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), String> {
         return Err(format!("{} lists no source file", project.display()));
     }
     Ok((sources, lists))
+}
+
+/// The libraries to which the PLC projects among lists refer.
+pub fn references(lists: &[PathBuf]) -> Vec<Reference> {
+    let projects = lists.iter().filter(|it| has_extension(it, &["plcproj"]));
+    projects.filter_map(|it| std::fs::read(it).ok()).flat_map(|it| Source::references(&it)).collect()
 }
 
 /// The PLC projects that a list leads to, each with what it lists.

@@ -44,6 +44,7 @@ pub use source::{Source, Sources, Span};
 pub use syntax::parse;
 pub use testing::{Assertion, Fixture, FixtureCase, Suite, Test};
 pub use types::coverage::{CoverageKind, CoveragePoint, Decision, Formula};
+pub use vendor::Reference;
 
 use log::Log;
 use rustc_hash::FxHashSet;

@@ -44,6 +44,7 @@ impl Mutant {
         for (source, number) in sources.files().iter().zip(0u16..) {
             changed.add(if number == self.span.file { self.changed(source) } else { source.clone() });
         }
+        changed.refer(sources.references().iter().cloned());
         changed
     }
 

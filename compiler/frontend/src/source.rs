@@ -1,7 +1,7 @@
 //! Source files, and positions in them. A text may be made of pieces of a file: what it says of places is said
 //! of the file.
 
-use crate::vendor::{self, Assembly, Piece, Problem};
+use crate::vendor::{self, Assembly, Piece, Problem, Reference};
 use staunch_runtime::Location;
 
 /// Bytes `start..end` of file number `file`.
@@ -73,6 +73,8 @@ const MARK: &[u8] = b"\xEF\xBB\xBF";
 #[derive(Clone, Debug, Default)]
 pub struct Sources {
     files: Vec<Source>,
+    /// The libraries that a project of TwinCAT's refers to.
+    references: Vec<Reference>,
 }
 
 impl Source {
@@ -99,6 +101,11 @@ impl Source {
     /// The files that a project of TwinCAT's lists, as it writes them.
     pub fn listed(project: &[u8]) -> Result<Vec<String>, String> {
         vendor::listed(&Self::decoded("", project).text)
+    }
+
+    /// The libraries that a PLC project of TwinCAT's refers to.
+    pub fn references(project: &[u8]) -> Vec<Reference> {
+        vendor::references(&Self::decoded("", project).text)
     }
 
     /// The same, as one of a library, which a project uses and which is not its own.
@@ -294,6 +301,15 @@ fn windows_1252(byte: u8) -> char {
 }
 
 impl Sources {
+    /// Adds what a project refers to.
+    pub fn refer(&mut self, references: impl IntoIterator<Item = Reference>) {
+        self.references.extend(references);
+    }
+
+    pub fn references(&self) -> &[Reference] {
+        &self.references
+    }
+
     /// Adds a file; its number is its position.
     pub fn add(&mut self, source: Source) {
         self.files.push(source);

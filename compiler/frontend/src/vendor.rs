@@ -12,7 +12,7 @@ mod unit;
 mod xml;
 
 pub use assembly::{Assembly, Piece, Problem, Trouble};
-pub use listing::listed;
+pub use listing::{Reference, listed, references};
 
 use xml::Reader;
 

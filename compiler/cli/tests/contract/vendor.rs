@@ -140,3 +140,19 @@ fn libraries_of_the_project_file_are_used_and_not_judged() {
         .write("lib/stubs/vendor.st", stub.replace("END_VAR END_FUNCTION", "END_VAR Vendors := 40 + a; END_FUNCTION"));
     assert_eq!(folder.staunch("run --scans 1 --trace -").out(0), "scan,time_ms,x\n1,0,43\n");
 }
+
+#[test]
+fn a_library_is_called_as_the_project_refers_to_it() {
+    let folder = project("referring_to_a_library");
+    let references = r#"<PlaceholderReference Include="Plant_Core"><DefaultResolution>Plant Core, *</DefaultResolution>
+        <Namespace>Core</Namespace></PlaceholderReference></ItemGroup></Project>"#;
+    folder.write("Line.plcproj", PROJECT.replace("</ItemGroup></Project>", references));
+    folder.write("POUs/FB_Station.TcPOU", STATION.replace("parts : CTU;", "parts : CTU; base : Core.FB_Base;"));
+    let missing = folder.staunch("check Line.plcproj").err(1);
+    has(&missing, &["there is no namespace `Core`", "the project refers to a library by this name"]);
+    has(&missing, &["libraries = [\"…/Plant_Core.plcproj\"]"]);
+    std::fs::create_dir_all(folder.0.join("Plant_Core")).unwrap();
+    folder.write("Plant_Core/base.st", "{dialect 'codesys'} FUNCTION_BLOCK FB_Base END_FUNCTION_BLOCK");
+    folder.write("staunch.toml", "libraries = [\"Plant_Core\"]");
+    folder.staunch("check Line.plcproj").err(0);
+}

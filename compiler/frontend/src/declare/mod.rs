@@ -50,7 +50,11 @@ pub(crate) fn declare<'s>(
     }
     let mut libraries: Vec<_> = declarations.log.sources.files().iter().filter_map(|it| it.library()).collect();
     libraries.dedup();
-    declarations.names.libraries = libraries.into_iter().map(str::to_owned).collect();
+    // A library that is there has the name that the project calls it by, too.
+    let references = declarations.log.sources.references().iter();
+    let called = references.filter(|it| libraries.iter().any(|name| name.eq_ignore_ascii_case(&it.library)));
+    let called: Vec<_> = called.map(|it| it.namespace.clone()).collect();
+    declarations.names.libraries = libraries.into_iter().map(str::to_owned).chain(called).collect();
     declarations.collect_namespaces(files);
     for file in files {
         declarations.collect(file);

@@ -232,8 +232,11 @@ impl<'s> Declarations<'s> {
             None => {
                 let families = Family::ALL.map(Family::name);
                 let place = around.first().map_or(span, |it| it.span);
-                Diagnostic::new(Code::E0102, place, format!("there is no namespace `{full}`"))
-                    .help(format!("the families of blocks are {}", list(&families)))
+                let error = Diagnostic::new(Code::E0102, place, format!("there is no namespace `{full}`"));
+                match self.missing_library(&full) {
+                    Some(help) => error.label("the project refers to a library by this name").help(help),
+                    None => error.help(format!("the families of blocks are {}", list(&families))),
+                }
             }
         };
         self.report(error);

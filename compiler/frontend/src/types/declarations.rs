@@ -269,6 +269,15 @@ impl<'s> Declarations<'s> {
         self.names.in_full(self.names.space_of(name.span), name.text)
     }
 
+    /// What to do about a library that the project refers to by a name, and that is not there.
+    pub fn missing_library(&self, namespace: &str) -> Option<String> {
+        let mut references = self.log.sources.references().iter();
+        let library = &references.find(|it| it.namespace.eq_ignore_ascii_case(namespace))?.library;
+        let is_there = self.names.libraries.iter().any(|it| it.eq_ignore_ascii_case(library));
+        let path = format!("`libraries = [\"…/{library}.plcproj\"]`");
+        (!is_there).then(|| format!("have its sources in staunch.toml, a folder or project named `{library}`: {path}"))
+    }
+
     /// What a POU is called for people: `Class.Method`.
     pub fn title(&self, slot: usize) -> String {
         let name = self.pous[slot].ast.name;

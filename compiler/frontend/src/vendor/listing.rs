@@ -43,6 +43,39 @@ fn plc_projects<'t>(text: &'t str, reader: &mut Reader<'t>) -> Result<Vec<String
     Ok(files)
 }
 
+/// A library as a PLC project refers to it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Reference {
+    pub library: String,
+    /// What the project's sources call it by.
+    pub namespace: String,
+}
+
+/// The libraries that a PLC project refers to: `Include="TcUnit"`, or `"TcUnit,1.2,www.tcunit.org"`.
+pub fn references(text: &str) -> Vec<Reference> {
+    let Some(mut reader) = Reader::new(text) else { return Vec::new() };
+    let (mut found, mut is_namespace) = (Vec::<Reference>::new(), false);
+    // What is not well-formed is said by who reads the list.
+    while let Ok(Some(part)) = reader.part() {
+        match part {
+            Part::Open(element) if matches!(element.name, "PlaceholderReference" | "LibraryReference") => {
+                let named = element.attribute(text, "Include").unwrap_or_default();
+                let library = named.split(',').next().unwrap_or_default().trim().to_owned();
+                found.push(Reference { namespace: library.clone(), library });
+            }
+            Part::Open(element) => is_namespace = element.name == "Namespace",
+            Part::Text(chunk) if is_namespace => {
+                if let Some(last) = found.last_mut() {
+                    text[chunk.place].trim().clone_into(&mut last.namespace);
+                }
+            }
+            Part::Text(_) => {}
+            Part::Close => is_namespace = false,
+        }
+    }
+    found
+}
+
 fn sources<'t>(text: &'t str, reader: &mut Reader<'t>) -> Result<Vec<String>, Broken> {
     let mut files = Vec::new();
     // Of an element of the list, whether something in it takes it out again.
