@@ -73,7 +73,8 @@ fn compile(fence: &Fence, dialect: Dialect) -> (Sources, Compilation) {
 
 /// Declarations of variables, with or without statements, become a PROGRAM.
 pub fn wrapped(text: &str) -> String {
-    let units = ["PROGRAM ", "FUNCTION", "TYPE", "CONFIGURATION", "VAR_GLOBAL", "{dialect", "TEST ", "SETUP"];
+    let units =
+        ["PROGRAM ", "FUNCTION", "NAMESPACE ", "TYPE", "CONFIGURATION", "VAR_GLOBAL", "{dialect", "TEST ", "SETUP"];
     let is_unit = |line: &str| units.iter().any(|it| line.starts_with(it));
     match text.lines().any(is_unit) {
         true => text.to_owned(),
