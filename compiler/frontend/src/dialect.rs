@@ -153,6 +153,11 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
+    /// SEL and MUX evaluate only the input that is chosen, and MUX takes the last one for a K beyond it.
+    pub const fn chooses_inputs(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
     /// A POU's own EN and ENO are inputs and outputs like any other.
     pub const fn declares_plain_enable(self) -> bool {
         matches!(self, Self::Codesys)

@@ -2,7 +2,7 @@
 
 use crate::calls::is_enable;
 use crate::expressions::{Untyped, default_type, in_repr, literal_number, untyped};
-use crate::machine::{Frame, Machine, Outcome, unknown};
+use crate::machine::{Frame, Machine, Outcome, Stop, unknown};
 use crate::operators::operator;
 use crate::storage::{Value, integer_cell};
 use crate::types::{Elementary, Type};
@@ -153,6 +153,9 @@ impl<'a> Machine<'a> {
         at: Span,
     ) -> Outcome<Value<'a>> {
         let Some(turn) = given.iter().position(|it| it.0 == 0) else { return unknown("no selector") };
+        if self.declared.is_codesys() {
+            return self.chosen(frame, given, asked, by_number, at);
+        }
         let inputs = given.len() - 1;
         // What is written before the selector is evaluated before it.
         let mut evaluated = Vec::new();
@@ -170,6 +173,55 @@ impl<'a> Machine<'a> {
         if selected >= inputs {
             return Err(self.fault(FaultKind::IndexOutOfRange, at));
         }
+        self.selected(evaluated, selected, asked)
+    }
+
+    /// In CODESYS the selector is evaluated, then what it chooses; a number beyond the inputs takes the last.
+    fn chosen(
+        &mut self,
+        frame: &Frame<'a>,
+        given: &[Given<'a>],
+        asked: Option<&Type<'a>>,
+        by_number: bool,
+        at: Span,
+    ) -> Outcome<Value<'a>> {
+        let Some((_, selector)) = given.iter().find(|it| it.0 == 0) else { return unknown("no selector") };
+        let number = match by_number {
+            true => self.value(frame, selector, None)?.as_integer()?,
+            false => i128::from(self.value_as(frame, selector, &Type::BOOL)?.as_bool()?),
+        };
+        let Ok(number) = usize::try_from(number) else { return Err(self.fault(FaultKind::IndexOutOfRange, at)) };
+        let selected = number.min(given.len() - 2);
+        let mut evaluated = Vec::new();
+        for (position, expr) in given.iter().filter(|it| it.0 > 0) {
+            let value = match untyped(expr) {
+                Some(_) => None,
+                None if *position == selected + 1 => Some(self.value(frame, expr, asked)?),
+                None => Some(self.tried(frame, expr, asked)?),
+            };
+            evaluated.push((*position, value, *expr));
+        }
+        self.selected(evaluated, selected, asked)
+    }
+
+    /// A value that only its type is asked of: what evaluating it does is undone.
+    fn tried(&mut self, frame: &Frame<'a>, expr: &'a Expr<'a>, asked: Option<&Type<'a>>) -> Outcome<Value<'a>> {
+        let before = self.memory.clone();
+        let value = self.value(frame, expr, asked);
+        self.memory = before;
+        match value {
+            Err(Stop::Fault(_)) => unknown("the type of an input that faults"),
+            other => other,
+        }
+    }
+
+    /// One of the inputs, at the type that all have in common.
+    fn selected(
+        &mut self,
+        mut evaluated: Vec<(usize, Option<Value<'a>>, &'a Expr<'a>)>,
+        selected: usize,
+        asked: Option<&Type<'a>>,
+    ) -> Outcome<Value<'a>> {
         evaluated.sort_by_key(|it| it.0);
         let ty = self.common(&evaluated, asked)?;
         let (_, value, expr) = evaluated.swap_remove(selected);

@@ -64,7 +64,8 @@ impl<'a> Machine<'a> {
                         let place = self.checked(place)?;
                         self.memory[place.at].clone()
                     }
-                    _ => Cell::Reference(Some(Box::new(place))),
+                    // `i := p^` goes where `p` leads, and is no access.
+                    _ => Cell::Reference(Some(Box::new(place)).filter(|it| it.nowhere.is_none())),
                 },
                 None => {
                     let value = self.value(frame, expr, None)?;

@@ -8,7 +8,7 @@ use super::operand::Operand;
 use super::operator::beside;
 use crate::types::coercion::{as_number, join, join_promoted};
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{Conversion, Elementary, Expr, Section, Type};
+use staunch_ir::{Block, Conversion, Elementary, Expr, Section, Type};
 use staunch_runtime::{Class, Kind, Signature};
 use std::borrow::Cow;
 
@@ -72,10 +72,36 @@ impl<'s> Checker<'_, 's> {
         expected: Option<Type>,
         name: ast::Name<'s>,
     ) -> Option<Resolved> {
+        self.resolve_inputs(signature, values, expected, name, None)
+    }
+
+    /// As [`resolve`](Self::resolve), of a function whose first parameter chooses one of the others: what each of
+    /// these does before its value is known is a list of its own, to run where it is chosen.
+    pub(crate) fn resolve_choice(
+        &mut self,
+        signature: &Signature,
+        values: &[&ast::Expr<'s>],
+        expected: Option<Type>,
+        name: ast::Name<'s>,
+    ) -> Option<(Resolved, Vec<Block>)> {
+        let mut before = vec![Block::new(); values.len()];
+        let resolved = self.resolve_inputs(signature, values, expected, name, Some(&mut before))?;
+        Some((resolved, before))
+    }
+
+    fn resolve_inputs(
+        &mut self,
+        signature: &Signature,
+        values: &[&ast::Expr<'s>],
+        expected: Option<Type>,
+        name: ast::Name<'s>,
+        mut before: Option<&mut [Block]>,
+    ) -> Option<Resolved> {
         let hint = expected.filter(|it| signature.result == Kind::T && self.admits(signature.class, *it, name.span));
         let operands = self.as_written(values, |this, at, side| {
             let parameter = parameter_name(signature, at);
-            this.taken(Takes::of(kind(signature, at), hint.or(side)), values[at], &parameter, name)
+            let takes = Takes::of(kind(signature, at), hint.or(side));
+            this.set_apart(before.as_deref_mut(), at, |this| this.taken(takes, values[at], &parameter, name))
         })?;
         self.of_one_kind(signature, &operands, values, name)?;
         let at_t = (0..values.len()).filter(|at| kind(signature, *at) == Kind::T);
@@ -88,12 +114,27 @@ impl<'s> Checker<'_, 's> {
         let mut done = Vec::new();
         for (at, operand) in operands.into_iter().enumerate() {
             done.push(match (operand, kind(signature, at)) {
-                (operand, Kind::T) => self.at_type(operand, ty, values[at].span)?,
+                (operand, Kind::T) => {
+                    self.set_apart(before.as_deref_mut(), at, |this| this.at_type(operand, ty, values[at].span))?
+                }
                 (Operand::Typed(expr) | Operand::Promoted(expr, _), _) => expr,
                 (Operand::Integer(_) | Operand::Real { .. }, _) => return None,
             });
         }
         Some(Resolved { ty, own, operands: done })
+    }
+
+    /// Runs `evaluate`; what it adds goes to the list of its input, if each has one. What chooses has none.
+    fn set_apart<T>(
+        &mut self,
+        before: Option<&mut [Block]>,
+        at: usize,
+        evaluate: impl FnOnce(&mut Self) -> Option<T>,
+    ) -> Option<T> {
+        let Some(own) = before.and_then(|it| it.get_mut(at)).filter(|_| at > 0) else { return evaluate(self) };
+        let mut value = None;
+        own.extend(self.nested(|this| value = evaluate(this)));
+        value
     }
 
     /// The argument expressions of a standard function, in the order of its parameters.

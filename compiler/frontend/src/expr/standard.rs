@@ -1,7 +1,7 @@
 //! Calls of the standard's functions: the table of all, and what is more than an operation on
 //! operands of one type.
 
-use super::checker::Checker;
+use super::checker::{Checker, Context};
 use super::operand::{Operand, computed};
 use super::overload::Resolved;
 use super::text_conversion::MAX_CAPACITY;
@@ -10,10 +10,10 @@ use crate::types::signature::pin_place;
 use crate::{Code, Diagnostic, Span, ast, dialect};
 use ast::BinaryOp;
 use staunch_ir::{
-    Arm, Conversion, Elementary, Expr, ExprKind, FaultKind, Op, Statement, StatementKind, StringType, TextOp, Type,
-    Value,
+    Arm, Block, Conversion, Elementary, Expr, ExprKind, FaultKind, Op, Statement, StatementKind, StringType, TextOp,
+    Type, Value,
 };
-use staunch_runtime::{Class, Kind, Signature, signature};
+use staunch_runtime::{Class, Kind, Repr, Signature, signature};
 
 /// The signature of every conversion, `INT_TO_REAL` and the like.
 const CONVERSION: Signature = signature!("_TO_" (IN: T) -> T [ANY]);
@@ -39,6 +39,13 @@ impl<'s> Checker<'_, 's> {
             Meaning::Operator(operator) => self.operator_function(signature, operator, &values, expected, name),
             Meaning::Move => self.operand(values[0], expected),
             Meaning::Truncate => self.trunc(values[0], expected, name).map(Operand::Typed),
+            Meaning::Operation(Op::Sel) | Meaning::Mux if self.chooses_inputs(name.span) => {
+                let (resolved, before) = self.resolve_choice(signature, &values, expected, name)?;
+                match meaning {
+                    Meaning::Mux => self.mux(resolved, before, name.span),
+                    _ => self.chosen(resolved, before, name.span),
+                }
+            }
             Meaning::Operation(op) => {
                 let mut resolved = self.resolve(signature, &values, expected, name)?;
                 if op == Op::SwapBytes {
@@ -70,7 +77,8 @@ impl<'s> Checker<'_, 's> {
             }
             Meaning::Mux => {
                 let resolved = self.resolve(signature, &values, expected, name)?;
-                self.mux(resolved, name.span)
+                let before = vec![Block::new(); resolved.operands.len()];
+                self.mux(resolved, before, name.span)
             }
         }
     }
@@ -225,19 +233,58 @@ impl<'s> Checker<'_, 's> {
         Some(Expr::load(result, at))
     }
 
-    /// `MUX(K, IN0, …)`: all inputs are evaluated; a K outside of them faults.
-    fn mux(&mut self, Resolved { ty, own, mut operands }: Resolved, span: Span) -> Option<Operand> {
-        self.fault_in_order(operands.iter_mut());
-        let mut operands = operands.into_iter();
-        let selector = operands.next()?;
+    /// Whether SEL and MUX evaluate only the input that is chosen. A constant has no statements to choose by.
+    fn chooses_inputs(&self, span: Span) -> bool {
+        self.context == Context::Body && self.decl.dialect(span).chooses_inputs()
+    }
+
+    /// `SEL(G, IN0, IN1)`, of which one is evaluated: `before` is what each does before its value is known.
+    fn chosen(&mut self, resolved: Resolved, mut before: Vec<Block>, span: Span) -> Option<Operand> {
+        let inputs = resolved.operands.get(1..)?;
+        if before.iter().all(Vec::is_empty) && !inputs.iter().any(|it| self.can_fault(it)) {
+            // Nobody can tell.
+            return self.operation(Op::Sel, resolved, span);
+        }
+        let Resolved { ty, own, operands } = resolved;
+        let [selector, first, second] = <[Expr; 3]>::try_from(operands).ok()?;
+        let result = self.temporary("selected", ty);
+        let at = self.at(span);
+        let mut arm = |number: usize, input: Expr| {
+            let mut block = std::mem::take(&mut before[number]);
+            block.push(Statement::assign(result.clone(), input, at));
+            block
+        };
+        let (otherwise, then) = (arm(1, first), arm(2, second));
+        self.push(StatementKind::If { condition: selector, then, otherwise }, span);
+        Some(computed(Expr::load(result, at), own))
+    }
+
+    /// `MUX(K, IN0, …)`: a K below 0 faults, and one above where the dialect does not take the last input then.
+    /// What is not in `before` of an input is evaluated, chosen or not.
+    fn mux(&mut self, Resolved { ty, own, mut operands }: Resolved, before: Vec<Block>, span: Span) -> Option<Operand> {
+        let chooses = self.chooses_inputs(span);
+        if !chooses {
+            self.fault_in_order(operands.iter_mut());
+        }
+        let mut inputs = operands.into_iter().zip(before);
+        let (selector, _) = inputs.next()?;
         let at = self.at(span);
         let result = self.temporary("selected", ty);
-        let arm = |(number, input): (i128, Expr)| Arm {
-            labels: vec![(number, number)],
-            body: vec![Statement::assign(result.clone(), input, at)],
+        let arm = |(number, (input, mut body)): (i128, (Expr, Block))| {
+            body.push(Statement::assign(result.clone(), input, at));
+            Arm { labels: vec![(number, number)], body }
         };
-        let arms = (0..).zip(operands).map(arm).collect();
-        let outside = vec![Statement::new(StatementKind::Fault(FaultKind::IndexOutOfRange), at)];
+        let mut arms: Vec<_> = (0..).zip(inputs).map(arm).collect();
+        let mut outside = vec![Statement::new(StatementKind::Fault(FaultKind::IndexOutOfRange), at)];
+        if chooses {
+            let (least, most) = self.decl.program.repr(selector.ty).and_then(Repr::range)?;
+            let last = arms.last_mut()?;
+            if least < 0 {
+                last.labels[0].1 = most;
+            } else {
+                outside = arms.pop()?.body;
+            }
+        }
         self.push(StatementKind::Case { selector, arms, otherwise: outside }, span);
         Some(computed(Expr::load(result, at), own))
     }
