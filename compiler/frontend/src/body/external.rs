@@ -193,8 +193,8 @@ impl<'s> Declarations<'s> {
         let is_name = symbol.chars().all(is_letter) && !symbol.starts_with(|it: char| it.is_ascii_digit());
         if symbol.is_empty() || !is_name || symbol.starts_with("staunch_") {
             let message = format!("`{symbol}` cannot be a symbol of C");
-            let help = format!("write another: `{{external '{}'}}`", "name");
-            return self.refuse_external(pou.name.span, message, "letters, digits and `_`, not `staunch_`", &help);
+            let help = "write another: `{external 'name'}`";
+            return self.refuse_external(pou.name.span, message, "letters, digits and `_`, not `staunch_`", help);
         }
         let before = self.externals.entry(symbol.to_owned()).or_insert(pou.name.span);
         let before = *before;

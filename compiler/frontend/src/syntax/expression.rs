@@ -238,11 +238,16 @@ fn before_operand(input: &mut In<'_, '_, '_>) -> bool {
     }
 }
 
-/// Whether `S=`, `R=` or `REF=` is so many tokens ahead: the letters mean this only with the `=` directly after them.
+/// Whether `S=`, `R=` or `REF=` is so many tokens ahead.
 pub fn is_latch(input: &mut In<'_, '_, '_>, ahead: usize) -> bool {
+    joins_equal(input, ahead, &["S", "R", "REF"])
+}
+
+/// Whether one of the words is so many tokens ahead, with the `=` directly after it: only so they have a meaning.
+pub fn joins_equal(input: &mut In<'_, '_, '_>, ahead: usize, words: &[&str]) -> bool {
     let number = input.number() + ahead;
     let (word, sign) = (input.state().place(number), input.state().place(number + 1));
-    let is_word = ["S", "R", "REF"].iter().any(|it| input.text(word).eq_ignore_ascii_case(it));
+    let is_word = words.iter().any(|it| input.text(word).eq_ignore_ascii_case(it));
     is_word && input.kind_ahead(ahead + 1) == Kind::Equal && sign.start == word.end
 }
 

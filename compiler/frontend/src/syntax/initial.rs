@@ -10,7 +10,7 @@ use crate::{
 
 use super::{
     combinator::{Rule, ahead, delimited, list, list_before, name, nested, rule, token},
-    expression::expr,
+    expression::{expr, joins_equal},
     foreign_types, literal,
     parser::{In, Parsed, TokenReader},
 };
@@ -23,13 +23,8 @@ pub fn optional_initial<'t, 's: 't>() -> impl Rule<'t, 's, Option<Initial<'s>>> 
     none.or(bound).or(assign().ignore_then(value_or_elements()).map(Some))
 }
 
-/// `REF=`, with nothing between.
 fn binds(input: &mut In<'_, '_, '_>) -> bool {
-    let word = input.here();
-    let sign = input.number() + 1;
-    input.kind_ahead(1) == Kind::Equal
-        && input.text(word).eq_ignore_ascii_case("REF")
-        && input.state().place(sign).start == word.end
+    joins_equal(input, 0, &["REF"])
 }
 
 /// `:=`, also as the `=` of other languages.
