@@ -118,8 +118,12 @@ fn head_length(lines: &[&str]) -> usize {
     let content = first.trim_start();
     let indent = first.len() - content.len();
     let is_broken = is_item(content) && content.contains("fn ") && content.ends_with('(');
+    // Only then: a search for each line would cost the square of the file's length.
+    if !is_broken {
+        return 1;
+    }
     let ends = |it: &&str| it.len() - it.trim_start().len() == indent && it.trim_start().starts_with(')');
-    lines.iter().position(ends).filter(|_| is_broken).map_or(1, |it| it + 1)
+    lines.iter().position(ends).map_or(1, |it| it + 1)
 }
 
 /// A table of one row is opened and closed with it.
@@ -128,8 +132,9 @@ fn hug(text: &str) -> String {
     let mut hugged = String::with_capacity(text.len());
     let mut at = 0;
     while let Some(line) = lines.get(at) {
-        let end = lines[at..].iter().position(|it| *it == "];").map(|it| it + at);
-        let rows = end.filter(|_| line.ends_with("= &[") && !line.starts_with(' ')).map(|end| &lines[at + 1..end]);
+        let opens = line.ends_with("= &[") && !line.starts_with(' ');
+        let length = || lines[at..].iter().position(|it| *it == "];");
+        let rows = opens.then(length).flatten().map(|length| &lines[at + 1..at + length]);
         match rows {
             Some([first, inner @ .., last]) if is_row(first, inner, last) => {
                 hugged.push_str(&format!("{line}{}\n", first.trim_start()));
@@ -283,7 +288,12 @@ fn is_plain_line(line: &str) -> bool {
         && line.len() - mark.len() <= WIDE
         && !code.starts_with(['.', '|', '&', '+'])
         && !code.contains("{} else")
-        && (!code.contains(" { ") || structure(code).is_some_and(|(_, inner, _)| inner.len() <= SMALL_STRUCTURE))
+        && (!has_value(code) || structure(code).is_some_and(|(_, inner, _)| inner.len() <= SMALL_STRUCTURE))
+}
+
+/// Whether a line holds a structure's value or a block: rustfmt leaves `const { x }` where it is.
+fn has_value(code: &str) -> bool {
+    code.match_indices(" { ").any(|(at, _)| !code[..at].ends_with("const"))
 }
 
 /// Puts an empty line before each item and method that follows another.
