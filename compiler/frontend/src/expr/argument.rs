@@ -254,7 +254,9 @@ impl<'s> Checker<'_, 's> {
                 return None;
             }
             let reference = this.reference_to(expr, RefKind::ReferenceTo)?;
-            this.coerce(Operand::Typed(reference), ty, expr.span)
+            let mut reference = this.coerce(Operand::Typed(reference), ty, expr.span)?;
+            this.fault_at_null(&mut reference, expr.span)?;
+            Some(reference)
         })?;
         parts.push(Held::Value(value), role, expr.span);
         Some(())

@@ -11,8 +11,8 @@ use crate::names::{Entry, Found as Meant, Meaning, Sense};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ArgumentKind, BinaryOp, ExprKind as Ast};
 use staunch_ir::{
-    Conversion, Elementary, Expr, ExprKind, Op, Place, RefKind, RefType, ReferenceId, Section, Type, Value,
-    reference::is_null,
+    Conversion, Elementary, Expr, ExprKind, FaultKind, Op, Place, RefKind, RefType, ReferenceId, Section, Statement,
+    StatementKind, Type, Value, reference::is_null,
 };
 
 /// The lower half of a reference's bits: its address.
@@ -212,10 +212,29 @@ impl<'s> Checker<'_, 's> {
             self.error(Code::E0211, argument.span, format!("`__ISVALIDREF` takes a reference, this is {ty}"));
             return None;
         }
-        let at = self.at(span);
-        let bits = self.address_bits(Expr::load(found.place, at));
-        let null = Expr::constant(Elementary::Lword, Value::U64(0), at);
-        self.apply(Op::Ne, Type::Elementary(Elementary::Lword), vec![bits, null], Type::BOOL, span)
+        let reference = Expr::load(found.place, self.at(span));
+        self.against_null(Op::Ne, reference, span)
+    }
+
+    fn against_null(&mut self, op: Op, reference: Expr, span: Span) -> Option<Expr> {
+        let bits = self.address_bits(reference);
+        let null = Expr::constant(Elementary::Lword, Value::U64(0), self.at(span));
+        self.apply(op, Type::Elementary(Elementary::Lword), vec![bits, null], Type::BOOL, span)
+    }
+
+    /// What a VAR_IN_OUT gets must be there when it is called: a reference that is null, or a variable behind one, is
+    /// a fault here.
+    pub(crate) fn fault_at_null(&mut self, reference: &mut Expr, span: Span) -> Option<()> {
+        if let ExprKind::AddressOf(place) = &reference.kind
+            && !place.is_followed()
+        {
+            return Some(());
+        }
+        self.save("referred", reference);
+        let condition = self.against_null(Op::Eq, reference.clone(), span)?;
+        let then = vec![Statement::new(StatementKind::Fault(FaultKind::NullReference), self.at(span))];
+        self.push(StatementKind::If { condition, then, otherwise: Vec::new() }, span);
+        Some(())
     }
 
     /// `r REF= x`
