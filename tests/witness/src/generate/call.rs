@@ -243,12 +243,8 @@ impl Writer {
                     Ty::Text(_) if self.random.once_in(3) => {
                         self.in_out_place(depth, |_, it| matches!(it, Ty::Text(_)))
                     }
-                    // A reference to nothing is noticed at the call or in it, by whether the block has heirs.
-                    Ty::Instance(base) => {
-                        let fits =
-                            |this: &Self, it: &Ty| matches!(it, Ty::Instance(at) if this.types.is_heir(*at, *base));
-                        self.direct_place(depth, fits).map(|it| it.0)
-                    }
+                    Ty::Instance(base) => self
+                        .in_out_place(depth, |this, it| matches!(it, Ty::Instance(at) if this.types.is_heir(*at, *base))),
                     _ => self.in_out_place(depth, |_, it| it == ty),
                 };
                 Some((false, place?))
