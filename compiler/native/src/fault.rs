@@ -6,6 +6,9 @@ use cranelift_codegen::ir::{self as clif, BlockArg, InstBuilder, condcodes::IntC
 use staunch_ir::{FaultKind, Location};
 use staunch_runtime::Fault;
 
+/// How many codes one block is given: what allocating a register for them costs is the square of their number.
+const PASSING: usize = 64;
+
 impl Function<'_, '_> {
     pub(crate) fn fault_if(&mut self, condition: clif::Value, kind: FaultKind, at: Location) {
         let fault = self.fault_block(kind, at);
@@ -58,12 +61,16 @@ impl Function<'_, '_> {
     }
 
     fn passing_block(&mut self) -> clif::Block {
-        if let Some(known) = self.faults.passing {
-            return known;
+        if let Some(known) = self.faults.passing.last()
+            && self.faults.passing_to_last < PASSING
+        {
+            self.faults.passing_to_last += 1;
+            return *known;
         }
         let block = self.cold_block();
         self.builder.append_block_param(block, CODE);
-        self.faults.passing = Some(block);
+        self.faults.passing.push(block);
+        self.faults.passing_to_last = 1;
         block
     }
 
@@ -79,7 +86,7 @@ impl Function<'_, '_> {
             let code = self.code(code);
             self.return_fault(code);
         }
-        if let Some(block) = self.faults.passing.take() {
+        for block in core::mem::take(&mut self.faults.passing) {
             self.go_on_in(block);
             let code = self.builder.block_params(block)[0];
             self.return_fault(code);

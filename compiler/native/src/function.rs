@@ -77,8 +77,10 @@ pub(crate) struct LoopFrame<'p> {
 pub(crate) struct Faults {
     /// By code.
     pub(crate) known: BTreeMap<u64, clif::Block>,
-    /// Returns the code that it is given.
-    pub(crate) passing: Option<clif::Block>,
+    /// Each returns the code that it is given.
+    pub(crate) passing: Vec<clif::Block>,
+    /// How many give one to the last of them.
+    pub(crate) passing_to_last: usize,
 }
 
 /// A part of the frame whose bytes are taken for a statement, one after the other, and again in the next.
