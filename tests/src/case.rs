@@ -94,6 +94,7 @@ impl Case {
                 ("dialect", name) => settings.options.dialect = dialect(name),
                 ("moved-from", name) => settings.options.moved_from = Some(dialect(name)),
                 ("ctu-stop-at-pv", value) => settings.options.ctu_stop_at_pv = value == "on",
+                ("implicit-narrowing", value) => settings.options.implicit_narrowing = value == "on",
                 ("loop-budget", value) => settings.loop_budget = value.parse().ok(),
                 ("cycle", value) => settings.cycle = Some(value.to_owned()),
                 _ => {}

@@ -38,7 +38,8 @@ fn list(codes: &[Code]) -> String {
     format!("[{}]", codes.iter().map(|it| it.name()).collect::<Vec<_>>().join(" "))
 }
 
-/// What is indented after `Before:`, `Before, in codesys:` or `Before, from iec to codesys:`.
+/// What is indented after `Before:`, `Before, in codesys:` or `Before, from iec to codesys:`. A heading may end with the
+/// name of a setting.
 struct Example {
     text: String,
     options: Options,
@@ -56,7 +57,8 @@ impl Example {
         };
         let moved_from = dialect("from");
         let dialect = dialect("in").or_else(|| dialect("to")).unwrap_or_default();
-        Some(Self { text, options: Options { dialect, moved_from, ..Options::default() } })
+        let implicit_narrowing = heading.ends_with(" with implicit-narrowing");
+        Some(Self { text, options: Options { dialect, moved_from, implicit_narrowing, ..Options::default() } })
     }
 
     /// The diagnostics of the text, each once.

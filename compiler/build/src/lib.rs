@@ -50,6 +50,7 @@ pub struct Build {
     libraries: Vec<PathBuf>,
     dialect: Option<Dialect>,
     ctu_stop_at_pv: Option<bool>,
+    implicit_narrowing: Option<bool>,
     levels: Vec<(Level, String)>,
 }
 
@@ -95,6 +96,13 @@ impl Build {
     #[must_use]
     pub fn ctu_stop_at_pv(mut self, stops: bool) -> Self {
         self.ctu_stop_at_pv = Some(stops);
+        self
+    }
+
+    /// In `codesys`, an integer becomes one of fewer bits by itself, with a lint.
+    #[must_use]
+    pub fn implicit_narrowing(mut self, narrows: bool) -> Self {
+        self.implicit_narrowing = Some(narrows);
         self
     }
 
@@ -215,6 +223,7 @@ impl Build {
         let options = staunch_frontend::Options {
             dialect: self.dialect.or(project.dialect()?).unwrap_or_default(),
             ctu_stop_at_pv: self.ctu_stop_at_pv.unwrap_or(project.ctu_stop_at_pv),
+            implicit_narrowing: self.implicit_narrowing.unwrap_or(project.implicit_narrowing),
             ..Default::default()
         };
         let mut levels = project.levels()?;

@@ -16,6 +16,7 @@ pub struct Project {
     pub cycle: Option<String>,
     pub loop_budget: Option<u64>,
     pub ctu_stop_at_pv: bool,
+    pub implicit_narrowing: bool,
     pub warn: Vec<String>,
     pub deny: Vec<String>,
     pub allow: Vec<String>,
@@ -87,6 +88,7 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
         "cycle" => project.cycle = Some(text(key, value)?),
         "loop-budget" => project.loop_budget = Some(number(key, value)?),
         "ctu-stop-at-pv" => project.ctu_stop_at_pv = flag(key, value)?,
+        "implicit-narrowing" => project.implicit_narrowing = flag(key, value)?,
         "warn" => project.warn = texts(key, value)?,
         "deny" => project.deny = texts(key, value)?,
         "allow" => project.allow = texts(key, value)?,
@@ -96,7 +98,7 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
         "verbose" => project.verbose = flag(key, value)?,
         _ => {
             return Err(format!(
-                "there is no setting `{key}`; there are dialect, files, libraries, program, cycle, loop-budget, ctu-stop-at-pv, warn, deny, allow, message-format, color, quiet and verbose"
+                "there is no setting `{key}`; there are dialect, files, libraries, program, cycle, loop-budget, ctu-stop-at-pv, implicit-narrowing, warn, deny, allow, message-format, color, quiet and verbose"
             ));
         }
     }

@@ -317,6 +317,7 @@ fn options(common: &Common, project: &Project) -> Result<Options, String> {
     Ok(Options {
         dialect,
         ctu_stop_at_pv: project.ctu_stop_at_pv,
+        implicit_narrowing: project.implicit_narrowing,
         moved_from: None,
         tests: false,
         is_run: true,

@@ -60,6 +60,8 @@ pub struct Options {
     pub dialect: Dialect,
     /// CODESYS `CTU` stops at its preset, as some of its documents say.
     pub ctu_stop_at_pv: bool,
+    /// In `codesys`, an integer becomes one of fewer bits by itself, with a lint.
+    pub implicit_narrowing: bool,
     /// The dialect that the sources were written in, where `dialect` is the one they move to:
     /// its pragma then means the new dialect, and a pin by its old name is a lint.
     pub moved_from: Option<Dialect>,

@@ -240,6 +240,14 @@ impl<'s> Checker<'_, 's> {
             return true;
         }
         let sign_only = from.repr().size() <= to.repr().size();
+        if !sign_only && self.decl.log.options.implicit_narrowing {
+            self.report(
+                Diagnostic::new(Code::W0513, span, format!("{} becomes {}: high bits are cut", from.name(), to.name()))
+                    .label("implicit conversion")
+                    .help(format!("say so: `{}_TO_{}(…)`", from.name(), to.name())),
+            );
+            return true;
+        }
         if sign_only {
             self.report(
                 Diagnostic::new(

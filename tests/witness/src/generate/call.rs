@@ -243,8 +243,10 @@ impl Writer {
                     Ty::Text(_) if self.random.once_in(3) => {
                         self.in_out_place(depth, |_, it| matches!(it, Ty::Text(_)))
                     }
-                    Ty::Instance(base) => self
-                        .in_out_place(depth, |this, it| matches!(it, Ty::Instance(at) if this.types.is_heir(*at, *base))),
+                    Ty::Instance(base) => self.in_out_place(
+                        depth,
+                        |this, it| matches!(it, Ty::Instance(at) if this.types.is_heir(*at, *base)),
+                    ),
                     _ => self.in_out_place(depth, |_, it| it == ty),
                 };
                 Some((false, place?))
