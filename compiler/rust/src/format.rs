@@ -265,7 +265,7 @@ fn words(code: &str) -> impl Iterator<Item = &str> {
 fn is_plain(item: &[&str], indent: usize) -> bool {
     let (broken, item) = item.split_at(head_length(item).saturating_sub(1));
     let Some((head, body)) = item.split_first() else { return true };
-    let is_whole = body.is_empty() && !head.contains('{');
+    let is_whole = body.is_empty() && !head.replace("{}", "").contains('{');
     // Rows that are no structures may share lines.
     let is_table = head.ends_with("= &[") && body.first().is_some_and(|it| it.ends_with('{'));
     let opens = head.ends_with('{') && !head.contains("!(") || is_table;
