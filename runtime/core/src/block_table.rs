@@ -11,7 +11,8 @@ use crate::{
 /// symbols that native code calls.
 ///
 /// An instruction's first word says how it is called: `plain` and `timed` are function blocks
-/// (a step, without and with need of the context), `rung` takes a rung condition, `tag` nothing.
+/// (a step, without and with need of the context), `rung` takes a rung condition, `tag` nothing, `scan`
+/// the context.
 /// Its method is what generated Rust calls.
 #[macro_export]
 macro_rules! for_each_block {
@@ -100,6 +101,15 @@ macro_rules! for_each_block {
             Logix "FBD_COUNTER" logix::FbdCounter {} {
                 tag "CTUD" ctud staunch_logix_fbd_counter_ctud, prescan prescan_ctud staunch_logix_fbd_counter_prescan_ctud;
             }
+            Logix "FBD_TIMER" logix::FbdTimer {} {
+                scan "TONR" tonr staunch_logix_fbd_timer_tonr;
+                scan "TOFR" tofr staunch_logix_fbd_timer_tofr;
+                scan "RTOR" rtor staunch_logix_fbd_timer_rtor;
+            }
+            Logix "FBD_ONESHOT" logix::FbdOneshot {} {
+                scan "OSRI" osri staunch_logix_fbd_oneshot_osri;
+                scan "OSFI" osfi staunch_logix_fbd_oneshot_osfi;
+            }
         }
     };
 }
@@ -119,6 +129,9 @@ macro_rules! run_instruction {
     }};
     (tag $block:ident $method:ident $cx:expr, $rung:expr) => {
         $block.$method()
+    };
+    (scan $block:ident $method:ident $cx:expr, $rung:expr) => {
+        $block.$method($cx)
     };
 }
 
@@ -146,7 +159,7 @@ macro_rules! declare_blocks {
                 method: stringify!($method),
                 symbol: stringify!($symbol),
                 takes_rung: is!($how rung),
-                needs_context: is!($how timed),
+                needs_context: is!($how timed) || is!($how scan),
                 run: |bytes, _cx, _rung| {
                     let mut block = <$block as Block>::load(bytes);
                     $crate::run_instruction!($how block $method _cx, _rung);
@@ -169,6 +182,9 @@ macro_rules! is {
         true
     };
     (timed timed) => {
+        true
+    };
+    (scan scan) => {
         true
     };
     ($how:ident $other:ident) => {

@@ -306,11 +306,13 @@ impl<'s> Checker<'_, 's> {
         let (id, instruction) = crate::names::instruction_in(Family::Logix, name.text)?;
         let info = id.info();
         let takes_rung = info.instructions[instruction].takes_rung;
-        let mut parameters = vec![Parameter { name: "Counter", section: Section::InOut }];
+        let tag = match takes_rung {
+            true => "Counter".to_owned(),
+            false => format!("{}_tag", info.instructions[instruction].name),
+        };
+        let mut parameters = vec![Parameter { name: &tag, section: Section::InOut }];
         if takes_rung {
             parameters.push(Parameter { name: "RungIn", section: Section::Input });
-        } else {
-            parameters[0].name = "CTUD_tag";
         }
         let names: Vec<_> = parameters.iter().map(|it| it.name).collect();
         let given = self.bind(name.text, &parameters, arguments, |argument| {
@@ -320,8 +322,12 @@ impl<'s> Checker<'_, 's> {
         })?;
         let Given::Value(tag) = given[0] else {
             self.report(
-                Diagnostic::new(Code::E0303, name.span, format!("`{}` needs {}", name.text, article(info.name)))
-                    .help(format!("write `{}(Counter := tag, RungIn := condition)`", name.text)),
+                Diagnostic::new(Code::E0303, name.span, format!("`{}` needs {}", name.text, article(info.name))).help(
+                    match takes_rung {
+                        true => format!("write `{}(Counter := tag, RungIn := condition)`", name.text),
+                        false => format!("write `{}(tag)`", name.text),
+                    },
+                ),
             );
             return None;
         };

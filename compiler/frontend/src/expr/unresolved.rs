@@ -29,10 +29,9 @@ pub(crate) fn no_such_block(family: Family, name: ast::Name<'_>) -> Diagnostic {
 
 /// A block that exists, but not under the dialect's bare names.
 pub(crate) fn block_of_another_dialect(dialect: Dialect, name: ast::Name<'_>) -> Option<Diagnostic> {
-    let owners: Vec<_> = BLOCKS.iter().filter(|it| it.is_named(name.text)).map(|it| it.family).collect();
-    if owners.is_empty() {
-        return None;
-    }
+    let blocks: Vec<_> = BLOCKS.iter().filter(|it| it.is_named(name.text)).collect();
+    let owners: Vec<_> = blocks.iter().map(|it| it.family).collect();
+    let instruction = blocks.first()?.instructions[0].name;
     let system = dialect.family().name();
     let qualified: Vec<_> = owners.iter().map(|it| format!("{}.{}", it.name(), name.text)).collect();
     let qualified: Vec<_> = qualified.iter().map(String::as_str).collect();
@@ -43,9 +42,8 @@ pub(crate) fn block_of_another_dialect(dialect: Dialect, name: ast::Name<'_>) ->
     // Who names a structure of Logix calls its instructions too, which a family's name has to precede as well.
     Some(match (others.as_slice(), owners.as_slice()) {
         ([one], [Family::Logix]) => error.help(format!(
-            "start the file with `{{dialect '{one}'}}`, or write `{}`, and `LOGIX.` before each instruction: `LOGIX.{}(…)`",
+            "start the file with `{{dialect '{one}'}}`, or write `{}`, and `LOGIX.` before each instruction: `LOGIX.{instruction}(…)`",
             qualified[0],
-            if name.text.eq_ignore_ascii_case("FBD_COUNTER") { "CTUD" } else { "CTU" }
         )),
         _ => error.help(format!("name the family: {}", list(&qualified))),
     })

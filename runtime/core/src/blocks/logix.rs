@@ -2,6 +2,12 @@
 //! their tags are retentive, and a prescan before the first scan keeps an input that is already
 //! TRUE from counting.
 
+mod one_shot;
+mod timer;
+
+pub use one_shot::FbdOneshot;
+pub use timer::FbdTimer;
+
 use crate::block::pins;
 
 /// `COUNTER`, the tag that `CTU`, `CTD` and `RES` share. `acc` wraps at its limits: past the

@@ -254,7 +254,7 @@ pub fn standard_blocks() -> Vec<usize> {
             && it.facts.option.is_none()
             && it.facts.kept.is_none()
             && !it.name.starts_with("LT")
-            && it.name != "FBD_COUNTER"
+            && !it.name.starts_with("FBD_")
     };
     (0..BLOCKS.len()).filter(|at| fits(&BLOCKS[*at])).collect()
 }
