@@ -12,6 +12,7 @@ mod unit;
 mod xml;
 
 pub use assembly::{Assembly, Piece, Problem, Trouble};
+pub(crate) use l5x::controller_service;
 pub use listing::{Reference, listed, references};
 
 use xml::Reader;

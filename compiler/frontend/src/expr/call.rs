@@ -33,6 +33,10 @@ impl<'s> Checker<'_, 's> {
         if let Some(value) = self.bound_function(callee, arguments, expr.span) {
             return value;
         }
+        if self.logix_statement(callee, arguments, expr.span) {
+            self.report_no_value(callee, expr.span);
+            return None;
+        }
         let what = self.checked_callee(callee, arguments)?;
         if let Some((enable, rest)) = self.enable(&what, callee, arguments) {
             let value = self.call_if_enabled(what, enable, callee, &rest, expected, expr.span)?;
@@ -65,6 +69,7 @@ impl<'s> Checker<'_, 's> {
     ) {
         if self.memory_function(callee, arguments, expr.span).is_some()
             || self.query(callee, arguments, expr.span).is_some()
+            || self.logix_statement(callee, arguments, expr.span)
         {
             return;
         }

@@ -4,8 +4,8 @@
 use super::checker::Checker;
 use super::operand::Operand;
 use crate::names::{Found as Meant, Sense};
-use crate::{Code, Diagnostic, Span, ast};
-use ast::{ArgumentKind, ExprKind as Ast};
+use crate::{Span, ast};
+use ast::ExprKind as Ast;
 use staunch_ir::{
     Block, Conversion, Elementary, Expr, For, Location, Op, Place, RefKind, Statement, StatementKind, Type, Value,
 };
@@ -70,39 +70,6 @@ impl<'s> Checker<'_, 's> {
         };
         let made = self.memory_arguments(function, given, span);
         Some(made.map(|arguments| Operand::Typed(self.memory_loop(function, &arguments))))
-    }
-
-    fn in_order<'a>(
-        &mut self,
-        name: ast::Name<'s>,
-        names: [&'static str; 3],
-        arguments: &'a [ast::Argument<'s>],
-        span: Span,
-    ) -> Option<[&'a ast::Expr<'s>; 3]> {
-        let mut given = [None; 3];
-        for (at, argument) in arguments.iter().enumerate() {
-            let (slot, value) = match &argument.kind {
-                ArgumentKind::Positional(value) => (Some(at), value),
-                ArgumentKind::Input(formal, value) => {
-                    (names.iter().position(|it| it.eq_ignore_ascii_case(formal.text)), value)
-                }
-                ArgumentKind::Output { .. } => (None, given[0].or(given[1])?),
-            };
-            match slot.and_then(|it| given.get_mut(it)).filter(|it| it.is_none()) {
-                Some(free) => *free = Some(value),
-                None => given[0] = None,
-            }
-        }
-        match given {
-            [Some(a), Some(b), Some(c)] if arguments.len() == 3 => Some([a, b, c]),
-            _ => {
-                self.report(
-                    Diagnostic::new(Code::E0302, span, format!("`{}` takes 3 arguments", name.text))
-                        .label(format!("its parameters are `{}`, `{}` and `{}`", names[0], names[1], names[2])),
-                );
-                None
-            }
-        }
     }
 
     /// Evaluates them from left to right.

@@ -4,6 +4,7 @@
 mod argument;
 mod binding;
 mod block_call;
+mod block_copy;
 mod call;
 pub(crate) mod call_tracking;
 mod callee;

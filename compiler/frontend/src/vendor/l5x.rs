@@ -8,12 +8,14 @@ mod logic;
 mod module;
 mod names;
 mod program;
+mod service;
 mod tag;
 mod task;
 
 use super::assembly::{Assembly, Trouble};
 use super::xml::{Broken, Part, Reader};
 use names::Names;
+pub(crate) use service::controller_service;
 
 /// Reads what follows the root.
 pub fn read<'t>(file: &'t str, mut reader: Reader<'t>) -> Assembly {

@@ -4,6 +4,7 @@
 
 use super::super::assembly::{Assembly, Chunk, Says, Trouble};
 use super::names::{Names, Operand, Scope, key, legal, plain};
+use super::service::controller_service;
 use core::ops::Range;
 use rustc_hash::FxHashMap;
 
@@ -174,6 +175,11 @@ impl<'a> Writer<'a, '_> {
                 return (open, Piece::Words(String::new()));
             }
             if let Some(close) = closing(&rest[open..]) {
+                // Its operands are no values: some are left out, some are names of the controller's.
+                if let Some(service) = controller_service(name) {
+                    let message = format!("`{}` is not supported: {service}", name.to_ascii_uppercase());
+                    return (open + close + 1, Piece::Refused(message));
+                }
                 let inside = &rest[open..open + close];
                 let piece = match name.to_ascii_uppercase().as_str() {
                     "JSR" => self.subroutine(inside),

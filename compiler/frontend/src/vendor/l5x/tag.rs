@@ -4,6 +4,7 @@ use super::super::assembly::{Assembly, Chunk};
 use super::super::xml::{Broken, Element, Part, Reader};
 use super::data::{self, Value, array_of, name_of, ty_text};
 use super::names::{Names, Scope, is_operand, key};
+use staunch_runtime::{BLOCKS, Family};
 
 type Chunks = Result<Vec<Chunk>, Broken>;
 
@@ -145,7 +146,7 @@ pub fn tag<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, he
     chunks.extend(declared(file, element, dimensions));
     let value = initial(file, reader, element.attribute(file, "DataType").unwrap_or_default())?;
     // An instruction's parameters start at their defaults, unless its tag says otherwise.
-    let says_all = |it: &Value| names.instructions.contains_key(&key(it.ty));
+    let says_all = |it: &Value| names.instructions.contains_key(&key(it.ty)) || has_defaults(it.ty);
     let value = value.filter(|it| !it.is_zero() || says_all(it));
     if let Some(value) = value {
         chunks.push(Chunk::words(" := ", place));
@@ -154,6 +155,12 @@ pub fn tag<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, he
     }
     chunks.push(Chunk::words("; END_VAR\n", place));
     Ok(chunks)
+}
+
+/// Whether a structure of Logix's own has members that start TRUE, as `EnableIn` does.
+fn has_defaults(ty: &str) -> bool {
+    let own = BLOCKS.iter().filter(|it| it.family == Family::Logix && it.is_named(ty));
+    own.flat_map(|it| it.pins).any(|it| it.starts_true)
 }
 
 /// The value in a tag that was opened, to the tag's end: decorated data before the older form.
