@@ -25,6 +25,7 @@ mod foreign_types;
 mod initial;
 mod types;
 
+mod access;
 mod declaration;
 mod type_block;
 

@@ -9,6 +9,7 @@ use crate::{
 };
 
 use super::{
+    access::access_paths,
     block_ends,
     combinator::{Rule, ahead, delimited, list as list_of, name, nested, rule, token, word},
     diagnostics,
@@ -21,9 +22,13 @@ use super::{
     types::type_kind,
 };
 
-/// From VAR to END_VAR. None for a section that is refused.
+/// From VAR to END_VAR. None for a section that is refused, and for VAR_ACCESS.
 pub fn section<'s>(input: &mut In<'_, '_, 's>) -> Option<VarBlock<'s>> {
     let (kind, opened) = (input.kind(), input.here());
+    if kind == Kind::VarAccess {
+        access_paths(input);
+        return None;
+    }
     match input.parse(section_head()) {
         Ok(mut block) => {
             block.vars = list(input, Kind::EndVar, block.span);
