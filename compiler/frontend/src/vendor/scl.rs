@@ -49,7 +49,8 @@ pub fn read(file: &str) -> Assembly {
     let mut out = Assembly::default();
     out.write("{dialect 'siemens'}\n", &(0..0));
     let tokens = token::Tokens::new(file).collect();
-    let mut reader = Scl { file, tokens, at: 0, copied: 0, out, is_body: false, locals: FxHashMap::default() };
+    let mut reader =
+        Scl { file, tokens, at: 0, copied: 0, out, is_body: false, locals: FxHashMap::default(), is_combined: false };
     while reader.at < reader.tokens.len() {
         reader.block();
     }
@@ -69,6 +70,8 @@ struct Scl<'t> {
     is_body: bool,
     /// What the block declares, and its type, both in lower case.
     locals: FxHashMap<String, String>,
+    /// Whether the value of a combined assignment is being read.
+    is_combined: bool,
 }
 
 impl<'t> Scl<'t> {
@@ -228,7 +231,59 @@ impl<'t> Scl<'t> {
             Kind::Literal => self.literal(place),
             Kind::Word if after_dot => self.timer(at, place),
             Kind::Word => self.word(at, place),
-            Kind::Address | Kind::Other => {}
+            Kind::Other => self.sign(at, place),
+            Kind::Address => {}
+        }
+    }
+
+    /// `#total += #a * 2;` is `total := total + (a * 2);`.
+    fn sign(&mut self, at: usize, place: Range<usize>) {
+        let sign = self.text(at);
+        if sign == ";" && core::mem::take(&mut self.is_combined) {
+            self.replace(place.start..place.start, ")");
+        }
+        let is_combined = matches!(sign, "+" | "-" | "*" | "/") && self.text(at + 1) == "=";
+        if !is_combined || !self.is_body || self.place(at + 1).start != place.end {
+            return;
+        }
+        let Some(target) = self.target_before(at) else { return };
+        let whole = place.start..self.place(at + 1).end;
+        self.replace(place.clone(), ":= ");
+        self.copied = self.place(target).start;
+        self.at = target;
+        while self.at < at {
+            self.simple();
+        }
+        self.copy_to(self.place(at - 1).end);
+        self.copied = whole.start;
+        self.replace(whole, &format!(" {sign} ("));
+        self.at = at + 2;
+        self.is_combined = true;
+    }
+
+    /// Where the variable begins that ends before a token. It is named twice, so that none is found whose index
+    /// calls something.
+    fn target_before(&self, end: usize) -> Option<usize> {
+        let mut at = end;
+        loop {
+            at = at.checked_sub(1)?;
+            let mut depth = 0;
+            while depth > 0 || self.text(at) == "]" {
+                match self.text(at) {
+                    "]" => depth += 1,
+                    "[" => depth -= 1,
+                    "(" => return None,
+                    _ => {}
+                }
+                at = at.checked_sub(1)?;
+            }
+            let is_name = matches!(self.token(at)?.kind, Kind::Word | Kind::Local | Kind::Quoted);
+            let before = at.checked_sub(1)?;
+            match (is_name, self.text(before)) {
+                (false, _) => return None,
+                (true, ".") => at = before,
+                (true, _) => return Some(at),
+            }
         }
     }
 
