@@ -98,6 +98,11 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
+    /// FUNCTIONs of one name, and METHODs of one class and name, may differ in their parameters.
+    pub const fn has_overloads(self) -> bool {
+        !matches!(self, Self::Codesys)
+    }
+
     /// TON, TOF and TP take an LTIME as well, as the standard overloads them.
     pub const fn overloads_timers(self) -> bool {
         self.is_standard()

@@ -4,24 +4,33 @@
 //!
 //! What is overridden is there for SUPER alone, where something calls it so.
 
+mod classes;
+
 use crate::ast::{Access, Expr, ExprKind, File, Item, Name, Pou, PouKind, VarKind, each_expr};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::log::Log;
+use crate::source::Span;
 use crate::spelling::{Key, nearest};
 use crate::start::is_initial;
-use rustc_hash::{FxHashMap, FxHashSet};
+use classes::{Base, Classes};
+use rustc_hash::FxHashMap;
 
 /// A class extends no more than so many, one through the other.
 const MAX_DEPTH: usize = 100;
 
 /// Gives each class what it inherits.
-pub(crate) fn expand(files: &mut [File<'_>], diagnostics: &mut Vec<Diagnostic>) {
+pub(crate) fn expand<'s>(files: &mut [File<'s>], log: &mut Log<'s>) {
     let needs = |it: &Item<'_>| matches!(it, Item::Pou(pou) if inherits(pou));
     if !files.iter().flat_map(|it| &it.items).any(needs) {
         return;
     }
-    let classes = Classes::of(files);
-    let mut expansion =
-        Expansion { classes: &classes, diagnostics, made: FxHashMap::default(), depths: FxHashMap::default() };
+    let classes = Classes::of(files, log);
+    let mut expansion = Expansion {
+        classes: &classes,
+        diagnostics: &mut log.diagnostics,
+        made: FxHashMap::default(),
+        depths: FxHashMap::default(),
+    };
     for at in 0..classes.all.len() {
         expansion.make_all(at);
     }
@@ -42,38 +51,6 @@ fn inherits(pou: &Pou<'_>) -> bool {
 
 fn has_abstract(pou: &Pou<'_>) -> bool {
     pou.routines.iter().any(|it| it.modifiers.is_abstract.is_some() || it.modifiers.overrides.is_some())
-}
-
-struct Class<'s> {
-    file: usize,
-    item: usize,
-    /// As it is written.
-    pou: Pou<'s>,
-}
-
-struct Classes<'s> {
-    all: Vec<Class<'s>>,
-    by_name: FxHashMap<Key<'s>, usize>,
-    /// Names that several classes have in namespaces.
-    several: FxHashSet<Key<'s>>,
-}
-
-impl<'s> Classes<'s> {
-    fn of(files: &[File<'s>]) -> Self {
-        let mut classes = Self { all: Vec::new(), by_name: FxHashMap::default(), several: FxHashSet::default() };
-        for (file, it) in files.iter().enumerate() {
-            for (item, it) in it.items.iter().enumerate() {
-                let Item::Pou(pou) = it else { continue };
-                let key = Key(pou.name.text);
-                if pou.kind.is_block() {
-                    classes.several.extend(classes.by_name.contains_key(&key).then_some(key));
-                    classes.by_name.entry(Key(pou.name.text)).or_insert(classes.all.len());
-                    classes.all.push(Class { file, item, pou: pou.clone() });
-                }
-            }
-        }
-        classes
-    }
 }
 
 struct Expansion<'c, 's> {
@@ -135,19 +112,19 @@ impl<'s> Expansion<'_, 's> {
     }
 
     fn base(&mut self, pou: &Pou<'s>, base: Name<'s>, around: &[usize]) -> Option<usize> {
-        // Bodies know whose they are by that name.
-        if self.is_of_several(base) || self.is_of_several(pou.name) {
-            return None;
-        }
-        let Some(at) = self.classes.by_name.get(&Key(base.text)).copied() else {
-            let names = self.classes.all.iter().map(|it| it.pou.name.text);
-            let message = format!("there is no FUNCTION_BLOCK `{}`", base.text);
-            let error = Diagnostic::new(Code::E0102, base.span, message).label("expected one to extend");
-            self.diagnostics.push(match nearest(base.text, names) {
-                Some(near) => error.help(format!("did you mean `{near}`?")).fix(base.span, near),
-                None => error,
-            });
-            return None;
+        let at = match self.classes.base_of(pou, base) {
+            Base::Class(at) => at,
+            Base::NotHere => return None,
+            Base::Unknown => {
+                let names = self.classes.all.iter().map(|it| it.pou.name.text);
+                let message = format!("there is no FUNCTION_BLOCK `{}`", base.text);
+                let error = Diagnostic::new(Code::E0102, base.span, message).label("expected one to extend");
+                self.diagnostics.push(match nearest(base.text, names) {
+                    Some(near) => error.help(format!("did you mean `{near}`?")).fix(base.span, near),
+                    None => error,
+                });
+                return None;
+            }
         };
         if around.contains(&at) {
             let way: Vec<_> = around.iter().map(|it| self.classes.all[*it].pou.name.text).collect();
@@ -176,17 +153,6 @@ impl<'s> Expansion<'_, 's> {
         Some(at)
     }
 
-    /// Reports a name that several namespaces have.
-    fn is_of_several(&mut self, name: Name<'s>) -> bool {
-        let several = self.classes.several.contains(&Key(name.text));
-        if several {
-            let message =
-                format!("inheritance of `{}`, which several namespaces have, is not supported yet", name.text);
-            self.diagnostics.push(Diagnostic::new(Code::E0902, name.span, message).label("which one is meant?"));
-        }
-        several
-    }
-
     /// A class with what its base has.
     fn heir(&mut self, own: &Pou<'s>, base: &Pou<'s>) -> Pou<'s> {
         let mut whole = own.clone();
@@ -198,7 +164,7 @@ impl<'s> Expansion<'_, 's> {
         for routine in &base.routines {
             let home = routine.home.unwrap_or(base.name);
             let copy = Pou { home: Some(home), ..routine.clone() };
-            match own.routines.iter().find(|it| is_same(it, routine)) {
+            match own.routines.iter().find(|it| self.overrides(it, routine)) {
                 _ if routine.is_hidden => hidden.push(copy),
                 Some(new) => {
                     self.check_override(new, routine);
@@ -236,24 +202,31 @@ impl<'s> Expansion<'_, 's> {
             supers(&it.body, it.home.unwrap_or(whole.name), &mut wanted);
         }
         while let Some((home, name)) = wanted.pop() {
-            let Some((class, name)) = self.meant(home, name) else { continue };
-            let is_it =
-                |it: &Pou<'s>| Key(it.name.text) == Key(name) && it.home.is_some_and(|it| Key(it.text) == Key(class));
-            while let Some(at) = hidden.iter().position(is_it) {
-                let routine = hidden.swap_remove(at);
-                supers(&routine.body, routine.home.unwrap_or(whole.name), &mut wanted);
-                whole.routines.push(routine);
+            for meant in self.meant(whole, home, name) {
+                while let Some(at) = hidden.iter().position(|it| it.name.span == meant) {
+                    let routine = hidden.swap_remove(at);
+                    supers(&routine.body, routine.home.unwrap_or(whole.name), &mut wanted);
+                    whole.routines.push(routine);
+                }
             }
         }
     }
 
-    /// The class whose routine SUPER means in a routine of another, and its name; the body has its class's.
-    fn meant(&self, home: Name<'s>, name: Option<Name<'s>>) -> Option<(&'s str, &'s str)> {
-        let base = self.classes.all[*self.classes.by_name.get(&Key(home.text))?].pou.extends?;
-        let base = self.made.get(self.classes.by_name.get(&Key(base.text))?)?;
-        let Some(name) = name else { return Some((base.name.text, base.name.text)) };
-        let routine = base.routines.iter().find(|it| !it.is_hidden && Key(it.name.text) == Key(name.text))?;
-        Some((routine.home.unwrap_or(base.name).text, routine.name.text))
+    /// Where those routines are declared that SUPER may mean in a routine of a class; the base's body has the base's
+    /// name.
+    fn meant(&self, whole: &Pou<'s>, home: Name<'s>, name: Option<Name<'s>>) -> Vec<Span> {
+        let made = |name| self.made.get(&self.classes.declared(name)?);
+        let home = if home.span == whole.name.span { Some(whole) } else { made(home) };
+        let Some(base) = home.and_then(|it| made(it.extends?)) else { return Vec::new() };
+        let Some(name) = name else { return vec![base.name.span] };
+        let named = |it: &&Pou<'s>| !it.is_hidden && Key(it.name.text) == Key(name.text);
+        base.routines.iter().filter(named).map(|it| it.name.span).collect()
+    }
+
+    /// Whether a routine overrides one of its base.
+    fn overrides(&self, new: &Pou<'s>, old: &Pou<'s>) -> bool {
+        let may_differ = self.classes.may_be_overloaded(new) && self.classes.may_be_overloaded(old);
+        is_same(new, old) && (!may_differ || self.classes.have_same_parameters(new, old))
     }
 
     fn check_override(&mut self, new: &Pou<'s>, old: &Pou<'s>) {
@@ -276,15 +249,22 @@ impl<'s> Expansion<'_, 's> {
     /// Reports OVERRIDE where nothing is overridden.
     fn check_base_of_override(&mut self, new: &Pou<'s>, base: Option<&Pou<'s>>) {
         let routines = base.map_or(&[][..], |it| &it.routines);
-        if let Some(span) = new.modifiers.overrides
-            && !routines.iter().any(|it| !it.is_hidden && is_same(it, new))
-        {
-            let message = match base {
-                Some(base) => format!("`{}` has no `{}` to override", base.name.text, new.name.text),
-                None => "there is nothing to override: this FUNCTION_BLOCK extends no other".to_owned(),
-            };
-            self.diagnostics.push(Diagnostic::new(Code::E0403, span, message).help("delete OVERRIDE").fix(span, ""));
+        let Some(span) = new.modifiers.overrides else { return };
+        if routines.iter().any(|it| !it.is_hidden && self.overrides(new, it)) {
+            return;
         }
+        let message = match base {
+            Some(base) => format!("`{}` has no `{}` to override", base.name.text, new.name.text),
+            None => "there is nothing to override: this FUNCTION_BLOCK extends no other".to_owned(),
+        };
+        let error = Diagnostic::new(Code::E0403, span, message);
+        self.diagnostics.push(match routines.iter().find(|it| !it.is_hidden && is_same(it, new)) {
+            Some(other) => error
+                .label("none with these parameters")
+                .other(other.name.span, "it has this one")
+                .help("give this one the same parameters, or delete OVERRIDE, and it is one more of the name"),
+            None => error.help("delete OVERRIDE").fix(span, ""),
+        });
     }
 
     /// Reports a class that is not ABSTRACT, with an ABSTRACT method that nobody has overridden.
@@ -307,7 +287,7 @@ impl<'s> Expansion<'_, 's> {
     }
 }
 
-/// Whether one routine overrides the other.
+/// Whether two routines have one name, and are of one kind.
 fn is_same(a: &Pou<'_>, b: &Pou<'_>) -> bool {
     let role = |kind| match kind {
         PouKind::Getter => 1,

@@ -167,7 +167,8 @@ fn run_with(
     let tested = (!options.tests && testing::has_tests(&files))
         .then(|| run(sources, &Options { tests: true, ..options.clone() }, Bodies::Dropped).diagnostics);
     testing::suite::qualify(&mut files);
-    inherit::expand(&mut files, &mut log.diagnostics);
+    files.iter().for_each(|it| log.read_pragmas(it));
+    inherit::expand(&mut files, &mut log);
     let groups = testing::expand(&mut files, options.tests, sources, &mut log.diagnostics);
     start::expand(&mut files);
     let allowances = allow::Allowances::read(&files, &mut log.diagnostics);

@@ -107,14 +107,16 @@ impl<'s> Declarations<'s> {
         if name.text.is_empty() {
             return;
         }
-        if let (Some(home), true) = (routine.home, routine.is_hidden) {
-            let key = (Key(home.text), Key(name.text));
-            self.pous[owner].hidden.entry(key).or_default().set(routine.kind, slot, name.span);
+        if routine.is_hidden {
+            self.pous[owner].hidden.entry(name.span).or_default().set(routine.kind, slot, name.span);
             return;
         }
         let pou = self.pous[owner].ast;
         let variables = pou.blocks.iter().flat_map(|it| &it.vars).flat_map(|it| &it.names);
         let variable = variables.copied().find(|it| Key(it.text) == Key(name.text)).map(|it| it.span);
+        if variable.is_none() && self.overloads_a_method(owner, slot) {
+            return;
+        }
         let own = &mut self.pous[owner];
         let known = variable.or_else(|| own.routines.get(&Key(name.text))?.first(routine.kind));
         if known.is_none() {

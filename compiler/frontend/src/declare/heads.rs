@@ -174,7 +174,10 @@ impl<'s> Declarations<'s> {
         let is_system = |it: &usize| INITIAL.iter().any(|name| Key(name) == Key(self.pous[*it].ast.name.text));
         let own: Vec<_> = own.filter(|it| !is_system(it)).collect();
         for new in own {
-            let Some(old) = self.routine_for(base, new).filter(|it| !self.is_alike(new, *it)) else { continue };
+            // With other parameters it is one more of the name.
+            let is_another = |it: &usize| self.has_overloads(*it) && !self.have_same_parameters(new, *it);
+            let old = self.routine_for(base, new).filter(|it| !self.is_alike(new, *it) && !is_another(it));
+            let Some(old) = old else { continue };
             let (new, old) = (self.pous[new].ast.name, self.pous[old].ast.name);
             self.report(
                 Diagnostic::new(Code::E0403, new.span, format!("`{}` overrides another head", new.text))
@@ -182,6 +185,11 @@ impl<'s> Declarations<'s> {
                     .other(old.span, "overridden here"),
             );
         }
+    }
+
+    fn has_overloads(&self, slot: usize) -> bool {
+        let pou = self.pous[slot].ast;
+        pou.kind == PouKind::Method && self.dialect(pou.name.span).has_overloads()
     }
 
     /// Whether two routines have the same parameters and results. Of what was refused that is not known.

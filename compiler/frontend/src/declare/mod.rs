@@ -27,7 +27,7 @@ mod variable;
 
 use crate::ast;
 use crate::log::Log;
-use crate::names::Entry;
+use crate::names::{Entry, libraries};
 use crate::testing;
 use crate::types::declarations::{Declarations, PouSlot, Slot};
 use crate::types::in_outs::Polymorphic;
@@ -44,17 +44,10 @@ pub(crate) fn declare<'s>(
 ) -> Declarations<'s> {
     let mut declarations = Declarations::new(log, Declarations::build_instance);
     declarations.table.polymorphic = polymorphic;
-    for (number, file) in files.iter().enumerate() {
-        let dialect = declarations.log.read_pragmas(file);
-        declarations.program.files[number].system = dialect.family();
+    for (file, dialect) in declarations.program.files.iter_mut().zip(&declarations.log.dialects) {
+        file.system = dialect.family();
     }
-    let mut libraries: Vec<_> = declarations.log.sources.files().iter().filter_map(|it| it.library()).collect();
-    libraries.dedup();
-    // A library that is there has the name that the project calls it by, too.
-    let references = declarations.log.sources.references().iter();
-    let called = references.filter(|it| libraries.iter().any(|name| name.eq_ignore_ascii_case(&it.library)));
-    let called: Vec<_> = called.map(|it| it.namespace.clone()).collect();
-    declarations.names.libraries = libraries.into_iter().map(str::to_owned).chain(called).collect();
+    declarations.names.libraries = libraries(declarations.log.sources);
     declarations.collect_namespaces(files);
     for file in files {
         declarations.collect(file);

@@ -1,32 +1,41 @@
-//! FUNCTIONs of one name, as Siemens AX has them: they are told apart by their parameters.
+//! FUNCTIONs of one name, and METHODs of one class and name, as Siemens AX has them: they are told apart by their
+//! parameters.
 
 use super::collect::declared_twice;
-use crate::ast::{self, PouKind};
-use crate::dialect::Dialect;
+use crate::ast::PouKind;
 use crate::names::Entry;
+use crate::spelling::Key;
 use crate::types::declarations::Declarations;
-use crate::types::signature::Formal;
-use staunch_ir::Type;
 
 impl<'s> Declarations<'s> {
     /// Whether the FUNCTION in a slot is one more of a name that FUNCTIONs have.
     pub(super) fn overloads_another(&mut self, slot: usize) -> bool {
         let name = self.pous[slot].ast.name;
-        if !self.may_be_overloaded(slot) || name.text.is_empty() {
+        if !self.may_be_overloaded(slot, PouKind::Function) || name.text.is_empty() {
             return false;
         }
         let known = self.names.own(self.names.space_of(name.span), name.text);
         let Some(Entry::Pou(first)) = known.and_then(|it| it.ty) else { return false };
-        if !self.may_be_overloaded(first) {
+        if !self.may_be_overloaded(first, PouKind::Function) {
             return false;
         }
         self.overloads.sets.entry(first).or_insert_with(|| vec![first]).push(slot);
         true
     }
 
-    fn may_be_overloaded(&self, slot: usize) -> bool {
-        let ast::Pou { kind, name, .. } = self.pous[slot].ast;
-        *kind == PouKind::Function && self.dialect(name.span) != Dialect::Codesys
+    /// Whether the METHOD in a slot is one more of a name that METHODs of its POU have.
+    pub(super) fn overloads_a_method(&mut self, owner: usize, slot: usize) -> bool {
+        let is_method = |it: &usize| self.may_be_overloaded(*it, PouKind::Method);
+        let name = self.pous[slot].ast.name;
+        let known = self.pous[owner].routines.get(&Key(name.text)).and_then(|it| it.called).map(|it| it.0);
+        let Some(first) = known.filter(|it| is_method(it) && is_method(&slot)) else { return false };
+        self.overloads.sets.entry(first).or_insert_with(|| vec![first]).push(slot);
+        true
+    }
+
+    fn may_be_overloaded(&self, slot: usize, kind: PouKind) -> bool {
+        let pou = self.pous[slot].ast;
+        pou.kind == kind && self.dialect(pou.name.span).has_overloads()
     }
 
     /// Reports those that nothing tells apart from an earlier one.
@@ -49,16 +58,4 @@ impl<'s> Declarations<'s> {
             }
         }
     }
-
-    fn have_same_parameters(&mut self, a: usize, b: usize) -> bool {
-        let (Some(a), Some(b)) = (self.signature(a), self.signature(b)) else { return false };
-        a.formals.len() == b.formals.len() && a.formals.iter().zip(&b.formals).all(|(a, b)| is_same(a, b))
-    }
-}
-
-/// Whether two parameters take the same arguments.
-fn is_same(a: &Formal<'_>, b: &Formal<'_>) -> bool {
-    let types = a.resolved.ty.read() == b.resolved.ty.read()
-        || matches!((a.resolved.ty, b.resolved.ty), (Type::String(_), Type::String(_)));
-    a.section == b.section && a.word == b.word && types
 }

@@ -24,7 +24,8 @@ const HARMLESS_PRAGMAS: [&str; 12] = [
 ];
 
 impl Log<'_> {
-    pub(super) fn read_pragmas(&mut self, file: &ast::File<'_>) -> Dialect {
+    /// Notes the dialect of the next file.
+    pub(crate) fn read_pragmas(&mut self, file: &ast::File<'_>) {
         let mut found: Option<(Dialect, Span)> = None;
         for pragma in &file.pragmas {
             let Some(name) = dialect_pragma(pragma.text) else {
@@ -55,9 +56,7 @@ impl Log<'_> {
             found = Some((dialect, pragma.span));
         }
         let own = found.map(|(dialect, _)| dialect).filter(|it| self.options.moved_from != Some(*it));
-        let dialect = own.unwrap_or(self.options.dialect);
-        self.dialects.push(dialect);
-        dialect
+        self.dialects.push(own.unwrap_or(self.options.dialect));
     }
 
     /// What a pragma that does not name a dialect is good for.

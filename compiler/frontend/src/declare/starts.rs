@@ -1,6 +1,6 @@
 //! What declarations say of the start of instances: the METHODs that it calls, the values, and the arguments of FB_init.
 
-use crate::ast::{PouKind, TypeKind, TypeSpec, VarDecl, VarKind};
+use crate::ast::{Pou, PouKind, TypeKind, TypeSpec, VarDecl, VarKind};
 use crate::dialect::Dialect;
 use crate::spelling::Key;
 use crate::start::{ADDRESSES, AFTER, GLOBALS, INIT, INITIAL, START, is_after};
@@ -44,13 +44,12 @@ impl<'s> Declarations<'s> {
 
     /// FB_init as a class wrote it, in the class that has it from there.
     fn initial_method_of(&self, class: usize, home: usize) -> Option<usize> {
-        let name = self.pous[home].ast.name;
+        let is_written = |it: &&Pou<'_>| Key(it.name.text) == Key(INIT) && it.home.is_none();
+        let written = self.pous[home].ast.routines.iter().find(is_written)?.name.span;
         let own = &self.pous[class];
-        let hidden = own.hidden.get(&(Key(name.text), Key(INIT)));
-        let routines = hidden.or_else(|| own.routines.get(&Key(INIT)))?;
+        let routines = own.hidden.get(&written).or_else(|| own.routines.get(&Key(INIT)))?;
         let (slot, span) = routines.called?;
-        let written = self.pous[slot].ast.home.map_or(class, |it| self.class_named(it).unwrap_or(class));
-        (written == home && self.dialect(span) == Dialect::Codesys).then_some(slot)
+        (span == written && self.dialect(span) == Dialect::Codesys).then_some(slot)
     }
 
     /// The METHODs with `call_after_init` of the class in a slot.

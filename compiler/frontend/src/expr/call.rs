@@ -170,6 +170,7 @@ impl<'s> Checker<'_, 's> {
         }
         let found = match self.callee(callee, arguments) {
             Some(Callee::Function(slot)) => self.meant(slot, callee.span, arguments).map(Callee::Function),
+            Some(Callee::Routine(slot)) => self.meant_routine(slot, callee, arguments).map(Callee::Routine),
             other => other,
         };
         if found.is_none() && !super::callee::wants_heap(callee) {

@@ -1,4 +1,4 @@
-//! Of FUNCTIONs of one name, the one that a call means.
+//! Of FUNCTIONs, or METHODs, of one name the one that a call means.
 //!
 //! Those are candidates to which each argument can be given as it is written. One is better than another where at
 //! some argument its parameter is closer to what is given, and at none is it farther: a parameter of the argument's
@@ -42,12 +42,19 @@ struct Taker {
 impl<'s> Checker<'_, 's> {
     /// Of the FUNCTIONs that a name leads to, by the first of them, the one that a call means.
     pub(crate) fn meant(&mut self, slot: usize, name: Span, arguments: &[ast::Argument<'s>]) -> Option<usize> {
-        let Some(all) = self.decl.overloads.of(slot) else { return Some(slot) };
+        match self.decl.overloads.of(slot) {
+            Some(all) => self.meant_of(&all, name, arguments),
+            None => Some(slot),
+        }
+    }
+
+    /// The one of several that a call means.
+    pub(super) fn meant_of(&mut self, all: &[usize], name: Span, arguments: &[ast::Argument<'s>]) -> Option<usize> {
         let whole = arguments.last().map_or(name, |it| name.to(it.span));
         let choice = match self.choices.get(&name) {
             Some(known) => known.clone(),
             None => {
-                let choice = self.choice(&all, name, whole, arguments);
+                let choice = self.choice(all, name, whole, arguments);
                 self.choices.insert(name, choice.clone());
                 choice
             }
@@ -201,16 +208,21 @@ impl<'s> Checker<'_, 's> {
         (!has_errors).then_some(result)
     }
 
+    /// What those of one name are.
+    fn word(&self, slots: &[usize]) -> &'static str {
+        slots.first().map_or("FUNCTION", |it| self.decl.pous[*it].ast.kind.word())
+    }
+
     fn none_fits(&self, all: &[usize], name: Span) -> Diagnostic {
-        let text = self.decl.log.sources.text(name);
-        let error = Diagnostic::new(Code::E0317, name, format!("no FUNCTION `{text}` takes these arguments"));
+        let (word, text) = (self.word(all), self.decl.log.sources.text(name));
+        let error = Diagnostic::new(Code::E0317, name, format!("no {word} `{text}` takes these arguments"));
         self.with_candidates(error.label("none of them fits"), all)
     }
 
     fn several_fit(&self, candidates: &[Candidate], name: Span) -> Diagnostic {
-        let text = self.decl.log.sources.text(name);
-        let message = format!("{} FUNCTIONs `{text}` take these arguments, and none fits best", candidates.len());
         let slots: Vec<_> = candidates.iter().map(|it| it.slot).collect();
+        let (word, text) = (self.word(&slots), self.decl.log.sources.text(name));
+        let message = format!("{} {word}s `{text}` take these arguments, and none fits best", candidates.len());
         let error = Diagnostic::new(Code::E0317, name, message).label("which one is meant?");
         self.with_candidates(error, &slots).help("convert an argument to the type that is meant: `TO_INT(…)`, `INT#5`")
     }

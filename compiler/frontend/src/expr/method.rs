@@ -34,6 +34,50 @@ impl<'s> Checker<'_, 's> {
         self.slot.is_some_and(|it| self.decl.has_unknown_base(self.decl.pous[it].owner.unwrap_or(it)))
     }
 
+    /// Of the METHODs that a call may mean, by the first of them, the one that its arguments fit.
+    pub(crate) fn meant_routine(
+        &mut self,
+        first: usize,
+        callee: &ast::Expr<'s>,
+        arguments: &[ast::Argument<'s>],
+    ) -> Option<usize> {
+        let all = self.methods_of_call(callee);
+        let name = match &callee.kind {
+            Ast::Member(_, name) => name.span,
+            _ => callee.span,
+        };
+        match all.as_slice() {
+            [] => Some(first),
+            [one] => Some(*one),
+            several => self.meant_of(several, name, arguments),
+        }
+    }
+
+    /// The METHODs that a call may mean by its name.
+    fn methods_of_call(&self, callee: &ast::Expr<'s>) -> Vec<usize> {
+        match &callee.kind {
+            Ast::Member(base, name) if is_super(base) => {
+                self.slot.map_or_else(Vec::new, |it| self.decl.super_slots(it, *name))
+            }
+            Ast::Member(base, name) if is_this_instance(base) => self.own_methods(*name),
+            Ast::Member(base, name) => {
+                self.static_type(base).map_or_else(Vec::new, |it| self.decl.methods_on(it, name.text))
+            }
+            Ast::Name(name) => self.own_methods(*name),
+            _ => Vec::new(),
+        }
+    }
+
+    /// The METHODs of the POU around that a name may mean: those that the routine's own class has, as the instance's
+    /// class has them.
+    fn own_methods(&self, name: ast::Name<'s>) -> Vec<usize> {
+        let Some(slot) = self.slot else { return Vec::new() };
+        let (home, class) = (self.decl.home(slot), self.decl.pous[slot].owner.unwrap_or(slot));
+        let first = self.decl.pous[home].routines.get(&Key(name.text)).and_then(|it| it.called);
+        let all = first.into_iter().flat_map(|it| self.decl.all_of_a_name(it.0));
+        all.filter_map(|it| self.decl.routine_for(class, it)).collect()
+    }
+
     /// What SUPER means, with or without a name after it.
     pub(crate) fn super_callee(&mut self, name: Option<ast::Name<'s>>, span: Span) -> Option<usize> {
         let slot = self.slot?;
@@ -307,17 +351,14 @@ impl<'s> Checker<'_, 's> {
     /// The FUNCTION or METHOD that is called.
     fn called_slot(&self, callee: &ast::Expr<'s>) -> Option<usize> {
         match &callee.kind {
-            Ast::Member(instance, name) if is_super(instance) => {
-                Some(self.decl.super_routines(self.slot?, Some(*name))?.called?.0)
-            }
-            Ast::Member(instance, name) => self.routine_of(instance, *name),
-            Ast::Name(name) => self.own_routine(*name).or_else(|| {
+            Ast::Member(..) => self.one_of(&self.methods_of_call(callee)),
+            Ast::Name(name) if self.own_routine(*name).is_some() => self.one_of(&self.methods_of_call(callee)),
+            Ast::Name(name) => {
                 let found = self.decl.lookup(&[*name], Sense::Callee);
                 let names::Found::One(Meaning::Declared(Entry::Pou(slot))) = found else { return None };
-                // Which one of several is meant is not known without looking at the arguments.
-                let is_known = self.decl.overloads.of(slot).is_none();
-                (self.decl.pous[slot].ast.kind == PouKind::Function && is_known).then_some(slot)
-            }),
+                let is_function = self.decl.pous[slot].ast.kind == PouKind::Function;
+                self.one_of(&self.decl.all_of_a_name(slot)).filter(|_| is_function)
+            }
             Ast::Literal(_)
             | Ast::Address(_)
             | Ast::Part(..)
@@ -329,6 +370,13 @@ impl<'s> Checker<'_, 's> {
             | Ast::Paren(_)
             | Ast::Error(_) => None,
         }
+    }
+
+    /// Any of several with one type of result: which one is meant is not known without looking at the arguments.
+    fn one_of(&self, all: &[usize]) -> Option<usize> {
+        let first = all.first().copied()?;
+        let result = self.decl.result_type(first);
+        all.iter().all(|it| self.decl.result_type(*it) == result).then_some(first)
     }
 
     /// The type of a PROPERTY that can be read.
@@ -401,6 +449,14 @@ impl<'s> Checker<'_, 's> {
 /// Whether an expression is the word THIS.
 pub(crate) fn is_this(expr: &ast::Expr<'_>) -> bool {
     matches!(&expr.bare().kind, Ast::Name(name) if is_word(*name, "THIS"))
+}
+
+/// `THIS^`, and the standard's `THIS`.
+fn is_this_instance(expr: &ast::Expr<'_>) -> bool {
+    match &expr.bare().kind {
+        Ast::Deref(inner) => is_this(inner),
+        _ => is_this(expr),
+    }
 }
 
 fn is_word(name: ast::Name<'_>, word: &str) -> bool {

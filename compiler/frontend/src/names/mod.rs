@@ -17,7 +17,7 @@ mod region;
 
 use crate::ast;
 use crate::dialect::{self, Dialect};
-use crate::source::Span;
+use crate::source::{Sources, Span};
 use crate::spelling::Key;
 use region::{Region, Regions};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -507,6 +507,15 @@ impl<'s> Names<'s> {
         };
         self.spaces.iter().skip(1).filter_map(held).collect()
     }
+}
+
+/// The names of the libraries that sources are of. One has the name that the project calls it by, too.
+pub(crate) fn libraries(sources: &Sources) -> Vec<String> {
+    let mut libraries: Vec<_> = sources.files().iter().filter_map(|it| it.library()).collect();
+    libraries.dedup();
+    let is_there = |name: &str| libraries.iter().any(|it| it.eq_ignore_ascii_case(name));
+    let called = sources.references().iter().filter(|it| is_there(&it.library)).map(|it| it.namespace.clone());
+    libraries.iter().map(|it| (*it).to_owned()).chain(called).collect()
 }
 
 /// Libraries of CODESYS and TwinCAT whose blocks and functions need no qualification.

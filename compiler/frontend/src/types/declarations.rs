@@ -44,8 +44,8 @@ pub(crate) struct PouSlot<'s> {
     pub owner: Option<usize>,
     /// Its own METHODs and ACTIONs, by their names.
     pub routines: FxHashMap<Key<'s>, Routines>,
-    /// Those that only SUPER names, by their classes and names.
-    pub hidden: FxHashMap<(Key<'s>, Key<'s>), Routines>,
+    /// Those that only SUPER names, by where they are declared; a base's body by the base's name.
+    pub hidden: FxHashMap<Span, Routines>,
     /// Of a run that a CONFIGURATION writes: where the CONFIGURATION names it.
     pub run: Option<Span>,
     /// Of a generic FUNCTION as it is written: the words that its declarations use.
@@ -83,8 +83,18 @@ impl Routines {
         clash.map(|it| it.1)
     }
 
+    /// The routine of a kind.
+    pub fn of(&self, kind: ast::PouKind) -> Option<(usize, Span)> {
+        let mut routines = *self;
+        *routines.place(kind)
+    }
+
     pub fn set(&mut self, kind: ast::PouKind, slot: usize, span: Span) {
-        let place = match kind {
+        *self.place(kind) = Some((slot, span));
+    }
+
+    fn place(&mut self, kind: ast::PouKind) -> &mut Option<(usize, Span)> {
+        match kind {
             ast::PouKind::Getter => &mut self.getter,
             ast::PouKind::Setter => &mut self.setter,
             ast::PouKind::Program
@@ -95,8 +105,7 @@ impl Routines {
             | ast::PouKind::Test
             | ast::PouKind::Action
             | ast::PouKind::Method => &mut self.called,
-        };
-        *place = Some((slot, span));
+        }
     }
 
     pub fn is_property(&self) -> bool {
@@ -308,24 +317,35 @@ impl<'s> Declarations<'s> {
 
     /// What SUPER names in a routine, or in a body: the base's body without a name.
     pub fn super_routines(&self, slot: usize, name: Option<ast::Name<'_>>) -> Option<Routines> {
-        let base = self.class_named(self.pous[self.home(slot)].ast.extends?)?;
-        let base = self.pous[base].ast;
-        let owner = &self.pous[self.pous[slot].owner.unwrap_or(slot)];
         let Some(name) = name else {
-            return owner.hidden.get(&(Key(base.name.text), Key(base.name.text))).copied();
+            let base = self.class_named(self.pous[self.home(slot)].ast.extends?)?;
+            let owner = self.pous[slot].owner.unwrap_or(slot);
+            return self.pous[owner].hidden.get(&self.pous[base].ast.name.span).copied();
         };
-        let named = |it: &&ast::Pou<'_>| !it.is_hidden && Key(it.name.text) == Key(name.text);
-        let home = base.routines.iter().find(named)?.home.unwrap_or(base.name);
-        let hidden = owner.hidden.get(&(Key(home.text), Key(name.text))).copied().unwrap_or_default();
-        // Of a PROPERTY one accessor may be overridden, and the other be the base's still.
-        let own = owner.routines.get(&Key(name.text)).copied().unwrap_or_default();
-        let inherited = |it: Option<(usize, Span)>| it.filter(|it| self.pous[it.0].ast.home.is_some());
-        let found = Routines {
-            called: hidden.called.or(inherited(own.called)),
-            getter: hidden.getter.or(inherited(own.getter)),
-            setter: hidden.setter.or(inherited(own.setter)),
-        };
+        let mut found = Routines::default();
+        for at in self.super_slots(slot, name) {
+            let pou = self.pous[at].ast;
+            if found.of(pou.kind).is_none() {
+                found.set(pou.kind, at, pou.name.span);
+            }
+        }
         (found.called.is_some() || found.is_property()).then_some(found)
+    }
+
+    /// The routines that `SUPER^.name` may mean in a routine: copies of those that the base has, overridden or not.
+    pub fn super_slots(&self, slot: usize, name: ast::Name<'_>) -> Vec<usize> {
+        let base = self.pous[self.home(slot)].ast.extends.and_then(|it| self.class_named(it));
+        let Some(base) = base.map(|it| self.pous[it].ast) else { return Vec::new() };
+        let owner = &self.pous[self.pous[slot].owner.unwrap_or(slot)];
+        let own = owner.routines.get(&Key(name.text)).copied().unwrap_or_default();
+        let copy = |it: &ast::Pou<'_>| {
+            let hidden = owner.hidden.get(&it.name.span).and_then(|routines| routines.of(it.kind));
+            let own = || own.of(it.kind).into_iter().flat_map(|first| self.all_of_a_name(first.0));
+            let inherited = || own().find(|slot| self.pous[*slot].ast.name.span == it.name.span);
+            hidden.map(|it| it.0).or_else(inherited)
+        };
+        let named = base.routines.iter().filter(|it| !it.is_hidden && Key(it.name.text) == Key(name.text));
+        named.filter_map(copy).collect()
     }
 
     /// The type of what a call of the POU in a slot gives, where its signature is known.

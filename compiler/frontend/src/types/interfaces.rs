@@ -111,14 +111,34 @@ impl Declarations<'_> {
     }
 
     fn routines_of_interface(&self, interface: usize, name: &str) -> Option<Routines> {
-        let (mut asked, mut seen) = (vec![interface], FxHashSet::default());
-        while let Some(at) = asked.pop().filter(|it| seen.insert(*it)) {
-            if let Some(found) = self.pous[at].routines.get(&Key(name)) {
-                return Some(*found);
+        self.all_routines_of_interface(interface, name).first().copied()
+    }
+
+    /// What an INTERFACE has by a name, and what those have that it extends: its own first.
+    fn all_routines_of_interface(&self, interface: usize, name: &str) -> Vec<Routines> {
+        let (mut asked, mut seen, mut all) = (vec![interface], FxHashSet::default(), Vec::new());
+        while let Some(at) = asked.pop() {
+            if seen.insert(at) {
+                all.extend(self.pous[at].routines.get(&Key(name)));
+                asked.extend(self.own_interfaces(at).into_iter().rev());
             }
-            asked.extend(self.own_interfaces(at).into_iter().rev());
         }
-        None
+        all
+    }
+
+    /// The METHODs that a name may mean on an instance, or on a variable of an INTERFACE: no two with one head.
+    pub fn methods_on(&self, ty: Type, name: &str) -> Vec<usize> {
+        let routines = match self.interface_of(ty) {
+            Some(interface) => self.all_routines_of_interface(interface, name),
+            None => self.routines_on(ty, name).into_iter().collect(),
+        };
+        let mut all: Vec<usize> = Vec::new();
+        for slot in routines.iter().filter_map(|it| it.called).flat_map(|it| self.all_of_a_name(it.0)) {
+            if !all.iter().any(|it| self.have_same_parameters(*it, slot)) {
+                all.push(slot);
+            }
+        }
+        all
     }
 
     /// What a class has for a head of an INTERFACE, or for the body or a routine of its base.
@@ -140,7 +160,11 @@ impl Declarations<'_> {
             | PouKind::Function
             | PouKind::Test => routines.called,
         };
-        found.map(|it| it.0)
+        let all = self.all_of_a_name(found?.0);
+        match all.as_slice() {
+            [one] => Some(*one),
+            several => several.iter().copied().find(|it| self.have_same_parameters(*it, slot)),
+        }
     }
 
     /// Whether the class of an instance may have to be told from its reference: others have the same INTERFACE or

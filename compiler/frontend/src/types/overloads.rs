@@ -1,4 +1,4 @@
-//! FUNCTIONs of one name that differ in their parameters.
+//! FUNCTIONs of one name, and METHODs of one class and name, that differ in their parameters.
 
 use rustc_hash::FxHashMap;
 use std::rc::Rc;
@@ -12,7 +12,7 @@ pub(crate) struct Overloads {
 }
 
 impl Overloads {
-    /// The FUNCTIONs that the name of the one in a slot means, where there are others.
+    /// The FUNCTIONs or METHODs that the name of the one in a slot means, where there are others.
     pub fn of(&self, slot: usize) -> Option<Rc<[usize]>> {
         self.sets.get(&slot).map(|it| Rc::from(it.as_slice()))
     }
