@@ -158,7 +158,8 @@ fn starts<'s>(pou: &mut Pou<'s>, addresses: Addresses<'s>) {
     }
 }
 
-const OF_INSTANCE: &str = "Before the first scan: starts the instances inside.";
+/// What is said of the METHOD of an instance.
+pub(crate) const OF_INSTANCE: &str = "Before the first scan: starts the instances inside.";
 const OF_PROGRAM: &str = "Before the first scan: starts the instances that are global, and those inside, if that has not been done.\nA scan begins with it; where several PROGRAMs run, call it of all before the first scan of any.";
 
 fn method<'s>(body: Vec<Statement<'s>>, at: Span, doc: &str) -> Pou<'s> {

@@ -180,7 +180,7 @@ fn check_body<'s>(
     let body = Routine {
         kind,
         name: decl.emitted_name(slot),
-        doc: pou.doc.clone(),
+        doc: decl.doc_of(slot),
         location,
         state: signature.state,
         params: signature.params.clone(),

@@ -229,6 +229,9 @@ impl<'s> Checker<'_, 's> {
         if self.decl.pous[class].ast.kind == PouKind::Program || self.decl.has_started_parts(id) {
             self.call_start(class, place.clone(), given.span);
         }
+        if self.is_too_many(class, initial.last().copied(), given.arguments) {
+            return;
+        }
         let named = self.by_name(initial.last().copied(), given.arguments);
         let given = &Given { arguments: &named, ..given.clone() };
         for method in initial {
@@ -261,11 +264,38 @@ impl<'s> Checker<'_, 's> {
         self.user_function(called, Some((place, span)), arguments);
     }
 
+    /// What an FB_init is given by declarations, and not by the system.
+    fn names_of_own(&mut self, method: Option<usize>) -> Vec<&'s str> {
+        let Some(signature) = method.and_then(|it| self.decl.signature(it)) else { return Vec::new() };
+        let is_own = |name: &&str| !OF_THE_SYSTEM.iter().any(|it| Key(it) == Key(name));
+        signature.formals.iter().map(|it| it.name.text).filter(is_own).collect()
+    }
+
+    /// Reports the first argument by position that FB_init does not have.
+    fn is_too_many(&mut self, class: usize, last: Option<usize>, arguments: &[ast::Argument<'s>]) -> bool {
+        // Of what was refused it is not known what it takes.
+        let signature = last.and_then(|it| self.decl.signature(it));
+        if signature.is_none_or(|it| it.scope.has_refused()) || self.decl.has_unknown_base(class) {
+            return false;
+        }
+        let names = self.names_of_own(last);
+        let mut positional = arguments.iter().filter(|it| matches!(it.kind, ArgumentKind::Positional(_)));
+        let Some(first) = positional.nth(names.len()) else { return false };
+        let (class, count) = (self.decl.pous[class].ast.name.text, names.len());
+        let plural = if count == 1 { "" } else { "s" };
+        let error =
+            Diagnostic::new(Code::E0302, first.span, format!("FB_init of `{class}` takes {count} argument{plural}"));
+        let error = error.label("one too many");
+        self.report(match names.is_empty() {
+            true => error,
+            false => error.note(format!("written here: {}", names.join(", "))),
+        });
+        true
+    }
+
     /// Arguments by position are those of the last FB_init: a base's takes what it has by the same name.
     fn by_name(&mut self, last: Option<usize>, arguments: &[ast::Argument<'s>]) -> Vec<ast::Argument<'s>> {
-        let Some(signature) = last.and_then(|it| self.decl.signature(it)) else { return arguments.to_vec() };
-        let is_own = |name: &&str| !OF_THE_SYSTEM.iter().any(|it| Key(it) == Key(name));
-        let names: Vec<_> = signature.formals.iter().map(|it| it.name.text).filter(is_own).collect();
+        let names = self.names_of_own(last);
         let named = |(at, argument): (usize, &ast::Argument<'s>)| match (&argument.kind, names.get(at)) {
             (ArgumentKind::Positional(value), Some(text)) => {
                 let name = ast::Name { text, span: argument.span };
@@ -309,7 +339,14 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
+    /// What the members' declarations say is in the words of the TYPE, which sees nothing of the POU around.
     fn start_structure(&mut self, place: Place, id: StructId, given: &Given<'_, 's>) {
+        let own = std::mem::take(&mut self.scope);
+        self.start_members_of(place, id, given);
+        self.scope = own;
+    }
+
+    fn start_members_of(&mut self, place: Place, id: StructId, given: &Given<'_, 's>) {
         let fields = self.decl.program.structure(id).fields.clone();
         for (at, field) in fields.into_iter().enumerate() {
             if !self.decl.is_started(field.ty) {

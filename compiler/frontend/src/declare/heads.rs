@@ -28,6 +28,9 @@ impl<'s> Declarations<'s> {
             if pou.kind == PouKind::Interface {
                 self.check_interface(slot);
             }
+            if pou.kind == PouKind::Program {
+                self.check_program_has_no_start(slot);
+            }
             if pou.kind.is_block() {
                 self.check_interfaces(slot);
                 self.check_overrides(slot);

@@ -299,6 +299,7 @@ impl<'s> Declarations<'s> {
         }
         if block.kind == VarKind::External {
             drop(scope);
+            self.check_is_own_instance(block, decl);
             if self.is_early_external(decl) {
                 let scope = Rc::get_mut(&mut builder.scope).expect("no one else holds the scope between declarations");
                 self.declare_externals(block, decl, scope);
@@ -326,6 +327,9 @@ impl<'s> Declarations<'s> {
                 None => self.declared_type(decl, &scope, owner),
             },
         };
+        if !self.log.has_errors_since(reported) {
+            self.check_is_own_instance(block, decl);
+        }
         drop(scope);
         // What needs the value of a CONSTANT knows none where that was refused.
         let resolved = resolved.filter(|_| block.constant.is_none() || !self.log.has_errors_since(reported));

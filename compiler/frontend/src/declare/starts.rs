@@ -1,9 +1,9 @@
 //! What declarations say of the start of instances: the METHODs that it calls, the values, and the arguments of FB_init.
 
-use crate::ast::{Pou, PouKind, TypeKind, TypeSpec, VarDecl, VarKind};
+use crate::ast::{Pou, PouKind, TypeKind, TypeSpec, VarBlock, VarDecl, VarKind};
 use crate::dialect::Dialect;
 use crate::spelling::Key;
-use crate::start::{ADDRESSES, AFTER, GLOBALS, INIT, INITIAL, START, is_after};
+use crate::start::{ADDRESSES, AFTER, GLOBALS, INIT, INITIAL, OF_INSTANCE, START, is_after};
 use crate::types::declarations::Declarations;
 use crate::types::starts::Starts;
 use crate::{Code, Diagnostic};
@@ -100,15 +100,46 @@ impl<'s> Declarations<'s> {
         types.into_iter().any(|it| self.is_started(it))
     }
 
+    /// Reports arguments for an instance that is declared, and started, elsewhere.
+    pub(super) fn check_is_own_instance(&mut self, block: &VarBlock<'s>, decl: &VarDecl<'s>) {
+        let (word, label) = match block.kind {
+            VarKind::InOut => ("VAR_IN_OUT", "it stands for an instance of the caller, which has started"),
+            VarKind::External => ("VAR_EXTERNAL", "the instance starts where VAR_GLOBAL declares it"),
+            VarKind::Var
+            | VarKind::Input
+            | VarKind::Output
+            | VarKind::Temp
+            | VarKind::Stat
+            | VarKind::Inst
+            | VarKind::Global => return,
+        };
+        if let Some(construction) = &decl.construction {
+            let message = format!("a variable of {word} takes no arguments");
+            let error = Diagnostic::new(Code::E0304, construction.span, message).label(label);
+            self.report(error.help("delete them").fix(construction.span, ""));
+        }
+    }
+
     /// Reports arguments for instances that take none.
     pub(super) fn check_construction(&mut self, decl: &VarDecl<'s>, mut ty: Type) {
         let Some(construction) = &decl.construction else { return };
+        if let TypeKind::Reference { kind, .. } = &decl.ty.kind {
+            let message = format!("a {} takes no arguments", kind.word());
+            let error = Diagnostic::new(Code::E0304, construction.span, message)
+                .label("FB_init has them, which runs for an instance, where that is declared")
+                .help("delete them")
+                .fix(construction.span, "");
+            return self.report(error);
+        }
         let is_array = matches!(ty, Type::Array(_));
         while let Type::Array(id) = ty {
             ty = self.program.array(id).element;
         }
         let class = if let Type::Struct(id) = ty { self.slot_of_instance(id) } else { None };
         let name = self.program.type_name(ty);
+        if class.is_some_and(|it| self.has_unknown_base(it)) {
+            return;
+        }
         if class.is_none_or(|it| self.initial_methods(it).is_empty()) {
             let label = match class {
                 Some(_) => "these would be for its METHOD FB_init, which CODESYS has",
@@ -132,6 +163,17 @@ impl<'s> Declarations<'s> {
         }
     }
 
+    /// Reports FB_init of a PROGRAM, which nothing calls.
+    pub(super) fn check_program_has_no_start(&mut self, program: usize) {
+        let init = self.pous[program].routines.get(&Key(INIT)).and_then(|it| it.called);
+        let Some((_, span)) = init.filter(|it| self.dialect(it.1) == Dialect::Codesys) else { return };
+        self.report(
+            Diagnostic::new(Code::E0403, span, "a PROGRAM has no FB_init")
+                .label("the system calls it for instances of FUNCTION_BLOCKs alone")
+                .help("give the variables initial values, or have these statements in a FUNCTION_BLOCK of which there is an instance"),
+        );
+    }
+
     /// Reports METHODs that the start calls, and cannot.
     pub(super) fn check_started(&mut self, class: usize) {
         for slot in self.initial_methods(class) {
@@ -150,6 +192,7 @@ impl<'s> Declarations<'s> {
                 );
             }
         }
+        self.check_overridden_after(class);
         for slot in self.methods_after(class) {
             let (pou, owner) = (self.pous[slot].ast, self.pous[class].ast);
             if let Some(block) = pou.blocks.iter().find(|it| matches!(it.kind, VarKind::Input | VarKind::InOut)) {
@@ -171,6 +214,38 @@ impl<'s> Declarations<'s> {
                         .help(format!("write `{{attribute '{AFTER}'}}` before the {}, too", owner.kind.word())),
                 );
             }
+        }
+    }
+
+    /// Reports METHODs without the attribute that override one with it: no document says whether they are called.
+    fn check_overridden_after(&mut self, class: usize) {
+        let Some(base) = self.base_of(class) else { return };
+        let is_own = |it: &usize| self.pous[*it].owner == Some(class);
+        let own = (class + 1..self.pous.len()).take_while(is_own);
+        let is_new = |it: &usize| self.pous[*it].ast.home.is_none() && !is_after(self.pous[*it].ast);
+        for new in own.filter(is_new).collect::<Vec<_>>() {
+            let old = self.routine_for(base, new).filter(|it| is_after(self.pous[*it].ast));
+            let Some(old) = old.map(|it| self.pous[it].ast.name).filter(|it| self.dialect(it.span) == Dialect::Codesys)
+            else {
+                continue;
+            };
+            let name = self.pous[new].ast.name;
+            self.report(
+                Diagnostic::new(Code::E0403, name.span, format!("`{}` overrides a METHOD with `{AFTER}`", name.text))
+                    .label("it has not this attribute")
+                    .other(old.span, "this one runs after the start")
+                    .help(format!("write `{{attribute '{AFTER}'}}` before this METHOD, too")),
+            );
+        }
+    }
+
+    /// What is said of a routine in emitted code. A PROGRAM that others name starts as an instance among the globals does.
+    pub(crate) fn doc_of(&self, slot: usize) -> Option<String> {
+        let pou = self.pous[slot].ast;
+        let of_named = self.pous[slot].owner.is_some_and(|it| self.is_named_program(it));
+        match pou.name.text == START && of_named {
+            true => Some(OF_INSTANCE.to_owned()),
+            false => pou.doc.clone(),
         }
     }
 

@@ -262,6 +262,11 @@ impl<'s> Checker<'_, 's> {
             self.operand(value, None);
             return None;
         }
+        if kind != RefKind::ReferenceTo {
+            self.report_bound_pointer(found.place.ty, kind, value, target.span);
+            self.operand(value, None);
+            return None;
+        }
         let mut place = found.place;
         let ty = place.ty;
         let value = self.after_place(&mut place, |this| {
@@ -275,6 +280,16 @@ impl<'s> Checker<'_, 's> {
         self.note_assigned(&place, target.span);
         self.assign(place, value, span);
         Some(())
+    }
+
+    /// Reports `REF=` of what is assigned an address.
+    fn report_bound_pointer(&mut self, ty: Type, kind: RefKind, value: &ast::Expr<'s>, span: Span) {
+        let function = if kind == RefKind::RefTo { "REF" } else { "ADR" };
+        let (ty, value) = (self.type_name(ty), self.decl.log.sources.text(value.span));
+        let error = Diagnostic::new(Code::E0211, span, format!("`REF=` sets a REFERENCE TO, this is {ty}"))
+            .label("it is assigned an address")
+            .help(format!("write `{} := {function}({value});`", self.decl.log.sources.text(span)));
+        self.report(error);
     }
 
     /// Reports a VAR_IN_OUT that is a reference because heirs are passed for it: it is the caller's instance.
