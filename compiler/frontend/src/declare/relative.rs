@@ -3,6 +3,7 @@
 //! They say how the structure lies in the memory of the system that the source is from, which no program can see:
 //! they are checked, and a structure that has them lies in the process image nowhere.
 
+use crate::dialect::Dialect;
 use crate::types::declarations::Declarations;
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Elementary, Field, Type};
@@ -41,7 +42,7 @@ impl<'s> Declarations<'s> {
         let mut fields = fields.iter();
         for decl in members {
             let types: Vec<_> = fields.by_ref().take(decl.names.len()).map(|it| it.ty).collect();
-            let Some(address) = decl.address else { continue };
+            let Some(address) = self.location_of(decl) else { continue };
             self.check_one_name(decl);
             if let (Some(offset), [ty, ..]) = (self.offset(address), types.as_slice()) {
                 let bits = self.bits_at(address, offset, *ty).unwrap_or_default();
@@ -49,7 +50,7 @@ impl<'s> Declarations<'s> {
             }
         }
         let first = extents.first()?.span;
-        for decl in members.iter().filter(|it| it.address.is_none()) {
+        for decl in members.iter().filter(|it| self.location_of(it).is_none()).collect::<Vec<_>>() {
             self.report(
                 Diagnostic::new(Code::E0409, decl.span, "this member has no location")
                     .label("where others have one, each has")
@@ -78,6 +79,13 @@ impl<'s> Declarations<'s> {
                 last = Some(extent);
             }
         }
+    }
+
+    /// Where a member says that it lies. `AT %I*` says that the system's tree of devices may connect it: it is a member like
+    /// any other.
+    pub(super) fn location_of(&self, member: &ast::VarDecl<'s>) -> Option<ast::Name<'s>> {
+        let is_open = |it: &ast::Name<'s>| it.text.ends_with('*') && self.dialect(it.span) == Dialect::Codesys;
+        member.address.filter(|it| !is_open(it))
     }
 
     fn offset(&mut self, address: ast::Name<'s>) -> Option<Offset> {

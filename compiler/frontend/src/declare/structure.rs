@@ -112,7 +112,7 @@ impl<'s> Declarations<'s> {
     }
 
     fn refuse_addresses(&mut self, members: &[ast::VarDecl<'s>], what: &str) {
-        for address in members.iter().filter_map(|it| it.address) {
+        for address in members.iter().filter_map(|it| self.location_of(it)).collect::<Vec<_>>() {
             self.not_supported(address.span, what);
         }
     }

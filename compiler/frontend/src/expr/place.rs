@@ -105,6 +105,12 @@ impl<'s> Checker<'_, 's> {
                 self.report_array_called(callee, arguments);
                 None
             }
+            Ast::Call(callee, arguments)
+                if self.static_type(callee).is_none() && self.call_value(expr, callee, arguments, None).is_none() =>
+            {
+                // What is called, or what it would give, is not known: that has been reported.
+                None
+            }
             Ast::Literal(_) | Ast::Part(..) | Ast::Call(..) | Ast::Unary(..) | Ast::Binary(..) => {
                 let error =
                     Diagnostic::new(Code::E0306, expr.span, "a variable is expected here").label("this is a value");

@@ -331,6 +331,9 @@ pub fn arguments<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Vec<Argument<'s>>> {
             if semicolon {
                 input.take();
             }
+        } else if input.kind() == Kind::CloseParen && arguments.last().is_some_and(is_named) {
+            // TwinCAT passes over the last comma of a list with one argument a line.
+            break;
         }
     }
     close(input, Kind::CloseParen, opened)?;
@@ -338,6 +341,10 @@ pub fn arguments<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Vec<Argument<'s>>> {
     input.state().height = height;
     arguments.shrink_to_fit();
     Ok(arguments)
+}
+
+fn is_named(argument: &Argument<'_>) -> bool {
+    !matches!(argument.kind, ArgumentKind::Positional(_))
 }
 
 /// `t(IN := x; PT := y)`: a `;` with more on its line.
