@@ -243,10 +243,16 @@ impl Writer {
                     Ty::Text(_) if self.random.once_in(3) => {
                         self.in_out_place(depth, |_, it| matches!(it, Ty::Text(_)))
                     }
-                    Ty::Instance(base) => self.in_out_place(
-                        depth,
-                        |this, it| matches!(it, Ty::Instance(at) if this.types.is_heir(*at, *base)),
-                    ),
+                    Ty::Instance(base) => {
+                        let fits =
+                            |this: &Self, it: &Ty| matches!(it, Ty::Instance(at) if this.types.is_heir(*at, *base));
+                        // A reference to nothing would end most programs early.
+                        if self.random.once_in(8) {
+                            self.in_out_place(depth, fits)
+                        } else {
+                            self.direct_place(depth, fits).map(|it| it.0)
+                        }
+                    }
                     _ => self.in_out_place(depth, |_, it| it == ty),
                 };
                 Some((false, place?))
