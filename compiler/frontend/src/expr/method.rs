@@ -393,6 +393,9 @@ impl<'s> Checker<'_, 's> {
         if let Some(variable) = self.scope.get(name.text) {
             return Some(variable.place.ty);
         }
+        if let Some(result) = self.result_variable(name) {
+            return Some(result.place.ty);
+        }
         if is_word(name, "THIS") {
             return Some(self.this()?.place.ty);
         }

@@ -254,7 +254,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// A FUNCTION's own name is its result.
-    fn result_variable(&self, name: ast::Name<'s>) -> Option<Variable<'s>> {
+    pub(super) fn result_variable(&self, name: ast::Name<'s>) -> Option<Variable<'s>> {
         let signature = self.signature.as_ref()?;
         let (id, resolved) = signature.result.as_ref()?;
         let local = &self.locals[id.index()];
