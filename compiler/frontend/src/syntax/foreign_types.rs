@@ -97,7 +97,7 @@ pub fn missing_comma<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
     })
 }
 
-/// `INT[10]`, as other languages write an array, after its `INT`.
+/// `INT[10]`, as other languages write an array, after its `INT`; `Motor[3(9)]`, which would repeat arguments.
 pub fn length<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
     let starts =
         ahead(|input| input.kind() == Kind::OpenBracket && matches!(input.kind_ahead(1), Kind::Integer | Kind::Name));
@@ -105,6 +105,13 @@ pub fn length<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
     let brackets = delimited(Kind::OpenBracket, bounds, Kind::CloseBracket);
     reported(starts.ignore_then(brackets), |(length, high), state, tokens| {
         let element = state.place(tokens.start - 1);
+        if let ExprKind::Call(count, _) = &length.kind
+            && matches!(count.kind, ExprKind::Literal(_))
+        {
+            let list = Span { start: count.span.end, ..length.span };
+            let error = diagnostics::repeated_arguments(length.span, state.slice(list));
+            return state.report(error);
+        }
         let bounds = match high {
             Some(high) => state.slice(length.span.to(high.span)).to_owned(),
             None => format!("1..{}", state.slice(length.span)),

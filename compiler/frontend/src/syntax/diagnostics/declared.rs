@@ -97,6 +97,13 @@ pub fn array_bounds(span: Span, found: &str, meant: &str) -> Diagnostic {
         .help(format!("write `{meant}`"))
 }
 
+/// `Motor[3(9)]`
+pub fn repeated_arguments(span: Span, list: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0304, span, "the arguments of FB_init are not repeated by a number")
+        .label("expected a list for each element")
+        .help(format!("write each: `[{list}, {list}, …]`"))
+}
+
 /// `STRUCT Name` outside of TYPE.
 pub fn bare_structure(span: Span, name: &str) -> Diagnostic {
     Diagnostic::new(Code::E0001, span, "a structure is declared in TYPE … END_TYPE")
