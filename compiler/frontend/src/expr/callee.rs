@@ -1,6 +1,7 @@
 //! What a call calls.
 
 use super::checker::Checker;
+use super::logix_operands;
 use super::unresolved::{block_of_another_dialect, no_such_block};
 use crate::inherit::is_super;
 use crate::names::{Entry, Found, Meaning, Sense, functions, instruction_in};
@@ -226,7 +227,10 @@ impl<'s> Checker<'_, 's> {
         let mut error =
             Diagnostic::new(Code::E0307, name.span, format!("there is no function or instance `{}`", name.text))
                 .label("unknown name");
-        if staunch_ir::Elementary::named(name.text).is_some() {
+        let is_logix = self.decl.dialect(name.span).family() == Family::Logix;
+        if let Some(meant) = logix_operands::of_ladder(name.text).filter(|_| is_logix) {
+            error = error.note("it is an instruction of ladder").help(meant);
+        } else if staunch_ir::Elementary::named(name.text).is_some() {
             error = error.help(format!("a value is converted with `TO_{}(…)`", name.text.to_ascii_uppercase()));
         } else if name.text.eq_ignore_ascii_case("POW") {
             error = error.help("write `EXPT(base, exponent)`, or `base ** exponent`");

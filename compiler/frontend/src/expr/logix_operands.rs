@@ -61,6 +61,7 @@ impl<'s> Checker<'_, 's> {
         let error = match (is_in(&COUNTERS), family) {
             (true, Family::Logix) => self.of_counter(callee, &given, arguments),
             (true, _) => self.of_block(name, family, &given),
+            (false, Family::Logix) => self.of_ladder_timer(callee, name, &given),
             (false, _) => self.of_timer(name, &given),
         };
         self.report(error);
@@ -161,6 +162,19 @@ impl<'s> Checker<'_, 's> {
         error.note(logix).help(format!("declare `{tag} : {};`, and call `{tag}({})`", info.name, pins.join(", ")))
     }
 
+    /// In Structured Text Logix has other instructions for its timers.
+    fn of_ladder_timer(&self, callee: &ast::Expr<'s>, name: ast::Name<'s>, given: &Operands<'_, 's>) -> Diagnostic {
+        let (tag, text) = (self.source(given.tag), name.text.to_ascii_uppercase());
+        let owner = if matches!(callee.kind, Ast::Name(_)) { "" } else { "LOGIX." };
+        let preset = given.preset.map_or("1000", |it| self.source(it));
+        Diagnostic::new(Code::E0305, name.span, format!("`{text}` is an instruction of ladder"))
+            .label(format!("in Structured Text it is `{text}R`, on an FBD_TIMER"))
+            .help(format!(
+                "declare `{tag} : {owner}FBD_TIMER := (PRE := {preset});`, and write `{tag}.TimerEnable := {}; {owner}{text}R({tag});`",
+                self.rung(given)
+            ))
+    }
+
     /// A TIMER counts milliseconds.
     fn of_timer(&self, name: ast::Name<'s>, given: &Operands<'_, 's>) -> Diagnostic {
         let (tag, text) = (self.source(given.tag), name.text);
@@ -180,6 +194,32 @@ impl<'s> Checker<'_, 's> {
             .label("a timer is a FUNCTION_BLOCK; its preset is a TIME")
             .help(format!("declare `{tag} : {text};`, and call `{tag}(IN := {}, PT := {preset})`", self.rung(given)))
     }
+}
+
+/// What Structured Text has for an instruction of ladder.
+pub(super) fn of_ladder(name: &str) -> Option<&'static str> {
+    const MEANT: &[(&[&str], &str)] = &[
+        (&["XIC", "XIO"], "read the tag: `tag`, or `NOT tag`"),
+        (&["OTE"], "assign the condition: `tag := condition;`"),
+        (&["OTL"], "write `IF condition THEN tag := TRUE; END_IF;`"),
+        (&["OTU"], "write `IF condition THEN tag := FALSE; END_IF;`"),
+        (
+            &["ONS", "OSR"],
+            "declare `edge : FBD_ONESHOT;`, write `edge.InputBit := condition; OSRI(edge);`, and read `edge.OutputBit`",
+        ),
+        (
+            &["OSF"],
+            "declare `edge : FBD_ONESHOT;`, write `edge.InputBit := condition; OSFI(edge);`, and read `edge.OutputBit`",
+        ),
+        (
+            &["TON", "TOF", "RTO"],
+            "declare `timer : FBD_TIMER := (PRE := 1000);`, write `timer.TimerEnable := condition;`, and call TONR, TOFR or RTOR with it",
+        ),
+        (&["MOV"], "write `destination := source;`"),
+        (&["CPT"], "write `destination := expression;`"),
+    ];
+    let is_it = |names: &[&str]| names.iter().any(|it| it.eq_ignore_ascii_case(name));
+    MEANT.iter().find(|(names, _)| is_it(names)).map(|(_, meant)| *meant)
 }
 
 /// The operands, where there is a preset or a count among them. Without `instructions` a bare name is a
