@@ -77,10 +77,7 @@ impl<'a> Machine<'a> {
     /// Whether the callee has EN among its own parameters.
     fn declares_enable(&self, frame: &Frame<'a>, callee: &Expr<'a>) -> bool {
         let ExprKind::Name(name) = &callee.kind else { return false };
-        let instance = self.variable(frame, name.text).and_then(|it| match &it.ty {
-            Type::Record(record) => record.pou,
-            _ => None,
-        });
+        let instance = self.variable(frame, name.text).and_then(|it| it.ty.class());
         let pou = instance.or_else(|| self.declared.pou_named(name.text));
         pou.is_some_and(|it| self.formals(it).iter().any(|it| it.name.eq_ignore_ascii_case("EN")))
     }
@@ -170,7 +167,9 @@ impl<'a> Machine<'a> {
         instance: &Place<'a>,
         arguments: &'a [Argument<'a>],
     ) -> Outcome<Option<Value<'a>>> {
-        let formals = self.formals(self.bearer(routine, instance));
+        let bearer = self.bearer(routine, instance);
+        let named = instance.declared.filter(|_| bearer != routine);
+        let formals = self.formals(named.unwrap_or(bearer));
         let passed = self.passed(frame, &formals, arguments)?;
         let instance = self.checked(instance.clone())?;
         self.run_routine(frame, routine, &instance, passed)
@@ -178,11 +177,7 @@ impl<'a> Machine<'a> {
 
     /// Whose parameters a call of a routine has: an ACTION those of its instance's class.
     fn bearer(&self, routine: usize, instance: &Place<'a>) -> usize {
-        let class = match &instance.ty {
-            Type::Record(record) => record.pou,
-            _ => None,
-        };
-        class.filter(|_| self.declared.pous[routine].kind == PouKind::Action).unwrap_or(routine)
+        instance.ty.class().filter(|_| self.declared.pous[routine].kind == PouKind::Action).unwrap_or(routine)
     }
 
     /// One call of a routine whose arguments have been found.
@@ -254,7 +249,8 @@ impl<'a> Machine<'a> {
         match &instance.ty {
             Type::Record(record) => {
                 let Some(pou) = record.pou else { return unknown("a call of a structure") };
-                let formals = self.formals(pou);
+                // What a position means is known where the call is written.
+                let formals = self.formals(instance.declared.unwrap_or(pou));
                 let passed = self.passed(frame, &formals, arguments)?;
                 let instance = &self.checked(instance.clone())?;
                 self.run_instance(pou, instance, passed)?;
@@ -330,7 +326,7 @@ impl<'a> Machine<'a> {
                 copies.push((copy.clone(), given.clone()));
                 copy
             }
-            _ => given.clone(),
+            _ => Place { declared: ty.class(), ..given.clone() },
         }
     }
 
@@ -425,6 +421,7 @@ impl<'a> Machine<'a> {
             Some(Formal { name: pin.name, kind, ty: pin_type(info, at) })
         });
         let passed = self.passed(frame, &visible.collect::<Vec<_>>(), arguments)?;
+        let instance = &self.checked(instance.clone())?;
         for it in &passed {
             if let (Some(pin), Given::Value(value)) = (self.member(instance, it.name), &it.given) {
                 self.write(&pin, value);
@@ -461,6 +458,7 @@ impl<'a> Machine<'a> {
             }
         }
         let Some(tag) = tag else { return unknown("an instruction without a tag") };
+        let tag = self.checked(tag)?;
         let Type::Block(info) = tag.ty else { return unknown("an instruction on what is no tag") };
         let instruction = info.instructions.iter().position(|it| it.name.eq_ignore_ascii_case(name.text));
         let Some(instruction) = instruction else { return unknown("this instruction") };

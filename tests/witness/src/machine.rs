@@ -74,7 +74,7 @@ impl<'a> Machine<'a> {
             globals: HashMap::new(),
             statics: HashMap::new(),
             main,
-            instance: Place { at: 0, ty: ty.clone(), nowhere: None },
+            instance: Place { at: 0, ty: ty.clone(), nowhere: None, declared: None },
             programs: Vec::new(),
             context: Context::default(),
             steps: 0,

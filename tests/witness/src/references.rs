@@ -14,14 +14,19 @@ impl<'a> Machine<'a> {
     /// Where a reference leads; a place that faults when it is used, if that is nowhere.
     pub(crate) fn followed(&mut self, cell: Cell<'a>, reference: Reference<'a>, span: Span) -> Outcome<Place<'a>> {
         match cell {
-            Cell::Reference(Some(place)) => Ok(*place),
+            Cell::Reference(Some(mut place)) => {
+                if let (RefKind::Pointer | RefKind::Alias, Some(target)) = (reference.kind, reference.target) {
+                    place.declared = self.declared.type_of(target)?.class();
+                }
+                Ok(*place)
+            }
             _ => match reference.target {
                 Some(target) => {
                     let ty = match reference.kind {
                         RefKind::Interface => self.declared.implementer(target)?,
                         RefKind::Pointer | RefKind::Alias => self.declared.type_of(target)?,
                     };
-                    Ok(Place { at: 0, ty, nowhere: Some(span) })
+                    Ok(Place { at: 0, ty, nowhere: Some(span), declared: None })
                 }
                 None => unknown("a reference to nothing"),
             },
@@ -81,16 +86,18 @@ impl<'a> Machine<'a> {
 
     /// The variable that an expression is, a reference itself and not what it leads to.
     fn named_place(&mut self, frame: &Frame<'a>, expr: &'a Expr<'a>) -> Outcome<Option<Place<'a>>> {
+        if self.is_variable(frame, expr)? { self.unfollowed(frame, expr).map(Some) } else { Ok(None) }
+    }
+
+    /// Whether an expression is a variable, or a part of one.
+    pub(crate) fn is_variable(&mut self, frame: &Frame<'a>, expr: &'a Expr<'a>) -> Outcome<bool> {
         let is_place = match &expr.kind {
             ExprKind::Name(name) => self.variable(frame, name.text).is_some(),
             ExprKind::Deref(inner) => is_this(inner) || !is_super(inner),
             ExprKind::Member(..) | ExprKind::Index(..) => true,
             _ => false,
         };
-        if !is_place || self.property(frame, expr)?.is_some() {
-            return Ok(None);
-        }
-        self.unfollowed(frame, expr).map(Some)
+        Ok(is_place && self.property(frame, expr)?.is_none())
     }
 
     /// `r REF= x`
@@ -117,10 +124,7 @@ impl<'a> Machine<'a> {
         let name = reference.target.and_then(crate::declarations::name_of);
         let Some(name) = name else { return unknown("?= to a type without a name") };
         let Cell::Reference(to) = &value.cells[0] else { return unknown("?= of what is no reference") };
-        let fits = |it: &Place<'a>| match &it.ty {
-            Type::Record(record) => record.pou.is_some_and(|it| self.declared.is_a(it, name)),
-            _ => false,
-        };
+        let fits = |it: &Place<'a>| it.ty.class().is_some_and(|it| self.declared.is_a(it, name));
         Ok(Cell::Reference(to.clone().filter(|it| fits(it))))
     }
 

@@ -64,10 +64,14 @@ impl<'a> Machine<'a> {
             self.set(frame, property, value)?;
             return Ok(Flow::Next);
         }
-        let mut place = self.place(frame, target)?;
-        if matches!(place.ty, Type::Array(_) | Type::Record(_)) {
-            // What is copied as a whole is looked at on both sides first, the target before the value.
-            place = self.checked(place)?;
+        let place = self.place(frame, target)?;
+        if matches!(place.ty, Type::Array(_) | Type::Record(_)) && self.is_variable(frame, value)? {
+            // Of what is copied as a whole both sides are found before either is looked at.
+            let source = self.place(frame, value)?;
+            let place = self.checked(place)?;
+            let value = self.read(&self.checked(source)?);
+            self.write(&place, &value);
+            return Ok(Flow::Next);
         }
         let value = self.value_as(frame, value, &place.ty)?;
         let place = self.checked(place)?;

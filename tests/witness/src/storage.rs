@@ -28,6 +28,8 @@ pub(crate) struct Place<'a> {
     pub ty: Type<'a>,
     /// Where a reference to nothing was followed: the place faults when it is used.
     pub nowhere: Option<Span>,
+    /// The class that a reference or an in-out declares, where `ty` may be one that extends it.
+    pub declared: Option<usize>,
 }
 
 impl<'a> Value<'a> {
@@ -73,7 +75,7 @@ impl<'a> Value<'a> {
 impl<'a> Place<'a> {
     /// A part that starts `offset` cells in.
     pub fn part(&self, offset: usize, ty: &Type<'a>) -> Self {
-        Self { at: self.at + offset, ty: ty.clone(), nowhere: self.nowhere }
+        Self { at: self.at + offset, ty: ty.clone(), nowhere: self.nowhere, declared: None }
     }
 }
 
@@ -124,7 +126,7 @@ impl<'a> Machine<'a> {
     pub(crate) fn allocate(&mut self, ty: &Type<'a>) -> Place<'a> {
         let at = self.memory.len();
         self.memory.resize(at + ty.size(), Cell::Scalar(Scalar::Bool(false)));
-        Place { at, ty: ty.clone(), nowhere: None }
+        Place { at, ty: ty.clone(), nowhere: None, declared: None }
     }
 
     /// Gives a variable its initial value.

@@ -204,6 +204,14 @@ impl Type<'_> {
         }
     }
 
+    /// The POU that this is an instance of.
+    pub fn class(&self) -> Option<usize> {
+        match self {
+            Self::Record(it) => it.pou,
+            _ => None,
+        }
+    }
+
     /// The type that a value read from here has in an expression, if it is elementary.
     pub fn elementary(&self) -> Option<Elementary> {
         match self {

@@ -245,6 +245,8 @@ impl<'s> Checker<'_, 's> {
         })?;
         if is_read && given.as_const().is_none() {
             self.save("assigned", &mut given);
+        } else {
+            self.before_target(&place, &mut given);
         }
         if writable {
             self.note_assigned(&place, target.span);

@@ -97,12 +97,17 @@ impl Parts {
         let copied = self.with(|it| matches!(it, Role::Copied(..)));
         let targets = self.with(|it| matches!(it, Role::Target(..) | Role::Count(..)));
         let call = stored.len() + copied.len();
+        // A statement finds what a reference to the instance leads to before it evaluates what it passes or copies
+        // whole, and that may be null.
+        let follows = self.with(|it| matches!(it, Role::Instance)).first().and_then(|it| self.written[*it].place());
+        let follows = usize::from(follows.is_some_and(Place::is_followed));
         for (at, part) in self.parts.iter().enumerate() {
             let number = |list: &[usize]| list.iter().position(|it| *it == at).unwrap_or_default();
             let (first, last) = match part.role {
                 Role::Instance => ((0, 0), call + copied.len() + targets.len()),
+                Role::Stored(_, Type::Array(_) | Type::Struct(_)) => ((number(&stored) + follows, 1), number(&stored)),
                 Role::Stored(..) => ((number(&stored), 1), number(&stored)),
-                Role::Passed(turn) => ((call, turn), call),
+                Role::Passed(turn) => ((call + follows, turn), call),
                 Role::Copied(..) => ((stored.len() + number(&copied), 0), call + 1 + number(&copied)),
                 Role::Target(..) | Role::Count(..) => {
                     let at = call + 1 + copied.len() + number(&targets);

@@ -5,6 +5,7 @@ use super::checker::Checker;
 use staunch_ir::alias::{self, Frame};
 use staunch_ir::faults::{Faults, op_faults};
 use staunch_ir::loops::Known;
+use staunch_ir::reference::followed;
 use staunch_ir::{
     ArrayId, Conversion, Elementary, Expr, ExprKind, Local, LocalId, Location, Op, Place, Projection, Root, Statement,
     Type, Value,
@@ -129,6 +130,20 @@ impl Checker<'_, '_> {
                 }
             }
             Held::Place(place) => self.freeze(place, effects, fault_first),
+        }
+    }
+
+    /// Where a reference leads is looked at when the value is known. An assignment finds a standard block's pin, and
+    /// what it copies whole, before: of a value for these that is saved which can fault, and indices of what is
+    /// copied.
+    pub(crate) fn before_target(&mut self, target: &Place, value: &mut Expr) {
+        if !target.is_followed() || !self.can_fault(value) {
+            return;
+        }
+        match (&mut value.kind, target.ty) {
+            (ExprKind::Load(place), Type::Array(_) | Type::Struct(_)) => self.freeze(place, &[], true),
+            _ if followed(&self.decl.program, target).is_some_and(|it| it.pin.is_some()) => self.save("assigned", value),
+            _ => {}
         }
     }
 

@@ -98,11 +98,14 @@ impl<'s> Checker<'_, 's> {
         mut before: Option<&mut [Block]>,
     ) -> Option<Resolved> {
         let hint = expected.filter(|it| signature.result == Kind::T && self.admits(signature.class, *it, name.span));
-        let operands = self.as_written(values, |this, at, side| {
-            let parameter = parameter_name(signature, at);
+        let evaluate = |this: &mut Self, at: usize, side: Option<Type>| {
             let takes = Takes::of(kind(signature, at), hint.or(side));
-            this.set_apart(before.as_deref_mut(), at, |this| this.taken(takes, values[at], &parameter, name))
-        })?;
+            this.taken(takes, values[at], &parameter_name(signature, at), name)
+        };
+        let operands = match before.as_deref_mut() {
+            None => self.as_written(values, evaluate)?,
+            Some(before) => self.of_choice(before, evaluate)?,
+        };
         self.of_one_kind(signature, &operands, values, name)?;
         let at_t = (0..values.len()).filter(|at| kind(signature, *at) == Kind::T);
         let at_t: Vec<_> = at_t.map(|at| (&operands[at], values[at].span)).collect();
@@ -122,6 +125,21 @@ impl<'s> Checker<'_, 's> {
             });
         }
         Some(Resolved { ty, own, operands: done })
+    }
+
+    /// What chooses is evaluated before all inputs, wherever it is written: of these only the one that is chosen
+    /// runs, so none is evaluated before another.
+    fn of_choice(
+        &mut self,
+        before: &mut [Block],
+        evaluate: impl Fn(&mut Self, usize, Option<Type>) -> Option<Operand>,
+    ) -> Option<Vec<Operand>> {
+        let mut operands: Vec<Option<Operand>> = Vec::new();
+        for at in 0..before.len() {
+            let side = operands.iter().flatten().next_back().and_then(|it| beside(it, None));
+            operands.push(self.set_apart(Some(&mut *before), at, |this| evaluate(this, at, side)));
+        }
+        operands.into_iter().collect()
     }
 
     /// Runs `evaluate`; what it adds goes to the list of its input, if each has one. What chooses has none.
