@@ -223,6 +223,11 @@ pub struct External<'s> {
 }
 
 impl<'s> Pou<'s> {
+    /// The declarations of its own CONSTANTs.
+    pub fn constants(&self) -> impl Iterator<Item = &VarBlock<'s>> {
+        self.blocks.iter().filter(|it| it.constant.is_some() && !matches!(it.kind, VarKind::External | VarKind::InOut))
+    }
+
     /// One without variables and statements.
     pub fn new(kind: PouKind, name: Name<'s>, span: Span) -> Self {
         Self {

@@ -31,6 +31,7 @@ use crate::names::{Entry, libraries};
 use crate::testing;
 use crate::types::declarations::{Declarations, PouSlot, Slot};
 use crate::types::in_outs::Polymorphic;
+use crate::types::scope::Scope;
 use run::Run;
 use std::rc::Rc;
 
@@ -79,7 +80,15 @@ impl<'s> Declarations<'s> {
     }
 
     fn resolve_all(&mut self) {
-        for entry in needs::order(self) {
+        for step in needs::order(self) {
+            let entry = match step {
+                needs::Step::Declaration(entry) => entry,
+                needs::Step::Constants(at) => {
+                    let constants = self.early_constants(self.pous[at].ast, Scope::default());
+                    self.constants.insert(at, Rc::new(constants));
+                    continue;
+                }
+            };
             match entry {
                 Entry::Type(at) => self.types[at].slot = self.resolve_type_slot(at).map_or(Slot::Failed, Slot::Done),
                 Entry::Global(at) => {

@@ -7,6 +7,7 @@ use crate::types::scope::Variable;
 use crate::types::synthetic::NamedProgram;
 use crate::types::table::instance_of;
 use crate::{Span, ast};
+use rustc_hash::FxHashSet;
 use staunch_ir::{Field, Retain, Section};
 use std::rc::Rc;
 
@@ -19,7 +20,15 @@ impl<'s> Declarations<'s> {
             }
             let Some(signature) = self.signature(at) else { continue };
             let mut found = Vec::new();
+            // What reads only a CONSTANT needs no instance.
+            let mut of_constants = FxHashSet::default();
             ast::each_expr(body, &mut |it| {
+                if let ast::ExprKind::Member(..) = &it.kind
+                    && let Some(path) = it.path()
+                    && self.constant_of_pou(&path).is_some()
+                {
+                    of_constants.insert(path[0].span);
+                }
                 let (callee, is_called) = match &it.kind {
                     ast::ExprKind::Call(callee, _) => (callee.bare(), true),
                     _ => (it, false),
@@ -27,6 +36,7 @@ impl<'s> Declarations<'s> {
                 if let Some(path) = callee.path()
                     && let [first, ..] = path.as_slice()
                     && signature.scope.get(first.text).is_none()
+                    && !of_constants.contains(&first.span)
                     && let Found::One(Meaning::Declared(Entry::Pou(slot))) = self.lookup(&path, Sense::Value)
                     && self.pous[slot].ast.kind == ast::PouKind::Program
                 {

@@ -8,22 +8,30 @@ use crate::spelling::Key;
 use crate::types::declarations::Declarations;
 use rustc_hash::FxHashSet;
 
+/// What is resolved at once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Step {
+    Declaration(Entry),
+    /// The CONSTANTs of the POU in this slot, which others may read by its name before it is resolved itself.
+    Constants(usize),
+}
+
 /// All declarations at file level, each after those that it needs. Of those in a circle, the first in
 /// the text comes last.
-pub(super) fn order(declarations: &Declarations<'_>) -> Vec<Entry> {
+pub(super) fn order(declarations: &Declarations<'_>) -> Vec<Step> {
     let types = (0..declarations.types.len()).map(Entry::Type);
     let globals = (0..declarations.globals.len()).map(Entry::Global);
     let pous = (0..declarations.pous.len()).map(Entry::Pou);
     let mut seen = FxHashSet::default();
     let mut order = Vec::new();
     for entry in types.chain(globals).chain(pous) {
-        visit(declarations, entry, &mut seen, &mut order);
+        visit(declarations, Step::Declaration(entry), &mut seen, &mut order);
     }
     order
 }
 
 /// Depth-first with its own stack: a chain of needs may be long.
-fn visit(declarations: &Declarations<'_>, start: Entry, seen: &mut FxHashSet<Entry>, order: &mut Vec<Entry>) {
+fn visit(declarations: &Declarations<'_>, start: Step, seen: &mut FxHashSet<Step>, order: &mut Vec<Step>) {
     if !seen.insert(start) {
         return;
     }
@@ -40,8 +48,17 @@ fn visit(declarations: &Declarations<'_>, start: Entry, seen: &mut FxHashSet<Ent
     }
 }
 
-fn needs(declarations: &Declarations<'_>, entry: Entry) -> std::vec::IntoIter<Entry> {
+fn needs(declarations: &Declarations<'_>, step: Step) -> std::vec::IntoIter<Step> {
     let mut needs = Needs { declarations, own: FxHashSet::default(), found: Vec::new() };
+    let entry = match step {
+        Step::Declaration(entry) => entry,
+        Step::Constants(at) => {
+            let pou = declarations.pous[at].ast;
+            needs.names_of(pou);
+            pou.constants().flat_map(|it| &it.vars).for_each(|it| needs.declared(it));
+            return needs.found.into_iter();
+        }
+    };
     match entry {
         Entry::Type(at) => {
             let decl = declarations.types[at].decl;
@@ -52,10 +69,14 @@ fn needs(declarations: &Declarations<'_>, entry: Entry) -> std::vec::IntoIter<En
         Entry::Global(at) => needs.declared(declarations.globals[at].decl),
         Entry::Pou(at) => {
             if let Some(owner) = declarations.pous[at].owner {
-                needs.found.push(Entry::Pou(owner));
+                needs.needs(Entry::Pou(owner));
                 needs.names_of(declarations.pous[owner].ast);
             }
-            needs.pou(declarations.pous[at].ast);
+            let pou = declarations.pous[at].ast;
+            if declarations.has_own_constants(at) {
+                needs.found.push(Step::Constants(at));
+            }
+            needs.pou(pou);
         }
     }
     needs.found.into_iter()
@@ -66,10 +87,14 @@ struct Needs<'d, 's> {
     declarations: &'d Declarations<'s>,
     /// The variables of the POU itself: their names mean nothing outside.
     own: FxHashSet<Key<'s>>,
-    found: Vec<Entry>,
+    found: Vec<Step>,
 }
 
 impl<'s> Needs<'_, 's> {
+    fn needs(&mut self, entry: Entry) {
+        self.found.push(Step::Declaration(entry));
+    }
+
     fn pou(&mut self, pou: &ast::Pou<'s>) {
         self.names_of(pou);
         // A VAR_INST of its METHODs is a variable of the instance.
@@ -95,7 +120,7 @@ impl<'s> Needs<'_, 's> {
     fn declared(&mut self, decl: &ast::VarDecl<'s>) {
         // What lies at the same address has to have the same type.
         let located = decl.address.and_then(|it| self.declarations.addresses.global_at(it));
-        self.found.extend(located.map(Entry::Global));
+        self.found.extend(located.map(Entry::Global).map(Step::Declaration));
         self.spec(&decl.ty);
         decl.initial.iter().for_each(|it| self.initial(it));
     }
@@ -144,15 +169,27 @@ impl<'s> Needs<'_, 's> {
     }
 
     fn expr(&mut self, expr: &ast::Expr<'s>) {
+        // The POUs whose CONSTANTs are read need not be resolved themselves.
+        let mut around = FxHashSet::default();
         ast::each_part(expr, &mut |it| match &it.kind {
-            ExprKind::Name(name) if self.own.contains(&Key(name.text)) => {}
+            ExprKind::Name(name) if self.own.contains(&Key(name.text)) || around.contains(&name.span) => {}
             ExprKind::Name(name) => {
                 self.value(*name);
                 self.type_name(*name);
             }
             ExprKind::Literal(ast::Literal { prefix: Some(prefix), .. }) => self.type_name(**prefix),
             // `GVL.x`, `Plant.Color.Red`
-            ExprKind::Member(..) => it.path().iter().for_each(|it| self.value_path(it)),
+            ExprKind::Member(..) => {
+                if let Some(path) = it.path() {
+                    match self.declarations.pou_of_constant(&path) {
+                        Some(slot) => {
+                            self.found.push(Step::Constants(slot));
+                            around.insert(path[0].span);
+                        }
+                        None => self.value_path(&path),
+                    }
+                }
+            }
             ExprKind::Literal(_)
             | ExprKind::Address(_)
             | ExprKind::Part(..)
@@ -172,15 +209,15 @@ impl<'s> Needs<'_, 's> {
 
     fn path(&mut self, path: &[ast::Name<'s>], sense: Sense) {
         match self.declarations.lookup(path, sense) {
-            Found::One(Meaning::Declared(entry)) => self.found.push(entry),
+            Found::One(Meaning::Declared(entry)) => self.needs(entry),
             Found::One(_) | Found::Nothing | Found::Several(_) => {}
         }
     }
 
     fn value_path(&mut self, path: &[ast::Name<'s>]) {
         match self.declarations.lookup(path, Sense::Value) {
-            Found::One(Meaning::Declared(entry)) => self.found.push(entry),
-            Found::One(Meaning::Enumerator(slot)) => self.found.push(Entry::Type(slot)),
+            Found::One(Meaning::Declared(entry)) => self.needs(entry),
+            Found::One(Meaning::Enumerator(slot)) => self.needs(Entry::Type(slot)),
             Found::One(_) | Found::Nothing | Found::Several(_) => {}
         }
     }
@@ -193,6 +230,7 @@ impl<'s> Needs<'_, 's> {
         }
         let global = self.declarations.declared(name).filter(|it| matches!(it, Entry::Global(_)));
         let types = self.declarations.names.enumerators.get(&key).into_iter().flatten();
-        self.found.extend(global.into_iter().chain(types.map(|at| Entry::Type(*at))));
+        let found = global.into_iter().chain(types.map(|at| Entry::Type(*at)));
+        self.found.extend(found.map(Step::Declaration));
     }
 }

@@ -52,8 +52,9 @@ impl<'s> Declarations<'s> {
             complete: true,
             polymorphic: false,
         };
-        let constants = self.early_constants(pou, scope());
-        Rc::get_mut(&mut builder.scope).expect("the scope is new").constants = Some(Rc::new(constants));
+        let known = self.constants.get(&slot).cloned();
+        let constants = known.unwrap_or_else(|| Rc::new(self.early_constants(pou, scope())));
+        Rc::get_mut(&mut builder.scope).expect("the scope is new").constants = Some(constants);
         let result = self.result(pou, &mut builder);
         for block in &pou.blocks {
             self.check_block_qualifiers(pou, block);
@@ -169,16 +170,13 @@ impl<'s> Declarations<'s> {
 
     /// The CONSTANTs of a POU by their values: a declaration before them may use them. What is wrong
     /// with one of them is reported when its own turn comes, but what it needs was resolved for good.
-    fn early_constants(&mut self, pou: &'s ast::Pou<'s>, scope: Scope<'s>) -> Scope<'s> {
+    pub(super) fn early_constants(&mut self, pou: &'s ast::Pou<'s>, scope: Scope<'s>) -> Scope<'s> {
         let mut scope = Rc::new(scope);
         let counted = self.table.constants;
-        let blocks = pou
-            .blocks
-            .iter()
-            .filter(|it| it.constant.is_some() && !matches!(it.kind, VarKind::External | VarKind::InOut));
-        let named = |it: &&'s ast::VarDecl<'s>| matches!(it.ty.kind, ast::TypeKind::Named(_));
+        let named =
+            |it: &&'s ast::VarDecl<'s>| matches!(it.ty.kind, ast::TypeKind::Named(_) | ast::TypeKind::String { .. });
         let mut waiting: Vec<_> =
-            blocks.flat_map(|block| block.vars.iter().filter(named).map(move |decl| (block, decl))).collect();
+            pou.constants().flat_map(|block| block.vars.iter().filter(named).map(move |decl| (block, decl))).collect();
         // One constant may use another that is declared after it, so rounds go on while they help.
         loop {
             let before = waiting.len();
@@ -379,7 +377,8 @@ impl<'s> Declarations<'s> {
 
     /// Reports a variable that has its FUNCTION's or METHOD's name, which is that of the result there.
     fn is_named_as_result(&mut self, pou: &ast::Pou<'s>, name: ast::Name<'s>) -> bool {
-        let has_result = pou.kind.is_function() && pou.kind != PouKind::Setter;
+        let without = pou.result.is_none() && self.dialect(pou.name.span).shows_inner_variables();
+        let has_result = pou.kind.is_function() && pou.kind != PouKind::Setter && !without;
         let is_result = has_result && name.text.eq_ignore_ascii_case(pou.name.text);
         if is_result {
             self.report(

@@ -151,7 +151,12 @@ impl<'s> Declarations<'s> {
         let mut complete = true;
         for decl in members {
             let owner = decl.names.first().map_or(name, |it| it.text);
-            let resolved = self.declared_type(decl, scope, owner).map(Rc::new);
+            let is_bit = self.is_bit(&decl.ty);
+            let resolved = match is_bit {
+                true => self.initial_bit(decl, scope),
+                false => self.declared_type(decl, scope, owner),
+            };
+            let resolved = resolved.map(Rc::new);
             let Some((resolved, part)) = resolved.and_then(|it| Some((Rc::clone(&it), self.shareable(&it, decl)?)))
             else {
                 complete = false;
@@ -165,7 +170,7 @@ impl<'s> Declarations<'s> {
                 let variable = self.variable(*member, &block, Rc::clone(&resolved), place);
                 let Field { name, ty, doc, location, .. } = self.field(*member, &resolved, &block, decl);
                 self.enter_variable(&mut seen, variable);
-                overlays.push(Overlay { name, ty, field: STORAGE, bit: 0, is_bit: false, doc, location });
+                overlays.push(Overlay { name, ty, field: STORAGE, bit: 0, is_bit, doc, location });
                 starts.push(resolved.initial.clone());
             }
         }

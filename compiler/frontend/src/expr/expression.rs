@@ -122,6 +122,10 @@ impl<'s> Checker<'_, 's> {
             let variable = variable?;
             return self.variable_value(&variable, expr.span);
         }
+        if let Some(constant) = self.constant_of_pou(expr) {
+            let constant = constant?;
+            return self.variable_value(&constant, expr.span);
+        }
         self.load(expr)
     }
 

@@ -142,7 +142,9 @@ impl Checker<'_, '_> {
         }
         match (&mut value.kind, target.ty) {
             (ExprKind::Load(place), Type::Array(_) | Type::Struct(_)) => self.freeze(place, &[], true),
-            _ if followed(&self.decl.program, target).is_some_and(|it| it.pin.is_some()) => self.save("assigned", value),
+            _ if followed(&self.decl.program, target).is_some_and(|it| it.pin.is_some()) => {
+                self.save("assigned", value)
+            }
             _ => {}
         }
     }

@@ -165,10 +165,7 @@ impl<'s> Checker<'_, 's> {
         }
         let unknown_constant = self.scope.constants.as_ref().is_some_and(|it| it.is_refused(name.text));
         if unknown_constant && self.context != super::checker::Context::Body {
-            self.report(
-                Diagnostic::new(Code::E0402, name.span, format!("the value of `{}` is not known here", name.text))
-                    .label("it needs itself, or its declaration is wrong"),
-            );
+            self.report_unknown_constant(name);
             return Some(None);
         }
         let found = self.decl.lookup(&[name], Sense::Value);
@@ -186,6 +183,13 @@ impl<'s> Checker<'_, 's> {
                 self.declared_but_refused(name).then_some(None)
             }
         }
+    }
+
+    pub(crate) fn report_unknown_constant(&mut self, name: ast::Name<'s>) {
+        self.report(
+            Diagnostic::new(Code::E0402, name.span, format!("the value of `{}` is not known here", name.text))
+                .label("it needs itself, or its declaration is wrong"),
+        );
     }
 
     /// Reports a variable of the POU around that a METHOD or ACTION cannot reach: it is there while the POU's

@@ -40,6 +40,22 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
+    /// A CONSTANT by the name of its POU, `Settings.MOST`. The inner `None` says that it was reported.
+    pub(crate) fn constant_of_pou(&mut self, expr: &ast::Expr<'s>) -> Option<Option<Rc<Variable<'s>>>> {
+        let path = expr.path().filter(|it| it.len() > 1 && self.scope.get(it[0].text).is_none())?;
+        if let Some(constant) = self.decl.constant_of_pou(&path) {
+            constant.used.set(true);
+            return Some(Some(Rc::clone(constant)));
+        }
+        let slot = self.decl.pou_of_constant(&path)?;
+        let own = self.decl.pous[slot].ast.constants().flat_map(|it| &it.vars).flat_map(|it| &it.names);
+        let name = path.last()?;
+        own.into_iter().any(|it| it.text.eq_ignore_ascii_case(name.text)).then(|| {
+            self.report_unknown_constant(*name);
+            None
+        })
+    }
+
     /// The path of an enumerator. A variable hides a type of its name, unless it is an enumeration, which
     /// has no members: `state := State.Idle`.
     pub(crate) fn path_of_enumerator(&mut self, expr: &ast::Expr<'s>) -> Option<ast::Path<'s>> {

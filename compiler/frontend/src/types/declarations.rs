@@ -5,7 +5,7 @@ use super::coverage::Coverage;
 use super::generic::{Generics, Instance};
 use super::image::Image;
 use super::overloads::Overloads;
-use super::scope::Variable;
+use super::scope::{Scope, Variable};
 use super::signature::Signature;
 use super::starts::Starts;
 use super::synthetic::{NamedProgram, Synthetic};
@@ -17,7 +17,9 @@ use crate::names::{Entry, Found, Meaning, Names, Sense, Site, SpaceId};
 use crate::spelling::Key;
 use crate::{Code, Diagnostic, Span, ast, start};
 use rustc_hash::FxHashMap;
-use staunch_ir::{BlockId, Location, Program, Projection, RefKind, RefType, ReferenceId, SourceFile, StructId, Type};
+use staunch_ir::{
+    BlockId, Location, Program, Projection, RefKind, RefType, ReferenceId, Section, SourceFile, StructId, Type,
+};
 use staunch_runtime::Class;
 use std::rc::Rc;
 
@@ -161,6 +163,8 @@ pub(crate) struct Declarations<'s> {
     pub externals: FxHashMap<String, Span>,
     /// By their slots.
     pub named_programs: FxHashMap<usize, NamedProgram<'s>>,
+    /// The CONSTANTs of POUs, by their slots, which others read by a POU's name.
+    pub constants: FxHashMap<usize, Rc<Scope<'s>>>,
     pub tests: Tests,
     /// Where execution is counted, if it is.
     pub coverage: Option<Coverage>,
@@ -191,6 +195,7 @@ impl<'s> Declarations<'s> {
             synthetic: Synthetic::default(),
             externals: FxHashMap::default(),
             named_programs: FxHashMap::default(),
+            constants: FxHashMap::default(),
             tests: Tests::default(),
             coverage: None,
             program: empty_program(files),
@@ -200,6 +205,27 @@ impl<'s> Declarations<'s> {
             starts: Starts::default(),
             build_signature,
         }
+    }
+
+    /// Whether the POU in a slot has CONSTANTs that others may read by its name.
+    pub fn has_own_constants(&self, slot: usize) -> bool {
+        let PouSlot { ast: pou, owner, .. } = &self.pous[slot];
+        owner.is_none() && self.dialect(pou.name.span).shows_inner_variables() && pou.constants().next().is_some()
+    }
+
+    /// The POU of `Settings.MOST`, a CONSTANT by the name of its POU.
+    pub fn pou_of_constant(&self, path: &[ast::Name<'s>]) -> Option<usize> {
+        let (_, pou) = path.split_last()?;
+        match self.lookup(pou, Sense::Value) {
+            Found::One(Meaning::Declared(Entry::Pou(slot))) => Some(slot).filter(|it| self.has_own_constants(*it)),
+            Found::One(_) | Found::Nothing | Found::Several(_) => None,
+        }
+    }
+
+    /// What a path means that is a CONSTANT by the name of its POU.
+    pub fn constant_of_pou(&self, path: &[ast::Name<'s>]) -> Option<&Rc<Variable<'s>>> {
+        let constants = self.constants.get(&self.pou_of_constant(path)?)?;
+        constants.get(path.last()?.text).filter(|it| it.section == Section::Internal)
     }
 
     /// The POUs that the source writes, in its order; runs of a CONFIGURATION come after them, and then instances of

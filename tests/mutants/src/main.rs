@@ -1,0 +1,57 @@
+//! `mutants TREE LIST SKIP FILE…`: puts every mutant of the files of a copy of the sources into them, each behind a
+//! switch, so that one build holds all. The program that is made asks `STAUNCH_MUTANT` for the one that is on.
+//! `LIST` gets a line for each: its number, its place and what it changes. The numbers in the file `SKIP` get no
+//! switch: what they would make does not compile.
+
+mod insert;
+
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+use std::{env, fs, io};
+
+/// What each crate with mutants gets at its end.
+const SWITCH: &str = r#"
+#[doc(hidden)]
+#[allow(missing_docs, clippy::all)]
+pub mod mutant {
+    extern crate std;
+    /// Whether this mutant is on.
+    pub fn on(number: u32) -> bool {
+        static ON: std::sync::OnceLock<u32> = std::sync::OnceLock::new();
+        let read = || std::env::var("STAUNCH_MUTANT").ok().and_then(|it| it.parse().ok()).unwrap_or(u32::MAX);
+        *ON.get_or_init(read) == number
+    }
+}
+"#;
+
+fn main() -> io::Result<()> {
+    let mut arguments = env::args().skip(1);
+    let mut next = || arguments.next().map(PathBuf::from).ok_or_else(|| io::Error::other("mutants TREE LIST SKIP FILE…"));
+    let (tree, list, skip) = (next()?, next()?, next()?);
+    let skip: HashSet<u32> = fs::read_to_string(skip)?.lines().filter_map(|it| it.parse().ok()).collect();
+    let mut first = 0;
+    let mut lines = String::new();
+    let mut crates = HashSet::new();
+    for path in arguments {
+        let file = tree.join(&path);
+        let text = fs::read_to_string(&file)?;
+        let mut syntax = syn::parse_file(&text).map_err(|it| io::Error::other(format!("{path}: {it}")))?;
+        for mutant in insert::insert(&mut syntax, first, &skip) {
+            lines += &format!("{first} {path}:{}:{} {}\n", mutant.line, mutant.column, mutant.change);
+            first += 1;
+        }
+        fs::write(&file, prettyplease::unparse(&syntax))?;
+        crates.insert(root(&file)?);
+    }
+    for root in crates {
+        let text = fs::read_to_string(&root)?;
+        fs::write(&root, text + SWITCH)?;
+    }
+    fs::write(list, lines)
+}
+
+/// The file of the crate that a module is in.
+fn root(file: &Path) -> io::Result<PathBuf> {
+    let mut folders = file.ancestors().skip(1).map(|it| it.join("lib.rs"));
+    folders.find(|it| it.exists()).ok_or_else(|| io::Error::other(format!("{} is in no library", file.display())))
+}
