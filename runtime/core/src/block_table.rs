@@ -11,8 +11,8 @@ use crate::{
 /// symbols that native code calls.
 ///
 /// An instruction's first word says how it is called: `plain` and `timed` are function blocks
-/// (a step, without and with need of the context), `rung` takes a rung condition, `tag` nothing, `scan`
-/// the context.
+/// (a step, without and with need of the context), `rung` takes a rung condition, `delay` that and
+/// the context, `tag` nothing, `scan` the context.
 /// Its method is what generated Rust calls.
 #[macro_export]
 macro_rules! for_each_block {
@@ -101,6 +101,12 @@ macro_rules! for_each_block {
             Logix "FBD_COUNTER" logix::FbdCounter {} {
                 tag "CTUD" ctud staunch_logix_fbd_counter_ctud, prescan prescan_ctud staunch_logix_fbd_counter_prescan_ctud;
             }
+            Logix "TIMER" logix::Timer {} {
+                delay "TON" ton staunch_logix_timer_ton, prescan prescan_ton staunch_logix_timer_prescan_ton;
+                delay "TOF" tof staunch_logix_timer_tof, prescan prescan_tof staunch_logix_timer_prescan_tof;
+                delay "RTO" rto staunch_logix_timer_rto, prescan prescan_rto staunch_logix_timer_prescan_rto;
+                rung "RES" res staunch_logix_timer_res;
+            }
             Logix "FBD_TIMER" logix::FbdTimer {} {
                 scan "TONR" tonr staunch_logix_fbd_timer_tonr;
                 scan "TOFR" tofr staunch_logix_fbd_timer_tofr;
@@ -126,6 +132,9 @@ macro_rules! run_instruction {
     };
     (rung $block:ident $method:ident $cx:expr, $rung:expr) => {{
         $block.$method($rung);
+    }};
+    (delay $block:ident $method:ident $cx:expr, $rung:expr) => {{
+        $block.$method($rung, $cx);
     }};
     (tag $block:ident $method:ident $cx:expr, $rung:expr) => {
         $block.$method()
@@ -158,8 +167,8 @@ macro_rules! declare_blocks {
                 name: $instruction,
                 method: stringify!($method),
                 symbol: stringify!($symbol),
-                takes_rung: is!($how rung),
-                needs_context: is!($how timed) || is!($how scan),
+                takes_rung: is!($how rung) || is!($how delay),
+                needs_context: is!($how timed) || is!($how scan) || is!($how delay),
                 run: |bytes, _cx, _rung| {
                     let mut block = <$block as Block>::load(bytes);
                     $crate::run_instruction!($how block $method _cx, _rung);
@@ -182,6 +191,9 @@ macro_rules! is {
         true
     };
     (timed timed) => {
+        true
+    };
+    (delay delay) => {
         true
     };
     (scan scan) => {

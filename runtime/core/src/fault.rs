@@ -29,10 +29,12 @@ pub enum FaultKind {
     AssertionFailed = 11,
     /// What is called is implemented outside of Structured Text, and is not there.
     NotImplemented = 12,
+    /// The preset or the accumulated value of a Logix TIMER is below 0 where it times.
+    NegativeTimer = 13,
 }
 
 impl FaultKind {
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::DivideByZero,
         Self::IndexOutOfRange,
         Self::SubrangeViolated,
@@ -45,6 +47,7 @@ impl FaultKind {
         Self::ForbiddenView,
         Self::AssertionFailed,
         Self::NotImplemented,
+        Self::NegativeTimer,
     ];
 
     /// The fault with this code, as native code returns it.
@@ -67,6 +70,7 @@ impl FaultKind {
             Self::ForbiddenView => "a reference points to something of another type",
             Self::AssertionFailed => "an assertion does not hold",
             Self::NotImplemented => "an `{external}` is not implemented here",
+            Self::NegativeTimer => "the PRE or ACC of a TIMER is below 0",
         }
     }
 }

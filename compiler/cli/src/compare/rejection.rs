@@ -25,6 +25,13 @@ const FROM_LOGIX: &str = "A COUNTER and its instructions become an instance and 
 `c(CU := rung, R := clear, PV := preset)`, c.DN is c.Q, c.ACC is c.CV. Give the rewritten program with --against FILE to \
 compare it";
 
+const TIMERS_FROM_LOGIX: &str = "A TIMER and its instructions become an instance and its call: TON(t, rung) is \
+`t(IN := rung, PT := preset)` of a TON with a TIME, t.DN is t.Q, t.ACC is t.ET; an RTO has no counterpart. ONS and OSR become \
+an R_TRIG, OSF an F_TRIG, OTL and OTU an IF. Give the rewritten program with --against FILE to compare it";
+
+/// What Logix has beside its counters, by name.
+const TIMERS_OF_LOGIX: [&str; 9] = ["TIMER", "TON", "TOF", "RTO", "ONS", "OSR", "OSF", "OTL", "OTU"];
+
 /// The reason after the first error.
 pub fn find(to: &Session, from: Dialect, target: Dialect) -> Rejection {
     let errors = to.diagnostics.iter().filter(|it| it.severity == Severity::Error);
@@ -49,6 +56,9 @@ fn of(to: &Session, error: &Diagnostic, from: Dialect, target: Dialect) -> Rejec
     let pitfall = |number| Some(Pitfall::numbered(number));
     if target == Dialect::Logix && block {
         return Rejection { pitfall: None, why, advice: TO_LOGIX.to_owned() };
+    }
+    if from == Dialect::Logix && block && TIMERS_OF_LOGIX.contains(&name.as_str()) {
+        return Rejection { pitfall: None, why, advice: TIMERS_FROM_LOGIX.to_owned() };
     }
     if from == Dialect::Logix && block {
         return Rejection { pitfall: pitfall(11), why, advice: FROM_LOGIX.to_owned() };

@@ -316,9 +316,7 @@ impl<'s> Declarations<'s> {
         let near = nearest(name.text, candidates).map(str::to_owned);
         let foreign =
             FOREIGN.iter().find(|(it, _)| it.eq_ignore_ascii_case(name.text)).map(|(_, ours)| (*ours).to_owned());
-        // The structure of ladder's timers.
-        let is_timer = dialect == crate::Dialect::Logix && name.text.eq_ignore_ascii_case("TIMER");
-        let near = is_timer.then(|| "FBD_TIMER".to_owned()).or(foreign).or(near);
+        let near = foreign.or(near);
         let mut error =
             Diagnostic::new(Code::E0102, name.span, format!("there is no type `{}`", name.text)).label("unknown type");
         if name.text.eq_ignore_ascii_case("VOID") {

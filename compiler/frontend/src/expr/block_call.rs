@@ -4,13 +4,13 @@ use super::argument::{Parts, Role, Source, as_written};
 use super::binding::{Given, Parameter};
 use super::checker::Checker;
 use super::operand::Operand;
-use super::order::{Held, Written};
+use super::order::Held;
 use super::place::{Access, Found};
 use crate::diagnostic::wording::article;
 use crate::types::signature::{Target, pin_place};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Argument, BlockId, Conversion, Expr, FieldId, Place, Root, RoutineId, Section, StatementKind, Type};
-use staunch_runtime::{Direction, Family};
+use staunch_runtime::Direction;
 
 impl<'s> Checker<'_, 's> {
     pub(crate) fn instance_call(
@@ -294,122 +294,6 @@ impl<'s> Checker<'_, 's> {
         } else {
             Some(arguments.into())
         }
-    }
-
-    /// A Logix instruction on a structure: returns its rung-condition-out.
-    pub(crate) fn instruction(
-        &mut self,
-        name: ast::Name<'s>,
-        arguments: &[ast::Argument<'s>],
-        span: Span,
-    ) -> Option<Expr> {
-        let (id, instruction) = crate::names::instruction_in(Family::Logix, name.text)?;
-        let info = id.info();
-        let takes_rung = info.instructions[instruction].takes_rung;
-        let tag = match takes_rung {
-            true => "Counter".to_owned(),
-            false => format!("{}_tag", info.instructions[instruction].name),
-        };
-        let mut parameters = vec![Parameter { name: &tag, section: Section::InOut }];
-        if takes_rung {
-            parameters.push(Parameter { name: "RungIn", section: Section::Input });
-        }
-        let names: Vec<_> = parameters.iter().map(|it| it.name).collect();
-        let given = self.bind(name.text, &parameters, arguments, |argument| {
-            Diagnostic::new(Code::E0301, argument.span, format!("`{}` has no parameter `{}`", name.text, argument.text))
-                .label("unknown parameter")
-                .help(format!("its parameters are {}", crate::diagnostic::wording::list(&names)))
-        })?;
-        let Given::Value(tag) = given[0] else {
-            self.report(
-                Diagnostic::new(Code::E0303, name.span, format!("`{}` needs {}", name.text, article(info.name))).help(
-                    match takes_rung {
-                        true => format!("write `{}(Counter := tag, RungIn := condition)`", name.text),
-                        false => format!("write `{}(tag)`", name.text),
-                    },
-                ),
-            );
-            return None;
-        };
-        let mut parts = Parts::default();
-        let mut complete = true;
-        for at in as_written(&given) {
-            let made = match given[at] {
-                Given::Value(_) if at == 0 => self.tag_part(&mut parts, tag, (id, instruction), name, names[0]),
-                Given::Value(rung) => self.value_part(&mut parts, rung, Type::BOOL, Role::Passed(1)),
-                Given::Nothing | Given::Output { .. } => Some(()),
-            };
-            complete &= made.is_some();
-        }
-        if let Some(Given::Nothing | Given::Output { .. }) = given.get(1) {
-            self.report(
-                Diagnostic::new(Code::E0303, name.span, format!("`{}` needs its rung condition", name.text))
-                    .help("write `RungIn := condition`; `RungIn := TRUE` for an unconditional rung"),
-            );
-            return None;
-        }
-        if !complete {
-            return None;
-        }
-        let at = self.at(span);
-        if takes_rung {
-            self.keep_rung(&mut parts, span);
-        }
-        let call = |parts: &Parts| {
-            let block = parts.written.iter().find_map(Written::place)?.clone();
-            let inputs = parts.written.iter().filter_map(Written::value).cloned().collect();
-            Some(StatementKind::CallBlock { block, instruction, inputs })
-        };
-        let parts = self.perform(parts, &call, span)?;
-        match parts.written.iter().find_map(Written::value) {
-            Some(rung) => Some(rung.clone()),
-            None => {
-                let tag = parts.written.iter().find_map(Written::place)?;
-                Some(Expr::load(pin_place(tag.clone(), id, "EnableOut"), at))
-            }
-        }
-    }
-
-    /// Evaluates the next part, the structure that an instruction works on.
-    fn tag_part(
-        &mut self,
-        parts: &mut Parts,
-        tag: &ast::Expr<'s>,
-        (id, instruction): (BlockId, usize),
-        name: ast::Name<'s>,
-        parameter: &str,
-    ) -> Option<()> {
-        let found = self.after_parts(&mut parts.written, |this| this.variable_argument(tag, parameter))?;
-        if found.place.ty != Type::Block(id) {
-            let has = self.type_name(found.place.ty);
-            let wants = article(id.info().name);
-            self.report(
-                Diagnostic::new(Code::E0313, tag.span, format!("`{}` works on {wants}, found {has}", name.text))
-                    .label(format!("expected {wants}")),
-            );
-            return None;
-        }
-        self.used_instruction(&found.place, instruction);
-        parts.push(Held::Place(found.place), Role::Instance, tag.span);
-        Some(())
-    }
-
-    /// The rung condition is read again as the call's value.
-    fn keep_rung(&mut self, parts: &mut Parts, span: Span) {
-        let rung = parts.written.iter().position(|it| it.value().is_some_and(|it| it.as_const().is_none()));
-        let Some(rung) = rung else { return };
-        let (before, rest) = parts.written.split_at_mut(rung);
-        let [written, ..] = rest else { return };
-        let Held::Value(value) = &mut written.held else { return };
-        let saved = self.temporary("rung", Type::BOOL);
-        let at = value.at;
-        let value = std::mem::replace(value, Expr::load(saved.clone(), at));
-        // A tag that is written before it is evaluated before it.
-        let fault_first = self.can_fault(&value);
-        for part in before {
-            self.hold(&mut part.held, &[], fault_first);
-        }
-        self.assign(saved, value, span);
     }
 
     /// The statements that feed the triggers of R_EDGE and F_EDGE inputs.

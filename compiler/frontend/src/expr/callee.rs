@@ -4,7 +4,7 @@ use super::checker::Checker;
 use super::logix_operands;
 use super::unresolved::{block_of_another_dialect, no_such_block};
 use crate::inherit::is_super;
-use crate::names::{Entry, Found, Meaning, Sense, functions, instruction_in};
+use crate::names::{Entry, Found, Meaning, Sense, functions, is_instruction};
 use crate::prelude;
 use crate::spelling::nearest;
 use crate::{Code, Diagnostic, ast, dialect};
@@ -17,7 +17,7 @@ use staunch_runtime::Family;
 pub(crate) enum Callee<'s> {
     /// A user's FUNCTION, by its slot.
     Function(usize),
-    /// An instruction of a structure that instructions share (Logix), by its name.
+    /// An instruction of Logix, by its name.
     Instruction(ast::Name<'s>),
     /// A standard function.
     Standard(ast::Name<'s>),
@@ -77,7 +77,10 @@ impl<'s> Checker<'_, 's> {
         if let Some(variable) = self.scope.get(name.text) {
             // A variable that cannot be called does not hide a function of its name.
             let callable = matches!(variable.place.ty, Type::Block(_) | Type::Struct(_));
-            let function = matches!(found, Found::One(Meaning::Function | Meaning::Declared(Entry::Pou(_))));
+            let function = matches!(
+                found,
+                Found::One(Meaning::Function | Meaning::Instruction | Meaning::Declared(Entry::Pou(_)))
+            );
             if callable || !function {
                 return Some(Callee::Instance);
             }
@@ -92,7 +95,7 @@ impl<'s> Checker<'_, 's> {
                 self.error(Code::E0305, name.span, format!("`{}` is a type; it cannot be called", name.text));
                 None
             }
-            Found::One(Meaning::Instruction(..)) => Some(Callee::Instruction(name)),
+            Found::One(Meaning::Instruction) => Some(Callee::Instruction(name)),
             Found::One(Meaning::Function) => Some(Callee::Standard(name)),
             Found::Several(meanings) => {
                 self.decl.report_ambiguous(name, &meanings);
@@ -259,9 +262,4 @@ fn not_yet(name: &str) -> bool {
     let name = name.to_ascii_uppercase();
     let (from, to) = name.split_once("_TO_").unwrap_or_default();
     from == "BCD" || to == "BCD"
-}
-
-/// Whether `name` is an instruction of a structure in `family`.
-fn is_instruction(family: Family, name: &str) -> bool {
-    instruction_in(family, name).is_some()
 }

@@ -22,7 +22,7 @@ struct Operands<'a, 's> {
 }
 
 impl<'a, 's> Operands<'a, 's> {
-    /// The members of a COUNTER that they stand for; each starts at 0.
+    /// The members of a COUNTER or TIMER that they stand for; each starts at 0.
     fn members(&self) -> impl Iterator<Item = (&'static str, &'a ast::Expr<'s>)> {
         let count = self.count.filter(|it| integer(it) != Some(0));
         self.preset.map(|it| ("PRE", it)).into_iter().chain(count.map(|it| ("ACC", it)))
@@ -59,9 +59,9 @@ impl<'s> Checker<'_, 's> {
             self.operand(expr, None);
         }
         let error = match (is_in(&COUNTERS), family) {
-            (true, Family::Logix) => self.of_counter(callee, &given, arguments),
+            (true, Family::Logix) => self.of_structure("COUNTER", callee, &given, arguments),
             (true, _) => self.of_block(name, family, &given),
-            (false, Family::Logix) => self.of_ladder_timer(callee, name, &given),
+            (false, Family::Logix) => self.of_structure("TIMER", callee, &given, arguments),
             (false, _) => self.of_timer(name, &given),
         };
         self.report(error);
@@ -85,29 +85,30 @@ impl<'s> Checker<'_, 's> {
         given.rung.map_or("condition", |it| self.source(it))
     }
 
-    fn of_counter(
+    fn of_structure(
         &self,
+        structure: &str,
         callee: &ast::Expr<'s>,
         given: &Operands<'_, 's>,
         arguments: &[ast::Argument<'s>],
     ) -> Diagnostic {
         let (tag, name) = (self.source(given.tag), self.source(callee));
         let message = format!("a preset and an accumulated value are no operands of `{name}` in Structured Text");
-        let error = Diagnostic::new(Code::E0302, given.span, message).label("the COUNTER holds them");
+        let error = Diagnostic::new(Code::E0302, given.span, message).label(format!("the {structure} holds them"));
         if let (Some(_), Some(first), Some(last)) = (given.rung, arguments.first(), arguments.last())
             && self.is_declared_so(given)
         {
             let span = Span { end: last.span.end, ..first.span };
             let call = format!("{tag}, RungIn := {}", self.rung(given));
-            return error.help("the COUNTER is declared with them; leave them out").fix(span, call);
+            return error.help(format!("the {structure} is declared with them; leave them out")).fix(span, call);
         }
         let is_name = matches!(given.tag.kind, Ast::Name(_));
         let before = given.members().filter(|it| !is_name || integer(it.1).is_none());
         let before = before.map(|(member, expr)| format!("{tag}.{member} := {}; ", self.source(expr)));
         let call = format!("`{}{name}({tag}, RungIn := {});`", before.collect::<String>(), self.rung(given));
-        let ty = if matches!(callee.kind, Ast::Name(_)) { "COUNTER" } else { "LOGIX.COUNTER" };
+        let owner = if matches!(callee.kind, Ast::Name(_)) { "" } else { "LOGIX." };
         error.help(match is_name {
-            true => format!("declare `{}`, and write {call}", self.declaration(given, ty)),
+            true => format!("declare `{}`, and write {call}", self.declaration(given, &format!("{owner}{structure}"))),
             false => format!("write {call}"),
         })
     }
@@ -118,10 +119,10 @@ impl<'s> Checker<'_, 's> {
         let Some(variable) = self.scope.get(tag.text) else { return false };
         let Type::Block(block) = variable.place.ty else { return false };
         let Some(initial) = self.initial(&variable.place) else { return false };
-        let holds = |role: PinRole, expr: Option<&ast::Expr<'s>>| {
-            expr.is_none_or(|it| integer(it).is_some() && integer(it) == member(block, initial, role))
+        let holds = |pin: &str, expr: Option<&ast::Expr<'s>>| {
+            expr.is_none_or(|it| integer(it).is_some() && integer(it) == member(block, initial, pin))
         };
-        holds(PinRole::Preset, given.preset) && holds(PinRole::Count, given.count)
+        holds("PRE", given.preset) && holds("ACC", given.count)
     }
 
     fn initial(&self, place: &Place) -> Option<&Const> {
@@ -162,28 +163,18 @@ impl<'s> Checker<'_, 's> {
         error.note(logix).help(format!("declare `{tag} : {};`, and call `{tag}({})`", info.name, pins.join(", ")))
     }
 
-    /// In Structured Text Logix has other instructions for its timers.
-    fn of_ladder_timer(&self, callee: &ast::Expr<'s>, name: ast::Name<'s>, given: &Operands<'_, 's>) -> Diagnostic {
-        let (tag, text) = (self.source(given.tag), name.text.to_ascii_uppercase());
-        let owner = if matches!(callee.kind, Ast::Name(_)) { "" } else { "LOGIX." };
-        let preset = given.preset.map_or("1000", |it| self.source(it));
-        Diagnostic::new(Code::E0305, name.span, format!("`{text}` is an instruction of ladder"))
-            .label(format!("in Structured Text it is `{text}R`, on an FBD_TIMER"))
-            .help(format!(
-                "declare `{tag} : {owner}FBD_TIMER := (PRE := {preset});`, and write `{tag}.TimerEnable := {}; {owner}{text}R({tag});`",
-                self.rung(given)
-            ))
-    }
-
     /// A TIMER counts milliseconds.
     fn of_timer(&self, name: ast::Name<'s>, given: &Operands<'_, 's>) -> Diagnostic {
         let (tag, text) = (self.source(given.tag), name.text);
         let error =
             Diagnostic::new(Code::E0305, name.span, format!("`{text}` is called here as Logix lists its operands"));
+        let logix = format!(
+            "for the timer of Logix declare `{}`, and write `LOGIX.{text}({tag}, RungIn := {})`",
+            self.declaration(given, "LOGIX.TIMER"),
+            self.rung(given)
+        );
         if text.eq_ignore_ascii_case("RTO") {
-            return error
-                .label("there is no retentive timer")
-                .help("add the time of each scan up in a TIME that is RETAIN, and compare it with the preset");
+            return error.label("no other system has a retentive timer").help(logix);
         }
         let preset = match given.preset {
             Some(it) if integer(it).is_some() => format!("T#{}ms", self.source(it)),
@@ -192,6 +183,7 @@ impl<'s> Checker<'_, 's> {
         };
         error
             .label("a timer is a FUNCTION_BLOCK; its preset is a TIME")
+            .note(logix)
             .help(format!("declare `{tag} : {text};`, and call `{tag}(IN := {}, PT := {preset})`", self.rung(given)))
     }
 }
@@ -201,20 +193,6 @@ pub(super) fn of_ladder(name: &str) -> Option<&'static str> {
     const MEANT: &[(&[&str], &str)] = &[
         (&["XIC", "XIO"], "read the tag: `tag`, or `NOT tag`"),
         (&["OTE"], "assign the condition: `tag := condition;`"),
-        (&["OTL"], "write `IF condition THEN tag := TRUE; END_IF;`"),
-        (&["OTU"], "write `IF condition THEN tag := FALSE; END_IF;`"),
-        (
-            &["ONS", "OSR"],
-            "declare `edge : FBD_ONESHOT;`, write `edge.InputBit := condition; OSRI(edge);`, and read `edge.OutputBit`",
-        ),
-        (
-            &["OSF"],
-            "declare `edge : FBD_ONESHOT;`, write `edge.InputBit := condition; OSFI(edge);`, and read `edge.OutputBit`",
-        ),
-        (
-            &["TON", "TOF", "RTO"],
-            "declare `timer : FBD_TIMER := (PRE := 1000);`, write `timer.TimerEnable := condition;`, and call TONR, TOFR or RTOR with it",
-        ),
         (&["MOV"], "write `destination := source;`"),
         (&["CPT"], "write `destination := expression;`"),
     ];
@@ -273,8 +251,8 @@ fn integer(expr: &ast::Expr<'_>) -> Option<i128> {
     }
 }
 
-fn member(block: BlockId, initial: &Const, role: PinRole) -> Option<i128> {
-    let at = block.info().pins.iter().position(|it| it.role == Some(role))?;
+fn member(block: BlockId, initial: &Const, pin: &str) -> Option<i128> {
+    let at = block.info().pins.iter().position(|it| it.is_named(pin))?;
     match initial {
         Const::Zero => Some(0),
         Const::Struct(pins) => match pins.get(at)? {

@@ -3,6 +3,7 @@
 
 mod argument;
 mod binding;
+mod bit_instruction;
 mod block_call;
 mod block_copy;
 mod call;
@@ -23,6 +24,7 @@ mod expression;
 mod fold;
 mod function;
 pub(crate) mod generic_call;
+mod instruction;
 mod literal;
 mod logix_operands;
 mod memory;

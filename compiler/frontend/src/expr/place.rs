@@ -657,7 +657,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// Reports an assignment to what the hardware sets before each scan.
-    fn is_no_input_address(&mut self, found: &Found<'s>, span: Span) -> bool {
+    pub(crate) fn is_no_input_address(&mut self, found: &Found<'s>, span: Span) -> bool {
         let address = found.view.and_then(|it| it.address).or_else(|| self.address_of(&found.place));
         let Some(address) = address.filter(|it| it.area == Area::Input) else { return true };
         let refused = self.decl.dialect(span).protects_inputs();

@@ -83,7 +83,7 @@ impl<'s> Checker<'_, 's> {
         let path = callee.path()?;
         let (last, around) = path.split_last()?;
         match self.decl.lookup(&path, Sense::Callee) {
-            Found::One(Meaning::Instruction(..)) => Some(Some(Callee::Instruction(*last))),
+            Found::One(Meaning::Instruction) => Some(Some(Callee::Instruction(*last))),
             Found::One(Meaning::Function) => Some(Some(Callee::Standard(*last))),
             Found::One(Meaning::Declared(Entry::Pou(slot))) => Some(self.called_pou(slot, *last)),
             Found::Several(meanings) => {

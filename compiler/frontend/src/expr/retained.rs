@@ -2,17 +2,22 @@
 
 use super::checker::Checker;
 use super::uses::{
-    Assigned, KeptCount, Uses, assigned_count, holds_storage, is_element_by_element, is_same_place, lost_count,
-    same_storage, several_counts, shared_count,
+    Assigned, KeptCount, Preparation, Uses, assigned_count, holds_storage, is_element_by_element, is_same_place,
+    lost_count, same_storage, several_counts, shared_count,
 };
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Place, Root, Type};
 
 impl<'s> Checker<'_, 's> {
     pub(crate) fn used_instruction(&mut self, place: &Place, instruction: usize) {
-        let known = self.uses.instructions.iter().any(|(it, at)| *at == instruction && is_same_place(it, place));
+        self.prepared(place, Preparation::Instruction(instruction));
+    }
+
+    /// Notes what an instruction does before the first scan.
+    pub(crate) fn prepared(&mut self, place: &Place, preparation: Preparation) {
+        let known = self.uses.instructions.iter().any(|(it, at)| *at == preparation && is_same_place(it, place));
         if !known {
-            self.uses.instructions.push((place.clone(), instruction));
+            self.uses.instructions.push((place.clone(), preparation));
         }
     }
 

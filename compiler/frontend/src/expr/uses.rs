@@ -6,10 +6,19 @@ use staunch_ir::{Expr, ExprKind, Location, Place, Projection};
 /// What a POU does with counters, in places of the POU's own.
 #[derive(Debug, Default)]
 pub(crate) struct Uses {
-    /// Structures, each with an instruction that works on it.
-    pub instructions: Vec<(Place, usize)>,
+    /// Structures and bits, each with what the instruction that works on it does before the first scan.
+    pub instructions: Vec<(Place, Preparation)>,
     pub counts: Vec<KeptCount>,
     pub assigned: Vec<Assigned>,
+}
+
+/// What an instruction does before the first scan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Preparation {
+    /// What the structure's instruction at this position does.
+    Instruction(usize),
+    /// A BOOL, or a bit of an integer, is given a value.
+    Bit { shift: Option<u32>, value: bool },
 }
 
 /// A variable that the body assigns as a whole.

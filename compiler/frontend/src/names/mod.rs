@@ -51,8 +51,8 @@ pub(crate) enum Meaning {
     /// A value of the type in this slot, if that is an enumeration and has it.
     Enumerator(usize),
     Block(BlockId),
-    /// A structure's instruction, and its position.
-    Instruction(BlockId, usize),
+    /// An instruction of Logix, on structures or on bits.
+    Instruction,
     /// A standard function.
     Function,
 }
@@ -216,8 +216,8 @@ impl<'s> Names<'s> {
         match sense {
             Sense::Type => dialect::bare_block(dialect, name).map(Meaning::Block),
             Sense::Value => None,
-            Sense::Callee => instruction_in(dialect.family(), name)
-                .map(|(block, instruction)| Meaning::Instruction(block, instruction))
+            Sense::Callee => is_instruction(dialect.family(), name)
+                .then_some(Meaning::Instruction)
                 .or_else(|| functions::exists_in(name, dialect).then_some(Meaning::Function)),
         }
     }
@@ -527,7 +527,7 @@ fn in_family(family: Family, name: &str, sense: Sense) -> Option<Meaning> {
         // What all systems share needs no family of its own.
         Sense::Type => dialect::block_in(family, name).or_else(|| dialect::shared_block(name)).map(Meaning::Block),
         Sense::Value => None,
-        Sense::Callee => instruction_in(family, name).map(|(block, at)| Meaning::Instruction(block, at)),
+        Sense::Callee => is_instruction(family, name).then_some(Meaning::Instruction),
     }
 }
 
@@ -542,8 +542,61 @@ static INSTRUCTIONS: LazyLock<FxHashMap<Key<'static>, Vec<(BlockId, usize)>>> = 
     by_name
 });
 
-/// The first structure of a family with the instruction `name`, and the instruction's position.
-pub(crate) fn instruction_in(family: Family, name: &str) -> Option<(BlockId, usize)> {
-    let instructions = INSTRUCTIONS.get(&Key(name))?;
-    instructions.iter().copied().find(|(block, _)| block.info().family == family)
+/// The structures of a family that have the instruction `name`, each with its position there.
+pub(crate) fn instructions_in(family: Family, name: &str) -> &[(BlockId, usize)] {
+    let known = INSTRUCTIONS.get(&Key(name)).map_or(&[][..], Vec::as_slice);
+    if known.iter().all(|(block, _)| block.info().family == family) { known } else { &[] }
+}
+
+/// Whether `name` is an instruction in `family`.
+pub(crate) fn is_instruction(family: Family, name: &str) -> bool {
+    !instructions_in(family, name).is_empty() || family == Family::Logix && bit_instruction(name).is_some()
+}
+
+/// An instruction of Logix on single bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum BitInstruction {
+    /// `ONS`
+    OneShot,
+    /// `OSR`
+    OneShotRising,
+    /// `OSF`
+    OneShotFalling,
+    /// `OTL`
+    Latch,
+    /// `OTU`
+    Unlatch,
+}
+
+impl BitInstruction {
+    const ALL: [(&str, Self); 5] = [
+        ("ONS", Self::OneShot),
+        ("OSR", Self::OneShotRising),
+        ("OSF", Self::OneShotFalling),
+        ("OTL", Self::Latch),
+        ("OTU", Self::Unlatch),
+    ];
+
+    /// The bits that it works on, before its rung.
+    pub fn operands(self) -> &'static [&'static str] {
+        match self {
+            Self::OneShot => &["StorageBit"],
+            Self::OneShotRising | Self::OneShotFalling => &["StorageBit", "OutputBit"],
+            Self::Latch | Self::Unlatch => &["DataBit"],
+        }
+    }
+
+    /// What the prescan gives each of them.
+    pub fn prescan(self) -> &'static [Option<bool>] {
+        match self {
+            Self::OneShot => &[Some(true)],
+            Self::OneShotRising => &[Some(true), Some(false)],
+            Self::OneShotFalling => &[Some(false), Some(false)],
+            Self::Latch | Self::Unlatch => &[None],
+        }
+    }
+}
+
+pub(crate) fn bit_instruction(name: &str) -> Option<BitInstruction> {
+    BitInstruction::ALL.into_iter().find(|(it, _)| it.eq_ignore_ascii_case(name)).map(|(_, it)| it)
 }

@@ -2,11 +2,13 @@
 //! their tags are retentive, and a prescan before the first scan keeps an input that is already
 //! TRUE from counting.
 
+mod fbd_timer;
 mod one_shot;
 mod timer;
 
+pub use fbd_timer::FbdTimer;
 pub use one_shot::FbdOneshot;
-pub use timer::FbdTimer;
+pub use timer::Timer;
 
 use crate::block::pins;
 

@@ -1,12 +1,13 @@
 //! The statements of a prescan.
 
 use super::named;
+use crate::expr::uses::Preparation;
 use crate::types::declarations::Declarations;
 use crate::types::signature::pin_place;
 use staunch_ir::startup::{Event, Fate, Startup};
 use staunch_ir::{
-    Block, Const, Elementary, Expr, For, Local, LocalId, Location, Op, Place, Program, Projection, RoutineId,
-    Statement, StatementKind, Type, Value,
+    Block, Const, Elementary, Expr, ExprKind, For, Local, LocalId, Location, Op, Place, Program, Projection, Repr,
+    RoutineId, Statement, StatementKind, Type, Value,
 };
 
 /// Builds the prescan of one POU.
@@ -46,17 +47,37 @@ impl<'p> Builder<'p> {
         Addition { prescan: self.prescan, locals: self.locals, block: self.block }
     }
 
-    /// What an instruction does to the structure that it works on, and to no other element of an array.
-    pub fn instruction(&mut self, place: &Place, instruction: usize) {
-        let Type::Block(id) = place.ty else { return };
-        if id.info().instructions[instruction].prescan.is_none() {
-            return;
-        }
+    /// What an instruction does to the structure or bit that it works on, and to no other element of an array.
+    pub fn instruction(&mut self, place: &Place, preparation: Preparation) {
         let routine = &self.program.routines[self.pou];
-        let block = named::before_calls(self.program, routine, place);
-        let kind = StatementKind::PrescanBlock { block: block.clone(), instruction };
+        let place = named::before_calls(self.program, routine, place);
+        let Some(kind) = self.prepared(&place, preparation) else { return };
         let prescan = vec![Statement::new(kind, self.at)];
-        self.block.extend(named::where_it_is_one(self.program, routine, &block, prescan, self.at));
+        self.block.extend(named::where_it_is_one(self.program, routine, &place, prescan, self.at));
+    }
+
+    fn prepared(&self, place: &Place, preparation: Preparation) -> Option<StatementKind> {
+        let (at, target) = (self.at, place.clone());
+        match preparation {
+            Preparation::Instruction(instruction) => {
+                let Type::Block(id) = place.ty else { return None };
+                id.info().instructions[instruction].prescan?;
+                Some(StatementKind::PrescanBlock { block: target, instruction })
+            }
+            Preparation::Bit { shift: None, value } => {
+                Some(StatementKind::Assign { target, value: Expr::bool(value, at) })
+            }
+            Preparation::Bit { shift: Some(shift), value } => {
+                let ty = place.ty.read();
+                let Type::Elementary(of) = ty else { return None };
+                // All bits of an integer but one, or that one.
+                let bit = if value { 1i128 << shift } else { !(1i128 << shift) };
+                let mask = Expr::new(ty, ExprKind::Const(wrapped(of.repr(), bit)?), at);
+                let op = if value { Op::Or } else { Op::And };
+                let value = Expr::apply(op, ty, vec![Expr::load(target.clone(), at), mask], at);
+                Some(StatementKind::Assign { target, value })
+            }
+        }
     }
 
     /// CV starts at the kept count where that is retained, else at 0. Counters and counts in arrays
@@ -190,4 +211,11 @@ fn for_each(counter: Place, (low, high): (i64, i64), body: Block, at: Location) 
 /// The routine of the prescan of the POU in a slot, until routines are put in order.
 pub(super) fn routine_of(declarations: &Declarations<'_>, slot: usize) -> RoutineId {
     RoutineId::next(declarations.pous.len() + slot)
+}
+
+/// These low bits as a value, of whatever sign.
+fn wrapped(repr: Repr, bits: i128) -> Option<Value> {
+    let all = 1i128 << (repr.size() * 8);
+    let low = bits & (all - 1);
+    repr.integer(low).or_else(|| repr.integer(low - all))
 }

@@ -1,7 +1,7 @@
 //! Uses of counters that reach a POU through its calls.
 
 use super::named::{self, reads_param};
-use crate::expr::uses::{KeptCount, Uses, is_same_place, same_storage};
+use crate::expr::uses::{KeptCount, Preparation, Uses, is_same_place, same_storage};
 use staunch_ir::{
     Argument, Block, Expr, Location, Mode, Place, Program, Root, RoutineId, RoutineKind, Statement, StatementKind,
 };
@@ -86,7 +86,7 @@ pub(super) fn joined(outer: &Place, inner: &Place) -> Place {
     Place { root: outer.root, projections, ty: inner.ty }
 }
 
-pub(super) fn add_instruction(uses: &mut Uses, place: Place, instruction: usize) {
+pub(super) fn add_instruction(uses: &mut Uses, place: Place, instruction: Preparation) {
     let known = uses.instructions.iter().any(|(it, at)| *at == instruction && is_same_place(it, &place));
     if !known {
         uses.instructions.push((place, instruction));
