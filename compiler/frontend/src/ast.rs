@@ -22,6 +22,8 @@ pub struct Name<'s> {
 #[derive(Clone, Debug, Default)]
 pub struct File<'s> {
     pub items: Vec<Item<'s>>,
+    /// Of its VAR_CONFIG outside of a CONFIGURATION.
+    pub bindings: Vec<Binding<'s>>,
     /// Every `{…}` in the file, in order, without its braces.
     pub pragmas: Vec<Name<'s>>,
     /// Each `{Test}` and `{Test(x := 1)}` of them, with its arguments.
@@ -416,12 +418,12 @@ pub struct Configuration<'s> {
     pub span: Span,
 }
 
-/// `Run.valve.open AT %QX0.1 : BOOL := FALSE;` in a VAR_CONFIG
+/// `Run.valve.open AT %QX0.1 : BOOL := FALSE;` in a VAR_CONFIG; without an address it has an initial value.
 #[derive(Clone, Debug)]
 pub struct Binding<'s> {
     /// `Run.valve.open`
     pub target: Expr<'s>,
-    /// What lies at the address, which is its name.
+    /// What lies at the address, which is its name; without one, what the variable starts with.
     pub located: VarDecl<'s>,
 }
 

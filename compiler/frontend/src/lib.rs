@@ -173,7 +173,7 @@ fn run_with(
     start::expand(&mut files);
     let allowances = allow::Allowances::read(&files, &mut log.diagnostics);
     let mut bodies: Vec<_> = files.iter_mut().flat_map(ast::File::take_bodies).collect();
-    let mut runs = declare::run::runs(&files);
+    let mut runs = declare::run::runs(&files, options.tests);
     bodies.extend(runs.iter_mut().map(|it| std::mem::take(&mut it.body)));
     let mut declarations = declare::declare(log, polymorphic.clone(), &files, &runs, &bodies);
     declarations.coverage = options.coverage.map(|files| Coverage { files, ..Coverage::default() });

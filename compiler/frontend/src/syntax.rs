@@ -63,13 +63,13 @@ pub fn parse<'s>(file: u16, text: &'s str, diagnostics: &mut Vec<Diagnostic>) ->
     invalid_names::mend(&mut tokens, text, file);
     let mut state = State::new(file, text, &tokens, namespace::file(file, text));
     let items = parse_items(&mut state);
-    let (mut found, braces, regions) = (state.diagnostics, state.braces, state.regions);
+    let (mut found, braces, regions, bindings) = (state.diagnostics, state.braces, state.regions, state.bindings);
     found.append(&mut tokens.diagnostics);
     tokens.pragmas.retain(|it| !braces.contains(&it.span));
     let test_pragmas = test_pragma::read(file, text, &tokens.pragmas, &mut found);
     found.sort_by_key(|it| (it.span.start, it.span.end));
     diagnostics.append(&mut found);
-    File { items, pragmas: tokens.pragmas, test_pragmas, regions }
+    File { items, bindings, pragmas: tokens.pragmas, test_pragmas, regions }
 }
 
 fn parse_items<'t, 's>(state: &mut State<'t, 's>) -> Vec<crate::ast::Item<'s>> {

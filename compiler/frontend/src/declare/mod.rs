@@ -66,6 +66,7 @@ pub(crate) fn declare<'s>(
     declarations.check_overloads();
     declarations.find_named_programs(bodies);
     declarations.declare_mocks(&testing::mocked_functions(bodies));
+    declarations.start_values(runs);
     declarations.start_bindings(runs);
     declarations.declare_globals();
     declarations

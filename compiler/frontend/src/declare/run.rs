@@ -1,6 +1,7 @@
 //! What a CONFIGURATION does beside running a PROGRAM: it connects parameters, `Main(x := g)`, a TASK's SINGLE
-//! waits for an edge, and a VAR_CONFIG gives variables of instances their addresses. Such a run is written as a
-//! PROGRAM of its own: it holds the other one as an instance, and calls it.
+//! waits for an edge, and a VAR_CONFIG gives variables of instances their addresses and initial values. Such a run is
+//! written as a PROGRAM of its own: it holds the other one as an instance, and calls it. Where nothing lists
+//! PROGRAMs, a VAR_CONFIG finds the one run of each by its PROGRAM's name.
 //!
 //! What VAR_CONFIG binds is a variable of its instance, into which the run copies what lies at the address before
 //! the call; what is no input is copied back after it.
@@ -20,13 +21,15 @@ pub(crate) struct Run<'s> {
     pub body: Vec<ast::Statement<'s>>,
     /// What a VAR_CONFIG binds: the variable, in the run, and its address.
     pub bound: Vec<(ast::Expr<'s>, ast::Name<'s>)>,
+    /// What it only gives an initial value: the variable, in the run, with its type and value.
+    pub valued: Vec<(ast::Expr<'s>, ast::VarDecl<'s>)>,
     /// The name in the CONFIGURATION.
     pub instance: Span,
 }
 
 /// The runs of all configurations that take a PROGRAM of their own. Where one run of a PROGRAM does, its
-/// other ones do as well.
-pub(crate) fn runs<'a, 's>(files: &'a [ast::File<'s>]) -> Vec<Run<'s>> {
+/// other ones do as well. Unit tests run no PROGRAM by itself.
+pub(crate) fn runs<'a, 's>(files: &'a [ast::File<'s>], tests: bool) -> Vec<Run<'s>> {
     let items = || files.iter().flat_map(|it| &it.items);
     let configurations = || {
         items().filter_map(|it| match it {
@@ -37,9 +40,23 @@ pub(crate) fn runs<'a, 's>(files: &'a [ast::File<'s>]) -> Vec<Run<'s>> {
     let resources = configurations().flat_map(|it| &it.resources);
     let listed: Vec<_> =
         resources.flat_map(|resource| resource.programs.iter().map(move |it| (resource, it))).collect();
-    let bindings: Vec<_> = configurations().flat_map(|it| &it.bindings).collect();
-    if listed.is_empty() {
-        return Vec::new();
+    let in_files = files.iter().flat_map(|it| &it.bindings);
+    let bindings: Vec<_> = configurations().flat_map(|it| &it.bindings).chain(in_files).collect();
+    let pous: FxHashMap<_, _> = items().filter_map(pou).map(|it| (Key(it.name.text), it)).collect();
+    let bound_in = |resource: &ast::Resource<'s>, it: &ast::ProgramInstance<'s>| {
+        let bound = |binding: &&'a ast::Binding<'s>| {
+            let target = within(&binding.target, resource, it)?;
+            let decl = declaration_of(&target, it, &pous).and_then(|it| it.1);
+            // What has an address of its own is reported where the CONFIGURATION is checked.
+            let is_open = binding.located.address.is_none() || decl.is_none_or(|it| it.known_address().is_none());
+            is_open.then_some((target, &binding.located))
+        };
+        bindings.iter().filter_map(bound).collect::<Vec<_>>()
+    };
+    if listed.is_empty() && !tests {
+        let resource = ast::Resource::default();
+        let runs = items().filter_map(program).filter_map(|it| by_name(it, &bindings));
+        return runs.map(|it| run(&it, None, bound_in(&resource, &it))).collect();
     }
     let programs: FxHashMap<_, _> = items().filter_map(program).map(|it| (Key(it.name.text), it)).collect();
     let asks = |(resource, it): &&(&ast::Resource<'s>, &ast::ProgramInstance<'s>)| {
@@ -52,17 +69,22 @@ pub(crate) fn runs<'a, 's>(files: &'a [ast::File<'s>]) -> Vec<Run<'s>> {
         let key = Key(it.program.text);
         wrapped.contains(&key) && programs.contains_key(&key)
     };
-    let pous: FxHashMap<_, _> = items().filter_map(pou).map(|it| (Key(it.name.text), it)).collect();
     let run = |(resource, it): (&ast::Resource<'s>, &ast::ProgramInstance<'s>)| {
-        let bound = |binding: &&'a ast::Binding<'s>| {
-            let target = within(&binding.target, resource, it)?;
-            let decl = declaration_of(&target, it, &pous).and_then(|it| it.1);
-            // What has an address of its own is reported where the CONFIGURATION is checked.
-            decl.is_none_or(|it| it.known_address().is_none()).then_some((target, &binding.located))
-        };
-        run(it, trigger(resource, it), bindings.iter().filter_map(bound).collect())
+        run(it, trigger(resource, it), bound_in(resource, it))
     };
     listed.into_iter().filter(|(_, it)| known(it)).map(run).collect()
+}
+
+/// The run of a PROGRAM that nothing lists, by its own name, if something of it is bound.
+fn by_name<'s>(program: &ast::Pou<'s>, bindings: &[&ast::Binding<'s>]) -> Option<ast::ProgramInstance<'s>> {
+    let first = bindings.iter().find_map(|it| it.target.first_name().filter(|it| Key(it.text) == Key(program.name.text)));
+    Some(unlisted(program, first?.span))
+}
+
+/// The run of a PROGRAM by its own name, which is named at `span`.
+pub(crate) fn unlisted<'s>(program: &ast::Pou<'s>, span: Span) -> ast::ProgramInstance<'s> {
+    let (name, namespace) = (program.name, Vec::new());
+    ast::ProgramInstance { name, task: None, namespace, program: ast::Name { span, ..name }, connections: Vec::new() }
 }
 
 /// A path through an instance of the CONFIGURATION, `Run.valve.open` or `Resource.Run.valve.open`, as it is in the run.
@@ -180,9 +202,12 @@ fn run<'s>(
     let mut vars = vec![variable(PROGRAM, [instance.namespace.as_slice(), &[instance.program]].concat())];
     let mut body = vec![call(PROGRAM, instance.connections.clone())];
     let mut declared = FxHashSet::default();
-    let mut bound = Vec::new();
+    let (mut bound, mut valued) = (Vec::new(), Vec::new());
     for (target, located) in bindings {
-        let Some(address) = located.address else { continue };
+        let Some(address) = located.address else {
+            valued.push((target, located.clone()));
+            continue;
+        };
         let at = ast::Expr { kind: ExprKind::Name(address), span: address.span };
         let copy = |to: &ast::Expr<'s>, from: &ast::Expr<'s>| ast::Statement {
             kind: StatementKind::Assign { target: to.clone(), value: from.clone() },
@@ -208,5 +233,5 @@ fn run<'s>(
     }
     let blocks = vec![ast::VarBlock { vars, ..ast::VarBlock::new(VarKind::Var, span) }];
     let pou = ast::Pou { blocks, ..ast::Pou::new(PouKind::Program, instance.program, span) };
-    Run { pou, body, bound, instance: instance.name.span }
+    Run { pou, body, bound, valued, instance: instance.name.span }
 }

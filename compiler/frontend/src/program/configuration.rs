@@ -1,7 +1,7 @@
 //! CONFIGURATION, RESOURCE and TASK: which programs run, and how often.
 
 use crate::ast;
-use crate::declare::run::{declaration_of, is_false, is_input, within};
+use crate::declare::run::{declaration_of, is_false, is_input, unlisted, within};
 use crate::dialect::Dialect;
 use crate::expr::constant::constant;
 use crate::names::{Entry, Found, Meaning, Sense};
@@ -22,8 +22,10 @@ pub(super) fn instances<'s>(declarations: &mut Declarations<'s>, files: &'s [ast
             ast::Item::Pou(_) | ast::Item::Types(_) | ast::Item::Globals(_) | ast::Item::Test(_) => None,
         })
         .collect();
-    declarations.check_configurations(&configurations);
-    let runs = declarations.pous.iter().enumerate().filter_map(|(at, it)| Some((it.run?, at))).collect();
+    let bindings = configurations.iter().flat_map(|it| &it.bindings).chain(files.iter().flat_map(|it| &it.bindings));
+    let bindings: Vec<_> = bindings.collect();
+    declarations.check_configurations(&configurations, &bindings);
+    let runs: FxHashMap<_, _> = declarations.pous.iter().enumerate().filter_map(|(at, it)| Some((it.run?, at))).collect();
     for resource in configurations.iter().flat_map(|it| &it.resources) {
         declarations.resource(resource, &runs);
     }
@@ -34,13 +36,15 @@ pub(super) fn instances<'s>(declarations: &mut Declarations<'s>, files: &'s [ast
         return;
     }
     let is_program = |at: &usize| declarations.pous[*at].ast.kind == ast::PouKind::Program;
-    let runs = |at: &usize| is_program(at) && !declarations.is_of_library(*at) && !declarations.is_named_program(*at);
-    let programs: Vec<_> = (0..declarations.written_pous().len()).filter(runs).collect();
+    let is_alone =
+        |at: &usize| is_program(at) && !declarations.is_of_library(*at) && !declarations.is_named_program(*at);
+    let programs: Vec<_> = (0..declarations.written_pous().len()).filter(is_alone).collect();
     for at in programs {
         if declarations.report_not_connected(at) {
             continue;
         }
-        let Some(program) = declarations.class_of_slot(at) else { continue };
+        let run = runs.get(&declarations.pous[at].ast.name.span).copied();
+        let Some(program) = declarations.class_of_slot(run.unwrap_or(at)) else { continue };
         declarations.program.instances.push(Instance {
             name: declarations.pous[at].ast.name.text.to_owned(),
             program,
@@ -76,7 +80,11 @@ impl<'s> Declarations<'s> {
         }
     }
 
-    fn check_configurations(&mut self, configurations: &[&'s ast::Configuration<'s>]) {
+    fn check_configurations(
+        &mut self,
+        configurations: &[&'s ast::Configuration<'s>],
+        bindings: &[&'s ast::Binding<'s>],
+    ) {
         if let [first, second, ..] = configurations {
             self.report(
                 Diagnostic::new(Code::E0902, second.name.span, "a second CONFIGURATION is not supported yet")
@@ -94,41 +102,50 @@ impl<'s> Declarations<'s> {
         self.names_once(resources.flat_map(|it| &it.programs).map(|it| it.name));
         // Unit tests run none of its instances.
         if !self.log.options.tests {
-            configurations.iter().for_each(|it| self.check_bindings(it));
+            self.check_bindings(configurations, bindings);
         }
-        self.check_unbound(configurations);
+        self.check_unbound(bindings);
     }
 
     /// Reports what a VAR_CONFIG binds that is no variable of an instance, and an output of two variables.
-    fn check_bindings(&mut self, configuration: &'s ast::Configuration<'s>) {
+    fn check_bindings(
+        &mut self,
+        configurations: &[&'s ast::Configuration<'s>],
+        bindings: &[&'s ast::Binding<'s>],
+    ) {
         let mut written: FxHashMap<Key<'s>, Span> = FxHashMap::default();
         let mut bound: FxHashMap<Key<'s>, Span> = FxHashMap::default();
         let pous = self.written_pous().iter().map(|it| (Key(it.ast.name.text), it.ast)).collect();
-        for ast::Binding { target, located } in &configuration.bindings {
-            let instances = configuration.resources.iter();
-            let mut instances = instances.flat_map(|it| it.programs.iter().map(move |run| (it, run)));
-            let found = instances.find_map(|(it, run)| Some((within(target, it, run)?, run)));
+        let direct = ast::Resource::default();
+        let default = self.unlisted_programs(configurations);
+        let listed = configurations.iter().flat_map(|it| &it.resources);
+        let listed = listed.flat_map(|it| it.programs.iter().map(move |run| (it, run)));
+        let instances: Vec<_> = listed.chain(default.iter().map(|it| (&direct, it))).collect();
+        for ast::Binding { target, located } in bindings {
+            let found = instances.iter().find_map(|(it, run)| Some((within(target, it, run)?, run)));
             if let Some((path, run)) = &found {
+                if self.report_called_and_bound(run, target) || self.lacks_address_and_value(target, located) {
+                    continue;
+                }
                 let decl = declaration_of(path, run, &pous).and_then(|it| it.1);
                 if !self.may_be_bound(target, decl, located) {
                     continue;
                 }
                 if let Some(first) = bound.insert(Key(self.log.sources.text(target.span)), target.span) {
                     self.report(
-                        Diagnostic::new(Code::E0409, target.span, "a variable has one address")
+                        Diagnostic::new(Code::E0409, target.span, "a variable is in a VAR_CONFIG once")
                             .label("bound again here")
-                            .other(first, "first bound here"),
+                            .other(first, "first bound here")
+                            .help("an address and a value go together: `run.x AT %MW0 : INT := 5;`"),
                     );
                 }
             } else {
-                let instances = configuration.resources.iter().flat_map(|it| &it.programs).map(|it| it.name.text);
-                let instances: Vec<_> = instances.collect();
+                let instances: Vec<_> = instances.iter().map(|it| it.1.name.text).collect();
+                let from = if default.is_empty() { "an instance of the CONFIGURATION" } else { "a PROGRAM" };
                 let error = Diagnostic::new(Code::E0101, target.span, "this is no variable of an instance")
-                    .label("a path from an instance of the CONFIGURATION is expected");
+                    .label(format!("a path from {from} is expected"));
                 self.report(match instances.first() {
-                    Some(_) => {
-                        error.help(format!("its instances are {}", crate::diagnostic::wording::list(&instances)))
-                    }
+                    Some(_) => error.help(format!("there is {}", crate::diagnostic::wording::list(&instances))),
                     None => error.help("run a PROGRAM in it: `PROGRAM run : Main;`"),
                 });
                 continue;
@@ -150,6 +167,44 @@ impl<'s> Declarations<'s> {
                 );
             }
         }
+    }
+
+    /// The run of each PROGRAM by its name, where no CONFIGURATION lists any.
+    fn unlisted_programs(&self, configurations: &[&'s ast::Configuration<'s>]) -> Vec<ast::ProgramInstance<'s>> {
+        if configurations.iter().flat_map(|it| &it.resources).any(|it| !it.programs.is_empty()) {
+            return Vec::new();
+        }
+        let is_program = |at: &usize| self.pous[*at].ast.kind == ast::PouKind::Program && !self.is_of_library(*at);
+        let programs = (0..self.written_pous().len()).filter(is_program).map(|at| self.pous[at].ast);
+        programs.map(|it| unlisted(it, it.name.span)).collect()
+    }
+
+    /// Reports a VAR_CONFIG of a PROGRAM that others call by its name.
+    fn report_called_and_bound(&mut self, run: &ast::ProgramInstance<'s>, target: &ast::Expr<'s>) -> bool {
+        let called = self.named_programs.iter().find(|(at, _)| self.pous[**at].ast.name.span == run.name.span);
+        let Some((_, named)) = called else { return false };
+        let first = named.first;
+        self.report(
+            Diagnostic::new(Code::E0902, target.span, format!("`{}` is called by name", run.name.text))
+                .label("a VAR_CONFIG is only supported for PROGRAMs that run by themselves")
+                .other(first, "named here")
+                .help("set the value where the variable is declared"),
+        );
+        true
+    }
+
+    fn lacks_address_and_value(&mut self, target: &ast::Expr<'s>, located: &ast::VarDecl<'s>) -> bool {
+        let lacks = located.address.is_none() && located.initial.is_none();
+        if lacks {
+            let (name, ty) = (self.log.sources.text(target.span), self.log.sources.text(located.ty.span));
+            let help = format!("write `{name} AT %…0 : {ty};`, or `{name} : {ty} := …;`");
+            self.report(
+                Diagnostic::new(Code::E0409, target.span, "a VAR_CONFIG gives an address or an initial value")
+                    .label("this has neither")
+                    .help(help),
+            );
+        }
+        lacks
     }
 
     /// Whether a variable may be at the address that a VAR_CONFIG gives it; reports if not.
@@ -175,9 +230,9 @@ impl<'s> Declarations<'s> {
     }
 
     /// Reports `AT %I*` where no VAR_CONFIG gives the address. CODESYS and TwinCAT keep that in the device's tree.
-    fn check_unbound(&mut self, configurations: &[&'s ast::Configuration<'s>]) {
-        let bindings = configurations.iter().flat_map(|it| &it.bindings);
-        let bound: FxHashSet<_> = bindings.filter_map(|it| last_name(&it.target)).map(|it| Key(it.text)).collect();
+    fn check_unbound(&mut self, bindings: &[&'s ast::Binding<'s>]) {
+        let located = bindings.iter().filter(|it| it.located.address.is_some());
+        let bound: FxHashSet<_> = located.filter_map(|it| last_name(&it.target)).map(|it| Key(it.text)).collect();
         let pous = self.pous.iter().map(|it| it.ast).filter(|it| !it.kind.is_function());
         let declared = pous.flat_map(|it| &it.blocks).flat_map(|it| &it.vars);
         let globals = self.globals.iter().map(|it| it.decl);

@@ -57,17 +57,17 @@ fn end<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
     token(Kind::Semicolon).ignored().or(missing)
 }
 
-/// `run.valve.open AT %QX0.1 : BOOL := FALSE;`
+/// `run.valve.open AT %QX0.1 : BOOL := FALSE;`, `run.valve.moves : INT := 5;`
 fn binding<'t, 's: 't>() -> impl Rule<'t, 's, Binding<'s>> {
     let address = token(Kind::At)
         .ignore_then(token(Kind::Address).map_with(|span, extra| Name { text: extra.state().slice(span), span }));
     let typed = token(Kind::Colon).ignore_then(type_spec()).then(optional_initial());
-    let binding = expr().then(address).then(typed).then_ignore(end());
+    let binding = expr().then(address.or_not()).then(typed).then_ignore(end());
     binding.map(|((target, address), (ty, initial))| {
         let span = target.span;
         let located = VarDecl {
-            names: vec![address],
-            address: Some(address),
+            names: address.into_iter().collect(),
+            address,
             ty,
             edge: None,
             construction: None,
@@ -80,7 +80,7 @@ fn binding<'t, 's: 't>() -> impl Rule<'t, 's, Binding<'s>> {
 }
 
 /// VAR_CONFIG … END_VAR
-fn bindings<'s>(input: &mut In<'_, '_, 's>, into: &mut Vec<Binding<'s>>) {
+pub fn bindings<'s>(input: &mut In<'_, '_, 's>, into: &mut Vec<Binding<'s>>) {
     let opened = input.take();
     loop {
         let start = input.here();

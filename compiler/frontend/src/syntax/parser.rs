@@ -11,7 +11,7 @@ use chumsky::{
 };
 
 use crate::{
-    ast::{BinaryOp, Expr, Item, MAX_CHAIN, MAX_DEPTH, Name, Region, VarDecl},
+    ast::{BinaryOp, Binding, Expr, Item, MAX_CHAIN, MAX_DEPTH, Name, Region, VarDecl},
     diagnostic::{Code, Diagnostic},
     lex::{Kind, MAX_REPORTS, Tokens, index},
     source::Span,
@@ -125,6 +125,8 @@ pub struct State<'t, 's> {
     pub orphaned: bool,
     /// Units inside a POU, reported.
     pub nested: Vec<Item<'s>>,
+    /// Of VAR_CONFIG outside of a CONFIGURATION.
+    pub bindings: Vec<Binding<'s>>,
     pub regions: Vec<Region<'s>>,
     /// Of these, the ones around the current place.
     pub around: Vec<usize>,
@@ -154,6 +156,7 @@ impl<'t, 's> State<'t, 's> {
             misaligned: None,
             orphaned: false,
             nested: Vec::new(),
+            bindings: Vec::new(),
             regions: vec![whole],
             around: vec![0],
             ended: false,

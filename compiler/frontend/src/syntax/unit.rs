@@ -12,7 +12,7 @@ use crate::{
 
 use super::{
     combinator::{Rule, ahead, name, reported, token, word},
-    configuration::configuration,
+    configuration::{bindings, configuration},
     declaration::{section, structure_members, type_spec},
     diagnostics, doc, foreign_types, misspelt, namespace,
     parser::{Expected, In, TokenReader},
@@ -44,6 +44,11 @@ pub fn items<'s>(input: &mut In<'_, '_, 's>) -> Vec<Item<'s>> {
             Kind::Type => items.push(Item::Types(types(input))),
             Kind::Struct if input.kind_ahead(1) == Kind::Name => items.push(bare_structure(input)),
             Kind::Configuration => items.push(Item::Configuration(configuration(input))),
+            Kind::VarConfig => {
+                let mut found = Vec::new();
+                bindings(input, &mut found);
+                input.state().bindings.append(&mut found);
+            }
             Kind::VarGlobal => items.extend(section(input).map(Item::Globals)),
             kind if opens_section(kind) => bare_unit(input, &mut items),
             Kind::Name if namespace::directive(input) => {}
