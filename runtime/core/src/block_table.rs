@@ -56,6 +56,9 @@ macro_rules! for_each_block {
             Iec "__CLOCK" iec::Clock {} { timed "" call staunch_iec_clock; }
 
             // The compiler adds RCV to the inputs of R_CTU and R_CTD.
+            // What says when a TASK with SINGLE and INTERVAL is due; no program names it.
+            Iec "__TASK" iec::TaskTurn {} { timed "" call staunch_iec_task; }
+
             Cscape "CTU" cscape::Ctu {} #[counts_levels] #[stops] { plain "" call staunch_cscape_ctu; }
             Cscape "CTD" cscape::Ctd {} #[counts_levels] #[stops] { plain "" call staunch_cscape_ctd; }
             Cscape "R_CTU" cscape::RCtu {} #[kept "CTU" in "RCV"] #[counts_levels] #[stops] { plain "" call staunch_cscape_r_ctu; }

@@ -2,7 +2,7 @@
 //! only while it matters.
 
 use super::scalar::Instance;
-use staunch_ir::{Local, Program, Type};
+use staunch_ir::{Program, Type};
 use staunch_runtime::{Pin, Repr, Value};
 
 /// Where a timer's pins lie in a state.
@@ -62,13 +62,21 @@ impl Timer {
     }
 }
 
-/// The block that reads the time.
-const CLOCK: &str = "iec::Clock";
-
-/// Whether the program reads the time itself, so that a state of it means something else later.
+/// Whether the program reads the time itself, or by a block whose start has no normal form, so that a state of it
+/// means something else later.
 pub fn reads_clock(program: &Program) -> bool {
-    let is_clock = |it: &Local| matches!(it.ty, Type::Block(id) if id.info().rust_path.replace(' ', "") == CLOCK);
-    program.routines.iter().any(|it| it.locals.iter().any(is_clock))
+    let locals = program.routines.iter().flat_map(|it| &it.locals).map(|it| it.ty);
+    let fields = program.structs.iter().flat_map(|it| &it.fields).map(|it| it.ty);
+    let elements = program.arrays.iter().map(|it| it.element);
+    locals.chain(fields).chain(elements).any(keeps_time)
+}
+
+/// Whether it is a block that takes the time, and none whose start is settled.
+fn keeps_time(ty: Type) -> bool {
+    let Type::Block(id) = ty else { return false };
+    let info = id.info();
+    let is_settled = ["IN", "Q", "start"].iter().all(|it| info.pin(it).is_some());
+    !is_settled && info.instructions.iter().any(|it| it.needs_context)
 }
 
 pub fn timers(blocks: &[Instance]) -> Vec<Timer> {
@@ -142,8 +150,10 @@ mod tests {
     #[test]
     fn states_of_one_normal_form_behave_alike() {
         let mut compared = 0;
-        // What reads or sets the time has no such output, and no program names it.
-        let timed = |it: &BlockInfo| it.pin("Q").is_some() && it.instructions.iter().any(|it| it.needs_context);
+        // What else takes the time has not both: a program with it is never taken for settled.
+        let timed = |it: &BlockInfo| {
+            it.pin("Q").is_some() && it.pin("IN").is_some() && it.instructions.iter().any(|it| it.needs_context)
+        };
         for (number, info) in BLOCKS.iter().enumerate().filter(|(_, it)| timed(it)) {
             let (path, key, block) = (String::new(), String::new(), BlockId::next(number));
             let timer = Timer::of(&Instance { path, key, block, offset: 0, field: None });

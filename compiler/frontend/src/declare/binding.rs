@@ -92,9 +92,12 @@ impl<'s> Declarations<'s> {
                         let fields = &self.program.structure(id).fields;
                         Some((at.index(), fields.len(), fields.get(at.index())?.ty))
                     }),
-                    Type::Block(id) => id.info().pins.iter().position(|it| it.is_named(name.text)).and_then(|at| {
-                        Some((at, id.info().pins.len(), id.pin_type(FieldId::next(at))?))
-                    }),
+                    Type::Block(id) => id
+                        .info()
+                        .pins
+                        .iter()
+                        .position(|it| it.is_named(name.text))
+                        .and_then(|at| Some((at, id.info().pins.len(), id.pin_type(FieldId::next(at))?))),
                     _ => None,
                 };
                 let Some((part, parts, ty)) = found else {

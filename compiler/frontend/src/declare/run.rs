@@ -1,5 +1,5 @@
 //! What a CONFIGURATION does beside running a PROGRAM: it connects parameters, `Main(x := g)`, a TASK's SINGLE
-//! waits for an edge, and a VAR_CONFIG gives variables of instances their addresses and initial values. Such a run is
+//! waits for an edge, with an INTERVAL or without, and a VAR_CONFIG gives variables of instances their addresses and initial values. Such a run is
 //! written as a PROGRAM of its own: it holds the other one as an instance, and calls it. Where nothing lists
 //! PROGRAMs, a VAR_CONFIG finds the one run of each by its PROGRAM's name.
 //!
@@ -13,7 +13,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 // Keywords, which no declaration can take.
 const PROGRAM: &str = "PROGRAM";
-const EDGE: &str = "CONFIGURATION";
+const TURN: &str = "CONFIGURATION";
 
 /// A run that is more than its PROGRAM's body.
 pub(crate) struct Run<'s> {
@@ -77,7 +77,8 @@ pub(crate) fn runs<'a, 's>(files: &'a [ast::File<'s>], tests: bool) -> Vec<Run<'
 
 /// The run of a PROGRAM that nothing lists, by its own name, if something of it is bound.
 fn by_name<'s>(program: &ast::Pou<'s>, bindings: &[&ast::Binding<'s>]) -> Option<ast::ProgramInstance<'s>> {
-    let first = bindings.iter().find_map(|it| it.target.first_name().filter(|it| Key(it.text) == Key(program.name.text)));
+    let first =
+        bindings.iter().find_map(|it| it.target.first_name().filter(|it| Key(it.text) == Key(program.name.text)));
     Some(unlisted(program, first?.span))
 }
 
@@ -157,12 +158,22 @@ pub(super) fn has_in_outs(pou: &ast::Pou<'_>) -> bool {
     pou.blocks.iter().any(|it| it.kind == VarKind::InOut)
 }
 
-/// What SINGLE of the instance's TASK says, unless that is FALSE.
-fn trigger<'a, 's>(resource: &'a ast::Resource<'s>, instance: &ast::ProgramInstance<'s>) -> Option<&'a ast::Expr<'s>> {
+/// What says when a TASK with SINGLE runs.
+struct Trigger<'a, 's> {
+    single: &'a ast::Expr<'s>,
+    interval: Option<&'a ast::Expr<'s>>,
+}
+
+/// That of the instance's TASK, unless its SINGLE is FALSE.
+fn trigger<'a, 's>(resource: &'a ast::Resource<'s>, instance: &ast::ProgramInstance<'s>) -> Option<Trigger<'a, 's>> {
     let name = instance.task?;
     let task = resource.tasks.iter().find(|it| it.name.text.eq_ignore_ascii_case(name.text))?;
-    let single = task.properties.iter().find(|(name, _)| name.text.eq_ignore_ascii_case("SINGLE"));
-    single.map(|(_, expr)| expr).filter(|it| !is_false(it))
+    let single = property(task, "SINGLE").filter(|it| !is_false(it))?;
+    Some(Trigger { single, interval: property(task, "INTERVAL") })
+}
+
+pub(crate) fn property<'a, 's>(task: &'a ast::Task<'s>, name: &str) -> Option<&'a ast::Expr<'s>> {
+    task.properties.iter().find(|(it, _)| it.text.eq_ignore_ascii_case(name)).map(|(_, expr)| expr)
 }
 
 /// SINGLE := FALSE: the TASK goes by its INTERVAL.
@@ -177,7 +188,7 @@ pub(crate) fn is_input(address: ast::Name<'_>) -> bool {
 
 fn run<'s>(
     instance: &ast::ProgramInstance<'s>,
-    trigger: Option<&ast::Expr<'s>>,
+    trigger: Option<Trigger<'_, 's>>,
     bindings: Vec<(ast::Expr<'s>, &ast::VarDecl<'s>)>,
 ) -> Run<'s> {
     let span = instance.program.span;
@@ -223,12 +234,20 @@ fn run<'s>(
         bound.push((target, address));
     }
     if let Some(trigger) = trigger {
-        vars.push(variable(EDGE, vec![name("IEC"), name("R_TRIG")]));
-        let clock = ast::ArgumentKind::Input(name("CLK"), trigger.clone());
-        let rises = expr(ExprKind::Member(Box::new(named(EDGE)), name("Q")));
+        let Trigger { single, interval } = trigger;
+        let (block, inputs) = match interval {
+            None => ("R_TRIG", vec![("CLK", single)]),
+            Some(interval) => ("__TASK", vec![("SINGLE", single), ("INTERVAL", interval)]),
+        };
+        vars.push(variable(TURN, vec![name("IEC"), name(block)]));
+        let input = |(pin, value): (&'static str, &ast::Expr<'s>)| ast::Argument {
+            kind: ast::ArgumentKind::Input(name(pin), value.clone()),
+            span: value.span,
+        };
+        let is_due = expr(ExprKind::Member(Box::new(named(TURN)), name("Q")));
         body = vec![
-            call(EDGE, vec![ast::Argument { kind: clock, span: trigger.span }]),
-            statement(StatementKind::If { branches: vec![(rises, body)], otherwise: None }),
+            call(TURN, inputs.into_iter().map(input).collect()),
+            statement(StatementKind::If { branches: vec![(is_due, body)], otherwise: None }),
         ];
     }
     let blocks = vec![ast::VarBlock { vars, ..ast::VarBlock::new(VarKind::Var, span) }];

@@ -1,7 +1,7 @@
 //! CONFIGURATION, RESOURCE and TASK: which programs run, and how often.
 
 use crate::ast;
-use crate::declare::run::{declaration_of, is_false, is_input, unlisted, within};
+use crate::declare::run::{declaration_of, is_false, is_input, property, unlisted, within};
 use crate::dialect::Dialect;
 use crate::expr::constant::constant;
 use crate::names::{Entry, Found, Meaning, Sense};
@@ -9,7 +9,7 @@ use crate::spelling::{Key, nearest};
 use crate::types::declarations::Declarations;
 use crate::{Code, Diagnostic, Span};
 use rustc_hash::{FxHashMap, FxHashSet};
-use staunch_ir::{Instance, Section, Value};
+use staunch_ir::{Instance, Section, Type, Value};
 
 const LOWEST_PRIORITY: u32 = 65535;
 
@@ -25,7 +25,8 @@ pub(super) fn instances<'s>(declarations: &mut Declarations<'s>, files: &'s [ast
     let bindings = configurations.iter().flat_map(|it| &it.bindings).chain(files.iter().flat_map(|it| &it.bindings));
     let bindings: Vec<_> = bindings.collect();
     declarations.check_configurations(&configurations, &bindings);
-    let runs: FxHashMap<_, _> = declarations.pous.iter().enumerate().filter_map(|(at, it)| Some((it.run?, at))).collect();
+    let runs: FxHashMap<_, _> =
+        declarations.pous.iter().enumerate().filter_map(|(at, it)| Some((it.run?, at))).collect();
     for resource in configurations.iter().flat_map(|it| &it.resources) {
         declarations.resource(resource, &runs);
     }
@@ -60,6 +61,17 @@ fn last_name<'s>(path: &ast::Expr<'s>) -> Option<ast::Name<'s>> {
         ast::ExprKind::Index(base, _) => last_name(base),
         _ => None,
     }
+}
+
+/// How often the SINGLE of a TASK with this INTERVAL is looked at: a part of the INTERVAL of which there is a whole
+/// number, at most 10 ms, in whole milliseconds where the INTERVAL is.
+fn looked_at(interval: i64) -> i64 {
+    const MILLISECOND: i64 = 1_000_000;
+    let fewest = interval.div_euclid(10 * MILLISECOND) + i64::from(interval % (10 * MILLISECOND) != 0);
+    let most = (interval / MILLISECOND).clamp(fewest, fewest + 100);
+    let unit = if interval % MILLISECOND == 0 { MILLISECOND } else { 1 };
+    let parts = (fewest..=most).find(|it| interval / unit % it == 0);
+    parts.map_or(MILLISECOND.min(interval), |it| interval / it)
 }
 
 #[derive(Clone, Copy)]
@@ -108,11 +120,7 @@ impl<'s> Declarations<'s> {
     }
 
     /// Reports what a VAR_CONFIG binds that is no variable of an instance, and an output of two variables.
-    fn check_bindings(
-        &mut self,
-        configurations: &[&'s ast::Configuration<'s>],
-        bindings: &[&'s ast::Binding<'s>],
-    ) {
+    fn check_bindings(&mut self, configurations: &[&'s ast::Configuration<'s>], bindings: &[&'s ast::Binding<'s>]) {
         let mut written: FxHashMap<Key<'s>, Span> = FxHashMap::default();
         let mut bound: FxHashMap<Key<'s>, Span> = FxHashMap::default();
         let pous = self.written_pous().iter().map(|it| (Key(it.ast.name.text), it.ast)).collect();
@@ -364,18 +372,23 @@ impl<'s> Declarations<'s> {
                     .help("give it one, 0 is the most urgent: `PRIORITY := 1`"),
             );
         }
+        let is_single = property(task, "SINGLE").is_some_and(|it| !is_false(it));
         for (name, expr) in &task.properties {
-            if name.text.eq_ignore_ascii_case("SINGLE") {
-                let is_interval = |(it, _): &&(ast::Name<'s>, _)| it.text.eq_ignore_ascii_case("INTERVAL");
-                if !is_false(expr) && task.properties.iter().any(|it| is_interval(&it)) {
-                    self.not_supported(name.span, "a TASK with SINGLE and INTERVAL");
-                }
+            // What a run says of its TASK's INTERVAL is said.
+            let is_reported = |this: &Self| this.log.diagnostics.iter().any(|it| it.span == expr.span);
+            if name.text.eq_ignore_ascii_case("SINGLE") || is_single && is_reported(self) {
                 continue;
             }
             let scope = std::rc::Rc::default();
-            let value = constant(self, &scope, expr, None).and_then(|it| it.as_const());
+            let value = constant(self, &scope, expr, None);
+            let is_time = value.as_ref().is_none_or(|it| it.ty == Type::TIME);
+            let value = value.and_then(|it| it.as_const());
             match (name.text.to_ascii_uppercase().as_str(), value) {
-                ("INTERVAL", Some(Value::I64(interval))) if interval > 0 => timing.interval = Some(interval),
+                ("INTERVAL", Some(Value::I64(interval))) if interval > 0 && is_time => {
+                    timing.interval = Some(if is_single { looked_at(interval) } else { interval });
+                }
+                // Its run takes a TIME, and says so.
+                ("INTERVAL", Some(_)) if is_single && !is_time => {}
                 // What is no constant has been reported.
                 ("INTERVAL", None) => {}
                 ("INTERVAL", Some(_)) => self.report(

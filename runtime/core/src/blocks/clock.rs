@@ -1,4 +1,4 @@
-//! The scan's time: what reads it, and what lets it pass in a unit test.
+//! The scan's time: what reads it, what lets it pass in a unit test, and what is due by it.
 
 use crate::block::pins;
 use crate::{Context, Time};
@@ -55,4 +55,48 @@ pins!([] Clock {
     Input {}
     Output { now: TIME = "NOW" }
     Memory {}
+});
+
+/// When a TASK with SINGLE and INTERVAL is due (IEC 61131-3, 6.8.2): `q` in each call in which `single` rises, and
+/// while it is FALSE in the first call from each multiple of `interval` on. What falls due while it is TRUE is left out.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TaskTurn {
+    pub single: bool,
+    /// Nanoseconds, above 0.
+    pub interval: Time,
+    pub q: bool,
+    /// Memory: `single` in the last call.
+    pub single_before: bool,
+    /// Memory: the multiple of `interval` that comes next.
+    pub next: Time,
+}
+
+impl TaskTurn {
+    /// One call: sets the inputs and looks at the time.
+    #[inline]
+    pub fn call(&mut self, single: bool, interval: Time, cx: &Context) {
+        (self.single, self.interval) = (single, interval);
+        self.step(cx);
+    }
+
+    /// One call with the inputs as they are.
+    #[inline]
+    pub fn step(&mut self, cx: &Context) {
+        let (now, interval) = (cx.now(), self.interval.max(1));
+        let rises = self.single & !self.single_before;
+        self.single_before = self.single;
+        // Time starts anew after a power cycle, which may keep the memory.
+        let is_due = now >= self.next || self.next.wrapping_sub(now) > interval;
+        if is_due {
+            self.next = now.div_euclid(interval).saturating_add(1).saturating_mul(interval);
+        }
+        self.q = rises | (is_due & !self.single);
+    }
+}
+
+pins!([] TaskTurn {
+    Input { single: BOOL = "SINGLE", interval: TIME = "INTERVAL" }
+    Output { q: BOOL = "Q" }
+    Memory { single_before: BOOL = "single_before", next: LINT = "next" }
 });
