@@ -97,6 +97,8 @@ pub(crate) const UNITS: &[Unit] = units! {
     Function "BE16_TO_HOST"     "be16_to_host"     [Codesys];
     Function "BE32_TO_HOST"     "be32_to_host"     [Codesys];
     Type     "IEC_TIMER"        "iec_timer"        [Siemens];
+    Function "NORM_X"           "norm_x"           [Siemens];
+    Function "SCALE_X"          "scale_x"          [Siemens];
     Type     "RTC"              "rtc";
     Function "SPLIT_DATE"       "split_date";
     Function "SPLIT_TOD"        "split_tod";

@@ -2,6 +2,7 @@
 
 use crate::ast::{self, PouKind, VarKind};
 use crate::diagnostic::wording::article;
+use crate::dialect::Dialect;
 use crate::types::declarations::Declarations;
 use crate::types::generic::names_in;
 use crate::types::instances::is_about_types;
@@ -101,7 +102,12 @@ impl<'s> Declarations<'s> {
         let is_seen = kind.is_none_or(|it| matches!(it, VarKind::Input | VarKind::Output | VarKind::InOut));
         if is_seen && self.word(ty).is_none() {
             let error = error(format!("`{}` is the type of a whole parameter or result", name.text));
-            return Some(error.label("this is a part of one"));
+            let help = if self.dialect(name.span) == Dialect::Codesys {
+                "write a FUNCTION with a name of its own for each type"
+            } else {
+                "write a FUNCTION of this name for each type: a call means the one that its arguments fit"
+            };
+            return Some(error.label("this is a part of one").help(help));
         }
         if let Some(VarKind::Stat | VarKind::External | VarKind::Global) = kind {
             let word = self.log.sources.text(block.map_or(name.span, |it| it.span));

@@ -29,6 +29,14 @@ const MAX_DIMENSIONS: usize = 64;
 /// Longest string.
 const MAX_CAPACITY: i128 = 32767;
 
+/// Types of SIMATIC S7 that are not the standard's, and what to write for them.
+const OF_SIMATIC: [(&str, &str); 4] = [
+    ("S5TIME", "write `TIME`, with literals `T#2s`: the standard's timers take it, and it counts exactly"),
+    ("DTL", "write `LDT`, or `DT` for seconds; `SPLIT_LDT` and `CONCAT_LDT` give and take its parts"),
+    ("VARIANT", "write a FUNCTION of this name for each type, or parameters of `ANY` or `ANY_NUM`"),
+    ("IEC_COUNTER", "write the counter's type: `IEC.CTU`, `IEC.CTD` or `IEC.CTUD`"),
+];
+
 /// What other languages call elementary types.
 const FOREIGN: [(&str, &str); 24] = [
     ("INTEGER", "INT"),
@@ -294,7 +302,7 @@ impl<'s> Declarations<'s> {
 
     fn report_unknown_type(&mut self, name: ast::Name<'s>) {
         if let Some(Some(dialect)) = prelude::unit(name.text).map(|it| it.dialect) {
-            let (system, dialect) = (dialect.family().name(), dialect.name());
+            let (system, dialect) = (dialect.name().to_ascii_uppercase(), dialect.name());
             self.report(
                 Diagnostic::new(Code::E0102, name.span, format!("`{}` is of {system}'s library", name.text))
                     .label("this file's dialect has no type of that name")
@@ -321,6 +329,8 @@ impl<'s> Declarations<'s> {
             Diagnostic::new(Code::E0102, name.span, format!("there is no type `{}`", name.text)).label("unknown type");
         if name.text.eq_ignore_ascii_case("VOID") {
             error = error.help("a FUNCTION without a result has no `:` and no type after its name");
+        } else if let Some((_, ours)) = OF_SIMATIC.iter().find(|(it, _)| it.eq_ignore_ascii_case(name.text)) {
+            error = error.note("it is a type of SIMATIC S7").help(*ours);
         } else if let Some(hint) = self.hint_of_namespace(name) {
             error = error.help(hint);
         } else if let Some(near) = near {

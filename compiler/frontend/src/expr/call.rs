@@ -169,6 +169,7 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let found = match self.callee(callee, arguments) {
+            Some(Callee::Function(slot)) if self.has_untyped_scale(slot, callee, arguments) => None,
             Some(Callee::Function(slot)) => self.meant(slot, callee.span, arguments).map(Callee::Function),
             Some(Callee::Routine(slot)) => self.meant_routine(slot, callee, arguments).map(Callee::Routine),
             other => other,
@@ -177,6 +178,31 @@ impl<'s> Checker<'_, 's> {
             self.check_arguments(arguments);
         }
         found
+    }
+
+    /// SIMATIC's SCALE_X has the type of its MIN and MAX. Reports whole numbers that have none: whether the result is
+    /// rounded to a whole number would go by chance.
+    fn has_untyped_scale(&mut self, slot: usize, callee: &ast::Expr<'s>, arguments: &[ast::Argument<'s>]) -> bool {
+        let name = self.decl.pous[slot].ast.name;
+        if name.text != "SCALE_X" || self.decl.log.sources.get(name.span.file).path != "library/scale_x.st" {
+            return false;
+        }
+        let number = |(at, it): (usize, &ast::Argument<'s>)| match &it.kind {
+            ArgumentKind::Positional(value) if at != 1 => whole_number(value),
+            ArgumentKind::Input(name, value) if !name.text.eq_ignore_ascii_case("VALUE") => whole_number(value),
+            ArgumentKind::Positional(_) | ArgumentKind::Input(..) | ArgumentKind::Output { .. } => None,
+        };
+        let numbers: Vec<_> = arguments.iter().enumerate().filter_map(number).collect();
+        let [first, second] = numbers.as_slice() else { return false };
+        let text = |it: &Span| self.decl.log.sources.text(*it).to_owned();
+        let (low, high) = (text(first), text(second));
+        self.report(
+            Diagnostic::new(Code::E0203, first.to(*second), "`SCALE_X` has the type of its MIN and MAX")
+                .label("these numbers do not say which")
+                .help(format!("write `{low}.0` and `{high}.0` for a REAL, `INT#{low}` and `INT#{high}` for an INT"))
+                .other(callee.span, "it is called here"),
+        );
+        true
     }
 
     /// Reports what is wrong inside the arguments of a call that is wrong itself.
@@ -203,5 +229,14 @@ impl<'s> Checker<'_, 's> {
             None if names.len() == 1 => error.help(format!("its parameter is {}", list(&names))),
             None => error.help(format!("its parameters are {}", list(&names))),
         }
+    }
+}
+
+/// Where a whole number is that has no type.
+fn whole_number(expr: &ast::Expr<'_>) -> Option<Span> {
+    match &expr.kind {
+        Ast::Literal(ast::Literal { prefix: None, value: ast::LiteralValue::Integer { .. }, .. }) => Some(expr.span),
+        Ast::Unary(_, inner) | Ast::Paren(inner) => whole_number(inner).map(|_| expr.span),
+        _ => None,
     }
 }

@@ -17,9 +17,10 @@ impl<'s> Checker<'_, 's> {
             Ast::Paren(inner) => self.operand(inner, expected),
             Ast::Name(name) => self.name(*name, expected).map(Operand::Typed),
             Ast::Member(..) => self.member_value(expr).map(Operand::Typed),
-            Ast::Address(_) | Ast::Index(..) => match self.character_of(expr) {
-                Some((text, index)) => self.character_value(text, index).map(Operand::Typed),
-                None => self.load(expr).map(Operand::Typed),
+            Ast::Address(_) | Ast::Index(..) => match (self.character_of(expr), self.data_of(expr)) {
+                (Some((text, index)), _) => self.character_value(text, index).map(Operand::Typed),
+                (None, Some((text, index))) => self.data_value(text, index).map(Operand::Typed),
+                (None, None) => self.load(expr).map(Operand::Typed),
             },
             Ast::Part(base, part) => self.part(base, *part).map(Operand::Typed),
             Ast::Deref(_) => self.load(expr).map(Operand::Typed),
@@ -126,7 +127,10 @@ impl<'s> Checker<'_, 's> {
             let constant = constant?;
             return self.variable_value(&constant, expr.span);
         }
-        self.load(expr)
+        match self.length_of(expr) {
+            Some(text) => self.length_value(text, expr.span),
+            None => self.load(expr),
+        }
     }
 
     fn load(&mut self, expr: &ast::Expr<'s>) -> Option<Expr> {

@@ -27,6 +27,7 @@ pub(crate) mod generic_call;
 mod instruction;
 mod literal;
 mod logix_operands;
+mod logix_text;
 mod memory;
 pub(crate) mod method;
 mod migration;

@@ -336,11 +336,14 @@ impl<'s> Checker<'_, 's> {
             | Type::String(_)
             | Type::Enum(_)
             | Type::Array(_) => {
+                let of_text = matches!(self.type_of(&found), Type::String(_)).then(|| self.help_on_text_member(name));
                 let ty = self.type_name(self.type_of(&found));
-                self.report(
-                    Diagnostic::new(Code::E0107, name.span, format!("{ty} has no members"))
-                        .label(format!("`{}` cannot be part of {ty}", name.text)),
-                );
+                let error = Diagnostic::new(Code::E0107, name.span, format!("{ty} has no members"))
+                    .label(format!("`{}` cannot be part of {ty}", name.text));
+                self.report(match of_text.flatten() {
+                    Some(help) => error.help(help),
+                    None => error,
+                });
                 None
             }
         }
