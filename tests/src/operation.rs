@@ -107,6 +107,7 @@ pub fn program(tasks: &[Task]) -> Program {
         globals: StructId::next(tasks.len()),
         aliases: Vec::new(),
         reentered: std::collections::BTreeSet::new(),
+        places: std::collections::BTreeSet::new(),
         structs,
         classes: tasks
             .iter()

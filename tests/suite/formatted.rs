@@ -30,8 +30,11 @@ fn most_functions_are_laid_out_by_rustfmts_rules() {
     let (cases, _) = case::discover(&cases());
     let texts = cases.iter().filter_map(|it| emitted(it, false));
     let count = |text: &str, word: &str| text.matches(word).count();
+    // What is no function is passed over always: a macro's call, and the table of objects.
+    let others = ["#[rustfmt::skip]\nreference::shared", "#[rustfmt::skip]\nconst "];
     let (skipped, functions) = texts.fold((0, 0), |(skipped, functions), text| {
-        (skipped + count(&text, "rustfmt::skip"), functions + count(&text, "fn "))
+        let no_functions: usize = others.iter().map(|it| count(&text, it)).sum();
+        (skipped + count(&text, "rustfmt::skip") - no_functions, functions + count(&text, "fn "))
     });
     assert!(skipped * 4 < functions, "{skipped} of {functions}");
 }

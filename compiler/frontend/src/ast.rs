@@ -211,6 +211,8 @@ pub struct Pou<'s> {
     pub attributes: Vec<&'s str>,
     /// `{external}` before it: it is implemented outside of Structured Text.
     pub external: Option<External<'s>>,
+    /// `{pool …}` before it.
+    pub pool: Option<Pool>,
     /// The comment that is directly before the POU, cleaned of its marks.
     pub doc: Option<String>,
     pub span: Span,
@@ -221,6 +223,25 @@ pub struct Pou<'s> {
 pub struct External<'s> {
     /// What C calls it; else its own name.
     pub symbol: Option<&'s str>,
+    pub span: Span,
+}
+
+impl Pool {
+    /// The number in `pool 16`; the inner `None` where that is none.
+    pub fn count_in(pragma: &str) -> Option<Option<u32>> {
+        let text = pragma.trim();
+        let (word, rest) = text.split_at_checked("pool".len())?;
+        let is_it =
+            word.eq_ignore_ascii_case("pool") && !rest.starts_with(|it: char| it.is_alphanumeric() || it == '_');
+        is_it.then(|| rest.trim().parse().ok())
+    }
+}
+
+/// `{pool 16}`: how many objects of a type `__NEW` can have made at a time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Pool {
+    /// `None` where it is no number.
+    pub count: Option<u32>,
     pub span: Span,
 }
 
@@ -248,6 +269,7 @@ impl<'s> Pou<'s> {
             routines: Vec::new(),
             attributes: Vec::new(),
             external: None,
+            pool: None,
             doc: None,
             span,
         }
@@ -377,6 +399,8 @@ pub struct TypeDecl<'s> {
     pub base: Option<Path<'s>>,
     /// What `{attribute '…'}` says before TYPE, or before the type itself.
     pub attributes: Vec<&'s str>,
+    /// `{pool …}` there.
+    pub pool: Option<Pool>,
     pub ty: TypeSpec<'s>,
     pub initial: Option<Initial<'s>>,
     pub doc: Option<String>,

@@ -11,7 +11,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::log::Log;
 use crate::source::Span;
 use crate::spelling::{Key, nearest};
-use crate::start::is_initial;
+use crate::start::{EXIT, is_initial};
 use classes::{Base, Classes};
 use rustc_hash::FxHashMap;
 
@@ -191,11 +191,13 @@ impl<'s> Expansion<'_, 's> {
         whole
     }
 
-    /// Keeps of the hidden routines those that SUPER calls, directly or through others, and FB_init.
+    /// Keeps of the hidden routines those that SUPER calls, directly or through others, and
+    /// FB_init, and FB_exit where objects of the class are deleted.
     fn keep_called(&self, whole: &mut Pou<'s>, hidden: Vec<Pou<'s>>) {
         let mut wanted = Vec::new();
         // They run one after the other.
-        let (initial, mut hidden): (Vec<_>, Vec<_>) = hidden.into_iter().partition(|it| is_initial(it.name));
+        let is_called = |it: &Pou<'s>| is_initial(it.name) || whole.pool.is_some() && Key(it.name.text) == Key(EXIT);
+        let (initial, mut hidden): (Vec<_>, Vec<_>) = hidden.into_iter().partition(is_called);
         whole.routines.extend(initial);
         supers(&whole.body, whole.name, &mut wanted);
         for it in &whole.routines {

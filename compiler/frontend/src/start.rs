@@ -15,8 +15,9 @@ use crate::testing::tree::{assign, literal, named, variables};
 use addresses::Addresses;
 
 /// METHODs that CODESYS calls by itself.
-pub(crate) const INITIAL: [&str; 3] = [INIT, "FB_reinit", "FB_exit"];
+pub(crate) const INITIAL: [&str; 3] = [INIT, "FB_reinit", EXIT];
 pub(crate) const INIT: &str = "FB_init";
+pub(crate) const EXIT: &str = "FB_exit";
 /// Of a METHOD that runs when its instance has its values.
 pub(crate) const AFTER: &str = "call_after_init";
 /// The METHOD that starts what is in an instance.

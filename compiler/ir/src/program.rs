@@ -41,6 +41,9 @@ pub struct Program {
     /// The states that METHODs or ACTIONs work on: while one routine of an instance runs, what it calls may
     /// come back to the instance by another.
     pub reentered: BTreeSet<StructId>,
+    /// Structures that are the places of pools: the first field says whether the second is an object in use. A reference
+    /// into an object that is not is a fault.
+    pub places: BTreeSet<StructId>,
     /// In an order in which a callee is before its callers.
     pub routines: Vec<Routine>,
     /// The programs that run, in order.

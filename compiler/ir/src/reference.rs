@@ -96,7 +96,8 @@ struct Finder<'p> {
 impl<'p> Finder<'p> {
     /// A callee is before its callers, so that one walk finds what is passed down.
     fn search(program: &'p Program) -> Self {
-        let states = program.classes.iter().map(|it| it.state).chain([program.globals]).collect();
+        let states = program.classes.iter().map(|it| it.state).chain([program.globals]);
+        let states = states.chain(program.places.iter().copied()).collect();
         let locals = vec![BTreeSet::new(); program.routines.len()];
         let mut finder = Self {
             program,

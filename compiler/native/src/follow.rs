@@ -232,7 +232,7 @@ impl Function<'_, '_> {
         let [words, state] = self.world();
         let wanted = self.number(wanted(program, it.ty).code());
         let [reference, distance] = [reference, distance].map(|value| (AbiParam::new(types::I64), value));
-        self.checked("staunch_reference_find", &[words, reference, distance, wanted, by_pointer(out)], it.at);
+        self.checked("staunch_reference_find", &[words, state, reference, distance, wanted, by_pointer(out)], it.at);
         let offset = self.load_as(types::I64, space);
         let base = self.ins().iadd(state.1, offset);
         let pin = it.pin.map_or(0, |(block, pin)| self.module.layout.offset(Type::Block(block), pin));

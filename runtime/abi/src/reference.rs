@@ -131,17 +131,21 @@ texts! {
 /// Writes to `out` the offset in the state of a variable of the wanted type.
 ///
 /// # Safety
-/// As [`table`] says; `out` can be written.
+/// As [`table`] and [`memory`] say; `out` can be written, and is no part of the state.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn staunch_reference_find(
     words: *const u32,
+    state: *mut u8,
     reference: u64,
     distance: u64,
     wanted: u32,
     out: *mut u64,
 ) -> u8 {
     // SAFETY: the caller's promise.
-    let found = unsafe { table(words) }.find(reference, distance, Wanted::from_code(wanted));
+    let table = unsafe { table(words) };
+    // SAFETY: the caller's promise.
+    let memory = unsafe { memory(&table, state) };
+    let found = table.find(memory, reference, distance, Wanted::from_code(wanted));
     code(found.map(|offset| {
         // SAFETY: the caller's promise.
         unsafe { out.write(offset as u64) }

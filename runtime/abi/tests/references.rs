@@ -41,7 +41,14 @@ unsafe extern "C" {
         distance: u64,
         value: *const u8,
     ) -> u8;
-    fn staunch_reference_find(words: *const u32, reference: u64, distance: u64, wanted: u32, out: *mut u64) -> u8;
+    fn staunch_reference_find(
+        words: *const u32,
+        state: *mut u8,
+        reference: u64,
+        distance: u64,
+        wanted: u32,
+        out: *mut u64,
+    ) -> u8;
 }
 
 fn index(number: u64) -> usize {
@@ -56,15 +63,15 @@ const SECRET: u32 = 9;
 const OBJECTS: [(u32, u32); 4] = [(0, 16), (16, 1), (18, 8), (28, 4)];
 
 fn words() -> Vec<u32> {
-    let mut words = vec![4, 38, 50];
-    words.extend(OBJECTS.iter().flat_map(|(offset, size)| [*offset, *size, if *size == 16 { 16 } else { 0 }]));
-    words.extend([encode::ARRAY, 16, 5, 4, 22, encode::NUMBERS, encode::repr(Repr::U32)]);
+    let mut words = vec![4, 42, 54];
+    words.extend(OBJECTS.iter().flat_map(|(offset, size)| [*offset, *size, if *size == 16 { 16 } else { 0 }, 0]));
+    words.extend([encode::ARRAY, 16, 5, 4, 26, encode::NUMBERS, encode::repr(Repr::U32)]);
     words.extend([encode::NUMBERS, 4, encode::repr(Repr::U32), 0]);
     words.extend([encode::TRUTHS, 1, encode::repr(Repr::Bool), 0]);
     words.extend([encode::TEXT, 8, 6, 0]);
     words.extend([encode::EXACT, 4, SECRET, 0]);
-    words.extend([encode::STRUCTURE, 32, u32::MAX, 4, 0, 15, 16, 26, 18, 30, 28, 34]);
-    assert_eq!(words.len(), 50);
+    words.extend([encode::STRUCTURE, 32, u32::MAX, 4, 0, 19, 16, 30, 18, 34, 28, 38]);
+    assert_eq!(words.len(), 54);
     words
 }
 
@@ -109,7 +116,7 @@ fn no_access_leaves_the_objects() {
                 _ => {
                     let wanted = [Wanted::Repr(Repr::U32), Wanted::Text(StringType::narrow(6)), Wanted::Exact(SECRET)];
                     let wanted = wanted[index(next(3))].code();
-                    staunch_reference_find(words.as_ptr(), bits, distance, wanted, &mut found)
+                    staunch_reference_find(words.as_ptr(), bytes, bits, distance, wanted, &mut found)
                 }
             }
         };

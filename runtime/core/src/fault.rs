@@ -31,10 +31,14 @@ pub enum FaultKind {
     NotImplemented = 12,
     /// The preset or the accumulated value of a Logix TIMER is below 0 where it times.
     NegativeTimer = 13,
+    /// A reference was followed to an object that `__DELETE` has given back to its pool.
+    Deleted = 14,
+    /// `__DELETE` was given what `__NEW` did not make.
+    NotOfPool = 15,
 }
 
 impl FaultKind {
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 15] = [
         Self::DivideByZero,
         Self::IndexOutOfRange,
         Self::SubrangeViolated,
@@ -48,6 +52,8 @@ impl FaultKind {
         Self::AssertionFailed,
         Self::NotImplemented,
         Self::NegativeTimer,
+        Self::Deleted,
+        Self::NotOfPool,
     ];
 
     /// The fault with this code, as native code returns it.
@@ -71,6 +77,8 @@ impl FaultKind {
             Self::AssertionFailed => "an assertion does not hold",
             Self::NotImplemented => "an `{external}` is not implemented here",
             Self::NegativeTimer => "the PRE or ACC of a TIMER is below 0",
+            Self::Deleted => "a reference points to an object that was deleted",
+            Self::NotOfPool => "`__DELETE` of an object that `__NEW` did not make",
         }
     }
 }

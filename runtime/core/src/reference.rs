@@ -10,6 +10,8 @@
 //! 0 or not. A string is viewed as its characters with a zero after the last one, from position 0. Numbers side by
 //! side in a structure may be viewed as one; a byte between members is 0, and takes no write. Enumerations are
 //! viewed as what they are, and as bytes; subranges, references and standard blocks as what they are.
+//!
+//! An object in a pool has a mark, which says whether it is in use: what leads to one that was deleted is a fault.
 
 mod memory;
 mod table;
@@ -91,6 +93,7 @@ impl<'t> Table<'t> {
         view: View,
         out: &mut [u8],
     ) -> Result<(), FaultKind> {
+        self.check_is_there(memory, bits)?;
         match self.part(bits, distance, view)? {
             Part::Bytes { at, .. } => memory.read(at, out),
             Part::Truth { at } => {
@@ -150,6 +153,7 @@ impl<'t> Table<'t> {
         bytes: &[u8],
     ) -> Result<(), FaultKind> {
         let first = bytes.first().copied().unwrap_or_default();
+        self.check_is_there(memory, bits)?;
         match self.part(bits, distance, view)? {
             Part::Bytes { at, .. } => memory.write(at, bytes),
             Part::Truth { at } => memory.write(at, &[u8::from(first != 0)]),
@@ -183,6 +187,7 @@ impl<'t> Table<'t> {
         distance: u64,
         out: &mut crate::text::Destination<'_, U>,
     ) -> Result<(), FaultKind> {
+        self.check_is_there(memory, bits)?;
         match self.part(bits, distance, View::Text { wide: U::SIZE == 2 })? {
             Part::Bytes { at, rest } => put_characters(at..at + rest / U::SIZE * U::SIZE, memory, out),
             Part::Truth { .. } | Part::Spread { .. } => return Err(FaultKind::ForbiddenView),
@@ -203,6 +208,7 @@ impl<'t> Table<'t> {
         distance: u64,
         value: &[U],
     ) -> Result<(), FaultKind> {
+        self.check_is_there(memory, bits)?;
         match self.part(bits, distance, View::Text { wide: U::SIZE == 2 })? {
             Part::Bytes { at, rest } => {
                 let rest = rest / U::SIZE;
@@ -233,7 +239,7 @@ impl<'t> Table<'t> {
         distance: u64,
         wanted: Wanted,
     ) -> Result<&'m T, FaultKind> {
-        let offset = self.find(bits, distance, wanted)?;
+        let offset = self.find(machine, bits, distance, wanted)?;
         find(machine, offset).ok_or(FaultKind::ForbiddenView)
     }
 

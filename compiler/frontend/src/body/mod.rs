@@ -5,7 +5,6 @@ mod axunit;
 mod case;
 mod external;
 mod loops;
-mod start;
 mod statement;
 mod suite;
 

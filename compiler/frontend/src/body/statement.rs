@@ -1,7 +1,7 @@
-use super::start::is_start_of_members;
 use crate::expr::call_tracking::Instance;
 use crate::expr::checker::Checker;
 use crate::expr::operand::Operand;
+use crate::expr::start::is_start_of_members;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, StatementKind as Ast_};
 use staunch_ir::{Block, Expr, ExprKind, Place, StatementKind, Type};

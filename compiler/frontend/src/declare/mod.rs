@@ -16,6 +16,7 @@ mod mock;
 mod named_program;
 mod needs;
 mod overload;
+mod pools;
 mod pou;
 mod pragma;
 mod relative;
@@ -68,6 +69,7 @@ pub(crate) fn declare<'s>(
     declarations.declare_mocks(&testing::mocked_functions(bodies));
     declarations.start_values(runs);
     declarations.start_bindings(runs);
+    declarations.declare_pools();
     declarations.declare_globals();
     declarations
 }

@@ -69,6 +69,8 @@ impl Log<'_> {
         }
         if word == "external" {
             self.check_external_pragma(file, pragma.span);
+        } else if word == "pool" {
+            self.check_pool_pragma(file, pragma.span);
         } else if DECIDING_PRAGMAS.contains(&word.as_str()) {
             self.not_supported(pragma.span, &format!("the pragma `{word}`"));
         } else if !HARMLESS_PRAGMAS.contains(&word.as_str())
@@ -95,6 +97,25 @@ impl Log<'_> {
                 Diagnostic::new(Code::E0319, span, "`{external}` belongs to nothing")
                     .label("expected before a FUNCTION or FUNCTION_BLOCK, alone or with a symbol")
                     .help("write `{external}` or `{external 'symbol'}` directly before the unit"),
+            );
+        }
+    }
+}
+
+impl Log<'_> {
+    /// It says something of the type that follows it.
+    fn check_pool_pragma(&mut self, file: &ast::File<'_>, span: Span) {
+        let is_it = |it: &Option<ast::Pool>| it.is_some_and(|it| it.span == span);
+        let is_of = |it: &ast::Item<'_>| match it {
+            ast::Item::Pou(pou) => is_it(&pou.pool),
+            ast::Item::Types(types) => types.iter().any(|it| is_it(&it.pool)),
+            ast::Item::Globals(_) | ast::Item::Configuration(_) | ast::Item::Test(_) => false,
+        };
+        if !file.items.iter().any(is_of) {
+            self.report(
+                Diagnostic::new(Code::E0413, span, "this pool belongs to nothing")
+                    .label("expected before a FUNCTION_BLOCK, or a TYPE that is a STRUCT")
+                    .help("write it directly before the type of the objects that `__NEW` makes"),
             );
         }
     }

@@ -122,6 +122,7 @@ codes! {
     E0410 Error "overlapping addresses";
     E0411 Error "generic type";
     E0412 Error "what cannot share its bytes";
+    E0413 Error "objects of a pool";
     E0501 Error "assignment to a constant";
     E0502 Error "assignment to an input";
     E0503 Error "assignment to a FOR counter";

@@ -30,6 +30,9 @@ impl<'s> Checker<'_, 's> {
         if let Some(value) = self.query(callee, arguments, expr.span) {
             return value;
         }
+        if let Some(value) = self.new_object(callee, arguments, expr.span) {
+            return value;
+        }
         if let Some(value) = self.bound_function(callee, arguments, expr.span) {
             return value;
         }
@@ -69,6 +72,7 @@ impl<'s> Checker<'_, 's> {
     ) {
         if self.memory_function(callee, arguments, expr.span).is_some()
             || self.query(callee, arguments, expr.span).is_some()
+            || self.pool_statement(callee, arguments, expr.span).is_some()
             || self.logix_statement(callee, arguments, expr.span)
         {
             return;
@@ -174,7 +178,7 @@ impl<'s> Checker<'_, 's> {
             Some(Callee::Routine(slot)) => self.meant_routine(slot, callee, arguments).map(Callee::Routine),
             other => other,
         };
-        if found.is_none() && !super::callee::wants_heap(callee) {
+        if found.is_none() {
             self.check_arguments(arguments);
         }
         found

@@ -206,14 +206,6 @@ impl<'s> Checker<'_, 's> {
             );
             return;
         }
-        if is_of_heap(name.text) {
-            self.report(
-                Diagnostic::new(Code::E0902, name.span, format!("`{}` is not supported", name.text))
-                    .label("a program has no heap: all of its memory is known when it is compiled")
-                    .help("declare the instances, in an ARRAY where there are several"),
-            );
-            return;
-        }
         if not_yet(name.text) {
             self.decl.not_supported(name.span, &format!("the function {}", name.text.to_ascii_uppercase()));
             return;
@@ -246,15 +238,6 @@ impl<'s> Checker<'_, 's> {
         }
         self.report(error);
     }
-}
-
-/// Whether `__NEW` or `__DELETE` is called, which take a type.
-pub(crate) fn wants_heap(callee: &ast::Expr<'_>) -> bool {
-    matches!(&callee.kind, Ast::Name(name) if is_of_heap(name.text))
-}
-
-fn is_of_heap(name: &str) -> bool {
-    ["__NEW", "__DELETE"].iter().any(|it| it.eq_ignore_ascii_case(name))
 }
 
 /// Functions of the standard's tables, and of CODESYS, that are known to be missing.

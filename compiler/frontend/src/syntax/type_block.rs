@@ -3,8 +3,7 @@
 use chumsky::prelude::*;
 
 use crate::{
-    ast::External,
-    ast::{Name, TypeDecl, TypeKind, TypeSpec},
+    ast::{External, Name, Pool, TypeDecl, TypeKind, TypeSpec},
     lex::Kind,
 };
 
@@ -21,7 +20,7 @@ use super::{
 };
 
 pub fn types<'s>(input: &mut In<'_, '_, 's>) -> Vec<TypeDecl<'s>> {
-    let attributes = attributes_here(input);
+    let (attributes, pool) = (attributes_here(input), pool_here(input));
     let opened = input.take();
     let internal = namespace::access(input);
     input.state().open.push((Kind::EndType, opened));
@@ -49,6 +48,7 @@ pub fn types<'s>(input: &mut In<'_, '_, 's>) -> Vec<TypeDecl<'s>> {
     for declared in &mut types {
         declared.internal = internal;
         declared.attributes.extend(&attributes);
+        declared.pool = declared.pool.or(pool);
     }
     types
 }
@@ -61,6 +61,12 @@ pub fn attributes_here<'s>(input: &mut In<'_, '_, 's>) -> Vec<&'s str> {
 /// `{external}` between the last token and the next.
 pub fn external_here<'s>(input: &mut In<'_, '_, 's>) -> Option<External<'s>> {
     pragmas_here(input).into_iter().find_map(external)
+}
+
+/// `{pool 16}` between the last token and the next.
+pub fn pool_here(input: &mut In<'_, '_, '_>) -> Option<Pool> {
+    let text = |it: &Name<'_>| Pool::count_in(it.text);
+    pragmas_here(input).iter().find_map(|it| Some(Pool { count: text(it)?, span: it.span }))
 }
 
 /// The pragmas between the last token and the next.
@@ -106,12 +112,22 @@ fn type_decl_or_name<'t, 'p, 's>(input: &mut In<'t, 'p, 's>, start: Start<'t, 'p
     let state = input.state();
     let names = (first + 1..last).filter(|at| state.tokens.kinds[*at] == Kind::Name).map(|at| state.place(at));
     let unread = names.map(|span| Name { text: state.slice(span), span }).collect();
-    Some(TypeDecl { name, internal: false, base: None, attributes: Vec::new(), ty, initial: None, doc: None, unread })
+    Some(TypeDecl {
+        name,
+        internal: false,
+        base: None,
+        attributes: Vec::new(),
+        pool: None,
+        ty,
+        initial: None,
+        doc: None,
+        unread,
+    })
 }
 
 /// `Name : type := value;`, where a structure may do without the `;`.
 fn type_decl<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeDecl<'s>> {
-    let (first, attributes) = (input.number(), attributes_here(input));
+    let (first, attributes, pool) = (input.number(), attributes_here(input), pool_here(input));
     let colon = token(Kind::Colon).ignored().or(foreign_types::no_colon_in_type());
     let path = name().separated_by(token(Kind::Dot)).at_least(1).collect();
     let base = word("EXTENDS").ignore_then(path).or_not();
@@ -121,5 +137,15 @@ fn type_decl<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeDecl<'s>> {
     if !closed || input.kind() == Kind::Semicolon {
         input.parse(end())?;
     }
-    Ok(TypeDecl { name, internal: false, base, attributes, ty, initial, doc: input.doc(first), unread: Vec::new() })
+    Ok(TypeDecl {
+        name,
+        internal: false,
+        base,
+        attributes,
+        pool,
+        ty,
+        initial,
+        doc: input.doc(first),
+        unread: Vec::new(),
+    })
 }

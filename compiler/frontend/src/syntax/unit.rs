@@ -20,7 +20,7 @@ use super::{
     routine::{self, modifiers},
     statement::statements,
     token_class::{closes, is_end, is_pou_end, opens_item, opens_section, opens_statement},
-    type_block::{attributes_here, external_here, types},
+    type_block::{attributes_here, external_here, pool_here, types},
     unsupported,
 };
 
@@ -135,6 +135,7 @@ fn bare_structure<'s>(input: &mut In<'_, '_, 's>) -> Item<'s> {
         internal: false,
         base: None,
         attributes: Vec::new(),
+        pool: None,
         ty,
         initial: None,
         doc: None,
@@ -218,7 +219,7 @@ fn contents<'s>(input: &mut In<'_, '_, 's>, pou: &mut Pou<'s>) {
 fn pou<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind) -> Item<'s> {
     let first = input.number();
     let doc = doc::before(input.state(), first);
-    let (attributes, external) = (attributes_here(input), external_here(input));
+    let (attributes, external, pool) = (attributes_here(input), external_here(input), pool_here(input));
     let opened = input.take();
     let (mut kind, mut end) = (kind, end);
     if kind == PouKind::Function && input.is_word("BLOCK") && input.kind_ahead(1) == Kind::Name {
@@ -243,7 +244,7 @@ fn pou<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind) -> Item<'s> {
     }
     input.eat(Kind::Semicolon);
     input.state().open.push((end, opened));
-    let mut pou = Pou { modifiers, result, attributes, external, doc, ..Pou::new(kind, name, span) };
+    let mut pou = Pou { modifiers, result, attributes, external, pool, doc, ..Pou::new(kind, name, span) };
     bases(input, &mut pou, extends, implements);
     pou.blocks.extend(parameters);
     let region = namespace::of_pou(input, opened);

@@ -5,6 +5,7 @@ use super::coverage::Coverage;
 use super::generic::{Generics, Instance};
 use super::image::Image;
 use super::overloads::Overloads;
+use super::pools::Pool;
 use super::scope::{Scope, Variable};
 use super::signature::Signature;
 use super::starts::Starts;
@@ -174,6 +175,8 @@ pub(crate) struct Declarations<'s> {
     pub overloads: Overloads,
     /// What declarations say of the start of instances.
     pub starts: Starts<'s>,
+    /// The pools that `__NEW` takes objects from, by their types; `None` for one that was refused.
+    pub pools: FxHashMap<Type, Option<Pool>>,
     /// A call asks for an instance of a generic FUNCTION, whose signature is made as all are: by a layer above.
     pub build_signature: BuildSignature<'s>,
 }
@@ -203,6 +206,7 @@ impl<'s> Declarations<'s> {
             generics: Generics::default(),
             overloads: Overloads::default(),
             starts: Starts::default(),
+            pools: FxHashMap::default(),
             build_signature,
         }
     }
@@ -514,7 +518,12 @@ impl<'s> Declarations<'s> {
 
     /// The type that a name means.
     pub fn type_of_name(&mut self, name: ast::Name<'_>) -> Option<Type> {
-        match self.lookup(&[name], Sense::Type) {
+        self.type_of_path(&[name])
+    }
+
+    /// The type that a path names.
+    pub fn type_of_path(&mut self, path: &[ast::Name<'_>]) -> Option<Type> {
+        match self.lookup(path, Sense::Type) {
             Found::One(Meaning::Declared(Entry::Type(at))) => self.named_type(at).map(|it| it.ty),
             Found::One(Meaning::Declared(Entry::Pou(at))) => self.signature(at)?.state.map(Type::Struct),
             Found::One(Meaning::Block(block)) => Some(Type::Block(block)),
@@ -598,6 +607,7 @@ pub(crate) fn empty_program(files: Vec<SourceFile>) -> Program {
         routines: Vec::new(),
         aliases: Vec::new(),
         reentered: std::collections::BTreeSet::new(),
+        places: std::collections::BTreeSet::new(),
         instances: Vec::new(),
     }
 }

@@ -4,6 +4,9 @@ use crate::ast;
 use rustc_hash::FxHashMap;
 use staunch_ir::{Location, StructId};
 
+/// The inputs that every FB_init has.
+pub(crate) const OF_THE_SYSTEM: [&str; 2] = ["bInitRetains", "bInCopyCode"];
+
 #[derive(Debug, Default)]
 pub(crate) struct Starts<'s> {
     /// Whether anything has a start: some FB_init, or a METHOD with `call_after_init`.

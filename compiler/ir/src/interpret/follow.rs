@@ -73,7 +73,7 @@ impl Scope<'_> {
         let program = self.interpreter.program;
         let followed = followed(program, place).expect("a place that leads through a reference");
         let (reference, distance) = self.start(&followed)?;
-        let found = self.table().find(reference, distance, wanted(program, followed.ty));
+        let found = self.table().find(&self.state(), reference, distance, wanted(program, followed.ty));
         let offset = found.map_err(|kind| Fault { kind, at: followed.at })?;
         let pin = followed.pin.map_or(0, |(block, pin)| self.interpreter.layout.offset(Type::Block(block), pin));
         Ok(offset + usize_of(pin))

@@ -62,14 +62,14 @@ pub fn table(program: &Program, layout: &Layout) -> Vec<u32> {
 /// The objects that references may name, by their numbers from 1: their offsets in the state and their sizes.
 pub fn objects(program: &Program, layout: &Layout) -> Vec<(u64, u64)> {
     let objects = Builder::new(program, layout).objects;
-    objects.into_iter().map(|(offset, size, _)| (offset, size.0)).collect()
+    objects.into_iter().map(|(offset, size, ..)| (offset, size.0)).collect()
 }
 
 struct Builder<'p> {
     program: &'p Program,
     layout: &'p Layout,
-    /// Offset, and size from the largest; whether all of it is numbers.
-    objects: BTreeSet<(u64, core::cmp::Reverse<u64>, bool)>,
+    /// Offset, and size from the largest; whether all of it is numbers; its mark.
+    objects: BTreeSet<(u64, core::cmp::Reverse<u64>, bool, u32)>,
     nodes: Vec<Vec<u32>>,
     known: HashMap<Type, usize>,
 }
@@ -80,7 +80,7 @@ impl<'p> Builder<'p> {
         let variables = addressable(program);
         if !variables.is_empty() {
             for (offset, id) in builder.roots() {
-                builder.find_objects(offset, Type::Struct(id), &variables);
+                builder.find_objects(offset, Type::Struct(id), 0, &variables);
             }
         }
         builder
@@ -93,23 +93,26 @@ impl<'p> Builder<'p> {
         [(self.layout.machine.globals, self.program.globals)].into_iter().chain(instances).collect()
     }
 
-    fn find_objects(&mut self, offset: u64, ty: Type, variables: &BTreeSet<(StructId, FieldId)>) {
+    /// `mark` is that of the pool's place around, or 0.
+    fn find_objects(&mut self, offset: u64, ty: Type, mark: u32, variables: &BTreeSet<(StructId, FieldId)>) {
         match ty {
             Type::Struct(id) => {
+                let mark = if self.program.places.contains(&id) { word(offset) + 1 } else { mark };
                 for (at, field) in self.program.structure(id).fields.iter().enumerate() {
                     let member = FieldId::next(at);
                     let start = offset + self.layout.field(id, member);
                     if variables.contains(&(id, member)) {
-                        let plain = self.flat(field.ty).is_some_and(|it| it != Repr::Bool);
-                        self.objects.insert((start, core::cmp::Reverse(self.layout.size(field.ty)), plain));
+                        // Compiled code looks at no mark, so it asks the runtime for what has one.
+                        let plain = mark == 0 && self.flat(field.ty).is_some_and(|it| it != Repr::Bool);
+                        self.objects.insert((start, core::cmp::Reverse(self.layout.size(field.ty)), plain, mark));
                     }
-                    self.find_objects(start, field.ty, variables);
+                    self.find_objects(start, field.ty, mark, variables);
                 }
             }
             Type::Array(id) if self.has_states(self.program.array(id).element) => {
                 let array = self.program.array(id);
                 for position in 0..array.len() {
-                    self.find_objects(offset + position * self.layout.stride(id), array.element, variables);
+                    self.find_objects(offset + position * self.layout.stride(id), array.element, mark, variables);
                 }
             }
             Type::Array(_)
@@ -123,7 +126,7 @@ impl<'p> Builder<'p> {
     }
 
     fn has_states(&self, ty: Type) -> bool {
-        let is_state = |id| self.program.class_of_state(id).is_some();
+        let is_state = |id| self.program.places.contains(&id) || self.program.class_of_state(id).is_some();
         self.program.instance_in(ty, &is_state).is_some()
     }
 
@@ -206,9 +209,9 @@ impl<'p> Builder<'p> {
         }
         let at = |node: u32| positions[usize::try_from(node).expect("a u32 fits a usize")];
         let mut words = vec![position(self.objects.len()), positions[root], position(end)];
-        words.extend(self.objects.iter().flat_map(|(offset, size, plain)| {
+        words.extend(self.objects.iter().flat_map(|(offset, size, plain, mark)| {
             let size = word(size.0);
-            [word(*offset), size, if *plain { size } else { 0 }]
+            [word(*offset), size, if *plain { size } else { 0 }, *mark]
         }));
         for mut node in self.nodes {
             match node[0] {

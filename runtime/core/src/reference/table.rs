@@ -2,10 +2,11 @@
 //!
 //! A table is words, so that a back end can put it into a program as plain data: the number of objects, the
 //! node of the state, how many words there are; for each object its offset and size, in the order of their
-//! offsets, and its size again where all of it is numbers, else 0; then the nodes. What lies within those may be
-//! seen as any number without a look at the nodes.
+//! offsets, its size again where all of it is numbers, else 0, and its mark; then the nodes. What lies within those
+//! that are numbers may be seen as any number without a look at the nodes. The mark of an object in a pool is the
+//! offset, and 1, of the BOOL that says whether the object is there; other objects, which are always, have 0.
 
-use super::{ORIGIN, Reference};
+use super::{Memory, ORIGIN, Reference};
 use crate::{FaultKind, Repr, StringType};
 
 /// As what an access wants to see memory.
@@ -75,7 +76,7 @@ pub mod encode {
     /// Words before the objects.
     pub const HEAD: usize = 3;
     /// Words of an object.
-    pub const OBJECT: usize = 3;
+    pub const OBJECT: usize = 4;
 
     /// The same in bytes, for native code.
     pub const HEAD_BYTES: i32 = 4 * HEAD as i32;
@@ -145,6 +146,18 @@ impl<'t> Table<'t> {
         let position = number.checked_sub(1).filter(|it| *it < self.word(0))?;
         let at = encode::HEAD + position as usize * encode::OBJECT;
         Some((self.word(at) as usize, self.word(at + 1) as usize))
+    }
+
+    /// Whether the object that a reference names is there: one in a pool may have been deleted.
+    pub(super) fn check_is_there(&self, memory: &(impl Memory + ?Sized), bits: u64) -> Result<(), FaultKind> {
+        let position = (Reference::from_bits(bits).object as usize).wrapping_sub(1);
+        if position >= self.word(0) as usize {
+            return Ok(());
+        }
+        let Some(mark) = self.word(encode::HEAD + position * encode::OBJECT + 3).checked_sub(1) else { return Ok(()) };
+        let mut is_there = [0];
+        memory.read(mark as usize, &mut is_there);
+        if is_there[0] == 0 { Err(FaultKind::Deleted) } else { Ok(()) }
     }
 
     /// Whether all of the object is numbers.
@@ -254,7 +267,14 @@ impl<'t> Table<'t> {
 
     /// Where a variable of exactly this type lies: the offset in the state. `repr` for a number or a BOOL,
     /// the capacity for a string, else the type's number, which arrays and structures have, too.
-    pub fn find(&self, bits: u64, distance: u64, wanted: Wanted) -> Result<usize, FaultKind> {
+    pub fn find(
+        &self,
+        memory: &(impl Memory + ?Sized),
+        bits: u64,
+        distance: u64,
+        wanted: Wanted,
+    ) -> Result<usize, FaultKind> {
+        self.check_is_there(memory, bits)?;
         let (offset, _) = self.locate(bits, distance)?;
         let mut found = self.whole();
         loop {

@@ -1,16 +1,16 @@
 //! The start of instances: the instances inside of each first, then its FB_init, the values that its declaration
 //! gives, and its METHODs with `call_after_init`.
 
+use super::checker::Checker;
+use super::generic_call::Called;
 use crate::ast::{self, ArgumentKind, InitialKind, LiteralValue, PouKind};
-use crate::declare::starts::OF_THE_SYSTEM;
-use crate::expr::checker::Checker;
-use crate::expr::generic_call::Called;
 use crate::spelling::Key;
-use crate::start::{GLOBALS, KEPT, MEMBERS, RETAINS, START};
+use crate::start::{EXIT, GLOBALS, KEPT, MEMBERS, RETAINS, START};
 use crate::testing::tree::{literal, named};
 use crate::types::declarations::Slot;
 use crate::types::scope::Variable;
 use crate::types::signature::Signature;
+use crate::types::starts::OF_THE_SYSTEM;
 use crate::types::table::Resolved;
 use crate::{Code, Diagnostic, Span};
 use staunch_ir::{
@@ -19,7 +19,7 @@ use staunch_ir::{
 };
 use std::rc::Rc;
 
-pub(super) fn is_start_of_members(callee: &ast::Expr<'_>) -> bool {
+pub(crate) fn is_start_of_members(callee: &ast::Expr<'_>) -> bool {
     matches!(&callee.kind, ast::ExprKind::Name(name) if name.text == MEMBERS)
 }
 
@@ -46,7 +46,7 @@ struct Assigned {
 
 impl<'s> Checker<'_, 's> {
     /// Starts the instances that live for one call, but for those that it is given.
-    pub(super) fn start_locals(&mut self, signature: &Signature<'s>) {
+    pub(crate) fn start_locals(&mut self, signature: &Signature<'s>) {
         if !self.decl.starts.is_any {
             return;
         }
@@ -59,7 +59,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// Starts what the POU around holds; the FUNCTION for that starts what is global.
-    pub(super) fn start_members(&mut self, span: Span) {
+    pub(crate) fn start_members(&mut self, span: Span) {
         let covered = std::mem::replace(&mut self.is_covered, false);
         let Some(slot) = self.slot else { return };
         let owner = self.decl.pous[slot].owner.unwrap_or(slot);
@@ -181,6 +181,23 @@ impl<'s> Checker<'_, 's> {
         let declared = self.decl.starts.declared.get(&at).copied();
         let (span, value) = (variable.name.span, variable.resolved.initial.clone());
         self.start_declared(variable.place.clone(), declared, value, span);
+    }
+
+    /// Starts what `__NEW` has made, with the arguments for its FB_init.
+    pub(super) fn start_made(&mut self, place: Place, arguments: &[ast::Argument<'s>], span: Span) {
+        let default = self.decl.start_of(place.ty);
+        let value = default.clone();
+        self.start_place(place, &Given { arguments, lists: None, initial: None, default, value, span });
+    }
+
+    /// Calls the METHODs FB_exit of an instance that `__DELETE` is given, an heir's before its base's.
+    pub(super) fn exit(&mut self, class: usize, place: &Place, span: Span) {
+        for method in self.decl.system_methods(class, EXIT).into_iter().rev() {
+            let given =
+                Given { arguments: &[], lists: None, initial: None, default: Const::Zero, value: Const::Zero, span };
+            let arguments = self.arguments_of(method, &given);
+            self.call_system(method, place.clone(), &arguments, span);
+        }
     }
 
     /// Starts what a declaration declares.

@@ -1,0 +1,104 @@
+//! The places for the objects that `__NEW` makes: what `{pool 16}` asks for.
+
+use crate::ast::{self, TypeKind};
+use crate::types::declarations::Declarations;
+use crate::types::pools::{MOST, Pool};
+use crate::types::table::Resolved;
+use crate::{Code, Diagnostic, Span};
+use staunch_ir::{Const, Field, Retain, Section, Struct, Type};
+
+impl<'s> Declarations<'s> {
+    pub(super) fn declare_pools(&mut self) {
+        for slot in 0..self.written_pous().len() {
+            let pou = self.pous[slot].ast;
+            let Some(pool) = pou.pool.filter(|it| self.may_have_pool(pou, it.span)) else { continue };
+            if let Some(state) = self.signature(slot).and_then(|it| it.state) {
+                let name = self.emitted_name(slot);
+                let pool = self.declare_pool(&name, pou.name, Type::Struct(state), pool);
+                self.pools.insert(Type::Struct(state), pool);
+            }
+        }
+        for at in 0..self.types.len() {
+            let decl = self.types[at].decl;
+            if let Some(pool) = decl.pool
+                && self.is_structure(decl, pool.span)
+                && let Some(Resolved { ty, .. }) = self.named_type(at)
+            {
+                let name = self.name_in_full(decl.name);
+                let pool = self.declare_pool(&name, decl.name, ty, pool);
+                self.pools.insert(ty, pool);
+            }
+        }
+    }
+
+    fn may_have_pool(&mut self, pou: &ast::Pou<'s>, pool: Span) -> bool {
+        if let Some(span) = pou.modifiers.is_abstract {
+            self.report(
+                Diagnostic::new(
+                    Code::E0413,
+                    pool,
+                    format!("`{}` is ABSTRACT: there are no objects of it", pou.name.text),
+                )
+                .label("a pool is for a FUNCTION_BLOCK that extends it")
+                .other(span, "declared so here"),
+            );
+            return false;
+        }
+        if !pou.kind.is_block() {
+            self.refuse_pool(pool, pou.name);
+        }
+        pou.kind.is_block()
+    }
+
+    fn is_structure(&mut self, decl: &ast::TypeDecl<'s>, pool: Span) -> bool {
+        let is_it = matches!(decl.ty.kind, TypeKind::Struct(_));
+        if !is_it && !matches!(decl.ty.kind, TypeKind::Error) {
+            self.refuse_pool(pool, decl.name);
+        }
+        is_it
+    }
+
+    fn refuse_pool(&mut self, pool: Span, name: ast::Name<'s>) {
+        self.report(
+            Diagnostic::new(Code::E0413, pool, format!("`{}` has no use for a pool", name.text))
+                .label("a pool is for a FUNCTION_BLOCK, or a TYPE that is a STRUCT")
+                .other(name.span, "this is neither"),
+        );
+    }
+
+    fn declare_pool(&mut self, title: &str, name: ast::Name<'s>, object: Type, pool: ast::Pool) -> Option<Pool> {
+        let Some(count) = pool.count.filter(|it| (1..=MOST).contains(it)) else {
+            self.report(
+                Diagnostic::new(Code::E0413, pool.span, format!("a pool has 1 to {MOST} objects"))
+                    .label("this says another number, or none")
+                    .help("write the most objects that there are at a time: `{pool 16}`"),
+            );
+            return None;
+        };
+        let location = self.location(name.span);
+        let field = |name: &str, ty, doc: &str| Field {
+            name: name.to_owned(),
+            ty,
+            // `__NEW` gives an object its initial values.
+            initial: Const::Zero,
+            section: Section::Internal,
+            retain: Retain::Inherited,
+            constant: false,
+            address: None,
+            doc: Some(doc.to_owned()),
+            location,
+        };
+        let title = title.replace('.', "_");
+        let fields =
+            vec![field("used", Type::BOOL, "Whether it is one."), field("object", object, "What `__NEW` has made.")];
+        let doc = format!("A place for a `{}`.", name.text);
+        let place = self.push_struct(Struct::new(format!("PlaceOf{title}"), Some(doc), location, fields));
+        self.program.places.insert(place);
+        let count = i64::from(count);
+        let array = self.intern_array(1, count, Resolved { ty: Type::Struct(place), initial: Const::Zero });
+        let doc = format!("The objects of `{}` that `__NEW` makes.", name.text);
+        let at = self.add_synthetic(field(&format!("pool_of_{title}"), array, &doc), None);
+        let places = self.synthetic_place(at);
+        Some(Pool { places, place, count, object })
+    }
+}
