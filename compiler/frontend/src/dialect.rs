@@ -63,6 +63,11 @@ impl Dialect {
         bare_block(self, name).map(|it| it.info())
     }
 
+    /// METHODs use the VAR_IN_OUTs of the last call of their FUNCTION_BLOCK's body.
+    pub(crate) fn keeps_in_outs(self) -> bool {
+        self == Self::Codesys
+    }
+
     /// VAR_IN_OUT CONSTANT.
     pub const fn has_constant_in_outs(self) -> bool {
         matches!(self, Self::Codesys)

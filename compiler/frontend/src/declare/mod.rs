@@ -26,14 +26,16 @@ pub(crate) mod starts;
 mod structure;
 mod variable;
 
-use crate::ast;
+use crate::ast::{self, PouKind, VarKind};
 use crate::log::Log;
 use crate::names::{Entry, libraries};
+use crate::spelling::Key;
 use crate::testing;
 use crate::types::declarations::{Declarations, PouSlot, Slot};
 use crate::types::in_outs::Polymorphic;
 use crate::types::scope::Scope;
 use run::Run;
+use rustc_hash::FxHashSet;
 use std::rc::Rc;
 
 /// Declares what the files do; `bodies` are those of their POUs, and then of the runs, in order.
@@ -61,6 +63,7 @@ pub(crate) fn declare<'s>(
     }
     declarations.note_starts();
     declarations.note_results(bodies);
+    declarations.note_kept_in_outs(bodies);
     declarations.note_generics();
     declarations.collect_addresses(bodies);
     declarations.resolve_all();
@@ -79,6 +82,25 @@ impl<'s> Declarations<'s> {
     fn note_results(&mut self, bodies: &[Vec<ast::Statement<'s>>]) {
         for (pou, body) in self.pous.iter_mut().zip(bodies) {
             pou.names_itself = pou.ast.kind.is_function() && mentions(body, pou.ast.name.text);
+        }
+    }
+
+    /// Which VAR_IN_OUTs of FUNCTION_BLOCKs their METHODs use, in dialects that let them.
+    fn note_kept_in_outs(&mut self, bodies: &[Vec<ast::Statement<'s>>]) {
+        let is_method = |kind| matches!(kind, PouKind::Method | PouKind::Getter | PouKind::Setter);
+        for (pou, body) in self.pous.iter().zip(bodies).filter(|it| is_method(it.0.ast.kind)) {
+            let Some(owner) = pou.owner.map(|it| self.pous[it].ast).filter(|it| it.kind.is_block()) else { continue };
+            let is_kept = |it: &&ast::VarBlock<'s>| it.kind == VarKind::InOut && it.constant.is_none();
+            let mut in_outs = owner.blocks.iter().filter(is_kept).flat_map(|it| &it.vars).flat_map(|it| &it.names);
+            if in_outs.clone().next().is_none() || !self.log.dialect(owner.name.span).keeps_in_outs() {
+                continue;
+            }
+            let own: FxHashSet<_> =
+                pou.ast.blocks.iter().flat_map(|it| &it.vars).flat_map(|it| &it.names).map(|it| Key(it.text)).collect();
+            let used = named(body, &own);
+            self.table
+                .kept_in_outs
+                .extend(in_outs.by_ref().filter(|it| used.contains(&Key(it.text))).map(|it| it.span));
         }
     }
 
@@ -112,6 +134,22 @@ impl<'s> Declarations<'s> {
         address::report_second_names(self, &uses);
         self.find_image(uses);
     }
+}
+
+/// The names in statements but for those of `own` variables, and what is after THIS.
+fn named<'s>(body: &[ast::Statement<'s>], own: &FxHashSet<Key<'s>>) -> FxHashSet<Key<'s>> {
+    let is_this = |it: &ast::Expr<'_>| match &it.kind {
+        ast::ExprKind::Deref(inner) => matches!(&inner.kind, ast::ExprKind::Name(it) if Key(it.text) == Key("THIS")),
+        ast::ExprKind::Name(it) => Key(it.text) == Key("THIS"),
+        _ => false,
+    };
+    let mut found = FxHashSet::default();
+    ast::each_expr(body, &mut |it| match &it.kind {
+        ast::ExprKind::Name(it) if !own.contains(&Key(it.text)) => drop(found.insert(Key(it.text))),
+        ast::ExprKind::Member(owner, it) if is_this(owner) => drop(found.insert(Key(it.text))),
+        _ => {}
+    });
+    found
 }
 
 /// Whether the statements name something `name`.

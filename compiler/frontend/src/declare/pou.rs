@@ -335,8 +335,7 @@ impl<'s> Declarations<'s> {
             decl.names.iter().for_each(|name| builder.refuse(*name));
             return;
         };
-        let reference =
-            decl.names.iter().find_map(|it| self.polymorphic_type(builder.slot, block, it.text, resolved.ty));
+        let reference = decl.names.iter().find_map(|it| self.polymorphic_type(builder.slot, block, *it, resolved.ty));
         builder.polymorphic = reference.is_some();
         let resolved = reference.map_or(resolved, |ty| Rc::new(Resolved::plain(ty)));
         let is_plain = matches!(resolved.ty, Type::Elementary(_) | Type::Reference(_) | Type::String(_));

@@ -249,8 +249,12 @@ impl<'s> Checker<'_, 's> {
         expr: &ast::Expr<'s>,
     ) -> Option<()> {
         let ty = formal.resolved.ty;
-        let class = self.decl.referred_class(ty)?;
+        let class = self.decl.referred_type(ty)?;
+        let is_instance = matches!(class, Type::Struct(id) if self.decl.is_instance(id));
         let value = self.after_parts(&mut parts.written, |this| {
+            if !is_instance {
+                return this.kept_variable(formal, class, expr);
+            }
             let place = this.static_type(expr);
             if !place.is_some_and(|it| this.decl.extends(it, class)) {
                 let place = this.variable_argument(expr, formal.name.text)?;
@@ -265,6 +269,33 @@ impl<'s> Checker<'_, 's> {
         })?;
         parts.push(Held::Value(value), role, expr.span);
         Some(())
+    }
+
+    /// A reference to the variable that is given for a VAR_IN_OUT which the instance keeps.
+    fn kept_variable(&mut self, formal: &Formal<'s>, target: Type, expr: &ast::Expr<'s>) -> Option<Expr> {
+        let found = self.variable_or_view(expr, formal.name.text)?;
+        if found.view.is_some() {
+            self.decl.not_supported(expr.span, "bits that others share, for a VAR_IN_OUT that METHODs use,");
+            return None;
+        }
+        let is_text = match (found.place.ty, target) {
+            (Type::String(from), Type::String(to)) => from.wide == to.wide,
+            _ => false,
+        };
+        if found.place.ty != target && !is_text {
+            let wanted = Formal { resolved: Rc::new(Resolved::plain(target)), ..formal.clone() };
+            self.report_other_type(&wanted, found.place.ty, expr.span);
+            return None;
+        }
+        if self.is_pin(&found) {
+            self.decl.not_supported(expr.span, "a pin of a standard block, for a VAR_IN_OUT that METHODs use,");
+            return None;
+        }
+        self.note_passed(&found.place, expr.span, formal.name.span);
+        let at = self.at(expr.span);
+        let mut reference = Expr::new(formal.resolved.ty, ExprKind::AddressOf(Box::new(found.place)), at);
+        self.fault_at_null(&mut reference, expr.span)?;
+        Some(reference)
     }
 
     /// Evaluates the next part, what is given for a VAR_IN_OUT CONSTANT: a variable of its type itself, else

@@ -199,7 +199,11 @@ impl<'s> Checker<'_, 's> {
             return true;
         }
         let (section, help) = match variable.place.root {
-            Root::Instance if variable.section == Section::InOut && !self.is_action() => {
+            Root::Instance
+                if variable.section == Section::InOut
+                    && !self.is_action()
+                    && !self.decl.table.kept_in_outs.contains(&variable.name.span) =>
+            {
                 ("VAR_IN_OUT", "declare a VAR_IN_OUT in the METHOD, and pass the variable on")
             }
             Root::Instance | Root::Globals => return true,

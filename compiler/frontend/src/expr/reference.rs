@@ -162,7 +162,7 @@ impl<'s> Checker<'_, 's> {
         Some(self.told_apart(reference, &place, expr.span))
     }
 
-    fn is_pin(&self, found: &Found<'s>) -> bool {
+    pub(crate) fn is_pin(&self, found: &Found<'s>) -> bool {
         let Some(mut ty) = self.root_type(found.place.root) else { return false };
         for projection in &found.place.projections {
             if matches!(ty, Type::Block(_)) {
@@ -298,12 +298,19 @@ impl<'s> Checker<'_, 's> {
         let variable = self.scope.get(name.text).filter(|it| it.section == Section::InOut)?;
         let declared = self.decl.pous.iter().flat_map(|it| &it.ast.blocks).flat_map(|it| &it.vars);
         let decl = declared.into_iter().find(|it| it.names.iter().any(|it| it.span == variable.name.span))?;
-        let ast::TypeKind::Named(path) = &decl.ty.kind else { return None };
-        let ty = path.last().map(|it| it.text)?;
-        let Meant::One(Meaning::Declared(Entry::Pou(_))) = self.decl.lookup(path, Sense::Type) else { return None };
+        let is_kept = self.decl.table.kept_in_outs.contains(&variable.name.span);
+        let ty = match &decl.ty.kind {
+            _ if is_kept => self.type_name(self.decl.referred_type(variable.place.ty)?),
+            ast::TypeKind::Named(path) => {
+                let meant = self.decl.lookup(path, Sense::Type);
+                let Meant::One(Meaning::Declared(Entry::Pou(_))) = meant else { return None };
+                path.last().map(|it| it.text.to_owned())?
+            }
+            _ => return None,
+        };
         self.report(
             Diagnostic::new(Code::E0211, target.span, format!("`REF=` sets a reference, this is {ty}"))
-                .label("a VAR_IN_OUT is the caller's instance")
+                .label("a VAR_IN_OUT is the caller's variable")
                 .other(decl.span, "declared here")
                 .help(format!("declare it as `REFERENCE TO {ty}` in VAR_INPUT")),
         );

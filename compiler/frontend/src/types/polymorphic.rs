@@ -1,11 +1,12 @@
-//! VAR_IN_OUTs that are given instances of what extends their class. They are passed as references, whose numbers tell
+//! VAR_IN_OUTs that METHODs of their FUNCTION_BLOCK use, which an instance keeps as a reference, and those that are given
+//! instances of what extends their class. They are passed as references, whose numbers tell
 //! the class; all others stay what they are. Which ones these are is known when all bodies are checked: then the
 //! program is checked again with them. Routines of one name have them alike, since one may override the other.
 
 use super::declarations::{Declarations, PouSlot};
 use super::in_outs::{InOut, Polymorphic};
 use crate::Span;
-use crate::ast::{VarBlock, VarKind};
+use crate::ast::{Name, VarBlock, VarKind};
 use rustc_hash::FxHashSet;
 use staunch_ir::{RefKind, RefType, Type};
 
@@ -44,21 +45,32 @@ impl Declarations<'_> {
     }
 
     /// The type of a VAR_IN_OUT that is passed as a reference to an instance of this one's kin.
-    pub fn polymorphic_type(&mut self, slot: usize, block: &VarBlock<'_>, name: &str, ty: Type) -> Option<Type> {
+    pub fn polymorphic_type(&mut self, slot: usize, block: &VarBlock<'_>, name: Name<'_>, ty: Type) -> Option<Type> {
+        if self.table.kept_in_outs.contains(&name.span) && self.can_be_kept(ty) {
+            return Some(self.reference_type(RefKind::ReferenceTo, ty));
+        }
         let Type::Struct(state) = ty else { return None };
         let class = self.slot_of_instance(state)?;
         if !self.may_be_polymorphic(slot, block) {
             return None;
         }
         let is_abstract = self.pous[class].ast.modifiers.is_abstract.is_some();
-        let is_known = self.table.polymorphic.known.contains(&key(&self.pous[slot], name));
+        let is_known = self.table.polymorphic.known.contains(&key(&self.pous[slot], name.text));
         (is_abstract || is_known && self.kin(class).len() > 1).then(|| self.reference_type(RefKind::ReferenceTo, ty))
     }
 
-    /// The class that a VAR_IN_OUT is declared of, where it is passed as a reference.
-    pub fn referred_class(&self, ty: Type) -> Option<Type> {
+    /// Whether an instance can keep a reference to a variable of the type, under the variable's name.
+    fn can_be_kept(&self, ty: Type) -> bool {
+        let is_alias = |it: RefType| it.kind == RefKind::ReferenceTo;
+        match ty {
+            Type::Reference(id) => !is_alias(self.program.references[id.index()]),
+            _ => !self.program.is_open(ty),
+        }
+    }
+
+    /// What a VAR_IN_OUT is declared as, where it is passed as a reference.
+    pub fn referred_type(&self, ty: Type) -> Option<Type> {
         let Type::Reference(id) = ty else { return None };
-        let RefType { target, .. } = self.program.references[id.index()];
-        matches!(target, Type::Struct(_)).then_some(target)
+        Some(self.program.references[id.index()].target)
     }
 }

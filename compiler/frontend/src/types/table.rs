@@ -42,6 +42,8 @@ pub(crate) struct Table<'s> {
     pub instances: FxHashMap<StructId, usize>,
     pub interfaces: Interfaces,
     pub polymorphic: Polymorphic,
+    /// The VAR_IN_OUTs of FUNCTION_BLOCKs that METHODs use, by where their names are declared: the instance keeps them.
+    pub kept_in_outs: FxHashSet<Span>,
     /// The enumerations that take and give no numbers: `{attribute 'strict'}`.
     pub strict: FxHashSet<EnumId>,
     /// Those whose values TO_STRING spells by their names: `{attribute 'to_string'}`.
