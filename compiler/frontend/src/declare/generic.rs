@@ -1,4 +1,4 @@
-//! Generic FUNCTIONs: which there are, and what their declarations have to say so that each call tells the types.
+//! Generic FUNCTIONs and METHODs: which there are, and what their declarations have to say so that each call tells the types.
 
 use crate::ast::{self, PouKind, VarKind};
 use crate::diagnostic::wording::article;
@@ -13,11 +13,15 @@ use staunch_runtime::Class;
 use std::rc::Rc;
 
 impl<'s> Declarations<'s> {
-    /// Which FUNCTIONs are generic: those whose declarations use ANY, ANY_NUM and the like.
+    /// Which FUNCTIONs and METHODs are generic: those whose declarations use ANY, ANY_NUM and the like.
     pub(super) fn note_generics(&mut self) {
         for slot in 0..self.pous.len() {
             let pou = self.pous[slot].ast;
-            if pou.kind == PouKind::Function {
+            let owner = self.pous[slot].owner.map(|it| self.pous[it].ast);
+            // What is in an INTERFACE has no routine of its own, and what nobody wrote has no call that tells types.
+            let is_method =
+                owner.is_some_and(|it| it.kind != PouKind::Interface) && pou.modifiers.is_abstract.is_none();
+            if pou.kind == PouKind::Function || pou.kind == PouKind::Method && is_method {
                 self.pous[slot].words = self.words_in(pou);
             }
         }
@@ -138,9 +142,13 @@ impl<'s> Declarations<'s> {
         }
         let what = article(class.name());
         self.report(
-            Diagnostic::new(Code::E0411, name.span, format!("`{}` is a generic type, of a FUNCTION only", name.text))
-                .label(format!("nothing says which type {what} is here"))
-                .help("write the type that is meant, or make this a FUNCTION whose inputs are generic"),
+            Diagnostic::new(
+                Code::E0411,
+                name.span,
+                format!("`{}` is a generic type, of a FUNCTION or a METHOD with a body only", name.text),
+            )
+            .label(format!("nothing says which type {what} is here"))
+            .help("write the type that is meant, or make this a FUNCTION whose inputs are generic"),
         );
         None
     }

@@ -27,6 +27,11 @@ pub(crate) struct Dispatch {
 }
 
 impl Dispatch {
+    /// Whether one of the routines that may run is such a one.
+    pub fn calls(&self, is_it: impl Fn(usize) -> bool) -> bool {
+        self.ways.iter().any(|it| is_it(it.slot))
+    }
+
     /// The statement that makes the call on the instance that a reference leads to. A reference to none of the
     /// classes is null, or faults as it is followed.
     pub fn statement(&self, instance: &Place, call: &dyn Fn(RoutineId, Place) -> StatementKind) -> StatementKind {

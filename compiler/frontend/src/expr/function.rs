@@ -50,6 +50,12 @@ impl<'s> Checker<'_, 's> {
         if let Some((place, callee)) = instance {
             let place = self.receiver(place, callee)?;
             dispatch = self.dispatch(&place, slot, callee);
+            if dispatch.as_ref().is_some_and(|it| it.calls(|slot| self.decl.is_generic(slot))) {
+                let what =
+                    "a call of a METHOD with parameters of a generic type, by what may refer to several classes,";
+                self.decl.not_supported(callee, what);
+                return None;
+            }
             parts.push(Held::Place(place), Role::Instance, callee);
         }
         let mut open = Vec::new();

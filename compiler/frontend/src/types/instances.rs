@@ -104,8 +104,8 @@ impl<'s> Declarations<'s> {
         let slot = self.pous.len();
         let name = self.instance_name(of, &types);
         let instance = Instance { of, types: types.clone(), name, call, within };
-        let PouSlot { ast, names_itself, .. } = self.pous[of];
-        self.pous.push(PouSlot { names_itself, instance: Some(instance), ..PouSlot::open(ast) });
+        let PouSlot { ast, names_itself, owner, .. } = self.pous[of];
+        self.pous.push(PouSlot { names_itself, owner, instance: Some(instance), ..PouSlot::open(ast) });
         self.generics.slots.insert((of, types), slot);
         let reported = self.log.diagnostics.len();
         let signature = (self.build_signature)(self, slot);
@@ -145,7 +145,9 @@ impl<'s> Declarations<'s> {
 
     /// `Largest_INT`; where something else has that name, one like it.
     fn instance_name(&mut self, of: usize, types: &[Type]) -> String {
-        let mut name = self.name_in_full(self.pous[of].ast.name);
+        let pou = self.pous[of].ast;
+        let is_method = self.pous[of].owner.is_some();
+        let mut name = if is_method { pou.name.text.to_owned() } else { self.name_in_full(pou.name) };
         for ty in types {
             let text = self.program.type_name(*ty);
             let parts = text.split(|it: char| !it.is_ascii_alphanumeric()).filter(|it| !it.is_empty());
