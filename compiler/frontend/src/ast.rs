@@ -546,6 +546,8 @@ pub enum StatementKind<'s> {
     Exit,
     Continue,
     Return,
+    /// `RETURN(condition)`
+    ReturnIf(Expr<'s>),
     /// What recovery put in place of something that did not parse; it has been reported.
     Error,
 }
@@ -752,6 +754,7 @@ pub(crate) fn each_body<'a, 's>(statement: &'a Statement<'s>, see: &mut dyn FnMu
         | StatementKind::Exit
         | StatementKind::Continue
         | StatementKind::Return
+        | StatementKind::ReturnIf(_)
         | StatementKind::Error => {}
     }
 }
@@ -765,6 +768,7 @@ pub(crate) fn each_expr<'a, 's>(statements: &'a [Statement<'s>], visit: &mut dyn
             | StatementKind::Continue
             | StatementKind::Return
             | StatementKind::Error => {}
+            StatementKind::ReturnIf(condition) => each_part(condition, visit),
             StatementKind::Assign { target, value }
             | StatementKind::SetReset { target, value, .. }
             | StatementKind::Bind { target, value }

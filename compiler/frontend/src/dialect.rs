@@ -68,6 +68,16 @@ impl Dialect {
         self == Self::Codesys
     }
 
+    /// `RETURN(condition)`.
+    pub const fn returns_on_conditions(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
+    /// `:= ()`, an initial value that says nothing of any member.
+    pub const fn has_empty_values(self) -> bool {
+        matches!(self, Self::Siemens)
+    }
+
     /// VAR_IN_OUT CONSTANT.
     pub const fn has_constant_in_outs(self) -> bool {
         matches!(self, Self::Codesys)
@@ -135,7 +145,7 @@ impl Dialect {
 
     /// An instance of a FUNCTION_BLOCK of Structured Text may be copied, unless it holds one of the system's blocks.
     pub const fn copies_instances(self) -> bool {
-        matches!(self, Self::Codesys)
+        matches!(self, Self::Codesys | Self::Siemens)
     }
 
     /// `TRUNC` takes whole numbers, which it leaves as they are.

@@ -105,7 +105,7 @@ impl Mutants<'_> {
             | StatementKind::Continue
             | StatementKind::Return => self.add(statement.span, ";"),
             StatementKind::If { branches, .. } => branches.iter().for_each(|it| self.negated(&it.0)),
-            StatementKind::While { condition, .. } => self.negated(condition),
+            StatementKind::While { condition, .. } | StatementKind::ReturnIf(condition) => self.negated(condition),
             StatementKind::Repeat { until, .. } => self.negated(until),
             StatementKind::Empty | StatementKind::Case { .. } | StatementKind::For { .. } | StatementKind::Error => {}
         }

@@ -50,6 +50,9 @@ impl<'a> Machine<'a> {
             StatementKind::Exit => Ok(Flow::Exit),
             StatementKind::Continue => Ok(Flow::Continue),
             StatementKind::Return => Ok(Flow::Return),
+            StatementKind::ReturnIf(condition) => {
+                Ok(if self.condition(frame, condition)? { Flow::Return } else { Flow::Next })
+            }
             StatementKind::Error => unknown("a statement that did not parse"),
         }
     }

@@ -276,6 +276,7 @@ impl Writer<'_> {
                 self.statements(body);
                 self.expr(until, true);
             }
+            StatementKind::ReturnIf(condition) => self.expr(condition, true),
             StatementKind::Empty
             | StatementKind::Exit
             | StatementKind::Continue

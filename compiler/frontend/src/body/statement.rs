@@ -43,6 +43,7 @@ impl<'s> Checker<'_, 's> {
             Ast_::SetReset { target, value, set } => self.set_reset(target, value, *set, span),
             Ast_::Bind { target, value } => self.bind_reference(target, value, span),
             Ast_::Attempt { target, value } => self.attempt(target, value, span),
+            Ast_::ReturnIf(condition) => self.return_if(condition, span),
             Ast_::Case { selector, arms, otherwise } => self.case(selector, arms, otherwise.as_deref(), span),
             Ast_::For { counter, from, to, by, body } => self.for_loop(counter, from, to, by.as_deref(), body, span),
             Ast_::Empty
@@ -73,6 +74,7 @@ impl<'s> Checker<'_, 's> {
             | Ast_::SetReset { .. }
             | Ast_::Bind { .. }
             | Ast_::Attempt { .. }
+            | Ast_::ReturnIf(_)
             | Ast_::Case { .. }
             | Ast_::For { .. } => {}
             Ast_::Expr(expr) => self.lone_expression(expr),
@@ -83,6 +85,23 @@ impl<'s> Checker<'_, 's> {
             Ast_::Continue => self.leave_loop("CONTINUE", StatementKind::Continue, span),
             Ast_::Return => self.push(StatementKind::Return, span),
         }
+    }
+
+    /// `RETURN(condition)`
+    fn return_if(&mut self, condition: &ast::Expr<'s>, span: Span) -> Option<()> {
+        if !self.decl.dialect(span).returns_on_conditions() {
+            let text = self.decl.log.sources.text(condition.bare().span);
+            let help = format!("write `IF {text} THEN RETURN; END_IF`, or assign a result to the function's own name");
+            self.report(
+                Diagnostic::new(Code::E0019, span, "RETURN takes no value")
+                    .label("a condition in parentheses is an extension of CODESYS")
+                    .help(help),
+            );
+            return None;
+        }
+        let leave = ast::Statement { kind: Ast_::Return, span };
+        self.branches(&[(condition.clone(), vec![leave])], None);
+        Some(())
     }
 
     fn leave_loop(&mut self, word: &str, kind: StatementKind, span: Span) {
@@ -175,9 +194,12 @@ impl<'s> Checker<'_, 's> {
         None
     }
 
-    /// `r ?= x`: what a reference is given is known when the program is compiled, so that an attempt that
-    /// cannot succeed is refused.
+    /// `r ?= x`: which instance a reference is given is known as the program runs. What is no instance is known when it is
+    /// compiled, so that an attempt that cannot succeed is refused.
     fn attempt(&mut self, target: &ast::Expr<'s>, value: &ast::Expr<'s>, span: Span) -> Option<()> {
+        if let Some(made) = self.attempt_of_instance(target, value, span) {
+            return made;
+        }
         let ty = self.place(target).map(|it| it.place.ty);
         if let Some(ty) = ty.filter(|it| !matches!(it, Type::Reference(_))) {
             let ty = self.type_name(ty);

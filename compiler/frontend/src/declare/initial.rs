@@ -29,6 +29,14 @@ impl<'s> Declarations<'s> {
         scope: &Rc<Scope<'s>>,
     ) -> Option<Const> {
         match (&initial.kind, target.ty) {
+            (InitialKind::Fields(fields), _) if fields.is_empty() && !self.dialect(initial.span).has_empty_values() => {
+                self.report(
+                    Diagnostic::new(Code::E0206, initial.span, "this gives a value to nothing")
+                        .label("expected `(member := value)`")
+                        .help("delete the initial value: the variable starts with that of its type"),
+                );
+                None
+            }
             (InitialKind::Value(expr), _) => self.initial_value(expr, target, scope),
             (InitialKind::Bind(expr), _) => {
                 self.not_supported(expr.span, "an address as an initial value here");

@@ -59,6 +59,74 @@ impl<'s> Checker<'_, 's> {
         Some(Operand::Typed(self.answer(&pointer, found.place, &numbers, span)))
     }
 
+    /// `r ?= x` where it depends on the instance that `x` is or refers to: a variable of an INTERFACE, or a reference to a
+    /// class, refers to it from now on where its class fits, else to nothing. `None` where that is known already.
+    pub(crate) fn attempt_of_instance(
+        &mut self,
+        target: &ast::Expr<'s>,
+        value: &ast::Expr<'s>,
+        span: Span,
+    ) -> Option<Option<()>> {
+        let (to, from) = (self.static_type(target)?, self.static_type(value)?);
+        let is_interface = self.decl.interface_of(to).is_some();
+        if !is_interface && self.class_behind(to).is_none() || self.is_known_to_fit(from, to) {
+            return None;
+        }
+        let from_interface = self.decl.interface_of(from).is_some();
+        let is_instance = matches!(from, Type::Struct(state) if self.decl.is_instance(state));
+        if !from_interface && !is_instance && self.class_behind(from).is_none() {
+            return None;
+        }
+        Some(self.attempt_known(target, value, is_instance, !is_interface, span))
+    }
+
+    fn attempt_known(
+        &mut self,
+        target: &ast::Expr<'s>,
+        value: &ast::Expr<'s>,
+        is_instance: bool,
+        wants_pointer: bool,
+        span: Span,
+    ) -> Option<()> {
+        let source = if is_instance { self.reference_to(value, RefKind::RefTo)? } else { self.typed(value, None)? };
+        let pointer = self.temporary("instance", source.ty);
+        self.assign(pointer.clone(), source, value.span);
+        let found = self.place_of_reference(target)?;
+        if !self.writable(&found, target.span) {
+            return None;
+        }
+        let classes = self.answering(found.place.ty, wants_pointer, target.span)?;
+        self.note_assigned(&found.place, target.span);
+        let numbers: Vec<_> = classes.into_iter().map(|it| self.decl.class_number(it, span)).collect();
+        self.answer(&pointer, found.place, &numbers, span);
+        Some(())
+    }
+
+    /// The class that a type refers to the instances of.
+    fn class_behind(&self, ty: Type) -> Option<usize> {
+        let Type::Reference(id) = ty else { return None };
+        let Type::Struct(state) = self.decl.program.target(id) else { return None };
+        self.decl.slot_of_instance(state).filter(|_| self.decl.interface_of(ty).is_none())
+    }
+
+    /// Whether all that a variable of one type refers to, or is, fits the other.
+    fn is_known_to_fit(&mut self, from: Type, to: Type) -> bool {
+        let own = match from {
+            Type::Struct(state) => self.decl.slot_of_instance(state),
+            _ => self.class_behind(from).or_else(|| self.decl.interface_of(from)),
+        };
+        let Some(own) = own else { return true };
+        match (self.decl.interface_of(to), to) {
+            (Some(interface), _) => own == interface || self.decl.interfaces_of(own).contains(&interface),
+            (None, Type::Reference(id)) => {
+                let state = self.decl.signature(own).and_then(|it| it.state).map(Type::Struct);
+                let wanted = self.decl.program.target(id);
+                state.is_some_and(|it| self.decl.extends(it, wanted))
+            }
+            (None, _) => true,
+        }
+    }
+
     /// The reference that is asked: a variable of an INTERFACE, or an instance.
     fn queried(&mut self, from: &ast::Expr<'s>) -> Option<Expr> {
         match self.static_type(from) {

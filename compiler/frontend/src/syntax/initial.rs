@@ -56,14 +56,23 @@ fn read_initial<'t, 's: 't>(input: &mut In<'t, '_, 's>) -> Parsed<Initial<'s>> {
     let unread = |span| Expr { kind: ExprKind::Error(Vec::new()), span };
     let kind = choice((
         elements.map(InitialKind::Elements),
+        ahead(is_empty)
+            .ignore_then(token(Kind::OpenParen))
+            .ignore_then(token(Kind::CloseParen))
+            .map(|_| InitialKind::Fields(Vec::new())),
         ahead(opens_fields).ignore_then(fields).map(InitialKind::Fields),
         foreign_types::brace_list("[", "]").map(unread).map(InitialKind::Value),
-        ahead(|input| !opens_fields(input)).ignore_then(expr()).map(InitialKind::Value),
+        ahead(|input| !opens_fields(input) && !is_empty(input)).ignore_then(expr()).map(InitialKind::Value),
     ));
     input.parse(nested(kind).map_with(|kind, extra| {
         let tokens = extra.span();
         Initial { kind, span: extra.state().span(tokens) }
     }))
+}
+
+/// `()`
+fn is_empty(input: &mut In<'_, '_, '_>) -> bool {
+    input.kind() == Kind::OpenParen && input.kind_ahead(1) == Kind::CloseParen
 }
 
 fn opens_fields(input: &mut In<'_, '_, '_>) -> bool {

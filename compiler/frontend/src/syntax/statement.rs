@@ -93,7 +93,12 @@ fn word<'s>(input: &mut In<'_, '_, 's>, kind: StatementKind<'s>) -> Parsed<State
 fn return_statement<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
     let word = input.take();
     if !recovery::begins_statement(input) && input.kind() != Kind::Semicolon {
+        let is_condition = input.kind() == Kind::OpenParen;
         let value = expression(input)?;
+        if is_condition {
+            end(input)?;
+            return Ok(StatementKind::ReturnIf(value));
+        }
         input.report(diagnostics::return_value(word.to(value.span), value.span));
     }
     end(input)?;

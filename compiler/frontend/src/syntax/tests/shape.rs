@@ -82,6 +82,7 @@ fn statement(it: &Statement<'_>) -> String {
         StatementKind::Exit => "exit".into(),
         StatementKind::Continue => "continue".into(),
         StatementKind::Return => "return".into(),
+        StatementKind::ReturnIf(condition) => format!("return if {}", expr(condition)),
         StatementKind::Error => "error".into(),
     }
 }
