@@ -320,6 +320,8 @@ pub struct VarDecl<'s> {
     pub edge: Option<(Edge, Span)>,
     pub construction: Option<Box<Construction<'s>>>,
     pub initial: Option<Initial<'s>>,
+    /// Of a member of a TYPE: an address as its initial value, which is assigned as a variable of the TYPE starts.
+    pub started: Option<Initial<'s>>,
     /// The comment on the declaration's line or directly before it.
     pub doc: Option<String>,
     pub span: Span,

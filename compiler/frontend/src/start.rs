@@ -38,7 +38,7 @@ const ASKED: &str = "bInitRetains";
 
 /// Whether a name is one of those that are made here: no trace shows them.
 pub(crate) fn is_hidden(name: &str) -> bool {
-    STARTED.contains(&name) || KEPT.contains(&name) || name == RETAINS
+    STARTED.contains(&name) || KEPT.contains(&name) || addresses::ADDRESSED.contains(&name) || name == RETAINS
 }
 
 pub(crate) fn is_initial(name: Name<'_>) -> bool {
@@ -65,7 +65,10 @@ pub(crate) fn expand(files: &mut [File<'_>]) {
                 of_globals_alone.before.extend(found.before);
                 of_globals_alone.after.extend(found.after);
             }
-            Item::Types(_) | Item::Test(_) => {}
+            Item::Types(types) => {
+                first = types.iter_mut().fold(first, |first, it| first.or(addresses::of_members(&mut it.ty)))
+            }
+            Item::Test(_) => {}
         }
     }
     let routines = || files.iter().flat_map(|it| &it.items).filter_map(pou).flat_map(|it| &it.routines);

@@ -202,6 +202,7 @@ fn run<'s>(
             edge: None,
             construction: None,
             initial: None,
+            started: None,
             doc: None,
             span,
         }

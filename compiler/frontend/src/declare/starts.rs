@@ -19,7 +19,9 @@ impl<'s> Declarations<'s> {
         declared.extend(self.pous.iter().flat_map(|it| &it.ast.blocks).flat_map(|it| &it.vars));
         self.types.iter().for_each(|it| members(&it.decl.ty, &mut declared));
         let mut starts = Starts { is_any: true, ..Starts::default() };
-        for decl in declared.into_iter().filter(|it| it.construction.is_some() || it.initial.is_some()) {
+        for decl in
+            declared.into_iter().filter(|it| it.construction.is_some() || it.initial.is_some() || it.started.is_some())
+        {
             for name in &decl.names {
                 let at = self.location(name.span);
                 starts.declared.insert(at, decl);

@@ -9,13 +9,13 @@ use crate::start::{EXIT, GLOBALS, KEPT, MEMBERS, RETAINS, START};
 use crate::testing::tree::{literal, named};
 use crate::types::declarations::Slot;
 use crate::types::scope::Variable;
-use crate::types::signature::Signature;
+use crate::types::signature::{Signature, Target};
 use crate::types::starts::OF_THE_SYSTEM;
 use crate::types::table::Resolved;
 use crate::{Code, Diagnostic, Span};
 use staunch_ir::{
-    Block, Const, Elementary, Expr, FieldId, For, Local, LocalId, Op, Place, Root, RoutineId, Section, Statement,
-    StatementKind, StructId, Type, Value,
+    Block, Const, Elementary, Expr, FieldId, For, Local, LocalId, Op, ParamId, Place, Root, RoutineId, Section,
+    Statement, StatementKind, StructId, Type, Value,
 };
 use std::rc::Rc;
 
@@ -55,6 +55,22 @@ impl<'s> Checker<'_, 's> {
         let locals: Vec<_> = signature.scope.variables.iter().filter(is_local).map(Rc::clone).collect();
         for variable in locals {
             self.start_variable(&variable);
+        }
+        self.start_given_back(signature);
+    }
+
+    /// Starts the result and the outputs of a FUNCTION or METHOD: members of theirs may have addresses.
+    fn start_given_back(&mut self, signature: &Signature<'s>) {
+        let Some(span) = self.slot.map(|it| self.decl.pous[it].ast.name.span) else { return };
+        let is_function = self.slot.is_some_and(|it| self.decl.pous[it].ast.kind.is_function());
+        let outputs = signature.formals.iter().filter(|it| is_function && it.section == Section::Output);
+        let outputs = outputs.filter_map(|it| match it.target {
+            Target::Param(at) => Some(Place::root(Root::Param(ParamId::next(at)), it.resolved.ty)),
+            Target::Field(_) => None,
+        });
+        let result = signature.result.as_ref().map(|(id, it)| Place::local(*id, it.ty));
+        for place in outputs.chain(result).collect::<Vec<_>>() {
+            self.start_declared(place, None, Const::Zero, span);
         }
     }
 
@@ -175,6 +191,18 @@ impl<'s> Checker<'_, 's> {
                 )
                 .label("FB_init writes to it")
                 .help("declare it without CONSTANT"),
+            );
+        }
+        if variable.retain && self.decl.holds_addresses(variable.place.ty) {
+            let name = variable.name;
+            return self.report(
+                Diagnostic::new(
+                    Code::E0902,
+                    name.span,
+                    format!("`{}` is RETAIN, and its type has an address as an initial value", name.text),
+                )
+                .label("a restart keeps the variable, but for its references, which are null then")
+                .help("declare it without RETAIN, or assign the address in the body"),
             );
         }
         let at = self.at(variable.name.span);
@@ -366,12 +394,15 @@ impl<'s> Checker<'_, 's> {
     fn start_members_of(&mut self, place: Place, id: StructId, given: &Given<'_, 's>) {
         let fields = self.decl.program.structure(id).fields.clone();
         for (at, field) in fields.into_iter().enumerate() {
-            if !self.decl.is_started(field.ty) {
-                continue;
-            }
             let member = place.clone().field(FieldId::next(at), field.ty);
             let declared = self.decl.starts.declared.get(&field.location).copied();
             let initial = given.initial.and_then(|it| member_of(it, &field.name));
+            if let (Some(address), None) = (declared.and_then(|it| it.started.as_ref()), initial) {
+                self.assign_address(member.clone(), address);
+            }
+            if !self.decl.is_started(field.ty) {
+                continue;
+            }
             let (default, value) = (part(&given.default, at), part(&given.value, at));
             match initial {
                 Some(initial) => {
@@ -384,6 +415,22 @@ impl<'s> Checker<'_, 's> {
                 }
                 None => self.start_declared(member, declared, value, given.span),
             }
+        }
+    }
+
+    /// Assigns a member the address that its TYPE says.
+    fn assign_address(&mut self, member: Place, address: &ast::Initial<'s>) {
+        let ty = member.ty;
+        let value = match &address.kind {
+            InitialKind::Value(value) => self.value(value, ty),
+            InitialKind::Bind(value) => match self.bound_value(value, ty) {
+                Some(value) => value,
+                None => self.value(value, ty),
+            },
+            InitialKind::Elements(_) | InitialKind::Fields(_) => None,
+        };
+        if let Some(value) = value {
+            self.assign(member, value, address.span);
         }
     }
 

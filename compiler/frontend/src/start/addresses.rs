@@ -1,12 +1,13 @@
 //! Initial values that are addresses: nothing knows them before the program runs, so they are assigned. In a routine, and
-//! in VAR_TEMP, that is at the start of each call; elsewhere with the start of instances.
+//! in VAR_TEMP, that is at the start of each call, of VAR_STAT and VAR_INST of the first one; elsewhere with the start of
+//! instances.
 
 use crate::Span;
 use crate::ast::{
     BinaryOp, Bound, Element, Expr, ExprKind, Initial, InitialKind, LiteralValue, Name, Pou, PouKind, Statement,
-    StatementKind, TypeKind, TypeSpec, VarBlock, VarKind, each_part,
+    StatementKind, TypeKind, TypeSpec, UnaryOp, VarBlock, VarKind, each_part,
 };
-use crate::testing::tree::literal;
+use crate::testing::tree::{assign, literal, named, variables};
 
 /// What is assigned before the instances start, whose FB_init may be given it, and after: values of their own
 /// variables come after FB_init.
@@ -58,12 +59,62 @@ pub(super) fn of_calls(pou: &mut Pou<'_>) {
     let kind = pou.kind;
     let found = taken(pou.blocks.iter_mut().filter(|it| is_of_calls(kind, it)));
     pou.body.splice(0..0, found.before);
+    if kind.is_function() {
+        for lasting in [VarKind::Stat, VarKind::Inst] {
+            let found = once(pou, lasting);
+            pou.body.splice(0..0, found);
+        }
+    }
+}
+
+/// Marks that the addresses of VAR_STAT, or VAR_INST, have been assigned.
+pub(crate) const ADDRESSED: [&str; 2] = ["__stat_addressed", "__inst_addressed"];
+
+/// Takes out of a POU the addresses of variables that outlive its calls: they are assigned once after each start.
+fn once<'s>(pou: &mut Pou<'s>, kind: VarKind) -> Vec<Statement<'s>> {
+    let found = taken(pou.blocks.iter_mut().filter(|it| it.kind == kind));
+    let Some(first) = found.before.first().map(|it| it.span) else { return Vec::new() };
+    // No name of the source is there, and what inherits the block has the same mark.
+    let at = pou.blocks.iter().find(|it| it.kind == kind).map_or(first, |it| it.span);
+    let flag = ADDRESSED[usize::from(kind == VarKind::Inst)];
+    pou.blocks.push(VarBlock { kind, ..variables(&[(flag, &["BOOL"])], at) });
+    let open = Expr { kind: ExprKind::Unary(UnaryOp::Not, Box::new(named(flag, at))), span: at };
+    let mut then = found.before;
+    then.push(assign(flag, literal(LiteralValue::Bool(true), at)));
+    let kind = StatementKind::If { branches: vec![(open, then)], otherwise: None };
+    vec![Statement { kind, span: at }]
+}
+
+/// Takes the addresses out of the members of a structure, for the start of its variables. Gives the first one.
+pub(super) fn of_members(ty: &mut TypeSpec<'_>) -> Option<Span> {
+    let TypeKind::Struct(members) = &mut ty.kind else { return None };
+    let mut first = None;
+    for member in members {
+        let is_own = |it: &Initial<'_>| match &it.kind {
+            InitialKind::Bind(_) => true,
+            InitialKind::Value(value) => is_address(value),
+            InitialKind::Elements(_) | InitialKind::Fields(_) => false,
+        };
+        if member.initial.as_ref().is_some_and(is_own) {
+            member.started = member.initial.take();
+        }
+        let own = member.started.as_ref().map(|it| it.span);
+        first = first.or(own).or(of_members(&mut member.ty));
+    }
+    first
 }
 
 /// Takes out of a POU with a state the addresses that its start assigns.
 pub(super) fn of_state<'s>(pou: &mut Pou<'s>) -> Addresses<'s> {
-    let is_state = |it: &&mut VarBlock<'s>| matches!(it.kind, VarKind::Var | VarKind::Input | VarKind::Output);
-    taken(pou.blocks.iter_mut().filter(is_state))
+    // A PROGRAM has one set of variables, so they are all alike.
+    let is_lasting = matches!(pou.kind, PouKind::Program | PouKind::Test);
+    let is_state = |it: &&mut VarBlock<'s>| {
+        matches!(it.kind, VarKind::Var | VarKind::Input | VarKind::Output) || is_lasting && it.kind == VarKind::Stat
+    };
+    let mut found = taken(pou.blocks.iter_mut().filter(is_state));
+    let shared = once(pou, VarKind::Stat);
+    found.before.splice(0..0, shared);
+    found
 }
 
 /// Takes the addresses out of declarations.

@@ -72,6 +72,7 @@ fn binding<'t, 's: 't>() -> impl Rule<'t, 's, Binding<'s>> {
             edge: None,
             construction: None,
             initial,
+            started: None,
             doc: None,
             span,
         };

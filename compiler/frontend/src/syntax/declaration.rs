@@ -187,7 +187,17 @@ fn declaration_or_names<'t, 'p, 's>(input: &mut In<'t, 'p, 's>, start: Start<'t,
     }
     let span = from.to(input.last());
     let ty = TypeSpec { kind: TypeKind::Error, span };
-    Some(VarDecl { names, address: None, ty, edge: None, construction: None, initial: None, doc: None, span })
+    Some(VarDecl {
+        names,
+        address: None,
+        ty,
+        edge: None,
+        construction: None,
+        initial: None,
+        started: None,
+        doc: None,
+        span,
+    })
 }
 
 /// `names` holds what was read of the names, also if the rest does not parse.
@@ -219,6 +229,7 @@ pub fn declaration<'s>(input: &mut In<'_, '_, 's>, names: &mut Vec<Name<'s>>) ->
         edge,
         construction,
         initial,
+        started: None,
         doc,
         span: start.to(input.last()),
     })

@@ -212,8 +212,17 @@ fn take_value(pou: &mut Pou<'_>) {
     }
     let (names, span) = (vec![pou.name], pou.name.span);
     pou.blocks.extend(pou.result.take().map(|ty| {
-        let value =
-            VarDecl { names, address: None, ty, edge: None, construction: None, initial: None, doc: None, span };
+        let value = VarDecl {
+            names,
+            address: None,
+            ty,
+            edge: None,
+            construction: None,
+            initial: None,
+            started: None,
+            doc: None,
+            span,
+        };
         VarBlock { vars: vec![value], ..VarBlock::new(VarKind::Input, span) }
     }));
 }

@@ -379,7 +379,17 @@ fn parameters<'t, 's: 't>() -> impl Rule<'t, 's, VarBlock<'s>> {
     let vars = names.then_ignore(token(Kind::Colon)).then(type_spec()).map_with(|(names, ty), extra| {
         let tokens = extra.span();
         let span = extra.state().span(tokens);
-        VarDecl { names, address: None, ty, edge: None, construction: None, initial: None, doc: None, span }
+        VarDecl {
+            names,
+            address: None,
+            ty,
+            edge: None,
+            construction: None,
+            initial: None,
+            started: None,
+            doc: None,
+            span,
+        }
     });
     let separator = token(Kind::Semicolon).or(token(Kind::Comma)).or_not();
     let vars = vars.then_ignore(separator).repeated().collect::<Vec<_>>();

@@ -305,6 +305,7 @@ impl<'a, 's> Written<'a, 's> {
             edge: None,
             construction: None,
             initial: None,
+            started: None,
             doc: None,
             span: at,
         };

@@ -144,6 +144,7 @@ fn test<'s>(suite: &Pou<'s>, construction: Option<Box<Construction<'s>>>) -> Pou
         edge: None,
         construction: None,
         initial: None,
+        started: None,
         doc: None,
         span: at,
     };

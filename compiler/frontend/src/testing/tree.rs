@@ -14,6 +14,7 @@ pub(crate) fn variables<'s>(wanted: &[(&'static str, &[&'static str])], at: Span
         edge: None,
         construction: None,
         initial: None,
+        started: None,
         doc: None,
         span: at,
     };

@@ -72,10 +72,36 @@ impl Declarations<'_> {
         found
     }
 
+    /// Whether members of a structure have addresses as their initial values.
+    fn has_addresses(&self, id: StructId) -> bool {
+        let fields = self.program.structure(id).fields.iter();
+        fields.filter_map(|it| self.starts.declared.get(&it.location)).any(|it| it.started.is_some())
+    }
+
+    /// Whether a variable of the type has such members, but for those of instances.
+    pub fn holds_addresses(&self, ty: Type) -> bool {
+        match ty {
+            Type::Struct(id) if self.is_instance(id) => false,
+            Type::Struct(id) => {
+                self.has_addresses(id) || self.program.structure(id).fields.iter().any(|it| self.holds_addresses(it.ty))
+            }
+            Type::Array(id) => self.holds_addresses(self.program.array(id).element),
+            Type::Elementary(_)
+            | Type::Subrange(..)
+            | Type::String(_)
+            | Type::Enum(_)
+            | Type::Reference(_)
+            | Type::Block(_) => false,
+        }
+    }
+
     /// Whether something in a structure has a start, or an address as its initial value.
     pub fn has_started_parts(&mut self, id: StructId) -> bool {
         let start = self.slot_of_instance(id).and_then(|it| self.pous[it].routines.get(&Key(START))?.called);
         if start.is_some_and(|(slot, _)| self.pous[slot].ast.attributes.contains(&ADDRESSES)) {
+            return true;
+        }
+        if self.has_addresses(id) {
             return true;
         }
         let types: Vec<_> = self.program.structure(id).fields.iter().map(|it| it.ty).collect();
