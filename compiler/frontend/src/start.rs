@@ -12,6 +12,8 @@ use crate::ast::{
 };
 use crate::spelling::Key;
 use crate::testing::tree::{assign, literal, named, variables};
+pub(crate) use addresses::is_once;
+
 use addresses::Addresses;
 
 /// METHODs that CODESYS calls by itself.

@@ -2,6 +2,7 @@ use crate::expr::call_tracking::Instance;
 use crate::expr::checker::Checker;
 use crate::expr::operand::Operand;
 use crate::expr::start::is_start_of_members;
+use crate::start::is_once;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, StatementKind as Ast_};
 use staunch_ir::{Block, Expr, ExprKind, Place, StatementKind, Type};
@@ -34,6 +35,9 @@ impl<'s> Checker<'_, 's> {
 
     fn statement(&mut self, statement: &ast::Statement<'s>) {
         let span = statement.span;
+        // Nobody wrote it.
+        let covered = self.is_covered;
+        self.is_covered &= !is_once(statement);
         if !matches!(statement.kind, Ast_::Empty | Ast_::Error) {
             self.count_statement(span);
         }
@@ -59,6 +63,7 @@ impl<'s> Checker<'_, 's> {
                 Some(())
             }
         };
+        self.is_covered = covered;
         if made.is_none() {
             self.left_out.get_or_insert(span);
         }

@@ -85,6 +85,16 @@ fn once<'s>(pou: &mut Pou<'s>, kind: VarKind) -> Vec<Statement<'s>> {
     vec![Statement { kind, span: at }]
 }
 
+/// Whether a statement is one that assigns such addresses.
+pub(crate) fn is_once(statement: &Statement<'_>) -> bool {
+    let StatementKind::If { branches, .. } = &statement.kind else { return false };
+    let flag = branches.first().and_then(|it| match &it.0.kind {
+        ExprKind::Unary(UnaryOp::Not, flag) => flag.first_name(),
+        _ => None,
+    });
+    flag.is_some_and(|it| ADDRESSED.contains(&it.text))
+}
+
 /// Takes the addresses out of the members of a structure, for the start of its variables. Gives the first one.
 pub(super) fn of_members(ty: &mut TypeSpec<'_>) -> Option<Span> {
     let TypeKind::Struct(members) = &mut ty.kind else { return None };
