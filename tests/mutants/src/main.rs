@@ -26,7 +26,8 @@ pub mod mutant {
 
 fn main() -> io::Result<()> {
     let mut arguments = env::args().skip(1);
-    let mut next = || arguments.next().map(PathBuf::from).ok_or_else(|| io::Error::other("mutants TREE LIST SKIP FILE…"));
+    let mut next =
+        || arguments.next().map(PathBuf::from).ok_or_else(|| io::Error::other("mutants TREE LIST SKIP FILE…"));
     let (tree, list, skip) = (next()?, next()?, next()?);
     let skip: HashSet<u32> = fs::read_to_string(skip)?.lines().filter_map(|it| it.parse().ok()).collect();
     let mut first = 0;
