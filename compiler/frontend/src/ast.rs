@@ -328,6 +328,11 @@ pub struct VarDecl<'s> {
 }
 
 impl<'s> VarDecl<'s> {
+    /// Variables with nothing but a type.
+    pub fn new(names: Vec<Name<'s>>, ty: TypeSpec<'s>, span: Span) -> Self {
+        Self { names, address: None, ty, edge: None, construction: None, initial: None, started: None, doc: None, span }
+    }
+
     /// The address, unless a VAR_CONFIG gives it: `AT %I*`.
     pub fn known_address(&self) -> Option<Name<'s>> {
         self.address.filter(|it| !it.text.ends_with('*'))
@@ -408,6 +413,23 @@ pub struct TypeDecl<'s> {
     pub doc: Option<String>,
     /// All names in a declaration that did not parse: they may be enumerators.
     pub unread: Vec<Name<'s>>,
+}
+
+impl<'s> TypeDecl<'s> {
+    /// A name for a type, and no more.
+    pub fn new(name: Name<'s>, ty: TypeSpec<'s>) -> Self {
+        Self {
+            name,
+            internal: false,
+            base: None,
+            attributes: Vec::new(),
+            pool: None,
+            ty,
+            initial: None,
+            doc: None,
+            unread: Vec::new(),
+        }
+    }
 }
 
 /// An initial value. `(a := 1)` is `Fields`; `[4(0), 1]` is `Elements`.

@@ -165,16 +165,12 @@ fn is_same(program: &Program, a: Type, b: Type) -> bool {
 
 /// Whether storage of a type is, or has in it, storage of another.
 fn holds(program: &Program, whole: Type, part: Type) -> bool {
-    let same = is_same(program, whole, part);
-    same || match whole {
-        Type::Array(id) => holds(program, program.array(id).element, part),
-        Type::Struct(id) => program.structure(id).fields.iter().any(|it| holds(program, it.ty, part)),
-        Type::Block(id) => {
-            let repr = program.repr(part);
-            id.info().pins.iter().any(|pin| Some(pin.ty.repr()) == repr)
-        }
-        Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => false,
-    }
+    let repr = program.repr(part);
+    let is_pin = |it: &staunch_runtime::Pin| Some(it.ty.repr()) == repr;
+    program.holds(whole, |it| match it {
+        Type::Block(id) => id.info().pins.iter().any(is_pin) || is_same(program, it, part),
+        _ => is_same(program, it, part),
+    })
 }
 
 /// Whether the value of `expr` may depend on what lies at `place`.

@@ -360,24 +360,36 @@ impl Program {
         }
     }
 
+    /// What `look` finds first in a variable of type `ty`: of the type itself, else of its elements or members.
+    pub fn find_in<T>(&self, ty: Type, look: &impl Fn(Type) -> Option<T>) -> Option<T> {
+        look(ty).or_else(|| match ty {
+            Type::Array(id) => self.find_in(self.array(id).element, look),
+            Type::Struct(id) => self.structure(id).fields.iter().find_map(|it| self.find_in(it.ty, look)),
+            Type::Elementary(_)
+            | Type::Reference(_)
+            | Type::Subrange(..)
+            | Type::String(_)
+            | Type::Enum(_)
+            | Type::Block(_) => None,
+        })
+    }
+
+    /// Whether a variable of type `ty` is or holds one of a type that `is_wanted`.
+    pub fn holds(&self, ty: Type, is_wanted: impl Fn(Type) -> bool) -> bool {
+        self.find_in(ty, &|it| is_wanted(it).then_some(())).is_some()
+    }
+
     /// Whether a variable of type `ty` is or holds a STRING.
     pub fn holds_text(&self, ty: Type) -> bool {
-        match ty {
-            Type::String(_) => true,
-            Type::Array(id) => self.holds_text(self.array(id).element),
-            Type::Struct(id) => self.structure(id).fields.iter().any(|it| self.holds_text(it.ty)),
-            Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::Enum(_) | Type::Block(_) => false,
-        }
+        self.holds(ty, |it| matches!(it, Type::String(_)))
     }
 
     /// The name of a standard block with a prescan that a variable of type `ty` is or holds.
     pub fn prescanned_in(&self, ty: Type) -> Option<&'static str> {
-        match ty {
-            Type::Block(id) => id.info().instructions.iter().any(|it| it.prescan.is_some()).then_some(id.info().name),
-            Type::Struct(id) => self.structure(id).fields.iter().find_map(|it| self.prescanned_in(it.ty)),
-            Type::Array(id) => self.prescanned_in(self.array(id).element),
-            Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => None,
-        }
+        self.find_in(ty, &|it| {
+            let Type::Block(id) = it else { return None };
+            id.info().instructions.iter().any(|it| it.prescan.is_some()).then_some(id.info().name)
+        })
     }
 
     /// The type's name as a user writes it.

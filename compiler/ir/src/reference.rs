@@ -202,18 +202,7 @@ impl<'p> Finder<'p> {
 
 /// Whether a variable of the type is, or holds, one of these structures.
 fn holds(program: &Program, ty: Type, wanted: &BTreeSet<StructId>) -> bool {
-    match ty {
-        Type::Struct(id) => {
-            wanted.contains(&id) || program.structure(id).fields.iter().any(|it| holds(program, it.ty, wanted))
-        }
-        Type::Array(id) => holds(program, program.array(id).element, wanted),
-        Type::Elementary(_)
-        | Type::Subrange(..)
-        | Type::String(_)
-        | Type::Enum(_)
-        | Type::Block(_)
-        | Type::Reference(_) => false,
-    }
+    program.holds(ty, |it| matches!(it, Type::Struct(id) if wanted.contains(&id)))
 }
 
 /// Whether the expression is null, as a constant.

@@ -400,12 +400,10 @@ impl<'s> Declarations<'s> {
 
     /// The standard block in a type: it works with what it remembers of earlier calls.
     fn remembers(&self, ty: Type) -> Option<BlockId> {
-        match ty {
+        self.program.find_in(ty, &|it| match it {
             Type::Block(id) => Some(id),
-            Type::Array(id) => self.remembers(self.program.array(id).element),
-            Type::Struct(id) => self.program.structure(id).fields.iter().find_map(|it| self.remembers(it.ty)),
-            Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => None,
-        }
+            _ => None,
+        })
     }
 
     /// Reports a block whose state does not outlive the call.

@@ -111,19 +111,7 @@ impl<'s> Declarations<'s> {
     }
 
     fn holds_relative(&self, ty: Type) -> bool {
-        match ty {
-            Type::Array(id) => self.holds_relative(self.program.array(id).element),
-            Type::Struct(id) => {
-                let fields = &self.program.structure(id).fields;
-                self.table.relative.contains_key(&id) || fields.iter().any(|it| self.holds_relative(it.ty))
-            }
-            Type::Elementary(_)
-            | Type::Subrange(..)
-            | Type::Enum(_)
-            | Type::String(_)
-            | Type::Reference(_)
-            | Type::Block(_) => false,
-        }
+        self.program.holds(ty, |it| matches!(it, Type::Struct(id) if self.table.relative.contains_key(&id)))
     }
 
     /// How many bits a member takes; `None` where other systems decide that.

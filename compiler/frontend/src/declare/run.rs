@@ -195,17 +195,7 @@ fn run<'s>(
     let name = |text: &'static str| ast::Name { text, span };
     let variable = |text, path| {
         let ty = ast::TypeSpec { kind: ast::TypeKind::Named(path), span };
-        ast::VarDecl {
-            names: vec![name(text)],
-            address: None,
-            ty,
-            edge: None,
-            construction: None,
-            initial: None,
-            started: None,
-            doc: None,
-            span,
-        }
+        ast::VarDecl::new(vec![name(text)], ty, span)
     };
     let expr = |kind| ast::Expr { kind, span };
     let named = |text| expr(ExprKind::Name(name(text)));

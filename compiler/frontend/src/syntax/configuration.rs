@@ -65,17 +65,8 @@ fn binding<'t, 's: 't>() -> impl Rule<'t, 's, Binding<'s>> {
     let binding = expr().then(address.or_not()).then(typed).then_ignore(end());
     binding.map(|((target, address), (ty, initial))| {
         let span = target.span;
-        let located = VarDecl {
-            names: address.into_iter().collect(),
-            address,
-            ty,
-            edge: None,
-            construction: None,
-            initial,
-            started: None,
-            doc: None,
-            span,
-        };
+        let names = address.into_iter().collect();
+        let located = VarDecl { address, initial, ..VarDecl::new(names, ty, span) };
         Binding { target, located }
     })
 }

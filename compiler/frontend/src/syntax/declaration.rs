@@ -187,17 +187,7 @@ fn declaration_or_names<'t, 'p, 's>(input: &mut In<'t, 'p, 's>, start: Start<'t,
     }
     let span = from.to(input.last());
     let ty = TypeSpec { kind: TypeKind::Error, span };
-    Some(VarDecl {
-        names,
-        address: None,
-        ty,
-        edge: None,
-        construction: None,
-        initial: None,
-        started: None,
-        doc: None,
-        span,
-    })
+    Some(VarDecl::new(names, ty, span))
 }
 
 /// `names` holds what was read of the names, also if the rest does not parse.
@@ -222,17 +212,8 @@ pub fn declaration<'s>(input: &mut In<'_, '_, 's>, names: &mut Vec<Name<'s>>) ->
         None => input.parse(typed().then(optional_initial()).then_ignore(end()))?,
     };
     let doc = input.doc(first);
-    Ok(VarDecl {
-        names: std::mem::take(names),
-        address,
-        ty,
-        edge,
-        construction,
-        initial,
-        started: None,
-        doc,
-        span: start.to(input.last()),
-    })
+    let declared = VarDecl::new(std::mem::take(names), ty, start.to(input.last()));
+    Ok(VarDecl { address, edge, construction, initial, doc, ..declared })
 }
 
 /// `a, b`

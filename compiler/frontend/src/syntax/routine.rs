@@ -211,20 +211,11 @@ fn take_value(pou: &mut Pou<'_>) {
         return;
     }
     let (names, span) = (vec![pou.name], pou.name.span);
-    pou.blocks.extend(pou.result.take().map(|ty| {
-        let value = VarDecl {
-            names,
-            address: None,
-            ty,
-            edge: None,
-            construction: None,
-            initial: None,
-            started: None,
-            doc: None,
-            span,
-        };
-        VarBlock { vars: vec![value], ..VarBlock::new(VarKind::Input, span) }
-    }));
+    pou.blocks.extend(
+        pou.result
+            .take()
+            .map(|ty| VarBlock { vars: vec![VarDecl::new(names, ty, span)], ..VarBlock::new(VarKind::Input, span) }),
+    );
 }
 
 fn head<'t, 's: 't>(kind: PouKind) -> impl Rule<'t, 's, (Modifiers, Name<'s>, Option<TypeSpec<'s>>)> {

@@ -112,17 +112,7 @@ fn type_decl_or_name<'t, 'p, 's>(input: &mut In<'t, 'p, 's>, start: Start<'t, 'p
     let state = input.state();
     let names = (first + 1..last).filter(|at| state.tokens.kinds[*at] == Kind::Name).map(|at| state.place(at));
     let unread = names.map(|span| Name { text: state.slice(span), span }).collect();
-    Some(TypeDecl {
-        name,
-        internal: false,
-        base: None,
-        attributes: Vec::new(),
-        pool: None,
-        ty,
-        initial: None,
-        doc: None,
-        unread,
-    })
+    Some(TypeDecl { unread, ..TypeDecl::new(name, ty) })
 }
 
 /// `Name : type := value;`, where a structure may do without the `;`.
@@ -137,15 +127,5 @@ fn type_decl<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeDecl<'s>> {
     if !closed || input.kind() == Kind::Semicolon {
         input.parse(end())?;
     }
-    Ok(TypeDecl {
-        name,
-        internal: false,
-        base,
-        attributes,
-        pool,
-        ty,
-        initial,
-        doc: input.doc(first),
-        unread: Vec::new(),
-    })
+    Ok(TypeDecl { base, attributes, pool, initial, doc: input.doc(first), ..TypeDecl::new(name, ty) })
 }

@@ -130,17 +130,7 @@ fn bare_structure<'s>(input: &mut In<'_, '_, 's>) -> Item<'s> {
     let kind = structure_members(input);
     let ty = TypeSpec { kind, span: word.to(input.last()) };
     input.eat(Kind::Semicolon);
-    Item::Types(vec![TypeDecl {
-        name,
-        internal: false,
-        base: None,
-        attributes: Vec::new(),
-        pool: None,
-        ty,
-        initial: None,
-        doc: None,
-        unread: Vec::new(),
-    }])
+    Item::Types(vec![TypeDecl::new(name, ty)])
 }
 
 /// Takes a unit that is inside another one, if the other one goes on after it.
@@ -379,17 +369,7 @@ fn parameters<'t, 's: 't>() -> impl Rule<'t, 's, VarBlock<'s>> {
     let vars = names.then_ignore(token(Kind::Colon)).then(type_spec()).map_with(|(names, ty), extra| {
         let tokens = extra.span();
         let span = extra.state().span(tokens);
-        VarDecl {
-            names,
-            address: None,
-            ty,
-            edge: None,
-            construction: None,
-            initial: None,
-            started: None,
-            doc: None,
-            span,
-        }
+        VarDecl::new(names, ty, span)
     });
     let separator = token(Kind::Semicolon).or(token(Kind::Comma)).or_not();
     let vars = vars.then_ignore(separator).repeated().collect::<Vec<_>>();

@@ -298,16 +298,9 @@ impl<'a, 's> Written<'a, 's> {
         }
         body.extend(self.calls(Setup::After));
         body.push(when(LAST, Setup::Last));
-        let variable = |name: &'static str, ty: Name<'s>| VarDecl {
-            names: vec![Name { text: name, span: at }],
-            address: None,
-            ty: TypeSpec { kind: TypeKind::Named(vec![ty]), span: at },
-            edge: None,
-            construction: None,
-            initial: None,
-            started: None,
-            doc: None,
-            span: at,
+        let variable = |name: &'static str, ty: Name<'s>| {
+            let ty = TypeSpec { kind: TypeKind::Named(vec![ty]), span: at };
+            VarDecl::new(vec![Name { text: name, span: at }], ty, at)
         };
         let of = |text: &'static str| Name { text, span: at };
         let mut vars = vec![variable(NUMBER, of("DINT")), variable(FIRST, of("BOOL")), variable(LAST, of("BOOL"))];

@@ -137,16 +137,9 @@ fn instances<'s>(files: &[File<'s>]) -> Instances<'s> {
 /// `__suite.__NEXT_CYCLE(); __suite(); __over := …`, until all tests are finished.
 fn test<'s>(suite: &Pou<'s>, construction: Option<Box<Construction<'s>>>) -> Pou<'s> {
     let at = suite.name.span;
-    let variable = |name: &'static str, ty: Vec<Name<'s>>| VarDecl {
-        names: vec![Name { text: name, span: at }],
-        address: None,
-        ty: TypeSpec { kind: TypeKind::Named(ty), span: at },
-        edge: None,
-        construction: None,
-        initial: None,
-        started: None,
-        doc: None,
-        span: at,
+    let variable = |name: &'static str, ty: Vec<Name<'s>>| {
+        let ty = TypeSpec { kind: TypeKind::Named(ty), span: at };
+        VarDecl::new(vec![Name { text: name, span: at }], ty, at)
     };
     let instance = VarDecl { construction, ..variable(SUITE, vec![suite.name]) };
     let vars = vec![instance, variable(OVER, vec![Name { text: "BOOL", span: at }])];

@@ -7,16 +7,9 @@ use crate::ast::{
 };
 
 pub(crate) fn variables<'s>(wanted: &[(&'static str, &[&'static str])], at: Span) -> VarBlock<'s> {
-    let variable = |(name, ty): &(&'static str, &[&'static str])| VarDecl {
-        names: vec![Name { text: name, span: at }],
-        address: None,
-        ty: TypeSpec { kind: TypeKind::Named(ty.iter().map(|text| Name { text, span: at }).collect()), span: at },
-        edge: None,
-        construction: None,
-        initial: None,
-        started: None,
-        doc: None,
-        span: at,
+    let variable = |(name, ty): &(&'static str, &[&'static str])| {
+        let ty = TypeSpec { kind: TypeKind::Named(ty.iter().map(|text| Name { text, span: at }).collect()), span: at };
+        VarDecl::new(vec![Name { text: name, span: at }], ty, at)
     };
     VarBlock { vars: wanted.iter().map(variable).collect(), ..VarBlock::new(VarKind::Var, at) }
 }

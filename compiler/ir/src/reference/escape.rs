@@ -70,12 +70,7 @@ pub fn moves_references(program: &Program, statement: &StatementKind) -> bool {
 }
 
 fn holds_reference(program: &Program, ty: Type) -> bool {
-    match ty {
-        Type::Reference(_) => true,
-        Type::Array(id) => holds_reference(program, program.array(id).element),
-        Type::Struct(id) => program.structure(id).fields.iter().any(|it| holds_reference(program, it.ty)),
-        Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) | Type::Block(_) => false,
-    }
+    program.holds(ty, |it| matches!(it, Type::Reference(_)))
 }
 
 /// Where a reference may come from that does not live for ever.
