@@ -175,7 +175,10 @@ impl<'s> Checker<'_, 's> {
         let shifted = self.shifted(Op::Shl, value, bits.shift, span)?;
         // A signed part's sign bits do not spill over its neighbours.
         let shifted = self.apply(Op::And, ty, vec![shifted, mask], ty, span)?;
-        let merged = self.apply(Op::Or, ty, vec![cleared, shifted], ty, span)?;
+        // The value is computed before what a reference leads to is read.
+        let is_before = place.is_followed() && self.can_fault(&shifted);
+        let parts = if is_before { vec![shifted, cleared] } else { vec![cleared, shifted] };
+        let merged = self.apply(Op::Or, ty, parts, ty, span)?;
         let merged = self.coerce(super::operand::Operand::Typed(merged), place.ty, span)?;
         self.assign(place, merged, span);
         Some(())
