@@ -164,6 +164,18 @@ pub struct Modifiers {
     pub overrides: Option<Span>,
 }
 
+impl Modifiers {
+    #[must_use]
+    pub fn or(self, other: Self) -> Self {
+        Self {
+            access: self.access.or(other.access),
+            is_final: self.is_final.or(other.is_final),
+            is_abstract: self.is_abstract.or(other.is_abstract),
+            overrides: self.overrides.or(other.overrides),
+        }
+    }
+}
+
 /// From where something may be named.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {

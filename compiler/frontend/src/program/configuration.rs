@@ -326,14 +326,18 @@ impl<'s> Declarations<'s> {
                     return self.not_a_program(instance.program, at);
                 }
                 let programs = self.pous.iter().filter(|it| it.ast.kind == ast::PouKind::Program);
-                let near = nearest(instance.program.text, programs.map(|it| it.ast.name.text));
+                let names: Vec<_> = programs.map(|it| it.ast.name).collect();
+                let near = nearest(instance.program.text, names.iter().map(|it| it.text));
+                // One in a namespace may have the very name.
+                let near = near.and_then(|near| names.iter().find(|it| it.text == near));
+                let near = near.map(|it| self.names.in_full(self.names.space_of(it.span), it.text));
                 let mut error = Diagnostic::new(
                     Code::E0101,
                     instance.program.span,
                     format!("there is no PROGRAM `{}`", instance.program.text),
                 );
                 if let Some(near) = near {
-                    error = error.help(format!("did you mean `{near}`?")).fix(instance.program.span, near);
+                    error = error.help(format!("did you mean `{near}`?")).fix(instance.program.span, near.as_str());
                 }
                 self.report(error);
                 return;

@@ -38,17 +38,34 @@ type Contents = for<'t, 'p, 's> fn(&mut In<'t, 'p, 's>, &mut Pou<'s>);
 
 /// The routine that begins here, with its end.
 pub fn begins(input: &mut In<'_, '_, '_>) -> Option<(PouKind, Kind)> {
-    let next = input.kind_ahead(1);
+    let before = modifiers_ahead(input);
+    let next = input.kind_ahead(before + 1);
     // A reserved word in the place of the name is reported where it is read.
-    let at = input.number();
+    let at = input.number() + before;
     let (here, after) = (input.state().place(at), input.state().place(at + 1));
     let is_reserved = next.keyword().is_some() && !input.state().breaks(here.end, after.start);
-    if input.kind() != Kind::Name || next != Kind::Name && !is_reserved {
+    if input.kind_ahead(before) != Kind::Name || next != Kind::Name && !is_reserved {
         return None;
     }
-    let word = input.here();
-    let word = input.text(word);
-    ROUTINES.iter().find(|it| word.eq_ignore_ascii_case(it.0)).map(|it| (it.1, it.2))
+    let word = input.text(here);
+    let found = ROUTINES.iter().find(|it| word.eq_ignore_ascii_case(it.0)).map(|it| (it.1, it.2));
+    // An ACTION has no modifiers.
+    found.filter(|it| before == 0 || it.0 != PouKind::Action)
+}
+
+/// How many words there are as in `PUBLIC METHOD`, which is another order than the standard's, and as clear.
+fn modifiers_ahead(input: &mut In<'_, '_, '_>) -> usize {
+    let is_modifier = |word: &str| {
+        let accesses = ACCESSES.iter().map(|it| it.0);
+        accesses.chain(["FINAL", "ABSTRACT", "OVERRIDE"]).any(|it| word.eq_ignore_ascii_case(it))
+    };
+    (0..)
+        .take_while(|ahead| {
+            let at = input.number() + ahead;
+            let place = input.state().place(at);
+            input.kind_ahead(*ahead) == Kind::Name && is_modifier(input.text(place))
+        })
+        .count()
 }
 
 /// Takes a routine that begins here into the unit around it.
@@ -115,6 +132,7 @@ fn routine<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind, contents: C
     let first = input.number();
     let doc = doc::before(input.state(), first);
     let attributes = attributes_here(input);
+    let before = input.parse(modifiers()).unwrap_or_default();
     let opened = input.take();
     let (modifiers, name, result) = input.parse(head(kind)).unwrap_or_else(|problem| {
         diagnostics::report(input, problem);
@@ -123,6 +141,7 @@ fn routine<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind, contents: C
         (Modifiers::default(), Name { text: "", span: opened }, None)
     });
     input.eat(Kind::Semicolon);
+    let modifiers = modifiers.or(before);
     let mut pou = Pou { modifiers, result, attributes, doc, ..Pou::new(kind, name, opened.to(name.span)) };
     if input.text(opened).eq_ignore_ascii_case(PROPERTY) {
         return property(input, &pou, opened, contents);

@@ -10,12 +10,14 @@ use rustc_hash::FxHashMap;
 use token::{Kind, Token};
 
 /// Heads of blocks, as the language has them, and how they end in Structured Text.
-const BLOCKS: [(&str, &str, &str); 5] = [
+const BLOCKS: [(&str, &str, &str); 6] = [
     ("FUNCTION_BLOCK", "FUNCTION_BLOCK", "END_FUNCTION_BLOCK"),
     ("FUNCTION", "FUNCTION", "END_FUNCTION"),
     ("ORGANIZATION_BLOCK", "PROGRAM", "END_PROGRAM"),
     ("DATA_BLOCK", "", ""),
     ("TYPE", "TYPE", "END_TYPE"),
+    // Not of the language; tools that read it beside Structured Text have it.
+    ("PROGRAM", "PROGRAM", "END_PROGRAM"),
 ];
 
 /// What is noted in a head, before a value.
@@ -34,15 +36,27 @@ const COUNTERS: [&str; 10] = [
     "CTD",
 ];
 
-/// Whether a text begins as such a source does: with a block whose name is in quotes, or one that no other system has.
+/// Whether a text begins as such a source does: with a block whose name is in quotes, or one that no other system has;
+/// or it begins with another block, and uses local names. One `#` may be a slip.
 pub fn is_source(text: &str) -> bool {
     // What is not SCL is not to be read as a whole to be told so.
     let mut tokens = token::Tokens::new(text).filter(|it| it.kind != Kind::Pragma);
     let Some(head) = tokens.next().filter(|it| it.kind == Kind::Word) else { return false };
     let word = &text[head.place];
     let is = |it: &str| word.eq_ignore_ascii_case(it);
-    let mut names_a_block = || tokens.next().is_some_and(|it| it.kind == Kind::Quoted);
-    BLOCKS.iter().any(|it| is(it.0)) && (is("ORGANIZATION_BLOCK") || is("DATA_BLOCK") || names_a_block())
+    if !BLOCKS.iter().any(|it| is(it.0)) {
+        return false;
+    }
+    let is_quoted = tokens.next().is_some_and(|it| it.kind == Kind::Quoted);
+    is_quoted || is("ORGANIZATION_BLOCK") || is("DATA_BLOCK") || {
+        may_have_locals(text) && tokens.filter(|it| it.kind == Kind::Local && it.place.len() > 1).nth(1).is_some()
+    }
+}
+
+/// Whether there is a `#` before a name, and nothing before that which makes it a literal's.
+fn may_have_locals(text: &str) -> bool {
+    let is_of_name = |it: &u8| it.is_ascii_alphanumeric() || *it == b'_' || !it.is_ascii();
+    text.as_bytes().windows(3).any(|it| it[1] == b'#' && !is_of_name(&it[0]) && (it[2] == b'"' || is_of_name(&it[2])))
 }
 
 pub fn read(file: &str) -> Assembly {
