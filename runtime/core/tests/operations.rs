@@ -148,3 +148,34 @@ fn a_fault_survives_its_code() {
     assert_eq!(Fault::from_code(far.code()).unwrap().at.line, 0xFF_FFFF);
     assert_eq!(Fault::from_code(0), None);
 }
+
+#[test]
+fn an_arithmetic_shift_keeps_the_sign() {
+    for value in i8::MIN..=i8::MAX {
+        for count in [0, 1, 3, 7] {
+            assert_eq!(sar(value, count), value >> count, "{value} by {count}");
+        }
+        assert_eq!([-1, 8, i64::MAX].map(|count| sar(value, count)), [value, value >> 7, value >> 7]);
+        let bits = value as u8;
+        assert_eq!(sar(bits, 3), bits >> 3);
+    }
+}
+
+#[test]
+fn a_step_of_a_reference_stays_in_its_object() {
+    let parts = |value: u64| (value >> 32, value as u32);
+    for position in [0, 1, 0x001F_FFFF, 0x0020_0000, 0x7FFF_FFFF, u32::MAX] {
+        for distance in [-0x8000_0000, -1, 0, 1, 0x7FFF_FFFF_i64] {
+            let value = (7 << 32) | u64::from(position);
+            assert_eq!(parts(advance(value, distance)), (7, position.wrapping_add(distance as u32)));
+        }
+    }
+}
+
+#[test]
+fn dates_at_the_ends_of_what_they_can_say() {
+    assert_eq!([0, -3, 1, 2].map(|unit| whole_units(-5, unit)), [-5, -5, -5, -3]);
+    const DAY: i64 = 86_400_000_000_000;
+    let first = start_of_day(i64::MIN);
+    assert_eq!((first.rem_euclid(DAY), first.checked_sub(DAY)), (0, None));
+}
