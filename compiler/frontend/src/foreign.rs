@@ -77,7 +77,8 @@ fn scl(text: &str) -> Option<Kind> {
     let first = |sign: fn(&str) -> bool| lines(text).find(|(_, line)| sign(line)).map(|it| it.0);
     let signs = [first(has_local), first(has_block), first(|line| line == "REGION" || line.starts_with("REGION "))];
     let seen: Vec<usize> = signs.into_iter().flatten().collect();
-    let at = head.or_else(|| (seen.len() > 1).then(|| seen.iter().copied().min()).flatten())?;
+    let has_locals = lines(text).filter(|(_, line)| has_local(line)).nth(1).is_some();
+    let at = head.or_else(|| (seen.len() > 1 || has_locals).then(|| seen.iter().copied().min()).flatten())?;
     Some(Kind {
         name: "SCL of Siemens'",
         at,

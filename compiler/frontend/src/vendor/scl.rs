@@ -37,14 +37,14 @@ const COUNTERS: [&str; 10] = [
 ];
 
 /// Whether a text begins as such a source does: with a block whose name is in quotes, or one that no other system has;
-/// or it begins with another block, and uses local names. One `#` may be a slip.
+/// or it begins with another block of the language, and uses local names. One `#` may be a slip.
 pub fn is_source(text: &str) -> bool {
     // What is not SCL is not to be read as a whole to be told so.
     let mut tokens = token::Tokens::new(text).filter(|it| it.kind != Kind::Pragma);
     let Some(head) = tokens.next().filter(|it| it.kind == Kind::Word) else { return false };
     let word = &text[head.place];
     let is = |it: &str| word.eq_ignore_ascii_case(it);
-    if !BLOCKS.iter().any(|it| is(it.0)) {
+    if is("PROGRAM") || !BLOCKS.iter().any(|it| is(it.0)) {
         return false;
     }
     let is_quoted = tokens.next().is_some_and(|it| it.kind == Kind::Quoted);
