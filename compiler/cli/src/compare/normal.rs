@@ -83,9 +83,53 @@ pub fn timers(blocks: &[Instance]) -> Vec<Timer> {
     blocks.iter().filter_map(Timer::of).collect()
 }
 
+/// Bytes of a state that are hashed together.
+const CHUNK: usize = 256;
+
+/// The hash of a state that changes little from one time to the next: only what has changed is hashed anew.
+#[derive(Debug, Default)]
+pub struct Digest {
+    state: Vec<u8>,
+    /// One for each chunk of the state.
+    hashes: Vec<u128>,
+    sum: u128,
+    /// Chunks that were hashed so far.
+    #[cfg(test)]
+    hashed: usize,
+}
+
+impl Digest {
+    pub fn of(&mut self, state: &[u8]) -> u128 {
+        self.state.resize(state.len(), 0);
+        let mut is_new = self.hashes.is_empty();
+        self.hashes.resize(state.len().div_ceil(CHUNK), 0);
+        is_new &= !self.hashes.is_empty();
+        let chunks = self.state.chunks_mut(CHUNK).zip(state.chunks(CHUNK));
+        for ((number, known), (before, now)) in (0_u64..).zip(&mut self.hashes).zip(chunks) {
+            if before != now || is_new {
+                before.copy_from_slice(now);
+                let new = hash_from(number, now);
+                self.sum = self.sum.wrapping_sub(*known).wrapping_add(new);
+                *known = new;
+                #[cfg(test)]
+                {
+                    self.hashed += 1;
+                }
+            }
+        }
+        self.sum
+    }
+}
+
 /// 128 bits, so that two of many millions of states do not meet by chance.
 pub fn hash(bytes: &[u8]) -> u128 {
+    hash_from(0, bytes)
+}
+
+/// Another function of the bytes for each seed.
+fn hash_from(seed: u64, bytes: &[u8]) -> u128 {
     let (mut low, mut high) = (0x9E37_79B9_7F4A_7C15_u64, 0xC2B2_AE3D_27D4_EB4F_u64);
+    (low, high) = (fold(low ^ seed, 0x1656_67B1_9E37_79F9), high.wrapping_add(seed));
     let (words, rest) = bytes.as_chunks::<8>();
     let mut last = [0; 8];
     last[..rest.len()].copy_from_slice(rest);
@@ -121,6 +165,31 @@ mod tests {
             self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             i64::try_from(self.0 >> 33).map_or(0, |it| it % limit)
         }
+    }
+
+    /// The same number for the same state, whatever came before; and a large state costs no more than a small one
+    /// where as much of it changes.
+    #[test]
+    fn what_stays_is_not_hashed_again() {
+        let hashed = |size: usize| {
+            let (mut digest, mut state, mut numbers) = (Digest::default(), vec![0; size], Numbers(1));
+            digest.of(&state);
+            let first = digest.hashed;
+            for _ in 0..500 {
+                let at = usize::try_from(numbers.below(4000)).unwrap();
+                state[at] = u8::try_from(numbers.below(3)).unwrap();
+                assert_eq!(digest.of(&state), Digest::default().of(&state));
+            }
+            digest.hashed - first
+        };
+        let (small, large) = (hashed(4 << 10), hashed(400 << 10));
+        assert!(0 < small && small == large, "{small} and {large} chunks");
+        let moved = |at: usize| {
+            let mut state = vec![0; 1024];
+            state[at] = 1;
+            Digest::default().of(&state)
+        };
+        assert!(moved(0) != moved(CHUNK) && moved(0) != moved(1));
     }
 
     fn set(info: &BlockInfo, state: &mut [u8], pin: &str, value: Value) {

@@ -1,6 +1,6 @@
 //! One program under two dialects, scanned side by side.
 
-use super::normal::{self, Timer};
+use super::normal::{self, Digest, Timer};
 use super::scalar::{self, Instance, Role, Scalar, Scalars};
 use crate::machine::Native;
 use staunch_frontend::Dialect;
@@ -20,6 +20,8 @@ pub struct Side {
     timers: Vec<Timer>,
     /// States at different times are different ones.
     reads_clock: bool,
+    /// Of the states that keys are made of.
+    digest: Digest,
     /// The state before the last scan.
     before: Vec<u8>,
     initial: Vec<u8>,
@@ -71,9 +73,20 @@ pub struct Place {
 /// Bytes whose equality is that of values: two offsets and a length; and other scalars.
 #[derive(Debug, Default)]
 struct Comparison {
-    runs: Vec<([usize; 2], usize)>,
+    runs: Vec<Run>,
     singles: Vec<Matched>,
 }
+
+/// Scalars that lie one after the other on both sides.
+#[derive(Debug)]
+struct Run {
+    offsets: [usize; 2],
+    length: usize,
+    scalars: Vec<Matched>,
+}
+
+/// A run is no longer, so that what differs is found near it.
+const MAX_RUN: usize = 512;
 
 pub struct Pair {
     pub sides: [Side; 2],
@@ -92,7 +105,9 @@ pub struct Pair {
     compared_bytes: Comparison,
     counter_bytes: Comparison,
     block_bytes: Comparison,
+    /// Bytes of a state, and of what else decides.
     scratch: Vec<u8>,
+    rest: Vec<u8>,
     first: bool,
     /// A program had not run since an event.
     restarted: bool,
@@ -118,6 +133,7 @@ impl Side {
             start,
             timers,
             reads_clock,
+            digest: Digest::default(),
             initial: before.clone(),
             before,
         })
@@ -165,6 +181,7 @@ impl Pair {
             counter_bytes: Comparison::default(),
             block_bytes: Comparison::default(),
             scratch: Vec::new(),
+            rest: Vec::new(),
             first: false,
             restarted: false,
             never: Vec::new(),
@@ -197,8 +214,13 @@ impl Pair {
                 continue;
             }
             match found.runs.last_mut() {
-                Some((start, length)) if [start[0] + *length, start[1] + *length] == offsets => *length += size,
-                _ => found.runs.push((offsets, size)),
+                Some(Run { offsets: start, length, scalars })
+                    if [start[0] + *length, start[1] + *length] == offsets && *length < MAX_RUN =>
+                {
+                    *length += size;
+                    scalars.push([a, b]);
+                }
+                _ => found.runs.push(Run { offsets, length: size, scalars: vec![[a, b]] }),
             }
         }
         found
@@ -344,27 +366,30 @@ impl Pair {
     /// What decides all that is to come, as a number: two states with one key behave alike under
     /// the same inputs.
     pub fn key(&mut self, ages: &[u8]) -> u128 {
-        self.scratch.clear();
-        for (number, side) in self.sides.iter().enumerate() {
-            let from = self.scratch.len();
+        let mut all = std::mem::take(&mut self.rest);
+        all.clear();
+        for (number, side) in self.sides.iter_mut().enumerate() {
+            self.scratch.clear();
             self.scratch.extend_from_slice(side.machine.state());
-            let state = &mut self.scratch[from..];
+            let state = self.scratch.as_mut_slice();
             for input in &self.inputs {
                 let scalar = &side.scalars.all[input.scalars[number]];
                 state[scalar.offset..scalar.offset + scalar.size].fill(0);
             }
             let now = side.drive.next();
             side.timers.iter().for_each(|it| it.settle(state, now));
+            all.extend_from_slice(&side.digest.of(state).to_ne_bytes());
             if side.reads_clock {
-                self.scratch.extend_from_slice(&now.to_ne_bytes());
+                all.extend_from_slice(&now.to_ne_bytes());
             }
         }
         for (wait, fresh) in self.sides.iter().flat_map(|it| it.drive.phases()) {
-            self.scratch.extend_from_slice(&wait.to_ne_bytes());
-            self.scratch.push(u8::from(fresh));
+            all.extend_from_slice(&wait.to_ne_bytes());
+            all.push(u8::from(fresh));
         }
-        self.scratch.extend_from_slice(ages);
-        normal::hash(&self.scratch)
+        all.extend_from_slice(ages);
+        self.rest = all;
+        normal::hash(&self.rest)
     }
 
     fn equal(&self, [a, b]: Matched, states: [&[u8]; 2]) -> bool {
@@ -374,8 +399,8 @@ impl Pair {
 
     fn all_equal(&self, comparison: &Comparison) -> bool {
         let states = self.states();
-        let same = |([a, b], length): &([usize; 2], usize)| states[0][*a..a + length] == states[1][*b..b + length];
-        comparison.runs.iter().all(same) && comparison.singles.iter().all(|it| self.equal(*it, states))
+        comparison.runs.iter().all(|it| it.is_same(states))
+            && comparison.singles.iter().all(|it| self.equal(*it, states))
     }
 
     /// Whether the compared values, or how the scan ended, differ.
@@ -442,9 +467,12 @@ impl Pair {
 
     /// Variables that differ since the last scan.
     pub fn newly_different(&self) -> Vec<Matched> {
-        let variables = self.compared.iter().copied();
-        let variables = variables.filter(|it| self.scalar(0, it[0]).role == Role::Variable);
-        variables.filter(|it| self.newly_differs(*it)).collect()
+        let Comparison { runs, singles } = &self.compared_bytes;
+        let runs = runs.iter().filter(|it| !it.is_same(self.states())).flat_map(|it| &it.scalars);
+        let variables = runs.chain(singles).copied().filter(|it| self.scalar(0, it[0]).role == Role::Variable);
+        let mut found: Vec<Matched> = variables.filter(|it| self.newly_differs(*it)).collect();
+        found.sort_unstable();
+        found
     }
 
     /// What differs, in the order of the declarations.
@@ -469,6 +497,13 @@ impl Pair {
             }
         }
         rows
+    }
+}
+
+impl Run {
+    fn is_same(&self, states: [&[u8]; 2]) -> bool {
+        let of = |side: usize| &states[side][self.offsets[side]..self.offsets[side] + self.length];
+        of(0) == of(1)
     }
 }
 
