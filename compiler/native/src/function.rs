@@ -26,6 +26,10 @@ pub(crate) struct Function<'a, 'p> {
     pub(crate) loops: Vec<LoopFrame<'p>>,
     /// The turns that the scan has left, while a loop runs that takes some.
     pub(crate) turns: Option<Variable>,
+    /// Where the copies of a body that are being emitted leave their loop, after so many turns.
+    pub(crate) exits: Vec<(i64, clif::Block)>,
+    /// Operations of copies so far.
+    pub(crate) copied: usize,
     /// The FOR loops among them whose counters are in registers.
     pub(crate) counters: Vec<&'p For>,
     /// One for each of `counters`: its value, extended to 64 bits.
@@ -70,6 +74,15 @@ pub(crate) struct LoopFrame<'p> {
     pub(crate) is_left: bool,
     /// Where its turns have been taken before the first one.
     pub(crate) prepaid: Option<Prepaid<'p>>,
+    /// In a copy of its body: the turns that were had and not taken yet.
+    pub(crate) taken: Option<i64>,
+}
+
+impl LoopFrame<'_> {
+    /// Of a loop that goes on there, and has no end of a turn yet.
+    pub(crate) fn to(after: clif::Block) -> Self {
+        Self { next: after, after, is_continued: false, is_left: false, prepaid: None, taken: None }
+    }
 }
 
 /// The blocks that return faults, filled when the function is complete.
@@ -128,6 +141,8 @@ impl<'a, 'p> Function<'a, 'p> {
             locals: Vec::with_capacity(routine.locals.len()),
             loops: Vec::new(),
             turns: None,
+            exits: Vec::new(),
+            copied: 0,
             counters: Vec::new(),
             registers: Vec::new(),
             checked: effects.checked.clone(),

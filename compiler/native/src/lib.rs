@@ -14,6 +14,7 @@ mod module;
 mod operands;
 mod signature;
 
+mod at_once;
 mod follow;
 mod function;
 mod loops;

@@ -15,7 +15,7 @@ use staunch_ir::{Block, Expr, ExprKind, FaultKind, For, Location, Repr, Statemen
 const SMALL: usize = 8;
 
 /// What leads to a further turn.
-enum Control<'p> {
+pub(crate) enum Control<'p> {
     Count(Running<'p>),
     /// It leaves the loop.
     Unless(&'p Expr),
@@ -24,7 +24,7 @@ enum Control<'p> {
 
 /// A FOR loop that is being emitted. Values are of 64 bits.
 #[derive(Clone, Copy)]
-struct Running<'p> {
+pub(crate) struct Running<'p> {
     it: &'p For,
     repr: Repr,
     at: Location,
@@ -118,23 +118,39 @@ impl<'p> Function<'_, 'p> {
     }
 
     fn turns_under(&mut self, control: &Control<'p>, body: &'p [Statement], continuing: &'p [Statement]) -> Flow {
+        let is_paid = matches!(control, Control::Count(Running { ahead: Some(_), .. }));
+        if !is_paid && let Some(copies) = self.copies(body, continuing) {
+            return self.turns_at_once(control, copies, body, continuing);
+        }
         let [turn, next, after] = [(); 3].map(|()| self.builder.create_block());
         let prepaid = self.first_turn(control, turn, after);
         self.builder.switch_to_block(turn);
-        let is_left = !matches!(control, Control::Always);
-        self.loops.push(LoopFrame { next, after, is_continued: false, is_left, prepaid });
+        let frame = LoopFrame { next, prepaid, ..LoopFrame::to(after) };
+        let is_left = self.one_by_one(control, frame, turn, body, continuing);
+        self.join(&[if is_left { Flow::Continues } else { Flow::Leaves }], after)
+    }
+
+    /// A loop from its first turn on, whose block is open. Whether control goes on after it.
+    pub(crate) fn one_by_one(
+        &mut self,
+        control: &Control<'p>,
+        frame: LoopFrame<'p>,
+        turn: clif::Block,
+        body: &'p [Statement],
+        continuing: &'p [Statement],
+    ) -> bool {
+        self.loops.push(LoopFrame { is_left: !matches!(control, Control::Always), ..frame });
         if self.block(body) == Flow::Continues {
             self.continue_loop();
         }
         if self.innermost().is_continued {
-            self.go_on_in(next);
+            self.go_on_in(frame.next);
             if self.end_of_turn(control, continuing) == Flow::Continues {
-                self.next_turn(control, turn, after);
+                self.next_turn(control, turn, frame.after);
             }
         }
         self.builder.seal_block(turn);
-        let is_left = self.loops.pop().expect("pushed above").is_left;
-        self.join(&[if is_left { Flow::Continues } else { Flow::Leaves }], after)
+        self.loops.pop().expect("pushed above").is_left
     }
 
     /// Into the first turn, or past the loop.
@@ -176,7 +192,7 @@ impl<'p> Function<'_, 'p> {
         self.ins().jump(after, &[]);
     }
 
-    fn further_turn(&mut self, control: &Control<'p>, turn: clif::Block, after: clif::Block) {
+    pub(crate) fn further_turn(&mut self, control: &Control<'p>, turn: clif::Block, after: clif::Block) {
         self.release_temporaries();
         match control {
             Control::Count(running) => {
@@ -191,7 +207,7 @@ impl<'p> Function<'_, 'p> {
         }
     }
 
-    fn end_of_turn(&mut self, control: &Control<'p>, continuing: &'p [Statement]) -> Flow {
+    pub(crate) fn end_of_turn(&mut self, control: &Control<'p>, continuing: &'p [Statement]) -> Flow {
         match control {
             Control::Count(running) => {
                 self.step(running);
@@ -347,10 +363,11 @@ impl<'p> Function<'_, 'p> {
     }
 
     /// Where the innermost loop flow on that is left.
-    fn turn_end(&mut self) -> clif::Block {
+    pub(crate) fn turn_end(&mut self) -> clif::Block {
         let frame = self.innermost();
         frame.is_left = true;
-        frame.after
+        let (taken, after) = (frame.taken, frame.after);
+        taken.map_or(after, |it| self.exit_after(it, after))
     }
 
     pub(crate) fn continue_loop(&mut self) -> Flow {

@@ -73,6 +73,10 @@ impl<'p> Function<'_, 'p> {
 
     /// Takes one of the scan's turns.
     pub(crate) fn take_turn(&mut self, at: Location) {
+        if let Some(taken) = self.loops.last_mut().and_then(|it| it.taken.as_mut()) {
+            *taken += 1;
+            return;
+        }
         let variable = self.turns.expect("verified IR: a turn is a loop's");
         let left = self.builder.use_var(variable);
         // The rest is what is tested, so that it is found here, and not in a block of its own at the turn's end.
@@ -104,7 +108,7 @@ impl<'p> Function<'_, 'p> {
         let (prepaid, last) = self.pay_linear(it);
         self.ins().jump(turn, &[]);
         self.builder.switch_to_block(turn);
-        self.loops.push(LoopFrame { next, after, is_continued: false, is_left: true, prepaid: Some(prepaid) });
+        self.loops.push(LoopFrame { next, is_left: true, prepaid: Some(prepaid), ..LoopFrame::to(after) });
         let (to_step, rest) = it.body.split_at(it.steps + 1);
         let mut flow = self.block(to_step);
         let prepaid = Prepaid { is_stepped: true, ..prepaid };
@@ -250,6 +254,8 @@ impl<'p> Function<'_, 'p> {
     pub(crate) fn return_from_loops(&mut self) -> Flow {
         let prepaid = self.loops.iter().find_map(|it| it.prepaid);
         self.give_back(prepaid);
+        let taken = self.loops.iter().filter_map(|it| it.taken).sum();
+        self.subtract_turns(taken);
         self.spill_turns();
         self.go(self.exit)
     }

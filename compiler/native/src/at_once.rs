@@ -1,0 +1,181 @@
+//! Loops whose bodies are small: turns are taken for several of them at once, and the body is there as often.
+//! Where fewer are left than that, a loop of single turns goes on, up to the one that faults. So the turn of a
+//! fault is the same, and what is left of the turns is right wherever somebody looks.
+
+use crate::function::{Flow, Function, LoopFrame};
+use crate::loops::Control;
+use cranelift_codegen::ir::{self as clif, InstBuilder, condcodes::IntCC};
+use staunch_ir::{ExprKind, Projection, RoutineId, Statement, StatementKind, turns, visit};
+
+/// Operations that the turns taken at once should come to, so that taking them is a small part.
+const ENOUGH: usize = 128;
+const MOST_COPIES: usize = 32;
+/// Operations of copies in one routine, so that its code grows by no more.
+const MOST_IN_A_ROUTINE: usize = 8192;
+
+impl<'p> Function<'_, 'p> {
+    /// How many turns the loop takes at once; `None` where it takes them one by one.
+    pub(crate) fn copies(&mut self, body: &[Statement], continuing: &[Statement]) -> Option<usize> {
+        let is_turn = |it: &Statement| matches!(it.kind, StatementKind::Turn);
+        let (turn, others): (Vec<_>, Vec<_>) = body.iter().partition(|it| is_turn(it));
+        let callee_does = |callee: RoutineId| self.module.effects(callee).turns;
+        let takes = |it: &Statement| turns::takes_turns(std::slice::from_ref(it), &callee_does);
+        if turn.len() != 1 || others.into_iter().any(takes) || turns::takes_turns(continuing, &callee_does) {
+            return None;
+        }
+        let size = size(body) + size(continuing);
+        let copies = (ENOUGH / size.max(1)).min(MOST_COPIES);
+        let made = self.copied + copies * size;
+        if copies < 2 || made > MOST_IN_A_ROUTINE {
+            return None;
+        }
+        self.copied = made;
+        Some(copies)
+    }
+
+    pub(crate) fn turns_at_once(
+        &mut self,
+        control: &Control<'p>,
+        copies: usize,
+        body: &'p [Statement],
+        continuing: &'p [Statement],
+    ) -> Flow {
+        let [head, enough, few, after] = [(); 4].map(|()| self.builder.create_block());
+        self.further_turn(control, head, after);
+        self.builder.switch_to_block(head);
+        let turns = self.turns.expect("verified IR: a turn is a loop's");
+        let left = self.builder.use_var(turns);
+        let all = i64::try_from(copies).expect("a few copies");
+        let suffice = self.ins().icmp_imm_u(IntCC::UnsignedGreaterThanOrEqual, left, all);
+        self.builder.set_cold_block(few);
+        self.ins().brif(suffice, enough, &[], few, &[]);
+
+        self.go_on_in(enough);
+        let mut is_left = !matches!(control, Control::Always);
+        let mut taken = 0;
+        for _ in 0..copies {
+            let frame = LoopFrame { next: self.builder.create_block(), taken: Some(taken), ..LoopFrame::to(after) };
+            let goes_on = self.one_of_several(control, frame, body, continuing);
+            let frame = self.loops.pop().expect("the copy's");
+            is_left |= frame.is_left;
+            taken = frame.taken.unwrap_or(taken);
+            if goes_on == Flow::Leaves {
+                break;
+            }
+            if taken == all {
+                self.subtract_turns(all);
+                self.ins().jump(head, &[]);
+            }
+        }
+        self.close_exits(after);
+        self.builder.seal_block(head);
+
+        self.builder.switch_to_block(few);
+        let frame = LoopFrame { next: self.builder.create_block(), ..LoopFrame::to(after) };
+        is_left |= self.one_by_one(control, frame, few, body, continuing);
+        self.join(&[if is_left { Flow::Continues } else { Flow::Leaves }], after)
+    }
+
+    /// One turn, after which the next one begins where the code goes on.
+    fn one_of_several(
+        &mut self,
+        control: &Control<'p>,
+        frame: LoopFrame<'p>,
+        body: &'p [Statement],
+        continuing: &'p [Statement],
+    ) -> Flow {
+        self.loops.push(frame);
+        // A block less, where there is no CONTINUE: Cranelift computes again in each block what is a sum with a constant.
+        match (self.block(body), self.innermost().is_continued) {
+            (Flow::Continues, false) => {}
+            (Flow::Leaves, false) => return Flow::Leaves,
+            (flow, true) => {
+                if flow == Flow::Continues {
+                    self.continue_loop();
+                }
+                self.go_on_in(frame.next);
+            }
+        }
+        if self.end_of_turn(control, continuing) == Flow::Leaves {
+            return Flow::Leaves;
+        }
+        let further = self.builder.create_block();
+        let after = if matches!(control, Control::Always) { frame.after } else { self.turn_end() };
+        self.further_turn(control, further, after);
+        self.go_on_in(further);
+        Flow::Continues
+    }
+
+    /// Where a copy leaves the loop: it takes the turns that were had.
+    pub(crate) fn exit_after(&mut self, taken: i64, after: clif::Block) -> clif::Block {
+        match self.exits.last() {
+            _ if taken == 0 => after,
+            Some((known, block)) if *known == taken => *block,
+            Some(_) | None => {
+                let block = self.builder.create_block();
+                self.builder.set_cold_block(block);
+                self.exits.push((taken, block));
+                block
+            }
+        }
+    }
+
+    fn close_exits(&mut self, after: clif::Block) {
+        for (taken, block) in std::mem::take(&mut self.exits) {
+            self.go_on_in(block);
+            self.subtract_turns(taken);
+            self.ins().jump(after, &[]);
+        }
+    }
+
+    pub(crate) fn subtract_turns(&mut self, taken: i64) {
+        let Some(turns) = self.turns.filter(|_| taken > 0) else { return };
+        let left = self.builder.use_var(turns);
+        let left = self.ins().iadd_imm_s(left, -taken);
+        self.builder.def_var(turns, left);
+    }
+}
+
+/// About how many operations the statements are.
+fn size(block: &[Statement]) -> usize {
+    let mut size = 0;
+    visit::statements(block, &mut |statement| {
+        size += match &statement.kind {
+            StatementKind::Turn => 0,
+            StatementKind::For(_) | StatementKind::Loop { .. } => ENOUGH / 4,
+            StatementKind::Call { .. }
+            | StatementKind::External(_)
+            | StatementKind::CallBlock { .. }
+            | StatementKind::PrescanBlock { .. } => ENOUGH / 8,
+            StatementKind::Assign { .. }
+            | StatementKind::If { .. }
+            | StatementKind::Case { .. }
+            | StatementKind::Exit
+            | StatementKind::Continue
+            | StatementKind::Return
+            | StatementKind::Fault(_) => 1,
+        };
+        visit::targets(statement, &mut |it| size += of_projections(&it.projections));
+        visit::all_exprs(statement, &mut |it| {
+            size += match &it.kind {
+                ExprKind::Const(_) => 0,
+                ExprKind::Load(place) => 1 + of_projections(&place.projections),
+                ExprKind::Apply(..) | ExprKind::Convert(..) => 1,
+                ExprKind::Text(_) | ExprKind::AddressOf(_) | ExprKind::ApplyText(..) | ExprKind::Aggregate(_) => {
+                    ENOUGH / 16
+                }
+            }
+        });
+    });
+    size
+}
+
+/// An index is checked, and multiplied.
+fn of_projections(projections: &[Projection]) -> usize {
+    let of = |it: &Projection| match it {
+        Projection::Field(_) => 0,
+        Projection::Index { .. } => 4,
+        Projection::Deref { .. } => ENOUGH / 4,
+    };
+    projections.iter().map(of).sum()
+}
