@@ -379,11 +379,6 @@ impl Program {
         self.find_in(ty, &|it| is_wanted(it).then_some(())).is_some()
     }
 
-    /// Whether a variable of type `ty` is or holds a STRING.
-    pub fn holds_text(&self, ty: Type) -> bool {
-        self.holds(ty, |it| matches!(it, Type::String(_)))
-    }
-
     /// The name of a standard block with a prescan that a variable of type `ty` is or holds.
     pub fn prescanned_in(&self, ty: Type) -> Option<&'static str> {
         self.find_in(ty, &|it| {

@@ -37,6 +37,7 @@ pub const VERSION: u32 = 1;
 /// ```
 ///
 /// The flags are `retain`, `whole`, `stays`, `restarts`, `constant`, and `used`, of a global that some instance uses.
+/// A text in what is a `view` has no length: it is its characters up to a zero.
 /// An object is what references may name, by its number, from 1. A type is an IEC name, `STRING[n]`,
 /// `REFERENCE`, or `enum:id`, `array:id`, `struct:id`, `block:id`. A
 /// variable that lives for one call has no record.
@@ -132,12 +133,9 @@ impl Map<'_> {
         Ok(())
     }
 
-    /// The members that are bits of fields. Texts in them are no strings as they lie elsewhere: they have no length.
+    /// The members that are bits of fields. Texts in them have no length: they are their characters and a zero.
     fn overlays(&mut self, id: StructId, field: FieldId) -> fmt::Result {
         for overlay in self.program.structure(id).overlays.iter().filter(|it| it.field == field) {
-            if self.program.holds_text(overlay.ty) {
-                continue;
-            }
             let offset = self.layout.field(id, overlay.field) + overlay.bit / 8;
             let ty = match overlay.is_bit {
                 true => format!("bit:{}", overlay.bit % 8),

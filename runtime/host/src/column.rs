@@ -77,9 +77,12 @@ fn split(vars: &str) -> Vec<&str> {
 
 fn expand(map: &Map, heading: String, place: Place, out: &mut Vec<Column>) {
     match place.ty {
-        Type::Elementary(_) | Type::Bit(_) | Type::Reference | Type::String(_) | Type::Enum(_) => {
-            out.push(Column { heading, place })
-        }
+        Type::Elementary(_)
+        | Type::Bit(_)
+        | Type::Reference
+        | Type::String(_)
+        | Type::Characters(_)
+        | Type::Enum(_) => out.push(Column { heading, place }),
         Type::Array(_) => elements(map, &heading, String::new(), place, out),
         Type::Struct(_) | Type::Block(_) => members(map, &heading, place, out),
     }
@@ -111,7 +114,7 @@ fn members(map: &Map, heading: &str, place: Place, out: &mut Vec<Column>) {
             Section::InOut | Section::Temp | Section::External | Section::Memory => false,
         };
         if shown {
-            let inner = place.part(member.ty, member.offset);
+            let inner = Place { range: None, ..place.member(member) };
             expand(map, format!("{heading}.{}", member.name), inner, out);
         }
     }

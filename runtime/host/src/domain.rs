@@ -198,7 +198,7 @@ impl Builder<'_> {
             Type::Elementary(it) if it.is_time_of_day() => self.push(Node::Clock),
             Type::Elementary(it) => self.number(it.repr(), range),
             // Each use of a reference is checked.
-            Type::Enum(_) | Type::Bit(_) | Type::Reference => self.push(Node::Any),
+            Type::Enum(_) | Type::Bit(_) | Type::Reference | Type::Characters(_) => self.push(Node::Any),
             Type::String(it) => self.push(Node::Text(it)),
             Type::Array(_) => match self.map.array(ty) {
                 Some(array) => self.array(array, range),

@@ -9,6 +9,7 @@ use staunch_runtime::{Elementary, Repr, StringType, Value, ops};
 pub(crate) fn parse(map: &Map, place: Place, text: &str) -> Result<Vec<u8>, String> {
     let value = match place.ty {
         Type::String(it) => return string(text, it),
+        Type::Characters(it) => return string(text, it).map(|it| without_length(it, map.size_of(place.ty))),
         Type::Elementary(it) if it.is_duration() => Value::I64(time(text)?),
         Type::Elementary(it) if it.is_time() => Value::I64(date(text, it)?),
         Type::Elementary(Elementary::Bool) | Type::Bit(_) => Value::Bool(boolean(text)?),
@@ -33,6 +34,13 @@ pub(crate) fn parse(map: &Map, place: Place, text: &str) -> Result<Vec<u8>, Stri
     let mut bytes = vec![0; value.repr().size() as usize];
     value.write(&mut bytes);
     Ok(bytes)
+}
+
+/// A text as it lies in a UNION, with zeros up to the end.
+fn without_length(mut text: Vec<u8>, size: usize) -> Vec<u8> {
+    text.drain(..2);
+    text.resize(size, 0);
+    text
 }
 
 fn string(text: &str, ty: StringType) -> Result<Vec<u8>, String> {

@@ -35,6 +35,8 @@ pub enum Type {
     Bit(u8),
     /// A string of at most this many bytes.
     String(StringType),
+    /// One in a UNION: its characters, a zero and what follows.
+    Characters(StringType),
     Enum(u32),
     Array(u32),
     Struct(u32),
@@ -238,7 +240,7 @@ impl Map {
 
     fn knows(&self, ty: Type) -> bool {
         match ty {
-            Type::Elementary(_) | Type::Bit(_) | Type::Reference | Type::String(_) => true,
+            Type::Elementary(_) | Type::Bit(_) | Type::Reference | Type::String(_) | Type::Characters(_) => true,
             Type::Enum(id) => self.enums.contains_key(&id),
             Type::Array(id) => self.arrays.contains_key(&id),
             Type::Struct(id) => self.structs.contains_key(&id),
@@ -251,9 +253,13 @@ impl Map {
         match ty {
             Type::Struct(id) => self.structs.get(&id),
             Type::Block(id) => self.blocks.get(&id),
-            Type::Elementary(_) | Type::Bit(_) | Type::Reference | Type::String(_) | Type::Enum(_) | Type::Array(_) => {
-                None
-            }
+            Type::Elementary(_)
+            | Type::Bit(_)
+            | Type::Reference
+            | Type::String(_)
+            | Type::Characters(_)
+            | Type::Enum(_)
+            | Type::Array(_) => None,
         }
     }
 
@@ -263,6 +269,7 @@ impl Map {
             Type::Elementary(_)
             | Type::Bit(_)
             | Type::String(_)
+            | Type::Characters(_)
             | Type::Enum(_)
             | Type::Struct(_)
             | Type::Block(_)
@@ -282,6 +289,7 @@ impl Map {
             Type::Elementary(it) => it.repr().size() as usize,
             Type::Bit(_) => 1,
             Type::String(it) => it.size() as usize,
+            Type::Characters(it) => (usize::from(it.capacity) + 1) * it.unit_size() as usize,
             Type::Enum(id) => self.enums.get(&id).map_or(0, |it| it.repr.size() as usize),
             Type::Reference => size_of::<u64>(),
             Type::Array(_) => self.array(ty).map_or(0, |it| it.stride * it.len()),
@@ -295,7 +303,7 @@ impl Map {
             Type::Elementary(it) => it.name().to_owned(),
             Type::Bit(_) => Elementary::Bool.name().to_owned(),
             Type::Reference => "REFERENCE".to_owned(),
-            Type::String(it) => it.to_string(),
+            Type::String(it) | Type::Characters(it) => it.to_string(),
             Type::Enum(id) => self.enums.get(&id).map_or_else(String::new, |it| it.name.clone()),
             Type::Array(_) => self.array(ty).map_or_else(String::new, |it| {
                 format!("ARRAY[{}..{}] OF {}", it.low, it.high, self.type_name(it.element))

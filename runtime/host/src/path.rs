@@ -13,21 +13,42 @@ pub struct Place {
     pub constant: bool,
     /// The world outside writes it.
     pub input: bool,
+    /// In a UNION, where texts lie otherwise.
+    pub(crate) is_shared: bool,
 }
 
 impl Place {
     pub(crate) fn of(variable: &Variable, base: usize) -> Self {
-        let Variable { offset, ty, range, constant, .. } = *variable;
-        Self { offset: base + offset, ty, range, constant, input: variable.is_input() }
+        let Variable { offset, ty, range, constant, view, .. } = *variable;
+        let ty = if view { shared(ty) } else { ty };
+        Self { offset: base + offset, ty, range, constant, input: variable.is_input(), is_shared: view }
     }
 
     /// A member or element of this variable.
     pub(crate) fn part(self, ty: Type, offset: usize) -> Self {
+        let ty = if self.is_shared { shared(ty) } else { ty };
         Self { ty, offset: self.offset + offset, range: None, ..self }
     }
 
-    fn member(self, variable: &Variable) -> Self {
-        Self { range: variable.range, ..self.part(variable.ty, variable.offset) }
+    pub(crate) fn member(self, variable: &Variable) -> Self {
+        let is_shared = self.is_shared || variable.view;
+        let inner = Self { is_shared, ..self };
+        Self { range: variable.range, ..inner.part(variable.ty, variable.offset) }
+    }
+}
+
+/// What a type is where its bytes are those of other variables too.
+fn shared(ty: Type) -> Type {
+    match ty {
+        Type::String(it) => Type::Characters(it),
+        Type::Elementary(_)
+        | Type::Bit(_)
+        | Type::Characters(_)
+        | Type::Enum(_)
+        | Type::Array(_)
+        | Type::Struct(_)
+        | Type::Block(_)
+        | Type::Reference => ty,
     }
 }
 

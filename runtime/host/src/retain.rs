@@ -241,7 +241,7 @@ fn type_text(map: &Map, ty: Type, range: Option<(i128, i128)>) -> String {
                 pins.iter().map(|it| format!("{}:{}", it.name, type_text(map, it.ty, it.range))).collect();
             format!("{name}({})", pins.join(","))
         }
-        Type::Bit(_) | Type::Reference | Type::String(_) | Type::Struct(_) => name,
+        Type::Bit(_) | Type::Reference | Type::String(_) | Type::Characters(_) | Type::Struct(_) => name,
     }
 }
 

@@ -168,9 +168,13 @@ impl Walk<'_> {
         match ty {
             Type::Struct(_) => true,
             Type::Block(_) => kept != Kept::Whole && self.map.structure(ty).is_some_and(restarts),
-            Type::Elementary(_) | Type::Bit(_) | Type::Reference | Type::String(_) | Type::Enum(_) | Type::Array(_) => {
-                false
-            }
+            Type::Elementary(_)
+            | Type::Bit(_)
+            | Type::Reference
+            | Type::String(_)
+            | Type::Characters(_)
+            | Type::Enum(_)
+            | Type::Array(_) => false,
         }
     }
 
@@ -188,9 +192,13 @@ impl Walk<'_> {
                 self.holds.insert(id, found);
                 found
             }
-            Type::Elementary(_) | Type::Bit(_) | Type::Reference | Type::String(_) | Type::Enum(_) | Type::Block(_) => {
-                false
-            }
+            Type::Elementary(_)
+            | Type::Bit(_)
+            | Type::Reference
+            | Type::String(_)
+            | Type::Characters(_)
+            | Type::Enum(_)
+            | Type::Block(_) => false,
         }
     }
 }

@@ -29,6 +29,7 @@ pub(crate) fn format(map: &Map, ty: Type, bytes: &[u8], out: &mut String) {
         }
         Type::Bit(number) => format_scalar(Value::Bool(bit(bytes, number)), out),
         Type::String(it) => out.push_str(&text(it, bytes)),
+        Type::Characters(it) => out.push_str(&text_before_zero(it, bytes)),
         Type::Enum(id) => {
             let Some(enumeration) = map.enums.get(&id) else { return };
             let value = Value::read(enumeration.repr, bytes);
@@ -89,7 +90,7 @@ pub(crate) fn number(map: &Map, ty: Type, bytes: &[u8]) -> Option<f64> {
         Type::Bit(number) => return Some(f64::from(u8::from(bit(bytes, number)))),
         Type::Enum(id) => map.enums.get(&id)?.repr,
         Type::Reference => return None,
-        Type::String(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => return None,
+        Type::String(_) | Type::Characters(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => return None,
     };
     Some(match Value::read(repr, bytes) {
         Value::F32(it) => f64::from(it),
@@ -102,12 +103,24 @@ pub(crate) fn number(map: &Map, ty: Type, bytes: &[u8]) -> Option<f64> {
 fn text(ty: StringType, bytes: &[u8]) -> String {
     let Some((length, rest)) = bytes.split_at_checked(2) else { return String::new() };
     let length = usize::from(u16::from_ne_bytes([length[0], length[1]])) * ty.unit_size() as usize;
-    let used = rest.get(..length).unwrap_or(rest);
+    decoded(ty, rest.get(..length).unwrap_or(rest))
+}
+
+/// The characters of a text in a UNION.
+fn text_before_zero(ty: StringType, bytes: &[u8]) -> String {
+    let size = ty.unit_size() as usize;
+    let most = bytes.get(..usize::from(ty.capacity) * size).unwrap_or(bytes);
+    let is_zero = |it: &[u8]| it.iter().all(|it| *it == 0);
+    let length = most.chunks_exact(size).position(is_zero).map_or(most.len(), |it| it * size);
+    decoded(ty, &most[..length])
+}
+
+fn decoded(ty: StringType, units: &[u8]) -> String {
     if ty.wide {
-        let units = used.chunks_exact(2).map(|it| u16::from_ne_bytes([it[0], it[1]]));
+        let units = units.chunks_exact(2).map(|it| u16::from_ne_bytes([it[0], it[1]]));
         return char::decode_utf16(units).map(|it| it.unwrap_or(char::REPLACEMENT_CHARACTER)).collect();
     }
-    characters(used).collect()
+    characters(units).collect()
 }
 
 /// `A`, or by its number what is hard to see: `$00`, `$D83D`.

@@ -42,9 +42,13 @@ pub(super) fn kind(ty: Type) -> Kind {
     match ty {
         Type::Elementary(Elementary::Bool) | Type::Bit(_) => Kind::Bool,
         Type::Elementary(_) => Kind::Number,
-        Type::String(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) | Type::Reference => {
-            Kind::Text
-        }
+        Type::String(_)
+        | Type::Characters(_)
+        | Type::Enum(_)
+        | Type::Array(_)
+        | Type::Struct(_)
+        | Type::Block(_)
+        | Type::Reference => Kind::Text,
     }
 }
 

@@ -30,7 +30,9 @@ fn kind(ty: Type) -> Kind {
         Type::Elementary(it) if it.repr().is_float() => Kind::Real,
         Type::Elementary(it) => Kind::Bits(it.repr()),
         Type::Bit(_) | Type::Reference => Kind::Text,
-        Type::String(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => Kind::Text,
+        Type::String(_) | Type::Characters(_) | Type::Enum(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
+            Kind::Text
+        }
     }
 }
 
