@@ -155,7 +155,11 @@ impl Dialect {
 
     /// What a STRING holds that is declared without a length.
     pub const fn string_capacity(self) -> u16 {
-        if self.is_standard() { 254 } else { 80 }
+        match self {
+            Self::Logix => 82,
+            _ if self.is_standard() => 254,
+            _ => 80,
+        }
     }
 
     /// A PROGRAM may be called by its name, and its variables read.

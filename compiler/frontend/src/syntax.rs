@@ -50,6 +50,7 @@ use crate::{
     source::Span,
 };
 
+pub(crate) use diagnostics::controller_service;
 use parser::{Extra, State};
 
 /// The tree of a file. What does not parse is reported, and left out of the tree.

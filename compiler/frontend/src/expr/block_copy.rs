@@ -86,12 +86,7 @@ impl<'s> Checker<'_, 's> {
             return false;
         }
         if let Instruction::Service(service) = instruction {
-            let message = format!("`{}` is not supported: {service}", name.text.to_ascii_uppercase());
-            self.report(
-                Diagnostic::new(Code::E0902, name.span, message)
-                    .label("a service of the controller")
-                    .help("give the program what it needs of it in tags"),
-            );
+            self.report(crate::syntax::controller_service(name.span, name.text, service));
             return true;
         }
         match self.in_order(*name, names, arguments, span) {

@@ -196,7 +196,7 @@ impl<'s> Declarations<'s> {
             Diagnostic::new(Code::E0902, target.span, format!("`{}` is called by name", run.name.text))
                 .label("a VAR_CONFIG is only supported for PROGRAMs that run by themselves")
                 .other(first, "named here")
-                .help("set the value where the variable is declared"),
+                .help("give the variable its address or value where it is declared"),
         );
         true
     }

@@ -385,6 +385,20 @@ pub fn variables_of_action(span: Span) -> Diagnostic {
         .help("declare them in the POU, or make the ACTION a METHOD")
 }
 
+/// GSV and its like.
+pub fn controller_service(name: Span, text: &str, service: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0902, name, format!("`{}` is not supported: {service}", text.to_ascii_uppercase()))
+        .label("a service of the controller")
+        .help("give the program what it needs of it in tags")
+}
+
+/// VAR_CONFIG among the declarations of a POU.
+pub fn bindings_in_a_unit(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0403, span, "a VAR_CONFIG is not in a POU")
+        .label("it is in a CONFIGURATION, or in the file by itself")
+        .help("move it behind the end of the POU, and name what it is about from its PROGRAM on: `Main.y AT %QX0.0 : BOOL;`")
+}
+
 pub fn unsupported(span: Span, what: &str) -> Diagnostic {
     Diagnostic::new(Code::E0090, span, format!("{what} is not supported yet"))
 }

@@ -141,6 +141,24 @@ fn respell<'t, 'p>(input: &mut In<'t, 'p, '_>, start: Start<'t, 'p>) -> bool {
     true
 }
 
+/// Behind a name and its operands in parentheses, and the semicolon.
+pub fn skip_operands(input: &mut In<'_, '_, '_>) {
+    input.take();
+    let mut depth = 0;
+    while !matches!(input.kind(), Kind::End | Kind::Semicolon) {
+        depth += match input.kind() {
+            Kind::OpenParen => 1,
+            Kind::CloseParen => -1,
+            _ => 0,
+        };
+        input.take();
+        if depth == 0 {
+            break;
+        }
+    }
+    input.eat(Kind::Semicolon);
+}
+
 /// After the next `;`, or before a keyword or a line that starts another statement.
 pub fn skip_statement(input: &mut In<'_, '_, '_>, start: Span) {
     loop {

@@ -191,6 +191,14 @@ fn contents<'s>(input: &mut In<'_, '_, 's>, pou: &mut Pou<'s>) {
         if !opens_section(input.kind()) {
             break;
         }
+        if input.kind() == Kind::VarConfig {
+            let span = input.here();
+            input.report(diagnostics::bindings_in_a_unit(span));
+            let mut found = Vec::new();
+            bindings(input, &mut found);
+            input.state().bindings.append(&mut found);
+            continue;
+        }
         let read = |it: &Statement<'_>| !matches!(it.kind, StatementKind::Empty | StatementKind::Error);
         if pou.body.iter().any(read) {
             let span = input.here();

@@ -1,7 +1,7 @@
 //! Constructs that are known and refused by name: JMP, `__TRY`, and a sequential function chart's text.
 //! Their words are names everywhere else.
 
-use crate::lex::Kind;
+use crate::{lex::Kind, vendor::controller_service};
 
 use super::{
     diagnostics,
@@ -22,6 +22,11 @@ pub fn skip(input: &mut In<'_, '_, '_>) -> bool {
         skip_try(input);
         return true;
     }
+    if let Some(service) = controller_service(word).filter(|_| has_operands_that_are_no_values(input)) {
+        input.report(diagnostics::controller_service(span, word, service));
+        recovery::skip_operands(input);
+        return true;
+    }
     if input.kind_ahead(1) != Kind::Name {
         return false;
     }
@@ -37,6 +42,29 @@ pub fn skip(input: &mut In<'_, '_, '_>) -> bool {
         );
         skip_chart(input);
         return true;
+    }
+    false
+}
+
+/// `GSV(WallClockTime,, LocalDateTime, now[0])`, `GSV(Program, THIS, …)`: an operand is left out, or a keyword.
+fn has_operands_that_are_no_values(input: &mut In<'_, '_, '_>) -> bool {
+    let mut depth = 0;
+    for at in 1.. {
+        let kind = input.kind_ahead(at);
+        match kind {
+            Kind::OpenParen | Kind::OpenBracket => depth += 1,
+            Kind::CloseParen | Kind::CloseBracket => depth -= 1,
+            _ => {}
+        }
+        if depth == 0 || matches!(kind, Kind::End | Kind::Semicolon) {
+            return false;
+        }
+        let is_end = |it: Kind| matches!(it, Kind::Comma | Kind::CloseParen);
+        let starts_operand = depth == 1 && matches!(kind, Kind::OpenParen | Kind::Comma);
+        let (next, after) = (input.kind_ahead(at + 1), input.kind_ahead(at + 2));
+        if starts_operand && (is_end(next) || next.keyword().is_some() && is_end(after)) {
+            return true;
+        }
     }
     false
 }

@@ -306,7 +306,7 @@ fn what_is_not_supported_is_named() {
     expect(
         "FUNCTION_BLOCK ABSTRACT b EXTENDS c IMPLEMENTS d, e
          VAR x : POINTER TO INT; y : REFERENCE TO INT; z : REF_TO INT; END_VAR
-         VAR_CONFIG x : y; END_VAR // E0090
+         VAR_CONFIG x.z : y; END_VAR // E0403
            x := y := 1;
            x REF= y;
            x ?= y;
