@@ -31,7 +31,8 @@ pub enum StatementKind {
     },
     /// WHILE and REPEAT: runs `body` and then `continuing`, forever. `Exit` leaves it; `Continue`
     /// goes on with `continuing`, which itself holds `Exit` but no `Continue`. Each turn takes one
-    /// of the scan's turns: `body` holds a `Turn` outside of inner blocks.
+    /// of the scan's turns: `body` holds a `Turn` outside of inner blocks, unless each turn
+    /// [divides](crate::turns::divides) what the loop ends for.
     Loop {
         body: Block,
         continuing: Block,

@@ -4,7 +4,7 @@
 use crate::alias::{self, Frame};
 use crate::loops::{Known, exit_condition, is_private};
 use crate::{
-    Expr, ExprKind, For, Location, Op, Place, RoutineId, Statement, StatementKind, Step, Value, faults, visit,
+    Expr, ExprKind, For, Location, Op, Place, Program, RoutineId, Statement, StatementKind, Step, Value, faults, visit,
 };
 
 /// Whether a block, or what it calls, takes turns.
@@ -87,7 +87,7 @@ pub fn linear<'a>(
     }
     let ExprKind::Apply(Op::Not, stay) = &leave.kind else { return None };
     let mut conditions = Vec::new();
-    conjuncts(&stay[0], &mut conditions);
+    parts(Op::And, &stay[0], &mut conditions);
     (0..conditions.len()).find_map(|at| {
         let mut others = conditions.clone();
         let (counter, bound, ahead, offset) = compared(others.remove(at))?;
@@ -109,10 +109,90 @@ pub fn linear<'a>(
     })
 }
 
-/// The conditions that have to hold all.
-fn conjuncts<'a>(condition: &'a Expr, found: &mut Vec<&'a Expr>) {
+/// Whether each turn divides a variable, `x := SHR(x, 1);` or `n := n / 10;`, until the loop is left for how small it is:
+/// `WHILE x <> 0`, `UNTIL n < 10`. That is after no more turns than the variable has bits, and one.
+pub fn divides(frame: &Frame<'_>, body: &[Statement], continuing: &[Statement]) -> bool {
+    if any(body, &|kind| matches!(kind, StatementKind::Continue)) {
+        return false;
+    }
+    let mut conditions = Vec::new();
+    let body = match (body, continuing) {
+        ([test, body @ ..], []) if let Some(leave) = exit_condition(test) => {
+            let ExprKind::Apply(Op::Not, stay) = &leave.kind else { return false };
+            parts(Op::And, &stay[0], &mut conditions);
+            body
+        }
+        (_, [test]) if let Some(leave) = exit_condition(test) => {
+            parts(Op::Or, leave, &mut conditions);
+            body
+        }
+        _ => return false,
+    };
+    let is_left = |small: (&Place, bool)| small.1 == continuing.is_empty() && is_divided(frame, body, small.0);
+    conditions.into_iter().filter_map(size_test).any(is_left)
+}
+
+/// A variable that is tested for its size, and whether it is large where the condition holds. What is small then includes 0, and all below
+/// it where the test is one of order.
+fn size_test(condition: &Expr) -> Option<(&Place, bool)> {
+    let ExprKind::Apply(op, operands) = &condition.kind else { return None };
+    let [left, right] = operands.as_slice() else { return None };
+    let (place, limit, op) = match (&left.kind, &right.kind) {
+        (ExprKind::Load(place), _) => (place, right.as_const()?.as_integer()?, *op),
+        (_, ExprKind::Load(place)) => (place, left.as_const()?.as_integer()?, mirrored(*op)?),
+        _ => return None,
+    };
+    let is_large = match op {
+        Op::Ne if limit == 0 => true,
+        Op::Gt if limit >= 0 => true,
+        Op::Ge if limit >= 1 => true,
+        Op::Eq if limit == 0 => false,
+        Op::Le if limit >= 0 => false,
+        Op::Lt if limit >= 1 => false,
+        _ => return None,
+    };
+    is_variable(place).then_some((place, is_large))
+}
+
+/// `0 < x` as `x > 0`.
+fn mirrored(op: Op) -> Option<Op> {
+    match op {
+        Op::Ne | Op::Eq => Some(op),
+        Op::Lt => Some(Op::Gt),
+        Op::Le => Some(Op::Ge),
+        Op::Gt => Some(Op::Lt),
+        Op::Ge => Some(Op::Le),
+        _ => None,
+    }
+}
+
+/// Whether each turn divides the variable, and nothing else writes it.
+fn is_divided(frame: &Frame<'_>, body: &[Statement], variable: &Place) -> bool {
+    let Some(at) = body.iter().position(|it| divides_once(frame.program, it, variable)) else { return false };
+    is_private(frame, variable, &body[..at]) && is_private(frame, variable, &body[at + 1..])
+}
+
+fn divides_once(program: &Program, statement: &Statement, variable: &Place) -> bool {
+    let StatementKind::Assign { target, value } = &statement.kind else { return false };
+    let ExprKind::Apply(op, operands) = &value.kind else { return false };
+    let [from, by] = operands.as_slice() else { return false };
+    let (ExprKind::Load(from), Some(by)) = (&from.kind, by.as_const().and_then(Value::as_integer)) else {
+        return false;
+    };
+    let whole = program.repr(variable.ty).and_then(|it| it.range());
+    let is_enough = match op {
+        Op::Div => by >= 2 && whole.is_some(),
+        // A sign would be shifted into the number.
+        Op::Shr => by >= 1 && whole.is_some_and(|it| it.0 == 0),
+        _ => false,
+    };
+    is_enough && target.is_same_variable(variable) && from.is_same_variable(variable)
+}
+
+/// The parts of a condition that AND, or OR, joins.
+fn parts<'a>(by: Op, condition: &'a Expr, found: &mut Vec<&'a Expr>) {
     match &condition.kind {
-        ExprKind::Apply(Op::And, operands) => operands.iter().for_each(|it| conjuncts(it, found)),
+        ExprKind::Apply(op, operands) if *op == by => operands.iter().for_each(|it| parts(by, it, found)),
         ExprKind::Apply(..)
         | ExprKind::Const(_)
         | ExprKind::Text(_)

@@ -4,7 +4,7 @@ use crate::expr::checker::Checker;
 use crate::expr::operand::Operand;
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{
-    Block, Conversion, Elementary, Expr, For, Location, Op, Statement, StatementKind, Step, Type, Value, loops,
+    Block, Conversion, Elementary, Expr, For, Location, Op, Statement, StatementKind, Step, Type, Value, loops, turns,
 };
 
 impl<'s> Checker<'_, 's> {
@@ -21,15 +21,17 @@ impl<'s> Checker<'_, 's> {
         }
         let Some(leave) = self.exit_unless(holds, condition.span) else { return };
         block.push(leave);
-        block.push(Statement::new(StatementKind::Turn, self.at(span)));
+        let turn = block.len();
         block.append(&mut inside);
+        if !turns::divides(&self.frame(), &block, &[]) {
+            block.insert(turn, Statement::new(StatementKind::Turn, self.at(span)));
+        }
         self.push(StatementKind::Loop { body: block, continuing: Vec::new() }, span);
     }
 
     pub(super) fn repeat_loop(&mut self, body: &[ast::Statement<'s>], until: &ast::Expr<'s>, span: Span) {
         let statements = body;
         let mut body = self.loop_body(body);
-        body.insert(0, Statement::new(StatementKind::Turn, self.at(span)));
         let mut done = None;
         let mut continuing = self.nested(|this| {
             done = this.condition(until);
@@ -41,6 +43,9 @@ impl<'s> Checker<'_, 's> {
         }
         let at = self.at(until.span);
         continuing.push(exit_if(done, at));
+        if !turns::divides(&self.frame(), &body, &continuing) {
+            body.insert(0, Statement::new(StatementKind::Turn, self.at(span)));
+        }
         self.push(StatementKind::Loop { body, continuing }, span);
     }
 

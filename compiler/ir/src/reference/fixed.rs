@@ -3,8 +3,9 @@
 //! call, as before.
 
 use super::addressed_locals;
+use crate::loops::exit_condition;
 use crate::{
-    Argument, Chars, Const, Expr, ExprKind, Field, FieldId, For, Local, LocalId, Location, Mode, Place, Program,
+    Argument, Block, Chars, Const, Expr, ExprKind, Field, FieldId, For, Local, LocalId, Location, Mode, Place, Program,
     Projection, Retain, Root, Routine, Section, Statement, StatementKind, Step, Type,
 };
 use std::collections::{BTreeMap, BTreeSet};
@@ -155,14 +156,23 @@ impl Mover<'_> {
                 inputs.iter_mut().for_each(|it| self.expr(it));
             }
             StatementKind::PrescanBlock { block, .. } => self.place(block),
-            StatementKind::Loop { .. }
-            | StatementKind::Turn
+            StatementKind::Loop { body, .. } => self.take_turns(body, new.at),
+            StatementKind::Turn
             | StatementKind::Exit
             | StatementKind::Continue
             | StatementKind::Return
             | StatementKind::Fault(_) => {}
         }
         out.push(new);
+    }
+
+    /// Others may write what a loop without turns divides, where its address is taken.
+    fn take_turns(&self, body: &mut Block, at: Location) {
+        let takes = body.iter().any(|it| matches!(it.kind, StatementKind::Turn));
+        if !takes && !self.moved.is_empty() {
+            let after_test = usize::from(body.first().is_some_and(|it| exit_condition(it).is_some()));
+            body.insert(after_test, Statement::new(StatementKind::Turn, at));
+        }
     }
 
     /// Others may write a counter whose address is taken.

@@ -2,11 +2,11 @@
 
 use super::Verifier;
 use crate::alias::Frame;
-use crate::loops;
 use crate::{
     Argument, Arm, Block, ClassKind, Expr, ExprKind, ExternalCall, For, Location, Mode, Param, Place, Root, Routine,
     RoutineId, Statement, StatementKind, Step, Type,
 };
+use crate::{loops, turns};
 use staunch_runtime::BlockInfo;
 
 /// The block that is being checked, and where in it.
@@ -74,7 +74,9 @@ impl<'p> Verifier<'p> {
                 self.block(body, otherwise);
             }
             StatementKind::Loop { body: block, continuing } => {
-                self.require(block.iter().any(is_turn), at, "a loop that takes no turns");
+                let frame = Frame::of(self.program, body.routine);
+                let ends = block.iter().any(is_turn) || turns::divides(&frame, block, continuing);
+                self.require(ends, at, "a loop that takes no turns");
                 let inside = Body { in_loop: true, in_continuing: false, ..*body };
                 self.block(&inside, block);
                 self.block(&Body { in_continuing: true, ..inside }, continuing);
