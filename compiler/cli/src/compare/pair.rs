@@ -70,7 +70,7 @@ pub struct Place {
     bookmarks: [Bookmark; 2],
 }
 
-/// Bytes whose equality is that of values: two offsets and a length; and other scalars.
+/// Bytes whose equality is that of values; and scalars that the two sides hold in different types.
 #[derive(Debug, Default)]
 struct Comparison {
     runs: Vec<Run>,
@@ -83,6 +83,8 @@ struct Run {
     offsets: [usize; 2],
     length: usize,
     scalars: Vec<Matched>,
+    /// Other bytes are other values.
+    is_exact: bool,
 }
 
 /// A run is no longer, so that what differs is found near it.
@@ -203,24 +205,28 @@ impl Pair {
         self.compared_bytes = self.comparison(&self.compared);
     }
 
-    /// Arrays of one type on both sides are compared in one go.
+    /// What lies alike on both sides is compared in one go.
     fn comparison(&self, matched: &[Matched]) -> Comparison {
         let mut found = Comparison::default();
         for [a, b] in matched.iter().copied() {
             let (x, y) = (self.scalar(0, a), self.scalar(1, b));
             let (offsets, size) = ([x.offset, y.offset], x.size);
-            if x.ty.elementary().is_none() || x.ty != y.ty {
+            let reprs = [self.sides[0].program.repr(x.ty), self.sides[1].program.repr(y.ty)];
+            if reprs[0] != reprs[1] || size != y.size {
                 found.singles.push([a, b]);
                 continue;
             }
+            // What is beyond the end of a string is no part of its value.
+            let is_exact = reprs[0].is_some();
             match found.runs.last_mut() {
-                Some(Run { offsets: start, length, scalars })
+                Some(Run { offsets: start, length, scalars, is_exact: exact })
                     if [start[0] + *length, start[1] + *length] == offsets && *length < MAX_RUN =>
                 {
                     *length += size;
                     scalars.push([a, b]);
+                    *exact &= is_exact;
                 }
-                _ => found.runs.push(Run { offsets, length: size, scalars: vec![[a, b]] }),
+                _ => found.runs.push(Run { offsets, length: size, scalars: vec![[a, b]], is_exact }),
             }
         }
         found
@@ -399,7 +405,10 @@ impl Pair {
 
     fn all_equal(&self, comparison: &Comparison) -> bool {
         let states = self.states();
-        comparison.runs.iter().all(|it| it.is_same(states))
+        comparison
+            .runs
+            .iter()
+            .all(|it| it.is_same(states) || !it.is_exact && it.scalars.iter().all(|it| self.equal(*it, states)))
             && comparison.singles.iter().all(|it| self.equal(*it, states))
     }
 
