@@ -245,8 +245,12 @@ impl Build {
             all.extend(files::find(&[library], cargo)?.into_iter().map(|it| (it, Some(name.clone()))));
         }
         for (path, library) in all {
-            let bytes = std::fs::read(&path).map_err(|error| cargo.failed("read", &path, &error))?;
-            let source = Source::decode(shown(&path), &bytes);
+            let source = if self.paths.contains(&path) || path.exists() {
+                let bytes = std::fs::read(&path).map_err(|error| cargo.failed("read", &path, &error))?;
+                Source::decode(shown(&path), &bytes)
+            } else {
+                Source::absent(shown(&path))
+            };
             sources.add(match library {
                 Some(name) => source.of_library(&name),
                 None => source,

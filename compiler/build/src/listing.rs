@@ -85,5 +85,21 @@ fn resolved(folder: &Path, path: &str) -> PathBuf {
             part => whole.push(part),
         }
     }
-    whole
+    if whole.exists() { whole } else { in_any_case(&whole).unwrap_or(whole) }
+}
+
+/// The file that a path means where capitals and small letters are one, as on Windows.
+fn in_any_case(path: &Path) -> Option<PathBuf> {
+    let mut found = PathBuf::new();
+    for part in path.components() {
+        let next = found.join(part);
+        if next.exists() {
+            found = next;
+            continue;
+        }
+        let folder = if found.as_os_str().is_empty() { Path::new(".") } else { found.as_path() };
+        let mut names = std::fs::read_dir(folder).ok()?.filter_map(|it| Some(it.ok()?.file_name()));
+        found.push(names.find(|it| it.eq_ignore_ascii_case(part.as_os_str()))?);
+    }
+    Some(found)
 }

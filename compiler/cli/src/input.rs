@@ -30,7 +30,8 @@ pub fn read(arguments: &[PathBuf], libraries: &[PathBuf]) -> Result<Sources, Str
     for (path, library) in all {
         let identity = path.canonicalize().unwrap_or_else(|_| path.clone());
         if seen.insert(identity) {
-            let source = source(&path)?;
+            let is_named = arguments.contains(&path) || libraries.contains(&path);
+            let source = if is_named || path.exists() { source(&path)? } else { Source::absent(shown(&path)) };
             sources.add(match library {
                 Some(name) => source.of_library(&name),
                 None => source,

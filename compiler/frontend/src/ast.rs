@@ -414,6 +414,8 @@ pub struct TypeDecl<'s> {
     pub name: Name<'s>,
     /// In a `TYPE INTERNAL`.
     pub internal: bool,
+    /// ABSTRACT before the name.
+    pub is_abstract: Option<Span>,
     /// The structure that a structure EXTENDS.
     pub base: Option<Path<'s>>,
     /// What `{attribute '…'}` says before TYPE, or before the type itself.
@@ -433,6 +435,7 @@ impl<'s> TypeDecl<'s> {
         Self {
             name,
             internal: false,
+            is_abstract: None,
             base: None,
             attributes: Vec::new(),
             pool: None,

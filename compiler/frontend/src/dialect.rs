@@ -68,6 +68,21 @@ impl Dialect {
         self == Self::Codesys
     }
 
+    /// An input of ANY is the argument's class, address and size.
+    pub(crate) fn hands_on_any(self) -> bool {
+        self == Self::Codesys
+    }
+
+    /// `TYPE ABSTRACT Base : STRUCT`.
+    pub(crate) fn has_abstract_types(self) -> bool {
+        self == Self::Codesys
+    }
+
+    /// `__POUNAME()` and `__POSITION()`.
+    pub(crate) fn has_pou_texts(self) -> bool {
+        self == Self::Codesys
+    }
+
     /// `RETURN(condition)`.
     pub const fn returns_on_conditions(self) -> bool {
         matches!(self, Self::Codesys)

@@ -47,7 +47,7 @@ pub use types::coverage::{CoverageKind, CoveragePoint, Decision, Formula};
 pub use vendor::Reference;
 
 use log::Log;
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::Program;
 use types::coverage::Coverage;
 use types::in_outs::{InOut, Polymorphic};
@@ -213,7 +213,7 @@ fn parse_all<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Opt
     for (source, number) in sources.files().iter().zip(0u16..) {
         let before = diagnostics.len();
         diagnostics.extend(source.problems().iter().map(|it| problem(number, it)));
-        if source.problems().iter().any(|it| it.trouble == Trouble::Broken) {
+        if source.problems().iter().any(|it| matches!(it.trouble, Trouble::Broken | Trouble::Absent)) {
             // What was read before the end says little of the rest.
             is_broken = true;
             continue;
@@ -237,12 +237,36 @@ fn problem(file: u16, problem: &Problem) -> Diagnostic {
     let span = Span { file, start: problem.at, end: problem.at + 1 };
     let (code, help) = match problem.trouble {
         Trouble::Broken => (Code::E0033, "export the file again in its own system"),
+        Trouble::Absent => (Code::E0033, "add the file, or take it out of the project"),
         Trouble::SecondBody => (Code::E0902, "put its worksheets into one in its own system"),
         Trouble::Odd => (Code::E0033, "correct it in its own system, and export the file again"),
         Trouble::NotSupported => (Code::E0902, "write what it does in Structured Text"),
         Trouble::OtherLanguage => (Code::E0902, "write it in Structured Text, or have its own system convert it"),
     };
     Diagnostic::new(code, span, problem.message.clone()).help(help)
+}
+
+/// What is there nowhere is one mistake, however often it is named: the first place is reported, with the number of
+/// the others.
+fn said_once(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    let mut first: FxHashMap<(Code, String), (usize, usize)> = FxHashMap::default();
+    let mut kept: Vec<Diagnostic> = Vec::with_capacity(diagnostics.len());
+    for it in diagnostics {
+        if !matches!(it.code, Code::E0102 | Code::E0307) || !it.message.starts_with("there is no ") {
+            kept.push(it);
+            continue;
+        }
+        let place = kept.len();
+        let (_, others) = first.entry((it.code, it.message.clone())).and_modify(|it| it.1 += 1).or_insert((place, 0));
+        if *others == 0 {
+            kept.push(it);
+        }
+    }
+    for (place, others) in first.into_values().filter(|it| it.1 > 0) {
+        let places = if others == 1 { "place" } else { "places" };
+        kept[place].notes.push(format!("it is named in {others} more {places}"));
+    }
+    kept
 }
 
 /// Sorts what was reported, and holds what a program promises that was accepted.
@@ -256,6 +280,7 @@ fn finish(program: Option<Program>, log: Log<'_>, unassigned: Vec<Diagnostic>, l
         diagnostics.extend(unassigned);
     }
     diagnostics.sort_by_key(|it| (it.span.file, it.span.start, it.span.end, it.code));
+    let diagnostics = said_once(diagnostics);
     if let (Some(span), false) = (left_out, rejected) {
         unreachable!("checked program: `{}` was left out without a word", sources.text(span));
     }

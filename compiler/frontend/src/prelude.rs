@@ -8,6 +8,7 @@ use crate::lex::{Kind, Tokens, lex};
 use crate::spelling::Key;
 use crate::{Code, Diagnostic, Options, Severity, Source, Sources, Span};
 use rustc_hash::{FxHashMap, FxHashSet};
+use staunch_runtime::Class;
 use std::sync::LazyLock;
 
 /// A unit of the library.
@@ -37,6 +38,10 @@ const LINE_END: &str = "\n";
 
 /// What the namespaces of the library are in.
 const SYSTEM: &str = "System";
+
+/// The namespace of what is handed on for an input of ANY, and its members.
+const ANY: &str = "__SYSTEM";
+const OF_ANY: [&str; 3] = ["TypeClass", "pValue", "diSize"];
 
 macro_rules! units {
     ($($use_:ident $name:literal $file:tt $([$dialect:ident])? $($need:literal)*;)*) => {
@@ -92,6 +97,15 @@ pub(crate) const UNITS: &[Unit] = units! {
     Function "F_ToLCase"        "f_tolcase"        [Codesys] "T_MaxString";
     Function "F_LTrim"          "f_ltrim"          [Codesys] "T_MaxString";
     Function "F_RTrim"          "f_rtrim"          [Codesys] "T_MaxString";
+    Function "BYTE_TO_HEXSTR"   "byte_to_hexstr"   [Codesys] "LWORD_TO_HEXSTR";
+    Function "WORD_TO_HEXSTR"   "word_to_hexstr"   [Codesys] "LWORD_TO_HEXSTR";
+    Function "DWORD_TO_HEXSTR"  "dword_to_hexstr"  [Codesys] "LWORD_TO_HEXSTR";
+    Function "LWORD_TO_HEXSTR"  "lword_to_hexstr"  [Codesys] "T_MaxString";
+    Type     "HRESULT"          "hresult"          [Codesys];
+    Function "SUCCEEDED"        "succeeded"        [Codesys] "HRESULT";
+    Function "FAILED"           "failed"           [Codesys] "HRESULT";
+    Type     "ST_LibVersion"    "st_libversion"    [Codesys];
+    Type     "T_AmsNetId"       "t_amsnetid"       [Codesys];
     Function "HOST_TO_BE16"     "host_to_be16"     [Codesys];
     Function "HOST_TO_BE32"     "host_to_be32"     [Codesys];
     Function "BE16_TO_HOST"     "be16_to_host"     [Codesys];
@@ -112,6 +126,8 @@ pub(crate) const UNITS: &[Unit] = units! {
     Space    "System.Math"      "system_math";
     Open     "AxUnit"           "axunit"           [Iec];
     Space    "TcUnit"           (tcunit::TEXT);
+    Space    "IBaseLibrary"     "ibaselibrary"     [Codesys];
+    Space    "__SYSTEM"         "system_any"       [Codesys];
     // Without its namespace, as TwinCAT takes it.
     Type     "FB_TestSuite"     (LINE_END) "TcUnit";
 };
@@ -119,16 +135,23 @@ pub(crate) const UNITS: &[Unit] = units! {
 static BY_NAME: LazyLock<FxHashMap<Key<'static>, Unit>> =
     LazyLock::new(|| UNITS.iter().map(|it| (Key(it.name), *it)).collect());
 
-/// The lengths of units' names, by their first letters: most words of a program are passed over by these.
-static LENGTHS: LazyLock<[u32; 26]> = LazyLock::new(|| {
-    let mut lengths = [0; 26];
-    for name in UNITS.iter().map(|it| it.name).filter(|it| !it.contains('.')).chain([SYSTEM]) {
-        if let Some(lengths) = name.bytes().next().and_then(|it| lengths.get_mut(usize::from(it - b'A'))) {
+/// The lengths of units' names, and of what else asks for one, by their first letters: most words of a program are
+/// passed over by these.
+static LENGTHS: LazyLock<[u32; 32]> = LazyLock::new(|| {
+    let mut lengths = [0; 32];
+    let own = UNITS.iter().map(|it| it.name).filter(|it| !it.contains('.'));
+    for name in own.chain([SYSTEM]).chain(OF_ANY).chain(Class::ALL.iter().map(|it| it.name())) {
+        if let Some(lengths) = name.bytes().next().and_then(|it| lengths.get_mut(place_of(it))) {
             *lengths |= 1 << name.len();
         }
     }
     lengths
 });
+
+/// The place of a name's first letter, of an underline the last.
+fn place_of(first: u8) -> usize {
+    usize::from(first.to_ascii_uppercase().wrapping_sub(b'A'))
+}
 
 /// The unit of a name.
 pub(crate) fn unit(name: &str) -> Option<Unit> {
@@ -214,11 +237,19 @@ impl Uses {
         let tokens = lex(file, text);
         let dialect = dialect_of(&tokens, options);
         let mut types = TypeBlock::default();
+        let mut heads = Heads::default();
         for (at, kind) in tokens.kinds.iter().enumerate() {
             types.see(*kind);
+            heads.enter(*kind);
             let word = |at: usize| tokens.places.get(at).and_then(|it| text.get(range(*it))).unwrap_or_default();
             if *kind != Kind::Name {
                 continue;
+            }
+            let (start, end) = tokens.places[at];
+            let before = at.checked_sub(1).map(|it| tokens.kinds[it]);
+            heads.see(word(at), (1..5).map(|it| word(at + it)));
+            if dialect == Dialect::Codesys && heads.hand_on_any(word(at), before) {
+                self.named.extend(unit(ANY).map(|unit| Named { unit, at: Span { file, start, end }, dialect }));
             }
             let is_space = is_system(word(at)) && tokens.kinds.get(at + 1) == Some(&Kind::Dot);
             let space = is_space.then(|| format!("{SYSTEM}.{}", word(at + 2)));
@@ -228,7 +259,6 @@ impl Uses {
             if declares(before, after, &types) && unit.use_ != Use::Open {
                 self.declared.insert(unit.name);
             } else if names(&unit, before, after) && unit.dialect.is_none_or(|it| it == dialect) {
-                let (start, end) = tokens.places[at];
                 self.named.push(Named { unit, at: Span { file, start, end }, dialect });
             }
         }
@@ -265,6 +295,42 @@ impl TypeBlock {
             Kind::Struct => self.structures += 1,
             Kind::EndStruct => self.structures = self.structures.saturating_sub(1),
             _ => {}
+        }
+    }
+}
+
+/// What has the variables that come next.
+#[derive(Default)]
+struct Heads {
+    in_interface: bool,
+    /// Its inputs of ANY are handed on, whatever its body says: a FUNCTION_BLOCK, or a METHOD without a body.
+    is_one: bool,
+}
+
+impl Heads {
+    fn enter(&mut self, kind: Kind) {
+        match kind {
+            Kind::FunctionBlock => self.is_one = true,
+            Kind::Function | Kind::Program => self.is_one = false,
+            Kind::EndInterface => (self.in_interface, self.is_one) = (false, false),
+            _ => {}
+        }
+    }
+
+    fn see<'t>(&mut self, word: &str, mut next: impl Iterator<Item = &'t str>) {
+        if word.eq_ignore_ascii_case("INTERFACE") {
+            self.in_interface = true;
+        } else if word.eq_ignore_ascii_case("METHOD") {
+            self.is_one = self.in_interface || next.any(|it| it.eq_ignore_ascii_case("ABSTRACT"));
+        }
+    }
+
+    /// Whether a word is about an input of ANY that is handed on: `x.TypeClass`, `x : ANY`.
+    fn hand_on_any(&self, word: &str, before: Option<Kind>) -> bool {
+        match before {
+            Some(Kind::Dot) => is_of_any(word),
+            Some(Kind::Colon) => self.is_one && is_generic(word),
+            _ => false,
         }
     }
 }
@@ -318,8 +384,7 @@ fn mentions_any(text: &str) -> bool {
             continue;
         }
         let length = bytes[at..].iter().take_while(|it| is_word(**it)).count();
-        let letter = first.to_ascii_uppercase().wrapping_sub(b'A');
-        let lengths = LENGTHS.get(usize::from(letter)).copied().unwrap_or(0);
+        let lengths = LENGTHS.get(place_of(*first)).copied().unwrap_or(0);
         if length < 32 && lengths & (1 << length) != 0 && text.get(at..at + length).is_some_and(may_name) {
             return true;
         }
@@ -330,7 +395,17 @@ fn mentions_any(text: &str) -> bool {
 
 /// Whether a word may be a unit's name, or what its name begins with.
 fn may_name(word: &str) -> bool {
-    is_system(word) || unit(word).is_some()
+    is_system(word) || unit(word).is_some() || is_of_any(word) || is_generic(word)
+}
+
+/// ANY, ANY_INT and the like.
+fn is_generic(word: &str) -> bool {
+    Class::ALL.iter().any(|it| word.eq_ignore_ascii_case(it.name()))
+}
+
+/// Whether a word is the name of a member of what is handed on for an input of ANY.
+fn is_of_any(word: &str) -> bool {
+    OF_ANY.iter().any(|it| word.eq_ignore_ascii_case(it))
 }
 
 fn is_system(word: &str) -> bool {

@@ -98,6 +98,16 @@ impl Source {
         }
     }
 
+    /// A file that a project lists, and that is not there.
+    pub fn absent(path: impl Into<String>) -> Self {
+        let file = Self::new(path, "\n".to_owned());
+        let name = file.path.rsplit('/').next().unwrap_or_default();
+        let message = format!("`{name}` is not there, and the project lists it");
+        let problems = vec![Problem { at: 0, trouble: vendor::Trouble::Absent, message }];
+        let pieces = vec![Piece { start: 0, at: 0, end: 1, verbatim: true }];
+        Self { origin: Some(Box::new(Origin { file: file.clone(), pieces, problems })), ..file }
+    }
+
     /// The files that a project of TwinCAT's lists, as it writes them.
     pub fn listed(project: &[u8]) -> Result<Vec<String>, String> {
         vendor::listed(&Self::decoded("", project).text)

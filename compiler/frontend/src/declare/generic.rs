@@ -137,6 +137,9 @@ impl<'s> Declarations<'s> {
 
     /// The type that a word means in the FUNCTION that is declared; elsewhere it means none.
     pub(super) fn generic_type(&mut self, class: Class, name: ast::Name<'s>) -> Option<Resolved> {
+        if self.table.any.words.contains(&name.span) {
+            return self.named_type(self.table.any.structure?);
+        }
         if let Some(ty) = self.type_of_word(class) {
             return Some(Resolved { ty, initial: self.start_of(ty) });
         }

@@ -3,6 +3,7 @@
 //! They may be in any order and in any file, and are resolved in the order of their needs.
 
 mod address;
+mod any_input;
 mod binding;
 mod collect;
 mod external;
@@ -64,6 +65,7 @@ pub(crate) fn declare<'s>(
     declarations.note_starts();
     declarations.note_results(bodies);
     declarations.note_kept_in_outs(bodies);
+    declarations.note_any_inputs(bodies);
     declarations.note_generics();
     declarations.collect_addresses(bodies);
     declarations.resolve_all();

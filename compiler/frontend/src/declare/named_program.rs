@@ -11,6 +11,17 @@ use rustc_hash::FxHashSet;
 use staunch_ir::{Field, Retain, Section};
 use std::rc::Rc;
 
+/// Whether a statement is empty, or one that starts the instances, which is done before any PROGRAM runs.
+fn is_nothing(statement: &ast::Statement<'_>) -> bool {
+    match &statement.kind {
+        ast::StatementKind::Empty => true,
+        ast::StatementKind::Expr(ast::Expr { kind: ast::ExprKind::Call(callee, _), .. }) => {
+            callee.first_name().is_some_and(|it| it.text.starts_with(crate::start::START))
+        }
+        _ => false,
+    }
+}
+
 impl<'s> Declarations<'s> {
     /// Gives the PROGRAMs that bodies name their instances, before a body asks what the globals hold.
     pub(super) fn find_named_programs(&mut self, statements: &[Vec<ast::Statement<'s>>]) {
@@ -44,7 +55,10 @@ impl<'s> Declarations<'s> {
                 }
             });
             for (slot, span, is_called) in found {
-                self.name_program(slot, span, is_called);
+                // A body without statements is as good as called: METHODs are all that there is.
+                let body = statements.get(slot).map_or(&[][..], Vec::as_slice);
+                let is_empty = body.iter().all(is_nothing);
+                self.name_program(slot, span, is_called || is_empty);
             }
         }
     }

@@ -210,7 +210,12 @@ impl<'s> Needs<'_, 's> {
     fn path(&mut self, path: &[ast::Name<'s>], sense: Sense) {
         match self.declarations.lookup(path, sense) {
             Found::One(Meaning::Declared(entry)) => self.needs(entry),
-            Found::One(_) | Found::Nothing | Found::Several(_) => {}
+            Found::Nothing => {
+                let any = &self.declarations.table.any;
+                let is_any = path.first().is_some_and(|it| any.words.contains(&it.span));
+                any.structure.filter(|_| is_any).into_iter().for_each(|it| self.needs(Entry::Type(it)));
+            }
+            Found::One(_) | Found::Several(_) => {}
         }
     }
 

@@ -20,12 +20,15 @@ impl<'s> Declarations<'s> {
         }
         for at in 0..self.types.len() {
             let decl = self.types[at].decl;
-            if let Some(pool) = decl.pool
-                && self.is_structure(decl, pool.span)
-                && let Some(Resolved { ty, .. }) = self.named_type(at)
-            {
+            let Some(pool) = decl.pool else { continue };
+            let may_be_made = self.may_be_made(decl, pool.span);
+            let Some(Resolved { ty, .. }) = self.named_type(at) else { continue };
+            if self.is_first_pool(decl.name, ty, pool.span) {
                 let name = self.name_in_full(decl.name);
-                let pool = self.declare_pool(&name, decl.name, ty, pool);
+                let pool = if may_be_made { self.declare_pool(&name, decl.name, ty, pool) } else { None };
+                if let (None, Type::Array(id)) = (&pool, ty) {
+                    self.pools_missing.insert(self.program.array(id).element);
+                }
                 self.pools.insert(ty, pool);
             }
         }
@@ -50,19 +53,64 @@ impl<'s> Declarations<'s> {
         pou.kind.is_block()
     }
 
-    fn is_structure(&mut self, decl: &ast::TypeDecl<'s>, pool: Span) -> bool {
-        let is_it = matches!(decl.ty.kind, TypeKind::Struct(_));
+    /// Whether objects of a type can be made one by one: structures, and values of a type that `__NEW` names; or as an
+    /// array, of which `__NEW` is given the number of elements.
+    fn may_be_made(&mut self, decl: &ast::TypeDecl<'s>, pool: Span) -> bool {
+        let is_it = match &decl.ty.kind {
+            TypeKind::Struct(_) | TypeKind::Named(_) => true,
+            TypeKind::Array { bounds, .. } => matches!(bounds.as_slice(), [ast::Bound::Range(..)]),
+            TypeKind::Error
+            | TypeKind::String { .. }
+            | TypeKind::Subrange { .. }
+            | TypeKind::Union(_)
+            | TypeKind::Enum { .. }
+            | TypeKind::Reference { .. } => false,
+        };
         if !is_it && !matches!(decl.ty.kind, TypeKind::Error) {
             self.refuse_pool(pool, decl.name);
         }
+        if let Some(initial) = decl.initial.as_ref().filter(|_| is_it && !matches!(decl.ty.kind, TypeKind::Struct(_))) {
+            let message = format!("the objects of the pool of `{}` have no initial value of their own", decl.name.text);
+            self.report(
+                Diagnostic::new(Code::E0413, initial.span, message)
+                    .label("`__NEW` names their type by any of its names")
+                    .help("delete it, and assign the value after `__NEW`"),
+            );
+            return false;
+        }
         is_it
+    }
+
+    fn is_first_pool(&mut self, name: ast::Name<'s>, ty: Type, pool: Span) -> bool {
+        if self.pools.contains_key(&ty) {
+            let ty = self.program.type_name(ty);
+            self.report(
+                Diagnostic::new(
+                    Code::E0413,
+                    pool,
+                    format!("`{}` is another name of {ty}, which has a pool", name.text),
+                )
+                .label("one pool has all objects of a type")
+                .help("delete this pragma, and count these objects there"),
+            );
+            return false;
+        }
+        if let Some(message) = self.array_of_instances(ty) {
+            self.report(Diagnostic::new(Code::E0413, pool, message).label("a pool is for an array of values"));
+            return false;
+        }
+        true
+    }
+
+    fn array_of_instances(&self, ty: Type) -> Option<String> {
+        matches!(ty, Type::Array(_)).then(|| self.held_instance(ty)).flatten()
     }
 
     fn refuse_pool(&mut self, pool: Span, name: ast::Name<'s>) {
         self.report(
             Diagnostic::new(Code::E0413, pool, format!("`{}` has no use for a pool", name.text))
-                .label("a pool is for a FUNCTION_BLOCK, or a TYPE that is a STRUCT")
-                .other(name.span, "this is neither"),
+                .label("a pool is for a FUNCTION_BLOCK, or a TYPE that is a STRUCT, an ARRAY or another name of a type")
+                .other(name.span, "this is none of these"),
         );
     }
 

@@ -71,6 +71,13 @@ impl<'s> Declarations<'s> {
         let scope = Rc::new(Scope::default());
         let doc = decl.doc.clone();
         let name = self.name_in_full(decl.name);
+        if let Some(span) = decl.is_abstract.filter(|it| !self.dialect(*it).has_abstract_types()) {
+            self.report(
+                Diagnostic::new(Code::E0403, span, format!("the TYPE `{}` cannot be ABSTRACT", decl.name.text))
+                    .label("TwinCAT has that, for structures that others extend")
+                    .help("delete the word: a structure without it can be extended as well"),
+            );
+        }
         let mut resolved = match (&decl.base, &decl.ty.kind) {
             (Some(base), TypeKind::Struct(members)) => {
                 let base = self.base_structure(base)?;
@@ -234,17 +241,19 @@ impl<'s> Declarations<'s> {
             self.report(error);
             return;
         }
-        let full = around.iter().map(|it| it.text).collect::<Vec<_>>().join(".");
+        // The first part that is not there.
+        let known =
+            (1..around.len()).rev().find(|it| self.names.space_at(self.site(name.span), &around[..*it]).is_some());
+        let full = around.iter().take(known.unwrap_or(0) + 1).map(|it| it.text).collect::<Vec<_>>().join(".");
         let error = match Family::named(&full) {
             Some(family) => no_such_block(family, name),
             None => {
                 let families = Family::ALL.map(Family::name);
                 let place = around.first().map_or(span, |it| it.span);
-                let error = Diagnostic::new(Code::E0102, place, format!("there is no namespace `{full}`"));
-                match self.missing_library(&full) {
-                    Some(help) => error.label("the project refers to a library by this name").help(help),
-                    None => error.help(format!("the families of blocks are {}", list(&families))),
-                }
+                self.not_there(&full, place).unwrap_or_else(|| {
+                    Diagnostic::new(Code::E0102, place, format!("there is no namespace `{full}`"))
+                        .help(format!("the families of blocks are {}", list(&families)))
+                })
             }
         };
         self.report(error);

@@ -134,7 +134,10 @@ pub(crate) fn as_written(given: &[Given<'_, '_>]) -> Vec<usize> {
 impl<'s> Checker<'_, 's> {
     /// Evaluates the next part, a value of this type.
     pub(crate) fn value_part(&mut self, parts: &mut Parts, expr: &ast::Expr<'s>, ty: Type, role: Role) -> Option<()> {
-        let value = self.after_parts(&mut parts.written, |this| this.value(expr, ty))?;
+        let value = self.after_parts(&mut parts.written, |this| match this.any_value(expr, ty) {
+            Some(any) => any,
+            None => this.value(expr, ty),
+        })?;
         parts.push(Held::Value(value), role, expr.span);
         Some(())
     }

@@ -229,6 +229,7 @@ impl<'s> Checker<'_, 's> {
                     self.polymorphic_part(&mut parts, formal, Role::Stored(field, ty), expr)
                 }
                 (Target::Field(field), Given::Value(expr)) => {
+                    self.is_of_class(formal, expr)?;
                     self.value_part(&mut parts, expr, ty, Role::Stored(field, ty))
                 }
                 (Target::Param(_), Given::Value(expr)) => {

@@ -33,6 +33,9 @@ impl<'s> Checker<'_, 's> {
         if let Some(value) = self.new_object(callee, arguments, expr.span) {
             return value;
         }
+        if let Some(value) = self.pou_text(callee, arguments, expr.span) {
+            return value;
+        }
         if let Some(value) = self.bound_function(callee, arguments, expr.span) {
             return value;
         }

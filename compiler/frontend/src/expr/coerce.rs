@@ -135,6 +135,17 @@ impl<'s> Checker<'_, 's> {
                 let number = self.convert(Conversion::Same, Type::Elementary(base), expr);
                 self.may_become(base, into, span).then(|| self.convert(Conversion::Value, to, number))
             }
+            (Type::Enum(from), Type::Enum(into)) if self.counts_as_number(into, span) => {
+                if let Some(number) = expr.as_const().and_then(Value::as_integer) {
+                    return self.coerce(Operand::Integer(number), to, span);
+                }
+                let [from, into] = [from, into].map(|it| self.decl.program.enumeration(it).base);
+                let number = self.convert(Conversion::Same, Type::Elementary(from), expr);
+                self.may_become(from, into, span).then(|| {
+                    let number = self.convert(Conversion::Value, Type::Elementary(into), number);
+                    self.convert(Conversion::Same, to, number)
+                })
+            }
             (Type::Elementary(from), Type::Enum(id))
                 if self.counts_as_number(id, span) && as_number(from).is_integer() =>
             {

@@ -159,6 +159,7 @@ impl<'s> Checker<'_, 's> {
         expr: &ast::Expr<'s>,
     ) -> Option<()> {
         let formal = &signature.formals[at];
+        self.is_of_class(formal, expr)?;
         match signature.params[at].mode {
             Mode::Value(_) if formal.section == Section::InOut => {
                 self.polymorphic_part(parts, formal, Role::Passed(1 + at), expr)

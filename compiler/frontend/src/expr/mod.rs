@@ -1,6 +1,7 @@
 //! Expressions and calls: what types they have, and what they become. They are checked against
 //! declarations, and resolve none.
 
+mod any_input;
 mod argument;
 mod binding;
 mod bit_instruction;
@@ -39,6 +40,7 @@ mod overlay;
 mod overload;
 mod place;
 mod pool;
+mod pou_text;
 mod promotion;
 mod qualified;
 mod query;

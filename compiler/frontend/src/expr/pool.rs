@@ -4,6 +4,7 @@
 use super::checker::Checker;
 use super::operand::Operand;
 use crate::types::pools::Pool;
+use crate::types::table::Resolved;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ArgumentKind, ExprKind as Ast};
 use staunch_ir::{
@@ -42,8 +43,15 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn made(&mut self, arguments: &[ast::Argument<'s>], span: Span) -> Option<Expr> {
+        if let [
+            ast::Argument { kind: ArgumentKind::Positional(named), .. },
+            ast::Argument { kind: ArgumentKind::Positional(count), .. },
+        ] = arguments
+        {
+            return self.made_array(named, count, span);
+        }
         let [ast::Argument { kind: ArgumentKind::Positional(written), .. }] = arguments else {
-            self.report_arguments_of_new(arguments, span);
+            self.report_arguments_of_new(span);
             return None;
         };
         let (named, given) = match &written.kind {
@@ -69,30 +77,91 @@ impl<'s> Checker<'_, 's> {
         Some(made)
     }
 
-    fn report_arguments_of_new(&mut self, arguments: &[ast::Argument<'s>], span: Span) {
-        if let [_, count] = arguments {
-            self.report(
-                Diagnostic::new(Code::E0902, count.span, "`__NEW` of an array is not supported")
-                    .label("a pool has single objects")
-                    .help("declare the array in a STRUCT with a pool, and write `__NEW(Struct)`"),
-            );
-            return;
-        }
+    fn report_arguments_of_new(&mut self, span: Span) {
         self.report(
             Diagnostic::new(Code::E0302, span, "`__NEW` takes the type of the object")
-                .label("expected `__NEW(Type)`, or `__NEW(Type(input := value))` for the inputs of its FB_init"),
+                .label("expected `__NEW(Type)`, `__NEW(Type(input := value))` for the inputs of its FB_init, or `__NEW(Type, count)`"),
+        );
+    }
+
+    /// `__NEW(INT, n)`: an array in the pool of those that are long enough, the shortest first.
+    fn made_array(&mut self, named: &ast::Expr<'s>, count: &ast::Expr<'s>, span: Span) -> Option<Expr> {
+        let element = self.type_named(named)?;
+        let wanted = self.value(count, Type::LINT);
+        let pools = self.pools_of_arrays(element);
+        if pools.is_empty() {
+            if self.decl.pools_missing.insert(element) {
+                self.report_no_array_pool(element, named.span);
+            }
+            return None;
+        }
+        let at = self.at(span);
+        let covered = std::mem::replace(&mut self.is_covered, false);
+        let n = self.temporary("count", Type::LINT);
+        self.assign(n.clone(), wanted?, span);
+        let ty = self.decl.reference_type(RefKind::PointerTo, element);
+        let made = self.temporary("made", ty);
+        let null = self.null(Some(ty), span);
+        self.assign(made.clone(), null, span);
+        let lint = |value| Expr::constant(Elementary::Lint, Value::I64(value), at);
+        let test = |op, a: &Place, b| Expr::apply(op, Type::BOOL, vec![Expr::load(a.clone(), at), b], at);
+        for (length, low, pool) in pools {
+            // What is longer than the arrays of this pool looks in the next; so does what finds no place.
+            let open = self.compared_with_null(Op::Eq, &made, span);
+            let fits = [test(Op::Ge, &n, lint(1)), test(Op::Le, &n, lint(length)), open];
+            let condition = fits.into_iter().reduce(|a, b| Expr::apply(Op::And, Type::BOOL, vec![a, b], at))?;
+            let then = self.nested(|this| {
+                let array = this.make(&pool, &[], span);
+                let taken = this.temporary("taken", array.ty);
+                this.assign(taken.clone(), array, span);
+                let condition = this.compared_with_null(Op::Ne, &taken, span);
+                let then = this.nested(|this| {
+                    let first = taken.clone().deref(pool.object, at).index(lint(low), element, at);
+                    let first = Expr::new(ty, ExprKind::AddressOf(Box::new(first)), at);
+                    this.assign(made.clone(), first, span);
+                });
+                this.push(StatementKind::If { condition, then, otherwise: Vec::new() }, span);
+            });
+            self.push(StatementKind::If { condition, then, otherwise: Vec::new() }, span);
+        }
+        self.is_covered = covered;
+        Some(Expr::load(made, at))
+    }
+
+    fn compared_with_null(&mut self, op: Op, reference: &Place, span: Span) -> Expr {
+        let (at, lword) = (self.at(span), Type::Elementary(Elementary::Lword));
+        let bits = self.convert(Conversion::Same, lword, Expr::load(reference.clone(), at));
+        Expr::apply(op, Type::BOOL, vec![bits, Expr::constant(Elementary::Lword, Value::U64(0), at)], at)
+    }
+
+    /// The pools of arrays of a type, the shorter ones first: their lengths, and first indices.
+    fn pools_of_arrays(&self, element: Type) -> Vec<(i64, i64, Pool)> {
+        let arrays = self.decl.pools.iter().filter_map(|(ty, pool)| {
+            let Type::Array(id) = ty else { return None };
+            let array = self.decl.program.array(*id);
+            let length = i64::try_from(array.len()).ok()?;
+            (array.element == element).then_some((length, array.low, pool.clone()?))
+        });
+        let mut arrays: Vec<_> = arrays.collect();
+        arrays.sort_by_key(|it| (it.0, it.1));
+        arrays
+    }
+
+    fn report_no_array_pool(&mut self, element: Type, span: Span) {
+        let name = self.type_name(element);
+        self.report(
+            Diagnostic::new(Code::E0413, span, format!("there is no pool with arrays of {name}"))
+                .label("a program has no heap")
+                .help(format!(
+                    "declare one: `{{pool 4}} TYPE Some : ARRAY[0..99] OF {name}; END_TYPE`, with the most arrays at a time, \
+                     and the most elements of one"
+                )),
         );
     }
 
     /// The pool of the type that an expression names.
     fn pool_named(&mut self, named: &ast::Expr<'s>) -> Option<Pool> {
-        let Some(ty) = self.type_of_path(named) else {
-            self.report(
-                Diagnostic::new(Code::E0413, named.span, "`__NEW` makes objects of a type")
-                    .label("expected the name of a FUNCTION_BLOCK or STRUCT"),
-            );
-            return None;
-        };
+        let ty = self.type_named(named)?;
         if let Some(pool) = self.decl.pools.get(&ty) {
             return pool.clone();
         }
@@ -105,10 +174,23 @@ impl<'s> Checker<'_, 's> {
             );
             return None;
         }
+        // Said once of each type.
+        self.decl.pools.insert(ty, None);
         let message = format!("`{name}` has no pool that `__NEW` could take an object from");
         let error = Diagnostic::new(Code::E0413, named.span, message).label("a program has no heap");
         self.report(self.with_pragma(error, ty));
         None
+    }
+
+    fn type_named(&mut self, named: &ast::Expr<'s>) -> Option<Type> {
+        let ty = self.type_of_path(named);
+        if ty.is_none() {
+            self.report(
+                Diagnostic::new(Code::E0413, named.span, "`__NEW` makes objects of a type")
+                    .label("expected the name of a FUNCTION_BLOCK or a type"),
+            );
+        }
+        ty
     }
 
     fn is_abstract(&self, ty: Type) -> Option<Span> {
@@ -136,7 +218,10 @@ impl<'s> Checker<'_, 's> {
             | Type::Array(_)
             | Type::Block(_)
             | Type::Reference(_) => {
-                return error.help("declare a STRUCT with such a member, with `{pool 16}` before its TYPE");
+                let name = self.type_name(ty);
+                return error.help(format!(
+                    "declare one: `{{pool 16}} TYPE Some : {name}; END_TYPE`, with the most objects that there are at a time"
+                ));
             }
         };
         let name = self.type_name(ty);
@@ -166,7 +251,7 @@ impl<'s> Checker<'_, 's> {
         let then = self.nested(|this| {
             let (is_used, object) = pool.at(Expr::load(free.clone(), at), at);
             let initial = this.decl.start_of(object.ty);
-            let value = Expr::new(object.ty, ExprKind::Aggregate(initial), at);
+            let value = this.initial_value(&Resolved { ty: object.ty, initial }, span);
             this.assign(object.clone(), value, span);
             this.assign(is_used, Expr::bool(true, at), span);
             let reference = Expr::new(ty, ExprKind::AddressOf(Box::new(object.clone())), at);
@@ -298,13 +383,16 @@ impl<'s> Checker<'_, 's> {
 
     fn pools_of(&mut self, types: &[Type], title: Type, span: Span) -> Option<Vec<Pool>> {
         let known: Vec<_> = types.iter().filter_map(|it| self.decl.pools.get(it).cloned()).collect();
-        let was_refused = known.iter().any(Option::is_none);
-        let pools: Vec<_> = known.into_iter().flatten().collect();
+        let was_refused =
+            known.iter().any(Option::is_none) || types.iter().any(|it| self.decl.pools_missing.contains(it));
+        let arrays = types.iter().flat_map(|it| self.pools_of_arrays(*it)).map(|it| it.2);
+        let pools: Vec<_> = known.into_iter().flatten().chain(arrays).collect();
         if pools.is_empty() && was_refused {
             return None;
         }
         if pools.is_empty() {
             let name = self.type_name(title);
+            types.iter().for_each(|it| drop(self.decl.pools.insert(*it, None)));
             let message = format!("there is no pool with objects of `{name}`");
             let error =
                 Diagnostic::new(Code::E0413, span, message).label("`__DELETE` gives an object back to its pool");

@@ -181,6 +181,10 @@ impl<'s> Checker<'_, 's> {
         if self.is_of_unknown_base() {
             return;
         }
+        if let Some(error) = self.decl.not_there(name.text, name.span) {
+            self.report(error);
+            return;
+        }
         let block = self.decl.bare_block(name).is_some();
         let message = if block {
             format!("`{}` is a FUNCTION_BLOCK, not an instance of one", name.text)

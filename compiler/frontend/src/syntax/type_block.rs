@@ -121,11 +121,15 @@ fn type_decl<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeDecl<'s>> {
     let colon = token(Kind::Colon).ignored().or(foreign_types::no_colon_in_type());
     let path = name().separated_by(token(Kind::Dot)).at_least(1).collect();
     let base = word("EXTENDS").ignore_then(path).or_not();
-    let head = name().then(base).then_ignore(colon);
-    let ((name, base), (ty, initial)) = input.parse(head.then(type_spec().then(optional_initial())))?;
+    // `ABSTRACT` may be a name, too.
+    let modified = word("ABSTRACT").then(name()).map(|(word, name)| (Some(word), name));
+    let named = modified.or(name().map(|it| (None, it)));
+    let head = named.then(base).then_ignore(colon);
+    let (((is_abstract, name), base), (ty, initial)) = input.parse(head.then(type_spec().then(optional_initial())))?;
     let closed = matches!(ty.kind, TypeKind::Struct(_) | TypeKind::Union(_));
     if !closed || input.kind() == Kind::Semicolon {
         input.parse(end())?;
     }
-    Ok(TypeDecl { base, attributes, pool, initial, doc: input.doc(first), ..TypeDecl::new(name, ty) })
+    let doc = input.doc(first);
+    Ok(TypeDecl { is_abstract, base, attributes, pool, initial, doc, ..TypeDecl::new(name, ty) })
 }

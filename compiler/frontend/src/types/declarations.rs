@@ -17,7 +17,7 @@ use crate::log::Log;
 use crate::names::{Entry, Found, Meaning, Names, Sense, Site, SpaceId};
 use crate::spelling::Key;
 use crate::{Code, Diagnostic, Span, ast, start};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{
     BlockId, Location, Program, Projection, RefKind, RefType, ReferenceId, Section, SourceFile, StructId, Type,
 };
@@ -177,6 +177,8 @@ pub(crate) struct Declarations<'s> {
     pub starts: Starts<'s>,
     /// The pools that `__NEW` takes objects from, by their types; `None` for one that was refused.
     pub pools: FxHashMap<Type, Option<Pool>>,
+    /// The types of which `__NEW` asks for arrays, and no pool has any: that was reported.
+    pub pools_missing: FxHashSet<Type>,
     /// A call asks for an instance of a generic FUNCTION, whose signature is made as all are: by a layer above.
     pub build_signature: BuildSignature<'s>,
 }
@@ -207,6 +209,7 @@ impl<'s> Declarations<'s> {
             overloads: Overloads::default(),
             starts: Starts::default(),
             pools: FxHashMap::default(),
+            pools_missing: FxHashSet::default(),
             build_signature,
         }
     }
@@ -315,6 +318,13 @@ impl<'s> Declarations<'s> {
         let is_there = self.names.libraries.iter().any(|it| it.eq_ignore_ascii_case(library));
         let path = format!("`libraries = [\"…/{library}.plcproj\"]`");
         (!is_there).then(|| format!("have its sources in staunch.toml, a folder or project named `{library}`: {path}"))
+    }
+
+    /// A namespace by which the project refers to a library that is not there.
+    pub fn not_there(&self, namespace: &str, place: Span) -> Option<Diagnostic> {
+        let help = self.missing_library(namespace)?;
+        let error = Diagnostic::new(Code::E0102, place, format!("there is no namespace `{namespace}`"));
+        Some(error.label("the project refers to a library by this name").help(help))
     }
 
     /// What a POU is called for people: `Class.Method`.

@@ -223,7 +223,9 @@ impl<'s> Declarations<'s> {
 
     /// The class that a name means, unless something is declared by that name.
     pub fn class_word(&self, name: ast::Name<'s>) -> Option<Class> {
-        class_named(name.text).filter(|_| self.lookup(&[name], Sense::Type) == Found::Nothing)
+        class_named(name.text).filter(|_| {
+            self.lookup(&[name], Sense::Type) == Found::Nothing && !self.table.any.words.contains(&name.span)
+        })
     }
 
     /// Whether variables of an instance count as used because those of the FUNCTION do.

@@ -7,6 +7,7 @@ use crate::ast::Name;
 use crate::spelling::Key;
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{Const, EnumId, RefKind, ReferenceId, StructId, Type, Value};
+use staunch_runtime::Class;
 use std::rc::Rc;
 
 /// Stands for the globals' structure until it is made, when all declared globals are known.
@@ -24,6 +25,17 @@ impl Resolved {
     pub fn plain(ty: Type) -> Self {
         Self { ty, initial: Const::Zero }
     }
+}
+
+/// The inputs of ANY and the like that get the argument's class, address and size.
+#[derive(Debug, Default)]
+pub(crate) struct AnyInputs {
+    /// The slot of the structure that they get.
+    pub structure: Option<usize>,
+    /// Where the words stand that are their types.
+    pub words: FxHashSet<Span>,
+    /// What each may be given, by where its name is declared.
+    pub classes: FxHashMap<Span, Class>,
 }
 
 /// What is known of the types of a program beside what the program itself says.
@@ -48,6 +60,8 @@ pub(crate) struct Table<'s> {
     pub strict: FxHashSet<EnumId>,
     /// Those whose values TO_STRING spells by their names: `{attribute 'to_string'}`.
     pub spelled: FxHashSet<EnumId>,
+    /// What a program hands on for inputs of ANY as CODESYS does.
+    pub any: AnyInputs,
     /// How many constants the initial values hold so far.
     pub constants: usize,
     /// The references to types with names.

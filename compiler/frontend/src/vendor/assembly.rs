@@ -27,6 +27,8 @@ pub struct Problem {
 pub enum Trouble {
     /// The file cannot be read as what it is.
     Broken,
+    /// There is no such file.
+    Absent,
     /// A body in another language.
     OtherLanguage,
     /// A second body.
