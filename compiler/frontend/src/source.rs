@@ -2,6 +2,7 @@
 //! of the file.
 
 use crate::vendor::{self, Assembly, Piece, Problem, Reference};
+use core::sync::atomic::{AtomicUsize, Ordering};
 use staunch_runtime::Location;
 
 /// Bytes `start..end` of file number `file`.
@@ -28,6 +29,8 @@ pub struct Source {
     pub text: String,
     /// Byte offset at which each line starts.
     lines: Vec<u32>,
+    /// The line that was asked for last.
+    line: Hint,
     /// The characters that start before each [`CHUNK`] of bytes; empty where each is one byte.
     characters: Vec<u32>,
     encoding: Encoding,
@@ -41,7 +44,36 @@ pub struct Source {
 struct Origin {
     file: Source,
     pieces: Vec<Piece>,
+    /// The piece that was asked for last.
+    piece: Hint,
     problems: Vec<Problem>,
+}
+
+/// Where something was found in a list that is in order. The next question is most often about the same place, or the next.
+#[derive(Debug, Default)]
+struct Hint(AtomicUsize);
+
+impl Clone for Hint {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+impl Hint {
+    /// How many of the items start at an offset or before it.
+    fn started<T>(&self, items: &[T], offset: u32, start: impl Fn(&T) -> u32) -> usize {
+        let is_it = |count: &usize| {
+            let last = count.checked_sub(1).and_then(|it| items.get(it));
+            last.is_some_and(|it| start(it) <= offset) && items.get(*count).is_none_or(|it| offset < start(it))
+        };
+        let known = self.0.load(Ordering::Relaxed);
+        let near = [known, known + 1].into_iter().find(is_it);
+        let found = near.unwrap_or_else(|| items.partition_point(|it| start(it) <= offset));
+        if found != known {
+            self.0.store(found, Ordering::Relaxed);
+        }
+        found
+    }
 }
 
 /// How a file's bytes hold its text.
@@ -83,7 +115,8 @@ impl Source {
         let lines =
             core::iter::once(0).chain(starts.map(|(at, _)| u32::try_from(at + 1).unwrap_or(u32::MAX))).collect();
         let characters = if text.is_ascii() { Vec::new() } else { counted(text.as_bytes()) };
-        Self { path: path.into(), text, lines, characters, encoding: Encoding::default(), origin: None, library: None }
+        let (encoding, line) = (Encoding::default(), Hint::default());
+        Self { path: path.into(), text, lines, line, characters, encoding, origin: None, library: None }
     }
 
     /// The Structured Text in a file, also in one of another system's.
@@ -92,7 +125,10 @@ impl Source {
         match vendor::read(&file.text) {
             Some(Assembly { text, pieces, problems }) => {
                 let path = file.path.clone();
-                Self { origin: Some(Box::new(Origin { file, pieces, problems })), ..Self::new(path, text) }
+                Self {
+                    origin: Some(Box::new(Origin { file, pieces, piece: Hint::default(), problems })),
+                    ..Self::new(path, text)
+                }
             }
             None => file,
         }
@@ -244,7 +280,7 @@ impl Source {
         if let Some(origin) = &self.origin {
             return origin.file.line_column(origin.place(offset, false));
         }
-        let line = self.lines.partition_point(|start| *start <= offset).max(1);
+        let line = self.line.started(&self.lines, offset, |it| *it).max(1);
         let column = self.characters_before(offset) - self.characters_before(self.lines[line - 1]) + 1;
         (u32::try_from(line).unwrap_or(u32::MAX), column)
     }
@@ -253,7 +289,7 @@ impl Source {
 impl Origin {
     /// The piece that a byte of the text is in.
     fn piece(&self, offset: u32) -> Option<Piece> {
-        let after = self.pieces.partition_point(|it| it.start <= offset);
+        let after = self.piece.started(&self.pieces, offset, |it| it.start);
         self.pieces.get(after.checked_sub(1)?).copied()
     }
 

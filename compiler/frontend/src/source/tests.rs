@@ -13,6 +13,12 @@ fn a_column_counts_characters_wherever_it_stands() {
         assert_eq!(usize::try_from(found.1).unwrap(), column, "{offset}");
     }
     assert_eq!(source.line_column(u32::MAX), (3, 602));
+    let line = |offset: usize| u32::try_from(text[..offset].matches('\n').count() + 1).unwrap();
+    let offsets: Vec<usize> = text.char_indices().map(|it| it.0).collect();
+    // Back, and with steps that pass lines by.
+    for offset in offsets.iter().rev().chain(offsets.iter().cycle().step_by(677).take(2000)) {
+        assert_eq!(source.line_column(u32::try_from(*offset).unwrap()).0, line(*offset), "{offset}");
+    }
 }
 
 #[test]
