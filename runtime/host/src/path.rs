@@ -151,7 +151,11 @@ fn way_to(map: &Map, ty: Type, start: usize, offset: usize, size: usize) -> Opti
 }
 
 fn named<'m>(variables: &'m [Variable], name: &str) -> Option<&'m Variable> {
-    variables.iter().find(|it| same(&it.name, name))
+    let mut found = variables.iter().filter(|it| same(&it.name, name));
+    let first = found.next()?;
+    // The storage of a UNION has a name that a member may have, too.
+    let is_storage = first.section == Section::Memory;
+    found.next().filter(|_| is_storage).or(Some(first))
 }
 
 /// IEC names are the same in any case.

@@ -140,7 +140,9 @@ impl Walk<'_> {
         let map = self.map;
         match (ty, map.array(ty)) {
             _ if self.is_in_parts(ty, kept) => {
-                for member in map.structure(ty).map_or(&[][..], |it| &it.members) {
+                // The members of a UNION are kept as the bytes that they share.
+                let members = map.structure(ty).map_or(&[][..], |it| &it.members);
+                for member in members.iter().filter(|it| !it.view) {
                     self.variable(&path, offset, member, kept);
                 }
             }

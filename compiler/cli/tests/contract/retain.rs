@@ -27,6 +27,19 @@ fn they_live_from_process_to_process() {
     assert_eq!(interpreted, "scan,time_ms,kept,other,c.CV,plain\n1,0,5,9,5,1\n2,10,6,10,6,2\n");
 }
 
+/// The members of a UNION are there once, as its bytes: none has a value of its own that another one would be dropped for.
+#[test]
+fn a_union_is_kept_as_its_bytes() {
+    let text = "TYPE Number : UNION bytes : ARRAY[1..4] OF BYTE; number : UDINT; text : STRING[3]; END_UNION; END_TYPE
+PROGRAM Main VAR RETAIN w : Number; END_VAR w.number := w.number + 16#00202122; END_PROGRAM";
+    let folder = Folder::with("union", &[("main.st", text)]);
+    let run = "run main.st --scans 1 --trace - --retain plant.retain --vars w.number,w.bytes[1],w.text";
+    assert_eq!(folder.staunch(run).out(0), "scan,time_ms,w.number,w.bytes[1],w.text\n1,0,2105634,34,\"\"\"! \"\n");
+    let again = folder.staunch(run);
+    assert_eq!(again.err, "");
+    assert_eq!(again.out(0), "scan,time_ms,w.number,w.bytes[1],w.text\n1,0,4211268,68,DB@\n");
+}
+
 #[test]
 fn an_edited_program_takes_what_still_fits() {
     let folder = folder("edited");
