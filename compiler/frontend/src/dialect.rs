@@ -83,6 +83,16 @@ impl Dialect {
         self == Self::Codesys
     }
 
+    /// `__ISVALIDREF` takes a VAR_IN_OUT.
+    pub(crate) fn has_in_outs_that_are_references(self) -> bool {
+        self == Self::Codesys
+    }
+
+    /// A STRUCT may have no members.
+    pub(crate) fn has_empty_structures(self) -> bool {
+        self == Self::Codesys
+    }
+
     /// `RETURN(condition)`.
     pub const fn returns_on_conditions(self) -> bool {
         matches!(self, Self::Codesys)

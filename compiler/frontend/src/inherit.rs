@@ -13,7 +13,7 @@ use crate::source::Span;
 use crate::spelling::{Key, nearest};
 use crate::start::{EXIT, is_initial};
 use classes::{Base, Classes};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// A class extends no more than so many, one through the other.
 const MAX_DEPTH: usize = 100;
@@ -30,6 +30,8 @@ pub(crate) fn expand<'s>(files: &mut [File<'s>], log: &mut Log<'s>) {
         diagnostics: &mut log.diagnostics,
         made: FxHashMap::default(),
         depths: FxHashMap::default(),
+        unknown: FxHashSet::default(),
+        is_unknown: false,
     };
     for at in 0..classes.all.len() {
         expansion.make_all(at);
@@ -60,6 +62,10 @@ struct Expansion<'c, 's> {
     made: FxHashMap<usize, Pou<'s>>,
     /// How many classes each extends, one through the other.
     depths: FxHashMap<usize, usize>,
+    /// The classes that extend what is not known, directly or not: nobody knows what they override.
+    unknown: FxHashSet<usize>,
+    /// Whether the class that is made is one of them.
+    is_unknown: bool,
 }
 
 impl<'s> Expansion<'_, 's> {
@@ -82,6 +88,8 @@ impl<'s> Expansion<'_, 's> {
     /// Makes the class in a place, whose base is whole.
     fn make(&mut self, at: usize, base: Option<usize>) {
         let pou = &self.classes.all[at].pou;
+        self.is_unknown = base.map_or(pou.extends.is_some(), |it| self.unknown.contains(&it));
+        self.unknown.extend(Some(at).filter(|_| self.is_unknown));
         let base = base.filter(|it| self.is_near(at, *it));
         let base = base.and_then(|it| self.made.get(&it)).cloned();
         let whole = match &base {
@@ -251,7 +259,7 @@ impl<'s> Expansion<'_, 's> {
     /// Reports OVERRIDE where nothing is overridden.
     fn check_base_of_override(&mut self, new: &Pou<'s>, base: Option<&Pou<'s>>) {
         let routines = base.map_or(&[][..], |it| &it.routines);
-        let Some(span) = new.modifiers.overrides else { return };
+        let Some(span) = new.modifiers.overrides.filter(|_| !self.is_unknown) else { return };
         if routines.iter().any(|it| !it.is_hidden && self.overrides(new, it)) {
             return;
         }

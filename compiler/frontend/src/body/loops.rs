@@ -157,9 +157,7 @@ impl<'s> Checker<'_, 's> {
     fn counter_type(&mut self, ty: Type, span: Span) -> Option<Elementary> {
         match ty {
             Type::Elementary(it) if it.is_integer() || self.counts(it, span) => Some(it),
-            Type::Enum(id) if self.decl.dialect(span).counts_by_enumerations() => {
-                Some(self.decl.program.enumeration(id).base)
-            }
+            Type::Enum(id) if self.is_counted_by(id, span) => Some(self.decl.program.enumeration(id).base),
             other => {
                 let name = self.type_name(other);
                 self.report(

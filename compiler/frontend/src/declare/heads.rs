@@ -179,7 +179,10 @@ impl<'s> Declarations<'s> {
         for new in own {
             // With other parameters it is one more of the name.
             let is_another = |it: &usize| self.has_overloads(*it) && !self.have_same_parameters(new, *it);
-            let old = self.routine_for(base, new).filter(|it| !self.is_alike(new, *it) && !is_another(it));
+            // An ACTION has the parameters of its class, of which an heir may have more.
+            let are_actions = |it: &usize| [new, *it].iter().all(|it| self.pous[*it].ast.kind == PouKind::Action);
+            let is_other = |it: &usize| !self.is_alike(new, *it) && !is_another(it) && !are_actions(it);
+            let old = self.routine_for(base, new).filter(is_other);
             let Some(old) = old else { continue };
             let (new, old) = (self.pous[new].ast.name, self.pous[old].ast.name);
             self.report(

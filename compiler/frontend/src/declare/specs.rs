@@ -93,6 +93,8 @@ impl<'s> Declarations<'s> {
             let has = |wanted: &str| decl.attributes.iter().any(|it| it.eq_ignore_ascii_case(wanted));
             self.table.strict.extend(has("strict").then_some(id));
             self.table.spelled.extend(has("to_string").then_some(id));
+            let names_values = matches!(decl.ty.kind, TypeKind::Enum { base: Some(_), .. });
+            self.table.named_values.extend((names_values && !has("strict")).then_some(id));
         }
         if let Some(initial) = &decl.initial {
             resolved.initial = self.initial(initial, &resolved, &scope)?;

@@ -96,6 +96,11 @@ impl<'s> Declarations<'s> {
                 if is_bit { made.push_bit(field) } else { made.push(field) }
             }
         }
+        if made.fields.is_empty() && complete && self.dialect(span).has_empty_structures() {
+            // It is somewhere all the same, as an empty class is.
+            let location = self.location(span);
+            made.push(storage("empty", Type::Elementary(Elementary::Byte), Const::Zero, None, location));
+        }
         if made.fields.is_empty() && complete {
             self.error(Code::E0408, span, "a structure has at least one member");
             return None;

@@ -82,7 +82,7 @@ impl<'s> Checker<'_, 's> {
         callee: Span,
         span: Span,
     ) -> Option<()> {
-        self.callable(&found, callee)?;
+        self.may_call_method(&found, callee)?;
         let info = id.info();
         if info.instructions.iter().any(|it| !it.name.is_empty()) {
             let names: Vec<_> = info.instructions.iter().map(|it| it.name).collect();
@@ -189,7 +189,7 @@ impl<'s> Checker<'_, 's> {
         callee: Span,
         span: Span,
     ) -> Option<()> {
-        self.callable(&found, callee)?;
+        self.may_call_method(&found, callee)?;
         if self.decl.pous[slot].ast.kind == ast::PouKind::Class {
             let name = self.decl.pous[slot].ast.name.text;
             self.report(
@@ -204,6 +204,16 @@ impl<'s> Checker<'_, 's> {
         let arguments = &self.accepted(&signature, arguments)?;
         let parameters: Vec<_> =
             formals.iter().map(|it| Parameter { name: it.name.text, section: it.section }).collect();
+        let is_known = |it: &ast::Argument<'s>| match &it.kind {
+            ast::ArgumentKind::Input(name, _) | ast::ArgumentKind::Output { name, .. } => {
+                formals.iter().any(|it| it.name.text.eq_ignore_ascii_case(name.text))
+            }
+            ast::ArgumentKind::Positional(_) => true,
+        };
+        if self.decl.has_unknown_base(slot) && !arguments.iter().all(is_known) {
+            self.check_arguments(arguments);
+            return None;
+        }
         let given = self.bind(owner, &parameters, arguments, |name| Self::unknown_formal(owner, formals, name))?;
         if self.decl.dialect(span).wants_all_positions() {
             let is_optional = |this: &Self, at: usize| this.has_initial(&formals[at], slot);

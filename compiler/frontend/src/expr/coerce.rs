@@ -81,9 +81,21 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    /// Whether an enumeration takes and gives numbers here: in CODESYS, unless it is strict.
+    /// Whether an enumeration takes and gives numbers here: in CODESYS, unless it is strict; and where it names values
+    /// of a type.
     pub(crate) fn counts_as_number(&self, id: EnumId, span: Span) -> bool {
         self.decl.dialect(span).mixes_bits_and_integers() && !self.decl.table.strict.contains(&id)
+            || self.decl.table.named_values.contains(&id)
+    }
+
+    /// Whether an enumeration's value is a number where one is stored.
+    fn gives_number(&self, id: EnumId, span: Span) -> bool {
+        self.decl.dialect(span).mixes_bits_and_integers() || self.decl.table.named_values.contains(&id)
+    }
+
+    /// Whether an enumeration chooses an element, or counts in a FOR.
+    pub(crate) fn is_counted_by(&self, id: EnumId, span: Span) -> bool {
+        self.decl.dialect(span).counts_by_enumerations() || self.decl.table.named_values.contains(&id)
     }
 
     /// Whether a number is one of the values of a strict enumeration, which CODESYS takes for that.
@@ -125,9 +137,7 @@ impl<'s> Checker<'_, 's> {
                 Some(self.convert(Conversion::Value, to, text))
             }
             (Type::String(_), Type::Elementary(into)) if into.is_char() => self.as_character(&expr, into, span),
-            (Type::Enum(id), Type::Elementary(into))
-                if self.decl.dialect(span).mixes_bits_and_integers() && as_number(into).is_integer() =>
-            {
+            (Type::Enum(id), Type::Elementary(into)) if self.gives_number(id, span) && as_number(into).is_integer() => {
                 if let Some(number) = expr.as_const().and_then(Value::as_integer) {
                     return self.coerce(Operand::Integer(number), to, span);
                 }
@@ -135,7 +145,9 @@ impl<'s> Checker<'_, 's> {
                 let number = self.convert(Conversion::Same, Type::Elementary(base), expr);
                 self.may_become(base, into, span).then(|| self.convert(Conversion::Value, to, number))
             }
-            (Type::Enum(from), Type::Enum(into)) if self.counts_as_number(into, span) => {
+            (Type::Enum(from), Type::Enum(into))
+                if self.counts_as_number(into, span) && self.gives_number(from, span) =>
+            {
                 if let Some(number) = expr.as_const().and_then(Value::as_integer) {
                     return self.coerce(Operand::Integer(number), to, span);
                 }

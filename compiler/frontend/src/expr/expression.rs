@@ -198,6 +198,13 @@ impl<'s> Checker<'_, 's> {
     }
 
     pub(crate) fn not(&mut self, value: Expr, span: Span) -> Option<Expr> {
+        let value = match value.ty {
+            Type::Enum(id) if self.decl.table.named_values.contains(&id) => {
+                let base = Type::Elementary(self.decl.program.enumeration(id).base);
+                self.convert(Conversion::Same, base, value)
+            }
+            _ => value,
+        };
         let ty = value.ty;
         let mixes = self.decl.dialect(span).mixes_bits_and_integers();
         let bits = matches!(ty, Type::Elementary(it) if it.is_bits() || (mixes && it.is_integer()));

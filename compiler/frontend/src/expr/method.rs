@@ -187,7 +187,7 @@ impl<'s> Checker<'_, 's> {
         self.user_function(called, Some((found.place, span)), arguments)
     }
 
-    fn may_call_method(&mut self, found: &Found<'s>, span: Span) -> Option<()> {
+    pub(crate) fn may_call_method(&mut self, found: &Found<'s>, span: Span) -> Option<()> {
         match found.access {
             Access::Inner(_) if self.decl.dialect(span).calls_inner_methods() => Some(()),
             _ => self.callable(found, span),

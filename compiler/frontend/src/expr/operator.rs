@@ -234,9 +234,7 @@ impl<'s> Checker<'_, 's> {
                 let ty = a.ty;
                 self.apply(op, ty, vec![a, b], Type::BOOL, op_span)
             }
-            (Some(Type::Enum(_)), _) | (_, Some(Type::Enum(_)))
-                if self.decl.dialect(sides.span).mixes_bits_and_integers() =>
-            {
+            (Some(Type::Enum(_)), _) | (_, Some(Type::Enum(_))) if self.compare_as_numbers(&sides) => {
                 let sides = self.enums_as_numbers(sides);
                 self.compare(sides)
             }
@@ -259,6 +257,15 @@ impl<'s> Checker<'_, 's> {
                 self.apply(op, ty, vec![a, b], Type::BOOL, op_span)
             }
         }
+    }
+
+    /// Whether the enumerations among the sides are compared as numbers.
+    fn compare_as_numbers(&self, sides: &Sides) -> bool {
+        let is_number = |side: &Operand| match side.ty() {
+            Some(Type::Enum(id)) => self.decl.table.named_values.contains(&id),
+            Some(_) | None => true,
+        };
+        self.decl.dialect(sides.span).mixes_bits_and_integers() || is_number(&sides.a) && is_number(&sides.b)
     }
 
     fn enums_as_numbers(&mut self, mut sides: Sides) -> Sides {

@@ -582,7 +582,7 @@ impl<'s> Checker<'_, 's> {
         let value = self.typed(index, None)?;
         match value.ty {
             Type::Elementary(it) if it.is_integer() || (it.is_bits() && it != Elementary::Bool) => Some(value),
-            Type::Enum(id) if self.decl.dialect(index.span).counts_by_enumerations() => {
+            Type::Enum(id) if self.is_counted_by(id, index.span) => {
                 let base = Type::Elementary(self.decl.program.enumeration(id).base);
                 Some(self.convert(staunch_ir::Conversion::Same, base, value))
             }

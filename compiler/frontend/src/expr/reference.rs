@@ -207,6 +207,10 @@ impl<'s> Checker<'_, 's> {
     /// `__ISVALIDREF(r)`: whether it refers to anything.
     fn is_valid(&mut self, argument: &ast::Expr<'s>, span: Span) -> Option<Expr> {
         let found = self.place_of_reference(argument)?;
+        if self.is_given_in_out(argument) {
+            // Who calls gives a variable, or there is a fault before the first statement.
+            return Some(Expr::bool(true, self.at(span)));
+        }
         if !matches!(found.place.ty, Type::Reference(_)) {
             let ty = self.type_name(found.place.ty);
             self.error(Code::E0211, argument.span, format!("`__ISVALIDREF` takes a reference, this is {ty}"));
@@ -214,6 +218,14 @@ impl<'s> Checker<'_, 's> {
         }
         let reference = Expr::load(found.place, self.at(span));
         self.against_null(Op::Ne, reference, span)
+    }
+
+    /// Whether an expression is a VAR_IN_OUT that the routine itself is given, in CODESYS, where that is a reference.
+    fn is_given_in_out(&self, argument: &ast::Expr<'s>) -> bool {
+        let Ast::Name(name) = &argument.bare().kind else { return false };
+        let variable = self.scope.get(name.text).filter(|it| it.section == Section::InOut);
+        let is_given = variable.is_some_and(|it| matches!(it.place.root, staunch_ir::Root::Param(_)));
+        is_given && self.decl.dialect(argument.span).has_in_outs_that_are_references()
     }
 
     fn against_null(&mut self, op: Op, reference: Expr, span: Span) -> Option<Expr> {
