@@ -248,11 +248,21 @@ fn problem(file: u16, problem: &Problem) -> Diagnostic {
 
 /// What is there nowhere is one mistake, however often it is named: the first place is reported, with the number of
 /// the others.
-fn said_once(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
+fn said_once(diagnostics: Vec<Diagnostic>, sources: &Sources) -> Vec<Diagnostic> {
     let mut first: FxHashMap<(Code, String), (usize, usize)> = FxHashMap::default();
     let mut kept: Vec<Diagnostic> = Vec::with_capacity(diagnostics.len());
     for it in diagnostics {
-        if !matches!(it.code, Code::E0102 | Code::E0307) || !it.message.starts_with("there is no ") {
+        // `Severity.Info` of an enumeration, list or namespace that is not there.
+        let is_owner = || {
+            let after = sources.get(it.span.file).text.get(usize::try_from(it.span.end).unwrap_or(usize::MAX)..);
+            it.message.ends_with(" is not declared") && after.is_some_and(|it| it.starts_with('.'))
+        };
+        let is_missing = match it.code {
+            Code::E0102 | Code::E0307 => it.message.starts_with("there is no "),
+            Code::E0101 => is_owner(),
+            _ => false,
+        };
+        if !is_missing {
             kept.push(it);
             continue;
         }
@@ -280,7 +290,7 @@ fn finish(program: Option<Program>, log: Log<'_>, unassigned: Vec<Diagnostic>, l
         diagnostics.extend(unassigned);
     }
     diagnostics.sort_by_key(|it| (it.span.file, it.span.start, it.span.end, it.code));
-    let diagnostics = said_once(diagnostics);
+    let diagnostics = said_once(diagnostics, sources);
     if let (Some(span), false) = (left_out, rejected) {
         unreachable!("checked program: `{}` was left out without a word", sources.text(span));
     }

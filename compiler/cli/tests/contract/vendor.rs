@@ -87,7 +87,11 @@ fn a_project_that_cannot_be_read_is_said() {
     folder.write("Line.plcproj", "<Project></Project>");
     has(&folder.staunch("check Line.plcproj").err(2), &["Line.plcproj lists no source file"]);
     folder.write("Line.plcproj", PROJECT.replace("MAIN.TcPOU", "NONE.TcPOU"));
-    has(&folder.staunch("check Line.plcproj").err(2), &["NONE.TcPOU"]);
+    let absent = folder.staunch("check Line.plcproj").err(1);
+    has(&absent, &["E0033", "POUs/NONE.TcPOU:1:1", "`NONE.TcPOU` is not there, and the project lists it"]);
+    // As Windows finds it.
+    folder.write("Line.plcproj", PROJECT.replace("MAIN.TcPOU", "Main.TCPOU"));
+    has(&folder.staunch("check Line.plcproj -v").err(0), &["POUs/MAIN.TcPOU"]);
 }
 
 #[test]

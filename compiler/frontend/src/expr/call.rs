@@ -8,6 +8,7 @@ use super::operand::Operand;
 use crate::diagnostic::wording::list;
 use crate::names::functions;
 use crate::spelling::nearest;
+use crate::testing::suite::LIBRARY;
 use crate::types::signature::Formal;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ArgumentKind, ExprKind as Ast};
@@ -21,6 +22,8 @@ impl<'s> Checker<'_, 's> {
         arguments: &[ast::Argument<'s>],
         expected: Option<Type>,
     ) -> Option<Operand> {
+        let own = self.own_of_suite(callee);
+        let callee = own.as_ref().unwrap_or(callee);
         if let Some(value) = self.reference_function(callee, arguments, expr.span) {
             return value;
         }
@@ -73,6 +76,8 @@ impl<'s> Checker<'_, 's> {
         callee: &ast::Expr<'s>,
         arguments: &[ast::Argument<'s>],
     ) {
+        let own = self.own_of_suite(callee);
+        let callee = own.as_ref().unwrap_or(callee);
         if self.memory_function(callee, arguments, expr.span).is_some()
             || self.query(callee, arguments, expr.span).is_some()
             || self.pool_statement(callee, arguments, expr.span).is_some()
@@ -105,6 +110,14 @@ impl<'s> Checker<'_, 's> {
             }
             None => {}
         }
+    }
+
+    /// `TcUnit.TEST('…')`: a METHOD of the suite here, and a FUNCTION of the library there.
+    fn own_of_suite(&self, callee: &ast::Expr<'s>) -> Option<ast::Expr<'s>> {
+        let Ast::Member(owner, name) = &callee.kind else { return None };
+        let is_library = matches!(&owner.kind, Ast::Name(it) if it.text.eq_ignore_ascii_case(LIBRARY));
+        let is_own = is_library && self.is_suite() && self.own_routine(*name).is_some();
+        is_own.then_some(ast::Expr { kind: Ast::Name(*name), span: callee.span })
     }
 
     /// A call with EN or ENO.

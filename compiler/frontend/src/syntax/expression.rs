@@ -331,7 +331,7 @@ pub fn arguments<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Vec<Argument<'s>>> {
             if semicolon {
                 input.take();
             }
-        } else if input.kind() == Kind::CloseParen && arguments.last().is_some_and(is_named) {
+        } else if input.kind() == Kind::CloseParen && (arguments.last().is_some_and(is_named) || input.on_new_line()) {
             // TwinCAT passes over the last comma of a list with one argument a line.
             break;
         }
