@@ -226,7 +226,7 @@ pub struct Test {
     /// Write the results as JUnit has them, for CI
     #[arg(long, value_name = "OUT.xml")]
     pub junit: Option<PathBuf>,
-    /// Turns that the loops of one test may take together [default: 10000000]
+    /// Turns that the loops of one test may take together in a scan [default: 1000000000; interpreted 10000000]
     #[arg(long, value_name = "N")]
     pub loop_budget: Option<u64>,
     /// Scans that a suite of TcUnit may take until its tests are finished [default: 10000]

@@ -277,3 +277,11 @@ pub(crate) fn as_options_have_it(id: BlockId, is_on: impl Fn(BlockOption) -> boo
     };
     BLOCKS.iter().position(replaces).map_or(id, BlockId::next)
 }
+
+/// Libraries of CODESYS and TwinCAT whose blocks and functions need no qualification.
+const LIBRARIES: [&str; 4] = ["Standard", "Tc2_Standard", "Tc2_System", "Tc2_Utilities"];
+
+/// Whether a name is that of a library whose blocks and functions need no qualification.
+pub(crate) fn is_library(dialect: Dialect, name: &str) -> bool {
+    dialect == Dialect::Codesys && LIBRARIES.iter().any(|it| it.eq_ignore_ascii_case(name))
+}

@@ -3,7 +3,7 @@
 
 mod tcunit;
 
-use crate::dialect::Dialect;
+use crate::dialect::{Dialect, is_library};
 use crate::lex::{Kind, Tokens, lex};
 use crate::spelling::Key;
 use crate::{Code, Diagnostic, Options, Severity, Source, Sources, Span};
@@ -106,6 +106,7 @@ pub(crate) const UNITS: &[Unit] = units! {
     Function "FAILED"           "failed"           [Codesys] "HRESULT";
     Type     "ST_LibVersion"    "st_libversion"    [Codesys];
     Type     "T_AmsNetId"       "t_amsnetid"       [Codesys];
+    Type     "DRAND"            "drand"            [Codesys];
     Function "HOST_TO_BE16"     "host_to_be16"     [Codesys];
     Function "HOST_TO_BE32"     "host_to_be32"     [Codesys];
     Function "BE16_TO_HOST"     "be16_to_host"     [Codesys];
@@ -254,7 +255,10 @@ impl Uses {
             let is_space = is_system(word(at)) && tokens.kinds.get(at + 1) == Some(&Kind::Dot);
             let space = is_space.then(|| format!("{SYSTEM}.{}", word(at + 2)));
             let Some(unit) = unit(space.as_deref().unwrap_or(word(at))) else { continue };
-            let before = at.checked_sub(1).map(|it| (tokens.kinds[it], word(it)));
+            // `Tc2_System.DRAND`
+            let of_library = at >= 2 && tokens.kinds[at - 1] == Kind::Dot && is_library(dialect, word(at - 2));
+            let first = if of_library { at - 2 } else { at };
+            let before = first.checked_sub(1).map(|it| (tokens.kinds[it], word(it)));
             let after = tokens.kinds.get(at + 1).copied();
             if declares(before, after, &types) && unit.use_ != Use::Open {
                 self.declared.insert(unit.name);

@@ -141,7 +141,7 @@ impl Source {
         let message = format!("`{name}` is not there, and the project lists it");
         let problems = vec![Problem { at: 0, trouble: vendor::Trouble::Absent, message }];
         let pieces = vec![Piece { start: 0, at: 0, end: 1, verbatim: true }];
-        Self { origin: Some(Box::new(Origin { file: file.clone(), pieces, problems })), ..file }
+        Self { origin: Some(Box::new(Origin { file: file.clone(), pieces, piece: Hint::default(), problems })), ..file }
     }
 
     /// The files that a project of TwinCAT's lists, as it writes them.

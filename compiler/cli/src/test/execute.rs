@@ -73,7 +73,9 @@ impl<'p> Suite<'p> {
             Backend::Rust if !program.instances.is_empty() => Some(rustc::compile(program, Kind::Executable, None)?),
             Backend::Rust | Backend::Native | Backend::Interpret => None,
         };
-        let turns = args.loop_budget.or(session.project.loop_budget).unwrap_or(Context::TURNS);
+        // A suite does in one scan what a program does in many; interpreted, so many turns would take minutes.
+        let patience = if args.backend == Backend::Interpret { 1 } else { 100 };
+        let turns = args.loop_budget.or(session.project.loop_budget).unwrap_or(Context::TURNS * patience);
         Ok(Self { program, backend: args.backend, executable, turns, pace: Pace::of(session, args)?, counts })
     }
 

@@ -3,6 +3,7 @@
 
 use super::checker::Checker;
 use super::operand::Operand;
+use crate::dialect::is_library;
 use crate::names::{Found as Meant, Sense};
 use crate::{Span, ast};
 use ast::ExprKind as Ast;
@@ -57,10 +58,19 @@ impl<'s> Checker<'_, 's> {
         arguments: &[ast::Argument<'s>],
         span: Span,
     ) -> Option<Option<Operand>> {
-        let Ast::Name(name) = &callee.kind else { return None };
+        let path = match &callee.kind {
+            Ast::Name(name) => vec![*name],
+            // `Tc2_System.MEMCPY`
+            Ast::Member(owner, name) => match owner.kind {
+                Ast::Name(owner) if is_library(self.decl.dialect(span), owner.text) => vec![owner, *name],
+                _ => return None,
+            },
+            _ => return None,
+        };
+        let name = path.last()?;
         let (function, names) = function(name.text)?;
         let declared =
-            self.scope.get(name.text).is_some() || self.decl.lookup(&[*name], Sense::Callee) != Meant::Nothing;
+            self.scope.get(path[0].text).is_some() || self.decl.lookup(&path, Sense::Callee) != Meant::Nothing;
         if declared || self.signature.is_none() {
             return None;
         }

@@ -17,6 +17,7 @@ mod region;
 
 use crate::ast;
 use crate::dialect::{self, Dialect};
+use crate::prelude;
 use crate::source::{Sources, Span};
 use crate::spelling::Key;
 use region::{Region, Regions};
@@ -222,6 +223,12 @@ impl<'s> Names<'s> {
         }
     }
 
+    /// What is bundled in Structured Text, and so declared as what users write is.
+    fn bundled(&self, name: &str, sense: Sense) -> Option<Meaning> {
+        prelude::unit(name)?;
+        self.spaces[SpaceId::ROOT.0].own.get(&Key(name))?.of(sense).map(Meaning::Declared)
+    }
+
     fn qualified(&self, site: Site, first: &str, between: &[ast::Name<'_>], last: &str, sense: Sense) -> Found {
         let found = match self.prefix(site, first) {
             Some(Prefix::Space(space)) => return self.in_space(site, space, between, last, sense),
@@ -229,7 +236,7 @@ impl<'s> Names<'s> {
             Some(Prefix::Enumeration(slot)) => Some(Meaning::Enumerator(slot)),
             Some(Prefix::Globals) => return self.global(site, last),
             Some(Prefix::Family(it)) => in_family(it, last, sense),
-            Some(Prefix::Library) => self.library(site.dialect, last, sense),
+            Some(Prefix::Library) => self.library(site.dialect, last, sense).or_else(|| self.bundled(last, sense)),
             None => None,
         };
         found.map_or(Found::Nothing, Found::One)
@@ -270,8 +277,8 @@ impl<'s> Names<'s> {
         if name.eq_ignore_ascii_case("Globals") {
             return Some(Prefix::Globals);
         }
-        let library = site.dialect == Dialect::Codesys && LIBRARIES.iter().any(|it| it.eq_ignore_ascii_case(name));
-        Family::named(name).map(Prefix::Family).or(library.then_some(Prefix::Library))
+        let library = dialect::is_library(site.dialect, name).then_some(Prefix::Library);
+        Family::named(name).map(Prefix::Family).or(library)
     }
 
     /// The namespace of a name in one that a region uses, if it is in one of them alone.
@@ -517,9 +524,6 @@ pub(crate) fn libraries(sources: &Sources) -> Vec<String> {
     let called = sources.references().iter().filter(|it| is_there(&it.library)).map(|it| it.namespace.clone());
     libraries.iter().map(|it| (*it).to_owned()).chain(called).collect()
 }
-
-/// Libraries of CODESYS and TwinCAT whose blocks and functions need no qualification.
-const LIBRARIES: [&str; 2] = ["Standard", "Tc2_Standard"];
 
 /// What a family's name before `name` makes of it.
 fn in_family(family: Family, name: &str, sense: Sense) -> Option<Meaning> {
