@@ -32,11 +32,14 @@ pub(crate) fn block_of_another_dialect(dialect: Dialect, name: ast::Name<'_>) ->
     let blocks: Vec<_> = BLOCKS.iter().filter(|it| it.is_named(name.text)).collect();
     let owners: Vec<_> = blocks.iter().map(|it| it.family).collect();
     let instruction = blocks.first()?.instructions[0].name;
-    let system = dialect.family().name();
+    let without = match dialect.own_blocks() {
+        Some(family) => format!("{} documents no `{}`", family.name(), name.text),
+        None => format!("`{}` has no meaning of its own in `{}`", name.text, dialect.name()),
+    };
     let qualified: Vec<_> = owners.iter().map(|it| format!("{}.{}", it.name(), name.text)).collect();
     let qualified: Vec<_> = qualified.iter().map(String::as_str).collect();
     let others = dialects_of(&owners);
-    let error = Diagnostic::new(Code::E0309, name.span, format!("{system} documents no `{}`", name.text))
+    let error = Diagnostic::new(Code::E0309, name.span, without)
         .label(format!("under `--dialect {}` this name has no block", dialect.name()))
         .note(format!("the dialect {} has it", list(&others)));
     // Who names a structure of Logix calls its instructions too, which a family's name has to precede as well.
