@@ -384,7 +384,11 @@ impl<'s> Checker<'_, 's> {
         }
         let fields = &self.decl.program.structure(id).fields;
         let (ty, section, constant) = (fields[at].ty, fields[at].section, fields[at].constant);
-        let inner = instance && !is_pin(section) && !self.is_public(id, name);
+        let is_own = instance && !is_pin(section);
+        if is_own {
+            self.note_used(id, name);
+        }
+        let inner = is_own && !self.is_public(id, name);
         // A unit test looks into everything; a VAR_CONFIG gives an address to any variable of an instance.
         let sees_all = self.is_test() || self.is_run() || self.is_suite();
         if inner && !sees_all && self.seen_from_outside(id, name).is_none() {
@@ -429,6 +433,13 @@ impl<'s> Checker<'_, 's> {
             |it: &&ast::VarBlock<'s>| matches!(it.access, Some((ast::Access::Public | ast::Access::Internal, _)));
         let mut open = self.decl.pous[slot].ast.blocks.iter().filter(is_open).flat_map(|it| &it.vars);
         open.any(|it| it.names.iter().any(|it| it.text.eq_ignore_ascii_case(name.text)))
+    }
+
+    /// A variable is used that is reached from outside of its class.
+    fn note_used(&mut self, id: StructId, name: ast::Name<'s>) -> Option<()> {
+        let slot = self.decl.slot_of_instance(id)?;
+        self.decl.signature(slot)?.scope.get(name.text)?.used.set(true);
+        Some(())
     }
 
     /// A variable of an instance that a dialect lets others read.
