@@ -75,6 +75,29 @@ fn ranges_hold_for_every_value() {
     }
 }
 
+/// No wider than what the values may be, up to the limits of the type.
+#[test]
+fn ranges_are_as_narrow_as_they_can_be() {
+    let program = sample(Vec::new());
+    let other = counted(crate::fixture::limit(), -2, 3, 1);
+    let range = |first, last, op, right: Expr| {
+        let counter = counted(temp(), first, last, 1);
+        let known = Known { program: &program, loops: &[&counter, &other], checked: &|_| false };
+        known.range(&Expr::apply(op, Type::INT, vec![load(temp()), right], AT)).unwrap()
+    };
+    let beside = || load(crate::fixture::limit());
+    assert_eq!(range(-3, 4, Op::Add, beside()), (-5, 7));
+    assert_eq!(range(-3, 4, Op::Sub, beside()), (-6, 6));
+    assert_eq!(range(-3, 4, Op::Mul, beside()), (-9, 12));
+    assert_eq!(range(-3, 4, Op::Mod, int(6)), (-5, 5));
+    assert_eq!((range(0, 4, Op::Mod, int(6)), range(-4, 0, Op::Mod, int(6))), ((0, 5), (-5, 0)));
+    assert_eq!((range(-3, 4, Op::And, int(6)), range(-3, 4, Op::And, int(0))), ((0, 6), (0, 0)));
+    let (least, most) = (i128::from(i16::MIN), i128::from(i16::MAX));
+    assert_eq!(range(0, i16::MAX - 1, Op::Add, int(1)), (1, most));
+    assert_eq!(range(i16::MIN + 1, 0, Op::Sub, int(1)), (least, -1));
+    assert_eq!(range(i16::MIN, 0, Op::Sub, int(1)), (least, most));
+}
+
 #[test]
 fn what_leaves_its_type_may_be_anything() {
     let program = sample(Vec::new());
