@@ -285,18 +285,18 @@ impl<'s> Checker<'_, 's> {
         sign_only
     }
 
-    /// CODESYS makes a real of any integer, with a warning where that has more digits.
+    /// CODESYS makes a real of any integer, and a REAL of an LREAL, with a warning where that has more digits (C0197).
     fn loses_precision(&mut self, from: Elementary, to: Elementary, span: Span) -> bool {
         let from = as_number(from);
-        if !from.is_integer() || !to.is_real() {
+        let lost = match from {
+            Elementary::Lreal => "about 7 of 15 digits are kept",
+            _ => "large values are rounded",
+        };
+        if !(from.is_integer() || from.is_real()) || !to.is_real() {
             return false;
         }
         self.report(
-            Diagnostic::new(
-                Code::W0511,
-                span,
-                format!("{} becomes {}: large values are rounded", from.name(), to.name()),
-            )
+            Diagnostic::new(Code::W0511, span, format!("{} becomes {}: {lost}", from.name(), to.name()))
             .label("implicit conversion")
             .help(format!("say so: `{}_TO_{}(…)`", from.name(), to.name())),
         );

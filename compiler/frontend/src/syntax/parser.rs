@@ -15,7 +15,9 @@ use crate::{
     diagnostic::{Code, Diagnostic},
     lex::{Kind, MAX_REPORTS, Tokens, index},
     source::Span,
+    spelling::Key,
 };
+use rustc_hash::FxHashSet;
 
 use super::doc;
 
@@ -132,6 +134,8 @@ pub struct State<'t, 's> {
     pub around: Vec<usize>,
     /// The user knows that the file ends too early.
     pub ended: bool,
+    /// Where the file's JMPs go, from the first label on.
+    pub jumped_to: Option<FxHashSet<Key<'s>>>,
 }
 
 impl<'t, 's> State<'t, 's> {
@@ -160,6 +164,7 @@ impl<'t, 's> State<'t, 's> {
             regions: vec![whole],
             around: vec![0],
             ended: false,
+            jumped_to: None,
         }
     }
 }

@@ -241,10 +241,17 @@ fn split_assign<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<Stat
         end(input)?;
         return Ok(kind);
     }
-    if matches!(target.kind, ExprKind::Name(_)) && input.state().open.len() <= 1 {
-        let colon = input.take();
-        input.report(diagnostics::unsupported(target.span.to(colon), "a label to jump to"));
-        return Ok(StatementKind::Error);
+    if let ExprKind::Name(name) = target.kind {
+        // The JMP is reported.
+        if unsupported::is_jumped_to(input, name.text) {
+            input.take();
+            return Ok(StatementKind::Error);
+        }
+        if input.state().open.len() <= 1 {
+            let colon = input.take();
+            input.report(diagnostics::unsupported(target.span.to(colon), "a label to jump to"));
+            return Ok(StatementKind::Error);
+        }
     }
     Err(input.problem(Expected::Action))
 }

@@ -1,7 +1,11 @@
 //! Constructs that are known and refused by name: JMP, `__TRY`, and a sequential function chart's text.
 //! Their words are names everywhere else.
 
-use crate::{lex::Kind, vendor::controller_service};
+use crate::{
+    lex::{Kind, index},
+    spelling::Key,
+    vendor::controller_service,
+};
 
 use super::{
     diagnostics,
@@ -31,7 +35,10 @@ pub fn skip(input: &mut In<'_, '_, '_>) -> bool {
         return false;
     }
     if word.eq_ignore_ascii_case("JMP") {
-        input.report(diagnostics::unsupported(span, "JMP"));
+        input.report(diagnostics::unsupported(span, "JMP").help(
+            "what it jumps over goes into an IF; what it goes back to into a WHILE or REPEAT, which EXIT leaves and \
+             CONTINUE starts anew",
+        ));
         recovery::skip_statement(input, span);
         return true;
     }
@@ -44,6 +51,23 @@ pub fn skip(input: &mut In<'_, '_, '_>) -> bool {
         return true;
     }
     false
+}
+
+/// Whether a JMP of the file names this label.
+pub fn is_jumped_to<'s>(input: &mut In<'_, '_, 's>, label: &'s str) -> bool {
+    let state = input.state();
+    let tokens = state.tokens;
+    let text = state.text;
+    let targets = state.jumped_to.get_or_insert_with(|| {
+        let word = |at: usize| {
+            let (start, end) = *tokens.places.get(at)?;
+            text.get(index(start)..index(end))
+        };
+        let is_jump = |at: &usize| word(*at).is_some_and(|it| it.eq_ignore_ascii_case("JMP"));
+        let names = (0..tokens.kinds.len()).filter(|it| tokens.kinds[*it] == Kind::Name);
+        names.filter(is_jump).filter_map(|it| word(it + 1)).map(Key).collect()
+    });
+    targets.contains(&Key(label))
 }
 
 /// `GSV(WallClockTime,, LocalDateTime, now[0])`, `GSV(Program, THIS, …)`: an operand is left out, or a keyword.

@@ -311,7 +311,8 @@ fn what_is_not_supported_is_named() {
            x REF= y;
            x ?= y;
            JMP there; // E0090
-           there: // E0090
+           there:
+           nowhere: // E0090
            METHOD PUBLIC m : INT
              VAR x : INT; END_VAR
              x := 1;
