@@ -664,6 +664,8 @@ pub enum ExprKind<'s> {
     Binary(Box<[Expr<'s>; 2]>, BinaryOp, Span),
     /// `( … )`: kept, since it ends a chain.
     Paren(Box<Expr<'s>>),
+    /// `a := b` in a condition or in brackets: the target, the value, and the place of `:=`.
+    Assign(Box<[Expr<'s>; 2]>, Span),
     /// What did not parse, or means nothing, and the parts of it that may hold more mistakes. It
     /// has been reported.
     Error(Vec<Expr<'s>>),
@@ -871,7 +873,7 @@ pub(crate) fn each_part<'a, 's>(expr: &'a Expr<'s>, visit: &mut dyn FnMut(&'a Ex
                 }
             }
         }
-        ExprKind::Binary(sides, ..) => sides.iter().for_each(|it| each_part(it, visit)),
+        ExprKind::Binary(sides, ..) | ExprKind::Assign(sides, _) => sides.iter().for_each(|it| each_part(it, visit)),
     }
 }
 

@@ -132,6 +132,7 @@ impl Mutants<'_> {
             | ExprKind::Index(..)
             | ExprKind::Deref(_)
             | ExprKind::Paren(_)
+            | ExprKind::Assign(..)
             | ExprKind::Error(_) => {}
         }
     }

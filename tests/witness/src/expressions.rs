@@ -84,7 +84,7 @@ impl<'a> Machine<'a> {
             },
             ExprKind::Unary(op, inner) => self.unary(frame, *op, inner, asked),
             ExprKind::Binary(sides, op, at) => self.binary(frame, *op, &sides[0], &sides[1], *at, asked),
-            ExprKind::Address(_) | ExprKind::Error(_) => unknown("this expression"),
+            ExprKind::Address(_) | ExprKind::Assign(..) | ExprKind::Error(_) => unknown("this expression"),
         }
     }
 

@@ -56,6 +56,7 @@ impl<'a> Machine<'a> {
             | ExprKind::Call(..)
             | ExprKind::Unary(..)
             | ExprKind::Binary(..)
+            | ExprKind::Assign(..)
             | ExprKind::Error(_) => unknown("an expression where a variable is asked for"),
         }
     }

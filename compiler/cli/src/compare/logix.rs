@@ -301,6 +301,10 @@ impl Writer<'_> {
                 indices.iter().for_each(|it| self.expr(it, true));
             }
             ExprKind::Error(parts) => parts.iter().for_each(|it| self.expr(it, narrow)),
+            ExprKind::Assign(sides, _) => {
+                self.expr(&sides[0], false);
+                self.expr(&sides[1], true);
+            }
             ExprKind::Call(_, arguments) => arguments.iter().for_each(|it| self.argument(it)),
             ExprKind::Binary(sides, op, _) => {
                 let compares = matches!(

@@ -1,11 +1,10 @@
 use crate::expr::call_tracking::Instance;
 use crate::expr::checker::Checker;
-use crate::expr::operand::Operand;
 use crate::expr::start::is_start_of_members;
 use crate::start::is_once;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, StatementKind as Ast_};
-use staunch_ir::{Block, Expr, ExprKind, Place, StatementKind, Type};
+use staunch_ir::{Block, Expr, ExprKind, StatementKind, Type};
 
 impl<'s> Checker<'_, 's> {
     /// The statements of a body, or of a branch of one.
@@ -136,6 +135,7 @@ impl<'s> Checker<'_, 's> {
             Ast::Paren(inner) => self.lone_expression(inner),
             Ast::Error(_) => drop(self.operand(expr, None)),
             Ast::Name(_) | Ast::Member(..) | Ast::Index(..) => self.report_missing_call(expr),
+            Ast::Assign(..) => drop(self.operand(expr, None)),
             Ast::Literal(_) | Ast::Address(_) | Ast::Part(..) | Ast::Deref(_) | Ast::Unary(..) | Ast::Binary(..) => {
                 self.report(
                     Diagnostic::new(Code::E0508, expr.span, "this statement has no effect")
@@ -233,67 +233,6 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         self.assigned(targets, value, span, false).map(drop)
-    }
-
-    /// What the first of the targets is given. Targets are found from left to right, then the value is
-    /// computed, and assigned from right to left. It is computed once where a target to the left reads it.
-    fn assigned(
-        &mut self,
-        targets: &[ast::Expr<'s>],
-        value: &ast::Expr<'s>,
-        span: Span,
-        is_read: bool,
-    ) -> Option<Expr> {
-        let [target, rest @ ..] = targets else { return None };
-        if targets.len() == 1
-            && !is_read
-            && let Some(made) = self.assign_property(target, value, span)
-        {
-            return made.map(|()| Expr::bool(true, self.at(span)));
-        }
-        let Some(found) = self.place_or_view(target) else {
-            // What is left may hold mistakes of its own.
-            rest.iter().for_each(|it| drop(self.place(it)));
-            self.operand(value, None);
-            return None;
-        };
-        if let Some(()) = self.refuse_instance(&found.place, target.span) {
-            return None;
-        }
-        let writable = self.writable(&found, target.span);
-        let (ty, view) = (self.type_of(&found), found.view);
-        let mut place = found.place;
-        let mut given = self.after_place(&mut place, |this| {
-            if rest.is_empty() {
-                return this.value(value, ty);
-            }
-            let right = this.assigned(rest, value, span, true)?;
-            this.coerce(Operand::Typed(right.read()), ty, value.span)
-        })?;
-        if is_read && given.as_const().is_none() {
-            self.save("assigned", &mut given);
-        } else {
-            self.before_target(&place, &mut given);
-        }
-        if writable {
-            self.note_assigned(&place, target.span);
-            self.write(place, view, given.clone(), span)?;
-        }
-        Some(given)
-    }
-
-    /// A block's state is not copied over another's.
-    fn refuse_instance(&mut self, place: &Place, span: Span) -> Option<()> {
-        let (way, instance) = self.decl.instance_not_copied(place.ty, span)?;
-        let (ty, instance) = (self.type_name(place.ty), self.type_name(instance));
-        let error = match way.as_str() {
-            "" => Diagnostic::new(Code::E0210, span, format!("an instance of {instance} cannot be assigned to"))
-                .label("this is the block itself"),
-            way => Diagnostic::new(Code::E0210, span, format!("{ty} cannot be assigned to as a whole"))
-                .label(format!("it holds an instance of {instance}, at `{way}`, which is never copied")),
-        };
-        self.report(error.help("assign to its inputs, or call it"));
-        Some(())
     }
 
     /// `x.3 := b`, `x.%B1 := b`.

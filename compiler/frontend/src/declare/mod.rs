@@ -10,6 +10,7 @@ mod external;
 mod generic;
 mod global;
 mod heads;
+mod hidden;
 mod image;
 mod initial;
 mod list;

@@ -198,6 +198,7 @@ impl<'s> Needs<'_, 's> {
             | ExprKind::Call(..)
             | ExprKind::Unary(..)
             | ExprKind::Binary(..)
+            | ExprKind::Assign(..)
             | ExprKind::Paren(_)
             | ExprKind::Error(_) => {}
         });

@@ -14,10 +14,10 @@ use staunch_ir::{
 use std::rc::Rc;
 
 /// A signature while its variables are read.
-struct Builder<'s> {
-    slot: usize,
-    scope: Rc<Scope<'s>>,
-    fields: Vec<Field>,
+pub(super) struct Builder<'s> {
+    pub slot: usize,
+    pub scope: Rc<Scope<'s>>,
+    pub fields: Vec<Field>,
     formals: Vec<Formal<'s>>,
     params: Vec<Param>,
     locals: Vec<Local>,
@@ -369,6 +369,7 @@ impl<'s> Declarations<'s> {
             if let Some(used) = self.used_in_generic(builder.slot, name.text) {
                 variable.used = used;
             }
+            self.hide_private(&variable, builder);
             let scope = Rc::get_mut(&mut builder.scope).expect("no one else holds the scope between declarations");
             self.enter_variable(scope, variable);
         }

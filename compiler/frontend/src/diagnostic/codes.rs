@@ -134,7 +134,7 @@ codes! {
     E0509 Error "FOR step is 0";
     E0510 Error "empty range of CASE labels";
     E0511 Error "assignment to an input address";
-    E0512 Error "several assignments in a row";
+    E0512 Error "an assignment used as a value";
     E0901 Error "too large";
     E0902 Error "not supported yet";
     E0903 Error "too many temporary variables";

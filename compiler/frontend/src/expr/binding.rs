@@ -209,7 +209,7 @@ pub(crate) fn plural(count: usize) -> String {
 /// Nothing that an output could be connected with.
 fn is_value(expr: &ast::Expr<'_>) -> bool {
     match &expr.kind {
-        Ast::Literal(_) | Ast::Unary(..) | Ast::Binary(..) => true,
+        Ast::Literal(_) | Ast::Unary(..) | Ast::Binary(..) | Ast::Assign(..) => true,
         Ast::Paren(inner) => is_value(inner),
         Ast::Name(_)
         | Ast::Member(..)

@@ -48,7 +48,13 @@ impl<'s> Checker<'_, 's> {
                 self.operand(callee, None);
                 None
             }
-            Ast::Literal(_) | Ast::Address(_) | Ast::Part(..) | Ast::Call(..) | Ast::Unary(..) | Ast::Binary(..) => {
+            Ast::Literal(_)
+            | Ast::Address(_)
+            | Ast::Part(..)
+            | Ast::Call(..)
+            | Ast::Unary(..)
+            | Ast::Binary(..)
+            | Ast::Assign(..) => {
                 self.error(Code::E0305, callee.span, "this cannot be called");
                 None
             }

@@ -297,8 +297,8 @@ impl<'s> Checker<'_, 's> {
         }
         self.report(
             Diagnostic::new(Code::W0511, span, format!("{} becomes {}: {lost}", from.name(), to.name()))
-            .label("implicit conversion")
-            .help(format!("say so: `{}_TO_{}(…)`", from.name(), to.name())),
+                .label("implicit conversion")
+                .help(format!("say so: `{}_TO_{}(…)`", from.name(), to.name())),
         );
         true
     }

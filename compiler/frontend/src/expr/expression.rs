@@ -29,6 +29,7 @@ impl<'s> Checker<'_, 's> {
                 parts.iter().for_each(|it| drop(self.operand(it, None)));
                 None
             }
+            Ast::Assign(sides, sign) => self.assigned_value(sides, *sign, expected, expr.span).map(Operand::Typed),
             Ast::Unary(op, inner) => self.unary(*op, inner, expected, expr.span),
             Ast::Binary(sides, op, op_span) => self.binary(sides, *op, *op_span, expected, expr.span),
         }?;
@@ -43,6 +44,10 @@ impl<'s> Checker<'_, 's> {
         {
             let name = self.type_name(found);
             let text = self.decl.log.sources.text(expr.span).to_owned();
+            if let Ast::Assign(sides, sign) = &expr.bare().kind {
+                self.report_assignment(sides, *sign);
+                return None;
+            }
             let mut error = Diagnostic::new(Code::E0507, expr.span, format!("a condition is a BOOL, this is {name}"))
                 .label("expected BOOL");
             if matches!(found, Type::Elementary(it) if it.repr().is_integer()) && !text.contains(' ') {

@@ -125,6 +125,7 @@ impl<'s> Checker<'_, 's> {
             | Ast::Call(..)
             | Ast::Unary(..)
             | Ast::Binary(..)
+            | Ast::Assign(..)
             | Ast::Error(_) => return None,
         };
         let routines = self.decl.routines_on(ty, name.text)?;
@@ -259,6 +260,7 @@ impl<'s> Checker<'_, 's> {
             | Ast::Call(..)
             | Ast::Unary(..)
             | Ast::Binary(..)
+            | Ast::Assign(..)
             | Ast::Paren(_)
             | Ast::Error(_) => self.this()?,
         };
@@ -336,7 +338,13 @@ impl<'s> Checker<'_, 's> {
                 self.decl.program.target(id)
             }
             Ast::Call(callee, _) => self.decl.result_type(self.called_slot(callee)?)?,
-            Ast::Literal(_) | Ast::Address(_) | Ast::Part(..) | Ast::Unary(..) | Ast::Binary(..) | Ast::Error(_) => {
+            Ast::Literal(_)
+            | Ast::Address(_)
+            | Ast::Part(..)
+            | Ast::Unary(..)
+            | Ast::Binary(..)
+            | Ast::Assign(..)
+            | Ast::Error(_) => {
                 return None;
             }
         };
@@ -367,6 +375,7 @@ impl<'s> Checker<'_, 's> {
             | Ast::Call(..)
             | Ast::Unary(..)
             | Ast::Binary(..)
+            | Ast::Assign(..)
             | Ast::Paren(_)
             | Ast::Error(_) => None,
         }
@@ -422,6 +431,11 @@ impl<'s> Checker<'_, 's> {
         let ty = self.static_type(owner)?;
         if let Some(ty) = self.type_of_property(ty, name) {
             return Some(ty);
+        }
+        // An inherited routine means its own class's, where an heir has another of the name.
+        if is_this_instance(owner) {
+            let scope = self.scope.outer.as_ref().unwrap_or(&self.scope);
+            return scope.get(name.text).map(|it| it.place.ty);
         }
         let Type::Struct(id) = ty else { return None };
         let field = self.decl.field_named(id, name.text)?;

@@ -3,6 +3,7 @@
 
 mod any_input;
 mod argument;
+mod assignment;
 mod binding;
 mod bit_instruction;
 mod block_call;

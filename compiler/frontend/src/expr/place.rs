@@ -111,7 +111,7 @@ impl<'s> Checker<'_, 's> {
                 // What is called, or what it would give, is not known: that has been reported.
                 None
             }
-            Ast::Literal(_) | Ast::Part(..) | Ast::Call(..) | Ast::Unary(..) | Ast::Binary(..) => {
+            Ast::Literal(_) | Ast::Part(..) | Ast::Call(..) | Ast::Unary(..) | Ast::Binary(..) | Ast::Assign(..) => {
                 let error =
                     Diagnostic::new(Code::E0306, expr.span, "a variable is expected here").label("this is a value");
                 let text = self.decl.log.sources.text(expr.span);

@@ -90,7 +90,8 @@ impl<'s> Checker<'_, 's> {
             | ast::ExprKind::Error(_)
             | ast::ExprKind::Call(..)
             | ast::ExprKind::Unary(..)
-            | ast::ExprKind::Binary(..) => false,
+            | ast::ExprKind::Binary(..)
+            | ast::ExprKind::Assign(..) => false,
         }
     }
 

@@ -127,20 +127,22 @@ fn reduce<'s>(input: &mut In<'_, '_, 's>, mut right: Expr<'s>, base: usize, powe
     Ok(right)
 }
 
-/// A condition: an expression that somebody may have written with `:=`.
+/// A condition: an expression, which may assign.
 pub fn condition<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
     let left = expression(input)?;
     if input.kind() == Kind::Assign { assigned(input, left) } else { Ok(left) }
 }
 
+/// `left := right`, where `right` may be one more.
 fn assigned<'s>(input: &mut In<'_, '_, 's>, left: Expr<'s>) -> Parsed<Expr<'s>> {
     let sign = input.take();
-    let it = diagnostics::assign_for_equal(input.text(left.span), sign);
-    input.report(it);
-    let right = expression(input)?;
+    input.enter(1)?;
+    let right = condition(input)?;
+    input.leave(1);
+    let height = input.state().height;
+    input.grow(height)?;
     let span = left.span.to(right.span);
-    // Whether a comparison or a value was meant is not known: no type is asked of it.
-    Ok(Expr { kind: ExprKind::Error(vec![left, right]), span })
+    Ok(Expr { kind: ExprKind::Assign(Box::new([left, right]), sign), span })
 }
 
 fn join<'s>(left: Expr<'s>, op: BinaryOp, sign: Span, right: Expr<'s>) -> Expr<'s> {

@@ -52,8 +52,7 @@ impl<'s> Scope<'s> {
     pub fn without(&self, declared: &FxHashSet<Span>) -> Self {
         let mut scope = Self { refused: self.refused.clone(), ..Self::default() };
         for variable in self.variables.iter().filter(|it| !declared.contains(&it.name.span)) {
-            // They are of one scope, so that no two have one name.
-            let _ = scope.insert(Rc::clone(variable));
+            scope.insert_over(Rc::clone(variable));
         }
         scope
     }
@@ -95,12 +94,21 @@ impl<'s> Scope<'s> {
     /// The earlier variable of that name, if there is one.
     pub fn insert(&mut self, variable: impl Into<Rc<Variable<'s>>>) -> Result<(), ast::Name<'s>> {
         let variable = variable.into();
-        let key = Key(variable.name.text);
-        if let Some(at) = self.index.get(&key) {
+        if let Some(at) = self.index.get(&Key(variable.name.text)) {
             return Err(self.variables[*at].name);
         }
-        self.index.insert(key, self.variables.len());
-        self.variables.push(variable);
+        self.insert_over(variable);
         Ok(())
+    }
+
+    /// Lets another variable have a name; the one that has it keeps its storage.
+    pub fn hide(&mut self, name: &'s str) {
+        self.index.remove(&Key(name));
+    }
+
+    /// Enters a variable, which hides an earlier one of its name.
+    pub fn insert_over(&mut self, variable: Rc<Variable<'s>>) {
+        self.index.insert(Key(variable.name.text), self.variables.len());
+        self.variables.push(variable);
     }
 }

@@ -17,14 +17,6 @@ pub fn equal_for_assign(sign: Span, text: &str) -> Diagnostic {
     Diagnostic::new(Code::E0008, sign, message).label("expected `:=`").help("write `:=`").fix(sign, ":=")
 }
 
-pub fn assign_for_equal(left: &str, sign: Span) -> Diagnostic {
-    let shown = if left.len() <= 40 { left } else { "a" };
-    Diagnostic::new(Code::E0009, sign, "`:=` assigns, and a condition cannot; a comparison is written `=`")
-        .label("expected `=`")
-        .help(format!("write `{shown} = …`"))
-        .fix(sign, "=")
-}
-
 pub fn foreign_operator(input: &mut In<'_, '_, '_>, kind: Kind, op: BinaryOp, sign: Span) {
     let ours = op.text();
     let replacement = spaced(input, ours, sign);

@@ -58,7 +58,7 @@ fn statements() {
     expect(
         "PROGRAM p
            x = 1; // E0008
-           IF x := 1 THEN y := 2; END_IF // E0009
+           IF x := 1 THEN y := 2; END_IF
            IF x == 1 && y != 2 || !z THEN y := 2; END_IF // E0010 E0010 E0010 E0010 E0010
            x += 1; // E0010
            x++; // E0010

@@ -103,6 +103,7 @@ pub fn expr(it: &Expr<'_>) -> String {
         ExprKind::Unary(op, of) => format!("{op:?}({})", expr(of)),
         ExprKind::Binary(sides, op, _) => format!("({} {} {})", expr(&sides[0]), op.text(), expr(&sides[1])),
         ExprKind::Paren(inner) => format!("<{}>", expr(inner)),
+        ExprKind::Assign(sides, _) => format!("({} := {})", expr(&sides[0]), expr(&sides[1])),
     }
 }
 

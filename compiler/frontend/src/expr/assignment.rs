@@ -1,0 +1,132 @@
+//! What an assignment gives its targets, as a statement and as an expression.
+
+use super::checker::{Checker, Context};
+use super::operand::Operand;
+use super::unresolved::not_constant;
+use crate::{Code, Diagnostic, Span, ast};
+use staunch_ir::{Expr, Place, Type};
+
+impl<'s> Checker<'_, 's> {
+    /// `(a := b)`, of CODESYS: what `a` is given, where it is written.
+    pub(crate) fn assigned_value(
+        &mut self,
+        sides: &[ast::Expr<'s>; 2],
+        sign: Span,
+        expected: Option<Type>,
+        span: Span,
+    ) -> Option<Expr> {
+        let [target, value] = sides;
+        if !self.decl.dialect(span).assigns_in_a_row() {
+            match expected {
+                Some(Type::BOOL) => self.report_assignment(sides, sign),
+                _ => self.report(
+                    Diagnostic::new(Code::E0512, span, "an assignment has no value")
+                        .label("an assignment in an expression is an extension of CODESYS")
+                        .help("write it as a statement of its own, and the variable here"),
+                ),
+            }
+            self.operand(target, None);
+            self.operand(value, None);
+            return None;
+        }
+        if self.signature.is_none() || self.context != Context::Body {
+            self.report(not_constant(span));
+            return None;
+        }
+        self.assigned(std::slice::from_ref(target), value, span, true).map(Expr::read)
+    }
+
+    /// `:=` where a comparison was meant.
+    pub(crate) fn report_assignment(&mut self, [left, _]: &[ast::Expr<'s>; 2], sign: Span) {
+        let shown = self.decl.log.sources.text(left.span);
+        let shown = if shown.len() <= 40 { shown } else { "a" };
+        let help = format!("write `{shown} = …`");
+        self.report(
+            Diagnostic::new(Code::E0009, sign, "`:=` assigns, and a condition cannot; a comparison is written `=`")
+                .label("expected `=`")
+                .help(help)
+                .fix(sign, "="),
+        );
+    }
+
+    /// What the first of the targets is given. Targets are found from left to right, then the value is
+    /// computed, and assigned from right to left. It is computed once where a target to the left reads it.
+    pub(crate) fn assigned(
+        &mut self,
+        targets: &[ast::Expr<'s>],
+        value: &ast::Expr<'s>,
+        span: Span,
+        is_read: bool,
+    ) -> Option<Expr> {
+        let [target, rest @ ..] = targets else { return None };
+        if targets.len() == 1
+            && !is_read
+            && let Some(made) = self.assign_property(target, value, span)
+        {
+            return made.map(|()| Expr::bool(true, self.at(span)));
+        }
+        if (is_read || targets.len() > 1) && self.refuse_part(target) {
+            self.operand(value, None);
+            return None;
+        }
+        let Some(found) = self.place_or_view(target) else {
+            // What is left may hold mistakes of its own.
+            rest.iter().for_each(|it| drop(self.place(it)));
+            self.operand(value, None);
+            return None;
+        };
+        if let Some(()) = self.refuse_instance(&found.place, target.span) {
+            return None;
+        }
+        let writable = self.writable(&found, target.span);
+        let (ty, view) = (self.type_of(&found), found.view);
+        let mut place = found.place;
+        let mut given = self.after_place(&mut place, |this| {
+            if rest.is_empty() {
+                return this.value(value, ty);
+            }
+            let right = this.assigned(rest, value, span, true)?;
+            this.coerce(Operand::Typed(right.read()), ty, value.span)
+        })?;
+        if is_read && given.as_const().is_none() {
+            self.save("assigned", &mut given);
+        } else {
+            self.before_target(&place, &mut given);
+        }
+        if writable {
+            self.note_assigned(&place, target.span);
+            self.write(place, view, given.clone(), span)?;
+        }
+        Some(given)
+    }
+
+    /// What a statement of its own assigns, when it is more than a variable.
+    fn refuse_part(&mut self, target: &ast::Expr<'s>) -> bool {
+        let what = match &target.bare().kind {
+            ast::ExprKind::Part(..) => "a part of a variable",
+            _ if self.character_of(target).is_some() => "a character of a string",
+            _ if self.property(target).is_some() => "a PROPERTY",
+            _ => return false,
+        };
+        self.report(
+            Diagnostic::new(Code::E0306, target.span, format!("{what} is assigned by a statement of its own"))
+                .label("this assignment is part of another one, or of an expression")
+                .help("assign the value to a variable here, and this one in a statement after it"),
+        );
+        true
+    }
+
+    /// A block's state is not copied over another's.
+    fn refuse_instance(&mut self, place: &Place, span: Span) -> Option<()> {
+        let (way, instance) = self.decl.instance_not_copied(place.ty, span)?;
+        let (ty, instance) = (self.type_name(place.ty), self.type_name(instance));
+        let error = match way.as_str() {
+            "" => Diagnostic::new(Code::E0210, span, format!("an instance of {instance} cannot be assigned to"))
+                .label("this is the block itself"),
+            way => Diagnostic::new(Code::E0210, span, format!("{ty} cannot be assigned to as a whole"))
+                .label(format!("it holds an instance of {instance}, at `{way}`, which is never copied")),
+        };
+        self.report(error.help("assign to its inputs, or call it"));
+        Some(())
+    }
+}
