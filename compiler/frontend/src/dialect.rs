@@ -212,6 +212,16 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
+    /// CASE takes any elementary type that has labels, as edition 3 says: characters and texts, too.
+    pub const fn selects_by_texts(self) -> bool {
+        self.is_standard()
+    }
+
+    /// A bare name of a METHOD, in that METHOD itself, may mean a FUNCTION; the METHOD is called by THIS.
+    pub const fn calls_own_by_this(self) -> bool {
+        self.is_standard()
+    }
+
     /// `a := b := c` assigns to both.
     pub const fn assigns_in_a_row(self) -> bool {
         matches!(self, Self::Codesys)

@@ -3,7 +3,7 @@
 
 use crate::expr::checker::Checker;
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{Arm, Block, StatementKind, Type, Value};
+use staunch_ir::{Arm, Block, Conversion, Elementary, Expr, StatementKind, Type, Value};
 use std::collections::{BTreeMap, HashMap};
 
 /// The labels that have been seen.
@@ -45,9 +45,14 @@ impl<'s> Checker<'_, 's> {
         otherwise: Option<&[ast::Statement<'s>]>,
         span: Span,
     ) -> Option<()> {
+        let has_texts = self.decl.dialect(span).selects_by_texts();
         let value = self.typed(selector, None);
+        if let Some(text) = value.as_ref().filter(|it| has_texts && matches!(it.ty, Type::String(_))) {
+            return self.case_of_text(text.clone(), arms, otherwise, span);
+        }
         let value = value.and_then(|value| {
             let allowed = match value.ty {
+                Type::Elementary(it) if it.is_char() => has_texts,
                 Type::Elementary(it) | Type::Subrange(it, _) => it.repr().is_integer() && it.is_integral(),
                 Type::Enum(_) => true,
                 Type::String(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) | Type::Reference(_) => false,
@@ -84,11 +89,25 @@ impl<'s> Checker<'_, 's> {
         }
         let otherwise = self.arm_of(otherwise.unwrap_or_default(), None, span);
         self.called.append(called);
-        self.push(StatementKind::Case { selector: value?, arms: built, otherwise }, span);
+        let selector = self.code_of_character(value?);
+        self.push(StatementKind::Case { selector, arms: built, otherwise }, span);
         Some(())
     }
 
-    fn arm_of(&mut self, statements: &[ast::Statement<'s>], label: Option<Span>, case: Span) -> Block {
+    /// A character selects by its code.
+    fn code_of_character(&mut self, value: Expr) -> Expr {
+        match value.ty {
+            Type::Elementary(Elementary::Char) => {
+                self.convert(Conversion::Same, Type::Elementary(Elementary::Usint), value)
+            }
+            Type::Elementary(Elementary::Wchar) => {
+                self.convert(Conversion::Same, Type::Elementary(Elementary::Uint), value)
+            }
+            _ => value,
+        }
+    }
+
+    pub(super) fn arm_of(&mut self, statements: &[ast::Statement<'s>], label: Option<Span>, case: Span) -> Block {
         self.nested(|this| {
             this.count_arm(label, case);
             let mut block = this.block_of(statements);
@@ -143,7 +162,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// A label is not converted by a call, as other values are.
-    fn label_of_another_type(&mut self, reported: usize, ty: Type) {
+    pub(super) fn label_of_another_type(&mut self, reported: usize, ty: Type) {
         let wanted = self.type_name(ty);
         for it in self.decl.log.diagnostics[reported..].iter_mut() {
             let names_members = it.help.is_some() && it.fix.is_none();

@@ -3,6 +3,7 @@
 mod assertion;
 mod axunit;
 mod case;
+mod case_text;
 mod external;
 mod loops;
 mod statement;

@@ -76,7 +76,8 @@ impl<'s> Checker<'_, 's> {
     }
 
     pub(crate) fn named_callee(&mut self, name: ast::Name<'s>, arguments: &[ast::Argument<'s>]) -> Option<Callee<'s>> {
-        if let Some(slot) = self.own_routine(name).filter(|_| !self.scope.is_own(name.text)) {
+        let own = self.own_routine(name).filter(|_| !self.scope.is_own(name.text));
+        if let Some(slot) = own.filter(|it| !self.is_function_in_method(*it, name)) {
             return Some(Callee::Routine(slot));
         }
         let found = self.decl.lookup(&[name], Sense::Callee);
@@ -113,6 +114,20 @@ impl<'s> Checker<'_, 's> {
                 }
                 None
             }
+        }
+    }
+
+    /// Whether a METHOD's own name, in its body, means a FUNCTION: the METHOD itself would be recursion.
+    fn is_function_in_method(&self, slot: usize, name: ast::Name<'s>) -> bool {
+        let is_itself = self.slot == Some(slot) && self.decl.all_of_a_name(slot).len() == 1;
+        is_itself && self.decl.dialect(name.span).calls_own_by_this() && self.is_function(name)
+    }
+
+    fn is_function(&self, name: ast::Name<'s>) -> bool {
+        match self.decl.lookup(&[name], Sense::Callee) {
+            Found::One(Meaning::Function) => true,
+            Found::One(Meaning::Declared(Entry::Pou(slot))) => self.decl.pous[slot].ast.kind == ast::PouKind::Function,
+            Found::One(_) | Found::Several(_) | Found::Nothing => false,
         }
     }
 
