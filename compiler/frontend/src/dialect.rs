@@ -1,5 +1,7 @@
 //! Whose blocks a bare name means, and what a dialect allows beyond the standard.
 
+pub(crate) mod library;
+
 use crate::spelling::Key;
 use rustc_hash::FxHashMap;
 use staunch_ir::BlockId;
@@ -286,12 +288,4 @@ pub(crate) fn as_options_have_it(id: BlockId, is_on: impl Fn(BlockOption) -> boo
         it.family == info.family && option.is_some()
     };
     BLOCKS.iter().position(replaces).map_or(id, BlockId::next)
-}
-
-/// Libraries of CODESYS and TwinCAT whose blocks and functions need no qualification.
-const LIBRARIES: [&str; 4] = ["Standard", "Tc2_Standard", "Tc2_System", "Tc2_Utilities"];
-
-/// Whether a name is that of a library whose blocks and functions need no qualification.
-pub(crate) fn is_library(dialect: Dialect, name: &str) -> bool {
-    dialect == Dialect::Codesys && LIBRARIES.iter().any(|it| it.eq_ignore_ascii_case(name))
 }

@@ -3,7 +3,8 @@
 
 mod tcunit;
 
-use crate::dialect::{Dialect, is_library};
+use crate::dialect::Dialect;
+use crate::dialect::library::is_one_of;
 use crate::lex::{Kind, Tokens, lex};
 use crate::spelling::Key;
 use crate::{Code, Diagnostic, Options, Severity, Source, Sources, Span};
@@ -19,6 +20,8 @@ pub(crate) struct Unit {
     use_: Use,
     /// The dialect that has it by this name; `None` for all.
     pub dialect: Option<Dialect>,
+    /// The libraries of CODESYS and TwinCAT that have it, whose names may be before its own.
+    pub libraries: &'static [&'static str],
     /// Other units that it names.
     needs: &'static [&'static str],
 }
@@ -44,12 +47,13 @@ const ANY: &str = "__SYSTEM";
 const OF_ANY: [&str; 3] = ["TypeClass", "pValue", "diSize"];
 
 macro_rules! units {
-    ($($use_:ident $name:literal $file:tt $([$dialect:ident])? $($need:literal)*;)*) => {
+    ($($use_:ident $name:literal $file:tt $([$dialect:ident $($library:ident)*])? $($need:literal)*;)*) => {
         &[$(Unit {
             name: $name,
             text: units!(@text $file),
             use_: Use::$use_,
             dialect: units!(@dialect $($dialect)?),
+            libraries: &[$($(stringify!($library)),*)?],
             needs: &[$($need),*],
         }),*]
     };
@@ -69,48 +73,48 @@ macro_rules! units {
 
 /// Every unit.
 pub(crate) const UNITS: &[Unit] = units! {
-    Type     "BLINK"            "blink"            [Codesys];
-    Type     "GEN_MODE"         "gen_mode"         [Codesys];
-    Type     "GEN"              "gen"              [Codesys] "GEN_MODE";
-    Type     "FREQ_MEASURE"     "freq_measure"     [Codesys];
-    Type     "HYSTERESIS"       "hysteresis"       [Codesys];
-    Type     "LIMITALARM"       "limitalarm"       [Codesys];
-    Type     "DERIVATIVE"       "derivative"       [Codesys];
-    Type     "INTEGRAL"         "integral"         [Codesys];
-    Type     "LIN_TRAFO"        "lin_trafo"        [Codesys];
-    Type     "STATISTICS_INT"   "statistics_int"   [Codesys];
-    Type     "STATISTICS_REAL"  "statistics_real"  [Codesys];
-    Type     "POINT"            "point"            [Codesys];
-    Type     "CHARCURVE"        "charcurve"        [Codesys] "POINT";
-    Type     "RAMP_INT"         "ramp_int"         [Codesys];
-    Type     "RAMP_REAL"        "ramp_real"        [Codesys];
-    Type     "PD"               "pd"               [Codesys] "DERIVATIVE";
-    Type     "PID"              "pid"              [Codesys] "DERIVATIVE" "INTEGRAL";
-    Type     "UNPACK"           "unpack"           [Codesys];
-    Function "PACK"             "pack"             [Codesys];
-    Function "EXTRACT"          "extract"          [Codesys];
-    Function "PUTBIT"           "putbit"           [Codesys];
-    Function "BCD_TO_INT"       "bcd_to_int"       [Codesys];
-    Function "INT_TO_BCD"       "int_to_bcd"       [Codesys];
-    Type     "T_MaxString"      "t_maxstring"      [Codesys];
-    Function "F_ToUCase"        "f_toucase"        [Codesys] "T_MaxString";
-    Function "F_ToLCase"        "f_tolcase"        [Codesys] "T_MaxString";
-    Function "F_LTrim"          "f_ltrim"          [Codesys] "T_MaxString";
-    Function "F_RTrim"          "f_rtrim"          [Codesys] "T_MaxString";
-    Function "BYTE_TO_HEXSTR"   "byte_to_hexstr"   [Codesys] "LWORD_TO_HEXSTR";
-    Function "WORD_TO_HEXSTR"   "word_to_hexstr"   [Codesys] "LWORD_TO_HEXSTR";
-    Function "DWORD_TO_HEXSTR"  "dword_to_hexstr"  [Codesys] "LWORD_TO_HEXSTR";
-    Function "LWORD_TO_HEXSTR"  "lword_to_hexstr"  [Codesys] "T_MaxString";
-    Type     "HRESULT"          "hresult"          [Codesys];
-    Function "SUCCEEDED"        "succeeded"        [Codesys] "HRESULT";
-    Function "FAILED"           "failed"           [Codesys] "HRESULT";
-    Type     "ST_LibVersion"    "st_libversion"    [Codesys];
-    Type     "T_AmsNetId"       "t_amsnetid"       [Codesys];
-    Type     "DRAND"            "drand"            [Codesys];
-    Function "HOST_TO_BE16"     "host_to_be16"     [Codesys];
-    Function "HOST_TO_BE32"     "host_to_be32"     [Codesys];
-    Function "BE16_TO_HOST"     "be16_to_host"     [Codesys];
-    Function "BE32_TO_HOST"     "be32_to_host"     [Codesys];
+    Type     "BLINK"            "blink"            [Codesys Util];
+    Type     "GEN_MODE"         "gen_mode"         [Codesys Util];
+    Type     "GEN"              "gen"              [Codesys Util] "GEN_MODE";
+    Type     "FREQ_MEASURE"     "freq_measure"     [Codesys Util];
+    Type     "HYSTERESIS"       "hysteresis"       [Codesys Util];
+    Type     "LIMITALARM"       "limitalarm"       [Codesys Util];
+    Type     "DERIVATIVE"       "derivative"       [Codesys Util];
+    Type     "INTEGRAL"         "integral"         [Codesys Util];
+    Type     "LIN_TRAFO"        "lin_trafo"        [Codesys Util];
+    Type     "STATISTICS_INT"   "statistics_int"   [Codesys Util];
+    Type     "STATISTICS_REAL"  "statistics_real"  [Codesys Util];
+    Type     "POINT"            "point"            [Codesys Util];
+    Type     "CHARCURVE"        "charcurve"        [Codesys Util] "POINT";
+    Type     "RAMP_INT"         "ramp_int"         [Codesys Util];
+    Type     "RAMP_REAL"        "ramp_real"        [Codesys Util];
+    Type     "PD"               "pd"               [Codesys Util] "DERIVATIVE";
+    Type     "PID"              "pid"              [Codesys Util] "DERIVATIVE" "INTEGRAL";
+    Type     "UNPACK"           "unpack"           [Codesys Util];
+    Function "PACK"             "pack"             [Codesys Util];
+    Function "EXTRACT"          "extract"          [Codesys Util];
+    Function "PUTBIT"           "putbit"           [Codesys Util];
+    Function "BCD_TO_INT"       "bcd_to_int"       [Codesys Util];
+    Function "INT_TO_BCD"       "int_to_bcd"       [Codesys Util];
+    Type     "T_MaxString"      "t_maxstring"      [Codesys Tc2_System];
+    Function "F_ToUCase"        "f_toucase"        [Codesys Tc2_Utilities] "T_MaxString";
+    Function "F_ToLCase"        "f_tolcase"        [Codesys Tc2_Utilities] "T_MaxString";
+    Function "F_LTrim"          "f_ltrim"          [Codesys Tc2_Utilities] "T_MaxString";
+    Function "F_RTrim"          "f_rtrim"          [Codesys Tc2_Utilities] "T_MaxString";
+    Function "BYTE_TO_HEXSTR"   "byte_to_hexstr"   [Codesys Tc2_Utilities] "LWORD_TO_HEXSTR";
+    Function "WORD_TO_HEXSTR"   "word_to_hexstr"   [Codesys Tc2_Utilities] "LWORD_TO_HEXSTR";
+    Function "DWORD_TO_HEXSTR"  "dword_to_hexstr"  [Codesys Tc2_Utilities] "LWORD_TO_HEXSTR";
+    Function "LWORD_TO_HEXSTR"  "lword_to_hexstr"  [Codesys Tc2_Utilities] "T_MaxString";
+    Type     "HRESULT"          "hresult"          [Codesys Tc2_System];
+    Function "SUCCEEDED"        "succeeded"        [Codesys Tc2_System] "HRESULT";
+    Function "FAILED"           "failed"           [Codesys Tc2_System] "HRESULT";
+    Type     "ST_LibVersion"    "st_libversion"    [Codesys Tc2_System];
+    Type     "T_AmsNetId"       "t_amsnetid"       [Codesys Tc2_System];
+    Type     "DRAND"            "drand"            [Codesys Tc2_System];
+    Function "HOST_TO_BE16"     "host_to_be16"     [Codesys Tc2_Utilities];
+    Function "HOST_TO_BE32"     "host_to_be32"     [Codesys Tc2_Utilities];
+    Function "BE16_TO_HOST"     "be16_to_host"     [Codesys Tc2_Utilities];
+    Function "BE32_TO_HOST"     "be32_to_host"     [Codesys Tc2_Utilities];
     Type     "IEC_TIMER"        "iec_timer"        [Siemens];
     Function "NORM_X"           "norm_x"           [Siemens];
     Function "SCALE_X"          "scale_x"          [Siemens];
@@ -256,7 +260,10 @@ impl Uses {
             let space = is_space.then(|| format!("{SYSTEM}.{}", word(at + 2)));
             let Some(unit) = unit(space.as_deref().unwrap_or(word(at))) else { continue };
             // `Tc2_System.DRAND`
-            let of_library = at >= 2 && tokens.kinds[at - 1] == Kind::Dot && is_library(dialect, word(at - 2));
+            let of_library = at >= 2
+                && dialect == Dialect::Codesys
+                && tokens.kinds[at - 1] == Kind::Dot
+                && is_one_of(unit.libraries, word(at - 2));
             let first = if of_library { at - 2 } else { at };
             let before = first.checked_sub(1).map(|it| (tokens.kinds[it], word(it)));
             let after = tokens.kinds.get(at + 1).copied();

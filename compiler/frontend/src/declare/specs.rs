@@ -243,6 +243,10 @@ impl<'s> Declarations<'s> {
             self.report(error);
             return;
         }
+        if let Some(error) = self.not_in_library(Code::E0102, around, name) {
+            self.report(error);
+            return;
+        }
         // The first part that is not there.
         let known =
             (1..around.len()).rev().find(|it| self.names.space_at(self.site(name.span), &around[..*it]).is_some());

@@ -3,7 +3,7 @@
 
 use super::checker::Checker;
 use super::operand::Operand;
-use crate::dialect::is_library;
+use crate::dialect::library;
 use crate::names::{Found as Meant, Sense};
 use crate::{Span, ast};
 use ast::ExprKind as Ast;
@@ -62,7 +62,12 @@ impl<'s> Checker<'_, 's> {
             Ast::Name(name) => vec![*name],
             // `Tc2_System.MEMCPY`
             Ast::Member(owner, name) => match owner.kind {
-                Ast::Name(owner) if is_library(self.decl.dialect(span), owner.text) => vec![owner, *name],
+                Ast::Name(owner)
+                    if library::is_library(self.decl.dialect(span), owner.text)
+                        && library::is_one_of(library::of_built_in(name.text), owner.text) =>
+                {
+                    vec![owner, *name]
+                }
                 _ => return None,
             },
             _ => return None,

@@ -2,7 +2,9 @@
 
 use super::callee::Callee;
 use super::checker::Checker;
-use crate::names::{Entry, Found, Meaning, Sense};
+use crate::dialect::library;
+use crate::names::{Entry, Found, Meaning, Sense, functions};
+use crate::prelude;
 use crate::spelling::nearest;
 use crate::types::scope::Variable;
 use crate::{Code, Diagnostic, ast};
@@ -36,7 +38,12 @@ impl<'s> Checker<'_, 's> {
                 self.not_in_namespace(around, *last);
                 Some(None)
             }
-            Found::One(_) | Found::Nothing => None,
+            Found::Nothing => {
+                let error = self.decl.not_in_library(Code::E0101, around, *last)?;
+                self.report(error);
+                Some(None)
+            }
+            Found::One(_) => None,
         }
     }
 
@@ -97,6 +104,10 @@ impl<'s> Checker<'_, 's> {
                     self.report_family_call(family, *last);
                     return Some(None);
                 }
+                if let Some(error) = self.decl.not_in_library(Code::E0307, around, *last) {
+                    self.report(error);
+                    return Some(None);
+                }
                 self.decl.names.space_at(self.decl.site(last.span), around)?;
                 self.not_in_namespace(around, *last);
                 Some(None)
@@ -132,6 +143,43 @@ impl<'s> crate::types::declarations::Declarations<'s> {
             Some(near) => error.help(format!("did you mean `{near}`?")).fix(name.span, near),
             None => error,
         }
+    }
+
+    /// That a library of CODESYS or TwinCAT has nothing of a name here: which one has it, or that none is bundled.
+    pub(crate) fn not_in_library(
+        &self,
+        code: Code,
+        around: &[ast::Name<'s>],
+        name: ast::Name<'s>,
+    ) -> Option<Diagnostic> {
+        let [owner] = around else { return None };
+        let site = self.site(name.span);
+        if !self.names.is_library(site, owner.text) {
+            return None;
+        }
+        let (library, text) = (owner.text, name.text);
+        let unit = prelude::unit(text).filter(|it| it.dialect.is_none_or(|it| it == site.dialect));
+        let libraries = unit.map_or_else(|| library::of_built_in(text), |it| it.libraries);
+        let error = Diagnostic::new(code, owner.span.to(name.span), format!("the library `{library}` has no `{text}`"));
+        if let Some(right) = libraries.first() {
+            let meant = format!("{right}.{text}");
+            return Some(
+                error
+                    .label(format!("it is in `{right}`"))
+                    .help(format!("write `{meant}`, or `{text}`"))
+                    .fix(owner.span.to(name.span), meant),
+            );
+        }
+        if unit.is_some() || functions::exists_in(text, site.dialect) {
+            return Some(
+                error.label("it is in no library").help(format!("write `{text}`")).fix(owner.span.to(name.span), text),
+            );
+        }
+        Some(
+            error
+                .label("it is not among what is bundled of the library")
+                .help("name its source, or a declaration of it, in `libraries` of staunch.toml"),
+        )
     }
 
     /// That the namespace of a path is INTERNAL in another one, and not seen from here.

@@ -16,7 +16,7 @@ pub(crate) mod functions;
 mod region;
 
 use crate::ast;
-use crate::dialect::{self, Dialect};
+use crate::dialect::{self, Dialect, library};
 use crate::prelude;
 use crate::source::{Sources, Span};
 use crate::spelling::Key;
@@ -150,7 +150,7 @@ enum Prefix {
     Globals,
     Family(Family),
     /// What comes with CODESYS, by the name of its library.
-    Library,
+    Library(String),
 }
 
 impl<'s> Names<'s> {
@@ -223,10 +223,17 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// What is bundled in Structured Text, and so declared as what users write is.
-    fn bundled(&self, name: &str, sense: Sense) -> Option<Meaning> {
-        prelude::unit(name)?;
-        self.spaces[SpaceId::ROOT.0].own.get(&Key(name))?.of(sense).map(Meaning::Declared)
+    /// What a library has. What is bundled in Structured Text is declared as what users write is.
+    fn of_library(&self, dialect: Dialect, of: &str, name: &str, sense: Sense) -> Option<Meaning> {
+        if prelude::unit(name).is_some_and(|it| library::is_one_of(it.libraries, of)) {
+            return self.spaces[SpaceId::ROOT.0].own.get(&Key(name))?.of(sense).map(Meaning::Declared);
+        }
+        self.library(dialect, name, sense).filter(|_| library::is_one_of(library::of_built_in(name), of))
+    }
+
+    /// Whether a name before a point is that of one of CODESYS's or TwinCAT's libraries, and of nothing else.
+    pub fn is_library(&self, site: Site, name: &str) -> bool {
+        matches!(self.prefix(site, name), Some(Prefix::Library(_)))
     }
 
     fn qualified(&self, site: Site, first: &str, between: &[ast::Name<'_>], last: &str, sense: Sense) -> Found {
@@ -236,7 +243,7 @@ impl<'s> Names<'s> {
             Some(Prefix::Enumeration(slot)) => Some(Meaning::Enumerator(slot)),
             Some(Prefix::Globals) => return self.global(site, last),
             Some(Prefix::Family(it)) => in_family(it, last, sense),
-            Some(Prefix::Library) => self.library(site.dialect, last, sense).or_else(|| self.bundled(last, sense)),
+            Some(Prefix::Library(of)) => self.of_library(site.dialect, &of, last, sense),
             None => None,
         };
         found.map_or(Found::Nothing, Found::One)
@@ -277,7 +284,7 @@ impl<'s> Names<'s> {
         if name.eq_ignore_ascii_case("Globals") {
             return Some(Prefix::Globals);
         }
-        let library = dialect::is_library(site.dialect, name).then_some(Prefix::Library);
+        let library = library::is_library(site.dialect, name).then(|| Prefix::Library(name.to_owned()));
         Family::named(name).map(Prefix::Family).or(library)
     }
 

@@ -1,0 +1,39 @@
+//! The libraries of CODESYS and TwinCAT, whose names may be before those of what is built in: which name is of which.
+
+use super::{Dialect, bare_block};
+
+/// Those whose names are known: what they have needs none before it.
+const LIBRARIES: [&str; 7] =
+    ["Standard", "Standard64", "Util", "Tc2_Standard", "Tc2_System", "Tc2_Utilities", "Tc2_Math"];
+
+const BLOCKS: &[&str] = &["Standard", "Standard64", "Tc2_Standard"];
+const TEXTS: &[&str] = &["Standard", "Standard64", "Tc2_Standard"];
+const MEMORY: &[&str] = &["Tc2_System"];
+
+/// Functions that are of a library; all others are operators, or of the standard.
+const FUNCTIONS: [(&[&str], &[&str]); 2] = [
+    (
+        TEXTS,
+        &[
+            "LEN", "LEFT", "RIGHT", "MID", "CONCAT", "INSERT", "DELETE", "REPLACE", "FIND", "WLEN", "WLEFT", "WRIGHT",
+            "WMID", "WCONCAT", "WINSERT", "WDELETE", "WREPLACE", "WFIND",
+        ],
+    ),
+    (MEMORY, &["MEMCPY", "MEMMOVE", "MEMSET", "MEMCMP"]),
+];
+
+/// Whether a name is that of a library whose blocks and functions need no qualification.
+pub(crate) fn is_library(dialect: Dialect, name: &str) -> bool {
+    dialect == Dialect::Codesys && is_one_of(&LIBRARIES, name)
+}
+
+/// The libraries that have a block or function which is not written in Structured Text.
+pub(crate) fn of_built_in(name: &str) -> &'static [&'static str] {
+    let function = FUNCTIONS.iter().find(|(_, names)| is_one_of(names, name)).map(|it| it.0);
+    let block = || bare_block(Dialect::Codesys, name).map(|_| BLOCKS);
+    function.or_else(block).unwrap_or_default()
+}
+
+pub(crate) fn is_one_of(names: &[&str], name: &str) -> bool {
+    names.iter().any(|it| it.eq_ignore_ascii_case(name))
+}
