@@ -11,7 +11,7 @@ const TEXTS: &[&str] = &["Standard", "Standard64", "Tc2_Standard"];
 const MEMORY: &[&str] = &["Tc2_System"];
 
 /// Functions that are of a library; all others are operators, or of the standard.
-const FUNCTIONS: [(&[&str], &[&str]); 2] = [
+const FUNCTIONS: [(&[&str], &[&str]); 3] = [
     (
         TEXTS,
         &[
@@ -20,6 +20,7 @@ const FUNCTIONS: [(&[&str], &[&str]); 2] = [
         ],
     ),
     (MEMORY, &["MEMCPY", "MEMMOVE", "MEMSET", "MEMCMP"]),
+    (&["Tc2_Math"], &["CEIL", "FLOOR", "LTRUNC"]),
 ];
 
 /// Whether a name is that of a library whose blocks and functions need no qualification.
