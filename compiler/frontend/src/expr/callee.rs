@@ -27,6 +27,14 @@ pub(crate) enum Callee<'s> {
     Routine(usize),
 }
 
+/// Conversions of times that some compilers have beyond the standard's.
+const UNITS_OF_TIME: [(&str, &str); 4] = [
+    ("TIME_TO_S", "write `TIME_TO_LINT(x) / 1000`"),
+    ("TIME_TO_MS", "write `TIME_TO_LINT(x)`"),
+    ("TIME_TO_US", "write `LTIME_TO_LINT(TIME_TO_LTIME(x)) / 1000`"),
+    ("TIME_TO_NS", "write `LTIME_TO_LINT(TIME_TO_LTIME(x))`"),
+];
+
 impl<'s> Checker<'_, 's> {
     pub(crate) fn callee(&mut self, callee: &ast::Expr<'s>, arguments: &[ast::Argument<'s>]) -> Option<Callee<'s>> {
         match &callee.kind {
@@ -248,6 +256,8 @@ impl<'s> Checker<'_, 's> {
             error = error.note("it is an instruction of ladder").help(meant);
         } else if staunch_ir::Elementary::named(name.text).is_some() {
             error = error.help(format!("a value is converted with `TO_{}(…)`", name.text.to_ascii_uppercase()));
+        } else if let Some((_, meant)) = UNITS_OF_TIME.iter().find(|it| name.text.eq_ignore_ascii_case(it.0)) {
+            error = error.note("TIME_TO_LINT counts milliseconds, LTIME_TO_LINT nanoseconds").help(*meant);
         } else if name.text.eq_ignore_ascii_case("POW") {
             error = error.help("write `EXPT(base, exponent)`, or `base ** exponent`");
         } else if name.text.eq_ignore_ascii_case("ROUND") {

@@ -184,7 +184,8 @@ impl<'s> Checker<'_, 's> {
 
     fn type_named(&mut self, named: &ast::Expr<'s>) -> Option<Type> {
         let ty = self.type_of_path(named);
-        if ty.is_none() {
+        // What is no expression has been reported.
+        if ty.is_none() && !matches!(named.kind, ast::ExprKind::Error(_)) {
             self.report(
                 Diagnostic::new(Code::E0413, named.span, "`__NEW` makes objects of a type")
                     .label("expected the name of a FUNCTION_BLOCK or a type"),

@@ -14,6 +14,7 @@ use super::{
     diagnostics, foreign_syntax, literal,
     parser::{Expected, In, Parsed, Problem, TokenReader, Waiting},
     token_class::ends_statements,
+    unsupported,
 };
 
 /// Arguments of one call.
@@ -421,6 +422,9 @@ fn names_pin(input: &mut In<'_, '_, '_>) -> bool {
 }
 
 fn positional<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Argument<'s>> {
+    if let Some(value) = unsupported::reference_type(input) {
+        return Ok(Argument { span: value.span, kind: ArgumentKind::Positional(value) });
+    }
     let value = expression(input)?;
     let span = value.span;
     Ok(Argument { kind: ArgumentKind::Positional(value), span })

@@ -2,6 +2,7 @@
 //! Their words are names everywhere else.
 
 use crate::{
+    ast::{Expr, ExprKind},
     lex::{Kind, index},
     spelling::Key,
     vendor::controller_service,
@@ -51,6 +52,25 @@ pub fn skip(input: &mut In<'_, '_, '_>) -> bool {
         return true;
     }
     false
+}
+
+/// Refuses and passes over `POINTER TO T` where a value is asked for: `__NEW(POINTER TO T, 4)`.
+pub fn reference_type<'s>(input: &mut In<'_, '_, 's>) -> Option<Expr<'s>> {
+    let start = input.here();
+    let word = input.text(start);
+    let is_word = ["POINTER", "REFERENCE"].iter().any(|it| word.eq_ignore_ascii_case(it));
+    if input.kind() != Kind::Name || input.kind_ahead(1) != Kind::To || !is_word {
+        return None;
+    }
+    while !matches!(input.kind(), Kind::Comma | Kind::CloseParen | Kind::Semicolon | Kind::End) {
+        input.take();
+    }
+    let span = start.to(input.last());
+    input.report(
+        diagnostics::unsupported(span, "the type of a reference as an argument")
+            .help("declare a STRUCT with the reference as its member, and name that"),
+    );
+    Some(Expr { kind: ExprKind::Error(Vec::new()), span })
 }
 
 /// Whether a JMP of the file names this label.
