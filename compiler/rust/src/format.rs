@@ -71,7 +71,8 @@ fn fill(text: &str) -> String {
     let names: Vec<&str> = names.split([',', '\n', ' ']).filter(|it| !it.is_empty()).collect();
     let start = before.lines().last().unwrap_or_default();
     let whole = names.join(", ");
-    if start.len() + whole.len() + "::{};".len() <= WIDE {
+    // rustfmt leaves the last column of an import empty.
+    if start.len() + whole.len() + "::{};".len() < WIDE {
         return format!("{before}::{{{whole}}};\n{after}");
     }
     let mut lines = vec![String::new()];

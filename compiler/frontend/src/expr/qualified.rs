@@ -158,8 +158,11 @@ impl<'s> crate::types::declarations::Declarations<'s> {
             return None;
         }
         let (library, text) = (owner.text, name.text);
-        let unit = prelude::unit(text).filter(|it| it.dialect.is_none_or(|it| it == site.dialect));
-        let libraries = unit.map_or_else(|| library::of_built_in(text), |it| it.libraries);
+        // Nothing that is bundled is a variable.
+        let is_value = code == Code::E0101;
+        let unit = prelude::unit(text).filter(|it| !is_value && it.dialect.is_none_or(|it| it == site.dialect));
+        let built_in = if is_value { &[] } else { library::of_built_in(text) };
+        let libraries = unit.map_or(built_in, |it| it.libraries);
         let error = Diagnostic::new(code, owner.span.to(name.span), format!("the library `{library}` has no `{text}`"));
         if let Some(right) = libraries.first() {
             let meant = format!("{right}.{text}");
@@ -170,7 +173,7 @@ impl<'s> crate::types::declarations::Declarations<'s> {
                     .fix(owner.span.to(name.span), meant),
             );
         }
-        if unit.is_some() || functions::exists_in(text, site.dialect) {
+        if unit.is_some() || !is_value && functions::exists_in(text, site.dialect) {
             return Some(
                 error.label("it is in no library").help(format!("write `{text}`")).fix(owner.span.to(name.span), text),
             );
