@@ -332,7 +332,6 @@ fn fixes_make_the_text_right() {
     let cases = [
         ("x = 1;", "x := 1;"),
         ("x : = 1;", "x := 1;"),
-        ("IF x := 1 THEN ; END_IF", "IF x = 1 THEN ; END_IF"),
         ("x := a&&b;", "x := a AND b;"),
         ("x := a || b;", "x := a OR b;"),
         ("x := a%b;", "x := a MOD b;"),
