@@ -255,3 +255,6 @@ fn never_wraps(known: &Known<'_>, counter: &Place, bound: &Expr, way: i128) -> b
     let (Some((least, most)), Some(bound_range)) = (whole, known.range(bound)) else { return false };
     bound.ty == counter.ty && least <= bound_range.0 + way.min(0) && bound_range.1 + way.max(0) <= most
 }
+
+#[cfg(test)]
+mod tests;

@@ -48,7 +48,7 @@ fn a_counter_is_private_while_nobody_else_can_write_it() {
 fn ranges_hold_for_every_value() {
     let program = sample(Vec::new());
     let other = crate::fixture::limit();
-    for (first, last, step) in [(-3, 4, 1), (0, 7, 2), (5, -2, -3), (300, 310, 1)] {
+    for (first, last, step) in [(-3, 4, 1), (-3, 1, 1), (-1, 4, 1), (0, 7, 2), (5, -2, -3), (300, 310, 1)] {
         let (a, b) = (counted(temp(), first, last, step), counted(other.clone(), -2, 3, 1));
         let loops = [&a, &b];
         let known = Known { program: &program, loops: &loops, checked: &|_| false };
@@ -91,6 +91,7 @@ fn ranges_are_as_narrow_as_they_can_be() {
     assert_eq!(range(-3, 4, Op::Mul, beside()), (-9, 12));
     assert_eq!(range(-3, 4, Op::Mod, int(6)), (-5, 5));
     assert_eq!((range(0, 4, Op::Mod, int(6)), range(-4, 0, Op::Mod, int(6))), ((0, 5), (-5, 0)));
+    assert_eq!((range(-1, 4, Op::Mod, int(6)), range(-4, 1, Op::Mod, int(6))), ((-5, 5), (-5, 5)));
     assert_eq!((range(-3, 4, Op::And, int(6)), range(-3, 4, Op::And, int(0))), ((0, 6), (0, 0)));
     let (least, most) = (i128::from(i16::MIN), i128::from(i16::MAX));
     assert_eq!(range(0, i16::MAX - 1, Op::Add, int(1)), (1, most));
@@ -106,6 +107,17 @@ fn what_leaves_its_type_may_be_anything() {
     let next = Expr::apply(Op::Add, Type::INT, vec![load(temp()), int(1)], AT);
     assert_eq!(known.range(&next), Some((i16::MIN.into(), i16::MAX.into())));
     assert_eq!(known.range(&load(temp())), Some((0, i16::MAX.into())));
+}
+
+#[test]
+fn a_loop_is_left_by_a_lone_exit() {
+    let test = |then, otherwise| stmt(StatementKind::If { condition: Expr::bool(true, AT), then, otherwise });
+    let exit = || stmt(StatementKind::Exit);
+    assert!(exit_condition(&test(vec![exit()], vec![])).is_some());
+    assert!(exit_condition(&test(vec![exit()], vec![assign(temp(), int(1))])).is_none());
+    assert!(exit_condition(&test(vec![assign(temp(), int(1))], vec![])).is_none());
+    assert!(exit_condition(&test(vec![assign(temp(), int(1)), exit()], vec![])).is_none());
+    assert!(exit_condition(&test(vec![], vec![exit()])).is_none() && exit_condition(&exit()).is_none());
 }
 
 const INDEX: Type = Type::Subrange(Elementary::Lint, BoundsId(0));
