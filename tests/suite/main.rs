@@ -14,6 +14,7 @@ mod programs;
 mod rows;
 mod stack;
 mod state;
+mod turns;
 
 mod architecture;
 mod documents;

@@ -90,22 +90,19 @@ pub fn linear<'a>(
     parts(Op::And, &stay[0], &mut conditions);
     (0..conditions.len()).find_map(|at| {
         let mut others = conditions.clone();
-        let (counter, bound, ahead, offset) = compared(others.remove(at))?;
-        let (steps, step) = only_step(frame, body, counter)?;
-        let toward = (step > 0) == ahead && !alias::changes(frame, body, bound);
-        let fits = !faults::expr_faults(known.program, bound) && never_wraps(known, counter, bound, offset + step);
-        let others_hold = others.iter().all(|it| !faults::expr_faults(known.program, it));
-        (toward && fits && others_hold).then_some(Linear {
-            counter,
-            step,
-            bound,
-            offset,
-            others,
-            leave,
-            body,
-            steps,
-            at: turn.at,
-        })
+        let condition = others.remove(at);
+        if others.iter().any(|it| faults::expr_faults(known.program, it)) {
+            return None;
+        }
+        let (counter, bound, offset, steps, step) =
+            compared(condition).find_map(|(counter, bound, ahead, offset)| {
+                let (steps, step) = only_step(frame, body, counter)?;
+                let toward = (step > 0) == ahead && !alias::changes(frame, body, bound);
+                let fits =
+                    !faults::expr_faults(known.program, bound) && never_wraps(known, counter, bound, offset + step);
+                (toward && fits).then_some((counter, bound, offset, steps, step))
+            })?;
+        Some(Linear { counter, step, bound, offset, others, leave, body, steps, at: turn.at })
     })
 }
 
@@ -151,7 +148,7 @@ fn size_test(condition: &Expr) -> Option<(&Place, bool)> {
         Op::Lt if limit >= 1 => false,
         _ => return None,
     };
-    is_variable(place).then_some((place, is_large))
+    Some((place, is_large))
 }
 
 /// `0 < x` as `x > 0`.
@@ -204,26 +201,26 @@ fn parts<'a>(by: Op, condition: &'a Expr, found: &mut Vec<&'a Expr>) {
     }
 }
 
-/// A variable and its bound; whether that is above, and how far from it the last value is.
-fn compared(condition: &Expr) -> Option<(&Place, &Expr, bool, i128)> {
-    let ExprKind::Apply(op, operands) = &condition.kind else { return None };
-    let [left, right] = operands.as_slice() else { return None };
-    let (is_above, offset) = match op {
-        Op::Lt => (true, -1),
-        Op::Le => (true, 0),
-        Op::Gt => (false, 1),
-        Op::Ge => (false, 0),
-        _ => return None,
-    };
-    match (&left.kind, &right.kind) {
-        (ExprKind::Load(place), _) if is_variable(place) => Some((place, right, is_above, offset)),
-        (_, ExprKind::Load(place)) if is_variable(place) => Some((place, left, !is_above, -offset)),
+/// Either side of a comparison that is a variable, and its bound; whether that is above, and how far from it
+/// the last value is.
+fn compared(condition: &Expr) -> impl Iterator<Item = (&Place, &Expr, bool, i128)> {
+    let sides = match &condition.kind {
+        ExprKind::Apply(op, operands) => match (op, operands.as_slice()) {
+            (Op::Lt, [left, right]) => Some((left, right, true, -1)),
+            (Op::Le, [left, right]) => Some((left, right, true, 0)),
+            (Op::Gt, [left, right]) => Some((left, right, false, 1)),
+            (Op::Ge, [left, right]) => Some((left, right, false, 0)),
+            _ => None,
+        },
         _ => None,
-    }
-}
-
-fn is_variable(place: &Place) -> bool {
-    !place.is_followed() && place.indices().next().is_none()
+    };
+    let both = sides.map(|(left, right, is_above, offset): (&Expr, &Expr, bool, i128)| {
+        [(left, right, is_above, offset), (right, left, !is_above, -offset)]
+    });
+    both.into_iter().flatten().filter_map(|(variable, bound, is_above, offset)| match &variable.kind {
+        ExprKind::Load(place) => Some((place, bound, is_above, offset)),
+        _ => None,
+    })
 }
 
 /// The one statement that writes `counter`, which each turn passes, and by how much it steps.
