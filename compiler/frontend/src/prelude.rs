@@ -18,8 +18,8 @@ pub(crate) struct Unit {
     pub name: &'static str,
     text: &'static str,
     use_: Use,
-    /// The dialect that has it by this name; `None` for all.
-    pub dialect: Option<Dialect>,
+    /// The dialects that have it by this name; none stands for all.
+    pub dialects: &'static [Dialect],
     /// The libraries of CODESYS and TwinCAT that have it, whose names may be before its own.
     pub libraries: &'static [&'static str],
     /// Other units that it names.
@@ -47,13 +47,13 @@ const ANY: &str = "__SYSTEM";
 const OF_ANY: [&str; 3] = ["TypeClass", "pValue", "diSize"];
 
 macro_rules! units {
-    ($($use_:ident $name:literal $file:tt $([$dialect:ident $($library:ident)*])? $($need:literal)*;)*) => {
+    ($($use_:ident $name:literal $file:tt $([$($dialect:ident)+ $(: $($library:ident)+)?])? $($need:literal)*;)*) => {
         &[$(Unit {
             name: $name,
             text: units!(@text $file),
             use_: Use::$use_,
-            dialect: units!(@dialect $($dialect)?),
-            libraries: &[$($(stringify!($library)),*)?],
+            dialects: &[$($(Dialect::$dialect),+)?],
+            libraries: &[$($($(stringify!($library)),+)?)?],
             needs: &[$($need),*],
         }),*]
     };
@@ -63,77 +63,77 @@ macro_rules! units {
     (@text $file:literal) => {
         include_str!(concat!("prelude/", $file, ".st"))
     };
-    (@dialect) => {
-        None
-    };
-    (@dialect $dialect:ident) => {
-        Some(Dialect::$dialect)
-    };
 }
 
-/// Every unit.
+/// Every unit. Those of one name are of different dialects.
 pub(crate) const UNITS: &[Unit] = units! {
-    Type     "BLINK"            "blink"            [Codesys Util];
-    Type     "GEN_MODE"         "gen_mode"         [Codesys Util];
-    Type     "GEN"              "gen"              [Codesys Util] "GEN_MODE";
-    Type     "FREQ_MEASURE"     "freq_measure"     [Codesys Util];
-    Type     "HYSTERESIS"       "hysteresis"       [Codesys Util];
-    Type     "LIMITALARM"       "limitalarm"       [Codesys Util];
-    Type     "DERIVATIVE"       "derivative"       [Codesys Util];
-    Type     "INTEGRAL"         "integral"         [Codesys Util];
-    Type     "LIN_TRAFO"        "lin_trafo"        [Codesys Util];
-    Type     "STATISTICS_INT"   "statistics_int"   [Codesys Util];
-    Type     "STATISTICS_REAL"  "statistics_real"  [Codesys Util];
-    Type     "POINT"            "point"            [Codesys Util];
-    Type     "CHARCURVE"        "charcurve"        [Codesys Util] "POINT";
-    Type     "RAMP_INT"         "ramp_int"         [Codesys Util];
-    Type     "RAMP_REAL"        "ramp_real"        [Codesys Util];
-    Type     "PD"               "pd"               [Codesys Util] "DERIVATIVE";
-    Type     "PID"              "pid"              [Codesys Util] "DERIVATIVE" "INTEGRAL";
-    Type     "UNPACK"           "unpack"           [Codesys Util];
-    Function "PACK"             "pack"             [Codesys Util];
-    Function "EXTRACT"          "extract"          [Codesys Util];
-    Function "PUTBIT"           "putbit"           [Codesys Util];
-    Function "BCD_TO_INT"       "bcd_to_int"       [Codesys Util];
-    Function "INT_TO_BCD"       "int_to_bcd"       [Codesys Util];
-    Type     "T_MaxString"      "t_maxstring"      [Codesys Tc2_System];
-    Function "F_ToUCase"        "f_toucase"        [Codesys Tc2_Utilities] "T_MaxString";
-    Function "F_ToLCase"        "f_tolcase"        [Codesys Tc2_Utilities] "T_MaxString";
-    Function "F_LTrim"          "f_ltrim"          [Codesys Tc2_Utilities] "T_MaxString";
-    Function "F_RTrim"          "f_rtrim"          [Codesys Tc2_Utilities] "T_MaxString";
-    Function "BYTE_TO_HEXSTR"   "byte_to_hexstr"   [Codesys Tc2_Utilities] "LWORD_TO_HEXSTR";
-    Function "WORD_TO_HEXSTR"   "word_to_hexstr"   [Codesys Tc2_Utilities] "LWORD_TO_HEXSTR";
-    Function "DWORD_TO_HEXSTR"  "dword_to_hexstr"  [Codesys Tc2_Utilities] "LWORD_TO_HEXSTR";
-    Function "LWORD_TO_HEXSTR"  "lword_to_hexstr"  [Codesys Tc2_Utilities] "T_MaxString";
-    Type     "HRESULT"          "hresult"          [Codesys Tc2_System];
-    Function "SUCCEEDED"        "succeeded"        [Codesys Tc2_System] "HRESULT";
-    Function "FAILED"           "failed"           [Codesys Tc2_System] "HRESULT";
-    Type     "ST_LibVersion"    "st_libversion"    [Codesys Tc2_System];
-    Type     "T_AmsNetId"       "t_amsnetid"       [Codesys Tc2_System];
-    Type     "DRAND"            "drand"            [Codesys Tc2_System];
-    Function "HOST_TO_BE16"     "host_to_be16"     [Codesys Tc2_Utilities];
-    Function "HOST_TO_BE32"     "host_to_be32"     [Codesys Tc2_Utilities];
-    Function "BE16_TO_HOST"     "be16_to_host"     [Codesys Tc2_Utilities];
-    Function "BE32_TO_HOST"     "be32_to_host"     [Codesys Tc2_Utilities];
+    Type     "BLINK"            "blink"            [Codesys: Util];
+    Type     "GEN_MODE"         "gen_mode"         [Codesys: Util];
+    Type     "GEN"              "gen"              [Codesys: Util] "GEN_MODE";
+    Type     "FREQ_MEASURE"     "freq_measure"     [Codesys: Util];
+    Type     "HYSTERESIS"       "hysteresis"       [Codesys: Util];
+    Type     "LIMITALARM"       "limitalarm"       [Codesys: Util];
+    Type     "DERIVATIVE"       "derivative"       [Codesys: Util];
+    Type     "INTEGRAL"         "integral"         [Codesys: Util];
+    Type     "LIN_TRAFO"        "lin_trafo"        [Codesys: Util];
+    Type     "STATISTICS_INT"   "statistics_int"   [Codesys: Util];
+    Type     "STATISTICS_REAL"  "statistics_real"  [Codesys: Util];
+    Type     "POINT"            "point"            [Codesys: Util];
+    Type     "CHARCURVE"        "charcurve"        [Codesys: Util] "POINT";
+    Type     "RAMP_INT"         "ramp_int"         [Codesys: Util];
+    Type     "RAMP_REAL"        "ramp_real"        [Codesys: Util];
+    Type     "PD"               "pd"               [Codesys: Util] "DERIVATIVE";
+    Type     "PID"              "pid"              [Codesys: Util] "DERIVATIVE" "INTEGRAL";
+    Type     "UNPACK"           "unpack"           [Codesys: Util];
+    Function "PACK"             "pack"             [Codesys: Util];
+    Function "EXTRACT"          "extract"          [Codesys: Util];
+    Function "PUTBIT"           "putbit"           [Codesys: Util];
+    Function "BCD_TO_INT"       "bcd_to_int"       [Codesys: Util];
+    Function "INT_TO_BCD"       "int_to_bcd"       [Codesys: Util];
+    Type     "T_MaxString"      "t_maxstring"      [Codesys: Tc2_System];
+    Function "F_ToUCase"        "f_toucase"        [Codesys: Tc2_Utilities] "T_MaxString";
+    Function "F_ToLCase"        "f_tolcase"        [Codesys: Tc2_Utilities] "T_MaxString";
+    Function "F_LTrim"          "f_ltrim"          [Codesys: Tc2_Utilities] "T_MaxString";
+    Function "F_RTrim"          "f_rtrim"          [Codesys: Tc2_Utilities] "T_MaxString";
+    Function "BYTE_TO_HEXSTR"   "byte_to_hexstr"   [Codesys: Tc2_Utilities] "LWORD_TO_HEXSTR";
+    Function "WORD_TO_HEXSTR"   "word_to_hexstr"   [Codesys: Tc2_Utilities] "LWORD_TO_HEXSTR";
+    Function "DWORD_TO_HEXSTR"  "dword_to_hexstr"  [Codesys: Tc2_Utilities] "LWORD_TO_HEXSTR";
+    Function "LWORD_TO_HEXSTR"  "lword_to_hexstr"  [Codesys: Tc2_Utilities] "T_MaxString";
+    Type     "HRESULT"          "hresult"          [Codesys: Tc2_System];
+    Function "SUCCEEDED"        "succeeded"        [Codesys: Tc2_System] "HRESULT";
+    Function "FAILED"           "failed"           [Codesys: Tc2_System] "HRESULT";
+    Type     "ST_LibVersion"    "st_libversion"    [Codesys: Tc2_System];
+    Type     "T_AmsNetId"       "t_amsnetid"       [Codesys: Tc2_System];
+    Type     "DRAND"            "drand"            [Codesys: Tc2_System];
+    Function "HOST_TO_BE16"     "host_to_be16"     [Codesys: Tc2_Utilities];
+    Function "HOST_TO_BE32"     "host_to_be32"     [Codesys: Tc2_Utilities];
+    Function "BE16_TO_HOST"     "be16_to_host"     [Codesys: Tc2_Utilities];
+    Function "BE32_TO_HOST"     "be32_to_host"     [Codesys: Tc2_Utilities];
     Type     "PVOID"            "pvoid"            [Codesys];
     Type     "UXINT"            "uxint"            [Codesys];
     Type     "XINT"             "xint"             [Codesys];
     Type     "XWORD"            "xword"            [Codesys];
-    Type     "T_AmsNetIdArr"    "t_amsnetidarr"    [Codesys Tc2_System];
-    Type     "T_AmsPort"        "t_amsport"        [Codesys Tc2_System];
-    Type     "ST_AmsAddr"       "st_amsaddr"       [Codesys Tc2_System] "T_AmsNetIdArr" "T_AmsPort";
-    Function "F_CreateAmsNetId" "f_createamsnetid" [Codesys Tc2_System] "T_AmsNetId" "T_AmsNetIdArr";
-    Function "F_ToCHR"          "f_tochr"          [Codesys Tc2_System];
-    Function "F_ToASC"          "f_toasc"          [Codesys Tc2_System];
-    Function "HEXASCNIBBLE_TO_BYTE" "hexascnibble_to_byte" [Codesys Tc2_Utilities];
-    Function "HEXCHRNIBBLE_TO_BYTE" "hexchrnibble_to_byte" [Codesys Tc2_Utilities] "HEXASCNIBBLE_TO_BYTE";
-    Type     "TIMESTRUCT"       "timestruct"       [Codesys Tc2_Utilities];
-    Function "DT_TO_SYSTEMTIME" "dt_to_systemtime" [Codesys Tc2_Utilities] "TIMESTRUCT" "SPLIT_DT";
-    Function "SYSTEMTIME_TO_DT" "systemtime_to_dt" [Codesys Tc2_Utilities] "TIMESTRUCT";
-    Function "FRAC"             "frac"             [Codesys Tc2_Math];
-    Function "LMOD"             "lmod"             [Codesys Tc2_Math];
-    Function "MODABS"           "modabs"           [Codesys Tc2_Math] "LMOD";
-    Function "MODTURNS"         "modturns"         [Codesys Tc2_Math] "MODABS";
+    Type     "T_AmsNetIdArr"    "t_amsnetidarr"    [Codesys: Tc2_System];
+    Type     "T_AmsPort"        "t_amsport"        [Codesys: Tc2_System];
+    Type     "ST_AmsAddr"       "st_amsaddr"       [Codesys: Tc2_System] "T_AmsNetIdArr" "T_AmsPort";
+    Function "F_CreateAmsNetId" "f_createamsnetid" [Codesys: Tc2_System] "T_AmsNetId" "T_AmsNetIdArr";
+    Function "F_ToCHR"          "f_tochr"          [Codesys: Tc2_System];
+    Function "F_ToASC"          "f_toasc"          [Codesys: Tc2_System];
+    Function "HEXASCNIBBLE_TO_BYTE" "hexascnibble_to_byte" [Codesys: Tc2_Utilities];
+    Function "HEXCHRNIBBLE_TO_BYTE" "hexchrnibble_to_byte" [Codesys: Tc2_Utilities] "HEXASCNIBBLE_TO_BYTE";
+    Type     "TIMESTRUCT"       "timestruct"       [Codesys: Tc2_Utilities];
+    Function "DT_TO_SYSTEMTIME" "dt_to_systemtime" [Codesys: Tc2_Utilities] "TIMESTRUCT" "SPLIT_DT";
+    Function "SYSTEMTIME_TO_DT" "systemtime_to_dt" [Codesys: Tc2_Utilities] "TIMESTRUCT";
+    Function "FRAC"             "frac"             [Codesys: Tc2_Math];
+    Function "LMOD"             "lmod"             [Codesys: Tc2_Math];
+    Function "MODABS"           "modabs"           [Codesys: Tc2_Math] "LMOD";
+    Function "MODTURNS"         "modturns"         [Codesys: Tc2_Math] "MODABS";
+    Type     "INTEGRAL"         "iec_integral"     [Iec Openplc];
+    Type     "DERIVATIVE"       "iec_derivative"   [Iec Openplc];
+    Type     "PID"              "iec_pid"          [Iec Openplc] "INTEGRAL" "DERIVATIVE";
+    Type     "RAMP"             "iec_ramp"         [Iec Openplc];
+    Type     "HYSTERESIS"       "iec_hysteresis"   [Iec Openplc];
+    Type     "SEMA"             "iec_sema"         [Iec Openplc];
     Type     "IEC_TIMER"        "iec_timer"        [Siemens];
     Function "NORM_X"           "norm_x"           [Siemens];
     Function "SCALE_X"          "scale_x"          [Siemens];
@@ -156,8 +156,11 @@ pub(crate) const UNITS: &[Unit] = units! {
     Type     "FB_TestSuite"     (LINE_END) "TcUnit";
 };
 
-static BY_NAME: LazyLock<FxHashMap<Key<'static>, Unit>> =
-    LazyLock::new(|| UNITS.iter().map(|it| (Key(it.name), *it)).collect());
+static BY_NAME: LazyLock<FxHashMap<Key<'static>, Vec<Unit>>> = LazyLock::new(|| {
+    let mut found: FxHashMap<_, Vec<_>> = FxHashMap::default();
+    UNITS.iter().for_each(|it| found.entry(Key(it.name)).or_default().push(*it));
+    found
+});
 
 /// The lengths of units' names, and of what else asks for one, by their first letters: most words of a program are
 /// passed over by these.
@@ -177,9 +180,19 @@ fn place_of(first: u8) -> usize {
     usize::from(first.to_ascii_uppercase().wrapping_sub(b'A'))
 }
 
-/// The unit of a name.
-pub(crate) fn unit(name: &str) -> Option<Unit> {
-    BY_NAME.get(&Key(name)).copied()
+/// The units of a name, each in other dialects.
+pub(crate) fn units(name: &str) -> impl Iterator<Item = Unit> {
+    BY_NAME.get(&Key(name)).into_iter().flatten().copied()
+}
+
+/// The unit that a dialect has by this name.
+pub(crate) fn unit(name: &str, dialect: Dialect) -> Option<Unit> {
+    units(name).find(|it| it.dialects.is_empty() || it.dialects.contains(&dialect))
+}
+
+/// One of the dialects that have a unit of this name, where not all do.
+pub(crate) fn owner(name: &str) -> Option<Dialect> {
+    units(name).find_map(|it| it.dialects.first().copied())
 }
 
 /// A unit that a program names, and where it does first.
@@ -273,22 +286,28 @@ impl Uses {
             let before = at.checked_sub(1).map(|it| tokens.kinds[it]);
             heads.see(word(at), (1..5).map(|it| word(at + it)));
             if dialect == Dialect::Codesys && heads.hand_on_any(word(at), before) {
-                self.named.extend(unit(ANY).map(|unit| Named { unit, at: Span { file, start, end }, dialect }));
+                self.named.extend(unit(ANY, dialect).map(|unit| Named {
+                    unit,
+                    at: Span { file, start, end },
+                    dialect,
+                }));
             }
             let is_space = is_system(word(at)) && tokens.kinds.get(at + 1) == Some(&Kind::Dot);
             let space = is_space.then(|| format!("{SYSTEM}.{}", word(at + 2)));
-            let Some(unit) = unit(space.as_deref().unwrap_or(word(at))) else { continue };
+            let name = space.as_deref().unwrap_or(word(at));
+            let Some(any) = units(name).next() else { continue };
+            let unit = unit(name, dialect);
             // `Tc2_System.DRAND`
             let of_library = at >= 2
                 && dialect == Dialect::Codesys
                 && tokens.kinds[at - 1] == Kind::Dot
-                && is_one_of(unit.libraries, word(at - 2));
+                && unit.is_some_and(|it| is_one_of(it.libraries, word(at - 2)));
             let first = if of_library { at - 2 } else { at };
             let before = first.checked_sub(1).map(|it| (tokens.kinds[it], word(it)));
             let after = tokens.kinds.get(at + 1).copied();
-            if declares(before, after, &types) && unit.use_ != Use::Open {
-                self.declared.insert(unit.name);
-            } else if names(&unit, before, after) && unit.dialect.is_none_or(|it| it == dialect) {
+            if declares(before, after, &types) && any.use_ != Use::Open {
+                self.declared.insert(any.name);
+            } else if let Some(unit) = unit.filter(|it| names(it, before, after)) {
                 self.named.push(Named { unit, at: Span { file, start, end }, dialect });
             }
         }
@@ -304,7 +323,7 @@ impl Uses {
                 continue;
             }
             needed.push(it);
-            waiting.extend(it.unit.needs.iter().filter_map(|name| Some(Named { unit: unit(name)?, ..it })));
+            waiting.extend(it.unit.needs.iter().filter_map(|name| Some(Named { unit: unit(name, it.dialect)?, ..it })));
         }
         needed
     }
@@ -425,7 +444,7 @@ fn mentions_any(text: &str) -> bool {
 
 /// Whether a word may be a unit's name, or what its name begins with.
 fn may_name(word: &str) -> bool {
-    is_system(word) || unit(word).is_some() || is_of_any(word) || is_generic(word)
+    is_system(word) || units(word).next().is_some() || is_of_any(word) || is_generic(word)
 }
 
 /// ANY, ANY_INT and the like.
@@ -456,7 +475,7 @@ mod tests {
     fn every_unit_compiles() {
         let page = include_str!("../../../docs/library.md");
         for unit in UNITS {
-            let dialect = unit.dialect.unwrap_or_default();
+            let dialect = unit.dialects.first().copied().unwrap_or_default();
             let call = match unit.use_ {
                 Use::Type => format!("VAR_GLOBAL it : {}; END_VAR", unit.name),
                 Use::Space | Use::Open => format!("USING {};", unit.name),

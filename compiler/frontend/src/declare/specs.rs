@@ -316,7 +316,7 @@ impl<'s> Declarations<'s> {
     }
 
     fn report_unknown_type(&mut self, name: ast::Name<'s>) {
-        if let Some(Some(dialect)) = prelude::unit(name.text).map(|it| it.dialect) {
+        if let Some(dialect) = prelude::owner(name.text) {
             let (system, dialect) = (dialect.name().to_ascii_uppercase(), dialect.name());
             self.report(
                 Diagnostic::new(Code::E0102, name.span, format!("`{}` is of {system}'s library", name.text))

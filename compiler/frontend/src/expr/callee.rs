@@ -224,7 +224,7 @@ impl<'s> Checker<'_, 's> {
             );
             return;
         }
-        if let Some(Some(dialect)) = prelude::unit(name.text).map(|it| it.dialect) {
+        if let Some(dialect) = prelude::owner(name.text) {
             let (system, dialect) = (dialect.name().to_ascii_uppercase(), dialect.name());
             self.report(
                 Diagnostic::new(Code::E0307, name.span, format!("`{}` is of {system}'s library", name.text))

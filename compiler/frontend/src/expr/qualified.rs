@@ -160,7 +160,7 @@ impl<'s> crate::types::declarations::Declarations<'s> {
         let (library, text) = (owner.text, name.text);
         // Nothing that is bundled is a variable.
         let is_value = code == Code::E0101;
-        let unit = prelude::unit(text).filter(|it| !is_value && it.dialect.is_none_or(|it| it == site.dialect));
+        let unit = prelude::unit(text, site.dialect).filter(|_| !is_value);
         let built_in = if is_value { &[] } else { library::of_built_in(text) };
         let libraries = unit.map_or(built_in, |it| it.libraries);
         let error = Diagnostic::new(code, owner.span.to(name.span), format!("the library `{library}` has no `{text}`"));

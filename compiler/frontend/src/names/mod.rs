@@ -225,7 +225,7 @@ impl<'s> Names<'s> {
 
     /// What a library has. What is bundled in Structured Text is declared as what users write is.
     fn of_library(&self, dialect: Dialect, of: &str, name: &str, sense: Sense) -> Option<Meaning> {
-        if prelude::unit(name).is_some_and(|it| library::is_one_of(it.libraries, of)) {
+        if prelude::unit(name, dialect).is_some_and(|it| library::is_one_of(it.libraries, of)) {
             return self.spaces[SpaceId::ROOT.0].own.get(&Key(name))?.of(sense).map(Meaning::Declared);
         }
         self.library(dialect, name, sense).filter(|_| library::is_one_of(library::of_built_in(name), of))
