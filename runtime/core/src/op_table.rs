@@ -36,6 +36,7 @@ macro_rules! for_each_op {
             Ceil        "_CEIL"    ceil       (IN: T) -> T                           [ANY_REAL as real]           total;
             Floor       "_FLOOR"   floor      (IN: T) -> T                           [ANY_REAL as real]           total;
             Whole       "_WHOLE"   whole      (IN: T) -> T                           [ANY_REAL as real]           total;
+            Nearest     "_NEAREST" nearest    (IN: T) -> T                           [ANY_REAL as real]           total;
             And         "AND"      and        (IN1: T, IN2: T) -> T                  [ANY_BIT as bits]            total extensible;
             Or          "OR"       or         (IN1: T, IN2: T) -> T                  [ANY_BIT as bits]            total extensible;
             Xor         "XOR"      xor        (IN1: T, IN2: T) -> T                  [ANY_BIT as bits]            total extensible;

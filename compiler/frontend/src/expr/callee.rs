@@ -216,12 +216,17 @@ impl<'s> Checker<'_, 's> {
             );
             return;
         }
-        if functions::exists(name.text) {
-            self.report(
-                Diagnostic::new(Code::E0307, name.span, format!("`{}` is a function of CODESYS", name.text))
-                    .label("this file's dialect has none of that name")
-                    .help("start the file with `{dialect 'codesys'}`, or compile with `--dialect codesys`"),
-            );
+        if let Some(dialect) = functions::owner(name.text) {
+            let (system, dialect) = (dialect.name().to_ascii_uppercase(), dialect.name());
+            let error = Diagnostic::new(Code::E0307, name.span, format!("`{}` is a function of {system}", name.text))
+                .label("this file's dialect has none of that name");
+            let error = match name.text.eq_ignore_ascii_case("ROUND") {
+                true => error.help("`REAL_TO_DINT(x)` rounds to the nearest, halves to the even one"),
+                false => error.help(format!(
+                    "start the file with `{{dialect '{dialect}'}}`, or compile with `--dialect {dialect}`"
+                )),
+            };
+            self.report(error);
             return;
         }
         if let Some(dialect) = prelude::owner(name.text) {
@@ -260,8 +265,6 @@ impl<'s> Checker<'_, 's> {
             error = error.note("TIME_TO_LINT counts milliseconds, LTIME_TO_LINT nanoseconds").help(*meant);
         } else if name.text.eq_ignore_ascii_case("POW") {
             error = error.help("write `EXPT(base, exponent)`, or `base ** exponent`");
-        } else if name.text.eq_ignore_ascii_case("ROUND") {
-            error = error.help("`REAL_TO_DINT(x)` rounds to the nearest, halves to the even one");
         } else if let Some(hint) = self.decl.hint_of_namespace(name) {
             error = error.help(hint);
         } else if let Some(near) = near {

@@ -1,7 +1,7 @@
 //! Conversion functions: `INT_TO_REAL`, `TO_REAL`, `REAL_TRUNC_DINT`, `TRUNC`.
 
 use super::checker::Checker;
-use crate::names::functions::{self, Converted, How};
+use crate::names::functions::{self, Converted, How, Rounding};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Conversion, Elementary, Expr, Op, Type, Value};
 use staunch_runtime::time::SECOND;
@@ -25,7 +25,7 @@ impl<'s> Checker<'_, 's> {
         };
         match parsed.how {
             How::Value => {}
-            How::Truncates => return self.truncate(value_expr, to, value.span, name),
+            How::Rounds(how) => return self.round(value_expr, how, to, value.span, name),
             How::FromBcd => return self.decimal(Op::FromBcd, Class::Bit, value_expr, to, value.span, name),
             How::ToBcd => return self.decimal(Op::ToBcd, Class::Unsigned, value_expr, to, value.span, name),
         }
@@ -137,8 +137,14 @@ impl<'s> Checker<'_, 's> {
         Some(self.convert(Conversion::Value, Type::Elementary(to), made))
     }
 
-    /// `TRUNC(x)`: to the integer type that its place asks for, DINT without one.
-    pub(crate) fn trunc(&mut self, value: &ast::Expr<'s>, expected: Option<Type>, name: ast::Name<'s>) -> Option<Expr> {
+    /// `TRUNC(x)`, `ROUND(x)`: to the integer type that its place asks for, DINT without one.
+    pub(crate) fn round_as_asked(
+        &mut self,
+        value: &ast::Expr<'s>,
+        how: Rounding,
+        expected: Option<Type>,
+        name: ast::Name<'s>,
+    ) -> Option<Expr> {
         let to = match expected {
             Some(Type::Elementary(it)) if it.is_integer() => it,
             _ => Elementary::Dint,
@@ -148,19 +154,28 @@ impl<'s> Checker<'_, 's> {
         if is_whole && self.decl.dialect(name.span).truncates_integers() {
             return Some(self.convert(Conversion::Value, Type::Elementary(to), number));
         }
-        self.truncate(number, to, value.span, name)
+        self.round(number, how, to, value.span, name)
     }
 
-    fn truncate(&mut self, value: Expr, to: Elementary, span: Span, name: ast::Name<'s>) -> Option<Expr> {
-        if !matches!(value.ty, Type::Elementary(it) if it.is_real()) {
-            let found = self.type_name(value.ty);
+    fn round(&mut self, value: Expr, how: Rounding, to: Elementary, span: Span, name: ast::Name<'s>) -> Option<Expr> {
+        let from = value.ty;
+        if !matches!(from, Type::Elementary(it) if it.is_real()) {
+            let found = self.type_name(from);
             self.report(
                 Diagnostic::new(Code::E0204, span, format!("`{}` takes a REAL or LREAL, this is {found}", name.text))
                     .label(format!("this is {found}")),
             );
             return None;
         }
-        Some(self.convert(Conversion::Truncate, Type::Elementary(to), value))
+        let to = Type::Elementary(to);
+        let op = match how {
+            Rounding::ToZero => return Some(self.convert(Conversion::Truncate, to, value)),
+            Rounding::ToEven => Op::Nearest,
+            Rounding::Up => Op::Ceil,
+            Rounding::Down => Op::Floor,
+        };
+        let whole = self.apply(op, from, vec![value], from, span)?;
+        Some(self.convert(Conversion::Value, to, whole))
     }
 }
 

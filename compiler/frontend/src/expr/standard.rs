@@ -38,7 +38,7 @@ impl<'s> Checker<'_, 's> {
         match meaning {
             Meaning::Operator(operator) => self.operator_function(signature, operator, &values, expected, name),
             Meaning::Move => self.operand(values[0], expected),
-            Meaning::Truncate => self.trunc(values[0], expected, name).map(Operand::Typed),
+            Meaning::Round(how) => self.round_as_asked(values[0], how, expected, name).map(Operand::Typed),
             Meaning::Operation(Op::Sel) | Meaning::Mux if self.chooses_inputs(name.span) => {
                 let (resolved, before) = self.resolve_choice(signature, &values, expected, name)?;
                 match meaning {

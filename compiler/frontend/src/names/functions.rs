@@ -21,8 +21,8 @@ pub(crate) enum Meaning {
     Mux,
     /// The value itself: a literal stays one.
     Move,
-    /// Toward zero, to the integer that its place asks for.
-    Truncate,
+    /// To the integer that its place asks for.
+    Round(Rounding),
     /// What the memory has already: the least significant byte first.
     LittleEndian,
     /// What has to hold: else the scan ends with a fault.
@@ -32,6 +32,20 @@ pub(crate) enum Meaning {
     /// A date or a time of day from its parts, or a part of one.
     Date(DateFunction),
 }
+
+/// Which whole number a real becomes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Rounding {
+    ToZero,
+    /// The nearest, of two the even one.
+    ToEven,
+    Up,
+    Down,
+}
+
+/// The functions that round, as the names of conversions have them.
+const ROUNDINGS: [(&str, Rounding); 4] =
+    [("TRUNC", Rounding::ToZero), ("ROUND", Rounding::ToEven), ("CEIL", Rounding::Up), ("FLOOR", Rounding::Down)];
 
 /// What a function makes of dates or their parts.
 #[derive(Clone, Copy, Debug)]
@@ -51,7 +65,7 @@ pub(crate) enum DateFunction {
 const OTHERS: &[(Option<Dialect>, Signature, Meaning)] = &[
     (None, signature!("MUX" (K: ANY_INT, IN0: T, IN1: T) -> T [ANY] extensible), Meaning::Mux),
     (None, signature!("MOVE" (IN: T) -> T [ANY]), Meaning::Move),
-    (None, signature!("TRUNC" (IN: ANY_REAL) -> ANY_INT), Meaning::Truncate),
+    (None, signature!("TRUNC" (IN: ANY_REAL) -> ANY_INT), Meaning::Round(Rounding::ToZero)),
     (None, signature!("ADD_TIME" (IN1: TIME, IN2: TIME) -> TIME), Meaning::Operator(BinaryOp::Add)),
     (None, signature!("SUB_TIME" (IN1: TIME, IN2: TIME) -> TIME), Meaning::Operator(BinaryOp::Sub)),
     (None, signature!("MUL_TIME" (IN1: TIME, IN2: ANY_NUM) -> TIME), Meaning::Operator(BinaryOp::Mul)),
@@ -119,6 +133,10 @@ const OTHERS: &[(Option<Dialect>, Signature, Meaning)] = &[
     (CODESYS, signature!("LTRUNC" (LR_IN: T) -> T [ANY_REAL]), Meaning::Operation(Op::Whole)),
     (CODESYS, signature!("TIME" () -> TIME), Meaning::Clock(Elementary::Time)),
     (CODESYS, signature!("LTIME" () -> LTIME), Meaning::Clock(Elementary::Ltime)),
+    // S7.
+    (SIEMENS, signature!("ROUND" (IN: ANY_REAL) -> ANY_INT), Meaning::Round(Rounding::ToEven)),
+    (SIEMENS, signature!("CEIL" (IN: ANY_REAL) -> ANY_INT), Meaning::Round(Rounding::Up)),
+    (SIEMENS, signature!("FLOOR" (IN: ANY_REAL) -> ANY_INT), Meaning::Round(Rounding::Down)),
     // CODESYS's library names the parameters of the functions on strings in its own way.
     (CODESYS, signature!("LEN" (STR: ANY_STRING) -> INT), Meaning::Text(TextOp::Len)),
     (CODESYS, signature!("LEFT" (STR: ANY_STRING, SIZE: ANY_INT) -> ANY_STRING), Meaning::Text(TextOp::Left)),
@@ -174,6 +192,7 @@ const OTHERS: &[(Option<Dialect>, Signature, Meaning)] = &[
 ];
 
 const CODESYS: Option<Dialect> = Some(Dialect::Codesys);
+const SIEMENS: Option<Dialect> = Some(Dialect::Siemens);
 
 /// A signature, whose it is if it is a vendor's, and what it means.
 type Function = (Option<Dialect>, &'static Signature, Meaning);
@@ -207,7 +226,13 @@ pub(crate) fn exists(name: &str) -> bool {
 
 /// Whether a standard function bears this name in the dialect.
 pub(crate) fn exists_in(name: &str, dialect: Dialect) -> bool {
-    named(name).iter().any(|it| it.0.is_none_or(|it| it == dialect)) || conversion(name).is_some()
+    let has = |owner: Option<Dialect>| owner.is_none_or(|it| it == dialect);
+    named(name).iter().any(|it| has(it.0)) || conversion(name).is_some_and(|it| has(it.owner()))
+}
+
+/// A dialect that has a function of this name, which not all have.
+pub(crate) fn owner(name: &str) -> Option<Dialect> {
+    named(name).iter().find_map(|it| it.0).or_else(|| conversion(name)?.owner())
 }
 
 /// Whether a call of the function does something, besides its result.
@@ -251,13 +276,23 @@ pub(crate) struct Conversion {
     pub how: How,
 }
 
+impl Conversion {
+    /// Whose it is, if it is a vendor's.
+    fn owner(self) -> Option<Dialect> {
+        match self.how {
+            How::Rounds(Rounding::ToEven | Rounding::Up | Rounding::Down) => SIEMENS,
+            How::Rounds(Rounding::ToZero) | How::Value | How::FromBcd | How::ToBcd => None,
+        }
+    }
+}
+
 /// How a conversion makes its result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum How {
     /// The value, rounded.
     Value,
-    /// A real without its fraction.
-    Truncates,
+    /// A real as a whole number.
+    Rounds(Rounding),
     /// The number of decimal digits in four bits each.
     FromBcd,
     /// The digits of a number.
@@ -296,11 +331,13 @@ pub(crate) fn conversion(name: &str) -> Option<Conversion> {
         return None;
     }
     let name = name.to_ascii_uppercase();
-    if let Some(to) = name.strip_prefix("TRUNC_") {
-        return made(How::Truncates, "", to);
+    for (word, rounding) in ROUNDINGS {
+        if let Some(to) = name.strip_prefix(word).and_then(|it| it.strip_prefix('_')) {
+            return made(How::Rounds(rounding), "", to);
+        }
     }
     if let Some((from, to)) = name.split_once("_TRUNC_") {
-        return made(How::Truncates, from, to);
+        return made(How::Rounds(Rounding::ToZero), from, to);
     }
     let (from, to) = name.split_once("_TO_").or_else(|| Some(("", name.strip_prefix("TO_")?)))?;
     match (from.strip_suffix("BCD"), to.strip_prefix("BCD_")) {
@@ -316,7 +353,8 @@ pub(crate) fn conversion(name: &str) -> Option<Conversion> {
 fn made(how: How, from: &str, to: &str) -> Option<Conversion> {
     let (takes, gives): (Set, Set) = match how {
         How::Value => (|_| true, |_| true),
-        How::Truncates => (Elementary::is_real, Elementary::is_integer),
+        How::Rounds(Rounding::ToZero) => (Elementary::is_real, Elementary::is_integer),
+        How::Rounds(_) => (Elementary::is_real, |it| it.is_integer() || it.is_real()),
         How::FromBcd => (is_bit_string, is_unsigned),
         How::ToBcd => (is_unsigned, is_bit_string),
     };

@@ -50,6 +50,7 @@ pub trait Real: Number {
     fn rounded_up(self) -> Self;
     fn rounded_down(self) -> Self;
     fn rounded_to_zero(self) -> Self;
+    fn rounded_to_even(self) -> Self;
 }
 
 /// A repr with bitwise operations; logical ones for BOOL.
@@ -127,7 +128,7 @@ integers! {
 macro_rules! reals {
     ($($rust:ident: $abs:ident $pow:ident $sqrt:ident $log:ident $log10:ident $exp:ident
         $sin:ident $cos:ident $tan:ident $asin:ident $acos:ident $atan:ident $atan2:ident
-        $ceil:ident $floor:ident $trunc:ident;)*) => { $(
+        $ceil:ident $floor:ident $trunc:ident $rint:ident;)*) => { $(
         impl Number for $rust {
             #[inline]
             fn plus(self, other: Self) -> Self { self + other }
@@ -174,11 +175,13 @@ macro_rules! reals {
             fn rounded_down(self) -> Self { libm::$floor(self) }
             #[inline]
             fn rounded_to_zero(self) -> Self { libm::$trunc(self) }
+            #[inline]
+            fn rounded_to_even(self) -> Self { libm::$rint(self) }
         }
     )* };
 }
 
 reals! {
-    f32: fabsf powf sqrtf logf log10f expf sinf cosf tanf asinf acosf atanf atan2f ceilf floorf truncf;
-    f64: fabs pow sqrt log log10 exp sin cos tan asin acos atan atan2 ceil floor trunc;
+    f32: fabsf powf sqrtf logf log10f expf sinf cosf tanf asinf acosf atanf atan2f ceilf floorf truncf rintf;
+    f64: fabs pow sqrt log log10 exp sin cos tan asin acos atan atan2 ceil floor trunc rint;
 }

@@ -1,3 +1,4 @@
+use crate::ops::Real;
 use crate::{Repr, Scalar, Value, with_repr};
 
 /// A repr that converts to repr `T`; every pair does.
@@ -64,18 +65,8 @@ macro_rules! conversions {
     (@ bool bool $value:ident $from:ident $to:ident) => { $value };
     (@ bool $any:ident $value:ident $from:ident $to:ident) => { u8::from($value) as $to };
     (@ $any:ident bool $value:ident $from:ident $to:ident) => { $value != <$from>::ZERO };
-    (@ real integer $value:ident $from:ident $to:ident) => { nearest!($from $value) as $to };
+    (@ real integer $value:ident $from:ident $to:ident) => { Real::rounded_to_even($value) as $to };
     (@ $any:ident $other:ident $value:ident $from:ident $to:ident) => { $value as $to };
-}
-
-/// The nearest whole number, ties to even.
-macro_rules! nearest {
-    (f32 $value:ident) => {
-        libm::rintf($value)
-    };
-    (f64 $value:ident) => {
-        libm::rint($value)
-    };
 }
 
 conversions! {

@@ -93,3 +93,9 @@ pub fn floor<T: Real>(value: T) -> T {
 pub fn whole<T: Real>(value: T) -> T {
     value.rounded_to_zero()
 }
+
+/// The nearest whole number, of two the even one; infinities and NaN stay.
+#[inline]
+pub fn nearest<T: Real>(value: T) -> T {
+    value.rounded_to_even()
+}
