@@ -3,8 +3,8 @@
 
 use staunch_ir::{
     Class, ClassId, ClassKind, Const, Conversion, Elementary, Expr, Field, FieldId, Instance, Location, Op, Place,
-    Program, Repr, Root, Routine, RoutineId, RoutineKind, Section, SourceFile, Statement, Struct, StructId, Type,
-    Value, Variable,
+    Program, Reach, Repr, Root, Routine, RoutineId, RoutineKind, Section, SourceFile, Statement, Struct, StructId,
+    Type, Value, Variable,
 };
 
 /// What one instance of the program computes from its operands.
@@ -107,6 +107,7 @@ pub fn program(tasks: &[Task]) -> Program {
         globals: StructId::next(tasks.len()),
         aliases: Vec::new(),
         reentered: std::collections::BTreeSet::new(),
+        reach: Reach::default(),
         places: std::collections::BTreeSet::new(),
         structs,
         classes: tasks

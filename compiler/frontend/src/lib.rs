@@ -47,10 +47,10 @@ pub use types::coverage::{CoverageKind, CoveragePoint, Decision, Formula};
 pub use vendor::Reference;
 
 use log::Log;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 use staunch_ir::Program;
 use types::coverage::Coverage;
-use types::in_outs::{InOut, Polymorphic};
+use types::whole::Whole;
 use vendor::{Problem, Trouble};
 
 /// How to read the sources.
@@ -139,33 +139,25 @@ fn with_library(sources: &Sources, options: &Options, keep: Bodies) -> Compilati
     Compilation { diagnostics: extended.of_the_user(compilation.diagnostics), ..compilation }
 }
 
-/// Checks the program until it is known which VAR_IN_OUTs are given instances of what extends their classes: mostly once.
+/// Checks the program until what holds of the whole of it is known: mostly once.
 fn run(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
-    let mut polymorphic = Polymorphic::default();
+    let mut whole = Whole::default();
     loop {
-        let (compilation, found) = run_with(sources, options, keep, &polymorphic);
-        if !polymorphic.grow(found) {
+        if let Some(compilation) = run_with(sources, options, keep, &mut whole) {
             return compilation;
         }
     }
 }
 
-fn run_with(
-    sources: &Sources,
-    options: &Options,
-    keep: Bodies,
-    polymorphic: &Polymorphic,
-) -> (Compilation, FxHashSet<InOut>) {
+/// Nothing, where the bodies show more of the whole than they were checked with.
+fn run_with(sources: &Sources, options: &Options, keep: Bodies, whole: &mut Whole) -> Option<Compilation> {
     let mut log = Log::new(sources, options);
     let Some(mut files) = parse_all(sources, &mut log.diagnostics) else {
-        let compilation =
-            Compilation { program: None, diagnostics: log.diagnostics, tests: Vec::new(), coverage: Vec::new() };
-        return (compilation, FxHashSet::default());
+        let diagnostics = log.diagnostics;
+        return Some(Compilation { program: None, diagnostics, tests: Vec::new(), coverage: Vec::new() });
     };
     let stubs = library::prepare(&mut files, sources);
-    // Unit tests that do not run are checked all the same.
-    let tested = (!options.tests && testing::has_tests(&files))
-        .then(|| run(sources, &Options { tests: true, ..options.clone() }, Bodies::Dropped).diagnostics);
+    let has_tests = testing::has_tests(&files);
     testing::suite::qualify(&mut files);
     files.iter().for_each(|it| log.read_pragmas(it));
     inherit::expand(&mut files, &mut log);
@@ -175,13 +167,15 @@ fn run_with(
     let mut bodies: Vec<_> = files.iter_mut().flat_map(ast::File::take_bodies).collect();
     let mut runs = declare::run::runs(&files, options.tests);
     bodies.extend(runs.iter_mut().map(|it| std::mem::take(&mut it.body)));
-    let mut declarations = declare::declare(log, polymorphic.clone(), &files, &runs, &bodies);
+    let mut declarations = declare::declare(log, whole, &files, &runs, &bodies);
     declarations.coverage = options.coverage.map(|files| Coverage { files, ..Coverage::default() });
     declarations.tests.fixtures = groups.fixtures.keys().copied().collect();
     declarations.tests.callers = testing::fixture::callers(&files);
     let unassigned = lints::result::unassigned(&declarations);
     let checked = body::check(&mut declarations, &mut bodies, keep);
-    let found = declarations.polymorphic();
+    if whole.grow(declarations.whole()) {
+        return None;
+    }
     lints::unused::report(&mut declarations);
     if keep == Bodies::Kept {
         let routines: Vec<_> = checked.routines.iter().map(|it| it.as_ref().map(|it| &it.0)).collect();
@@ -195,14 +189,17 @@ fn run_with(
     let mut compilation = finish(program.filter(|_| keep == Bodies::Kept), declarations.log, unassigned, left_out);
     compilation.tests = tests;
     compilation.coverage = coverage;
-    compilation.add(tested.unwrap_or_default());
+    if has_tests && !options.tests {
+        // Unit tests that do not run are checked all the same.
+        compilation.add(run(sources, &Options { tests: true, ..options.clone() }, Bodies::Dropped).diagnostics);
+    }
     library::of_own_sources(&mut compilation.diagnostics, sources);
     // SETUP is a part of each test.
     compilation.diagnostics.dedup_by(|a, b| (a.code, a.span) == (b.code, b.span) && a.message == b.message);
     compilation.diagnostics.retain(|it| !allowances.cover(it));
     // A text of pieces is not in the order of its file.
     compilation.diagnostics.sort_by_key(|it| (it.span.file, sources.get(it.span.file).in_file(it.span).start));
-    (compilation, found)
+    Some(compilation)
 }
 
 /// The files' trees; `None` where one is no Structured Text, of which alone is then said so.

@@ -8,7 +8,7 @@
 use crate::shapes;
 use crate::visit::{self, Access};
 use crate::{
-    Expr, Param, Place, Program, Projection, Root, Routine, Section, Statement, StatementKind, StructId, Type,
+    Expr, Param, Place, Program, Projection, Reach, Root, Routine, Section, Statement, StatementKind, StructId, Type,
 };
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,8 +59,8 @@ impl<'p> Frame<'p> {
             (Root::Local(_), _) => true,
             (Root::Instance, Some(Projection::Field(id))) => self.state.is_some_and(|state| {
                 let field = &self.program.structure(state).fields[id.index()];
-                let is_reached = !self.program.references.is_empty();
-                field.section == Section::Internal && field.address.is_none() && !is_reached
+                let is_own = field.section == Section::Internal && field.address.is_none();
+                is_own && self.program.reach == Reach::default()
             }),
             (Root::Instance | Root::Globals | Root::Param(_), _) => false,
         }
@@ -184,7 +184,7 @@ pub fn reads(frame: &Frame<'_>, expr: &Expr, place: &Place) -> bool {
 fn reads_shared(frame: &Frame<'_>, expr: &Expr) -> bool {
     let globals = frame.globals();
     let mut found = false;
-    if !frame.program.references.is_empty() {
+    if frame.program.reach.references {
         // A callee may reach any variable, also a local whose address it is passed.
         visit::reads(expr, &mut |_| found = true);
         return found;

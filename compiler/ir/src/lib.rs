@@ -56,7 +56,7 @@ pub use place::{Place, Projection, Root};
 pub use print::print;
 pub use program::{
     Address, Area, Class, ClassId, ClassKind, Field, FieldId, Instance, Local, LocalId, Mode, Param, ParamId, Program,
-    Retain, Routine, RoutineId, RoutineKind, Section, SourceFile, Variable, View,
+    Reach, Retain, Routine, RoutineId, RoutineKind, Section, SourceFile, Variable, View,
 };
 pub use statement::{Argument, Arm, Block, For, Statement, StatementKind, Step};
 pub use types::{

@@ -41,6 +41,7 @@ pub struct Program {
     /// The states that METHODs or ACTIONs work on: while one routine of an instance runs, what it calls may
     /// come back to the instance by another.
     pub reentered: BTreeSet<StructId>,
+    pub reach: Reach,
     /// Structures that are the places of pools: the first field says whether the second is an object in use. A reference
     /// into an object that is not is a fault.
     pub places: BTreeSet<StructId>,
@@ -48,6 +49,15 @@ pub struct Program {
     pub routines: Vec<Routine>,
     /// The programs that run, in order.
     pub instances: Vec<Instance>,
+}
+
+/// Who besides a class's own routines may write the variables of its instances.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Reach {
+    /// Who has a reference to them: the program has references.
+    pub references: bool,
+    /// Who assigns an instance as a whole, or what holds one: the program does so.
+    pub copies: bool,
 }
 
 #[derive(Clone, Debug)]

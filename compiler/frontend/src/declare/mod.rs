@@ -36,6 +36,7 @@ use crate::testing;
 use crate::types::declarations::{Declarations, PouSlot, Slot};
 use crate::types::in_outs::Polymorphic;
 use crate::types::scope::Scope;
+use crate::types::whole::Whole;
 use run::Run;
 use rustc_hash::FxHashSet;
 use std::rc::Rc;
@@ -43,13 +44,14 @@ use std::rc::Rc;
 /// Declares what the files do; `bodies` are those of their POUs, and then of the runs, in order.
 pub(crate) fn declare<'s>(
     log: Log<'s>,
-    polymorphic: Polymorphic,
+    whole: &Whole,
     files: &'s [ast::File<'s>],
     runs: &'s [Run<'s>],
     bodies: &[Vec<ast::Statement<'s>>],
 ) -> Declarations<'s> {
     let mut declarations = Declarations::new(log, Declarations::build_instance);
-    declarations.table.polymorphic = polymorphic;
+    declarations.table.polymorphic = Polymorphic { known: whole.in_outs.clone(), ..Polymorphic::default() };
+    declarations.program.reach = whole.reach;
     for (file, dialect) in declarations.program.files.iter_mut().zip(&declarations.log.dialects) {
         file.system = dialect.family();
     }
@@ -77,6 +79,7 @@ pub(crate) fn declare<'s>(
     declarations.start_bindings(runs);
     declarations.declare_pools();
     declarations.declare_globals();
+    declarations.program.reach.references |= !declarations.program.references.is_empty();
     declarations
 }
 

@@ -276,7 +276,9 @@ impl<'s> Checker<'_, 's> {
         }
         let literals = || operands.iter().map(|it| it.0);
         let ty = match common {
-            Some(ty) => widened_by_literals(ty, literals()),
+            Some(ty) => {
+                widened_by_literals(self.beside_negatives(class, ty, literals(), expected, name.span), literals())
+            }
             None if class == Class::Real => expected.unwrap_or(Type::LREAL),
             None => literals_type(literals(), expected),
         };
@@ -287,6 +289,21 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         Some(ty)
+    }
+
+    /// A bit string beside a number below 0 is one, where a dialect mixes them and the place does not ask for bits.
+    fn beside_negatives<'o>(
+        &self,
+        class: Class,
+        ty: Type,
+        mut operands: impl Iterator<Item = &'o Operand>,
+        expected: Option<Type>,
+        span: Span,
+    ) -> Type {
+        let Type::Elementary(it) = ty else { return ty };
+        let is_below = |operand: &Operand| matches!(operand, Operand::Integer(value) if *value < 0);
+        let mixes = class != Class::Bit && expected != Some(ty) && self.decl.dialect(span).mixes_bits_and_integers();
+        if mixes && operands.any(is_below) { Type::Elementary(as_number(it)) } else { ty }
     }
 
     /// The type at which operands are computed that count as one of `own`. Bits are those of that type.
@@ -304,6 +321,7 @@ impl<'s> Checker<'_, 's> {
         let types = operands.clone().filter_map(|it| it.computed_at()?.elementary());
         let meet = |a, b| join(a, b).or_else(|| join(as_number(a), as_number(b))).unwrap_or(Elementary::Dint);
         let ty = types.reduce(|a, b| if a == b { a } else { meet(a, b) }).unwrap_or(it);
+        let ty = if it.is_integer() { as_number(ty) } else { ty };
         widened_by_literals(Type::Elementary(ty), operands)
     }
 

@@ -617,6 +617,7 @@ pub(crate) fn empty_program(files: Vec<SourceFile>) -> Program {
         routines: Vec::new(),
         aliases: Vec::new(),
         reentered: std::collections::BTreeSet::new(),
+        reach: staunch_ir::Reach::default(),
         places: std::collections::BTreeSet::new(),
         instances: Vec::new(),
     }

@@ -16,13 +16,6 @@ pub(crate) struct Polymorphic {
 }
 
 impl Polymorphic {
-    /// Takes over what a check of the program has found; whether there is more than before.
-    pub fn grow(&mut self, by: FxHashSet<InOut>) -> bool {
-        let before = self.known.len();
-        self.known.extend(by);
-        self.known.len() > before
-    }
-
     pub fn ask(&mut self, declared: Span) {
         self.asked.insert(declared);
     }

@@ -22,4 +22,5 @@ mod storage;
 pub(crate) mod synthetic;
 pub(crate) mod table;
 pub(crate) mod tests;
+pub(crate) mod whole;
 pub(crate) mod window;

@@ -80,6 +80,9 @@ impl<'s> Declarations<'s> {
         if !self.dialect(span).copies_instances() {
             return self.instance_in(ty);
         }
+        if self.instance_in(ty).is_some() {
+            self.table.copies.set(true);
+        }
         let is_block = |id| self.slot_of_instance(id).is_none_or(|it| self.pous[it].ast.kind.is_block());
         self.program.instance_in(ty, &|id| self.is_instance(id) && !is_block(id))
     }

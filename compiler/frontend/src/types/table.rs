@@ -8,6 +8,7 @@ use crate::spelling::Key;
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{Const, EnumId, RefKind, ReferenceId, StructId, Type, Value};
 use staunch_runtime::Class;
+use std::cell::Cell;
 use std::rc::Rc;
 
 /// Stands for the globals' structure until it is made, when all declared globals are known.
@@ -54,6 +55,8 @@ pub(crate) struct Table<'s> {
     pub instances: FxHashMap<StructId, usize>,
     pub interfaces: Interfaces,
     pub polymorphic: Polymorphic,
+    /// Whether a body assigns what is or holds an instance.
+    pub copies: Cell<bool>,
     /// The VAR_IN_OUTs of FUNCTION_BLOCKs that METHODs use, by where their names are declared: the instance keeps them.
     pub kept_in_outs: FxHashSet<Span>,
     /// The enumerations that take and give no numbers: `{attribute 'strict'}`.

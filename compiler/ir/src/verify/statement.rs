@@ -241,6 +241,12 @@ impl<'p> Verifier<'p> {
         if let Some((way, _)) = program.instance_in(ty, &|_| false) {
             self.report(at, format_args!("{} is copied with the instance at {way:?}", program.type_name(ty)));
         }
+        let holds_state = program.instance_in(ty, &|id| program.class_of_state(id).is_some()).is_some();
+        self.require(
+            program.reach.copies || !holds_state,
+            at,
+            "a copy of an instance that bodies were checked without",
+        );
     }
 
     /// A result goes to a local as a whole.

@@ -28,6 +28,8 @@ impl Verifier<'_> {
             self.location(structure.location);
             self.structure(id, structure);
         }
+        let is_known = program.reach.references || program.references.is_empty();
+        self.require(is_known, Location::default(), "references that bodies were checked without");
         for reference in &program.references {
             self.declared(reference.target, Location::default());
         }

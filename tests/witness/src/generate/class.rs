@@ -19,7 +19,10 @@ impl Writer {
         self.tainted = false;
         let base = (number > 0 && self.random.once_in(2)).then(|| self.random.below(number));
         self.is_heir = base.is_some();
-        let has_interface = number == 0 && self.random.once_in(2);
+        let has_interface = number == 0 && self.refers && self.random.once_in(2);
+        // It may call what comes after it.
+        let copier = (self.codesys && self.random.once_in(2)).then(|| format!("Copy{number}"));
+        self.functions.extend(copier.iter().map(|it| Routine::new(it.clone(), Some(Ty::Number(1)), Vec::new())));
         let head = match base {
             Some(base) => format!(" EXTENDS Blk{base}"),
             None if has_interface => " IMPLEMENTS IDo".to_owned(),
@@ -92,8 +95,39 @@ impl Writer {
         if has_interface {
             self.interface(&block.methods[INTERFACE_METHOD]);
         }
+        let is_plain = block.parameters.iter().all(|it| it.section != Section::InOut)
+            && block.state.iter().all(|it| self.is_copied(&it.ty));
         self.blocks.push(block);
+        self.copied.push(is_plain);
         self.is_heir = false;
+        if let Some(copier) = copier {
+            self.copier(&copier, number);
+        }
+    }
+
+    /// Whether an assignment copies what is of this type: all but a standard block.
+    fn is_copied(&self, ty: &Ty) -> bool {
+        match ty {
+            Ty::Standard(_) => false,
+            Ty::Instance(at) => self.copied[*at],
+            _ => true,
+        }
+    }
+
+    /// Two instances that are global, and a function that copies one to the other: also while its body runs.
+    fn copier(&mut self, name: &str, number: usize) {
+        let value = self.random.below(9);
+        if !self.copied[number] {
+            self.line(&format!("FUNCTION {name} : INT {name} := {value}; END_FUNCTION"));
+            return;
+        }
+        let [to, from] = ["c", "d"].map(|it| format!("{it}{number}"));
+        self.line(&format!("VAR_GLOBAL {to}, {from} : Blk{number}; END_VAR"));
+        self.line(&format!("FUNCTION {name} : INT {to} := {from}; {name} := {value}; END_FUNCTION"));
+        let ty = Ty::Instance(number);
+        let variables =
+            [&to, &from].map(|it| Variable { name: it.clone(), ty: ty.clone(), writable: true, lasts: true });
+        self.copies.extend(variables);
     }
 
     fn new_method(&mut self) -> Routine {

@@ -21,6 +21,7 @@ pub fn program(seed: u64) -> String {
     let mut writer = Writer::new(seed);
     writer.codesys = seed % 3 == 2;
     writer.types.codesys = writer.codesys;
+    writer.refers = seed / 3 % 2 == 0;
     if writer.codesys {
         writer.line("{dialect 'codesys'}");
     }
@@ -32,12 +33,18 @@ struct Writer {
     random: Random,
     /// Whether the program follows CODESYS's rules, else the standard's.
     codesys: bool,
+    /// Whether the program has references. Without, nobody else can write what is a block's own.
+    refers: bool,
     text: String,
     depth: usize,
     types: Catalogue,
     /// Functions and blocks that have been written: what comes later may call them.
     functions: Vec<Routine>,
     blocks: Vec<Routine>,
+    /// Which of them can be copied.
+    copied: Vec<bool>,
+    /// Instances that functions copy, which Main calls.
+    copies: Vec<Variable>,
     globals: Vec<Variable>,
     /// The methods and actions of the block that is being written.
     own: Routine,
@@ -66,11 +73,14 @@ impl Writer {
         Self {
             random: Random::new(seed),
             codesys: false,
+            refers: true,
             text: String::new(),
             depth: 0,
             types: Catalogue::default(),
             functions: Vec::new(),
             blocks: Vec::new(),
+            copied: Vec::new(),
+            copies: Vec::new(),
             globals: Vec::new(),
             own: Routine::new(String::new(), None, Vec::new()),
             scope: Scope::default(),
@@ -197,7 +207,7 @@ impl Writer {
             let variable = self.declare(&format!("g{number}"), ty);
             self.globals.push(Variable { lasts: true, ..variable });
         }
-        for number in 0..2 {
+        for number in 0..2 * usize::from(self.refers) {
             let ty = self.pointer_type();
             let variable = self.declare(&format!("gp{number}"), ty);
             self.globals.push(variable);
@@ -313,11 +323,14 @@ impl Writer {
             let variable = self.declare(&format!("v{at}"), ty);
             self.scope.add(Variable { lasts: true, ..variable });
         }
+        for it in self.copies.clone() {
+            self.scope.add(it);
+        }
         if blocks < self.blocks.len() {
             let ty = Ty::Instance(blocks);
             self.scope.add(Variable { name: "Sub".to_owned(), ty, writable: true, lasts: false });
         }
-        for at in 0..2 {
+        for at in 0..2 * usize::from(self.refers) {
             let to = self.scope.types(&self.types, |it| it.lasts && it.writable);
             let ty = Ty::Pointer(Box::new(self.random.one_of(&to).clone()));
             let variable = self.declare(&format!("p{at}"), ty);
@@ -337,6 +350,9 @@ impl Writer {
         self.line("tick := tick + 1;");
         self.point_somewhere();
         self.statements(9);
+        for it in self.copies.clone() {
+            self.line(&format!("{}();", it.name));
+        }
         if blocks < self.blocks.len() {
             self.line("Sub();");
         }
@@ -394,7 +410,7 @@ impl Writer {
             for at in 0..self.random.below(most + 1) {
                 let name = format!("{prefix}{}{at}", section.letter());
                 let ty = match section {
-                    Section::Input if of_call && self.random.once_in(6) => self.pointer_type(),
+                    Section::Input if of_call && self.refers && self.random.once_in(6) => self.pointer_type(),
                     Section::Input | Section::Output => self.any_type(),
                     Section::InOut => self.in_out_type(),
                 };

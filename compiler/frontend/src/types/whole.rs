@@ -1,0 +1,33 @@
+//! What holds of the whole program and matters in each of its bodies, but is known only when all are checked. Then the
+//! program is checked again with it: mostly that is not needed.
+
+use super::declarations::Declarations;
+use super::in_outs::InOut;
+use rustc_hash::FxHashSet;
+use staunch_ir::Reach;
+
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Whole {
+    /// The VAR_IN_OUTs that are given instances of what extends their classes.
+    pub in_outs: FxHashSet<InOut>,
+    pub reach: Reach,
+}
+
+impl Whole {
+    /// Takes over what a check of the program has found; whether that is more than it was checked with.
+    pub fn grow(&mut self, found: Self) -> bool {
+        let before = (self.in_outs.len(), self.reach);
+        self.in_outs.extend(found.in_outs);
+        self.reach.references |= found.reach.references;
+        self.reach.copies |= found.reach.copies;
+        before != (self.in_outs.len(), self.reach)
+    }
+}
+
+impl Declarations<'_> {
+    /// What the bodies that were checked say of the whole program.
+    pub fn whole(&self) -> Whole {
+        let reach = Reach { references: !self.program.references.is_empty(), copies: self.table.copies.get() };
+        Whole { in_outs: self.polymorphic(), reach }
+    }
+}
