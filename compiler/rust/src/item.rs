@@ -9,6 +9,9 @@ use crate::constant::literal;
 use crate::emitter::Emitter;
 use crate::function::Role;
 
+/// So many fields rustc compares by what it derives, which is one nested expression; it has no stack for thousands.
+const DERIVED_FIELDS: usize = 1000;
+
 impl Emitter<'_> {
     pub fn items(&self) -> TokenStream {
         let files = self.files();
@@ -81,10 +84,23 @@ impl Emitter<'_> {
             quote!(#name: #value)
         });
         let (methods, constants) = (self.methods(id), self.constant_items(id));
-        let derives = if self.shared {
-            quote!(#[derive(Clone, Debug, PartialEq)])
-        } else {
-            quote!(#[derive(Clone, Copy, Debug, PartialEq)])
+        let is_large = parts().count() > DERIVED_FIELDS;
+        let compared = is_large.then(|| {
+            let fields = parts().map(|(at, _)| self.names.field(id, FieldId::next(at)));
+            quote! {
+                impl PartialEq for #name {
+                    fn eq(&self, other: &Self) -> bool {
+                        #(if self.#fields != other.#fields { return false; })*
+                        true
+                    }
+                }
+            }
+        });
+        let derives = match (self.shared, is_large) {
+            (true, false) => quote!(#[derive(Clone, Debug, PartialEq)]),
+            (true, true) => quote!(#[derive(Clone, Debug)]),
+            (false, false) => quote!(#[derive(Clone, Copy, Debug, PartialEq)]),
+            (false, true) => quote!(#[derive(Clone, Copy, Debug)]),
         };
         let names = (0..structure.fields.len()).map(|at| self.names.field(id, FieldId::next(at)));
         let shared = self.shared.then(|| quote!(reference::shared!(#name { #(#names),* });));
@@ -105,6 +121,7 @@ impl Emitter<'_> {
                 #io
             }
             impl Default for #name { fn default() -> Self { Self::new() } }
+            #compared
         }
     }
 

@@ -153,3 +153,13 @@ fn two_folders_make_the_same_bytes() {
     let inside = Folder(folders[0].0.join("src"));
     has(&inside.staunch("run -q -A warnings").err(3), &["error: main.st:6:"]);
 }
+
+/// A controller's tags are thousands of global variables, more than rustc compares in one expression.
+#[test]
+fn thousands_of_variables_are_compiled_as_rust() {
+    let globals: String = (0..8000).map(|it| format!("    x{it} : INT;\n")).collect();
+    let program = "PROGRAM Main\nx7999 := x4 + 1;\nEND_PROGRAM\n";
+    let text = format!("VAR_GLOBAL\n{globals}END_VAR\n{program}");
+    let folder = Folder::with("thousands_of_variables", &[("main.st", &text)]);
+    has(&folder.staunch("run main.st --backend rust --scans 1 --trace -").out(0), &["x7999"]);
+}
