@@ -1,6 +1,8 @@
 //! Which loops have a number of turns that is known when they start. Taking these turns at once, and giving
 //! back what an early end leaves, is taking them one by one, as long as nothing else takes turns meanwhile.
 
+mod size;
+
 use crate::alias::{self, Frame};
 use crate::loops::{Known, exit_condition, is_private};
 use crate::{
@@ -25,6 +27,19 @@ pub fn takes_turns(block: &[Statement], callee_does: &dyn Fn(RoutineId) -> bool)
         | StatementKind::PrescanBlock { .. }
         | StatementKind::Fault(_) => false,
     })
+}
+
+/// About how many operations one turn of a loop is that takes one turn itself, and whose statements take none;
+/// `None` for other loops.
+pub fn size_of_single(
+    body: &[Statement],
+    continuing: &[Statement],
+    callee_does: &dyn Fn(RoutineId) -> bool,
+) -> Option<usize> {
+    let (turn, others): (Vec<_>, Vec<_>) = body.iter().partition(|it| matches!(it.kind, StatementKind::Turn));
+    let takes = |it: &Statement| takes_turns(std::slice::from_ref(it), callee_does);
+    let is_single = turn.len() == 1 && !others.into_iter().any(takes) && !takes_turns(continuing, callee_does);
+    is_single.then(|| size::size(body) + size::size(continuing))
 }
 
 fn any(block: &[Statement], is: &dyn Fn(&StatementKind) -> bool) -> bool {

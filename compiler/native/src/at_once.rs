@@ -5,7 +5,7 @@
 use crate::function::{Flow, Function, LoopFrame};
 use crate::loops::Control;
 use cranelift_codegen::ir::{self as clif, InstBuilder, condcodes::IntCC};
-use staunch_ir::{ExprKind, Projection, RoutineId, Statement, StatementKind, turns, visit};
+use staunch_ir::{RoutineId, Statement, turns};
 
 /// Operations that the turns taken at once should come to, so that taking them is a small part.
 const ENOUGH: usize = 128;
@@ -16,14 +16,8 @@ const MOST_IN_A_ROUTINE: usize = 8192;
 impl<'p> Function<'_, 'p> {
     /// How many turns the loop takes at once; `None` where it takes them one by one.
     pub(crate) fn copies(&mut self, body: &[Statement], continuing: &[Statement]) -> Option<usize> {
-        let is_turn = |it: &Statement| matches!(it.kind, StatementKind::Turn);
-        let (turn, others): (Vec<_>, Vec<_>) = body.iter().partition(|it| is_turn(it));
         let callee_does = |callee: RoutineId| self.module.effects(callee).turns;
-        let takes = |it: &Statement| turns::takes_turns(std::slice::from_ref(it), &callee_does);
-        if turn.len() != 1 || others.into_iter().any(takes) || turns::takes_turns(continuing, &callee_does) {
-            return None;
-        }
-        let size = size(body) + size(continuing);
+        let size = turns::size_of_single(body, continuing, &callee_does)?;
         let copies = (ENOUGH / size.max(1)).min(MOST_COPIES);
         let made = self.copied + copies * size;
         if copies < 2 || made > MOST_IN_A_ROUTINE {
@@ -134,48 +128,4 @@ impl<'p> Function<'_, 'p> {
         let left = self.ins().iadd_imm_s(left, -taken);
         self.builder.def_var(turns, left);
     }
-}
-
-/// About how many operations the statements are.
-fn size(block: &[Statement]) -> usize {
-    let mut size = 0;
-    visit::statements(block, &mut |statement| {
-        size += match &statement.kind {
-            StatementKind::Turn => 0,
-            StatementKind::For(_) | StatementKind::Loop { .. } => ENOUGH / 4,
-            StatementKind::Call { .. }
-            | StatementKind::External(_)
-            | StatementKind::CallBlock { .. }
-            | StatementKind::PrescanBlock { .. } => ENOUGH / 8,
-            StatementKind::Assign { .. }
-            | StatementKind::If { .. }
-            | StatementKind::Case { .. }
-            | StatementKind::Exit
-            | StatementKind::Continue
-            | StatementKind::Return
-            | StatementKind::Fault(_) => 1,
-        };
-        visit::targets(statement, &mut |it| size += of_projections(&it.projections));
-        visit::all_exprs(statement, &mut |it| {
-            size += match &it.kind {
-                ExprKind::Const(_) => 0,
-                ExprKind::Load(place) => 1 + of_projections(&place.projections),
-                ExprKind::Apply(..) | ExprKind::Convert(..) => 1,
-                ExprKind::Text(_) | ExprKind::AddressOf(_) | ExprKind::ApplyText(..) | ExprKind::Aggregate(_) => {
-                    ENOUGH / 16
-                }
-            }
-        });
-    });
-    size
-}
-
-/// An index is checked, and multiplied.
-fn of_projections(projections: &[Projection]) -> usize {
-    let of = |it: &Projection| match it {
-        Projection::Field(_) => 0,
-        Projection::Index { .. } => 4,
-        Projection::Deref { .. } => ENOUGH / 4,
-    };
-    projections.iter().map(of).sum()
 }

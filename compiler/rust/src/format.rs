@@ -8,6 +8,9 @@ use proc_macro2::{Delimiter, TokenStream, TokenTree};
 /// A statement that stands for a comment: the printer of syntax trees has none.
 const MARK: &str = "st_mark!(\"";
 
+/// A statement that makes a strip of the loop around it: `format` puts the macro around that.
+const STRIPS: &str = "st_strips!(";
+
 /// rustfmt breaks calls, chains of calls and arrays that are wider.
 const SMALL: usize = 60;
 
@@ -27,7 +30,7 @@ pub fn format(items: TokenStream) -> String {
     for line in hug(&heads(&fill(&prettyplease::unparse(&file)))).lines() {
         expand(line.to_owned(), &mut lines);
     }
-    skip(&space(&comment(&lines.join("\n"))))
+    skip(&space(&strips(&comment(&lines.join("\n")))))
 }
 
 /// Each mark becomes a comment: at the end of its statement, or first in the block that the statement opens.
@@ -55,6 +58,29 @@ fn comment(text: &str) -> String {
         commented.push('\n');
     }
     commented
+}
+
+/// Puts the macro around each loop that has the mark. rustfmt leaves what is in it, as it is no list of expressions.
+fn strips(text: &str) -> String {
+    if !text.contains(STRIPS) {
+        return text.to_owned();
+    }
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    let marks: Vec<usize> = (0..lines.len()).filter(|at| lines[*at].trim_start().starts_with(STRIPS)).collect();
+    let indent = |line: &str| line.len() - line.trim_start().len();
+    for &mark in marks.iter().rev() {
+        let number: String = lines[mark].chars().filter(char::is_ascii_digit).collect();
+        let outer = indent(&lines[mark]) - 4;
+        let starts = |it: &String| indent(it) == outer && (it.contains("loop {") || it.contains("while ("));
+        let ends = |it: &String| indent(it) == outer && it.trim_start() == "}";
+        let start = lines[..mark].iter().rposition(starts).expect("the mark is in a loop");
+        let end = mark + lines[mark..].iter().position(ends).expect("the loop ends");
+        lines[end].push_str(");");
+        let head = lines[start].split_off(outer);
+        lines[start].push_str(&format!("strips!({number}; {head}"));
+        lines.remove(mark);
+    }
+    lines.join("\n") + "\n"
 }
 
 /// Whether the line is the end of the head of an IF, a loop or a `match`.
@@ -339,6 +365,8 @@ fn collect(tokens: TokenStream, found: &mut BTreeSet<String>) {
                 let name = ident.to_string();
                 if is_type(&name) || is_module(&name) && path_starts(&tokens, at) {
                     found.insert(name);
+                } else if name == "st_strips" {
+                    found.insert("strips".to_owned());
                 } else if name == "at" && is_method(&tokens, at) {
                     found.insert("OrFault".to_owned());
                 }

@@ -25,6 +25,7 @@ mod retained;
 mod shared;
 mod statement;
 mod string;
+mod strips;
 
 mod format;
 mod glue;

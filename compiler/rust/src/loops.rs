@@ -15,14 +15,16 @@ use crate::precedence::{Code, Level};
 /// The labels of the loops around a statement, innermost last.
 #[derive(Debug, Default)]
 pub struct Loops {
-    around: Vec<Labels>,
+    pub around: Vec<Labels>,
     made: usize,
     /// The one that has taken its turns before the first one: these, and its counter.
     prepaid: Option<(Ident, Place)>,
+    /// How many operations the turns come to that are taken at once.
+    pub copied: usize,
 }
 
 #[derive(Clone, Debug)]
-struct Labels {
+pub struct Labels {
     /// `Exit` inside of the body.
     leave: TokenStream,
     /// `Continue`.
@@ -34,9 +36,9 @@ struct Labels {
 }
 
 /// A value, and the statement that finds it.
-struct Once {
-    value: TokenStream,
-    before: Option<TokenStream>,
+pub struct Once {
+    pub value: TokenStream,
+    pub before: Option<TokenStream>,
 }
 
 /// The turns of a loop that are taken before the first one.
@@ -47,14 +49,20 @@ struct Taken {
 }
 
 impl Function<'_> {
-    pub fn repeat(&mut self, body: &Block, continuing: &Block) -> TokenStream {
-        let (condition, body) = self.while_condition(body);
+    pub fn repeat(&mut self, whole: &Block, continuing: &Block) -> TokenStream {
+        if let Some(printed) = self.linear_loop(whole, continuing) {
+            return printed;
+        }
+        let (condition, body) = self.while_condition(whole);
+        let (strip, body) = self.strip(whole, body, continuing);
         let labels = self.labels(body, !continuing.is_empty());
         let body = self.turn(&labels, body, |this| this.block(continuing));
         let label = &labels.label;
-        match condition {
-            Some(condition) => quote!(#label while #condition { #body }),
-            None => quote!(#label loop { #body }),
+        match (condition, strip) {
+            (Some(condition), Some(strip)) => quote!(#label while (#condition) { #strip #body }),
+            (None, Some(strip)) => quote!(#label loop { #strip #body }),
+            (Some(condition), None) => quote!(#label while #condition { #body }),
+            (None, None) => quote!(#label loop { #body }),
         }
     }
 
@@ -117,7 +125,7 @@ impl Function<'_> {
 
     /// What a loop's body and its end need of labels. A block around the body is what CONTINUE
     /// leaves when something follows the body.
-    fn labels(&mut self, body: &[Statement], has_end: bool) -> Labels {
+    pub fn labels(&mut self, body: &[Statement], has_end: bool) -> Labels {
         let labelled = has_end && uses(body, &|it| matches!(it, StatementKind::Continue));
         if !labelled {
             return Labels { leave: quote!(break;), next: quote!(continue;), label: None, body: None };
@@ -135,7 +143,7 @@ impl Function<'_> {
     }
 
     /// The body, and what follows it at the end of each turn.
-    fn turn(&mut self, labels: &Labels, body: &[Statement], end: impl FnOnce(&mut Self) -> TokenStream) -> TokenStream {
+    pub fn turn(&mut self, labels: &Labels, body: &[Statement], end: impl FnOnce(&mut Self) -> TokenStream) -> TokenStream {
         self.loops.around.push(labels.clone());
         let body = self.statements(body);
         self.loops.around.pop();
@@ -149,7 +157,7 @@ impl Function<'_> {
     }
 
     /// A value that the turns of a loop read, found before it.
-    fn once(&self, name: &str, value: &Expr) -> Once {
+    pub fn once(&self, name: &str, value: &Expr) -> Once {
         let printed = self.expr(value).tokens;
         if value.as_const().is_some() {
             return Once { value: printed, before: None };
@@ -204,7 +212,7 @@ impl Function<'_> {
     }
 
     /// The counter's value, as a number.
-    fn count(&self, counter: &Place) -> Code {
+    pub fn count(&self, counter: &Place) -> Code {
         let value = self.load(counter);
         let Type::Enum(_) = counter.ty else { return value };
         let value = value.at_least(Level::Postfix);
@@ -270,7 +278,7 @@ impl Function<'_> {
 }
 
 /// Whether a statement of the loop itself, not of one inside it, is what `is` asks for.
-fn uses(block: &[Statement], is: &dyn Fn(&StatementKind) -> bool) -> bool {
+pub fn uses(block: &[Statement], is: &dyn Fn(&StatementKind) -> bool) -> bool {
     block.iter().any(|statement| {
         let inner = !matches!(statement.kind, StatementKind::Loop { .. } | StatementKind::For(_));
         is(&statement.kind) || inner && statement.kind.blocks().into_iter().any(|it| uses(it, is))

@@ -51,7 +51,9 @@ pub use repr::{Repr, Scalar, Value};
 pub use signature::{Kind, Parameter, Signature};
 pub use text::{StringType, Text, WideText};
 pub use time::Time;
-pub use turns::Turns;
+#[doc(hidden)]
+pub use turns::Strips;
+pub use turns::{Turns, TurnsBefore};
 
 /// Includes what `staunch_build` made of Structured Text, by its name there: the file's stem.
 ///

@@ -1,7 +1,11 @@
-//! Loops that take all of their turns before the first one.
+//! Loops that take all of their turns before the first one, or several at once.
 
 use crate::ops::Integer;
 use crate::{Context, FaultKind};
+
+mod strips;
+
+pub use strips::Strips;
 
 /// The turns that a FOR loop has taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,6 +45,49 @@ impl Context {
         let start = first.extended();
         let limit = if step > 0 { start.wrapping_add(way) } else { start.wrapping_sub(way) };
         Ok(Turns { limit: T::of_low_bits(limit), ..turns })
+    }
+}
+
+/// The turns that a loop has taken which goes on while its counter is before a bound.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TurnsBefore<T> {
+    /// The bound, or what is before it and next to the last value that the turns suffice for.
+    pub limit: T,
+    bound: T,
+}
+
+impl Context {
+    /// [`Context::take_turns`] for a loop that goes on while its counter is before `bound`: below it, or above it where
+    /// the step is negative. There is a value from which a step leads to `bound` or past it, within the type.
+    ///
+    /// ```
+    /// use staunch_runtime::{Context, FaultKind};
+    /// let cx = Context::at(0).with_turns(5);
+    /// let all = cx.take_turns_before(0_i16, 3, 1)?;
+    /// assert_eq!((all.limit, all.end()), (3, Ok(())));
+    /// let some = cx.take_turns_before(10_i16, 90, 10)?;
+    /// assert_eq!((some.limit, some.end()), (21, Err(FaultKind::LoopBudget)));
+    /// # Ok::<(), FaultKind>(())
+    /// ```
+    #[inline]
+    pub fn take_turns_before<T: Integer>(&self, first: T, bound: T, step: i128) -> Result<TurnsBefore<T>, FaultKind> {
+        let is_before = if step > 0 { first < bound } else { first > bound };
+        if !is_before {
+            return Ok(TurnsBefore { limit: bound, bound });
+        }
+        let one = if step > 0 { 1 } else { 1_u64.wrapping_neg() };
+        let last = T::of_low_bits(bound.extended().wrapping_sub(one));
+        let turns = self.take_turns(first, last, step)?;
+        let limit = T::of_low_bits(turns.limit.extended().wrapping_add(one));
+        Ok(TurnsBefore { limit, bound })
+    }
+}
+
+impl<T: PartialEq> TurnsBefore<T> {
+    /// After the loop, which nothing but its bound ends: [`FaultKind::LoopBudget`] where it would have gone further.
+    #[inline]
+    pub fn end(&self) -> Result<(), FaultKind> {
+        if self.limit == self.bound { Ok(()) } else { Err(FaultKind::LoopBudget) }
     }
 }
 

@@ -28,7 +28,7 @@
     reason = "constants and phrasing are as in the source"
 )]
 
-use staunch_runtime::{Context, Fault, OrFault, Text, firmware, iec, ops, text, time};
+use staunch_runtime::{Context, Fault, OrFault, Text, firmware, iec, ops, strips, text, time};
 
 /// The sources, as the `file` of a fault's location counts them.
 pub const FILES: &[&str] = &["statements.st"];
@@ -132,22 +132,22 @@ impl Main {
                 );
             self.i = self.i.wrapping_add(1);
         }
-        while self.sum > 100 {
+        strips!(32; while (self.sum > 100) {
             // :18
             cx.take_turn().at(STATEMENTS_ST, 18, 1)?;
             self.sum = ops::div(self.sum, 2).at(STATEMENTS_ST, 18, 31)?;
             if self.sum == 60 {
                 break;
             }
-        }
-        loop {
+        });
+        strips!(32; loop {
             // :19
             cx.take_turn().at(STATEMENTS_ST, 19, 1)?;
             self.sum = self.sum.wrapping_add(1);
             if self.sum > 3 {
                 break;
             }
-        }
+        });
         let twice_2: i32 = twice(self.n, &mut half, &mut self.calls)?; // :20
         self.half = half;
         self.sum = self.sum.wrapping_add(twice_2.wrapping_mul(10));

@@ -1,0 +1,116 @@
+//! Turns that are taken several at once, so that a loop of a few instructions is not slowed by them.
+
+use crate::Context;
+
+/// Runs a loop as it is written, but takes the turns of `N` rounds at once. Where fewer are left, it takes one by one, so
+/// that the turn that finds none is the same. `break`, `continue`, `return` and `?` are the loop's own.
+///
+/// The optimiser unrolls the strip of `N` rounds. With the feature `small`, or where code is optimised for size, one by
+/// one is shorter.
+///
+/// ```
+/// use staunch_runtime::{Context, Fault, FaultKind, OrFault, strips};
+///
+/// fn halve(cx: &Context, mut n: u32) -> Result<u32, Fault> {
+///     let mut steps = 0;
+///     strips!(8; while (n != 1) {
+///         cx.take_turn().at(0, 3, 1)?;
+///         n = if n % 2 == 0 { n / 2 } else { 3 * n + 1 };
+///         steps += 1;
+///     });
+///     Ok(steps)
+/// }
+///
+/// let cx = Context::at(0).with_turns(120);
+/// assert_eq!(halve(&cx, 27).map_err(|it| it.kind), Ok(111));
+/// assert_eq!(halve(&cx, 27).map_err(|it| it.kind), Err(FaultKind::LoopBudget));
+/// ```
+#[macro_export]
+macro_rules! strips {
+    ($n:literal; $($label:lifetime:)? while ($condition:expr) {
+        $cx:ident.take_turn().at($($at:tt)*)?;
+        $($body:tt)*
+    }) => {
+        $crate::strips!(@ $cx, $n, {
+            $($label:)? loop
+        }, { if !$condition { break; } }, { $cx.take_turn().at($($at)*)?; }, { $($body)* })
+    };
+    ($n:literal; $($label:lifetime:)? loop {
+        $cx:ident.take_turn().at($($at:tt)*)?;
+        $($body:tt)*
+    }) => {
+        $crate::strips!(@ $cx, $n, {
+            $($label:)? loop
+        }, {}, { $cx.take_turn().at($($at)*)?; }, { $($body)* })
+    };
+    (@ $cx:ident, $n:literal, { $($head:tt)* }, { $($test:tt)* }, { $($turn:tt)* }, { $($body:tt)* }) => {
+        'whole: {
+            let mut strips = $crate::Strips::<$n>::new($cx);
+            while strips.take() {
+                'strip: {
+                    $($head)* {
+                        if strips.is_used() {
+                            break 'strip;
+                        }
+                        $($test)*
+                        strips.turn();
+                        $($body)*
+                    }
+                    break 'whole;
+                }
+            }
+            drop(strips);
+            $($head)* {
+                $($test)*
+                $($turn)*
+                $($body)*
+            }
+        }
+    };
+}
+
+/// The turns of a loop that takes `N` at once. What it does not use the context gets back, however it ends.
+#[derive(Debug)]
+pub struct Strips<'a, const N: u64> {
+    cx: &'a Context,
+    /// What the scan has left besides the strip.
+    left: u64,
+    /// What is left of the strip.
+    strip: u64,
+}
+
+impl<'a, const N: u64> Strips<'a, N> {
+    #[inline]
+    pub fn new(cx: &'a Context) -> Self {
+        Self { cx, left: cx.turns_left(), strip: 0 }
+    }
+
+    /// Takes a strip after one that is used; whether that many are left.
+    #[inline]
+    pub fn take(&mut self) -> bool {
+        let suffices = self.left >= N && !cfg!(feature = "small");
+        if suffices {
+            self.left -= N;
+            self.strip = N;
+        }
+        suffices
+    }
+
+    #[inline]
+    pub fn is_used(&self) -> bool {
+        self.strip == 0
+    }
+
+    /// One turn, of a strip that is not used.
+    #[inline]
+    pub fn turn(&mut self) {
+        self.strip = self.strip.wrapping_sub(1);
+    }
+}
+
+impl<const N: u64> Drop for Strips<'_, N> {
+    #[inline]
+    fn drop(&mut self) {
+        self.cx.set_turns(self.left.wrapping_add(self.strip));
+    }
+}
