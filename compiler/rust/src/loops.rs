@@ -143,7 +143,12 @@ impl Function<'_> {
     }
 
     /// The body, and what follows it at the end of each turn.
-    pub fn turn(&mut self, labels: &Labels, body: &[Statement], end: impl FnOnce(&mut Self) -> TokenStream) -> TokenStream {
+    pub fn turn(
+        &mut self,
+        labels: &Labels,
+        body: &[Statement],
+        end: impl FnOnce(&mut Self) -> TokenStream,
+    ) -> TokenStream {
         self.loops.around.push(labels.clone());
         let body = self.statements(body);
         self.loops.around.pop();

@@ -39,7 +39,7 @@ impl Function<'_> {
     /// How many rounds a strip has: a power of two, as few different loops are easier to read.
     fn rounds(&mut self, whole: &Block, continuing: &Block) -> Option<usize> {
         let size = turns::size_of_single(whole, continuing, &|it| self.callee_takes_turns(it))?;
-        let rounds = 1 << (ENOUGH / size.max(1)).min(MOST).max(1).ilog2();
+        let rounds = 1 << (ENOUGH / size.max(1)).clamp(1, MOST).ilog2();
         let copied = self.loops.copied + rounds * size;
         if rounds < LEAST || copied > MOST_IN_A_ROUTINE {
             return None;

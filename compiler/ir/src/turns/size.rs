@@ -32,9 +32,7 @@ pub(super) fn size(block: &[Statement]) -> usize {
                 ExprKind::Const(_) => 0,
                 ExprKind::Load(place) => 1 + of_projections(&place.projections),
                 ExprKind::Apply(..) | ExprKind::Convert(..) => 1,
-                ExprKind::Text(_) | ExprKind::AddressOf(_) | ExprKind::ApplyText(..) | ExprKind::Aggregate(_) => {
-                    TEXT
-                }
+                ExprKind::Text(_) | ExprKind::AddressOf(_) | ExprKind::ApplyText(..) | ExprKind::Aggregate(_) => TEXT,
             }
         });
     });

@@ -59,7 +59,7 @@ macro_rules! strips {
                     break 'whole;
                 }
             }
-            drop(strips);
+            ::core::mem::drop(strips);
             $($head)* {
                 $($test)*
                 $($turn)*
