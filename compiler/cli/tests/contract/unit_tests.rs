@@ -142,6 +142,26 @@ fn failures_say_what_was_expected() {
 }
 
 #[test]
+fn loops_have_more_turns_where_they_are_compiled() {
+    let tests = "TEST 'ten million' VAR i, n : DINT := 10_000_000; END_VAR FOR i := 1 TO n DO END_FOR END_TEST
+TEST 'more' VAR i, n : DINT := 10_000_001; END_VAR FOR i := 1 TO n DO END_FOR END_TEST
+";
+    let most = "TEST 'most' VAR i, n : DINT := 1_000_000_000; END_VAR FOR i := 1 TO n DO END_FOR END_TEST
+TEST 'too many' VAR i, n : DINT := 1_000_000_001; END_VAR FOR i := 1 TO n DO END_FOR END_TEST
+";
+    let folder = Folder::with("tests_turns", &[("tests.st", tests), ("most.st", most)]);
+    for backend in ["native", "rust"] {
+        has(&folder.staunch(&format!("test tests.st --backend {backend}")).out(0), &["2 passed"]);
+        has(
+            &folder.staunch(&format!("test most.st --backend {backend}")).out(1),
+            &["FAILED  too many", "1 passed, 1 failed"],
+        );
+    }
+    let out = folder.staunch("test tests.st --backend interpret").out(1);
+    has(&out, &["FAILED  more", "a loop went on past the scan's budget of turns", "1 passed, 1 failed"]);
+}
+
+#[test]
 fn constants_are_shown_too() {
     let tests = "TEST 'integers' ASSERT_EQ(3, 4); END_TEST
 TEST 'times' ASSERT_GT(T#1s, T#2s); END_TEST
