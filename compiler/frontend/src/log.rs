@@ -10,6 +10,8 @@ pub(crate) struct Log<'s> {
     /// A dialect for each file.
     pub dialects: Vec<Dialect>,
     pub diagnostics: Vec<Diagnostic>,
+    /// Whether an error has named the setting that lets integers narrow.
+    pub has_named_narrowing: bool,
     line_cache: LineCache,
 }
 
@@ -28,7 +30,7 @@ struct LineCache {
 impl<'s> Log<'s> {
     pub fn new(sources: &'s Sources, options: &'s Options) -> Self {
         let line_cache = LineCache::default();
-        Self { sources, options, dialects: Vec::new(), diagnostics: Vec::new(), line_cache }
+        Self { sources, options, dialects: Vec::new(), diagnostics: Vec::new(), has_named_narrowing: false, line_cache }
     }
 
     pub fn report(&mut self, diagnostic: Diagnostic) {

@@ -256,13 +256,13 @@ impl<'s> Checker<'_, 's> {
         let (Some(from_range), Some(to_range)) = (low, high) else {
             return widens(as_number(from), to) || self.loses_precision(from, to, span);
         };
-        if from == Elementary::Bool || to == Elementary::Bool || from.is_time() || to.is_time() {
+        if is_no_number(from) || is_no_number(to) {
             return false;
         }
         if from_range.0 >= to_range.0 && from_range.1 <= to_range.1 {
             return true;
         }
-        let sign_only = from.repr().size() <= to.repr().size();
+        let sign_only = !keeps_low_bits(from, to);
         if !sign_only && self.decl.log.options.implicit_narrowing {
             self.report(
                 Diagnostic::new(Code::W0513, span, format!("{} becomes {}: high bits are cut", from.name(), to.name()))
@@ -314,6 +314,10 @@ impl<'s> Checker<'_, 's> {
         } else {
             error.help(format!("convert it with `{function}(…)`"))
         };
+        let may_be_set = self.decl.dialect(span).mixes_bits_and_integers() && keeps_low_bits(from, to);
+        if may_be_set && !std::mem::replace(&mut self.decl.log.has_named_narrowing, true) {
+            error = error.note("`implicit-narrowing = true` in staunch.toml lets it keep its low bits, as ruSTy does and CODESYS does not");
+        }
         self.report(error);
     }
 
@@ -371,4 +375,14 @@ impl<'s> Checker<'_, 's> {
             self.report(Diagnostic::new(Code::W0202, span, message).label("the rest is cut off"));
         }
     }
+}
+
+fn is_no_number(ty: Elementary) -> bool {
+    ty == Elementary::Bool || ty.is_time()
+}
+
+/// Whether a conversion of integers and bit strings cuts high bits.
+fn keeps_low_bits(from: Elementary, to: Elementary) -> bool {
+    let are_numbers = [from, to].iter().all(|it| !is_no_number(*it) && it.repr().range().is_some());
+    are_numbers && from.repr().size() > to.repr().size()
 }

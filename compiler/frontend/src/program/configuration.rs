@@ -194,9 +194,9 @@ impl<'s> Declarations<'s> {
         let first = named.first;
         self.report(
             Diagnostic::new(Code::E0902, target.span, format!("`{}` is called by name", run.name.text))
-                .label("a VAR_CONFIG is only supported for PROGRAMs that run by themselves")
+                .label("what a VAR_CONFIG binds is copied before and after a run by itself, which this PROGRAM has not")
                 .other(first, "named here")
-                .help("give the variable its address or value where it is declared"),
+                .help("give the variable its address or value where it is declared, or let the PROGRAM run by itself"),
         );
         true
     }
