@@ -314,8 +314,15 @@ fn is_plain_line(line: &str) -> bool {
         && words(code).all(|it| it.len() <= SMALL)
         && line.len() - mark.len() <= WIDE
         && !code.starts_with(['.', '|', '&', '+'])
+        && !starts_with_operator(code)
         && !code.contains("{} else")
         && (!has_value(code) || structure(code).is_some_and(|(_, inner, _)| inner.len() <= SMALL_STRUCTURE))
+}
+
+/// Whether a line goes on with an expression: `- x`, which is no negative number in a table.
+fn starts_with_operator(code: &str) -> bool {
+    let (first, rest) = code.split_once(' ').unwrap_or_default();
+    !first.is_empty() && !rest.is_empty() && first.chars().all(|it| "+-*/%<>=!^".contains(it))
 }
 
 /// Whether a line holds a structure's value or a block: rustfmt leaves `const { x }` where it is.
