@@ -46,6 +46,7 @@ impl Place {
 
     #[must_use]
     pub fn field(mut self, field: FieldId, ty: Type) -> Self {
+        self.projections.reserve_exact(1);
         self.projections.push(Projection::Field(field));
         self.ty = ty;
         self
@@ -53,6 +54,7 @@ impl Place {
 
     #[must_use]
     pub fn index(mut self, index: Expr, element: Type, at: Location) -> Self {
+        self.projections.reserve_exact(1);
         self.projections.push(Projection::Index { index: Box::new(index), at });
         self.ty = element;
         self
@@ -60,6 +62,7 @@ impl Place {
 
     #[must_use]
     pub fn deref(mut self, target: Type, at: Location) -> Self {
+        self.projections.reserve_exact(1);
         self.projections.push(Projection::Deref { reference: self.ty, target, at });
         self.ty = target;
         self

@@ -161,7 +161,11 @@ fn check_body<'s>(
     };
     checker.migration_lints(statements);
     let mut whole = std::mem::take(&mut checker.block);
-    whole.append(&mut body);
+    if whole.is_empty() {
+        whole = body;
+    } else {
+        whole.append(&mut body);
+    }
     let uses = checker.finish_uses();
     *left_out = left_out.or(checker.left_out);
     let locals = std::mem::take(&mut checker.locals);

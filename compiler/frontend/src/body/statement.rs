@@ -9,7 +9,10 @@ use staunch_ir::{Block, Expr, ExprKind, StatementKind, Type};
 impl<'s> Checker<'_, 's> {
     /// The statements of a body, or of a branch of one.
     pub(super) fn block_of(&mut self, statements: &[ast::Statement<'s>]) -> Block {
-        self.nested(|this| this.statements(statements))
+        self.nested(|this| {
+            this.block.reserve_exact(statements.len());
+            this.statements(statements);
+        })
     }
 
     fn statements(&mut self, statements: &[ast::Statement<'s>]) {

@@ -49,7 +49,7 @@ impl<'s> Checker<'_, 's> {
         );
     }
 
-    /// What the first of the targets is given. Targets are found from left to right, then the value is
+    /// What the first of the targets is given, where that `is_read`. Targets are found from left to right, then the value is
     /// computed, and assigned from right to left. It is computed once where a target to the left reads it.
     pub(crate) fn assigned(
         &mut self,
@@ -95,7 +95,9 @@ impl<'s> Checker<'_, 's> {
         }
         if writable {
             self.note_assigned(&place, target.span);
-            self.write(place, view, given.clone(), span)?;
+            let read = if is_read { given.clone() } else { Expr::bool(true, self.at(span)) };
+            self.write(place, view, given, span)?;
+            return Some(read);
         }
         Some(given)
     }

@@ -32,6 +32,8 @@ pub(crate) struct Checker<'d, 's> {
     /// How many loops are around the statement.
     pub loops: usize,
     pub uses: Uses,
+    /// Where in `uses.assigned` a variable is, by a hash of it.
+    pub first_assigned: FxHashMap<u64, usize>,
     pub context: Context,
     /// Instances called so far on the way to this statement.
     pub called: Called,
@@ -78,6 +80,7 @@ impl<'d, 's> Checker<'d, 's> {
             counters: Vec::new(),
             loops: 0,
             uses: Uses::default(),
+            first_assigned: FxHashMap::default(),
             context,
             called: Called::default(),
             choices: FxHashMap::default(),
@@ -142,6 +145,9 @@ impl<'d, 's> Checker<'d, 's> {
     pub fn nested(&mut self, make: impl FnOnce(&mut Self)) -> Block {
         let outer = std::mem::take(&mut self.block);
         make(self);
-        std::mem::replace(&mut self.block, outer)
+        let mut made = std::mem::replace(&mut self.block, outer);
+        // Most blocks are small, and live as long as the program.
+        made.shrink_to_fit();
+        made
     }
 }

@@ -6,7 +6,9 @@ use super::uses::{
     lost_count, same_storage, several_counts, shared_count,
 };
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{Place, Root, Type};
+use rustc_hash::FxHasher;
+use staunch_ir::{Place, Projection, Root, Type};
+use std::hash::{Hash, Hasher};
 
 impl<'s> Checker<'_, 's> {
     pub(crate) fn used_instruction(&mut self, place: &Place, instruction: usize) {
@@ -95,7 +97,15 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
+    /// A variable is noted where it is assigned first: large programs assign the same ones over and over.
     pub(crate) fn note_assigned(&mut self, place: &Place, span: Span) {
+        if let Some(key) = variable_key(place) {
+            let next = self.uses.assigned.len();
+            let first = *self.first_assigned.entry(key).or_insert(next);
+            if self.uses.assigned.get(first).is_some_and(|it| it.place.is_same_variable(place)) {
+                return;
+            }
+        }
         self.uses.assigned.push(Assigned { place: place.clone(), span, passed_for: None });
     }
 
@@ -117,4 +127,15 @@ impl<'s> Checker<'_, 's> {
             }
         }
     }
+}
+
+/// A hash of a variable or a member of one; `None` for what has subscripts or leads through a reference.
+fn variable_key(place: &Place) -> Option<u64> {
+    let mut hasher = FxHasher::default();
+    place.root.hash(&mut hasher);
+    for projection in &place.projections {
+        let Projection::Field(id) = projection else { return None };
+        id.hash(&mut hasher);
+    }
+    Some(hasher.finish())
 }
