@@ -422,6 +422,8 @@ pub struct TypeDecl<'s> {
     pub attributes: Vec<&'s str>,
     /// `{pool …}` there.
     pub pool: Option<Pool>,
+    /// `{attribute 'pack_mode' := '1'}` there: to how many bytes members are aligned at most, and where that is said.
+    pub pack: Option<(u64, Span)>,
     pub ty: TypeSpec<'s>,
     pub initial: Option<Initial<'s>>,
     pub doc: Option<String>,
@@ -439,6 +441,7 @@ impl<'s> TypeDecl<'s> {
             base: None,
             attributes: Vec::new(),
             pool: None,
+            pack: None,
             ty,
             initial: None,
             doc: None,

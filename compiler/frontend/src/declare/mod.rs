@@ -18,6 +18,7 @@ mod mock;
 mod named_program;
 mod needs;
 mod overload;
+mod packing;
 mod pools;
 mod pou;
 mod pragma;
@@ -77,6 +78,7 @@ pub(crate) fn declare<'s>(
     declarations.declare_mocks(&testing::mocked_functions(bodies));
     declarations.start_values(runs);
     declarations.start_bindings(runs);
+    declarations.warn_of_packing();
     declarations.declare_pools();
     declarations.declare_globals();
     declarations.program.reach.references |= !declarations.program.references.is_empty();

@@ -160,6 +160,7 @@ codes! {
     W0511 Warning "a number loses digits as a real";
     W0512 Warning "CASE labels that overlap";
     W0513 Warning "an integer loses its high bits";
+    W0514 Warning "a structure is not packed";
     W0515 Warning "a subrange wider than the array that it indexes";
     W0516 Warning "a result that is never assigned";
     W0602 Warning "a count is compared beyond its preset";

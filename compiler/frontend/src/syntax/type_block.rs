@@ -20,7 +20,7 @@ use super::{
 };
 
 pub fn types<'s>(input: &mut In<'_, '_, 's>) -> Vec<TypeDecl<'s>> {
-    let (attributes, pool) = (attributes_here(input), pool_here(input));
+    let (attributes, pool, pack) = (attributes_here(input), pool_here(input), pack_here(input));
     let opened = input.take();
     let internal = namespace::access(input);
     input.state().open.push((Kind::EndType, opened));
@@ -49,6 +49,7 @@ pub fn types<'s>(input: &mut In<'_, '_, 's>) -> Vec<TypeDecl<'s>> {
         declared.internal = internal;
         declared.attributes.extend(&attributes);
         declared.pool = declared.pool.or(pool);
+        declared.pack = declared.pack.or(pack);
     }
     types
 }
@@ -67,6 +68,16 @@ pub fn external_here<'s>(input: &mut In<'_, '_, 's>) -> Option<External<'s>> {
 pub fn pool_here(input: &mut In<'_, '_, '_>) -> Option<Pool> {
     let text = |it: &Name<'_>| Pool::count_in(it.text);
     pragmas_here(input).iter().find_map(|it| Some(Pool { count: text(it)?, span: it.span }))
+}
+
+/// `{attribute 'pack_mode' := '1'}` between the last token and the next. CODESYS takes 0 and 1 for one another.
+fn pack_here(input: &mut In<'_, '_, '_>) -> Option<(u64, crate::Span)> {
+    let mode = |it: &Name<'_>| {
+        let is_it = attribute(it.text)?.eq_ignore_ascii_case("pack_mode");
+        let value = it.text.rsplit_once(":=")?.1.trim().trim_matches('\'').trim();
+        is_it.then_some(value.parse::<u64>().ok()?.max(1))
+    };
+    pragmas_here(input).iter().find_map(|it| Some((mode(it)?, it.span)))
 }
 
 /// The pragmas between the last token and the next.
@@ -118,6 +129,7 @@ fn type_decl_or_name<'t, 'p, 's>(input: &mut In<'t, 'p, 's>, start: Start<'t, 'p
 /// `Name : type := value;`, where a structure may do without the `;`.
 fn type_decl<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeDecl<'s>> {
     let (first, attributes, pool) = (input.number(), attributes_here(input), pool_here(input));
+    let pack = pack_here(input);
     let colon = token(Kind::Colon).ignored().or(foreign_types::no_colon_in_type());
     let path = name().separated_by(token(Kind::Dot)).at_least(1).collect();
     let base = word("EXTENDS").ignore_then(path).or_not();
@@ -131,5 +143,5 @@ fn type_decl<'s>(input: &mut In<'_, '_, 's>) -> Parsed<TypeDecl<'s>> {
         input.parse(end())?;
     }
     let doc = input.doc(first);
-    Ok(TypeDecl { is_abstract, base, attributes, pool, initial, doc, ..TypeDecl::new(name, ty) })
+    Ok(TypeDecl { is_abstract, base, attributes, pool, pack, initial, doc, ..TypeDecl::new(name, ty) })
 }
