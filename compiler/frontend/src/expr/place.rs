@@ -706,6 +706,11 @@ impl<'s> Checker<'_, 's> {
         self.slot.is_some_and(|it| crate::start::is_initial(self.decl.pous[it].ast.name))
     }
 
+    /// In the METHOD that the compiler makes to start an instance.
+    fn is_start_of_instance(&self) -> bool {
+        self.slot.is_some_and(|it| self.decl.pous[it].ast.name.text == crate::start::START)
+    }
+
     /// Whether a place may be given to a call that may write to it.
     pub(crate) fn may_be_given_away(&mut self, found: &Found<'s>, span: Span) -> bool {
         if self.is_counter(&found.place) {
@@ -713,6 +718,8 @@ impl<'s> Checker<'_, 's> {
         }
         match found.access {
             Access::Write => true,
+            // The address that its declaration gives it.
+            Access::OwnInput(_) if self.is_start_of_instance() => true,
             Access::Constant(name) => {
                 self.report(
                     Diagnostic::new(Code::E0501, span, format!("`{}` is a CONSTANT", name.text))
