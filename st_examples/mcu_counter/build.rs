@@ -1,3 +1,5 @@
+//! Compiles the Structured Text, and hands the linker the memory of the board.
+
 use std::path::Path;
 
 fn main() {

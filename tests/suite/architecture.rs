@@ -216,3 +216,29 @@ fn list(folder: &Path, paths: &mut Vec<PathBuf>) {
         }
     }
 }
+
+/// What other files include as text is no module.
+const INCLUDED: [&str; 1] = ["compiler/rust/tests/support/show.rs"];
+
+#[test]
+fn every_module_says_what_it_is() {
+    let mut found = 0;
+    for root in ["compiler", "runtime", "st_examples", "tests/src", "tests/suite", "tests/witness", "tests/mutants"] {
+        let mut waiting = vec![project().join(root)];
+        while let Some(path) = waiting.pop() {
+            if path.is_dir() {
+                let inner = std::fs::read_dir(&path).unwrap().map(|it| it.unwrap().path());
+                waiting.extend(inner.filter(|it| !it.ends_with("target")));
+            } else if path.extension().is_some_and(|it| it == "rs") && !INCLUDED.iter().any(|it| path.ends_with(it)) {
+                let text = std::fs::read_to_string(&path).unwrap();
+                assert!(
+                    text.starts_with("//!"),
+                    "{}: a module begins with a line that says what it is",
+                    path.display()
+                );
+                found += 1;
+            }
+        }
+    }
+    assert!(found > 300, "only {found} modules");
+}

@@ -1,3 +1,5 @@
+//! What `build.rs` is given: modules, mistakes with their places, levels of lints.
+
 #![allow(clippy::unwrap_used)]
 
 use super::*;

@@ -1,3 +1,5 @@
+//! `staunch new`: a folder with a program, its stimulus and a project file.
+
 use crate::args;
 use std::fs;
 use std::path::Path;

@@ -1,3 +1,5 @@
+//! What is known of a function block besides its code: pins, instructions, prescan, retention.
+
 use crate::{Context, Elementary, Family, Repr, Scalar, Time, Value};
 
 /// Which way a member of a block faces.

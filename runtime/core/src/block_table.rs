@@ -1,3 +1,5 @@
+//! The function blocks of all systems, one row each, and the macros that read the rows.
+
 use crate::block::{renamed, retyped};
 use crate::elementary::keyword;
 use crate::{

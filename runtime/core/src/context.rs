@@ -1,3 +1,5 @@
+//! What a scan hands to all that runs in it: its time, whether it is the first, and the turns that loops have left.
+
 use crate::{FaultKind, Time};
 use core::cell::Cell;
 

@@ -1,3 +1,5 @@
+//! Faults: what ends a scan, and where in the source.
+
 use core::fmt;
 
 /// Why a scan stopped. The discriminant is the low byte of what native code returns; 0 there

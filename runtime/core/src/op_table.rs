@@ -1,3 +1,5 @@
+//! The operations on elementary values and on texts, one row each, as macros over all rows.
+
 /// Every operator and standard function on elementary values, one row each.
 ///
 /// The compiler expands the table into its `Op` enum and the interpreter's dispatch;

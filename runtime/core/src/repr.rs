@@ -1,3 +1,5 @@
+//! How values of elementary types are carried, and one such value of any type.
+
 use core::fmt::Debug;
 
 /// How an elementary value is carried: a Rust primitive. Several IEC types share a repr

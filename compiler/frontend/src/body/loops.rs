@@ -117,7 +117,7 @@ impl<'s> Checker<'_, 's> {
         if place.is_followed() {
             self.report(
                 Diagnostic::new(Code::E0211, counter.span, "the counter of a FOR loop is a variable of its own")
-                    .label("this is behind a reference"),
+                    .label("this is reached through a reference"),
             );
             return None;
         }

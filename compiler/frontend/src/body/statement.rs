@@ -1,3 +1,5 @@
+//! Statements of a body, and what they assign.
+
 use crate::expr::call_tracking::Instance;
 use crate::expr::checker::Checker;
 use crate::expr::start::is_start_of_members;

@@ -1,3 +1,5 @@
+//! What the keyword and the marks of a block of variables say of each of them.
+
 use crate::ast;
 use crate::types::declarations::Declarations;
 use crate::types::scope::{Scope, Variable};

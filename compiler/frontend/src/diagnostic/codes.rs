@@ -1,3 +1,5 @@
+//! The codes of errors and lints, one row each.
+
 use super::Severity;
 
 macro_rules! codes {

@@ -1,3 +1,5 @@
+//! Expressions: each becomes an operand, which may take the type that its place asks for.
+
 use super::checker::{Checker, Context};
 use super::operand::{Operand, computed};
 use super::place::{Access, Found};

@@ -1,3 +1,5 @@
+//! Literals, members of enumerations, and what is computed of literals that have no type yet.
+
 use super::checker::Checker;
 use super::operand::Operand;
 use super::real::Real;

@@ -1,3 +1,5 @@
+//! Operators: the type at which two sides meet, and what is computed there.
+
 use super::checker::Checker;
 use super::operand::{Operand, computed};
 use crate::types::coercion::{as_number, is_narrow, join, join_promoted};

@@ -1,3 +1,5 @@
+//! The kinds of tokens, and how they are called in messages.
+
 use core::fmt;
 
 use logos::Logos;

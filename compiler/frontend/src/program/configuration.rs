@@ -169,7 +169,7 @@ impl<'s> Declarations<'s> {
                         address.span,
                         format!("two variables are bound to `{}`", address.text),
                     )
-                    .label("which of them is written there is not told")
+                    .label("which of them is written there is not known")
                     .other(first, "the other one")
                     .help("bind one of them, and read it where the other is needed"),
                 );

@@ -1,3 +1,5 @@
+//! Lines and columns, also of a text that is made of pieces of a file.
+
 #![allow(clippy::unwrap_used)]
 
 use super::Source;

@@ -396,7 +396,7 @@ pub fn controller_service(name: Span, text: &str, service: &str) -> Diagnostic {
 pub fn bindings_in_a_unit(span: Span) -> Diagnostic {
     Diagnostic::new(Code::E0403, span, "a VAR_CONFIG is not in a POU")
         .label("it is in a CONFIGURATION, or in the file by itself")
-        .help("move it behind the end of the POU, and name what it is about from its PROGRAM on: `Main.y AT %QX0.0 : BOOL;`")
+        .help("move it after the end of the POU, and name what it is about from its PROGRAM on: `Main.y AT %QX0.0 : BOOL;`")
 }
 
 pub fn unsupported(span: Span, what: &str) -> Diagnostic {

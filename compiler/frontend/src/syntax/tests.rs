@@ -1,3 +1,5 @@
+//! Tests of the parser: trees, recovery, and texts of any kind.
+
 mod recovery;
 mod robust;
 mod shape;

@@ -1,5 +1,5 @@
-#![allow(dead_code, reason = "not every test uses every part")]
 //! Compiles Structured Text, prints it as Rust, and runs that beside the interpreter.
+#![allow(dead_code, reason = "not every test uses every part")]
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -1,3 +1,5 @@
+//! SR and RS (IEC 61131-3, edition 3, table 43).
+
 use crate::Context;
 use crate::block::pins;
 

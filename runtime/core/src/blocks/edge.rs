@@ -1,3 +1,5 @@
+//! R_TRIG and F_TRIG (IEC 61131-3, edition 3, table 44), and those of other systems.
+
 use crate::Context;
 use crate::block::pins;
 

@@ -1,3 +1,5 @@
+//! Arithmetic, which wraps at its operands' type.
+
 use super::{Integer, Number};
 use crate::FaultKind;
 

@@ -1,3 +1,5 @@
+//! Bitwise operations, shifts, rotations, and the order of bytes.
+
 use super::convert::ConvertTo;
 use super::{Bits, Integer};
 use crate::{Scalar, Value};

@@ -1,3 +1,5 @@
+//! Comparisons.
+
 use crate::Scalar;
 
 /// `a = b`. FALSE when one of them is NaN; `-0.0 = 0.0`.

@@ -1,3 +1,5 @@
+//! Conversions between elementary types.
+
 use crate::ops::Real;
 use crate::{Repr, Scalar, Value, with_repr};
 

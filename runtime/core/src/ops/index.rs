@@ -1,3 +1,5 @@
+//! Indices of arrays, and the check of one.
+
 use super::Integer;
 use crate::FaultKind;
 

@@ -1,3 +1,5 @@
+//! MAX, MIN, LIMIT, SEL, and the check of a subrange.
+
 use super::Integer;
 use crate::{FaultKind, Scalar};
 

@@ -1,3 +1,5 @@
+//! The step of a FOR loop, which ends where it would leave the counter's type.
+
 use crate::{FaultKind, Scalar, Value};
 
 /// The counter of a FOR loop after one more `step`, where its type has the values `low..=high`.

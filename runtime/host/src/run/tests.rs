@@ -1,3 +1,5 @@
+//! Runs of a program: stimulus, time, restarts and traces.
+
 use super::*;
 use crate::fixture::{Garage, map};
 use staunch_runtime::Value;

@@ -1,3 +1,5 @@
+//! Diagnostics as they are written for a reader.
+
 use super::{Format, Style, render};
 use crate::{
     diagnostic::{Code, Diagnostic},

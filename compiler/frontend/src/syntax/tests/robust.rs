@@ -1,3 +1,5 @@
+//! Texts that are no programs: the parser ends, and says so.
+
 use super::shape::parsed;
 use crate::{diagnostic::Code, source::Source};
 

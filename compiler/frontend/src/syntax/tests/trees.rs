@@ -1,3 +1,5 @@
+//! The trees of what is written correctly.
+
 use super::shape::{body, correct, initial_of};
 use crate::ast::{Item, PouKind};
 

@@ -1,3 +1,5 @@
+//! Retained states as bytes: damaged and forged ones are refused.
+
 use super::*;
 
 const VARIABLES: [(&str, &str, usize); 2] = [("main.count", "INT", 2), ("main.name", "STRING[700]", 702)];

@@ -1,3 +1,5 @@
+//! Which states are written, and when.
+
 use super::super::format::recover;
 use super::super::tests::faulty::{Faults, Faulty, Random};
 use super::*;

@@ -1,3 +1,5 @@
+//! Writing while power may fail: the last complete state is found, or the one before.
+
 use super::super::format::{Layout, recover};
 use super::super::storage::Which;
 use super::super::tests::faulty::{Faults, Faulty};

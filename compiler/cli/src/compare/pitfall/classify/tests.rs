@@ -1,3 +1,5 @@
+//! Which trap a difference is put down to.
+
 use super::*;
 
 const IDLE: Pins =
