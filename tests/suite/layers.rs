@@ -8,7 +8,7 @@ use std::path::Path;
 const ROOT: &str = "compiler/frontend/src";
 
 /// The folders and files at the root, from the lowest.
-const LAYERS: [&str; 24] = [
+const LAYERS: [&str; 25] = [
     "vendor",
     "source",
     "diagnostic",
@@ -22,6 +22,7 @@ const LAYERS: [&str; 24] = [
     "mutate",
     "start",
     "dialect",
+    "options",
     "log",
     "prelude",
     "names",

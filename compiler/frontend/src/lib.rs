@@ -21,6 +21,7 @@ mod foreign;
 mod inherit;
 mod log;
 mod names;
+mod options;
 mod prelude;
 mod types;
 
@@ -40,6 +41,7 @@ pub use diagnostic::{Code, Diagnostic, Fix, Format, Label, Level, Levels, Severi
 pub use dialect::Dialect;
 pub use mutate::{Mutant, mutants};
 pub use names::functions::standard_functions;
+pub use options::Options;
 pub use source::{Source, Sources, Span};
 pub use syntax::parse;
 pub use testing::{Assertion, Fixture, FixtureCase, Suite, Test};
@@ -52,34 +54,6 @@ use staunch_ir::Program;
 use types::coverage::Coverage;
 use types::whole::Whole;
 use vendor::{Problem, Trouble};
-
-/// How to read the sources.
-#[derive(Clone, Debug, Default)]
-pub struct Options {
-    /// For files that do not name their own with `{dialect '…'}`.
-    pub dialect: Dialect,
-    /// CODESYS `CTU` stops at its preset, as some of its documents say.
-    pub ctu_stop_at_pv: bool,
-    /// In `codesys`, an integer becomes one of fewer bits by itself, with a lint.
-    pub implicit_narrowing: bool,
-    /// The dialect that the sources were written in, where `dialect` is the one they move to:
-    /// its pragma then means the new dialect, and a pin by its old name is a lint.
-    pub moved_from: Option<Dialect>,
-    /// Each TEST becomes an instance of the program, and no other PROGRAM runs.
-    pub tests: bool,
-    /// It runs as it is: what is declared `{external}` is not there, and a call of it faults.
-    pub is_run: bool,
-    /// Counts what is executed of the first so many sources.
-    pub coverage: Option<u16>,
-}
-
-impl Options {
-    fn is_on(&self, option: staunch_runtime::BlockOption) -> bool {
-        match option {
-            staunch_runtime::BlockOption::CtuStopAtPv => self.ctu_stop_at_pv,
-        }
-    }
-}
 
 /// What came out of a compilation.
 #[derive(Debug)]
@@ -171,11 +145,11 @@ fn run_with(sources: &Sources, options: &Options, keep: Bodies, whole: &mut Whol
     declarations.coverage = options.coverage.map(|files| Coverage { files, ..Coverage::default() });
     declarations.tests.fixtures = groups.fixtures.keys().copied().collect();
     declarations.tests.callers = testing::fixture::callers(&files);
-    let unassigned = lints::result::unassigned(&declarations);
     let checked = body::check(&mut declarations, &mut bodies, keep);
     if whole.grow(declarations.whole()) {
         return None;
     }
+    let unassigned = lints::result::unassigned(&declarations);
     lints::unused::report(&mut declarations);
     if keep == Bodies::Kept {
         let routines: Vec<_> = checked.routines.iter().map(|it| it.as_ref().map(|it| &it.0)).collect();

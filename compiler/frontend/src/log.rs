@@ -1,7 +1,8 @@
 //! The sources, and what is reported of them.
 
 use crate::dialect::Dialect;
-use crate::{Code, Diagnostic, Options, Severity, Sources, Span};
+use crate::options::Options;
+use crate::{Code, Diagnostic, Severity, Sources, Span};
 use staunch_ir::Location;
 
 pub(crate) struct Log<'s> {
