@@ -367,10 +367,10 @@ impl Maker {
     fn index(&mut self, array: Array, depth: usize) -> Expr {
         let len = usize::try_from(array.len()).unwrap();
         let inside = lint(array.low + i64::try_from(self.random.below(len)).unwrap());
-        match self.random.below(12) {
+        match self.random.below(20) {
             0 => lint(array.high.wrapping_add(1)),
             1..4 if depth > 0 => self.expr(Type::LINT, depth - 1),
-            4..8 if depth > 0 => {
+            4..13 if depth > 0 => {
                 let value = self.expr(Type::LINT, depth - 1);
                 Expr::apply(Op::Limit, Type::LINT, vec![lint(array.low), value, lint(array.high)], AT)
             }

@@ -338,7 +338,8 @@ impl Writer {
         let value = self.operand(&ty, depth - 1);
         match self.random.below(8) {
             0 => self.variable(&Ty::Level(at), depth),
-            1 if self.random.once_in(3) => value,
+            // A constant that lies outside is refused.
+            1 if self.random.once_in(3) && !is_constant(&value) => value,
             _ => format!("LIMIT({low}, {value}, {high})"),
         }
     }
@@ -367,6 +368,12 @@ impl Writer {
             _ => format!("{name}({a}, {b}, {c})"),
         }
     }
+}
+
+/// Whether this is a literal, or the name of a constant.
+fn is_constant(value: &str) -> bool {
+    let bare = value.rsplit('#').next().unwrap_or(value);
+    bare.strip_prefix(['k', '-']).unwrap_or(bare).chars().all(|it| it.is_ascii_digit())
 }
 
 fn widens(from: &Ty, to: &Ty) -> bool {
