@@ -263,7 +263,9 @@ impl<'s> Checker<'_, 's> {
             return true;
         }
         let sign_only = !keeps_low_bits(from, to);
-        if !sign_only && self.decl.log.options.implicit_narrowing {
+        // As wide as an address and a size are where CODESYS has 64 bits: what code of 32 bits keeps in fewer.
+        let is_address = matches!(from, Elementary::Ulint | Elementary::Lword) && to.repr().is_unsigned();
+        if !sign_only && (is_address || self.decl.log.options.implicit_narrowing) {
             self.report(
                 Diagnostic::new(Code::W0513, span, format!("{} becomes {}: high bits are cut", from.name(), to.name()))
                     .label("implicit conversion")
