@@ -234,8 +234,8 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
-    /// Assigning an input from inside is a lint, not an error.
-    pub const fn assigns_inputs(self) -> bool {
+    /// Code uses the inputs of FUNCTIONs as variables: no lint is for what is a copy.
+    pub const fn uses_inputs(self) -> bool {
         matches!(self, Self::Codesys | Self::Logix)
     }
 

@@ -3,7 +3,7 @@
 use super::beyond::{self, Kind};
 use super::facts::Name;
 use super::pair::{Matched, Pair};
-use super::pitfall::{self, Habits, Pitfall, Use};
+use super::pitfall::{self, Cause, Habits, Pitfall, Use};
 use super::search::{Outcome, Subject, World};
 use super::shrink::{self, Goal};
 use super::trace::Trace;
@@ -158,6 +158,19 @@ impl Findings {
             if !matches!((subject, pitfall), (Subject::Counter(_), Some(_))) {
                 self.sighted(pair, subject, pitfall, trace);
             }
+        }
+    }
+
+    /// What the whole difference is put down to has been seen, also where the counter had parted before: the search
+    /// looks for what parts counters that agree.
+    pub fn explain(&mut self, cause: &Cause, trace: &Trace) {
+        let is_it = |it: &&mut Finding| {
+            it.kind == Kind::Counter && it.pitfall == cause.pitfall && Some(&it.subject) == cause.counter.as_ref()
+        };
+        if let Some(it) = self.all.iter_mut().find(is_it)
+            && !matches!(it.verdict, Verdict::Reachable(_))
+        {
+            it.verdict = Verdict::Reachable(Some(trace.clone()));
         }
     }
 

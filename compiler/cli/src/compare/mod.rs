@@ -182,6 +182,8 @@ fn verdict(pair: &mut Pair, world: &World, args: &Compare, findings: &mut Findin
         let steps: Vec<pair::Step> = trace.steps().cloned().collect();
         let rows = pair.replay(&steps);
         let shortest = world.alphabet.complete && outcome.depth + 1 >= trace.scans();
+        let differences = rows.last().map_or_else(Vec::new, |it| pair.differences(it));
+        findings.explain(&pitfall::cause(pair, &rows, &differences, &world.habits), &trace);
         return Ok(Verdict::Differs { rows, trace: Some(trace), shortest });
     }
     if outcome.complete && exact {

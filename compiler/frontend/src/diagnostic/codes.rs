@@ -126,7 +126,6 @@ codes! {
     E0412 Error "what cannot share its bytes";
     E0413 Error "objects of a pool";
     E0501 Error "assignment to a constant";
-    E0502 Error "assignment to an input";
     E0503 Error "assignment to a FOR counter";
     E0504 Error "assignment to an output from outside";
     E0505 Error "EXIT or CONTINUE outside of a loop";

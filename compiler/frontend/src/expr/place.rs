@@ -728,23 +728,14 @@ impl<'s> Checker<'_, 's> {
                 false
             }
             // A FUNCTION's input is a copy, and CODESYS code uses it as a variable.
-            Access::OwnInput(_) if self.decl.dialect(span).assigns_inputs() && (is_copy(found) || self.is_start()) => {
-                true
-            }
-            Access::OwnInput(name) if self.decl.dialect(span).assigns_inputs() => {
-                self.report(
-                    Diagnostic::new(Code::W0504, span, format!("the input `{}` is assigned from inside", name.text))
-                        .label("the caller's value is lost"),
-                );
-                true
-            }
+            Access::OwnInput(_) if self.decl.dialect(span).uses_inputs() && (is_copy(found) || self.is_start()) => true,
             Access::OwnInput(name) => {
                 self.report(
-                    Diagnostic::new(Code::E0502, span, format!("`{}` is an input", name.text))
-                        .label("an input is set by the caller only")
+                    Diagnostic::new(Code::W0504, span, format!("the input `{}` is assigned from inside", name.text))
+                        .label("the caller's value is lost")
                         .help("assign to a variable of your own, or declare it VAR_IN_OUT"),
                 );
-                false
+                true
             }
             Access::Output(name) => {
                 self.report(

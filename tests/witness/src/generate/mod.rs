@@ -21,7 +21,7 @@ pub fn program(seed: u64) -> String {
     let mut writer = Writer::new(seed);
     writer.codesys = seed % 3 == 2;
     writer.types.codesys = writer.codesys;
-    writer.refers = seed / 3 % 2 == 0;
+    writer.refers = (seed / 3).is_multiple_of(2);
     if writer.codesys {
         writer.line("{dialect 'codesys'}");
     }
