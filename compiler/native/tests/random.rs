@@ -111,7 +111,7 @@ impl Maker {
             globals,
             aliases: Vec::new(),
             reentered: std::collections::BTreeSet::new(),
-            reach: staunch_ir::Reach::default(),
+            reach: Reach::default(),
             places: std::collections::BTreeSet::new(),
             structs: maker.structs,
             classes: maker.classes,

@@ -88,7 +88,7 @@ pub fn program(arrays: Vec<Array>, mut structs: Vec<Struct>, routines: Vec<Routi
         globals: StructId::next(structs.len() - 1),
         aliases: Vec::new(),
         reentered: std::collections::BTreeSet::new(),
-        reach: staunch_ir::Reach::default(),
+        reach: Reach::default(),
         places: std::collections::BTreeSet::new(),
         instances: (0..classes.len()).map(|at| instance(ClassId::next(at))).collect(),
         classes,
