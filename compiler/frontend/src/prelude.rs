@@ -27,6 +27,12 @@ pub(crate) struct Unit {
     needs: &'static [&'static str],
 }
 
+impl Unit {
+    pub fn is_function(&self) -> bool {
+        self.use_ == Use::Function
+    }
+}
+
 /// What a unit declares, and so where its name is its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Use {

@@ -2,9 +2,9 @@
 
 use super::{Folder, has};
 
-const SOURCE: &str = "FUNCTION Add : INT
+const SOURCE: &str = "FUNCTION Sum : INT
 VAR_INPUT a, b : INT; END_VAR
-    Add := a + b;
+    Sum := a + b;
 END_FUNCTION
 FUNCTION_BLOCK Sensor
 VAR_INPUT channel : INT; END_VAR
@@ -14,7 +14,7 @@ FUNCTION_BLOCK Motor
 VAR_INPUT setpoint : REAL; END_VAR
 VAR_OUTPUT speed : REAL; END_VAR
 VAR sensor : Sensor; calls : INT; END_VAR
-    sensor(channel := Add(1, 2));
+    sensor(channel := Sum(1, 2));
     speed := setpoint - sensor.value;
     calls := calls + 1;
 END_FUNCTION_BLOCK
@@ -48,7 +48,7 @@ TEST \"state is fresh, and time is virtual\"
 END_TEST
 TEST 'mocks'
     MOCK motor.sensor;
-    MOCK_FUNCTION Add RETURNS 7;
+    MOCK_FUNCTION Sum RETURNS 7;
     motor.sensor.value := 25.0;
     motor(setpoint := 100.0);
     ASSERT_NEAR(motor.speed, 75.0, 0.001);
@@ -57,7 +57,7 @@ TEST 'mocks'
     MOCK_VERIFY_CALL_COUNT(motor.sensor, 1);
 END_TEST
 TEST 'a mock is of its own test'
-    ASSERT_EQ(Add(1, 2), 3);
+    ASSERT_EQ(Sum(1, 2), 3);
     motor(setpoint := 100.0);
     ASSERT_NEAR(motor.speed, 98.5, 0.001);
 END_TEST
@@ -87,7 +87,7 @@ fn tests_pass() {
 #[test]
 fn failures_say_what_was_expected() {
     let tests = "TEST 'a number'
-        ASSERT_EQ(Add(1, 2), 4, 'one and two');
+        ASSERT_EQ(Sum(1, 2), 4, 'one and two');
         ASSERT_TRUE(FALSE);
     END_TEST
     TEST 'a text'
@@ -95,7 +95,7 @@ fn failures_say_what_was_expected() {
         ASSERT_EQ(name, 'pump');
     END_TEST
     TEST 'a condition'
-        ASSERT_FALSE(Add(1, 2) = 3);
+        ASSERT_FALSE(Sum(1, 2) = 3);
     END_TEST
     TEST 'calls'
     VAR motor : Motor; END_VAR
@@ -114,14 +114,14 @@ fn failures_say_what_was_expected() {
     let folder = Folder::with("tests_fail", &[("motor.st", SOURCE), ("motor_test.st", tests)]);
     let expected = "motor_test.st
   FAILED  a number
-          motor_test.st:2:9: ASSERT_EQ(Add(1, 2), 4, 'one and two')
+          motor_test.st:2:9: ASSERT_EQ(Sum(1, 2), 4, 'one and two')
           expected to be 4, found 3
           one and two
   FAILED  a text
           motor_test.st:7:9: ASSERT_EQ(name, 'pump')
           expected to be 'pump', found 'fan'
   FAILED  a condition
-          motor_test.st:10:9: ASSERT_FALSE(Add(1, 2) = 3)
+          motor_test.st:10:9: ASSERT_FALSE(Sum(1, 2) = 3)
           expected to be FALSE
   FAILED  calls
           motor_test.st:15:9: MOCK_VERIFY_CALL_COUNT(motor.sensor, 2)
@@ -180,7 +180,7 @@ TEST 'equal' ASSERT_EQ(3, 3); END_TEST
 #[test]
 fn threads_keep_the_order() {
     let sum = |number: usize| if number.is_multiple_of(10) { number + 1 } else { 0 };
-    let test = |number| format!("TEST 'number {number}' ASSERT_EQ(Add({number}, 1), {}); END_TEST\n", sum(number));
+    let test = |number| format!("TEST 'number {number}' ASSERT_EQ(Sum({number}, 1), {}); END_TEST\n", sum(number));
     let tests: String = (0..60).map(test).collect();
     let folder = Folder::with("tests_threads", &[("motor.st", SOURCE), ("motor_test.st", &tests)]);
     for backend in ["native", "interpret"] {
@@ -196,8 +196,8 @@ fn threads_keep_the_order() {
 
 #[test]
 fn results_for_machines() {
-    let tests = "TEST 'good & <short>' ASSERT_EQ(Add(1, 2), 3); END_TEST
-TEST 'bad' ASSERT_EQ(Add(1, 2), 4); END_TEST
+    let tests = "TEST 'good & <short>' ASSERT_EQ(Sum(1, 2), 3); END_TEST
+TEST 'bad' ASSERT_EQ(Sum(1, 2), 4); END_TEST
 ";
     let folder = Folder::with("tests_junit", &[("motor.st", SOURCE), ("motor_test.st", tests)]);
     let out = folder.staunch("test . --message-format json --junit out.xml").out(1);

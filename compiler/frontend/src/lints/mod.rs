@@ -1,4 +1,5 @@
 //! What is right, and was hardly meant.
 
+pub(crate) mod hides;
 pub(crate) mod result;
 pub(crate) mod unused;
