@@ -40,6 +40,12 @@ impl Dialect {
         }
     }
 
+    /// What to write for what this dialect alone has.
+    pub(crate) fn how_to_choose(self) -> String {
+        let name = self.name();
+        format!("start the file with `{{dialect '{name}'}}`, or compile with `--dialect {name}`")
+    }
+
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|it| it.name().eq_ignore_ascii_case(name))
     }

@@ -317,13 +317,11 @@ impl<'s> Declarations<'s> {
 
     fn report_unknown_type(&mut self, name: ast::Name<'s>) {
         if let Some(dialect) = prelude::owner(name.text) {
-            let (system, dialect) = (dialect.name().to_ascii_uppercase(), dialect.name());
+            let system = dialect.name().to_ascii_uppercase();
             self.report(
                 Diagnostic::new(Code::E0102, name.span, format!("`{}` is of {system}'s library", name.text))
                     .label("this file's dialect has no type of that name")
-                    .help(format!(
-                        "start the file with `{{dialect '{dialect}'}}`, or compile with `--dialect {dialect}`"
-                    )),
+                    .help(dialect.how_to_choose()),
             );
             return;
         }

@@ -217,26 +217,22 @@ impl<'s> Checker<'_, 's> {
             return;
         }
         if let Some(dialect) = functions::owner(name.text) {
-            let (system, dialect) = (dialect.name().to_ascii_uppercase(), dialect.name());
+            let system = dialect.name().to_ascii_uppercase();
             let error = Diagnostic::new(Code::E0307, name.span, format!("`{}` is a function of {system}", name.text))
                 .label("this file's dialect has none of that name");
             let error = match name.text.eq_ignore_ascii_case("ROUND") {
                 true => error.help("`REAL_TO_DINT(x)` rounds to the nearest, halves to the even one"),
-                false => error.help(format!(
-                    "start the file with `{{dialect '{dialect}'}}`, or compile with `--dialect {dialect}`"
-                )),
+                false => error.help(dialect.how_to_choose()),
             };
             self.report(error);
             return;
         }
         if let Some(dialect) = prelude::owner(name.text) {
-            let (system, dialect) = (dialect.name().to_ascii_uppercase(), dialect.name());
+            let system = dialect.name().to_ascii_uppercase();
             self.report(
                 Diagnostic::new(Code::E0307, name.span, format!("`{}` is of {system}'s library", name.text))
                     .label("this file's dialect has none of that name")
-                    .help(format!(
-                        "start the file with `{{dialect '{dialect}'}}`, or compile with `--dialect {dialect}`"
-                    )),
+                    .help(dialect.how_to_choose()),
             );
             return;
         }
