@@ -9,6 +9,7 @@ mod cache;
 mod check;
 mod coverage;
 mod external;
+mod lists;
 mod mutants;
 mod page;
 #[cfg(unix)]

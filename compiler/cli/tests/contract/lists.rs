@@ -1,0 +1,40 @@
+//! Lists of global variables that are files of their own.
+
+use super::{Folder, has};
+
+const MAIN: &str = "PROGRAM Main VAR n : INT; END_VAR n := _Line2.speed; END_PROGRAM\n";
+const LIST: &str = "VAR_GLOBAL speed : INT := 7; END_VAR\n";
+
+#[test]
+fn lists_are_named_after_their_files() {
+    let folder = Folder::with("list_of_a_file", &[("main.st", MAIN), ("_Line2.st", LIST), ("2Line.st", LIST)]);
+    let trace = "--dialect codesys --scans 1 --vars n --trace -";
+    has(&folder.staunch(&format!("run main.st _Line2.st {trace}")).out(0), &["1,0,7"]);
+    folder.write("main.st", MAIN.replace("_Line2.", ""));
+    has(&folder.staunch(&format!("run main.st _Line2.st {trace}")).out(0), &["1,0,7"]);
+    // What is no name is not one of a list.
+    has(&folder.staunch(&format!("run main.st 2Line.st {trace}")).out(0), &["1,0,7"]);
+}
+
+#[test]
+fn lists_have_their_attribute_from_the_first_byte_on() {
+    let list = format!("{{attribute 'qualified_only'}} {LIST}");
+    let folder = Folder::with("list_of_a_file_alone", &[("main.st", MAIN), ("_Line2.st", &list)]);
+    folder.staunch("check main.st _Line2.st --dialect codesys").out(0);
+    folder.write("main.st", MAIN.replace("_Line2.", ""));
+    has(&folder.staunch("check main.st _Line2.st --dialect codesys").err(1), &["write `_Line2.speed`"]);
+}
+
+#[test]
+fn lists_are_files_of_globals_alone_in_one_dialect_that_names_them() {
+    let folder = Folder::with("lists_that_are_none", &[("main.st", MAIN)]);
+    let texts = [
+        format!("{{dialect 'iec'}}\n{LIST}"),
+        format!("{LIST}TYPE T : INT; END_TYPE\n"),
+        format!("{LIST}{{dialect 'iec'}}\nVAR_GLOBAL other : INT; END_VAR\n"),
+    ];
+    for text in texts {
+        folder.write("_Line2.st", text);
+        has(&folder.staunch("check main.st _Line2.st --dialect codesys").err(1), &["`_Line2` is not declared"]);
+    }
+}
