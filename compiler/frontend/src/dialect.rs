@@ -126,6 +126,11 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
+    /// A number becomes one of another type by itself, also where digits or high bits are lost.
+    pub const fn converts_numbers(self) -> bool {
+        matches!(self, Self::Logix)
+    }
+
     /// `p[i]` follows a POINTER TO.
     pub const fn indexes_pointers(self) -> bool {
         matches!(self, Self::Codesys)
@@ -138,7 +143,7 @@ impl Dialect {
 
     /// Integers and bit strings of fewer than 32 bits are computed at 32, and cut where they are stored.
     pub const fn promotes_integers(self) -> bool {
-        matches!(self, Self::Codesys)
+        matches!(self, Self::Codesys | Self::Logix)
     }
 
     /// A call of a FUNCTION gives every input that has no default.
@@ -228,6 +233,11 @@ impl Dialect {
     /// A bare name of a METHOD, in that METHOD itself, may mean a FUNCTION; the METHOD is called by THIS.
     pub const fn calls_own_by_this(self) -> bool {
         self.is_standard()
+    }
+
+    /// `word.START`, where START is a CONSTANT, is the bit that it counts.
+    pub const fn selects_by_constants(self) -> bool {
+        matches!(self, Self::Codesys)
     }
 
     /// `a := b := c` assigns to both.

@@ -264,3 +264,23 @@ pub enum Const {
     /// A value for every field of a structure, or for every pin of a standard block.
     Struct(Vec<Const>),
 }
+
+impl Const {
+    /// The value of a field or an element, counted from 0.
+    pub fn part(&self, at: usize) -> Self {
+        match self {
+            Self::Struct(values) => values.get(at).cloned().unwrap_or(Self::Zero),
+            Self::Array(runs) => {
+                let mut left = u64::try_from(at).unwrap_or(u64::MAX);
+                for (count, value) in runs {
+                    if left < *count {
+                        return value.clone();
+                    }
+                    left -= count;
+                }
+                Self::Zero
+            }
+            Self::Zero | Self::Scalar(_) | Self::Text(_) => Self::Zero,
+        }
+    }
+}

@@ -1,7 +1,7 @@
 //! CASE: of labels that overlap, the first in the text that holds the value is chosen. The IR gets
 //! labels that do not, cut to what is left of them.
 
-use crate::expr::checker::Checker;
+use crate::expr::checker::{Checker, Context};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Arm, Block, Conversion, Elementary, Expr, StatementKind, Type, Value};
 use std::collections::{BTreeMap, HashMap};
@@ -175,7 +175,10 @@ impl<'s> Checker<'_, 's> {
 
     fn label_value(&mut self, expr: &ast::Expr<'s>, ty: Type) -> Option<i128> {
         let reported = self.decl.log.diagnostics.len();
-        let Some(value) = self.value(expr, ty) else {
+        let around = std::mem::replace(&mut self.context, Context::Constant);
+        let value = self.value(expr, ty);
+        self.context = around;
+        let Some(value) = value else {
             self.label_of_another_type(reported, ty);
             return None;
         };

@@ -169,11 +169,7 @@ impl<'s> Declarations<'s> {
                 let Type::Struct(id) = base.ty else { return None };
                 let at = self.field_named(id, name.text)?;
                 let field = self.program.structure(id).fields.get(at.index())?;
-                let initial = match base.initial {
-                    Const::Struct(fields) => fields.into_iter().nth(at.index())?,
-                    Const::Zero => Const::Zero,
-                    Const::Scalar(_) | Const::Text(_) | Const::Array(_) => return None,
-                };
+                let initial = base.initial.part(at.index());
                 let is_kept = match field.retain {
                     Retain::Inherited => base.is_kept,
                     Retain::Kept => true,
@@ -187,19 +183,7 @@ impl<'s> Declarations<'s> {
                     let Type::Array(id) = part.ty else { return None };
                     let low = self.program.array(id).low;
                     let index = self.constant_integer(index, &Rc::default())?;
-                    let mut before = u64::try_from(index - i128::from(low)).ok()?;
-                    let initial = match part.initial {
-                        Const::Array(runs) => {
-                            let holds = |(count, _): &(u64, Const)| {
-                                let here = before < *count;
-                                before = before.saturating_sub(*count);
-                                here
-                            };
-                            runs.into_iter().find(holds)?.1
-                        }
-                        Const::Zero => Const::Zero,
-                        Const::Scalar(_) | Const::Text(_) | Const::Struct(_) => return None,
-                    };
+                    let initial = part.initial.part(usize::try_from(index - i128::from(low)).ok()?);
                     part = Start { ty: self.program.array(id).element, initial, ..part };
                 }
                 Some(part)

@@ -158,7 +158,7 @@ codes! {
     W0506 Warning "sign may change";
     W0509 Warning "assignment to an input address";
     W0510 Warning "a comparison that never changes";
-    W0511 Warning "a number loses digits as a real";
+    W0511 Warning "a number loses digits";
     W0512 Warning "CASE labels that overlap";
     W0513 Warning "an integer loses its high bits";
     W0514 Warning "a structure is not packed";

@@ -6,7 +6,7 @@ use super::argument::as_written;
 use super::binding::{Given, Parameter};
 use super::checker::Checker;
 use super::order::{Held, Written};
-use super::place::Bits;
+use super::part::Bits;
 use super::uses::Preparation;
 use crate::names::BitInstruction;
 use crate::{Code, Diagnostic, Span, ast};

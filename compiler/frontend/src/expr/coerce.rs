@@ -249,6 +249,9 @@ impl<'s> Checker<'_, 's> {
 
     /// What CODESYS converts without being asked.
     fn dialect_allows(&mut self, from: Elementary, to: Elementary, span: Span) -> bool {
+        if self.decl.dialect(span).converts_numbers() {
+            return self.becomes_number(from, to, span);
+        }
         if !self.decl.dialect(span).mixes_bits_and_integers() {
             return false;
         }
@@ -266,25 +269,47 @@ impl<'s> Checker<'_, 's> {
         // As wide as an address and a size are where CODESYS has 64 bits: what code of 32 bits keeps in fewer.
         let is_address = matches!(from, Elementary::Ulint | Elementary::Lword) && to.repr().is_unsigned();
         if !sign_only && (is_address || self.decl.log.options.implicit_narrowing) {
-            self.report(
-                Diagnostic::new(Code::W0513, span, format!("{} becomes {}: high bits are cut", from.name(), to.name()))
-                    .label("implicit conversion")
-                    .help(format!("say so: `{}_TO_{}(…)`", from.name(), to.name())),
-            );
+            self.report_cut(from, to, span);
             return true;
         }
         if sign_only {
-            self.report(
-                Diagnostic::new(
-                    Code::W0506,
-                    span,
-                    format!("{} becomes {}: the sign may change", from.name(), to.name()),
-                )
-                .label("implicit conversion")
-                .help(format!("say so: `{}_TO_{}(…)`", from.name(), to.name())),
-            );
+            self.report_sign(from, to, span);
         }
         sign_only
+    }
+
+    fn report_cut(&mut self, from: Elementary, to: Elementary, span: Span) {
+        let message = format!("{} becomes {}: high bits are cut", from.name(), to.name());
+        self.report_implicit(Code::W0513, message, from, to, span);
+    }
+
+    fn report_sign(&mut self, from: Elementary, to: Elementary, span: Span) {
+        let message = format!("{} becomes {}: the sign may change", from.name(), to.name());
+        self.report_implicit(Code::W0506, message, from, to, span);
+    }
+
+    fn report_implicit(&mut self, code: Code, message: String, from: Elementary, to: Elementary, span: Span) {
+        self.report(
+            Diagnostic::new(code, span, message)
+                .label("implicit conversion")
+                .help(format!("say so: `{}_TO_{}(…)`", from.name(), to.name())),
+        );
+    }
+
+    /// Logix stores each number in a tag of any type of numbers (1756-RM003, "Data Conversions"): a real is rounded, ties
+    /// to even, and an integer keeps its low bits. A BOOL is no number.
+    fn becomes_number(&mut self, from: Elementary, to: Elementary, span: Span) -> bool {
+        match (from.is_real(), to.is_real()) {
+            _ if !(from.is_real() || from.is_integer()) || !(to.is_real() || to.is_integer()) => return false,
+            (_, true) => return self.loses_precision(from, to, span),
+            (true, false) => {
+                let message = format!("{} becomes {}: it is rounded", from.name(), to.name());
+                self.report_implicit(Code::W0511, message, from, to, span);
+            }
+            (false, false) if keeps_low_bits(from, to) => self.report_cut(from, to, span),
+            (false, false) => self.report_sign(from, to, span),
+        }
+        true
     }
 
     /// CODESYS makes a real of any integer, and a REAL of an LREAL, with a warning where that has more digits (C0197).
@@ -297,11 +322,8 @@ impl<'s> Checker<'_, 's> {
         if !(from.is_integer() || from.is_real()) || !to.is_real() {
             return false;
         }
-        self.report(
-            Diagnostic::new(Code::W0511, span, format!("{} becomes {}: {lost}", from.name(), to.name()))
-                .label("implicit conversion")
-                .help(format!("say so: `{}_TO_{}(…)`", from.name(), to.name())),
-        );
+        let message = format!("{} becomes {}: {lost}", from.name(), to.name());
+        self.report_implicit(Code::W0511, message, from, to, span);
         true
     }
 

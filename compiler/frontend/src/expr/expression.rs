@@ -18,6 +18,9 @@ impl<'s> Checker<'_, 's> {
             Ast::Literal(literal) => self.literal(literal, expected, expr.span),
             Ast::Paren(inner) => self.operand(inner, expected),
             Ast::Name(name) => self.name(*name, expected).map(Operand::Typed),
+            Ast::Member(..) | Ast::Index(..) if self.is_part_of_constant(expr) => {
+                self.part_of_constant(expr).map(Operand::Typed)
+            }
             Ast::Member(..) => self.member_value(expr).map(Operand::Typed),
             Ast::Address(_) | Ast::Index(..) => match (self.character_of(expr), self.data_of(expr)) {
                 (Some((text, index)), _) => self.character_value(text, index).map(Operand::Typed),
@@ -26,7 +29,10 @@ impl<'s> Checker<'_, 's> {
             },
             Ast::Part(base, part) => self.part(base, *part).map(Operand::Typed),
             Ast::Deref(_) => self.load(expr).map(Operand::Typed),
-            Ast::Call(callee, arguments) => self.call_value(expr, callee, arguments, expected),
+            Ast::Call(callee, arguments) => {
+                let value = self.call_value(expr, callee, arguments, expected)?;
+                self.referred_result(value, expected, expr.span)
+            }
             Ast::Error(parts) => {
                 parts.iter().for_each(|it| drop(self.operand(it, None)));
                 None
@@ -108,17 +114,31 @@ impl<'s> Checker<'_, 's> {
 
     /// Reads a CONSTANT: a scalar is its value, so that it can size an array or label a CASE.
     fn constant_variable(&mut self, variable: &Variable<'s>, value: Const, span: Span) -> Option<Expr> {
-        let at = self.at(span);
         let ty = variable.resolved.ty.read();
+        Some(match value {
+            Const::Zero | Const::Array(_) | Const::Struct(_)
+                if self.context == Context::Body && self.decl.program.repr(ty).is_none() =>
+            {
+                let at = self.at(span);
+                match ty {
+                    Type::String(it) => Expr::new(ty, ExprKind::Text(Chars::empty(it)), at),
+                    _ => Expr::new(ty, ExprKind::Load(self.decl.image.stored(&variable.place).0), at),
+                }
+            }
+            value => self.constant_value(ty, value, span),
+        })
+    }
+
+    /// A value that is known.
+    pub(super) fn constant_value(&mut self, ty: Type, value: Const, span: Span) -> Expr {
         let kind = match (value, self.decl.program.repr(ty), ty) {
             (Const::Scalar(value), _, _) => ExprKind::Const(value),
             (Const::Zero, Some(repr), _) => ExprKind::Const(repr.zero()),
-            (Const::Text(bytes), _, _) => ExprKind::Text(bytes),
+            (Const::Text(text), _, _) => ExprKind::Text(text),
             (Const::Zero, None, Type::String(it)) => ExprKind::Text(Chars::empty(it)),
-            (other, _, _) if self.context != Context::Body => ExprKind::Aggregate(other),
-            _ => ExprKind::Load(self.decl.image.stored(&variable.place).0),
+            (whole @ (Const::Zero | Const::Array(_) | Const::Struct(_)), _, _) => ExprKind::Aggregate(whole),
         };
-        Some(Expr::new(ty, kind, at))
+        Expr::new(ty, kind, self.at(span))
     }
 
     /// `a.b`, or the enumerator `Color.Red`.

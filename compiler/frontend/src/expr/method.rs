@@ -205,7 +205,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// The place of what a call gave: it can be read, and what it refers to be followed.
-    fn result_place(&mut self, value: Expr, span: Span) -> Option<Found<'s>> {
+    pub(super) fn result_place(&mut self, value: Expr, span: Span) -> Option<Found<'s>> {
         let place = match value.kind {
             ExprKind::Load(place) => place,
             ExprKind::Const(_)

@@ -2,7 +2,7 @@
 
 use super::checker::Checker;
 use super::operand::{Operand, computed};
-use crate::types::coercion::{as_number, is_narrow, join, join_promoted};
+use crate::types::coercion::{Join, as_number, is_narrow, join, join_in};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::BinaryOp;
 use staunch_ir::{Conversion, Elementary, Expr, Op, Statement, StatementKind, Type, Value};
@@ -94,8 +94,7 @@ impl<'s> Checker<'_, 's> {
     fn meet(&mut self, sides: Sides, allowed: fn(Elementary, bool) -> bool, wants: &str) -> Option<Meeting> {
         let dialect = self.decl.dialect(sides.span);
         let mixes = dialect.mixes_bits_and_integers();
-        let join = if dialect.promotes_integers() { join_promoted } else { join };
-        let own = match common(&sides, [sides.a.ty(), sides.b.ty()], mixes, join) {
+        let own = match common(&sides, [sides.a.ty(), sides.b.ty()], mixes, join_in(dialect)) {
             Some(ty) if allowed(ty, mixes) => ty,
             _ => {
                 self.report_operands(&sides, wants);
@@ -463,8 +462,6 @@ struct Meeting {
     a: Expr,
     b: Expr,
 }
-
-type Join = fn(Elementary, Elementary) -> Option<Elementary>;
 
 /// The type in which sides of these types meet, where `None` is a literal's.
 fn common(sides: &Sides, types: [Option<Type>; 2], mixes: bool, join: Join) -> Option<Elementary> {

@@ -6,7 +6,7 @@ use super::binding::{Given, Parameter};
 use super::checker::Checker;
 use super::operand::Operand;
 use super::operator::beside;
-use crate::types::coercion::{as_number, join, join_promoted};
+use crate::types::coercion::{Join, as_number, join, join_in};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Block, Conversion, Elementary, Expr, Section, Type};
 use staunch_runtime::{Class, Kind, Signature};
@@ -277,12 +277,16 @@ impl<'s> Checker<'_, 's> {
         let literals = || operands.iter().map(|it| it.0);
         let ty = match common {
             Some(ty) => {
-                widened_by_literals(self.beside_negatives(class, ty, literals(), expected, name.span), literals())
+                widened_by_literals(
+                    self.beside_negatives(class, ty, literals(), expected, name.span),
+                    literals(),
+                    join_in(self.decl.dialect(name.span)),
+                )
             }
             None if class == Class::Real => expected.unwrap_or(Type::LREAL),
             None => literals_type(literals(), expected),
         };
-        let ty = if class == Class::Real { real(ty) } else { ty };
+        let ty = if class == Class::Real { real(ty, join_in(self.decl.dialect(name.span))) } else { ty };
         if !self.admits(class, ty, name.span) {
             let span = operands.first().map_or(name.span, |it| it.1);
             self.report_class(class, ty, span, name);
@@ -322,7 +326,7 @@ impl<'s> Checker<'_, 's> {
         let meet = |a, b| join(a, b).or_else(|| join(as_number(a), as_number(b))).unwrap_or(Elementary::Dint);
         let ty = types.reduce(|a, b| if a == b { a } else { meet(a, b) }).unwrap_or(it);
         let ty = if it.is_integer() { as_number(ty) } else { ty };
-        widened_by_literals(Type::Elementary(ty), operands)
+        widened_by_literals(Type::Elementary(ty), operands, join_in(self.decl.dialect(span)))
     }
 
     /// The operand at the type that was found for all.
@@ -377,7 +381,7 @@ impl<'s> Checker<'_, 's> {
         match (a, b) {
             (Type::Elementary(x), Type::Elementary(y)) => {
                 let dialect = self.decl.dialect(span);
-                let join = if dialect.promotes_integers() { join_promoted } else { join };
+                let join = join_in(dialect);
                 let numbers = || join(as_number(x), as_number(y));
                 let mixed = || dialect.mixes_bits_and_integers().then(numbers).flatten();
                 join(x, y).or_else(mixed).map(Type::Elementary)
@@ -486,7 +490,7 @@ fn integer_for(ty: Elementary) -> Elementary {
 }
 
 /// The type at which a function of reals takes a number.
-fn real(ty: Type) -> Type {
+fn real(ty: Type, join: Join) -> Type {
     match ty {
         Type::Elementary(it) if as_number(it).is_integer() => {
             Type::Elementary(join(as_number(it), Elementary::Real).unwrap_or(Elementary::Lreal))
@@ -495,7 +499,7 @@ fn real(ty: Type) -> Type {
     }
 }
 
-fn widened_by_literals<'o>(ty: Type, operands: impl Iterator<Item = &'o Operand>) -> Type {
+fn widened_by_literals<'o>(ty: Type, operands: impl Iterator<Item = &'o Operand>, join: Join) -> Type {
     let Type::Elementary(mut ty) = ty else { return ty };
     for operand in operands {
         let real = matches!(operand, Operand::Real { .. });

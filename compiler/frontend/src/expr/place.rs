@@ -2,6 +2,7 @@
 
 use super::character::has_characters;
 use super::checker::Checker;
+use super::part::Part;
 use super::unresolved::not_constant;
 use crate::inherit::is_super;
 use crate::names::{self, Entry, Meaning, Sense};
@@ -41,25 +42,12 @@ pub(crate) enum Access<'s> {
     Result,
 }
 
-/// A part of an integer or bit string: `.3`, `.%W1`.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Part {
-    pub ty: Elementary,
-    pub shift: u32,
-}
-
-/// Bits of one integer.
-#[derive(Clone, Copy)]
-pub(crate) struct Bits {
-    pub shift: u32,
-    pub width: u32,
-}
-
-impl Part {
-    pub fn bits(self) -> Bits {
-        let width = if self.ty == Elementary::Bool { 1 } else { self.ty.repr().size() * 8 };
-        Bits { shift: self.shift, width }
-    }
+/// Some bits of what is found.
+fn selected(found: Found<'_>, part: Part) -> Found<'_> {
+    let (before, address) = found.view.map_or((0, None), |it| (it.bit, it.address));
+    let is_bit = part.ty == Elementary::Bool;
+    let (ty, bit) = (Type::Elementary(part.ty), before + u64::from(part.shift));
+    Found { view: Some(Window { ty, bit, is_bit, address, is_selected: true }), ..found }
 }
 
 impl<'s> Checker<'_, 's> {
@@ -97,6 +85,11 @@ impl<'s> Checker<'_, 's> {
             Ast::Member(base, name) => self.member(expr, base, *name),
             Ast::Index(base, indices) => self.index(base, indices),
             Ast::Deref(inner) => self.dereferenced(inner, expr.span),
+            Ast::Part(base, part) => {
+                let found = self.place_or_view(base)?;
+                let part = self.find_part(self.type_of(&found).read(), *part)?;
+                Some(selected(found, part))
+            }
             Ast::Error(_) => {
                 self.operand(expr, None);
                 None
@@ -111,7 +104,7 @@ impl<'s> Checker<'_, 's> {
                 // What is called, or what it would give, is not known: that has been reported.
                 None
             }
-            Ast::Literal(_) | Ast::Part(..) | Ast::Call(..) | Ast::Unary(..) | Ast::Binary(..) | Ast::Assign(..) => {
+            Ast::Literal(_) | Ast::Call(..) | Ast::Unary(..) | Ast::Binary(..) | Ast::Assign(..) => {
                 let error =
                     Diagnostic::new(Code::E0306, expr.span, "a variable is expected here").label("this is a value");
                 let text = self.decl.log.sources.text(expr.span);
@@ -330,6 +323,9 @@ impl<'s> Checker<'_, 's> {
         let found = self.place_or_view(base)?;
         if self.is_unknown_head(base, name) {
             return None;
+        }
+        if let Some(part) = self.bit_by_name(self.type_of(&found), name) {
+            return part.map(|it| selected(found, it));
         }
         match self.type_of(&found) {
             Type::Struct(id) => self.struct_member(found, id, name),
@@ -569,7 +565,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// An index as LINT; a constant one is checked now.
-    fn index_value(&mut self, index: &ast::Expr<'s>, id: ArrayId) -> Option<Expr> {
+    pub(super) fn index_value(&mut self, index: &ast::Expr<'s>, id: ArrayId) -> Option<Expr> {
         let array = self.decl.program.array(id);
         let value = self.integer_index(index)?;
         if array.is_open() {
@@ -632,41 +628,6 @@ impl<'s> Checker<'_, 's> {
             value
         };
         Some(self.convert(staunch_ir::Conversion::Value, Type::LINT, value))
-    }
-
-    /// What `.3` or `.%W1` selects from a value of type `ty`.
-    pub(crate) fn find_part(&mut self, ty: Type, part: ast::Name<'s>) -> Option<Part> {
-        let width = match ty {
-            Type::Elementary(it) if it.repr().is_integer() && it.is_integral() => it.repr().size() * 8,
-            other => {
-                let found = self.type_name(other);
-                self.report(
-                    Diagnostic::new(Code::E0204, part.span, format!("{found} has no bits to select"))
-                        .label("bits are selected from integers and bit strings"),
-                );
-                return None;
-            }
-        };
-        let text = part.text.trim_start_matches('%');
-        let (of, number) = match text.chars().next().map(|it| it.to_ascii_uppercase()) {
-            Some('X') => (Elementary::Bool, &text[1..]),
-            Some('B') => (Elementary::Byte, &text[1..]),
-            Some('W') => (Elementary::Word, &text[1..]),
-            Some('D') => (Elementary::Dword, &text[1..]),
-            Some(_) => (Elementary::Bool, text),
-            None => return None,
-        };
-        let size = if of == Elementary::Bool { 1 } else { of.repr().size() * 8 };
-        let shift = number.parse::<u32>().ok().and_then(|it| it.checked_mul(size));
-        let Some(shift) = shift.filter(|it| it + size <= width) else {
-            let found = self.type_name(ty);
-            self.report(
-                Diagnostic::new(Code::E0208, part.span, format!("`.{}` lies outside {found}", part.text))
-                    .label(format!("{found} has {width} bits, the first is 0")),
-            );
-            return None;
-        };
-        Some(Part { ty: of, shift })
     }
 
     /// Refuses a write where the place may not be written.

@@ -49,6 +49,19 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
+    /// The value of a call: one that gives a REFERENCE TO gives what that refers to, but where a reference is wanted.
+    pub(super) fn referred_result(&mut self, value: Operand, wanted: Option<Type>, span: Span) -> Option<Operand> {
+        let is_reference = |ty| self.ref_type(ty).is_some_and(|(_, it)| it.kind == RefKind::ReferenceTo);
+        match value {
+            Operand::Typed(value) if is_reference(value.ty) && !wanted.is_some_and(is_reference) => {
+                let found = self.result_place(value, span)?;
+                let found = self.referred(found, span)?;
+                self.read(found.place, found.view, span).map(Operand::Typed)
+            }
+            value => Some(value),
+        }
+    }
+
     fn ref_type(&self, ty: Type) -> Option<(ReferenceId, RefType)> {
         let Type::Reference(id) = ty else { return None };
         Some((id, self.decl.program.references[id.index()]))
@@ -114,7 +127,7 @@ impl<'s> Checker<'_, 's> {
         let found = self.place_or_view(expr)?;
         let target = self.type_of(&found);
         let found = match found.view {
-            Some(view) if view.address.is_none() && !view.is_bit => {
+            Some(view) if view.address.is_none() && !view.is_bit && !view.is_selected => {
                 Found { place: self.first_unit(&found.place, view, expr.span), view: None, ..found }
             }
             Some(_) | None => self.whole(found, expr.span)?,

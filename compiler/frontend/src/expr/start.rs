@@ -403,7 +403,7 @@ impl<'s> Checker<'_, 's> {
             if !self.decl.is_started(field.ty) {
                 continue;
             }
-            let (default, value) = (part(&given.default, at), part(&given.value, at));
+            let (default, value) = (given.default.part(at), given.value.part(at));
             match initial {
                 Some(initial) => {
                     let construction = declared.and_then(|it| it.construction.as_deref());
@@ -465,7 +465,7 @@ impl<'s> Checker<'_, 's> {
                 let index = rest / stride;
                 rest %= stride;
                 let position = usize::try_from(index).unwrap_or_default();
-                (default, value) = (part(&default, position), part(&value, position));
+                (default, value) = (default.part(position), value.part(position));
                 let lint = Expr::constant(Elementary::Lint, Value::I64(low + index), at);
                 element = element.index(lint, *ty, at);
             }
@@ -502,7 +502,7 @@ impl<'s> Checker<'_, 's> {
             for (name, written) in fields {
                 let Some(field) = self.decl.field_named(id, name.text) else { continue };
                 let Some(ty) = self.decl.program.member(place.ty, field) else { continue };
-                let parts = (&part(default, field.index()), &part(value, field.index()));
+                let parts = (&default.part(field.index()), &value.part(field.index()));
                 self.values_given(place.clone().field(field, ty), written, parts, found);
             }
             return;
@@ -545,23 +545,5 @@ fn element_of<'a, 's>(initial: &'a ast::Initial<'s>, position: usize) -> Option<
     match elements.get(position)? {
         ast::Element { count: None, values } if elements.iter().all(|it| it.count.is_none()) => values.first(),
         ast::Element { .. } => None,
-    }
-}
-
-/// A part of a constant by its position.
-fn part(whole: &Const, at: usize) -> Const {
-    match whole {
-        Const::Struct(values) => values.get(at).cloned().unwrap_or(Const::Zero),
-        Const::Array(runs) => {
-            let mut left = u64::try_from(at).unwrap_or(u64::MAX);
-            for (count, value) in runs {
-                if left < *count {
-                    return value.clone();
-                }
-                left -= count;
-            }
-            Const::Zero
-        }
-        Const::Zero | Const::Scalar(_) | Const::Text(_) => Const::Zero,
     }
 }

@@ -2,7 +2,8 @@
 //! members of a UNION. Reading and assigning them.
 
 use super::checker::Checker;
-use super::place::{Bits, Found};
+use super::part::Bits;
+use super::place::Found;
 use crate::types::window::Window;
 use crate::{Code, Diagnostic, Span};
 use staunch_ir::{Conversion, Elementary, Expr, Op, Place, Projection, Type, Value};
@@ -23,6 +24,13 @@ impl<'s> Checker<'_, 's> {
     pub(super) fn report_shared(&mut self, span: Span, view: Window) {
         let text = self.decl.log.sources.text(span).to_owned();
         let with = match view.address {
+            _ if view.is_selected => {
+                return self.report(
+                    Diagnostic::new(Code::E0306, span, format!("`{text}` is no variable of its own"))
+                        .label("some bits of one: they can be read and assigned, and be given to inputs and outputs")
+                        .help("use a variable of its own here, and assign that"),
+                );
+            }
             Some(_) => "another address",
             None => "other members",
         };

@@ -453,6 +453,8 @@ fn at_label(input: &mut In<'_, '_, '_>) -> bool {
             Kind::Integer | Kind::Based | Kind::Real | Kind::Time | Kind::Date => {}
             Kind::Text | Kind::WideText | Kind::True | Kind::False => {}
             Kind::Plus | Kind::Minus | Kind::Star | Kind::Slash | Kind::Mod | Kind::Not => {}
+            // `table[2]:`
+            Kind::OpenBracket | Kind::CloseBracket if ahead > 0 => {}
             _ => return false,
         }
         ahead += 1;

@@ -1,5 +1,6 @@
 //! Which types become which by themselves, and the type at which two meet.
 
+use crate::dialect::Dialect;
 use staunch_ir::Elementary;
 
 /// Whether every value of `from` is one of `to`, by the standard's figure of implicit conversions.
@@ -46,6 +47,26 @@ pub(crate) fn join(a: Elementary, b: Elementary) -> Option<Elementary> {
     meeting.into_iter().find(|it| widens(a, *it) && widens(b, *it))
 }
 
+/// The type that two operands give, where a dialect computes.
+pub(crate) type Join = fn(Elementary, Elementary) -> Option<Elementary>;
+
+pub(crate) fn join_in(dialect: Dialect) -> Join {
+    match dialect {
+        Dialect::Logix => join_in_logix,
+        _ if dialect.promotes_integers() => join_promoted,
+        _ => join,
+    }
+}
+
+/// Logix makes a REAL of an integer beside one (1756-RM003, "Convert Integer to REAL").
+fn join_in_logix(a: Elementary, b: Elementary) -> Option<Elementary> {
+    let is_integer = |it: Elementary| it.is_integer() && it.repr().size() <= 4;
+    match (a, b) {
+        (Elementary::Real, other) | (other, Elementary::Real) if is_integer(other) => Some(Elementary::Real),
+        _ => join_promoted(a, b),
+    }
+}
+
 /// The integer type that a bit string counts as where bits and integers mix.
 pub(crate) fn as_number(ty: Elementary) -> Elementary {
     match ty {
@@ -64,7 +85,7 @@ pub(crate) fn is_narrow(ty: Elementary) -> bool {
 
 /// The type that two operands give a value which is computed at more bits: that of more bits, the
 /// signed one of as many.
-pub(crate) fn join_promoted(a: Elementary, b: Elementary) -> Option<Elementary> {
+fn join_promoted(a: Elementary, b: Elementary) -> Option<Elementary> {
     let numbers = !(a.is_bits() && b.is_bits());
     if numbers && is_narrow(a) && is_narrow(b) {
         return [as_number(a), as_number(b)].into_iter().max_by_key(|it| (it.repr().size(), !it.repr().is_unsigned()));

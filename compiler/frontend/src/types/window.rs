@@ -1,4 +1,4 @@
-//! What is some bits of a variable: at a direct address that others share, a BIT, a member of a UNION.
+//! What is some bits of a variable: at a direct address that others share, a BIT, a member of a UNION, what `.3` selects.
 
 use staunch_ir::{Address, Overlay, Type, View};
 
@@ -12,17 +12,19 @@ pub(crate) struct Window {
     /// A single bit, of type BOOL.
     pub is_bit: bool,
     pub address: Option<Address>,
+    /// It is selected from a variable: `.3`, `.%B1`.
+    pub is_selected: bool,
 }
 
 impl From<View> for Window {
     fn from(view: View) -> Self {
         let is_bit = view.address.width == 1;
-        Self { ty: Type::Elementary(view.ty), bit: view.bit, is_bit, address: Some(view.address) }
+        Self { ty: Type::Elementary(view.ty), bit: view.bit, is_bit, address: Some(view.address), is_selected: false }
     }
 }
 
 impl From<&Overlay> for Window {
     fn from(it: &Overlay) -> Self {
-        Self { ty: it.ty, bit: it.bit, is_bit: it.is_bit, address: None }
+        Self { ty: it.ty, bit: it.bit, is_bit: it.is_bit, address: None, is_selected: false }
     }
 }
