@@ -236,7 +236,7 @@ impl<'s> Checker<'_, 's> {
             );
             return;
         }
-        if not_yet(name.text) {
+        if not_yet(name.text, self.decl.dialect(name.span)) {
             self.decl.not_supported(name.span, &format!("the function {}", name.text.to_ascii_uppercase()));
             return;
         }
@@ -270,9 +270,21 @@ impl<'s> Checker<'_, 's> {
     }
 }
 
+/// Operators and functions of *Util* that CODESYS has.
+#[rustfmt::skip]
+const OF_CODESYS: &[&str] = &[
+    "ADRINST", "BITADR", "INDEXOF", "TEST_AND_SET", "__COMPARE_AND_SWAP", "__VARINFO", "__XADD",
+    "BIT_AS_BYTE", "BIT_AS_DWORD", "BIT_AS_WORD", "BYTE_AS_BIT", "BYTE_TO_GRAY", "BYTE_TO_HEXINASCII", "DWORD_AS_BIT",
+    "DWORD_TO_GRAY", "GETBIT", "GRAY_TO_BYTE", "GRAY_TO_DWORD", "GRAY_TO_WORD", "HEXINASCII_TO_BYTE", "WORD_AS_BIT",
+    "WORD_AS_STRING", "WORD_TO_GRAY",
+];
+
 /// Functions of the standard's tables, and of CODESYS, that are known to be missing.
-fn not_yet(name: &str) -> bool {
+fn not_yet(name: &str, dialect: dialect::Dialect) -> bool {
     let name = name.to_ascii_uppercase();
+    if dialect == dialect::Dialect::Codesys && OF_CODESYS.contains(&name.as_str()) {
+        return true;
+    }
     let (from, to) = name.split_once("_TO_").unwrap_or_default();
     from == "BCD" || to == "BCD"
 }

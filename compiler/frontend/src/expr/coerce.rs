@@ -289,11 +289,11 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn report_implicit(&mut self, code: Code, message: String, from: Elementary, to: Elementary, span: Span) {
-        self.report(
-            Diagnostic::new(code, span, message)
-                .label("implicit conversion")
-                .help(format!("say so: `{}_TO_{}(…)`", from.name(), to.name())),
-        );
+        self.report(Diagnostic::new(code, span, message).label("implicit conversion").help(format!(
+            "say so: `{}_TO_{}(…)`",
+            from.name(),
+            to.name()
+        )));
     }
 
     /// Logix stores each number in a tag of any type of numbers (1756-RM003, "Data Conversions"): a real is rounded, ties

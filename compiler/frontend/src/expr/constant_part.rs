@@ -14,9 +14,7 @@ impl<'s> Checker<'_, 's> {
         }
         match &expr.kind {
             Ast::Member(base, name) => match self.static_type(base) {
-                Some(Type::Struct(id)) => {
-                    !self.decl.is_instance(id) && self.decl.field_named(id, name.text).is_some()
-                }
+                Some(Type::Struct(id)) => !self.decl.is_instance(id) && self.decl.field_named(id, name.text).is_some(),
                 _ => false,
             },
             Ast::Index(base, indices) => {

@@ -276,13 +276,11 @@ impl<'s> Checker<'_, 's> {
         }
         let literals = || operands.iter().map(|it| it.0);
         let ty = match common {
-            Some(ty) => {
-                widened_by_literals(
-                    self.beside_negatives(class, ty, literals(), expected, name.span),
-                    literals(),
-                    join_in(self.decl.dialect(name.span)),
-                )
-            }
+            Some(ty) => widened_by_literals(
+                self.beside_negatives(class, ty, literals(), expected, name.span),
+                literals(),
+                join_in(self.decl.dialect(name.span)),
+            ),
             None if class == Class::Real => expected.unwrap_or(Type::LREAL),
             None => literals_type(literals(), expected),
         };

@@ -466,8 +466,8 @@ pub fn name_alone(input: &mut In<'_, '_, '_>, span: Span) {
     );
 }
 
-/// `IN: x` among arguments.
-pub fn colon_for_assign(input: &mut In<'_, '_, '_>, sign: Span) {
+/// `IN: x`, `IN REF= x` among arguments.
+pub fn sign_for_assign(input: &mut In<'_, '_, '_>, sign: Span) {
     let replacement = padded(input, sign, ":=");
     input.report(
         Diagnostic::new(Code::E0008, sign, "an argument is connected with `:=`")

@@ -385,6 +385,7 @@ fn lacks_comma(input: &mut In<'_, '_, '_>, from: usize) -> bool {
 fn argument<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Argument<'s>>> {
     match (input.kind(), input.kind_ahead(1)) {
         (Kind::Name, Kind::Assign) => named(input),
+        (Kind::Name, Kind::Name) if joins_equal(input, 1, &["REF"]) => bound(input),
         (Kind::Name, Kind::Name | Kind::Integer | Kind::Time | Kind::True | Kind::False | Kind::Not)
             if names_pin(input) =>
         {
@@ -410,8 +411,21 @@ fn unassigned<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Argument<'s>>> {
 fn with_colon<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Argument<'s>>> {
     let at = input.number() + 1;
     let sign = input.state().place(at);
-    diagnostics::colon_for_assign(input, sign);
+    diagnostics::sign_for_assign(input, sign);
     named(input)
+}
+
+/// `reference REF= x`
+fn bound<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Argument<'s>>> {
+    let at = input.number() + 1;
+    let sign = input.state().place(at).to(input.state().place(at + 1));
+    diagnostics::sign_for_assign(input, sign);
+    let name = input.name()?;
+    input.take();
+    input.take();
+    let value = expression(input)?;
+    let span = name.span.to(value.span);
+    Ok(Some(Argument { kind: ArgumentKind::Input(name, value), span }))
 }
 
 /// Whether a standard block has a pin of the current token's name.
