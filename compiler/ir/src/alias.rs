@@ -97,21 +97,12 @@ fn lies_in(frame: &Frame<'_>, a: &Place, b: &Place) -> bool {
         if is_same(frame.program, ty, root) && paths(&a.projections, &b.projections[at..]) != Alias::No {
             return true;
         }
-        match part_of(frame.program, ty, projection) {
+        match frame.program.part(ty, projection) {
             Some(part) => ty = part,
             None => return false,
         }
     }
     holds(frame.program, ty, root)
-}
-
-fn part_of(program: &Program, ty: Type, projection: &Projection) -> Option<Type> {
-    match (projection, ty) {
-        (Projection::Field(field), ty) => program.member(ty, *field),
-        (Projection::Index { .. }, Type::Array(id)) => Some(program.array(id).element),
-        (Projection::Index { .. }, _) => None,
-        (Projection::Deref { target, .. }, _) => Some(*target),
-    }
 }
 
 /// Two ways from one root, through no reference.

@@ -2,8 +2,8 @@
 
 use crate::types::ids;
 use crate::{
-    Array, ArrayId, Block, BoundsId, Const, Elementary, Enum, EnumId, Location, Place, RefKind, RefType, ReferenceId,
-    Root, Struct, StructId, Type,
+    Array, ArrayId, Block, BoundsId, Const, Elementary, Enum, EnumId, Location, Place, Projection, RefKind, RefType,
+    ReferenceId, Root, Struct, StructId, Type,
 };
 use core::fmt;
 use staunch_runtime::Family;
@@ -348,6 +348,16 @@ impl Program {
             | Type::String(_)
             | Type::Enum(_)
             | Type::Array(_) => None,
+        }
+    }
+
+    /// The type of a part of what has type `ty`: of a member, an element, or what a reference leads to.
+    pub fn part(&self, ty: Type, projection: &Projection) -> Option<Type> {
+        match (projection, ty) {
+            (Projection::Field(field), _) => self.member(ty, *field),
+            (Projection::Index { .. }, Type::Array(id)) => Some(self.array(id).element),
+            (Projection::Index { .. }, _) => None,
+            (Projection::Deref { target, .. }, _) => Some(*target),
         }
     }
 

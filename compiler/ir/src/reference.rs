@@ -42,19 +42,9 @@ pub fn followed<'a>(program: &Program, place: &'a Place) -> Option<Followed<'a>>
         if let (Type::Block(block), Projection::Field(pin)) = (ty, projection) {
             return Some(Followed { pointer, target, way: &way[..length], ty, pin: Some((block, *pin)), at });
         }
-        ty = part(program, ty, projection)?;
+        ty = program.part(ty, projection)?;
     }
     Some(Followed { pointer, target, way, ty: place.ty, pin: None, at })
-}
-
-/// The type of a part, without what a reference leads to.
-fn part(program: &Program, ty: Type, projection: &Projection) -> Option<Type> {
-    match (projection, ty) {
-        (Projection::Field(field), ty) => program.member(ty, *field),
-        (Projection::Index { .. }, Type::Array(id)) => Some(program.array(id).element),
-        (Projection::Index { .. }, _) => None,
-        (Projection::Deref { target, .. }, _) => Some(*target),
-    }
 }
 
 /// The variables whose addresses are taken: fields of the globals and of states.
@@ -179,7 +169,7 @@ impl<'p> Finder<'p> {
                 }
                 (Projection::Field(_) | Projection::Index { .. }, _) => {}
             }
-            match part(self.program, ty, projection) {
+            match self.program.part(ty, projection) {
                 Some(part) => ty = part,
                 None => return,
             }

@@ -190,7 +190,7 @@ impl Shape<'_> {
     fn type_of(&self, place: &Place) -> Type {
         let mut ty = self.root(place.root);
         for projection in &place.projections {
-            ty = self.part(ty, projection);
+            ty = self.program.part(ty, projection).expect("verified IR: each part is there");
         }
         ty
     }
@@ -201,15 +201,6 @@ impl Shape<'_> {
             Root::Globals => Type::Struct(self.program.globals),
             Root::Local(id) => self.locals[id.index()].ty,
             Root::Param(id) => self.params[id.index()],
-        }
-    }
-
-    fn part(&self, ty: Type, projection: &Projection) -> Type {
-        match (projection, ty) {
-            (Projection::Field(id), _) => self.program.member(ty, *id).expect("verified IR: a member's id"),
-            (Projection::Index { .. }, Type::Array(id)) => self.program.array(id).element,
-            (Projection::Index { .. }, _) => unreachable!("verified IR: an index into an array"),
-            (Projection::Deref { target, .. }, _) => *target,
         }
     }
 
@@ -250,7 +241,7 @@ impl Rewrite for Shape<'_> {
             if let Projection::Index { index, .. } = projection {
                 self.check(ty, index);
             }
-            ty = self.part(ty, projection);
+            ty = self.program.part(ty, projection).expect("verified IR: each part is there");
         }
         if self.program.is_open(place.ty) {
             place.ty = ty;

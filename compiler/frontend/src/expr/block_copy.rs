@@ -206,7 +206,7 @@ impl<'s> Checker<'_, 's> {
     /// The type that a place has without what its projections lead to last.
     fn type_at(&self, place: &Place) -> Option<Type> {
         let root = self.root_type(place.root)?;
-        place.projections.iter().try_fold(root, |ty, projection| self.decl.part(ty, projection))
+        place.projections.iter().try_fold(root, |ty, projection| self.decl.program.part(ty, projection))
     }
 
     /// The number of elements, as a LINT that is a constant or in a local.

@@ -181,7 +181,7 @@ impl<'s> Checker<'_, 's> {
             if matches!(ty, Type::Block(_)) {
                 return true;
             }
-            match self.decl.part(ty, projection) {
+            match self.decl.program.part(ty, projection) {
                 Some(part) => ty = part,
                 None => return false,
             }

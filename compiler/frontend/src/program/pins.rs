@@ -3,7 +3,7 @@
 use crate::types::declarations::Declarations;
 use crate::{Code, Diagnostic};
 use staunch_ir::visit::statements;
-use staunch_ir::{Argument, Location, Place, Program, Projection, Routine, StatementKind, Type};
+use staunch_ir::{Argument, Location, Place, Program, Routine, StatementKind, Type};
 
 impl Declarations<'_> {
     /// Reports pins that are passed on by reference.
@@ -44,14 +44,10 @@ impl Declarations<'_> {
 fn is_pin(program: &Program, routine: &Routine, place: &Place) -> bool {
     let Some(mut ty) = program.root_type(routine, place.root) else { return false };
     for projection in &place.projections {
-        let part = match (projection, ty) {
-            (_, Type::Block(_)) => return true,
-            (Projection::Field(field), ty) => program.member(ty, *field),
-            (Projection::Index { .. }, Type::Array(id)) => Some(program.array(id).element),
-            (Projection::Deref { target, .. }, _) => Some(*target),
-            (Projection::Index { .. }, _) => None,
-        };
-        let Some(part) = part else { return false };
+        if matches!(ty, Type::Block(_)) {
+            return true;
+        }
+        let Some(part) = program.part(ty, projection) else { return false };
         ty = part;
     }
     false

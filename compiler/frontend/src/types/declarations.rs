@@ -18,9 +18,7 @@ use crate::names::{Entry, Found, Meaning, Names, Sense, Site, SpaceId};
 use crate::spelling::Key;
 use crate::{Code, Diagnostic, Span, ast, start};
 use rustc_hash::{FxHashMap, FxHashSet};
-use staunch_ir::{
-    BlockId, Location, Program, Projection, RefKind, RefType, ReferenceId, Section, SourceFile, StructId, Type,
-};
+use staunch_ir::{BlockId, Location, Program, RefKind, RefType, ReferenceId, Section, SourceFile, StructId, Type};
 use staunch_runtime::Class;
 use std::rc::Rc;
 
@@ -454,16 +452,6 @@ impl<'s> Declarations<'s> {
             self.program.references.push(wanted);
             ReferenceId::next(self.program.references.len() - 1)
         }))
-    }
-
-    /// The type of a part.
-    pub fn part(&self, ty: Type, projection: &Projection) -> Option<Type> {
-        match (projection, ty) {
-            (Projection::Field(field), ty) => self.program.member(ty, *field),
-            (Projection::Index { .. }, Type::Array(id)) => Some(self.program.array(id).element),
-            (Projection::Index { .. }, _) => None,
-            (Projection::Deref { target, .. }, _) => Some(*target),
-        }
     }
 
     /// Whether the structure is the state of a PROGRAM or FUNCTION_BLOCK.

@@ -79,12 +79,7 @@ impl Key {
     }
 }
 
-/// The type behind a projection.
+/// The type of a part.
 pub fn element(program: &Program, ty: Type, projection: &Projection) -> Type {
-    match (projection, ty) {
-        (Projection::Field(field), _) => program.member(ty, *field).expect("verified IR: the member exists"),
-        (Projection::Index { .. }, Type::Array(array)) => program.array(array).element,
-        (Projection::Deref { target, .. }, _) => *target,
-        (Projection::Index { .. }, _) => unreachable!("verified IR: only arrays have elements"),
-    }
+    program.part(ty, projection).expect("verified IR: each part is there")
 }

@@ -157,12 +157,7 @@ impl<'p> Builder<'p> {
     fn bounds_at(&self, place: &Place, position: usize) -> Option<(i64, i64)> {
         let mut ty = self.program.root_type(&self.program.routines[self.pou], place.root)?;
         for projection in &place.projections[..position] {
-            ty = match (projection, ty) {
-                (Projection::Field(field), _) => self.program.member(ty, *field)?,
-                (Projection::Index { .. }, Type::Array(id)) => self.program.array(id).element,
-                (Projection::Deref { target, .. }, _) => *target,
-                (Projection::Index { .. }, _) => return None,
-            };
+            ty = self.program.part(ty, projection)?;
         }
         let Type::Array(id) = ty else { return None };
         Some((self.program.array(id).low, self.program.array(id).high))
