@@ -126,6 +126,13 @@ fn paths(a: &[Projection], b: &[Projection]) -> Alias {
     found
 }
 
+/// Whether `part` is, or by an index may be, `whole` or a part of it, by their names alone: of one root.
+pub fn may_hold(whole: &Place, part: &Place) -> bool {
+    whole.root == part.root
+        && whole.projections.len() <= part.projections.len()
+        && paths(&whole.projections, &part.projections) != Alias::No
+}
+
 /// How many fields two ways from one root begin with together.
 pub fn common_fields(a: &[Projection], b: &[Projection]) -> usize {
     let same = |(a, b): &(&Projection, &Projection)| match (a, b) {

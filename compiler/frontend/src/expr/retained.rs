@@ -2,11 +2,12 @@
 
 use super::checker::Checker;
 use super::uses::{
-    Assigned, KeptCount, Preparation, Uses, assigned_count, holds_storage, is_element_by_element, is_same_place,
-    lost_count, same_storage, several_counts, shared_count,
+    Assigned, KeptCount, Preparation, Uses, assigned_count, is_element_by_element, is_same_place, lost_count,
+    same_storage, several_counts, shared_count,
 };
 use crate::{Code, Diagnostic, Span, ast};
 use rustc_hash::FxHasher;
+use staunch_ir::alias::may_hold;
 use staunch_ir::{Place, Projection, Root, Type};
 use std::hash::{Hash, Hasher};
 
@@ -122,7 +123,7 @@ impl<'s> Checker<'_, 's> {
 
     fn refuse_assigned_counts(&mut self, uses: &Uses) {
         for count in &uses.counts {
-            if let Some(it) = uses.assigned.iter().find(|it| holds_storage(&it.place, &count.kept)) {
+            if let Some(it) = uses.assigned.iter().find(|it| may_hold(&it.place, &count.kept)) {
                 self.report(assigned_count(it.span, count.span));
             }
         }

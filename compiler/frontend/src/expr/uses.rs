@@ -1,7 +1,7 @@
 //! Notes which counters the first scan after a start, a restart or IDLE -> RUN prepares.
 
 use crate::{Code, Diagnostic, Span};
-use staunch_ir::{Expr, ExprKind, Location, Place, Projection};
+use staunch_ir::{Expr, ExprKind, Location, Place, Projection, alias};
 
 /// What a POU does with counters, in places of the POU's own.
 #[derive(Debug, Default)]
@@ -110,23 +110,5 @@ pub(crate) fn is_same_place(a: &Place, b: &Place) -> bool {
 
 /// Whether two places surely are, or by an index may be, the same.
 pub(crate) fn same_storage(a: &Place, b: &Place) -> bool {
-    a.projections.len() == b.projections.len() && holds_storage(a, b)
-}
-
-/// Whether `part` surely is, or by an index may be, `whole` or a part of it.
-pub(crate) fn holds_storage(whole: &Place, part: &Place) -> bool {
-    let same = |(a, b): (&Projection, &Projection)| match (a, b) {
-        (Projection::Field(a), Projection::Field(b)) => a == b,
-        (Projection::Index { index: a, .. }, Projection::Index { index: b, .. }) => {
-            match (a.as_const(), b.as_const()) {
-                (Some(a), Some(b)) => a == b,
-                _ => true,
-            }
-        }
-        (Projection::Deref { .. }, Projection::Deref { .. }) => true,
-        (Projection::Field(_) | Projection::Index { .. } | Projection::Deref { .. }, _) => false,
-    };
-    whole.root == part.root
-        && whole.projections.len() <= part.projections.len()
-        && whole.projections.iter().zip(&part.projections).all(same)
+    a.projections.len() == b.projections.len() && alias::may_hold(a, b)
 }

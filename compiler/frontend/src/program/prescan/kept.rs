@@ -4,12 +4,13 @@
 use super::nest::{OpenCounts, fate, kept_from_outside};
 use crate::Span;
 use crate::expr::uses::{
-    Assigned, KeptCount, Uses, assigned_count, holds_storage, is_element_by_element, lost_count, same_storage,
-    several_counts, shared_count,
+    Assigned, KeptCount, Uses, assigned_count, is_element_by_element, lost_count, same_storage, several_counts,
+    shared_count,
 };
 use crate::types::declarations::{Declarations, Slot};
 use crate::types::signature::Target;
 use staunch_ir::Root;
+use staunch_ir::alias::may_hold;
 use staunch_ir::startup::Startup;
 use std::collections::HashSet;
 
@@ -65,7 +66,7 @@ fn assigned(declarations: &mut Declarations<'_>, count: &KeptCount, at: usize, u
     let is_visible = |pou: usize| if pou == at { !is_own } else { count.kept.root == Root::Globals };
     let visible = uses.iter().enumerate().filter(|(pou, _)| is_visible(*pou)).flat_map(|(_, it)| &it.assigned);
     let writes = |it: &Assigned| !it.passed_for.is_some_and(|it| keeping.contains(&it));
-    let mut found = visible.filter(|it| writes(it) && holds_storage(&it.place, &count.kept));
+    let mut found = visible.filter(|it| writes(it) && may_hold(&it.place, &count.kept));
     if let Some(it) = found.next() {
         declarations.report(assigned_count(it.span, place_of(declarations, count)));
     }
