@@ -26,12 +26,12 @@ fn lists_have_their_attribute_from_the_first_byte_on() {
 }
 
 #[test]
-fn lists_are_files_of_globals_alone_in_one_dialect_that_names_them() {
+fn lists_are_files_of_globals_alone_in_a_dialect_that_names_them() {
     let folder = Folder::with("lists_that_are_none", &[("main.st", MAIN)]);
     let texts = [
         format!("{{dialect 'iec'}}\n{LIST}"),
         format!("{LIST}TYPE T : INT; END_TYPE\n"),
-        format!("{LIST}{{dialect 'iec'}}\nVAR_GLOBAL other : INT; END_VAR\n"),
+        format!("NAMESPACE Plant\n{LIST}END_NAMESPACE\n"),
     ];
     for text in texts {
         folder.write("_Line2.st", text);

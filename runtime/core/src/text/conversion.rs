@@ -121,7 +121,7 @@ pub fn from_time(value: Time, kind: i64, out: &mut Destination<'_>) {
     _ = format::time(out, ty, value);
 }
 
-/// TRUE for `TRUE`, in any case, and for a number that is not 0.
+/// TRUE for `TRUE`, in any case, and for a number whose whole part is not 0.
 ///
 /// ```
 /// use staunch_runtime::text::to_bool;
