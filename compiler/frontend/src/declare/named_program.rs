@@ -86,7 +86,7 @@ impl<'s> Declarations<'s> {
             doc: pou.doc.clone(),
             location: self.location(pou.name.span),
         };
-        let at = self.add_synthetic(field, Some(pou.name));
+        let at = self.add_synthetic(field, None);
         Some(Variable {
             name: pou.name,
             place: self.synthetic_place(at),
