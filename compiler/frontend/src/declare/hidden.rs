@@ -39,7 +39,7 @@ impl<'s> Declarations<'s> {
     }
 
     /// The class that declares a block of a class: itself, or one that it extends.
-    fn class_of_block(&self, slot: usize, block: usize) -> Option<usize> {
+    pub(crate) fn class_of_block(&self, slot: usize, block: usize) -> Option<usize> {
         let classes = std::iter::successors(Some(slot), |it| self.base_of(*it));
         classes.take_while(|it| block < self.pous[*it].ast.blocks.len()).last()
     }

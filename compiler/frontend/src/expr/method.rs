@@ -176,11 +176,9 @@ impl<'s> Checker<'_, 's> {
             self.report(super::unresolved::not_constant(span));
             return None;
         }
+        self.may_call(slot, name)?;
         let found = match instance {
-            Some(instance) => {
-                self.may_call(slot, name)?;
-                self.place(instance)?
-            }
+            Some(instance) => self.place(instance)?,
             None => self.this()?,
         };
         self.may_call_method(&found, span)?;
@@ -287,34 +285,6 @@ impl<'s> Checker<'_, 's> {
     pub(crate) fn this(&self) -> Option<Found<'s>> {
         let place = Place::root(Root::Instance, Type::Struct(self.signature.as_ref()?.state?));
         Some(Found { place, view: None, access: Access::Write })
-    }
-
-    /// Reports a call from outside of what is PRIVATE or PROTECTED.
-    fn may_call(&mut self, slot: usize, name: ast::Name<'s>) -> Option<()> {
-        let Some((access, span)) = self.decl.pous[slot].ast.modifiers.access else { return Some(()) };
-        let own = self.signature.as_ref().and_then(|it| it.state).and_then(|it| self.decl.slot_of_instance(it));
-        let is_inside = own.is_some() && own == self.decl.pous[slot].owner;
-        let is_home = self.slot.is_some_and(|it| self.decl.home(it) == self.decl.home(slot));
-        let of_namespace = self.decl.names.is_inside(name.span, self.decl.names.space_of(span));
-        let (word, who) = match access {
-            ast::Access::Public => return Some(()),
-            // Outside of every NAMESPACE a program is one library.
-            ast::Access::Internal if of_namespace || self.is_test() => return Some(()),
-            ast::Access::Private if is_inside && is_home || self.is_test() => return Some(()),
-            ast::Access::Protected if is_inside || self.is_test() => return Some(()),
-            ast::Access::Internal => ("INTERNAL", "only what is in its own namespace calls it"),
-            ast::Access::Private => ("PRIVATE", "only the routines of its own FUNCTION_BLOCK call it"),
-            ast::Access::Protected => {
-                ("PROTECTED", "only the routines of its FUNCTION_BLOCK, and of those that extend it, call it")
-            }
-        };
-        let title = self.decl.title(slot);
-        self.report(
-            Diagnostic::new(Code::E0109, name.span, format!("`{title}` is {word}"))
-                .label(who)
-                .other(span, "declared so here"),
-        );
-        None
     }
 
     /// The type of what a place holds, found without calling, reporting or noting anything; a REFERENCE TO is

@@ -1,6 +1,7 @@
 //! Expressions and calls: what types they have, and what they become. They are checked against
 //! declarations, and resolve none.
 
+mod access;
 mod any_input;
 mod argument;
 mod assignment;

@@ -148,7 +148,8 @@ impl<'s> Checker<'_, 's> {
             variable.used.set(true);
             let variable = Rc::clone(variable);
             let is_outer = !self.scope.is_own(name.text);
-            return Some((!is_outer || self.is_within_reach(&variable, name)).then_some(variable));
+            let is_within_reach = !is_outer || self.is_within_reach(&variable, name);
+            return Some((is_within_reach && self.may_use(&variable, name)).then_some(variable));
         }
         if let Some(result) = self.result_variable(name) {
             return Some(Some(Rc::new(result)));
@@ -237,7 +238,8 @@ impl<'s> Checker<'_, 's> {
             return None;
         };
         variable.used.set(true);
-        self.is_within_reach(&variable, name).then(|| self.found(&variable, name))
+        let may_use = self.is_within_reach(&variable, name) && self.may_use(&variable, name);
+        may_use.then(|| self.found(&variable, name))
     }
 
     /// The global variable in a slot, which is used by that.
@@ -384,9 +386,12 @@ impl<'s> Checker<'_, 's> {
         if is_own {
             self.note_used(id, name);
         }
-        let inner = is_own && !self.is_public(id, name);
-        // A unit test looks into everything; a VAR_CONFIG gives an address to any variable of an instance.
-        let sees_all = self.is_test() || self.is_run() || self.is_suite();
+        let declared = if is_own { self.declared_member(id, name) } else { None };
+        if let Some(declared) = declared {
+            self.may_reach(declared, name)?;
+        }
+        let inner = is_own && declared.is_none();
+        let sees_all = self.sees_all();
         if inner && !sees_all && self.seen_from_outside(id, name).is_none() {
             if self.is_refused_routine(id, name) {
                 return None;
@@ -420,15 +425,6 @@ impl<'s> Checker<'_, 's> {
         let slot = self.decl.slot_of_instance(id);
         let mut routines = slot.into_iter().flat_map(|it| &self.decl.pous[it].ast.routines);
         routines.any(|it| it.name.text.eq_ignore_ascii_case(name.text))
-    }
-
-    /// Whether a variable of an instance is declared in VAR PUBLIC, or INTERNAL: a program is one library.
-    fn is_public(&self, id: StructId, name: ast::Name<'s>) -> bool {
-        let Some(slot) = self.decl.slot_of_instance(id) else { return false };
-        let is_open =
-            |it: &&ast::VarBlock<'s>| matches!(it.access, Some((ast::Access::Public | ast::Access::Internal, _)));
-        let mut open = self.decl.pous[slot].ast.blocks.iter().filter(is_open).flat_map(|it| &it.vars);
-        open.any(|it| it.names.iter().any(|it| it.text.eq_ignore_ascii_case(name.text)))
     }
 
     /// A variable is used that is reached from outside of its class.
