@@ -133,8 +133,11 @@ impl<'s> Declarations<'s> {
         self.enter(decl.name, Entry::Type(slot), decl.internal);
         self.names.unread.extend(decl.unread.iter().map(|it| Key(it.text)));
         if let ast::TypeKind::Enum { values, .. } = &decl.ty.kind {
+            let is_qualified = decl.attributes.iter().any(|it| it.eq_ignore_ascii_case("qualified_only"));
+            let names = &mut self.names;
+            let known = if is_qualified { &mut names.qualified_enumerators } else { &mut names.enumerators };
             for value in values {
-                self.names.enumerators.entry(Key(value.name.text)).or_default().push(slot);
+                known.entry(Key(value.name.text)).or_default().push(slot);
             }
         }
         self.types.push(TypeSlot { decl, slot: Slot::Open });

@@ -92,6 +92,10 @@ impl<'s> Declarations<'s> {
         if let (Type::Enum(id), TypeKind::Enum { .. }) = (resolved.ty, &decl.ty.kind) {
             let has = |wanted: &str| decl.attributes.iter().any(|it| it.eq_ignore_ascii_case(wanted));
             self.table.strict.extend(has("strict").then_some(id));
+            if has("qualified_only") {
+                self.table.qualified.insert(id);
+                self.names.anonymous_enumerators.retain(|_, it| it.0 != resolved.ty);
+            }
             self.table.spelled.extend(has("to_string").then_some(id));
             let names_values = matches!(decl.ty.kind, TypeKind::Enum { base: Some(_), .. });
             self.table.named_values.extend((names_values && !has("strict")).then_some(id));

@@ -79,6 +79,11 @@ impl<'s> Checker<'_, 's> {
         if self.property(&own).is_some() {
             return self.load(&own);
         }
+        if self.is_in_its_type(name)
+            && let Some(value) = self.bare_enumerator(name, expected)
+        {
+            return value;
+        }
         if let Some(found) = self.find_variable(name) {
             let variable = found?;
             return self.variable_value(&variable, name.span);

@@ -161,6 +161,7 @@ impl<'s> Checker<'_, 's> {
     pub(crate) fn bare_enumerator(&mut self, name: ast::Name<'s>, expected: Option<Type>) -> Option<Option<Expr>> {
         let at = self.at(name.span);
         if let Some(Type::Enum(id)) = expected
+            && (!self.decl.table.qualified.contains(&id) || self.is_in_its_type(name))
             && let Some(value) = self.decl.enumerator_named(id, name.text)
         {
             return Some(Some(Expr::new(Type::Enum(id), ExprKind::Const(value), at)));
@@ -193,6 +194,16 @@ impl<'s> Checker<'_, 's> {
                 Some(None)
             }
         }
+    }
+
+    /// Whether a value of an enumeration is named in the declaration of that, where it needs no name before it.
+    pub(super) fn is_in_its_type(&self, name: ast::Name<'s>) -> bool {
+        let slots = self.decl.names.qualified_enumerators.get(&Key(name.text));
+        let is_in = |span: Span| span.file == name.span.file && (span.start..span.end).contains(&name.span.start);
+        slots.into_iter().flatten().any(|it| {
+            let decl = self.decl.types[*it].decl;
+            is_in(decl.ty.span) || decl.initial.as_ref().is_some_and(|it| is_in(it.span))
+        })
     }
 
     /// Arithmetic on integers without a type is exact; with a fraction it waits for its type.

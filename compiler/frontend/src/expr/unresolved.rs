@@ -4,7 +4,7 @@ use super::checker::Checker;
 use crate::diagnostic::wording::{article, list};
 use crate::dialect::Dialect;
 use crate::names::functions;
-use crate::spelling::nearest;
+use crate::spelling::{Key, nearest};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::BlockId;
 use staunch_runtime::{BLOCKS, Direction, Family, PinRole};
@@ -164,7 +164,7 @@ impl<'s> Checker<'_, 's> {
 
     /// Reports a name that means nothing here.
     pub(crate) fn unknown_name(&mut self, name: ast::Name<'s>) {
-        if self.decl.names.unread.contains(&crate::spelling::Key(name.text)) {
+        if self.decl.names.unread.contains(&Key(name.text)) {
             return;
         }
         if let Some(crate::names::Entry::Type(_) | crate::names::Entry::Pou(_)) = self.decl.declared(name) {
@@ -209,6 +209,18 @@ impl<'s> Checker<'_, 's> {
             let full = format!("{list}.{}", name.text);
             let help = format!("the list has the attribute 'qualified_only': write `{full}`");
             self.report(error.help(help).fix(name.span, full));
+            return;
+        }
+        if let Some(slots) = self.decl.names.qualified_enumerators.get(&Key(name.text)) {
+            let full: Vec<_> =
+                slots.iter().map(|it| format!("{}.{}", self.decl.types[*it].decl.name.text, name.text)).collect();
+            let names: Vec<_> = full.iter().map(String::as_str).collect();
+            let help = format!("the enumeration has the attribute 'qualified_only': write {}", list(&names));
+            let error = error.help(help);
+            self.report(match full.as_slice() {
+                [one] => error.fix(name.span, one.clone()),
+                _ => error,
+            });
             return;
         }
         let own = self.scope.variables.iter().map(|it| it.name.text);

@@ -120,6 +120,8 @@ pub(crate) struct Names<'s> {
     globals: FxHashMap<Key<'s>, usize>,
     /// The declarations in which a bare enumerator is named, with their type's slot.
     pub enumerators: FxHashMap<Key<'s>, Vec<usize>>,
+    /// The same for those that are named after their type's name alone: `{attribute 'qualified_only'}`.
+    pub qualified_enumerators: FxHashMap<Key<'s>, Vec<usize>>,
     /// Names in type declarations that did not parse: they may be enumerators.
     pub unread: FxHashSet<Key<'s>>,
     /// For each anonymous or named enumeration, in order of declaration, the enumerators.
@@ -136,6 +138,7 @@ impl Default for Names<'_> {
             libraries: Vec::new(),
             globals: FxHashMap::default(),
             enumerators: FxHashMap::default(),
+            qualified_enumerators: FxHashMap::default(),
             unread: FxHashSet::default(),
             anonymous_enumerators: FxHashMap::default(),
         }

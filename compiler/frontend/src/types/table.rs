@@ -61,6 +61,8 @@ pub(crate) struct Table<'s> {
     pub kept_in_outs: FxHashSet<Span>,
     /// The enumerations that take and give no numbers: `{attribute 'strict'}`.
     pub strict: FxHashSet<EnumId>,
+    /// Those whose values are named after the type's name alone: `{attribute 'qualified_only'}`.
+    pub qualified: FxHashSet<EnumId>,
     /// Those that name values of the type before them, `WORD (A := 16#1)`: they are values of that type.
     pub named_values: FxHashSet<EnumId>,
     /// Those whose values TO_STRING spells by their names: `{attribute 'to_string'}`.
