@@ -162,6 +162,8 @@ pub struct Modifiers {
     pub is_final: Option<Span>,
     pub is_abstract: Option<Span>,
     pub overrides: Option<Span>,
+    /// A second word of from where it may be used.
+    pub again: Option<Span>,
 }
 
 impl Modifiers {
@@ -172,6 +174,7 @@ impl Modifiers {
             is_final: self.is_final.or(other.is_final),
             is_abstract: self.is_abstract.or(other.is_abstract),
             overrides: self.overrides.or(other.overrides),
+            again: self.again.or(other.again),
         }
     }
 }

@@ -247,6 +247,21 @@ impl<'s> Expansion<'_, 's> {
                     .other(span, "declared so here"),
             );
         }
+        let rank = |it: &Pou<'_>| match it.modifiers.access {
+            None | Some((Access::Public, _)) => 2,
+            Some((Access::Internal | Access::Protected, _)) => 1,
+            Some((Access::Private, _)) => 0,
+        };
+        if let Some((access, span)) = new.modifiers.access
+            && rank(new) < rank(old)
+        {
+            let message = format!("`{}` is {}, and what it overrides is not", new.name.text, access.word());
+            self.diagnostics.push(
+                Diagnostic::new(Code::E0403, span, message)
+                    .label("it is called through the base all the same")
+                    .other(old.name.span, "overridden here"),
+            );
+        }
         if let Some((Access::Private, span)) = old.modifiers.access {
             self.diagnostics.push(
                 Diagnostic::new(Code::E0403, new.name.span, format!("`{}` of the base is PRIVATE", old.name.text))

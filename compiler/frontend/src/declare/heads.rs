@@ -22,6 +22,9 @@ impl<'s> Declarations<'s> {
     pub(super) fn check_heads(&mut self) {
         for slot in 0..self.written_pous().len() {
             let pou = self.pous[slot].ast;
+            if pou.home.is_none() {
+                self.check_words(pou);
+            }
             if pou.kind.has_routines() {
                 pou.implements.iter().for_each(|name| self.check_is_interface(pou, *name));
             }
@@ -35,6 +38,31 @@ impl<'s> Declarations<'s> {
                 self.check_interfaces(slot);
                 self.check_overrides(slot);
                 self.check_started(slot);
+            }
+        }
+    }
+
+    /// Reports words before a name that contradict one another, and an INTERFACE that is named twice.
+    fn check_words(&mut self, pou: &ast::Pou<'s>) {
+        let ast::Modifiers { access, is_final, is_abstract, again, .. } = pou.modifiers;
+        let name = pou.name.text;
+        if let (Some(again), Some((first, span))) = (again, access) {
+            let error = Diagnostic::new(Code::E0403, again, format!("`{name}` is {} already", first.word()));
+            self.report(error.label("one word says from where it is used: delete this one").other(span, "said here"));
+        }
+        let private = access.filter(|it| it.0 == ast::Access::Private && pou.kind != PouKind::Interface);
+        let other = is_final.map(|it| ("FINAL", it)).or(private.map(|it| ("PRIVATE", it.1)));
+        if let (Some(span), Some((word, other))) = (is_abstract, other) {
+            self.report(
+                Diagnostic::new(Code::E0403, span, format!("`{name}` is ABSTRACT and {word}"))
+                    .label("heirs are to complete it")
+                    .other(other, "and may not here"),
+            );
+        }
+        for (at, again) in pou.implements.iter().enumerate() {
+            if let Some(first) = pou.implements[..at].iter().find(|it| Key(it.text) == Key(again.text)) {
+                let error = Diagnostic::new(Code::E0403, again.span, format!("`{}` is named twice", again.text));
+                self.report(error.label("delete this one").other(first.span, "named here"));
             }
         }
     }

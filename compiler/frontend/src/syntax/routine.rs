@@ -263,6 +263,7 @@ pub fn modifiers<'t, 's: 't>() -> impl Rule<'t, 's, Modifiers> {
     let set = access().map(|it| Modifier::Access(it.0, it.1)).or(words.map(|(set, span)| Modifier::Word(set, span)));
     empty().to(Modifiers::default()).foldl(set.repeated(), |mut all, it| {
         match it {
+            Modifier::Access(_, span) if all.access.is_some() => all.again = Some(span),
             Modifier::Access(access, span) => all.access = Some((access, span)),
             Modifier::Word(set, span) => set(&mut all, span),
         }
