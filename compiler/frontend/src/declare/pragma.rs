@@ -8,19 +8,111 @@ use crate::{Code, Diagnostic, Span, ast};
 /// Pragmas that change what a program means: to pass over them would compile another program.
 const DECIDING_PRAGMAS: [&str; 6] = ["if", "elsif", "else", "end_if", "define", "undefine"];
 /// Pragmas for editors and other tools.
-const HARMLESS_PRAGMAS: [&str; 12] = [
-    "attribute",
-    "region",
-    "endregion",
-    "end_region",
-    "warning",
-    "info",
-    "text",
-    "error",
-    "flag",
+const HARMLESS_PRAGMAS: [&str; 9] =
+    ["region", "endregion", "end_region", "info", "text", "flag", "analysis", "nobp", "bp"];
+
+/// The attributes that Staunch acts on, and those of CODESYS's and TwinCAT's editors, monitoring and downloads, which
+/// change nothing here.
+const ATTRIBUTES: &[&str] = &[
+    "addProperty",
     "analysis",
-    "nobp",
-    "bp",
+    "Analysis:name",
+    "blobinit",
+    "blobinitconst",
+    "call_after_global_init_slot",
+    "call_after_init",
+    "call_after_online_change_slot",
+    "call_before_global_exit_slot",
+    "call_on_type_change",
+    "conditionalshow",
+    "conditionalshow_all_locals",
+    "const_non_replaced",
+    "const_replaced",
+    "dataflow",
+    "displaymode",
+    "enable_dynamic_creation",
+    "estimated-stack-usage",
+    "ExpandFully",
+    "fb_init_only",
+    "generate_implicit_init_function",
+    "global_init_slot",
+    "hide",
+    "hide_all_locals",
+    "init_namespace",
+    "init_on_onlchange",
+    "initialize_on_call",
+    "instance-path",
+    "is_connected",
+    "linkalways",
+    "monitoring",
+    "monitoring_encoding",
+    "monitoring_instead",
+    "namespace",
+    "naming",
+    "no-analysis",
+    "no_assign",
+    "no_assign_warning",
+    "no_check",
+    "no_copy",
+    "no_explicit_call",
+    "no_init",
+    "no_instance_in_retain",
+    "no_virtual_actions",
+    "noflow",
+    "noinit",
+    "obsolete",
+    "opc.ua.da",
+    "OPC.UA.DA.Access",
+    "OPC.UA.DA.Description",
+    "OPC.UA.DA.StructuredType",
+    "pack_mode",
+    "parameterstringof",
+    "pin_presentation_order_inputs",
+    "pin_presentation_order_outputs",
+    "pingroup",
+    "ProcessValue",
+    "pytmc",
+    "qualified",
+    "qualified_only",
+    "reflection",
+    "retain_persistent_update",
+    "signature_flag",
+    "strict",
+    "subsequent",
+    "suppress_warning_0",
+    "symbol",
+    "symbol_visibility",
+    "sysmon",
+    "Tc2GvlVarNames",
+    "TcCallAfterOutputUpdate",
+    "TcCodeGenerated",
+    "TcContextId",
+    "TcContextName",
+    "TcDisplayScale",
+    "TcEncoding",
+    "TcGenerated",
+    "TcHideSubItems",
+    "TcHmiSymbol.AddSymbol",
+    "TcHmiSymbol.Show",
+    "TcIgnorePersistent",
+    "TcInitOnReset",
+    "TcInitSymbol",
+    "TcLinkTo",
+    "TcLinkToOSO",
+    "TcNcAxis",
+    "TcNoFFI",
+    "TcNoSymbol",
+    "TcPersistent",
+    "TcRetain",
+    "TcRpcEnable",
+    "TcRpcEnabled",
+    "TcSwapWord",
+    "TcSymbol",
+    "TcTypeSystem",
+    "to_string",
+    "use_external_type_layout",
+    "warning_disable",
+    "WithinMethod",
 ];
 
 impl Log<'_> {
@@ -67,7 +159,11 @@ impl Log<'_> {
         if super::list::is_list_pragma(pragma.text) {
             return;
         }
-        if word == "external" {
+        if word == "attribute" {
+            self.check_attribute(pragma);
+        } else if word == "error" || word == "warning" {
+            self.tell(pragma, &word);
+        } else if word == "external" {
             self.check_external_pragma(file, pragma.span);
         } else if word == "pool" {
             self.check_pool_pragma(file, pragma.span);
@@ -82,6 +178,43 @@ impl Log<'_> {
                     .label("it has no effect"),
             );
         }
+    }
+}
+
+impl Log<'_> {
+    /// `{error 'text'}` and `{warning 'text'}` in what is compiled say so. `{warning disable C0195}` is of the editor.
+    fn tell(&mut self, pragma: ast::Name<'_>, word: &str) {
+        let text = pragma.text.trim().get(word.len()..).unwrap_or_default().trim();
+        let text = text.strip_prefix('\'').and_then(|it| it.strip_suffix('\''));
+        let (code, label) = match word {
+            "error" => (Code::E0110, "the program says that it is not to be compiled so"),
+            _ => (Code::W0103, "the program says so itself"),
+        };
+        if text.is_some() || word == "error" {
+            let text = text.filter(|it| !it.trim().is_empty()).unwrap_or("`{error}`");
+            self.report(Diagnostic::new(code, pragma.span, text).label(label));
+        }
+    }
+
+    /// An attribute that is not known, and was probably meant for one that is; those with values are for other tools.
+    fn check_attribute(&mut self, pragma: ast::Name<'_>) {
+        let rest = pragma.text.trim().get("attribute".len()..).unwrap_or_default();
+        let mut parts = rest.split('\'');
+        let (Some(_), Some(name), Some(after)) = (parts.next(), parts.next(), parts.next()) else { return };
+        let of_a_tool = name.contains([':', '.', ' ']) || !after.trim().is_empty();
+        if ATTRIBUTES.iter().any(|it| it.eq_ignore_ascii_case(name)) {
+            return;
+        }
+        let near = nearest(name, ATTRIBUTES.iter().copied());
+        if of_a_tool && near.is_none() {
+            return;
+        }
+        let error = Diagnostic::new(Code::W0102, pragma.span, format!("the attribute '{name}' is not known"))
+            .label("it has no effect");
+        self.report(match near {
+            Some(near) => error.help(format!("did you mean `{{attribute '{near}'}}`?")),
+            None => error,
+        });
     }
 }
 

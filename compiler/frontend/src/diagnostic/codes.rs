@@ -77,12 +77,14 @@ codes! {
     E0102 Error "unknown type";
     W0102 Warning "a pragma without effect";
     E0103 Error "declared twice";
+    W0103 Warning "a warning that the program tells itself";
     E0104 Error "reserved name";
     E0105 Error "unknown dialect";
     E0106 Error "two dialects in one file";
     E0107 Error "unknown member";
     E0108 Error "ambiguous name";
     E0109 Error "internal variable";
+    E0110 Error "an error that the program tells itself";
     E0201 Error "wrong type";
     E0202 Error "value does not fit";
     E0203 Error "conversion needed";
