@@ -259,6 +259,7 @@ impl Build {
         for list in self.paths.iter().filter(|it| listing::is_list(it)) {
             if let Ok((_, lists)) = listing::sources(list) {
                 sources.refer(listing::references(&lists));
+                sources.define(listing::definitions(&lists));
             }
         }
         if own.is_empty() {

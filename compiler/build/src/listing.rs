@@ -52,6 +52,12 @@ pub fn references(lists: &[PathBuf]) -> Vec<Reference> {
     projects.filter_map(|it| std::fs::read(it).ok()).flat_map(|it| Source::references(&it)).collect()
 }
 
+/// What the PLC projects among lists define for conditional compilation.
+pub fn definitions(lists: &[PathBuf]) -> Vec<String> {
+    let projects = lists.iter().filter(|it| has_extension(it, &["plcproj"]));
+    projects.filter_map(|it| std::fs::read(it).ok()).flat_map(|it| Source::definitions(&it)).collect()
+}
+
 /// The PLC projects that a list leads to, each with what it lists.
 fn plc_projects(path: &Path, depth: usize, lists: &mut Vec<PathBuf>) -> Result<Vec<(PathBuf, Vec<PathBuf>)>, String> {
     let fail = |it: &dyn std::fmt::Display| format!("{}: {it}", path.display());

@@ -39,7 +39,9 @@ pub fn read(arguments: &[PathBuf], libraries: &[PathBuf]) -> Result<Sources, Str
         }
     }
     for list in arguments.iter().filter(|it| listing::is_list(it) && !it.is_dir()) {
-        sources.refer(listing::references(&listing::sources(Path::new(&shown(list)))?.1));
+        let lists = listing::sources(Path::new(&shown(list)))?.1;
+        sources.refer(listing::references(&lists));
+        sources.define(listing::definitions(&lists));
     }
     Ok(sources)
 }

@@ -35,6 +35,11 @@ pub struct Tokens<'s> {
 
 /// Reads a text of at most `u32::MAX` bytes.
 pub fn lex(file: u16, text: &str) -> Tokens<'_> {
+    lex_with(file, text, &[])
+}
+
+/// The same, where a project defines names for conditional compilation.
+pub fn lex_with<'s>(file: u16, text: &'s str, defined: &'s [String]) -> Tokens<'s> {
     // Real programs have a token for each five bytes or so.
     let guess = text.len() / 4 + 16;
     let tokens = Tokens { kinds: Vec::with_capacity(guess), places: Vec::with_capacity(guess), ..Tokens::default() };
@@ -49,7 +54,7 @@ pub fn lex(file: u16, text: &str) -> Tokens<'_> {
     }
     let end = offset(text.len());
     reading.push(Kind::End, (end, end));
-    conditional::choose(&mut reading.tokens);
+    conditional::choose(&mut reading.tokens, defined);
     reading.tokens
 }
 

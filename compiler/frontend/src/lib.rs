@@ -190,7 +190,7 @@ fn parse_all<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Opt
             is_broken = true;
             continue;
         }
-        files.push(parse(number, &source.text, diagnostics));
+        files.push(syntax::parse_with(number, &source.text, sources.defined(source), diagnostics));
         // Only what does not parse is looked at again.
         if !source.is_assembled() && diagnostics[before..].iter().any(|it| it.severity == Severity::Error) {
             foreign.extend(foreign::recognise(number, source));

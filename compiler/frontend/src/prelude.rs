@@ -5,7 +5,7 @@ mod tcunit;
 
 use crate::dialect::Dialect;
 use crate::dialect::library::is_one_of;
-use crate::lex::{Kind, Tokens, lex};
+use crate::lex::{Kind, Tokens, lex_with};
 use crate::options::Options;
 use crate::spelling::Key;
 use crate::{Code, Diagnostic, Severity, Source, Sources, Span};
@@ -222,7 +222,7 @@ impl Extended {
         let mut uses = Uses::default();
         for (source, number) in sources.files().iter().zip(0u16..) {
             if mentions_any(&source.text) {
-                uses.read(number, &source.text, options);
+                uses.read(number, source, sources.defined(source), options);
             }
         }
         let named = uses.needed();
@@ -277,8 +277,9 @@ struct Uses {
 }
 
 impl Uses {
-    fn read(&mut self, file: u16, text: &str, options: &Options) {
-        let tokens = lex(file, text);
+    fn read(&mut self, file: u16, source: &Source, defined: &[String], options: &Options) {
+        let text = source.text.as_str();
+        let tokens = lex_with(file, text, defined);
         let dialect = dialect_of(&tokens, options);
         let mut types = TypeBlock::default();
         let mut heads = Heads::default();

@@ -107,6 +107,8 @@ pub struct Sources {
     files: Vec<Source>,
     /// The libraries that a project of TwinCAT's refers to.
     references: Vec<Reference>,
+    /// What it defines for the conditional compilation of its own files.
+    defined: Vec<String>,
 }
 
 impl Source {
@@ -152,6 +154,11 @@ impl Source {
     /// The libraries that a PLC project of TwinCAT's refers to.
     pub fn references(project: &[u8]) -> Vec<Reference> {
         vendor::references(&Self::decoded("", project).text)
+    }
+
+    /// What a PLC project of TwinCAT's defines for conditional compilation.
+    pub fn definitions(project: &[u8]) -> Vec<String> {
+        vendor::definitions(&Self::decoded("", project).text)
     }
 
     /// The same, as one of a library, which a project uses and which is not its own.
@@ -350,6 +357,16 @@ impl Sources {
     /// Adds what a project refers to.
     pub fn refer(&mut self, references: impl IntoIterator<Item = Reference>) {
         self.references.extend(references);
+    }
+
+    /// Adds what a project defines for conditional compilation.
+    pub fn define(&mut self, names: impl IntoIterator<Item = String>) {
+        self.defined.extend(names);
+    }
+
+    /// What is defined before a file begins. A library does not see what a project defines.
+    pub fn defined(&self, source: &Source) -> &[String] {
+        if source.is_of_library() { &[] } else { &self.defined }
     }
 
     pub fn references(&self) -> &[Reference] {

@@ -46,7 +46,7 @@ use chumsky::{Parser, input::InputRef, primitive::custom};
 use crate::{
     ast::File,
     diagnostic::{Code, Diagnostic},
-    lex::{Kind, lex},
+    lex::{Kind, lex_with},
     source::Span,
 };
 
@@ -55,12 +55,17 @@ use parser::{Extra, State};
 
 /// The tree of a file. What does not parse is reported, and left out of the tree.
 pub fn parse<'s>(file: u16, text: &'s str, diagnostics: &mut Vec<Diagnostic>) -> File<'s> {
+    parse_with(file, text, &[], diagnostics)
+}
+
+/// The same, where a project defines names for conditional compilation.
+pub fn parse_with<'s>(file: u16, text: &'s str, defined: &'s [String], diagnostics: &mut Vec<Diagnostic>) -> File<'s> {
     if u32::try_from(text.len()).is_err() {
         let span = Span { file, start: 0, end: 0 };
         diagnostics.push(Diagnostic::new(Code::E0031, span, "the file is larger than 4 GiB"));
         return File::default();
     }
-    let mut tokens = lex(file, text);
+    let mut tokens = lex_with(file, text, defined);
     invalid_names::mend(&mut tokens, text, file);
     let mut state = State::new(file, text, &tokens, namespace::file(file, text));
     let items = parse_items(&mut state);

@@ -13,7 +13,7 @@ mod xml;
 
 pub use assembly::{Assembly, Piece, Problem, Trouble};
 pub(crate) use l5x::controller_service;
-pub use listing::{Reference, listed, references};
+pub use listing::{Reference, definitions, listed, references};
 
 use xml::Reader;
 

@@ -67,6 +67,21 @@ fn a_project_of_twincat_runs_as_it_lies() {
 }
 
 #[test]
+fn what_a_project_defines_decides_what_is_compiled() {
+    let folder = project("twincat-defines");
+    let body =
+        "{IF defined(SIMULATION) AND defined(FAST)}{error 'both'}{ELSIF defined(SIMULATION)}{error 'slow'}{END_IF}";
+    folder.write("POUs/MAIN.TcPOU", MAIN.replacen("<ST><![CDATA[", &format!("<ST><![CDATA[{body}"), 1));
+    folder.staunch("check Line.plcproj").out(0);
+    for (defines, expected) in [("simulation", "slow"), ("SIMULATION, FAST", "both"), ("FAST;SIMULATION=1", "both")] {
+        let properties =
+            format!("<PropertyGroup><CompilerDefines>{defines}</CompilerDefines></PropertyGroup><ItemGroup>");
+        folder.write("Line.plcproj", PROJECT.replacen("<ItemGroup>", &properties, 1));
+        has(&folder.staunch("check Line.plcproj").err(1), &["E0110", expected]);
+    }
+}
+
+#[test]
 fn messages_name_the_file_with_its_lines() {
     let folder = project("twincat-messages");
     folder.write("POUs/MAIN.TcPOU", MAIN.replace("station.Count()", "station.Counts()"));

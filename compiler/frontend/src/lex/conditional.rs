@@ -1,5 +1,5 @@
 //! Conditional compilation: `{IF defined(X)}`, `{ELSIF …}`, `{ELSE}` and `{END_IF}` take parts of a file out before it is
-//! parsed, by what `{define X}` has defined above in the file.
+//! parsed, by what the project defines, and `{define X}` above in the file.
 
 use super::Tokens;
 use crate::ast::Name;
@@ -34,15 +34,15 @@ enum Condition<'s> {
     Or(Box<Condition<'s>>, Box<Condition<'s>>),
 }
 
-/// Takes out what is not compiled.
-pub fn choose(tokens: &mut Tokens<'_>) {
+/// Takes out what is not compiled, where the project has defined some names already.
+pub fn choose<'s>(tokens: &mut Tokens<'s>, by_project: &'s [String]) {
     if !tokens.pragmas.iter().any(|it| matches!(word(it.text), Some(Word::If(_) | Word::EndIf))) {
         // What is defined is asked for nowhere.
         tokens.pragmas.retain(|it| !matches!(word(it.text), Some(Word::Define(_) | Word::Undefine(_))));
         return;
     }
     let mut open: Vec<Branch> = Vec::new();
-    let mut defined: Vec<&str> = Vec::new();
+    let mut defined: Vec<&str> = by_project.iter().map(String::as_str).collect();
     let mut left_out: Vec<(u32, u32)> = Vec::new();
     let mut since = None;
     let mut reports = Vec::new();

@@ -76,6 +76,24 @@ pub fn references(text: &str) -> Vec<Reference> {
     found
 }
 
+/// The names in a PLC project's `CompilerDefines`, one of which may have a value after `=`.
+pub fn definitions(text: &str) -> Vec<String> {
+    let Some(mut reader) = Reader::new(text) else { return Vec::new() };
+    let (mut found, mut is_it) = (Vec::new(), false);
+    while let Ok(Some(part)) = reader.part() {
+        match part {
+            Part::Open(element) => is_it = element.name == "CompilerDefines",
+            Part::Text(chunk) if is_it => {
+                let names = text[chunk.place].split([',', ';']).map(|it| it.split('=').next().unwrap_or_default());
+                found.extend(names.map(str::trim).filter(|it| !it.is_empty()).map(str::to_owned));
+            }
+            Part::Text(_) => {}
+            Part::Close => is_it = false,
+        }
+    }
+    found
+}
+
 fn sources<'t>(text: &'t str, reader: &mut Reader<'t>) -> Result<Vec<String>, Broken> {
     let mut files = Vec::new();
     // Of an element of the list, whether something in it takes it out again.
