@@ -324,7 +324,7 @@ pub struct Compare {
     #[arg(long, value_name = "N", default_value_t = 8_000_000)]
     pub budget: u64,
     /// Findings that are accepted, a line each: parts 2: nobody reads the count past 50
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", conflicts_with = "stimulus")]
     pub accept: Option<PathBuf>,
     /// What the inputs never do, a line each: Target 1..500; not (Start and Stop); Part for at least 3 scans
     #[arg(long, value_name = "FILE")]

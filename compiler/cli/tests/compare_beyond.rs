@@ -189,6 +189,56 @@ fn what_does_not_differ_is_not_found() {
     assert!(!text.contains("reachable after"), "{text}");
 }
 
+/// Only what is accepted passes: the search goes on beyond it, and compares what does not follow from it.
+#[test]
+fn what_is_not_accepted_fails() {
+    let accept = |name: &str, lines: &str| {
+        let path = folder().join(format!("{name}.txt"));
+        std::fs::write(&path, lines).expect("a file");
+        path.display().to_string()
+    };
+    let traps = accept("traps", "* 1: ok\n* 2: ok\n");
+    let text_apart = program(
+        "text_apart",
+        "VAR_INPUT s : BOOL; END_VAR VAR c : CTU; END_VAR
+VAR y : STRING; END_VAR VAR_OUTPUT q : BOOL; END_VAR
+c(s, FALSE, 3); y := CONCAT(y, 'aaaaaaaaaa'); q := LEN(y) > 90;",
+    );
+    let (code, text) = compare(&text_apart, "iec", "cscape", &["--accept", &traps]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.contains("`y` (width, "), "{text}");
+    let all = accept("traps_and_width", "* 1: ok\n* 2: ok\ny width: never so long\n");
+    let (code, text) = compare(&text_apart, "iec", "cscape", &["--accept", &all]);
+    assert_eq!(code, Some(0), "{text}");
+    // The programs themselves are not the same, where no counter has parted.
+    let declared = "VAR_INPUT s : BOOL; END_VAR VAR c : CTU; END_VAR VAR_OUTPUT x : BOOL; END_VAR\n";
+    let one = program("one_text", &format!("{declared}c(s, FALSE, 3); x := c.CV = 1 AND NOT s;"));
+    let other = program("other_text", &format!("{declared}c(s, FALSE, 3); x := FALSE;"));
+    let against = ["--accept", &traps, "--against", &other.display().to_string()];
+    let (code, text) = compare(&one, "iec", "cscape", &against);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.contains("`x` (variable, ") && text.contains("None of the traps explains it"), "{text}");
+    let known = accept("known", "* 1: ok\n* 2: ok\nx variable: it has no lamp\n");
+    let against = ["--accept", &known, "--against", &other.display().to_string()];
+    let (code, text) = compare(&one, "iec", "cscape", &against);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(text.contains("Beyond it, and what follows from it, the two are equal"), "{text}");
+}
+
+/// What is not found is not ruled out, whatever is accepted.
+#[test]
+fn nothing_found_is_not_accepted() {
+    let path = program(
+        "untried",
+        "VAR_INPUT v, w : INT; END_VAR VAR y : STRING; END_VAR VAR_OUTPUT q : BOOL; END_VAR
+IF v = w + 1000 THEN y := CONCAT(y, 'aaaaaaaaaa'); END_IF q := LEN(y) > 90;",
+    );
+    let accept = folder().join("nobody.txt");
+    std::fs::write(&accept, "* 1: nobody\n").expect("a file");
+    let (code, text) = compare(&path, "iec", "cscape", &["--accept", &accept.display().to_string()]);
+    assert_eq!(code, Some(4), "{text}");
+}
+
 /// Findings of a kind are accepted by its name.
 #[test]
 fn a_kind_is_accepted_by_its_name() {

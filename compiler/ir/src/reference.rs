@@ -55,7 +55,7 @@ pub fn addressable(program: &Program) -> BTreeSet<(StructId, FieldId)> {
 
 /// The variables that references may lead into: those whose addresses are taken, and those that hold an instance
 /// of which a variable's address is.
-pub(crate) fn reached(program: &Program) -> BTreeSet<(StructId, FieldId)> {
+pub fn reached(program: &Program) -> BTreeSet<(StructId, FieldId)> {
     let found = Finder::search(program);
     let owners: BTreeSet<_> = found.variables.iter().map(|it| it.0).collect();
     let mut all = found.variables;

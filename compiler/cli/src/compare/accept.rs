@@ -2,6 +2,7 @@
 
 use super::beyond::Kind;
 use super::finding::{Finding, Findings, Verdict};
+use super::pitfall::Pitfall;
 use std::path::Path;
 
 #[derive(Clone, Debug, Default)]
@@ -46,6 +47,11 @@ impl Accepted {
     /// Whether a finding is accepted.
     pub fn accepts(&self, finding: &Finding) -> bool {
         self.lines.iter().any(|it| it.is_of(finding))
+    }
+
+    /// Whether a finding of this kind, subject and trap would be.
+    pub fn takes(&self, kind: Kind, subject: &str, pitfall: Option<Pitfall>) -> bool {
+        self.lines.iter().any(|it| it.takes(kind, subject, pitfall))
     }
 
     /// Whether anything is accepted at all.
@@ -96,10 +102,14 @@ impl Line {
     }
 
     fn is_of(&self, finding: &Finding) -> bool {
-        let subject = self.subject == "*" || self.subject.eq_ignore_ascii_case(&finding.subject);
+        self.takes(finding.kind, &finding.subject, finding.pitfall)
+    }
+
+    fn takes(&self, kind: Kind, subject: &str, pitfall: Option<Pitfall>) -> bool {
+        let subject = self.subject == "*" || self.subject.eq_ignore_ascii_case(subject);
         let what = match self.what {
-            What::Trap(number) => finding.pitfall.is_some_and(|it| it.number() == number),
-            What::Kind(name) => finding.kind.name() == name,
+            What::Trap(number) => pitfall.is_some_and(|it| it.number() == number),
+            What::Kind(name) => kind.name() == name,
         };
         subject && what
     }
@@ -109,7 +119,6 @@ impl Line {
 mod tests {
     #![allow(clippy::unwrap_used)]
 
-    use super::super::pitfall::Pitfall;
     use super::*;
 
     fn finding(verdict: Verdict) -> Finding {

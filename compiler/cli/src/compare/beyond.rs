@@ -22,11 +22,21 @@ pub enum Kind {
     /// A variable that an event leaves as it is on one of the two.
     Retention,
     Fault,
+    /// A variable that differs, and no trap or kind says why: the two programs are not the same.
+    Variable,
 }
 
 impl Kind {
-    pub const ALL: [Self; 7] =
-        [Self::Counter, Self::Timer, Self::OneShot, Self::Latch, Self::Width, Self::Retention, Self::Fault];
+    pub const ALL: [Self; 8] = [
+        Self::Counter,
+        Self::Timer,
+        Self::OneShot,
+        Self::Latch,
+        Self::Width,
+        Self::Retention,
+        Self::Fault,
+        Self::Variable,
+    ];
 
     /// In findings, and in the lines that accept them.
     pub const fn name(self) -> &'static str {
@@ -38,6 +48,7 @@ impl Kind {
             Self::Width => "width",
             Self::Retention => "retention",
             Self::Fault => "fault",
+            Self::Variable => "variable",
         }
     }
 
@@ -48,9 +59,10 @@ impl Kind {
             Self::Timer | Self::OneShot | Self::Latch => {
                 "both systems run the same block, and what it is given differs"
             }
-            Self::Width => "the two systems compute it in other types",
+            Self::Width => "the two systems compute or hold it in other types",
             Self::Retention => "one system keeps it",
             Self::Fault => "one system faults here, and the other goes on",
+            Self::Variable => "no trap explains it: the two programs are not the same",
         }
     }
 
@@ -112,6 +124,19 @@ pub fn computed_apart(pair: &Pair) -> Vec<Candidate> {
         Some(Candidate { variable, at: *targets.get(&declared)? })
     };
     variables.filter_map(of).collect()
+}
+
+/// The variables that the two systems hold in strings of other lengths, one of each declaration.
+pub fn held_apart(pair: &Pair) -> Vec<Candidate> {
+    let mut seen = HashSet::new();
+    let capacity = |side: usize, at: usize| pair.scalar(side, at).ty.string_type();
+    let apart =
+        pair.matched(|it| it.role == Role::Variable).into_iter().filter(|[a, b]| capacity(0, *a) != capacity(1, *b));
+    let of = |variable: Matched| {
+        let declared = pair.scalar(0, variable[0]).field?;
+        seen.insert(declared).then(|| Candidate { variable, at: location(&pair.sides[0].program, declared) })
+    };
+    apart.filter_map(of).collect()
 }
 
 struct Walk<'p, 'f> {

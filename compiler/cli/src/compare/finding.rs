@@ -1,9 +1,11 @@
 //! For each counter and pitfall: reachable, with inputs that show it; impossible, and why; or undecided.
 
+use super::accept::Accepted;
 use super::beyond::{self, Kind};
 use super::facts::Name;
 use super::pair::{Matched, Pair};
 use super::pitfall::{self, Cause, Habits, Pitfall, Use};
+use super::scalar::Role;
 use super::search::{Outcome, Subject, World};
 use super::shrink::{self, Goal};
 use super::trace::Trace;
@@ -76,7 +78,7 @@ pub fn uses(pair: &Pair) -> Vec<Use> {
 
 impl Findings {
     /// What the systems' rules and the programs' texts alone say.
-    pub fn new(pair: &Pair, world: &World, uses: Vec<Use>, renamed: usize) -> Self {
+    pub fn new(pair: &Pair, world: &World, uses: &[Use], renamed: usize) -> Self {
         let mut all = Vec::new();
         for (at, usage) in uses.iter().enumerate() {
             let instances = pair.instances(at);
@@ -123,6 +125,11 @@ impl Findings {
         }
     }
 
+    /// Whether anything can be reached that is not accepted.
+    pub fn fail(&self, accepted: &Accepted) -> bool {
+        self.all.iter().any(|it| it.is_reachable() && !accepted.accepts(it))
+    }
+
     /// How many of counters are not decided.
     pub fn open(&self) -> usize {
         self.all.iter().filter(|it| it.is_open()).count()
@@ -143,7 +150,10 @@ impl Findings {
         let per_counter = Pitfall::of_counters().count();
         for (sighting, trace) in &traces {
             if let (Subject::Counter(at), Some(pitfall)) = sighting {
-                self.all[at * per_counter + pitfall.number() - 1].verdict = Verdict::Reachable(Some(trace.clone()));
+                let known = &mut self.all[at * per_counter + pitfall.number() - 1].verdict;
+                if !matches!(known, Verdict::Reachable(Some(_))) {
+                    *known = Verdict::Reachable(Some(trace.clone()));
+                }
             }
         }
         let all_seen = if outcome.found.is_some() { outcome.all_seen } else { outcome.complete };
@@ -172,6 +182,39 @@ impl Findings {
         {
             it.verdict = Verdict::Reachable(Some(trace.clone()));
         }
+    }
+
+    /// Variables that differ at the end of a trace which no trap explains, and no finding does.
+    pub fn unexplained(&mut self, pair: &Pair, differences: &[Matched], trace: &Trace) {
+        let found = differences.iter().filter(|it| pair.scalar(0, it[0]).role == Role::Variable);
+        let found: Vec<_> = found.map(|it| described(pair, Subject::Parted(*it))).collect();
+        let is_known =
+            |it: &Finding, at| it.at == at && !matches!(it.verdict, Verdict::Impossible(_) | Verdict::Undecided);
+        let explains = |it: &Finding| {
+            let kinds = matches!(it.kind, Kind::Width | Kind::Retention);
+            kinds
+                && matches!(it.verdict, Verdict::Reachable(_))
+                && found.iter().any(|(_, subject, _)| *subject == it.subject)
+        };
+        if self.all.iter().any(explains) {
+            return;
+        }
+        for (kind, subject, at) in found {
+            if !self.all.iter().any(|it| it.subject == subject && is_known(it, at)) {
+                let verdict = Verdict::Reachable(Some(trace.clone()));
+                self.all.push(Finding { kind, subject, at, pitfall: None, verdict });
+            }
+        }
+    }
+
+    /// The finding of a variable that says why it differs, where no trap does.
+    pub fn reason_for(&self, path: &str) -> Option<&Finding> {
+        let says = |it: &&Finding| {
+            it.subject == path
+                && matches!(it.kind, Kind::Width | Kind::Retention)
+                && matches!(it.verdict, Verdict::Reachable(_))
+        };
+        self.all.iter().find(says)
     }
 
     /// What is seen of no counter's trap: the shortest trace is the first of several.
@@ -205,14 +248,15 @@ impl Findings {
 
 /// What the text does not say beforehand.
 fn described(pair: &Pair, subject: Subject) -> (Kind, String, Option<Location>) {
-    let variable = |it: Matched| {
+    let variable = |it: Matched, kind: Kind| {
         let scalar = pair.scalar(0, it[0]);
         let at = scalar.field.map(|it| beyond::location(&pair.sides[0].program, it));
-        (Kind::Retention, scalar.path.clone(), at)
+        (kind, scalar.path.clone(), at)
     };
     match subject {
         Subject::Counter(at) => (Kind::Counter, pair.instances(at)[0].path.clone(), None),
-        Subject::Variable(it) => variable(it),
+        Subject::Variable(it) => variable(it, Kind::Retention),
+        Subject::Parted(it) => variable(it, Kind::Variable),
         Subject::Fault(side, at) => (Kind::Fault, pair.sides[side].dialect.name().to_owned(), Some(at)),
         Subject::Block(_) | Subject::Computed(_) => unreachable!("they are listed before the search"),
     }
@@ -223,7 +267,7 @@ impl Finding {
     pub fn is_reachable(&self) -> bool {
         let follows = match self.kind {
             Kind::Timer | Kind::OneShot | Kind::Latch => self.pitfall.is_none(),
-            Kind::Counter | Kind::Width | Kind::Retention | Kind::Fault => false,
+            Kind::Counter | Kind::Width | Kind::Retention | Kind::Fault | Kind::Variable => false,
         };
         matches!(self.verdict, Verdict::Reachable(Some(_))) && !follows
     }

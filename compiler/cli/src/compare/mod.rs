@@ -36,6 +36,9 @@ mod pitfall;
 mod accept;
 mod finding;
 
+mod dependency;
+mod tolerance;
+
 mod report;
 mod scope;
 
@@ -94,25 +97,80 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
     let same_program = is_same(&program, &moved);
     let sides = [Side::new(args.from, program, cycle)?, Side::new(args.to, moved, cycle)?];
     let mut pair = Pair::new(sides, &[]);
-    let world = world(&mut pair, args)?;
+    let mut world = world(&mut pair, args)?;
     let only: Vec<String> = args.vars.iter().flat_map(|it| it.split(',')).map(|it| it.trim().to_owned()).collect();
     pair.compare_only(&only);
     if pair.compared.is_empty() && !only.is_empty() {
         return Err("--vars names no variable that both systems' programs have".to_owned());
     }
     let uses = finding::uses(&pair);
-    let mut findings = Findings::new(&pair, &world, uses, renamed);
+    let mut findings = Findings::new(&pair, &world, &uses, renamed);
+    let accepted = args.accept.as_deref().map(accept::Accepted::read).transpose()?.unwrap_or_default();
     let verdict = if same_program && args.stimulus.is_none() {
         findings.all_impossible("both systems run the same program");
         Verdict::Equal("both systems run the same program: no statement, type, block or retention differs".to_owned())
     } else {
         verdict(&mut pair, &world, args, &mut findings)?
     };
+    let rest = match &verdict {
+        Verdict::Differs { .. } if args.stimulus.is_none() && accepted.accepts_any() && !findings.fail(&accepted) => {
+            world.tolerance = Some(tolerance::Tolerance::of(&pair, &world, &uses, &accepted));
+            Some(beyond_accepted(&mut pair, &world, args, &mut findings))
+        }
+        Verdict::Differs { .. } | Verdict::Equal(_) | Verdict::NotFound { .. } => None,
+    };
+    // What is not accepted is shown in place of what is.
+    let (verdict, rest) = match rest {
+        Some(it @ Verdict::Differs { .. }) => (it, None),
+        rest => (verdict, rest),
+    };
     if let (Some(path), Verdict::Differs { rows, trace, .. }) = (args.picture(), &verdict) {
         picture::draw(&mut pair, &world, args, path, (rows, trace.as_ref()))?;
     }
-    let accepted = args.accept.as_deref().map(accept::Accepted::read).transpose()?.unwrap_or_default();
-    report.print(&pair, &world, &verdict, &findings, &accepted)
+    report.print(&pair, &world, &Judged { verdict: &verdict, rest: rest.as_ref() }, &findings, &accepted)
+}
+
+/// What the comparison came to; and, where all that it has found is accepted, what it comes to beyond that.
+pub struct Judged<'v> {
+    verdict: &'v Verdict,
+    rest: Option<&'v Verdict>,
+}
+
+/// The search goes on past what is accepted.
+fn beyond_accepted(pair: &mut Pair, world: &World, args: &Compare, findings: &mut Findings) -> Verdict {
+    let outcome = strategy::search(pair, world, args.budget, 0);
+    findings.note(pair, world, &outcome, false);
+    if let Some(trace) = &outcome.found {
+        let steps: Vec<pair::Step> = trace.steps().cloned().collect();
+        pair.init();
+        for step in &steps {
+            let faults = pair.scan(step);
+            search::look(pair, world, step.event, faults);
+        }
+        pair.compared = world.tolerance.iter().flat_map(|it| pair.remaining_compared(it)).collect();
+        return differs(pair, world, trace, false, findings);
+    }
+    if outcome.complete && covers_all(pair, world) {
+        return Verdict::Equal(scope::every_state(pair, world, &outcome));
+    }
+    scope::not_found(pair, world, &outcome)
+}
+
+/// Whether the search leaves nothing out that the inputs could do.
+fn covers_all(pair: &Pair, world: &World) -> bool {
+    world.alphabet.is_exact() && pair.whole && !alphabet::has_untried(pair)
+}
+
+fn differs(pair: &mut Pair, world: &World, trace: &Trace, shortest: bool, findings: &mut Findings) -> Verdict {
+    let steps: Vec<pair::Step> = trace.steps().cloned().collect();
+    let rows = pair.replay(&steps);
+    let differences = rows.last().map_or_else(Vec::new, |it| pair.differences(it));
+    let cause = pitfall::cause(pair, &rows, &differences, &world.habits);
+    findings.explain(&cause, trace);
+    if cause.pitfall.is_none() {
+        findings.unexplained(pair, &differences, trace);
+    }
+    Verdict::Differs { rows, trace: Some(trace.clone()), shortest }
 }
 
 /// The other system's program where it is another text: the user's, or, for Logix, one with its
@@ -157,7 +215,9 @@ fn world(pair: &mut Pair, args: &Compare) -> Result<World, String> {
     let wait = facts.iter().flat_map(|it| it.times.last().copied()).max().unwrap_or(0);
     let longest = usize::try_from(wait / pair.shortest_cycle().max(1)).unwrap_or(usize::MAX);
     let habits = finding::uses(pair).into_iter().map(|it| it.habits).collect();
-    let computed = if args.against.is_none() { beyond::computed_apart(pair) } else { Vec::new() };
+    let mut computed = if args.against.is_none() { beyond::computed_apart(pair) } else { Vec::new() };
+    let known: Vec<_> = computed.iter().map(|it| it.variable).collect();
+    computed.extend(beyond::held_apart(pair).into_iter().filter(|it| !known.contains(&it.variable)));
     Ok(World {
         alphabet,
         assumptions,
@@ -168,6 +228,7 @@ fn world(pair: &mut Pair, args: &Compare) -> Result<World, String> {
         inputs_written: alphabet::are_written(pair, facts),
         habits,
         computed,
+        tolerance: None,
     })
 }
 
@@ -176,15 +237,11 @@ fn verdict(pair: &mut Pair, world: &World, args: &Compare, findings: &mut Findin
         return stimulus::follow(pair, args);
     }
     let outcome = strategy::search(pair, world, args.budget, findings.open());
-    let exact = world.alphabet.is_exact() && pair.whole && !alphabet::has_untried(pair);
+    let exact = covers_all(pair, world);
     findings.note(pair, world, &outcome, exact);
     if let Some(trace) = outcome.found.clone() {
-        let steps: Vec<pair::Step> = trace.steps().cloned().collect();
-        let rows = pair.replay(&steps);
         let shortest = world.alphabet.complete && outcome.depth + 1 >= trace.scans();
-        let differences = rows.last().map_or_else(Vec::new, |it| pair.differences(it));
-        findings.explain(&pitfall::cause(pair, &rows, &differences, &world.habits), &trace);
-        return Ok(Verdict::Differs { rows, trace: Some(trace), shortest });
+        return Ok(differs(pair, world, &trace, shortest, findings));
     }
     if outcome.complete && exact {
         return Ok(Verdict::Equal(scope::every_state(pair, world, &outcome)));

@@ -2,12 +2,14 @@
 
 use super::normal::{self, Digest, Timer};
 use super::scalar::{self, Instance, Role, Scalar, Scalars};
+use super::tolerance::{Passed, Tolerance};
 use crate::machine::Native;
 use staunch_frontend::Dialect;
 use staunch_host::{Bookmark, Drive, Event, Machine, Snapshot};
 use staunch_ir::{Program, Value};
 use staunch_runtime::{Fault, FaultKind};
 use std::collections::HashMap;
+use std::ops::Range;
 
 /// The program as one system runs it.
 pub struct Side {
@@ -68,6 +70,7 @@ pub type Matched = [usize; 2];
 pub struct Place {
     snapshots: [Snapshot; 2],
     bookmarks: [Bookmark; 2],
+    passed: Passed,
 }
 
 /// Bytes whose equality is that of values; and scalars that the two sides hold in different types.
@@ -75,6 +78,14 @@ pub struct Place {
 struct Comparison {
     runs: Vec<Run>,
     singles: Vec<Matched>,
+}
+
+/// What is compared after some accepted findings have been seen, and what of the states decides nothing of it.
+#[derive(Debug)]
+struct Remaining {
+    is_empty: bool,
+    comparison: Comparison,
+    idle: [Vec<Range<usize>>; 2],
 }
 
 /// Scalars that lie one after the other on both sides.
@@ -113,6 +124,10 @@ pub struct Pair {
     first: bool,
     /// A program had not run since an event.
     restarted: bool,
+    /// Which accepted findings have been seen since the start.
+    passed: Passed,
+    /// What is compared after those have been seen.
+    remaining: HashMap<Passed, Remaining>,
     /// Events that are said never to happen.
     pub never: Vec<Event>,
     /// Scans that both sides have made together.
@@ -186,6 +201,8 @@ impl Pair {
             rest: Vec::new(),
             first: false,
             restarted: false,
+            passed: Passed::new(),
+            remaining: HashMap::new(),
             never: Vec::new(),
             scans: 0,
         };
@@ -298,11 +315,13 @@ impl Pair {
             side.machine.init();
             side.drive.go_to(&side.start);
         }
+        self.passed.clear();
     }
 
     pub fn place(&self) -> Place {
         let snapshots = self.sides.each_ref().map(|it| it.machine.snapshot());
-        Place { snapshots, bookmarks: self.sides.each_ref().map(|it| it.drive.bookmark()) }
+        let bookmarks = self.sides.each_ref().map(|it| it.drive.bookmark());
+        Place { snapshots, bookmarks, passed: self.passed.clone() }
     }
 
     pub fn go_to(&mut self, place: &Place) {
@@ -310,6 +329,7 @@ impl Pair {
             side.machine.compiled().restore(snapshot);
             side.drive.go_to(bookmark);
         }
+        self.passed.clone_from(&place.passed);
     }
 
     /// Bytes of both states.
@@ -384,6 +404,8 @@ impl Pair {
             }
             let now = side.drive.next();
             side.timers.iter().for_each(|it| it.settle(state, now));
+            let idle = self.remaining.get(&self.passed).map(|it| &it.idle[number]);
+            idle.into_iter().flatten().for_each(|it| state[it.clone()].fill(0));
             all.extend_from_slice(&side.digest.of(state).to_ne_bytes());
             if side.reads_clock {
                 all.extend_from_slice(&now.to_ne_bytes());
@@ -393,6 +415,7 @@ impl Pair {
             all.extend_from_slice(&wait.to_ne_bytes());
             all.push(u8::from(fresh));
         }
+        all.extend(self.passed.iter().flat_map(|it| it.to_ne_bytes()));
         all.extend_from_slice(ages);
         self.rest = all;
         normal::hash(&self.rest)
@@ -415,6 +438,36 @@ impl Pair {
     /// Whether the compared values, or how the scan ended, differ.
     pub fn differs(&self, faults: Faults) -> bool {
         self.faults_differ(faults) || !self.all_equal(&self.compared_bytes)
+    }
+
+    /// Whether anything differs that does not follow from accepted findings seen since the start; and whether
+    /// nothing is left to compare.
+    pub fn differs_beyond(&mut self, tolerance: &Tolerance, seen: &Passed, faults: Faults) -> (bool, bool) {
+        self.passed.resize(self.passed.len().max(seen.len()), 0);
+        self.passed.iter_mut().zip(seen).for_each(|(all, it)| *all |= it);
+        if !self.remaining.contains_key(&self.passed) {
+            let remaining = self.remaining_compared(tolerance);
+            let comparison = self.comparison(&remaining);
+            let idle = [0, 1].map(|side| tolerance.idle_bytes(side, &self.passed));
+            let known = Remaining { is_empty: remaining.is_empty(), comparison, idle };
+            self.remaining.insert(self.passed.clone(), known);
+        }
+        let Remaining { is_empty, comparison, .. } = &self.remaining[&self.passed];
+        if self.faults_differ(faults) {
+            let accepted = (0..2).all(|side| faults[side].is_none() || tolerance.accepts_fault(side));
+            return (!accepted, *is_empty);
+        }
+        (!self.all_equal(comparison), *is_empty && tolerance.is_faultless())
+    }
+
+    /// What is still compared after the accepted findings that have been seen.
+    pub fn remaining_compared(&self, tolerance: &Tolerance) -> Vec<Matched> {
+        self.compared.iter().copied().filter(|it| tolerance.remains(*it, &self.passed)).collect()
+    }
+
+    /// Whether these do not show the same.
+    pub fn differs_now(&self, matched: Matched) -> bool {
+        !self.equal(matched, self.states())
     }
 
     pub fn faults_differ(&self, faults: Faults) -> bool {

@@ -5,13 +5,13 @@ mod objects;
 mod table;
 
 use super::accept::Accepted;
-use super::finding::{Finding, Findings};
+use super::finding::Findings;
 use super::missing::Missing;
 use super::pair::Pair;
 use super::pitfall::{self, Cause, Pitfall};
 use super::rejection::Rejection;
 use super::search::World;
-use super::{Verdict, stimulus};
+use super::{Judged, Verdict, stimulus};
 use crate::args::{Compare, MessageFormat};
 use crate::session::Session;
 use crate::{NOT_FOUND, REJECTED, output};
@@ -44,10 +44,11 @@ impl Report<'_> {
         &self,
         pair: &Pair,
         world: &World,
-        verdict: &Verdict,
+        judged: &Judged,
         findings: &Findings,
         accepted: &Accepted,
     ) -> Result<u8, String> {
+        let verdict = judged.verdict;
         let cause = match verdict {
             Verdict::Differs { rows, .. } => {
                 let differences = rows.last().map_or_else(Vec::new, |it| pair.differences(it));
@@ -58,11 +59,11 @@ impl Report<'_> {
         if let (Some(path), Verdict::Differs { trace: Some(trace), .. }) = (&self.args.save_stimulus, verdict) {
             output::write(path, stimulus::text(pair, world, trace).as_bytes())?;
         }
-        let code = self.code(verdict, &cause, findings, accepted);
+        let code = self.code(judged);
         let text = if self.json() {
-            self.objects(pair, world, verdict, findings, accepted, &cause)
+            self.objects(pair, world, judged, findings, accepted, &cause)
         } else {
-            self.human(pair, world, verdict, findings, accepted, &cause)
+            self.human(pair, world, judged, findings, accepted, &cause)
         };
         if !self.session.common.quiet || code != 0 {
             output::print(text.as_bytes())?;
@@ -73,19 +74,13 @@ impl Report<'_> {
         Ok(code)
     }
 
-    /// 0 where nothing differs, or what does is accepted with what is undecided.
-    fn code(&self, verdict: &Verdict, cause: &Cause, findings: &Findings, accepted: &Accepted) -> u8 {
-        let open = |wanted: fn(&Finding) -> bool| findings.all.iter().any(|it| wanted(it) && !accepted.accepts(it));
-        let reachable = open(Finding::is_reachable);
-        let undecided = open(Finding::is_open);
-        let explained = cause.pitfall.is_some() && !reachable;
-        match verdict {
+    /// 0 where nothing differs, or nothing beyond what is accepted: both are shown, and not only not found.
+    fn code(&self, judged: &Judged) -> u8 {
+        match (judged.verdict, judged.rest) {
             _ if !self.missing.is_empty() => REJECTED,
-            Verdict::Differs { .. } if !explained || !accepted.accepts_any() => REJECTED,
-            Verdict::Differs { .. } if undecided => NOT_FOUND,
-            Verdict::Differs { .. } | Verdict::Equal(_) => 0,
-            Verdict::NotFound { .. } if accepted.accepts_any() && !undecided => 0,
-            Verdict::NotFound { .. } => NOT_FOUND,
+            (Verdict::Equal(_), _) | (Verdict::Differs { .. }, Some(Verdict::Equal(_))) => 0,
+            (Verdict::NotFound { .. }, _) | (Verdict::Differs { .. }, Some(Verdict::NotFound { .. })) => NOT_FOUND,
+            (Verdict::Differs { .. }, None | Some(Verdict::Differs { .. })) => REJECTED,
         }
     }
 
@@ -114,7 +109,7 @@ impl Report<'_> {
         &self,
         pair: &Pair,
         world: &World,
-        verdict: &Verdict,
+        judged: &Judged,
         findings: &Findings,
         accepted: &Accepted,
         cause: &Cause,
@@ -137,8 +132,11 @@ impl Report<'_> {
             let to = to.to_ascii_uppercase();
             let _ = writeln!(text, "Not known: no public document says whether {to} has {}.", each.join(", "));
         }
-        match verdict {
-            Verdict::Differs { rows, shortest, .. } => text += &self.table(pair, world, rows, *shortest, cause),
+        match judged.verdict {
+            Verdict::Differs { rows, shortest, .. } => {
+                text += &self.table(pair, world, rows, *shortest, cause, findings);
+                text += &judged.beyond();
+            }
             Verdict::Equal(why) => {
                 let _ = writeln!(text, "{from} and {to} are equal: {why}.");
             }
@@ -177,6 +175,23 @@ impl Report<'_> {
             text.push('\n');
         }
         text
+    }
+}
+
+impl Judged<'_> {
+    /// What is said of the search past what is accepted.
+    fn beyond(&self) -> String {
+        match self.rest {
+            None | Some(Verdict::Differs { .. }) => String::new(),
+            Some(Verdict::Equal(why)) => {
+                format!("That is accepted. Beyond it, and what follows from it, the two are equal: {why}.\n")
+            }
+            Some(Verdict::NotFound { tried, left }) => format!(
+                "That is accepted. Beyond it no difference was found, and none is ruled out.\nTried: {}.\nNot tried: {}.\n",
+                tried.join(", "),
+                left.join("; ")
+            ),
+        }
     }
 }
 

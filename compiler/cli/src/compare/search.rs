@@ -6,6 +6,7 @@ use super::assume::Assumptions;
 use super::beyond::Candidate;
 use super::pair::{Faults, Matched, Pair, Step};
 use super::pitfall::{self, Habits, Pitfall};
+use super::tolerance::Tolerance;
 use super::trace::Trace;
 use staunch_host::Event;
 use staunch_ir::{Location, Value};
@@ -34,6 +35,8 @@ pub struct World {
     pub habits: Vec<Habits>,
     /// Variables that the two systems compute in other types.
     pub computed: Vec<Candidate>,
+    /// What is accepted, where the search goes on past it.
+    pub tolerance: Option<Tolerance>,
 }
 
 /// What a pitfall was seen on.
@@ -47,6 +50,8 @@ pub enum Subject {
     Variable(Matched),
     /// A variable that the two systems compute in other types, by its position among the candidates.
     Computed(usize),
+    /// A variable that is accepted to differ, or that does for no known reason.
+    Parted(Matched),
     /// A fault on one side, and where.
     Fault(usize, Location),
 }
@@ -58,6 +63,8 @@ pub type Sighting = (Subject, Option<Pitfall>);
 pub struct Seen {
     /// The compared values differ.
     pub differs: bool,
+    /// All that is compared follows from what is accepted.
+    pub nothing_left: bool,
     pub sightings: Vec<Sighting>,
 }
 
@@ -134,7 +141,7 @@ impl<'p> Search<'p> {
         self.left = self.left.saturating_sub(1);
         let faults = self.pair.scan(step);
         let seen = look(self.pair, self.world, step.event, faults);
-        self.ended = seen.differs && !self.goes_on || faults.iter().any(Option::is_some);
+        self.ended = seen.differs && !self.goes_on || seen.nothing_left || faults.iter().any(Option::is_some);
         seen
     }
 
@@ -166,7 +173,18 @@ impl<'p> Search<'p> {
 }
 
 /// What the last scan has made differ that did not before.
-pub fn look(pair: &Pair, world: &World, event: Option<Event>, faults: Faults) -> Seen {
+pub fn look(pair: &mut Pair, world: &World, event: Option<Event>, faults: Faults) -> Seen {
+    let mut sightings = sightings(pair, world, event, faults);
+    let Some(tolerance) = &world.tolerance else {
+        return Seen { differs: pair.differs(faults), nothing_left: false, sightings };
+    };
+    let passed = tolerance.passed(pair, event, &sightings);
+    sightings.extend(tolerance.parted(pair));
+    let (differs, nothing_left) = pair.differs_beyond(tolerance, &passed, faults);
+    Seen { differs, nothing_left, sightings }
+}
+
+fn sightings(pair: &Pair, world: &World, event: Option<Event>, faults: Faults) -> Vec<Sighting> {
     let differs = pair.differs(faults);
     let mut sightings = Vec::new();
     if !pair.counters_agree() {
@@ -190,7 +208,7 @@ pub fn look(pair: &Pair, world: &World, event: Option<Event>, faults: Faults) ->
         let restarted = pair.newly_different();
         sightings.extend(restarted.into_iter().map(|it| (Subject::Variable(it), Some(Pitfall::RESTART))));
     }
-    Seen { differs, sightings }
+    sightings
 }
 
 /// The blocks that have parted in the last scan, by an event or by what they are given.

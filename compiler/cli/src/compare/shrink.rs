@@ -81,11 +81,10 @@ impl Shrink<'_> {
             }
             before = &step.inputs;
             let faults = self.pair.scan(step);
+            let seen = search::look(self.pair, self.world, step.event, faults);
             let shown = match self.goal {
-                Goal::Differ => self.pair.differs(faults),
-                Goal::Sees(sighting) => {
-                    search::look(self.pair, self.world, step.event, faults).sightings.contains(&sighting)
-                }
+                Goal::Differ => seen.differs,
+                Goal::Sees(sighting) => seen.sightings.contains(&sighting),
             };
             if shown {
                 return Some(number);

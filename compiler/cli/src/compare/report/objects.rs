@@ -4,7 +4,7 @@ use super::super::finding::{self, Finding, Findings};
 use super::super::pair::{Matched, Pair, Row};
 use super::super::pitfall::Cause;
 use super::super::search::World;
-use super::super::{Verdict, accept::Accepted, stimulus};
+use super::super::{Judged, Verdict, accept::Accepted, stimulus};
 use super::table::{Line, SHOWN};
 use super::{Report, number};
 use staunch_host::json_text as quoted;
@@ -16,7 +16,7 @@ impl Report<'_> {
         &self,
         pair: &Pair,
         world: &World,
-        verdict: &Verdict,
+        judged: &Judged,
         findings: &Findings,
         accepted: &Accepted,
         cause: &Cause,
@@ -46,7 +46,7 @@ impl Report<'_> {
         }
         let rewritten: Vec<_> =
             self.notes.iter().map(|(before, after)| format!("[{},{}]", quoted(before), quoted(after))).collect();
-        let name = match verdict {
+        let name = match judged.verdict {
             Verdict::Differs { .. } => "different",
             Verdict::Equal(_) => "equal",
             Verdict::NotFound { .. } => "not found",
@@ -57,7 +57,7 @@ impl Report<'_> {
             self.renamed,
             rewritten.join(",")
         );
-        match verdict {
+        match judged.verdict {
             Verdict::Differs { rows, trace, shortest } => {
                 text += &self.difference(pair, rows, *shortest, cause);
                 let saved = trace.as_ref().map_or("null".to_owned(), |it| quoted(&stimulus::text(pair, world, it)));
@@ -71,6 +71,12 @@ impl Report<'_> {
                 let _ = write!(text, ",\"tried\":[{}],\"not_tried\":[{}]", list(tried), list(left));
             }
         }
+        let beyond = judged.rest.map_or("null", |it| match it {
+            Verdict::Differs { .. } => "\"different\"",
+            Verdict::Equal(_) => "\"equal\"",
+            Verdict::NotFound { .. } => "\"not found\"",
+        });
+        let _ = write!(text, ",\"beyond_accepted\":{beyond}");
         text + "}\n"
     }
 

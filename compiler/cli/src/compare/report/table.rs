@@ -1,5 +1,6 @@
 //! A difference as a table: the scans that tell it, with the inputs that change and what parts.
 
+use super::super::finding::Findings;
 use super::super::line_of;
 use super::super::pair::{Matched, Pair, Row};
 use super::super::pitfall::Cause;
@@ -24,7 +25,15 @@ pub(super) struct Line {
 }
 
 impl Report<'_> {
-    pub(super) fn table(&self, pair: &Pair, world: &World, rows: &[Row], shortest: bool, cause: &Cause) -> String {
+    pub(super) fn table(
+        &self,
+        pair: &Pair,
+        world: &World,
+        rows: &[Row],
+        shortest: bool,
+        cause: &Cause,
+        findings: &Findings,
+    ) -> String {
         let [from, to] = self.names();
         let Some(last) = rows.last() else { return String::new() };
         let differences = pair.differences(last);
@@ -74,9 +83,21 @@ impl Report<'_> {
                 let _ = writeln!(text, "Trap {}{counter}: {}", pitfall.number(), pitfall.sentence());
                 let _ = writeln!(text, "What to do: {}", pitfall.advice());
             }
-            None => text.push_str("None of the traps explains it; see `docs/compare.md`.\n"),
+            None => text += &self.unexplained(pair, &differences, findings),
         }
         text
+    }
+
+    /// Why it differs, where it is not by a trap.
+    fn unexplained(&self, pair: &Pair, differences: &[Matched], findings: &Findings) -> String {
+        let known = differences.iter().find_map(|it| findings.reason_for(pair.path(*it)));
+        match known {
+            Some(it) => {
+                let place = it.at.map_or_else(String::new, |at| format!(", {}", self.place(at)));
+                format!("`{}` ({}{place}): {}.\n", it.subject, it.kind.name(), it.kind.reason())
+            }
+            None => "None of the traps explains it; see `docs/compare.md`.\n".to_owned(),
+        }
     }
 
     /// The inputs that change, or all of them.
