@@ -24,9 +24,13 @@ struct Good {
     found: Option<(Time, Found)>,
 }
 
+/// Sequence numbers that saving reaches in no life of a machine: past them a new file counts from 1.
+const MAX_SEQUENCE: u64 = u64::MAX / 2;
+
 impl<S: Storage> Keeper<S> {
     /// `found` is what was recovered from the kept file, if its slots are of the layout.
     pub fn new(storage: S, layout: Layout, found: Option<(Time, Found)>) -> Self {
+        let found = found.filter(|it| it.1.sequence < MAX_SEQUENCE);
         let sequence = found.as_ref().map_or(0, |(_, it)| it.sequence);
         let good = found.map(|it| Good { slot: it.1.slot, found: Some(it) });
         Self { storage, layout, good, sequence, buffer: Vec::new() }

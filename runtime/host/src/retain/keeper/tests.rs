@@ -107,3 +107,18 @@ fn a_file_that_cannot_be_written_inside_is_made_anew() {
     keeper.save(2, &values(2)).unwrap();
     assert!(keeper.layout.is_of(&disk.cached().unwrap()));
 }
+
+#[test]
+fn a_file_with_the_last_of_all_sequence_numbers_is_made_anew() {
+    for sequence in [u64::MAX, u64::MAX - 1, u64::MAX / 2] {
+        let old = layout().encode_file(Record { sequence, clock: 1, values: &values(1) });
+        let (number, found) = start(Some(&old));
+        assert_eq!(number, 1);
+        let disk = Faulty::new(1, Faults::default(), None);
+        let mut keeper = Keeper::new(disk.clone(), layout(), found);
+        for number in 2..5 {
+            keeper.save(i64::from(number), &values(number)).unwrap();
+            assert_eq!(start(disk.after_power_cut().as_deref()).0, number, "after {sequence}");
+        }
+    }
+}
