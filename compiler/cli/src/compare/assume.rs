@@ -20,6 +20,13 @@ pub struct Assumptions {
     pub lines: Vec<String>,
 }
 
+/// The limits of an input's subrange; where the two systems' differ, what is in both.
+fn subrange(pair: &Pair, scalars: [usize; 2]) -> Option<(i128, i128)> {
+    let both = [0, 1].map(|side| pair.sides[side].program.range(pair.scalar(side, scalars[side]).ty));
+    let limits = both.into_iter().flatten();
+    limits.reduce(|all, it| (all.0.max(it.0), all.1.min(it.1)))
+}
+
 #[derive(Clone, Debug)]
 enum Condition {
     Is(usize),
@@ -43,16 +50,19 @@ impl Assumptions {
     pub fn read(path: &Path, pair: &Pair) -> Result<Self, String> {
         let text = std::fs::read_to_string(path).map_err(|it| format!("cannot read {}: {it}", path.display()))?;
         let names: Vec<String> = pair.inputs.iter().map(|it| pair.path(it.scalars).to_owned()).collect();
-        Self::parse(&text, &names).map_err(|(line, text)| format!("{}:{line}: {text}", path.display()))
+        let subranges: Vec<_> = pair.inputs.iter().map(|it| subrange(pair, it.scalars)).collect();
+        let found = Self::parse(&text, &names, &subranges);
+        found.map_err(|(line, text)| format!("{}:{line}: {text}", path.display()))
     }
 
     /// With the number of the line that is wrong.
-    fn parse(text: &str, names: &[String]) -> Result<Self, (usize, String)> {
+    fn parse(text: &str, names: &[String], subranges: &[Option<(i128, i128)>]) -> Result<Self, (usize, String)> {
         let mut found = Self::default();
         for (number, line) in text.lines().enumerate() {
             let line = line.split('#').next().unwrap_or_default().trim();
             if !line.is_empty() {
                 found.line(line, names).map_err(|it| (number + 1, it))?;
+                found.fits(names, subranges).map_err(|it| (number + 1, it))?;
                 found.lines.push(line.to_owned());
             }
         }
@@ -99,6 +109,17 @@ impl Assumptions {
             }
         }
         Ok(())
+    }
+
+    /// The last range lies within the values that the input's type has.
+    fn fits(&self, names: &[String], subranges: &[Option<(i128, i128)>]) -> Result<(), String> {
+        let Some((input, low, high)) = self.ranges.last() else { return Ok(()) };
+        match subranges.get(*input).copied().flatten() {
+            Some((least, most)) if *low < least || *high > most => {
+                Err(format!("`{}` is declared as {least}..{most}, and {low}..{high} is not within that", names[*input]))
+            }
+            Some(_) | None => Ok(()),
+        }
     }
 
     /// Takes values outside of an input's range away, and tries its ends.
@@ -272,7 +293,8 @@ mod tests {
     use super::*;
 
     fn parsed(text: &str) -> Result<Assumptions, (usize, String)> {
-        Assumptions::parse(text, &["Start".to_owned(), "Stop".to_owned(), "Target".to_owned()])
+        let names = ["Start".to_owned(), "Stop".to_owned(), "Target".to_owned()];
+        Assumptions::parse(text, &names, &[None, None, Some((0, 900))])
     }
 
     fn inputs(start: bool, stop: bool, target: i16) -> Vec<Value> {
@@ -308,6 +330,13 @@ mod tests {
         let second = found.age(&first, &high, &high).unwrap();
         let third = found.age(&second, &high, &high).unwrap();
         assert_eq!(found.age(&third, &high, &low), Some(vec![1]));
+    }
+
+    #[test]
+    fn a_range_lies_within_the_subrange() {
+        assert!(parsed("Target 0..900").is_ok());
+        let (line, text) = parsed("no run\nTarget 5..901").unwrap_err();
+        assert_eq!((line, text.as_str()), (2, "`Target` is declared as 0..900, and 5..901 is not within that"));
     }
 
     #[test]
