@@ -25,6 +25,8 @@ pub struct Session {
     pub tests: Vec<Test>,
     /// Where execution is counted.
     pub coverage: Vec<CoveragePoint>,
+    /// Where a move to another system changes a pin's name.
+    pub renamed: Vec<Span>,
     /// At their levels.
     pub diagnostics: Vec<Diagnostic>,
     pub compile_time: Duration,
@@ -70,7 +72,7 @@ impl Session {
     pub fn check(common: &Common, files: &Files) -> Result<u8, String> {
         let check = |sources: &Sources, options: &Options| {
             let diagnostics = staunch_frontend::check(sources, &Options { is_run: false, ..Options::clone(options) });
-            Compilation { program: None, diagnostics, tests: Vec::new(), coverage: Vec::new() }
+            Compilation { program: None, diagnostics, tests: Vec::new(), coverage: Vec::new(), renamed: Vec::new() }
         };
         let (session, errors) = Self::begin(common, files, check)?;
         if errors > 0 {
@@ -107,8 +109,9 @@ impl Session {
 
     /// Of sources that nothing has been said of yet.
     fn new(common: Common, project: Project, first: PathBuf, sources: Sources, compile_time: Duration) -> Self {
-        let (program, tests, coverage, diagnostics) = (None, Vec::new(), Vec::new(), Vec::new());
-        Self { common, project, first, sources, program, tests, coverage, diagnostics, compile_time }
+        let (program, tests, coverage) = (None, Vec::new(), Vec::new());
+        let (renamed, diagnostics) = (Vec::new(), Vec::new());
+        Self { common, project, first, sources, program, tests, coverage, renamed, diagnostics, compile_time }
     }
 
     /// With `-v`: the project file and the sources.
@@ -177,6 +180,7 @@ impl Session {
         self.program = compilation.program.filter(|_| errors == 0);
         self.tests = compilation.tests;
         self.coverage = compilation.coverage;
+        self.renamed = compilation.renamed;
         self.diagnostics = diagnostics;
         Ok(errors)
     }

@@ -149,7 +149,9 @@ fn program(name: &str, source: &str) -> PathBuf {
 
 fn compare(path: &PathBuf, from: &str, to: &str, more: &[&str]) -> (Option<i32>, String) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
-    command.arg("compare").arg(path).args(["--from", from, "--to", to, "-A", "warnings", "--budget", "400000"]);
+    command.arg("compare").arg(path).args(["--from", from, "--to", to, "-A", "warnings", "--budget"]);
+    command.arg(if more.contains(&"--budget") { "20000" } else { "400000" });
+    let more: Vec<&&str> = more.iter().filter(|it| !["--budget", "20000"].contains(*it)).collect();
     let output = command.args(more).env("NO_COLOR", "1").output().expect("the command starts");
     (output.status.code(), String::from_utf8_lossy(&output.stdout).into_owned())
 }
@@ -237,6 +239,37 @@ IF v = w + 1000 THEN y := CONCAT(y, 'aaaaaaaaaa'); END_IF q := LEN(y) > 90;",
     std::fs::write(&accept, "* 1: nobody\n").expect("a file");
     let (code, text) = compare(&path, "iec", "cscape", &["--accept", &accept.display().to_string()]);
     assert_eq!(code, Some(4), "{text}");
+}
+
+/// Whether a name changes does not depend on a lint's level; and it is the names of a counter's own pins that count.
+#[test]
+fn a_name_that_changes_is_one_whatever_the_lint_says() {
+    let named = "VAR_INPUT s, r : BOOL; END_VAR VAR c, d : CTU; END_VAR\n";
+    let body = "c(CU := s, R := r, PV := 3); d(s, r, 3);";
+    for (name, allowed) in [("renamed", ""), ("renamed_allowed", "{allow W0609}\n")] {
+        let path = program(name, &format!("{named}{allowed}{body}"));
+        let (_, text) = compare(&path, "iec", "cscape", &["--message-format", "json", "--budget", "20000"]);
+        for (counter, verdict) in [("c", "reachable"), ("d", "impossible")] {
+            let found = format!("\"counter\":\"{counter}\",\"trap\":9,\"verdict\":\"{verdict}\"");
+            assert!(text.contains(&found), "{found}\n{text}");
+        }
+    }
+    let other = program(
+        "renamed_other",
+        "VAR_INPUT s : BOOL; END_VAR VAR c : CTU; latch : RS; END_VAR\nlatch(S := s, R1 := FALSE);",
+    );
+    let (_, text) = compare(&other, "iec", "codesys", &["--message-format", "json", "--budget", "20000"]);
+    assert!(text.contains("\"counter\":\"c\",\"trap\":9,\"verdict\":\"impossible\""), "{text}");
+}
+
+/// An assumption beyond a subrange would make a stimulus that no run takes.
+#[test]
+fn an_assumption_lies_within_the_subrange() {
+    let path = program("subrange", "VAR_INPUT t : INT(1..9); END_VAR VAR o : BOOL; END_VAR\no := t > 3;");
+    let assume = folder().join("beyond_subrange.txt");
+    std::fs::write(&assume, "t 20..30\n").expect("a file");
+    let (code, _) = compare(&path, "iec", "cscape", &["--assume", &assume.display().to_string()]);
+    assert_eq!(code, Some(2));
 }
 
 /// Findings of a kind are accepted by its name.

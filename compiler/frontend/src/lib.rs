@@ -66,6 +66,8 @@ pub struct Compilation {
     pub tests: Vec<Test>,
     /// Where execution is counted.
     pub coverage: Vec<CoveragePoint>,
+    /// Where a move to another system changes a pin's name, whether the lint is allowed or not.
+    pub renamed: Vec<Span>,
 }
 
 impl Compilation {
@@ -128,7 +130,13 @@ fn run_with(sources: &Sources, options: &Options, keep: Bodies, whole: &mut Whol
     let mut log = Log::new(sources, options);
     let Some(mut files) = parse_all(sources, &mut log.diagnostics) else {
         let diagnostics = log.diagnostics;
-        return Some(Compilation { program: None, diagnostics, tests: Vec::new(), coverage: Vec::new() });
+        return Some(Compilation {
+            program: None,
+            diagnostics,
+            tests: Vec::new(),
+            coverage: Vec::new(),
+            renamed: Vec::new(),
+        });
     };
     let stubs = library::prepare(&mut files, sources);
     let has_tests = testing::has_tests(&files);
@@ -171,6 +179,8 @@ fn run_with(sources: &Sources, options: &Options, keep: Bodies, whole: &mut Whol
     library::of_own_sources(&mut compilation.diagnostics, sources);
     // SETUP is a part of each test.
     compilation.diagnostics.dedup_by(|a, b| (a.code, a.span) == (b.code, b.span) && a.message == b.message);
+    compilation.renamed =
+        compilation.diagnostics.iter().filter(|it| it.code == Code::W0609).map(|it| it.span).collect();
     compilation.diagnostics.retain(|it| !allowances.cover(it));
     // A text of pieces is not in the order of its file.
     compilation.diagnostics.sort_by_key(|it| (it.span.file, sources.get(it.span.file).in_file(it.span).start));
@@ -273,5 +283,5 @@ fn finish(program: Option<Program>, log: Log<'_>, unassigned: Vec<Diagnostic>, l
     {
         unreachable!("the front end made IR that does not verify: {violations:?}");
     }
-    Compilation { program, diagnostics, tests: Vec::new(), coverage: Vec::new() }
+    Compilation { program, diagnostics, tests: Vec::new(), coverage: Vec::new(), renamed: Vec::new() }
 }

@@ -78,13 +78,16 @@ pub fn uses(pair: &Pair) -> Vec<Use> {
 
 impl Findings {
     /// What the systems' rules and the programs' texts alone say.
-    pub fn new(pair: &Pair, world: &World, uses: &[Use], renamed: usize) -> Self {
+    pub fn new(pair: &Pair, world: &World, uses: &[Use], renamed: &[Option<String>]) -> Self {
         let mut all = Vec::new();
         for (at, usage) in uses.iter().enumerate() {
             let instances = pair.instances(at);
             for pitfall in Pitfall::of_counters() {
+                let is_named = || renamed.iter().any(|it| is_of(it.as_deref(), &instances[0].path));
                 let verdict = match pitfall::impossible(pitfall, instances, *usage) {
-                    _ if pitfall.number() == 9 && renamed > 0 => Verdict::Reachable(None),
+                    _ if pitfall.number() == 9 && instances[0].is_renamed(instances[1]) && is_named() => {
+                        Verdict::Reachable(None)
+                    }
                     Some(why) => Verdict::Impossible(why.to_owned()),
                     None => Verdict::Undecided,
                 };
@@ -244,6 +247,13 @@ impl Findings {
         let same = |it: &&Subject| matches!(it, Subject::Variable(other) if field(*other) == field(seen));
         self.others.keys().find(same).copied().unwrap_or(subject)
     }
+}
+
+/// Whether a name in the text may be that of an instance: by the last part of its path.
+fn is_of(name: Option<&str>, path: &str) -> bool {
+    let last = path.rsplit('.').next().unwrap_or(path);
+    let last = last.split('[').next().unwrap_or(last);
+    name.is_none_or(|it| it.eq_ignore_ascii_case(last))
 }
 
 /// What the text does not say beforehand.

@@ -4,6 +4,7 @@ mod fixed;
 mod logix;
 mod missing;
 mod rejection;
+mod renamed;
 
 mod normal;
 mod pair;
@@ -51,7 +52,7 @@ use facts::Facts;
 use finding::Findings;
 use pair::{Pair, Row, Side};
 use search::World;
-use staunch_frontend::{Code, Dialect, Sources};
+use staunch_frontend::{Dialect, Sources};
 use trace::Trace;
 
 /// What the comparison came to.
@@ -85,10 +86,10 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
         Some(it) => from.moved(args.to, Some(it.sources.clone()))?,
         None => from.moved(args.to, None)?,
     };
-    let renamed = to.diagnostics.iter().filter(|it| it.code == Code::W0609).count();
+    let renamed = renamed::owners(&to.sources, &to.renamed);
     let missing = if args.against.is_some() { Vec::new() } else { missing::find(&from.sources, &program, args.to) };
     let unknown = if args.against.is_some() { Vec::new() } else { missing::unknown(&program, args.to) };
-    let report = report::Report { session: &from, args, notes, renamed, missing, unknown };
+    let report = report::Report { session: &from, args, notes, renamed: renamed.len(), missing, unknown };
     let moved = match to.program_to_run(args.program.as_deref())? {
         Some(moved) => moved,
         None => return report.rejection(&rejection::find(&to, args.from, args.to)),
@@ -104,7 +105,7 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
         return Err("--vars names no variable that both systems' programs have".to_owned());
     }
     let uses = finding::uses(&pair);
-    let mut findings = Findings::new(&pair, &world, &uses, renamed);
+    let mut findings = Findings::new(&pair, &world, &uses, &renamed);
     let accepted = args.accept.as_deref().map(accept::Accepted::read).transpose()?.unwrap_or_default();
     let verdict = if same_program && args.stimulus.is_none() {
         findings.all_impossible("both systems run the same program");

@@ -179,6 +179,12 @@ impl Instance {
         self.block.info().pin_for(role).is_some()
     }
 
+    /// Whether the other system calls a pin of it otherwise.
+    pub fn is_renamed(&self, other: &Self) -> bool {
+        let there = other.block.info();
+        self.block.info().pins.iter().any(|it| there.pin(it.name).is_none())
+    }
+
     /// The value of the pin with a role.
     pub fn pin(&self, role: PinRole, state: &[u8]) -> Option<i128> {
         let pin = self.block.info().pin_for(role)?;
