@@ -272,6 +272,21 @@ fn an_assumption_lies_within_the_subrange() {
     assert_eq!(code, Some(2));
 }
 
+/// A guard behind an edge, as trap 14's advice has it, makes no edge: it is another program.
+#[test]
+fn a_guard_that_makes_no_edge_is_no_trap() {
+    let text = |guard: &str| {
+        format!(
+            "VAR_INPUT p, l : BOOL; END_VAR VAR c : CTD; e : R_TRIG; low : BOOL; END_VAR
+e(CLK := p); c(e.Q{guard}, l, 2); low := c.CV < 0;"
+        )
+    };
+    let (plain, guarded) = (program("unguarded", &text("")), program("guarded", &text(" AND c.CV > 0")));
+    let (code, text) = compare(&plain, "iec", "iec", &["--against", &guarded.display().to_string()]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.contains("None of the traps explains it") && !text.contains("reachable after"), "{text}");
+}
+
 /// Findings of a kind are accepted by its name.
 #[test]
 fn a_kind_is_accepted_by_its_name() {

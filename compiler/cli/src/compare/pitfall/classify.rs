@@ -93,6 +93,15 @@ impl Case {
             && self.down()
     }
 
+    /// CD rises on one side alone, where the other has held it since the call before: a guard has made the edge.
+    fn makes_an_edge(&self) -> bool {
+        (0..2).any(|side| {
+            let (rises, held) = (side, 1 - side);
+            let rises = !self.before[rises].down && self.now[rises].down;
+            rises && self.before[held].down && self.now[held].down
+        })
+    }
+
     /// What the counter is given differs: what is upstream of it has parted.
     fn given_differs(&self) -> bool {
         let logix = self.has(Family::Logix);
@@ -128,7 +137,7 @@ fn counts(case: &Case) -> Option<usize> {
     if case.first && case.parts(Family::Logix) && (case.up() || case.down()) {
         return Some(5);
     }
-    if case.guards_itself && (case.before[0].down != case.before[1].down || a.down != b.down) {
+    if case.guards_itself && case.makes_an_edge() {
         return Some(14);
     }
     let counts_again = case.parts(Family::Logix) || case.parts(Family::Cscape);
