@@ -1,6 +1,7 @@
 //! Which trap a difference is put down to.
 
 use super::*;
+use staunch_frontend::Dialect;
 
 const IDLE: Pins =
     Pins { up: false, down: false, reset: false, load: false, preset: 5, count: 0, done: false, empty: false };
@@ -75,6 +76,9 @@ fn what_the_rules_rule_out_has_a_reason() {
 fn every_pitfall_says_what_to_do() {
     for (pitfall, number) in Pitfall::all().zip(1..) {
         assert_eq!(pitfall.number(), number);
-        assert!(pitfall.sentence().ends_with('.') && pitfall.advice().ends_with('.'), "{number}");
+        let advice = pitfall.advice(Dialect::Iec, Dialect::Cscape);
+        assert!(pitfall.sentence().ends_with('.') && advice.ends_with('.'), "{number}");
+        let reset = pitfall.advice(Dialect::Iec, Dialect::Codesys);
+        assert!(!reset.contains("R := ") || reset.contains("RESET := "), "{reset}");
     }
 }
