@@ -16,8 +16,12 @@ const EXPORT: &str = "export the program as text, and check that";
 /// What a file that does not parse turns out to be.
 pub(crate) fn recognise(file: u16, source: &Source) -> Option<Diagnostic> {
     let text = source.text.as_str();
-    let kind =
-        binary(text).or_else(|| xml(text)).or_else(|| logix(text)).or_else(|| scl(text)).or_else(|| list(text))?;
+    let kind = binary(text)
+        .or_else(|| xml(text))
+        .or_else(|| logix(text))
+        .or_else(|| rungs(text))
+        .or_else(|| scl(text))
+        .or_else(|| list(text))?;
     let line = text[kind.at..].lines().next().unwrap_or_default();
     let end = kind.at + line.trim_end().len();
     let offset = |it: usize| u32::try_from(it).unwrap_or(u32::MAX);
@@ -65,6 +69,24 @@ fn logix(text: &str) -> Option<Kind> {
         name: "neutral text of Logix (L5K)",
         at,
         help: "export it as L5X, and check that",
+    })
+}
+
+/// Rungs of Logix's ladder as text: `XIC(a)OTE(b);`, `N: XIC(a)OTE(b);`, `SOR XIC a OTE b EOR`.
+fn rungs(text: &str) -> Option<Kind> {
+    const CONTACTS: [&str; 2] = ["XIC", "XIO"];
+    const COILS: [&str; 14] =
+        ["OTE", "OTL", "OTU", "ONS", "OSR", "TON", "TOF", "RTO", "CTU", "CTD", "RES", "MOV", "JSR", "JMP"];
+    let is_rung = |line: &str| {
+        let mut words = line.split(|it: char| !it.is_alphanumeric() && it != '_');
+        let names = |words: &[&str], word: &str| words.contains(&word);
+        words.any(|it| names(&CONTACTS, it)) && words.any(|it| names(&COILS, it)) && !line.contains(":=")
+    };
+    let at = lines(text).find(|(_, line)| is_rung(line))?.0;
+    Some(Kind {
+        name: "neutral text of Logix (rungs of ladder)",
+        at,
+        help: "write what each rung does in Structured Text: `XIC(a)OTE(b);` is `b := a;`",
     })
 }
 
