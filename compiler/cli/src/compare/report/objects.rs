@@ -31,7 +31,8 @@ impl Report<'_> {
         for it in &self.missing {
             let _ = writeln!(
                 text,
-                "{{\"reason\":\"finding\",\"from\":\"{from}\",\"to\":\"{to}\",\"counter\":{},\"trap\":null,\"verdict\":\"missing\",\"scans\":null,\"stimulus\":null,\"why\":{},\"accepted\":false}}",
+                "{{\"reason\":\"finding\",\"from\":\"{from}\",\"to\":\"{to}\",\"kind\":\"missing\",\"at\":{},\"counter\":{},\"trap\":null,\"verdict\":\"missing\",\"scans\":null,\"stimulus\":null,\"why\":{},\"accepted\":false}}",
+                quoted(&it.at),
                 quoted(&it.subject),
                 quoted(&format!("{}: {to} has no {}: there it is {}", it.at, it.what, it.instead))
             );
@@ -39,7 +40,7 @@ impl Report<'_> {
         for (name, ty) in &self.unknown {
             let _ = writeln!(
                 text,
-                "{{\"reason\":\"finding\",\"from\":\"{from}\",\"to\":\"{to}\",\"counter\":{},\"trap\":null,\"verdict\":\"unknown\",\"scans\":null,\"stimulus\":null,\"why\":{},\"accepted\":false}}",
+                "{{\"reason\":\"finding\",\"from\":\"{from}\",\"to\":\"{to}\",\"kind\":\"missing\",\"at\":null,\"counter\":{},\"trap\":null,\"verdict\":\"unknown\",\"scans\":null,\"stimulus\":null,\"why\":{},\"accepted\":false}}",
                 quoted(name),
                 quoted(&format!("no public document says whether {to} has {ty}"))
             );
