@@ -159,12 +159,46 @@ impl For {
         Statement::new(StatementKind::For(Box::new(self)), at)
     }
 
-    /// Whether constants show that the loop ends after few turns.
+    /// Whether constants show that the loop ends after few turns, together with those of the loops in it. What
+    /// it calls may have loops of its own, so that a loop with a call is not short.
     pub fn is_short(&self) -> bool {
-        let Step::Constant(step) = self.step else { return false };
-        let (least, most) = self.bounds();
-        self.is_private && (most - least) / step.abs() < Self::FREE_TURNS
+        self.turns().is_some_and(|it| it < Self::FREE_TURNS)
+            && self.free_turns().is_some_and(|it| it <= Self::FREE_TURNS)
     }
+
+    /// Its turns less one, at most, where constants show them.
+    fn turns(&self) -> Option<i128> {
+        let Step::Constant(step) = self.step else { return None };
+        let (least, most) = self.bounds();
+        self.is_private.then_some((most - least) / step.abs())
+    }
+
+    /// Turns that this and the loops in it may have without taking any; `None` where they are not known.
+    fn free_turns(&self) -> Option<i128> {
+        let own = self.turns()?.max(0).checked_add(1)?;
+        own.checked_mul(free_turns(&self.body)?.max(1))
+    }
+}
+
+/// Of all loops in a block that take none of the scan's turns; `None` where a call is in it.
+fn free_turns(block: &[Statement]) -> Option<i128> {
+    let mut sum = 0_i128;
+    for statement in block {
+        let own = match &statement.kind {
+            StatementKind::Call { .. } => return None,
+            // A loop that takes turns has what is in it counted.
+            StatementKind::For(it) if matches!(it.body.first(), Some(first) if matches!(first.kind, StatementKind::Turn)) => {
+                0
+            }
+            StatementKind::For(it) => it.free_turns()?,
+            kind => {
+                let inner: Option<Vec<i128>> = kind.blocks().into_iter().map(|it| free_turns(it)).collect();
+                inner?.into_iter().sum()
+            }
+        };
+        sum = sum.checked_add(own)?;
+    }
+    Some(sum)
 }
 
 #[derive(Clone, Debug)]
