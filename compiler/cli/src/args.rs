@@ -332,7 +332,7 @@ pub struct Compare {
     /// Write the inputs that make a difference as a stimulus
     #[arg(long, value_name = "OUT.csv")]
     pub save_stimulus: Option<PathBuf>,
-    /// Write the program as it was rewritten for the other system
+    /// Write the program as it was rewritten for Logix
     #[arg(long, value_name = "OUT.st")]
     pub write: Option<PathBuf>,
     /// Show every scan, not only those in which something happens; with a file, draw both systems there

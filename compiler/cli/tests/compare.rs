@@ -398,3 +398,19 @@ fn accepted_findings_do_not_fail() {
     let one = written("one.txt", "parts 2: nobody reads the count\n");
     assert_eq!(run(&format!("held.st --from iec --to cscape --accept {}", one.display())).status.code(), Some(1));
 }
+
+#[test]
+fn what_is_written_is_the_other_systems() {
+    let folder = written(
+        "write.st",
+        "{dialect 'iec'}\nPROGRAM p VAR_INPUT s : BOOL; END_VAR VAR c : CTU; END_VAR c(s, FALSE, 3); END_PROGRAM\n",
+    );
+    let target = folder.with_file_name("write_logix.st");
+    let _ = std::fs::remove_file(&target);
+    run(&format!("{} --from iec --to logix --write {} --budget 2000", folder.display(), target.display()));
+    let text_written = std::fs::read_to_string(&target).expect("it is written");
+    assert!(text_written.starts_with("{dialect 'logix'}"), "{text_written}");
+    let none = run(&format!("held.st --from iec --to cscape --write {}", target.display()));
+    assert_eq!(none.status.code(), Some(2));
+    assert!(text(&none.stderr).contains("nothing of this one is rewritten for cscape"), "{}", text(&none.stderr));
+}

@@ -313,6 +313,9 @@ t(IN := a, PT := T#30ms); latch(t.Q, FALSE); mask := 3;",
     {
         assert!(text.contains(&format!("{}:3: {line}", path.display())), "{line}\n{text}");
     }
+    let (_, json) = compare(&path, "codesys", "logix", &["--message-format", "json"]);
+    let found = format!("\"kind\":\"missing\",\"at\":\"{}:3\",\"counter\":\"mask\"", path.display());
+    assert!(json.contains(&found), "{json}");
     let wide = program(
         "second_edition",
         "VAR_INPUT a : BOOL; END_VAR\nVAR t : LTIME; w : WSTRING; END_VAR\nt := t + LTIME#1ms;",

@@ -77,8 +77,12 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
         return Ok(REJECTED);
     };
     let rewritten = rewrite(&from, args)?;
-    if let (Some(path), Some(it)) = (&args.write, &rewritten) {
-        write(path, &it.sources)?;
+    if args.write.is_some() && rewritten.is_none() {
+        return Err(format!(
+            "--write writes the program as it is rewritten for logix, and nothing of this one is rewritten for {}; \
+             W0609 says which names change",
+            args.to.name()
+        ));
     }
     let notes = rewritten.as_ref().map_or_else(Vec::new, |it| it.notes.clone());
     let to = match &rewritten {
@@ -94,6 +98,10 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
         Some(moved) => moved,
         None => return report.rejection(&rejection::find(&to, args.from, args.to)),
     };
+    // What the other system does not accept is no migrated source.
+    if let (Some(path), Some(it)) = (&args.write, &rewritten) {
+        write(path, &it.sources, args.to)?;
+    }
     let cycle = run::cycle(&from, args.cycle.as_deref())?;
     let same_program = is_same(&program, &moved);
     let sides = [Side::new(args.from, program, cycle)?, Side::new(args.to, moved, cycle)?];
@@ -190,8 +198,8 @@ fn rewrite(from: &Session, args: &Compare) -> Result<Option<logix::Rewritten>, S
 }
 
 /// The migrated source as one file.
-fn write(path: &std::path::Path, sources: &Sources) -> Result<(), String> {
-    let texts: Vec<&str> = sources.files().iter().map(|it| it.text.as_str()).collect();
+fn write(path: &std::path::Path, sources: &Sources, to: Dialect) -> Result<(), String> {
+    let texts: Vec<String> = sources.files().iter().map(|it| renamed::in_dialect(&it.text, to)).collect();
     output::write(path, texts.join("\n").as_bytes())
 }
 

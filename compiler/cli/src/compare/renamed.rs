@@ -1,10 +1,38 @@
-//! Whose pins the text names by names that the move changes.
+//! What the text says of its system: whose pins it names by names that the move changes, and its dialect.
 
-use staunch_frontend::{Sources, Span};
+use staunch_frontend::{Dialect, Sources, Span};
 
 /// For each name, the variable whose pin it is, without subscripts; `None` where the text does not show it.
 pub fn owners(sources: &Sources, names: &[Span]) -> Vec<Option<String>> {
     names.iter().map(|it| owner(sources.get(it.file).text.get(..usize::try_from(it.start).ok()?)?)).collect()
+}
+
+/// The text with the system's name in each `{dialect '…'}`.
+pub fn in_dialect(text: &str, to: Dialect) -> String {
+    let mut found = String::new();
+    let mut rest = text;
+    while let Some((before, after)) = rest.split_once('{') {
+        found += before;
+        let pragma = after.split_once('}').filter(|(it, _)| is_dialect(it));
+        rest = match pragma {
+            Some((_, after)) => {
+                found += &format!("{{dialect '{}'}}", to.name());
+                after
+            }
+            None => {
+                found.push('{');
+                after
+            }
+        };
+    }
+    found + rest
+}
+
+fn is_dialect(pragma: &str) -> bool {
+    let mut words = pragma.split_whitespace();
+    words.next().is_some_and(|it| it.eq_ignore_ascii_case("dialect"))
+        && words.next().is_some_and(|it| it.starts_with('\'') && it.ends_with('\''))
+        && words.next().is_none()
 }
 
 /// The variable before a pin's name: `c.R`, `c(CU := s, R := …)`, `cells[1](…)`.
@@ -53,7 +81,14 @@ fn variable(text: &str) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::owner;
+    use super::{in_dialect, owner};
+    use staunch_frontend::Dialect;
+
+    #[test]
+    fn a_dialect_is_that_of_the_other_system() {
+        let text = in_dialect("{Dialect 'iec'}\n{allow W0507}\nx := 1; { y", Dialect::Logix);
+        assert_eq!(text, "{dialect 'logix'}\n{allow W0507}\nx := 1; { y");
+    }
 
     #[test]
     fn the_variable_before_a_pin_is_found() {
