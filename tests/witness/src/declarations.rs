@@ -105,6 +105,9 @@ impl<'a> Declarations<'a> {
 
     fn pou(&mut self, pou: &'a ast::Pou<'a>, owner: Option<usize>) -> Outcome<()> {
         let (name, kind, body, implements) = (pou.name.text, pou.kind, pou.body.as_slice(), pou.implements.as_slice());
+        if kind == PouKind::Method && name.eq_ignore_ascii_case("FB_init") {
+            return unknown("FB_init");
+        }
         if kind == PouKind::Interface {
             let (base, result, variables) = (None, None, Vec::new());
             self.pous.push(Pou { name, kind, owner, base, implements, fields: 0, result, variables, body });
