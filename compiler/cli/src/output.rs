@@ -21,6 +21,15 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
     std::fs::write(path, bytes).map_err(|error| format!("{}: {error}", path.display()))
 }
 
+/// Whether a file can be written, which is asked before the work that it is for.
+pub fn check(path: &Path) -> Result<(), String> {
+    if path == Path::new("-") {
+        return Ok(());
+    }
+    let opened = std::fs::OpenOptions::new().append(true).create(true).open(path);
+    opened.map(drop).map_err(|error| format!("{}: {error}", path.display()))
+}
+
 /// Writes a file that can be run. One of that name may be running: it keeps its old contents.
 pub fn executable(path: &Path, bytes: &[u8]) -> Result<(), String> {
     if path.is_file() {

@@ -119,6 +119,11 @@ fn wrong_usage() {
         &folder.staunch("test . -A warnings --coverage table --backend rust").err(2),
         &["--backend native or interpret"],
     );
+    // What cannot be written after the tests is said before them.
+    for wanted in ["--coverage out.pdf", "--coverage none/out.html", "--junit none/out.xml"] {
+        let ran = folder.staunch(&format!("test . -A warnings {wanted}"));
+        assert_eq!((ran.code, ran.out.as_str()), (2, ""), "{wanted}");
+    }
 }
 
 #[test]

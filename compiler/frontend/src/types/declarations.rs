@@ -556,6 +556,19 @@ impl<'s> Declarations<'s> {
             return;
         }
         let owner = self.program.type_name(ty);
+        if let Some((slot, declared)) = self.routines_on(ty, name.text).and_then(|it| it.called) {
+            let kind = crate::diagnostic::wording::article(self.pous[slot].ast.kind.word());
+            return self.report(
+                Diagnostic::new(
+                    Code::E0107,
+                    name.span,
+                    format!("`{}` is {kind} of `{owner}`, and not called", name.text),
+                )
+                .label("a call has its parentheses, also without arguments")
+                .other(declared, "declared here")
+                .help(format!("call it: `{}(…)`", name.text)),
+            );
+        }
         let mut error = Diagnostic::new(Code::E0107, name.span, format!("`{owner}` has no member `{}`", name.text))
             .label("unknown member");
         if let Some(near) = near {

@@ -163,26 +163,46 @@ impl Coverage {
         let files = self.files(session);
         let mut text = String::new();
         for path in wanted {
-            let ending = path.extension().map(|it| it.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-            let written = match ending.as_str() {
-                _ if path == Path::new("table") => {
+            let written = match form(path)? {
+                Form::Table => {
                     text += &table::text(session, &files);
                     continue;
                 }
-                "info" => lcov::text(session, &files),
-                "html" => annotated::page(session, &files),
-                "txt" => annotated::text(session, &files),
-                _ => {
-                    return Err(format!(
-                        "--coverage {}: it is `table`, or a file .info, .html or .txt",
-                        path.display()
-                    ));
-                }
+                Form::Lcov => lcov::text(session, &files),
+                Form::Page => annotated::page(session, &files),
+                Form::Text => annotated::text(session, &files),
             };
             output::write(path, written.as_bytes())?;
         }
         Ok(text)
     }
+}
+
+/// How coverage is shown.
+enum Form {
+    Table,
+    Lcov,
+    Page,
+    Text,
+}
+
+fn form(path: &Path) -> Result<Form, String> {
+    let ending = path.extension().map(|it| it.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    match ending.as_str() {
+        _ if path == Path::new("table") => Ok(Form::Table),
+        "info" => Ok(Form::Lcov),
+        "html" => Ok(Form::Page),
+        "txt" => Ok(Form::Text),
+        _ => Err(format!("--coverage {}: it is `table`, or a file .info, .html or .txt", path.display())),
+    }
+}
+
+/// Says before the tests run which of these cannot be written after them.
+pub fn check(wanted: &[PathBuf]) -> Result<(), String> {
+    wanted.iter().try_for_each(|path| match form(path)? {
+        Form::Table => Ok(()),
+        Form::Lcov | Form::Page | Form::Text => output::check(path),
+    })
 }
 
 impl File {
