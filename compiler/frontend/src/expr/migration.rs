@@ -143,18 +143,22 @@ impl<'s> Checker<'_, 's> {
         let mut comparisons = Vec::new();
         ast::each_expr(body, &mut |expr| match &expr.kind {
             Ast::Call(callee, arguments) => calls.extend(self.counter_call(callee, arguments)),
-            Ast::Binary(sides, BinaryOp::Gt, span) => comparisons.push((&sides[0], &sides[1], *span)),
-            Ast::Binary(sides, BinaryOp::Lt, span) => comparisons.push((&sides[1], &sides[0], *span)),
+            Ast::Binary(sides, op @ (BinaryOp::Gt | BinaryOp::Ge), span) => {
+                comparisons.push((&sides[0], &sides[1], *op == BinaryOp::Gt, *span));
+            }
+            Ast::Binary(sides, op @ (BinaryOp::Lt | BinaryOp::Le), span) => {
+                comparisons.push((&sides[1], &sides[0], *op == BinaryOp::Lt, *span));
+            }
             _ => {}
         });
         let mut calls_of: FxHashMap<_, Vec<_>> = FxHashMap::default();
         for call in &calls {
             calls_of.entry(Key(call.name)).or_default().push(call);
         }
-        for (count, limit, span) in comparisons {
+        for (count, limit, is_above, span) in comparisons {
             let Some(counter) = member_of(count, "CV") else { continue };
             if let Some(calls) = calls_of.get(&Key(counter.text)) {
-                self.beyond_preset(calls, counter, limit, span);
+                self.beyond_preset(calls, counter, (limit, is_above), span);
             }
         }
         let mut read = FxHashSet::default();
@@ -197,12 +201,12 @@ impl<'s> Checker<'_, 's> {
         counts(Type::Block(block)).then_some(CounterCall { name: name.text, span: callee.span, block, arguments })
     }
 
-    /// `c.CV > PV`, where `c` stops at PV; `calls` are those of `c`.
+    /// `c.CV > PV`, or `c.CV >= 60` with a PV of 50, where `c` stops at PV; `calls` are those of `c`.
     fn beyond_preset(
         &mut self,
         calls: &[&CounterCall<'_, 's>],
         counter: ast::Name<'s>,
-        limit: &ast::Expr<'s>,
+        (limit, is_above): (&ast::Expr<'s>, bool),
         span: Span,
     ) {
         let stops = |it: &CounterCall<'_, '_>| {
@@ -215,18 +219,27 @@ impl<'s> Checker<'_, 's> {
         let own = member_of(limit, "PV").is_some_and(|it| it.text.eq_ignore_ascii_case(counter.text));
         let text = |expr: &ast::Expr<'s>| self.decl.log.sources.text(expr.span).to_ascii_uppercase();
         // A count starts at 0, above a preset that is negative.
-        let at_most = |given: &ast::Expr<'s>| match (self.known(given), self.known(limit)) {
-            (Some(preset), Some(limit)) => preset <= limit && limit >= 0,
+        let is_preset = |given: &ast::Expr<'s>| match (self.known(given), self.known(limit)) {
+            (Some(preset), Some(limit)) => preset == limit && limit >= 0,
             _ => text(given) == text(limit),
         };
+        let is_beyond = |given: &ast::Expr<'s>| match (self.known(given), self.known(limit)) {
+            (Some(preset), Some(limit)) => preset < limit && limit >= i128::from(!is_above),
+            _ => false,
+        };
         let negative = calls.iter().any(|it| it.input(PinRole::Preset).is_some_and(|it| self.known(it.0) < Some(0)));
-        if own && !negative || calls.iter().all(|it| it.input(PinRole::Preset).is_some_and(|(given, _)| at_most(given)))
-        {
+        let presets = || calls.iter().map(|it| it.input(PinRole::Preset).map(|it| it.0));
+        let reached = is_above && (own && !negative || presets().any(|it| it.is_some_and(is_preset)));
+        let never = |it: Option<&ast::Expr<'s>>| it.is_some_and(|it| is_beyond(it) || is_above && is_preset(it));
+        if is_above && own && !negative || presets().all(never) {
             self.report(
                 Diagnostic::new(Code::W0602, span, format!("`{}.CV` does not pass its preset", counter.text))
                     .label("the counter stops at PV, so this never holds")
                     .note("only where PV is negative, or lowered under the count, can CV lie above it")
-                    .help("compare with `>=`, or use the output `Q`"),
+                    .help(match reached {
+                        true => "compare with `>=`, or use the output `Q`",
+                        false => "no count is so great: compare with one up to PV, or raise PV",
+                    }),
             );
         }
     }
