@@ -427,11 +427,8 @@ impl<'s> Declarations<'s> {
             Slot::Done(signature) => Some(Rc::clone(signature)),
             Slot::Failed => None,
             Slot::Open => {
-                let name = self.pous[at].ast.name;
-                self.report(
-                    Diagnostic::new(Code::E0402, name.span, format!("`{}` contains an instance of itself", name.text))
-                        .label("its size would be endless"),
-                );
+                let error = own_type(self.pous[at].ast);
+                self.report(error);
                 None
             }
         }
@@ -622,4 +619,22 @@ pub(crate) fn empty_program(files: Vec<SourceFile>) -> Program {
         places: std::collections::BTreeSet::new(),
         instances: Vec::new(),
     }
+}
+
+/// A block that needs its own type, in a variable that is part of it or in an in-out.
+fn own_type(pou: &ast::Pou<'_>) -> Diagnostic {
+    let name = pou.name;
+    let is_own = |it: &&ast::VarDecl<'_>| match &it.ty.kind {
+        ast::TypeKind::Named(path) => path.last().is_some_and(|it| Key(it.text) == Key(name.text)),
+        _ => false,
+    };
+    let mut in_outs = pou.blocks.iter().filter(|it| it.kind == ast::VarKind::InOut).flat_map(|it| &it.vars);
+    if let Some(in_out) = in_outs.find(is_own) {
+        let message = format!("`{}` cannot have a VAR_IN_OUT of its own type", name.text);
+        return Diagnostic::new(Code::E0402, in_out.ty.span, message)
+            .label("the block is not declared yet here")
+            .help(format!("take a reference to the other instance: a VAR_INPUT of `REF_TO {}`", name.text));
+    }
+    Diagnostic::new(Code::E0402, name.span, format!("`{}` contains an instance of itself", name.text))
+        .label("its size would be endless")
 }
