@@ -6,7 +6,7 @@ use crate::expr::start::is_start_of_members;
 use crate::start::is_once;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, StatementKind as Ast_};
-use staunch_ir::{Block, Expr, ExprKind, StatementKind, Type};
+use staunch_ir::{Block, Expr, StatementKind, Type};
 
 impl<'s> Checker<'_, 's> {
     /// The statements of a body, or of a branch of one.
@@ -175,9 +175,6 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn assignment(&mut self, target: &ast::Expr<'s>, value: &ast::Expr<'s>, span: Span) -> Option<()> {
-        if let Ast::Part(base, part) = &target.kind {
-            return self.assign_part(base, *part, value, span);
-        }
         if let Some((text, index)) = self.character_of(target) {
             return self.assign_character(text, index, value, span);
         }
@@ -238,34 +235,6 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         self.assigned(targets, value, span, false).map(drop)
-    }
-
-    /// `x.3 := b`, `x.%B1 := b`.
-    fn assign_part(
-        &mut self,
-        base: &ast::Expr<'s>,
-        part: ast::Name<'s>,
-        value: &ast::Expr<'s>,
-        span: Span,
-    ) -> Option<()> {
-        let found = self.place_or_view(base);
-        let Some(found) = found.filter(|it| self.writable(it, base.span)) else {
-            self.operand(value, None);
-            return None;
-        };
-        let ty = self.type_of(&found).read();
-        let mut place = found.place;
-        let selected = self.find_part(ty, part)?;
-        let of = Type::Elementary(selected.ty);
-        let value = self.after_place(&mut place, |this| this.value(value, of))?;
-        self.note_assigned(&place, base.span);
-        let Some(view) = found.view else { return self.merge(place, selected.bits(), value, span) };
-        self.fix(&mut place);
-        let mut whole = self.read(place.clone(), Some(view), span)?;
-        self.save("whole", &mut whole);
-        let ExprKind::Load(copy) = &whole.kind else { return None };
-        self.merge(copy.clone(), selected.bits(), value, span)?;
-        self.write(place, Some(view), whole, span)
     }
 
     /// `s[i] := value;` assigns the string with another character.
