@@ -105,7 +105,6 @@ impl<'s> Checker<'_, 's> {
     /// What a statement of its own assigns, when it is more than a variable.
     fn refuse_part(&mut self, target: &ast::Expr<'s>) -> bool {
         let what = match &target.bare().kind {
-            ast::ExprKind::Part(..) => "a part of a variable",
             _ if self.character_of(target).is_some() => "a character of a string",
             _ if self.property(target).is_some() => "a PROPERTY",
             _ => return false,
