@@ -282,7 +282,7 @@ impl<'a> Machine<'a> {
     ) -> Outcome<(Frame<'a>, Vec<(Place<'a>, Place<'a>)>)> {
         let mut copies = Vec::new();
         for number in 0..self.declared.pous[pou].variables.len() {
-            let Variable { name, kind, slot } = &self.declared.pous[pou].variables[number];
+            let Variable { name, kind, slot, .. } = &self.declared.pous[pou].variables[number];
             let (name, kind, slot) = (*name, *kind, slot.clone());
             let key = name.to_ascii_uppercase();
             let given = passed.iter().find(|it| it.name.eq_ignore_ascii_case(name)).map(|it| &it.given);
@@ -326,14 +326,23 @@ impl<'a> Machine<'a> {
                 copies.push((copy.clone(), given.clone()));
                 copy
             }
+            // What shares its bytes goes in as a copy, and comes back when the call ends.
+            _ if given.window.is_some() => {
+                let copy = self.allocate(ty);
+                let value = self.read(given);
+                self.write(&copy, &value);
+                copies.push((copy.clone(), given.clone()));
+                copy
+            }
             _ => Place { declared: ty.class(), ..given.clone() },
         }
     }
 
     pub(crate) fn copy_back(&mut self, copies: &[(Place<'a>, Place<'a>)]) {
         for (copy, given) in copies {
-            if let Type::Text(capacity) = given.ty {
-                self.memory[given.at] = cut(&self.memory[copy.at], capacity);
+            match given.ty {
+                Type::Text(capacity) => self.memory[given.at] = cut(&self.memory[copy.at], capacity),
+                _ => self.write(given, &self.read(copy)),
             }
         }
     }
@@ -493,6 +502,6 @@ pub(crate) fn is_enable(argument: &Argument<'_>) -> bool {
 fn cut<'a>(text: &Cell<'a>, capacity: usize) -> Cell<'a> {
     match text {
         Cell::Text(bytes) => Cell::Text(bytes.iter().copied().take(capacity).collect()),
-        Cell::Scalar(_) | Cell::Reference(_) => text.clone(),
+        Cell::Scalar(_) | Cell::Reference(_) | Cell::Bytes(_) => text.clone(),
     }
 }

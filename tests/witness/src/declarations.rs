@@ -2,6 +2,7 @@
 
 use crate::classes::pou_of;
 use crate::machine::{Outcome, unknown};
+use crate::shared::{self, Window};
 use crate::types::{Array, Elementary, Enum, Record, RefKind, Reference, Slot, Type};
 use staunch_frontend::ast::{
     self, BinaryOp, Expr, ExprKind, Initial, InitialKind, Item, LiteralValue, TypeKind, UnaryOp,
@@ -33,6 +34,8 @@ pub(crate) struct Variable<'a> {
     pub name: &'a str,
     pub kind: VarKind,
     pub slot: Slot<'a>,
+    /// Where it lies in the process image: its area, and how it lies there.
+    pub address: Option<(char, Window)>,
 }
 
 impl Variable<'_> {
@@ -151,12 +154,21 @@ impl<'a> Declarations<'a> {
     fn variables(&mut self, block: &'a ast::VarBlock<'a>) -> Outcome<Vec<Variable<'a>>> {
         let mut variables = Vec::new();
         for declared in &block.vars {
-            if declared.edge.is_some() || declared.address.is_some() {
-                return unknown("an edge, or an address");
+            if declared.edge.is_some() {
+                return unknown("an edge");
+            }
+            let at = declared.address.map(|it| shared::address(it.text)).transpose()?;
+            if at.is_some() && block.kind != VarKind::Global {
+                return unknown("an address in a POU");
             }
             let slot = self.slot(&declared.ty, declared.initial.as_ref())?;
+            if at.is_some() && slot.ty.bytes().is_none() {
+                return unknown("this type at an address");
+            }
+            let address = at.map(|it| (it.0, it.1));
             let names = declared.names.iter();
-            variables.extend(names.map(|it| Variable { name: it.text, kind: block.kind, slot: slot.clone() }));
+            let made = names.map(|it| Variable { name: it.text, kind: block.kind, slot: slot.clone(), address });
+            variables.extend(made);
         }
         Ok(variables)
     }
@@ -199,9 +211,14 @@ impl<'a> Declarations<'a> {
                 };
                 Type::Reference(Reference { kind, target: Some(target) })
             }
-            TypeKind::String { wide: true, .. } | TypeKind::Union(_) | TypeKind::Error => {
-                return unknown("this type");
+            TypeKind::Union(declared) => {
+                let shared = Type::Union(Rc::new(Record { pou: None, fields: self.fields(declared)? }));
+                if shared.bytes().is_none() {
+                    return unknown("this type in a UNION");
+                }
+                shared
             }
+            TypeKind::String { wide: true, .. } | TypeKind::Error => return unknown("this type"),
         };
         Ok(Slot { ty, initial: None })
     }

@@ -76,7 +76,7 @@ impl<'a> Machine<'a> {
                     None => self.stored(frame, expr),
                 },
             },
-            ExprKind::Index(..) | ExprKind::Deref(_) => self.stored(frame, expr),
+            ExprKind::Index(..) | ExprKind::Deref(_) | ExprKind::Address(_) => self.stored(frame, expr),
             ExprKind::Part(base, part) => self.part(frame, base, part),
             ExprKind::Call(callee, arguments) => match self.call(frame, callee, arguments, asked)? {
                 Some(value) => Ok(value),
@@ -84,7 +84,7 @@ impl<'a> Machine<'a> {
             },
             ExprKind::Unary(op, inner) => self.unary(frame, *op, inner, asked),
             ExprKind::Binary(sides, op, at) => self.binary(frame, *op, &sides[0], &sides[1], *at, asked),
-            ExprKind::Address(_) | ExprKind::Assign(..) | ExprKind::Error(_) => unknown("this expression"),
+            ExprKind::Assign(..) | ExprKind::Error(_) => unknown("this expression"),
         }
     }
 

@@ -15,6 +15,7 @@
 mod types;
 
 mod declarations;
+mod shared;
 mod storage;
 
 mod machine;

@@ -1,6 +1,7 @@
 //! A program that runs: its memory, its scans, and its variables for comparison.
 
 use crate::declarations::Declarations;
+use crate::shared::Window;
 use crate::storage::{Cell, Place};
 use crate::types::Type;
 use staunch_frontend::ast::{File, PouKind, VarKind};
@@ -27,6 +28,8 @@ pub(crate) fn unknown<T>(what: &str) -> Outcome<T> {
 
 /// Statements and turns of loops that a scan may take.
 const STEPS: u32 = 20_000;
+/// Bytes of each area of the process image.
+const IMAGE: usize = 1024;
 
 #[derive(Debug)]
 pub struct Machine<'a> {
@@ -34,6 +37,8 @@ pub struct Machine<'a> {
     sources: &'a Sources,
     pub(crate) memory: Vec<Cell<'a>>,
     pub(crate) globals: HashMap<String, Place<'a>>,
+    /// The bytes of each area of the process image: %I, %Q and %M.
+    pub(crate) images: HashMap<char, usize>,
     /// VAR_STAT, by POU and name.
     pub(crate) statics: HashMap<(usize, String), Place<'a>>,
     /// The PROGRAM, and where its instance lies.
@@ -72,9 +77,10 @@ impl<'a> Machine<'a> {
             sources,
             memory: Vec::new(),
             globals: HashMap::new(),
+            images: HashMap::new(),
             statics: HashMap::new(),
             main,
-            instance: Place { at: 0, ty: ty.clone(), nowhere: None, declared: None },
+            instance: Place { at: 0, ty: ty.clone(), nowhere: None, declared: None, window: None },
             programs: Vec::new(),
             context: Context::default(),
             steps: 0,
@@ -101,9 +107,17 @@ impl<'a> Machine<'a> {
     }
 
     fn start_globals(&mut self) -> Outcome<()> {
-        let declared = self.declared.globals.iter().map(|it| (it.name.to_ascii_uppercase(), it.slot.clone()));
-        for (name, slot) in declared.collect::<Vec<_>>() {
-            let place = self.allocate(&slot.ty);
+        for area in ['I', 'Q', 'M'] {
+            self.images.insert(area, self.memory.len());
+            self.memory.push(Cell::Bytes(vec![0; IMAGE]));
+        }
+        let declared =
+            self.declared.globals.iter().map(|it| (it.name.to_ascii_uppercase(), it.slot.clone(), it.address));
+        for (name, slot, address) in declared.collect::<Vec<_>>() {
+            let place = match address {
+                Some((area, window)) => self.at_address(area, window, &slot.ty)?,
+                None => self.allocate(&slot.ty),
+            };
             self.start(&Frame::default(), &place, slot.initial)?;
             self.globals.insert(name, place);
         }
@@ -117,6 +131,16 @@ impl<'a> Machine<'a> {
             }
         }
         Ok(())
+    }
+
+    /// What lies at a direct address.
+    pub(crate) fn at_address(&self, area: char, window: Window, ty: &Type<'a>) -> Outcome<Place<'a>> {
+        match (self.images.get(&area), ty.bytes()) {
+            (Some(at), Some(bytes)) if window.bit / 8 + bytes <= IMAGE => {
+                Ok(Place { at: *at, ty: ty.clone(), nowhere: None, declared: None, window: Some(window) })
+            }
+            _ => unknown("this address"),
+        }
     }
 
     /// One scan. After an early end the variables stay as they were then.
@@ -191,19 +215,29 @@ impl<'a> Machine<'a> {
     fn leaves(&self, path: &str, place: &Place<'a>, found: &mut Vec<(String, String)>) {
         match &place.ty {
             Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) | Type::Text(_) => {
-                found.push((path.to_owned(), shown(&self.memory[place.at])));
+                found.push((path.to_owned(), shown(&self.read(place).cells[0])));
             }
             Type::Array(array) => {
-                let size = array.element.ty.size();
                 for (number, at) in (array.low..=array.high).zip(0..) {
-                    self.leaves(&format!("{path}[{number}]"), &place.part(at * size, &array.element.ty), found);
+                    if let Some(element) = place.nth(at) {
+                        self.leaves(&format!("{path}[{number}]"), &element, found);
+                    }
+                }
+            }
+            // The executors keep an array of the smallest of its parts.
+            Type::Union(_) => {
+                let (Some(unit), Some(bytes)) = (place.ty.smallest_part(), place.ty.bytes()) else { return };
+                let start = Window { bit: 0, single: false };
+                for number in 0..bytes.div_ceil(unit.repr().size() as usize) {
+                    let part = place.further(start, number * unit.repr().size() as usize, &Type::Elementary(unit));
+                    self.leaves(&format!("{path}.bytes[{number}]"), &part, found);
                 }
             }
             Type::Record(record) => {
-                let mut offset = 0;
-                for (name, slot) in &record.fields {
-                    self.leaves(&format!("{path}.{name}"), &place.part(offset, &slot.ty), found);
-                    offset += slot.ty.size();
+                for (number, (name, _)) in record.fields.iter().enumerate() {
+                    if let Some(field) = place.field(number) {
+                        self.leaves(&format!("{path}.{name}"), &field, found);
+                    }
                 }
             }
             // The executors' own numbers are not compared.
@@ -224,6 +258,7 @@ fn shown(cell: &Cell<'_>) -> String {
         Cell::Scalar(Scalar::F64(it)) if it.is_nan() => "NaN".to_owned(),
         Cell::Scalar(it) => format!("{it:?}"),
         Cell::Reference(_) => "a reference".to_owned(),
+        Cell::Bytes(it) => format!("{it:?}"),
         Cell::Text(bytes) => format!("{:?}", String::from_utf8_lossy(bytes)),
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::classes::{is_super, is_this};
 use crate::machine::{Frame, Machine, Outcome, unknown};
+use crate::shared::address;
 use crate::statements::Flow;
 use crate::storage::{Place, Value, integer_cell};
 use crate::types::{Elementary, RefKind, Type};
@@ -50,8 +51,11 @@ impl<'a> Machine<'a> {
                 }
                 Ok(place)
             }
+            ExprKind::Address(name) => {
+                let (area, window, ty) = address(name.text)?;
+                self.at_address(area, window, &Type::Elementary(ty))
+            }
             ExprKind::Literal(_)
-            | ExprKind::Address(_)
             | ExprKind::Part(..)
             | ExprKind::Call(..)
             | ExprKind::Unary(..)
@@ -68,15 +72,9 @@ impl<'a> Machine<'a> {
 
     pub(crate) fn member(&self, base: &Place<'a>, name: &str) -> Option<Place<'a>> {
         match &base.ty {
-            Type::Record(record) => {
-                let mut offset = 0;
-                for (field, slot) in &record.fields {
-                    if field.eq_ignore_ascii_case(name) {
-                        return Some(base.part(offset, &slot.ty));
-                    }
-                    offset += slot.ty.size();
-                }
-                None
+            Type::Record(record) | Type::Union(record) => {
+                let number = record.fields.iter().position(|it| it.0.eq_ignore_ascii_case(name))?;
+                base.field(number)
             }
             Type::Block(info) => {
                 let visible = |it: &staunch_runtime::Pin| it.direction != Direction::Memory;
@@ -94,7 +92,7 @@ impl<'a> Machine<'a> {
             return Err(self.fault(FaultKind::IndexOutOfRange, index.span));
         }
         let at = usize::try_from(number - array.low).unwrap_or(0);
-        Ok(base.part(at * array.element.ty.size(), &array.element.ty))
+        base.nth(at).map_or_else(|| unknown("this element"), Ok)
     }
 
     /// `w.3`, `w.%B1`
@@ -121,7 +119,7 @@ impl<'a> Machine<'a> {
         let old = self.read(place).as_integer()? & mask(width);
         let new = old & !(mask(part.width) << part.shift) | (value & mask(part.width)) << part.shift;
         let signed = if ty.repr().is_signed() && new > ty.range().1 { new - (1 << width) } else { new };
-        self.memory[place.at] = integer_cell(ty, signed);
+        self.write(place, &Value { ty: Type::Elementary(ty), cells: vec![integer_cell(ty, signed)] });
         Ok(Flow::Next)
     }
 }

@@ -26,7 +26,7 @@ impl<'a> Machine<'a> {
                         RefKind::Interface => self.declared.implementer(target)?,
                         RefKind::Pointer | RefKind::Alias => self.declared.type_of(target)?,
                     };
-                    Ok(Place { at: 0, ty, nowhere: Some(span), declared: None })
+                    Ok(Place { at: 0, ty, nowhere: Some(span), declared: None, window: None })
                 }
                 None => unknown("a reference to nothing"),
             },

@@ -68,7 +68,7 @@ impl<'a> Machine<'a> {
             return Ok(Flow::Next);
         }
         let place = self.place(frame, target)?;
-        if matches!(place.ty, Type::Array(_) | Type::Record(_)) && self.is_variable(frame, value)? {
+        if matches!(place.ty, Type::Array(_) | Type::Record(_) | Type::Union(_)) && self.is_variable(frame, value)? {
             // Of what is copied as a whole both sides are found before either is looked at.
             let source = self.place(frame, value)?;
             let place = self.checked(place)?;
@@ -184,7 +184,7 @@ impl<'a> Machine<'a> {
             now = self.read(&place).as_integer()? + step;
             let (low, high) = place.ty.range();
             if (low..=high).contains(&now) {
-                self.memory[place.at] = integer_cell(base, now);
+                self.write(&place, &Value { ty: place.ty.clone(), cells: vec![integer_cell(base, now)] });
             } else if goes_on(now) {
                 return Err(self.fault(FaultKind::SubrangeViolated, at));
             } else {

@@ -2,6 +2,7 @@
 //! cells start, and its type; two paths to one variable are the same place.
 
 use crate::machine::{Frame, Machine, Outcome, Stop, unknown};
+use crate::shared::Window;
 use crate::types::{Elementary, Slot, Type};
 use staunch_frontend::Span;
 use staunch_frontend::ast::{Initial, InitialKind};
@@ -11,6 +12,8 @@ use staunch_runtime::{FaultKind, Value as Scalar};
 pub(crate) enum Cell<'a> {
     Scalar(Scalar),
     Text(Vec<u8>),
+    /// What several variables share.
+    Bytes(Vec<u8>),
     /// What a reference leads to, as it was declared there: an instance's own class.
     Reference(Option<Box<Place<'a>>>),
 }
@@ -30,6 +33,8 @@ pub(crate) struct Place<'a> {
     pub nowhere: Option<Span>,
     /// The class that a reference or an in-out declares, where `ty` may be one that extends it.
     pub declared: Option<usize>,
+    /// Where it begins in a cell that is shared.
+    pub window: Option<Window>,
 }
 
 impl<'a> Value<'a> {
@@ -75,7 +80,7 @@ impl<'a> Value<'a> {
 impl<'a> Place<'a> {
     /// A part that starts `offset` cells in.
     pub fn part(&self, offset: usize, ty: &Type<'a>) -> Self {
-        Self { at: self.at + offset, ty: ty.clone(), nowhere: self.nowhere, declared: None }
+        Self { at: self.at + offset, ty: ty.clone(), nowhere: self.nowhere, declared: None, window: None }
     }
 }
 
@@ -85,12 +90,19 @@ impl<'a> Machine<'a> {
             Type::Subrange(base, ..) => Type::Elementary(*base),
             other => other.clone(),
         };
-        Value { ty, cells: self.memory[place.at..place.at + place.ty.size()].to_vec() }
+        let cells = match place.window {
+            Some(window) => self.unpacked(place, window),
+            None => self.memory[place.at..place.at + place.ty.size()].to_vec(),
+        };
+        Value { ty, cells }
     }
 
     /// Stores a value that has the place's type already.
     pub(crate) fn write(&mut self, place: &Place<'a>, value: &Value<'a>) {
-        self.memory[place.at..place.at + value.cells.len()].clone_from_slice(&value.cells);
+        match place.window {
+            Some(window) => self.pack(place, window, &value.cells),
+            None => self.memory[place.at..place.at + value.cells.len()].clone_from_slice(&value.cells),
+        }
     }
 
     /// The value as one of `ty`: widened, cut at a text's capacity, checked against a subrange.
@@ -110,7 +122,7 @@ impl<'a> Machine<'a> {
                 Ok(Value { ty: ty.clone(), cells: vec![Cell::Text(bytes)] })
             }
             Type::Reference(_) => Ok(Value { ty: ty.clone(), cells: value.cells }),
-            Type::Enum(_) | Type::Array(_) | Type::Record(_) | Type::Block(_) => Ok(value),
+            Type::Enum(_) | Type::Array(_) | Type::Record(_) | Type::Union(_) | Type::Block(_) => Ok(value),
         }
     }
 
@@ -126,7 +138,7 @@ impl<'a> Machine<'a> {
     pub(crate) fn allocate(&mut self, ty: &Type<'a>) -> Place<'a> {
         let at = self.memory.len();
         self.memory.resize(at + ty.size(), Cell::Scalar(Scalar::Bool(false)));
-        Place { at, ty: ty.clone(), nowhere: None, declared: None }
+        Place { at, ty: ty.clone(), nowhere: None, declared: None, window: None }
     }
 
     /// Gives a variable its initial value.
@@ -145,14 +157,13 @@ impl<'a> Machine<'a> {
             }
             Some(InitialKind::Elements(elements)) => {
                 self.start_unset(frame, place)?;
-                let Type::Array(array) = &place.ty else { return unknown("a list for what is no array") };
                 let mut at = 0;
                 for element in elements {
                     let count = element.count.as_ref().map_or(Ok(1), |it| self.value(frame, it, None)?.as_integer())?;
                     for _ in 0..count {
                         for value in &element.values {
-                            let size = array.element.ty.size();
-                            self.start(frame, &place.part(at * size, &array.element.ty), Some(value))?;
+                            let Some(element) = place.nth(at) else { return unknown("too many elements") };
+                            self.start(frame, &element, Some(value))?;
                             at += 1;
                         }
                     }
@@ -173,6 +184,10 @@ impl<'a> Machine<'a> {
 
     /// What a variable starts with that has no initial value of its own.
     fn start_unset(&mut self, frame: &Frame<'a>, place: &Place<'a>) -> Outcome<()> {
+        if place.window.is_some() {
+            // The shared bytes are zeros until an initial value says otherwise.
+            return Ok(());
+        }
         match &place.ty {
             Type::Elementary(it) => self.memory[place.at] = Cell::Scalar(it.repr().zero()),
             // Edition 2, 2.3.3.2: the leftmost value.
@@ -180,6 +195,14 @@ impl<'a> Machine<'a> {
             Type::Enum(it) => self.memory[place.at] = Cell::Scalar(it.values[0].1),
             Type::Text(_) => self.memory[place.at] = Cell::Text(Vec::new()),
             Type::Reference(_) => self.memory[place.at] = Cell::Reference(None),
+            Type::Union(union) => {
+                self.memory[place.at] = Cell::Bytes(vec![0; place.ty.bytes().unwrap_or(0)]);
+                for (number, (_, slot)) in union.fields.iter().enumerate() {
+                    if let Some(member) = place.field(number) {
+                        self.start_member(frame, &member, slot)?;
+                    }
+                }
+            }
             Type::Array(array) => {
                 let size = array.element.ty.size();
                 for number in 0..array.count() {
@@ -205,6 +228,18 @@ impl<'a> Machine<'a> {
         Ok(())
     }
 
+    /// A member of a UNION that starts as all zeros leaves the others as they start.
+    fn start_member(&mut self, frame: &Frame<'a>, member: &Place<'a>, slot: &Slot<'a>) -> Outcome<()> {
+        let alone = self.allocate(&slot.ty);
+        self.start_slot(frame, &alone, slot)?;
+        let value = self.read(&alone);
+        self.memory.truncate(alone.at);
+        if !value.cells.iter().all(is_zero) {
+            self.write(member, &value);
+        }
+        Ok(())
+    }
+
     fn start_slot(&mut self, frame: &Frame<'a>, place: &Place<'a>, slot: &Slot<'a>) -> Outcome<()> {
         self.start(frame, place, slot.initial)
     }
@@ -212,4 +247,15 @@ impl<'a> Machine<'a> {
 
 pub(crate) fn integer_cell<'a>(ty: Elementary, number: i128) -> Cell<'a> {
     Cell::Scalar(ty.repr().integer(number).unwrap_or(ty.repr().zero()))
+}
+
+fn is_zero(cell: &Cell<'_>) -> bool {
+    match cell {
+        Cell::Scalar(Scalar::F32(it)) => it.to_bits() == 0,
+        Cell::Scalar(Scalar::F64(it)) => it.to_bits() == 0,
+        Cell::Scalar(Scalar::Bool(it)) => !it,
+        Cell::Scalar(it) => it.as_integer() == Some(0),
+        Cell::Bytes(it) => it.iter().all(|it| *it == 0),
+        Cell::Text(_) | Cell::Reference(_) => false,
+    }
 }

@@ -141,6 +141,8 @@ pub(crate) enum Type<'a> {
     Array(Rc<Array<'a>>),
     /// A structure, or an instance of a user's POU.
     Record(Rc<Record<'a>>),
+    /// Its members share their bytes.
+    Union(Rc<Record<'a>>),
     Block(&'static BlockInfo),
     Reference(Reference<'a>),
 }
@@ -197,7 +199,8 @@ impl Type<'_> {
     /// Cells of memory that a value takes.
     pub fn size(&self) -> usize {
         match self {
-            Self::Elementary(_) | Self::Subrange(..) | Self::Enum(_) | Self::Text(_) | Self::Reference(_) => 1,
+            Self::Elementary(_) | Self::Subrange(..) | Self::Enum(_) | Self::Text(_) => 1,
+            Self::Reference(_) | Self::Union(_) => 1,
             Self::Array(it) => it.element.ty.size() * it.count(),
             Self::Record(it) => it.fields.iter().map(|(_, slot)| slot.ty.size()).sum(),
             Self::Block(info) => info.pins.len(),
@@ -216,9 +219,8 @@ impl Type<'_> {
     pub fn elementary(&self) -> Option<Elementary> {
         match self {
             Self::Elementary(it) | Self::Subrange(it, ..) => Some(*it),
-            Self::Enum(_) | Self::Text(_) | Self::Array(_) | Self::Record(_) | Self::Block(_) | Self::Reference(_) => {
-                None
-            }
+            Self::Enum(_) | Self::Text(_) | Self::Array(_) | Self::Record(_) | Self::Union(_) => None,
+            Self::Block(_) | Self::Reference(_) => None,
         }
     }
 

@@ -235,7 +235,7 @@ impl Writer {
         let ty = &parameter.ty;
         match parameter.section {
             Section::Input => match ty {
-                Ty::Array(_) | Ty::Record(_) => Some((false, self.place_of(ty, false, depth)?)),
+                Ty::Array(_) | Ty::Record(_) | Ty::Union(_) => Some((false, self.place_of(ty, false, depth)?)),
                 _ => Some((false, self.expression(ty, depth))),
             },
             Section::InOut => {

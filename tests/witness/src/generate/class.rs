@@ -125,8 +125,13 @@ impl Writer {
         self.line(&format!("VAR_GLOBAL {to}, {from} : Blk{number}; END_VAR"));
         self.line(&format!("FUNCTION {name} : INT {to} := {from}; {name} := {value}; END_FUNCTION"));
         let ty = Ty::Instance(number);
-        let variables =
-            [&to, &from].map(|it| Variable { name: it.clone(), ty: ty.clone(), writable: true, lasts: true });
+        let variables = [&to, &from].map(|it| Variable {
+            name: it.clone(),
+            ty: ty.clone(),
+            writable: true,
+            lasts: true,
+            located: false,
+        });
         self.copies.extend(variables);
     }
 
@@ -150,7 +155,13 @@ impl Writer {
         if self.random.once_in(4) {
             self.locals("VAR_STAT", "ms", 1);
         }
-        self.scope.add(Variable { name: name.clone(), ty: result.clone(), writable: true, lasts: false });
+        self.scope.add(Variable {
+            name: name.clone(),
+            ty: result.clone(),
+            writable: true,
+            lasts: false,
+            located: false,
+        });
         self.body(2);
         let value = self.expression(&result, 2);
         self.line(&format!("{name} := {value};"));
@@ -192,7 +203,7 @@ impl Writer {
         self.line("END_GET");
         self.restart_loops();
         self.line("SET");
-        self.scope.add(Variable { name: name.clone(), ty: ty.clone(), writable: false, lasts: false });
+        self.scope.add(Variable { name: name.clone(), ty: ty.clone(), writable: false, lasts: false, located: false });
         self.body(2);
         self.line("END_SET");
         self.line("END_PROPERTY");
@@ -204,7 +215,7 @@ impl Writer {
     /// The block's own PROPERTYs may be read by their names.
     fn own_properties(&mut self) {
         for (name, ty) in self.own.properties.clone() {
-            self.scope.add(Variable { name, ty, writable: false, lasts: false });
+            self.scope.add(Variable { name, ty, writable: false, lasts: false, located: false });
         }
     }
 

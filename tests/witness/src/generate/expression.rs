@@ -23,7 +23,7 @@ impl Writer {
             Ty::Text(_) => self.string(depth),
             Ty::Level(at) => self.level(*at, depth),
             Ty::Color => self.color(depth),
-            Ty::Array(_) | Ty::Record(_) => self.leaf(ty),
+            Ty::Array(_) | Ty::Record(_) | Ty::Union(_) => self.leaf(ty),
             Ty::Pointer(to) => self.reference(to, depth),
             Ty::Interface => self.implementer(depth),
             Ty::Instance(_) | Ty::Standard(_) => unreachable!("an instance is no value"),
@@ -47,7 +47,9 @@ impl Writer {
     }
 
     fn leaf(&mut self, ty: &Ty) -> String {
-        if self.random.once_in(4) && !matches!(ty, Ty::Array(_) | Ty::Record(_) | Ty::Pointer(_) | Ty::Interface) {
+        if self.random.once_in(4)
+            && !matches!(ty, Ty::Array(_) | Ty::Record(_) | Ty::Union(_) | Ty::Pointer(_) | Ty::Interface)
+        {
             return self.literal(ty);
         }
         self.variable(ty, 0)
@@ -85,7 +87,9 @@ impl Writer {
                 self.random.one_of(&[low, low + 1, high]).to_string()
             }
             Ty::Pointer(_) | Ty::Interface => "NULL".to_owned(),
-            Ty::Array(_) | Ty::Record(_) | Ty::Instance(_) | Ty::Standard(_) => unreachable!("no literal of this type"),
+            Ty::Array(_) | Ty::Record(_) | Ty::Union(_) | Ty::Instance(_) | Ty::Standard(_) => {
+                unreachable!("no literal of this type")
+            }
         }
     }
 
@@ -96,7 +100,9 @@ impl Writer {
             Ty::Bits(at) => format!("{}#{literal}", BITS[*at]),
             Ty::Level(at) => format!("{}#{literal}", NUMBERS[self.types.levels[*at].0].name),
             Ty::Bool | Ty::Time | Ty::Text(_) | Ty::Color | Ty::Pointer(_) | Ty::Interface => literal,
-            Ty::Array(_) | Ty::Record(_) | Ty::Instance(_) | Ty::Standard(_) => unreachable!("no literal of this type"),
+            Ty::Array(_) | Ty::Record(_) | Ty::Union(_) | Ty::Instance(_) | Ty::Standard(_) => {
+                unreachable!("no literal of this type")
+            }
         }
     }
 

@@ -144,6 +144,9 @@ impl Writer {
             self.declare_record(None);
         }
         self.declare_array(Some(Ty::Record(0)));
+        if self.random.once_in(2) {
+            self.declare_union();
+        }
         self.depth -= 1;
         self.line("END_TYPE");
     }
@@ -180,6 +183,59 @@ impl Writer {
         self.types.records.push(fields);
     }
 
+    fn declare_union(&mut self) {
+        let mut members = Vec::new();
+        for at in 0..2 + self.random.below(3) {
+            let ty = match self.random.below(6) {
+                0 => Ty::Array(self.random.below(self.types.arrays.len())),
+                1 => Ty::Record(self.random.below(self.types.records.len())),
+                2 => Ty::Bits(self.random.below(4)),
+                _ => self.plain_type(),
+            };
+            let ty = if self.types.is_shareable(&ty) { ty } else { Ty::Number(self.random.below(NUMBERS.len())) };
+            members.push((format!("u{at}"), ty));
+        }
+        self.line("Uni0 : UNION");
+        for (name, ty) in &members {
+            self.line(&format!("    {name} : {};", self.types.name(ty)));
+        }
+        self.line("END_UNION;");
+        self.types.unions.push(members);
+    }
+
+    /// Variables whose direct addresses overlap.
+    fn declare_located(&mut self) {
+        let area = *self.random.one_of(&["M", "Q"]);
+        let mut taken: Vec<String> = Vec::new();
+        for number in 0..3 + self.random.below(4) {
+            let (size, ty) = match self.random.below(8) {
+                0 | 1 => (0, Ty::Bool),
+                2 => (1, Ty::Bits(0)),
+                3 => (1, Ty::Number(*self.random.one_of(&[0, 4]))),
+                4 => (2, Ty::Number(*self.random.one_of(&[1, 5]))),
+                5 => (2, Ty::Bits(1)),
+                6 => (4, Ty::Number(*self.random.one_of(&[2, 6]))),
+                _ => (8, Ty::Bits(3)),
+            };
+            let at = match size {
+                0 => format!("X{}.{}", self.random.below(8), self.random.below(8)),
+                1 => format!("B{}", self.random.below(8)),
+                2 => format!("W{}", self.random.below(4)),
+                4 => format!("D{}", self.random.below(2)),
+                _ => "L0".to_owned(),
+            };
+            // The same bits have the same type.
+            if taken.contains(&at) {
+                continue;
+            }
+            taken.push(at.clone());
+            let name = format!("q{number}");
+            let shown = self.types.name(&ty);
+            self.line(&format!("    {name} AT %{area}{at} : {shown};"));
+            self.globals.push(Variable { name, ty, writable: true, lasts: false, located: true });
+        }
+    }
+
     /// Arrays and structures that hold blocks: they are declared when the blocks are known.
     fn declare_composites_of_blocks(&mut self) {
         self.line("TYPE");
@@ -212,12 +268,15 @@ impl Writer {
             let variable = self.declare(&format!("gp{number}"), ty);
             self.globals.push(variable);
         }
+        if self.random.once_in(2) {
+            self.declare_located();
+        }
         self.line("END_VAR");
         self.line("VAR_GLOBAL CONSTANT");
         for (number, ty, value) in [(0, 2, "7"), (1, 1, "3"), (2, 8, "16777216.0"), (3, 0, "100")] {
             let name = format!("k{number}");
             self.line(&format!("    {name} : {} := {value};", NUMBERS[ty].name));
-            self.globals.push(Variable { name, ty: Ty::Number(ty), writable: false, lasts: true });
+            self.globals.push(Variable { name, ty: Ty::Number(ty), writable: false, lasts: true, located: false });
         }
         self.line("END_VAR");
     }
@@ -229,7 +288,7 @@ impl Writer {
             let shown = this.types.name(&ty);
             this.line(&format!("{name} : {shown}{initial};"));
         });
-        Variable { name: name.to_owned(), ty, writable: true, lasts: false }
+        Variable { name: name.to_owned(), ty, writable: true, lasts: false, located: false }
     }
 
     fn initial(&mut self, ty: &Ty) -> String {
@@ -264,7 +323,13 @@ impl Writer {
             self.locals("VAR_STAT", "s", 2);
         }
         // A function's result is a variable in its body.
-        self.scope.add(Variable { name: name.clone(), ty: result.clone(), writable: true, lasts: false });
+        self.scope.add(Variable {
+            name: name.clone(),
+            ty: result.clone(),
+            writable: true,
+            lasts: false,
+            located: false,
+        });
         self.body(3);
         let value = self.expression(&result, 2);
         self.line(&format!("{name} := {value};"));
@@ -307,7 +372,13 @@ impl Writer {
         self.inside(|this| {
             this.line("tick : DINT;");
         });
-        self.scope.add(Variable { name: "tick".to_owned(), ty: Ty::Number(2), writable: false, lasts: true });
+        self.scope.add(Variable {
+            name: "tick".to_owned(),
+            ty: Ty::Number(2),
+            writable: false,
+            lasts: true,
+            located: false,
+        });
         let (arrays, records) = (self.types.arrays.len(), self.types.records.len());
         for at in 0..12 {
             let ty = match at {
@@ -328,7 +399,7 @@ impl Writer {
         }
         if blocks < self.blocks.len() {
             let ty = Ty::Instance(blocks);
-            self.scope.add(Variable { name: "Sub".to_owned(), ty, writable: true, lasts: false });
+            self.scope.add(Variable { name: "Sub".to_owned(), ty, writable: true, lasts: false, located: false });
         }
         for at in 0..2 * usize::from(self.refers) {
             let to = self.scope.types(&self.types, |it| it.lasts && it.writable);
@@ -440,7 +511,7 @@ impl Writer {
                     self.declare(name, ty.clone());
                 }
                 let writable = section != Section::Input;
-                self.scope.add(Variable { name: name.clone(), ty: ty.clone(), writable, lasts: false });
+                self.scope.add(Variable { name: name.clone(), ty: ty.clone(), writable, lasts: false, located: false });
             }
             self.line("END_VAR");
         }
@@ -488,6 +559,7 @@ impl Writer {
         match self.random.below(8) {
             0 if !self.types.arrays.is_empty() => Ty::Array(self.random.below(3)),
             1 if !self.types.records.is_empty() => Ty::Record(self.random.below(2)),
+            2 if !self.types.unions.is_empty() => Ty::Union(0),
             _ => self.plain_type(),
         }
     }

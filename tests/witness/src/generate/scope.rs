@@ -9,6 +9,8 @@ pub struct Variable {
     pub name: String,
     pub ty: Ty,
     pub writable: bool,
+    /// Whether it has a direct address that others may overlap.
+    pub located: bool,
     /// Whether it is there from scan to scan, so that references may be kept of it.
     pub lasts: bool,
 }
@@ -32,7 +34,7 @@ impl Scope {
     pub fn types(&self, types: &Catalogue, chosen: impl Fn(&Variable) -> bool) -> Vec<Ty> {
         let shapes = self.variables.iter().filter(|it| chosen(it)).flat_map(|it| types.shapes(&it.ty));
         shapes
-            .filter(|it| !it.through && !it.is_pin && it.writable && !matches!(it.ty, Ty::Pointer(_)))
+            .filter(|it| !it.through && !it.is_pin && !it.is_shared && it.writable && !matches!(it.ty, Ty::Pointer(_)))
             .map(|it| it.ty)
             .collect()
     }
@@ -57,7 +59,13 @@ impl Scope {
 
     pub fn add_in_outs(&mut self, parameters: &[Parameter]) {
         for it in parameters.iter().filter(|it| it.section == Section::InOut) {
-            self.add(Variable { name: it.name.clone(), ty: it.ty.clone(), writable: true, lasts: false });
+            self.add(Variable {
+                name: it.name.clone(),
+                ty: it.ty.clone(),
+                writable: true,
+                lasts: false,
+                located: false,
+            });
         }
     }
 
@@ -77,22 +85,29 @@ impl Writer {
         self.some_shape(to_write, depth, |this, _, shape| fits(this, &shape.ty))
     }
 
-    /// A variable or part of one that is named without a reference.
+    /// A variable or part of one that is named without a reference, and has bits of its own.
     pub(super) fn direct_place(&mut self, depth: usize, fits: impl Fn(&Self, &Ty) -> bool) -> Option<(String, Ty)> {
-        self.some_shape(true, depth, |this, _, shape| !shape.through && fits(this, &shape.ty))
+        self.some_shape(true, depth, |this, variable, shape| {
+            !shape.through && !shape.is_shared && !variable.located && fits(this, &shape.ty)
+        })
     }
 
     /// `REF(x)`, where something of the type lasts.
     pub(super) fn address_of(&mut self, ty: &Ty, depth: usize) -> Option<String> {
         let place = self
-            .some_shape(true, depth, |_, variable, it| variable.lasts && !it.through && !it.is_pin && it.ty == *ty)?
+            .some_shape(true, depth, |_, variable, it| {
+                variable.lasts && !it.through && !it.is_pin && !it.is_shared && it.ty == *ty
+            })?
             .0;
         Some(format!("{}({place})", if self.codesys { "ADR" } else { "REF" }))
     }
 
     /// What can be given to an in-out: not a pin, in a program with references.
     pub(super) fn in_out_place(&mut self, depth: usize, fits: impl Fn(&Self, &Ty) -> bool) -> Option<String> {
-        self.some_shape(true, depth, |this, _, shape| !shape.is_pin && fits(this, &shape.ty)).map(|it| it.0)
+        self.some_shape(true, depth, |this, variable, shape| {
+            !variable.located && !shape.is_pin && fits(this, &shape.ty)
+        })
+        .map(|it| it.0)
     }
 
     fn some_shape(

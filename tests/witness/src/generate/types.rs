@@ -18,6 +18,7 @@ pub enum Ty {
     Level(usize),
     Array(usize),
     Record(usize),
+    Union(usize),
     /// An instance of the program's own block of this number.
     Instance(usize),
     /// An instance of a standard block: a row of the runtime's table.
@@ -82,6 +83,7 @@ impl Ty {
             | Self::Level(_)
             | Self::Array(_)
             | Self::Record(_)
+            | Self::Union(_)
             | Self::Instance(_)
             | Self::Standard(_)
             | Self::Pointer(_)
@@ -132,6 +134,8 @@ pub struct Shape {
     pub through: bool,
     /// Whether it is a standard block's, and has no address.
     pub is_pin: bool,
+    /// Whether it shares its bytes, and has no address of its own.
+    pub is_shared: bool,
 }
 
 #[derive(Default)]
@@ -142,6 +146,7 @@ pub struct Catalogue {
     pub levels: Vec<(usize, i64, i64)>,
     pub arrays: Vec<(Vec<(i64, i64)>, Ty)>,
     pub records: Vec<Vec<(String, Ty)>>,
+    pub unions: Vec<Vec<(String, Ty)>>,
     /// The inputs and outputs of the program's own blocks: name, type, and whether it is an input.
     pub blocks: Vec<Vec<(String, Ty, bool)>>,
     /// The properties of each block, its base's too.
@@ -162,6 +167,7 @@ impl Catalogue {
             Ty::Level(at) => format!("Level{at}"),
             Ty::Array(at) => format!("List{at}"),
             Ty::Record(at) => format!("Rec{at}"),
+            Ty::Union(at) => format!("Uni{at}"),
             Ty::Instance(at) => format!("Blk{at}"),
             Ty::Standard(at) => standard_name(&BLOCKS[*at]),
             Ty::Interface => "IDo".to_owned(),
@@ -181,14 +187,30 @@ impl Catalogue {
             Ty::Array(at) => self.is_value(&self.arrays[*at].1),
             Ty::Record(at) => self.records[*at].iter().all(|(_, ty)| self.is_value(ty)),
             Ty::Bool | Ty::Number(_) | Ty::Bits(_) | Ty::Time | Ty::Text(_) | Ty::Color | Ty::Level(_) => true,
-            Ty::Pointer(_) | Ty::Interface => true,
+            Ty::Union(_) | Ty::Pointer(_) | Ty::Interface => true,
+        }
+    }
+
+    /// Whether a value of the type can share its bytes with others.
+    pub fn is_shareable(&self, ty: &Ty) -> bool {
+        match ty {
+            Ty::Bool | Ty::Number(_) | Ty::Bits(_) | Ty::Time | Ty::Color | Ty::Union(_) => true,
+            Ty::Array(at) => self.is_shareable(&self.arrays[*at].1),
+            Ty::Record(at) => self.records[*at].iter().all(|(_, ty)| self.is_shareable(ty)),
+            Ty::Text(_) | Ty::Level(_) | Ty::Instance(_) | Ty::Standard(_) | Ty::Pointer(_) | Ty::Interface => false,
         }
     }
 
     /// The variable itself and all its parts.
     pub fn shapes(&self, ty: &Ty) -> Vec<Shape> {
-        let mut shapes =
-            vec![Shape { pieces: Vec::new(), ty: ty.clone(), writable: true, through: false, is_pin: false }];
+        let mut shapes = vec![Shape {
+            pieces: Vec::new(),
+            ty: ty.clone(),
+            writable: true,
+            through: false,
+            is_pin: false,
+            is_shared: false,
+        }];
         let within = |piece: Piece, ty: &Ty, writable: bool, shapes: &mut Vec<Shape>| {
             for mut shape in self.shapes(ty) {
                 shape.pieces.insert(0, piece.clone());
@@ -206,13 +228,26 @@ impl Catalogue {
                     within(Piece::Member(name.clone()), ty, true, &mut shapes);
                 }
             }
+            Ty::Union(at) => {
+                for (name, ty) in &self.unions[*at] {
+                    within(Piece::Member(name.clone()), ty, true, &mut shapes);
+                }
+                shapes.iter_mut().skip(1).for_each(|it| it.is_shared = true);
+            }
             Ty::Instance(at) => {
                 for (name, ty, is_input) in &self.blocks[*at] {
                     within(Piece::Member(name.clone()), ty, *is_input, &mut shapes);
                 }
                 for (name, ty) in &self.properties[*at] {
                     let pieces = vec![Piece::Member(name.clone())];
-                    shapes.push(Shape { pieces, ty: ty.clone(), writable: false, through: true, is_pin: false });
+                    shapes.push(Shape {
+                        pieces,
+                        ty: ty.clone(),
+                        writable: false,
+                        through: true,
+                        is_pin: false,
+                        is_shared: false,
+                    });
                 }
             }
             Ty::Standard(at) => {
