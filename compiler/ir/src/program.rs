@@ -240,10 +240,34 @@ pub struct View {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Address {
     pub area: Area,
-    /// First bit in the area.
+    pub module: Module,
+    /// First bit in the area, or in the module's part of it.
     pub bit: u64,
     /// Number of bits.
     pub width: u8,
+}
+
+/// The numbers before the place in an address of a hierarchy, the highest level first: 1 and 2 in `%IW1.2.3`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Module {
+    numbers: [u32; Self::LEVELS],
+    count: u8,
+}
+
+impl Module {
+    /// The levels above the place are at most so many.
+    pub const LEVELS: usize = 6;
+
+    /// `None` where there are more levels.
+    pub fn new(levels: &[u32]) -> Option<Self> {
+        let mut numbers = [0; Self::LEVELS];
+        numbers.get_mut(..levels.len())?.copy_from_slice(levels);
+        Some(Self { numbers, count: u8::try_from(levels.len()).ok()? })
+    }
+
+    pub fn levels(&self) -> &[u32] {
+        &self.numbers[..usize::from(self.count)]
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -464,13 +488,18 @@ impl fmt::Display for Address {
             Area::Output => 'Q',
             Area::Memory => 'M',
         };
-        let position = self.bit / u64::from(self.width.max(1));
-        match self.width {
-            8 => write!(f, "%{area}B{position}"),
-            16 => write!(f, "%{area}W{position}"),
-            32 => write!(f, "%{area}D{position}"),
-            64 => write!(f, "%{area}L{position}"),
-            _ => write!(f, "%{area}X{}.{}", self.bit / 8, self.bit % 8),
+        let size = match self.width {
+            8 => 'B',
+            16 => 'W',
+            32 => 'D',
+            64 => 'L',
+            _ => 'X',
+        };
+        write!(f, "%{area}{size}")?;
+        self.module.levels().iter().try_for_each(|it| write!(f, "{it}."))?;
+        match size {
+            'X' => write!(f, "{}.{}", self.bit / 8, self.bit % 8),
+            _ => write!(f, "{}", self.bit / u64::from(self.width.max(1))),
         }
     }
 }

@@ -47,8 +47,12 @@ impl Emitter<'_> {
                 Area::Output => quote!(Output),
                 Area::Memory => quote!(Memory),
             };
+            let module = it.address.module.levels().iter().map(|it| Literal::u32_unsuffixed(*it));
             quote! {
-                firmware::Io { address: #address, variable: #variable, area: firmware::Area::#area, bit: #bit, width: #width }
+                firmware::Io {
+                    address: #address, variable: #variable, area: firmware::Area::#area, module: &[#(#module),*],
+                    bit: #bit, width: #width
+                }
             }
         });
         let fields = io.iter().enumerate().map(|(number, it)| {

@@ -8,7 +8,7 @@ use support::{output_as, output_of, output_with};
 
 const ST: &str = "
 VAR_GLOBAL
-    big AT %ML2 : LINT; start AT %IX0.3 : BOOL; speed AT %IW1 : INT; level AT %ID8 : REAL; lamp AT %QX2.0 : BOOL; control AT %QW4 : WORD;
+    big AT %ML2 : LINT; far AT %IW1.2.3 : WORD; start AT %IX0.3 : BOOL; speed AT %IW1 : INT; level AT %ID8 : REAL; lamp AT %QX2.0 : BOOL; control AT %QW4 : WORD;
     memory : INT;
 END_VAR
 PROGRAM Main
@@ -39,7 +39,7 @@ fn main() {
         println!("{} {} {:?} {}", task.instance, task.program, task.interval, task.priority);
     }
     for io in code::IO {
-        println!("{} {} {:?} {} {}", io.address, io.variable, io.area, io.bit, io.width);
+        println!("{} {} {:?} {:?} {} {}", io.address, io.variable, io.area, io.module, io.bit, io.width);
     }
     globals.read_inputs(|io| match io.width {
         32 => u64::from(1.5_f32.to_bits()),
@@ -62,12 +62,14 @@ fn tasks_addresses_and_faults() {
     let expected = "\
 Line1 Main Some(5000000) 2
 Line2 Main None 9
-%IX0.3 start Input 3 1
-%IW1 speed Input 16 16
-%ID8 level Input 256 32
-%QX2.0 lamp Output 16 1
-%QW4 control Output 64 16
-%ML2 big Memory 128 64
+%IW1.2.3 far Input [1, 2] 48 16
+%IX0.3 start Input [] 3 1
+%IW1 speed Input [] 16 16
+%ID8 level Input [] 256 32
+%QX2.0 lamp Output [] 16 1
+%QW4 control Output [] 64 16
+%ML2 big Memory [] 128 64
+far fffd
 start 1
 speed fffd
 level 3fc00000

@@ -29,7 +29,9 @@ pub struct Io {
     pub variable: &'static str,
     /// Where it lies.
     pub area: Area,
-    /// Its first bit in the area.
+    /// The levels above the place in an address of a hierarchy: 1 and 2 in `%IW1.2.3`. Empty for `%IW3`.
+    pub module: &'static [u32],
+    /// Its first bit in the area, or in the module's part of it.
     pub bit: u64,
     /// How many bits it takes: 1, 8, 16, 32 or 64.
     pub width: u8,

@@ -31,7 +31,7 @@ impl Member {
 impl<'s> Declarations<'s> {
     /// Finds the addresses that share bits, when all declarations are known.
     pub(super) fn find_image(&mut self, mut uses: Vec<Use>) {
-        let key = |this: &Self, it: &Use| (it.address.area, this.register_size(it));
+        let key = |this: &Self, it: &Use| (it.address.area, it.address.module, this.register_size(it));
         uses.sort_by_key(|it| {
             (key(self, it), it.address.bit, Reverse(it.bits), it.address.width, it.span.file, it.span.start)
         });

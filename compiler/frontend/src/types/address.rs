@@ -2,7 +2,7 @@
 
 use crate::{Code, Diagnostic, Span, ast};
 use rustc_hash::FxHashMap;
-use staunch_ir::{Address, Area, Const, Field, Retain};
+use staunch_ir::{Address, Area, Const, Field, Module, Retain};
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Storage {
@@ -71,7 +71,7 @@ impl Addresses {
     }
 }
 
-/// `%IX1.3`, `%QW10`, `%M5.1`. `None` for `%I*` and for what is no address.
+/// `%IX1.3`, `%QW10`, `%M5.1`, and through the levels of a station, `%IW1.2.3`. `None` for `%I*` and for what is no address.
 pub(crate) fn parse(text: &str) -> Option<Address> {
     let text = text.strip_prefix('%')?.to_ascii_uppercase();
     let area = match text.chars().next()? {
@@ -89,14 +89,14 @@ pub(crate) fn parse(text: &str) -> Option<Address> {
         'L' => (64, &rest[1..]),
         _ => (1, rest),
     };
-    let numbers: Option<Vec<u64>> = numbers.split('.').map(|it| it.parse::<u32>().ok().map(u64::from)).collect();
-    let bit = match (width, numbers?.as_slice()) {
-        (1, [byte]) => byte * 8,
-        (1, [byte, bit]) if *bit < 8 => byte * 8 + bit,
-        (width, [at]) if width > 1 => at * u64::from(width),
+    let numbers: Option<Vec<u32>> = numbers.split('.').map(|it| it.parse().ok()).collect();
+    let (levels, bit) = match (width, numbers?.as_slice()) {
+        (1, [byte]) => (Module::default(), u64::from(*byte) * 8),
+        (1, [levels @ .., byte, bit]) if *bit < 8 => (Module::new(levels)?, u64::from(*byte) * 8 + u64::from(*bit)),
+        (2.., [levels @ .., at]) => (Module::new(levels)?, u64::from(*at) * u64::from(width)),
         _ => return None,
     };
-    Some(Address { area, bit, width })
+    Some(Address { area, module: levels, bit, width })
 }
 
 /// The name of a field: an address that has no other name is called by its letters and digits.
@@ -111,17 +111,12 @@ pub(crate) fn wrong(name: ast::Name<'_>) -> Diagnostic {
             .label("a VAR_CONFIG gives the address")
             .help("bind it in the CONFIGURATION: `VAR_CONFIG run.variable AT %IX0.0 : BOOL; END_VAR`");
     }
-    let message = if is_hierarchical(name.text) {
-        format!("`{}` has more parts than are supported yet", name.text)
+    let numbers = name.text.matches('.').count() + 1;
+    let message = if numbers > Module::LEVELS + 1 && !name.text.contains("..") {
+        format!("`{}` has {numbers} numbers, {} levels above the place are supported", name.text, Module::LEVELS)
     } else {
         format!("`{}` is not a direct address", name.text)
     };
     Diagnostic::new(Code::E0409, name.span, message)
         .help("write an area (I, Q, M), a size (X, B, W, D, L) and a place: `%IX0.0`, `%QW3`")
-}
-
-/// `%IW0.1`, `%QX1.2.3`: an address through the parts of a station.
-fn is_hierarchical(text: &str) -> bool {
-    let bits = matches!(text.as_bytes().get(2), Some(b'X' | b'x' | b'0'..=b'9'));
-    text.matches('.').count() > usize::from(bits)
 }
