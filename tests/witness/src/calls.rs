@@ -280,16 +280,21 @@ impl<'a> Machine<'a> {
         mut own: Frame<'a>,
         passed: &[Passed<'a>],
     ) -> Outcome<(Frame<'a>, Vec<(Place<'a>, Place<'a>)>)> {
-        let mut copies = Vec::new();
+        // Each with the number of its argument: they come back in the order in which those are written.
+        let mut copies: Vec<(usize, (Place<'a>, Place<'a>))> = Vec::new();
         for number in 0..self.declared.pous[pou].variables.len() {
             let Variable { name, kind, slot, .. } = &self.declared.pous[pou].variables[number];
             let (name, kind, slot) = (*name, *kind, slot.clone());
             let key = name.to_ascii_uppercase();
-            let given = passed.iter().find(|it| it.name.eq_ignore_ascii_case(name)).map(|it| &it.given);
+            let argument = passed.iter().position(|it| it.name.eq_ignore_ascii_case(name));
+            let given = argument.map(|it| &passed[it].given);
             if kind == VarKind::Stat {
                 own.names.insert(key.clone(), self.statics[&(pou, key)].clone());
             } else if let Some(Given::Place(place)) = given {
-                let place = self.in_out(place, &slot.ty, &mut copies);
+                let (place, given) = (self.in_out(place, &slot.ty), place.clone());
+                if place.at != given.at {
+                    copies.push((argument.unwrap_or(0), (place.clone(), given)));
+                }
                 own.names.insert(key, place);
             } else if !own.names.contains_key(&key) {
                 let place = self.allocate(&slot.ty);
@@ -315,15 +320,16 @@ impl<'a> Machine<'a> {
             self.start(&own, &place, slot.initial)?;
             own.names.insert(name, place);
         }
-        Ok((own, copies))
+        copies.sort_by_key(|it| it.0);
+        Ok((own, copies.into_iter().map(|it| it.1).collect()))
     }
 
-    fn in_out(&mut self, given: &Place<'a>, ty: &Type<'a>, copies: &mut Vec<(Place<'a>, Place<'a>)>) -> Place<'a> {
+    /// The variable that a VAR_IN_OUT stands for: the caller's, or a copy of it.
+    fn in_out(&mut self, given: &Place<'a>, ty: &Type<'a>) -> Place<'a> {
         match (&given.ty, ty) {
             (Type::Text(from), Type::Text(to)) if from != to => {
                 let copy = self.allocate(ty);
                 self.memory[copy.at] = cut(&self.memory[given.at], *to);
-                copies.push((copy.clone(), given.clone()));
                 copy
             }
             // What shares its bytes goes in as a copy, and comes back when the call ends.
@@ -331,7 +337,6 @@ impl<'a> Machine<'a> {
                 let copy = self.allocate(ty);
                 let value = self.read(given);
                 self.write(&copy, &value);
-                copies.push((copy.clone(), given.clone()));
                 copy
             }
             _ => Place { declared: ty.class(), ..given.clone() },
