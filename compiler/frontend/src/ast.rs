@@ -337,6 +337,8 @@ pub struct VarDecl<'s> {
     pub initial: Option<Initial<'s>>,
     /// Of a member of a TYPE: an address as its initial value, which is assigned as a variable of the TYPE starts.
     pub started: Option<Initial<'s>>,
+    /// `{attribute 'instance-path'}`: it starts with the path of its instance.
+    pub instance_path: Option<Span>,
     /// The comment on the declaration's line or directly before it.
     pub doc: Option<String>,
     pub span: Span,
@@ -345,7 +347,18 @@ pub struct VarDecl<'s> {
 impl<'s> VarDecl<'s> {
     /// Variables with nothing but a type.
     pub fn new(names: Vec<Name<'s>>, ty: TypeSpec<'s>, span: Span) -> Self {
-        Self { names, address: None, ty, edge: None, construction: None, initial: None, started: None, doc: None, span }
+        Self {
+            names,
+            address: None,
+            ty,
+            edge: None,
+            construction: None,
+            initial: None,
+            started: None,
+            instance_path: None,
+            doc: None,
+            span,
+        }
     }
 
     /// The address, unless a VAR_CONFIG gives it: `AT %I*`.

@@ -41,6 +41,7 @@ const ATTRIBUTES: &[&str] = &[
     "init_namespace",
     "init_on_onlchange",
     "initialize_on_call",
+    "instance-path",
     "is_connected",
     "linkalways",
     "monitoring",
@@ -200,13 +201,6 @@ impl Log<'_> {
         let rest = pragma.text.trim().get("attribute".len()..).unwrap_or_default();
         let mut parts = rest.split('\'');
         let (Some(_), Some(name), Some(after)) = (parts.next(), parts.next(), parts.next()) else { return };
-        if name.eq_ignore_ascii_case("instance-path") {
-            // CODESYS gives the variable the path of its instance.
-            return self.report(
-                Diagnostic::new(Code::W0102, pragma.span, "the attribute 'instance-path' is not supported yet")
-                    .label("the variable keeps its initial value"),
-            );
-        }
         let of_a_tool = name.contains([':', '.', ' ']) || !after.trim().is_empty();
         if ATTRIBUTES.iter().any(|it| it.eq_ignore_ascii_case(name)) {
             return;

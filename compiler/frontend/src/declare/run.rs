@@ -12,7 +12,7 @@ use ast::{ExprKind, PouKind, StatementKind, VarKind};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 // Keywords, which no declaration can take.
-const PROGRAM: &str = "PROGRAM";
+pub(crate) const PROGRAM: &str = "PROGRAM";
 const TURN: &str = "CONFIGURATION";
 
 /// A run that is more than its PROGRAM's body.
@@ -59,10 +59,14 @@ pub(crate) fn runs<'a, 's>(files: &'a [ast::File<'s>], tests: bool) -> Vec<Run<'
         return runs.map(|it| run(&it, None, bound_in(&resource, &it))).collect();
     }
     let programs: FxHashMap<_, _> = items().filter_map(program).map(|it| (Key(it.name.text), it)).collect();
+    let has_paths = items().filter_map(pou).any(has_instance_path);
     let asks = |(resource, it): &&(&ast::Resource<'s>, &ast::ProgramInstance<'s>)| {
         let takes = programs.get(&Key(it.program.text)).is_some_and(|it| has_in_outs(it));
         let is_bound = bindings.iter().any(|binding| within(&binding.target, resource, it).is_some());
-        takes || is_bound || !it.connections.is_empty() || trigger(resource, it).is_some()
+        let is_same = |other: &&(_, &ast::ProgramInstance<'s>)| Key(other.1.program.text) == Key(it.program.text);
+        // Instances with other paths have other initial values.
+        let has_path = has_paths && listed.iter().filter(is_same).count() > 1;
+        takes || has_path || is_bound || !it.connections.is_empty() || trigger(resource, it).is_some()
     };
     let wrapped: FxHashSet<_> = listed.iter().filter(asks).map(|(_, it)| Key(it.program.text)).collect();
     let known = |it: &&ast::ProgramInstance<'s>| {
@@ -73,6 +77,10 @@ pub(crate) fn runs<'a, 's>(files: &'a [ast::File<'s>], tests: bool) -> Vec<Run<'
         run(it, trigger(resource, it), bound_in(resource, it))
     };
     listed.into_iter().filter(|(_, it)| known(it)).map(run).collect()
+}
+
+fn has_instance_path(pou: &ast::Pou<'_>) -> bool {
+    pou.blocks.iter().flat_map(|it| &it.vars).any(|it| it.instance_path.is_some())
 }
 
 /// The run of a PROGRAM that nothing lists, by its own name, if something of it is bound.

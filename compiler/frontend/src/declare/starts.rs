@@ -195,7 +195,7 @@ impl<'s> Declarations<'s> {
 }
 
 /// The declarations of a structure's members.
-fn members<'s>(ty: &'s TypeSpec<'s>, found: &mut Vec<&'s VarDecl<'s>>) {
+pub(crate) fn members<'s>(ty: &'s TypeSpec<'s>, found: &mut Vec<&'s VarDecl<'s>>) {
     match &ty.kind {
         TypeKind::Struct(members) | TypeKind::Union(members) => {
             for member in members {

@@ -2,6 +2,7 @@
 
 mod configuration;
 mod escape;
+mod instance_path;
 mod order;
 mod pins;
 mod prescan;
@@ -37,6 +38,7 @@ pub(crate) fn assemble<'s>(
     declarations.program.classes = slots.filter_map(|slot| declarations.class(slot, &held)).collect();
     declarations.check_named_programs();
     configuration::instances(declarations, files);
+    declarations.set_instance_paths();
     order::order(declarations, uses, stacks)?;
     declarations.check_pins()?;
     declarations.check_escapes()?;

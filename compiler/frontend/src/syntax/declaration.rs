@@ -19,6 +19,7 @@ use super::{
     parser::{Expected, In, Parsed, Start, TokenReader},
     recovery,
     token_class::ends_declarations,
+    type_block::instance_path_here,
     types::type_kind,
 };
 
@@ -193,6 +194,7 @@ fn declaration_or_names<'t, 'p, 's>(input: &mut In<'t, 'p, 's>, start: Start<'t,
 /// `names` holds what was read of the names, also if the rest does not parse.
 pub fn declaration<'s>(input: &mut In<'_, '_, 's>, names: &mut Vec<Name<'s>>) -> Parsed<VarDecl<'s>> {
     let (first, start) = (input.number(), input.here());
+    let instance_path = instance_path_here(input);
     // What is at an address needs no other name.
     let nameless = input.kind() == Kind::At;
     if !nameless {
@@ -213,7 +215,7 @@ pub fn declaration<'s>(input: &mut In<'_, '_, 's>, names: &mut Vec<Name<'s>>) ->
     };
     let doc = input.doc(first);
     let declared = VarDecl::new(std::mem::take(names), ty, start.to(input.last()));
-    Ok(VarDecl { address, edge, construction, initial, doc, ..declared })
+    Ok(VarDecl { address, edge, construction, initial, instance_path, doc, ..declared })
 }
 
 /// `a, b`

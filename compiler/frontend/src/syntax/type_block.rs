@@ -80,13 +80,21 @@ fn pack_here(input: &mut In<'_, '_, '_>) -> Option<(u64, crate::Span)> {
     pragmas_here(input).iter().find_map(|it| Some((mode(it)?, it.span)))
 }
 
+/// `{attribute 'instance-path'}` between the last token and the next.
+pub fn instance_path_here(input: &mut In<'_, '_, '_>) -> Option<crate::Span> {
+    let is_it = |it: &Name<'_>| attribute(it.text).is_some_and(|it| it.eq_ignore_ascii_case("instance-path"));
+    pragmas_here(input).into_iter().find(is_it).map(|it| it.span)
+}
+
 /// The pragmas between the last token and the next.
 fn pragmas_here<'s>(input: &mut In<'_, '_, 's>) -> Vec<Name<'s>> {
     let (from, to) = (input.last(), input.here());
     let pragmas = &input.state().tokens.pragmas;
-    let after = |it: &Name<'s>| it.span.start >= from.end || from.start >= to.start;
-    let here = pragmas.iter().filter(|it| it.span.end <= to.start && after(it));
-    here.copied().collect()
+    let after = |it: &&Name<'s>| it.span.start >= from.end || from.start >= to.start;
+    // They are in the order of the text.
+    let before = &pragmas[..pragmas.partition_point(|it| it.span.end <= to.start)];
+    let first = before.len() - before.iter().rev().take_while(after).count();
+    before[first..].to_vec()
 }
 
 /// The name in `attribute 'strict'`.
