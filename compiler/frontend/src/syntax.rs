@@ -8,6 +8,7 @@ mod token_class;
 mod combinator;
 mod doc;
 mod parser;
+mod pragma;
 
 mod diagnostics;
 mod misspelt;

@@ -17,9 +17,9 @@ use super::{
     foreign_types,
     initial::optional_initial,
     parser::{Expected, In, Parsed, Start, TokenReader},
+    pragma::instance_path_here,
     recovery,
     token_class::ends_declarations,
-    type_block::instance_path_here,
     types::type_kind,
 };
 

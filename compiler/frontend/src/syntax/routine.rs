@@ -13,9 +13,9 @@ use super::{
     declaration::{ACCESSES, access, before_name, type_spec},
     diagnostics, doc,
     parser::{In, TokenReader},
+    pragma::attributes_here,
     recovery,
     token_class::is_end,
-    type_block::attributes_here,
     unsupported,
 };
 

@@ -3,7 +3,7 @@
 use chumsky::prelude::*;
 
 use crate::{
-    ast::{External, Name, Pool, TypeDecl, TypeKind, TypeSpec},
+    ast::{Name, TypeDecl, TypeKind, TypeSpec},
     lex::Kind,
 };
 
@@ -15,6 +15,7 @@ use super::{
     initial::optional_initial,
     namespace,
     parser::{In, Parsed, Start, TokenReader},
+    pragma::{attributes_here, pack_here, pool_here},
     recovery,
     token_class::ends_declarations,
 };
@@ -52,66 +53,6 @@ pub fn types<'s>(input: &mut In<'_, '_, 's>) -> Vec<TypeDecl<'s>> {
         declared.pack = declared.pack.or(pack);
     }
     types
-}
-
-/// The names in `{attribute 'strict'}` and its like between the last token and the next.
-pub fn attributes_here<'s>(input: &mut In<'_, '_, 's>) -> Vec<&'s str> {
-    pragmas_here(input).into_iter().filter_map(|it| attribute(it.text)).collect()
-}
-
-/// `{external}` between the last token and the next.
-pub fn external_here<'s>(input: &mut In<'_, '_, 's>) -> Option<External<'s>> {
-    pragmas_here(input).into_iter().find_map(external)
-}
-
-/// `{pool 16}` between the last token and the next.
-pub fn pool_here(input: &mut In<'_, '_, '_>) -> Option<Pool> {
-    let text = |it: &Name<'_>| Pool::count_in(it.text);
-    pragmas_here(input).iter().find_map(|it| Some(Pool { count: text(it)?, span: it.span }))
-}
-
-/// `{attribute 'pack_mode' := '1'}` between the last token and the next. CODESYS takes 0 and 1 for one another.
-fn pack_here(input: &mut In<'_, '_, '_>) -> Option<(u64, crate::Span)> {
-    let mode = |it: &Name<'_>| {
-        let is_it = attribute(it.text)?.eq_ignore_ascii_case("pack_mode");
-        let value = it.text.rsplit_once(":=")?.1.trim().trim_matches('\'').trim();
-        is_it.then_some(value.parse::<u64>().ok()?.max(1))
-    };
-    pragmas_here(input).iter().find_map(|it| Some((mode(it)?, it.span)))
-}
-
-/// `{attribute 'instance-path'}` between the last token and the next.
-pub fn instance_path_here(input: &mut In<'_, '_, '_>) -> Option<crate::Span> {
-    let is_it = |it: &Name<'_>| attribute(it.text).is_some_and(|it| it.eq_ignore_ascii_case("instance-path"));
-    pragmas_here(input).into_iter().find(is_it).map(|it| it.span)
-}
-
-/// The pragmas between the last token and the next.
-fn pragmas_here<'s>(input: &mut In<'_, '_, 's>) -> Vec<Name<'s>> {
-    let (from, to) = (input.last(), input.here());
-    let pragmas = &input.state().tokens.pragmas;
-    let after = |it: &&Name<'s>| it.span.start >= from.end || from.start >= to.start;
-    // They are in the order of the text.
-    let before = &pragmas[..pragmas.partition_point(|it| it.span.end <= to.start)];
-    let first = before.len() - before.iter().rev().take_while(after).count();
-    before[first..].to_vec()
-}
-
-/// The name in `attribute 'strict'`.
-fn attribute(text: &str) -> Option<&str> {
-    let (word, rest) = text.trim().split_once(|it: char| it.is_whitespace())?;
-    let name = rest.trim_start().strip_prefix('\'')?.split('\'').next()?;
-    word.eq_ignore_ascii_case("attribute").then_some(name)
-}
-
-/// `external`, with or without a symbol in quotes.
-fn external(pragma: Name<'_>) -> Option<External<'_>> {
-    let text = pragma.text.trim();
-    let (word, rest) = text.split_at_checked("external".len())?;
-    let rest = rest.trim();
-    let symbol = rest.strip_prefix('\'').and_then(|it| it.strip_suffix('\''));
-    let fits = word.eq_ignore_ascii_case("external") && (rest.is_empty() || symbol.is_some());
-    fits.then_some(External { symbol, span: pragma.span })
 }
 
 /// A type, or the name of one that does not parse, with all names in it: they may be enumerators.

@@ -16,11 +16,12 @@ use super::{
     declaration::{section, structure_members, type_spec},
     diagnostics, doc, foreign_types, misspelt, namespace,
     parser::{Expected, In, TokenReader},
+    pragma::{attributes_here, external_here, pool_here},
     recovery,
     routine::{self, modifiers},
     statement::statements,
     token_class::{closes, is_end, is_pou_end, opens_item, opens_section, opens_statement},
-    type_block::{attributes_here, external_here, pool_here, types},
+    type_block::types,
     unsupported,
 };
 
