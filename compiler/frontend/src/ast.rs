@@ -226,6 +226,8 @@ pub struct Pou<'s> {
     pub attributes: Vec<&'s str>,
     /// `{external}` before it: it is implemented outside of Structured Text.
     pub external: Option<External<'s>>,
+    /// A library declares it, and nothing says what it does.
+    pub is_stub: bool,
     /// `{pool …}` before it.
     pub pool: Option<Pool>,
     /// The comment that is directly before the POU, cleaned of its marks.
@@ -284,6 +286,7 @@ impl<'s> Pou<'s> {
             routines: Vec::new(),
             attributes: Vec::new(),
             external: None,
+            is_stub: false,
             pool: None,
             doc: None,
             span,

@@ -3,6 +3,7 @@
 //! but a program that calls it cannot be built.
 
 use crate::ast::{ExprKind, File, Item, Pou, PouKind, each_expr};
+use crate::spelling::Key;
 use crate::types::declarations::Declarations;
 use crate::{Code, Diagnostic, Severity, Sources, Span};
 use rustc_hash::FxHashSet;
@@ -27,10 +28,15 @@ pub(crate) fn prepare(files: &mut [File<'_>], sources: &Sources) -> Stubs {
             Item::Configuration(_) | Item::Test(_) => false,
             Item::Types(_) | Item::Globals(_) => true,
         });
-        for item in &file.items {
+        for item in &mut file.items {
             if let Item::Pou(pou) = item
                 && is_stub(pou)
             {
+                pou.is_stub = true;
+                // What starts an instance that has nothing to do has nothing to do.
+                let asked =
+                    |it: &&mut Pou<'_>| !crate::start::INITIAL.iter().any(|name| Key(name) == Key(it.name.text));
+                pou.routines.iter_mut().filter(asked).for_each(|it| it.is_stub = !crate::start::is_after(it));
                 stubs.names.insert(pou.name.span);
                 stubs.names.extend(pou.routines.iter().map(|it| it.name.span));
             }
@@ -65,6 +71,23 @@ fn pou<'a, 's>(item: &'a Item<'s>) -> Option<&'a Pou<'s>> {
     }
 }
 
+/// Whether `{external}` before it is accepted.
+fn can_be_external(pou: &Pou<'_>) -> bool {
+    let has_own = pou.routines.iter().any(|it| it.name.text != crate::start::START);
+    match pou.kind {
+        PouKind::Function => true,
+        PouKind::FunctionBlock => !has_own && pou.extends.is_none() && pou.implements.is_empty(),
+        PouKind::Program
+        | PouKind::Class
+        | PouKind::Interface
+        | PouKind::Test
+        | PouKind::Action
+        | PouKind::Method
+        | PouKind::Getter
+        | PouKind::Setter => false,
+    }
+}
+
 /// Whether nothing of it says what it does. What only inherits does what its base does.
 fn is_stub(pou: &Pou<'_>) -> bool {
     let is_empty = pou.body.is_empty() && pou.routines.iter().all(|it| it.body.is_empty());
@@ -73,26 +96,26 @@ fn is_stub(pou: &Pou<'_>) -> bool {
 }
 
 impl Stubs {
-    /// Reports what is called of the library and has no body, each once; `routines` are those of the POUs' slots.
+    /// Reports what is called of the library and has no body, each once; `routines` are those of the POUs' slots. In a
+    /// unit test it may have a mock in its place, and else faults.
     pub fn report_called(&self, declarations: &mut Declarations<'_>, routines: &[Option<&Routine>]) {
-        if self.names.is_empty() {
+        if self.names.is_empty() || declarations.log.options.tests {
             return;
         }
         let sources = declarations.log.sources;
         let is_own = |slot: &usize| !sources.get(declarations.pous[*slot].ast.span.file).is_of_library();
         let mut missing = called((0..routines.len()).filter(is_own).collect(), routines);
-        missing.retain(|(slot, _)| self.is_missing(declarations, *slot));
+        missing.retain(|(slot, _)| {
+            // What starts the globals is made where an FB_init is.
+            let name = declarations.pous[*slot].ast.name;
+            self.names.contains(&name.span) && !name.text.starts_with(crate::start::START)
+        });
         // What several classes inherit is declared once.
         let mut said = FxHashSet::default();
         missing.retain(|(slot, _)| said.insert(declarations.pous[*slot].ast.name.span));
         for (slot, at) in missing {
             declarations.report_without_body(slot, at);
         }
-    }
-
-    fn is_missing(&self, declarations: &Declarations<'_>, slot: usize) -> bool {
-        let name = declarations.pous[slot].ast.name.span;
-        self.names.contains(&name) && !declarations.tests.mocks.contains_key(&slot)
     }
 }
 
@@ -103,10 +126,15 @@ impl Declarations<'_> {
         let error = Diagnostic::new(Code::E0318, self.log.name_at(at), format!("`{title}` has no implementation"))
             .label("called here")
             .other(pou.name.span, "declared here, without a body")
-            .help(format!(
-                "write its body in {file}, `RETURN;` where it is to do nothing, or `{{external}}` before it, and implement it in \
-                 Rust or C"
-            ));
+            .help(match can_be_external(pou) {
+                true => format!(
+                    "write its body in {file}, `RETURN;` where it is to do nothing, or `{{external}}` before it, and implement it \
+                     in Rust or C"
+                ),
+                false => format!(
+                    "write its body in {file}, `RETURN;` where it is to do nothing; it may call a FUNCTION that is `{{external}}`"
+                ),
+            });
         self.report(error);
     }
 }

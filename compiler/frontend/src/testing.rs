@@ -149,16 +149,24 @@ fn is_named(expr: &Expr<'_>, name: &str) -> bool {
     matches!(&expr.kind, ExprKind::Name(it) if it.text.eq_ignore_ascii_case(name))
 }
 
-/// `IF __mocked THEN __calls := __calls + 1; RETURN; END_IF` before the body.
+/// `IF __mocked THEN __calls := __calls + 1; RETURN; END_IF` before the body. METHODs run, but for those without a body.
 fn can_be_mocked(pou: &mut Pou<'_>) {
     let at = pou.name.span;
-    pou.blocks.push(variables(&[(MOCKED, &["BOOL"]), (CALLS, &["DINT"])], at));
+    // What an heir inherits sees it, too.
+    pou.blocks.insert(0, variables(&[(MOCKED, &["BOOL"]), (CALLS, &["DINT"])], at));
+    pou.inherited += usize::from(pou.extends.is_some());
     let one = literal(LiteralValue::Integer { value: 1, based: false }, at);
     let sides = Box::new([named(CALLS, at), one]);
     let more = Expr { kind: ExprKind::Binary(sides, BinaryOp::Add, at), span: at };
     let counted = vec![assign(CALLS, more), Statement { kind: StatementKind::Return, span: at }];
     let kind = StatementKind::If { branches: vec![(named(MOCKED, at), counted)], otherwise: None };
     pou.body.insert(0, Statement { kind, span: at });
+    for routine in pou.routines.iter_mut().filter(|it| it.is_stub) {
+        let span = routine.name.span;
+        let given_up = vec![Statement { kind: StatementKind::Return, span }];
+        let kind = StatementKind::If { branches: vec![(named(MOCKED, span), given_up)], otherwise: None };
+        routine.body.insert(0, Statement { kind, span });
+    }
 }
 
 /// The last names of the FUNCTIONs that some test replaces, by the bodies of all POUs.

@@ -29,7 +29,7 @@ pub enum FaultKind {
     ForbiddenView = 10,
     /// The condition of an ASSERT does not hold.
     AssertionFailed = 11,
-    /// What is called is implemented outside of Structured Text, and is not there.
+    /// What is called has no implementation here: it is outside of Structured Text, or a library only declares it.
     NotImplemented = 12,
     /// The preset or the accumulated value of a Logix TIMER is below 0 where it times.
     NegativeTimer = 13,
@@ -77,7 +77,7 @@ impl FaultKind {
             Self::MisalignedReference => "a reference is misaligned",
             Self::ForbiddenView => "a reference points to something of another type",
             Self::AssertionFailed => "an assertion does not hold",
-            Self::NotImplemented => "an `{external}` is not implemented here",
+            Self::NotImplemented => "what is called is not implemented here",
             Self::NegativeTimer => "the PRE or ACC of a TIMER is below 0",
             Self::Deleted => "a reference points to an object that was deleted",
             Self::NotOfPool => "`__DELETE` of an object that `__NEW` did not make",

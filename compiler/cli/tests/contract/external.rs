@@ -146,7 +146,7 @@ END_PROGRAM
         let tested = folder.staunch(&format!("test tests.st --backend {backend}"));
         has(
             &tested.out(1),
-            &["ok      with a mock", "FAILED  without", "tests.st:2:10: an `{external}` is not implemented"],
+            &["ok      with a mock", "FAILED  without", "tests.st:2:10: what is called is not implemented here"],
         );
     }
 }

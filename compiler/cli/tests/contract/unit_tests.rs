@@ -309,3 +309,58 @@ END_TEST
     assert_eq!(ran.code, 1);
     has(&ran.err, &["time does not go back"]);
 }
+
+#[test]
+fn what_a_library_only_declares_is_mocked_or_fails_the_test() {
+    let folder = Folder::with("mocked_stubs", &[("staunch.toml", "dialect = \"codesys\"\nlibraries = [\"lib.st\"]\n")]);
+    let library = "FUNCTION Level : INT VAR_INPUT x : INT; END_VAR END_FUNCTION
+FUNCTION_BLOCK Drive
+VAR_INPUT speed : INT; END_VAR
+VAR_OUTPUT actual : INT; END_VAR
+METHOD FB_init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; END_VAR END_METHOD
+METHOD Stop : INT VAR_INPUT z : INT; END_VAR END_METHOD
+PROPERTY Mode : INT GET END_GET SET END_SET END_PROPERTY
+END_FUNCTION_BLOCK";
+    let source = "FUNCTION_BLOCK Own EXTENDS Drive
+VAR_OUTPUT n : INT; END_VAR
+    n := speed * 2 + Stop(1);
+END_FUNCTION_BLOCK
+PROGRAM Main
+VAR d : Drive; r : INT; END_VAR
+    d(speed := 1);
+    r := Level(d.actual) + d.Stop(2) + d.Mode;
+    d.Mode := 3;
+END_PROGRAM
+TEST 'mocked'
+VAR m : Main; END_VAR
+    MOCK m.d; m.d.actual := 5;
+    MOCK_FUNCTION Level RETURNS 12;
+    m(); m();
+    ASSERT_EQ(m.d.speed, 1);
+    ASSERT_EQ(m.r, 12);
+    MOCK_VERIFY_CALL_COUNT(m.d, 2); MOCK_VERIFY_CALL_COUNT(Level, 2); MOCK_VERIFY_CALLED(Level);
+END_TEST
+TEST 'count' MOCK_FUNCTION Level RETURNS 1; MOCK_VERIFY_CALL_COUNT(Level, 2); END_TEST
+TEST 'block' VAR d : Drive; END_VAR d(speed := 1); END_TEST
+TEST 'function' VAR x : INT; END_VAR x := Level(1); END_TEST
+TEST 'method' VAR own : Own; END_VAR own(speed := 3); END_TEST
+TEST 'heir' VAR own : Own; END_VAR MOCK own; own(speed := 3); ASSERT_EQ(own.n, 0); END_TEST
+";
+    folder.write("lib.st", library);
+    folder.write("t.st", source);
+    for backend in ["interpret", "native"] {
+        let ran = folder.staunch(&format!("test t.st --backend {backend}"));
+        assert_eq!(ran.code, 1, "{backend}: {}{}", ran.out, ran.err);
+        has(&ran.out, &["2 passed, 4 failed", "expected 2 calls, found 0"]);
+        for name in ["FUNCTION_BLOCK Drive", "FUNCTION Level", "METHOD Stop"] {
+            has(&ran.out, &[&format!("what is called is not implemented here\n          {name}")]);
+        }
+    }
+    // What is built has no mocks.
+    let refused = folder.staunch("build t.st").err(1);
+    has(&refused, &["`Drive` has no implementation", "`Drive.FB_init` has no implementation", "`RETURN;`"]);
+    assert_eq!(refused.matches("or `{external}` before it").count(), 1, "{refused}");
+    folder.write("t.st", "FUNCTION F : INT F := 1; END_FUNCTION TEST 'a' MOCK_VERIFY_CALL_COUNT(F, 1); END_TEST");
+    let refused = folder.staunch("test t.st").err(1);
+    has(&refused, &["no calls of the FUNCTION `F` are counted", "`MOCK_FUNCTION F RETURNS value;`"]);
+}

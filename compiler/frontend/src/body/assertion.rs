@@ -4,6 +4,7 @@
 use crate::expr::checker::Checker;
 use crate::expr::operand::Operand;
 use crate::expr::operator::{Sides, beside};
+use crate::names::{Entry, Found, Meaning, Sense};
 use crate::testing::{Assertion, CALLS, CLOCK, FAILED, MOCKED};
 use crate::types::signature::pin_place;
 use crate::{Code, Diagnostic, Span, ast};
@@ -375,10 +376,50 @@ impl<'s> Checker<'_, 's> {
         Some(())
     }
 
-    fn calls(&mut self, instance: &ast::Expr<'s>) -> Option<(Expr, String)> {
-        let calls = self.hidden_member(instance, CALLS)?;
-        let at = self.at(instance.span);
-        self.keep("actual", Expr::load(calls, at), instance.span)
+    /// How often a mocked instance, or a FUNCTION that is replaced, was called.
+    fn calls(&mut self, mocked: &ast::Expr<'s>) -> Option<(Expr, String)> {
+        let (at, span) = (self.at(mocked.span), mocked.span);
+        let dint = Type::Elementary(Elementary::Dint);
+        let path = mocked.path().unwrap_or_default();
+        let of_functions = if path.is_empty() { Vec::new() } else { self.decl.mocks_of(&path) };
+        let mut counts = of_functions.into_iter().map(|it| Expr::load(it.calls, at));
+        let mut total = match counts.next() {
+            Some(first) => first,
+            None if !path.is_empty() && self.names_function(&path) => return self.not_replaced(span),
+            None => Expr::load(self.hidden_member(mocked, CALLS)?, at),
+        };
+        for count in counts {
+            total = self.apply(Op::Add, dint, vec![total, count], dint, span)?;
+        }
+        self.keep("actual", total, span)
+    }
+
+    fn names_function(&self, path: &[ast::Name<'s>]) -> bool {
+        let Found::One(Meaning::Declared(Entry::Pou(slot))) = self.decl.lookup(path, Sense::Callee) else {
+            return false;
+        };
+        self.decl.pous[slot].ast.kind == ast::PouKind::Function
+    }
+
+    /// Reports a FUNCTION of which no call is counted.
+    fn not_replaced<T>(&mut self, span: Span) -> Option<T> {
+        let name = self.decl.log.sources.text(span).to_owned();
+        self.report(
+            Diagnostic::new(Code::E0316, span, format!("no calls of the FUNCTION `{name}` are counted"))
+                .label("no test replaces it")
+                .help(format!("replace it first: `MOCK_FUNCTION {name} RETURNS value;`")),
+        );
+        None
+    }
+
+    /// `calls := calls + 1`
+    fn count_call(&mut self, calls: &Place, span: Span) {
+        let (at, dint) = (self.at(span), calls.ty);
+        let one = Expr::constant(Elementary::Dint, Value::I32(1), at);
+        let more = self.apply(Op::Add, dint, vec![Expr::load(calls.clone(), at), one], dint, span);
+        if let Some(more) = more {
+            self.assign(calls.clone(), more, span);
+        }
     }
 
     fn called_more_than(&mut self, instance: &ast::Expr<'s>, span: Span) -> Option<Claim> {
@@ -429,6 +470,7 @@ impl<'s> Checker<'_, 's> {
         let at = self.at(span);
         let then = self.nested(|this| {
             let ty = mock.value.ty;
+            this.count_call(&mock.calls, span);
             this.assign(Place::root(Root::Local(result), ty), Expr::load(mock.value, at), span);
             this.push(StatementKind::Return, span);
         });

@@ -8,7 +8,8 @@ use crate::types::declarations::Declarations;
 use crate::types::signature::Signature;
 use crate::{Code, Diagnostic, Span};
 use staunch_ir::{
-    Argument, Expr, External, ExternalCall, ExternalParam, FaultKind, Mode, ParamId, Place, Root, StatementKind, Type,
+    Argument, Block, Expr, External, ExternalCall, ExternalParam, FaultKind, Mode, ParamId, Place, Root, StatementKind,
+    Type,
 };
 
 impl<'s> Checker<'_, 's> {
@@ -45,6 +46,11 @@ impl<'s> Checker<'_, 's> {
         for (own, copy) in back {
             self.assign(own, Expr::load(copy, at), span);
         }
+    }
+
+    /// In place of what is missing.
+    pub(super) fn not_there(&mut self, span: Span) -> Block {
+        self.nested(|this| this.push(StatementKind::Fault(FaultKind::NotImplemented), span))
     }
 
     /// What a mock puts before the body is at the name.

@@ -159,6 +159,9 @@ fn check_body<'s>(
         }
         None => checker.block_of(statements),
     };
+    if pou.is_stub && checker.decl.log.options.tests {
+        body.append(&mut checker.not_there(pou.name.span));
+    }
     checker.migration_lints(statements);
     let mut whole = std::mem::take(&mut checker.block);
     if whole.is_empty() {

@@ -6,7 +6,7 @@ use crate::spelling::Key;
 use crate::types::declarations::Declarations;
 use crate::types::tests::FunctionMock;
 use rustc_hash::FxHashSet;
-use staunch_ir::{Const, Field, Place, Retain, Section, Type};
+use staunch_ir::{Const, Elementary, Field, Place, Retain, Section, Type};
 
 impl<'s> Declarations<'s> {
     /// Gives each of the FUNCTIONs, by their names, the variables of its mock.
@@ -25,7 +25,8 @@ impl<'s> Declarations<'s> {
             let more = if is_known { format!("_{slot}") } else { String::new() };
             let active = self.mock_variable(pou.name, &format!("mocked{more}"), Type::BOOL);
             let value = self.mock_variable(pou.name, &format!("result{more}"), result);
-            self.tests.mocks.insert(slot, FunctionMock { active, value });
+            let calls = self.mock_variable(pou.name, &format!("calls{more}"), Type::Elementary(Elementary::Dint));
+            self.tests.mocks.insert(slot, FunctionMock { active, value, calls });
         }
     }
 

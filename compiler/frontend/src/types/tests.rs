@@ -25,9 +25,10 @@ pub(crate) struct Tests {
     pub mocks: FxHashMap<usize, FunctionMock>,
 }
 
-/// Two globals: whether a FUNCTION is replaced, and the value that it then has.
+/// Globals: whether a FUNCTION is replaced, the value that it then has, and how often it was called since.
 #[derive(Clone, Debug)]
 pub(crate) struct FunctionMock {
     pub active: Place,
     pub value: Place,
+    pub calls: Place,
 }
