@@ -4,6 +4,7 @@
 //! a call of [`MEMBERS`] becomes what is to be done.
 
 mod addresses;
+mod expected;
 
 use crate::Span;
 use crate::ast::{
@@ -15,6 +16,7 @@ use crate::testing::tree::{assign, literal, named, variables};
 pub(crate) use addresses::is_once;
 
 use addresses::Addresses;
+use expected::Types;
 
 /// METHODs that CODESYS calls by itself.
 pub(crate) const INITIAL: [&str; 3] = [INIT, "FB_reinit", EXIT];
@@ -53,26 +55,23 @@ pub(crate) fn expand(files: &mut [File<'_>]) {
     let mut states = Vec::new();
     let mut of_globals_alone = Addresses::default();
     let mut first = None;
-    let interfaces = files.iter().flat_map(|it| &it.items).filter_map(pou).filter(|it| it.kind == PouKind::Interface);
-    let interfaces: addresses::Interfaces<'_> = interfaces.map(|it| Key(it.name.text)).collect();
+    let types = Types::of(files);
     for item in files.iter_mut().flat_map(|it| &mut it.items) {
         match item {
             Item::Pou(pou) => {
-                addresses::of_calls(pou, &interfaces);
-                let found =
-                    if has_state(pou.kind) { addresses::of_state(pou, &interfaces) } else { Addresses::default() };
+                addresses::of_calls(pou, &types);
+                let found = if has_state(pou.kind) { addresses::of_state(pou, &types) } else { Addresses::default() };
                 first = first.or((!found.is_empty()).then_some(pou.name.span));
                 states.push(found);
             }
             Item::Globals(_) | Item::Configuration(_) => {
-                let found = addresses::taken(blocks_of(item).iter_mut(), &interfaces);
+                let found = addresses::taken(blocks_of(item).iter_mut(), &types);
                 first = first.or(found.before.first().map(|it| it.span));
                 of_globals_alone.before.extend(found.before);
                 of_globals_alone.after.extend(found.after);
             }
-            Item::Types(types) => {
-                first =
-                    types.iter_mut().fold(first, |first, it| first.or(addresses::of_members(&mut it.ty, &interfaces)))
+            Item::Types(declared) => {
+                first = declared.iter_mut().fold(first, |first, it| first.or(addresses::of_members(&mut it.ty, &types)))
             }
             Item::Test(_) => {}
         }

@@ -2,14 +2,13 @@
 //! in VAR_TEMP, that is at the start of each call, of VAR_STAT and VAR_INST of the first one; elsewhere with the start of
 //! instances.
 
+use super::expected::{By, Expected, Types};
 use crate::Span;
 use crate::ast::{
-    BinaryOp, Bound, Element, Expr, ExprKind, Initial, InitialKind, LiteralValue, Name, Pou, PouKind, Statement,
+    BinaryOp, Element, Expr, ExprKind, Initial, InitialKind, LiteralValue, Name, Pou, PouKind, Statement,
     StatementKind, TypeKind, TypeSpec, UnaryOp, VarBlock, VarKind, each_part,
 };
-use crate::spelling::Key;
 use crate::testing::tree::{assign, literal, named, variables};
-use rustc_hash::FxHashSet;
 
 /// What is assigned before the instances start, whose FB_init may be given it, and after: values of their own
 /// variables come after FB_init.
@@ -46,11 +45,8 @@ impl<'s> Addresses<'s> {
     }
 }
 
-/// The names of all INTERFACEs: what a variable of one starts with, `logger : I_Logger := file;`, is an address, too.
-pub(super) type Interfaces<'s> = FxHashSet<Key<'s>>;
-
 /// Takes out of a POU the addresses that its calls assign, and puts them before its statements.
-pub(super) fn of_calls<'s>(pou: &mut Pou<'s>, interfaces: &Interfaces<'s>) {
+pub(super) fn of_calls<'s>(pou: &mut Pou<'s>, types: &Types<'s>) {
     let is_of_calls = |kind: PouKind, block: &VarBlock<'_>| match kind {
         PouKind::Function | PouKind::Method | PouKind::Getter | PouKind::Setter => {
             matches!(block.kind, VarKind::Var | VarKind::Temp)
@@ -59,14 +55,14 @@ pub(super) fn of_calls<'s>(pou: &mut Pou<'s>, interfaces: &Interfaces<'s>) {
         PouKind::Class | PouKind::Interface | PouKind::Action => false,
     };
     for routine in &mut pou.routines {
-        of_calls(routine, interfaces);
+        of_calls(routine, types);
     }
     let kind = pou.kind;
-    let found = taken(pou.blocks.iter_mut().filter(|it| is_of_calls(kind, it)), interfaces);
+    let found = taken(pou.blocks.iter_mut().filter(|it| is_of_calls(kind, it)), types);
     pou.body.splice(0..0, found.before);
     if kind.is_function() {
         for lasting in [VarKind::Stat, VarKind::Inst] {
-            let found = once(pou, lasting, interfaces);
+            let found = once(pou, lasting, types);
             pou.body.splice(0..0, found);
         }
     }
@@ -76,8 +72,8 @@ pub(super) fn of_calls<'s>(pou: &mut Pou<'s>, interfaces: &Interfaces<'s>) {
 pub(crate) const ADDRESSED: [&str; 2] = ["__stat_addressed", "__inst_addressed"];
 
 /// Takes out of a POU the addresses of variables that outlive its calls: they are assigned once after each start.
-fn once<'s>(pou: &mut Pou<'s>, kind: VarKind, interfaces: &Interfaces<'s>) -> Vec<Statement<'s>> {
-    let found = taken(pou.blocks.iter_mut().filter(|it| it.kind == kind), interfaces);
+fn once<'s>(pou: &mut Pou<'s>, kind: VarKind, types: &Types<'s>) -> Vec<Statement<'s>> {
+    let found = taken(pou.blocks.iter_mut().filter(|it| it.kind == kind), types);
     let Some(first) = found.before.first().map(|it| it.span) else { return Vec::new() };
     // No name of the source is there, and what inherits the block has the same mark.
     let at = pou.blocks.iter().find(|it| it.kind == kind).map_or(first, |it| it.span);
@@ -101,33 +97,33 @@ pub(crate) fn is_once(statement: &Statement<'_>) -> bool {
 }
 
 /// Takes the addresses out of the members of a structure, for the start of its variables. Gives the first one.
-pub(super) fn of_members<'s>(ty: &mut TypeSpec<'s>, interfaces: &Interfaces<'s>) -> Option<Span> {
+pub(super) fn of_members<'s>(ty: &mut TypeSpec<'s>, types: &Types<'s>) -> Option<Span> {
     let TypeKind::Struct(members) = &mut ty.kind else { return None };
     let mut first = None;
     for member in members {
         let is_own = |it: &Initial<'_>| match &it.kind {
             InitialKind::Bind(_) => true,
-            InitialKind::Value(value) => is_address(value) || is_instance(value, Some(&member.ty), interfaces),
+            InitialKind::Value(value) => is_address(value) || Expected::variable(&member.ty, types).by(value).is_some(),
             InitialKind::Elements(_) | InitialKind::Fields(_) => false,
         };
         if member.initial.as_ref().is_some_and(is_own) {
             member.started = member.initial.take();
         }
         let own = member.started.as_ref().map(|it| it.span);
-        first = first.or(own).or(of_members(&mut member.ty, interfaces));
+        first = first.or(own).or(of_members(&mut member.ty, types));
     }
     first
 }
 
 /// Takes out of a POU with a state the addresses that its start assigns.
-pub(super) fn of_state<'s>(pou: &mut Pou<'s>, interfaces: &Interfaces<'s>) -> Addresses<'s> {
+pub(super) fn of_state<'s>(pou: &mut Pou<'s>, types: &Types<'s>) -> Addresses<'s> {
     // A PROGRAM has one set of variables, so they are all alike.
     let is_lasting = matches!(pou.kind, PouKind::Program | PouKind::Test);
     let is_state = |it: &&mut VarBlock<'s>| {
         matches!(it.kind, VarKind::Var | VarKind::Input | VarKind::Output) || is_lasting && it.kind == VarKind::Stat
     };
-    let mut found = taken(pou.blocks.iter_mut().filter(is_state), interfaces);
-    let shared = once(pou, VarKind::Stat, interfaces);
+    let mut found = taken(pou.blocks.iter_mut().filter(is_state), types);
+    let shared = once(pou, VarKind::Stat, types);
     found.before.splice(0..0, shared);
     found
 }
@@ -135,12 +131,12 @@ pub(super) fn of_state<'s>(pou: &mut Pou<'s>, interfaces: &Interfaces<'s>) -> Ad
 /// Takes the addresses out of declarations.
 pub(super) fn taken<'a, 's: 'a>(
     blocks: impl Iterator<Item = &'a mut VarBlock<'s>>,
-    interfaces: &Interfaces<'s>,
+    types: &Types<'s>,
 ) -> Addresses<'s> {
     let mut found = Addresses::default();
     // What writes to a CONSTANT is refused.
     for decl in blocks.filter(|it| it.constant.is_none()).flat_map(|it| &mut it.vars) {
-        if decl.initial.as_ref().is_none_or(|it| !holds_address(it, Some(&decl.ty), interfaces)) {
+        if decl.initial.as_ref().is_none_or(|it| !holds_address(it, Expected::variable(&decl.ty, types))) {
             continue;
         }
         let names = decl.names.clone();
@@ -148,29 +144,22 @@ pub(super) fn taken<'a, 's: 'a>(
         for name in names {
             let target = Expr { kind: ExprKind::Name(name), span: name.span };
             decl.initial =
-                initial.clone().and_then(|it| rest(it, &target, (Some(&decl.ty), interfaces), false, &mut found));
+                initial.clone().and_then(|it| rest(it, &target, Expected::variable(&decl.ty, types), &mut found));
         }
     }
     found
 }
 
-fn holds_address<'s>(initial: &Initial<'s>, ty: Option<&TypeSpec<'s>>, interfaces: &Interfaces<'s>) -> bool {
+fn holds_address<'s>(initial: &Initial<'s>, expected: Expected<'_, 's>) -> bool {
     match &initial.kind {
         InitialKind::Bind(_) => true,
-        InitialKind::Value(value) => is_address(value) || is_instance(value, ty, interfaces),
+        InitialKind::Value(value) => is_address(value) || expected.by(value).is_some(),
         InitialKind::Elements(elements) => {
-            let element = one_row(ty).map(|it| it.1);
-            elements.iter().flat_map(|it| &it.values).any(|it| holds_address(it, element, interfaces))
+            let Some((_, element)) = expected.row() else { return false };
+            elements.iter().flat_map(|it| &it.values).any(|it| holds_address(it, element))
         }
-        InitialKind::Fields(fields) => fields.iter().any(|(_, it)| holds_address(it, None, interfaces)),
+        InitialKind::Fields(fields) => fields.iter().any(|(name, it)| holds_address(it, expected.member(*name))),
     }
-}
-
-/// Whether a variable of an INTERFACE is given what has a name: 0 and NULL have none.
-fn is_instance<'s>(value: &Expr<'s>, ty: Option<&TypeSpec<'s>>, interfaces: &Interfaces<'s>) -> bool {
-    let Some(TypeKind::Named(path)) = ty.map(|it| &it.kind) else { return false };
-    let is_interface = path.last().is_some_and(|it| interfaces.contains(&Key(it.text)));
-    is_interface && matches!(value.kind, ExprKind::Name(_) | ExprKind::Member(..) | ExprKind::Index(..))
 }
 
 fn is_address(value: &Expr<'_>) -> bool {
@@ -186,26 +175,26 @@ fn is_address(value: &Expr<'_>) -> bool {
 fn rest<'s>(
     initial: Initial<'s>,
     target: &Expr<'s>,
-    (ty, interfaces): (Option<&TypeSpec<'s>>, &Interfaces<'s>),
-    is_member: bool,
+    expected: Expected<'_, 's>,
     found: &mut Addresses<'s>,
 ) -> Option<Initial<'s>> {
-    let span = initial.span;
+    let (span, is_member) = (initial.span, expected.is_member);
     let kind = match initial.kind {
         InitialKind::Bind(value) => {
             found.add(target.clone(), value, true, is_member);
             return None;
         }
-        InitialKind::Value(value) if is_address(&value) || is_instance(&value, ty, interfaces) => {
-            found.add(target.clone(), value, false, is_member);
-            return None;
-        }
-        InitialKind::Value(value) => InitialKind::Value(value),
-        InitialKind::Fields(fields) => InitialKind::Fields(of_fields(fields, target, interfaces, found)),
-        InitialKind::Elements(elements) => match one_row(ty) {
+        InitialKind::Value(value) => match expected.by(&value) {
+            None if !is_address(&value) => InitialKind::Value(value),
+            by => {
+                found.add(target.clone(), value, by == Some(By::Binding), is_member);
+                return None;
+            }
+        },
+        InitialKind::Fields(fields) => InitialKind::Fields(of_fields(fields, target, expected, found)),
+        InitialKind::Elements(elements) => match expected.row() {
             Some((low, element)) if elements.iter().all(|it| count(it).is_some()) => {
-                let row = (low, element, interfaces);
-                InitialKind::Elements(of_elements(elements, target, row, is_member, found))
+                InitialKind::Elements(of_elements(elements, target, (low, element), found))
             }
             _ => InitialKind::Elements(elements),
         },
@@ -219,12 +208,12 @@ fn rest<'s>(
 fn of_fields<'s>(
     fields: Vec<(Name<'s>, Initial<'s>)>,
     target: &Expr<'s>,
-    interfaces: &Interfaces<'s>,
+    expected: Expected<'_, 's>,
     found: &mut Addresses<'s>,
 ) -> Vec<(Name<'s>, Initial<'s>)> {
     let one = |(name, initial): (Name<'s>, Initial<'s>)| {
         let member = Expr { kind: ExprKind::Member(Box::new(target.clone()), name), span: name.span };
-        Some((name, rest(initial, &member, (None, interfaces), true, found)?))
+        Some((name, rest(initial, &member, expected.member(name), found)?))
     };
     fields.into_iter().filter_map(one).collect()
 }
@@ -232,14 +221,13 @@ fn of_fields<'s>(
 fn of_elements<'s>(
     elements: Vec<Element<'s>>,
     target: &Expr<'s>,
-    (low, ty, interfaces): (&Expr<'s>, &TypeSpec<'s>, &Interfaces<'s>),
-    is_member: bool,
+    (low, expected): (&Expr<'s>, Expected<'_, 's>),
     found: &mut Addresses<'s>,
 ) -> Vec<Element<'s>> {
     let mut at = 0;
     let mut left = Vec::new();
     for element in elements {
-        if !element.values.iter().any(|it| holds_address(it, Some(ty), interfaces)) {
+        if !element.values.iter().any(|it| holds_address(it, expected)) {
             at += count(&element).unwrap_or_default() * u64::try_from(element.values.len().max(1)).unwrap_or_default();
             left.push(element);
             continue;
@@ -248,8 +236,7 @@ fn of_elements<'s>(
             for value in &element.values {
                 let span = value.span;
                 let one = Expr { kind: ExprKind::Index(Box::new(target.clone()), vec![index(low, at, span)]), span };
-                let values: Vec<_> =
-                    rest(value.clone(), &one, (Some(ty), interfaces), is_member, found).into_iter().collect();
+                let values: Vec<_> = rest(value.clone(), &one, expected, found).into_iter().collect();
                 // A repeat without values has those of the element's type.
                 let single = literal(LiteralValue::Integer { value: 1, based: false }, span);
                 left.push(Element { count: values.is_empty().then_some(single), values });
@@ -264,24 +251,6 @@ fn of_elements<'s>(
 fn index<'s>(low: &Expr<'s>, at: u64, span: Span) -> Expr<'s> {
     let distance = literal(LiteralValue::Integer { value: at, based: false }, span);
     Expr { kind: ExprKind::Binary(Box::new([low.clone(), distance]), BinaryOp::Add, span), span }
-}
-
-/// The lower bound and the elements' type of an array of one dimension.
-fn one_row<'a, 's>(ty: Option<&'a TypeSpec<'s>>) -> Option<(&'a Expr<'s>, &'a TypeSpec<'s>)> {
-    match &ty?.kind {
-        TypeKind::Array { bounds, element } => match bounds.as_slice() {
-            [Bound::Range(low, _)] => Some((low, element)),
-            _ => None,
-        },
-        TypeKind::Named(_)
-        | TypeKind::String { .. }
-        | TypeKind::Subrange { .. }
-        | TypeKind::Struct(_)
-        | TypeKind::Enum { .. }
-        | TypeKind::Reference { .. }
-        | TypeKind::Union(_)
-        | TypeKind::Error => None,
-    }
 }
 
 /// How often the values of an element are there, where a number says it.

@@ -17,14 +17,19 @@ use super::{
 
 /// `:= value` or `REF= x`, if it is there.
 pub fn optional_initial<'t, 's: 't>() -> impl Rule<'t, 's, Option<Initial<'s>>> {
-    let none = ahead(|input| !binds(input) && !matches!(input.kind(), Kind::Assign | Kind::Equal)).to(None);
-    let bound = ahead(binds).ignore_then(token(Kind::Name)).ignore_then(token(Kind::Equal)).ignore_then(expr());
-    let bound = bound.map(|it| Some(Initial { span: it.span, kind: InitialKind::Bind(it) }));
+    let none = ahead(|input| !binds(input, 0) && !matches!(input.kind(), Kind::Assign | Kind::Equal)).to(None);
+    let bound = ahead(|input| binds(input, 0)).ignore_then(binding()).map(Some);
     none.or(bound).or(assign().ignore_then(value_or_elements()).map(Some))
 }
 
-fn binds(input: &mut In<'_, '_, '_>) -> bool {
-    joins_equal(input, 0, &["REF"])
+fn binds(input: &mut In<'_, '_, '_>, ahead: usize) -> bool {
+    joins_equal(input, ahead, &["REF"])
+}
+
+/// `REF= x`
+fn binding<'t, 's: 't>() -> impl Rule<'t, 's, Initial<'s>> {
+    let value = token(Kind::Name).ignore_then(token(Kind::Equal)).ignore_then(expr());
+    value.map(|it| Initial { span: it.span, kind: InitialKind::Bind(it) })
 }
 
 /// `:=`, also as the `=` of other languages.
@@ -51,7 +56,9 @@ fn initial<'t, 's: 't>() -> impl Rule<'t, 's, Initial<'s>> {
 
 fn read_initial<'t, 's: 't>(input: &mut In<'t, '_, 's>) -> Parsed<Initial<'s>> {
     let elements = delimited(Kind::OpenBracket, list_before(Kind::CloseBracket, element()), Kind::CloseBracket);
-    let field = name().then_ignore(token(Kind::Assign)).then(initial());
+    let bound = ahead(|input| binds(input, 0)).ignore_then(binding());
+    let given = token(Kind::Assign).ignore_then(initial());
+    let field = name().then(bound.or(given));
     let fields = delimited(Kind::OpenParen, list(field), Kind::CloseParen);
     let unread = |span| Expr { kind: ExprKind::Error(Vec::new()), span };
     let kind = choice((
@@ -76,7 +83,8 @@ fn is_empty(input: &mut In<'_, '_, '_>) -> bool {
 }
 
 fn opens_fields(input: &mut In<'_, '_, '_>) -> bool {
-    input.kind() == Kind::OpenParen && input.kind_ahead(1) == Kind::Name && input.kind_ahead(2) == Kind::Assign
+    let is_given = |input: &mut In<'_, '_, '_>| input.kind_ahead(2) == Kind::Assign || binds(input, 2);
+    input.kind() == Kind::OpenParen && input.kind_ahead(1) == Kind::Name && is_given(input)
 }
 
 fn is_repeat(input: &mut In<'_, '_, '_>) -> bool {

@@ -1,0 +1,181 @@
+//! What types variables and their members are declared with, as far as initial values ask: whether `i` in `(i := a)` is of
+//! an INTERFACE, or a REFERENCE TO.
+
+use crate::ast::{Bound, Expr, ExprKind, File, Item, Name, PouKind, TypeKind, TypeSpec, UnaryOp, VarDecl};
+use crate::spelling::Key;
+use rustc_hash::{FxHashMap, FxHashSet};
+use staunch_ir::RefKind;
+
+/// By their names; of several with one name, the last.
+#[derive(Default)]
+pub(super) struct Types<'s> {
+    interfaces: FxHashSet<Key<'s>>,
+    /// Of structures and blocks, the members whose types have names or are references.
+    members: FxHashMap<Key<'s>, FxHashMap<Key<'s>, TypeSpec<'s>>>,
+    /// Other names of types.
+    aliases: FxHashMap<Key<'s>, TypeSpec<'s>>,
+}
+
+impl<'s> Types<'s> {
+    pub fn of(files: &[File<'s>]) -> Self {
+        let mut types = Self::default();
+        let declared = names(files);
+        for item in files.iter().flat_map(|it| &it.items) {
+            match item {
+                Item::Pou(pou) if pou.kind == PouKind::Interface => drop(types.interfaces.insert(Key(pou.name.text))),
+                Item::Pou(pou) if super::has_state(pou.kind) => {
+                    types.add(pou.name, pou.blocks.iter().flat_map(|it| &it.vars), &declared);
+                }
+                Item::Types(all) => {
+                    for it in all {
+                        match &it.ty.kind {
+                            TypeKind::Struct(members) => types.add(it.name, members.iter(), &declared),
+                            TypeKind::Named(_) | TypeKind::Array { .. } => {
+                                types.aliases.insert(Key(it.name.text), it.ty.clone());
+                            }
+                            TypeKind::String { .. }
+                            | TypeKind::Subrange { .. }
+                            | TypeKind::Enum { .. }
+                            | TypeKind::Reference { .. }
+                            | TypeKind::Union(_)
+                            | TypeKind::Error => {}
+                        }
+                    }
+                }
+                Item::Pou(_) | Item::Globals(_) | Item::Configuration(_) | Item::Test(_) => {}
+            }
+        }
+        types
+    }
+
+    fn add<'a>(&mut self, name: Name<'s>, members: impl Iterator<Item = &'a VarDecl<'s>>, declared: &FxHashSet<Key<'s>>)
+    where
+        's: 'a,
+    {
+        let asked = members.filter(|it| may_hold_references(&it.ty, declared));
+        let each = asked.flat_map(|it| it.names.iter().map(move |name| (Key(name.text), it.ty.clone())));
+        let each: FxHashMap<_, _> = each.collect();
+        if !each.is_empty() {
+            self.members.insert(Key(name.text), each);
+        }
+    }
+}
+
+/// The names of all types that are declared.
+fn names<'s>(files: &[File<'s>]) -> FxHashSet<Key<'s>> {
+    let mut names = FxHashSet::default();
+    for item in files.iter().flat_map(|it| &it.items) {
+        match item {
+            Item::Pou(pou) => drop(names.insert(Key(pou.name.text))),
+            Item::Types(types) => names.extend(types.iter().map(|it| Key(it.name.text))),
+            Item::Globals(_) | Item::Configuration(_) | Item::Test(_) => {}
+        }
+    }
+    names
+}
+
+fn may_hold_references<'s>(ty: &TypeSpec<'s>, declared: &FxHashSet<Key<'s>>) -> bool {
+    match &ty.kind {
+        TypeKind::Named(path) => path.last().is_some_and(|it| declared.contains(&Key(it.text))),
+        TypeKind::Reference { .. } => true,
+        TypeKind::Array { element, .. } => may_hold_references(element, declared),
+        TypeKind::String { .. }
+        | TypeKind::Subrange { .. }
+        | TypeKind::Struct(_)
+        | TypeKind::Enum { .. }
+        | TypeKind::Union(_)
+        | TypeKind::Error => false,
+    }
+}
+
+/// How an address is assigned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum By {
+    Assignment,
+    /// `REF=`
+    Binding,
+}
+
+/// What an initial value is for.
+#[derive(Clone, Copy)]
+pub(super) struct Expected<'a, 's> {
+    ty: Option<&'a TypeSpec<'s>>,
+    types: &'a Types<'s>,
+    /// It is a part of an instance or a structure, `(i := a)`.
+    pub is_member: bool,
+}
+
+/// Aliases of aliases that are followed.
+const DEPTH: usize = 16;
+
+impl<'a, 's> Expected<'a, 's> {
+    pub fn variable(ty: &'a TypeSpec<'s>, types: &'a Types<'s>) -> Self {
+        Self { ty: Some(ty), types, is_member: false }
+    }
+
+    /// The type with the names of others resolved.
+    fn kind(&self) -> Option<&'a TypeKind<'s>> {
+        let mut ty = self.ty?;
+        for _ in 0..DEPTH {
+            let TypeKind::Named(path) = &ty.kind else { break };
+            let Some(alias) = path.last().and_then(|it| self.types.aliases.get(&Key(it.text))) else { break };
+            ty = alias;
+        }
+        Some(&ty.kind)
+    }
+
+    /// How a value is assigned that is an address by the type of what it is for: 0 and NULL have no name.
+    pub fn by(&self, value: &Expr<'s>) -> Option<By> {
+        if !matches!(value.kind, ExprKind::Name(_) | ExprKind::Member(..) | ExprKind::Index(..)) {
+            return None;
+        }
+        match self.kind()? {
+            TypeKind::Named(path) => {
+                let is_interface = path.last().is_some_and(|it| self.types.interfaces.contains(&Key(it.text)));
+                is_interface.then_some(By::Assignment)
+            }
+            // As an input of a call.
+            TypeKind::Reference { kind: RefKind::ReferenceTo, .. } => self.is_member.then_some(By::Binding),
+            TypeKind::Reference { .. }
+            | TypeKind::Array { .. }
+            | TypeKind::String { .. }
+            | TypeKind::Subrange { .. }
+            | TypeKind::Struct(_)
+            | TypeKind::Enum { .. }
+            | TypeKind::Union(_)
+            | TypeKind::Error => None,
+        }
+    }
+
+    pub fn member(&self, name: Name<'s>) -> Self {
+        let ty = match self.kind() {
+            Some(TypeKind::Named(path)) => {
+                let members = path.last().and_then(|it| self.types.members.get(&Key(it.text)));
+                members.and_then(|it| it.get(&Key(name.text)))
+            }
+            Some(TypeKind::Struct(members)) => {
+                let is_it = |it: &&VarDecl<'s>| it.names.iter().any(|it| Key(it.text) == Key(name.text));
+                members.iter().find(is_it).map(|it| &it.ty)
+            }
+            _ => None,
+        };
+        Self { ty, types: self.types, is_member: true }
+    }
+
+    /// The lower bound and the elements of an array of one dimension. What a bound's names mean is known where the array
+    /// is declared.
+    pub fn row(&self) -> Option<(&'a Expr<'s>, Self)> {
+        let TypeKind::Array { bounds, element } = self.kind()? else { return None };
+        let [Bound::Range(low, _)] = bounds.as_slice() else { return None };
+        let is_own = !self.is_member && matches!(self.ty?.kind, TypeKind::Array { .. });
+        (is_own || is_number(low)).then_some((low, Self { ty: Some(element), ..*self }))
+    }
+}
+
+fn is_number(bound: &Expr<'_>) -> bool {
+    match &bound.kind {
+        ExprKind::Literal(_) => true,
+        ExprKind::Unary(UnaryOp::Neg, inner) => matches!(inner.kind, ExprKind::Literal(_)),
+        _ => false,
+    }
+}
