@@ -155,7 +155,7 @@ pub(crate) const UNITS: &[Unit] = units! {
     Space    "System.Timer"     "system_timer";
     Space    "System.Strings"   "system_strings";
     Space    "System.Math"      "system_math";
-    Open     "AxUnit"           "axunit"           [Iec];
+    Open     "AxUnit"           "axunit"           [Iec Siemens];
     Space    "TcUnit"           (tcunit::TEXT);
     Space    "IBaseLibrary"     "ibaselibrary"     [Codesys];
     Space    "__SYSTEM"         "system_any"       [Codesys];

@@ -99,7 +99,7 @@ const WANTED: [&str; 18] = [
 fn fixtures_run_as_they_are_on_every_back_end() {
     let folder = Folder::new("an_axunit_fixture");
     folder.write("counter.st", FIXTURE);
-    for backend in ["interpret", "native", "rust"] {
+    for backend in ["interpret", "native", "rust", "interpret --dialect siemens"] {
         let ran = folder.staunch(&format!("test counter.st --junit junit.xml --backend {backend}"));
         assert_eq!(ran.code, 1, "{}", ran.err);
         let mut rest = ran.out.as_str();

@@ -23,7 +23,7 @@ impl<'s> Types<'s> {
         for item in files.iter().flat_map(|it| &it.items) {
             match item {
                 Item::Pou(pou) if pou.kind == PouKind::Interface => drop(types.interfaces.insert(Key(pou.name.text))),
-                Item::Pou(pou) if super::has_state(pou.kind) => {
+                Item::Pou(pou) if pou.kind.is_block() => {
                     types.add(pou.name, pou.blocks.iter().flat_map(|it| &it.vars), &declared);
                 }
                 Item::Types(all) => {
