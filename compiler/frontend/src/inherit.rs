@@ -124,6 +124,18 @@ impl<'s> Expansion<'_, 's> {
             Base::Class(at) => at,
             Base::NotHere => return None,
             Base::Unknown => {
+                if crate::dialect::bare_block(self.classes.dialect(base.span), base.text).is_some() {
+                    let message = format!("`{}` is a standard block, and nothing extends it", base.text);
+                    self.diagnostics.push(
+                        Diagnostic::new(Code::E0102, base.span, message)
+                            .label("expected a FUNCTION_BLOCK that is declared in Structured Text")
+                            .help(format!(
+                                "declare an instance of {} in this FUNCTION_BLOCK, and call that",
+                                base.text
+                            )),
+                    );
+                    return None;
+                }
                 let names = self.classes.all.iter().map(|it| it.pou.name.text);
                 let message = format!("there is no FUNCTION_BLOCK `{}`", base.text);
                 let error = Diagnostic::new(Code::E0102, base.span, message).label("expected one to extend");

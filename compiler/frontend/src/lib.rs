@@ -201,6 +201,7 @@ fn parse_all<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Opt
             continue;
         }
         files.push(syntax::parse_with(number, &source.text, sources.defined(source), diagnostics));
+        diagnostics[before..].iter_mut().for_each(|it| at_the_end_of_a_body(it, source));
         // Only what does not parse is looked at again.
         if !source.is_assembled() && diagnostics[before..].iter().any(|it| it.severity == Severity::Error) {
             foreign.extend(foreign::recognise(number, source));
@@ -214,6 +215,18 @@ fn parse_all<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Opt
     None
 }
 
+/// A word that ends a body is not in the files of systems that keep bodies apart: what is not closed says so.
+fn at_the_end_of_a_body(it: &mut Diagnostic, source: &Source) {
+    if it.code != Code::E0014 || source.is_verbatim(it.span) {
+        return;
+    }
+    if let (Some((expected, _)), false) = (it.message.split_once(", found "), it.others.is_empty()) {
+        it.message = format!("{expected} before the body ends");
+        let opened = it.others.remove(0);
+        (it.span, it.label) = (opened.span, Some(opened.text));
+    }
+}
+
 /// What reading a file of another system's has found.
 fn problem(file: u16, problem: &Problem) -> Diagnostic {
     let span = Span { file, start: problem.at, end: problem.at + 1 };
@@ -223,6 +236,7 @@ fn problem(file: u16, problem: &Problem) -> Diagnostic {
         Trouble::SecondBody => (Code::E0902, "put its worksheets into one in its own system"),
         Trouble::Odd => (Code::E0033, "correct it in its own system, and export the file again"),
         Trouble::NotSupported => (Code::E0902, "write what it does in Structured Text"),
+        Trouble::Open => (Code::E0003, "close it where it ends"),
         Trouble::OtherLanguage => (Code::E0902, "write it in Structured Text, or have its own system convert it"),
     };
     Diagnostic::new(code, span, problem.message.clone()).help(help)

@@ -157,8 +157,13 @@ FUNCTION_BLOCK T EXTENDS TcUnit.FB_TestSuite
     AssertEquals_INT(6, Twice(3), '');
     TEST_FINISHED();
 END_FUNCTION_BLOCK
+PROGRAM MAIN
+VAR t : T; END_VAR
+    TcUnit.RUN();
+END_PROGRAM
 ";
     folder.write("t.st", source);
+    // What runs the suites elsewhere is not counted.
     let ran = folder.staunch("test t.st --mutants --coverage table");
     assert_eq!(ran.code, 0, "{}{}", ran.out, ran.err);
     has(&ran.out, &["1 of 1 100 %"]);

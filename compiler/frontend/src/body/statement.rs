@@ -3,7 +3,9 @@
 use crate::expr::call_tracking::Instance;
 use crate::expr::checker::Checker;
 use crate::expr::start::is_start_of_members;
+use crate::spelling::Key;
 use crate::start::is_once;
+use crate::testing::suite::LIBRARY;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, StatementKind as Ast_};
 use staunch_ir::{Block, Expr, StatementKind, Type};
@@ -41,7 +43,7 @@ impl<'s> Checker<'_, 's> {
         let span = statement.span;
         // Nobody wrote it.
         let covered = self.is_covered;
-        self.is_covered &= !is_once(statement);
+        self.is_covered &= !is_once(statement) && !runs_suites(statement);
         if !matches!(statement.kind, Ast_::Empty | Ast_::Error) {
             self.count_statement(span);
         }
@@ -164,6 +166,10 @@ impl<'s> Checker<'_, 's> {
             | Type::Array(_) => false,
         };
         let error = Diagnostic::new(Code::E0508, expr.span, "this statement has no effect");
+        // That nothing calls the PROGRAM is no second mistake.
+        for named in self.decl.named_programs.values_mut().filter(|it| it.first == expr.span) {
+            named.is_called = true;
+        }
         self.report(if instance {
             error
                 .label("the instance is named, but not called")
@@ -325,4 +331,11 @@ impl<'s> Checker<'_, 's> {
             self.push(StatementKind::If { condition, then, otherwise }, at);
         }
     }
+}
+
+/// `TcUnit.RUN();`: suites run as tests.
+fn runs_suites(statement: &ast::Statement<'_>) -> bool {
+    let Ast_::Expr(ast::Expr { kind: Ast::Call(callee, _), .. }) = &statement.kind else { return false };
+    let is_library = |it: &ast::Name<'_>| Key(it.text) == Key(LIBRARY);
+    callee.path().is_some_and(|it| it.len() == 2 && is_library(&it[0]))
 }

@@ -224,8 +224,26 @@ impl<'s> Checker<'_, 's> {
             let given =
                 Given { arguments: &[], lists: None, initial: None, default: Const::Zero, value: Const::Zero, span };
             let arguments = self.arguments_of(method, &given);
-            self.call_system(method, place.clone(), &arguments, span);
+            if self.may_be_called_by_delete(method, arguments.len()) {
+                self.call_system(method, place.clone(), &arguments, span);
+            }
         }
+    }
+
+    /// Reports an FB_exit with inputs that the system does not give.
+    fn may_be_called_by_delete(&mut self, method: usize, given: usize) -> bool {
+        let signature = self.decl.signature(method);
+        let other = signature.filter(|it| it.formals.len() > given).and_then(|it| {
+            let is_given = |name: &str| OF_THE_SYSTEM.iter().any(|it| Key(it) == Key(name));
+            it.formals.iter().map(|it| it.name).find(|it| !is_given(it.text))
+        });
+        let Some(other) = other else { return true };
+        self.report(
+            Diagnostic::new(Code::E0403, other.span, "FB_exit has one input, `bInCopyCode`")
+                .label(format!("`__DELETE` gives no `{}`", other.text))
+                .help("declare `VAR_INPUT bInCopyCode : BOOL; END_VAR` in it, and nothing else"),
+        );
+        false
     }
 
     /// Starts what a declaration declares.

@@ -106,7 +106,7 @@ impl<'s> Classes<'s> {
         }
     }
 
-    fn dialect(&self, span: Span) -> Dialect {
+    pub fn dialect(&self, span: Span) -> Dialect {
         self.dialects.get(usize::from(span.file)).copied().unwrap_or_default()
     }
 

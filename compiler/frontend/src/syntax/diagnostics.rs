@@ -378,6 +378,13 @@ pub fn too_many_bases(span: Span, kind: PouKind) -> Diagnostic {
     Diagnostic::new(Code::E0403, span, message).label("one too many").help("delete it; INTERFACEs may be several")
 }
 
+/// `INTERFACE a IMPLEMENTS b`
+pub fn interface_implements(span: Span, name: &str, base: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0403, span, "an INTERFACE EXTENDS others, and IMPLEMENTS none")
+        .label("it has no bodies")
+        .help(format!("write `INTERFACE {name} EXTENDS {base}`"))
+}
+
 /// VAR in an ACTION.
 pub fn variables_of_action(span: Span) -> Diagnostic {
     Diagnostic::new(Code::E0403, span, "an ACTION has no variables of its own")

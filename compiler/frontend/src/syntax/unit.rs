@@ -361,7 +361,11 @@ fn bases<'s>(input: &mut In<'_, '_, 's>, pou: &mut Pou<'s>, extends: Vec<Path<'s
     let extends = last(extends);
     pou.implements = last(implements);
     if pou.kind == PouKind::Interface {
-        pou.implements = extends;
+        if let Some(first) = pou.implements.first() {
+            let it = diagnostics::interface_implements(first.span, pou.name.text, first.text);
+            input.report(it);
+        }
+        pou.implements.splice(0..0, extends);
         return;
     }
     let misplaced = if pou.kind.is_block() { extends.get(1) } else { extends.first().or(pou.implements.first()) };

@@ -37,6 +37,8 @@ pub enum Trouble {
     NotSupported,
     /// What the system itself does not write.
     Odd,
+    /// A comment that takes in what follows.
+    Open,
 }
 
 /// The text, and what it is made of.

@@ -23,6 +23,12 @@ const BODIES: [(&str, &str); 5] = [
     ("_IL_BODY", "Instruction List (IL)"),
 ];
 
+/// The operators of Instruction List.
+const OPERATORS: [&str; 33] = [
+    "LD", "LDN", "ST", "STN", "S", "R", "AND", "ANDN", "OR", "ORN", "XOR", "XORN", "NOT", "ADD", "SUB", "MUL", "DIV",
+    "MOD", "GT", "GE", "EQ", "NE", "LE", "LT", "JMP", "JMPC", "JMPCN", "CAL", "CALC", "CALCN", "RET", "RETC", "RETCN",
+];
+
 const ENDS: [&str; 5] = ["END_PROGRAM", "END_FUNCTION_BLOCK", "END_FUNCTION", "END_ACTION", "END_TRANSITION"];
 
 /// Whether a text begins as an export does.
@@ -39,6 +45,7 @@ pub fn read(text: &str) -> Assembly {
     let mut from = 0;
     let mut at = 0;
     let mut comments = 0;
+    let mut is_first = false;
     for line in text.split_inclusive('\n') {
         let (place, word) = (at..at + line.trim_end().len(), first_word(line));
         at += line.len();
@@ -62,7 +69,14 @@ pub fn read(text: &str) -> Assembly {
             take(&mut out, text, from..place.start);
             out.problem(Trouble::OtherLanguage, format!("this body is {language}, which is no text"), &place);
             until = Some(&ENDS);
+        } else if is_first && is_instruction(line) {
+            // Its bodies begin with no word of their own.
+            take(&mut out, text, from..place.start);
+            let message = "this body is Instruction List (IL), which is not compiled".to_owned();
+            out.problem(Trouble::OtherLanguage, message, &place);
+            until = Some(&ENDS);
         }
+        is_first = line.contains("@END_DECLARATION") || is_first && word.is_empty();
     }
     if until.is_none() {
         take(&mut out, text, from..text.len());
@@ -95,6 +109,18 @@ fn open_comments(line: &str, before: usize) -> usize {
         }
     }
     open
+}
+
+/// Whether an instruction is on the line, `LD a` or `next: JMPC back`, and no statement.
+fn is_instruction(line: &str) -> bool {
+    let line = line.split("(*").next().unwrap_or_default();
+    let after_label = line.split_once(':').filter(|it| !it.1.starts_with('='));
+    let line = after_label.map_or(line, |it| it.1).trim();
+    let (word, operand) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+    let is_operand = |it: char| it.is_ascii_alphanumeric() || "_%'#-".contains(it);
+    let takes_none = operand.is_empty() && word.to_ascii_uppercase().starts_with("RET");
+    let has_one = operand.trim_start().starts_with(is_operand) && !line.ends_with(';');
+    OPERATORS.iter().any(|it| it.eq_ignore_ascii_case(word)) && (takes_none || has_one)
 }
 
 fn first_word(line: &str) -> &str {

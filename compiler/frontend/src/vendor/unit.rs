@@ -67,12 +67,16 @@ impl<'t> Unit<'t> {
         }
         out.copy(file, &self.declaration);
         out.write("\n", &self.end);
+        self.close_comments(file, &self.declaration, "declaration", out);
         for part in &self.parts {
             part.write(file, out);
         }
         match &self.body {
             Body::None => {}
-            Body::Text(chunks) => out.copy(file, chunks),
+            Body::Text(chunks) => {
+                out.copy(file, chunks);
+                self.close_comments(file, chunks, "body", out);
+            }
             Body::Other(language, place) => {
                 let message = format!("the body of `{}` is {language}, which is no text", self.name);
                 out.problem(Trouble::OtherLanguage, message, place);
@@ -94,6 +98,79 @@ impl<'t> Unit<'t> {
     }
 }
 
+impl Unit<'_> {
+    /// Reports a comment that goes on where its part of the file ends, and closes it there.
+    fn close_comments(&self, file: &str, chunks: &[Chunk], what: &str, out: &mut Assembly) {
+        let text: String = chunks.iter().map(|it| written(file, it)).collect();
+        let Some((mut at, close)) = open_comment(&text) else { return };
+        let mut place = self.place.clone();
+        for chunk in chunks {
+            let length = written(file, chunk).len();
+            if at < length {
+                let start = chunk.place.start + if chunk.says == Says::Itself { at } else { 0 };
+                place = start..chunk.place.end.min(start + 2);
+                break;
+            }
+            at -= length;
+        }
+        out.write(&close, &place);
+        out.problem(Trouble::Open, format!("a comment in the {what} of `{}` is not closed", self.name), &place);
+    }
+}
+
+/// Where a comment begins that is not closed, and what closes all that are open there: they may be inside of one another.
+fn open_comment(text: &str) -> Option<(usize, String)> {
+    let bytes = text.as_bytes();
+    let mut opened = Vec::new();
+    let mut at = 0;
+    while at < bytes.len() {
+        let rest = &bytes[at..];
+        at += match rest {
+            [b'(', b'*', ..] => {
+                opened.push(at);
+                2
+            }
+            [b'*', b')', ..] if !opened.is_empty() => {
+                opened.pop();
+                2
+            }
+            _ if !opened.is_empty() => 1,
+            [b'/', b'/', ..] => rest.iter().position(|it| *it == b'\n').unwrap_or(rest.len()),
+            [b'/', b'*', ..] => match text[at..].find("*/") {
+                Some(length) => length + 2,
+                None => return Some((at, "*/".to_owned())),
+            },
+            [quote @ (b'\'' | b'"'), inner @ ..] => 1 + length_of_text(inner, *quote),
+            _ => 1,
+        };
+    }
+    Some((*opened.first()?, "*)".repeat(opened.len())))
+}
+
+/// The bytes up to the end of a text, or of its line, which it does not go beyond.
+fn length_of_text(inner: &[u8], quote: u8) -> usize {
+    let mut at = 0;
+    while let Some(byte) = inner.get(at) {
+        match byte {
+            b'$' => at += 2,
+            b'\n' => return at,
+            byte if *byte == quote => return at + 1,
+            _ => at += 1,
+        }
+    }
+    inner.len()
+}
+
+/// What a chunk says, as Structured Text.
+fn written(file: &str, chunk: &Chunk) -> String {
+    match &chunk.says {
+        Says::Itself => file[chunk.place.clone()].to_owned(),
+        Says::Symbol(symbol) => symbol.to_string(),
+        Says::Words(words) => words.clone(),
+        Says::Wrong(..) => String::new(),
+    }
+}
+
 /// The word that ends what a declaration begins; none where it holds its end itself.
 fn end(file: &str, declaration: &[Chunk]) -> &'static str {
     const ENDS: [(&str, &str); 4] = [
@@ -102,14 +179,7 @@ fn end(file: &str, declaration: &[Chunk]) -> &'static str {
         ("PROGRAM", "END_PROGRAM"),
         ("INTERFACE", "END_INTERFACE"),
     ];
-    let text: String = declaration
-        .iter()
-        .map(|it| match &it.says {
-            Says::Itself | Says::Symbol(_) => &file[it.place.clone()],
-            Says::Words(words) => words.as_str(),
-            Says::Wrong(..) => "",
-        })
-        .collect();
+    let text: String = declaration.iter().map(|it| written(file, it)).collect();
     let word = first_word(&text);
     ENDS.iter().find(|it| word.eq_ignore_ascii_case(it.0)).map_or("", |it| it.1)
 }
