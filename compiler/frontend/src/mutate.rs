@@ -94,6 +94,9 @@ impl Mutants<'_> {
     }
 
     fn statement(&mut self, statement: &Statement<'_>) {
+        if suite::runs_suites(statement) {
+            return;
+        }
         match &statement.kind {
             StatementKind::Assign { .. }
             | StatementKind::AssignAll { .. }

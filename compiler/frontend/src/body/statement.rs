@@ -3,9 +3,8 @@
 use crate::expr::call_tracking::Instance;
 use crate::expr::checker::Checker;
 use crate::expr::start::is_start_of_members;
-use crate::spelling::Key;
 use crate::start::is_once;
-use crate::testing::suite::LIBRARY;
+use crate::testing::suite::runs_suites;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, StatementKind as Ast_};
 use staunch_ir::{Block, Expr, StatementKind, Type};
@@ -331,11 +330,4 @@ impl<'s> Checker<'_, 's> {
             self.push(StatementKind::If { condition, then, otherwise }, at);
         }
     }
-}
-
-/// `TcUnit.RUN();`: suites run as tests.
-fn runs_suites(statement: &ast::Statement<'_>) -> bool {
-    let Ast_::Expr(ast::Expr { kind: Ast::Call(callee, _), .. }) = &statement.kind else { return false };
-    let is_library = |it: &ast::Name<'_>| Key(it.text) == Key(LIBRARY);
-    callee.path().is_some_and(|it| it.len() == 2 && is_library(&it[0]))
 }

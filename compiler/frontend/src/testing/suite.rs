@@ -4,8 +4,8 @@
 use super::tree::{assign, named, statement};
 use crate::Span;
 use crate::ast::{
-    ArgumentKind, Construction, Expr, ExprKind, File, Item, Literal, LiteralValue, Name, Pou, PouKind, StatementKind,
-    TypeKind, TypeSpec, UnaryOp, VarBlock, VarDecl, VarKind, each_expr,
+    ArgumentKind, Construction, Expr, ExprKind, File, Item, Literal, LiteralValue, Name, Pou, PouKind, Statement,
+    StatementKind, TypeKind, TypeSpec, UnaryOp, VarBlock, VarDecl, VarKind, each_expr,
 };
 use crate::spelling::Key;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -80,6 +80,13 @@ pub(crate) fn names<'a>(files: &'a [File<'_>]) -> FxHashSet<Key<'a>> {
             return names;
         }
     }
+}
+
+/// `TcUnit.RUN();`: what runs the suites of a program, which are tests here.
+pub(crate) fn runs_suites(statement: &Statement<'_>) -> bool {
+    let StatementKind::Expr(Expr { kind: ExprKind::Call(callee, _), .. }) = &statement.kind else { return false };
+    let path = callee.path();
+    path.is_some_and(|it| matches!(&it[..], [library, _] if Key(library.text) == Key(LIBRARY)))
 }
 
 /// Whether a FUNCTION_BLOCK, with all that it inherits, is a suite.
