@@ -14,15 +14,12 @@ const HARMLESS_PRAGMAS: [&str; 9] =
 /// The attributes that Staunch acts on, and those of CODESYS's and TwinCAT's editors, monitoring and downloads, which
 /// change nothing here.
 const ATTRIBUTES: &[&str] = &[
-    "addProperty",
     "analysis",
-    "Analysis:name",
     "blobinit",
     "blobinitconst",
-    "call_after_global_init_slot",
+    "c++_compatible",
     "call_after_init",
     "call_after_online_change_slot",
-    "call_before_global_exit_slot",
     "call_on_type_change",
     "conditionalshow",
     "conditionalshow_all_locals",
@@ -33,8 +30,7 @@ const ATTRIBUTES: &[&str] = &[
     "enable_dynamic_creation",
     "estimated-stack-usage",
     "ExpandFully",
-    "fb_init_only",
-    "generate_implicit_init_function",
+    "flow",
     "global_init_slot",
     "hide",
     "hide_all_locals",
@@ -42,14 +38,19 @@ const ATTRIBUTES: &[&str] = &[
     "init_on_onlchange",
     "initialize_on_call",
     "instance-path",
-    "is_connected",
+    "io_function_block",
+    "io_function_block_mapping",
     "linkalways",
+    "memory_check",
+    "minimal_input_size",
     "monitoring",
+    "monitoring_display",
     "monitoring_encoding",
     "monitoring_instead",
-    "namespace",
     "naming",
     "no-analysis",
+    "no-exit",
+    "no-init",
     "no_assign",
     "no_assign_warning",
     "no_check",
@@ -63,8 +64,6 @@ const ATTRIBUTES: &[&str] = &[
     "obsolete",
     "opc.ua.da",
     "OPC.UA.DA.Access",
-    "OPC.UA.DA.Description",
-    "OPC.UA.DA.StructuredType",
     "pack_mode",
     "parameterstringof",
     "pin_presentation_order_inputs",
@@ -72,47 +71,44 @@ const ATTRIBUTES: &[&str] = &[
     "pingroup",
     "ProcessValue",
     "pytmc",
-    "qualified",
     "qualified_only",
     "reflection",
-    "retain_persistent_update",
     "signature_flag",
     "strict",
     "subsequent",
-    "suppress_warning_0",
+    "suppress_warning",
     "symbol",
-    "symbol_visibility",
-    "sysmon",
     "Tc2GvlVarNames",
+    "tc_no_symbol",
     "TcCallAfterOutputUpdate",
-    "TcCodeGenerated",
     "TcContextId",
     "TcContextName",
     "TcDisplayScale",
     "TcEncoding",
     "TcGenerated",
+    "TcGlobalDataType",
     "TcHideSubItems",
-    "TcHmiSymbol.AddSymbol",
-    "TcHmiSymbol.Show",
     "TcIgnorePersistent",
-    "TcInitOnReset",
     "TcInitSymbol",
     "TcLinkTo",
     "TcLinkToOSO",
     "TcNcAxis",
-    "TcNoFFI",
     "TcNoSymbol",
-    "TcPersistent",
-    "TcRetain",
     "TcRpcEnable",
-    "TcRpcEnabled",
+    "TcSwapDWord",
     "TcSwapWord",
-    "TcSymbol",
     "TcTypeSystem",
     "to_string",
-    "use_external_type_layout",
-    "warning_disable",
-    "WithinMethod",
+];
+
+/// Attributes that act in CODESYS or TwinCAT and do not here, with what does the same.
+const WITHOUT_EFFECT: [(&str, &str); 6] = [
+    ("TcRetain", "declare the variable in VAR RETAIN"),
+    ("TcPersistent", "declare the variable in VAR PERSISTENT"),
+    ("TcInitOnReset", "declare the variable without RETAIN and PERSISTENT"),
+    ("is_connected", "give the input an initial value that no caller gives, and compare with it"),
+    ("call_after_global_init_slot", "call it where the first PROGRAM begins"),
+    ("call_before_global_exit_slot", "call it where the program ends"),
 ];
 
 impl Log<'_> {
@@ -201,6 +197,11 @@ impl Log<'_> {
         let rest = pragma.text.trim().get("attribute".len()..).unwrap_or_default();
         let mut parts = rest.split('\'');
         let (Some(_), Some(name), Some(after)) = (parts.next(), parts.next(), parts.next()) else { return };
+        if let Some((name, help)) = WITHOUT_EFFECT.iter().find(|it| it.0.eq_ignore_ascii_case(name)) {
+            let message = format!("the attribute '{name}' is not supported");
+            let error = Diagnostic::new(Code::W0102, pragma.span, message).label("it has no effect");
+            return self.report(error.help(*help));
+        }
         let of_a_tool = name.contains([':', '.', ' ']) || !after.trim().is_empty();
         if ATTRIBUTES.iter().any(|it| it.eq_ignore_ascii_case(name)) {
             return;
