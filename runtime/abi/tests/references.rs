@@ -63,15 +63,21 @@ const SECRET: u32 = 9;
 const OBJECTS: [(u32, u32); 4] = [(0, 16), (16, 1), (18, 8), (28, 4)];
 
 fn words() -> Vec<u32> {
-    let mut words = vec![4, 42, 54];
-    words.extend(OBJECTS.iter().flat_map(|(offset, size)| [*offset, *size, if *size == 16 { 16 } else { 0 }, 0]));
-    words.extend([encode::ARRAY, 16, 5, 4, 26, encode::NUMBERS, encode::repr(Repr::U32)]);
+    let mut words = vec![4, 46, 58];
+    let nodes = [23, 34, 38, 42];
+    words.extend(
+        OBJECTS
+            .iter()
+            .zip(nodes)
+            .flat_map(|((offset, size), node)| [*offset, *size, if *size == 16 { 16 } else { 0 }, 0, node]),
+    );
+    words.extend([encode::ARRAY, 16, 5, 4, 30, encode::NUMBERS, encode::repr(Repr::U32)]);
     words.extend([encode::NUMBERS, 4, encode::repr(Repr::U32), 0]);
     words.extend([encode::TRUTHS, 1, encode::repr(Repr::Bool), 0]);
     words.extend([encode::TEXT, 8, 6, 0]);
     words.extend([encode::EXACT, 4, SECRET, 0]);
-    words.extend([encode::STRUCTURE, 32, u32::MAX, 4, 0, 19, 16, 30, 18, 34, 28, 38]);
-    assert_eq!(words.len(), 54);
+    words.extend([encode::STRUCTURE, 32, u32::MAX, 4, 0, 23, 16, 34, 18, 38, 28, 42]);
+    assert_eq!(words.len(), 58);
     words
 }
 

@@ -5,7 +5,7 @@ use crate::layout::Layout;
 use crate::{ArrayId, FieldId, Program, StructId, Type};
 use staunch_runtime::Repr;
 use staunch_runtime::reference::{View, Wanted, encode};
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// How an access sees a value of the type: what it is a value of must be a scalar or string.
 pub fn view(program: &Program, ty: Type) -> View {
@@ -56,27 +56,30 @@ pub fn table(program: &Program, layout: &Layout) -> Vec<u32> {
     }
     let mut builder = Builder::new(program, layout);
     let root = builder.state();
-    builder.words(root)
+    let types: Vec<_> = builder.objects.values().copied().collect();
+    let of_objects: Vec<_> = types.into_iter().map(|it| builder.node(it)).collect();
+    builder.words(root, &of_objects)
 }
 
 /// The objects that references may name, by their numbers from 1: their offsets in the state and their sizes.
 pub fn objects(program: &Program, layout: &Layout) -> Vec<(u64, u64)> {
     let objects = Builder::new(program, layout).objects;
-    objects.into_iter().map(|(offset, size, ..)| (offset, size.0)).collect()
+    objects.into_keys().map(|(offset, size, ..)| (offset, size.0)).collect()
 }
 
 struct Builder<'p> {
     program: &'p Program,
     layout: &'p Layout,
-    /// Offset, and size from the largest; whether all of it is numbers; its mark.
-    objects: BTreeSet<(u64, core::cmp::Reverse<u64>, bool, u32)>,
+    /// Offset, and size from the largest; whether all of it is numbers; its mark. The type is that of the outermost of
+    /// the variables that are there.
+    objects: BTreeMap<(u64, core::cmp::Reverse<u64>, bool, u32), Type>,
     nodes: Vec<Vec<u32>>,
     known: HashMap<Type, usize>,
 }
 
 impl<'p> Builder<'p> {
     fn new(program: &'p Program, layout: &'p Layout) -> Self {
-        let mut builder = Self { program, layout, objects: BTreeSet::new(), nodes: Vec::new(), known: HashMap::new() };
+        let mut builder = Self { program, layout, objects: BTreeMap::new(), nodes: Vec::new(), known: HashMap::new() };
         let variables = addressable(program);
         if !variables.is_empty() {
             for (offset, id) in builder.roots() {
@@ -104,7 +107,8 @@ impl<'p> Builder<'p> {
                     if variables.contains(&(id, member)) {
                         // Compiled code looks at no mark, so it asks the runtime for what has one.
                         let plain = mark == 0 && self.flat(field.ty).is_some_and(|it| it != Repr::Bool);
-                        self.objects.insert((start, core::cmp::Reverse(self.layout.size(field.ty)), plain, mark));
+                        let size = core::cmp::Reverse(self.layout.size(field.ty));
+                        self.objects.entry((start, size, plain, mark)).or_insert(field.ty);
                     }
                     self.find_objects(start, field.ty, mark, variables);
                 }
@@ -199,7 +203,7 @@ impl<'p> Builder<'p> {
     }
 
     /// Nodes are named by the positions of their words.
-    fn words(self, root: usize) -> Vec<u32> {
+    fn words(self, root: usize, of_objects: &[usize]) -> Vec<u32> {
         let start = encode::HEAD + self.objects.len() * encode::OBJECT;
         let mut positions = Vec::with_capacity(self.nodes.len());
         let mut end = start;
@@ -209,9 +213,9 @@ impl<'p> Builder<'p> {
         }
         let at = |node: u32| positions[usize::try_from(node).expect("a u32 fits a usize")];
         let mut words = vec![position(self.objects.len()), positions[root], position(end)];
-        words.extend(self.objects.iter().flat_map(|(offset, size, plain, mark)| {
+        words.extend(self.objects.keys().zip(of_objects).flat_map(|((offset, size, plain, mark), node)| {
             let size = word(size.0);
-            [word(*offset), size, if *plain { size } else { 0 }, *mark]
+            [word(*offset), size, if *plain { size } else { 0 }, *mark, positions[*node]]
         }));
         for mut node in self.nodes {
             match node[0] {

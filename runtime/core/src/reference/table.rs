@@ -2,8 +2,8 @@
 //!
 //! A table is words, so that a back end can put it into a program as plain data: the number of objects, the
 //! node of the state, how many words there are; for each object its offset and size, in the order of their
-//! offsets, its size again where all of it is numbers, else 0, and its mark; then the nodes. What lies within those
-//! that are numbers may be seen as any number without a look at the nodes. The mark of an object in a pool is the
+//! offsets, its size again where all of it is numbers, else 0, its mark and its node; then the nodes. What lies within
+//! those that are numbers may be seen as any number without a look at the nodes. The mark of an object in a pool is the
 //! offset, and 1, of the BOOL that says whether the object is there; other objects, which are always, have 0.
 
 use super::{Memory, ORIGIN, Reference};
@@ -76,7 +76,7 @@ pub mod encode {
     /// Words before the objects.
     pub const HEAD: usize = 3;
     /// Words of an object.
-    pub const OBJECT: usize = 4;
+    pub const OBJECT: usize = 5;
 
     /// The same in bytes, for native code.
     pub const HEAD_BYTES: i32 = 4 * HEAD as i32;
@@ -191,7 +191,9 @@ impl<'t> Table<'t> {
         {
             return Ok(Part::Bytes { at: offset, rest });
         }
-        let Some(found) = self.leaf(offset) else { return self.spread(offset, rest, view) };
+        let around = self.around(bits);
+        let leaf = around.and_then(|it| self.leaf(it, offset));
+        let Some(found) = leaf else { return self.spread(around, offset, rest, view) };
         let index = offset - found.start;
         let left = found.node.size - index;
         match (found.node.kind, view) {
@@ -206,7 +208,7 @@ impl<'t> Table<'t> {
                 if fits {
                     Ok(Part::Bytes { at: offset, rest: left.min(rest) })
                 } else {
-                    self.spread(offset, rest, view)
+                    self.spread(around, offset, rest, view)
                 }
             }
             (encode::EXACT, View::Number(1)) if found.node.second == 1 => Ok(Part::Bytes { at: offset, rest: left }),
@@ -222,7 +224,7 @@ impl<'t> Table<'t> {
     }
 
     /// A number across several variables, which are all numbers, and the bytes between them.
-    fn spread(&self, offset: usize, rest: usize, view: View) -> Result<Part, FaultKind> {
+    fn spread(&self, around: Option<Found>, offset: usize, rest: usize, view: View) -> Result<Part, FaultKind> {
         let View::Number(size) = view else { return Err(FaultKind::ForbiddenView) };
         let size = size as usize;
         if offset.checked_rem(size) != Some(0) {
@@ -233,7 +235,7 @@ impl<'t> Table<'t> {
         }
         let mut at = offset;
         while at < offset + size {
-            at = match self.leaf(at) {
+            at = match around.and_then(|it| self.leaf(it, at)) {
                 None => at + 1,
                 Some(found) if found.node.kind == encode::NUMBERS => found.start + found.node.size,
                 Some(_) => return Err(FaultKind::ForbiddenView),
@@ -244,7 +246,8 @@ impl<'t> Table<'t> {
 
     /// Whether the byte is a number's.
     pub(super) fn is_number(&self, offset: usize) -> bool {
-        self.leaf(offset).is_some_and(|it| it.node.kind == encode::NUMBERS)
+        let leaf = self.whole().and_then(|it| self.leaf(it, offset));
+        leaf.is_some_and(|it| it.node.kind == encode::NUMBERS)
     }
 
     /// Characters from a byte of them on.
@@ -276,9 +279,14 @@ impl<'t> Table<'t> {
     ) -> Result<usize, FaultKind> {
         self.check_is_there(memory, bits)?;
         let (offset, _) = self.locate(bits, distance)?;
-        let mut found = self.whole();
-        loop {
-            let Some(at) = found else { return Err(FaultKind::ForbiddenView) };
+        // What is not within the object may be around it: the structure of which it is the first member.
+        let is_found = self.finds(self.around(bits), offset, wanted) || self.finds(self.whole(), offset, wanted);
+        if is_found { Ok(offset) } else { Err(FaultKind::ForbiddenView) }
+    }
+
+    /// Whether a variable of this type lies at an offset of what is `found`.
+    fn finds(&self, mut found: Option<Found>, offset: usize, wanted: Wanted) -> bool {
+        while let Some(at) = found {
             let index = offset - at.start;
             let is_it = match (at.node.kind, wanted) {
                 (encode::NUMBERS | encode::TRUTHS, Wanted::Repr(repr)) => {
@@ -291,10 +299,11 @@ impl<'t> Table<'t> {
                 _ => false,
             };
             if is_it {
-                return Ok(offset);
+                return true;
             }
             found = self.below(at, offset);
         }
+        false
     }
 
     /// The offset in the state, and how many bytes of the object follow.
@@ -314,6 +323,13 @@ impl<'t> Table<'t> {
 
     fn whole(&self) -> Option<Found> {
         self.node(self.word(1) as usize, 0)
+    }
+
+    /// The object that a reference names.
+    fn around(&self, bits: u64) -> Option<Found> {
+        let position = Reference::from_bits(bits).object.checked_sub(1).filter(|it| *it < self.word(0))?;
+        let at = encode::HEAD + position as usize * encode::OBJECT;
+        self.node(self.word(at + 4) as usize, self.word(at) as usize)
     }
 
     fn node(&self, at: usize, start: usize) -> Option<Found> {
@@ -344,9 +360,8 @@ impl<'t> Table<'t> {
         }
     }
 
-    /// The variable without parts that holds the byte, or the array of numbers.
-    fn leaf(&self, offset: usize) -> Option<Found> {
-        let mut found = self.whole()?;
+    /// The variable without parts in what is `found` that holds the byte, or the array of numbers.
+    fn leaf(&self, mut found: Found, offset: usize) -> Option<Found> {
         loop {
             match (found.node.kind, self.word(found.after + 1)) {
                 (encode::ARRAY, kind @ (encode::NUMBERS | encode::TRUTHS)) => {
