@@ -102,6 +102,8 @@ pub(crate) const UNITS: &[Unit] = units! {
     Function "F_ToLCase"        "f_tolcase"        [Codesys: Tc2_Utilities] "T_MaxString";
     Function "F_LTrim"          "f_ltrim"          [Codesys: Tc2_Utilities] "T_MaxString";
     Function "F_RTrim"          "f_rtrim"          [Codesys: Tc2_Utilities] "T_MaxString";
+    Function "LEN2"             "len2"             [Codesys: Tc2_Utilities];
+    Function "CONCAT2"          "concat2"          [Codesys: Tc2_Utilities] "LEN2";
     Function "BYTE_TO_HEXSTR"   "byte_to_hexstr"   [Codesys: Tc2_Utilities] "LWORD_TO_HEXSTR";
     Function "WORD_TO_HEXSTR"   "word_to_hexstr"   [Codesys: Tc2_Utilities] "LWORD_TO_HEXSTR";
     Function "DWORD_TO_HEXSTR"  "dword_to_hexstr"  [Codesys: Tc2_Utilities] "LWORD_TO_HEXSTR";

@@ -8,8 +8,8 @@ use crate::{Code, Diagnostic, Span, ast};
 /// Pragmas that change what a program means: to pass over them would compile another program.
 const DECIDING_PRAGMAS: [&str; 6] = ["if", "elsif", "else", "end_if", "define", "undefine"];
 /// Pragmas for editors and other tools.
-const HARMLESS_PRAGMAS: [&str; 9] =
-    ["region", "endregion", "end_region", "info", "text", "flag", "analysis", "nobp", "bp"];
+const HARMLESS_PRAGMAS: [&str; 11] =
+    ["region", "endregion", "end_region", "info", "text", "flag", "analysis", "nobp", "bp", "flow", "noflow"];
 
 /// The attributes that Staunch acts on, and those of CODESYS's and TwinCAT's editors, monitoring and downloads, which
 /// change nothing here.
