@@ -256,6 +256,7 @@ fn said_once(diagnostics: Vec<Diagnostic>, sources: &Sources) -> Vec<Diagnostic>
         let is_missing = match it.code {
             Code::E0102 | Code::E0307 => it.message.starts_with("there is no "),
             Code::E0101 => is_owner(),
+            Code::E0902 => it.message.contains(" of Tc2_Utilities "),
             _ => false,
         };
         if !is_missing {

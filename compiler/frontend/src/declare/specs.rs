@@ -65,6 +65,9 @@ const FOREIGN: [(&str, &str); 24] = [
     ("DURATION", "TIME"),
 ];
 
+/// Types and blocks of TwinCAT's Tc2_Utilities that are known to be missing.
+const OF_TWINCAT: [&str; 3] = ["FB_FormatString", "FB_FormatString2", "T_Arg"];
+
 impl<'s> Declarations<'s> {
     pub(super) fn resolve_type_slot(&mut self, at: usize) -> Option<Resolved> {
         let decl = self.types[at].decl;
@@ -334,6 +337,10 @@ impl<'s> Declarations<'s> {
             return;
         }
         let dialect = self.dialect(name.span);
+        let is_it = |it: &&str| it.eq_ignore_ascii_case(name.text);
+        if dialect == dialect::Dialect::Codesys && OF_TWINCAT.iter().any(|it| is_it(it)) {
+            return self.not_supported(name.span, &format!("`{}` of Tc2_Utilities", name.text));
+        }
         let blocks = staunch_runtime::BLOCKS.iter().map(|it| it.name);
         let blocks = blocks.filter(|it| dialect::bare_block(dialect, it).is_some());
         let elementary = Elementary::ALL.iter().map(|it| it.name());

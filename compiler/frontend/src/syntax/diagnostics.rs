@@ -58,8 +58,11 @@ pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
                 .help("assign in its branches, or choose a value with `SEL(condition, value_if_false, value_if_true)`")
         }
         (Expected::Block, _) => {
-            Diagnostic::new(Code::E0001, span, format!("expected {}, found {shown}", said(problem.expected)))
-                .label("this belongs to no unit of the program")
+            let it = Diagnostic::new(Code::E0001, span, format!("expected {}, found {shown}", said(problem.expected)))
+                .label("this belongs to no unit of the program");
+            let is_test =
+                ["TEST_PROGRAM", "TEST_FUNCTION_BLOCK"].iter().any(|it| it.eq_ignore_ascii_case(input.text(span)));
+            if is_test { it.help("a unit test is written `TEST 'what it shows' … END_TEST`") } else { it }
         }
         (Expected::More(end, opened) | Expected::Closing(end, opened), _) => {
             let open = input.state().place(opened);

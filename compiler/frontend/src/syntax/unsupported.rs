@@ -1,4 +1,4 @@
-//! Constructs that are known and refused by name: JMP, `__TRY`, and a sequential function chart's text.
+//! Constructs that are known and refused by name: JMP, `__TRY`, VAR_GENERIC, and a sequential function chart's text.
 //! Their words are names everywhere else.
 
 use crate::{
@@ -30,6 +30,15 @@ pub fn skip(input: &mut In<'_, '_, '_>) -> bool {
     if let Some(service) = controller_service(word).filter(|_| has_operands_that_are_no_values(input)) {
         input.report(diagnostics::controller_service(span, word, service));
         recovery::skip_operands(input);
+        return true;
+    }
+    let declares = matches!(input.kind_ahead(1), Kind::Constant | Kind::Name);
+    if word.eq_ignore_ascii_case("VAR_GENERIC") && declares {
+        input.report(
+            diagnostics::unsupported(span, "VAR_GENERIC CONSTANT")
+                .help("declare a VAR_GLOBAL CONSTANT, or an `ARRAY[*]` in VAR_IN_OUT"),
+        );
+        recovery::skip_section(input);
         return true;
     }
     if input.kind_ahead(1) != Kind::Name {
