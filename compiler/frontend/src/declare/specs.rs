@@ -338,7 +338,7 @@ impl<'s> Declarations<'s> {
         }
         let dialect = self.dialect(name.span);
         let is_it = |it: &&str| it.eq_ignore_ascii_case(name.text);
-        if dialect == dialect::Dialect::Codesys && OF_TWINCAT.iter().any(|it| is_it(it)) {
+        if dialect == dialect::Dialect::Codesys && OF_TWINCAT.iter().any(is_it) {
             return self.not_supported(name.span, &format!("`{}` of Tc2_Utilities", name.text));
         }
         let blocks = staunch_runtime::BLOCKS.iter().map(|it| it.name);
