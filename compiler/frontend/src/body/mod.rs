@@ -163,6 +163,7 @@ fn check_body<'s>(
         body.append(&mut checker.not_there(pou.name.span));
     }
     checker.migration_lints(statements);
+    checker.reset_always(slot, statements);
     let mut whole = std::mem::take(&mut checker.block);
     if whole.is_empty() {
         whole = body;

@@ -1,6 +1,6 @@
 //! Statements of a body, and what they assign.
 
-use crate::expr::call_tracking::Instance;
+use crate::expr::call_tracking::{Call, Instance};
 use crate::expr::checker::Checker;
 use crate::expr::start::is_start_of_members;
 use crate::start::is_once;
@@ -19,6 +19,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn statements(&mut self, statements: &[ast::Statement<'s>]) {
+        let taken_back = self.called.taken_back.clone();
         let mut left: Option<Span> = None;
         for statement in statements {
             if let Some(span) = left.take() {
@@ -36,6 +37,7 @@ impl<'s> Checker<'_, 's> {
                 left = Some(statement.span);
             }
         }
+        self.called.taken_back = taken_back;
     }
 
     fn statement(&mut self, statement: &ast::Statement<'s>) {
@@ -300,7 +302,7 @@ impl<'s> Checker<'_, 's> {
 
     /// What a branch called, taken away so that the next branch, which excludes it, may call it
     /// too; nothing where the branch does not come back.
-    pub(super) fn leave_branch(&mut self, before: usize, body: &[ast::Statement<'s>]) -> Vec<(Instance, Span)> {
+    pub(super) fn leave_branch(&mut self, before: usize, body: &[ast::Statement<'s>]) -> Vec<(Instance, Call)> {
         let called = self.called.split_off(before);
         let leaves = |it: &ast::Statement<'s>| matches!(it.kind, Ast_::Exit | Ast_::Continue | Ast_::Return);
         if body.last().is_some_and(leaves) { Vec::new() } else { called }
@@ -320,11 +322,13 @@ impl<'s> Checker<'_, 's> {
         let at = condition.span;
         let value = self.condition(condition);
         self.count_condition(condition, value.as_ref());
-        let before = self.called.len();
+        let (before, asked) = (self.called.len(), self.called.asked.len());
+        self.note_asked(condition);
         let then = self.block_of(body);
         let called = self.leave_branch(before, body);
         // An ELSIF's condition, with the calls in it, is evaluated only when the ones before fail.
         let otherwise = self.nested(|this| this.branches(rest, otherwise));
+        self.called.asked.truncate(asked);
         self.called.append(called);
         if let Some(condition) = value {
             self.push(StatementKind::If { condition, then, otherwise }, at);

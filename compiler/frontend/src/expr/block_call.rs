@@ -20,9 +20,7 @@ impl<'s> Checker<'_, 's> {
         span: Span,
     ) -> Option<()> {
         let found = self.place(callee)?;
-        if !super::migration::only_resets(found.place.ty, arguments) {
-            self.note_called(&found.place, callee.span);
-        }
+        self.note_called(&found.place, arguments, callee);
         match found.place.ty {
             Type::Block(id) => self.standard_block(found, id, arguments, callee.span, span),
             Type::Struct(id) if self.decl.is_instance(id) => {
@@ -41,22 +39,6 @@ impl<'s> Checker<'_, 's> {
                 );
                 None
             }
-        }
-    }
-
-    /// A counter or timer that is called twice in a scan sees two edges, or none.
-    fn note_called(&mut self, place: &Place, span: Span) {
-        // A test calls again and again, and says itself when time passes.
-        if self.is_test() {
-            return;
-        }
-        if let Some(first) = self.called.note(place, span) {
-            let text = self.decl.log.sources.text(span).to_owned();
-            let error = Diagnostic::new(Code::W0507, span, format!("`{text}` is called twice in a scan"))
-                .label("called again here")
-                .other(first, "first called here")
-                .help("declare a second instance, or call it once and use its outputs");
-            self.report(error);
         }
     }
 

@@ -43,26 +43,6 @@ impl<'a, 's> CounterCall<'a, 's> {
     }
 }
 
-/// Whether a call does no more than reset or load a counter, or take back a timer's input: it is beside
-/// the one that counts.
-pub(crate) fn only_resets(ty: Type, arguments: &[ast::Argument<'_>]) -> bool {
-    let is_timer = matches!(ty, Type::Block(id) if id.info().pin("PT").is_some());
-    let resets = |it: &ast::Argument<'_>| match &it.kind {
-        ArgumentKind::Input(name, value) if name.text.eq_ignore_ascii_case("IN") => is_timer && is_false(value),
-        ArgumentKind::Input(name, _) if name.text.eq_ignore_ascii_case("PT") => is_timer,
-        ArgumentKind::Input(name, _) => {
-            matches!(PinRole::named(name.text), Some(PinRole::Reset | PinRole::Load))
-        }
-        ArgumentKind::Positional(_) | ArgumentKind::Output { .. } => false,
-    };
-    let names_in = |it: &ast::Argument<'_>| matches!(&it.kind, ArgumentKind::Input(name, _) if !name.text.eq_ignore_ascii_case("PT"));
-    arguments.iter().any(names_in) && arguments.iter().all(resets)
-}
-
-fn is_false(expr: &ast::Expr<'_>) -> bool {
-    matches!(&bare(expr).kind, Ast::Literal(ast::Literal { value: LiteralValue::Bool(false), .. }))
-}
-
 /// Whether the type is a counter with a count to read.
 fn counts(ty: Type) -> bool {
     match ty {
@@ -292,7 +272,7 @@ impl<'s> Checker<'_, 's> {
     }
 }
 
-fn bare<'a, 's>(expr: &'a ast::Expr<'s>) -> &'a ast::Expr<'s> {
+pub(super) fn bare<'a, 's>(expr: &'a ast::Expr<'s>) -> &'a ast::Expr<'s> {
     match &expr.kind {
         Ast::Paren(inner) => bare(inner),
         _ => expr,
