@@ -332,8 +332,8 @@ pub struct Compare {
     /// Write the inputs that make a difference as a stimulus
     #[arg(long, value_name = "OUT.csv")]
     pub save_stimulus: Option<PathBuf>,
-    /// Write the program as it was rewritten for Logix
-    #[arg(long, value_name = "OUT.st")]
+    /// Write the program as the other system accepts it, in one file: its dialect, its names of pins, on Logix its counters
+    #[arg(long, value_name = "OUT.st", conflicts_with = "against")]
     pub write: Option<PathBuf>,
     /// Show every scan, not only those in which something happens; with a file, draw both systems there
     #[arg(long, value_name = "OUT.svg", num_args = 0..=1)]

@@ -4,8 +4,8 @@ use crate::args::{Color, Common, Files, MessageFormat};
 use crate::{REJECTED, input, output};
 use staunch_build::Project;
 use staunch_frontend::{
-    Compilation, CoveragePoint, Diagnostic, Dialect, Format, Level, Levels, Options, Severity, Sources, Span, Style,
-    Test,
+    Compilation, CoveragePoint, Diagnostic, Dialect, Fix, Format, Level, Levels, Options, Severity, Sources, Span,
+    Style, Test,
 };
 use staunch_ir::Program;
 use std::io::{IsTerminal, Write};
@@ -25,8 +25,8 @@ pub struct Session {
     pub tests: Vec<Test>,
     /// Where execution is counted.
     pub coverage: Vec<CoveragePoint>,
-    /// Where a move to another system changes a pin's name.
-    pub renamed: Vec<Span>,
+    /// Where a move to another system changes a pin's name, and the new one.
+    pub renamed: Vec<Fix>,
     /// At their levels.
     pub diagnostics: Vec<Diagnostic>,
     pub compile_time: Duration,
@@ -145,6 +145,14 @@ impl Session {
             diagnostic.fix = None;
         }
         self.beside(self.sources.clone(), compilation, compile_time, &self.diagnostics)
+    }
+
+    /// What a text of the other system's is rejected for: without what a move excuses.
+    pub fn errors_of(&self, to: Dialect, sources: &Sources) -> Result<Vec<Diagnostic>, String> {
+        let options = Options { dialect: to, ..options(&self.common, &self.project)? };
+        let mut found = staunch_frontend::check(sources, &options);
+        found.retain(|it| it.severity == Severity::Error);
+        Ok(found)
     }
 
     fn compile_moved(&self, to: Dialect, sources: &Sources) -> Result<(Compilation, Duration), String> {

@@ -410,7 +410,98 @@ fn what_is_written_is_the_other_systems() {
     run(&format!("{} --from iec --to logix --write {} --budget 2000", folder.display(), target.display()));
     let text_written = std::fs::read_to_string(&target).expect("it is written");
     assert!(text_written.starts_with("{dialect 'logix'}"), "{text_written}");
-    let none = run(&format!("held.st --from iec --to cscape --write {}", target.display()));
-    assert_eq!(none.status.code(), Some(2));
-    assert!(text(&none.stderr).contains("nothing of this one is rewritten for cscape"), "{}", text(&none.stderr));
+    let of_user = run(&format!("held.st --from iec --to cscape --against held.st --write {}", target.display()));
+    assert_eq!(of_user.status.code(), Some(2), "{}", text(&of_user.stderr));
+}
+
+fn check(dialect: &str, path: &Path) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
+    command.args(["check", "--dialect", dialect]).arg(path).output().expect("the command starts")
+}
+
+/// The program as it is written for another system; `None` where nothing is.
+fn migrated(source: &Path, to: &str) -> Option<String> {
+    let target = source.with_extension(format!("{to}.out"));
+    let _ = std::fs::remove_file(&target);
+    run(&format!("{} --from iec --to {to} --write {} --budget 2000", source.display(), target.display()));
+    let found = std::fs::read_to_string(&target).ok()?;
+    let checked = check(to, &target);
+    assert_eq!(checked.status.code(), Some(0), "{to}: {found}{}", text(&checked.stderr));
+    Some(found)
+}
+
+#[test]
+fn pins_have_the_other_systems_names_in_what_is_written() {
+    let source = written(
+        "write_pins.st",
+        "{dialect := 'iec'}\nFUNCTION_BLOCK F VAR_INPUT a : BOOL; END_VAR VAR c : ARRAY[1..2] OF CTU; d : CTD; END_VAR\n\
+         c[1](CU := a, R := c[1].Q, PV := 3); c[2](CU := a, (* R := *) R := FALSE, PV := 4);\n\
+         d(CD := a, LD := c[2].R, PV := 3);\nEND_FUNCTION_BLOCK\n\
+         PROGRAM p VAR_INPUT a : BOOL; END_VAR VAR f, g : F; END_VAR f(a := a); g(a := NOT a); END_PROGRAM\n",
+    );
+    for (to, load) in [("cscape", "LOAD := c[2].RESET"), ("codesys", "LOAD := c[2].RESET"), ("openplc", "LD := c[2].R")]
+    {
+        let found = migrated(&source, to).expect("it is written");
+        assert!(found.starts_with(&format!("{{dialect '{to}'}}")) && found.contains(load), "{found}");
+        assert!(found.contains("(* R := *)"), "{found}");
+    }
+    assert_eq!(migrated(&source, "logix"), None, "a COUNTER has no reset to read");
+    let by_count = written(
+        "write_by_count.st",
+        "PROGRAM p VAR_INPUT a : BOOL; END_VAR VAR c : ARRAY[0..1] OF CTU; END_VAR\n\
+         c[c[0].CV MOD 2](CU := a, R := FALSE, PV := 3);\nEND_PROGRAM\n",
+    );
+    assert_eq!(migrated(&by_count, "logix"), None, "counting moves the index");
+}
+
+#[test]
+fn counters_in_arrays_and_structures_are_written_for_logix() {
+    let source = written(
+        "write_parts.st",
+        "TYPE Cell : STRUCT k : CTU := (PV := 2); v : INT; END_STRUCT Pairs : ARRAY[0..1] OF CTU; END_TYPE\n\
+         FUNCTION_BLOCK F VAR_OUTPUT c : CTD; END_VAR c(CD := TRUE, LD := FALSE, PV := 1); END_FUNCTION_BLOCK\n\
+         PROGRAM p VAR_INPUT a, b : BOOL; END_VAR\n\
+         VAR n : ARRAY[0..1] OF CTU := [(PV := 5), (PV := 6, CU := FALSE)]; m : Pairs; s : Cell; t : ARRAY[1..2, 0..1] OF Cell;\n\
+         f : F; i, x : INT; full : BOOL; END_VAR\n\
+         FOR i := 0 TO 1 DO n[i](CU := a, R := b); m[i](CU := a, R := FALSE, PV := 3, CV => x); END_FOR\n\
+         s.k(CU := a, R := t[1, 0].k.Q); t[2, x MOD 2].k(CU := m[s.k.CV MOD 2].Q, R := b, PV := 4);\n\
+         f(); full := n[0].Q AND f.c.Q AND s.k.CV = n[1].CV;\nEND_PROGRAM\n",
+    );
+    let found = migrated(&source, "logix").expect("it is written");
+    for line in [
+        "STRUCT k : COUNTER := (PRE := 2);",
+        "Pairs : ARRAY[0..1] OF COUNTER;",
+        "n : ARRAY[0..1] OF COUNTER := [(PRE := 5), (PRE := 6, CU := FALSE)]; m : Pairs; s : Cell;",
+        "CTU(n[i], a); RES(n[i], b); m[i].PRE := 3;",
+        "RES(s.k, t[1, 0].k.DN)",
+        "CTU(t[2, x MOD 2].k, m[DINT_TO_INT(s.k.ACC) MOD 2].DN)",
+        "full := n[0].DN AND f.c.DN AND s.k.ACC = n[1].ACC;",
+    ] {
+        assert!(found.contains(line), "{line}\n{found}");
+    }
+}
+
+#[test]
+fn what_cannot_be_rewritten_is_refused_with_a_way_that_is_accepted() {
+    let wide = |name: &str, ty: &str| {
+        written(
+            name,
+            &format!(
+                "PROGRAM p VAR_INPUT a : BOOL; END_VAR VAR c : {ty}; END_VAR c(CU := a, R := FALSE, PV := 3); END_PROGRAM\n"
+            ),
+        )
+    };
+    let source = wide("write_wide.st", "CTU_ULINT");
+    let refused = run(&format!("{} --from iec --to logix", source.display()));
+    let help = "in a program for `logix`, which `--against` compares with this one, name the family: `IEC.CTU_ULINT`";
+    assert!(text(&refused.stderr).contains(help), "{}", text(&refused.stderr));
+    let named = wide("write_named.st", "IEC.CTU_ULINT");
+    let equal = run(&format!(
+        "{} --from iec --to logix --against {} --vars c.CV --budget 2000",
+        source.display(),
+        named.display()
+    ));
+    assert_ne!(equal.status.code(), Some(2), "{}", text(&equal.stderr));
+    let fixed = run(&format!("{} --from iec --to logix", named.display()));
+    assert_eq!(fixed.status.code(), Some(2), "{}", text(&fixed.stderr));
 }

@@ -43,7 +43,7 @@ pub use mutate::{Mutant, mutants};
 pub use names::functions::standard_functions;
 pub use options::Options;
 pub use source::{Source, Sources, Span};
-pub use syntax::parse;
+pub use syntax::{parse, parse_file};
 pub use testing::{Assertion, Fixture, FixtureCase, Suite, Test};
 pub use types::coverage::{CoverageKind, CoveragePoint, Decision, Formula};
 pub use vendor::Reference;
@@ -66,8 +66,8 @@ pub struct Compilation {
     pub tests: Vec<Test>,
     /// Where execution is counted.
     pub coverage: Vec<CoveragePoint>,
-    /// Where a move to another system changes a pin's name, whether the lint is allowed or not.
-    pub renamed: Vec<Span>,
+    /// Where a move to another system changes a pin's name, and the new one, whether the lint is allowed or not.
+    pub renamed: Vec<Fix>,
 }
 
 impl Compilation {
@@ -180,7 +180,7 @@ fn run_with(sources: &Sources, options: &Options, keep: Bodies, whole: &mut Whol
     // SETUP is a part of each test.
     compilation.diagnostics.dedup_by(|a, b| (a.code, a.span) == (b.code, b.span) && a.message == b.message);
     compilation.renamed =
-        compilation.diagnostics.iter().filter(|it| it.code == Code::W0609).map(|it| it.span).collect();
+        compilation.diagnostics.iter().filter(|it| it.code == Code::W0609).filter_map(|it| it.fix.clone()).collect();
     compilation.diagnostics.retain(|it| !allowances.cover(it));
     // A text of pieces is not in the order of its file.
     compilation.diagnostics.sort_by_key(|it| (it.span.file, sources.get(it.span.file).in_file(it.span).start));

@@ -373,6 +373,20 @@ impl Sources {
         &self.references
     }
 
+    /// What the project defines.
+    pub fn definitions(&self) -> &[String] {
+        &self.defined
+    }
+
+    /// The same files and project, with these texts in place of theirs.
+    #[must_use]
+    pub fn with_texts(&self, texts: Vec<String>) -> Self {
+        let files = self.files.iter().zip(texts);
+        let files =
+            files.map(|(it, text)| Source { library: it.library.clone(), ..Source::new(it.path.clone(), text) });
+        Self { files: files.collect(), ..self.clone() }
+    }
+
     /// Adds a file; its number is its position.
     pub fn add(&mut self, source: Source) {
         self.files.push(source);

@@ -48,7 +48,7 @@ use crate::{
     ast::File,
     diagnostic::{Code, Diagnostic},
     lex::{Kind, lex_with},
-    source::Span,
+    source::{Sources, Span},
 };
 
 pub(crate) use diagnostics::controller_service;
@@ -57,6 +57,12 @@ use parser::{Extra, State};
 /// The tree of a file. What does not parse is reported, and left out of the tree.
 pub fn parse<'s>(file: u16, text: &'s str, diagnostics: &mut Vec<Diagnostic>) -> File<'s> {
     parse_with(file, text, &[], diagnostics)
+}
+
+/// The tree of one of these files, with what its project defines. What does not parse is left out.
+pub fn parse_file(sources: &Sources, number: u16) -> File<'_> {
+    let source = sources.get(number);
+    parse_with(number, &source.text, sources.defined(source), &mut Vec::new())
 }
 
 /// The same, where a project defines names for conditional compilation.

@@ -2,7 +2,7 @@
 //! comparison would be one with itself.
 
 use staunch_frontend::ast::{File, Item, Name, TypeKind, TypeSpec, VarBlock};
-use staunch_frontend::{Dialect, Sources, parse};
+use staunch_frontend::{Dialect, Sources, parse_file};
 use staunch_runtime::Family;
 use std::fmt::Write;
 
@@ -11,7 +11,7 @@ use std::fmt::Write;
 pub fn check(sources: &Sources, dialect: Dialect, option: &str, qualified: bool) -> Result<(), String> {
     let mut text = String::new();
     for (source, number) in sources.files().iter().zip(0u16..) {
-        let file = parse(number, &source.text, &mut Vec::new());
+        let file = parse_file(sources, number);
         let line = |name: Name<'_>| source.line(name.span.start);
         for (pragma, named) in pragmas(&file).filter(|it| it.1 != dialect) {
             let _ = writeln!(
@@ -42,8 +42,8 @@ pub fn check(sources: &Sources, dialect: Dialect, option: &str, qualified: bool)
 
 fn pragmas<'f>(file: &'f File<'f>) -> impl Iterator<Item = (Name<'f>, Dialect)> {
     file.pragmas.iter().filter_map(|it| {
-        let (word, name) = it.text.trim().split_once(char::is_whitespace)?;
-        let name = name.trim().trim_matches(['\'', '"']);
+        let (word, name) = it.text.trim().split_at_checked("dialect".len())?;
+        let name = name.trim_start().trim_start_matches(":=").trim().trim_matches(['\'', '"']);
         word.eq_ignore_ascii_case("dialect").then(|| Dialect::named(name)).flatten().map(|dialect| (*it, dialect))
     })
 }

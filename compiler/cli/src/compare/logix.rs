@@ -1,13 +1,15 @@
 //! A program with counter blocks as it would be written for Logix: a COUNTER for each instance, an
 //! instruction for each of its inputs.
 
+mod shape;
+
+use shape::{Shape, Shapes};
 use staunch_frontend::ast::{
     Argument, ArgumentKind, BinaryOp, Expr, ExprKind, File, Initial, InitialKind, Item, Name, Pou, Statement,
-    StatementKind, TypeKind, VarBlock, VarDecl,
+    StatementKind, TypeKind, TypeSpec, VarBlock, VarDecl,
 };
-use staunch_frontend::{Dialect, Source, Sources, Span, parse};
+use staunch_frontend::{Dialect, Sources, Span, parse_file};
 use staunch_runtime::{BlockInfo, Direction as PinDirection, Elementary, PinRole};
-use std::collections::HashMap;
 
 pub struct Rewritten {
     pub sources: Sources,
@@ -57,9 +59,9 @@ enum Direction {
     Both,
 }
 
-/// A counter that a POU declares.
+/// A counter, as the program declares it.
 #[derive(Clone, Copy, Debug)]
-struct Counter {
+pub struct Counter {
     block: &'static BlockInfo,
     /// The structure that its instructions work on.
     tag: &'static BlockInfo,
@@ -124,24 +126,34 @@ struct Edit {
 
 /// `None` where there is nothing to rewrite.
 pub fn rewrite(sources: &Sources, from: Dialect) -> Option<Rewritten> {
-    let mut rewritten = Rewritten::by_user(Sources::default());
-    for (source, number) in sources.files().iter().zip(0u16..) {
-        let file = parse(number, &source.text, &mut Vec::new());
-        let mut writer = Writer { text: &source.text, from, counters: HashMap::new(), edits: Vec::new() };
-        writer.file(&file);
-        rewritten.notes.extend(writer.notes());
-        let text = writer.apply(0, source.text.len());
-        rewritten.sources.add(Source::new(source.path.clone(), text));
+    let numbers = 0..u16::try_from(sources.files().len()).unwrap_or(u16::MAX);
+    let files: Vec<File<'_>> = numbers.map(|it| parse_file(sources, it)).collect();
+    let mut shapes = Shapes::of(&files, from);
+    globals(&files).for_each(|it| it.vars.iter().for_each(|it| shapes.declare(it)));
+    let (mut notes, mut all, mut texts) = (Vec::new(), Vec::new(), Vec::new());
+    for (source, file) in sources.files().iter().zip(&files) {
+        let mut writer = Writer { text: &source.text, shapes, edits: Vec::new() };
+        writer.file(file);
+        notes.extend(writer.notes());
+        texts.push(writer.apply(0, source.text.len()));
         writer.edits.sort_by_key(|it| it.start);
-        rewritten.edits.push(writer.edits);
+        all.push(writer.edits);
+        shapes = writer.shapes;
     }
-    (!rewritten.notes.is_empty()).then_some(rewritten)
+    (!notes.is_empty()).then(|| Rewritten { sources: sources.with_texts(texts), notes, edits: all })
 }
 
-struct Writer<'t> {
+fn globals<'f>(files: &'f [File<'f>]) -> impl Iterator<Item = &'f VarBlock<'f>> {
+    files.iter().flat_map(|it| &it.items).flat_map(|it| match it {
+        Item::Globals(block) => std::slice::from_ref(block),
+        Item::Configuration(it) => it.globals.as_slice(),
+        Item::Types(_) | Item::Pou(_) | Item::Test(_) => &[],
+    })
+}
+
+struct Writer<'t, 'f> {
     text: &'t str,
-    from: Dialect,
-    counters: HashMap<String, Counter>,
+    shapes: Shapes<'f>,
     edits: Vec<Edit>,
 }
 
@@ -162,11 +174,19 @@ fn bounds(span: Span) -> (usize, usize) {
     (at(span.start), at(span.end))
 }
 
-impl Writer<'_> {
-    fn file(&mut self, file: &File<'_>) {
+impl<'f> Writer<'_, 'f> {
+    fn file(&mut self, file: &'f File<'f>) {
         for item in &file.items {
-            if let Item::Globals(block) = item {
-                self.block(block);
+            match item {
+                Item::Globals(block) => self.block(block),
+                Item::Configuration(it) => it.globals.iter().for_each(|it| self.block(it)),
+                Item::Types(decls) => decls.iter().for_each(|it| {
+                    self.ty(&it.ty);
+                    if let (Some(initial), Some(shape)) = (&it.initial, self.shapes.of_type(&it.ty)) {
+                        self.initial(shape, initial);
+                    }
+                }),
+                Item::Pou(_) | Item::Test(_) => {}
             }
         }
         for item in &file.items {
@@ -176,31 +196,94 @@ impl Writer<'_> {
         }
     }
 
-    fn pou(&mut self, pou: &Pou<'_>) {
-        let outer = self.counters.clone();
-        pou.blocks.iter().for_each(|it| self.block(it));
+    fn pou(&mut self, pou: &'f Pou<'f>) {
+        let outer = self.shapes.variables();
+        for block in &pou.blocks {
+            block.vars.iter().for_each(|it| self.shapes.declare(it));
+            self.block(block);
+        }
         self.statements(&pou.body);
         pou.routines.iter().for_each(|it| self.pou(it));
-        self.counters = outer;
+        self.shapes.go_back(outer);
     }
 
-    fn block(&mut self, block: &VarBlock<'_>) {
+    fn block(&mut self, block: &'f VarBlock<'f>) {
         block.vars.iter().for_each(|it| self.declaration(it));
     }
 
-    fn declaration(&mut self, decl: &VarDecl<'_>) {
-        let TypeKind::Named(names) = &decl.ty.kind else { return };
-        let [Name { text, .. }] = names.as_slice() else { return };
-        let Some(counter) = Counter::named(text, self.from) else { return };
-        self.edit(decl.ty.span, counter.tag.name.to_owned());
-        for name in &decl.names {
-            self.counters.insert(name.text.to_ascii_uppercase(), counter);
+    fn declaration(&mut self, decl: &'f VarDecl<'f>) {
+        self.ty(&decl.ty);
+        let Some(initial) = &decl.initial else { return };
+        match (self.shapes.of_type(&decl.ty), &initial.kind) {
+            (Some(Shape::Counter(counter)), InitialKind::Fields(fields)) => {
+                let kept = self.fields(counter, fields);
+                let text = if kept.is_empty() { String::new() } else { format!(" := ({})", kept.join(", ")) };
+                self.edit(Span { start: decl.ty.span.end, ..initial.span }, text);
+            }
+            (Some(shape), _) => self.initial(shape, initial),
+            (None, _) => {}
         }
-        if let Some(Initial { kind: InitialKind::Fields(fields), span }) = &decl.initial {
-            let kept: Vec<String> = fields.iter().filter_map(|it| self.field(counter, it)).collect();
-            let text = if kept.is_empty() { String::new() } else { format!(" := ({})", kept.join(", ")) };
-            self.edit(Span { start: decl.ty.span.end, ..*span }, text);
+    }
+
+    /// The counters in a type that is written out.
+    fn ty(&mut self, ty: &'f TypeSpec<'f>) {
+        match &ty.kind {
+            TypeKind::Named(_) => {
+                if let (Some(Shape::Counter(counter)), true) = (self.shapes.of_type(ty), self.is_block(ty)) {
+                    self.edit(ty.span, counter.tag.name.to_owned());
+                }
+            }
+            TypeKind::Array { element, .. } => self.ty(element),
+            TypeKind::Reference { target, .. } => self.ty(target),
+            TypeKind::Struct(members) | TypeKind::Union(members) => {
+                members.iter().for_each(|it| self.declaration(it));
+            }
+            TypeKind::String { .. } | TypeKind::Subrange { .. } | TypeKind::Enum { .. } | TypeKind::Error => {}
         }
+    }
+
+    /// Whether a type names the block itself, and not a type that is one.
+    fn is_block(&self, ty: &TypeSpec<'_>) -> bool {
+        match &ty.kind {
+            TypeKind::Named(names) => {
+                names.len() == 1 && Counter::named(names[0].text, self.shapes.dialect()).is_some()
+            }
+            TypeKind::String { .. }
+            | TypeKind::Subrange { .. }
+            | TypeKind::Array { .. }
+            | TypeKind::Struct(_)
+            | TypeKind::Enum { .. }
+            | TypeKind::Reference { .. }
+            | TypeKind::Union(_)
+            | TypeKind::Error => false,
+        }
+    }
+
+    /// The initial values of counters in arrays and structures.
+    fn initial(&mut self, shape: Shape<'f>, initial: &Initial<'_>) {
+        match (&initial.kind, shape) {
+            (InitialKind::Fields(fields), Shape::Counter(counter)) => {
+                let kept = self.fields(counter, fields);
+                let text = if kept.is_empty() { "PRE := 0".to_owned() } else { kept.join(", ") };
+                self.edit(initial.span, format!("({text})"));
+            }
+            (InitialKind::Fields(fields), _) => {
+                for (name, value) in fields {
+                    if let Some(shape) = self.shapes.member(shape, *name) {
+                        self.initial(shape, value);
+                    }
+                }
+            }
+            (InitialKind::Elements(elements), _) => {
+                let Some(shape) = self.shapes.element(shape) else { return };
+                elements.iter().flat_map(|it| &it.values).for_each(|it| self.initial(shape, it));
+            }
+            (InitialKind::Value(_) | InitialKind::Bind(_), _) => {}
+        }
+    }
+
+    fn fields(&self, counter: Counter, fields: &[(Name<'_>, Initial<'_>)]) -> Vec<String> {
+        fields.iter().filter_map(|it| self.field(counter, it)).collect()
     }
 
     /// An initial value by its tag's name; none where the tag needs none.
@@ -222,9 +305,9 @@ impl Writer<'_> {
     }
 
     fn counter(&self, expr: &Expr<'_>) -> Option<Counter> {
-        match &expr.kind {
-            ExprKind::Name(name) => self.counters.get(&name.text.to_ascii_uppercase()).copied(),
-            _ => None,
+        match self.shapes.of_expr(expr)? {
+            Shape::Counter(counter) => Some(counter),
+            Shape::Type(_) | Shape::Instance(_) => None,
         }
     }
 
@@ -305,7 +388,10 @@ impl Writer<'_> {
                 self.expr(&sides[0], false);
                 self.expr(&sides[1], true);
             }
-            ExprKind::Call(_, arguments) => arguments.iter().for_each(|it| self.argument(it)),
+            ExprKind::Call(callee, arguments) => {
+                self.expr(callee, narrow);
+                arguments.iter().for_each(|it| self.argument(it));
+            }
             ExprKind::Binary(sides, op, _) => {
                 let compares = matches!(
                     op,
@@ -324,8 +410,9 @@ impl Writer<'_> {
     }
 
     fn member(&mut self, expr: &Expr<'_>, base: &Expr<'_>, name: Name<'_>, counter: Counter, narrow: bool) {
+        self.expr(base, true);
         let (start, end) = bounds(base.span);
-        let owner = &self.text[start..end];
+        let owner = self.apply(start, end);
         let text = match (counter.member(name.text), counter.narrow) {
             (Some(tag @ ("ACC" | "PRE")), Some(conversion)) if narrow => format!("{conversion}({owner}.{tag})"),
             (Some(tag), _) => format!("{owner}.{tag}"),
@@ -333,13 +420,19 @@ impl Writer<'_> {
             // Nothing stands for it; the compiler says so at this place.
             (None, _) => return,
         };
-        self.edit(expr.span, text);
+        self.replace(expr.span, text);
     }
 
     /// A call as instructions. What its inputs are is decided before the first of them.
     fn call(&mut self, span: Span, callee: &Expr<'_>, counter: Counter, arguments: &[Argument<'_>]) {
+        self.expr(callee, true);
         let (start, end) = bounds(callee.span);
-        let owner = self.text[start..end].to_owned();
+        let owner = self.apply(start, end);
+        if owner != self.text[start..end] {
+            // The instructions would change the count that says which counter they are for. The compiler says that
+            // a COUNTER is not called.
+            return arguments.iter().for_each(|it| self.argument(it));
+        }
         arguments.iter().for_each(|it| self.argument(it));
         let given = self.inputs(counter, arguments);
         let input = |input: Input| given.iter().find(|it| it.0 == input).map(|it| it.1.as_str());

@@ -2,6 +2,7 @@
 
 mod fixed;
 mod logix;
+mod migrated;
 mod missing;
 mod rejection;
 mod renamed;
@@ -45,7 +46,7 @@ mod scope;
 
 use crate::args::{Common, Compare, Files, MessageFormat};
 use crate::session::Session;
-use crate::{REJECTED, input, output, run};
+use crate::{REJECTED, input, run};
 use alphabet::Alphabet;
 use assume::Assumptions;
 use facts::Facts;
@@ -77,30 +78,26 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
         return Ok(REJECTED);
     };
     let rewritten = rewrite(&from, args)?;
-    if args.write.is_some() && rewritten.is_none() {
-        return Err(format!(
-            "--write writes the program as it is rewritten for logix, and nothing of this one is rewritten for {}; \
-             W0609 says which names change",
-            args.to.name()
-        ));
-    }
     let notes = rewritten.as_ref().map_or_else(Vec::new, |it| it.notes.clone());
     let to = match &rewritten {
         Some(it) if args.against.is_none() => from.rewritten(args.to, &it.sources, |span| it.origin(span))?,
         Some(it) => from.moved(args.to, Some(it.sources.clone()))?,
         None => from.moved(args.to, None)?,
     };
-    let renamed = renamed::owners(&to.sources, &to.renamed);
+    let renamed = renamed::owners(&to.sources, to.renamed.iter().map(|it| it.span));
     let missing = if args.against.is_some() { Vec::new() } else { missing::find(&from.sources, &program, args.to) };
     let unknown = if args.against.is_some() { Vec::new() } else { missing::unknown(&program, args.to) };
     let report = report::Report { session: &from, args, notes, renamed: renamed.len(), missing, unknown };
     let moved = match to.program_to_run(args.program.as_deref())? {
         Some(moved) => moved,
-        None => return report.rejection(&rejection::find(&to, args.from, args.to)),
+        None => {
+            args.write.iter().for_each(|it| eprintln!("no file is written to {}", it.display()));
+            return report.rejection(&rejection::find(&to, args.from, args.to));
+        }
     };
-    // What the other system does not accept is no migrated source.
-    if let (Some(path), Some(it)) = (&args.write, &rewritten) {
-        write(path, &it.sources, args.to)?;
+    if let Some(path) = &args.write {
+        let sources = rewritten.as_ref().map_or(&from.sources, |it| &it.sources);
+        migrated::write(&from, path, sources, &to.renamed, args.to)?;
     }
     let cycle = run::cycle(&from, args.cycle.as_deref())?;
     let same_program = is_same(&program, &moved);
@@ -195,12 +192,6 @@ fn rewrite(from: &Session, args: &Compare) -> Result<Option<logix::Rewritten>, S
         return Ok(logix::rewrite(&from.sources, args.from));
     }
     Ok(None)
-}
-
-/// The migrated source as one file.
-fn write(path: &std::path::Path, sources: &Sources, to: Dialect) -> Result<(), String> {
-    let texts: Vec<String> = sources.files().iter().map(|it| renamed::in_dialect(&it.text, to)).collect();
-    output::write(path, texts.join("\n").as_bytes())
 }
 
 /// Whether both systems run one program: the statements and types with their blocks, and where each

@@ -78,7 +78,9 @@ fn of(to: &Session, error: &Diagnostic, from: Dialect, target: Dialect) -> Rejec
         None if block => Rejection {
             pitfall: None,
             why,
-            advice: "Name the family, or choose a block that the system has".to_owned(),
+            advice: "Write the program for that system, with a block that it has or that names its family, and give it with \
+                     --against FILE to compare it"
+                .to_owned(),
         },
         None if widths(error) => Rejection {
             pitfall: pitfall(8),

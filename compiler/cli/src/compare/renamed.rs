@@ -1,10 +1,25 @@
 //! What the text says of its system: whose pins it names by names that the move changes, and its dialect.
 
-use staunch_frontend::{Dialect, Sources, Span};
+use staunch_frontend::{Dialect, Fix, Sources, Span};
 
 /// For each name, the variable whose pin it is, without subscripts; `None` where the text does not show it.
-pub fn owners(sources: &Sources, names: &[Span]) -> Vec<Option<String>> {
-    names.iter().map(|it| owner(sources.get(it.file).text.get(..usize::try_from(it.start).ok()?)?)).collect()
+pub fn owners(sources: &Sources, names: impl Iterator<Item = Span>) -> Vec<Option<String>> {
+    names.map(|it| owner(sources.get(it.file).text.get(..usize::try_from(it.start).ok()?)?)).collect()
+}
+
+/// The text with the system's names of pins; the fixes are those of this file.
+pub fn with_own_names<'f>(text: &str, fixes: impl Iterator<Item = &'f Fix>) -> String {
+    let at = |it: u32| usize::try_from(it).unwrap_or(usize::MAX);
+    let mut fixes: Vec<_> = fixes.collect();
+    fixes.sort_by_key(|it| it.span.start);
+    fixes.dedup_by_key(|it| it.span);
+    let (mut found, mut rest) = (String::new(), 0);
+    for fix in fixes {
+        found += text.get(rest..at(fix.span.start)).unwrap_or_default();
+        found += &fix.replacement;
+        rest = at(fix.span.end);
+    }
+    found + text.get(rest..).unwrap_or_default()
 }
 
 /// The text with the system's name in each `{dialect '…'}`.
@@ -29,10 +44,9 @@ pub fn in_dialect(text: &str, to: Dialect) -> String {
 }
 
 fn is_dialect(pragma: &str) -> bool {
-    let mut words = pragma.split_whitespace();
-    words.next().is_some_and(|it| it.eq_ignore_ascii_case("dialect"))
-        && words.next().is_some_and(|it| it.starts_with('\'') && it.ends_with('\''))
-        && words.next().is_none()
+    let Some((word, rest)) = pragma.trim().split_at_checked("dialect".len()) else { return false };
+    let name = rest.trim_start().trim_start_matches(":=").trim();
+    word.eq_ignore_ascii_case("dialect") && name.len() > 1 && name.starts_with('\'') && name.ends_with('\'')
 }
 
 /// The variable before a pin's name: `c.R`, `c(CU := s, R := …)`, `cells[1](…)`.
@@ -88,6 +102,7 @@ mod tests {
     fn a_dialect_is_that_of_the_other_system() {
         let text = in_dialect("{Dialect 'iec'}\n{allow W0507}\nx := 1; { y", Dialect::Logix);
         assert_eq!(text, "{dialect 'logix'}\n{allow W0507}\nx := 1; { y");
+        assert_eq!(in_dialect("{dialect := 'iec'} x", Dialect::Cscape), "{dialect 'cscape'} x");
     }
 
     #[test]

@@ -82,6 +82,23 @@ fn what_a_project_defines_decides_what_is_compiled() {
 }
 
 #[test]
+fn a_comparison_sees_what_a_project_defines() {
+    let folder = project("twincat-compared");
+    let defines = "<PropertyGroup><CompilerDefines>FAST</CompilerDefines></PropertyGroup><ItemGroup>";
+    folder.write("Line.plcproj", PROJECT.replacen("<ItemGroup>", defines, 1));
+    let body = "{IF defined(FAST)}parts(CU := go, PV := 5);{ELSE}parts(CU := TRUE, PV := 1);{END_IF}";
+    let station = STATION.replacen("parts(CU := go, PV := 5);", body, 1);
+    folder.write("POUs/FB_Station.TcPOU", station.replacen("WORD_TO_INT(parts.CV)", "7", 1));
+    for (to, call) in [("iec", "parts(CU := go, PV := 5);"), ("logix", "parts.PRE := 5; CTU(parts, go);")] {
+        let compared = format!("compare Line.plcproj --from codesys --to {to} --budget 2000 --write {to}.st");
+        let output = folder.staunch(&compared);
+        let written = folder.read(&format!("{to}.st"));
+        assert!(written.starts_with("{define FAST}\n") && written.contains(call), "{written}{}", output.out(1));
+        folder.staunch(&format!("check {to}.st --dialect {to}")).out(0);
+    }
+}
+
+#[test]
 fn messages_name_the_file_with_its_lines() {
     let folder = project("twincat-messages");
     folder.write("POUs/MAIN.TcPOU", MAIN.replace("station.Count()", "station.Counts()"));

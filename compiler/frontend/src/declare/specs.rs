@@ -332,7 +332,9 @@ impl<'s> Declarations<'s> {
             );
             return;
         }
-        if let Some(error) = block_of_another_dialect(self.dialect(name.span), name) {
+        if let Some(error) =
+            block_of_another_dialect(self.dialect(name.span), self.log.options.moved_from.is_some(), name)
+        {
             self.report(error);
             return;
         }

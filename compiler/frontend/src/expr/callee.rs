@@ -206,7 +206,8 @@ impl<'s> Checker<'_, 's> {
             return;
         }
         if Family::ALL.into_iter().any(|it| is_instruction(it, name.text)) {
-            if let Some(error) = block_of_another_dialect(self.decl.dialect(name.span), name) {
+            let is_moved = self.decl.log.options.moved_from.is_some();
+            if let Some(error) = block_of_another_dialect(self.decl.dialect(name.span), is_moved, name) {
                 self.report(error);
                 return;
             }

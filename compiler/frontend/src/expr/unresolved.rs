@@ -27,8 +27,8 @@ pub(crate) fn no_such_block(family: Family, name: ast::Name<'_>) -> Diagnostic {
     }
 }
 
-/// A block that exists, but not under the dialect's bare names.
-pub(crate) fn block_of_another_dialect(dialect: Dialect, name: ast::Name<'_>) -> Option<Diagnostic> {
+/// A block that exists, but not under the dialect's bare names. A program that moves here names no family.
+pub(crate) fn block_of_another_dialect(dialect: Dialect, is_moved: bool, name: ast::Name<'_>) -> Option<Diagnostic> {
     let blocks: Vec<_> = BLOCKS.iter().filter(|it| it.is_named(name.text)).collect();
     let owners: Vec<_> = blocks.iter().map(|it| it.family).collect();
     let instruction = blocks.first()?.instructions[0].name;
@@ -47,6 +47,11 @@ pub(crate) fn block_of_another_dialect(dialect: Dialect, name: ast::Name<'_>) ->
         ([one], [Family::Logix]) => error.help(format!(
             "start the file with `{{dialect '{one}'}}`, or write `{}`, and `LOGIX.` before each instruction: `LOGIX.{instruction}(…)`",
             qualified[0],
+        )),
+        _ if is_moved => error.help(format!(
+            "in a program for `{}`, which `--against` compares with this one, name the family: {}",
+            dialect.name(),
+            list(&qualified)
         )),
         _ => error.help(format!("name the family: {}", list(&qualified))),
     })
