@@ -27,12 +27,18 @@ pub fn write(from: &Session, path: &Path, sources: &Sources, names: &[Fix], to: 
 }
 
 fn text(sources: &Sources, names: &[Fix], to: Dialect) -> String {
-    let own = sources.files().iter().zip(0u16..).filter(|(it, _)| !it.is_of_library());
-    let texts = own.map(|(source, file)| {
-        let names = names.iter().filter(|it| it.span.file == file);
-        renamed::in_dialect(&renamed::with_own_names(&source.text, names), to)
-    });
     // What a project file defines is not in the sources.
-    let defined = sources.definitions().iter().map(|it| format!("{{define {it}}}"));
-    defined.chain(texts).collect::<Vec<_>>().join("\n")
+    let mut parts: Vec<_> = sources.definitions().iter().map(|it| format!("{{define {it}}}")).collect();
+    let mut is_named = false;
+    for (source, file) in sources.files().iter().zip(0u16..).filter(|(it, _)| !it.is_of_library()) {
+        let text = renamed::with_own_names(&source.text, names.iter().filter(|it| it.span.file == file));
+        let without = renamed::without_dialect(&text);
+        is_named |= without.is_some();
+        parts.push(without.unwrap_or(text));
+    }
+    if is_named {
+        // A file has one dialect.
+        parts.insert(0, format!("{{dialect '{}'}}", to.name()));
+    }
+    parts.join("\n")
 }

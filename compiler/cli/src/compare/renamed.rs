@@ -1,6 +1,6 @@
 //! What the text says of its system: whose pins it names by names that the move changes, and its dialect.
 
-use staunch_frontend::{Dialect, Fix, Sources, Span};
+use staunch_frontend::{Fix, Sources, Span};
 
 /// For each name, the variable whose pin it is, without subscripts; `None` where the text does not show it.
 pub fn owners(sources: &Sources, names: impl Iterator<Item = Span>) -> Vec<Option<String>> {
@@ -22,17 +22,17 @@ pub fn with_own_names<'f>(text: &str, fixes: impl Iterator<Item = &'f Fix>) -> S
     found + text.get(rest..).unwrap_or_default()
 }
 
-/// The text with the system's name in each `{dialect '…'}`.
-pub fn in_dialect(text: &str, to: Dialect) -> String {
-    let mut found = String::new();
+/// The text without its `{dialect '…'}`, if it has any: whoever joins several names the dialect once.
+pub fn without_dialect(text: &str) -> Option<String> {
+    let (mut found, mut is_named) = (String::new(), false);
     let mut rest = text;
     while let Some((before, after)) = rest.split_once('{') {
         found += before;
         let pragma = after.split_once('}').filter(|(it, _)| is_dialect(it));
         rest = match pragma {
             Some((_, after)) => {
-                found += &format!("{{dialect '{}'}}", to.name());
-                after
+                is_named = true;
+                after.strip_prefix('\r').unwrap_or(after).strip_prefix('\n').unwrap_or(after)
             }
             None => {
                 found.push('{');
@@ -40,7 +40,7 @@ pub fn in_dialect(text: &str, to: Dialect) -> String {
             }
         };
     }
-    found + rest
+    is_named.then(|| found + rest)
 }
 
 fn is_dialect(pragma: &str) -> bool {
@@ -95,14 +95,14 @@ fn variable(text: &str) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{in_dialect, owner};
-    use staunch_frontend::Dialect;
+    use super::{owner, without_dialect};
 
     #[test]
-    fn a_dialect_is_that_of_the_other_system() {
-        let text = in_dialect("{Dialect 'iec'}\n{allow W0507}\nx := 1; { y", Dialect::Logix);
-        assert_eq!(text, "{dialect 'logix'}\n{allow W0507}\nx := 1; { y");
-        assert_eq!(in_dialect("{dialect := 'iec'} x", Dialect::Cscape), "{dialect 'cscape'} x");
+    fn a_dialect_is_taken_out() {
+        let text = without_dialect("{Dialect 'iec'}\n{allow W0507}\nx := 1; { y");
+        assert_eq!(text.as_deref(), Some("{allow W0507}\nx := 1; { y"));
+        assert_eq!(without_dialect("{dialect := 'iec'} x").as_deref(), Some(" x"));
+        assert_eq!(without_dialect("{dialects 'iec'} x"), None);
     }
 
     #[test]

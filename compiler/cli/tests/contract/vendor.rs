@@ -89,11 +89,20 @@ fn a_comparison_sees_what_a_project_defines() {
     let body = "{IF defined(FAST)}parts(CU := go, PV := 5);{ELSE}parts(CU := TRUE, PV := 1);{END_IF}";
     let station = STATION.replacen("parts(CU := go, PV := 5);", body, 1);
     folder.write("POUs/FB_Station.TcPOU", station.replacen("WORD_TO_INT(parts.CV)", "7", 1));
+    // The list's name and its attribute are CODESYS's alone.
+    let main = MAIN.replacen("GVL_Line.parts := station.Count() / divisor;", "divisor := station.Count();", 1);
+    folder.write("POUs/MAIN.TcPOU", main);
+    let list = "<TcPlcObject><GVL Name=\"G\"><Declaration><![CDATA[VAR_GLOBAL x : INT; END_VAR]]></Declaration></GVL></TcPlcObject>";
+    folder.write("GVL_Line.TcGVL", list);
     for (to, call) in [("iec", "parts(CU := go, PV := 5);"), ("logix", "parts.PRE := 5; CTU(parts, go);")] {
         let compared = format!("compare Line.plcproj --from codesys --to {to} --budget 2000 --write {to}.st");
         let output = folder.staunch(&compared);
         let written = folder.read(&format!("{to}.st"));
-        assert!(written.starts_with("{define FAST}\n") && written.contains(call), "{written}{}", output.out(1));
+        assert!(
+            written.starts_with(&format!("{{dialect '{to}'}}\n{{define FAST}}\n")) && written.contains(call),
+            "{written}{}",
+            output.out(1)
+        );
         folder.staunch(&format!("check {to}.st --dialect {to}")).out(0);
     }
 }
