@@ -505,3 +505,30 @@ fn what_cannot_be_rewritten_is_refused_with_a_way_that_is_accepted() {
     let fixed = run(&format!("{} --from iec --to logix", named.display()));
     assert_eq!(fixed.status.code(), Some(2), "{}", text(&fixed.stderr));
 }
+
+#[test]
+fn what_a_variable_holds_that_nothing_writes_is_tried() {
+    let held = [
+        ("plain", "", "k : INT := 4321;", "t = k"),
+        ("element", "", "k : ARRAY[1..3] OF INT := [17, 4321, 9]; i : INT := 2;", "t = k[i]"),
+        ("member", "TYPE L : STRUCT high : INT := 4321; END_STRUCT END_TYPE", "k : L;", "t = k.high"),
+        (
+            "instance",
+            "FUNCTION_BLOCK F VAR_INPUT t : INT; END_VAR VAR_OUTPUT is : BOOL; END_VAR VAR k : INT; END_VAR is := t = k; END_FUNCTION_BLOCK",
+            "f : F := (k := 4321);",
+            "f.is",
+        ),
+    ];
+    for (name, types, variable, condition) in held {
+        let call = if name == "instance" { "f(t := t);" } else { "" };
+        let path = written(
+            &format!("held_{name}.st"),
+            &format!(
+                "{types}\nPROGRAM p VAR_INPUT s : BOOL; t : INT; END_VAR VAR c : CTU; {variable} END_VAR VAR_OUTPUT o : BOOL; END_VAR\n\
+                 {call} IF {condition} THEN c(s, FALSE, 1); END_IF o := c.CV > 1;\nEND_PROGRAM\n"
+            ),
+        );
+        let out = difference(&format!("{} --from iec --to cscape --vars o -A warnings", path.display()));
+        assert!(out.starts_with("iec and cscape differ after 3 scans:") && out.contains("4321"), "{name}: {out}");
+    }
+}

@@ -50,6 +50,12 @@ impl Facts {
         }
         let fields = program.structs.iter().flat_map(|it| &it.fields);
         fields.for_each(|it| facts.initial(Some(it.ty), &it.initial));
+        for (id, layout) in program.structs.iter().enumerate() {
+            for (at, field) in layout.fields.iter().enumerate() {
+                let name = Name::Field(StructId::next(id), FieldId::next(at));
+                facts.unwritten(program, name, field.ty, &field.initial);
+            }
+        }
         facts.follow();
         facts
     }
@@ -112,6 +118,29 @@ impl Facts {
             Const::Zero | Const::Text(_) => {}
             Const::Array(runs) => runs.iter().for_each(|it| self.initial(None, &it.1)),
             Const::Struct(fields) => fields.iter().enumerate().for_each(|(at, it)| self.initial(pin(at), it)),
+        }
+    }
+
+    /// What a variable holds that nothing writes is a constant of the program: what it is compared with is worth
+    /// being that.
+    fn unwritten(&mut self, program: &Program, name: Name, ty: Type, initial: &Const) {
+        match (initial, ty) {
+            (Const::Scalar(Value::Bool(_)) | Const::Zero | Const::Text(_), _) => {}
+            (Const::Scalar(it), _) if !self.is_written(name) => self.near_to(name, *it),
+            (Const::Scalar(_), _) => {}
+            (Const::Array(runs), Type::Array(id)) => {
+                let element = program.array(id).element;
+                runs.iter().for_each(|it| self.unwritten(program, name, element, &it.1));
+            }
+            (Const::Struct(values), Type::Struct(id)) => {
+                for (at, value) in values.iter().enumerate() {
+                    let field = FieldId::next(at);
+                    if let Some(ty) = program.member(ty, field) {
+                        self.unwritten(program, Name::Field(id, field), ty, value);
+                    }
+                }
+            }
+            (Const::Array(_) | Const::Struct(_), _) => {}
         }
     }
 
