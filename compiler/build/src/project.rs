@@ -36,8 +36,9 @@ impl Project {
 
     /// The dialect that it names.
     pub fn dialect(&self) -> Result<Option<Dialect>, String> {
-        let named =
-            |name: &String| Dialect::named(name).ok_or_else(|| format!("staunch.toml: there is no dialect `{name}`"));
+        let named = |name: &String| {
+            Dialect::named(name).ok_or_else(|| format!("{}: there is no dialect `{name}`", self.file()))
+        };
         self.dialect.as_ref().map(named).transpose()
     }
 
@@ -45,15 +46,26 @@ impl Project {
     pub fn levels(&self) -> Result<Levels, String> {
         let mut levels = Levels::default();
         for (level, names) in [(Level::Warn, &self.warn), (Level::Deny, &self.deny), (Level::Allow, &self.allow)] {
-            levels.add(level, names.iter().map(String::as_str))?;
+            levels.add(level, names.iter().map(String::as_str)).map_err(|it| format!("{}: {it}", self.file()))?;
         }
         Ok(levels)
+    }
+
+    /// The project file, as messages name it: as seen from the current folder.
+    pub fn file(&self) -> String {
+        shown(&self.folder.join("staunch.toml"))
     }
 
     /// A path of the file, as seen from `from`, with strokes as on every machine.
     pub fn seen_from(&self, from: &Path, path: &Path) -> PathBuf {
         relative(&self.folder.join(path), from)
     }
+}
+
+/// A path as seen from the current folder.
+fn shown(path: &Path) -> String {
+    let here = std::env::current_dir().and_then(|it| it.canonicalize());
+    here.map_or_else(|_| path.to_owned(), |it| relative(path, &it)).display().to_string()
 }
 
 /// `path` as seen from `from`: both absolute, and not on two drives.
@@ -69,7 +81,7 @@ fn relative(path: &Path, from: &Path) -> PathBuf {
 }
 
 fn read(path: &Path) -> Result<Project, String> {
-    let fail = |what: String| format!("{}: {what}", path.display());
+    let fail = |what: String| format!("{}: {what}", shown(path));
     let text = std::fs::read_to_string(path).map_err(|it| fail(it.to_string()))?;
     let table: toml::Table = text.parse().map_err(|it: toml::de::Error| fail(it.to_string()))?;
     let mut project = Project { folder: path.parent().unwrap_or(Path::new(".")).to_owned(), ..Project::default() };

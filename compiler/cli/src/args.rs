@@ -344,15 +344,23 @@ pub struct Compare {
 }
 
 impl Compare {
-    /// What follows `--trace` is a source, unless it is a picture.
-    pub fn settled(&self) -> Self {
+    /// What follows `--trace` is a source, unless it is a picture. Other forms of a trace are one system's.
+    pub fn settled(&self) -> Result<Self, String> {
         let mut settled = self.clone();
+        let form = self.picture().and_then(|it| it.extension()?.to_str()).map(str::to_ascii_lowercase);
+        if let Some(form) = form.filter(|it| matches!(it.as_str(), "html" | "csv" | "vcd")) {
+            return Err(format!(
+                "--trace of compare draws both systems as .svg, and not as .{form}: \
+                 write the inputs with --save-stimulus OUT.csv, and run them under each with \
+                 `staunch run --dialect … --stimulus OUT.csv --trace OUT.{form}`"
+            ));
+        }
         let is_picture = |it: &PathBuf| it.extension().is_some_and(|it| it.eq_ignore_ascii_case("svg"));
         if let Some(Some(file)) = settled.trace.take_if(|it| it.as_ref().is_some_and(|it| !is_picture(it))) {
             settled.files.files.push(file);
             settled.trace = Some(None);
         }
-        settled
+        Ok(settled)
     }
 
     pub fn shows_every_scan(&self) -> bool {

@@ -43,8 +43,9 @@ pub fn map(program: &Program) -> Result<Map, String> {
 
 /// The cycle of the command line, or of the project file.
 pub fn cycle(session: &Session, asked: Option<&str>) -> Result<Option<i64>, String> {
-    let text = asked.or(session.project.cycle.as_deref());
-    text.map(|it| staunch_host::parse_duration(it).map_err(|error| format!("--cycle: {error}"))).transpose()
+    let of_project = || session.project.cycle.as_deref().map(|it| (it, format!("{}: `cycle`", session.project.file())));
+    let given = asked.map(|it| (it, "--cycle".to_owned())).or_else(of_project);
+    given.map(|(it, whose)| staunch_host::parse_duration(it).map_err(|error| format!("{whose}: {error}"))).transpose()
 }
 
 fn options(session: &Session, args: &Run) -> Result<Options, String> {

@@ -244,7 +244,9 @@ impl Parser<'_> {
         let is_real = matches!(place.ty, Type::Elementary(it) if it.repr().is_float());
         let with_point = (self.decimal_comma && is_real).then(|| cell.text.replacen(',', ".", 1));
         let text = with_point.as_deref().unwrap_or(&cell.text);
-        let bytes = literal::parse(self.map, place, text).map_err(|text| self.at(cell, text))?;
+        // What is said of it is said of it as it is written.
+        let bytes = literal::parse(self.map, place, text)
+            .map_err(|it| self.at(cell, it.replace(&format!("`{text}`"), &format!("`{}`", cell.text))))?;
         let bit = match place.ty {
             Type::Bit(number) => Some(number),
             _ => None,
@@ -296,6 +298,8 @@ mod tests {
         let speeds: Vec<_> = stimulus.rows.iter().map(|it| it.writes[0].bytes.clone()).collect();
         assert_eq!(speeds, [-3.5_f32, 150.0, 2.5].map(|it| it.to_ne_bytes().to_vec()));
         assert!(read("scan;c.CV\n1;4,5\n").is_err() && read("scan;speed\n1;1,2,3\n").is_err());
+        let wrong = read("scan;speed\n1;1.234,5\n").unwrap_err();
+        assert!(wrong.contains("`1.234,5` is not a REAL"), "{wrong}");
     }
 
     #[test]

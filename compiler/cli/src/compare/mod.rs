@@ -67,7 +67,7 @@ enum Verdict {
 }
 
 pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
-    let args = &args.settled();
+    let args = &args.settled()?;
     let common = Common { dialect: Some(args.from), ..common.clone() };
     let from = Session::start(&common, &args.files)?;
     fixed::check(&from.sources, args.from, "--from", args.against.is_none() && args.from != args.to)?;
