@@ -228,8 +228,9 @@ impl<'a> Machine<'a> {
             Type::Union(_) => {
                 let (Some(unit), Some(bytes)) = (place.ty.smallest_part(), place.ty.bytes()) else { return };
                 let start = Window { bit: 0, single: false };
-                for number in 0..bytes.div_ceil(unit.repr().size() as usize) {
-                    let part = place.further(start, number * unit.repr().size() as usize, &Type::Elementary(unit));
+                let size = usize::try_from(unit.repr().size()).unwrap_or(1);
+                for number in 0..bytes.div_ceil(size) {
+                    let part = place.further(start, number * size, &Type::Elementary(unit));
                     self.leaves(&format!("{path}.bytes[{number}]"), &part, found);
                 }
             }

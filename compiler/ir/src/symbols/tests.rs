@@ -16,7 +16,7 @@ fn every_record_of_a_program() {
     let mut program = sample(Vec::new());
     program.instances[0].interval = Some(10_000_000);
     let fields = &mut program.structs[1].fields;
-    fields[0].address = Some(Address { area: Area::Input, module: Module::default(), bit: 64, width: 16 });
+    fields[0].address = Some(Address { area: Area::Input, module: crate::Module::default(), bit: 64, width: 16 });
     fields[0].retain = crate::Retain::Kept;
     fields[0].ty = Type::Subrange(Elementary::Int, crate::BoundsId(0));
     program.classes[1].variables[0].place.ty = Type::Subrange(Elementary::Int, crate::BoundsId(0));
@@ -95,7 +95,7 @@ fn the_file_that_declares_a_variable_decides_what_is_kept() {
 
 #[test]
 fn an_address_reads_as_it_is_written() {
-    let text = |area, bit, width| Address { area, module: Module::default(), bit, width }.to_string();
+    let text = |area, bit, width| Address { area, module: crate::Module::default(), bit, width }.to_string();
     assert_eq!(text(Area::Output, 11, 1), "%QX1.3");
     assert_eq!(text(Area::Memory, 24, 8), "%MB3");
     assert_eq!(text(Area::Input, 64, 32), "%ID2");
