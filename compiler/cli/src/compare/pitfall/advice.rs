@@ -19,8 +19,8 @@ struct Advice {
     text: &'static str,
 }
 
-/// Where what the others have in common is said.
-const MATIEC: &[Dialect] = &[Iec, Codesys, Openplc];
+/// Of the systems whose counters are blocks, all but Cscape.
+const NOT_CSCAPE: &[Dialect] = &[Iec, Codesys, Openplc];
 
 const fn advice(
     name: &'static str,
@@ -37,7 +37,7 @@ const BLOCKS: &[Advice] = &[
     advice(
         "edge",
         &[1, 6, 12],
-        MATIEC,
+        NOT_CSCAPE,
         &[Cscape],
         "Feed the counter from an R_TRIG: `e(CLK := sensor); c(CU := e.Q, …)`.",
     ),
@@ -45,7 +45,7 @@ const BLOCKS: &[Advice] = &[
         "every call",
         &[1, 6, 12],
         &[Cscape],
-        MATIEC,
+        NOT_CSCAPE,
         "Make an edge in each call, and stop at the preset (here 50) as CSCAPE does: \
          `c(CU := FALSE, R := …); c(CU := sensor AND c.CV < 50, R := …)`.",
     ),
@@ -64,7 +64,7 @@ const BLOCKS: &[Advice] = &[
         "equal to the preset",
         &[10],
         &[Cscape],
-        MATIEC,
+        NOT_CSCAPE,
         "Count only below the preset, and ask for `c.CV = preset` instead of Q: \
          `e(CLK := sensor); c(CU := e.Q AND c.CV < preset, …)`.",
     ),
@@ -154,12 +154,12 @@ const TO_LOGIX: &[Advice] = &[
     advice(
         "edge on Logix",
         &[5, 6, 12],
-        MATIEC,
+        NOT_CSCAPE,
         &[Logix],
         "Find the edge yourself: `edge := sensor AND NOT before; before := sensor; c.CU := FALSE; CTU(c, edge);`, and ask for \
          `c.ACC >= c.PRE` instead of DN.",
     ),
-    advice("no DN", &[13], MATIEC, &[Logix], "Ask for `c.ACC >= c.PRE` instead of DN."),
+    advice("no DN", &[13], NOT_CSCAPE, &[Logix], "Ask for `c.ACC >= c.PRE` instead of DN."),
     advice(
         "count and load",
         &[4],
@@ -194,7 +194,7 @@ const TO_LOGIX: &[Advice] = &[
     advice(
         "limit of the old type",
         &[8],
-        MATIEC,
+        NOT_CSCAPE,
         &[Logix],
         "Stop the count where the old type did, at 32767 of an INT or 65535 of a WORD: \
          `edge := pulse AND NOT before AND c.ACC < 32767; before := pulse; c.CU := FALSE; CTU(c, edge);`.",
@@ -207,7 +207,7 @@ const FROM_LOGIX: &[Advice] = &[
         "edge of Logix",
         &[5, 6, 12],
         &[Logix],
-        MATIEC,
+        NOT_CSCAPE,
         "Find the edge yourself, with `before` initially TRUE and not RETAIN; a reset forgets it: \
          `edge := sensor AND NOT before; before := sensor AND NOT clear; c(CU := FALSE, R := clear, …); c(CU := edge, R := clear, …);`.",
     ),
