@@ -1,17 +1,14 @@
 //! The reference interpreter: runs a program over the bytes of its state, with the runtime's own
 //! operations and blocks. What it does is what every back end must do.
 
-mod evaluate;
 mod execute;
-mod fold;
 mod follow;
-
-pub use fold::fold;
+mod place;
 
 use crate::layout::{Layout, usize_of};
 use crate::{Place, Program, Routine, RoutineId, Value, reference};
 use core::fmt;
-use evaluate::Scope;
+use place::Scope;
 use staunch_runtime::{Context, Fault};
 
 /// Why a scan ended early.

@@ -13,7 +13,7 @@
 //! 7. Calls carry every argument, in declaration order.
 //! 8. A [`Place`] is a root and projections; an index outside its bounds faults.
 //! 9. A fault is the only unexpected exit, and has a location.
-//! 10. Constants are folded by the interpreter, with the functions that run later.
+//! 10. Constants are folded as the interpreter computes, with the functions that run later.
 #![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
@@ -27,6 +27,9 @@ mod op;
 mod place;
 mod statement;
 pub mod visit;
+
+mod evaluate;
+mod fold;
 
 mod print;
 pub mod verify;
@@ -51,6 +54,7 @@ mod fixture;
 pub use chars::{Chars, CharsOf};
 pub use expression::{Conversion, Expr, ExprKind};
 pub use external::{External, ExternalCall, ExternalParam};
+pub use fold::fold;
 pub use op::{Op, TextOp, apply, apply_text};
 pub use place::{Place, Projection, Root};
 pub use print::print;

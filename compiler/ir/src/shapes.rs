@@ -2,7 +2,7 @@
 //! given. What follows knows arrays of constant bounds alone, so that an index in a copy is checked as any
 //! other is, and no executor learns of a second kind of array.
 
-use crate::interpret::fold;
+use crate::fold;
 use crate::visit::{self, Rewrite};
 use crate::{
     Argument, Array, Block, Const, Expr, ExprKind, Local, LocalId, Location, Place, Program, Projection, Root, Routine,

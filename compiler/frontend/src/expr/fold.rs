@@ -30,7 +30,7 @@ impl Checker<'_, '_> {
 
     /// An operation on constants as its value: what it gives at run time.
     pub(crate) fn evaluated(&mut self, expr: Expr, span: Span) -> Option<Expr> {
-        match staunch_ir::interpret::fold(&expr) {
+        match staunch_ir::fold(&expr) {
             Some(Ok(value)) => Some(constant(expr, value)),
             Some(Err(fault)) => {
                 self.report(
@@ -82,7 +82,7 @@ impl Checker<'_, '_> {
             other => other,
         };
         let expr = Expr::convert(how, ty, value, at);
-        match staunch_ir::interpret::fold(&expr) {
+        match staunch_ir::fold(&expr) {
             Some(Ok(value)) => constant(expr, value),
             Some(Err(_)) | None => expr,
         }

@@ -72,7 +72,7 @@ fn converted(value: Expr, to: Elementary) -> Expr {
 mod tests {
     use super::{low_bits, stored};
     use crate::types::coercion::is_narrow;
-    use staunch_ir::{Const, Conversion, Elementary, Expr, ExprKind, Location, Op, Type, Value, interpret};
+    use staunch_ir::{Const, Conversion, Elementary, Expr, ExprKind, Location, Op, Type, Value};
 
     const AT: Location = Location { file: 0, column: 0, line: 0 };
 
@@ -85,7 +85,7 @@ mod tests {
             ExprKind::Convert(how, operand) => ExprKind::Convert(*how, Box::new(constant(operand)?)),
             other => other.clone(),
         };
-        match interpret::fold(&Expr::new(expr.ty, kind, AT))? {
+        match staunch_ir::fold(&Expr::new(expr.ty, kind, AT))? {
             Ok(Const::Scalar(value)) => Some(value),
             Ok(_) | Err(_) => None,
         }

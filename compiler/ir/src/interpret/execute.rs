@@ -1,7 +1,7 @@
 //! Statements: control flow, writes and calls.
 
-use super::evaluate::{scalar, text};
 use super::{Frame, Interpreter, Stop};
+use crate::evaluate::{scalar, text};
 use crate::layout::usize_of;
 use crate::{
     Argument, Arm, BlockId, Expr, ExprKind, For, Location, Mode, Place, Routine, RoutineId, Statement, StatementKind,

@@ -1,7 +1,8 @@
 //! Accesses through references: all by the runtime's table of objects.
 
-use super::evaluate::{Scope, Storage, scalar, text};
+use super::place::Scope;
 use super::{Frame, Interpreter};
+use crate::evaluate::{Storage, scalar, text};
 use crate::layout::usize_of;
 use crate::reference::{Followed, followed, view, wanted};
 use crate::{Chars, Expr, Location, Place, Projection, Repr, Root, StringType, Type, Value};

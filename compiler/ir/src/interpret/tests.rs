@@ -4,7 +4,7 @@ use super::*;
 use crate::fixture::*;
 use crate::{
     Arm, Chars, Const, Conversion, Elementary, Expr, ExprKind, FaultKind, FieldId, LocalId, Op, Repr, Statement,
-    StatementKind, TextOp, Type,
+    StatementKind, TextOp, Type, fold,
 };
 
 struct Run {

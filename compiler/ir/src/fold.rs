@@ -1,6 +1,6 @@
 //! Constant expressions, computed by the functions that run later.
 
-use super::evaluate::{Storage, scalar, text};
+use crate::evaluate::{Storage, scalar, text};
 use crate::{Chars, Const, Expr, ExprKind, Place, Type, Value};
 use staunch_runtime::Fault;
 
