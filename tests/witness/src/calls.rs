@@ -91,7 +91,10 @@ impl<'a> Machine<'a> {
             self.write(eno, &Value::bool(enabled));
         }
         if enabled {
-            self.block(own, self.declared.pous[pou].body)?;
+            self.pull_triggers(own);
+            let mut own = own.clone();
+            self.see_edges(&mut own);
+            self.block(&own, self.declared.pous[pou].body)?;
         }
         Ok(())
     }
@@ -212,7 +215,9 @@ impl<'a> Machine<'a> {
             }
         }
         let (own, copies) = self.enter(called, outer, &passed)?;
-        self.block(&own, self.declared.pous[routine].body)?;
+        let mut seen = own.clone();
+        self.see_edges(&mut seen);
+        self.block(&seen, self.declared.pous[routine].body)?;
         self.copy_back(&copies);
         let result = own.names.get(&self.declared.pous[routine].name.to_ascii_uppercase());
         let result = result.filter(|_| method && self.declared.pous[routine].result.is_some()).map(|it| self.read(it));
@@ -481,7 +486,7 @@ impl<'a> Machine<'a> {
     }
 
     /// Runs the runtime's own block on an instance's pins.
-    fn run_block(&mut self, instance: &Place<'a>, info: &BlockInfo, instruction: usize, rung: bool) {
+    pub(crate) fn run_block(&mut self, instance: &Place<'a>, info: &BlockInfo, instruction: usize, rung: bool) {
         let mut bytes = vec![0; info.size];
         for (number, pin) in info.pins.iter().enumerate() {
             if let Cell::Scalar(value) = &self.memory[instance.at + number] {

@@ -93,7 +93,8 @@ impl<'a> Machine<'a> {
             let key = variable.name.to_ascii_uppercase();
             outer.names.extend(frame.names.get(&key).map(|place| (key, place.clone())));
         }
-        let (own, copies) = self.enter(above, outer, &[])?;
+        let (mut own, copies) = self.enter(above, outer, &[])?;
+        self.see_edges(&mut own);
         self.block(&own, self.declared.pous[above].body)?;
         self.copy_back(&copies);
         self.memory.truncate(size);

@@ -1,6 +1,7 @@
 //! What the files declare: types, POUs and global variables, resolved by name.
 
 use crate::classes::pou_of;
+use crate::edges;
 use crate::machine::{Outcome, unknown};
 use crate::shared::{self, Window};
 use crate::types::{Array, Elementary, Enum, Record, RefKind, Reference, Slot, Type};
@@ -34,6 +35,8 @@ pub(crate) struct Variable<'a> {
     pub name: &'a str,
     pub kind: VarKind,
     pub slot: Slot<'a>,
+    /// Whether it has a trigger.
+    pub is_edge: bool,
     /// Where it lies in the process image: its area, and how it lies there.
     pub address: Option<(char, Window)>,
 }
@@ -121,7 +124,7 @@ impl<'a> Declarations<'a> {
             Some(base) => Some(pou_of(self.files, base.text).map_or_else(|| unknown("this base"), |it| Ok(it.0))?),
             None => None,
         };
-        let fields = variables.iter().filter(|it| is_field(it.kind)).count();
+        let fields = variables.iter().filter(|it| is_field(it.kind)).map(|it| 1 + usize::from(it.is_edge)).sum();
         let result = pou.result.as_ref().map(|it| self.slot(it, None)).transpose()?;
         self.pous.push(Pou { name, kind, owner, base, implements, fields, result, variables, body });
         Ok(())
@@ -154,9 +157,6 @@ impl<'a> Declarations<'a> {
     fn variables(&mut self, block: &'a ast::VarBlock<'a>) -> Outcome<Vec<Variable<'a>>> {
         let mut variables = Vec::new();
         for declared in &block.vars {
-            if declared.edge.is_some() {
-                return unknown("an edge");
-            }
             let at = declared.address.map(|it| shared::address(it.text)).transpose()?;
             if at.is_some() && block.kind != VarKind::Global {
                 return unknown("an address in a POU");
@@ -166,8 +166,10 @@ impl<'a> Declarations<'a> {
                 return unknown("this type at an address");
             }
             let address = at.map(|it| (it.0, it.1));
+            let is_edge = declared.edge.is_some();
             let names = declared.names.iter();
-            let made = names.map(|it| Variable { name: it.text, kind: block.kind, slot: slot.clone(), address });
+            let made =
+                names.map(|it| Variable { name: it.text, kind: block.kind, slot: slot.clone(), is_edge, address });
             variables.extend(made);
         }
         Ok(variables)
@@ -201,7 +203,9 @@ impl<'a> Declarations<'a> {
                 None => return unknown("a subrange of what is no integer"),
             },
             TypeKind::Array { bounds, element } => self.array(bounds, element)?,
-            TypeKind::Struct(declared) => Type::Record(Rc::new(Record { pou: None, fields: self.fields(declared)? })),
+            TypeKind::Struct(declared) => {
+                Type::Record(Rc::new(Record { pou: None, fields: self.fields(declared)?, edges: Vec::new() }))
+            }
             TypeKind::Enum { base, values } => Type::Enum(self.enumeration("", base.as_ref(), values)?),
             TypeKind::Reference { kind, target } => {
                 let kind = match kind {
@@ -212,7 +216,8 @@ impl<'a> Declarations<'a> {
                 Type::Reference(Reference { kind, target: Some(target) })
             }
             TypeKind::Union(declared) => {
-                let shared = Type::Union(Rc::new(Record { pou: None, fields: self.fields(declared)? }));
+                let shared =
+                    Type::Union(Rc::new(Record { pou: None, fields: self.fields(declared)?, edges: Vec::new() }));
                 if shared.bytes().is_none() {
                     return unknown("this type in a UNION");
                 }
@@ -238,7 +243,11 @@ impl<'a> Declarations<'a> {
         let mut fields = Vec::new();
         for it in declared {
             let slot = self.slot(&it.ty, it.initial.as_ref())?;
-            fields.extend(it.names.iter().map(|name| (name.text.to_owned(), slot.clone())));
+            let trigger = it.edge.map(|(edge, _)| self.named(edges::block_of(edge))).transpose()?;
+            for name in &it.names {
+                fields.push((name.text.to_owned(), slot.clone()));
+                fields.extend(trigger.clone().map(|it| (edges::trigger_of(name.text), it)));
+            }
         }
         Ok(fields)
     }
@@ -313,17 +322,19 @@ impl<'a> Declarations<'a> {
 
     /// What an instance of a POU keeps. `number` counts the POUs in the order of their files.
     fn instance(&mut self, pou: &'a ast::Pou<'a>, number: usize) -> Outcome<Type<'a>> {
-        let mut fields = match &pou.extends {
+        let (mut fields, mut edges) = match &pou.extends {
             Some(base) => match self.named(base.text)?.ty {
-                Type::Record(record) => record.fields.clone(),
+                Type::Record(record) => (record.fields.clone(), record.edges.clone()),
                 _ => return unknown("this base"),
             },
-            None => Vec::new(),
+            None => (Vec::new(), Vec::new()),
         };
         for block in pou.blocks.iter().filter(|it| is_field(it.kind)) {
             fields.extend(self.fields(&block.vars)?);
+            let own = block.vars.iter().filter(|it| it.edge.is_some()).flat_map(|it| &it.names);
+            edges.extend(own.map(|it| it.text.to_owned()));
         }
-        Ok(Type::Record(Rc::new(Record { pou: Some(number), fields })))
+        Ok(Type::Record(Rc::new(Record { pou: Some(number), fields, edges })))
     }
 
     /// The instance type of the POU with this number.

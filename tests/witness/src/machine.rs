@@ -51,7 +51,7 @@ pub struct Machine<'a> {
 }
 
 /// The variables that a body can name, apart from the globals.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Frame<'a> {
     pub names: HashMap<String, Place<'a>>,
     /// The instance whose routine this is, with the number of its own class.

@@ -183,6 +183,8 @@ pub(crate) struct Record<'a> {
     /// The POU whose instance this is.
     pub pou: Option<usize>,
     pub fields: Vec<(String, Slot<'a>)>,
+    /// The inputs that are edges: the field after each is its trigger.
+    pub edges: Vec<String>,
 }
 
 /// What is declared: a type, and what it starts with.

@@ -320,11 +320,13 @@ impl<'s> Checker<'_, 's> {
         if class == Class::Bit || !self.promotes(it, span) {
             return own;
         }
+        // What is narrow has its value at a DINT, whatever its sign.
+        let meet: Join =
+            |a, b| Some(join(a, b).or_else(|| join(as_number(a), as_number(b))).unwrap_or(Elementary::Dint));
         let types = operands.clone().filter_map(|it| it.computed_at()?.elementary());
-        let meet = |a, b| join(a, b).or_else(|| join(as_number(a), as_number(b))).unwrap_or(Elementary::Dint);
-        let ty = types.reduce(|a, b| if a == b { a } else { meet(a, b) }).unwrap_or(it);
+        let ty = types.reduce(|a, b| if a == b { a } else { meet(a, b).unwrap_or(a) }).unwrap_or(it);
         let ty = if it.is_integer() { as_number(ty) } else { ty };
-        widened_by_literals(Type::Elementary(ty), operands, join_in(self.decl.dialect(span)))
+        widened_by_literals(Type::Elementary(ty), operands, meet)
     }
 
     /// The operand at the type that was found for all.

@@ -40,7 +40,9 @@ impl Writer {
         let mut added = self.new_parameters(&prefix, false);
         // A call through the base does not know in-outs of an heir.
         added.retain(|it| it.section != Section::InOut || level == 0);
+        self.edges = true;
         self.declare_sections(&added, true);
+        self.edges = false;
         parameters.extend(added);
         self.locals("VAR", &format!("{prefix}l"), 2);
         self.line("VAR");

@@ -61,6 +61,8 @@ struct Writer {
     loop_prefix: String,
     /// Whether the block that is being written has a base.
     is_heir: bool,
+    /// Whether inputs that are being declared may be edges.
+    edges: bool,
     /// Whether what is being written calls what may lead to an heir.
     tainted: bool,
     /// What `SUPER^` has for the method that is being written.
@@ -91,6 +93,7 @@ impl Writer {
             whiles: 0,
             loop_prefix: String::new(),
             is_heir: false,
+            edges: false,
             tainted: false,
             above: Vec::new(),
             interface_method: None,
@@ -504,7 +507,10 @@ impl Writer {
             }
             self.line(section.keyword());
             for Parameter { name, ty, .. } in own {
-                if section == Section::InOut || !with_initial {
+                if self.edges && section == Section::Input && *ty == Ty::Bool && self.random.once_in(2) {
+                    let edge = *self.random.one_of(&["R_EDGE", "F_EDGE"]);
+                    self.inside(|this| this.line(&format!("{name} : BOOL {edge};")));
+                } else if section == Section::InOut || !with_initial {
                     let shown = self.types.name(ty);
                     self.inside(|this| this.line(&format!("{name} : {shown};")));
                 } else {
