@@ -255,6 +255,11 @@ impl Dialect {
         matches!(self, Self::Codesys | Self::Logix)
     }
 
+    /// `EXPT` gives the type of its first parameter, as the standard says; in CODESYS it may give LREAL.
+    pub const fn powers_have_type_of_base(self) -> bool {
+        !matches!(self, Self::Codesys)
+    }
+
     /// Assigning a FOR counter in its loop is a lint, not an error.
     pub const fn assigns_counters(self) -> bool {
         matches!(self, Self::Codesys)

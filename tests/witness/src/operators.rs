@@ -7,7 +7,7 @@ use crate::storage::Value;
 use crate::types::{Elementary, Type};
 use staunch_frontend::Span;
 use staunch_frontend::ast::{BinaryOp, Expr};
-use staunch_runtime::{FaultKind, Outcome as _, Repr, Scalar as _, Value as Scalar, ops, text, with_repr};
+use staunch_runtime::{Family, FaultKind, Outcome as _, Repr, Scalar as _, Value as Scalar, ops, text, with_repr};
 
 impl<'a> Machine<'a> {
     pub(crate) fn binary(
@@ -91,9 +91,15 @@ impl<'a> Machine<'a> {
             BinaryOp::Power => {
                 let long = |it: Elementary| it == Elementary::Lreal || (it.is_integer() && it.repr().size() > 2);
                 let asks = asked.and_then(Type::elementary) == Some(Elementary::Lreal);
-                let ty = if long(x) || long(y) || asks { Elementary::Lreal } else { Elementary::Real };
-                let operands = [in_repr(a.as_scalar()?, ty).as_scalar()?, in_repr(b.as_scalar()?, ty).as_scalar()?];
-                self.applied("EXPT", ty, &operands, at)
+                let is_long = long(x) || long(y);
+                // What gives a REAL to a REAL, and is no REAL, is a literal.
+                let wanted = x.is_real() && asked.and_then(Type::elementary) == Some(Elementary::Real);
+                let own = self.declared.family != Family::Codesys && (x == Elementary::Real || wanted);
+                let ty = if is_long || (asks && !own) { Elementary::Lreal } else { Elementary::Real };
+                let base = if own { in_repr(a.as_scalar()?, Elementary::Real) } else { a };
+                let operands = [in_repr(base.as_scalar()?, ty).as_scalar()?, in_repr(b.as_scalar()?, ty).as_scalar()?];
+                let power = self.applied("EXPT", ty, &operands, at)?;
+                Ok(if own { in_repr(power.as_scalar()?, Elementary::Real) } else { power })
             }
             BinaryOp::Mul | BinaryOp::Div if x.is_time() && !y.is_time() => self.scaled(op, &a, &b, at),
             BinaryOp::Mul if y.is_time() => self.scaled(op, &b, &a, at),

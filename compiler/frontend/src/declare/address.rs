@@ -15,7 +15,7 @@ fn collect_body(body: &[ast::Statement<'_>], uses: &mut Vec<Use>) {
         if let ast::ExprKind::Address(name) = &expr.kind
             && let Some(address) = parse(name.text)
         {
-            uses.push(Use { address, bits: u64::from(address.width), span: name.span, scope: None });
+            uses.push(Use { address, bits: u64::from(address.width), span: name.span, ty: None, scope: None });
         }
     });
 }
@@ -117,8 +117,16 @@ impl<'s> Declarations<'s> {
     ) -> Option<Option<Place>> {
         let declared = decl.known_address()?;
         let address = parse(declared.text);
-        let found = address.and_then(|it| self.addresses.storage.get(&it).copied());
+        let found = address.and_then(|it| self.addresses.storage_of(it, Some(resolved.ty)));
         let place = match found {
+            Some(Storage::Global(at)) if self.shares_bits(at, resolved) => {
+                let address = self.address(declared)?;
+                Some(self.new_view(address, resolved, pou, pou.map_or(declared, |_| name)))
+            }
+            Some(Storage::Hidden(at)) if self.is_retyped(self.synthetic.field_type(at), resolved.ty) => {
+                let address = self.address(declared)?;
+                Some(self.new_view(address, resolved, pou, pou.map_or(declared, |_| name)))
+            }
             Some(Storage::Global(at)) => {
                 let Some(global) = self.global(at) else { return Some(None) };
                 self.same_type(resolved.ty, global.resolved.ty, declared, Some(global.name))
@@ -153,7 +161,7 @@ impl<'s> Declarations<'s> {
         // What has no other name than its address is not one more name for it.
         let is_named = decl.names.iter().all(|it| !it.text.starts_with('%'));
         let scope = is_named.then(|| pou.map_or_else(Span::default, |it| it.span));
-        let start = self.addresses.starts.entry(address).or_default();
+        let start = self.addresses.starts.entry((address, resolved.ty)).or_default();
         start.kept |= super::variable::is_declared_retain(block);
         let given = decl.initial.as_ref().map(|it| (resolved.initial.clone(), it.span));
         if let (Some((first, other)), Some((value, span))) = (&start.initial, &given)
@@ -167,7 +175,36 @@ impl<'s> Declarations<'s> {
             return;
         }
         start.initial = start.initial.take().or(given);
-        self.addresses.uses.push(Use { address, bits, span: name.span, scope });
+        self.addresses.uses.push(Use { address, bits, span: name.span, ty: Some(resolved.ty), scope });
+    }
+
+    /// Whether a global lies where the same bits are declared as another type.
+    fn shares_bits(&mut self, global: usize, resolved: &Resolved) -> bool {
+        let ty = self.global(global).map(|it| it.resolved.ty);
+        ty.is_some_and(|it| self.is_retyped(it, resolved.ty))
+    }
+
+    /// Whether the types are two that can share the bits of one address.
+    fn is_retyped(&self, first: Type, second: Type) -> bool {
+        let is_array = |ty| matches!(ty, Type::Array(_));
+        let can = |ty| is_array(ty) || matches!(ty, Type::Elementary(_));
+        first != second && can(first) && can(second) && !(is_array(first) && is_array(second))
+    }
+
+    /// What is declared with another type than what lies at its address.
+    fn new_view(
+        &mut self,
+        address: Address,
+        resolved: &Resolved,
+        pou: Option<ast::Name<'s>>,
+        name: ast::Name<'s>,
+    ) -> Place {
+        let at = self.add_storage(address, resolved, pou.map_or("Globals", |it| it.text), name);
+        self.addresses.retyped.insert((address, resolved.ty), at);
+        if pou.is_none() {
+            self.addresses.second_names.insert(self.addresses.own_fields().len() + at);
+        }
+        self.synthetic_place(at)
     }
 
     fn same_type(&mut self, ours: Type, theirs: Type, name: ast::Name<'s>, first: Option<ast::Name<'s>>) -> bool {
@@ -208,14 +245,7 @@ impl<'s> Declarations<'s> {
         let spans: Vec<_> = self.addresses.uses.iter().map(|it| (it.address, it.span)).collect();
         for (address, span) in spans {
             if !self.addresses.storage.contains_key(&address) {
-                let elementary = match address.width {
-                    1 => Elementary::Bool,
-                    8 => Elementary::Byte,
-                    16 => Elementary::Word,
-                    32 => Elementary::Dword,
-                    _ => Elementary::Lword,
-                };
-                let resolved = Resolved::plain(Type::Elementary(elementary));
+                let resolved = Resolved::plain(bit_string(address));
                 let name = ast::Name { text: self.log.sources.text(span), span };
                 self.new_storage(address, &resolved, "Globals", name);
             }
@@ -223,6 +253,19 @@ impl<'s> Declarations<'s> {
     }
 
     fn new_storage(&mut self, address: Address, resolved: &Resolved, owner: &str, name: ast::Name<'s>) -> Place {
+        let at = self.add_storage(address, resolved, owner, name);
+        self.addresses.storage.insert(address, Storage::Hidden(at));
+        self.synthetic_place(at)
+    }
+
+    /// A field of the globals for what lies at an address.
+    pub(super) fn add_storage(
+        &mut self,
+        address: Address,
+        resolved: &Resolved,
+        owner: &str,
+        name: ast::Name<'s>,
+    ) -> usize {
         let is_named = !name.text.starts_with('%');
         let mut spelling = field_name(name.text);
         if self.is_global_name(&spelling) {
@@ -239,8 +282,17 @@ impl<'s> Declarations<'s> {
             doc: None,
             location: if is_named { self.location(name.span) } else { staunch_ir::Location::default() },
         };
-        let at = self.add_synthetic(field, is_named.then_some(name));
-        self.addresses.storage.insert(address, Storage::Hidden(at));
-        self.synthetic_place(at)
+        self.add_synthetic(field, is_named.then_some(name))
     }
+}
+
+/// The bit string of an address' width.
+pub(super) fn bit_string(address: Address) -> Type {
+    Type::Elementary(match address.width {
+        1 => Elementary::Bool,
+        8 => Elementary::Byte,
+        16 => Elementary::Word,
+        32 => Elementary::Dword,
+        _ => Elementary::Lword,
+    })
 }

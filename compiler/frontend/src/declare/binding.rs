@@ -32,7 +32,7 @@ impl<'s> Declarations<'s> {
         for (slot, run) in (first..).zip(runs) {
             for (target, address) in &run.bound {
                 let (Some(start), Some(at)) = (self.bound_start(slot, target), parse(address.text)) else { continue };
-                let known = self.addresses.starts.entry(at).or_default();
+                let known = self.addresses.starts.entry((at, start.ty)).or_default();
                 known.kept |= start.is_kept;
                 known.initial.get_or_insert((start.initial, target.span));
             }

@@ -1,12 +1,13 @@
 //! Which direct addresses share bits, and which variable keeps them: the array among them, else the widest.
 //! Addresses are multiples of their own widths, so that of two which overlap one holds the other.
 
+use super::address::bit_string;
 use crate::dialect::Dialect;
 use crate::types::address::{Storage, Use};
 use crate::types::declarations::Declarations;
 use crate::types::image::Shared;
-use crate::types::table::{GLOBALS, scalar_initial};
-use crate::{Code, Diagnostic, Span};
+use crate::types::table::{GLOBALS, Resolved, scalar_initial};
+use crate::{Code, Diagnostic, ast};
 use rustc_hash::FxHashSet;
 use staunch_ir::{Address, Const, Elementary, Field, FieldId, Place, Repr, Retain, Root, Section, Type, Value, View};
 use std::cmp::Reverse;
@@ -57,13 +58,19 @@ impl<'s> Declarations<'s> {
 
     fn share(&mut self, group: &[Use]) {
         let mut seen = FxHashSet::default();
-        let firsts: Vec<Use> = group.iter().filter(|it| seen.insert(it.address)).copied().collect();
+        let mut is_first = |it: &&Use| seen.insert((it.address, self.addresses.storage_of(it.address, it.ty)));
+        let firsts: Vec<Use> = group.iter().filter(|it| is_first(it)).copied().collect();
         let [widest, others @ ..] = firsts.as_slice() else { return };
         if others.is_empty() {
             return;
         }
         // A body that names an address says itself which bits it means.
-        for it in others.iter().filter(|it| it.scope.is_some()) {
+        for (before, it) in others.iter().enumerate().filter(|(_, it)| it.scope.is_some()) {
+            let mut named = firsts[..=before].iter();
+            if named.any(|first| first.address == it.address && first.scope == it.scope) {
+                // Two names of one address are reported as such.
+                continue;
+            }
             self.report(
                 Diagnostic::new(Code::W0410, it.span, "two variables lie on overlapping addresses")
                     .label("this address shares bits with another one: what is assigned to one is read from both")
@@ -84,10 +91,10 @@ impl<'s> Declarations<'s> {
 
     /// `None` where its declaration was refused.
     fn member(&mut self, first: Use, group: &[Use]) -> Option<Member> {
-        let same = group.iter().filter(|it| it.address == first.address);
+        let same = group.iter().filter(|it| it.address == first.address && it.ty.is_none_or(|ty| Some(ty) == first.ty));
         let bits = same.map(|it| it.bits).max().unwrap_or(first.bits);
         let own = self.addresses.own_fields().len();
-        let (ty, field) = match self.addresses.storage.get(&first.address).copied()? {
+        let (ty, field) = match self.addresses.storage_of(first.address, first.ty)? {
             Storage::Global(at) => (self.global(at)?.resolved.ty, self.addresses.field_of_global(at)?),
             Storage::Hidden(at) => (self.synthetic.field_type(at), own + at),
         };
@@ -98,29 +105,55 @@ impl<'s> Declarations<'s> {
     fn keeper(&mut self, members: &[Member]) -> Option<(usize, Member)> {
         let mut arrays = members.iter().filter(|it| matches!(it.ty, Type::Array(_)));
         let array = arrays.next();
-        if let Some(second) = arrays.next() {
-            self.refuse_sharing(second.first.span, "sharing the bits of two arrays");
+        if let (Some(first), Some(second)) = (array, arrays.next()) {
+            self.refuse_sharing(second.first, first.first, "sharing the bits of two arrays");
             return None;
         }
-        let keeper = *array.or_else(|| members.iter().max_by_key(|it| it.bits))?;
+        let keeper = match array {
+            Some(array) => *array,
+            None => self.widest_number(members)?,
+        };
         for it in members.iter().filter(|it| it.field != keeper.field) {
             let inside = keeper.first.address.bit <= it.first.address.bit && it.end() <= keeper.end();
             if !inside {
-                self.refuse_sharing(it.first.span, "sharing a part of its bits with an array");
+                self.refuse_sharing(it.first, keeper.first, "sharing a part of its bits with an array");
                 return None;
             }
-            if !is_of_bits(it.ty) {
-                self.refuse_sharing(it.first.span, &format!("sharing the bits of {}", self.program.type_name(it.ty)));
+            if !matches!(it.ty, Type::Elementary(_)) {
+                self.refuse_sharing(
+                    it.first,
+                    keeper.first,
+                    &format!("sharing the bits of {}", self.program.type_name(it.ty)),
+                );
                 return None;
             }
         }
         let unit = self.unit(keeper.ty);
         if unit.is_none_or(|bits| !keeper.first.address.bit.is_multiple_of(bits)) {
             let ty = self.program.type_name(keeper.ty);
-            self.refuse_sharing(keeper.first.span, &format!("sharing the bits of {ty}"));
+            let other = members.iter().find(|it| it.field != keeper.field).map_or(keeper.first, |it| it.first);
+            self.refuse_sharing(keeper.first, other, &format!("sharing the bits of {ty}"));
             return None;
         }
         Some((keeper.field, keeper))
+    }
+
+    /// The widest one, if that is a number of which all bits are values; else a bit string that holds its bits.
+    fn widest_number(&mut self, members: &[Member]) -> Option<Member> {
+        let most = members.iter().map(|it| it.bits).max()?;
+        let mut widest = members.iter().filter(|it| it.bits == most);
+        let first = *widest.clone().next()?;
+        if let Some(it) = widest.find(|it| is_of_bits(it.ty)) {
+            return Some(*it);
+        }
+        if !matches!(first.ty, Type::Elementary(_)) {
+            return Some(first);
+        }
+        let ty = bit_string(first.first.address);
+        let span = first.first.span;
+        let name = ast::Name { text: self.log.sources.text(span), span };
+        let at = self.add_storage(first.first.address, &Resolved::plain(ty), "Globals", name);
+        Some(Member { ty, field: self.addresses.own_fields().len() + at, ..first })
     }
 
     /// The bits of the integers that the type is made of.
@@ -135,12 +168,14 @@ impl<'s> Declarations<'s> {
         }
     }
 
-    fn refuse_sharing(&mut self, span: Span, what: &str) {
-        self.report(
-            Diagnostic::new(Code::E0410, span, format!("{what} is not supported yet"))
-                .label("this address shares bits with another one")
-                .help("BOOL, integers and bit strings share their bits with one another, and with one array of them"),
-        );
+    fn refuse_sharing(&mut self, it: Use, other: Use, what: &str) {
+        let mut error = Diagnostic::new(Code::E0410, it.span, format!("{what} is not supported yet"))
+            .label("this address shares bits with another one")
+            .help("elementary types share their bits with one another, and with one array of integers or bit strings");
+        if other.span != it.span {
+            error = error.other(other.span, "the other address");
+        }
+        self.report(error);
     }
 
     /// Takes the fields away that others keep, with what they say of the start.
@@ -161,21 +196,26 @@ impl<'s> Declarations<'s> {
 
     /// Each declaration may say how its bits start.
     fn start_together(&mut self, keeper: &mut Field, views: &[Shared]) {
-        let start = |this: &Self, address: Address| {
-            let start = this.addresses.starts.get(&address)?;
+        let start = |this: &Self, address: Address, ty: Type| {
+            let start = this.addresses.starts.get(&(address, ty))?;
             Some((start.kept, start.initial.clone()))
         };
-        let own = keeper.address.and_then(|it| start(self, it)).and_then(|it| it.1);
+        let own = keeper.address.and_then(|it| start(self, it, keeper.ty)).and_then(|it| it.1);
         let mut said = own.as_ref().map_or(0, |_| u64::MAX);
         let mut bits = bits_of(&keeper.initial);
         for it in views {
-            let Some((kept, initial)) = start(self, it.view.address) else { continue };
+            let Some((kept, initial)) = start(self, it.view.address, Type::Elementary(it.view.ty)) else { continue };
             if kept {
                 keeper.retain = Retain::Kept;
             }
             let Some((value, span)) = initial else { continue };
             if matches!(keeper.ty, Type::Array(_)) {
-                self.refuse_sharing(span, "an initial value for bits of an array");
+                let error =
+                    Diagnostic::new(Code::E0410, span, "an initial value for bits of an array is not supported yet")
+                        .label("these bits are part of an array")
+                        .other(self.log.name_at(keeper.location), "they are kept here")
+                        .help("give the array the value, where it is declared");
+                self.report(error);
                 continue;
             }
             let mask = (u64::MAX >> (64 - u64::from(it.view.address.width))) << it.view.bit;
@@ -199,7 +239,8 @@ impl<'s> Declarations<'s> {
 
     /// The views as other names of what keeps their bits. `names` are those of all declared fields.
     pub(super) fn views(&self, names: &[String]) -> Vec<staunch_ir::Variable> {
-        let mut views: Vec<_> = self.image.shared.keys().copied().collect();
+        let is_shown = |it: &usize| !self.addresses.second_names.contains(it);
+        let mut views: Vec<_> = self.image.shared.keys().copied().filter(is_shown).collect();
         views.sort_unstable();
         let variable = |field: usize| {
             let ty = Type::Elementary(self.image.shared.get(&field)?.view.ty);
@@ -211,7 +252,7 @@ impl<'s> Declarations<'s> {
     }
 }
 
-/// BOOL, integers and bit strings: all bits are values of them.
+/// BOOL, integers and bit strings: all bits are values of them, and no type of time.
 fn is_of_bits(ty: Type) -> bool {
     matches!(ty, Type::Elementary(it) if it == Elementary::Bool || it.repr().is_integer() && !it.is_time())
 }
@@ -219,6 +260,8 @@ fn is_of_bits(ty: Type) -> bool {
 fn bits_of(value: &Const) -> u64 {
     match value {
         Const::Scalar(Value::Bool(it)) => u64::from(*it),
+        Const::Scalar(Value::F32(it)) => u64::from(it.to_bits()),
+        Const::Scalar(Value::F64(it)) => it.to_bits(),
         Const::Scalar(it) => it.as_integer().map_or(0, |it| u64::try_from(it & i128::from(u64::MAX)).unwrap_or(0)),
         Const::Zero | Const::Text(_) | Const::Array(_) | Const::Struct(_) => 0,
     }

@@ -41,6 +41,8 @@ pub(crate) struct Checker<'d, 's> {
     pub choices: FxHashMap<Span, Choice>,
     /// The first statement that makes nothing, because something in it was refused.
     pub left_out: Option<Span>,
+    /// What is checked may never be evaluated, as a call whose EN is FALSE: a constant that faults there is no mistake.
+    pub may_not_run: bool,
     /// What is executed of the body is counted.
     pub is_covered: bool,
     /// What an assertion of a suite compares: the globals that keep it if the assertion fails.
@@ -85,6 +87,7 @@ impl<'d, 's> Checker<'d, 's> {
             called: Called::default(),
             choices: FxHashMap::default(),
             left_out: None,
+            may_not_run: false,
             is_covered: false,
             compared: Vec::new(),
         }

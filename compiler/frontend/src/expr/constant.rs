@@ -29,7 +29,8 @@ pub(crate) fn constant<'s>(
     Some(value)
 }
 
-fn is_constant(expr: &Expr) -> bool {
+/// Whether the value is known here.
+pub(super) fn is_constant(expr: &Expr) -> bool {
     use staunch_ir::ExprKind;
     match &expr.kind {
         ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => true,

@@ -7,7 +7,7 @@ use crate::types::signature::{Formal, Signature, Target};
 use crate::{Span, ast};
 use ast::ArgumentKind;
 use staunch_ir::{
-    Chars, Const, Expr, ExprKind, Location, ParamId, Place, Root, Section, Statement, StatementKind, Type,
+    Chars, Const, Expr, ExprKind, Location, ParamId, Place, Root, Section, Statement, StatementKind, Type, Value,
 };
 
 /// What a call gives for an EN and an ENO that its callee does not declare.
@@ -82,17 +82,20 @@ impl<'s> Checker<'_, 's> {
             (Some(en), Some((eno, _))) => en.span.start < eno.span.start,
             (_, None) | (None, _) => true,
         };
+        let mut may_be_false = false;
         if en_first {
-            self.keep_en(enable.en, &mut parts, &enabled, span)?;
+            may_be_false = self.keep_en(enable.en, &mut parts, &enabled, span)?;
         }
         if let Some((target, negated)) = enable.eno {
             self.target_part(&mut parts, target, negated, Source::Variable(enabled.clone()))?;
         }
         if !en_first {
-            self.keep_en(enable.en, &mut parts, &enabled, span)?;
+            may_be_false = self.keep_en(enable.en, &mut parts, &enabled, span)?;
         }
         let mut made = None;
         let mut result = None;
+        let outer = self.may_not_run;
+        self.may_not_run |= may_be_false;
         let then = self.nested(|this| {
             made = call(this);
             if let Some(Some(value)) = made.take_if(|it| it.is_some()) {
@@ -101,6 +104,7 @@ impl<'s> Checker<'_, 's> {
                 result = Some(place);
             }
         });
+        self.may_not_run = outer;
         if made.is_none() && result.is_none() {
             return None;
         }
@@ -117,8 +121,8 @@ impl<'s> Checker<'_, 's> {
         Some(result.map(|place| Expr::load(place, at)))
     }
 
-    /// Evaluates EN, where a call gives one.
-    fn keep_en(&mut self, en: Option<&ast::Expr<'s>>, parts: &mut Parts, enabled: &Place, span: Span) -> Option<()> {
+    /// Evaluates EN, where a call gives one, and says whether it may be FALSE.
+    fn keep_en(&mut self, en: Option<&ast::Expr<'s>>, parts: &mut Parts, enabled: &Place, span: Span) -> Option<bool> {
         let at = self.at(span);
         let value = match en {
             Some(en) => self.after_parts(&mut parts.written, |this| this.value(en, Type::BOOL))?,
@@ -126,8 +130,9 @@ impl<'s> Checker<'_, 's> {
         };
         let faults = self.can_fault(&value);
         parts.written.iter_mut().for_each(|it| self.hold(&mut it.held, &[], faults));
+        let may_be_false = value.as_const() != Some(Value::Bool(true));
         self.assign(enabled.clone(), value, en.map_or(span, |it| it.span));
-        Some(())
+        Some(may_be_false)
     }
 
     /// The value that a result starts with.

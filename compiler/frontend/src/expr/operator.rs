@@ -1,11 +1,11 @@
 //! Operators: the type at which two sides meet, and what is computed there.
 
-use super::checker::Checker;
+use super::checker::{Checker, Context};
 use super::operand::{Operand, computed};
 use crate::types::coercion::{Join, as_number, is_narrow, join, join_in};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::BinaryOp;
-use staunch_ir::{Conversion, Elementary, Expr, Op, Statement, StatementKind, Type, Value};
+use staunch_ir::{Conversion, Elementary, Expr, ExprKind, Op, Statement, StatementKind, Type, Value};
 use staunch_runtime::Class;
 
 impl<'s> Checker<'_, 's> {
@@ -301,12 +301,11 @@ impl<'s> Checker<'_, 's> {
         Some(computed(value, own))
     }
 
-    /// `**`: REAL or LREAL; integers are converted.
+    /// `**`: a REAL or LREAL base gives its own type, whatever the exponent is. A REAL to the power of what REAL does not
+    /// hold exactly goes through LREAL. Integers as a base are converted.
     fn power(&mut self, sides: Sides) -> Option<Expr> {
+        const REAL: Type = Type::Elementary(Elementary::Real);
         let op_span = sides.op_span;
-        let lreal = |operand: &Operand| matches!(operand.ty(), Some(Type::Elementary(it)) if it == Elementary::Lreal || it.repr().size() > 2 && it.is_integer());
-        let long = lreal(&sides.a) || lreal(&sides.b) || sides.hint == Some(Type::LREAL);
-        let ty = if long { Elementary::Lreal } else { Elementary::Real };
         let numeric = |operand: &Operand| match operand.ty() {
             Some(Type::Elementary(it)) => it.is_real() || it.is_integer(),
             Some(_) => false,
@@ -316,10 +315,25 @@ impl<'s> Checker<'_, 's> {
             self.report_operands(&sides, "both sides need to be numbers");
             return None;
         }
-        let a = self.side(sides.a, ty, sides.left)?;
-        let b = self.side(sides.b, ty, sides.right)?;
-        let ty = Type::Elementary(ty);
-        self.apply(Op::Expt, ty, vec![a, b], ty, op_span)
+        let is_long = |operand: &Operand| matches!(operand.ty(), Some(Type::Elementary(it)) if it == Elementary::Lreal || it.repr().size() > 2 && it.is_integer());
+        let long = is_long(&sides.a) || is_long(&sides.b);
+        let keeps_base = self.decl.dialect(sides.span).powers_have_type_of_base();
+        let is_real = match sides.a.ty() {
+            Some(ty) => keeps_base && ty == REAL,
+            // A literal is what it is asked to be.
+            None => keeps_base && sides.hint == Some(REAL) && matches!(sides.a, Operand::Real { .. }),
+        };
+        let asks = sides.hint == Some(Type::LREAL);
+        let ty = Type::Elementary(if is_real || !long && !asks { Elementary::Real } else { Elementary::Lreal });
+        let computed = if long || asks && !is_real { Elementary::Lreal } else { Elementary::Real };
+        let mut a = self.side(sides.a, if is_real { Elementary::Real } else { computed }, sides.left)?;
+        if is_real {
+            a = self.convert(Conversion::Value, Type::Elementary(computed), a);
+        }
+        let b = self.side(sides.b, computed, sides.right)?;
+        let computed = Type::Elementary(computed);
+        let power = self.apply(Op::Expt, computed, vec![a, b], computed, op_span)?;
+        Some(self.convert(Conversion::Value, ty, power))
     }
 
     fn arithmetic(&mut self, sides: Sides) -> Option<Operand> {
@@ -416,11 +430,17 @@ impl<'s> Checker<'_, 's> {
         let a = self.condition(left);
         self.count_operand(a.as_ref());
         let mut b = None;
+        let outer = self.may_not_run;
+        self.may_not_run |= self.context != Context::Body && a.as_ref().is_some_and(|it| decides(op, it));
         let evaluate = self.nested(|this| {
             b = this.condition(right);
             this.count_operand(b.as_ref());
         });
+        self.may_not_run = outer;
         let (a, b) = (a?, b?);
+        if let Some(known) = self.decided(op, &a, &b) {
+            return Some(known);
+        }
         let at = self.at(span);
         let result = self.temporary("both", Type::BOOL);
         self.block.push(Statement::assign(result.clone(), a, at));
@@ -431,6 +451,28 @@ impl<'s> Checker<'_, 's> {
         self.push(StatementKind::If { condition, then, otherwise }, span);
         Some(Expr::load(result, at))
     }
+
+    /// A short-circuit operator of constants, where a constant is wanted: its value, even if the second would fault and
+    /// is not evaluated.
+    fn decided(&self, op: BinaryOp, a: &Expr, b: &Expr) -> Option<Expr> {
+        let known = self.context != Context::Body && is_of_constants(b);
+        (known && a.as_const().is_some()).then(|| if decides(op, a) { a.clone() } else { b.clone() })
+    }
+}
+
+/// Whether nothing but constants is in the expression: also in one that would fault.
+fn is_of_constants(expr: &Expr) -> bool {
+    match &expr.kind {
+        ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) => true,
+        ExprKind::Load(_) | ExprKind::AddressOf(_) => false,
+        ExprKind::Apply(_, operands) | ExprKind::ApplyText(_, operands) => operands.iter().all(is_of_constants),
+        ExprKind::Convert(_, operand) => is_of_constants(operand),
+    }
+}
+
+/// Whether the first side of a short-circuit operator is a constant that leaves the second unevaluated.
+fn decides(op: BinaryOp, first: &Expr) -> bool {
+    first.as_const() == Some(Value::Bool(op != BinaryOp::AndThen))
 }
 
 /// The two sides of an operator, and where they are.

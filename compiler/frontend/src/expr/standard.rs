@@ -2,6 +2,7 @@
 //! operands of one type.
 
 use super::checker::{Checker, Context};
+use super::constant::is_constant;
 use super::operand::{Operand, computed};
 use super::overload::Resolved;
 use super::text_conversion::MAX_CAPACITY;
@@ -223,6 +224,11 @@ impl<'s> Checker<'_, 's> {
 
     /// `SEL(G, IN0, IN1)` of what no repr carries; both inputs are evaluated.
     fn select(&mut self, ty: Type, mut operands: Vec<Expr>, span: Span) -> Option<Expr> {
+        if self.choose_now(&operands) {
+            let [selector, first, second] = <[Expr; 3]>::try_from(operands).ok()?;
+            let chosen = if selector.as_const()? == Value::Bool(true) { second } else { first };
+            return Some(Expr { ty, ..chosen });
+        }
         self.fault_in_order(operands.iter_mut());
         let [selector, first, second] = <[Expr; 3]>::try_from(operands).ok()?;
         let result = self.temporary("selected", ty);
@@ -236,6 +242,11 @@ impl<'s> Checker<'_, 's> {
     /// Whether SEL and MUX evaluate only the input that is chosen. A constant has no statements to choose by.
     fn chooses_inputs(&self, span: Span) -> bool {
         self.context == Context::Body && self.decl.dialect(span).chooses_inputs()
+    }
+
+    /// Whether what is chosen of constants is one: where a constant is wanted. A body has statements to choose by.
+    pub(super) fn choose_now(&self, operands: &[Expr]) -> bool {
+        self.context != Context::Body && operands.iter().all(is_constant)
     }
 
     /// `SEL(G, IN0, IN1)`, of which one is evaluated: `before` is what each does before its value is known.
@@ -262,6 +273,9 @@ impl<'s> Checker<'_, 's> {
     /// `MUX(K, IN0, …)`: a K below 0 faults, and one above where the dialect does not take the last input then.
     /// What is not in `before` of an input is evaluated, chosen or not.
     fn mux(&mut self, Resolved { ty, own, mut operands }: Resolved, before: Vec<Block>, span: Span) -> Option<Operand> {
+        if self.choose_now(&operands) {
+            return Some(computed(self.constant_mux(ty, operands, span)?, own));
+        }
         let chooses = self.chooses_inputs(span);
         if !chooses {
             self.fault_in_order(operands.iter_mut());
@@ -287,6 +301,27 @@ impl<'s> Checker<'_, 's> {
         }
         self.push(StatementKind::Case { selector, arms, otherwise: outside }, span);
         Some(computed(Expr::load(result, at), own))
+    }
+
+    /// MUX of constants, with the same inputs for a K beyond them.
+    fn constant_mux(&mut self, ty: Type, operands: Vec<Expr>, span: Span) -> Option<Expr> {
+        let mut inputs = operands.into_iter();
+        let selector = inputs.next()?;
+        let number = selector.as_const().and_then(Value::as_integer)?;
+        let is_beyond = usize::try_from(number).map_or(number > 0, |it| it >= inputs.len());
+        let chosen = match usize::try_from(number) {
+            _ if is_beyond && self.decl.dialect(span).chooses_inputs() => inputs.next_back(),
+            Ok(number) => inputs.nth(number),
+            Err(_) => None,
+        };
+        if chosen.is_none() {
+            let fault = FaultKind::IndexOutOfRange;
+            self.report(
+                Diagnostic::new(Code::E0207, span, format!("{fault} in a constant expression"))
+                    .label(format!("K is {number}, and the inputs are counted from 0")),
+            );
+        }
+        chosen.map(|it| Expr { ty, ..it })
     }
 
     fn text_function(&mut self, op: TextOp, operands: Vec<Expr>, span: Span) -> Option<Expr> {

@@ -17,6 +17,16 @@ impl Checker<'_, '_> {
     /// `MAX` and `MIN` of strings: the first of those that are greatest, or least.
     pub(crate) fn extreme_text(&mut self, op: Op, ty: Type, texts: Vec<Expr>, span: Span) -> Option<Expr> {
         let beats = if op == Op::Max { Op::Gt } else { Op::Lt };
+        if self.choose_now(&texts) {
+            let mut chosen = None;
+            for text in texts {
+                chosen = match chosen {
+                    Some(first) if !self.is_so(beats, &text, &first, span) => Some(first),
+                    Some(_) | None => Some(text),
+                };
+            }
+            return chosen.map(|it| Expr { ty, ..it });
+        }
         let mut texts = self.texts_in_variables(ty, texts, span).into_iter();
         let chosen = self.chosen_text(ty, texts.next()?, span);
         for text in texts {
@@ -27,6 +37,13 @@ impl Checker<'_, '_> {
 
     /// `LIMIT` of strings. Where MN lies after MX, a text before MN gives MN.
     pub(crate) fn limited_text(&mut self, ty: Type, texts: Vec<Expr>, span: Span) -> Option<Expr> {
+        if self.choose_now(&texts) {
+            let [min, value, max] = <[Expr; 3]>::try_from(texts).ok()?;
+            let below = self.is_so(Op::Lt, &value, &min, span);
+            let above = !below && self.is_so(Op::Gt, &value, &max, span);
+            let limited = if below { min } else { value };
+            return Some(Expr { ty, ..if above { max } else { limited } });
+        }
         let [min, value, max] = <[Expr; 3]>::try_from(self.texts_in_variables(ty, texts, span)).ok()?;
         let at = self.at(span);
         let below = self.compare_texts(Op::Lt, value.clone(), min.clone(), span)?;
@@ -37,6 +54,12 @@ impl Checker<'_, '_> {
             vec![Statement::new(StatementKind::If { condition: above, then: set(max), otherwise: Vec::new() }, at)];
         self.push(StatementKind::If { condition: below, then: set(min), otherwise }, span);
         Some(Expr::load(chosen, at))
+    }
+
+    /// A comparison of constants.
+    fn is_so(&mut self, op: Op, a: &Expr, b: &Expr, span: Span) -> bool {
+        let compared = self.compare_texts(op, a.clone(), b.clone(), span);
+        compared.is_some_and(|it| it.as_const() == Some(Value::Bool(true)))
     }
 
     /// Each text is evaluated once, from left to right.

@@ -180,7 +180,7 @@ kinds! {
         #[regex(r"'([^'$\r\n]|\$[^\r\n])*")]
         #[regex(r#""([^"$\r\n]|\$[^\r\n])*"#)]
         OpenText "a string without its end"
-        #[regex(r"%[IQMiqm][A-Za-z]?(\*|[0-9]+(\.[0-9]+)*)")]
+        #[regex(r"%[IQMiqm][A-Za-z]?(\*|[0-9]+(\.[0-9A-Za-z_]+)*)")]
         Address "an address"
         #[regex(r"%[XBWDLxbwdl][0-9]+")]
         Part "a part"

@@ -1,10 +1,10 @@
 //! Direct addresses, and where what lies at them is kept.
 
 use crate::{Code, Diagnostic, Span, ast};
-use rustc_hash::FxHashMap;
-use staunch_ir::{Address, Area, Const, Field, Module, Retain};
+use rustc_hash::{FxHashMap, FxHashSet};
+use staunch_ir::{Address, Area, Const, Field, Module, Retain, Type};
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Storage {
     /// A declared global variable.
     Global(usize),
@@ -26,6 +26,8 @@ pub(crate) struct Use {
     /// All bits, also those of an array's other elements.
     pub bits: u64,
     pub span: Span,
+    /// The type that it is declared with; a body takes what is declared.
+    pub ty: Option<Type>,
     /// The scope in which a name is declared: a POU's span, or that of nothing for the globals.
     pub scope: Option<Span>,
 }
@@ -34,13 +36,23 @@ pub(crate) struct Use {
 #[derive(Debug, Default)]
 pub(crate) struct Addresses {
     pub storage: FxHashMap<Address, Storage>,
-    pub starts: FxHashMap<Address, Start>,
+    /// What is declared at an address with another type than its storage: some bits of that.
+    pub retyped: FxHashMap<(Address, Type), usize>,
+    /// The fields of globals among these: what is shown of them has the global's name.
+    pub second_names: FxHashSet<usize>,
+    pub starts: FxHashMap<(Address, Type), Start>,
     pub uses: Vec<Use>,
     /// The slots of the globals that have a field of their own: not a second name of an address.
     pub own_fields: Vec<usize>,
 }
 
 impl Addresses {
+    /// What lies at an address as a variable of this type, or of the first one declared.
+    pub fn storage_of(&self, address: Address, ty: Option<Type>) -> Option<Storage> {
+        let retyped = ty.and_then(|ty| self.retyped.get(&(address, ty)));
+        retyped.map(|at| Storage::Hidden(*at)).or_else(|| self.storage.get(&address).copied())
+    }
+
     /// The field of the global in slot `at`, unless it is another name of an earlier one.
     pub fn field_of_global(&self, at: usize) -> Option<usize> {
         self.own_fields.binary_search(&at).ok()
@@ -61,7 +73,7 @@ impl Addresses {
 
     /// What lies at an address starts with the value that one of its declarations gives it.
     pub fn complete(&self, field: &mut Field) {
-        let Some(start) = field.address.and_then(|it| self.starts.get(&it)) else { return };
+        let Some(start) = field.address.and_then(|it| self.starts.get(&(it, field.ty))) else { return };
         if let Some((initial, _)) = &start.initial {
             field.initial = initial.clone();
         }
@@ -112,6 +124,12 @@ pub(crate) fn wrong(name: ast::Name<'_>) -> Diagnostic {
             .help("bind it in the CONFIGURATION: `VAR_CONFIG run.variable AT %IX0.0 : BOOL; END_VAR`");
     }
     let numbers = name.text.matches('.').count() + 1;
+    let mut parts = name.text.split('.').skip(1);
+    if let Some(part) = parts.find(|it| it.contains(|it: char| !it.is_ascii_digit())) {
+        return Diagnostic::new(Code::E0409, name.span, format!("`{}` is not a direct address", name.text))
+            .label(format!("`{part}` is not a number"))
+            .help("what follows the size is numbers with points between them: `%IX0.0`, `%IW1.2.3`");
+    }
     let message = if numbers > Module::LEVELS + 1 && !name.text.contains("..") {
         format!("`{}` has {numbers} numbers, {} levels above the place are supported", name.text, Module::LEVELS)
     } else {
