@@ -122,6 +122,13 @@ pub(crate) const UNITS: &[Unit] = units! {
     Type     "UXINT"            "uxint"            [Codesys];
     Type     "XINT"             "xint"             [Codesys];
     Type     "XWORD"            "xword"            [Codesys];
+    Function "TEST_AND_SET"     "test_and_set"     [Codesys];
+    Function "__XADD"           "xadd"             [Codesys];
+    Function "__COMPARE_AND_SWAP" "compare_and_swap" [Codesys] "__XWORD";
+    Type     "__UXINT"          "own_uxint"        [Codesys];
+    Type     "__XINT"           "own_xint"         [Codesys];
+    Type     "__XWORD"          "own_xword"        [Codesys];
+    Function "TestAndSet"       "testandset"       [Codesys: Tc2_System];
     Type     "T_AmsNetIdArr"    "t_amsnetidarr"    [Codesys: Tc2_System];
     Type     "T_AmsPort"        "t_amsport"        [Codesys: Tc2_System];
     Type     "ST_AmsAddr"       "st_amsaddr"       [Codesys: Tc2_System] "T_AmsNetIdArr" "T_AmsPort";

@@ -274,7 +274,7 @@ impl<'s> Checker<'_, 's> {
 /// Operators, functions of *Util* and of Tc2_Utilities that CODESYS and TwinCAT have.
 #[rustfmt::skip]
 const OF_CODESYS: &[&str] = &[
-    "ADRINST", "BITADR", "INDEXOF", "TEST_AND_SET", "__COMPARE_AND_SWAP", "__VARINFO", "__XADD",
+    "ADRINST", "BITADR", "INDEXOF", "__VARINFO",
     "BIT_AS_BYTE", "BIT_AS_DWORD", "BIT_AS_WORD", "BYTE_AS_BIT", "BYTE_TO_GRAY", "BYTE_TO_HEXINASCII", "DWORD_AS_BIT",
     "DWORD_TO_GRAY", "GETBIT", "GRAY_TO_BYTE", "GRAY_TO_DWORD", "GRAY_TO_WORD", "HEXINASCII_TO_BYTE", "WORD_AS_BIT",
     "WORD_AS_STRING", "WORD_TO_GRAY", "WCONCAT2",
