@@ -88,7 +88,7 @@ impl Macros<'_> {
         };
         let start = self.layout.machine.globals + self.layout.field(self.program.globals, *field);
         let name = self.claim(macro_name(&["OFFSET", "Globals", &variable.name]));
-        let (ty, offset) = (view.ty.name(), start + view.bit / 8);
+        let (ty, offset) = (self.program.type_name(view.ty), start + view.bit / 8);
         let _ = match view.address.width {
             1 => writeln!(self.text, "#define STAUNCH_{name} {offset}u /* {ty}, bit {} */", view.bit % 8),
             _ => writeln!(self.text, "#define STAUNCH_{name} {offset}u /* {ty} */"),

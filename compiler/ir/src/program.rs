@@ -2,8 +2,8 @@
 
 use crate::types::ids;
 use crate::{
-    Array, ArrayId, Block, BoundsId, Const, Elementary, Enum, EnumId, Location, Place, Projection, RefKind, RefType,
-    ReferenceId, Root, Struct, StructId, Type,
+    Array, ArrayId, Block, BoundsId, Const, Enum, EnumId, Location, Place, Projection, RefKind, RefType, ReferenceId,
+    Root, Struct, StructId, Type,
 };
 use core::fmt;
 use staunch_runtime::Family;
@@ -229,8 +229,8 @@ pub struct Variable {
 /// in an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct View {
-    /// BOOL for a single bit.
-    pub ty: Elementary,
+    /// BOOL for a single bit; an elementary type, or an array of them.
+    pub ty: Type,
     /// The first bit.
     pub bit: u64,
     pub address: Address,

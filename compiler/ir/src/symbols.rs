@@ -8,8 +8,8 @@ use crate::loops::constant_position;
 use crate::startup::{self, Event, Fate, Startup};
 use crate::usage::used_globals;
 use crate::{
-    Address, BlockId, Class, ClassKind, Elementary, FieldId, Program, Projection, Root, Section, StructId, Type,
-    Variable, View, reference,
+    Address, BlockId, Class, ClassKind, FieldId, Program, Projection, Root, Section, StructId, Type, Variable, View,
+    reference,
 };
 use core::fmt::{self, Write};
 use staunch_runtime::{Direction, Pin};
@@ -342,8 +342,8 @@ impl Attributes {
 /// The type of a variable; that of a single bit says which one of its byte it is.
 fn type_of(variable: &Variable) -> String {
     match variable.view {
-        Some(View { ty: Elementary::Bool, bit, .. }) => format!("bit:{}", bit % 8),
-        Some(View { ty, .. }) => ty.name().to_owned(),
+        Some(View { ty: Type::BOOL, bit, .. }) => format!("bit:{}", bit % 8),
+        Some(View { ty, .. }) => TypeName(ty).to_string(),
         None => TypeName(variable.place.ty).to_string(),
     }
 }

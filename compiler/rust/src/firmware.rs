@@ -117,7 +117,7 @@ impl Emitter<'_> {
 
     /// A variable that shares its bits with another one.
     fn view<'v>(&self, variable: &'v Variable) -> Option<Io<'v>> {
-        let View { bit, address, .. } = variable.view?;
+        let View { ty: Type::Elementary(_), bit, address } = variable.view? else { return None };
         let Some(Projection::Field(field)) = variable.place.projections.first() else { return None };
         let name = self.names.field(self.program.globals, *field);
         let Type::Array(id) = variable.place.ty else {

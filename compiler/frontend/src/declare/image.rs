@@ -27,6 +27,10 @@ impl Member {
     fn end(&self) -> u64 {
         self.first.address.bit + self.bits
     }
+
+    fn holds(&self, other: &Self) -> bool {
+        self.first.address.bit <= other.first.address.bit && other.end() <= self.end()
+    }
 }
 
 impl<'s> Declarations<'s> {
@@ -83,8 +87,8 @@ impl<'s> Declarations<'s> {
         let Some((storage, keeper)) = storage else { return };
         for it in members.iter().filter(|it| it.field != keeper.field) {
             let bit = it.first.address.bit - keeper.first.address.bit;
-            let (Type::Elementary(ty), address) = (it.ty, it.first.address) else { continue };
-            let shared = Shared { storage, ty: keeper.ty, view: View { ty, bit, address } };
+            let view = View { ty: it.ty, bit, address: it.first.address };
+            let shared = Shared { storage, ty: keeper.ty, view };
             self.image.shared.insert(it.field, shared);
         }
     }
@@ -104,22 +108,14 @@ impl<'s> Declarations<'s> {
     /// Who keeps the bits of all.
     fn keeper(&mut self, members: &[Member]) -> Option<(usize, Member)> {
         let mut arrays = members.iter().filter(|it| matches!(it.ty, Type::Array(_)));
-        let array = arrays.next();
-        if let (Some(first), Some(second)) = (array, arrays.next()) {
-            self.refuse_sharing(second.first, first.first, "sharing the bits of two arrays");
-            return None;
-        }
-        let keeper = match array {
-            Some(array) => *array,
-            None => self.widest_number(members)?,
+        let is_of_one = |array: &Member| members.iter().all(|it| array.holds(it));
+        let keeper = match (arrays.next(), arrays.next()) {
+            (Some(array), None) if is_of_one(array) => *array,
+            (Some(_), _) => self.bytes_of(members)?,
+            (None, _) => self.widest_number(members)?,
         };
         for it in members.iter().filter(|it| it.field != keeper.field) {
-            let inside = keeper.first.address.bit <= it.first.address.bit && it.end() <= keeper.end();
-            if !inside {
-                self.refuse_sharing(it.first, keeper.first, "sharing a part of its bits with an array");
-                return None;
-            }
-            if !matches!(it.ty, Type::Elementary(_)) {
+            if !matches!(it.ty, Type::Elementary(_)) && self.bytes_of_element(it.ty).is_none() {
                 self.refuse_sharing(
                     it.first,
                     keeper.first,
@@ -136,6 +132,37 @@ impl<'s> Declarations<'s> {
             return None;
         }
         Some((keeper.field, keeper))
+    }
+
+    /// An array of bytes for all, where no array holds the bits of every other.
+    fn bytes_of(&mut self, members: &[Member]) -> Option<Member> {
+        let first = members.iter().min_by_key(|it| it.first.address.bit)?;
+        let start = first.first.address.bit / 8 * 8;
+        let bits = members.iter().map(Member::end).max()?.next_multiple_of(8) - start;
+        if let Some(it) =
+            members.iter().find(|it| matches!(it.ty, Type::Array(_)) && self.bytes_of_element(it.ty).is_none())
+        {
+            let other = members.iter().find(|other| other.field != it.field).map_or(it.first, |it| it.first);
+            self.refuse_sharing(it.first, other, &format!("sharing the bits of {}", self.program.type_name(it.ty)));
+            return None;
+        }
+        let high = i64::try_from(bits / 8).ok()? - 1;
+        let ty = self.intern_array(0, high, Resolved::plain(Type::Elementary(Elementary::Byte)));
+        let address = Address { bit: start, width: 8, ..first.first.address };
+        let span = first.first.span;
+        let name = ast::Name { text: self.log.sources.text(span), span };
+        let at = self.add_storage(address, &Resolved::plain(ty), "Globals", name);
+        let field = self.addresses.own_fields().len() + at;
+        Some(Member { first: Use { address, ..first.first }, bits, ty, field })
+    }
+
+    /// The bytes of what arrays are made of, that can be seen in any bytes.
+    fn bytes_of_element(&self, ty: Type) -> Option<u64> {
+        let Type::Array(id) = ty else { return None };
+        match self.program.array(id).element {
+            Type::Elementary(it) if it != Elementary::Bool => Some(u64::from(it.repr().size())),
+            element => self.bytes_of_element(element),
+        }
     }
 
     /// The widest one, if that is a number of which all bits are values; else a bit string that holds its bits.
@@ -171,7 +198,7 @@ impl<'s> Declarations<'s> {
     fn refuse_sharing(&mut self, it: Use, other: Use, what: &str) {
         let mut error = Diagnostic::new(Code::E0410, it.span, format!("{what} is not supported yet"))
             .label("this address shares bits with another one")
-            .help("elementary types share their bits with one another, and with one array of integers or bit strings");
+            .help("elementary types but BOOL, and arrays of them, share their bits; a single BOOL shares its bit");
         if other.span != it.span {
             error = error.other(other.span, "the other address");
         }
@@ -204,7 +231,7 @@ impl<'s> Declarations<'s> {
         let mut said = own.as_ref().map_or(0, |_| u64::MAX);
         let mut bits = bits_of(&keeper.initial);
         for it in views {
-            let Some((kept, initial)) = start(self, it.view.address, Type::Elementary(it.view.ty)) else { continue };
+            let Some((kept, initial)) = start(self, it.view.address, it.view.ty) else { continue };
             if kept {
                 keeper.retain = Retain::Kept;
             }
@@ -214,7 +241,7 @@ impl<'s> Declarations<'s> {
                     Diagnostic::new(Code::E0410, span, "an initial value for bits of an array is not supported yet")
                         .label("these bits are part of an array")
                         .other(self.log.name_at(keeper.location), "they are kept here")
-                        .help("give the array the value, where it is declared");
+                        .help("give the value in a statement of the first scan, or let no array have these bits");
                 self.report(error);
                 continue;
             }
@@ -243,7 +270,7 @@ impl<'s> Declarations<'s> {
         let mut views: Vec<_> = self.image.shared.keys().copied().filter(is_shown).collect();
         views.sort_unstable();
         let variable = |field: usize| {
-            let ty = Type::Elementary(self.image.shared.get(&field)?.view.ty);
+            let ty = self.image.shared.get(&field)?.view.ty;
             let declared = Place::root(Root::Globals, Type::Struct(GLOBALS)).field(FieldId::next(field), ty);
             let (place, view) = self.image.stored(&declared);
             Some(staunch_ir::Variable { name: names.get(field)?.clone(), section: Section::Global, place, view })

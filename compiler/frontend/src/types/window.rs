@@ -18,8 +18,8 @@ pub(crate) struct Window {
 
 impl From<View> for Window {
     fn from(view: View) -> Self {
-        let is_bit = view.address.width == 1;
-        Self { ty: Type::Elementary(view.ty), bit: view.bit, is_bit, address: Some(view.address), is_selected: false }
+        let is_bit = view.ty == Type::BOOL;
+        Self { ty: view.ty, bit: view.bit, is_bit, address: Some(view.address), is_selected: false }
     }
 }
 
