@@ -9,7 +9,9 @@ use crate::types::image::Shared;
 use crate::types::table::{GLOBALS, Resolved, scalar_initial};
 use crate::{Code, Diagnostic, ast};
 use rustc_hash::FxHashSet;
-use staunch_ir::{Address, Const, Elementary, Field, FieldId, Place, Repr, Retain, Root, Section, Type, Value, View};
+use staunch_ir::{
+    Address, Const, Elementary, Field, FieldId, Location, Place, Repr, Retain, Root, Section, Type, Value, View,
+};
 use std::cmp::Reverse;
 
 /// What lies at an address, among others.
@@ -240,7 +242,6 @@ impl<'s> Declarations<'s> {
                 let error =
                     Diagnostic::new(Code::E0410, span, "an initial value for bits of an array is not supported yet")
                         .label("these bits are part of an array")
-                        .other(self.log.name_at(keeper.location), "they are kept here")
                         .help("give the value in a statement of the first scan, or let no array have these bits");
                 self.report(error);
                 continue;
@@ -248,12 +249,13 @@ impl<'s> Declarations<'s> {
             let mask = (u64::MAX >> (64 - u64::from(it.view.address.width))) << it.view.bit;
             let value = bits_of(&value) << it.view.bit & mask;
             if (bits ^ value) & mask & said != 0 {
-                self.report(
-                    Diagnostic::new(Code::E0409, span, "two initial values for the same bits")
-                        .label("another declaration says that they start otherwise")
-                        .other(self.log.name_at(keeper.location), "they are kept here")
-                        .help("give the value in one of the declarations"),
-                );
+                let mut error = Diagnostic::new(Code::E0409, span, "two initial values for the same bits")
+                    .label("another declaration says that they start otherwise")
+                    .help("give the value in one of the declarations");
+                if keeper.location != Location::default() {
+                    error = error.other(self.log.name_at(keeper.location), "they are kept here");
+                }
+                self.report(error);
                 continue;
             }
             bits |= value;
