@@ -1,4 +1,4 @@
-//! The Structured Text in the documentation compiles.
+//! The Structured Text in the documentation compiles, and its tables are tables.
 //!
 //! A fence ```` ```iecst ```` holds a whole program, or statements, or declarations. After the
 //! language may be `ignore` (a fragment), `error` (it must be refused), or a dialect's name.
@@ -18,6 +18,23 @@ fn the_structured_text_in_documents_compiles() {
     let fences: Vec<_> = documents().iter().flat_map(fences).collect();
     let failures: Vec<_> = fences.iter().filter_map(|it| check(it).err()).collect();
     assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn each_table_in_documents_has_a_head() {
+    let mut tables = 0;
+    for path in documents() {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let lines: Vec<_> = text.lines().collect();
+        for (number, line) in lines.iter().enumerate().filter(|(_, it)| it.starts_with('|')) {
+            if number == 0 || !lines[number - 1].starts_with('|') {
+                let rule = lines.get(number + 1).copied().unwrap_or_default();
+                assert!(rule.starts_with("|-"), "{}:{}: {line}", path.display(), number + 1);
+                tables += 1;
+            }
+        }
+    }
+    assert!(tables > 50, "{tables}");
 }
 
 fn documents() -> Vec<PathBuf> {

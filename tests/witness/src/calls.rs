@@ -174,6 +174,7 @@ impl<'a> Machine<'a> {
         let named = instance.declared.filter(|_| bearer != routine);
         let formals = self.formals(named.unwrap_or(bearer));
         let passed = self.passed(frame, &formals, arguments)?;
+        self.look_at_copied(&formals, &passed)?;
         let instance = self.checked(instance.clone())?;
         self.run_routine(frame, routine, &instance, passed)
     }
@@ -257,6 +258,9 @@ impl<'a> Machine<'a> {
                 // What a position means is known where the call is written.
                 let formals = self.formals(instance.declared.unwrap_or(pou));
                 let passed = self.passed(frame, &formals, arguments)?;
+                if !passed.iter().any(|it| matches!(it.given, Given::Value(_))) {
+                    self.look_at_copied(&formals, &passed)?;
+                }
                 let instance = &self.checked(instance.clone())?;
                 self.run_instance(pou, instance, passed)?;
                 Ok(None)
@@ -287,6 +291,7 @@ impl<'a> Machine<'a> {
     ) -> Outcome<(Frame<'a>, Vec<(Place<'a>, Place<'a>)>)> {
         // Each with the number of its argument: they come back in the order in which those are written.
         let mut copies: Vec<(usize, (Place<'a>, Place<'a>))> = Vec::new();
+        let mut in_outs = Vec::new();
         for number in 0..self.declared.pous[pou].variables.len() {
             let Variable { name, kind, slot, .. } = &self.declared.pous[pou].variables[number];
             let (name, kind, slot) = (*name, *kind, slot.clone());
@@ -296,11 +301,7 @@ impl<'a> Machine<'a> {
             if kind == VarKind::Stat {
                 own.names.insert(key.clone(), self.statics[&(pou, key)].clone());
             } else if let Some(Given::Place(place)) = given {
-                let (place, given) = (self.in_out(place, &slot.ty), place.clone());
-                if place.at != given.at {
-                    copies.push((argument.unwrap_or(0), (place.clone(), given)));
-                }
-                own.names.insert(key, place);
+                in_outs.push((argument.unwrap_or(0), key, place, slot.ty));
             } else if !own.names.contains_key(&key) {
                 let place = self.allocate(&slot.ty);
                 self.start(&own, &place, slot.initial)?;
@@ -311,7 +312,15 @@ impl<'a> Machine<'a> {
                 self.write(&place, value);
             }
         }
-        // An in-out that a reference leads to is looked at when the inputs have their values.
+        // What is copied is so when the inputs have their values: an in-out may be a part of what they are stored in.
+        for (argument, key, given, ty) in in_outs {
+            let place = self.in_out(given, &ty);
+            if place.at != given.at {
+                copies.push((argument, (place.clone(), given.clone())));
+            }
+            own.names.insert(key, place);
+        }
+        // An in-out that a reference leads to is looked at then, too.
         for variable in &self.declared.pous[pou].variables {
             let given = passed.iter().find(|it| it.name.eq_ignore_ascii_case(variable.name));
             if let Some(Passed { given: Given::Place(place), .. }) = given {
@@ -327,6 +336,19 @@ impl<'a> Machine<'a> {
         }
         copies.sort_by_key(|it| it.0);
         Ok((own, copies.into_iter().map(|it| it.1).collect()))
+    }
+
+    /// What is copied is read before the call looks at its instance, unless an input was stored there.
+    fn look_at_copied(&self, formals: &[Formal<'a>], passed: &[Passed<'a>]) -> Outcome<()> {
+        for Passed { name, given } in passed {
+            let formal = formals.iter().find(|it| it.name == *name);
+            if let (Given::Place(place), Some(formal)) = (given, formal)
+                && is_copied(place, &formal.ty)
+            {
+                self.checked(place.clone())?;
+            }
+        }
+        Ok(())
     }
 
     /// The variable that a VAR_IN_OUT stands for: the caller's, or a copy of it.
@@ -498,6 +520,11 @@ impl<'a> Machine<'a> {
             self.memory[instance.at + number] = Cell::Scalar(Scalar::read(pin.ty.repr(), &bytes[pin.offset..]));
         }
     }
+}
+
+/// Whether an in-out of this type is a copy: a text of another capacity, and what shares its bytes.
+fn is_copied(given: &Place<'_>, ty: &Type<'_>) -> bool {
+    matches!((&given.ty, ty), (Type::Text(from), Type::Text(to)) if from != to) || given.window.is_some()
 }
 
 /// `EN := …` and `ENO => …`, which every call can have.

@@ -71,6 +71,13 @@ impl<'a> Machine<'a> {
         if matches!(place.ty, Type::Array(_) | Type::Record(_) | Type::Union(_)) && self.is_variable(frame, value)? {
             // Of what is copied as a whole both sides are found before either is looked at.
             let source = self.place(frame, value)?;
+            if place.window.is_some() || source.window.is_some() {
+                // What shares its bytes is a value, which is known before it goes anywhere.
+                let value = self.read(&self.checked(source)?);
+                let place = self.checked(place)?;
+                self.write(&place, &value);
+                return Ok(Flow::Next);
+            }
             let place = self.checked(place)?;
             let value = self.read(&self.checked(source)?);
             self.write(&place, &value);

@@ -119,11 +119,7 @@ impl<'s> Declarations<'s> {
         let address = parse(declared.text);
         let found = address.and_then(|it| self.addresses.storage_of(it, Some(resolved.ty)));
         let place = match found {
-            Some(Storage::Global(at)) if self.shares_bits(at, resolved) => {
-                let address = self.address(declared)?;
-                Some(self.new_view(address, resolved, pou, pou.map_or(declared, |_| name)))
-            }
-            Some(Storage::Hidden(at)) if self.is_retyped(self.synthetic.field_type(at), resolved.ty) => {
+            Some(it) if self.type_in(it).is_some_and(|ty| self.is_retyped(ty, resolved.ty)) => {
                 let address = self.address(declared)?;
                 Some(self.new_view(address, resolved, pou, pou.map_or(declared, |_| name)))
             }
@@ -178,10 +174,11 @@ impl<'s> Declarations<'s> {
         self.addresses.uses.push(Use { address, bits, span: name.span, ty: Some(resolved.ty), scope });
     }
 
-    /// Whether a global lies where the same bits are declared as another type.
-    fn shares_bits(&mut self, global: usize, resolved: &Resolved) -> bool {
-        let ty = self.global(global).map(|it| it.resolved.ty);
-        ty.is_some_and(|it| self.is_retyped(it, resolved.ty))
+    fn type_in(&mut self, storage: Storage) -> Option<Type> {
+        match storage {
+            Storage::Global(at) => Some(self.global(at)?.resolved.ty),
+            Storage::Hidden(at) => Some(self.synthetic.field_type(at)),
+        }
     }
 
     /// Whether the types are two that can share the bits of one address.

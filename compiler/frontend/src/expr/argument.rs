@@ -104,7 +104,8 @@ impl Parts {
         for (at, part) in self.parts.iter().enumerate() {
             let number = |list: &[usize]| list.iter().position(|it| *it == at).unwrap_or_default();
             let (first, last) = match part.role {
-                Role::Instance => ((0, 0), call + copied.len() + targets.len()),
+                // Copies come before the call, and need no instance.
+                Role::Instance => ((if stored.is_empty() { call } else { 0 }, 0), call + copied.len() + targets.len()),
                 Role::Stored(_, Type::Array(_) | Type::Struct(_)) => ((number(&stored) + follows, 1), number(&stored)),
                 Role::Stored(..) => ((number(&stored), 1), number(&stored)),
                 Role::Passed(turn) => ((call + follows, turn), call),
@@ -170,14 +171,20 @@ impl<'s> Checker<'_, 's> {
         if formal.constant {
             return self.constant_in_out_part(parts, formal, turn, expr);
         }
-        let Found { mut place, view, .. } =
-            self.after_parts(&mut parts.written, |this| this.variable_or_view(expr, formal.name.text))?;
+        let Found { place, view, .. } = self.after_parts(&mut parts.written, |this| {
+            let mut found = this.variable_or_view(expr, formal.name.text)?;
+            if found.view.is_some_and(|it| it.address.is_none()) {
+                // It is read before the call, and written after it.
+                this.fix(&mut found.place);
+            }
+            Some(found)
+        })?;
         let role = match view {
             Some(view) if view.address.is_some() => {
                 self.report_shared(expr.span, view);
                 return None;
             }
-            Some(view) => self.shared_in_out(formal, &mut place, view, expr.span)?,
+            Some(view) => self.shared_in_out(formal, &place, view, expr.span)?,
             None => self.in_out_role(formal, &place, turn, expr.span)?,
         };
         parts.push(Held::Place(place), role, expr.span);
@@ -185,7 +192,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// What shares its bits has no storage of its own, which could be handed on.
-    fn shared_in_out(&mut self, formal: &Formal<'s>, place: &mut Place, view: Window, span: Span) -> Option<Role> {
+    fn shared_in_out(&mut self, formal: &Formal<'s>, place: &Place, view: Window, span: Span) -> Option<Role> {
         let ty = formal.resolved.ty;
         if self.decl.program.is_open(ty) {
             self.decl.not_supported(span, "a member of a UNION as an ARRAY[*]");
@@ -195,7 +202,6 @@ impl<'s> Checker<'_, 's> {
             self.report_other_type(formal, view.ty, span);
             return None;
         }
-        self.fix(place);
         self.note_assigned(place, span);
         Some(Role::Copied(self.temporary("shared", ty), Some(view)))
     }

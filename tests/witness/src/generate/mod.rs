@@ -484,6 +484,7 @@ impl Writer {
             for at in 0..self.random.below(most + 1) {
                 let name = format!("{prefix}{}{at}", section.letter());
                 let ty = match section {
+                    Section::Input if !of_call && self.random.once_in(4) => Ty::Bool,
                     Section::Input if of_call && self.refers && self.random.once_in(6) => self.pointer_type(),
                     Section::Input | Section::Output => self.any_type(),
                     Section::InOut => self.in_out_type(),
