@@ -74,9 +74,9 @@ pub(crate) fn declare<'s>(
     declarations.collect_addresses(bodies);
     declarations.resolve_all();
     declarations.check_overloads();
-    declarations.find_named_programs(bodies);
-    declarations.declare_mocks(&testing::mocked_functions(bodies));
     declarations.start_values(runs);
+    declarations.find_named_programs(bodies, runs);
+    declarations.declare_mocks(&testing::mocked_functions(bodies));
     declarations.start_bindings(runs);
     declarations.warn_of_packing();
     declarations.declare_pools();

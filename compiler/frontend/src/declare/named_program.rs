@@ -1,6 +1,7 @@
 //! PROGRAMs that others name: such a one does not run by itself. It has one instance, which the globals
 //! hold under its name.
 
+use super::run::Run;
 use crate::names::{Entry, Found, Meaning, Sense};
 use crate::types::declarations::Declarations;
 use crate::types::scope::Variable;
@@ -24,7 +25,7 @@ fn is_nothing(statement: &ast::Statement<'_>) -> bool {
 
 impl<'s> Declarations<'s> {
     /// Gives the PROGRAMs that bodies name their instances, before a body asks what the globals hold.
-    pub(super) fn find_named_programs(&mut self, statements: &[Vec<ast::Statement<'s>>]) {
+    pub(super) fn find_named_programs(&mut self, statements: &[Vec<ast::Statement<'s>>], runs: &'s [Run<'s>]) {
         for (at, body) in statements.iter().enumerate() {
             if !self.dialect(self.pous[at].ast.name.span).calls_programs() {
                 continue;
@@ -58,22 +59,33 @@ impl<'s> Declarations<'s> {
                 // A body without statements is as good as called: METHODs are all that there is.
                 let body = statements.get(slot).map_or(&[][..], Vec::as_slice);
                 let is_empty = body.iter().all(is_nothing);
-                self.name_program(slot, span, is_called || is_empty);
+                self.name_program(slot, span, is_called, is_empty, runs);
             }
         }
     }
 
-    fn name_program(&mut self, slot: usize, first: Span, is_called: bool) {
+    fn name_program(&mut self, slot: usize, first: Span, runs: bool, is_empty: bool, wrapped: &'s [Run<'s>]) {
+        let is_called = runs || is_empty;
         if let Some(named) = self.named_programs.get_mut(&slot) {
             named.is_called |= is_called;
-        } else if let Some(variable) = self.instance_of_program(slot) {
-            self.named_programs.insert(slot, NamedProgram { variable: Rc::new(variable), first, is_called });
+            named.runs |= runs;
+            return;
         }
+        let run = self.run_of_program(slot);
+        let Some(variable) = self.instance_of_program(slot, run) else { return };
+        let bound = run.map(|it| (it, wrapped[it - self.written_pous().len()].bound.as_slice()));
+        let named = NamedProgram { variable: Rc::new(variable), first, is_called, runs, run: bound };
+        self.named_programs.insert(slot, named);
     }
 
-    fn instance_of_program(&mut self, slot: usize) -> Option<Variable<'s>> {
-        let signature = self.signature(slot)?;
-        let resolved = instance_of(&self.program, signature.state?);
+    /// The instance among the globals. It starts as what its run holds, to which a VAR_CONFIG gives initial values.
+    fn instance_of_program(&mut self, slot: usize, run: Option<usize>) -> Option<Variable<'s>> {
+        let state = self.signature(slot)?.state?;
+        let mut resolved = instance_of(&self.program, state);
+        if let Some(run) = run {
+            let run = self.signature(run)?.state?;
+            resolved.initial = self.program.structure(run).fields.first()?.initial.clone();
+        }
         let pou: &'s ast::Pou<'s> = self.pous[slot].ast;
         let field = Field {
             name: pou.name.text.to_owned(),

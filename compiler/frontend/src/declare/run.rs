@@ -7,12 +7,13 @@
 //! the call; what is no input is copied back after it.
 
 use crate::spelling::Key;
+use crate::types::address::is_input;
+use crate::types::synthetic::{Binding, PROGRAM};
 use crate::{Span, ast};
 use ast::{ExprKind, PouKind, StatementKind, VarKind};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-// Keywords, which no declaration can take.
-pub(crate) const PROGRAM: &str = "PROGRAM";
+// A keyword, which no declaration can take.
 const TURN: &str = "CONFIGURATION";
 
 /// A run that is more than its PROGRAM's body.
@@ -20,7 +21,7 @@ pub(crate) struct Run<'s> {
     pub pou: ast::Pou<'s>,
     pub body: Vec<ast::Statement<'s>>,
     /// What a VAR_CONFIG binds: the variable, in the run, and its address.
-    pub bound: Vec<(ast::Expr<'s>, ast::Name<'s>)>,
+    pub bound: Vec<Binding<'s>>,
     /// What it only gives an initial value: the variable, in the run, with its type and value.
     pub valued: Vec<(ast::Expr<'s>, ast::VarDecl<'s>)>,
     /// The name in the CONFIGURATION.
@@ -55,7 +56,9 @@ pub(crate) fn runs<'a, 's>(files: &'a [ast::File<'s>], tests: bool) -> Vec<Run<'
     };
     if listed.is_empty() && !tests {
         let resource = ast::Resource::default();
-        let runs = items().filter_map(program).filter_map(|it| by_name(it, &bindings));
+        // What nothing connects is reported where the instances are.
+        let programs = items().filter_map(program).filter(|it| !has_in_outs(it));
+        let runs = programs.filter_map(|it| by_name(it, &bindings));
         return runs.map(|it| run(&it, None, bound_in(&resource, &it))).collect();
     }
     let programs: FxHashMap<_, _> = items().filter_map(program).map(|it| (Key(it.name.text), it)).collect();
@@ -162,7 +165,7 @@ fn program<'a, 's>(item: &'a ast::Item<'s>) -> Option<&'a ast::Pou<'s>> {
     pou(item).filter(|it| it.kind == PouKind::Program)
 }
 
-pub(super) fn has_in_outs(pou: &ast::Pou<'_>) -> bool {
+pub(crate) fn has_in_outs(pou: &ast::Pou<'_>) -> bool {
     pou.blocks.iter().any(|it| it.kind == VarKind::InOut)
 }
 
@@ -187,11 +190,6 @@ pub(crate) fn property<'a, 's>(task: &'a ast::Task<'s>, name: &str) -> Option<&'
 /// SINGLE := FALSE: the TASK goes by its INTERVAL.
 pub(crate) fn is_false(expr: &ast::Expr<'_>) -> bool {
     matches!(&expr.kind, ExprKind::Literal(it) if it.value == ast::LiteralValue::Bool(false))
-}
-
-/// `%IX0.0`: the program reads it alone.
-pub(crate) fn is_input(address: ast::Name<'_>) -> bool {
-    address.text.get(1..2).is_some_and(|it| it.eq_ignore_ascii_case("I"))
 }
 
 fn run<'s>(

@@ -25,7 +25,11 @@ impl<'s> Checker<'_, 's> {
             Type::Block(id) => self.standard_block(found, id, arguments, callee.span, span),
             Type::Struct(id) if self.decl.is_instance(id) => {
                 let slot = self.decl.slot_of_instance(id)?;
-                self.user_block(found, slot, arguments, callee.span, span)
+                let bound = self.bound_in_program(&found.place, slot, callee);
+                self.copy_in(&bound);
+                self.user_block(found, slot, arguments, callee.span, span)?;
+                self.copy_out(&bound);
+                Some(())
             }
             Type::Array(_) => {
                 self.report_array_called(callee, arguments);

@@ -9,6 +9,7 @@ mod binding;
 mod bit_instruction;
 mod block_call;
 mod block_copy;
+mod bound;
 mod call;
 pub(crate) mod call_tracking;
 mod called_twice;

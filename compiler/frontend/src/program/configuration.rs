@@ -1,11 +1,12 @@
 //! CONFIGURATION, RESOURCE and TASK: which programs run, and how often.
 
 use crate::ast;
-use crate::declare::run::{declaration_of, is_false, is_input, property, unlisted, within};
+use crate::declare::run::{declaration_of, has_in_outs, is_false, property, unlisted, within};
 use crate::dialect::Dialect;
 use crate::expr::constant::constant;
 use crate::names::{Entry, Found, Meaning, Sense};
 use crate::spelling::{Key, nearest};
+use crate::types::address::is_input;
 use crate::types::declarations::Declarations;
 use crate::{Code, Diagnostic, Span};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -190,11 +191,20 @@ impl<'s> Declarations<'s> {
     /// Reports a VAR_CONFIG of a PROGRAM that others call by its name.
     fn report_called_and_bound(&mut self, run: &ast::ProgramInstance<'s>, target: &ast::Expr<'s>) -> bool {
         let called = self.named_programs.iter().find(|(at, _)| self.pous[**at].ast.name.span == run.name.span);
-        let Some((_, named)) = called else { return false };
-        let first = named.first;
+        let Some((slot, named)) = called else { return false };
+        let (slot, first, runs) = (*slot, named.first, named.runs);
+        let has_run = self.run_of_program(slot).is_some();
+        let label = match () {
+            () if has_in_outs(self.pous[slot].ast) => {
+                "a VAR_CONFIG does not reach into a called PROGRAM with a VAR_IN_OUT yet"
+            }
+            () if !has_run => "a CONFIGURATION lists PROGRAMs, and not this one",
+            () if !runs => "what a VAR_CONFIG binds is copied before and after its body, which nothing calls",
+            () => return false,
+        };
         self.report(
             Diagnostic::new(Code::E0902, target.span, format!("`{}` is called by name", run.name.text))
-                .label("what a VAR_CONFIG binds is copied before and after a run by itself, which this PROGRAM has not")
+                .label(label)
                 .other(first, "named here")
                 .help("give the variable its address or value where it is declared, or let the PROGRAM run by itself"),
         );

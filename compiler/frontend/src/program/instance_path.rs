@@ -2,10 +2,10 @@
 //! in the initial values of the PROGRAMs and of the globals, which hold all instances that outlive a call.
 
 use crate::ast::{PouKind, VarDecl};
-use crate::declare::run::PROGRAM;
 use crate::declare::starts::members;
 use crate::testing::suite::SUITE;
 use crate::types::declarations::Declarations;
+use crate::types::synthetic::PROGRAM;
 use crate::{Code, Diagnostic, Span};
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{Chars, Const, FieldId, Location, Program, StructId, Type};

@@ -62,6 +62,9 @@ impl Declarations<'_> {
     /// The PROGRAM or FUNCTION_BLOCK in a slot. Its body has the slot's number until routines are put in order.
     /// Those that runs of a CONFIGURATION hold have the names in `held`.
     fn class(&mut self, slot: usize, held: &FxHashSet<Key<'_>>) -> Option<Class> {
+        if self.is_run_of_named_program(slot) {
+            return None;
+        }
         let pou = self.pous[slot].ast;
         let is_held = self.pous[slot].run.is_none() && held.contains(&Key(pou.name.text));
         let kind = match pou.kind {

@@ -24,7 +24,11 @@ pub(super) fn order(declarations: &mut Declarations<'_>, uses: Vec<Uses>, stacks
     let called: FxHashSet<usize> = order.iter().flat_map(|it| &calls[*it]).copied().collect();
     let is_called = |at: usize| {
         let is_idle = || declarations.starts_nothing(at) && !called.contains(&at);
-        at >= declarations.pous.len() || !declarations.is_generic(at) && !declarations.is_head(at) && !is_idle()
+        at >= declarations.pous.len()
+            || !declarations.is_generic(at)
+                && !declarations.is_head(at)
+                && !declarations.is_run_of_named_program(at)
+                && !is_idle()
     };
     order.retain(|at| !is_empty(&declarations.program.routines[*at]) && is_called(*at));
     check_stack(declarations, stacks, &calls, &order);

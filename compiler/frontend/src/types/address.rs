@@ -138,3 +138,8 @@ pub(crate) fn wrong(name: ast::Name<'_>) -> Diagnostic {
     Diagnostic::new(Code::E0409, name.span, message)
         .help("write an area (I, Q, M), a size (X, B, W, D, L) and a place: `%IX0.0`, `%QW3`")
 }
+
+/// `%IX0.0`: the program reads it alone.
+pub(crate) fn is_input(address: ast::Name<'_>) -> bool {
+    address.text.get(1..2).is_some_and(|it| it.eq_ignore_ascii_case("I"))
+}

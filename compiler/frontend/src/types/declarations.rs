@@ -245,6 +245,13 @@ impl<'s> Declarations<'s> {
         &others[..others.partition_point(|it| it.run.is_some())]
     }
 
+    /// The run that holds the PROGRAM in a slot, where nothing lists PROGRAMs.
+    pub fn run_of_program(&self, slot: usize) -> Option<usize> {
+        let first = self.written_pous().len();
+        let name = self.pous[slot].ast.name.span;
+        self.runs().iter().position(|it| it.run == Some(name)).map(|at| first + at)
+    }
+
     /// Whether a name is that of the PROGRAM in a run of a CONFIGURATION.
     pub fn is_run(&self, program: Span) -> bool {
         self.runs().iter().any(|it| it.ast.name.span == program)
@@ -545,6 +552,11 @@ impl<'s> Declarations<'s> {
     /// Whether the PROGRAM in a slot has its instance among the globals.
     pub fn is_named_program(&self, slot: usize) -> bool {
         self.named_programs.contains_key(&slot)
+    }
+
+    /// Whether a slot is that of a run whose PROGRAM others call: the call does what the run would.
+    pub fn is_run_of_named_program(&self, slot: usize) -> bool {
+        self.named_programs.values().any(|it| it.run.is_some_and(|(run, _)| run == slot))
     }
 
     pub fn unknown_member(&mut self, name: ast::Name<'s>, ty: Type, near: Option<&str>) {

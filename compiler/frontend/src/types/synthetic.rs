@@ -32,6 +32,12 @@ impl<'s> Synthetic<'s> {
     }
 }
 
+/// The PROGRAM that a run holds: a keyword, which no declaration can take.
+pub(crate) const PROGRAM: &str = "PROGRAM";
+
+/// What a VAR_CONFIG binds: the variable, as a path from what the run holds, and its address.
+pub(crate) type Binding<'s> = (ast::Expr<'s>, ast::Name<'s>);
+
 /// The instance of a PROGRAM that is named somewhere.
 #[derive(Debug)]
 pub(crate) struct NamedProgram<'s> {
@@ -39,4 +45,8 @@ pub(crate) struct NamedProgram<'s> {
     /// Where it is named first.
     pub first: Span,
     pub is_called: bool,
+    /// A call of its body is written somewhere.
+    pub runs: bool,
+    /// The run that holds it where a VAR_CONFIG binds something in it: the run's slot, and what is bound.
+    pub run: Option<(usize, &'s [Binding<'s>])>,
 }
