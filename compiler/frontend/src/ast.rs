@@ -265,7 +265,7 @@ pub struct Pool {
 impl<'s> Pou<'s> {
     /// The declarations of its own CONSTANTs.
     pub fn constants(&self) -> impl Iterator<Item = &VarBlock<'s>> {
-        self.blocks.iter().filter(|it| it.constant.is_some() && !matches!(it.kind, VarKind::External | VarKind::InOut))
+        self.blocks.iter().filter(|it| it.has_values() && it.kind != VarKind::External)
     }
 
     /// One without variables and statements.
@@ -326,6 +326,11 @@ impl VarBlock<'_> {
     pub fn new(kind: VarKind, span: Span) -> Self {
         let (constant, retain, non_retain, persistent, access) = (None, None, None, None, None);
         Self { kind, constant, retain, non_retain, persistent, access, vars: Vec::new(), span }
+    }
+
+    /// Whether its variables are CONSTANTs whose values are declared. What a caller gives is only read.
+    pub fn has_values(&self) -> bool {
+        self.constant.is_some() && !matches!(self.kind, VarKind::Input | VarKind::InOut)
     }
 }
 

@@ -73,7 +73,7 @@ impl<'s> Declarations<'s> {
         let told: Vec<_> = pou
             .blocks
             .iter()
-            .filter(|it| matches!(it.kind, VarKind::Input | VarKind::InOut) && it.constant.is_none())
+            .filter(|it| it.kind == VarKind::Input || it.kind == VarKind::InOut && it.constant.is_none())
             .flat_map(|it| &it.vars)
             .filter_map(|it| self.word(&it.ty))
             .collect();

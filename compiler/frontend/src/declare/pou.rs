@@ -330,7 +330,7 @@ impl<'s> Declarations<'s> {
         }
         drop(scope);
         // What needs the value of a CONSTANT knows none where that was refused.
-        let resolved = resolved.filter(|_| block.constant.is_none() || !self.log.has_errors_since(reported));
+        let resolved = resolved.filter(|_| !block.has_values() || !self.log.has_errors_since(reported));
         let Some(resolved) = resolved.map(Rc::new) else {
             decl.names.iter().for_each(|name| builder.refuse(*name));
             return;

@@ -135,7 +135,7 @@ impl<'s> Declarations<'s> {
             initial: resolved.initial.clone(),
             section: section(block.kind),
             retain: retention(block),
-            constant: block.constant.is_some(),
+            constant: block.has_values(),
             address,
             doc: decl.doc.clone(),
             location: self.location(name.span),

@@ -181,7 +181,7 @@ impl<'s> Checker<'_, 's> {
         if !self.decl.is_started(variable.place.ty) {
             return;
         }
-        if variable.constant && variable.section != Section::InOut {
+        if variable.constant && !matches!(variable.section, Section::Input | Section::InOut) {
             let name = variable.name;
             return self.report(
                 Diagnostic::new(

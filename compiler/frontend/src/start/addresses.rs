@@ -135,7 +135,7 @@ pub(super) fn taken<'a, 's: 'a>(
 ) -> Addresses<'s> {
     let mut found = Addresses::default();
     // What writes to a CONSTANT is refused.
-    for decl in blocks.filter(|it| it.constant.is_none()).flat_map(|it| &mut it.vars) {
+    for decl in blocks.filter(|it| !it.has_values()).flat_map(|it| &mut it.vars) {
         if decl.initial.as_ref().is_none_or(|it| !holds_address(it, Expected::variable(&decl.ty, types))) {
             continue;
         }

@@ -23,9 +23,10 @@ pub(crate) struct Variable<'s> {
 }
 
 impl Variable<'_> {
-    /// The value of a CONSTANT. A VAR_IN_OUT CONSTANT has the caller's.
+    /// The value of a CONSTANT. A VAR_INPUT CONSTANT or VAR_IN_OUT CONSTANT has the caller's.
     pub fn constant_value(&self) -> Option<Const> {
-        (self.constant && self.section != Section::InOut).then(|| self.resolved.initial.clone())
+        let is_given = matches!(self.section, Section::Input | Section::InOut);
+        (self.constant && !is_given).then(|| self.resolved.initial.clone())
     }
 }
 
