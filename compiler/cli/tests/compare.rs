@@ -532,3 +532,137 @@ fn what_a_variable_holds_that_nothing_writes_is_tried() {
         assert!(out.starts_with("iec and cscape differ after 3 scans:") && out.contains("4321"), "{name}: {out}");
     }
 }
+
+/// IEC counts past the preset, OPENPLC does not: seen where the two parts of `condition` come in turn.
+fn counts_while(name: &str, variables: &str, condition: &str) -> PathBuf {
+    let source = format!(
+        "PROGRAM p\n{variables}\nVAR_OUTPUT o : BOOL; END_VAR\nVAR c : CTU; END_VAR\n\
+         c({condition}, FALSE, 1); o := c.CV > 1;\nEND_PROGRAM\n"
+    );
+    written(&format!("{name}.st"), &source)
+}
+
+#[test]
+fn what_decides_is_among_the_values_that_are_tried() {
+    let programs = [
+        ("large", "VAR_INPUT a : ULINT; END_VAR", "a > 18446744073709551610 AND a < 18446744073709551612"),
+        ("lent", "VAR_INPUT a : INT; END_VAR VAR r : REF_TO INT; END_VAR r := REF(a);", "r^ = 1717"),
+        ("scaled", "VAR_INPUT a : INT; END_VAR VAR l : INT; END_VAR l := a / 10;", "l = 35"),
+        ("twice", "VAR_INPUT a : INT; END_VAR VAR k, l : INT; END_VAR k := a - 40; l := k * 3;", "l = 300"),
+        (
+            "real",
+            "VAR_INPUT a : INT; END_VAR VAR l : REAL; END_VAR l := INT_TO_REAL(a) / 276.48;",
+            "l > 40.0 AND l < 60.0",
+        ),
+        ("bits", "VAR_INPUT a : WORD; END_VAR", "a.3 AND NOT a.5 AND a.9"),
+        ("remainder", "VAR_INPUT a : INT; END_VAR", "a MOD 97 = 13 AND a > 5000"),
+        // What nothing writes, though it starts at zero or is retained, is written from outside.
+        ("unwritten", "VAR_INPUT a : BOOL; END_VAR VAR able : BOOL; END_VAR", "a AND able"),
+        ("memory", "VAR_INPUT a : BOOL; END_VAR VAR able AT %MX0.0 : BOOL; END_VAR", "a AND able"),
+        ("setpoint", "VAR_INPUT a : BOOL; END_VAR VAR RETAIN n : INT := 5; END_VAR", "a AND n = 3"),
+    ];
+    for (name, variables, condition) in programs {
+        let declared = variables.replacen(" END_VAR r :=", " END_VAR\nr :=", 1);
+        let (variables, statements) = match declared.rfind("END_VAR") {
+            Some(at) => declared.split_at(at + "END_VAR".len()),
+            None => (declared.as_str(), ""),
+        };
+        let path = written(
+            &format!("decides_{name}.st"),
+            &format!(
+                "PROGRAM p\n{variables}\nVAR_OUTPUT o : BOOL; END_VAR\nVAR c : CTU; END_VAR\n{statements}\n\
+                 c({condition}, FALSE, 1); o := c.CV > 1;\nEND_PROGRAM\n"
+            ),
+        );
+        let out = difference(&format!("{} --from iec --to openplc --vars o -A warnings", path.display()));
+        assert!(out.starts_with("iec and openplc differ after "), "{name}: {out}");
+        // What was drawn by chance is not said to be the shortest.
+        let drawn = ["bits", "remainder"].contains(&name);
+        assert!(!drawn || !out.contains("no shorter sequence"), "{name}: {out}");
+    }
+}
+
+#[test]
+fn what_keeps_its_value_is_said_and_an_assumption_makes_it_an_input() {
+    let path = counts_while("kept_at", "VAR_INPUT a : BOOL; END_VAR VAR n : INT := 5; END_VAR", "a AND n = 3");
+    let arguments = format!("{} --from iec --to openplc --vars o -A warnings", path.display());
+    let output = run(&arguments);
+    let out = text(&output.stdout);
+    assert_eq!(output.status.code(), Some(0), "{out}");
+    assert!(out.contains("nothing writes n (5), and the initial value was all that was tried"), "{out}");
+    let free = written("free.txt", "n 1..4   # the panel's\n");
+    let out = difference(&format!("{arguments} --assume {}", free.display()));
+    assert!(out.starts_with("iec and openplc differ after 3 scans:"), "{out}");
+}
+
+#[test]
+fn assumptions_have_values_of_every_type_and_values_around_them_are_tried() {
+    let all = "VAR_INPUT s : BOOL; n : INT; r : REAL; t : TIME; m : (Off, Fill, Drain); END_VAR";
+    let programs = [
+        ("n > 50", "not s or n = 75", 3),
+        ("n > 50", "n > 60 and n < 100", 3),
+        ("r > 50.0", "r 0.5..50.0", 0),
+        ("r > 50.0", "r 0..60.5", 3),
+        ("t > T#2s", "t T#0s..T#2s", 0),
+        ("t > T#2s", "t < T#2s or t > T#1h", 3),
+        ("m = Drain", "m <> Drain", 0),
+        ("m = Drain", "m = Drain or m = Fill", 3),
+    ];
+    for (at, (condition, line, scans)) in programs.into_iter().enumerate() {
+        let path = counts_while(&format!("typed_{at}"), all, &format!("s AND {condition}"));
+        let assumed = written(&format!("typed_{at}.txt"), &format!("{line}  # of the panel\n"));
+        let arguments =
+            format!("{} --from iec --to openplc --vars o -A warnings --assume {}", path.display(), assumed.display());
+        if scans > 0 {
+            let out = difference(&arguments);
+            assert!(out.starts_with(&format!("iec and openplc differ after {scans} scans:")), "{line}: {out}");
+        } else {
+            let output = run(&arguments);
+            assert_ne!(output.status.code(), Some(1), "{line}: {}", text(&output.stdout));
+        }
+    }
+    let wrong = written("typed_wrong.txt", "t 0..x\n");
+    let path = counts_while("typed_wrong", all, "s");
+    let output = run(&format!("{} --from iec --to openplc --assume {}", path.display(), wrong.display()));
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("typed_wrong.txt:1: t: "), "{}", text(&output.stderr));
+}
+
+#[test]
+fn what_is_compared_is_there_on_both_sides() {
+    let of = |name: &str, outputs: &str, last: &str| {
+        let source = format!(
+            "PROGRAM p\nVAR_INPUT s : BOOL; END_VAR\nVAR_OUTPUT {outputs} END_VAR\nVAR c : CTU; END_VAR\n\
+             c(s, FALSE, 3); {last}\nEND_PROGRAM\n"
+        );
+        written(name, &source)
+    };
+    let both = of("two_outputs.st", "full, alarm : BOOL;", "full := c.Q; alarm := c.CV > 9;");
+    let one = of("one_output.st", "full : BOOL;", "full := c.Q;");
+    let other = written(
+        "no_output.st",
+        "PROGRAM p\nVAR_INPUT x : BOOL; END_VAR\nVAR a : BOOL; END_VAR\na := x;\nEND_PROGRAM\n",
+    );
+    let more = of("more.st", "full, alarm : BOOL; END_VAR VAR n : INT;", "n := n + 1; full := c.Q; alarm := c.CV > 9;");
+    let fails = |arguments: String, expected: &str| {
+        let output = run(&arguments);
+        let err = text(&output.stderr);
+        assert!(output.status.code() == Some(2) && err.contains(expected), "{arguments}: {err}");
+    };
+    let arguments = format!("{} --from iec --to codesys", both.display());
+    fails(format!("{arguments} --vars full,alrm"), "--vars: there is no variable `alrm`");
+    fails(format!("{arguments} --vars s"), "--vars names nothing but inputs");
+    let against = |path: &Path| format!("{arguments} --against {}", path.display());
+    fails(format!("{} --vars full,alarm", against(&one)), "only one of the two programs has a variable `alarm`");
+    fails(against(&one), "`alarm` is an output of the first program alone");
+    fails(against(&other), "is an output of the first program alone");
+    // A name may begin with the PROGRAM, as it may for a run; what one program alone has otherwise is said.
+    let output = run(&format!("{} --vars p.full,c.CV", against(&one)));
+    assert_ne!(output.status.code(), Some(2), "{}", text(&output.stderr));
+    let output = run(&format!("{} --assume no_run.txt", against(&more)));
+    assert!(
+        text(&output.stdout).contains("not compared, since one program alone has it: n"),
+        "{}",
+        text(&output.stdout)
+    );
+}

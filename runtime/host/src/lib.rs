@@ -47,6 +47,7 @@ pub use drive::{Bookmark, Drive};
 pub use error::Error;
 pub use expected::{Expectations, ExpectedCell, ExpectedRow, When};
 pub use json::quote as json_text;
+pub use literal::parse as bytes_of;
 pub use map::{Instance, Map, Section, Structure, StructureKind, Type, Variable};
 pub use path::{Place, resolve as place_of};
 pub use run::{Moment, Options, RealTime, Summary, run};

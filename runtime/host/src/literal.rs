@@ -6,7 +6,7 @@ use staunch_runtime::literal::{self, LiteralErrorKind, check_real, duration};
 use staunch_runtime::{Elementary, Repr, StringType, Value, ops};
 
 /// The bytes that `text` stands for in a variable; the error is a sentence without a full stop.
-pub(crate) fn parse(map: &Map, place: Place, text: &str) -> Result<Vec<u8>, String> {
+pub fn parse(map: &Map, place: Place, text: &str) -> Result<Vec<u8>, String> {
     let value = match place.ty {
         Type::String(it) => return string(text, it),
         Type::Characters(it) => return string(text, it).map(|it| without_length(it, map.size_of(place.ty))),

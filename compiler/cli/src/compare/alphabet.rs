@@ -1,11 +1,12 @@
 //! What the world may do before a scan: the values of each input that are worth trying, and the
 //! combinations of them.
 
-use super::assume::Assumptions;
+use super::assume::{Assumptions, Mentioned};
 use super::facts::{Facts, Name, Numbers};
 use super::pair::{Input, Matched, Pair};
 use super::scalar::{Role, Scalar};
 use staunch_ir::{Elementary, Program, Repr, Type, Value};
+use std::collections::HashSet;
 
 /// Combinations of inputs that are tried in every scan of an exhaustive search.
 const MAX_VECTORS: usize = 512;
@@ -20,6 +21,8 @@ pub struct Choice {
     pub values: Vec<Value>,
     /// Why the values that are not tried would show nothing else; `None` where they might.
     pub covered: Option<Covered>,
+    /// The whole numbers that the type, or its subrange, has.
+    pub range: Option<(i128, i128)>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +47,7 @@ pub struct Alphabet {
 impl Alphabet {
     pub fn of(pair: &Pair, facts: [&Facts; 2], assumptions: &Assumptions) -> Self {
         let choice = |(at, input): (usize, &Input)| {
-            let mut choice = choice(pair, facts, input);
+            let mut choice = choice(pair, facts, input, assumptions.near(at));
             assumptions.narrow(at, &mut choice, repr(pair, input));
             choice
         };
@@ -64,18 +67,44 @@ fn repr(pair: &Pair, input: &Input) -> Repr {
     program.repr(pair.scalar(0, input.scalars[0]).ty).unwrap_or(Repr::Bool)
 }
 
-/// The inputs by their declaration; without any, what no statement writes and some read.
-pub fn inputs(pair: &Pair, facts: [&Facts; 2]) -> Vec<Input> {
-    let mut found = pair.matched(|it| it.role == Role::Input);
-    if found.is_empty() {
-        found = pair.matched(|it| it.role == Role::Variable);
-        found.retain(|[a, b]| {
-            let names = [name(pair.scalar(0, *a)), name(pair.scalar(1, *b))];
-            let free =
-                |side: usize| names[side].is_some_and(|it| !facts[side].is_written(it) && facts[side].is_read(it));
-            free(0) && free(1)
-        });
+/// The inputs, and what keeps its first value because nothing writes it.
+#[derive(Debug, Default)]
+pub struct Sources {
+    pub inputs: Vec<Input>,
+    pub kept: Vec<Input>,
+}
+
+/// The inputs by their declaration, and what the world outside must be writing: what no statement writes and some
+/// read, where it starts at zero, is retained, or an assumption speaks of it. Without an input by its declaration, all that no
+/// statement writes and some read.
+pub fn sources(pair: &Pair, facts: [&Facts; 2], assumed: &Mentioned) -> Sources {
+    let mut found = Sources { inputs: typed(pair, pair.matched(|it| it.role == Role::Input)), kept: Vec::new() };
+    let mut open = pair.matched(|it| it.role == Role::Variable);
+    open.retain(|[a, b]| {
+        let names = [name(pair.scalar(0, *a)), name(pair.scalar(1, *b))];
+        let free = |side: usize| names[side].is_some_and(|it| !facts[side].is_written(it) && facts[side].is_read(it));
+        free(0) && free(1)
+    });
+    let open = typed(pair, open);
+    if found.inputs.is_empty() {
+        found.inputs = open;
+        return found;
     }
+    for input in open {
+        let scalar = pair.scalar(0, input.scalars[0]);
+        let is_set = input.initial == input.initial.repr().zero() || scalar.at.is_retained;
+        // What an instance is never given is its own business.
+        if assumed.has(&scalar.path) || is_set && !scalar.at.is_inner {
+            found.inputs.push(input);
+        } else {
+            found.kept.push(input);
+        }
+    }
+    found
+}
+
+/// Those that both programs hold in one type.
+fn typed(pair: &Pair, found: Vec<Matched>) -> Vec<Input> {
     let input = |scalars: Matched| {
         let [a, b] = [pair.scalar(0, scalars[0]), pair.scalar(1, scalars[1])];
         let repr = pair.sides[0].program.repr(a.ty)?;
@@ -86,12 +115,11 @@ pub fn inputs(pair: &Pair, facts: [&Facts; 2]) -> Vec<Input> {
     found.into_iter().filter_map(input).collect()
 }
 
-/// Inputs that are not tried: strings, and those that the two sides hold in different types.
-pub fn has_untried(pair: &Pair) -> bool {
-    let declared = |it: &&Scalar| it.role == Role::Input;
-    let count = |side: usize| pair.sides[side].scalars.all.iter().filter(declared).count();
-    let tried = pair.inputs.iter().filter(|it| pair.scalar(0, it.scalars[0]).role == Role::Input).count();
-    count(0) != tried || count(1) != tried
+/// Inputs of both sides that are not tried: strings, and those that the two hold in different types.
+pub fn untried(pair: &Pair) -> Vec<&str> {
+    let tried: HashSet<Matched> = pair.inputs.iter().map(|it| it.scalars).collect();
+    let both = pair.matched(|it| it.role == Role::Input);
+    both.into_iter().filter(|it| !tried.contains(it)).map(|it| pair.path(it)).collect()
 }
 
 /// Whether a program assigns an input of its own.
@@ -106,16 +134,15 @@ fn name(scalar: &Scalar) -> Option<Name> {
     scalar.field.map(|(structure, field)| Name::Field(structure, field))
 }
 
-fn choice(pair: &Pair, facts: [&Facts; 2], input: &Input) -> Choice {
+/// The values of an input: on every side of what the programs compare it with, and of what is assumed of it.
+fn choice(pair: &Pair, facts: [&Facts; 2], input: &Input, assumed: Numbers) -> Choice {
     let program = &pair.sides[0].program;
     let scalars = [pair.scalar(0, input.scalars[0]), pair.scalar(1, input.scalars[1])];
     let names = scalars.map(name);
     let both = |holds: fn(&Facts, Name) -> bool| (0..2).all(|it| names[it].is_some_and(|name| holds(facts[it], name)));
-    let mut near = Numbers::default();
+    let mut near = assumed;
     for (facts, name) in facts.iter().zip(names) {
-        let more = name.map(|it| facts.near(it)).unwrap_or_default();
-        near.integers.extend(more.integers);
-        near.reals.extend(more.reals);
+        near.add_all(name.map(|it| facts.worth_trying(it)).unwrap_or_default());
     }
     let (values, all) = values(program, scalars[0].ty, &near);
     let range = |side: usize| pair.sides[side].program.range(scalars[side].ty);
@@ -134,7 +161,8 @@ fn choice(pair: &Pair, facts: [&Facts; 2], input: &Input) -> Choice {
             kept.push(value);
         }
     }
-    Choice { values: kept, covered }
+    let type_range = pair.sides[0].program.repr(scalars[0].ty).filter(|it| it.is_integer()).and_then(Repr::range);
+    Choice { values: kept, covered, range: range(0).or(type_range) }
 }
 
 /// What to try of a type, those near a comparison first; and whether that is all of it.
@@ -185,7 +213,7 @@ fn reals(repr: Repr, near: &Numbers) -> Vec<Value> {
 }
 
 /// The nearest REAL.
-fn narrowed(number: f64) -> Option<f32> {
+pub fn narrowed(number: f64) -> Option<f32> {
     number.to_string().parse().ok()
 }
 

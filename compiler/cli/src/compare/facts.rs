@@ -30,6 +30,8 @@ pub struct Facts {
     near: HashMap<Name, Numbers>,
     /// Values of the first go to the second, as they are.
     flows: HashSet<(Name, Name)>,
+    /// What is worth trying, and proves nothing: it is found by going back through what is computed.
+    hints: HashMap<Name, Numbers>,
     /// Used in another way than compared with constants and handed on.
     computed: HashSet<Name>,
     written: HashSet<Name>,
@@ -40,12 +42,20 @@ pub struct Facts {
     pub times: BTreeSet<i64>,
 }
 
+/// Assignments in a row, through which a limit of the last target is followed back.
+const MAX_BACK: usize = 4;
+/// Limits of one variable that are followed back.
+const MAX_LIMITS: usize = 24;
+
 impl Facts {
     pub fn of(program: &Program) -> Self {
         let mut facts = Self::default();
+        let mut computed = Vec::new();
         for (at, routine) in program.routines.iter().enumerate() {
-            let mut walk = Walk { program, routine, id: RoutineId::next(at), facts: &mut facts };
+            let id = RoutineId::next(at);
+            let mut walk = Walk { program, routine, id, facts: &mut facts, computed: Vec::new() };
             walk.block(&routine.body);
+            computed.extend(walk.computed.into_iter().map(|(target, value)| (id, target, value)));
             routine.locals.iter().for_each(|it| facts.initial(Some(it.ty), &it.initial));
         }
         let fields = program.structs.iter().flat_map(|it| &it.fields);
@@ -57,12 +67,44 @@ impl Facts {
             }
         }
         facts.follow();
+        for _ in 0..MAX_BACK {
+            facts.go_back(program, &computed);
+        }
         facts
     }
 
     /// The numbers that decide something about a variable.
     pub fn near(&self, name: Name) -> Numbers {
         self.near.get(&name).cloned().unwrap_or_default()
+    }
+
+    /// Those, and numbers for which what is computed of the variable comes near a limit.
+    pub fn worth_trying(&self, name: Name) -> Numbers {
+        let mut found = self.near(name);
+        found.add_all(self.hints.get(&name).cloned().unwrap_or_default());
+        found
+    }
+
+    /// Takes the limits of what is computed back to what it is computed from.
+    fn go_back(&mut self, program: &Program, computed: &[(RoutineId, Name, &Expr)]) {
+        let mut found = Self::default();
+        for (id, target, value) in computed {
+            let routine = program.routine(*id);
+            let limits = self.worth_trying(*target);
+            let integers = limits.integers.into_iter().map(Number::Integer);
+            let limits: Vec<_> = integers.chain(limits.reals.into_iter().map(Number::Real)).take(MAX_LIMITS).collect();
+            let mut walk = Walk { program, routine, id: *id, facts: &mut found, computed: Vec::new() };
+            limits.iter().for_each(|it| walk.compared(value, *it));
+        }
+        // As they are: what is assigned, or handed to a call.
+        for (from, to) in &self.flows {
+            if let Some(more) = self.hints.get(to) {
+                found.near.entry(*from).or_default().add_all(more.clone());
+            }
+        }
+        for (name, numbers) in found.near {
+            self.hints.entry(name).or_default().add_all(numbers);
+        }
     }
 
     /// Whether nothing but comparisons with those numbers depends on a variable's value.
@@ -90,8 +132,7 @@ impl Facts {
                 let theirs = self.near(to);
                 let ours = self.near.entry(from).or_default();
                 let before = (ours.integers.len(), ours.reals.len());
-                ours.integers.extend(theirs.integers);
-                theirs.reals.into_iter().for_each(|it| ours.add_real(it));
+                ours.add_all(theirs);
                 changed |= before != (ours.integers.len(), ours.reals.len());
             }
         }
@@ -145,16 +186,24 @@ impl Facts {
     }
 
     fn near_to(&mut self, name: Name, value: Value) {
-        let numbers = self.near.entry(name).or_default();
-        match value {
-            Value::F32(it) => numbers.add_real(f64::from(it)),
-            Value::F64(it) => numbers.add_real(it),
-            other => numbers.integers.extend(other.as_integer()),
-        }
+        self.near.entry(name).or_default().add(value);
     }
 }
 
 impl Numbers {
+    pub fn add(&mut self, value: Value) {
+        match value {
+            Value::F32(it) => self.add_real(f64::from(it)),
+            Value::F64(it) => self.add_real(it),
+            other => self.integers.extend(other.as_integer()),
+        }
+    }
+
+    pub fn add_all(&mut self, more: Self) {
+        self.integers.extend(more.integers);
+        more.reals.into_iter().for_each(|it| self.add_real(it));
+    }
+
     fn add_real(&mut self, number: f64) {
         if number.is_finite() && !self.reals.contains(&number) {
             self.reals.push(number);
@@ -168,6 +217,8 @@ struct Walk<'p, 'f> {
     routine: &'p Routine,
     id: RoutineId,
     facts: &'f mut Facts,
+    /// Variables, and what each is assigned that is more than another variable.
+    computed: Vec<(Name, &'p Expr)>,
 }
 
 impl<'p> Walk<'p, '_> {
@@ -269,7 +320,10 @@ impl<'p> Walk<'p, '_> {
                 self.note_read(from);
                 visit::reads(value, &mut |it| self.indices(it));
             }
-            _ => self.expr(value),
+            (_, target) => {
+                self.computed.extend(target.map(|it| (it, value)));
+                self.expr(value);
+            }
         }
     }
 
@@ -319,7 +373,10 @@ impl<'p> Walk<'p, '_> {
             ExprKind::Const(value) => self.facts.constant(Some(expr.ty), *value),
             ExprKind::Text(_) => {}
             ExprKind::Aggregate(value) => self.facts.initial(Some(expr.ty), value),
-            ExprKind::AddressOf(place) => self.indices(place),
+            ExprKind::AddressOf(place) => {
+                self.indices(place);
+                self.lent(place);
+            }
             ExprKind::Load(place) => {
                 self.indices(place);
                 if let Some(name) = self.name(place) {
@@ -342,6 +399,34 @@ impl<'p> Walk<'p, '_> {
             ExprKind::ApplyText(_, operands) => operands.iter().for_each(|it| self.expr(it)),
             ExprKind::Convert(_, inner) => self.expr(inner),
         }
+    }
+
+    /// What a reference leads to may be used in any way, and with it all that is in it.
+    fn lent(&mut self, place: &Place) {
+        let name = self.name(place);
+        let mut open: Vec<Type> = vec![place.ty];
+        let mut found: HashSet<Name> = name.into_iter().collect();
+        while let Some(ty) = open.pop() {
+            match ty {
+                Type::Array(id) => open.push(self.program.array(id).element),
+                Type::Struct(id) => {
+                    for (at, field) in self.program.structure(id).fields.iter().enumerate() {
+                        if found.insert(Name::Field(id, FieldId::next(at))) {
+                            open.push(field.ty);
+                        }
+                    }
+                }
+                Type::Elementary(_)
+                | Type::Subrange(..)
+                | Type::String(_)
+                | Type::Enum(_)
+                | Type::Block(_)
+                | Type::Reference(_) => {}
+            }
+        }
+        self.facts.read.extend(found.iter().copied());
+        self.facts.written.extend(found.iter().copied());
+        self.facts.computed.extend(found);
     }
 
     /// `a` as it is compared with `b`.
@@ -406,7 +491,7 @@ enum Number {
 impl Number {
     fn value(self) -> Option<Value> {
         match self {
-            Self::Integer(it) => i64::try_from(it).ok().map(Value::I64),
+            Self::Integer(it) => i64::try_from(it).map(Value::I64).or_else(|_| it.try_into().map(Value::U64)).ok(),
             Self::Real(it) => Some(Value::F64(it)),
         }
     }

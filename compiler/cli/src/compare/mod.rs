@@ -48,7 +48,7 @@ use crate::args::{Common, Compare, Files, MessageFormat};
 use crate::session::Session;
 use crate::{REJECTED, input, run};
 use alphabet::Alphabet;
-use assume::Assumptions;
+use assume::{Assumptions, Mentioned};
 use facts::Facts;
 use finding::Findings;
 use pair::{Pair, Row, Side};
@@ -106,9 +106,7 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
     let mut world = world(&mut pair, args)?;
     let only: Vec<String> = args.vars.iter().flat_map(|it| it.split(',')).map(|it| it.trim().to_owned()).collect();
     pair.compare_only(&only);
-    if pair.compared.is_empty() && !only.is_empty() {
-        return Err("--vars names no variable that both systems' programs have".to_owned());
-    }
+    check_compared(&pair, args, &only)?;
     let uses = finding::uses(&pair);
     let mut findings = Findings::new(&pair, &world, &uses, &renamed);
     let accepted = args.accept.as_deref().map(accept::Accepted::read).transpose()?.unwrap_or_default();
@@ -134,6 +132,29 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
         picture::draw(&mut pair, &world, args, path, (rows, trace.as_ref()))?;
     }
     report.print(&pair, &world, &Judged { verdict: &verdict, rest: rest.as_ref() }, &findings, &accepted)
+}
+
+/// What is to be compared is there on both sides: what is not would be passed over in silence.
+fn check_compared(pair: &Pair, args: &Compare, only: &[String]) -> Result<(), String> {
+    let programs = if args.against.is_some() { "programs" } else { "systems' programs" };
+    match pair.unknown_name(only) {
+        Some((name, true)) => return Err(format!("--vars: only one of the two {programs} has a variable `{name}`")),
+        Some((name, false)) => return Err(format!("--vars: there is no variable `{name}`")),
+        None => {}
+    }
+    if pair.compared.is_empty() && !only.is_empty() {
+        return Err(format!("--vars names nothing but inputs, which are the same for both {programs}"));
+    }
+    let Some(against) = args.against.as_deref().filter(|_| only.is_empty()) else { return Ok(()) };
+    if let Some((side, name)) = pair.only_one_has(|it| it.at.is_output && it.field.is_some()).first() {
+        let of = if *side == 0 { "the first program".to_owned() } else { against.display().to_string() };
+        let help = "declare it in both, or name what is to be compared with --vars";
+        return Err(format!("`{name}` is an output of {of} alone: {help}"));
+    }
+    if pair.compared.is_empty() {
+        return Err(format!("{} and the program have no variable in common that could be compared", against.display()));
+    }
+    Ok(())
 }
 
 /// What the comparison came to; and, where all that it has found is accepted, what it comes to beyond that.
@@ -164,7 +185,10 @@ fn beyond_accepted(pair: &mut Pair, world: &World, args: &Compare, findings: &mu
 
 /// Whether the search leaves nothing out that the inputs could do.
 fn covers_all(pair: &Pair, world: &World) -> bool {
-    world.alphabet.is_exact() && pair.whole && !alphabet::has_untried(pair)
+    world.alphabet.is_exact()
+        && pair.whole
+        && alphabet::untried(pair).is_empty()
+        && pair.only_one_has(|it| it.role == scalar::Role::Input).is_empty()
 }
 
 fn differs(pair: &mut Pair, world: &World, trace: &Trace, shortest: bool, findings: &mut Findings) -> Verdict {
@@ -205,7 +229,9 @@ fn is_same(a: &staunch_ir::Program, b: &staunch_ir::Program) -> bool {
 fn world(pair: &mut Pair, args: &Compare) -> Result<World, String> {
     let facts = [0, 1].map(|side: usize| Facts::of(&pair.sides[side].program));
     let facts = facts.each_ref();
-    pair.inputs = alphabet::inputs(pair, facts);
+    let mentioned = args.assume.as_deref().map(Mentioned::read).transpose()?.unwrap_or_default();
+    let sources = alphabet::sources(pair, facts, &mentioned);
+    (pair.inputs, pair.kept) = (sources.inputs, sources.kept);
     let assumptions = args.assume.as_deref().map(|it| Assumptions::read(it, pair)).transpose()?.unwrap_or_default();
     pair.never.clone_from(&assumptions.never);
     let alphabet = Alphabet::of(pair, facts, &assumptions);
@@ -240,7 +266,8 @@ fn verdict(pair: &mut Pair, world: &World, args: &Compare, findings: &mut Findin
     let exact = covers_all(pair, world);
     findings.note(pair, world, &outcome, exact);
     if let Some(trace) = outcome.found.clone() {
-        let shortest = world.alphabet.complete && outcome.depth + 1 >= trace.scans();
+        let is_tried = outcome.more_values == 0 && world.alphabet.complete;
+        let shortest = is_tried && outcome.depth + 1 >= trace.scans();
         return Ok(differs(pair, world, &trace, shortest, findings));
     }
     if outcome.complete && exact {

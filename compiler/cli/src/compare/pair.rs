@@ -8,7 +8,7 @@ use staunch_frontend::Dialect;
 use staunch_host::{Bookmark, Drive, Event, Machine, Snapshot};
 use staunch_ir::{Program, Value};
 use staunch_runtime::{Fault, FaultKind};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 /// The program as one system runs it.
@@ -104,6 +104,8 @@ const MAX_RUN: usize = 512;
 pub struct Pair {
     pub sides: [Side; 2],
     pub inputs: Vec<Input>,
+    /// What keeps its first value, because nothing writes it, though the world outside might.
+    pub kept: Vec<Input>,
     /// What is compared after each scan, in the order of the declarations.
     pub compared: Vec<Matched>,
     /// Counters that both sides have.
@@ -188,6 +190,7 @@ impl Pair {
         let mut pair = Self {
             sides,
             inputs: Vec::new(),
+            kept: Vec::new(),
             compared: Vec::new(),
             counters: Vec::new(),
             outputs: Vec::new(),
@@ -285,23 +288,60 @@ impl Pair {
         blocks.iter().map(of).collect()
     }
 
+    /// Whether a name, as a user writes it, is that of a scalar or of what it is in. It may begin with the one PROGRAM, as it
+    /// may for a run.
+    fn is_named(&self, side: usize, at: usize, name: &str) -> bool {
+        let scalar = self.scalar(side, at);
+        let starts = |path: &str, name: &str| {
+            let (path, name) = (path.to_ascii_lowercase(), name.to_ascii_lowercase());
+            path.strip_prefix(&name).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+        };
+        let is = |name: &str| starts(&scalar.key, name) || starts(&scalar.path, name);
+        let program = &self.sides[side].program;
+        let within = name.split_once('.').filter(|(first, _)| match program.instances.as_slice() {
+            [one] => [&one.name, &program.class(one.program).name].into_iter().any(|it| it.eq_ignore_ascii_case(first)),
+            _ => false,
+        });
+        is(name) || within.is_some_and(|(_, rest)| is(rest))
+    }
+
+    /// A name that no variable has which both sides have; with whether one side has it.
+    pub fn unknown_name<'n>(&self, only: &'n [String]) -> Option<(&'n str, bool)> {
+        let both = self.matched(|it| it.role != Role::Hidden);
+        let known = |name: &str| both.iter().any(|[a, b]| self.is_named(0, *a, name) || self.is_named(1, *b, name));
+        let name = only.iter().find(|it| !known(it))?;
+        let one = [0, 1]
+            .into_iter()
+            .any(|side| (0..self.sides[side].scalars.all.len()).any(|at| self.is_named(side, at, name)));
+        Some((name, one))
+    }
+
+    /// Variables and outputs of blocks that only one side has: its number, and their paths.
+    pub fn only_one_has(&self, wanted: impl Fn(&Scalar) -> bool) -> Vec<(usize, &str)> {
+        let keys = [0, 1].map(|side: usize| self.sides[side].scalars.all.iter().map(|it| it.key.as_str()).collect());
+        let keys: [HashSet<&str>; 2] = keys;
+        let of = |side: usize| {
+            let all = self.sides[side].scalars.all.iter().filter(|it| it.role != Role::Hidden);
+            let (wanted, other) = (&wanted, &keys[1 - side]);
+            all.filter(move |it| wanted(it) && !other.contains(it.key.as_str())).map(move |it| (side, it.path.as_str()))
+        };
+        of(0).chain(of(1)).collect()
+    }
+
     fn find_compared(&self, only: &[String]) -> Vec<Matched> {
         let inputs: Vec<_> = self.inputs.iter().map(|it| it.scalars[0]).collect();
-        let named = |key: &str| {
-            only.is_empty()
-                || only.iter().any(|it| {
-                    let it = it.to_ascii_lowercase();
-                    key.strip_prefix(&it).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
-                })
-        };
         let shows = |it: &Scalar| matches!(it.role, Role::Variable | Role::Output(_));
         let mut found = self.matched(shows);
         found.retain(|[a, b]| {
-            let path = self.scalar(0, *a).path.to_ascii_lowercase();
-            let asked = named(&self.scalar(0, *a).key) || named(&path);
+            let asked = only.is_empty() || only.iter().any(|it| self.is_named(0, *a, it) || self.is_named(1, *b, it));
             shows(self.scalar(1, *b)) && !inputs.contains(a) && asked
         });
         found
+    }
+
+    /// The first value of an input, as a trace shows it.
+    pub fn shown(&self, input: &Input) -> String {
+        scalar::spell(&self.sides[0].program, self.scalar(0, input.scalars[0]).ty, input.initial)
     }
 
     /// The inputs' values before anything sets them.

@@ -1,7 +1,7 @@
 //! The scalars of a program's state, by paths that two systems share.
 
 use staunch_ir::layout::{Layout, usize_of};
-use staunch_ir::{ArrayId, BlockId, FieldId, Program, Section, StructId, Type, Value};
+use staunch_ir::{ArrayId, BlockId, FieldId, Program, Retain, Section, StructId, Type, Value};
 use staunch_runtime::{Direction, Pin, PinRole};
 
 /// Further elements of an array are not compared.
@@ -22,6 +22,18 @@ pub struct Scalar {
     pub role: Role,
     /// The innermost declared variable or member that it is, or is an element of; no pin is one.
     pub field: Option<(StructId, FieldId)>,
+    pub at: Whereabouts,
+}
+
+/// What is known of a variable by where it is declared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Whereabouts {
+    /// An output of a PROGRAM, or what lies at `%Q`.
+    pub is_output: bool,
+    /// In an instance of a FUNCTION_BLOCK.
+    pub is_inner: bool,
+    /// Declared RETAIN, itself or with what it is in.
+    pub is_retained: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,6 +73,7 @@ struct Whole {
     offset: usize,
     role: Role,
     field: Option<(StructId, FieldId)>,
+    at: Whereabouts,
 }
 
 struct Walk<'p> {
@@ -98,7 +111,13 @@ impl Walk<'_> {
             };
             let offset = base + usize_of(self.layout.field(id, number));
             let path = format!("{prefix}{}", field.name);
-            self.part(&path, field.ty, Whole { offset, role, field: Some((id, number)) });
+            let at_output = field.address.is_some_and(|it| it.area == staunch_ir::Area::Output);
+            let at = Whereabouts {
+                is_output: field.section == Section::Output || at_output,
+                is_inner: false,
+                is_retained: field.retain == Retain::Kept,
+            };
+            self.part(&path, field.ty, Whole { offset, role, field: Some((id, number)), at });
         }
     }
 
@@ -118,10 +137,10 @@ impl Walk<'_> {
             self.found.truncated = true;
             return;
         }
-        let Whole { offset, role, field } = whole;
+        let Whole { offset, role, field, at } = whole;
         let size = usize_of(self.layout.size(ty));
         let (path, key) = (path.to_owned(), key.to_ascii_lowercase());
-        self.found.all.push(Scalar { path, key, ty, offset, size, role, field });
+        self.found.all.push(Scalar { path, key, ty, offset, size, role, field, at });
     }
 
     fn array(&mut self, path: &str, id: ArrayId, whole: Whole) {
@@ -136,11 +155,22 @@ impl Walk<'_> {
     }
 
     fn members(&mut self, path: &str, id: StructId, whole: Whole) {
+        let is_inner = whole.at.is_inner || self.program.classes.iter().any(|it| it.state == id);
         for (at, field) in self.program.structure(id).fields.iter().enumerate() {
             let role = if field.constant { Role::Hidden } else { whole.role };
             let number = FieldId::next(at);
             let offset = whole.offset + usize_of(self.layout.field(id, number));
-            self.part(&format!("{path}.{}", field.name), field.ty, Whole { offset, role, field: Some((id, number)) });
+            let is_retained = match field.retain {
+                Retain::Inherited => whole.at.is_retained,
+                Retain::Kept => true,
+                Retain::Anew => false,
+            };
+            let at = Whereabouts { is_inner, is_retained, ..whole.at };
+            self.part(
+                &format!("{path}.{}", field.name),
+                field.ty,
+                Whole { offset, role, field: Some((id, number)), at },
+            );
         }
     }
 
@@ -152,7 +182,7 @@ impl Walk<'_> {
         for (at, pin) in id.info().pins.iter().enumerate() {
             let Some(ty) = id.pin_type(FieldId::next(at)) else { continue };
             let role = if shows(pin) { Role::Output(number) } else { Role::Hidden };
-            let part = Whole { offset: whole.offset + pin.offset, role, field: None };
+            let part = Whole { offset: whole.offset + pin.offset, role, field: None, at: whole.at };
             self.scalar(&format!("{path}.{}", pin.name), &format!("{key}.{}", common_key(pin)), ty, part);
         }
     }

@@ -28,7 +28,33 @@ pub fn every_state(pair: &Pair, world: &World, outcome: &Outcome) -> String {
         let _ = write!(text, ", with {events} at every point");
     }
     assumed(&mut text, world);
+    for limit in [kept(pair), of_one(pair)].into_iter().flatten() {
+        let _ = write!(text, "; {limit}");
+    }
     text
+}
+
+/// What has its first value throughout.
+fn kept(pair: &Pair) -> Option<String> {
+    let names = listed(pair.kept.iter().map(|it| format!("{} ({})", pair.path(it.scalars), pair.shown(it))))?;
+    Some(format!(
+        "nothing writes {names}, and the initial value was all that was tried (an assumption about a variable makes it an input)"
+    ))
+}
+
+/// What is not compared because one program alone has it.
+fn of_one(pair: &Pair) -> Option<String> {
+    let names = listed(pair.only_one_has(|_| true).into_iter().map(|it| it.1.to_owned()))?;
+    Some(format!("not compared, since one program alone has it: {names}"))
+}
+
+/// A few names, and how many more there are.
+fn listed(names: impl Iterator<Item = String>) -> Option<String> {
+    const SHOWN: usize = 5;
+    let names: Vec<_> = names.collect();
+    let more = names.len().saturating_sub(SHOWN);
+    let shown = names.iter().take(SHOWN).cloned().reduce(|all, it| format!("{all}, {it}"))?;
+    Some(if more > 0 { format!("{shown} and {more} more") } else { shown })
 }
 
 /// The events that are tried.
@@ -58,6 +84,9 @@ pub fn not_found(pair: &Pair, world: &World, outcome: &Outcome) -> Verdict {
         tried.push(format!("inputs that hold, pulse and wait, from {} states", outcome.places));
     }
     tried.extend(events(pair).map(|it| format!("{it} at each of them")));
+    if outcome.more_values > 0 {
+        tried.push(format!("{} further values of inputs, drawn by chance", outcome.more_values));
+    }
     tried.push(format!("{} scans in all", outcome.scans));
     if !world.assumptions.lines.is_empty() {
         tried.push(format!("assumed: {}", world.assumptions.lines.join("; ")));
@@ -73,11 +102,11 @@ pub fn not_found(pair: &Pair, world: &World, outcome: &Outcome) -> Verdict {
     if !alphabet.complete {
         left.push(format!("combinations of inputs other than the {} that change few of them", alphabet.vectors.len()));
     }
-    if alphabet::has_untried(pair) {
-        left.push("inputs that are strings, or of another type on the other system".to_owned());
-    }
+    let untried = listed(alphabet::untried(pair).into_iter().map(str::to_owned));
+    left.extend(untried.map(|it| format!("inputs that are strings, or of another type on the other system: {it}")));
     if !pair.whole {
         left.push("elements of long arrays".to_owned());
     }
+    left.extend(kept(pair).into_iter().chain(of_one(pair)));
     Verdict::NotFound { tried, left }
 }

@@ -86,6 +86,8 @@ pub struct Outcome {
     pub scans: u64,
     /// States from which patterns were tried.
     pub places: usize,
+    /// Values of inputs that were drawn by chance, besides those of the alphabet.
+    pub more_values: usize,
 }
 
 pub struct Search<'p> {

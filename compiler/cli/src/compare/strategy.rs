@@ -11,6 +11,9 @@ use super::search::{Outcome, Search, World};
 use super::trace::Trace;
 use super::{random, shrink};
 
+/// The share of the budget that other values get, where all states that those tried can reach were seen.
+const MORE_VALUES: u64 = 16;
+
 /// Bytes of states that all scans together may go through; a small state counts as `SMALL`.
 const MAX_BYTES: u64 = 4 << 30;
 const SMALL: usize = 512;
@@ -54,6 +57,11 @@ fn look(search: &mut Search<'_>, budget: u64) -> (usize, bool) {
             random::walk(search, &guided);
         }
         search.outcome.places = guided.places();
+    }
+    if exhaustive.complete && !search.is_done() && !search.world.alphabet.is_exact() {
+        let guided = Guided::new(search);
+        search.left = search.left.min(budget / MORE_VALUES);
+        search.outcome.more_values = random::walk(search, &guided);
     }
     (exhaustive.depth, exhaustive.complete)
 }
