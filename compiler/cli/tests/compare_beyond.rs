@@ -232,8 +232,8 @@ c(s, FALSE, 3); y := CONCAT(y, 'aaaaaaaaaa'); q := LEN(y) > 90;",
 fn nothing_found_is_not_accepted() {
     let path = program(
         "untried",
-        "VAR_INPUT v, w : INT; END_VAR VAR y : STRING; END_VAR VAR_OUTPUT q : BOOL; END_VAR
-IF v = w + 1000 THEN y := CONCAT(y, 'aaaaaaaaaa'); END_IF q := LEN(y) > 90;",
+        "VAR_INPUT v, w : DINT; END_VAR VAR y : STRING; END_VAR VAR_OUTPUT q : BOOL; END_VAR
+IF v * v + w * w = 20193797 AND v > 100 AND w > 100 THEN y := CONCAT(y, 'aaaaaaaaaa'); END_IF q := LEN(y) > 90;",
     );
     let accept = folder().join("nobody.txt");
     std::fs::write(&accept, "* 1: nobody\n").expect("a file");
