@@ -106,6 +106,7 @@ pub fn program(tasks: &[Task]) -> Program {
         references: Vec::new(),
         globals: StructId::next(tasks.len()),
         aliases: Vec::new(),
+        global_paths: Vec::new(),
         reentered: std::collections::BTreeSet::new(),
         reach: Reach::default(),
         places: std::collections::BTreeSet::new(),

@@ -37,6 +37,8 @@ pub struct Program {
     pub globals: StructId,
     /// Other names of global variables: a direct address that is declared again.
     pub aliases: Vec<Variable>,
+    /// Of global variables that are in a NAMESPACE or a list: the name here, and that in full, `Plant.Panel.start`.
+    pub global_paths: Vec<(String, String)>,
     pub classes: Vec<Class>,
     /// The states that METHODs or ACTIONs work on: while one routine of an instance runs, what it calls may
     /// come back to the instance by another.

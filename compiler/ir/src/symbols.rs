@@ -30,6 +30,7 @@ pub const VERSION: u32 = 1;
 /// struct     id  name  size            then its fields
 /// block      id  name  size            then its pins, as fields; only blocks in use
 /// field      name  type  offset  section  flags  address  low..high
+/// path       field of the globals  its name in full, of one in a NAMESPACE or a list
 /// object     offset in the machine  size
 /// globals    struct:id  offset
 /// instance   number  name  program  struct:id  offset  interval in ns  priority
@@ -156,6 +157,9 @@ impl Map<'_> {
             let (section, ty) = (section_name(alias.section), type_of(alias));
             write!(self.text, "field\t{}\t{ty}\t{offset}\t{section}", alias.name)?;
             self.write_attributes(&attributes)?;
+        }
+        for (name, path) in &self.program.global_paths {
+            writeln!(self.text, "path\t{name}\t{path}")?;
         }
         Ok(())
     }

@@ -48,16 +48,16 @@ fn used_globals(map: &Map, running: &[usize], out: &mut Vec<Column>) {
     for variable in globals.iter().filter(is_shown) {
         let place = Place::of(variable, base);
         if !own.contains(&(place.offset, place.ty)) {
-            expand(map, global_heading(variable), place, out);
+            expand(map, global_heading(map, variable), place, out);
         }
     }
 }
 
 /// A variable that is only there for its address has the address as its name.
-fn global_heading(variable: &Variable) -> String {
+fn global_heading(map: &Map, variable: &Variable) -> String {
     match &variable.address {
         Some(address) if address[1..].replace('.', "_") == variable.name => address.clone(),
-        _ => variable.name.clone(),
+        _ => map.name_of_global(&variable.name).to_owned(),
     }
 }
 

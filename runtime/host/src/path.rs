@@ -70,11 +70,21 @@ pub fn resolve(map: &Map, running: &[usize], text: &str) -> Result<Place, String
             return follow(map, place, after);
         }
     }
+    if let (None, Some((place, after))) = (found, in_list(map, &steps)) {
+        return follow(map, place, after);
+    }
     if found.is_none() {
         let (globals, base) = map.globals();
         found = named(globals, first).map(|it| Place::of(it, base));
     }
-    let place = found.ok_or_else(|| unknown(map, running, first))?;
+    let place = match (found, rest.first()) {
+        (Some(place), _) => place,
+        (None, Some(Step::Name(name))) if map.held_by(first).next().is_some() => {
+            let near = nearest(name, map.held_by(first));
+            return Err(format!("`{first}` has no variable `{name}`{near}"));
+        }
+        (None, _) => return Err(unknown(map, running, first)),
+    };
     follow(map, place, rest)
 }
 
@@ -208,6 +218,20 @@ fn in_scope(map: &Map, running: &[usize], scope: &str, name: &str) -> Result<Opt
         let near = nearest(name, globals.iter().map(|it| it.name.as_str()));
         format!("there is no global variable `{name}`{near}")
     })
+}
+
+/// `Panel.start`, `Plant.Panel.start`: a global variable by its name in full, and what follows.
+fn in_list<'s, 't>(map: &Map, steps: &'s [Step<'t>]) -> Option<(Place, &'s [Step<'t>])> {
+    let (globals, base) = map.globals();
+    let mut path = String::new();
+    for (at, step) in steps.iter().enumerate() {
+        let Step::Name(name) = step else { return None };
+        path = if at == 0 { (*name).to_owned() } else { format!("{path}.{name}") };
+        if let Some(variable) = map.global_by_path(&path).and_then(|it| named(globals, it)) {
+            return Some((Place::of(variable, base), &steps[at + 1..]));
+        }
+    }
+    None
 }
 
 fn follow(map: &Map, mut place: Place, steps: &[Step<'_>]) -> Result<Place, String> {

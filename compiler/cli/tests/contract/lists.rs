@@ -38,3 +38,24 @@ fn lists_are_files_of_globals_alone_in_a_dialect_that_names_them() {
         has(&folder.staunch("check main.st _Line2.st --dialect codesys").err(1), &["`_Line2` is not declared"]);
     }
 }
+
+#[test]
+fn what_a_list_holds_is_named_in_full_from_outside() {
+    let main = "PROGRAM Main\nPanel.count := Panel.count + BOOL_TO_INT(Panel.able); Line.count := Panel.most[2];\nEND_PROGRAM\n";
+    let panel = "VAR_GLOBAL able : BOOL; count : INT; most : ARRAY[1..2] OF INT := [3, 4]; END_VAR\n";
+    let line = "NAMESPACE Line VAR_GLOBAL count : INT; END_VAR END_NAMESPACE\n";
+    let stimulus = "scan,Panel.able\n2,TRUE\n";
+    let files = [("main.st", main), ("Panel.st", panel), ("line.st", line), ("in.csv", stimulus)];
+    let folder = Folder::with("named_in_full", &files);
+    let run = "run main.st Panel.st line.st --dialect codesys --scans 2 --stimulus in.csv --trace -";
+    // A name that two lists have is shown in full, too.
+    let all = folder.staunch(run).out(0);
+    has(&all, &["scan,time_ms,able,Panel.count,most[1],most[2],Line.count", "2,10,TRUE,1,3,4,4"]);
+    let some = folder.staunch(&format!("{run} --vars line.COUNT,Panel.count,Panel.most[2],Globals.able")).out(0);
+    has(
+        &some,
+        &["scan,time_ms,line.COUNT,Panel.count,Panel.most[2],Globals.able", "1,0,4,0,4,FALSE", "2,10,4,1,4,TRUE"],
+    );
+    let err = folder.staunch(&format!("{run} --vars Panel.cuont")).err(2);
+    has(&err, &["`Panel` has no variable `cuont`; did you mean `count`?"]);
+}

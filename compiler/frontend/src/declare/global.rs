@@ -1,5 +1,6 @@
 //! Global variables, and the structure that holds them.
 
+use crate::names::SpaceId;
 use crate::types::declarations::{Declarations, GlobalSlot};
 use crate::types::scope::{Scope, Variable};
 use crate::types::table::GLOBALS;
@@ -36,9 +37,16 @@ impl<'s> Declarations<'s> {
         let mut aliases: Vec<_> = (0..self.globals.len()).filter_map(|at| self.alias(at)).collect();
         aliases.extend(self.views(&names));
         self.program.aliases = aliases;
+        self.program.global_paths = (0..self.globals.len()).filter_map(|at| self.global_path(at)).collect();
         self.program.globals = StructId::next(self.program.structs.len());
         let location = Location::default();
         self.program.structs.push(Struct::new("Globals".to_owned(), None, location, fields));
+    }
+
+    /// What a global variable is called among the fields, and in full, where that says where it is.
+    fn global_path(&self, at: usize) -> Option<(String, String)> {
+        let GlobalSlot { name, space, .. } = &self.globals[at];
+        (*space != SpaceId::ROOT).then(|| (self.global_field_name(at), self.names.in_full(*space, name.text)))
     }
 
     fn global_fields(&mut self) -> Vec<Field> {

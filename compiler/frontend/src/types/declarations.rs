@@ -626,6 +626,7 @@ pub(crate) fn empty_program(files: Vec<SourceFile>) -> Program {
         classes: Vec::new(),
         routines: Vec::new(),
         aliases: Vec::new(),
+        global_paths: Vec::new(),
         reentered: std::collections::BTreeSet::new(),
         reach: staunch_ir::Reach::default(),
         places: std::collections::BTreeSet::new(),
