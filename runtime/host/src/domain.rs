@@ -97,6 +97,51 @@ impl Domain {
         }
     }
 
+    /// The bytes of variables in a window of the state, in their order.
+    pub(crate) fn values(&self, window: &Range<usize>, see: &mut dyn FnMut(Range<usize>)) {
+        let whole = Part { offset: 0, size: self.size, node: self.nodes.len() - 1 };
+        self.values_of(whole, window, see);
+    }
+
+    #[cfg(test)]
+    pub(crate) fn is_value(&self, at: usize) -> bool {
+        let mut found = false;
+        self.values(&(at..at + 1), &mut |_| found = true);
+        found
+    }
+
+    fn values_of(&self, part: Part, window: &Range<usize>, see: &mut dyn FnMut(Range<usize>)) {
+        if part.end() <= window.start || window.end <= part.offset {
+            return;
+        }
+        let mut all = |end: usize| {
+            let found = part.offset.max(window.start)..end.min(window.end);
+            if !found.is_empty() {
+                see(found);
+            }
+        };
+        match &self.nodes[part.node] {
+            Node::Any | Node::Bool | Node::Day | Node::Clock | Node::Subrange { .. } => all(part.end()),
+            Node::Text(ty) => {
+                let text = usize::from(ty.capacity) * ty.unit_size() as usize;
+                all(part.offset + size_of::<u16>() + text);
+            }
+            Node::Array { element, stride, count } => {
+                let from = window.start.saturating_sub(part.offset) / stride.max(&1);
+                let to = (window.end - part.offset).div_ceil(*stride.max(&1)).min(*count);
+                for position in from..to {
+                    let offset = part.offset + position * stride;
+                    self.values_of(Part { offset, size: *stride, node: *element }, window, see);
+                }
+            }
+            Node::Structure(parts) => {
+                for member in parts {
+                    self.values_of(Part { offset: part.offset + member.offset, ..*member }, window, see);
+                }
+            }
+        }
+    }
+
     /// Makes values of what the window touches of a part, which is given by its place in the state.
     fn settle(&self, state: &mut [u8], part: Part, window: &Range<usize>) {
         if part.end() <= window.start || window.end <= part.offset {

@@ -5,16 +5,19 @@
 
 mod format;
 mod keeper;
+mod kept;
 mod storage;
 mod text;
 mod writer;
 
+use crate::domain::Domain;
 use crate::map::{Map, Type};
 use crate::path;
 use crate::start::{Event, Part, kept_parts};
 use crate::{Error, Machine};
 use format::{Content, Found, Layout};
 use keeper::Keeper;
+use kept::Kept;
 use staunch_runtime::Time;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -30,8 +33,8 @@ const LONGEST: u64 = 16 << 20;
 #[derive(Debug)]
 pub(crate) struct Retention {
     path: PathBuf,
-    /// The parts of the state that are kept, in the order of the file.
-    regions: Vec<Range<usize>>,
+    /// What of the state is kept, in the order of the file.
+    kept: Kept,
     saving: Saving,
 }
 
@@ -76,7 +79,8 @@ impl Retention {
             found = content.found.filter(|_| layout.is_of(&bytes)).map(|it| (content.clock, it));
         }
         let saving = Saving::Now(Keeper::new(disk, layout, found));
-        Ok((Self { path: path.to_owned(), regions: retained.ranges(), saving }, loaded))
+        let kept = Kept::new(retained.ranges(), &Domain::of(map));
+        Ok((Self { path: path.to_owned(), kept, saving }, loaded))
     }
 
     /// From now on, changes are saved while the program runs.
@@ -84,7 +88,7 @@ impl Retention {
         let Saving::Now(keeper) = std::mem::replace(&mut self.saving, Saving::Ended) else {
             return Ok(());
         };
-        let values = self.regions.iter().flat_map(|it| &state[it.clone()]).copied().collect();
+        let values = self.kept.of(state);
         let path = self.path.clone();
         let tell = move |text: &str| eprintln!("warning: {}: {text}", path.display());
         let writer = Writer::start(keeper, pace, values, tell);
@@ -95,7 +99,7 @@ impl Retention {
     /// After each scan: hands over what has changed, where changes are saved while the program runs.
     pub fn offer(&mut self, clock: Time, state: &[u8]) {
         match &mut self.saving {
-            Saving::Always(writer) => writer.offer(clock, &self.regions, state),
+            Saving::Always(writer) => writer.offer(clock, &self.kept, state),
             Saving::Now(_) | Saving::Ended => {}
         }
     }
@@ -105,8 +109,7 @@ impl Retention {
         self.offer(clock, state);
         match &mut self.saving {
             Saving::Now(keeper) => {
-                let values: Vec<u8> = self.regions.iter().flat_map(|it| &state[it.clone()]).copied().collect();
-                keeper.save(clock, &values).map_err(|error| Error::file(&self.path, "write", error))
+                keeper.save(clock, &self.kept.of(state)).map_err(|error| Error::file(&self.path, "write", error))
             }
             Saving::Always(_) | Saving::Ended => Ok(()),
         }
@@ -116,7 +119,7 @@ impl Retention {
     pub fn finish(&mut self, clock: Time, state: &[u8]) -> Result<(), Error> {
         match std::mem::replace(&mut self.saving, Saving::Ended) {
             Saving::Always(writer) => {
-                let saved = writer.finish(clock, &self.regions, state);
+                let saved = writer.finish(clock, &self.kept, state);
                 saved.map_err(|error| Error::file(&self.path, "write", error))
             }
             saving @ (Saving::Now(_) | Saving::Ended) => {
@@ -161,8 +164,8 @@ impl Retained {
         Layout::new(&self.programs, self.regions.iter().map(|it| (it.path.as_str(), it.ty.as_str(), it.size)))
     }
 
-    fn ranges(&self) -> Vec<Range<usize>> {
-        self.regions.iter().map(|it| it.offset..it.offset + it.size).collect()
+    fn ranges(&self) -> impl Iterator<Item = Range<usize>> {
+        self.regions.iter().map(|it| it.offset..it.offset + it.size)
     }
 
     /// Why the content is of no use, or what it held.

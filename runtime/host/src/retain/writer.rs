@@ -2,10 +2,10 @@
 //! the disk nor allocates. It copies the bytes that changed into a box; the writer takes the newest.
 
 use super::keeper::Keeper;
+use super::kept::Kept;
 use super::storage::Storage;
 use staunch_runtime::Time;
 use std::io;
-use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread::{self, JoinHandle};
@@ -88,8 +88,8 @@ impl Writer {
     }
 
     /// Hands the values over if they have changed. It takes as long as comparing and copying does.
-    pub fn offer(&mut self, clock: Time, regions: &[Range<usize>], state: &[u8]) {
-        if !copy_changed(regions, state, &mut self.last) {
+    pub fn offer(&mut self, clock: Time, kept: &Kept, state: &[u8]) {
+        if !kept.copy_changed(state, &mut self.last) {
             return;
         }
         self.generation += 1;
@@ -108,8 +108,8 @@ impl Writer {
     }
 
     /// Saves the last values, and the clock also where they are on disk already. Waits for the disk.
-    pub fn finish(mut self, clock: Time, regions: &[Range<usize>], state: &[u8]) -> io::Result<()> {
-        copy_changed(regions, state, &mut self.last);
+    pub fn finish(mut self, clock: Time, kept: &Kept, state: &[u8]) -> io::Result<()> {
+        kept.copy_changed(state, &mut self.last);
         self.generation += 1;
         while !self.hand_over(clock) {}
         self.shared.ends.store(true, Ordering::Release);
@@ -125,20 +125,6 @@ fn free(parcel: &Mutex<Parcel>) -> Option<MutexGuard<'_, Parcel>> {
         Err(TryLockError::Poisoned(parcel)) => Some(parcel.into_inner()),
         Err(TryLockError::WouldBlock) => None,
     }
-}
-
-/// Copies the regions of the state; FALSE if all bytes were the same.
-fn copy_changed(regions: &[Range<usize>], state: &[u8], values: &mut [u8]) -> bool {
-    let (mut at, mut changed) = (0, false);
-    for region in regions {
-        let (from, to) = (&state[region.clone()], &mut values[at..at + region.len()]);
-        if from != to {
-            to.copy_from_slice(from);
-            changed = true;
-        }
-        at += region.len();
-    }
-    changed
 }
 
 /// The writer's side.

@@ -9,7 +9,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 const SIZE: usize = 64;
 const STATE: usize = 80;
-const REGIONS: [Range<usize>; 2] = [0..40, 56..80];
+const REGIONS: [std::ops::Range<usize>; 2] = [0..40, 56..80];
 
 fn keeper<S: Storage>(storage: S) -> Keeper<S> {
     Keeper::new(storage, Layout::new("Main", [("main.x", "ARRAY", SIZE)].into_iter()), None)
@@ -53,21 +53,21 @@ fn a_change_is_saved_and_no_change_is_not() {
     let disk = Faulty::new(1, Faults::default(), None);
     let mut writer = Writer::start(keeper(disk.clone()), soon(), vec![0; SIZE], |_| {}).unwrap();
     let mut state = [0; STATE];
-    writer.offer(1, &REGIONS, &state);
+    writer.offer(1, &Kept::whole(&REGIONS), &state);
     // What is not retained is no change.
     state[50] = 1;
-    writer.offer(2, &REGIONS, &state);
+    writer.offer(2, &Kept::whole(&REGIONS), &state);
     state[0] = 1;
-    writer.offer(3, &REGIONS, &state);
+    writer.offer(3, &Kept::whole(&REGIONS), &state);
     until(|| on_disk(&disk) == Some(1));
     let writes = disk.writes();
     for clock in 4..100 {
-        writer.offer(clock, &REGIONS, &state);
+        writer.offer(clock, &Kept::whole(&REGIONS), &state);
     }
     thread::sleep(Duration::from_millis(20));
     assert_eq!(disk.writes(), writes);
     state[79] = 9;
-    writer.finish(100, &REGIONS, &state).unwrap();
+    writer.finish(100, &Kept::whole(&REGIONS), &state).unwrap();
     let content = recover(&disk.cached().unwrap()).unwrap();
     assert_eq!(content.clock, 100);
     assert_eq!(content.found.unwrap().values, [&state[..40], &state[56..]].concat());
@@ -79,12 +79,12 @@ fn the_newest_of_many_changes_is_saved() {
     let hour = Pace::within(Duration::from_secs(3600));
     let mut writer = Writer::start(keeper(disk.clone()), hour, vec![0; SIZE], |_| {}).unwrap();
     for number in 1..=200 {
-        writer.offer(1, &REGIONS, &[number; STATE]);
+        writer.offer(1, &Kept::whole(&REGIONS), &[number; STATE]);
     }
     // The first at once, the rest not before the half hour is over; the end waits for none of that.
     until(|| on_disk(&disk).is_some());
     assert!(disk.writes() <= 2);
-    writer.finish(1, &REGIONS, &[201; STATE]).unwrap();
+    writer.finish(1, &Kept::whole(&REGIONS), &[201; STATE]).unwrap();
     assert_eq!(on_disk(&disk), Some(201));
 }
 
@@ -125,12 +125,12 @@ fn the_scan_does_not_wait_for_the_disk() {
     let mut writer = Writer::start(keeper(Stuck(disk.clone(), wait)), soon(), vec![0; SIZE], |_| {}).unwrap();
     // The disk hangs in its first sync; a scan that waited for it would never end.
     for number in 1..=100 {
-        writer.offer(1, &REGIONS, &[number; STATE]);
+        writer.offer(1, &Kept::whole(&REGIONS), &[number; STATE]);
     }
     assert_eq!(on_disk(&disk), None);
     drop(go_on);
     until(|| on_disk(&disk) == Some(100));
-    writer.finish(1, &REGIONS, &[100; STATE]).unwrap();
+    writer.finish(1, &Kept::whole(&REGIONS), &[100; STATE]).unwrap();
 }
 
 #[test]
@@ -139,7 +139,7 @@ fn a_disk_that_fails_is_tried_again_and_told_once() {
     let (tell, told) = channel();
     let tell = move |text: &str| drop(tell.send(text.to_owned()));
     let mut writer = Writer::start(keeper(disk.clone()), soon(), vec![0; SIZE], tell).unwrap();
-    writer.offer(1, &REGIONS, &[1; STATE]);
+    writer.offer(1, &Kept::whole(&REGIONS), &[1; STATE]);
     let first = told.recv().unwrap();
     assert!(first.starts_with("retained variables cannot be saved: a bad sector;"), "{first}");
     disk.set(Faults::default());
@@ -147,16 +147,17 @@ fn a_disk_that_fails_is_tried_again_and_told_once() {
     assert_eq!(told.recv().unwrap(), "retained variables are saved again");
     assert_eq!(on_disk(&disk), Some(1));
     disk.set(Faults { errors: 100, ..Faults::default() });
-    assert!(writer.finish(1, &REGIONS, &[2; STATE]).is_err());
+    assert!(writer.finish(1, &Kept::whole(&REGIONS), &[2; STATE]).is_err());
     assert_eq!(on_disk(&disk), Some(1));
 }
 
 #[test]
 fn the_scan_does_not_allocate() {
     let disk = Faulty::new(1, Faults::default(), None);
+    let kept = Kept::whole(&REGIONS);
     let mut writer = Writer::start(keeper(disk.clone()), soon(), vec![0; SIZE], |_| {}).unwrap();
-    let offers = || (1..=200).for_each(|number| writer.offer(1, &REGIONS, &[number; STATE]));
+    let offers = || (1..=200).for_each(|number| writer.offer(1, &kept, &[number; STATE]));
     assert_eq!(allocations(offers), 0);
     assert_eq!(allocations(|| drop(vec![0; SIZE])), 1);
-    writer.finish(1, &REGIONS, &[1; STATE]).unwrap();
+    writer.finish(1, &kept, &[1; STATE]).unwrap();
 }
