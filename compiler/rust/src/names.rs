@@ -70,11 +70,13 @@ const KEYWORDS: &[&str] = &[
 #[derive(Clone, Debug, Default)]
 pub struct Scope {
     taken: HashSet<String>,
+    /// For each name that was wanted again, the number to try next.
+    next: HashMap<String, u32>,
 }
 
 impl Scope {
     pub fn with(reserved: &[&str]) -> Self {
-        Self { taken: reserved.iter().map(|it| (*it).to_owned()).collect() }
+        Self { taken: reserved.iter().map(|it| (*it).to_owned()).collect(), next: HashMap::new() }
     }
 
     /// A variable's name, in Rust's case.
@@ -95,13 +97,17 @@ impl Scope {
     }
 
     fn claim_numbered(&mut self, wanted: &str, between: &str) -> Ident {
-        let mut name = wanted.to_owned();
-        let mut number = 2;
-        while !self.taken.insert(name.clone()) {
-            name = format!("{wanted}{between}{number}");
-            number += 1;
+        if self.taken.insert(wanted.to_owned()) {
+            return ident(wanted);
         }
-        ident(&name)
+        let number = self.next.entry(wanted.to_owned()).or_insert(2);
+        loop {
+            let name = format!("{wanted}{between}{number}");
+            *number += 1;
+            if self.taken.insert(name.clone()) {
+                return ident(&name);
+            }
+        }
     }
 
     /// A name no member starts with, for variables the printer makes up.

@@ -11,7 +11,7 @@ const LARGE: usize = 10 * SMALL;
 const MOST: u32 = 40;
 
 /// A program's name, what is before its parts, a part with `#` as its number, and what is after them.
-const SHAPES: [(&str, &str, &str, &str); 3] = [
+const SHAPES: [(&str, &str, &str, &str); 4] = [
     (
         "statements",
         "PROGRAM Main VAR a, b : INT; END_VAR\n",
@@ -23,6 +23,14 @@ const SHAPES: [(&str, &str, &str, &str); 3] = [
         "PROGRAM Main VAR f : F0; END_VAR f(a := 1); END_PROGRAM\n",
         "FUNCTION_BLOCK F# VAR_INPUT a : INT; END_VAR VAR_OUTPUT b : INT; END_VAR b := a + 1; END_FUNCTION_BLOCK\n",
         "",
+    ),
+    // More of them: what was quadratic in them did little each time.
+    (
+        "calls",
+        "FUNCTION G : INT VAR_INPUT a, b : INT; END_VAR G := a + b; END_FUNCTION\n\
+         PROGRAM Main VAR a, b : INT; END_VAR\n",
+        "a := G(a, #); b := G(b, 1) * 2; a := G(a, 2); b := G(a, 3); a := G(b, 4); b := G(a, 5);\n",
+        "END_PROGRAM",
     ),
     (
         "tables",
