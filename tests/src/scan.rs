@@ -9,7 +9,7 @@
 //! ```
 //!
 //! Left of `|` is a stimulus as `staunch run` reads it; without a column `scan` the rows are
-//! scans 1, 2, 3. Right of it stand columns of the trace. In front of a `fault` row comes the
+//! scans 1, 2, 3. Right of it are columns of the trace. In front of a `fault` row comes the
 //! scan that faults, which has no outputs. The place is line and column, after the file's name
 //! if that is not the case's first.
 
@@ -25,7 +25,7 @@ pub struct Table {
     pub fault: Option<Fault>,
 }
 
-/// Cells as they stand in the file, with their quotes.
+/// Cells as they are in the file, with their quotes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Row {
     pub inputs: Vec<String>,

@@ -71,6 +71,23 @@ pub struct Compilation {
 }
 
 impl Compilation {
+    /// There is nothing but what was reported.
+    fn rejected(diagnostics: Vec<Diagnostic>) -> Self {
+        Self { program: None, diagnostics, tests: Vec::new(), coverage: Vec::new(), renamed: Vec::new() }
+    }
+
+    /// Leaves of what was reported what a user is to see, in the order of the files.
+    fn settle(&mut self, sources: &Sources, allowances: &allow::Allowances) {
+        library::of_own_sources(&mut self.diagnostics, sources);
+        // SETUP is a part of each test.
+        self.diagnostics.dedup_by(|a, b| (a.code, a.span) == (b.code, b.span) && a.message == b.message);
+        let renamed = self.diagnostics.iter().filter(|it| it.code == Code::W0609);
+        self.renamed = renamed.filter_map(|it| it.fix.clone()).collect();
+        self.diagnostics.retain(|it| !allowances.cover(it));
+        // A text of pieces is not in the order of its file.
+        self.diagnostics.sort_by_key(|it| (it.span.file, sources.get(it.span.file).in_file(it.span).start));
+    }
+
     pub fn has_errors(&self) -> bool {
         self.diagnostics.iter().any(|it| it.severity == Severity::Error)
     }
@@ -125,27 +142,14 @@ fn run(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
     }
 }
 
-/// Nothing, where the bodies show more of the whole than they were checked with.
+/// The pipeline, in the order of the modules above. Nothing, where the bodies show more of the whole than they were
+/// checked with.
 fn run_with(sources: &Sources, options: &Options, keep: Bodies, whole: &mut Whole) -> Option<Compilation> {
     let mut log = Log::new(sources, options);
-    let Some(mut files) = parse_all(sources, &mut log.diagnostics) else {
-        let diagnostics = log.diagnostics;
-        return Some(Compilation {
-            program: None,
-            diagnostics,
-            tests: Vec::new(),
-            coverage: Vec::new(),
-            renamed: Vec::new(),
-        });
+    let Some(files) = parse_all(sources, &mut log.diagnostics) else {
+        return Some(Compilation::rejected(log.diagnostics));
     };
-    let stubs = library::prepare(&mut files, sources);
-    let has_tests = testing::has_tests(&files);
-    testing::suite::qualify(&mut files);
-    files.iter().for_each(|it| log.read_pragmas(it));
-    inherit::expand(&mut files, &mut log);
-    let groups = testing::expand(&mut files, options.tests, sources, &mut log.diagnostics);
-    start::expand(&mut files);
-    let allowances = allow::Allowances::read(&files, &mut log.diagnostics);
+    let Trees { mut files, groups, stubs, allowances, has_tests } = write_out(files, &mut log);
     let mut bodies: Vec<_> = files.iter_mut().flat_map(ast::File::take_bodies).collect();
     let mut runs = declare::run::runs(&files, options.tests);
     bodies.extend(runs.iter_mut().map(|it| std::mem::take(&mut it.body)));
@@ -169,22 +173,37 @@ fn run_with(sources: &Sources, options: &Options, keep: Bodies, whole: &mut Whol
     let program = program::assemble(&mut declarations, &files, checked);
     let tests = program::tests::tests(&mut declarations, groups);
     let coverage = declarations.coverage.take().map(|it| it.points).unwrap_or_default();
-    let mut compilation = finish(program.filter(|_| keep == Bodies::Kept), declarations.log, unassigned, left_out);
-    compilation.tests = tests;
-    compilation.coverage = coverage;
+    let compilation = finish(program.filter(|_| keep == Bodies::Kept), declarations.log, unassigned, left_out);
+    let mut compilation = Compilation { tests, coverage, ..compilation };
     if has_tests && !options.tests {
         // Unit tests that do not run are checked all the same.
         compilation.add(run(sources, &Options { tests: true, ..options.clone() }, Bodies::Dropped).diagnostics);
     }
-    library::of_own_sources(&mut compilation.diagnostics, sources);
-    // SETUP is a part of each test.
-    compilation.diagnostics.dedup_by(|a, b| (a.code, a.span) == (b.code, b.span) && a.message == b.message);
-    compilation.renamed =
-        compilation.diagnostics.iter().filter(|it| it.code == Code::W0609).filter_map(|it| it.fix.clone()).collect();
-    compilation.diagnostics.retain(|it| !allowances.cover(it));
-    // A text of pieces is not in the order of its file.
-    compilation.diagnostics.sort_by_key(|it| (it.span.file, sources.get(it.span.file).in_file(it.span).start));
+    compilation.settle(sources, &allowances);
     Some(compilation)
+}
+
+/// The trees of a program, with all written out that is short for something else: tests, what a class inherits, what
+/// starts the instances.
+struct Trees<'s> {
+    files: Vec<ast::File<'s>>,
+    groups: testing::Groups,
+    stubs: library::Stubs,
+    allowances: allow::Allowances,
+    has_tests: bool,
+}
+
+fn write_out<'s>(mut files: Vec<ast::File<'s>>, log: &mut Log<'s>) -> Trees<'s> {
+    let sources = log.sources;
+    let stubs = library::prepare(&mut files, sources);
+    let has_tests = testing::has_tests(&files);
+    testing::suite::qualify(&mut files);
+    files.iter().for_each(|it| log.read_pragmas(it));
+    inherit::expand(&mut files, log);
+    let groups = testing::expand(&mut files, log.options.tests, sources, &mut log.diagnostics);
+    start::expand(&mut files);
+    let allowances = allow::Allowances::read(&files, &mut log.diagnostics);
+    Trees { files, groups, stubs, allowances, has_tests }
 }
 
 /// The files' trees; `None` where one is no Structured Text, of which alone is then said so.
@@ -298,5 +317,5 @@ fn finish(program: Option<Program>, log: Log<'_>, unassigned: Vec<Diagnostic>, l
     {
         unreachable!("the front end made IR that does not verify: {violations:?}");
     }
-    Compilation { program, diagnostics, tests: Vec::new(), coverage: Vec::new(), renamed: Vec::new() }
+    Compilation { program, ..Compilation::rejected(diagnostics) }
 }

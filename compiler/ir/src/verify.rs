@@ -1,10 +1,10 @@
 //! What holds in every program the front end hands over. **Verified IR cannot make a back end
 //! fail or panic**: each of their `expect("verified IR: …")` relies on a check here.
 //!
-//! - Ids are in range; structures and arrays stand after their parts, callees before callers.
+//! - Ids are in range; structures and arrays come after their parts, callees before callers.
 //! - Types have a layout within the limit; constants have the shape of their types.
 //! - Every expression, place, argument, pin input and case label has the type its user wants.
-//! - Nothing writes what is constant; EXIT and CONTINUE stand where they mean something.
+//! - Nothing writes what is constant; EXIT and CONTINUE are where they mean something.
 
 mod expression;
 mod place;

@@ -11,7 +11,7 @@ use staunch_ir::loops::{exit_condition, running};
 use staunch_ir::turns::Ahead;
 use staunch_ir::{Block, Expr, ExprKind, FaultKind, For, Location, Repr, Statement, Step, Value};
 
-/// Conditions of more operations than this stand once, and the loop's end jumps to them.
+/// Conditions of more operations than this are there once, and the loop's end jumps to them.
 const SMALL: usize = 8;
 
 /// What leads to a further turn.
@@ -352,7 +352,7 @@ impl<'p> Function<'_, 'p> {
     }
 
     pub(crate) fn innermost(&mut self) -> &mut LoopFrame<'p> {
-        self.loops.last_mut().expect("verified IR: EXIT and CONTINUE stand in a loop")
+        self.loops.last_mut().expect("verified IR: EXIT and CONTINUE are in a loop")
     }
 
     pub(crate) fn leave_loop(&mut self) -> Flow {

@@ -633,7 +633,7 @@ impl Maker {
     }
 
     fn call(&mut self) -> Option<StatementKind> {
-        // A PROGRAM's routines stand last, and nobody's calls reach them: their state is nowhere.
+        // A PROGRAM's routines are last, and nobody's calls reach them: their state is nowhere.
         let callees: Vec<_> = (0..self.routines.len()).collect();
         if callees.is_empty() {
             return None;

@@ -88,7 +88,7 @@ fn expand(map: &Map, heading: String, place: Place, out: &mut Vec<Column>) {
     }
 }
 
-/// The indices of nested arrays stand in one pair of brackets.
+/// The indices of nested arrays are in one pair of brackets.
 fn elements(map: &Map, heading: &str, indices: String, place: Place, out: &mut Vec<Column>) {
     let Some(array) = map.array(place.ty) else {
         return expand(map, format!("{heading}[{indices}]"), place, out);

@@ -1,8 +1,8 @@
 //! Patterns from every state that is new in some respect: inputs that hold, pulse, or wait until the
 //! program has settled, for as long as anything changes by it.
 //!
-//! A state is new where a variable, a count against the program's constants, or how the two systems
-//! stand to each other is as it was not before. States in which counters have parted come first: the
+//! A state is new where a variable, a count against the program's constants, or the difference of the two
+//! systems is as it was not before. States in which counters have parted come first: the
 //! compared values may follow.
 
 use super::novelty::Novelty;

@@ -1,5 +1,5 @@
 //! What is new about a state: a value of a BOOL or an enumeration, a number's place among the
-//! program's constants, a count against its preset, how the two systems stand to each other.
+//! program's constants, a count against its preset, how the two systems differ.
 
 use super::pair::Pair;
 use super::scalar::Role;
@@ -64,7 +64,7 @@ impl Novelty {
         Self { respects, limits, values: HashSet::new(), whole: HashSet::new(), scratch: Vec::new() }
     }
 
-    /// How much is new about the state that the pair is in: 0 where the systems stand to each other
+    /// How much is new about the state that the pair is in: 0 where the systems differ
     /// as never before, 1 for another respect, 2 for a combination; `None` if nothing is.
     pub fn rank(&mut self, pair: &Pair, inputs: &[Value]) -> Option<usize> {
         let states = pair.states();

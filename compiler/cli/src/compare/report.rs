@@ -119,7 +119,7 @@ impl Report<'_> {
         for it in &self.missing {
             let _ = writeln!(
                 text,
-                "{}: {} has no {} (`{}`): there it is {}; compared as it stands.",
+                "{}: {} has no {} (`{}`): there it is {}; compared as it is.",
                 it.at,
                 to.to_ascii_uppercase(),
                 it.what,

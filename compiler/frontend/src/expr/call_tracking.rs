@@ -56,7 +56,7 @@ impl Called {
         self.taken_back.extend(instance(place));
     }
 
-    /// Forgets the instances behind the first `len`, and returns them.
+    /// Forgets the instances after the first `len`, and returns them.
     pub fn split_off(&mut self, len: usize) -> Vec<(Instance, Call)> {
         let forgotten = self.order.split_off(len).into_iter();
         forgotten.filter_map(|it| self.first.remove(&it).map(|call| (it, call))).collect()

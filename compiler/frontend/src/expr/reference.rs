@@ -529,7 +529,7 @@ impl<'s> Checker<'_, 's> {
         self.apply(Op::Sub, Type::LINT, vec![a, b], Type::LINT, span)
     }
 
-    /// `p[i]` of a POINTER TO in CODESYS: what lies so many variables of its type behind where it points.
+    /// `p[i]` of a POINTER TO in CODESYS: what lies so many variables of its type after where it points.
     pub(crate) fn element_of_pointer(&mut self, found: &Found<'s>, index: &ast::Expr<'s>) -> Option<Option<Found<'s>>> {
         let (id, RefType { kind, target }) = self.ref_type(self.type_of(found))?;
         let is_indexed = kind == RefKind::PointerTo && self.decl.dialect(index.span).indexes_pointers();

@@ -1,4 +1,4 @@
-//! What productions stand on: the tokens, the state beside them, and the parser over them.
+//! What productions are made of: the tokens, the state beside them, and the parser over them.
 
 use chumsky::{
     DefaultExpected,

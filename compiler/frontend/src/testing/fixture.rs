@@ -41,7 +41,7 @@ const MARKS: [(&str, Mark); 5] = [
     ("FixtureTearDown", Mark::Setup(Setup::Last)),
 ];
 
-/// Pragmas of AxUnit that stand before parameters.
+/// Pragmas of AxUnit before parameters.
 const OF_CALLERS: [(&str, Caller); 2] = [("CallerLineNumber", Caller::Line), ("CallerFilePath", Caller::Path)];
 
 /// What an input has where a call leaves it out: the place of the call.

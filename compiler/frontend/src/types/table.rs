@@ -33,7 +33,7 @@ impl Resolved {
 pub(crate) struct AnyInputs {
     /// The slot of the structure that they get.
     pub structure: Option<usize>,
-    /// Where the words stand that are their types.
+    /// Where the words are that are their types.
     pub words: FxHashSet<Span>,
     /// What each may be given, by where its name is declared.
     pub classes: FxHashMap<Span, Class>,

@@ -174,7 +174,7 @@ impl<'t> Table<'t> {
             let begins_later = self.object(middle + 1).is_some_and(|(start, _)| start > offset);
             if begins_later { high = middle } else { low = middle + 1 }
         }
-        // Objects that begin at one offset stand in the order of their sizes, the largest first, so that
+        // Objects that begin at one offset are in the order of their sizes, the largest first, so that
         // the first that is met from here holds no other.
         (1..=low)
             .rev()

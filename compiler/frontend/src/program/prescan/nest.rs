@@ -8,7 +8,7 @@ use staunch_ir::startup::{Event, Fate, Startup};
 use staunch_ir::{Elementary, Expr, FieldId, Location, Op, Place, Program, Root, RoutineId, StructId, Type, Value};
 
 /// The slots of the POUs that have instances, with their structures: parts before what they are
-/// parts of, as structures stand in that order.
+/// parts of, as structures are in that order.
 fn owners(program: &Program) -> Vec<(StructId, usize)> {
     let classes = program.classes.iter();
     let mut owners: Vec<_> = classes.map(|it| (it.state, it.body.index())).collect();
