@@ -17,11 +17,15 @@ fn emitted_rust_is_as_rustfmt_lays_it_out() {
     let (cases, _) = case::discover(&cases());
     let files: Vec<PathBuf> = cases.iter().filter_map(|it| write(it, &folder)).collect();
     assert!(files.len() > 200, "only {} cases emit", files.len());
-    let mut rustfmt = Command::new("rustfmt");
-    rustfmt.args(["--check", "--edition", "2024", "--config-path"]).arg(&folder).args(&files);
-    let output = rustfmt.output().expect("rustfmt is a part of the toolchain");
-    let text = String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{}", text.lines().take(60).collect::<Vec<_>>().join("\n"));
+    // A crate includes them in its own edition.
+    for edition in ["2021", "2024"] {
+        let mut rustfmt = Command::new("rustfmt");
+        rustfmt.args(["--check", "--edition", edition, "--config-path"]).arg(&folder).args(&files);
+        let output = rustfmt.output().expect("rustfmt is a part of the toolchain");
+        let text = String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
+        let first = || text.lines().take(60).collect::<Vec<_>>().join("\n");
+        assert!(output.status.success(), "{edition}: {}", first());
+    }
 }
 
 /// Most functions are short enough to be laid out for certain; only others ask rustfmt to pass them over.

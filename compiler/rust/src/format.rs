@@ -44,6 +44,8 @@ fn comment(text: &str) -> String {
             continue;
         }
         commented.push_str(line);
+        // The block has ended without another statement.
+        pending = pending.filter(|it| content.is_empty() || line.len() - content.len() >= it.1);
         if let Some((mark, indent)) = pending
             && line.len() - content.len() == indent
         {
@@ -334,8 +336,17 @@ fn has_value(code: &str) -> bool {
 fn space(text: &str) -> String {
     let mut spaced = String::with_capacity(text.len());
     let mut ended = false;
+    let mut used = None;
     for line in text.lines() {
         let content = line.trim_start();
+        // Two groups of one crate.
+        let root = content.strip_prefix("use ").and_then(|it| it.rsplit_once("::")).map(|it| it.0);
+        if root.is_some() && root == used {
+            spaced.push('\n');
+        }
+        if !line.starts_with(' ') && content != "};" {
+            used = root;
+        }
         let depth = (line.len() - content.len()) / 4;
         let opens = content.starts_with("pub ")
             || content.starts_with("///")
@@ -357,10 +368,7 @@ fn space(text: &str) -> String {
 pub fn imports(tokens: &TokenStream) -> Vec<String> {
     let mut found = BTreeSet::new();
     collect(tokens.clone(), &mut found);
-    let (modules, types): (Vec<_>, Vec<_>) =
-        found.into_iter().partition(|name| name.starts_with(|it: char| it.is_lowercase()));
-    // rustfmt's order.
-    types.into_iter().chain(modules).collect()
+    found.into_iter().collect()
 }
 
 fn collect(tokens: TokenStream, found: &mut BTreeSet<String>) {

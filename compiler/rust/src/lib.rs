@@ -141,24 +141,30 @@ fn imports(
     shared: bool,
     calls_out: bool,
 ) -> Option<proc_macro2::TokenStream> {
-    let names: Vec<_> = format::imports(items).iter().map(|it| names::ident(it)).collect();
+    let (types, modules): (Vec<_>, Vec<_>) =
+        format::imports(items).into_iter().partition(|it| it.starts_with(|first: char| first.is_uppercase()));
     let externals = calls_out.then(|| {
         quote!(
             use super::Externals;
         )
     });
     let runtime: syn::Path = syn::parse_str(runtime).expect("the runtime's path is a Rust path");
-    let runtime = match names.as_slice() {
-        [] => None,
-        [name] => Some(quote!(use #runtime::#name;)),
-        names => Some(quote!(use #runtime::{#(#names),*};)),
+    let of_runtime = |names: Vec<String>| {
+        let names: Vec<_> = names.iter().map(|it| names::ident(it)).collect();
+        match names.as_slice() {
+            [] => None,
+            [name] => Some(quote!(use #runtime::#name;)),
+            names => Some(quote!(use #runtime::{#(#names),*};)),
+        }
     };
+    // Editions differ in which of the two come first: each has a group of its own.
+    let (types, modules) = (of_runtime(types), of_runtime(modules));
     let cell = shared.then(|| {
         quote!(
             use core::cell::Cell;
         )
     });
-    Some(quote!(#cell #externals #runtime))
+    Some(quote!(#cell #externals #types #modules))
 }
 
 fn header(program: &Program) -> String {

@@ -29,7 +29,9 @@
 )]
 
 use super::Externals;
-use staunch_runtime::{Context, Fault, Text, firmware};
+use staunch_runtime::{Context, Fault, Text};
+
+use staunch_runtime::firmware;
 
 /// What the program calls and does not say: the module around this one implements it for its `Externals`.
 pub trait External {

@@ -28,7 +28,9 @@
     reason = "constants and phrasing are as in the source"
 )]
 
-use staunch_runtime::{Context, Fault, FaultKind, OrFault, firmware, ops};
+use staunch_runtime::{Context, Fault, FaultKind, OrFault};
+
+use staunch_runtime::{firmware, ops};
 
 /// The sources, as the `file` of a fault's location counts them.
 pub const FILES: &[&str] = &["aliased_in_outs.st"];

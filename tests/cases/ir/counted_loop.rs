@@ -28,7 +28,9 @@
     reason = "constants and phrasing are as in the source"
 )]
 
-use staunch_runtime::{Context, Fault, OrFault, firmware, iec, ops};
+use staunch_runtime::{Context, Fault, OrFault};
+
+use staunch_runtime::{firmware, iec, ops};
 
 /// The sources, as the `file` of a fault's location counts them.
 pub const FILES: &[&str] = &["counted_loop.st"];

@@ -28,7 +28,9 @@
     reason = "constants and phrasing are as in the source"
 )]
 
-use staunch_runtime::{Context, Fault, OrFault, Text, firmware, iec, ops, strips, text, time};
+use staunch_runtime::{Context, Fault, OrFault, Text};
+
+use staunch_runtime::{firmware, iec, ops, strips, text, time};
 
 /// The sources, as the `file` of a fault's location counts them.
 pub const FILES: &[&str] = &["statements.st"];

@@ -28,7 +28,9 @@
     reason = "constants and phrasing are as in the source"
 )]
 
-use staunch_runtime::{Context, Fault, OrFault, firmware};
+use staunch_runtime::{Context, Fault, OrFault};
+
+use staunch_runtime::firmware;
 
 /// The sources, as the `file` of a fault's location counts them.
 pub const FILES: &[&str] = &["turns_taken_at_once.st"];

@@ -29,7 +29,9 @@
 )]
 
 use core::cell::Cell;
-use staunch_runtime::{Context, Fault, FaultKind, OrFault, firmware, ops, reference};
+use staunch_runtime::{Context, Fault, FaultKind, OrFault};
+
+use staunch_runtime::{firmware, ops, reference};
 
 /// The sources, as the `file` of a fault's location counts them.
 pub const FILES: &[&str] = &["pool_in_rust.st"];

@@ -28,7 +28,9 @@
     reason = "constants and phrasing are as in the source"
 )]
 
-use staunch_runtime::{Context, Fault, firmware};
+use staunch_runtime::{Context, Fault};
+
+use staunch_runtime::firmware;
 
 /// The sources, as the `file` of a fault's location counts them.
 pub const FILES: &[&str] = &["empty.st"];
