@@ -21,7 +21,8 @@ pub(crate) fn recognise(file: u16, source: &Source) -> Option<Diagnostic> {
         .or_else(|| logix(text))
         .or_else(|| rungs(text))
         .or_else(|| scl(text))
-        .or_else(|| list(text))?;
+        .or_else(|| list(text))
+        .or_else(|| statement_list(text))?;
     let line = text[kind.at..].lines().next().unwrap_or_default();
     let end = kind.at + line.trim_end().len();
     let offset = |it: usize| u32::try_from(it).unwrap_or(u32::MAX);
@@ -136,7 +137,42 @@ fn list(text: &str) -> Option<Kind> {
     })
 }
 
+/// Siemens' STL: an operation on bits of the image, `U E 0.0`, `= A 4.0`, or on what it holds, `L MW 10`.
+fn statement_list(text: &str) -> Option<Kind> {
+    let mut found = lines(text).filter(|(_, line)| is_statement_of_list(line)).map(|it| it.0);
+    let at = found.next()?;
+    found.next().map(|_| Kind {
+        name: "statement list (STL, AWL) of Siemens'",
+        at,
+        help: "write what it does in Structured Text: `U E 0.0`, `UN E 0.1`, `= A 4.0` is `a := e0 AND NOT e1;`",
+    })
+}
+
+fn is_statement_of_list(line: &str) -> bool {
+    const BITS: [&str; 13] = ["U", "UN", "O", "ON", "A", "AN", "X", "XN", "S", "R", "=", "FP", "FN"];
+    let line = line.split("//").next().unwrap_or_default().trim().trim_end_matches(';');
+    let words: Vec<&str> = without_label(line).split_whitespace().collect();
+    let digits = |it: &str| !it.is_empty() && it.chars().all(|it| it.is_ascii_digit());
+    let is_bit = |it: &str| it.split_once('.').is_some_and(|(byte, bit)| digits(byte) && bit.len() == 1 && digits(bit));
+    let is_wide = |it: &str| ["B", "W", "D"].iter().any(|width| it.len() == 2 && it.ends_with(width));
+    match words.as_slice() {
+        [operation, area, bit] if BITS.contains(operation) => ["E", "A", "I", "Q", "M"].contains(area) && is_bit(bit),
+        ["L" | "T", area, number] => is_wide(area) && digits(number),
+        _ => false,
+    }
+}
+
+/// What is after `again:`.
+fn without_label(line: &str) -> &str {
+    let (label, rest) = match line.split_once(':') {
+        Some((label, rest)) if !rest.starts_with('=') => (label.trim(), rest.trim_start()),
+        _ => return line,
+    };
+    if label.chars().all(|it| it.is_alphanumeric() || it == '_') { rest } else { line }
+}
+
 fn is_instruction(line: &str, operators: &[&str]) -> bool {
+    let line = without_label(line);
     let line = line.split("(*").next().unwrap_or_default().split("//").next().unwrap_or_default();
     let mut words = line.split_whitespace();
     let operator = words.next().is_some_and(|it| operators.iter().any(|of| of.eq_ignore_ascii_case(it)));

@@ -12,7 +12,7 @@ use super::{
 
 /// `ENDIF`, `ELSEIF`: the keyword that a name at the start of a statement stands for.
 fn misspelt_word(word: &str) -> Option<Kind> {
-    const WORDS: [(&str, Kind); 14] = [
+    const WORDS: [(&str, Kind); 16] = [
         ("ELSEIF", Kind::Elsif),
         ("ELSE_IF", Kind::Elsif),
         ("ELIF", Kind::Elsif),
@@ -20,6 +20,8 @@ fn misspelt_word(word: &str) -> Option<Kind> {
         ("ENDFOR", Kind::EndFor),
         ("ENDWHILE", Kind::EndWhile),
         ("ENDCASE", Kind::EndCase),
+        ("END_SWITCH", Kind::EndCase),
+        ("ENDSWITCH", Kind::EndCase),
         ("ENDREPEAT", Kind::EndRepeat),
         ("ENDVAR", Kind::EndVar),
         ("ENDSTRUCT", Kind::EndStruct),
