@@ -12,7 +12,7 @@ use std::path::PathBuf;
 #[command(name = "staunch", version, max_term_width = 100, arg_required_else_help = true)]
 #[command(after_help = "A FILE may be a folder (every .st and .iecst below it) or - (standard input).\n\
     Exit codes: 0 done; 1 the program was rejected; 2 wrong usage; 3 the program faulted while it ran;\n\
-    101 an internal error.")]
+    4 compare found no difference and rules none out; 101 an internal error.")]
 pub struct Cli {
     #[command(subcommand)]
     pub command: Command,

@@ -147,6 +147,7 @@ impl Report<'_> {
         }
         if self.args.stimulus.is_none() {
             text += &self.listed(findings, accepted);
+            text += &self.not_accepted(findings, accepted);
         }
         text + &self.names_change()
     }

@@ -46,6 +46,23 @@ impl Report<'_> {
     }
 }
 
+impl Report<'_> {
+    /// Why the command fails, although some of what was found is accepted.
+    pub(super) fn not_accepted(&self, findings: &Findings, accepted: &Accepted) -> String {
+        let open = findings.all.iter().filter(|it| it.is_reachable() && !accepted.accepts(it));
+        let names = open.map(|it| match it.pitfall {
+            Some(pitfall) => format!("`{} {}`", it.subject, pitfall.number()),
+            None => format!("`{} {}`", it.subject, it.kind.name()),
+        });
+        let names: Vec<String> = names.collect();
+        match names.as_slice() {
+            [] => String::new(),
+            _ if !accepted.accepts_any() => String::new(),
+            names => format!("\nNot accepted: {}.\n", names.join(", ")),
+        }
+    }
+}
+
 /// What is known of one counter.
 fn of_subject(own: &[&Finding], accepted: &Accepted) -> String {
     let mut text = String::new();
