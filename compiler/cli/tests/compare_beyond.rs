@@ -105,6 +105,20 @@ END_IF",
         trap: None,
         scans: 1,
     },
+    // What is at `%QX` is no part of what is at `%QW` on OPENPLC.
+    Planted {
+        name: "address",
+        from: "iec",
+        to: "openplc",
+        source: "VAR_INPUT s : BOOL; END_VAR VAR word AT %QW0 : WORD; bit AT %QX0.0 : BOOL; END_VAR
+
+bit := s;",
+        kind: "address",
+        subject: "word",
+        line: 4,
+        trap: None,
+        scans: 1,
+    },
     // A plain variable, which STOP -> RUN of CODESYS keeps.
     Planted {
         name: "retention",

@@ -19,6 +19,8 @@ pub enum Kind {
     Latch,
     /// A variable that the two systems compute in other types.
     Width,
+    /// A variable at an address whose bits others share on one of the two alone.
+    Address,
     /// A variable that an event leaves as it is on one of the two.
     Retention,
     Fault,
@@ -27,12 +29,13 @@ pub enum Kind {
 }
 
 impl Kind {
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Counter,
         Self::Timer,
         Self::OneShot,
         Self::Latch,
         Self::Width,
+        Self::Address,
         Self::Retention,
         Self::Fault,
         Self::Variable,
@@ -46,6 +49,7 @@ impl Kind {
             Self::OneShot => "one-shot",
             Self::Latch => "latch",
             Self::Width => "width",
+            Self::Address => "address",
             Self::Retention => "retention",
             Self::Fault => "fault",
             Self::Variable => "variable",
@@ -60,6 +64,7 @@ impl Kind {
                 "both systems run the same block, and what it is given differs"
             }
             Self::Width => "the two systems compute or hold it in other types",
+            Self::Address => "what is at its address shares bits on one of the two systems alone",
             Self::Retention => "one system keeps it",
             Self::Fault => "one system faults here, and the other goes on",
             Self::Variable => "no trap explains it: the two programs are not the same",
@@ -83,6 +88,7 @@ impl Kind {
 #[derive(Clone, Debug)]
 pub struct Candidate {
     pub variable: Matched,
+    pub kind: Kind,
     pub at: Location,
 }
 
@@ -99,7 +105,8 @@ pub fn kept_by_one(pair: &Pair) -> Vec<Candidate> {
         let keeps = |side: usize, event| pair.sides[side].keeps(event, scalars[side].offset);
         let Some(declared) = scalars[0].field else { continue };
         if events().any(|it| keeps(0, it) != keeps(1, it)) && seen.insert(declared) {
-            found.push(Candidate { variable: [a, b], at: location(&pair.sides[0].program, declared) });
+            let at = location(&pair.sides[0].program, declared);
+            found.push(Candidate { variable: [a, b], kind: Kind::Retention, at });
         }
     }
     found
@@ -121,7 +128,12 @@ pub fn computed_apart(pair: &Pair) -> Vec<Candidate> {
     let variables = pair.matched(|it| it.role == Role::Variable).into_iter();
     let of = |variable: Matched| {
         let declared = pair.scalar(0, variable[0]).field?;
-        Some(Candidate { variable, at: *targets.get(&declared)? })
+        let at = *targets.get(&declared)?;
+        // What is held in one type is stored alike, but for the bits around it.
+        let reprs = [0, 1].map(|side| pair.sides[side].program.repr(pair.scalar(side, variable[side]).ty));
+        let is_located = ours.structure(declared.0).fields[declared.1.index()].address.is_some();
+        let kind = if is_located && reprs[0] == reprs[1] { Kind::Address } else { Kind::Width };
+        Some(Candidate { variable, kind, at })
     };
     variables.filter_map(of).collect()
 }
@@ -134,7 +146,8 @@ pub fn held_apart(pair: &Pair) -> Vec<Candidate> {
         pair.matched(|it| it.role == Role::Variable).into_iter().filter(|[a, b]| capacity(0, *a) != capacity(1, *b));
     let of = |variable: Matched| {
         let declared = pair.scalar(0, variable[0]).field?;
-        seen.insert(declared).then(|| Candidate { variable, at: location(&pair.sides[0].program, declared) })
+        let at = || location(&pair.sides[0].program, declared);
+        seen.insert(declared).then(|| Candidate { variable, kind: Kind::Width, at: at() })
     };
     apart.filter_map(of).collect()
 }

@@ -109,7 +109,7 @@ impl Findings {
             self.add(Subject::Block(at), Kind::of(instance), instance.path.clone(), place);
         }
         for (at, it) in world.computed.iter().enumerate() {
-            self.add(Subject::Computed(at), Kind::Width, pair.path(it.variable).to_owned(), Some(it.at));
+            self.add(Subject::Computed(at), it.kind, pair.path(it.variable).to_owned(), Some(it.at));
         }
         for it in beyond::kept_by_one(pair) {
             let subject = pair.path(it.variable).to_owned();
@@ -194,7 +194,7 @@ impl Findings {
         let is_known =
             |it: &Finding, at| it.at == at && !matches!(it.verdict, Verdict::Impossible(_) | Verdict::Undecided);
         let explains = |it: &Finding| {
-            let kinds = matches!(it.kind, Kind::Width | Kind::Retention);
+            let kinds = matches!(it.kind, Kind::Width | Kind::Address | Kind::Retention);
             kinds
                 && matches!(it.verdict, Verdict::Reachable(_))
                 && found.iter().any(|(_, subject, _)| *subject == it.subject)
@@ -214,7 +214,7 @@ impl Findings {
     pub fn reason_for(&self, path: &str) -> Option<&Finding> {
         let says = |it: &&Finding| {
             it.subject == path
-                && matches!(it.kind, Kind::Width | Kind::Retention)
+                && matches!(it.kind, Kind::Width | Kind::Address | Kind::Retention)
                 && matches!(it.verdict, Verdict::Reachable(_))
         };
         self.all.iter().find(says)
@@ -277,7 +277,7 @@ impl Finding {
     pub fn is_reachable(&self) -> bool {
         let follows = match self.kind {
             Kind::Timer | Kind::OneShot | Kind::Latch => self.pitfall.is_none(),
-            Kind::Counter | Kind::Width | Kind::Retention | Kind::Fault | Kind::Variable => false,
+            Kind::Counter | Kind::Width | Kind::Address | Kind::Retention | Kind::Fault | Kind::Variable => false,
         };
         matches!(self.verdict, Verdict::Reachable(Some(_))) && !follows
     }

@@ -54,7 +54,7 @@ fn of(to: &Session, error: &Diagnostic, from: Dialect, target: Dialect) -> Rejec
     let block = matches!(error.code, Code::E0309 | Code::E0102 | Code::E0305 | Code::E0307);
     let why = format!("{system} rejects the program: {}", error.message);
     let pitfall = |number| Some(Pitfall::numbered(number));
-    if target == Dialect::Logix && block {
+    if target == Dialect::Logix && (block || error.code == Code::E0301) {
         return Rejection { pitfall: None, why, advice: TO_LOGIX.to_owned() };
     }
     if from == Dialect::Logix && block && TIMERS_OF_LOGIX.contains(&name.as_str()) {

@@ -169,7 +169,7 @@ impl Builder<'_> {
             }
         }
         for it in &world.computed {
-            if self.accepted.takes(Kind::Width, pair.path(it.variable), None) {
+            if self.accepted.takes(it.kind, pair.path(it.variable), None) {
                 let bit = self.root(self.fields(it.variable));
                 self.found.differing.push((it.variable, bit));
             }
