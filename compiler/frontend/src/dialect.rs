@@ -1,6 +1,7 @@
 //! Whose blocks a bare name means, and what a dialect allows beyond the standard.
 
 pub(crate) mod library;
+pub(crate) mod missing;
 
 use crate::spelling::Key;
 use rustc_hash::FxHashMap;
@@ -123,6 +124,11 @@ impl Dialect {
 
     /// Bit strings count as unsigned integers, and same-size sign changes are implicit.
     pub const fn mixes_bits_and_integers(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
+    /// A DATE and a TIME are the day on which that time after midnight is.
+    pub const fn adds_times_to_days(self) -> bool {
         matches!(self, Self::Codesys)
     }
 

@@ -156,6 +156,9 @@ impl<'s> Reading<'s> {
         if self.closes_text(place) {
             return;
         }
+        if self.slice(place) == "@" && self.text[index(place.1)..].starts_with("EXTERNAL") {
+            return self.report_external(place);
+        }
         let shown: String = self.slice(place).chars().take(20).flat_map(char::escape_debug).collect();
         let mut it =
             Diagnostic::new(Code::E0002, self.span(place), format!("`{shown}` means nothing in Structured Text"));
@@ -176,6 +179,21 @@ impl<'s> Reading<'s> {
             _ => it.label("delete this"),
         };
         self.tokens.diagnostics.push(it);
+    }
+
+    /// ruSTy's word for a POU that is implemented elsewhere: reported once in a file.
+    fn report_external(&mut self, place: (u32, u32)) {
+        const MESSAGE: &str = "`@EXTERNAL` is ruSTy's word for what is implemented elsewhere";
+        if self.tokens.diagnostics.iter().any(|it| it.message == MESSAGE) {
+            return;
+        }
+        let end = place.1 + 8;
+        self.tokens.diagnostics.push(
+            Diagnostic::new(Code::E0002, self.span((place.0, end)), MESSAGE)
+                .label("here that is a pragma")
+                .help("write `{external}` before each FUNCTION and FUNCTION_BLOCK that is implemented in Rust or C")
+                .note("a standard function, such as `INT_TO_STRING`, is not declared"),
+        );
     }
 
     /// `’` after `‘Mixer`: the pair is one mistake.

@@ -261,6 +261,9 @@ fn problem(file: u16, problem: &Problem) -> Diagnostic {
     Diagnostic::new(code, span, problem.message.clone()).help(help)
 }
 
+/// Of what is refused by its name, what programs name in many places.
+const NAMED_ONCE: [&str; 4] = [" of Tc2_Utilities ", " of Util ", " __VARINFO ", "`__CURRENTTASK`"];
+
 /// What is there nowhere is one mistake, however often it is named: the first place is reported, with the number of
 /// the others.
 fn said_once(diagnostics: Vec<Diagnostic>, sources: &Sources) -> Vec<Diagnostic> {
@@ -275,7 +278,7 @@ fn said_once(diagnostics: Vec<Diagnostic>, sources: &Sources) -> Vec<Diagnostic>
         let is_missing = match it.code {
             Code::E0102 | Code::E0307 => it.message.starts_with("there is no "),
             Code::E0101 => is_owner(),
-            Code::E0902 => it.message.contains(" of Tc2_Utilities "),
+            Code::E0902 => NAMED_ONCE.iter().any(|name| it.message.contains(name)),
             _ => false,
         };
         if !is_missing {

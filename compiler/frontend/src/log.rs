@@ -43,10 +43,7 @@ impl<'s> Log<'s> {
     }
 
     pub fn not_supported(&mut self, span: Span, what: &str) {
-        self.report(
-            Diagnostic::new(Code::E0902, span, format!("{what} is not supported yet"))
-                .label("this version of Staunch cannot compile it"),
-        );
+        self.report(unsupported(span, what));
     }
 
     /// Whether errors were reported since there were `reported` diagnostics.
@@ -100,4 +97,9 @@ impl<'s> Log<'s> {
         let start = source.in_text(offset(start + before)).unwrap_or(0);
         Span { file: at.file, start, end: start + offset(name) }
     }
+}
+
+pub(crate) fn unsupported(span: Span, what: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0902, span, format!("{what} is not supported yet"))
+        .label("this version of Staunch cannot compile it")
 }

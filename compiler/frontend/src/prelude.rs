@@ -153,7 +153,8 @@ pub(crate) const UNITS: &[Unit] = units! {
     Type     "IEC_TIMER"        "iec_timer"        [Siemens];
     Function "NORM_X"           "norm_x"           [Siemens];
     Function "SCALE_X"          "scale_x"          [Siemens];
-    Type     "RTC"              "rtc";
+    Type     "RTC"              "rtc"              [Iec Cscape Openplc Logix Siemens];
+    Type     "RTC"              "codesys_rtc"      [Codesys: Standard];
     Function "SPLIT_DATE"       "split_date";
     Function "SPLIT_TOD"        "split_tod";
     Function "SPLIT_LTOD"       "split_ltod";

@@ -30,7 +30,7 @@ pub fn read(text: &str) -> Option<Assembly> {
     match root.name {
         "TcPlcObject" => Some(twincat::read(text, reader)),
         "RSLogix5000Content" => Some(l5x::read(text, reader)),
-        "project" if text[root.place].contains("www.plcopen.org") => Some(plcopen::read(text, reader)),
+        "project" if plcopen::is_project(text, &root.place) => Some(plcopen::read(text, reader)),
         _ => None,
     }
 }

@@ -185,7 +185,7 @@ impl<'s> Declarations<'s> {
     fn is_retyped(&self, first: Type, second: Type) -> bool {
         let is_array = |ty| matches!(ty, Type::Array(_));
         let can = |ty| is_array(ty) || matches!(ty, Type::Elementary(_));
-        first != second && can(first) && can(second) && !(is_array(first) && is_array(second))
+        first != second && can(first) && can(second)
     }
 
     /// What is declared with another type than what lies at its address.
@@ -218,23 +218,59 @@ impl<'s> Declarations<'s> {
         false
     }
 
+    /// The bits that a variable of the type takes at an address.
     fn check_width(&mut self, address: Address, resolved: &Resolved, span: Span) -> u64 {
         self.check_not_relative(resolved.ty, span);
-        let bits = match resolved.ty {
-            Type::Elementary(Elementary::Bool) => 1,
-            other => self.size_of(other).saturating_mul(8),
-        };
-        let fits = bits == u64::from(address.width)
-            || (matches!(resolved.ty, Type::Array(_)) && bits % u64::from(address.width) == 0);
-        if !fits {
-            let ty = self.program.type_name(resolved.ty);
-            self.report(
-                Diagnostic::new(Code::E0409, span, format!("{ty} does not fit this address"))
-                    .label(format!("the address is {} bits wide, {ty} is {bits}", address.width)),
-            );
-            return u64::from(address.width);
+        let ty = resolved.ty;
+        let bits = if ty == Type::BOOL { 1 } else { self.sizeof(ty).saturating_mul(8) };
+        let width = u64::from(address.width);
+        if self.refuse_instance_at(ty, span) {
+            return width;
         }
-        bits
+        let fits = match ty {
+            Type::Array(_) => bits.is_multiple_of(width),
+            // They begin there, and take what they need.
+            Type::Struct(_) | Type::String(_) => address.bit.is_multiple_of(8),
+            Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) | Type::Reference(_) | Type::Block(_) => {
+                bits == width
+            }
+        };
+        if !fits {
+            self.report_width(address, ty, bits, span);
+        }
+        if fits { bits } else { width }
+    }
+
+    fn report_width(&mut self, address: Address, ty: Type, bits: u64, span: Span) {
+        let name = self.program.type_name(ty);
+        let error = Diagnostic::new(Code::E0409, span, format!("{name} does not fit this address"));
+        let plural = if address.width == 1 { "bit" } else { "bits" };
+        let error = error.label(format!("the address is {} {plural} wide, {name} is {bits}", address.width));
+        let is_whole = matches!(ty, Type::Struct(_) | Type::String(_));
+        self.report(match u8::try_from(bits).ok().filter(|it| [1, 8, 16, 32, 64].contains(it)) {
+            _ if is_whole => error.help(format!("it begins with a byte: `{}`", at_width(address, 8))),
+            Some(_) if matches!(ty, Type::Array(_)) => error,
+            Some(width) if address.bit.is_multiple_of(bits) => {
+                error.help(format!("the address of its width there is `{}`", at_width(address, width)))
+            }
+            Some(width) => {
+                error.help(format!("choose an address of its width, such as `{}`", at_width(address, width)))
+            }
+            None => error,
+        });
+    }
+
+    /// Reports what is, or holds, an instance: its variables have addresses of their own, or none.
+    fn refuse_instance_at(&mut self, ty: Type, span: Span) -> bool {
+        let Some((way, instance)) = self.instance_in(ty) else { return false };
+        let (name, instance) = (self.program.type_name(ty), self.program.type_name(instance));
+        let is = if way.is_empty() { "is an instance".to_owned() } else { format!("holds an instance of {instance}") };
+        self.report(
+            Diagnostic::new(Code::E0409, span, "an instance has no address")
+                .label(format!("{name} {is}"))
+                .help("give an address to a variable, and connect that in the call"),
+        );
+        true
     }
 
     /// Gives the addresses that only bodies name their storage.
@@ -281,6 +317,12 @@ impl<'s> Declarations<'s> {
         };
         self.add_synthetic(field, is_named.then_some(name))
     }
+}
+
+/// The address of this width that the bit is in.
+fn at_width(address: Address, width: u8) -> Address {
+    let bit = address.bit / u64::from(width) * u64::from(width);
+    Address { bit, width, ..address }
 }
 
 /// The bit string of an address' width.

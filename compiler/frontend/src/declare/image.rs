@@ -3,15 +3,13 @@
 
 use super::address::bit_string;
 use crate::dialect::Dialect;
-use crate::types::address::{Storage, Use};
+use crate::types::address::{Start, Storage, Use};
 use crate::types::declarations::Declarations;
 use crate::types::image::Shared;
-use crate::types::table::{GLOBALS, Resolved, scalar_initial};
-use crate::{Code, Diagnostic, ast};
+use crate::types::table::{GLOBALS, Resolved};
+use crate::{Code, Diagnostic, Span, ast};
 use rustc_hash::FxHashSet;
-use staunch_ir::{
-    Address, Const, Elementary, Field, FieldId, Location, Place, Repr, Retain, Root, Section, Type, Value, View,
-};
+use staunch_ir::{Address, Elementary, Field, FieldId, Location, Place, Retain, Root, Section, Type, View};
 use std::cmp::Reverse;
 
 /// What lies at an address, among others.
@@ -112,7 +110,7 @@ impl<'s> Declarations<'s> {
         let mut arrays = members.iter().filter(|it| matches!(it.ty, Type::Array(_)));
         let is_of_one = |array: &Member| members.iter().all(|it| array.holds(it));
         let keeper = match (arrays.next(), arrays.next()) {
-            (Some(array), None) if is_of_one(array) => *array,
+            (Some(array), None) if is_of_one(array) && self.keeps_bits(array) => *array,
             (Some(_), _) => self.bytes_of(members)?,
             (None, _) => self.widest_number(members)?,
         };
@@ -126,8 +124,7 @@ impl<'s> Declarations<'s> {
                 return None;
             }
         }
-        let unit = self.unit(keeper.ty);
-        if unit.is_none_or(|bits| !keeper.first.address.bit.is_multiple_of(bits)) {
+        if !self.keeps_bits(&keeper) {
             let ty = self.program.type_name(keeper.ty);
             let other = members.iter().find(|it| it.field != keeper.field).map_or(keeper.first, |it| it.first);
             self.refuse_sharing(keeper.first, other, &format!("sharing the bits of {ty}"));
@@ -136,7 +133,12 @@ impl<'s> Declarations<'s> {
         Some((keeper.field, keeper))
     }
 
-    /// An array of bytes for all, where no array holds the bits of every other.
+    /// Whether it is made of integers, and lies where one of them does.
+    fn keeps_bits(&self, it: &Member) -> bool {
+        self.unit(it.ty).is_some_and(|bits| it.first.address.bit.is_multiple_of(bits))
+    }
+
+    /// An array of bytes for all, where no array of integers holds the bits of every other.
     fn bytes_of(&mut self, members: &[Member]) -> Option<Member> {
         let first = members.iter().min_by_key(|it| it.first.address.bit)?;
         let start = first.first.address.bit / 8 * 8;
@@ -225,45 +227,60 @@ impl<'s> Declarations<'s> {
 
     /// Each declaration may say how its bits start.
     fn start_together(&mut self, keeper: &mut Field, views: &[Shared]) {
-        let start = |this: &Self, address: Address, ty: Type| {
-            let start = this.addresses.starts.get(&(address, ty))?;
-            Some((start.kept, start.initial.clone()))
-        };
-        let own = keeper.address.and_then(|it| start(self, it, keeper.ty)).and_then(|it| it.1);
-        let mut said = own.as_ref().map_or(0, |_| u64::MAX);
-        let mut bits = bits_of(&keeper.initial);
-        for it in views {
-            let Some((kept, initial)) = start(self, it.view.address, it.view.ty) else { continue };
-            if kept {
-                keeper.retain = Retain::Kept;
-            }
-            let Some((value, span)) = initial else { continue };
-            if matches!(keeper.ty, Type::Array(_)) {
-                let error =
-                    Diagnostic::new(Code::E0410, span, "an initial value for bits of an array is not supported yet")
-                        .label("these bits are part of an array")
-                        .help("give the value in a statement of the first scan, or let no array have these bits");
-                self.report(error);
-                continue;
-            }
-            let mask = (u64::MAX >> (64 - u64::from(it.view.address.width))) << it.view.bit;
-            let value = bits_of(&value) << it.view.bit & mask;
-            if (bits ^ value) & mask & said != 0 {
-                let mut error = Diagnostic::new(Code::E0409, span, "two initial values for the same bits")
-                    .label("another declaration says that they start otherwise")
-                    .help("give the value in one of the declarations");
-                if keeper.location != Location::default() {
-                    error = error.other(self.log.name_at(keeper.location), "they are kept here");
-                }
-                self.report(error);
-                continue;
-            }
-            bits |= value;
-            said |= mask;
+        let start = |address: Address, ty: Type| self.addresses.starts.get(&(address, ty));
+        let is_given = |at: Option<&Start>| at.is_some_and(|it| it.initial.is_some());
+        if views.iter().any(|it| start(it.view.address, it.view.ty).is_some_and(|it| it.kept)) {
+            keeper.retain = Retain::Kept;
         }
-        if let Some(value) = self.program.repr(keeper.ty).and_then(|it| value_of(it, bits)) {
-            keeper.initial = scalar_initial(value);
+        let given = views.iter().filter(|it| is_given(start(it.view.address, it.view.ty)));
+        let given: Vec<Shared> = given.copied().collect();
+        if given.is_empty() {
+            return;
         }
+        let size = usize::try_from(self.sizeof(keeper.ty)).unwrap_or_default();
+        let mut bytes = vec![0; size];
+        self.put(keeper.ty, &keeper.initial, &mut bytes);
+        let said = if is_given(keeper.address.and_then(|it| start(it, keeper.ty))) { 0xFF } else { 0 };
+        let mut together = Together { bytes, said: vec![said; size] };
+        for it in given {
+            if let Some(span) = self.start_view(it.view, &mut together) {
+                self.report_two_starts(span, keeper);
+            }
+        }
+        keeper.initial = self.taken(keeper.ty, &together.bytes);
+    }
+
+    /// Sets the bits of a view; where another one says that they start otherwise, gives the place of its initial value.
+    fn start_view(&self, view: View, together: &mut Together) -> Option<Span> {
+        let (value, span) = self.addresses.starts.get(&(view.address, view.ty))?.initial.as_ref()?;
+        let first = usize::try_from(view.bit / 8).ok()?;
+        let size = usize::try_from(self.sizeof(view.ty)).ok()?;
+        let mut bytes = vec![0; size];
+        self.put(view.ty, value, &mut bytes);
+        let shift = view.bit % 8;
+        let mask = if view.ty == Type::BOOL { 1 << shift } else { 0xFF };
+        let range = first..first + size;
+        let (now, said) = (together.bytes.get_mut(range.clone())?, together.said.get_mut(range)?);
+        bytes.iter_mut().for_each(|it| *it = *it << shift & mask);
+        let differs = |at: usize| (now[at] ^ bytes[at]) & mask & said[at] != 0;
+        if (0..size).any(differs) {
+            return Some(*span);
+        }
+        for at in 0..size {
+            now[at] = now[at] & !mask | bytes[at];
+            said[at] |= mask;
+        }
+        None
+    }
+
+    fn report_two_starts(&mut self, span: Span, keeper: &Field) {
+        let mut error = Diagnostic::new(Code::E0409, span, "two initial values for the same bits")
+            .label("another declaration says that they start otherwise")
+            .help("give the value in one of the declarations");
+        if keeper.location != Location::default() {
+            error = error.other(self.log.name_at(keeper.location), "they are kept here");
+        }
+        self.report(error);
     }
 
     /// The views as other names of what keeps their bits. `names` are those of all declared fields.
@@ -286,18 +303,9 @@ fn is_of_bits(ty: Type) -> bool {
     matches!(ty, Type::Elementary(it) if it == Elementary::Bool || it.repr().is_integer() && !it.is_time())
 }
 
-fn bits_of(value: &Const) -> u64 {
-    match value {
-        Const::Scalar(Value::Bool(it)) => u64::from(*it),
-        Const::Scalar(Value::F32(it)) => u64::from(it.to_bits()),
-        Const::Scalar(Value::F64(it)) => it.to_bits(),
-        Const::Scalar(it) => it.as_integer().map_or(0, |it| u64::try_from(it & i128::from(u64::MAX)).unwrap_or(0)),
-        Const::Zero | Const::Text(_) | Const::Array(_) | Const::Struct(_) => 0,
-    }
-}
-
-/// The integer of these bits.
-fn value_of(repr: Repr, bits: u64) -> Option<Value> {
-    let (number, size) = (i128::from(bits), 1i128 << (repr.size() * 8));
-    repr.integer(number).or_else(|| repr.integer(number - size))
+/// What the declarations of some bits say together of their start.
+struct Together {
+    bytes: Vec<u8>,
+    /// The bits that one of them has said.
+    said: Vec<u8>,
 }

@@ -10,7 +10,7 @@ use crate::types::declarations::Declarations;
 use crate::types::scope::Scope;
 use crate::types::table::{Resolved, scalar_initial};
 use crate::{Code, Diagnostic, Span};
-use staunch_ir::{Array, ArrayId, Const, ExprKind, Repr, StructId, Type};
+use staunch_ir::{Array, ArrayId, Const, ExprKind, Field, Location, Repr, Section, StructId, Type};
 use staunch_runtime::{BlockInfo, Pin, PinRole};
 use std::rc::Rc;
 
@@ -244,10 +244,25 @@ impl<'s> Declarations<'s> {
                 return None;
             };
             let field = &fields[at];
+            if field.constant && field.section != Section::Input {
+                self.refuse_constant_of_instance(*name, field);
+                continue;
+            }
             let resolved = Resolved { ty: field.ty, initial: field.initial.clone() };
             values[at] = self.initial(initial, &resolved, scope)?;
         }
         Some(collapse(values))
+    }
+
+    /// A CONSTANT is its value, in all instances.
+    fn refuse_constant_of_instance(&mut self, name: ast::Name<'s>, field: &Field) {
+        let mut error = Diagnostic::new(Code::E0501, name.span, format!("`{}` is a CONSTANT", name.text))
+            .label("it has the value of its declaration in all instances")
+            .help("declare it in VAR_INPUT CONSTANT, or in VAR, where each instance has its own");
+        if field.location != Location::default() {
+            error = error.other(self.log.name_at(field.location), "declared here");
+        }
+        self.report(error);
     }
 
     fn initial_block(

@@ -2,6 +2,7 @@
 //! hold under its name.
 
 use super::run::Run;
+use crate::dialect::missing;
 use crate::names::{Entry, Found, Meaning, Sense};
 use crate::types::declarations::Declarations;
 use crate::types::scope::Variable;
@@ -32,14 +33,22 @@ impl<'s> Declarations<'s> {
             }
             let Some(signature) = self.signature(at) else { continue };
             let mut found = Vec::new();
-            // What reads only a CONSTANT needs no instance.
-            let mut of_constants = FxHashSet::default();
+            // What reads only a CONSTANT needs no instance, nor what an operator is given that is refused by its name.
+            let dialect = self.dialect(self.pous[at].ast.name.span);
+            let mut passed_over = FxHashSet::default();
             ast::each_expr(body, &mut |it| {
                 if let ast::ExprKind::Member(..) = &it.kind
                     && let Some(path) = it.path()
                     && self.constant_of_pou(&path).is_some()
                 {
-                    of_constants.insert(path[0].span);
+                    passed_over.insert(path[0].span);
+                }
+                if let ast::ExprKind::Call(callee, arguments) = &it.kind
+                    && callee
+                        .path()
+                        .is_some_and(|it| matches!(it[..], [name] if missing::is_operator(dialect, name.text)))
+                {
+                    passed_over.extend(arguments.iter().map(|it| it.span));
                 }
                 let (callee, is_called) = match &it.kind {
                     ast::ExprKind::Call(callee, _) => (callee.bare(), true),
@@ -48,7 +57,7 @@ impl<'s> Declarations<'s> {
                 if let Some(path) = callee.path()
                     && let [first, ..] = path.as_slice()
                     && signature.scope.get(first.text).is_none()
-                    && !of_constants.contains(&first.span)
+                    && !passed_over.contains(&first.span)
                     && let Found::One(Meaning::Declared(Entry::Pou(slot))) = self.lookup(&path, Sense::Value)
                     && self.pous[slot].ast.kind == ast::PouKind::Program
                 {

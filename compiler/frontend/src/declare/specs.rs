@@ -2,7 +2,7 @@
 
 use crate::ast::{self, Bound, TypeKind};
 use crate::diagnostic::wording::list;
-use crate::dialect;
+use crate::dialect::{self, missing};
 use crate::expr::unresolved::{block_of_another_dialect, no_such_block};
 use crate::names::{Entry, Found, Meaning, Sense};
 use crate::prelude;
@@ -64,9 +64,6 @@ const FOREIGN: [(&str, &str); 24] = [
     ("COUNT", "CTU"),
     ("DURATION", "TIME"),
 ];
-
-/// Types and blocks of TwinCAT's Tc2_Utilities that are known to be missing.
-const OF_TWINCAT: [&str; 3] = ["FB_FormatString", "FB_FormatString2", "T_Arg"];
 
 impl<'s> Declarations<'s> {
     pub(super) fn resolve_type_slot(&mut self, at: usize) -> Option<Resolved> {
@@ -339,9 +336,8 @@ impl<'s> Declarations<'s> {
             return;
         }
         let dialect = self.dialect(name.span);
-        let is_it = |it: &&str| it.eq_ignore_ascii_case(name.text);
-        if dialect == dialect::Dialect::Codesys && OF_TWINCAT.iter().any(is_it) {
-            return self.not_supported(name.span, &format!("`{}` of Tc2_Utilities", name.text));
+        if let Some(library) = missing::library_of_type(dialect, name.text) {
+            return self.not_supported(name.span, &format!("`{}` of {library}", name.text));
         }
         let blocks = staunch_runtime::BLOCKS.iter().map(|it| it.name);
         let blocks = blocks.filter(|it| dialect::bare_block(dialect, it).is_some());

@@ -272,7 +272,7 @@ impl<'s> Declarations<'s> {
     }
 
     /// The bytes of a constant, the lowest first.
-    fn put(&self, ty: Type, value: &Const, bytes: &mut [u8]) {
+    pub(super) fn put(&self, ty: Type, value: &Const, bytes: &mut [u8]) {
         let size = |ty| usize::try_from(self.sizeof(ty)).unwrap_or_default();
         match (value, ty) {
             (Const::Zero, _) => bytes.fill(0),
@@ -307,7 +307,7 @@ impl<'s> Declarations<'s> {
     }
 
     /// The constant of numbers that bytes are.
-    fn taken(&self, ty: Type, bytes: &[u8]) -> Const {
+    pub(super) fn taken(&self, ty: Type, bytes: &[u8]) -> Const {
         let Type::Array(id) = ty else {
             let repr = self.program.repr(ty);
             return repr.map_or(Const::Zero, |it| scalar_initial(Value::read(it, bytes)));

@@ -173,14 +173,14 @@ impl<'s> Checker<'_, 's> {
         }
         let Found { place, view, .. } = self.after_parts(&mut parts.written, |this| {
             let mut found = this.variable_or_view(expr, formal.name.text)?;
-            if found.view.is_some_and(|it| it.address.is_none()) {
+            if found.view.is_some() {
                 // It is read before the call, and written after it.
                 this.fix(&mut found.place);
             }
             Some(found)
         })?;
         let role = match view {
-            Some(view) if view.address.is_some() => {
+            Some(view) if view.is_selected => {
                 self.report_shared(expr.span, view);
                 return None;
             }
@@ -195,7 +195,7 @@ impl<'s> Checker<'_, 's> {
     fn shared_in_out(&mut self, formal: &Formal<'s>, place: &Place, view: Window, span: Span) -> Option<Role> {
         let ty = formal.resolved.ty;
         if self.decl.program.is_open(ty) {
-            self.decl.not_supported(span, "a member of a UNION as an ARRAY[*]");
+            self.decl.not_supported(span, "what shares its bits, as an ARRAY[*],");
             return None;
         }
         if view.ty != ty {

@@ -6,6 +6,7 @@ use super::enable::Enable;
 use super::generic_call::Called;
 use super::operand::Operand;
 use crate::diagnostic::wording::list;
+use crate::dialect::missing;
 use crate::names::functions;
 use crate::spelling::nearest;
 use crate::testing::suite::LIBRARY;
@@ -195,9 +196,18 @@ impl<'s> Checker<'_, 's> {
             other => other,
         };
         if found.is_none() {
+            let reported = self.decl.log.diagnostics.len();
             self.check_arguments(arguments);
+            if self.is_missing_operator(callee) {
+                // What is refused by its name says nothing of what it is given.
+                self.decl.log.diagnostics.truncate(reported);
+            }
         }
         found
+    }
+
+    fn is_missing_operator(&self, callee: &ast::Expr<'s>) -> bool {
+        matches!(&callee.kind, Ast::Name(name) if missing::is_operator(self.decl.dialect(name.span), name.text))
     }
 
     /// SIMATIC's SCALE_X has the type of its MIN and MAX. Reports whole numbers that have none: whether the result is

@@ -3,6 +3,7 @@
 use super::checker::Checker;
 use super::logix_operands;
 use super::unresolved::{block_of_another_dialect, no_such_block};
+use crate::dialect::missing;
 use crate::inherit::is_super;
 use crate::names::{Entry, Found, Meaning, Sense, functions, is_instruction};
 use crate::prelude;
@@ -271,21 +272,12 @@ impl<'s> Checker<'_, 's> {
     }
 }
 
-/// Operators, functions of *Util* and of Tc2_Utilities that CODESYS and TwinCAT have.
-#[rustfmt::skip]
-const OF_CODESYS: &[&str] = &[
-    "ADRINST", "BITADR", "INDEXOF", "__VARINFO",
-    "BIT_AS_BYTE", "BIT_AS_DWORD", "BIT_AS_WORD", "BYTE_AS_BIT", "BYTE_TO_GRAY", "BYTE_TO_HEXINASCII", "DWORD_AS_BIT",
-    "DWORD_TO_GRAY", "GETBIT", "GRAY_TO_BYTE", "GRAY_TO_DWORD", "GRAY_TO_WORD", "HEXINASCII_TO_BYTE", "WORD_AS_BIT",
-    "WORD_AS_STRING", "WORD_TO_GRAY", "WCONCAT2",
-];
-
 /// Functions of the standard's tables, and of CODESYS, that are known to be missing.
 fn not_yet(name: &str, dialect: dialect::Dialect) -> bool {
-    let name = name.to_ascii_uppercase();
-    if dialect == dialect::Dialect::Codesys && OF_CODESYS.contains(&name.as_str()) {
+    if missing::is_function(dialect, name) {
         return true;
     }
+    let name = name.to_ascii_uppercase();
     let (from, to) = name.split_once("_TO_").unwrap_or_default();
     from == "BCD" || to == "BCD" || name == "NAME_OF"
 }

@@ -12,7 +12,8 @@ impl<'s> Checker<'_, 's> {
     /// Two of a kind give the TIME between them; what has a time of day and a TIME give another of its kind.
     pub(super) fn date_arithmetic(&mut self, sides: Sides) -> Option<Expr> {
         let (a, b) = (sides.a.ty().and_then(Type::elementary), sides.b.ty().and_then(Type::elementary));
-        let Some(result) = a.zip(b).and_then(|(a, b)| result_of(sides.op, a, b)) else {
+        let adds_to_days = self.decl.dialect(sides.span).adds_times_to_days();
+        let Some(result) = a.zip(b).and_then(|(a, b)| result_of(sides.op, a, b, adds_to_days)) else {
             self.report_operands(&sides, "a TIME is added to a TOD or DT; two of a kind are subtracted");
             return None;
         };
@@ -89,13 +90,14 @@ fn is_time(ty: Type) -> bool {
 }
 
 /// The type that a sum or difference has; long if one side is.
-fn result_of(op: BinaryOp, a: Elementary, b: Elementary) -> Option<Elementary> {
+fn result_of(op: BinaryOp, a: Elementary, b: Elementary, adds_to_days: bool) -> Option<Elementary> {
     let is_long = [a, b].into_iter().any(|it| it.name().starts_with('L'));
     let of = |short, long| Some(if is_long { long } else { short });
     let between = |is: fn(Elementary) -> bool| is(a) && is(b);
     match op {
         BinaryOp::Add | BinaryOp::Sub if a.is_time_of_day() && b.is_duration() => of(Elementary::Tod, Elementary::Ltod),
         BinaryOp::Add | BinaryOp::Sub if a.is_date_and_time() && b.is_duration() => of(Elementary::Dt, Elementary::Ldt),
+        BinaryOp::Add if adds_to_days && a.is_day() && b.is_duration() => of(Elementary::Date, Elementary::Ldate),
         BinaryOp::Sub
             if between(Elementary::is_day)
                 || between(Elementary::is_time_of_day)

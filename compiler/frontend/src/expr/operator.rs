@@ -397,11 +397,13 @@ impl<'s> Checker<'_, 's> {
     fn scale_time(&mut self, sides: Sides) -> Option<Expr> {
         let op = arithmetic_op(sides.op);
         let (op_span, span) = (sides.op_span, sides.span);
+        let mixes = self.decl.dialect(span).mixes_bits_and_integers();
         let Operand::Typed(time) = sides.a else { return None };
         let ty = time.ty;
         let integer = match sides.b.ty() {
             None => matches!(sides.b, Operand::Integer(_)),
             Some(Type::Elementary(it)) if it.is_integer() => true,
+            Some(Type::Elementary(it)) if mixes && it.is_bits() && it != Elementary::Bool => true,
             Some(Type::Elementary(it)) if it.is_real() => false,
             Some(_) => {
                 let sides = Sides { a: Operand::Typed(time), ..sides };

@@ -2,7 +2,7 @@
 
 use super::callee::Callee;
 use super::checker::Checker;
-use crate::dialect::library;
+use crate::dialect::{library, missing};
 use crate::names::{Entry, Found, Meaning, Sense, functions};
 use crate::prelude;
 use crate::spelling::nearest;
@@ -130,6 +130,9 @@ impl<'s> crate::types::declarations::Declarations<'s> {
         let space = self.names.space_at(self.site(name.span), around);
         if let Some(hidden) = self.hidden_namespace(code, around) {
             return hidden;
+        }
+        if let Some(function) = missing::function_of_type(&full, name.text) {
+            return crate::log::unsupported(name.span, &format!("the function {function}"));
         }
         let what = match space {
             Some(it) if self.names.is_list(it) => format!("the list `{full}` has no variable `{}`", name.text),

@@ -198,11 +198,42 @@ impl<'s> Checker<'_, 's> {
                 self.type_of(&found)
             }
         };
+        let ty = self.sized(ty, argument.span)?;
         if self.decl.program.is_open(ty) {
             self.decl.not_supported(argument.span, "SIZEOF of an ARRAY[*]");
             return None;
         }
         Some(Operand::Integer(i128::from(self.decl.sizeof(ty))))
+    }
+
+    /// The type whose size is asked for: a REFERENCE TO stands for what it refers to.
+    fn sized(&mut self, ty: Type, span: Span) -> Option<Type> {
+        let Some((id, RefType { kind, .. })) = self.ref_type(ty) else { return Some(ty) };
+        if self.decl.table.unknown_references.contains(&id) {
+            return None;
+        }
+        let target = self.decl.program.target(id);
+        match kind {
+            RefKind::ReferenceTo => return Some(target),
+            RefKind::Interface(_) => {}
+            RefKind::PointerTo | RefKind::RefTo => self.report_size_of_pointer(ty, target, span),
+        }
+        Some(ty)
+    }
+
+    fn report_size_of_pointer(&mut self, ty: Type, target: Type, span: Span) {
+        let text = self.decl.log.sources.text(span).to_owned();
+        let ty = self.type_name(ty);
+        let warning = Diagnostic::new(Code::W0520, span, format!("this is the size of the {ty} itself"))
+            .label("8 bytes, whatever it refers to");
+        self.report(match target {
+            Type::Array(id) => {
+                let first = self.decl.program.array(id).low;
+                warning
+                    .help(format!("write `SIZEOF({text}^)` for the array, `SIZEOF({text}^[{first}])` for an element"))
+            }
+            _ => warning.help(format!("write `SIZEOF({text}^)` for the size of what it refers to")),
+        });
     }
 
     /// The type that a name means where no variable has it.

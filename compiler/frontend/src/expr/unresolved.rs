@@ -2,7 +2,7 @@
 
 use super::checker::Checker;
 use crate::diagnostic::wording::{article, list};
-use crate::dialect::Dialect;
+use crate::dialect::{Dialect, missing};
 use crate::names::functions;
 use crate::spelling::{Key, nearest};
 use crate::{Code, Diagnostic, Span, ast};
@@ -188,6 +188,9 @@ impl<'s> Checker<'_, 's> {
         }
         if self.is_of_unknown_base() {
             return;
+        }
+        if missing::is_variable(self.decl.dialect(name.span), name.text) {
+            return self.decl.not_supported(name.span, &format!("`{}`", name.text));
         }
         if let Some(error) = self.decl.not_there(name.text, name.span) {
             self.report(error);

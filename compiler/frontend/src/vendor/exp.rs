@@ -5,13 +5,14 @@ use super::assembly::{Assembly, Chunk, Trouble};
 use core::ops::Range;
 
 /// Sections that declare nothing, and how each ends.
-const SECTIONS: [(&str, &str); 6] = [
+const SECTIONS: [(&str, &str); 7] = [
     ("LIBRARY", "END_LIBRARY"),
     ("VISUALISATION", "END_VISUALISATION"),
     ("PLC_CONFIGURATION", "PLC_END"),
     ("PLC_CONFIG", "PLC_END"),
     ("RESOURCE", "END_RESOURCE"),
     ("TASKCONFIG", "END_TASKCONFIG"),
+    ("_ALARMCONFIG", "_END_ALARMCONFIG"),
 ];
 
 /// What begins a body in another language.
@@ -75,6 +76,12 @@ pub fn read(text: &str) -> Assembly {
             let message = "this body is Instruction List (IL), which is not compiled".to_owned();
             out.problem(Trouble::OtherLanguage, message, &place);
             until = Some(&ENDS);
+        } else if is_joined_head(line) {
+            let start = place.start + (line.len() - line.trim_start().len());
+            let keyword = start..start + word.len();
+            take(&mut out, text, from..start);
+            from = keyword.end;
+            out.copy(text, &[Chunk::words("FUNCTION_BLOCK", &keyword)]);
         }
         is_first = line.contains("@END_DECLARATION") || is_first && word.is_empty();
     }
@@ -109,6 +116,12 @@ fn open_comments(line: &str, before: usize) -> usize {
         }
     }
     open
+}
+
+/// Whether the line is the head `FUNCTIONBLOCK Name`, as CoDeSys 2 keeps it where somebody has written it so.
+fn is_joined_head(line: &str) -> bool {
+    let name = line.trim().split_once(char::is_whitespace).filter(|it| it.0.eq_ignore_ascii_case("FUNCTIONBLOCK"));
+    name.is_some_and(|it| it.1.trim_start().starts_with(|it: char| it.is_ascii_alphabetic() || it == '_'))
 }
 
 /// Whether an instruction is on the line, `LD a` or `next: JMPC back`, and no statement.

@@ -7,13 +7,21 @@ mod tasks;
 use super::assembly::{Assembly, Chunk, Trouble};
 use super::unit::{Body, Unit, What};
 use super::xml::{Broken, Element, Part, Reader};
+use core::ops::Range;
 use declaration::interface;
+
+/// Whether the root `project` is PLCopen's: by its namespace, or by what is in it, as CODESYS 3.3 wrote it without one.
+pub fn is_project(file: &str, root: &Range<usize>) -> bool {
+    let tag = &file[root.clone()];
+    tag.contains("www.plcopen.org")
+        || !tag.contains("xmlns") && file[root.end..].trim_start().starts_with("<fileHeader")
+}
 
 /// Reads what follows the root.
 pub fn read<'t>(file: &'t str, mut reader: Reader<'t>) -> Assembly {
     let mut out = Assembly::default();
     // Who adds these is CODESYS, or a system that is made of it.
-    let codesys = file.contains("3s-software.com");
+    let codesys = file.contains("3s-software.com") || file.contains("productName=\"CoDeSys\"");
     if codesys {
         out.write("{dialect 'codesys'}\n", &reader.last());
     }

@@ -328,11 +328,15 @@ fn value<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>) -> C
         match part {
             Part::Open(element) => {
                 let inner = value_within(file, reader)?;
-                items.push(item(file, &element, inner));
+                items.extend(item(file, &element, inner));
             }
             Part::Text(_) => {}
             Part::Close => break,
         }
+    }
+    if items.is_empty() {
+        // It says nothing: what it is for starts as its type does.
+        return Ok(Vec::new());
     }
     let mut chunks = vec![Chunk::words(open, place)];
     chunks.extend(listed(items, ", ", place));
@@ -340,19 +344,24 @@ fn value<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>) -> C
     Ok(chunks)
 }
 
-/// `member := value`, `3(value)` or the value alone.
-fn item<'t>(file: &'t str, element: &Element<'t>, value: Vec<Chunk>) -> Vec<Chunk> {
+/// `member := value`, `3(value)` or the value alone; an element that says nothing is `1()`, a member is left out.
+fn item<'t>(file: &'t str, element: &Element<'t>, value: Vec<Chunk>) -> Option<Vec<Chunk>> {
     let place = &element.place;
     let mut chunks = Vec::new();
     if let Some(member) = element.attribute_text(file, "member") {
+        if value.is_empty() {
+            return None;
+        }
         chunks.extend([member, Chunk::words(" := ", place)]);
         chunks.extend(value);
     } else if let Some(count) = element.attribute_text(file, "repetitionValue") {
         chunks.extend([count, Chunk::words("(", place)]);
         chunks.extend(value);
         chunks.push(Chunk::words(")", place));
+    } else if value.is_empty() {
+        chunks.push(Chunk::words("1()", place));
     } else {
         chunks.extend(value);
     }
-    chunks
+    Some(chunks)
 }

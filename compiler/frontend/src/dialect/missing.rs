@@ -1,0 +1,52 @@
+//! What CODESYS and TwinCAT have by names that are known, and Staunch has not: it is refused by its name.
+
+use super::Dialect;
+use super::library::is_one_of;
+
+/// Types and blocks, and the library that they are of.
+#[rustfmt::skip]
+const TYPES: [(&str, &[&str]); 2] = [
+    ("Tc2_Utilities", &["FB_FormatString", "FB_FormatString2", "T_Arg"]),
+    ("Util", &[
+        "BIT_AS_BYTE", "BIT_AS_DWORD", "BIT_AS_WORD", "BYTE_AS_BIT", "DWORD_AS_BIT", "WORD_AS_BIT", "PID_FIXCYCLE",
+        "VARIANCE",
+    ]),
+];
+
+/// Operators, whose operands may be what is no value elsewhere.
+const OPERATORS: [&str; 4] = ["ADRINST", "BITADR", "INDEXOF", "__VARINFO"];
+
+/// Functions of *Util* and of Tc2_Utilities.
+#[rustfmt::skip]
+const FUNCTIONS: &[&str] = &[
+    "BIT_AS_BYTE", "BIT_AS_DWORD", "BIT_AS_WORD", "BYTE_AS_BIT", "BYTE_TO_GRAY", "BYTE_TO_HEXINASCII", "DWORD_AS_BIT",
+    "DWORD_TO_GRAY", "GETBIT", "GRAY_TO_BYTE", "GRAY_TO_DWORD", "GRAY_TO_WORD", "HEXINASCII_TO_BYTE", "SETBIT",
+    "SWITCHBIT", "WORD_AS_BIT", "WORD_AS_STRING", "WORD_TO_GRAY", "WCONCAT2",
+];
+
+/// Variables that the system has.
+const VARIABLES: [&str; 1] = ["__CURRENTTASK"];
+
+/// The library that has a type of this name.
+pub(crate) fn library_of_type(dialect: Dialect, name: &str) -> Option<&'static str> {
+    let found = TYPES.iter().find(|(_, names)| is_one_of(names, name)).map(|it| it.0);
+    found.filter(|_| dialect == Dialect::Codesys)
+}
+
+pub(crate) fn is_operator(dialect: Dialect, name: &str) -> bool {
+    dialect == Dialect::Codesys && is_one_of(&OPERATORS, name)
+}
+
+pub(crate) fn is_function(dialect: Dialect, name: &str) -> bool {
+    is_operator(dialect, name) || dialect == Dialect::Codesys && is_one_of(FUNCTIONS, name)
+}
+
+pub(crate) fn is_variable(dialect: Dialect, name: &str) -> bool {
+    dialect == Dialect::Codesys && is_one_of(&VARIABLES, name)
+}
+
+/// The function that a type of a namespace is for, and without which it has no use.
+pub(crate) fn function_of_type(space: &str, name: &str) -> Option<&'static str> {
+    let is_it = space.eq_ignore_ascii_case("__SYSTEM") && name.eq_ignore_ascii_case("VAR_INFO");
+    is_it.then_some("__VARINFO")
+}
