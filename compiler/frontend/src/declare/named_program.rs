@@ -3,6 +3,7 @@
 
 use super::run::Run;
 use crate::names::{Entry, Found, Meaning, Sense};
+use crate::spelling::Key;
 use crate::types::declarations::Declarations;
 use crate::types::scope::Variable;
 use crate::types::synthetic::NamedProgram;
@@ -48,6 +49,7 @@ impl<'s> Declarations<'s> {
                 if let Some(path) = callee.path()
                     && let [first, ..] = path.as_slice()
                     && signature.scope.get(first.text).is_none()
+                    && !self.is_own_name(at, *first)
                     && !of_constants.contains(&first.span)
                     && let Found::One(Meaning::Declared(Entry::Pou(slot))) = self.lookup(&path, Sense::Value)
                     && self.pous[slot].ast.kind == ast::PouKind::Program
@@ -62,6 +64,13 @@ impl<'s> Declarations<'s> {
                 self.name_program(slot, span, is_called, is_empty, runs);
             }
         }
+    }
+
+    /// Whether a name in the body of a POU means its result, or a METHOD, ACTION or PROPERTY of the class around.
+    fn is_own_name(&self, at: usize, name: ast::Name<'s>) -> bool {
+        let pou = self.pous[at].ast;
+        let is_result = pou.kind.is_function() && pou.result.is_some() && Key(pou.name.text) == Key(name.text);
+        is_result || self.pous[self.home(at)].routines.contains_key(&Key(name.text))
     }
 
     fn name_program(&mut self, slot: usize, first: Span, runs: bool, is_empty: bool, wrapped: &'s [Run<'s>]) {
