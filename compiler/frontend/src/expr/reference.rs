@@ -264,6 +264,9 @@ impl<'s> Checker<'_, 's> {
 
     /// `r REF= x`
     pub(crate) fn bind_reference(&mut self, target: &ast::Expr<'s>, value: &ast::Expr<'s>, span: Span) -> Option<()> {
+        if let Some(made) = self.set_property(target, value, span) {
+            return made;
+        }
         let found = self.place_of_reference(target);
         let Some(found) = found.filter(|it| self.writable(it, target.span)) else {
             self.operand(value, None);

@@ -51,6 +51,8 @@ pub(crate) struct Table<'s> {
     pub sizes_at_most: Vec<u64>,
     /// The bits of each structure whose members have relative locations.
     pub relative: FxHashMap<StructId, u64>,
+    /// The structures that others EXTEND, by these, which begin with their members.
+    pub bases: FxHashMap<StructId, StructId>,
     /// The POU slot of each structure that is an instance's state.
     pub instances: FxHashMap<StructId, usize>,
     pub interfaces: Interfaces,
