@@ -176,7 +176,7 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
-    /// ADR takes a CONSTANT of a FUNCTION or METHOD.
+    /// ADR takes a CONSTANT.
     pub const fn has_addresses_of_constants(self) -> bool {
         matches!(self, Self::Codesys)
     }
