@@ -109,7 +109,12 @@ impl Dialect {
 
     /// `:= ()`, an initial value that says nothing of any member.
     pub const fn has_empty_values(self) -> bool {
-        matches!(self, Self::Siemens)
+        matches!(self, Self::Siemens | Self::Codesys)
+    }
+
+    /// `Act;` calls an ACTION, as `Act();` does.
+    pub const fn calls_actions_by_name(self) -> bool {
+        matches!(self, Self::Codesys)
     }
 
     /// VAR_IN_OUT CONSTANT.
@@ -177,7 +182,7 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
-    /// ADR takes a CONSTANT of a FUNCTION or METHOD.
+    /// ADR takes a CONSTANT.
     pub const fn has_addresses_of_constants(self) -> bool {
         matches!(self, Self::Codesys)
     }

@@ -132,16 +132,23 @@ impl Source {
                     ..Self::new(path, text)
                 }
             }
+            None if vendor::is_twincat_name(&file.path) && file.text.trim().is_empty() => {
+                Self::without_text(file.path, vendor::Trouble::Odd, |name| format!("`{name}` is empty"))
+            }
             None => file,
         }
     }
 
     /// A file that a project lists, and that is not there.
     pub fn absent(path: impl Into<String>) -> Self {
+        let message = |name: &str| format!("`{name}` is not there, and the project lists it");
+        Self::without_text(path, vendor::Trouble::Absent, message)
+    }
+
+    fn without_text(path: impl Into<String>, trouble: vendor::Trouble, message: impl Fn(&str) -> String) -> Self {
         let file = Self::new(path, "\n".to_owned());
-        let name = file.path.rsplit('/').next().unwrap_or_default();
-        let message = format!("`{name}` is not there, and the project lists it");
-        let problems = vec![Problem { at: 0, trouble: vendor::Trouble::Absent, message }];
+        let message = message(file.path.rsplit(['/', '\\']).next().unwrap_or_default());
+        let problems = vec![Problem { at: 0, trouble, message }];
         let pieces = vec![Piece { start: 0, at: 0, end: 1, verbatim: true }];
         Self { origin: Some(Box::new(Origin { file: file.clone(), pieces, piece: Hint::default(), problems })), ..file }
     }

@@ -142,6 +142,7 @@ impl<'s> Checker<'_, 's> {
             }
             Ast::Paren(inner) => self.lone_expression(inner),
             Ast::Error(_) => drop(self.operand(expr, None)),
+            Ast::Name(_) | Ast::Member(..) if self.is_action_by_name(expr) => self.call_statement(expr, expr, &[]),
             Ast::Name(_) | Ast::Member(..) | Ast::Index(..) => self.report_missing_call(expr),
             Ast::Assign(..) => drop(self.operand(expr, None)),
             Ast::Literal(_) | Ast::Address(_) | Ast::Part(..) | Ast::Deref(_) | Ast::Unary(..) | Ast::Binary(..) => {

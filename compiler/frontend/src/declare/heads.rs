@@ -61,7 +61,9 @@ impl<'s> Declarations<'s> {
         }
         for (at, again) in pou.implements.iter().enumerate() {
             if let Some(first) = pou.implements[..at].iter().find(|it| Key(it.text) == Key(again.text)) {
-                let error = Diagnostic::new(Code::E0403, again.span, format!("`{}` is named twice", again.text));
+                let is_lint = self.dialect(again.span) == crate::dialect::Dialect::Codesys;
+                let code = if is_lint { Code::W0405 } else { Code::E0403 };
+                let error = Diagnostic::new(code, again.span, format!("`{}` is named twice", again.text));
                 self.report(error.label("delete this one").other(first.span, "named here"));
             }
         }

@@ -10,6 +10,8 @@ pub(super) struct Lists<'s> {
     file: Option<&'s str>,
     /// Where each is named, in order.
     named: Vec<(u32, &'s str)>,
+    /// Where the declaration before each of these names ends, as far as the tree says.
+    heads: Vec<u32>,
     /// Where an attribute says that a list's names are used after the list's alone.
     qualified: Vec<u32>,
     /// Where the last unit that is no list ends.
@@ -18,7 +20,7 @@ pub(super) struct Lists<'s> {
 
 impl<'s> Lists<'s> {
     pub fn of(declarations: &mut Declarations<'s>, file: &'s ast::File<'s>) -> Self {
-        let mut lists = Self { file: None, named: Vec::new(), qualified: Vec::new(), end: 0 };
+        let mut lists = Self { file: None, named: Vec::new(), heads: Vec::new(), qualified: Vec::new(), end: 0 };
         let attributes = file.pragmas.iter().filter(|it| is_qualified_only(it.text));
         lists.qualified.extend(attributes.map(|it| it.span.start));
         for pragma in file.pragmas.iter().filter(|it| is_list_pragma(it.text)) {
@@ -29,6 +31,8 @@ impl<'s> Lists<'s> {
                         .help("start the file with `{dialect 'codesys'}`"),
                 );
             } else if let Some(name) = quoted(pragma.text) {
+                let before = file.items.partition_point(|it| place(it).start < pragma.span.start);
+                lists.heads.push(before.checked_sub(1).map_or(0, |at| place(&file.items[at]).end));
                 lists.named.push((pragma.span.start, name));
             } else {
                 declarations.report(
@@ -59,10 +63,10 @@ impl<'s> Lists<'s> {
     }
 
     /// Whether the list that a block is in is named before each of its variables: an attribute before the list's
-    /// first block says so of the whole list.
+    /// name or its first block says so of the whole list.
     pub fn is_qualified(&self, block: Span) -> bool {
-        let list = self.named.iter().rev().map(|it| it.0).find(|it| *it < block.start).unwrap_or(0);
-        let start = list.max(self.end);
+        let named = self.named.partition_point(|it| it.0 < block.start);
+        let start = named.checked_sub(1).map_or(0, |it| self.heads[it]).max(self.end);
         self.qualified.iter().any(|it| (start..block.start).contains(it))
     }
 
@@ -70,6 +74,21 @@ impl<'s> Lists<'s> {
     pub fn around(&self, block: Span) -> Option<&'s str> {
         let before = self.named.iter().rev().find(|(start, _)| *start < block.start);
         before.filter(|(start, _)| *start >= self.end).map(|(_, name)| *name).or(self.file)
+    }
+}
+
+/// Where what a declaration says of itself begins and ends; END_… may be behind it.
+fn place(item: &ast::Item<'_>) -> Span {
+    let between = |first: Span, last: Option<Span>| last.map_or(first, |it| first.to(it));
+    match item {
+        ast::Item::Pou(pou) => pou.span,
+        ast::Item::Globals(block) => between(block.span, block.vars.last().map(|it| it.span)),
+        ast::Item::Types(decls) => {
+            let last = decls.last().map(|it| it.name.span);
+            decls.first().map_or(Span::default(), |it| between(it.name.span, last))
+        }
+        ast::Item::Configuration(it) => it.name.span,
+        ast::Item::Test(it) => it.pou.span,
     }
 }
 

@@ -6,6 +6,7 @@ mod address;
 mod any_input;
 mod binding;
 mod collect;
+mod constant_address;
 mod external;
 mod generic;
 mod global;
@@ -76,6 +77,7 @@ pub(crate) fn declare<'s>(
     declarations.check_overloads();
     declarations.start_values(runs);
     declarations.find_named_programs(bodies, runs);
+    declarations.find_addresses_of_constants(bodies);
     declarations.declare_mocks(&testing::mocked_functions(bodies));
     declarations.start_bindings(runs);
     declarations.warn_of_packing();

@@ -4,6 +4,7 @@
 use super::run::Run;
 use crate::dialect::missing;
 use crate::names::{Entry, Found, Meaning, Sense};
+use crate::spelling::Key;
 use crate::types::declarations::Declarations;
 use crate::types::scope::Variable;
 use crate::types::synthetic::NamedProgram;
@@ -58,10 +59,11 @@ impl<'s> Declarations<'s> {
                     && let [first, ..] = path.as_slice()
                     && signature.scope.get(first.text).is_none()
                     && !passed_over.contains(&first.span)
+                    && !self.is_own_name(at, *first)
                     && let Found::One(Meaning::Declared(Entry::Pou(slot))) = self.lookup(&path, Sense::Value)
                     && self.pous[slot].ast.kind == ast::PouKind::Program
                 {
-                    found.push((slot, callee.span, is_called));
+                    found.push((slot, callee.span, is_called || self.is_action(slot, &path)));
                 }
             });
             for (slot, span, is_called) in found {
@@ -71,6 +73,19 @@ impl<'s> Declarations<'s> {
                 self.name_program(slot, span, is_called, is_empty, runs);
             }
         }
+    }
+
+    /// Whether a name in the body of a POU means its result, or a METHOD, ACTION or PROPERTY of the class around.
+    fn is_own_name(&self, at: usize, name: ast::Name<'s>) -> bool {
+        let pou = self.pous[at].ast;
+        let is_result = pou.kind.is_function() && pou.result.is_some() && Key(pou.name.text) == Key(name.text);
+        is_result || self.pous[self.home(at)].routines.contains_key(&Key(name.text))
+    }
+
+    /// Whether a path leads to an ACTION of a PROGRAM: naming it calls it.
+    fn is_action(&self, program: usize, path: &[ast::Name<'s>]) -> bool {
+        let last = path.last().and_then(|it| self.pous[program].routines.get(&Key(it.text))?.called);
+        last.is_some_and(|it| self.pous[it.0].ast.kind == ast::PouKind::Action)
     }
 
     fn name_program(&mut self, slot: usize, first: Span, runs: bool, is_empty: bool, wrapped: &'s [Run<'s>]) {

@@ -322,6 +322,7 @@ impl<'s> Declarations<'s> {
             }
             None => match self.abstract_in_out(builder.slot, block, decl) {
                 Some(ty) => Some(Resolved::plain(ty)),
+                None if pou.kind.is_block() && self.is_bit(&decl.ty) => self.initial_bit(decl, &scope),
                 None => self.declared_type(decl, &scope, owner),
             },
         };

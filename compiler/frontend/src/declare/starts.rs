@@ -70,7 +70,11 @@ impl<'s> Declarations<'s> {
         if class.is_some_and(|it| self.has_unknown_base(it)) {
             return;
         }
+        let says_nothing = construction.lists.iter().all(Vec::is_empty) && self.calls_start(decl);
         if class.is_none_or(|it| self.initial_methods(it).is_empty()) {
+            if class.is_some() && says_nothing {
+                return;
+            }
             let label = match class {
                 Some(_) => "these would be for its METHOD FB_init, which CODESYS has",
                 None => "only instances of a FUNCTION_BLOCK with a METHOD FB_init take some",
@@ -91,6 +95,11 @@ impl<'s> Declarations<'s> {
             };
             self.report(Diagnostic::new(Code::E0304, construction.span, "FB_init runs for each instance").label(label));
         }
+    }
+
+    /// Whether a declaration is in a dialect that has FB_init.
+    fn calls_start(&self, decl: &VarDecl<'s>) -> bool {
+        self.dialect(decl.span) == Dialect::Codesys
     }
 
     /// Reports FB_init of a PROGRAM, which nothing calls.
@@ -125,7 +134,8 @@ impl<'s> Declarations<'s> {
         self.check_overridden_after(class);
         for slot in self.methods_after(class) {
             let (pou, owner) = (self.pous[slot].ast, self.pous[class].ast);
-            if let Some(block) = pou.blocks.iter().find(|it| matches!(it.kind, VarKind::Input | VarKind::InOut)) {
+            let is_given = |it: &&VarBlock<'_>| matches!(it.kind, VarKind::Input | VarKind::InOut);
+            if let Some(block) = pou.blocks.iter().filter(is_given).find(|it| !it.vars.is_empty()) {
                 self.report(
                     Diagnostic::new(Code::E0403, block.span, "a METHOD that runs after the start has no inputs")
                         .label("the system calls it, and has nothing to give")

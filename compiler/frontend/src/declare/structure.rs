@@ -113,6 +113,7 @@ impl<'s> Declarations<'s> {
         let Members { fields, overlays, align, .. } = made;
         let id = self.push_struct(Struct { name: name.to_owned(), doc, location, fields, overlays, align });
         self.table.relative.extend(extent.map(|it| (id, it)));
+        self.table.bases.extend(base.map(|it| (id, it)));
         complete.then_some(Resolved { ty: Type::Struct(id), initial })
     }
 
@@ -123,7 +124,7 @@ impl<'s> Declarations<'s> {
     }
 
     /// Whether a member is one bit: the type BIT of CODESYS.
-    fn is_bit(&self, spec: &ast::TypeSpec<'s>) -> bool {
+    pub(super) fn is_bit(&self, spec: &ast::TypeSpec<'s>) -> bool {
         let ast::TypeKind::Named(path) = &spec.kind else { return false };
         let [name] = path.as_slice() else { return false };
         name.text.eq_ignore_ascii_case("BIT")
@@ -131,7 +132,7 @@ impl<'s> Declarations<'s> {
             && self.lookup(path, Sense::Type) == Found::Nothing
     }
 
-    fn initial_bit(&mut self, decl: &'s ast::VarDecl<'s>, scope: &Rc<Scope<'s>>) -> Option<Resolved> {
+    pub(super) fn initial_bit(&mut self, decl: &'s ast::VarDecl<'s>, scope: &Rc<Scope<'s>>) -> Option<Resolved> {
         let plain = Resolved::plain(Type::BOOL);
         let Some(initial) = &decl.initial else { return Some(plain) };
         let initial = self.initial(initial, &plain, scope).unwrap_or(plain.initial);

@@ -147,6 +147,7 @@ codes! {
     W0304 Warning "an input of a FUNCTION is left out";
     W0305 Warning "an initial count that is not used";
     W0404 Warning "a constant without a value";
+    W0405 Warning "an INTERFACE is named twice";
     W0410 Warning "overlapping addresses";
     W0411 Warning "one address under two names";
     W0412 Warning "a task without a priority";

@@ -13,8 +13,8 @@ use crate::types::table::Resolved;
 use crate::types::window::Window;
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{
-    Argument, Block, Conversion, Expr, ExprKind, FieldId, Place, Projection, RefKind, Root, Section, Statement,
-    StatementKind, Type,
+    Argument, Block, Conversion, Expr, ExprKind, FieldId, Location, Place, Projection, RefKind, Root, Section,
+    Statement, StatementKind, Type,
 };
 use std::rc::Rc;
 
@@ -216,6 +216,10 @@ impl<'s> Checker<'_, 's> {
             self.note_assigned(place, span);
             return Some(Role::Copied(self.temporary("text", ty), None));
         }
+        if self.decl.extends_structure(place.ty, ty) {
+            self.note_assigned(place, span);
+            return Some(Role::Copied(self.temporary("base", ty), None));
+        }
         if self.decl.program.is_open(ty) {
             self.takes(formal, place.ty, span)?;
         } else if place.ty != ty {
@@ -326,7 +330,9 @@ impl<'s> Checker<'_, 's> {
                 Operand::Typed(Expr { kind: ExprKind::Load(place), .. }) if place.ty == ty => Some(place.clone()),
                 Operand::Typed(_) | Operand::Promoted(..) | Operand::Integer(_) | Operand::Real { .. } => None,
             };
-            if let Some(place) = place.filter(|it| this.may_be_lent(it)) {
+            // An instance is never copied: its METHODs may be called.
+            let is_instance = this.decl.held_instance(ty).is_some();
+            if let Some(place) = place.filter(|it| is_instance || this.may_be_lent(it)) {
                 return Some(place);
             }
             let value = this.coerce(value, ty, expr.span)?;
@@ -474,9 +480,13 @@ impl<'s> Checker<'_, 's> {
         span: Span,
     ) -> Block {
         let at = self.at(span);
-        let is_drafted = copies == Copies::Drafted && (from.1.is_some() || to.1.is_some());
+        let is_base = from.0.ty != to.0.ty && matches!((from.0.ty, to.0.ty), (Type::Struct(_), Type::Struct(_)));
+        let is_drafted = copies == Copies::Drafted && (from.1.is_some() || to.1.is_some() || is_base);
         if is_drafted {
             return vec![Statement::assign(to.0.clone(), Expr::load(from.0.clone(), at), at)];
+        }
+        if is_base && from.1.is_none() && to.1.is_none() {
+            return self.copied_members(from.0, to.0, at);
         }
         self.nested(|this| {
             let Some(value) = this.read(from.0.clone(), from.1, span) else { return };
@@ -487,6 +497,21 @@ impl<'s> Checker<'_, 's> {
             };
             this.write(to.0.clone(), to.1, value, span);
         })
+    }
+
+    /// The statements that copy what a structure and one that it EXTENDS have in common: their first members.
+    fn copied_members(&self, from: &Place, to: &Place, at: Location) -> Block {
+        let fields = |it: &Place| match it.ty {
+            Type::Struct(id) => self.decl.program.structure(id).fields.as_slice(),
+            _ => &[],
+        };
+        let pairs = fields(from).iter().zip(fields(to)).enumerate();
+        pairs
+            .map(|(at_field, (field, _))| {
+                let member = |it: &Place| it.clone().field(FieldId::next(at_field), field.ty);
+                Statement::assign(member(to), Expr::load(member(from), at), at)
+            })
+            .collect()
     }
 
     /// An output's value for a variable of type `ty`. It is the variable that is written at `span`, so

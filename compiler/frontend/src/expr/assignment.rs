@@ -127,7 +127,10 @@ impl<'s> Checker<'_, 's> {
             way => Diagnostic::new(Code::E0210, span, format!("{ty} cannot be assigned to as a whole"))
                 .label(format!("it holds an instance of {instance}, at `{way}`, which is never copied")),
         };
-        self.report(error.help("assign to its inputs, or call it"));
+        self.report(error.help(match self.decl.is_copied_elsewhere(place.ty) {
+            true => "assign to its inputs, or call it; in the dialects `codesys` and `siemens` an assignment copies it",
+            false => "assign to its inputs, or call it",
+        }));
         Some(())
     }
 }

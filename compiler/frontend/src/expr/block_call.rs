@@ -48,12 +48,12 @@ impl<'s> Checker<'_, 's> {
 
     pub(crate) fn callable(&mut self, found: &Found<'s>, span: Span) -> Option<()> {
         match found.access {
+            // What a reference leads to is called, not the reference.
+            Access::Constant(_) | Access::Result if self.decl.interface_of(found.place.ty).is_some() => Some(()),
             Access::Constant(name) => {
                 self.error(Code::E0501, span, format!("`{}` is a CONSTANT and cannot be called", name.text));
                 None
             }
-            // What a value refers to is called, not the value.
-            Access::Result if self.decl.interface_of(found.place.ty).is_some() => Some(()),
             Access::Inner(_) => self.may_be_given_away(found, span).then_some(()),
             Access::Write | Access::OwnInput(_) | Access::Output(_) => Some(()),
             Access::Result => self.may_be_given_away(found, span).then_some(()),

@@ -89,8 +89,8 @@ pub(super) const fn has_characters(dialect: Dialect) -> bool {
 /// The index of a string's first character, in dialects that have one.
 const fn first_character(dialect: Dialect) -> Option<i64> {
     match dialect {
-        Dialect::Iec | Dialect::Openplc => Some(1),
+        Dialect::Iec | Dialect::Openplc | Dialect::Siemens => Some(1),
         Dialect::Codesys => Some(0),
-        Dialect::Cscape | Dialect::Logix | Dialect::Siemens => None,
+        Dialect::Cscape | Dialect::Logix => None,
     }
 }

@@ -106,6 +106,12 @@ impl<'s> Checker<'_, 's> {
             && values.any(|it| it.value.as_integer() == Some(number))
     }
 
+    /// Whether it is a constant, of another enumeration, whose number is a value of this strict one.
+    fn is_strict_constant(&self, id: EnumId, value: &Expr, span: Span) -> bool {
+        let number = value.as_const().and_then(Value::as_integer);
+        number.is_some_and(|it| self.is_strict_value(id, it, span))
+    }
+
     fn coerce_typed(&mut self, expr: Expr, to: Type, span: Span) -> Option<Expr> {
         if self.decl.program.is_open(expr.ty) || self.decl.program.is_open(to) {
             return self.open_is_no_value(expr.ty, span);
@@ -144,6 +150,10 @@ impl<'s> Checker<'_, 's> {
                 let base = self.decl.program.enumeration(id).base;
                 let number = self.convert(Conversion::Same, Type::Elementary(base), expr);
                 self.may_become(base, into, span).then(|| self.convert(Conversion::Value, to, number))
+            }
+            (Type::Enum(_), Type::Enum(into)) if self.is_strict_constant(into, &expr, span) => {
+                let number = expr.as_const().and_then(Value::as_integer)?;
+                self.coerce(Operand::Integer(number), to, span)
             }
             (Type::Enum(from), Type::Enum(into))
                 if self.counts_as_number(into, span) && self.gives_number(from, span) =>

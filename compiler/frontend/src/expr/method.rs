@@ -9,7 +9,7 @@ use crate::spelling::Key;
 use crate::types::declarations::{Routines, Slot};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, PouKind};
-use staunch_ir::{Expr, ExprKind, Place, RefKind, Root, Type};
+use staunch_ir::{Expr, ExprKind, Place, RefKind, Root, Section, Type};
 
 impl<'s> Checker<'_, 's> {
     /// The METHOD or ACTION that a bare name means: one of the POU around.
@@ -147,8 +147,29 @@ impl<'s> Checker<'_, 's> {
         Some(self.accessor(slot, name, instance, &[], expr.span).and_then(|it| self.result_place(it?, expr.span)))
     }
 
-    /// Assigns to a PROPERTY; `None` where the target is none.
+    /// Assigns to a PROPERTY; `None` where the target is none, or what the reference that it gives leads to.
     pub(crate) fn assign_property(
+        &mut self,
+        target: &ast::Expr<'s>,
+        value: &ast::Expr<'s>,
+        span: Span,
+    ) -> Option<Option<()>> {
+        let (routines, ..) = self.property(target)?;
+        if self.gives_reference(routines) {
+            return None;
+        }
+        self.set_property(target, value, span)
+    }
+
+    /// Whether reading a PROPERTY gives a REFERENCE TO: `:=` writes what that refers to, `REF=` the PROPERTY.
+    fn gives_reference(&self, routines: Routines) -> bool {
+        let given = routines.getter.and_then(|it| self.decl.result_type(it.0));
+        let Some(Type::Reference(id)) = given else { return false };
+        self.decl.program.references[id.index()].kind == RefKind::ReferenceTo
+    }
+
+    /// Calls the SET of a PROPERTY; `None` where the target is none.
+    pub(crate) fn set_property(
         &mut self,
         target: &ast::Expr<'s>,
         value: &ast::Expr<'s>,
@@ -181,7 +202,9 @@ impl<'s> Checker<'_, 's> {
             Some(instance) => self.place(instance)?,
             None => self.this()?,
         };
-        self.may_call_method(&found, span)?;
+        if !(arguments.is_empty() && self.is_constant_in_out(&found)) {
+            self.may_call_method(&found, span)?;
+        }
         let called = Called { slot, name, expected: None, span };
         self.user_function(called, Some((found.place, span)), arguments)
     }
@@ -191,6 +214,13 @@ impl<'s> Checker<'_, 's> {
             Access::Inner(_) if self.decl.dialect(span).calls_inner_methods() => Some(()),
             _ => self.callable(found, span),
         }
+    }
+
+    /// Whether it is an instance that is given for a VAR_IN_OUT CONSTANT: it is the caller's, with its METHODs.
+    fn is_constant_in_out(&self, found: &Found<'s>) -> bool {
+        let Access::Constant(name) = found.access else { return false };
+        let variable = self.scope.get(name.text).filter(|it| it.section == Section::InOut);
+        variable.is_some_and(|it| it.place.root == found.place.root && !self.decl.program.is_open(it.place.ty))
     }
 
     fn report_no_accessor(&mut self, name: ast::Name<'s>, word: &str, use_: &str, other: Option<(usize, Span)>) {
@@ -234,6 +264,17 @@ impl<'s> Checker<'_, 's> {
         Some(self.decl.routines_on(self.static_type(instance)?, name.text)?.called?.0)
     }
 
+    /// Whether an expression names an ACTION, in dialects that call one by that.
+    pub(crate) fn is_action_by_name(&self, expr: &ast::Expr<'s>) -> bool {
+        let slot = match &expr.kind {
+            _ if !self.decl.dialect(expr.span).calls_actions_by_name() => None,
+            Ast::Name(name) => self.own_routine(*name).filter(|_| self.scope.get(name.text).is_none()),
+            Ast::Member(instance, name) => self.routine_of(instance, *name),
+            _ => None,
+        };
+        slot.is_some_and(|it| self.decl.pous[it].ast.kind == PouKind::Action)
+    }
+
     pub(crate) fn routine_call(
         &mut self,
         slot: usize,
@@ -264,7 +305,9 @@ impl<'s> Checker<'_, 's> {
         };
         match self.decl.pous[slot].ast.kind {
             PouKind::Method => {
-                self.may_call_method(&found, callee.span)?;
+                if !self.is_constant_in_out(&found) {
+                    self.may_call_method(&found, callee.span)?;
+                }
                 let name = ast::Name { text: self.decl.pous[slot].ast.name.text, span: callee.span };
                 let called = Called { slot, name, expected: None, span };
                 self.user_function(called, Some((found.place, callee.span)), arguments)
@@ -424,10 +467,15 @@ impl<'s> Checker<'_, 's> {
         }
         let this = self.this().filter(|_| self.is_function_block());
         if this.is_none() {
-            self.report(
+            let error =
                 Diagnostic::new(Code::E0101, name.span, "THIS is the instance of a FUNCTION_BLOCK, which this is not")
-                    .label("there is no instance here"),
-            );
+                    .label("there is no instance here");
+            let holds = |it: Span| it.file == name.span.file && (it.start..it.end).contains(&name.span.start);
+            let is_in_type = self.decl.types.iter().any(|it| holds(it.decl.ty.span));
+            self.report(match is_in_type {
+                true => error.help("a variable of this TYPE is in what is no FUNCTION_BLOCK: declare it in one"),
+                false => error,
+            });
         }
         Some(this)
     }

@@ -141,9 +141,10 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         // CODESYS replaces a constant by its value where it is read, so what is written to its address changes none.
-        let is_local = matches!(found.place.root, staunch_ir::Root::Local(_));
+        let found = self.copy_of_constant(found);
+        let has_address = self.decl.dialect(expr.span).has_addresses_of_constants() && self.is_no_constant(&found);
         if let Access::Constant(name) = found.access
-            && !(is_local && self.decl.dialect(expr.span).has_addresses_of_constants())
+            && !has_address
         {
             self.report(
                 Diagnostic::new(Code::E0501, expr.span, format!("`{}` is a CONSTANT", name.text))
@@ -173,6 +174,21 @@ impl<'s> Checker<'_, 's> {
         let place = found.place;
         let reference = Expr::new(ty, ExprKind::AddressOf(Box::new(place.clone())), at);
         Some(self.told_apart(reference, &place, expr.span))
+    }
+
+    /// The copy that has the address of a CONSTANT; others are themselves.
+    fn copy_of_constant(&self, found: Found<'s>) -> Found<'s> {
+        let Access::Constant(name) = found.access else { return found };
+        let Some(copy) = self.decl.table.constant_copies.get(&name.span) else { return found };
+        let mut place = self.decl.synthetic_place(*copy);
+        place.projections.extend(found.place.projections.iter().skip(1).cloned());
+        Found { place: Place { ty: found.place.ty, ..place }, access: Access::Write, ..found }
+    }
+
+    /// Whether what is declared CONSTANT is a variable that lives for a call: a FUNCTION's, or what is given for
+    /// a VAR_IN_OUT CONSTANT, which is a variable of the caller's or a copy.
+    fn is_no_constant(&self, found: &Found<'s>) -> bool {
+        matches!(found.place.root, staunch_ir::Root::Local(_) | staunch_ir::Root::Param(_))
     }
 
     pub(crate) fn is_pin(&self, found: &Found<'s>) -> bool {
@@ -295,6 +311,9 @@ impl<'s> Checker<'_, 's> {
 
     /// `r REF= x`
     pub(crate) fn bind_reference(&mut self, target: &ast::Expr<'s>, value: &ast::Expr<'s>, span: Span) -> Option<()> {
+        if let Some(made) = self.set_property(target, value, span) {
+            return made;
+        }
         let found = self.place_of_reference(target);
         let Some(found) = found.filter(|it| self.writable(it, target.span)) else {
             self.operand(value, None);

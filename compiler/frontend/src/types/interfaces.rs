@@ -210,6 +210,16 @@ impl Declarations<'_> {
         at.is_some()
     }
 
+    /// Whether a structure begins with the members of another one, which it EXTENDS.
+    pub fn extends_structure(&self, heir: Type, base: Type) -> bool {
+        let (Type::Struct(heir), Type::Struct(base)) = (heir, base) else { return false };
+        let mut at = self.table.bases.get(&heir);
+        while at.is_some_and(|it| *it != base) {
+            at = at.and_then(|it| self.table.bases.get(it));
+        }
+        at.is_some()
+    }
+
     /// The number of a class in a reference to one of its instances.
     pub fn class_number(&mut self, state: StructId, span: Span) -> u64 {
         let next = u64::try_from(self.table.interfaces.numbers.len()).unwrap_or(u64::MAX) + 1;

@@ -83,8 +83,18 @@ impl<'s> Declarations<'s> {
         if self.instance_in(ty).is_some() {
             self.table.copies.set(true);
         }
+        self.never_copied(ty)
+    }
+
+    /// The instance in it that no dialect copies.
+    fn never_copied(&self, ty: Type) -> Option<(String, Type)> {
         let is_block = |id| self.slot_of_instance(id).is_none_or(|it| self.pous[it].ast.kind.is_block());
         self.program.instance_in(ty, &|id| self.is_instance(id) && !is_block(id))
+    }
+
+    /// Whether some dialect copies what `ty` holds.
+    pub fn is_copied_elsewhere(&self, ty: Type) -> bool {
+        self.never_copied(ty).is_none()
     }
 
     /// What `ty` holds that is not copied at a place, in a sentence.

@@ -51,6 +51,8 @@ pub(crate) struct Table<'s> {
     pub sizes_at_most: Vec<u64>,
     /// The bits of each structure whose members have relative locations.
     pub relative: FxHashMap<StructId, u64>,
+    /// The structures that others EXTEND, by these, which begin with their members.
+    pub bases: FxHashMap<StructId, StructId>,
     /// The POU slot of each structure that is an instance's state.
     pub instances: FxHashMap<StructId, usize>,
     pub interfaces: Interfaces,
@@ -59,6 +61,8 @@ pub(crate) struct Table<'s> {
     pub copies: Cell<bool>,
     /// The VAR_IN_OUTs of FUNCTION_BLOCKs that METHODs use, by where their names are declared: the instance keeps them.
     pub kept_in_outs: FxHashSet<Span>,
+    /// For each name of a CONSTANT whose address is taken, the copy that has it among what the globals hold.
+    pub constant_copies: FxHashMap<Span, usize>,
     /// The enumerations that take and give no numbers: `{attribute 'strict'}`.
     pub strict: FxHashSet<EnumId>,
     /// Those whose values are named after the type's name alone: `{attribute 'qualified_only'}`.

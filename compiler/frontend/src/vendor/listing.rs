@@ -94,22 +94,66 @@ pub fn definitions(text: &str) -> Vec<String> {
     found
 }
 
-fn sources<'t>(text: &'t str, reader: &mut Reader<'t>) -> Result<Vec<String>, Broken> {
-    let mut files = Vec::new();
-    // Of an element of the list, whether something in it takes it out again.
-    let mut excludes = false;
-    while let Some(part) = reader.part()? {
-        match part {
-            Part::Open(element) if element.name == "Compile" => {
-                files.extend(element.attribute(text, "Include").map(str::to_owned));
-            }
-            Part::Open(element) => excludes = element.name == "ExcludeFromBuild",
-            Part::Text(chunk) if excludes && text[chunk.place.clone()].trim().eq_ignore_ascii_case("true") => {
-                files.pop();
-            }
-            Part::Text(_) => {}
-            Part::Close => excludes = false,
+/// What is being read of a PLC project's list of files.
+#[derive(Default)]
+struct Listing {
+    files: Vec<String>,
+    /// Folders that are excluded, with all that is below them.
+    folders: Vec<String>,
+    entry: Option<Entry>,
+    /// Whether what is read says if the entry is excluded.
+    asks: bool,
+}
+
+/// An element of the list: `<Compile Include="A.TcPOU">`, `<Folder Include="Old">`.
+struct Entry {
+    path: String,
+    is_folder: bool,
+    is_excluded: bool,
+}
+
+impl Listing {
+    fn finish_entry(&mut self) {
+        match self.entry.take() {
+            Some(Entry { path, is_folder: true, is_excluded: true }) => self.folders.push(path),
+            Some(Entry { path, is_folder: false, is_excluded: false }) => self.files.push(path),
+            Some(_) | None => {}
         }
     }
-    Ok(files)
+
+    /// The files that are not below an excluded folder.
+    fn included(self) -> Vec<String> {
+        let parts = |path: &str| -> Vec<String> {
+            path.split(['\\', '/']).filter(|it| !it.is_empty()).map(str::to_ascii_lowercase).collect()
+        };
+        let folders: Vec<_> = self.folders.iter().map(|it| parts(it)).collect();
+        let is_below = |it: &String| folders.iter().any(|folder| parts(it).starts_with(folder));
+        self.files.into_iter().filter(|it| !is_below(it)).collect()
+    }
+}
+
+fn sources<'t>(text: &'t str, reader: &mut Reader<'t>) -> Result<Vec<String>, Broken> {
+    let mut list = Listing::default();
+    while let Some(part) = reader.part()? {
+        match part {
+            Part::Open(element) if matches!(element.name, "Compile" | "Folder") => {
+                list.finish_entry();
+                list.entry = element.attribute(text, "Include").map(|path| Entry {
+                    path: path.to_owned(),
+                    is_folder: element.name == "Folder",
+                    is_excluded: false,
+                });
+            }
+            Part::Open(element) => list.asks = element.name == "ExcludeFromBuild",
+            Part::Text(chunk) if list.asks && text[chunk.place.clone()].trim().eq_ignore_ascii_case("true") => {
+                if let Some(entry) = &mut list.entry {
+                    entry.is_excluded = true;
+                }
+            }
+            Part::Text(_) => {}
+            Part::Close => list.asks = false,
+        }
+    }
+    list.finish_entry();
+    Ok(list.included())
 }

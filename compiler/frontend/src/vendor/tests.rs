@@ -82,6 +82,8 @@ fn what_is_no_document_is_said_where() {
         ("<TcPlcObject><POU></GVL></POU></TcPlcObject>", "</GVL>", "expected"),
         ("<TcPlcObject><POU><Declaration>&many;</Declaration></POU></TcPlcObject>", "&many;", "entity"),
         ("<TcPlcObject><POU><Declaration><![CDATA[PROGRAM", "<![CDATA[PROGRAM", ""),
+        ("<TcPlcObject><POU/></TcPlcObject><extra/>", "<extra/>", "a second element"),
+        ("<TcPlcObject><POU/></TcPlcObject> x", " x", "text outside"),
         (&format!("<TcPlcObject>{}", "<a>".repeat(2000)), "<a>", "nested"),
     ] {
         let assembly = read(text).unwrap();
@@ -135,6 +137,28 @@ fn a_project_lists_what_it_compiles() {
     assert!(listed("<Solution/>").is_err());
     assert!(listed("PROGRAM P").is_err());
     assert!(listed("<Project><ItemGroup></Project>").is_err());
+}
+
+#[test]
+fn a_project_excludes_files_and_folders() {
+    let project = "<Project><ItemGroup><Compile Include='B.TcPOU'><SubType>Code</SubType></Compile>\
+        <Compile Include='Old\\Older\\C.TcPOU'><SubType>Code</SubType></Compile><Compile Include='Olds\\D.TcPOU'/>\
+        <Compile Include='A.TcPOU'><SubType>Code</SubType></Compile></ItemGroup><ItemGroup>\
+        <Folder Include='old\\'><ExcludeFromBuild>true</ExcludeFromBuild></Folder>\
+        <Folder Include='Olds'><ExcludeFromBuild>false</ExcludeFromBuild></Folder></ItemGroup></Project>";
+    assert_eq!(listed(project).unwrap(), ["B.TcPOU", "Olds\\D.TcPOU", "A.TcPOU"]);
+}
+
+#[test]
+fn a_file_that_holds_nothing_is_said() {
+    for text in ["<TcPlcObject></TcPlcObject>", "<TcPlcObject/>"] {
+        assert_eq!(read(text).unwrap().problems[0].message, "this file of TwinCAT's holds nothing");
+    }
+    let without = read("<TcPlcObject><POU Name='P'><Declaration/></POU></TcPlcObject>").unwrap();
+    assert_eq!(without.problems[0].message, "`P` has no declaration");
+    for (name, problems) in [("a/P.TcPOU", 1), ("P.st", 0)] {
+        assert_eq!(Source::decode(name, b"\r\n").problems().len(), problems, "{name}");
+    }
 }
 
 #[test]

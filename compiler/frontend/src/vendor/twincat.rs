@@ -16,8 +16,10 @@ pub fn read<'t>(file: &'t str, mut reader: Reader<'t>) -> Assembly {
 }
 
 fn units<'t>(file: &'t str, reader: &mut Reader<'t>, out: &mut Assembly) -> Result<(), Broken> {
+    let (root, mut is_empty) = (reader.last(), true);
     while let Some(part) = reader.part()? {
         let Part::Open(element) = part else { continue };
+        is_empty = false;
         match element.name {
             "POU" | "Itf" | "DUT" | "GVL" => {
                 let is_list = element.name == "GVL";
@@ -28,9 +30,15 @@ fn units<'t>(file: &'t str, reader: &mut Reader<'t>, out: &mut Assembly) -> Resu
                     out.write(&format!("{{gvl '{}'}}\n", unit.name), &place);
                 }
                 unit.write(file, out);
+                if unit.declaration.iter().all(|it| it.place.is_empty()) {
+                    out.problem(Trouble::Odd, format!("`{}` has no declaration", unit.name), &place);
+                }
             }
             _ => reader.skip()?,
         }
+    }
+    if is_empty {
+        out.problem(Trouble::Odd, "this file of TwinCAT's holds nothing".to_owned(), &root);
     }
     Ok(())
 }

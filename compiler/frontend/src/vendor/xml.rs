@@ -38,6 +38,8 @@ pub struct Reader<'t> {
     open: Vec<Range<usize>>,
     /// An element without content was opened, and is to be closed.
     is_empty: bool,
+    /// The root was opened.
+    has_root: bool,
     last: Range<usize>,
 }
 
@@ -51,6 +53,7 @@ impl<'t> Reader<'t> {
             inner: quick_xml::Reader::from_str(text),
             open: Vec::new(),
             is_empty: false,
+            has_root: false,
             last: 0..0,
         })
     }
@@ -77,6 +80,7 @@ impl<'t> Reader<'t> {
             let event = self.inner.read_event().map_err(|error| self.broken(&error.to_string()))?;
             let place = start..self.position();
             self.last = place.clone();
+            self.check_outside(&event, &place)?;
             match event {
                 Event::Start(tag) => return self.open(&tag, place).map(Some),
                 Event::Empty(tag) => {
@@ -147,6 +151,26 @@ impl<'t> Reader<'t> {
         let name = &tag_text[1..=length];
         let name = name.rsplit_once(':').map_or(name, |it| it.1);
         Ok(Part::Open(Element { name, place }))
+    }
+
+    /// Outside of the one root are comments, instructions and space.
+    fn check_outside(&mut self, event: &Event<'t>, place: &Range<usize>) -> Result<(), Broken> {
+        if !self.open.is_empty() {
+            return Ok(());
+        }
+        let broken = |why: &str| Err(Broken { place: place.clone(), why: why.to_owned() });
+        match event {
+            Event::Start(_) | Event::Empty(_) if self.has_root => broken("a second element outside of all others"),
+            Event::Start(_) | Event::Empty(_) => {
+                self.has_root = true;
+                Ok(())
+            }
+            Event::Text(text) if text.trim_matches([' ', '\t', '\r', '\n', '\u{feff}']).is_empty() => Ok(()),
+            Event::Text(_) | Event::CData(_) | Event::GeneralRef(_) => broken("text outside of all elements"),
+            Event::End(_) | Event::Eof | Event::Comment(_) | Event::Decl(_) | Event::PI(_) | Event::DocType(_) => {
+                Ok(())
+            }
+        }
     }
 
     fn position(&self) -> usize {
