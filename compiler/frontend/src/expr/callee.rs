@@ -261,6 +261,10 @@ impl<'s> Checker<'_, 's> {
             error = error.help(format!("a value is converted with `TO_{}(…)`", name.text.to_ascii_uppercase()));
         } else if let Some((_, meant)) = UNITS_OF_TIME.iter().find(|it| name.text.eq_ignore_ascii_case(it.0)) {
             error = error.note("TIME_TO_LINT counts milliseconds, LTIME_TO_LINT nanoseconds").help(*meant);
+        } else if let Some(function) = typed_function(name.text) {
+            error = error
+                .help(format!("write `{function}(…)`, which takes the type of what it is given"))
+                .fix(name.span, function);
         } else if name.text.eq_ignore_ascii_case("POW") {
             error = error.help("write `EXPT(base, exponent)`, or `base ** exponent`");
         } else if let Some(hint) = self.decl.hint_of_namespace(name) {
@@ -270,6 +274,13 @@ impl<'s> Checker<'_, 's> {
         }
         self.report(error);
     }
+}
+
+/// The function of all types that `ADD_INT` names with one.
+fn typed_function(name: &str) -> Option<String> {
+    let (function, ty) = name.rsplit_once('_')?;
+    staunch_ir::Elementary::named(ty).filter(|_| functions::exists(function))?;
+    Some(function.to_ascii_uppercase())
 }
 
 /// Functions of the standard's tables, and of CODESYS, that are known to be missing.

@@ -31,7 +31,10 @@ fn task<'t, 's: 't>() -> impl Rule<'t, 's, Task<'s>> {
 /// `PROGRAM main WITH t : Main(x := g);`
 fn program<'t, 's: 't>() -> impl Rule<'t, 's, ProgramInstance<'s>> {
     let task = word("WITH").ignore_then(name()).or_not();
-    let connections = rule(|input| if input.kind() == Kind::OpenParen { arguments(input) } else { Ok(Vec::new()) });
+    let connections = rule(|input| match input.kind() {
+        Kind::OpenParen if !refuse_tasks_of_blocks(input) => arguments(input),
+        _ => Ok(Vec::new()),
+    });
     let program = token(Kind::Program).ignore_then(name()).then(task).then_ignore(token(Kind::Colon));
     let path = name().separated_by(token(Kind::Dot)).at_least(1).collect::<Vec<_>>();
     let program = program.then(path).then(connections).then_ignore(end());
@@ -39,6 +42,26 @@ fn program<'t, 's: 't>() -> impl Rule<'t, 's, ProgramInstance<'s>> {
         let program = path.pop().unwrap_or(name);
         ProgramInstance { name, task, namespace: path, program, connections }
     })
+}
+
+/// Refuses and skips `(valve WITH t)`, a FUNCTION_BLOCK of the PROGRAM that another TASK runs.
+fn refuse_tasks_of_blocks(input: &mut In<'_, '_, '_>) -> bool {
+    let mut ahead = 1;
+    while !matches!(input.kind_ahead(ahead), Kind::End | Kind::Semicolon | Kind::Assign | Kind::Arrow) {
+        if (input.kind_ahead(ahead), input.kind_ahead(ahead + 1)) == (Kind::Name, Kind::Name) {
+            let span = input.here();
+            input.report(
+                diagnostics::unsupported(span, "a FUNCTION_BLOCK of a PROGRAM that has a TASK of its own")
+                    .help("declare the block in a PROGRAM of its own, and run that with the other TASK"),
+            );
+            while !matches!(input.kind(), Kind::End | Kind::Semicolon) {
+                input.take();
+            }
+            return true;
+        }
+        ahead += 1;
+    }
+    false
 }
 
 /// `RESOURCE name ON machine`

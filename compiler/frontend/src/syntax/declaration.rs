@@ -130,7 +130,18 @@ fn read_type<'t, 's: 't>(input: &mut In<'t, '_, 's>) -> Parsed<TypeSpec<'s>> {
 /// The members of a structure after its keyword, and its end.
 pub fn structure_members<'s>(input: &mut In<'_, '_, 's>) -> TypeKind<'s> {
     let opened = input.last();
-    let fields = list(input, Kind::EndStruct, opened);
+    let overlaps = input.is_word("OVERLAP") && input.kind_ahead(1) == Kind::Name;
+    if overlaps {
+        let span = input.take();
+        input.report(
+            diagnostics::unsupported(span, "a STRUCT OVERLAP")
+                .help("declare a UNION, whose members share their bytes, of a STRUCT for each view"),
+        );
+    }
+    let mut fields = list(input, Kind::EndStruct, opened);
+    if overlaps {
+        fields.iter_mut().for_each(|it| it.address = None);
+    }
     block_ends::close_block(input, Kind::EndStruct, opened);
     TypeKind::Struct(fields)
 }
