@@ -77,6 +77,11 @@ impl Dialect {
         self == Self::Codesys
     }
 
+    /// An address is kept in a DWORD, and a pointer has the size of one.
+    pub(crate) fn counts_addresses_as_dwords(self) -> bool {
+        self == Self::Codesys
+    }
+
     /// An input of ANY is the argument's class, address and size.
     pub(crate) fn hands_on_any(self) -> bool {
         self == Self::Codesys

@@ -219,7 +219,25 @@ impl<'s> Checker<'_, 's> {
             self.decl.not_supported(argument.span, "SIZEOF of an ARRAY[*]");
             return None;
         }
-        Some(Operand::Integer(i128::from(self.decl.sizeof(ty))))
+        Some(Operand::Integer(i128::from(self.size_seen(ty, argument.span))))
+    }
+
+    /// What SIZEOF says of a type. Where an address counts as an integer of 32 bits, a pointer has its size, and so have the
+    /// elements of an array: code divides by one or the other. What is stored takes 8 bytes all the same.
+    fn size_seen(&self, ty: Type, span: Span) -> u64 {
+        let is_pointer = |ty| {
+            let kind = self.ref_type(ty).map(|it| it.1.kind);
+            matches!(kind, Some(RefKind::PointerTo | RefKind::RefTo | RefKind::ReferenceTo))
+        };
+        let (mut element, mut count) = (ty, 1_u64);
+        while let Type::Array(id) = element {
+            let array = self.decl.program.array(id);
+            (element, count) = (array.element, count.saturating_mul(array.len()));
+        }
+        if self.decl.dialect(span).counts_addresses_as_dwords() && is_pointer(element) {
+            return count.saturating_mul(4);
+        }
+        self.decl.sizeof(ty)
     }
 
     /// The type whose size is asked for: a REFERENCE TO stands for what it refers to.
@@ -239,9 +257,9 @@ impl<'s> Checker<'_, 's> {
 
     fn report_size_of_pointer(&mut self, ty: Type, target: Type, span: Span) {
         let text = self.decl.log.sources.text(span).to_owned();
-        let ty = self.type_name(ty);
+        let (of, ty) = (ty, self.type_name(ty));
         let warning = Diagnostic::new(Code::W0520, span, format!("this is the size of the {ty} itself"))
-            .label("8 bytes, whatever it refers to");
+            .label(format!("{} bytes, whatever it refers to", self.size_seen(of, span)));
         self.report(match target {
             Type::Array(id) => {
                 let first = self.decl.program.array(id).low;
