@@ -3,7 +3,8 @@
 use super::argument::{Parts, Role, Source, as_written};
 use super::binding::{Given, Parameter};
 use super::checker::Checker;
-use super::generic_call::Called;
+use super::dispatch::Dispatch;
+use super::generic_call::{Called, Open};
 use super::order::Held;
 use crate::start::is_initial;
 use crate::testing::fixture::Caller;
@@ -25,6 +26,26 @@ enum Passed {
     Output(Place),
 }
 
+impl Passed {
+    fn argument(&self, parts: &Parts) -> Argument {
+        match self {
+            Self::Part(at) => parts.argument(*at),
+            Self::Default(value) => Argument::Value(value.clone()),
+            Self::Output(place) => Argument::Reference(place.clone()),
+        }
+    }
+}
+
+/// What a call gives, as far as it is evaluated.
+#[derive(Default)]
+struct Written {
+    parts: Parts,
+    /// What is given for parameters of a generic type.
+    open: Vec<Open>,
+    /// For each parameter.
+    passed: Vec<Option<Passed>>,
+}
+
 impl<'s> Checker<'_, 's> {
     /// A call of the FUNCTION in a slot, or of the METHOD on an instance.
     pub(crate) fn user_function(
@@ -35,107 +56,140 @@ impl<'s> Checker<'_, 's> {
     ) -> Option<Option<Expr>> {
         let Called { slot, span, .. } = called;
         let signature = self.decl.signature(slot)?;
-        let owner = self.decl.pous[slot].ast.name;
-        let formals = &signature.formals;
         let arguments = &self.accepted(&signature, arguments)?;
-        let parameters: Vec<_> =
-            formals.iter().map(|it| Parameter { name: it.name.text, section: it.section }).collect();
-        let given =
-            self.bind(owner.text, &parameters, arguments, |name| Self::unknown_formal(owner.text, formals, name))?;
-        let is_optional = |this: &Self, at: usize| this.has_initial(&formals[at], slot);
-        let enough = self.require_all(owner.text, &parameters, &given, arguments, is_optional, span).is_some();
-        let mut parts = Parts::default();
-        let is_method = instance.is_some();
-        let mut dispatch = None;
-        if let Some((place, callee)) = instance {
-            let place = self.receiver(place, callee)?;
-            dispatch = self.dispatch(&place, slot, callee);
-            if dispatch.as_ref().is_some_and(|it| it.calls(|slot| self.decl.is_generic(slot))) {
-                let what =
-                    "a call of a METHOD with parameters of a generic type, by what may refer to several classes,";
-                self.decl.not_supported(callee, what);
-                return None;
+        let (given, enough) = self.bind_formals(&signature, called, arguments)?;
+        let mut written = Written::default();
+        let dispatch = match instance {
+            Some((place, callee)) => {
+                let place = self.receiver(place, callee)?;
+                let dispatch = self.dispatched(&place, slot, callee)?;
+                written.parts.push(Held::Place(place), Role::Instance, callee);
+                Some(dispatch)
             }
-            parts.push(Held::Place(place), Role::Instance, callee);
+            None => None,
+        };
+        let is_written = self.write_parts(&mut written, &signature, &given, called);
+        let lacks_in_out =
+            |at: usize| matches!(given[at], Given::Nothing) && signature.formals[at].section == Section::InOut;
+        let complete = enough && is_written;
+        let (slot, signature) = if self.decl.is_generic(slot) && complete && !(0..given.len()).any(lacks_in_out) {
+            let slot = self.told_instance(&written.parts, &written.open, called)?;
+            (slot, self.decl.signature(slot)?)
+        } else {
+            (slot, Rc::clone(&signature))
+        };
+        if !enough || !self.write_left_out(&mut written, &signature, &given, slot, span) || !complete {
+            return None;
         }
-        let mut open = Vec::new();
-        let mut passed: Vec<Option<Passed>> = Vec::new();
+        let Written { mut parts, open, mut passed } = written;
+        for (at, place) in self.close(&mut parts, open, &signature)? {
+            passed[at] = Some(Passed::Output(place));
+        }
+        let owner = self.decl.pous[called.slot].ast.name.text;
+        let result = signature.result.as_ref().map(|(_, resolved)| self.temporary(owner, resolved.ty));
+        let call = |parts: &Parts| {
+            let arguments: Vec<_> =
+                passed.iter().map(|it| Some(it.as_ref()?.argument(parts))).collect::<Option<_>>()?;
+            let call = |callee, instance| {
+                let (arguments, result) = (Vec::clone(&arguments), result.clone());
+                StatementKind::Call { callee, instance, arguments, result }
+            };
+            let direct = RoutineId::next(slot);
+            Some(match &dispatch {
+                Some(Some(dispatch)) => dispatch.statement(parts.instance()?, &|to, at| call(to, Some(at))),
+                Some(None) => call(direct, parts.instance().cloned()),
+                None => call(direct, None),
+            })
+        };
+        self.perform(parts, &call, span)?;
+        let at = self.at(span);
+        Some(result.map(|place| Expr::load(place, at)))
+    }
+
+    /// What a call gives for each parameter, and whether that is enough.
+    fn bind_formals<'a>(
+        &mut self,
+        signature: &Signature<'s>,
+        called: Called<'s>,
+        arguments: &'a [ast::Argument<'s>],
+    ) -> Option<(Vec<Given<'a, 's>>, bool)> {
+        let (owner, formals) = (self.decl.pous[called.slot].ast.name.text, &signature.formals);
+        let parameter = |it: &Formal<'s>| Parameter { name: it.name.text, section: it.section };
+        let parameters: Vec<_> = formals.iter().map(parameter).collect();
+        let given = self.bind(owner, &parameters, arguments, |name| Self::unknown_formal(owner, formals, name))?;
+        let is_optional = |this: &Self, at: usize| this.has_initial(&formals[at], called.slot);
+        let enough = self.require_all(owner, &parameters, &given, arguments, is_optional, called.span).is_some();
+        Some((given, enough))
+    }
+
+    /// What a call of a METHOD on an instance depends on; the inner `None` is a direct call.
+    fn dispatched(&mut self, place: &Place, slot: usize, callee: Span) -> Option<Option<Dispatch>> {
+        let dispatch = self.dispatch(place, slot, callee);
+        if dispatch.as_ref().is_some_and(|it| it.calls(|slot| self.decl.is_generic(slot))) {
+            let what = "a call of a METHOD with parameters of a generic type, by what may refer to several classes,";
+            self.decl.not_supported(callee, what);
+            return None;
+        }
+        Some(dispatch)
+    }
+
+    /// Evaluates what a call gives, in the order in which it is written; whether all of it is right.
+    fn write_parts(
+        &mut self,
+        written: &mut Written,
+        signature: &Signature<'s>,
+        given: &[Given<'_, 's>],
+        called: Called<'s>,
+    ) -> bool {
+        let formals = &signature.formals;
+        let Written { parts, open, passed } = written;
         passed.resize_with(formals.len(), || None);
-        let mut complete = enough;
-        for at in as_written(&given) {
-            let number = parts.written.len();
-            let made = match (given[at], formals[at].word) {
-                (Given::Value(expr), None) => self.given_part(&mut parts, &signature, at, expr),
-                (Given::Value(expr), Some(word)) => {
-                    self.open_part(&mut parts, &mut open, formals, (at, word), expr, called)
-                }
+        let mut complete = true;
+        for at in as_written(given) {
+            let (number, formal) = (parts.written.len(), &formals[at]);
+            let made = match (given[at], formal.word) {
+                (Given::Value(expr), None) => self.given_part(parts, signature, at, expr),
+                (Given::Value(expr), Some(word)) => self.open_part(parts, open, formals, (at, word), expr, called),
                 (Given::Output { target: Some(target), negated }, Some(word)) => {
-                    self.open_target(&mut parts, &mut open, (at, word), target, negated)
+                    self.open_target(parts, open, (at, word), target, negated)
                 }
                 (Given::Output { target: Some(target), negated }, None)
-                    if self.decl.program.is_open(formals[at].resolved.ty) =>
+                    if self.decl.program.is_open(formal.resolved.ty) =>
                 {
-                    let storage = self.open_output_part(&mut parts, &formals[at], target, negated);
+                    let storage = self.open_output_part(parts, formal, target, negated);
                     passed[at] = storage.map(Passed::Output);
                     passed[at].is_some().then_some(())
                 }
                 (Given::Output { target: Some(target), negated }, None) => {
-                    let place = self.temporary(formals[at].name.text, formals[at].resolved.ty);
+                    let place = self.temporary(formal.name.text, formal.resolved.ty);
                     passed[at] = Some(Passed::Output(place.clone()));
-                    self.target_part(&mut parts, target, negated, Source::Variable(place))
+                    self.target_part(parts, target, negated, Source::Variable(place))
                 }
                 (Given::Nothing | Given::Output { target: None, .. }, _) => None,
             };
             complete &= made.is_some();
             passed[at].get_or_insert(Passed::Part(number));
         }
-        let missing = (0..formals.len()).filter(|at| matches!(given[*at], Given::Nothing));
-        let missing = missing.filter(|at| formals[*at].section == Section::InOut).count() > 0;
-        let (slot, signature) = if self.decl.is_generic(slot) && complete && !missing {
-            let slot = self.told_instance(&parts, &open, called)?;
-            (slot, self.decl.signature(slot)?)
-        } else {
-            (slot, Rc::clone(&signature))
-        };
-        if !enough {
-            return None;
-        }
-        for at in 0..signature.formals.len() {
-            if let Given::Nothing | Given::Output { target: None, .. } = given[at] {
-                passed[at] = self.left_out(&signature, at, slot, span);
-                complete &= passed[at].is_some();
+        complete
+    }
+
+    /// Passes what a call does not name; whether all of it may be left out.
+    fn write_left_out(
+        &mut self,
+        written: &mut Written,
+        signature: &Signature<'s>,
+        given: &[Given<'_, 's>],
+        slot: usize,
+        span: Span,
+    ) -> bool {
+        let mut complete = true;
+        for (at, given) in given.iter().enumerate() {
+            if let Given::Nothing | Given::Output { target: None, .. } = given {
+                written.passed[at] = self.left_out(signature, at, slot, span);
+                complete &= written.passed[at].is_some();
             }
         }
-        if !complete {
-            return None;
-        }
-        for (at, place) in self.close(&mut parts, open, &signature)? {
-            passed[at] = Some(Passed::Output(place));
-        }
-        let result = signature.result.as_ref().map(|(_, resolved)| self.temporary(owner.text, resolved.ty));
-        let call = |parts: &Parts| {
-            let argument = |it: &Option<Passed>| {
-                Some(match it.as_ref()? {
-                    Passed::Part(at) => parts.argument(*at),
-                    Passed::Default(value) => Argument::Value(value.clone()),
-                    Passed::Output(place) => Argument::Reference(place.clone()),
-                })
-            };
-            let arguments: Vec<_> = passed.iter().map(argument).collect::<Option<_>>()?;
-            let result = result.clone();
-            let instance = parts.instance().filter(|_| is_method).cloned();
-            let call = |callee, instance| {
-                let (arguments, result) = (Vec::clone(&arguments), result.clone());
-                StatementKind::Call { callee, instance, arguments, result }
-            };
-            Some(match (&dispatch, &instance) {
-                (Some(dispatch), Some(instance)) => dispatch.statement(instance, &|to, at| call(to, Some(at))),
-                (Some(_) | None, _) => call(RoutineId::next(slot), instance),
-            })
-        };
-        self.perform(parts, &call, span)?;
-        let at = self.at(span);
-        Some(result.map(|place| Expr::load(place, at)))
+        complete
     }
 
     /// The statements that give a FUNCTION's outputs their initial values: it keeps none from its last call.
