@@ -153,6 +153,7 @@ pub(crate) const UNITS: &[Unit] = units! {
     Type     "IEC_TIMER"        "iec_timer"        [Siemens];
     Function "NORM_X"           "norm_x"           [Siemens];
     Function "SCALE_X"          "scale_x"          [Siemens];
+    Function "SQR"              "sqr"              [Siemens];
     Type     "RTC"              "rtc";
     Function "SPLIT_DATE"       "split_date";
     Function "SPLIT_TOD"        "split_tod";
@@ -164,6 +165,7 @@ pub(crate) const UNITS: &[Unit] = units! {
     Space    "System.Timer"     "system_timer";
     Space    "System.Strings"   "system_strings";
     Space    "System.Math"      "system_math";
+    Space    "System.DateTime"  "system_datetime"  "SPLIT_LDT" "SPLIT_DATE" "SPLIT_LTOD";
     Open     "AxUnit"           "axunit"           [Iec Siemens];
     Space    "TcUnit"           (tcunit::TEXT);
     Space    "IBaseLibrary"     "ibaselibrary"     [Codesys];
