@@ -187,6 +187,11 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
+    /// They may be written from outside, too: those of an instance DB.
+    pub const fn writes_inner_variables(self) -> bool {
+        matches!(self, Self::Siemens)
+    }
+
     /// ADR takes a CONSTANT.
     pub const fn has_addresses_of_constants(self) -> bool {
         matches!(self, Self::Codesys)

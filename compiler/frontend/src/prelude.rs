@@ -155,6 +155,7 @@ pub(crate) const UNITS: &[Unit] = units! {
     Function "SCALE_X"          "scale_x"          [Siemens];
     Type     "RTC"              "rtc"              [Iec Cscape Openplc Logix Siemens];
     Type     "RTC"              "codesys_rtc"      [Codesys: Standard];
+    Function "SQR"              "sqr"              [Siemens];
     Function "SPLIT_DATE"       "split_date";
     Function "SPLIT_TOD"        "split_tod";
     Function "SPLIT_LTOD"       "split_ltod";
@@ -165,6 +166,7 @@ pub(crate) const UNITS: &[Unit] = units! {
     Space    "System.Timer"     "system_timer";
     Space    "System.Strings"   "system_strings";
     Space    "System.Math"      "system_math";
+    Space    "System.DateTime"  "system_datetime"  "SPLIT_LDT" "SPLIT_DATE" "SPLIT_LTOD";
     Open     "AxUnit"           "axunit"           [Iec Siemens];
     Space    "TcUnit"           (tcunit::TEXT);
     Space    "IBaseLibrary"     "ibaselibrary"     [Codesys];

@@ -58,7 +58,7 @@ pub struct Program {
 pub struct Reach {
     /// Who has a reference to them: the program has references.
     pub references: bool,
-    /// Who assigns an instance as a whole, or what holds one: the program does so.
+    /// Who assigns an instance as a whole, or what holds one, or what is in one: the program does so.
     pub copies: bool,
 }
 

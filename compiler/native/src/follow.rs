@@ -2,6 +2,7 @@
 
 use crate::address::Address;
 use crate::function::Function;
+use crate::module::FirstObject;
 use crate::runtime_call::by_pointer;
 use crate::signature::clif_type;
 use cranelift_codegen::ir::{self as clif, AbiParam, BlockArg, InstBuilder, MemFlagsData, condcodes::IntCC, types};
@@ -9,7 +10,7 @@ use staunch_ir::layout::{Shape, usize_of};
 use staunch_ir::reference::{Followed, followed, view, wanted};
 use staunch_ir::{ArrayId, Expr, FaultKind, Location, Place, Projection, StringType, Type};
 use staunch_runtime::Repr;
-use staunch_runtime::reference::{ORIGIN, View, encode};
+use staunch_runtime::reference::{CLASS, ORIGIN, Reference, View, Wanted, encode};
 
 /// Where the table of objects has its first one, and how far they are apart, in bytes.
 const OBJECTS_AT: i32 = encode::HEAD_BYTES;
@@ -228,15 +229,109 @@ impl Function<'_, '_> {
         let program = self.module.program;
         let it = followed(program, place).expect("a place that leads through a reference");
         let (reference, distance) = self.way(&it);
+        let wanted = wanted(program, it.ty);
+        let done = match wanted {
+            Wanted::Exact(id) => self.whole(reference, distance, (id, it.ty), it.way.is_empty()),
+            Wanted::Repr(_) | Wanted::Text(_) => None,
+        };
         let (space, out) = self.space(8);
         let [words, state] = self.world();
-        let wanted = self.number(wanted(program, it.ty).code());
+        let wanted = self.number(wanted.code());
         let [reference, distance] = [reference, distance].map(|value| (AbiParam::new(types::I64), value));
         self.checked("staunch_reference_find", &[words, state, reference, distance, wanted, by_pointer(out)], it.at);
-        let offset = self.load_as(types::I64, space);
+        let mut offset = self.load_as(types::I64, space);
+        if let Some(done) = done {
+            self.ins().jump(done, &[BlockArg::Value(offset)]);
+            self.go_on_in(done);
+            offset = self.builder.block_params(done)[0];
+        }
         let base = self.ins().iadd(state.1, offset);
         let pin = it.pin.map_or(0, |(block, pin)| self.module.layout.offset(Type::Block(block), pin));
         Address::at(base).plus(pin)
+    }
+
+    /// Goes to the block that is returned, with the offset of an object that is exactly of the type and in no pool: what
+    /// the runtime says of such an object, in line. All else goes on in the block that is current then.
+    fn whole(
+        &mut self,
+        reference: clif::Value,
+        distance: clif::Value,
+        (id, ty): (u32, Type),
+        is_direct: bool,
+    ) -> Option<clif::Block> {
+        if self.module.layout.size(ty) == 0 {
+            return None;
+        }
+        let kind = match ty {
+            Type::Struct(_) => encode::STRUCTURE,
+            Type::Array(_) => encode::ARRAY,
+            Type::Elementary(_)
+            | Type::Subrange(..)
+            | Type::Reference(_)
+            | Type::String(_)
+            | Type::Enum(_)
+            | Type::Block(_) => encode::EXACT,
+        };
+        let first = self.module.object_of(kind, id)?;
+        let (slow, done) = (self.builder.create_block(), self.builder.create_block());
+        self.builder.set_cold_block(slow);
+        self.builder.append_block_param(done, types::I64);
+        match is_direct && first.is_only {
+            true => self.jump_to_only(reference, first, slow, done),
+            false => self.jump_to_object(reference, distance, (kind, id), slow, done),
+        }
+        self.go_on_in(slow);
+        Some(done)
+    }
+
+    /// The program has one object of the type.
+    fn jump_to_only(&mut self, reference: clif::Value, object: FirstObject, slow: clif::Block, done: clif::Block) {
+        let only = Reference { object: object.number, address: ORIGIN + object.offset }.bits();
+        let place = self.ins().ishl_imm_u(reference, i64::from(64 - CLASS));
+        let is_it = self.ins().icmp_imm_u(IntCC::Equal, place, (only << (64 - CLASS)).cast_signed());
+        let offset = self.ins().iconst(types::I64, i64::from(object.offset));
+        self.ins().brif(is_it, done, &[BlockArg::Value(offset)], slow, &[]);
+    }
+
+    fn jump_to_object(
+        &mut self,
+        reference: clif::Value,
+        distance: clif::Value,
+        (kind, id): (u32, u32),
+        slow: clif::Block,
+        done: clif::Block,
+    ) {
+        let words = self.world()[0].1;
+        let count = i64::from(self.module.reference_objects());
+        let object = self.ins().ishl_imm_u(reference, i64::from(64 - CLASS));
+        let object = self.ins().ushr_imm_u(object, i64::from(64 - CLASS + 32));
+        let object = self.ins().iadd_imm_s(object, -1);
+        let is_known = self.ins().icmp_imm_u(IntCC::UnsignedLessThan, object, count);
+        let known = self.builder.create_block();
+        self.ins().brif(is_known, known, &[], slow, &[]);
+
+        self.go_on_in(known);
+        let entry = self.ins().imul_imm_s(object, OBJECT_BYTES);
+        let entry = self.ins().iadd(words, entry);
+        let word = |this: &mut Self, base, at| this.ins().uload32(MemFlagsData::trusted(), base, at);
+        let start = word(self, entry, OBJECTS_AT);
+        let mark = word(self, entry, OBJECTS_AT + 12);
+        let node = word(self, entry, OBJECTS_AT + 16);
+        let node = self.ins().ishl_imm_u(node, 2);
+        let node = self.ins().iadd(words, node);
+        let found_kind = word(self, node, 0);
+        let found_id = word(self, node, 8);
+        let address = self.ins().ireduce(types::I32, reference);
+        let address = self.ins().uextend(types::I64, address);
+        let address = self.ins().iadd(address, distance);
+        let offset = self.ins().iadd_imm_s(address, -i64::from(ORIGIN));
+        let position = self.ins().isub(offset, start);
+        let other_kind = self.ins().bxor_imm_u(found_kind, i64::from(kind));
+        let other_type = self.ins().bxor_imm_u(found_id, i64::from(id));
+        let wrong = self.ins().bor(position, mark);
+        let other = self.ins().bor(other_kind, other_type);
+        let wrong = self.ins().bor(wrong, other);
+        self.ins().brif(wrong, slow, &[], done, &[BlockArg::Value(offset)]);
     }
 
     /// The reference to a place.

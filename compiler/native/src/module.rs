@@ -7,8 +7,9 @@ use cranelift_codegen::ir::Signature;
 use cranelift_frontend::FunctionBuilderContext;
 use cranelift_module::{DataDescription, DataId, FuncId, Linkage, Module, ModuleReloc};
 use staunch_ir::effects::Effects;
-use staunch_ir::layout::Layout;
+use staunch_ir::layout::{Layout, usize_of};
 use staunch_ir::{Program, Routine, RoutineId, RoutineKind};
+use staunch_runtime::reference::encode;
 use std::collections::HashMap;
 use std::fmt::Write;
 
@@ -19,6 +20,36 @@ const LARGE: usize = 30_000;
 /// Beside a frame lie the caller's frame pointer and the address to return to.
 const FRAME_ENDS: u64 = 16;
 
+/// The table of objects, and what code is made by that is known of them.
+struct References {
+    table: DataId,
+    count: u32,
+    /// By the kind and the number of their types.
+    objects: HashMap<(u32, u32), FirstObject>,
+}
+
+/// The first object of a type.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FirstObject {
+    pub(crate) number: u32,
+    pub(crate) offset: u32,
+    /// There is no other one.
+    pub(crate) is_only: bool,
+}
+
+/// The first objects in no pool of each type.
+fn objects(words: &[u32]) -> HashMap<(u32, u32), FirstObject> {
+    let mut found: HashMap<(u32, u32), FirstObject> = HashMap::new();
+    let count = words.first().map_or(0, |it| usize_of(u64::from(*it)));
+    let all = words.get(encode::HEAD..).unwrap_or_default().chunks_exact(encode::OBJECT).take(count);
+    for (object, number) in all.zip(1..).filter(|(it, _)| it[3] == 0) {
+        let node = usize_of(u64::from(object[4]));
+        let first = FirstObject { number, offset: object[0], is_only: true };
+        found.entry((words[node], words[node + 2])).and_modify(|it| it.is_only = false).or_insert(first);
+    }
+    found
+}
+
 pub(crate) struct ModuleEmitter<'p> {
     pub(crate) program: &'p Program,
     pub(crate) layout: Layout,
@@ -28,8 +59,8 @@ pub(crate) struct ModuleEmitter<'p> {
     imports: HashMap<String, FuncId>,
     /// Read-only data, defined when all code is made.
     constants: HashMap<Vec<u8>, DataId>,
-    /// The table of objects, where something follows or makes a reference.
-    references: Option<(DataId, u32)>,
+    /// Where something follows or makes a reference.
+    references: Option<References>,
     /// How much of the stack each function takes, in the order in which they are made.
     pub(crate) frames: Vec<u64>,
     /// The functions as text, where it is wanted.
@@ -109,22 +140,27 @@ impl<'p> ModuleEmitter<'p> {
 
     /// The words of the table by which accesses through references are checked.
     pub(crate) fn reference_table(&mut self) -> DataId {
-        self.references().0
+        self.references().table
     }
 
     /// How many objects the table has.
     pub(crate) fn reference_objects(&mut self) -> u32 {
-        self.references().1
+        self.references().count
     }
 
-    fn references(&mut self) -> (DataId, u32) {
-        if let Some(known) = self.references {
-            return known;
+    /// The first of the objects whose outermost variable is of a type, and which are in no pool.
+    pub(crate) fn object_of(&mut self, kind: u32, id: u32) -> Option<FirstObject> {
+        self.references().objects.get(&(kind, id)).copied()
+    }
+
+    fn references(&mut self) -> &References {
+        if self.references.is_none() {
+            let words = staunch_ir::reference::table(self.program, &self.layout);
+            let (count, objects) = (words.first().copied().unwrap_or_default(), objects(&words));
+            let table = self.constant(words.into_iter().flat_map(u32::to_le_bytes).collect());
+            self.references = Some(References { table, count, objects });
         }
-        let words = staunch_ir::reference::table(self.program, &self.layout);
-        let count = words.first().copied().unwrap_or_default();
-        let id = self.constant(words.into_iter().flat_map(u32::to_le_bytes).collect());
-        *self.references.insert((id, count))
+        self.references.as_ref().expect("they were made")
     }
 
     pub(crate) fn define_constants(&mut self) -> Result<(), Error> {

@@ -62,11 +62,14 @@ pub fn test(session: &Session, args: &args::Test) -> Result<u8, String> {
         return Err("the sources hold no TEST, and no table is beside them".to_owned());
     }
     let tests: Vec<(usize, &Test)> = session.tests.iter().enumerate().filter(|it| args.wants_of(it.1)).collect();
-    let all = session.tests.len() + tables.len();
+    let (groups, single): (Vec<_>, Vec<_>) =
+        session.tests.iter().partition(|it| it.suite.is_some() || it.fixture.is_some());
+    let all = single.len() + tables.len();
+    let groups = if groups.is_empty() { String::new() } else { format!(" and {} suites", groups.len()) };
     let tables: Vec<Table> = tables.into_iter().filter(|it| args.wants(&it.title)).collect();
     if tests.is_empty() && tables.is_empty() {
         let wanted = args.filter.as_deref().unwrap_or_default();
-        return Err(format!("no test has `{wanted}` in its title; there are {all} tests"));
+        return Err(format!("no test has `{wanted}` in its title; there are {all} tests{groups}"));
     }
     let is_covered = !args.coverage.is_empty();
     if is_covered && args.backend == Backend::Rust {

@@ -6,6 +6,7 @@ use crate::args::MessageFormat;
 use crate::session::Session;
 use staunch_frontend::{Assertion, Span, Test};
 use staunch_host::json_text;
+use staunch_runtime::FaultKind;
 
 pub struct Report<'s> {
     session: &'s Session,
@@ -117,7 +118,9 @@ impl<'s> Report<'s> {
             Outcome::Differs(lines) => lines,
             Outcome::Faulted(text) => {
                 let source = self.source_line(&text).map(str::to_owned);
-                text.lines().map(str::to_owned).chain(source).collect()
+                let is_budget = text.ends_with(&FaultKind::LoopBudget.to_string());
+                let help = is_budget.then(|| "`--loop-budget N` gives a test more turns".to_owned());
+                text.lines().map(str::to_owned).chain(source).chain(help).collect()
             }
             Outcome::Failed { assertion, actual, expected, message } => {
                 let Assertion { span, wants, compares_texts, .. } = assertions[assertion];

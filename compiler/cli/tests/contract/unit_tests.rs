@@ -132,6 +132,7 @@ fn failures_say_what_was_expected() {
   FAILED  a loop without an end
           motor_test.st:23:9: a loop went on past the scan's budget of turns
           WHILE n < 10 DO n := 0; END_WHILE
+          `--loop-budget N` gives a test more turns
 
 0 passed, 6 failed
 ";

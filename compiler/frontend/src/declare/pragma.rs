@@ -7,6 +7,8 @@ use crate::{Code, Diagnostic, Span, ast};
 
 /// Pragmas that change what a program means: to pass over them would compile another program.
 const DECIDING_PRAGMAS: [&str; 6] = ["if", "elsif", "else", "end_if", "define", "undefine"];
+/// What conditions of CODESYS's may ask for besides.
+const CONDITIONS: [&str; 5] = ["hasattribute", "hasconstantvalue", "hasvalue", "hastype", "project_defined"];
 /// Pragmas for editors and other tools.
 const HARMLESS_PRAGMAS: [&str; 11] =
     ["region", "endregion", "end_region", "info", "text", "flag", "analysis", "nobp", "bp", "flow", "noflow"];
@@ -163,6 +165,8 @@ impl Log<'_> {
             self.check_external_pragma(file, pragma.span);
         } else if word == "pool" {
             self.check_pool_pragma(file, pragma.span);
+        } else if word == "if" || word == "elsif" {
+            self.report_condition(pragma, &word);
         } else if DECIDING_PRAGMAS.contains(&word.as_str()) {
             self.not_supported(pragma.span, &format!("the pragma `{word}`"));
         } else if !HARMLESS_PRAGMAS.contains(&word.as_str())
@@ -178,6 +182,28 @@ impl Log<'_> {
 }
 
 impl Log<'_> {
+    /// A condition of `{IF}` that asks for more than what is defined.
+    fn report_condition(&mut self, pragma: ast::Name<'_>, word: &str) {
+        let text = pragma.text.to_ascii_lowercase();
+        let asked = CONDITIONS.iter().find(|it| text.contains(*it));
+        let of_declared = ["variable", "type", "pou", "task", "resource"].iter().find(|kind| {
+            let after =
+                text.split("defined").skip(1).filter_map(|it| it.trim_start().strip_prefix('(')?.split_once(':'));
+            after.clone().any(|it| it.0.trim() == **kind)
+        });
+        let what = match (of_declared, asked) {
+            (Some(kind), _) => format!("`defined({kind}: …)`"),
+            (None, Some(asked)) => format!("`{asked}`"),
+            (None, None) => "this condition".to_owned(),
+        };
+        let message = format!("{what} in the pragma `{word}` is not supported yet");
+        self.report(
+            Diagnostic::new(Code::E0902, pragma.span, message)
+                .label("what is asked for here is `defined(NAME)`, with NOT, AND, OR and parentheses")
+                .help("ask for a name that `{define NAME}`, or the project, defines where that holds"),
+        );
+    }
+
     /// `{error 'text'}` and `{warning 'text'}` in what is compiled say so. `{warning disable C0195}` is of the editor.
     fn tell(&mut self, pragma: ast::Name<'_>, word: &str) {
         let text = pragma.text.trim().get(word.len()..).unwrap_or_default().trim();

@@ -248,7 +248,8 @@ impl<'s> Checker<'_, 's> {
         let own = self.decl.pous.iter().filter(|it| it.ast.kind == ast::PouKind::Function).map(|it| it.ast.name.text);
         let instances =
             self.scope.variables.iter().filter(|it| matches!(it.place.ty, Type::Block(_) | Type::Struct(_)));
-        let standard = functions::names().map(|it| -> &str { it });
+        // Nobody means `NOT()`.
+        let standard = functions::names().filter(|it| *it != "NOT").map(|it| -> &str { it });
         let candidates = own.chain(instances.map(|it| it.name.text)).chain(standard);
         let near = nearest(name.text, candidates).map(str::to_owned);
         let mut error =

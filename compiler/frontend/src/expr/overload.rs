@@ -443,7 +443,7 @@ fn kind(signature: &Signature, at: usize) -> Kind {
 }
 
 /// The names of the parameters for so many arguments: IN1, IN2, … go on as long as arguments do.
-fn parameter_names(signature: &Signature, arguments: usize) -> Vec<Cow<'static, str>> {
+pub(super) fn parameter_names(signature: &Signature, arguments: usize) -> Vec<Cow<'static, str>> {
     let own = signature.parameters.len();
     let count = if signature.extensible { arguments.max(own) } else { own };
     (0..count).map(|at| parameter_name(signature, at)).collect()

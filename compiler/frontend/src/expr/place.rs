@@ -411,6 +411,11 @@ impl<'s> Checker<'_, 's> {
             _ if matches!(found.access, Access::Inner(_) | Access::Result) => found.access,
             _ if constant => Access::Constant(name),
             _ if sees_all => Access::Write,
+            _ if inner && self.decl.dialect(name.span).writes_inner_variables() => {
+                // Others than the class's own routines may write them.
+                self.decl.table.copies.set(true);
+                Access::Write
+            }
             _ if inner => Access::Inner(name),
             Section::Output if instance => Access::Output(name),
             // A structure in a constant stays constant; an instance's input is for its callers.
@@ -436,7 +441,8 @@ impl<'s> Checker<'_, 's> {
 
     /// A variable of an instance that a dialect lets others read.
     fn seen_from_outside(&mut self, id: StructId, name: ast::Name<'s>) -> Option<Rc<Variable<'s>>> {
-        if !self.decl.dialect(name.span).shows_inner_variables() {
+        let dialect = self.decl.dialect(name.span);
+        if !dialect.shows_inner_variables() && !dialect.writes_inner_variables() {
             return None;
         }
         let slot = self.decl.slot_of_instance(id)?;

@@ -4,7 +4,7 @@
 use super::checker::{Checker, Context};
 use super::constant::is_constant;
 use super::operand::{Operand, computed};
-use super::overload::Resolved;
+use super::overload::{Resolved, parameter_names};
 use super::text_conversion::MAX_CAPACITY;
 use crate::names::functions::{self, Meaning, named};
 use crate::types::signature::pin_place;
@@ -91,7 +91,7 @@ impl<'s> Checker<'_, 's> {
         let has = |signature: &Signature, argument: &ast::Argument<'s>| match &argument.kind {
             ast::ArgumentKind::Positional(_) => true,
             ast::ArgumentKind::Input(name, _) | ast::ArgumentKind::Output { name, .. } => {
-                signature.parameters.iter().any(|it| it.name.eq_ignore_ascii_case(name.text))
+                parameter_names(signature, arguments.len()).iter().any(|it| it.eq_ignore_ascii_case(name.text))
             }
         };
         let forms = || named(name.text).iter().filter(|it| it.0.is_none_or(|it| it == dialect));

@@ -137,6 +137,11 @@ const OTHERS: &[(Option<Dialect>, Signature, Meaning)] = &[
     (SIEMENS, signature!("ROUND" (IN: ANY_REAL) -> ANY_INT), Meaning::Round(Rounding::ToEven)),
     (SIEMENS, signature!("CEIL" (IN: ANY_REAL) -> ANY_INT), Meaning::Round(Rounding::Up)),
     (SIEMENS, signature!("FLOOR" (IN: ANY_REAL) -> ANY_INT), Meaning::Round(Rounding::Down)),
+    (
+        SIEMENS,
+        signature!("CONCAT" (string1: ANY_STRING, string2: ANY_STRING) -> ANY_STRING extensible),
+        Meaning::Text(TextOp::Concat),
+    ),
     // CODESYS's library names the parameters of the functions on strings in its own way.
     (CODESYS, signature!("LEN" (STR: ANY_STRING) -> INT), Meaning::Text(TextOp::Len)),
     (CODESYS, signature!("LEFT" (STR: ANY_STRING, SIZE: ANY_INT) -> ANY_STRING), Meaning::Text(TextOp::Left)),
