@@ -330,9 +330,10 @@ impl<'s> Checker<'_, 's> {
                 Operand::Typed(Expr { kind: ExprKind::Load(place), .. }) if place.ty == ty => Some(place.clone()),
                 Operand::Typed(_) | Operand::Promoted(..) | Operand::Integer(_) | Operand::Real { .. } => None,
             };
-            // An instance is never copied: its METHODs may be called.
+            // An instance is copied where it is CONSTANT alone: its METHODs may be called.
             let is_instance = this.decl.held_instance(ty).is_some();
-            if let Some(place) = place.filter(|it| is_instance || this.may_be_lent(it)) {
+            let may_be_lent = |it: &Place| this.may_be_lent(it) || is_instance && !this.is_in_constant(it);
+            if let Some(place) = place.filter(may_be_lent) {
                 return Some(place);
             }
             let value = this.coerce(value, ty, expr.span)?;
@@ -361,6 +362,21 @@ impl<'s> Checker<'_, 's> {
             (Root::Local(_) | Root::Param(_), _) => false,
         };
         !is_constant && !self.is_counter(place)
+    }
+
+    /// Whether a place is, or is a part of, what is declared CONSTANT.
+    fn is_in_constant(&self, place: &Place) -> bool {
+        let Some(mut ty) = self.root_type(place.root) else { return false };
+        place.projections.iter().any(|projection| {
+            let is_constant = match (projection, ty) {
+                (Projection::Field(field), Type::Struct(id)) => {
+                    self.decl.program.structure(id).fields.get(field.index()).is_some_and(|it| it.constant)
+                }
+                _ => false,
+            };
+            ty = self.decl.program.part(ty, projection).unwrap_or(ty);
+            is_constant
+        })
     }
 
     pub(crate) fn report_no_variable(&mut self, formal: &Formal<'s>, owner: &str, span: Span) {
