@@ -585,6 +585,65 @@ fn what_decides_is_among_the_values_that_are_tried() {
 }
 
 #[test]
+fn what_the_world_outside_writes_is_told_apart_by_variable() {
+    let panel =
+        "TYPE Panel : STRUCT start : BOOL; lamp : BOOL; END_STRUCT END_TYPE\nVAR_GLOBAL one, two : Panel; END_VAR\n";
+    let recipe = "TYPE Recipe : STRUCT n : INT; on : BOOL; END_STRUCT END_TYPE\n";
+    let programs = [
+        // Of two panels the program writes one.
+        ("members", panel, "", "IF s THEN one.start := FALSE; END_IF", "c(s AND two.start, FALSE, 1); o := c.CV > 1;"),
+        // What is written as a whole is no input.
+        ("whole", recipe, "rec : Recipe;", "", "o := cur.on; c(s, c.CV > 1, 1); IF c.CV > 1 THEN cur := rec; END_IF"),
+    ];
+    for (name, types, input, first, last) in programs {
+        let source = format!(
+            "{types}PROGRAM p VAR_INPUT s : BOOL; {input} END_VAR VAR c : CTU; {} END_VAR VAR_OUTPUT o : BOOL; END_VAR\n\
+             {first} {last}\nEND_PROGRAM\n",
+            if name == "whole" { "cur : Recipe;" } else { "" }
+        );
+        let path = written(&format!("outside_{name}.st"), &source);
+        let out = difference(&format!("{} --from iec --to openplc --vars o -A warnings", path.display()));
+        let scans = if name == "whole" { 4 } else { 3 };
+        assert!(out.starts_with(&format!("iec and openplc differ after {scans} scans:")), "{name}: {out}");
+    }
+    // A command that the program takes back, and a text.
+    let globals = "VAR_GLOBAL reset : BOOL; END_VAR\n";
+    let body = "c(s AND reset, FALSE, 1); o := c.CV > 1; IF reset AND s THEN reset := FALSE; END_IF";
+    let program = |variables: &str, body: &str| {
+        format!(
+            "PROGRAM p VAR_INPUT s : BOOL; END_VAR VAR c : CTU; {variables} END_VAR VAR_OUTPUT o : BOOL; END_VAR\n{body}\nEND_PROGRAM\n"
+        )
+    };
+    let path = written("outside_taken_back.st", &format!("{globals}{}", program("", body)));
+    let arguments = format!("{} --from iec --to openplc --vars o -A warnings", path.display());
+    let out = text(&run(&arguments).stdout);
+    assert!(
+        out.contains("under every value of the inputs (s); nothing else is taken to be written from outside"),
+        "{out}"
+    );
+    let assumed = written("outside.txt", "input reset\n");
+    let out = difference(&format!("{arguments} --assume {}", assumed.display()));
+    assert!(out.starts_with("iec and openplc differ after 3 scans:"), "{out}");
+    let path = written("outside_text.st", &program("mode : STRING;", "c(s AND mode = 'GO', FALSE, 1); o := c.CV > 1;"));
+    let output = run(&format!("{} --from iec --to openplc --vars o -A warnings", path.display()));
+    assert_eq!(output.status.code(), Some(4), "{}", text(&output.stdout));
+}
+
+#[test]
+fn what_one_program_alone_reads_of_the_outside_is_an_input() {
+    let program = |name: &str, last: &str| {
+        let source = format!(
+            "VAR_GLOBAL block : BOOL; END_VAR\nPROGRAM p VAR_INPUT s : BOOL; END_VAR VAR c : CTU; END_VAR VAR_OUTPUT o : BOOL; END_VAR\n\
+             c(s, FALSE, 3); o := c.Q{last};\nEND_PROGRAM\n"
+        );
+        written(name, &source)
+    };
+    let (one, other) = (program("with_block.st", " AND NOT block"), program("without_block.st", ""));
+    let arguments = format!("{} --from iec --to iec --against {} -A warnings", one.display(), other.display());
+    assert!(difference(&arguments).starts_with("iec and iec differ after 5 scans:"));
+}
+
+#[test]
 fn what_keeps_its_value_is_said_and_an_assumption_makes_it_an_input() {
     let path = counts_while("kept_at", "VAR_INPUT a : BOOL; END_VAR VAR n : INT := 5; END_VAR", "a AND n = 3");
     let arguments = format!("{} --from iec --to openplc --vars o -A warnings", path.display());

@@ -72,35 +72,44 @@ fn repr(pair: &Pair, input: &Input) -> Repr {
 pub struct Sources {
     pub inputs: Vec<Input>,
     pub kept: Vec<Input>,
+    /// Strings that nothing writes: no values of theirs are tried.
+    pub texts: Vec<Matched>,
 }
 
 /// The inputs by their declaration, and what the world outside must be writing: what no statement writes and some
 /// read, where it starts at zero, is retained, or an assumption speaks of it. Without an input by its declaration, all that no
 /// statement writes and some read.
 pub fn sources(pair: &Pair, facts: [&Facts; 2], assumed: &Mentioned) -> Sources {
-    let mut found = Sources { inputs: typed(pair, pair.matched(|it| it.role == Role::Input)), kept: Vec::new() };
-    let mut open = pair.matched(|it| it.role == Role::Variable);
-    open.retain(|[a, b]| {
-        let names = [name(pair.scalar(0, *a)), name(pair.scalar(1, *b))];
-        let free = |side: usize| names[side].is_some_and(|it| !facts[side].is_written(it) && facts[side].is_read(it));
-        free(0) && free(1)
-    });
-    let open = typed(pair, open);
-    if found.inputs.is_empty() {
-        found.inputs = open;
-        return found;
-    }
-    for input in open {
-        let scalar = pair.scalar(0, input.scalars[0]);
+    let declared = typed(pair, pair.matched(|it| it.role == Role::Input));
+    let mut found = Sources { inputs: declared, ..Sources::default() };
+    let is_alone = found.inputs.is_empty();
+    for scalars in pair.matched(|it| it.role == Role::Variable) {
+        let scalar = pair.scalar(0, scalars[0]);
+        let writes = [0, 1].map(|side| is_written(pair.scalar(side, scalars[side]), facts[side]));
+        let reads = |side: usize| name(pair.scalar(side, scalars[side])).is_some_and(|it| facts[side].is_read(it));
+        let is_named = assumed.has(&scalar.path);
+        if writes == [true, true] && !is_named || !(reads(0) || reads(1)) {
+            continue;
+        }
+        let Some(input) = typed(pair, vec![scalars]).pop() else {
+            found.texts.extend((writes == [false, false]).then_some(scalars));
+            continue;
+        };
         let is_set = input.initial == input.initial.repr().zero() || scalar.at.is_retained;
         // What an instance is never given is its own business.
-        if assumed.has(&scalar.path) || is_set && !scalar.at.is_inner {
+        let is_input = writes == [false, false] && (is_alone || is_set && !scalar.at.is_inner);
+        if is_named || is_input {
             found.inputs.push(input);
         } else {
             found.kept.push(input);
         }
     }
     found
+}
+
+/// Whether a program writes a variable.
+fn is_written(scalar: &Scalar, facts: &Facts) -> bool {
+    name(scalar).is_none_or(|it| facts.is_written(it, &scalar.way))
 }
 
 /// Those that both programs hold in one type.
@@ -119,13 +128,15 @@ fn typed(pair: &Pair, found: Vec<Matched>) -> Vec<Input> {
 pub fn untried(pair: &Pair) -> Vec<&str> {
     let tried: HashSet<Matched> = pair.inputs.iter().map(|it| it.scalars).collect();
     let both = pair.matched(|it| it.role == Role::Input);
-    both.into_iter().filter(|it| !tried.contains(it)).map(|it| pair.path(it)).collect()
+    let inputs = both.into_iter().filter(|it| !tried.contains(it));
+    inputs.chain(pair.texts.iter().copied()).map(|it| pair.path(it)).collect()
 }
 
 /// Whether a program assigns an input of its own.
 pub fn are_written(pair: &Pair, facts: [&Facts; 2]) -> bool {
     let written = |side: usize, input: &Input| {
-        name(pair.scalar(side, input.scalars[side])).is_some_and(|it| facts[side].is_written(it))
+        let scalar = pair.scalar(side, input.scalars[side]);
+        name(scalar).is_some_and(|it| facts[side].is_written(it, &scalar.way))
     };
     pair.inputs.iter().any(|it| written(0, it) || written(1, it))
 }

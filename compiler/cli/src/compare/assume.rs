@@ -28,8 +28,11 @@ pub struct Assumptions {
 struct Named<'a> {
     name: String,
     subrange: Option<(i128, i128)>,
-    value: Box<dyn Fn(&str) -> Result<Value, String> + 'a>,
+    value: Spelling<'a>,
 }
+
+/// The value that a text is of an input's type.
+type Spelling<'a> = Box<dyn Fn(&str) -> Result<Value, String> + 'a>;
 
 impl<'a> Named<'a> {
     fn of(pair: &Pair, map: &'a Map, input: &Input) -> Self {
@@ -127,6 +130,10 @@ impl Assumptions {
                 let found = Event::ALL.into_iter().find(|it| it.name().eq_ignore_ascii_case(event));
                 self.never.push(found.ok_or_else(|| format!("`{event}` is no event; they are restart, run, reset"))?);
             }
+            // That it is named makes it an input.
+            [input, name] if input.eq_ignore_ascii_case("input") => {
+                parser.input(name)?;
+            }
             [name, low, "..", high] => {
                 let at = parser.input(name)?;
                 let [first, last] = [low, high].map(|it| parser.limit(at, it));
@@ -151,8 +158,8 @@ impl Assumptions {
                 let condition = parser.either()?;
                 if let Some(rest) = parser.tokens.first() {
                     return Err(format!(
-                        "`{rest}` is not expected here; a line is `Input 1..500`, `Input for at least 3 scans`, \
-                         `no run` or a condition with AND, OR, NOT and comparisons"
+                        "`{rest}` is not expected here; a line is `Level 1..500`, `Level for at least 3 scans`, \
+                         `input Level`, `no run` or a condition with AND, OR, NOT and comparisons"
                     ));
                 }
                 self.conditions.push(condition);
@@ -398,15 +405,13 @@ mod tests {
     use super::*;
 
     fn parsed(text: &str) -> Result<Assumptions, (usize, String)> {
-        let wrong = |it: &str| format!("`{it}` is no value");
+        fn wrong(it: &str) -> String {
+            format!("`{it}` is no value")
+        }
         let truth = |it: &str| it.parse().map(Value::Bool).map_err(|_| wrong(it));
         let count = |it: &str| it.parse().map(Value::I16).map_err(|_| wrong(it));
         let level = |it: &str| it.parse().map(Value::F32).map_err(|_| wrong(it));
-        let named = |name: &str, subrange, value: Box<dyn Fn(&str) -> Result<Value, String>>| Named {
-            name: name.to_owned(),
-            subrange,
-            value,
-        };
+        let named = |name: &str, subrange, value: Spelling<'static>| Named { name: name.to_owned(), subrange, value };
         let inputs = [
             named("Start", None, Box::new(truth)),
             named("Stop", None, Box::new(truth)),

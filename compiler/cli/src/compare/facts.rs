@@ -4,6 +4,7 @@
 //! Variables are told apart by their declarations: all elements of an array are one, and so are a
 //! member of all instances of a block. What is found for one holds for each.
 
+use super::scalar::Way;
 use staunch_ir::{
     Argument, Block, Const, Conversion, Expr, ExprKind, FieldId, LocalId, Mode, Op, ParamId, Place, Program,
     Projection, Root, Routine, RoutineId, Statement, StatementKind, Step, StructId, Type, Value, visit,
@@ -34,7 +35,10 @@ pub struct Facts {
     hints: HashMap<Name, Numbers>,
     /// Used in another way than compared with constants and handed on.
     computed: HashSet<Name>,
+    /// By statements of others than the PROGRAM that holds it.
     written: HashSet<Name>,
+    /// From the states of PROGRAMs and the globals.
+    written_ways: HashSet<Way>,
     read: HashSet<Name>,
     /// Every constant of the program that is a whole number or a time.
     pub constants: BTreeSet<i128>,
@@ -112,8 +116,18 @@ impl Facts {
         !self.computed.contains(&name)
     }
 
-    pub fn is_written(&self, name: Name) -> bool {
-        self.written.contains(&name)
+    /// Whether a statement writes a variable, or what it is in, or something in it.
+    pub fn is_written(&self, name: Name, way: &Way) -> bool {
+        self.written.contains(&name) || self.written_ways.iter().any(|it| it.meets(way))
+    }
+
+    /// Whether some statement writes the variable of this declaration, in whatever it is.
+    fn is_written_somewhere(&self, name: Name) -> bool {
+        let is_it = |way: &Way| match name {
+            Name::Field(_, field) => way.members.contains(&field),
+            Name::Local(..) | Name::Param(..) => false,
+        };
+        self.written.contains(&name) || self.written_ways.iter().any(is_it)
     }
 
     pub fn is_read(&self, name: Name) -> bool {
@@ -167,7 +181,7 @@ impl Facts {
     fn unwritten(&mut self, program: &Program, name: Name, ty: Type, initial: &Const) {
         match (initial, ty) {
             (Const::Scalar(Value::Bool(_)) | Const::Zero | Const::Text(_), _) => {}
-            (Const::Scalar(it), _) if !self.is_written(name) => self.near_to(name, *it),
+            (Const::Scalar(it), _) if !self.is_written_somewhere(name) => self.near_to(name, *it),
             (Const::Scalar(_), _) => {}
             (Const::Array(runs), Type::Array(id)) => {
                 let element = program.array(id).element;
@@ -277,9 +291,7 @@ impl<'p> Walk<'p, '_> {
 
     fn statement(&mut self, statement: &'p Statement) {
         visit::targets(statement, &mut |place| {
-            if let Some(name) = self.name(place) {
-                self.facts.written.insert(name);
-            }
+            self.note_written(place);
             self.indices(place);
         });
         match &statement.kind {
@@ -344,6 +356,39 @@ impl<'p> Walk<'p, '_> {
         }
     }
 
+    /// A statement writes a place, and with it all that is in it.
+    fn note_written(&mut self, place: &Place) {
+        match self.way(place) {
+            Some(way) => {
+                self.facts.written_ways.insert(way);
+            }
+            None => {
+                let found = self.all_in(place);
+                self.facts.written.extend(found);
+            }
+        }
+    }
+
+    /// The members down to a place, from the globals or the state of a PROGRAM.
+    fn way(&self, place: &Place) -> Option<Way> {
+        let is_program =
+            |state: StructId| self.program.instances.iter().any(|it| self.program.class(it.program).state == state);
+        let from = match place.root {
+            Root::Globals => self.program.globals,
+            Root::Instance => self.routine.state.filter(|it| is_program(*it))?,
+            Root::Local(_) | Root::Param(_) => return None,
+        };
+        let mut members = Vec::new();
+        for projection in &place.projections {
+            match projection {
+                Projection::Field(field) => members.push(*field),
+                Projection::Index { .. } => {}
+                Projection::Deref { .. } => return None,
+            }
+        }
+        Some(Way { from, members })
+    }
+
     fn note_read(&mut self, name: Name) {
         self.facts.read.insert(name);
     }
@@ -403,9 +448,16 @@ impl<'p> Walk<'p, '_> {
 
     /// What a reference leads to may be used in any way, and with it all that is in it.
     fn lent(&mut self, place: &Place) {
-        let name = self.name(place);
+        let found = self.all_in(place);
+        self.facts.read.extend(found.iter().copied());
+        self.facts.written.extend(found.iter().copied());
+        self.facts.computed.extend(found);
+    }
+
+    /// The variable that a place is a part of, and all that are in the place.
+    fn all_in(&self, place: &Place) -> HashSet<Name> {
         let mut open: Vec<Type> = vec![place.ty];
-        let mut found: HashSet<Name> = name.into_iter().collect();
+        let mut found: HashSet<Name> = self.name(place).into_iter().collect();
         while let Some(ty) = open.pop() {
             match ty {
                 Type::Array(id) => open.push(self.program.array(id).element),
@@ -424,9 +476,7 @@ impl<'p> Walk<'p, '_> {
                 | Type::Reference(_) => {}
             }
         }
-        self.facts.read.extend(found.iter().copied());
-        self.facts.written.extend(found.iter().copied());
-        self.facts.computed.extend(found);
+        found
     }
 
     /// `a` as it is compared with `b`.

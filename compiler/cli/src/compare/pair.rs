@@ -106,6 +106,8 @@ pub struct Pair {
     pub inputs: Vec<Input>,
     /// What keeps its first value, because nothing writes it, though the world outside might.
     pub kept: Vec<Input>,
+    /// Strings that nothing writes.
+    pub texts: Vec<Matched>,
     /// What is compared after each scan, in the order of the declarations.
     pub compared: Vec<Matched>,
     /// Counters that both sides have.
@@ -191,6 +193,7 @@ impl Pair {
             sides,
             inputs: Vec::new(),
             kept: Vec::new(),
+            texts: Vec::new(),
             compared: Vec::new(),
             counters: Vec::new(),
             outputs: Vec::new(),

@@ -22,7 +22,23 @@ pub struct Scalar {
     pub role: Role,
     /// The innermost declared variable or member that it is, or is an element of; no pin is one.
     pub field: Option<(StructId, FieldId)>,
+    /// The members from the PROGRAM's state, or from the globals, down to it.
+    pub way: Way,
     pub at: Whereabouts,
+}
+
+/// Members from a structure down to a variable; elements of arrays are not told apart.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Way {
+    pub from: StructId,
+    pub members: Vec<FieldId>,
+}
+
+impl Way {
+    /// Whether one is of the other, or is the same.
+    pub fn meets(&self, other: &Self) -> bool {
+        self.from == other.from && self.members.iter().zip(&other.members).all(|(a, b)| a == b)
+    }
 }
 
 /// What is known of a variable by where it is declared.
@@ -68,11 +84,12 @@ pub struct Scalars {
 }
 
 /// What is handed down from a variable to its parts.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 struct Whole {
     offset: usize,
     role: Role,
     field: Option<(StructId, FieldId)>,
+    way: Way,
     at: Whereabouts,
 }
 
@@ -117,7 +134,8 @@ impl Walk<'_> {
                 is_inner: false,
                 is_retained: field.retain == Retain::Kept,
             };
-            self.part(&path, field.ty, Whole { offset, role, field: Some((id, number)), at });
+            let way = Way { from: id, members: vec![number] };
+            self.part(&path, field.ty, Whole { offset, role, field: Some((id, number)), way, at });
         }
     }
 
@@ -137,10 +155,10 @@ impl Walk<'_> {
             self.found.truncated = true;
             return;
         }
-        let Whole { offset, role, field, at } = whole;
+        let Whole { offset, role, field, way, at } = whole;
         let size = usize_of(self.layout.size(ty));
         let (path, key) = (path.to_owned(), key.to_ascii_lowercase());
-        self.found.all.push(Scalar { path, key, ty, offset, size, role, field, at });
+        self.found.all.push(Scalar { path, key, ty, offset, size, role, field, way, at });
     }
 
     fn array(&mut self, path: &str, id: ArrayId, whole: Whole) {
@@ -149,7 +167,7 @@ impl Walk<'_> {
         let stride = usize_of(self.layout.stride(id));
         let mut offset = whole.offset;
         for index in (array.low..=array.high).take(usize_of(MAX_ELEMENTS.min(array.len()))) {
-            self.part(&format!("{path}[{index}]"), array.element, Whole { offset, ..whole });
+            self.part(&format!("{path}[{index}]"), array.element, Whole { offset, ..whole.clone() });
             offset += stride;
         }
     }
@@ -166,23 +184,23 @@ impl Walk<'_> {
                 Retain::Anew => false,
             };
             let at = Whereabouts { is_inner, is_retained, ..whole.at };
-            self.part(
-                &format!("{path}.{}", field.name),
-                field.ty,
-                Whole { offset, role, field: Some((id, number)), at },
-            );
+            let mut way = whole.way.clone();
+            way.members.push(number);
+            let field_of = Some((id, number));
+            self.part(&format!("{path}.{}", field.name), field.ty, Whole { offset, role, field: field_of, way, at });
         }
     }
 
     fn block(&mut self, path: &str, id: BlockId, whole: Whole) {
         let number = self.found.blocks.len();
         let key = path.to_ascii_lowercase();
-        let Whole { offset, field, .. } = whole;
+        let Whole { offset, field, .. } = whole.clone();
         self.found.blocks.push(Instance { path: path.to_owned(), key: key.clone(), block: id, offset, field });
         for (at, pin) in id.info().pins.iter().enumerate() {
             let Some(ty) = id.pin_type(FieldId::next(at)) else { continue };
             let role = if shows(pin) { Role::Output(number) } else { Role::Hidden };
-            let part = Whole { offset: whole.offset + pin.offset, role, field: None, at: whole.at };
+            let part =
+                Whole { offset: whole.offset + pin.offset, role, field: None, way: whole.way.clone(), at: whole.at };
             self.scalar(&format!("{path}.{}", pin.name), &format!("{key}.{}", common_key(pin)), ty, part);
         }
     }

@@ -15,7 +15,12 @@ pub fn every_state(pair: &Pair, world: &World, outcome: &Outcome) -> String {
         .collect();
     let mut text = format!("every reachable state was seen ({} scans)", outcome.scans);
     match compared.as_slice() {
-        [] => text.push_str(", under every value of the inputs"),
+        [] => {
+            text.push_str(", under every value of the inputs");
+            // What else is written from outside was not looked at.
+            let names = listed(pair.inputs.iter().map(|it| pair.path(it.scalars).to_owned()));
+            text += &names.map_or_else(String::new, |it| format!(" ({it})"));
+        }
         names => {
             let _ = write!(
                 text,
@@ -26,6 +31,9 @@ pub fn every_state(pair: &Pair, world: &World, outcome: &Outcome) -> String {
     }
     if let Some(events) = events(pair) {
         let _ = write!(text, ", with {events} at every point");
+    }
+    if pair.sides.iter().any(|it| !it.program.structure(it.program.globals).fields.is_empty()) {
+        text.push_str("; nothing else is taken to be written from outside");
     }
     assumed(&mut text, world);
     for limit in [kept(pair), of_one(pair)].into_iter().flatten() {
