@@ -97,6 +97,12 @@ pub(crate) const UNITS: &[Unit] = units! {
     Function "PUTBIT"           "putbit"           [Codesys: Util];
     Function "BCD_TO_INT"       "bcd_to_int"       [Codesys: Util];
     Function "INT_TO_BCD"       "int_to_bcd"       [Codesys: Util];
+    Function "BYTE_TO_BCD"      "byte_to_bcd"      [Codesys: Util];
+    Function "BCD_TO_BYTE"      "bcd_to_byte"      [Codesys: Util];
+    Function "WORD_TO_BCD"      "word_to_bcd"      [Codesys: Util];
+    Function "BCD_TO_WORD"      "bcd_to_word"      [Codesys: Util];
+    Function "DWORD_TO_BCD"     "dword_to_bcd"     [Codesys: Util];
+    Function "BCD_TO_DWORD"     "bcd_to_dword"     [Codesys: Util];
     Type     "PID_FIXCYCLE"     "pid_fixcycle"     [Codesys: Util] "DERIVATIVE" "INTEGRAL";
     Type     "VARIANCE"         "variance"         [Codesys: Util];
     Type     "BIT_AS_BYTE"      "bit_as_byte"      [Codesys: Util];
