@@ -47,8 +47,23 @@ impl Dialect {
         format!("start the file with `{{dialect '{name}'}}`, or compile with `--dialect {name}`")
     }
 
+    /// All names that are understood, those that dialects have besides their own among them.
+    pub fn names() -> impl Iterator<Item = (&'static str, Self)> {
+        Self::ALL
+            .into_iter()
+            .flat_map(|it| [Some(it.name()), it.alias()].into_iter().flatten().map(move |name| (name, it)))
+    }
+
+    /// What it is called besides.
+    const fn alias(self) -> Option<&'static str> {
+        match self {
+            Self::Codesys => Some("twincat"),
+            Self::Iec | Self::Cscape | Self::Openplc | Self::Logix | Self::Siemens => None,
+        }
+    }
+
     pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|it| it.name().eq_ignore_ascii_case(name))
+        Self::names().find(|it| it.0.eq_ignore_ascii_case(name)).map(|it| it.1)
     }
 
     /// Whose rules its variables follow; SCL has no counters of its own here, and starts as the standard does.

@@ -134,9 +134,23 @@ fn a_dialect_is_a_flag_a_pragma_or_a_setting() {
     folder.staunch("check pragma.st --dialect iec").out(0);
     folder.write("staunch.toml", "dialect = \"codesys\"\nfiles = [\"wide.st\"]\n");
     folder.staunch("check").out(0);
-    folder.staunch("check wide.st --dialect pascal").err(2);
+    has(&folder.staunch("check wide.st --dialect pascal").err(2), &["iec, cscape, codesys, twincat, openplc"]);
     folder.write("staunch.toml", "dialekt = \"codesys\"\n");
     has(&folder.staunch("check wide.st").err(2), &["staunch.toml", "dialekt"]);
+}
+
+#[test]
+fn twincat_is_another_name_of_codesys() {
+    let wide = "PROGRAM Main VAR c : CTU; w : WORD; END_VAR c(RESET := FALSE, PV := 1); w := c.CV; END_PROGRAM";
+    let folder = Folder::with("twincat", &[("wide.st", wide)]);
+    folder.staunch("check wide.st --dialect twincat").out(0);
+    folder.staunch("check wide.st --dialect TwinCAT").out(0);
+    folder.write("pragma.st", format!("{{dialect 'twincat'}}\n{wide}"));
+    folder.staunch("check pragma.st --dialect iec").out(0);
+    folder.write("staunch.toml", "dialect = \"twincat\"\nfiles = [\"wide.st\"]\n");
+    folder.staunch("check").out(0);
+    folder.staunch("new made --dialect twincat").out(0);
+    has(&folder.read("made/staunch.toml"), &["dialect = \"codesys\""]);
 }
 
 #[test]

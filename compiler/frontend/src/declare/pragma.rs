@@ -123,7 +123,7 @@ impl Log<'_> {
                 continue;
             };
             let Some(dialect) = Dialect::named(name) else {
-                let names: Vec<_> = Dialect::ALL.iter().map(|it| it.name()).collect();
+                let names: Vec<_> = Dialect::names().map(|it| it.0).collect();
                 let mut error = Diagnostic::new(Code::E0105, pragma.span, format!("there is no dialect `{name}`"))
                     .label("unknown dialect");
                 let near = nearest(name, names.iter().copied());

@@ -4,25 +4,13 @@ use super::Dialect;
 use super::library::is_one_of;
 
 /// Types and blocks, and the library that they are of.
-#[rustfmt::skip]
-const TYPES: [(&str, &[&str]); 2] = [
-    ("Tc2_Utilities", &["FB_FormatString", "FB_FormatString2", "T_Arg"]),
-    ("Util", &[
-        "BIT_AS_BYTE", "BIT_AS_DWORD", "BIT_AS_WORD", "BYTE_AS_BIT", "DWORD_AS_BIT", "WORD_AS_BIT", "PID_FIXCYCLE",
-        "VARIANCE",
-    ]),
-];
+const TYPES: [(&str, &[&str]); 1] = [("Tc2_Utilities", &["FB_FormatString", "FB_FormatString2", "T_Arg"])];
 
 /// Operators, whose operands may be what is no value elsewhere.
 const OPERATORS: [&str; 4] = ["ADRINST", "BITADR", "INDEXOF", "__VARINFO"];
 
-/// Functions of *Util* and of Tc2_Utilities.
-#[rustfmt::skip]
-const FUNCTIONS: &[&str] = &[
-    "BIT_AS_BYTE", "BIT_AS_DWORD", "BIT_AS_WORD", "BYTE_AS_BIT", "BYTE_TO_GRAY", "BYTE_TO_HEXINASCII", "DWORD_AS_BIT",
-    "DWORD_TO_GRAY", "GETBIT", "GRAY_TO_BYTE", "GRAY_TO_DWORD", "GRAY_TO_WORD", "HEXINASCII_TO_BYTE", "SETBIT",
-    "SWITCHBIT", "WORD_AS_BIT", "WORD_AS_STRING", "WORD_TO_GRAY", "WCONCAT2",
-];
+/// Functions of Tc2_Utilities.
+const FUNCTIONS: [&str; 1] = ["WCONCAT2"];
 
 /// Variables that the system has.
 const VARIABLES: [&str; 1] = ["__CURRENTTASK"];
@@ -38,7 +26,7 @@ pub(crate) fn is_operator(dialect: Dialect, name: &str) -> bool {
 }
 
 pub(crate) fn is_function(dialect: Dialect, name: &str) -> bool {
-    is_operator(dialect, name) || dialect == Dialect::Codesys && is_one_of(FUNCTIONS, name)
+    is_operator(dialect, name) || dialect == Dialect::Codesys && is_one_of(&FUNCTIONS, name)
 }
 
 pub(crate) fn is_variable(dialect: Dialect, name: &str) -> bool {
