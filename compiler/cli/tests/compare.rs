@@ -720,10 +720,38 @@ fn what_is_compared_is_there_on_both_sides() {
     // A name may begin with the PROGRAM, as it may for a run; what one program alone has otherwise is said.
     let output = run(&format!("{} --vars p.full,c.CV", against(&one)));
     assert_ne!(output.status.code(), Some(2), "{}", text(&output.stderr));
-    let output = run(&format!("{} --assume no_run.txt", against(&more)));
-    assert!(
-        text(&output.stdout).contains("not compared, since one program alone has it: n"),
-        "{}",
-        text(&output.stdout)
-    );
+    let out = difference(&format!("{} --from iec --to openplc --vars n -A warnings", path.display()));
+    assert!(out.starts_with("iec and openplc differ after 3 scans:"), "{out}");
+    // The first halves of the texts are the same.
+    let source = "PROGRAM p VAR_INPUT s : BOOL; END_VAR VAR c : CTU; END_VAR VAR_OUTPUT o : WSTRING[8]; END_VAR\n\
+                  c(s, FALSE, 1); IF c.CV > 1 THEN o := \"abXY\"; ELSE o := \"abcd\"; END_IF\nEND_PROGRAM\n";
+    let path = written("wide_texts.st", source);
+    let output =
+        run(&format!("{} --from iec --to codesys --against {} --vars o -A warnings", path.display(), path.display()));
+    assert_ne!(output.status.code(), Some(1), "{}", text(&output.stdout));
+    let out = difference(&format!("{} --from iec --to openplc --vars o -A warnings", path.display()));
+    assert!(out.contains("abXY") && out.contains("abcd"), "{out}");
+}
+
+#[test]
+fn an_assumption_names_what_a_list_holds_and_only_values_there_are() {
+    let source = "TYPE Mode : (Off, Fill := 5, Drain := 10); END_TYPE\n\
+                  NAMESPACE Panel VAR_GLOBAL level : INT := 9; mode : Mode; END_VAR END_NAMESPACE\n\
+                  PROGRAM p VAR_INPUT s : BOOL; END_VAR VAR c : CTU; END_VAR VAR_OUTPUT o : BOOL; END_VAR\n\
+                  c(s AND Panel.level = 3 AND Panel.mode > Off AND Panel.mode <> Fill, FALSE, 1); o := c.CV > 1;\nEND_PROGRAM\n";
+    let path = written("panel.st", source);
+    let verdict = |lines: &str| {
+        let assumed = written("panel.txt", lines);
+        let output = run(&format!(
+            "{} --from iec --to openplc --vars o -A warnings --assume {}",
+            path.display(),
+            assumed.display()
+        ));
+        (output.status.code(), text(&output.stdout) + &text(&output.stderr))
+    };
+    let (code, out) = verdict("Panel.level 1..4\n");
+    assert!(code == Some(1) && out.starts_with("iec and openplc differ after 3 scans:"), "{out}");
+    // Between Off and Fill, by their numbers, is nothing.
+    let (code, out) = verdict("Panel.level 1..4\nPanel.mode Off..Fill\n");
+    assert_eq!(code, Some(0), "{out}");
 }

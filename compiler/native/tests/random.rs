@@ -110,6 +110,7 @@ impl Maker {
             references: Vec::new(),
             globals,
             aliases: Vec::new(),
+            global_paths: Vec::new(),
             reentered: std::collections::BTreeSet::new(),
             reach: Reach::default(),
             places: std::collections::BTreeSet::new(),

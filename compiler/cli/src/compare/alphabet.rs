@@ -87,7 +87,8 @@ pub fn sources(pair: &Pair, facts: [&Facts; 2], assumed: &Mentioned) -> Sources 
         let scalar = pair.scalar(0, scalars[0]);
         let writes = [0, 1].map(|side| is_written(pair.scalar(side, scalars[side]), facts[side]));
         let reads = |side: usize| name(pair.scalar(side, scalars[side])).is_some_and(|it| facts[side].is_read(it));
-        let is_named = assumed.has(&scalar.path);
+        let full = scalar.full_name(&pair.sides[0].program);
+        let is_named = assumed.has(&scalar.path) || full.is_some_and(|it| assumed.has(&it));
         if writes == [true, true] && !is_named || !(reads(0) || reads(1)) {
             continue;
         }

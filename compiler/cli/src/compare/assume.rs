@@ -27,6 +27,8 @@ pub struct Assumptions {
 /// An input as the lines name it, and how its values are written.
 struct Named<'a> {
     name: String,
+    /// With its NAMESPACE or list, of a global variable.
+    full: Option<String>,
     subrange: Option<(i128, i128)>,
     value: Spelling<'a>,
 }
@@ -43,7 +45,14 @@ impl<'a> Named<'a> {
             let place = staunch_host::place_of(map, &running, &path)?;
             Ok(Value::read(repr, &staunch_host::bytes_of(map, place, text)?))
         };
-        Self { name, subrange: subrange(pair, input.scalars), value: Box::new(value) }
+        let full = pair.scalar(0, input.scalars[0]).full_name(&pair.sides[0].program);
+        Self { full, name, subrange: subrange(pair, input.scalars), value: Box::new(value) }
+    }
+}
+
+impl Named<'_> {
+    fn is_in_full(&self, name: &str) -> bool {
+        self.full.as_ref().is_some_and(|it| it.eq_ignore_ascii_case(name))
     }
 }
 
@@ -181,6 +190,8 @@ impl Assumptions {
     pub fn narrow(&self, input: usize, choice: &mut Choice, repr: Repr) {
         for (_, low, high) in self.ranges.iter().filter(|it| it.0 == input) {
             let (more, whole) = within(*low, *high, repr);
+            // Of what has few values, as an enumeration, all are there.
+            let more = if choice.covered == Some(Covered::All) { Vec::new() } else { more };
             for value in more {
                 if !choice.values.contains(&value) {
                     choice.values.push(value);
@@ -275,7 +286,8 @@ struct Parser<'t> {
 
 impl Parser<'_> {
     fn input(&self, name: &str) -> Result<usize, String> {
-        let found = self.inputs.iter().position(|it| it.name.eq_ignore_ascii_case(name));
+        let is_it = |it: &Named<'_>| it.name.eq_ignore_ascii_case(name) || it.is_in_full(name);
+        let found = self.inputs.iter().position(is_it);
         found.ok_or_else(|| match self.inputs {
             [] => format!("`{name}` is no input: the program has none"),
             inputs => {
@@ -287,7 +299,7 @@ impl Parser<'_> {
 
     /// A value of an input.
     fn limit(&self, input: usize, text: &str) -> Result<Value, String> {
-        let Named { name, subrange, value } = &self.inputs[input];
+        let Named { name, subrange, value, .. } = &self.inputs[input];
         let inside = |limit: &Value| {
             let number = limit.as_integer();
             number.is_none_or(|it| subrange.is_none_or(|(low, high)| (low..=high).contains(&it)))
@@ -411,7 +423,12 @@ mod tests {
         let truth = |it: &str| it.parse().map(Value::Bool).map_err(|_| wrong(it));
         let count = |it: &str| it.parse().map(Value::I16).map_err(|_| wrong(it));
         let level = |it: &str| it.parse().map(Value::F32).map_err(|_| wrong(it));
-        let named = |name: &str, subrange, value: Spelling<'static>| Named { name: name.to_owned(), subrange, value };
+        let named = |name: &str, subrange, value: Spelling<'static>| Named {
+            name: name.to_owned(),
+            full: None,
+            subrange,
+            value,
+        };
         let inputs = [
             named("Start", None, Box::new(truth)),
             named("Stop", None, Box::new(truth)),

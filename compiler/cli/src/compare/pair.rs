@@ -299,20 +299,16 @@ impl Pair {
             let (path, name) = (path.to_ascii_lowercase(), name.to_ascii_lowercase());
             path.strip_prefix(&name).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
         };
-        let is = |name: &str| starts(&scalar.key, name) || starts(&scalar.path, name);
+        let key = scalar.key.strip_prefix("globals.").unwrap_or(&scalar.key);
+        let is = |name: &str| starts(key, name) || starts(&scalar.key, name) || starts(&scalar.path, name);
         let program = &self.sides[side].program;
         // A variable of a list may be named in full.
-        let in_list = program.global_paths.iter().find_map(|(short, full)| {
-            let rest = name.get(full.len()..)?;
-            let is_it =
-                name[..full.len()].eq_ignore_ascii_case(full) && (rest.is_empty() || rest.starts_with(['.', '[']));
-            is_it.then(|| format!("{short}{rest}"))
-        });
+        let full = scalar.full_name(program);
         let within = name.split_once('.').filter(|(first, _)| match program.instances.as_slice() {
             [one] => [&one.name, &program.class(one.program).name].into_iter().any(|it| it.eq_ignore_ascii_case(first)),
             _ => false,
         });
-        is(name) || in_list.is_some_and(|it| is(&it)) || within.is_some_and(|(_, rest)| is(rest))
+        is(name) || full.is_some_and(|it| starts(&it, name)) || within.is_some_and(|(_, rest)| is(rest))
     }
 
     /// A name that no variable has which both sides have; with whether one side has it.

@@ -156,9 +156,16 @@ impl Walk<'_> {
             return;
         }
         let Whole { offset, role, field, way, at } = whole;
+        let whole_from = way.from;
         let size = usize_of(self.layout.size(ty));
-        let (path, key) = (path.to_owned(), key.to_ascii_lowercase());
+        let (path, key) = (path.to_owned(), self.key(key, whole_from));
         self.found.all.push(Scalar { path, key, ty, offset, size, role, field, way, at });
+    }
+
+    /// The name by which the two systems' variables are matched: a local one may be called as a global one is.
+    fn key(&self, path: &str, from: StructId) -> String {
+        let path = path.to_ascii_lowercase();
+        if from == self.program.globals { format!("globals.{path}") } else { path }
     }
 
     fn array(&mut self, path: &str, id: ArrayId, whole: Whole) {
@@ -193,7 +200,7 @@ impl Walk<'_> {
 
     fn block(&mut self, path: &str, id: BlockId, whole: Whole) {
         let number = self.found.blocks.len();
-        let key = path.to_ascii_lowercase();
+        let key = self.key(path, whole.way.from);
         let Whole { offset, field, .. } = whole.clone();
         self.found.blocks.push(Instance { path: path.to_owned(), key: key.clone(), block: id, offset, field });
         for (at, pin) in id.info().pins.iter().enumerate() {
@@ -201,8 +208,18 @@ impl Walk<'_> {
             let role = if shows(pin) { Role::Output(number) } else { Role::Hidden };
             let part =
                 Whole { offset: whole.offset + pin.offset, role, field: None, way: whole.way.clone(), at: whole.at };
-            self.scalar(&format!("{path}.{}", pin.name), &format!("{key}.{}", common_key(pin)), ty, part);
+            self.scalar(&format!("{path}.{}", pin.name), &format!("{path}.{}", common_key(pin)), ty, part);
         }
+    }
+}
+
+impl Scalar {
+    /// The name with the NAMESPACE or list, of a global variable that is in one.
+    pub fn full_name(&self, program: &Program) -> Option<String> {
+        program.global_paths.iter().filter(|_| self.way.from == program.globals).find_map(|(short, full)| {
+            let rest = self.path.strip_prefix(short.as_str())?;
+            (rest.is_empty() || rest.starts_with(['.', '['])).then(|| format!("{full}{rest}"))
+        })
     }
 }
 
@@ -258,13 +275,24 @@ pub fn equal(programs: [&Program; 2], scalars: [&Scalar; 2], states: [&[u8]; 2])
             number(a).is_some() && number(a) == number(b)
         }
         [Some(_), Some(_)] => a == b,
-        _ => a == b || text(a) == text(b),
+        _ => a == b || text(scalars[0].ty, a) == text(scalars[1].ty, b),
     }
 }
 
-fn text(bytes: &[u8]) -> &[u8] {
+/// The bytes of a string's characters, without what is after its end.
+fn text(ty: Type, bytes: &[u8]) -> &[u8] {
     let Some((length, rest)) = bytes.split_first_chunk::<2>() else { return bytes };
-    rest.get(..usize::from(u16::from_ne_bytes(*length))).unwrap_or(rest)
+    let unit = ty.string_type().map_or(1, |it| usize_of(it.unit_size().into()));
+    rest.get(..usize::from(u16::from_ne_bytes(*length)) * unit).unwrap_or(rest)
+}
+
+fn characters(ty: Type, bytes: &[u8]) -> String {
+    let bytes = text(ty, bytes);
+    if ty.string_type().is_none_or(|it| !it.wide) {
+        return String::from_utf8_lossy(bytes).into_owned();
+    }
+    let units: Vec<u16> = bytes.chunks_exact(2).map(|it| u16::from_ne_bytes([it[0], it[1]])).collect();
+    String::from_utf16_lossy(&units)
 }
 
 /// The value as a trace shows it.
@@ -272,7 +300,7 @@ pub fn show(program: &Program, scalar: &Scalar, state: &[u8]) -> String {
     let bytes = &state[scalar.offset..scalar.offset + scalar.size];
     match program.repr(scalar.ty) {
         Some(repr) => spell(program, scalar.ty, Value::read(repr, bytes)),
-        None => String::from_utf8_lossy(text(bytes)).into_owned(),
+        None => characters(scalar.ty, bytes),
     }
 }
 

@@ -87,6 +87,7 @@ pub fn program(arrays: Vec<Array>, mut structs: Vec<Struct>, routines: Vec<Routi
         references: Vec::new(),
         globals: StructId::next(structs.len() - 1),
         aliases: Vec::new(),
+        global_paths: Vec::new(),
         reentered: std::collections::BTreeSet::new(),
         reach: Reach::default(),
         places: std::collections::BTreeSet::new(),
