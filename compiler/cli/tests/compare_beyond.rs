@@ -255,6 +255,28 @@ IF v * v + w * w = 20193797 AND v > 100 AND w > 100 THEN y := CONCAT(y, 'aaaaaaa
     assert_eq!(code, Some(4), "{text}");
 }
 
+/// Of two counters of one declaration one is accepted: what the other decides is not ruled out.
+#[test]
+fn what_is_declared_with_what_is_accepted_is_not() {
+    let declared =
+        "VAR_INPUT s : BOOL; END_VAR VAR c : ARRAY[1..2] OF CTU; END_VAR VAR_OUTPUT over, alarm : BOOL; END_VAR\n";
+    let path = program(
+        "beside",
+        &format!(
+            "{declared}c[1](s, c[1].CV > 2, 2); c[2](s, c[2].CV > 2, 9); over := c[1].CV > 2; alarm := c[2].CV > 2;"
+        ),
+    );
+    let accept = folder().join("beside.txt");
+    std::fs::write(&accept, "c[1] 15: nobody reads it\n").expect("a file");
+    let arguments = ["--accept", &accept.display().to_string()];
+    let (code, text) = compare(&path, "iec", "openplc", &arguments);
+    assert_eq!(code, Some(4), "{text}");
+    assert!(text.contains("what c[2] decides, which is declared with what is accepted"), "{text}");
+    std::fs::write(&accept, "* 15: nobody reads it\n").expect("a file");
+    let (code, text) = compare(&path, "iec", "openplc", &arguments);
+    assert_eq!(code, Some(0), "{text}");
+}
+
 /// Whether a name changes does not depend on a lint's level; and it is the names of a counter's own pins that count.
 #[test]
 fn a_name_that_changes_is_one_whatever_the_lint_says() {

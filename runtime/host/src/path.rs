@@ -64,28 +64,44 @@ pub fn resolve(map: &Map, running: &[usize], text: &str) -> Result<Place, String
     let Some((Step::Name(first), rest)) = steps.split_first() else {
         return Err(format!("`{text}` is not the name of a variable"));
     };
-    let mut found = in_programs(map, running, first)?;
-    if let (None, Some((Step::Name(second), after))) = (found, rest.split_first()) {
+    as_variable(map, running, &steps, first, rest).or_else(|error| {
+        // A variable may be called as a PROGRAM is.
+        let Some((Step::Name(second), after)) = rest.split_first() else { return Err(error) };
+        match in_scope(map, running, first, second) {
+            Ok(Some(place)) => follow(map, place, after),
+            Ok(None) | Err(_) => Err(error),
+        }
+    })
+}
+
+/// What a path leads to where its first name is a variable's, if any has that name.
+fn as_variable(
+    map: &Map,
+    running: &[usize],
+    steps: &[Step<'_>],
+    first: &str,
+    rest: &[Step<'_>],
+) -> Result<Place, String> {
+    if let Some(place) = in_programs(map, running, first)? {
+        return follow(map, place, rest);
+    }
+    if let Some((Step::Name(second), after)) = rest.split_first() {
         if let Some(place) = in_scope(map, running, first, second)? {
             return follow(map, place, after);
         }
     }
-    if let (None, Some((place, after))) = (found, in_list(map, &steps)) {
+    if let Some((place, after)) = in_list(map, steps) {
         return follow(map, place, after);
     }
-    if found.is_none() {
-        let (globals, base) = map.globals();
-        found = named(globals, first).map(|it| Place::of(it, base));
-    }
-    let place = match (found, rest.first()) {
-        (Some(place), _) => place,
+    let (globals, base) = map.globals();
+    match (named(globals, first), rest.first()) {
+        (Some(it), _) => follow(map, Place::of(it, base), rest),
         (None, Some(Step::Name(name))) if map.held_by(first).next().is_some() => {
             let near = nearest(name, map.held_by(first));
-            return Err(format!("`{first}` has no variable `{name}`{near}"));
+            Err(format!("`{first}` has no variable `{name}`{near}"))
         }
-        (None, _) => return Err(unknown(map, running, first)),
-    };
-    follow(map, place, rest)
+        (None, _) => Err(unknown(map, running, first)),
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

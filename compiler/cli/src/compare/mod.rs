@@ -177,7 +177,8 @@ fn beyond_accepted(pair: &mut Pair, world: &World, args: &Compare, findings: &mu
         pair.compared = world.tolerance.iter().flat_map(|it| pair.remaining_compared(it)).collect();
         return differs(pair, world, trace, false, findings);
     }
-    if outcome.complete && covers_all(pair, world) {
+    let is_told_apart = world.tolerance.as_ref().is_none_or(|it| it.beside.is_empty());
+    if outcome.complete && covers_all(pair, world) && is_told_apart {
         return Verdict::Equal(scope::every_state(pair, world, &outcome));
     }
     scope::not_found(pair, world, &outcome)

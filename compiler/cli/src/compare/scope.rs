@@ -116,5 +116,7 @@ pub fn not_found(pair: &Pair, world: &World, outcome: &Outcome) -> Verdict {
         left.push("elements of long arrays".to_owned());
     }
     left.extend(kept(pair).into_iter().chain(of_one(pair)));
+    let beside = world.tolerance.iter().flat_map(|it| it.beside.iter().cloned());
+    left.extend(listed(beside).map(|it| format!("what {it} decides, which is declared with what is accepted")));
     Verdict::NotFound { tried, left }
 }

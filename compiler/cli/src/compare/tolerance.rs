@@ -35,6 +35,8 @@ pub struct Tolerance {
     cones: Vec<HashSet<Matched>>,
     /// And the bytes of both states that do, which then decide nothing else.
     bytes: Vec<[Vec<Range<usize>>; 2]>,
+    /// Variables and blocks that are not accepted, of declarations of which others are: what they decide is not told apart.
+    pub beside: Vec<String>,
     /// Neither program can fault, so that nothing is left where all that is compared is passed over.
     is_faultless: bool,
 }
@@ -49,6 +51,7 @@ impl Tolerance {
             faults: [0, 1].map(|side: usize| accepted.takes(Kind::Fault, pair.sides[side].dialect.name(), None)),
             cones: Vec::new(),
             bytes: Vec::new(),
+            beside: Vec::new(),
             is_faultless: pair
                 .sides
                 .iter()
@@ -56,10 +59,11 @@ impl Tolerance {
         };
         let roots = HashMap::new();
         let dependencies = pair.sides.each_ref().map(|it| Dependencies::of(&it.program));
-        let mut builder = Builder { pair, accepted, dependencies, roots, found };
+        let mut builder = Builder { pair, accepted, dependencies, roots, subjects: HashMap::new(), found };
         builder.counters(uses);
         builder.blocks();
         builder.variables(world);
+        builder.found.beside = builder.beside();
         builder.found
     }
 
@@ -114,6 +118,8 @@ struct Builder<'p> {
     accepted: &'p Accepted,
     dependencies: [Dependencies; 2],
     roots: HashMap<[Option<Declared>; 2], usize>,
+    /// What is accepted by itself, by its declaration: others of that are not.
+    subjects: HashMap<Declared, HashSet<String>>,
     found: Tolerance,
 }
 
@@ -126,6 +132,7 @@ impl Builder<'_> {
             for pitfall in Pitfall::of_counters().map(Some).chain([None]) {
                 if self.accepted.takes(Kind::Counter, &path, pitfall) {
                     let bit = self.root(fields);
+                    self.note(fields[0], &path);
                     self.found.sightings.insert((Subject::Counter(at), pitfall), bit);
                     if pitfall == Some(Pitfall::RESTART) && !usage.kept_alike {
                         self.found.events.extend(Event::ALL.map(|it| (it, bit)));
@@ -144,6 +151,7 @@ impl Builder<'_> {
             for pitfall in [None, Some(Pitfall::RESTART), Some(Pitfall::FIRST_FALL)] {
                 if self.accepted.takes(kind, &instances[0].path, pitfall) {
                     let bit = self.root(instances.map(|it| it.field));
+                    self.note(instances[0].field, &instances[0].path);
                     self.found.sightings.insert((Subject::Block(at), pitfall), bit);
                     if pitfall == Some(Pitfall::RESTART) {
                         let apart = Event::ALL.into_iter().filter(|it| keeps(0, *it) != keeps(1, *it));
@@ -183,10 +191,29 @@ impl Builder<'_> {
             }
             if self.accepted.takes(Kind::Variable, pair.path(*variable), None) {
                 let bit = self.root(self.fields(*variable));
+                self.note(self.fields(*variable)[0], pair.path(*variable));
                 self.found.differing.push((*variable, bit));
                 self.found.parted.push(*variable);
             }
         }
+    }
+
+    fn note(&mut self, declared: Option<Declared>, path: &str) {
+        if let Some(declared) = declared {
+            self.subjects.entry(declared).or_default().insert(path.to_owned());
+        }
+    }
+
+    /// What is declared with what is accepted, and is not accepted itself.
+    fn beside(&self) -> Vec<String> {
+        let scalars = &self.pair.sides[0].scalars;
+        let variables = scalars.all.iter().filter(|it| it.role == Role::Variable).map(|it| (it.field, &it.path));
+        let all = scalars.blocks.iter().map(|it| (it.field, &it.path)).chain(variables);
+        let is_beside = |(declared, path): &(Option<Declared>, &String)| {
+            let accepted = declared.and_then(|it| self.subjects.get(&it));
+            accepted.is_some_and(|it| !it.contains(*path))
+        };
+        all.filter(is_beside).map(|it| it.1.clone()).collect()
     }
 
     fn fields(&self, variable: Matched) -> [Option<Declared>; 2] {

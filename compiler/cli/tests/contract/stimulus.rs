@@ -119,3 +119,14 @@ fn a_spreadsheet_in_utf_16_is_read() {
         assert_eq!(run("utf16.csv"), expected);
     }
 }
+
+#[test]
+fn an_instance_may_be_called_as_a_variable_of_it_is() {
+    let program = "PROGRAM P VAR_INPUT a : BOOL; END_VAR VAR n : INT; END_VAR IF a THEN n := n + 1; END_IF END_PROGRAM\n\
+                   CONFIGURATION C RESOURCE R ON PLC TASK t(INTERVAL := T#10ms, PRIORITY := 1);\n\
+                   PROGRAM A WITH t : P; PROGRAM B WITH t : P; END_RESOURCE END_CONFIGURATION\n";
+    let folder = Folder::with("called_alike", &[("p.st", program), ("in.csv", "scan,A.a\n2,TRUE\n")]);
+    let trace = folder.staunch("run p.st --scans 3 --stimulus in.csv --trace - --vars A.a,A.n,B.n").out(0);
+    has(&trace, &["1,0,FALSE,0,0", "2,10,TRUE,1,0", "3,20,TRUE,2,0"]);
+    has(&folder.staunch("run p.st --vars a").err(2), &["`a` is ambiguous"]);
+}
