@@ -713,6 +713,7 @@ fn what_is_compared_is_there_on_both_sides() {
     let arguments = format!("{} --from iec --to codesys", both.display());
     fails(format!("{arguments} --vars full,alrm"), "--vars: there is no variable `alrm`");
     fails(format!("{arguments} --vars s"), "--vars names nothing but inputs");
+    fails(format!("{arguments} --vars c.PV"), "--vars: `c.PV` is a CONSTANT, or an input of a block");
     let against = |path: &Path| format!("{arguments} --against {}", path.display());
     fails(format!("{} --vars full,alarm", against(&one)), "only one of the two programs has a variable `alarm`");
     fails(against(&one), "`alarm` is an output of the first program alone");

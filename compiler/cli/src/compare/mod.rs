@@ -138,8 +138,13 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
 fn check_compared(pair: &Pair, args: &Compare, only: &[String]) -> Result<(), String> {
     let programs = if args.against.is_some() { "programs" } else { "systems' programs" };
     match pair.unknown_name(only) {
-        Some((name, true)) => return Err(format!("--vars: only one of the two {programs} has a variable `{name}`")),
-        Some((name, false)) => return Err(format!("--vars: there is no variable `{name}`")),
+        Some((name, 0)) => return Err(format!("--vars: there is no variable `{name}`")),
+        Some((name, 1)) => return Err(format!("--vars: only one of the two {programs} has a variable `{name}`")),
+        Some((name, _)) => {
+            return Err(format!(
+                "--vars: `{name}` is a CONSTANT, or an input of a block: what it is given is not compared"
+            ));
+        }
         None => {}
     }
     if pair.compared.is_empty() && !only.is_empty() {

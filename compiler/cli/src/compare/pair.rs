@@ -311,15 +311,13 @@ impl Pair {
         is(name) || full.is_some_and(|it| starts(&it, name)) || within.is_some_and(|(_, rest)| is(rest))
     }
 
-    /// A name that no variable has which both sides have; with whether one side has it.
-    pub fn unknown_name<'n>(&self, only: &'n [String]) -> Option<(&'n str, bool)> {
+    /// A name that nothing has which is compared; with how many sides have it otherwise.
+    pub fn unknown_name<'n>(&self, only: &'n [String]) -> Option<(&'n str, usize)> {
         let both = self.matched(|it| it.role != Role::Hidden);
         let known = |name: &str| both.iter().any(|[a, b]| self.is_named(0, *a, name) || self.is_named(1, *b, name));
         let name = only.iter().find(|it| !known(it))?;
-        let one = [0, 1]
-            .into_iter()
-            .any(|side| (0..self.sides[side].scalars.all.len()).any(|at| self.is_named(side, at, name)));
-        Some((name, one))
+        let has = |side: &usize| (0..self.sides[*side].scalars.all.len()).any(|at| self.is_named(*side, at, name));
+        Some((name, [0, 1].iter().filter(|it| has(it)).count()))
     }
 
     /// Variables and outputs of blocks that only one side has: its number, and their paths.
