@@ -26,7 +26,7 @@ pub struct Map {
     /// What references may name, by its number from 1: the offset and the size.
     pub(crate) objects: Vec<(usize, usize)>,
     /// Of globals in a NAMESPACE or a list: the name among the globals, and that in full.
-    global_paths: Vec<(String, String)>,
+    pub(crate) global_paths: Vec<(String, String)>,
     pub instances: Vec<Instance>,
 }
 
@@ -282,18 +282,6 @@ impl Map {
             | Type::Block(_)
             | Type::Reference => None,
         }
-    }
-
-    /// The name among the globals of one that is in a NAMESPACE or a list, by its name in full.
-    pub(crate) fn global_by_path(&self, path: &str) -> Option<&str> {
-        let found = self.global_paths.iter().find(|it| crate::path::same(&it.1, path));
-        found.map(|it| it.0.as_str())
-    }
-
-    /// The names of what a NAMESPACE or list holds.
-    pub(crate) fn held_by<'m>(&'m self, list: &'m str) -> impl Iterator<Item = &'m str> {
-        let of = self.global_paths.iter().filter_map(|it| it.1.rsplit_once('.'));
-        of.filter(|it| crate::path::same(it.0, list)).map(|it| it.1)
     }
 
     /// A global's name as a user would write it: in full, where several have the short one.

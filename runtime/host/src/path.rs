@@ -96,8 +96,8 @@ fn as_variable(
     let (globals, base) = map.globals();
     match (named(globals, first), rest.first()) {
         (Some(it), _) => follow(map, Place::of(it, base), rest),
-        (None, Some(Step::Name(name))) if map.held_by(first).next().is_some() => {
-            let near = nearest(name, map.held_by(first));
+        (None, Some(Step::Name(name))) if held_by(map, first).next().is_some() => {
+            let near = nearest(name, held_by(map, first));
             Err(format!("`{first}` has no variable `{name}`{near}"))
         }
         (None, _) => Err(unknown(map, running, first)),
@@ -243,11 +243,18 @@ fn in_list<'s, 't>(map: &Map, steps: &'s [Step<'t>]) -> Option<(Place, &'s [Step
     for (at, step) in steps.iter().enumerate() {
         let Step::Name(name) = step else { return None };
         path = if at == 0 { (*name).to_owned() } else { format!("{path}.{name}") };
-        if let Some(variable) = map.global_by_path(&path).and_then(|it| named(globals, it)) {
+        let known = map.global_paths.iter().find(|it| same(&it.1, &path));
+        if let Some(variable) = known.and_then(|it| named(globals, &it.0)) {
             return Some((Place::of(variable, base), &steps[at + 1..]));
         }
     }
     None
+}
+
+/// The names of what a NAMESPACE or list holds.
+fn held_by<'m>(map: &'m Map, list: &'m str) -> impl Iterator<Item = &'m str> {
+    let of = map.global_paths.iter().filter_map(|it| it.1.rsplit_once('.'));
+    of.filter(move |it| same(it.0, list)).map(|it| it.1)
 }
 
 fn follow(map: &Map, mut place: Place, steps: &[Step<'_>]) -> Result<Place, String> {
