@@ -179,10 +179,31 @@ impl Line {
         if events {
             cells.push(self.event.map_or("", Event::name).to_owned());
         }
-        cells.extend(self.inputs);
-        cells.extend(self.cells.into_iter().flatten());
+        cells.extend(self.inputs.into_iter().map(|it| part(&it, 0)));
+        cells.extend(self.cells.into_iter().flat_map(brief));
         cells
     }
+}
+
+/// Characters of a text that a cell shows.
+const WIDEST: usize = 28;
+
+/// Long texts where they differ first.
+fn brief(both: [String; 2]) -> [String; 2] {
+    let same = both[0].chars().zip(both[1].chars()).take_while(|(a, b)| a == b).count();
+    both.map(|it| part(&it, same.saturating_sub(WIDEST / 2)))
+}
+
+/// A text that is too wide for a cell, from a character on or as much of its end as fits.
+fn part(text: &str, from: usize) -> String {
+    let length = text.chars().count();
+    if length <= WIDEST {
+        return text.to_owned();
+    }
+    let from = from.min(length - WIDEST);
+    let shown: String = text.chars().skip(from).take(WIDEST).collect();
+    let (before, after) = (if from > 0 { "…" } else { "" }, if from + WIDEST < length { "…" } else { "" });
+    format!("{before}{shown}{after}")
 }
 
 /// Columns at equal width, numbers and words to the right; an empty row is left out rows.
@@ -207,4 +228,20 @@ fn aligned(table: &[Vec<String>]) -> String {
         text.push('\n');
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_texts_are_shown_where_they_differ() {
+        let long = |end: &str| format!("{}{end}{}", "a".repeat(60), "z".repeat(40));
+        let [a, b] = brief([long("1"), long("2")]);
+        assert!(a.contains("a1z") && b.contains("a2z") && a.starts_with('…') && a.ends_with('…'), "{a} {b}");
+        assert_eq!(a.chars().count(), WIDEST + 2);
+        assert_eq!(brief(["7".to_owned(), "T#1s".to_owned()]), ["7".to_owned(), "T#1s".to_owned()]);
+        let [a, b] = brief(["x".repeat(WIDEST), "x".repeat(WIDEST + 1)]);
+        assert_eq!((a.chars().count(), b.chars().count()), (WIDEST, WIDEST + 1));
+    }
 }
