@@ -180,7 +180,9 @@ impl Map<'_> {
 
     fn field(&mut self, owner: StructId, id: FieldId, offset: u64, used: bool) -> fmt::Result {
         let field = &self.program.structure(owner).fields[id.index()];
-        let is_storage = self.program.structure(owner).is_storage(id);
+        // Of the globals, what nobody has declared keeps the bits of addresses that overlap.
+        let is_keeper = owner == self.program.globals && field.section == Section::Internal;
+        let is_storage = is_keeper || self.program.structure(owner).is_storage(id);
         let section = if is_storage { "memory" } else { section_name(field.section) };
         write!(self.text, "field\t{}\t{}\t{offset}\t{section}", field.name, TypeName(field.ty))?;
         self.write_attributes(&Attributes { used, ..self.attributes_of(owner, id) })

@@ -41,10 +41,11 @@ pub(crate) fn columns(map: &Map, running: &[usize], vars: Option<&str>) -> Resul
 /// and constants show nothing.
 fn used_globals(map: &Map, running: &[usize], out: &mut Vec<Column>) {
     let (globals, base) = map.globals();
-    let own = running.iter().flat_map(|at| &map.instances[*at].variables).map(|it| (it.offset, it.ty));
-    let own: HashSet<(usize, Type)> = own.collect();
+    let own = running.iter().flat_map(|at| &map.instances[*at].variables).map(|it| Place::of(it, 0));
+    let own: HashSet<(usize, Type)> = own.map(|it| (it.offset, it.ty)).collect();
     // A name that begins so is the compiler's own.
-    let is_shown = |it: &&Variable| it.used && !it.constant && !it.name.starts_with("__");
+    let is_own = |it: &Variable| it.name.starts_with("__") || it.section == Section::Memory;
+    let is_shown = |it: &&Variable| it.used && !it.constant && !is_own(it);
     for variable in globals.iter().filter(is_shown) {
         let place = Place::of(variable, base);
         if !own.contains(&(place.offset, place.ty)) {

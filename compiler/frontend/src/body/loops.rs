@@ -1,10 +1,11 @@
 //! WHILE and REPEAT, which are one loop in the IR, and FOR.
 
 use crate::expr::checker::Checker;
+use crate::expr::loop_counter::{Counter, Shown};
 use crate::expr::operand::Operand;
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{
-    Block, Conversion, Elementary, Expr, For, Location, Op, Statement, StatementKind, Step, Type, Value, loops, turns,
+    Block, Conversion, Elementary, Expr, For, Location, Op, Place, Statement, StatementKind, Step, Type, Value, loops, turns,
 };
 
 impl<'s> Checker<'_, 's> {
@@ -82,20 +83,43 @@ impl<'s> Checker<'_, 's> {
         body: &[ast::Statement<'s>],
         span: Span,
     ) -> Option<()> {
-        let Some(mut head) = self.for_head(counter, from, to, by) else {
+        let Some((mut head, shown)) = self.for_head(counter, from, to, by) else {
             // The body may hold mistakes of its own.
             self.loop_body(body);
             return None;
         };
         // As far as it is known before the body: a dialect may let that write the counter.
         head.is_private = self.frame().is_private(&head.counter) && !self.decl.dialect(counter.span).assigns_counters();
-        self.counters.push(head.clone());
-        head.body = self.loop_body(body);
+        self.counters.push(Counter { head: head.clone(), shown: shown.clone(), depth: self.loops + 1 });
+        head.body = self.for_body(shown.as_ref(), &head.counter, body, counter.span);
         self.counters.pop();
         head.is_private = loops::is_private(&self.frame(), &head.counter, &head.body);
+        let local = head.counter.clone();
         let made = head.statement(self.at(span));
         self.push(made.kind, span);
+        if let Some(shown) = &shown {
+            self.show_counter(shown, &local, counter.span);
+        }
         Some(())
+    }
+
+    fn for_body(
+        &mut self,
+        shown: Option<&Shown>,
+        local: &Place,
+        body: &[ast::Statement<'s>],
+        counter: Span,
+    ) -> Block {
+        let Some(shown) = shown else { return self.loop_body(body) };
+        self.loops += 1;
+        let block = self.nested(|this| {
+            this.show_counter(shown, local, counter);
+            let mut turn = this.block_of(body);
+            this.block.append(&mut turn);
+            this.take_counter(counter);
+        });
+        self.loops -= 1;
+        block
     }
 
     /// Checks a FOR loop's head; the loop has no body yet.
@@ -105,28 +129,32 @@ impl<'s> Checker<'_, 's> {
         from: &ast::Expr<'s>,
         to: &ast::Expr<'s>,
         by: Option<&ast::Expr<'s>>,
-    ) -> Option<For> {
-        let found = self.place(counter);
+    ) -> Option<(For, Option<Shown>)> {
+        let found = self.place_or_view(counter);
         let Some(found) = found.filter(|it| self.writable(it, counter.span)) else {
             for part in [from, to].into_iter().chain(by) {
                 self.operand(part, None);
             }
             return None;
         };
-        let mut place = found.place;
-        if place.is_followed() {
-            self.report(
-                Diagnostic::new(Code::E0211, counter.span, "the counter of a FOR loop is a variable of its own")
-                    .label("this is reached through a reference"),
-            );
-            return None;
-        }
-        let ty = self.counter_type(place.ty.read(), counter.span)?;
-        self.note_assigned(&place, counter.span);
+        let ty = self.counter_type(self.type_of(&found).read(), counter.span)?;
+        self.note_assigned(&found.place, counter.span);
+        let (mut place, view) = (found.place, found.view);
         // The loop goes by one variable: what its indices are made of may change in the body.
         self.fix(&mut place);
+        let shown = (view.is_some() || place.is_followed()).then(|| {
+            let local = self.temporary("counter", view.map_or(place.ty, |it| it.ty));
+            Shown { place: std::mem::replace(&mut place, local), view }
+        });
         // Each part is checked, whatever is wrong with another.
-        let first = self.value(from, place.ty);
+        let mut first = self.value(from, place.ty);
+        if let Some(shown) = &shown
+            && let Some(value) = first.take()
+        {
+            self.assign(place.clone(), value, from.span);
+            self.show_counter(shown, &place, counter.span);
+            first = Some(Expr::load(place.clone(), self.at(from.span)));
+        }
         let mark = self.block.len();
         let mut last = self.value(to, place.ty.read());
         let mut done: Vec<_> = last.iter_mut().collect();
@@ -151,7 +179,8 @@ impl<'s> Checker<'_, 's> {
         }
         let range = self.decl.program.range(place.ty).or(ty.repr().range())?;
         let step_at = self.at(by.unwrap_or(counter).span);
-        Some(For { counter: place, first, last, step, range, is_private: false, body: Block::new(), step_at })
+        let head = For { counter: place, first, last, step, range, is_private: false, body: Block::new(), step_at };
+        Some((head, shown))
     }
 
     fn counter_type(&mut self, ty: Type, span: Span) -> Option<Elementary> {

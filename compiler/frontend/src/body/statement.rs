@@ -125,6 +125,7 @@ impl<'s> Checker<'_, 's> {
             );
             return;
         }
+        self.take_counter(span);
         self.push(kind, span);
     }
 

@@ -183,9 +183,7 @@ impl<'s> Declarations<'s> {
 
     /// Whether the types are two that can share the bits of one address.
     fn is_retyped(&self, first: Type, second: Type) -> bool {
-        let is_array = |ty| matches!(ty, Type::Array(_));
-        let can = |ty| is_array(ty) || matches!(ty, Type::Elementary(_));
-        first != second && can(first) && can(second)
+        first != second && self.smallest_part(first).is_ok() && self.smallest_part(second).is_ok()
     }
 
     /// What is declared with another type than what lies at its address.

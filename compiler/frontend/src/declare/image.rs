@@ -3,13 +3,13 @@
 
 use super::address::bit_string;
 use crate::dialect::Dialect;
-use crate::types::address::{Start, Storage, Use};
+use crate::types::address::{Start, Storage, Use, field_name};
 use crate::types::declarations::Declarations;
 use crate::types::image::Shared;
 use crate::types::table::{GLOBALS, Resolved};
-use crate::{Code, Diagnostic, Span, ast};
+use crate::{Code, Diagnostic, Span};
 use rustc_hash::FxHashSet;
-use staunch_ir::{Address, Elementary, Field, FieldId, Location, Place, Retain, Root, Section, Type, View};
+use staunch_ir::{Address, Const, Elementary, Field, FieldId, Location, Place, Retain, Root, Section, Type, View};
 use std::cmp::Reverse;
 
 /// What lies at an address, among others.
@@ -107,29 +107,21 @@ impl<'s> Declarations<'s> {
 
     /// Who keeps the bits of all.
     fn keeper(&mut self, members: &[Member]) -> Option<(usize, Member)> {
-        let mut arrays = members.iter().filter(|it| matches!(it.ty, Type::Array(_)));
+        for it in members {
+            if let Err((ty, why)) = self.smallest_part(it.ty) {
+                let other = members.iter().find(|other| other.field != it.field).unwrap_or(it);
+                self.refuse_sharing(it.first, other.first, ty, why);
+                return None;
+            }
+        }
+        let is_number = |it: &&Member| matches!(it.ty, Type::Elementary(_) | Type::Enum(_));
+        let mut wholes = members.iter().filter(|it| !is_number(it));
         let is_of_one = |array: &Member| members.iter().all(|it| array.holds(it));
-        let keeper = match (arrays.next(), arrays.next()) {
+        let keeper = match (wholes.next(), wholes.next()) {
             (Some(array), None) if is_of_one(array) && self.keeps_bits(array) => *array,
             (Some(_), _) => self.bytes_of(members)?,
             (None, _) => self.widest_number(members)?,
         };
-        for it in members.iter().filter(|it| it.field != keeper.field) {
-            if !matches!(it.ty, Type::Elementary(_)) && self.bytes_of_element(it.ty).is_none() {
-                self.refuse_sharing(
-                    it.first,
-                    keeper.first,
-                    &format!("sharing the bits of {}", self.program.type_name(it.ty)),
-                );
-                return None;
-            }
-        }
-        if !self.keeps_bits(&keeper) {
-            let ty = self.program.type_name(keeper.ty);
-            let other = members.iter().find(|it| it.field != keeper.field).map_or(keeper.first, |it| it.first);
-            self.refuse_sharing(keeper.first, other, &format!("sharing the bits of {ty}"));
-            return None;
-        }
         Some((keeper.field, keeper))
     }
 
@@ -138,35 +130,33 @@ impl<'s> Declarations<'s> {
         self.unit(it.ty).is_some_and(|bits| it.first.address.bit.is_multiple_of(bits))
     }
 
-    /// An array of bytes for all, where no array of integers holds the bits of every other.
+    /// An array of bytes for all, where no array of integers holds the bits of every other, and for texts and structures.
     fn bytes_of(&mut self, members: &[Member]) -> Option<Member> {
         let first = members.iter().min_by_key(|it| it.first.address.bit)?;
         let start = first.first.address.bit / 8 * 8;
         let bits = members.iter().map(Member::end).max()?.next_multiple_of(8) - start;
-        if let Some(it) =
-            members.iter().find(|it| matches!(it.ty, Type::Array(_)) && self.bytes_of_element(it.ty).is_none())
-        {
-            let other = members.iter().find(|other| other.field != it.field).map_or(it.first, |it| it.first);
-            self.refuse_sharing(it.first, other, &format!("sharing the bits of {}", self.program.type_name(it.ty)));
-            return None;
-        }
         let high = i64::try_from(bits / 8).ok()? - 1;
         let ty = self.intern_array(0, high, Resolved::plain(Type::Elementary(Elementary::Byte)));
         let address = Address { bit: start, width: 8, ..first.first.address };
-        let span = first.first.span;
-        let name = ast::Name { text: self.log.sources.text(span), span };
-        let at = self.add_storage(address, &Resolved::plain(ty), "Globals", name);
-        let field = self.addresses.own_fields().len() + at;
-        Some(Member { first: Use { address, ..first.first }, bits, ty, field })
+        Some(self.add_keeper(&Member { first: Use { address, ..first.first }, bits, ty, ..*first }))
     }
 
-    /// The bytes of what arrays are made of, that can be seen in any bytes.
-    fn bytes_of_element(&self, ty: Type) -> Option<u64> {
-        let Type::Array(id) = ty else { return None };
-        match self.program.array(id).element {
-            Type::Elementary(it) if it != Elementary::Bool => Some(u64::from(it.repr().size())),
-            element => self.bytes_of_element(element),
-        }
+    /// A field that keeps the bits of all, and that nobody has declared.
+    fn add_keeper(&mut self, it: &Member) -> Member {
+        let address = it.first.address;
+        let field = Field {
+            name: format!("bits_of_{}", field_name(&address.to_string())),
+            ty: it.ty,
+            initial: Const::Zero,
+            section: Section::Internal,
+            retain: Retain::Inherited,
+            constant: false,
+            address: None,
+            doc: Some(format!("The bits from `{address}` on, which several variables share.")),
+            location: Location::default(),
+        };
+        let at = self.add_synthetic(field, None);
+        Member { field: self.addresses.own_fields().len() + at, ..*it }
     }
 
     /// The widest one, if that is a number of which all bits are values; else a bit string that holds its bits.
@@ -177,14 +167,7 @@ impl<'s> Declarations<'s> {
         if let Some(it) = widest.find(|it| is_of_bits(it.ty)) {
             return Some(*it);
         }
-        if !matches!(first.ty, Type::Elementary(_)) {
-            return Some(first);
-        }
-        let ty = bit_string(first.first.address);
-        let span = first.first.span;
-        let name = ast::Name { text: self.log.sources.text(span), span };
-        let at = self.add_storage(first.first.address, &Resolved::plain(ty), "Globals", name);
-        Some(Member { ty, field: self.addresses.own_fields().len() + at, ..first })
+        Some(self.add_keeper(&Member { ty: bit_string(first.first.address), ..first }))
     }
 
     /// The bits of the integers that the type is made of.
@@ -199,10 +182,11 @@ impl<'s> Declarations<'s> {
         }
     }
 
-    fn refuse_sharing(&mut self, it: Use, other: Use, what: &str) {
-        let mut error = Diagnostic::new(Code::E0410, it.span, format!("{what} is not supported yet"))
+    fn refuse_sharing(&mut self, it: Use, other: Use, ty: Type, why: &str) {
+        let name = self.program.type_name(ty);
+        let mut error = Diagnostic::new(Code::E0410, it.span, format!("{name} cannot share its bits with others"))
             .label("this address shares bits with another one")
-            .help("elementary types but BOOL, and arrays of them, share their bits; a single BOOL shares its bit");
+            .help(why);
         if other.span != it.span {
             error = error.other(other.span, "the other address");
         }

@@ -145,7 +145,8 @@ impl<'s> Declarations<'s> {
         let count = i64::from(count);
         let array = self.intern_array(1, count, Resolved { ty: Type::Struct(place), initial: Const::Zero });
         let doc = format!("The objects of `{}` that `__NEW` makes.", name.text);
-        let at = self.add_synthetic(field(&format!("pool_of_{title}"), array, &doc), None);
+        let objects = Field { section: Section::Global, ..field(&format!("pool_of_{title}"), array, &doc) };
+        let at = self.add_synthetic(objects, None);
         let places = self.synthetic_place(at);
         Some(Pool { places, place, count, object })
     }

@@ -235,7 +235,8 @@ impl<'s> Declarations<'s> {
         }
     }
 
-    fn smallest_part(&self, ty: Type) -> Result<u64, (Type, &'static str)> {
+    /// The bytes of the smallest part; of what cannot share its bytes, which type that is, and why.
+    pub(super) fn smallest_part(&self, ty: Type) -> Result<u64, (Type, &'static str)> {
         match ty {
             Type::Elementary(it) => Ok(it.repr().size().into()),
             Type::Enum(_) => Ok(self.size_of(ty)),

@@ -361,7 +361,7 @@ impl<'s> Checker<'_, 's> {
             (Root::Globals | Root::Instance, _) => true,
             (Root::Local(_) | Root::Param(_), _) => false,
         };
-        !is_constant && !self.is_counter(place)
+        !is_constant && !self.is_counter(place, None)
     }
 
     /// Whether a place is, or is a part of, what is declared CONSTANT.

@@ -1,6 +1,7 @@
 //! The state of checking a body, or a constant expression.
 
 use super::call_tracking::Called;
+use super::loop_counter::Counter;
 use super::uses::Uses;
 use crate::testing::suite::WANTED;
 use crate::types::declarations::Declarations;
@@ -8,7 +9,7 @@ use crate::types::scope::Scope;
 use crate::types::signature::Signature;
 use crate::{Code, Diagnostic, Span, ast};
 use rustc_hash::FxHashMap;
-use staunch_ir::{Block, Expr, For, Local, Location, Place, Statement, StatementKind, Type};
+use staunch_ir::{Block, Expr, Local, Location, Place, Statement, StatementKind, Type};
 use std::rc::Rc;
 
 /// What was found for a call of FUNCTIONs of one name: it is looked for once, however often the call is looked at.
@@ -28,7 +29,7 @@ pub(crate) struct Checker<'d, 's> {
     pub block: Block,
     pub locals: Vec<Local>,
     /// The FOR loops around the statement.
-    pub counters: Vec<For>,
+    pub counters: Vec<Counter>,
     /// How many loops are around the statement.
     pub loops: usize,
     pub uses: Uses,

@@ -34,6 +34,7 @@ mod instruction;
 mod literal;
 mod logix_operands;
 mod logix_text;
+pub(crate) mod loop_counter;
 mod memory;
 pub(crate) mod method;
 mod migration;

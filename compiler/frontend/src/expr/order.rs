@@ -287,7 +287,7 @@ impl Checker<'_, '_> {
 
     /// Whether an index is known to lie within the array's bounds.
     fn is_inside(&self, index: &Expr, array: ArrayId) -> bool {
-        let loops: Vec<_> = self.counters.iter().filter(|it| it.is_private).collect();
+        let loops: Vec<_> = self.counters.iter().map(|it| &it.head).filter(|it| it.is_private).collect();
         let checked = |id: LocalId| matches!(self.locals[id.index()].ty, Type::Subrange(..));
         Known { program: &self.decl.program, loops: &loops, checked: &checked }.is_within(index, array)
     }

@@ -14,7 +14,7 @@ use crate::{Code, Diagnostic, Span, ast};
 use ast::ExprKind as Ast;
 use staunch_ir::{
     Address, Area, Array, ArrayId, BlockId, Elementary, Expr, FieldId, Op, ParamId, Place, Root, Section, StructId,
-    Type, Value, alias,
+    Type, Value,
 };
 use staunch_runtime::Direction;
 use std::rc::Rc;
@@ -676,7 +676,7 @@ impl<'s> Checker<'_, 's> {
 
     /// Whether a place may be given to a call that may write to it.
     pub(crate) fn may_be_given_away(&mut self, found: &Found<'s>, span: Span) -> bool {
-        if self.is_counter(&found.place) {
+        if self.is_counter(&found.place, found.view) {
             return self.report_counter(span);
         }
         match found.access {
@@ -723,11 +723,6 @@ impl<'s> Checker<'_, 's> {
                 false
             }
         }
-    }
-
-    pub(crate) fn is_counter(&self, place: &Place) -> bool {
-        let frame = self.frame();
-        self.counters.iter().any(|it| alias::alias(&frame, &it.counter, place) == alias::Alias::Must)
     }
 
     fn report_counter(&mut self, span: Span) -> bool {

@@ -160,7 +160,7 @@ impl<'s> Checker<'_, 's> {
             );
             return None;
         }
-        if self.is_counter(&found.place) {
+        if self.is_counter(&found.place, found.view) {
             self.report(
                 Diagnostic::new(Code::E0211, expr.span, "the counter of a loop around has no address")
                     .label("the loop goes by it"),

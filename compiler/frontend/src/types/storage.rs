@@ -213,7 +213,6 @@ impl<'s> Declarations<'s> {
         while self.is_global_name(&field.name) {
             field.name.push('_');
         }
-        field.section = Section::Global;
         self.synthetic.names.extend([field.name.to_ascii_uppercase()]);
         self.synthetic.fields.push(field);
         self.synthetic.declared.push(declared);

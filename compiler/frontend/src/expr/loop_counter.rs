@@ -1,0 +1,58 @@
+//! The counters of FOR loops. One that is no storage of its own, a member of a UNION or what a reference leads to, is
+//! counted in a local: that is given to the variable before each turn, and taken from it after it.
+
+use super::checker::Checker;
+use crate::Span;
+use crate::types::window::Window;
+use staunch_ir::{Expr, For, Place, alias};
+
+/// The counter of a FOR loop around a statement.
+#[derive(Clone, Debug)]
+pub(crate) struct Counter {
+    /// The loop, without its body.
+    pub head: For,
+    pub shown: Option<Shown>,
+    /// How many loops are around its body.
+    pub depth: usize,
+}
+
+/// The variable that a loop's local is the value of.
+#[derive(Clone, Debug)]
+pub(crate) struct Shown {
+    pub place: Place,
+    pub view: Option<Window>,
+}
+
+impl Counter {
+    fn is(&self, frame: &alias::Frame<'_>, place: &Place, view: Option<Window>) -> bool {
+        let (own, of) = match &self.shown {
+            Some(it) => (&it.place, it.view),
+            None => (&self.head.counter, None),
+        };
+        let bits = |it: Window| (it.bit, it.ty);
+        of.map(bits) == view.map(bits) && alias::alias(frame, own, place) == alias::Alias::Must
+    }
+}
+
+impl Checker<'_, '_> {
+    pub(super) fn is_counter(&self, place: &Place, view: Option<Window>) -> bool {
+        let frame = self.frame();
+        self.counters.iter().any(|it| it.is(&frame, place, view))
+    }
+
+    /// Gives the variable the value of the loop's local.
+    pub(crate) fn show_counter(&mut self, shown: &Shown, local: &Place, span: Span) {
+        let value = Expr::load(local.clone(), self.at(span));
+        self.write(shown.place.clone(), shown.view, value, span);
+    }
+
+    /// Before a turn of the innermost loop ends: the loop goes on from what the variable is.
+    pub(crate) fn take_counter(&mut self, span: Span) {
+        let Some(innermost) = self.counters.last().filter(|it| it.depth == self.loops) else { return };
+        let Some(shown) = innermost.shown.clone() else { return };
+        let local = innermost.head.counter.clone();
+        if let Some(value) = self.read(shown.place, shown.view, span) {
+            self.assign(local, value, span);
+        }
+    }
+}
