@@ -5,11 +5,14 @@ use quote::{format_ident, quote};
 use staunch_ir::{Address, Area, FieldId, Projection, Repr, Type, Variable, View};
 
 use crate::emitter::Emitter;
+use crate::io_parts::Part;
 
 /// A variable at a direct address, and how its bits are carried.
-struct Io<'p> {
-    variable: &'p str,
+struct Io {
+    variable: String,
     address: Address,
+    /// Number of bits.
+    width: u8,
     /// The integers that keep it, the lowest first.
     units: Vec<Unit>,
     /// The first of its bits, where it shares the integer with others.
@@ -40,8 +43,8 @@ impl Emitter<'_> {
             return tasks;
         }
         let rows = io.iter().map(|it| {
-            let (address, variable) = (it.address.to_string(), it.variable);
-            let (bit, width) = (Literal::u64_unsuffixed(it.address.bit), Literal::u8_unsuffixed(it.address.width));
+            let (address, variable) = (it.address.to_string(), &it.variable);
+            let (bit, width) = (Literal::u64_unsuffixed(it.address.bit), Literal::u8_unsuffixed(it.width));
             let area = match it.address.area {
                 Area::Input => quote!(Input),
                 Area::Output => quote!(Output),
@@ -93,16 +96,16 @@ impl Emitter<'_> {
         }
     }
 
-    fn io(&self) -> Vec<Io<'_>> {
+    /// Of memory at an address, `%M`, what is no number is reached through its field alone.
+    fn io(&self) -> Vec<Io> {
         let globals = self.program.globals;
         let fields = self.program.structure(globals).fields.iter().enumerate();
-        let own = fields.filter_map(|(at, field)| {
+        let own = fields.flat_map(|(at, field)| {
             let name = self.names.field(globals, FieldId::next(at));
-            let is_enumeration = matches!(field.ty, Type::Enum(_));
-            let unit = Unit { is_enumeration, ..self.unit(quote!(self.#name), self.program.repr(field.ty)?) };
-            Some(Io { variable: &field.name, address: field.address?, units: vec![unit], shared: None })
+            field.address.map_or_else(Vec::new, |it| self.io_of(&field.name, field.ty, Some(quote!(self.#name)), it))
         });
-        let mut io: Vec<_> = own.chain(self.program.aliases.iter().filter_map(|it| self.view(it))).collect();
+        let mut io: Vec<_> = own.map(|it| self.own(it)).collect();
+        io.extend(self.program.aliases.iter().flat_map(|it| self.views(it)));
         io.sort_by_key(|it| match it.address.area {
             Area::Input => 0,
             Area::Output => 1,
@@ -111,18 +114,51 @@ impl Emitter<'_> {
         io
     }
 
+    fn io_of(&self, name: &str, ty: Type, place: Option<TokenStream>, address: Address) -> Vec<Part> {
+        let is_number = self.program.repr(ty).is_some();
+        if !is_number && address.area == Area::Memory {
+            return Vec::new();
+        }
+        let mut parts = self.parts(name, ty, place, address);
+        if let (true, [one]) = (is_number, parts.as_mut_slice()) {
+            one.address = address;
+        }
+        parts
+    }
+
+    fn own(&self, part: Part) -> Io {
+        let place = part.place.unwrap_or_default();
+        let unit = Unit { is_enumeration: part.is_enumeration, ..self.unit(place, part.repr) };
+        Io {
+            variable: part.name,
+            address: part.address,
+            width: width(part.address, part.repr),
+            units: vec![unit],
+            shared: None,
+        }
+    }
+
     fn unit(&self, place: TokenStream, repr: Repr) -> Unit {
         Unit { place, repr, is_enumeration: false, is_cell: self.shared }
     }
 
-    /// A variable that shares its bits with another one.
-    fn view<'v>(&self, variable: &'v Variable) -> Option<Io<'v>> {
-        let View { ty: Type::Elementary(_), bit, address } = variable.view? else { return None };
+    /// The numbers in a variable that shares its bits with others.
+    fn views(&self, variable: &Variable) -> Vec<Io> {
+        let Some(View { ty, bit, address }) = variable.view else { return Vec::new() };
+        let parts = self.io_of(&variable.name, ty, None, address);
+        parts.into_iter().filter_map(|it| self.view(variable, it, bit, address)).collect()
+    }
+
+    /// A part of a variable that begins at a bit of the one that keeps it.
+    fn view(&self, variable: &Variable, part: Part, bit: u64, whole: Address) -> Option<Io> {
+        let bit = bit + part.address.bit - whole.bit;
+        let width = width(part.address, part.repr);
         let Some(Projection::Field(field)) = variable.place.projections.first() else { return None };
         let name = self.names.field(self.program.globals, *field);
+        let Part { name: variable_name, address, .. } = part;
         let Type::Array(id) = variable.place.ty else {
             let unit = self.unit(quote!(self.#name), self.program.repr(variable.place.ty)?);
-            return Some(Io { variable: &variable.name, address, units: vec![unit], shared: Some(bit) });
+            return Some(Io { variable: variable_name, address, width, units: vec![unit], shared: Some(bit) });
         };
         let repr = self.program.repr(self.program.array(id).element)?;
         let size = u64::from(repr.size()) * 8;
@@ -130,9 +166,9 @@ impl Emitter<'_> {
             let position = Literal::u64_unsuffixed(bit / size + number);
             self.unit(quote!(self.#name[#position]), repr)
         };
-        let count = u64::from(address.width).div_ceil(size);
-        let shared = (u64::from(address.width) < size).then_some(bit % size);
-        Some(Io { variable: &variable.name, address, units: (0..count).map(unit).collect(), shared })
+        let count = u64::from(width).div_ceil(size);
+        let shared = (u64::from(width) < size).then_some(bit % size);
+        Some(Io { variable: variable_name, address, width, units: (0..count).map(unit).collect(), shared })
     }
 
     /// How the globals show and take the bits at an address.
@@ -185,9 +221,9 @@ pub fn area_name(area: Area) -> &'static str {
     }
 }
 
-impl Io<'_> {
+impl Io {
     fn mask(&self) -> Literal {
-        Literal::u64_unsuffixed(u64::MAX >> (64 - u32::from(self.address.width)))
+        Literal::u64_unsuffixed(u64::MAX >> (64 - u32::from(self.width)))
     }
 
     fn read(&self) -> TokenStream {
@@ -203,7 +239,7 @@ impl Io<'_> {
     fn write(&self) -> TokenStream {
         if let (Some(shift), [unit]) = (self.shared, self.units.as_slice()) {
             let (whole, mask, write) = (unit.read(), self.mask(), unit.write());
-            let kept = Literal::u64_unsuffixed((u64::MAX >> (64 - u32::from(self.address.width))) << shift);
+            let kept = Literal::u64_unsuffixed((u64::MAX >> (64 - u32::from(self.width))) << shift);
             let bits = shifted(quote!((bits & #mask)), Way::Up, shift);
             return quote!({ let bits = #whole & !#kept | #bits; #write });
         }
@@ -216,6 +252,11 @@ impl Io<'_> {
             _ => quote!({ #(#writes)* }),
         }
     }
+}
+
+/// A BOOL at an address of its own is one bit there.
+fn width(address: Address, repr: Repr) -> u8 {
+    if address.width == 1 { 1 } else { u8::try_from(repr.size() * 8).unwrap_or(u8::MAX) }
 }
 
 /// `bits`, shifted unless that is by 0.

@@ -17,6 +17,7 @@ mod firmware;
 mod flash;
 mod function;
 mod index_hoist;
+mod io_parts;
 mod item;
 mod loops;
 mod name_table;

@@ -84,6 +84,69 @@ case.st:11:15: division by zero
     assert_eq!(output_of("firmware", ST, MAIN), expected);
 }
 
+const PARTS: &str = "
+TYPE Mode : (Off, Auto := 5); Head : STRUCT number : INT; mode : Mode; ready : BOOL; END_STRUCT END_TYPE
+VAR_GLOBAL
+    raw AT %IW10 : ARRAY[1..2, 0..1] OF INT; head AT %QB1 : Head; grid AT %MW0 : ARRAY[0..99] OF INT;
+    heads AT %IB40 : ARRAY[0..1] OF Head; low AT %IB41 : BYTE; text AT %QB100 : STRING[4]; flags AT %QX90.0 : ARRAY[0..1] OF BOOL;
+END_VAR
+PROGRAM Main
+VAR r : REF_TO INT; END_VAR
+r := REF(grid[3]);
+head.number := raw[2, 1];
+IF heads[1].mode = Auto THEN head.mode := Auto; END_IF;
+head.ready := heads[1].ready AND low = 2;
+flags[1] := heads[0].ready;
+END_PROGRAM
+";
+
+/// Sets each input to its number in the table and one more, and prints what comes out.
+const PARTS_MAIN: &str = r#"
+use staunch_runtime::Context;
+
+fn main() {
+    let mut machine = code::Machine::new();
+    for (number, io) in code::IO.iter().enumerate() {
+        println!("{} {} {} {}", io.address, io.variable, io.bit, io.width);
+        machine.globals.set_io(number, number as u64 + 1);
+    }
+    machine.main.scan(&Context::first(0), &machine).unwrap();
+    machine.globals.write_outputs(|io, bits| println!("{} := {bits}", io.variable));
+    println!("{}", machine.globals.io(7));
+}
+"#;
+
+/// Of arrays and structures each number is a row; the texts in them, and memory, have none.
+#[test]
+fn parts_of_what_is_at_addresses() {
+    // `head.mode` keeps what the test gave it: `heads[1].mode` is 9, and not Auto.
+    let expected = "\
+%IW10 raw[1,0] 160 16
+%IW11 raw[1,1] 176 16
+%IW12 raw[2,0] 192 16
+%IW13 raw[2,1] 208 16
+%IW20 heads[0].number 320 16
+%IW21 heads[0].mode 336 16
+%IB44 heads[0].ready 352 8
+%IW23 heads[1].number 368 16
+%IW24 heads[1].mode 384 16
+%IB50 heads[1].ready 400 8
+%IB41 low 328 8
+%QB1 head.number 8 16
+%QB3 head.mode 24 16
+%QB5 head.ready 40 8
+%QB90 flags[0] 720 8
+%QB91 flags[1] 728 8
+head.number := 4
+head.mode := 13
+head.ready := 0
+flags[0] := 1
+flags[1] := 1
+8
+";
+    assert_eq!(output_of("firmware_parts", PARTS, PARTS_MAIN), expected);
+}
+
 const RETAINING: &str = "
 TYPE Color : (Red, Green := 5); Part : STRUCT number : INT; weight : REAL; END_STRUCT; END_TYPE
 FUNCTION_BLOCK Station

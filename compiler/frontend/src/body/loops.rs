@@ -5,7 +5,8 @@ use crate::expr::loop_counter::{Counter, Shown};
 use crate::expr::operand::Operand;
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{
-    Block, Conversion, Elementary, Expr, For, Location, Op, Place, Statement, StatementKind, Step, Type, Value, loops, turns,
+    Block, Conversion, Elementary, Expr, For, Location, Op, Place, Statement, StatementKind, Step, Type, Value, loops,
+    turns,
 };
 
 impl<'s> Checker<'_, 's> {
@@ -103,13 +104,7 @@ impl<'s> Checker<'_, 's> {
         Some(())
     }
 
-    fn for_body(
-        &mut self,
-        shown: Option<&Shown>,
-        local: &Place,
-        body: &[ast::Statement<'s>],
-        counter: Span,
-    ) -> Block {
+    fn for_body(&mut self, shown: Option<&Shown>, local: &Place, body: &[ast::Statement<'s>], counter: Span) -> Block {
         let Some(shown) = shown else { return self.loop_body(body) };
         self.loops += 1;
         let block = self.nested(|this| {
