@@ -413,7 +413,7 @@ pub enum TypeKind<'s> {
     Enum { base: Option<Name<'s>>, values: Vec<EnumValue<'s>> },
     /// `REF_TO T`, `POINTER TO T`, `REFERENCE TO T`
     Reference { kind: RefKind, target: Box<TypeSpec<'s>> },
-    /// `UNION … END_UNION`: its members share their bytes.
+    /// `UNION … END_UNION`, `STRUCT OVERLAP … END_STRUCT`: its members share their bytes.
     Union(Vec<VarDecl<'s>>),
     /// A type that did not parse, or is not told apart any further; reported.
     Error,

@@ -296,6 +296,16 @@ impl Dialect {
         !matches!(self, Self::Codesys)
     }
 
+    /// `ADD_INT` is ADD of INTs, as in the standard's tables.
+    pub const fn has_typed_functions(self) -> bool {
+        matches!(self, Self::Iec | Self::Openplc)
+    }
+
+    /// A PROGRAM declares global variables, as in the standard's tables.
+    pub const fn has_globals_of_programs(self) -> bool {
+        matches!(self, Self::Iec | Self::Openplc)
+    }
+
     /// Assigning a FOR counter in its loop is a lint, not an error.
     pub const fn assigns_counters(self) -> bool {
         matches!(self, Self::Codesys)

@@ -1,8 +1,8 @@
 //! WHILE and REPEAT, which are one loop in the IR, and FOR.
 
 use crate::expr::checker::Checker;
-use crate::expr::loop_counter::{Counter, Shown};
 use crate::expr::operand::Operand;
+use crate::types::counter::{Counter, Shown};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{
     Block, Conversion, Elementary, Expr, For, Location, Op, Place, Statement, StatementKind, Step, Type, Value, loops,

@@ -90,6 +90,9 @@ impl<'s> Declarations<'s> {
                         self.enter(pou.name, Entry::Pou(slot), internal);
                     }
                     pou.routines.iter().for_each(|it| self.collect_routine(slot, it));
+                    if self.has_globals(pou) {
+                        globals_of(pou).for_each(|it| self.collect_globals(it));
+                    }
                 }
                 ast::Item::Globals(block) => self.collect_globals(block),
                 ast::Item::Configuration(it) => self.collect_configuration(it),
@@ -153,6 +156,11 @@ impl<'s> Declarations<'s> {
                 self.globals.push(GlobalSlot { space, name: *name, block, decl, slot: Slot::Open });
             }
         }
+    }
+
+    /// Whether the POU's VAR_GLOBALs are global variables: those of a PROGRAM (edition 3, table 47).
+    pub(crate) fn has_globals(&self, pou: &ast::Pou<'s>) -> bool {
+        pou.kind == ast::PouKind::Program && self.dialect(pou.name.span).has_globals_of_programs()
     }
 
     fn collect_configuration(&mut self, configuration: &'s ast::Configuration<'s>) {
@@ -254,4 +262,8 @@ pub(super) fn declared_twice(name: ast::Name<'_>, first: Span) -> Diagnostic {
     Diagnostic::new(Code::E0103, name.span, format!("`{}` is declared twice", name.text))
         .label("declared again here")
         .other(first, "first declared here")
+}
+
+fn globals_of<'s>(pou: &'s ast::Pou<'s>) -> impl Iterator<Item = &'s ast::VarBlock<'s>> {
+    pou.blocks.iter().filter(|it| it.kind == ast::VarKind::Global)
 }

@@ -256,7 +256,7 @@ impl<'s> Declarations<'s> {
         if let Some(span) = block.constant {
             self.check_constant_section(block.kind, span);
         }
-        if block.kind == VarKind::Global {
+        if block.kind == VarKind::Global && !self.has_globals(pou) {
             let kind = pou.kind.word();
             self.report(
                 Diagnostic::new(Code::E0403, block.span, format!("a {kind} has no VAR_GLOBAL"))
@@ -287,6 +287,9 @@ impl<'s> Declarations<'s> {
         owner_signature: Option<&Signature<'s>>,
         builder: &mut Builder<'s>,
     ) {
+        if block.kind == VarKind::Global && self.has_globals(pou) {
+            return;
+        }
         let scope = Rc::clone(&builder.scope);
         let owner = decl.names.first().map_or(pou.name.text, |it| it.text);
         self.check_address_here(Some(pou.kind), block, decl);

@@ -1,7 +1,7 @@
 //! Relative locations of a structure's members, `AT %B4`, `AT %X0.3`: bytes and bits from its start.
 //!
 //! They say how the structure lies in the memory of the system that the source is from, which no program can see:
-//! they are checked, and a structure that has them lies in the process image nowhere.
+//! they are checked, and a structure that has them lies in the process image nowhere. In a UNION they say which bytes are shared.
 
 use crate::dialect::Dialect;
 use crate::types::declarations::Declarations;
@@ -23,9 +23,9 @@ fn parse(text: &str) -> Option<Offset> {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Offset {
-    bit: u64,
-    is_bit: bool,
+pub(super) struct Offset {
+    pub bit: u64,
+    pub is_bit: bool,
 }
 
 /// A member's place.
@@ -86,6 +86,14 @@ impl<'s> Declarations<'s> {
     pub(super) fn location_of(&self, member: &ast::VarDecl<'s>) -> Option<ast::Name<'s>> {
         let is_open = |it: &ast::Name<'s>| it.text.ends_with('*') && self.dialect(it.span) == Dialect::Codesys;
         member.address.filter(|it| !is_open(it))
+    }
+
+    /// Where a member of a UNION begins, if that is said; `None` where it is wrong.
+    pub(super) fn offset_in_union(&mut self, member: &ast::VarDecl<'s>, ty: Type) -> Option<Option<Offset>> {
+        let Some(address) = self.location_of(member) else { return Some(None) };
+        let offset = self.offset(address)?;
+        self.bits_at(address, offset, ty);
+        Some(Some(offset))
     }
 
     fn offset(&mut self, address: ast::Name<'s>) -> Option<Offset> {

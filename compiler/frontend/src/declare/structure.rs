@@ -139,8 +139,9 @@ impl<'s> Declarations<'s> {
         Some(Resolved { ty: Type::BOOL, initial })
     }
 
-    /// `UNION … END_UNION`: its members share their bytes, which are kept as unsigned numbers of as many bytes as the
-    /// smallest part of a member has, so that each part is some of these.
+    /// `UNION … END_UNION`, `STRUCT OVERLAP … END_STRUCT`: its members share their bytes, which are kept as unsigned
+    /// numbers of as many bytes as the smallest part of a member has, so that each part is some of these; as bytes, where
+    /// members have locations. Those without one begin with the first byte.
     pub(super) fn union(
         &mut self,
         members: &'s [ast::VarDecl<'s>],
@@ -149,7 +150,6 @@ impl<'s> Declarations<'s> {
         doc: Option<String>,
         span: Span,
     ) -> Option<Resolved> {
-        self.refuse_addresses(members, "the location of a member in a UNION");
         let block = ast::VarBlock::new(ast::VarKind::Var, span);
         let mut seen = Scope::default();
         let (mut overlays, mut starts) = (Vec::new(), Vec::new());
@@ -168,15 +168,20 @@ impl<'s> Declarations<'s> {
                 complete = false;
                 continue;
             };
-            unit = part.min(unit);
-            size = self.sizeof(resolved.ty).max(size);
+            let Some(offset) = self.offset_in_union(decl, resolved.ty) else {
+                complete = false;
+                continue;
+            };
+            let (bit, is_bit) = offset.map_or((0, is_bit), |it| (it.bit, is_bit || it.is_bit));
+            unit = if offset.is_some() { 1 } else { part.min(unit) };
+            size = (bit / 8 + self.sizeof(resolved.ty)).max(size);
             align = self.align_of(resolved.ty).max(align);
             for member in &decl.names {
                 let place = staunch_ir::Place::root(staunch_ir::Root::Instance, resolved.ty);
                 let variable = self.variable(*member, &block, Rc::clone(&resolved), place);
                 let Field { name, ty, doc, location, .. } = self.field(*member, &resolved, &block, decl);
                 self.enter_variable(&mut seen, variable);
-                overlays.push(Overlay { name, ty, field: STORAGE, bit: 0, is_bit, doc, location });
+                overlays.push(Overlay { name, ty, field: STORAGE, bit, is_bit, doc, location });
                 starts.push(resolved.initial.clone());
             }
         }

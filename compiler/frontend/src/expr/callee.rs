@@ -279,9 +279,7 @@ impl<'s> Checker<'_, 's> {
 
 /// The function of all types that `ADD_INT` names with one.
 fn typed_function(name: &str) -> Option<String> {
-    let (function, ty) = name.rsplit_once('_')?;
-    staunch_ir::Elementary::named(ty).filter(|_| functions::exists(function))?;
-    Some(function.to_ascii_uppercase())
+    functions::typed(name).map(|(signature, ..)| signature.name.to_owned())
 }
 
 /// Functions of the standard's tables, and of CODESYS, that are known to be missing.

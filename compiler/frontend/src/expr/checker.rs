@@ -1,9 +1,9 @@
 //! The state of checking a body, or a constant expression.
 
 use super::call_tracking::Called;
-use super::loop_counter::Counter;
 use super::uses::Uses;
 use crate::testing::suite::WANTED;
+use crate::types::counter::Counter;
 use crate::types::declarations::Declarations;
 use crate::types::scope::Scope;
 use crate::types::signature::Signature;

@@ -164,7 +164,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// A loop over all LINTs from one to another.
-    fn each(
+    pub(super) fn each(
         &mut self,
         name: &str,
         first: i64,

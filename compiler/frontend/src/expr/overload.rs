@@ -34,7 +34,7 @@ pub(crate) enum Takes {
 }
 
 impl Takes {
-    fn of(kind: Kind, common: Option<Type>) -> Self {
+    pub(super) fn of(kind: Kind, common: Option<Type>) -> Self {
         match kind {
             Kind::T => Self::Common(common),
             Kind::Is(ty) => Self::Type(Type::Elementary(ty)),
@@ -437,7 +437,7 @@ impl<'s> Checker<'_, 's> {
 }
 
 /// What the parameter at a position takes; those past the last are as the last.
-fn kind(signature: &Signature, at: usize) -> Kind {
+pub(super) fn kind(signature: &Signature, at: usize) -> Kind {
     let last = signature.parameters.len() - 1;
     signature.parameters[at.min(last)].kind
 }
@@ -449,7 +449,7 @@ pub(super) fn parameter_names(signature: &Signature, arguments: usize) -> Vec<Co
     (0..count).map(|at| parameter_name(signature, at)).collect()
 }
 
-fn parameter_name(signature: &Signature, at: usize) -> Cow<'static, str> {
+pub(super) fn parameter_name(signature: &Signature, at: usize) -> Cow<'static, str> {
     let Some(extra) = at.checked_sub(signature.parameters.len()) else {
         return Cow::Borrowed(signature.parameters[at].name);
     };

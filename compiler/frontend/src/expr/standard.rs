@@ -31,6 +31,10 @@ impl<'s> Checker<'_, 's> {
         span: Span,
     ) -> Option<Operand> {
         let Some((signature, meaning)) = self.form(name, arguments) else {
+            if let Some((signature, meaning, ty)) = functions::typed(name.text) {
+                let values = self.arguments(signature, name, arguments, span)?;
+                return self.typed_function(signature, meaning, Type::Elementary(ty), &values, name);
+            }
             let parsed = functions::conversion(name.text)?;
             let values = self.arguments(&CONVERSION, name, arguments, span)?;
             return self.conversion(parsed, values[0], name).map(Operand::Typed);
@@ -48,11 +52,11 @@ impl<'s> Checker<'_, 's> {
                 }
             }
             Meaning::Operation(op) => {
-                let mut resolved = self.resolve(signature, &values, expected, name)?;
-                if op == Op::SwapBytes {
-                    resolved = self.at_own_size(resolved, name)?;
+                let resolved = self.resolve(signature, &values, expected, name)?;
+                match op {
+                    Op::SwapBytes => self.other_byte_order(resolved, name),
+                    _ => self.operation(op, resolved, name.span),
                 }
-                self.operation(op, resolved, name.span)
             }
             Meaning::Text(op) => {
                 let resolved = self.resolve(signature, &values, expected, name)?;
@@ -60,8 +64,7 @@ impl<'s> Checker<'_, 's> {
             }
             Meaning::LittleEndian => {
                 let resolved = self.resolve(signature, &values, expected, name)?;
-                let Resolved { own, mut operands, .. } = self.at_own_size(resolved, name)?;
-                Some(computed(operands.pop()?, own))
+                self.own_byte_order(resolved, name)
             }
             Meaning::Assert => {
                 let condition = self.resolve(signature, &values, None, name)?.operands.pop()?;
@@ -126,7 +129,12 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// An operation of the table on operands of its type.
-    fn operation(&mut self, op: Op, Resolved { mut ty, own, mut operands }: Resolved, span: Span) -> Option<Operand> {
+    pub(super) fn operation(
+        &mut self,
+        op: Op,
+        Resolved { mut ty, own, mut operands }: Resolved,
+        span: Span,
+    ) -> Option<Operand> {
         if op == Op::Abs {
             operands = operands.into_iter().map(|it| self.promote(it, span)).collect();
             ty = operands.first()?.ty;
@@ -145,20 +153,6 @@ impl<'s> Checker<'_, 's> {
             _ => self.apply(op, ty, operands, ty, span),
         };
         Some(computed(value?, own))
-    }
-
-    /// What has an order of its bytes, as many as its type has also where it is computed at more: strings and
-    /// enumerations have none.
-    fn at_own_size(&mut self, resolved: Resolved, name: ast::Name<'s>) -> Option<Resolved> {
-        let Resolved { own: ty, operands, .. } = resolved;
-        if matches!(ty, Type::Elementary(_)) {
-            let operands = operands.into_iter().map(|it| self.convert(Conversion::Value, ty, it)).collect();
-            return Some(Resolved { ty, own: ty, operands });
-        }
-        let found = self.type_name(ty);
-        let message = format!("`{}` takes a number, a bit string, a time or a character, this is {found}", name.text);
-        self.report(Diagnostic::new(Code::E0204, name.span, message).label(format!("this is {found}")));
-        None
     }
 
     /// A fault where the condition does not hold.
@@ -272,7 +266,12 @@ impl<'s> Checker<'_, 's> {
 
     /// `MUX(K, IN0, …)`: a K below 0 faults, and one above where the dialect does not take the last input then.
     /// What is not in `before` of an input is evaluated, chosen or not.
-    fn mux(&mut self, Resolved { ty, own, mut operands }: Resolved, before: Vec<Block>, span: Span) -> Option<Operand> {
+    pub(super) fn mux(
+        &mut self,
+        Resolved { ty, own, mut operands }: Resolved,
+        before: Vec<Block>,
+        span: Span,
+    ) -> Option<Operand> {
         if self.choose_now(&operands) {
             return Some(computed(self.constant_mux(ty, operands, span)?, own));
         }

@@ -42,6 +42,18 @@ impl<'s> Checker<'_, 's> {
     ) -> Option<Operand> {
         let hint = expected.filter(|_| !compares(op));
         let operands = self.as_written(values, |this, at, side| this.operand(values[at], hint.or(side)))?;
+        self.fold_left(op, operands, values, hint, name)
+    }
+
+    /// An operator on operands of the values, from the left.
+    pub(super) fn fold_left(
+        &mut self,
+        op: BinaryOp,
+        operands: Vec<Operand>,
+        values: &[&ast::Expr<'s>],
+        hint: Option<Type>,
+        name: ast::Name<'s>,
+    ) -> Option<Operand> {
         let mut operands = operands.into_iter().zip(values).map(|(operand, value)| (operand, value.span));
         let mut result = operands.next()?;
         for right in operands {
@@ -54,9 +66,19 @@ impl<'s> Checker<'_, 's> {
     fn comparisons(&mut self, op: BinaryOp, values: &[&ast::Expr<'s>], name: ast::Name<'s>) -> Option<Operand> {
         let operands = self.as_written(values, |this, at, side| {
             let operand = this.operand(values[at], side)?;
-            let read_twice = at > 0 && at + 1 < values.len();
-            Some(if read_twice { this.kept(operand) } else { operand })
+            Some(this.kept_between(operand, at, values.len()))
         })?;
+        self.compare_neighbours(op, &operands, values, name)
+    }
+
+    /// Each of several operands with the next one.
+    pub(super) fn compare_neighbours(
+        &mut self,
+        op: BinaryOp,
+        operands: &[Operand],
+        values: &[&ast::Expr<'s>],
+        name: ast::Name<'s>,
+    ) -> Option<Operand> {
         let mut all: Option<Operand> = None;
         for (at, pair) in operands.windows(2).enumerate() {
             let (left, right) = (values[at].span, values[at + 1].span);
@@ -80,9 +102,11 @@ impl<'s> Checker<'_, 's> {
         self.combine(Sides { a, b, left, right, op, op_span, span: left.to(right), hint })
     }
 
-    /// The operand for reading it twice: what is more than a variable is computed once.
-    fn kept(&mut self, mut operand: Operand) -> Operand {
-        if let Some(expr) = operand.typed_mut().filter(|it| !is_plain(it)) {
+    /// The operand at a place among so many that are compared with their neighbours: what is read twice, and more
+    /// than a variable, is computed once.
+    pub(super) fn kept_between(&mut self, mut operand: Operand, at: usize, count: usize) -> Operand {
+        let is_read_twice = at > 0 && at + 1 < count;
+        if is_read_twice && let Some(expr) = operand.typed_mut().filter(|it| !is_plain(it)) {
             self.save("saved", expr);
         }
         operand

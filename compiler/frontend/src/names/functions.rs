@@ -5,7 +5,7 @@ use crate::dialect::Dialect;
 use crate::spelling::Key;
 use rustc_hash::FxHashMap;
 use staunch_ir::{Elementary, Op, TextOp};
-use staunch_runtime::{Class, Signature, signature};
+use staunch_runtime::{Class, Kind, Signature, signature};
 use std::sync::LazyLock;
 
 /// What a standard function means.
@@ -119,12 +119,12 @@ const OTHERS: &[(Option<Dialect>, Signature, Meaning)] = &[
     ),
     (None, signature!("DAY_OF_WEEK" (IN: LDATE) -> ANY_INT), Meaning::Date(DateFunction::Weekday)),
     // Edition 3, table 37, by its names and by those that systems have instead.
-    (None, signature!("TO_BIG_ENDIAN" (IN: T) -> T [ANY_ELEMENTARY]), Meaning::Operation(Op::SwapBytes)),
-    (None, signature!("FROM_BIG_ENDIAN" (IN: T) -> T [ANY_ELEMENTARY]), Meaning::Operation(Op::SwapBytes)),
-    (None, signature!("BIG_ENDIAN_TO" (IN: T) -> T [ANY_ELEMENTARY]), Meaning::Operation(Op::SwapBytes)),
-    (None, signature!("TO_LITTLE_ENDIAN" (IN: T) -> T [ANY_ELEMENTARY]), Meaning::LittleEndian),
-    (None, signature!("FROM_LITTLE_ENDIAN" (IN: T) -> T [ANY_ELEMENTARY]), Meaning::LittleEndian),
-    (None, signature!("LITTLE_ENDIAN_TO" (IN: T) -> T [ANY_ELEMENTARY]), Meaning::LittleEndian),
+    (None, signature!("TO_BIG_ENDIAN" (IN: T) -> T [ANY]), Meaning::Operation(Op::SwapBytes)),
+    (None, signature!("FROM_BIG_ENDIAN" (IN: T) -> T [ANY]), Meaning::Operation(Op::SwapBytes)),
+    (None, signature!("BIG_ENDIAN_TO" (IN: T) -> T [ANY]), Meaning::Operation(Op::SwapBytes)),
+    (None, signature!("TO_LITTLE_ENDIAN" (IN: T) -> T [ANY]), Meaning::LittleEndian),
+    (None, signature!("FROM_LITTLE_ENDIAN" (IN: T) -> T [ANY]), Meaning::LittleEndian),
+    (None, signature!("LITTLE_ENDIAN_TO" (IN: T) -> T [ANY]), Meaning::LittleEndian),
     // Edition 4.
     (None, signature!("ASSERT" (IN: BOOL) -> BOOL), Meaning::Assert),
     // TwinCAT's Tc2_Math.
@@ -232,7 +232,19 @@ pub(crate) fn exists(name: &str) -> bool {
 /// Whether a standard function bears this name in the dialect.
 pub(crate) fn exists_in(name: &str, dialect: Dialect) -> bool {
     let has = |owner: Option<Dialect>| owner.is_none_or(|it| it == dialect);
-    named(name).iter().any(|it| has(it.0)) || conversion(name).is_some_and(|it| has(it.owner()))
+    named(name).iter().any(|it| has(it.0))
+        || conversion(name).is_some_and(|it| has(it.owner()))
+        || dialect.has_typed_functions() && typed(name).is_some()
+}
+
+/// What `ADD_INT` names: ADD, with one type of all that it may take (edition 3, table 21).
+pub(crate) fn typed(name: &str) -> Option<(&'static Signature, Meaning, Elementary)> {
+    let (function, ty) = name.rsplit_once('_')?;
+    let ty = Elementary::named(ty)?;
+    let mut forms = named(function).iter().filter(|it| it.0.is_none());
+    let takes = |it: &Signature| it.class.contains(ty.class()) && it.parameters.iter().any(|it| it.kind == Kind::T);
+    let (_, signature, meaning) = forms.find(|it| takes(it.1))?;
+    Some((signature, *meaning, ty))
 }
 
 /// A dialect that has a function of this name, which not all have.

@@ -28,9 +28,11 @@ pub(super) fn instances<'s>(declarations: &mut Declarations<'s>, files: &'s [ast
     declarations.check_configurations(&configurations, &bindings);
     let runs: FxHashMap<_, _> =
         declarations.pous.iter().enumerate().filter_map(|(at, it)| Some((it.run?, at))).collect();
+    let mut listed = Vec::new();
     for resource in configurations.iter().flat_map(|it| &it.resources) {
-        declarations.resource(resource, &runs);
+        declarations.resource(resource, &runs, &mut listed);
     }
+    declarations.report_globals_of_several(&listed);
     if declarations.log.options.tests {
         return declarations.test_instances();
     }
@@ -299,7 +301,32 @@ impl<'s> Declarations<'s> {
         true
     }
 
-    fn resource(&mut self, resource: &'s ast::Resource<'s>, runs: &FxHashMap<Span, usize>) {
+    /// Reports a second run of a PROGRAM that declares global variables: each would have its own.
+    fn report_globals_of_several(&mut self, listed: &[(usize, Span)]) {
+        let mut first: FxHashMap<usize, Span> = FxHashMap::default();
+        for (slot, span) in listed.iter().copied() {
+            let pou = self.pous[slot].ast;
+            let Some(globals) = pou.blocks.iter().find(|it| it.kind == ast::VarKind::Global) else { continue };
+            let Some(other) = first.insert(slot, span).filter(|_| self.has_globals(pou)) else { continue };
+            self.report(
+                Diagnostic::new(
+                    Code::E0403,
+                    span,
+                    format!("the PROGRAM `{}` has VAR_GLOBAL, and runs once", pou.name.text),
+                )
+                .label("a second run of it")
+                .other(other, "the first one")
+                .help(format!("move its {} to the file, or declare it in VAR", self.log.sources.text(globals.span))),
+            );
+        }
+    }
+
+    fn resource(
+        &mut self,
+        resource: &'s ast::Resource<'s>,
+        runs: &FxHashMap<Span, usize>,
+        listed: &mut Vec<(usize, Span)>,
+    ) {
         let tasks: Vec<_> = resource.tasks.iter().map(|task| (task.name, self.task(task))).collect();
         for instance in &resource.programs {
             let mut timing = Timing { interval: None, priority: LOWEST_PRIORITY };
@@ -310,7 +337,8 @@ impl<'s> Declarations<'s> {
                     None => self.unknown_task(name, &tasks),
                 }
             }
-            self.instance(instance, timing, runs);
+            let slot = self.instance(instance, timing, runs);
+            listed.extend(slot.map(|it| (it, instance.name.span)));
         }
     }
 
@@ -323,7 +351,13 @@ impl<'s> Declarations<'s> {
         self.report(error);
     }
 
-    fn instance(&mut self, instance: &'s ast::ProgramInstance<'s>, timing: Timing, runs: &FxHashMap<Span, usize>) {
+    /// Adds a run to the program's instances; gives the slot of the PROGRAM that it is of.
+    fn instance(
+        &mut self,
+        instance: &'s ast::ProgramInstance<'s>,
+        timing: Timing,
+        runs: &FxHashMap<Span, usize>,
+    ) -> Option<usize> {
         let path = [instance.namespace.as_slice(), &[instance.program]].concat();
         let found = match self.lookup(&path, Sense::Value) {
             Found::One(Meaning::Declared(entry)) => Some(entry),
@@ -333,7 +367,8 @@ impl<'s> Declarations<'s> {
             Some(Entry::Pou(at)) if self.pous[at].ast.kind == ast::PouKind::Program => at,
             _ => {
                 if let Some(Entry::Pou(at)) = found {
-                    return self.not_a_program(instance.program, at);
+                    self.not_a_program(instance.program, at);
+                    return None;
                 }
                 let programs = self.pous.iter().filter(|it| it.ast.kind == ast::PouKind::Program);
                 let names: Vec<_> = programs.map(|it| it.ast.name).collect();
@@ -350,20 +385,21 @@ impl<'s> Declarations<'s> {
                     error = error.help(format!("did you mean `{near}`?")).fix(instance.program.span, near.as_str());
                 }
                 self.report(error);
-                return;
+                return None;
             }
         };
         if self.report_called_and_listed(program, instance.program.span) {
-            return;
+            return None;
         }
         let run = runs.get(&instance.name.span).copied();
-        let Some(program) = self.class_of_slot(run.unwrap_or(program)) else { return };
+        let class = self.class_of_slot(run.unwrap_or(program))?;
         self.program.instances.push(Instance {
             name: instance.name.text.to_owned(),
-            program,
+            program: class,
             interval: timing.interval,
             priority: timing.priority,
         });
+        Some(program)
     }
 
     fn not_a_program(&mut self, name: ast::Name<'s>, at: usize) {

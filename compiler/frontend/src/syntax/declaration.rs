@@ -132,18 +132,11 @@ pub fn structure_members<'s>(input: &mut In<'_, '_, 's>) -> TypeKind<'s> {
     let opened = input.last();
     let overlaps = input.is_word("OVERLAP") && input.kind_ahead(1) == Kind::Name;
     if overlaps {
-        let span = input.take();
-        input.report(
-            diagnostics::unsupported(span, "a STRUCT OVERLAP")
-                .help("declare a UNION, whose members share their bytes, of a STRUCT for each view"),
-        );
+        input.take();
     }
-    let mut fields = list(input, Kind::EndStruct, opened);
-    if overlaps {
-        fields.iter_mut().for_each(|it| it.address = None);
-    }
+    let fields = list(input, Kind::EndStruct, opened);
     block_ends::close_block(input, Kind::EndStruct, opened);
-    TypeKind::Struct(fields)
+    if overlaps { TypeKind::Union(fields) } else { TypeKind::Struct(fields) }
 }
 
 /// UNION is a word only here.

@@ -2,6 +2,7 @@
 
 pub(crate) mod address;
 pub(crate) mod coercion;
+pub(crate) mod counter;
 pub(crate) mod coverage;
 pub(crate) mod declarations;
 pub(crate) mod generic;
