@@ -70,8 +70,13 @@ impl<'s> Checker<'_, 's> {
         Found { place, view: Some(Window { ty: array.element, ..view }), ..found }
     }
 
+    /// How many bytes after the start of its first unit a view begins.
+    pub(super) fn bytes_in_unit(&self, place: &Place, view: Window) -> u64 {
+        view.bit / 8 % self.unit_size(place).max(1)
+    }
+
     /// The bytes of a place's elements, or of the place where it has none.
-    fn unit_size(&self, place: &Place) -> u64 {
+    pub(super) fn unit_size(&self, place: &Place) -> u64 {
         match place.ty {
             Type::Array(id) => self.decl.size_of(self.decl.program.array(id).element),
             ty => self.decl.size_of(ty),

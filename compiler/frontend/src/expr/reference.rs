@@ -8,6 +8,7 @@ use super::method::is_this;
 use super::operand::Operand;
 use super::place::{Access, Found};
 use crate::names::{Entry, Found as Meant, Meaning, Sense};
+use crate::types::window::Window;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ArgumentKind, BinaryOp, ExprKind as Ast};
 use staunch_ir::{
@@ -126,8 +127,10 @@ impl<'s> Checker<'_, 's> {
     pub(crate) fn reference_to(&mut self, expr: &ast::Expr<'s>, kind: RefKind) -> Option<Expr> {
         let found = self.place_or_view(expr)?;
         let target = self.type_of(&found);
+        let mut bytes = 0;
         let found = match found.view {
-            Some(view) if view.address.is_none() && !view.is_bit && !view.is_selected => {
+            Some(view) if self.has_address(&found.place, view) => {
+                bytes = self.bytes_in_unit(&found.place, view);
                 Found { place: self.first_unit(&found.place, view, expr.span), view: None, ..found }
             }
             Some(_) | None => self.whole(found, expr.span)?,
@@ -172,8 +175,19 @@ impl<'s> Checker<'_, 's> {
         let ty = self.decl.reference_type(kind, target);
         let at = self.at(expr.span);
         let place = found.place;
-        let reference = Expr::new(ty, ExprKind::AddressOf(Box::new(place.clone())), at);
+        let mut reference = Expr::new(ty, ExprKind::AddressOf(Box::new(place.clone())), at);
+        if bytes > 0 {
+            let bytes = Operand::Integer(bytes.into());
+            reference = self.advance(Operand::Typed(reference), bytes, BinaryOp::Add, expr.span)?;
+        }
         Some(self.told_apart(reference, &place, expr.span))
+    }
+
+    /// Whether a reference may lead to a view: it begins with a byte, and where addresses share bits it is aligned as what
+    /// keeps them is.
+    fn has_address(&self, place: &Place, view: Window) -> bool {
+        let fits = view.address.is_none() || self.decl.align_of(view.ty) <= self.unit_size(place);
+        !view.is_bit && !view.is_selected && fits
     }
 
     /// The copy that has the address of a CONSTANT; others are themselves.
