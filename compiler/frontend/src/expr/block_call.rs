@@ -207,7 +207,7 @@ impl<'s> Checker<'_, 's> {
         }
         let mut parts = Parts::default();
         let is_this = found.place.root == Root::Instance && found.place.projections.is_empty();
-        let dispatch = self.dispatch(&found.place, slot, callee);
+        let dispatch = self.dispatch(&found.place, slot, callee, span);
         if let Some(dispatch) = &dispatch {
             self.check_in_outs(dispatch, slot, callee)?;
         }
