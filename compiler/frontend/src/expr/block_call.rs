@@ -101,6 +101,7 @@ impl<'s> Checker<'_, 's> {
         let mut complete = true;
         let mut inputs = vec![None; info.inputs().count()];
         for at in as_written(&given) {
+            self.late_target_before(&mut parts, &given[at]);
             let parameter = &parameters[at];
             let made = match given[at] {
                 Given::Value(expr) if parameter.section == Section::InOut => {
@@ -215,6 +216,7 @@ impl<'s> Checker<'_, 's> {
         let mut references = vec![None; formals.len()];
         let mut complete = true;
         for at in as_written(&given) {
+            self.late_target_before(&mut parts, &given[at]);
             let formal = &formals[at];
             let ty = formal.resolved.ty;
             let made = match (formal.target, given[at]) {

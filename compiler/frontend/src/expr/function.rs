@@ -146,6 +146,7 @@ impl<'s> Checker<'_, 's> {
         passed.resize_with(formals.len(), || None);
         let mut complete = true;
         for at in as_written(given) {
+            self.late_target_before(parts, &given[at]);
             let (number, formal) = (parts.written.len(), &formals[at]);
             let made = match (given[at], formal.word) {
                 (Given::Value(expr), None) => self.given_part(parts, signature, at, expr),
