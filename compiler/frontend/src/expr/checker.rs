@@ -1,7 +1,7 @@
 //! The state of checking a body, or a constant expression.
 
 use super::call_tracking::Called;
-use super::enable::LateTarget;
+use super::late_target::LateTarget;
 use super::uses::Uses;
 use crate::testing::suite::WANTED;
 use crate::types::declarations::Declarations;

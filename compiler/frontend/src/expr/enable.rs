@@ -4,10 +4,10 @@ use super::argument::{Parts, Role, Source};
 use super::binding::Given;
 use super::callee::Callee;
 use super::checker::Checker;
+use super::late_target::{Finding, LateTarget};
 use super::order::Held;
 use super::place::Found;
 use crate::types::signature::{Formal, Signature, Target};
-use crate::types::window::Window;
 use crate::{Span, ast};
 use ast::ArgumentKind;
 use staunch_ir::{
@@ -27,39 +27,6 @@ pub(crate) struct Enable<'a, 's> {
 struct Eno<'a, 's> {
     target: &'a ast::Expr<'s>,
     negated: bool,
-}
-
-/// What an ENO is connected with, where that is found among the arguments of its call, as it is written.
-pub(crate) struct LateTarget<'s> {
-    call: Span,
-    arguments: Vec<Span>,
-    target: ast::Expr<'s>,
-    negated: bool,
-    finding: Finding,
-}
-
-enum Finding {
-    Open,
-    /// It stays what it is, whatever runs after this.
-    Found(Place, Option<Window>),
-    /// That has been reported.
-    Refused,
-}
-
-impl<'s> LateTarget<'s> {
-    fn new(eno: Eno<'_, 's>, arguments: Vec<Span>, call: Span) -> Self {
-        Self { call, arguments, target: eno.target.clone(), negated: eno.negated, finding: Finding::Open }
-    }
-
-    /// Whether it is written before this argument of its call.
-    pub fn is_before(&self, argument: Span) -> bool {
-        self.arguments.contains(&argument) && self.target.span.start < argument.start
-    }
-
-    /// Whether these are the arguments of its call.
-    pub fn is_among(&self, arguments: &[&ast::Expr<'s>]) -> bool {
-        arguments.iter().any(|it| self.arguments.contains(&it.span))
-    }
 }
 
 impl<'s> Checker<'_, 's> {
@@ -132,7 +99,10 @@ impl<'s> Checker<'_, 's> {
         if let Some(eno) = fixed {
             self.target_part(&mut parts, eno.target, eno.negated, Source::Variable(enabled.clone()))?;
         }
-        let around = std::mem::replace(&mut self.late, late.map(|it| LateTarget::new(it, enable.others, span)));
+        let around = std::mem::replace(
+            &mut self.late,
+            late.map(|it| LateTarget::new(it.target.clone(), it.negated, span, enable.others)),
+        );
         let outer = self.may_not_run;
         self.may_not_run |= may_be_false;
         let mut result = None;
