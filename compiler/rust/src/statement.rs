@@ -7,8 +7,8 @@ use staunch_ir::{
     StatementKind, Type,
 };
 
-use crate::constant::{literal, plain};
 use crate::function::Function;
+use crate::literal::{literal, plain};
 use crate::names::ident;
 use crate::precedence::Level;
 use staunch_ir::faults;
