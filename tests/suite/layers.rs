@@ -1,5 +1,5 @@
-//! The front end's folders are layers: each imports from those before it. No modules of it or of the IR import one
-//! another in a circle.
+//! The front end's folders are layers: each imports from those before it. No modules of it, of the IR or of the Rust back
+//! end import one another in a circle.
 
 use staunch_tests::project;
 use std::collections::{BTreeMap, BTreeSet};
@@ -37,7 +37,7 @@ const LAYERS: [&str; 25] = [
 ];
 
 /// The crates whose modules import one another in no circle, and what is divided into a few files that do.
-const CIRCLES: [(&str, &[&[&str]]); 2] = [
+const CIRCLES: [(&str, &[&[&str]]); 3] = [
     (
         ROOT,
         &[
@@ -48,6 +48,7 @@ const CIRCLES: [(&str, &[&[&str]]); 2] = [
         ],
     ),
     ("compiler/ir/src", &[&["interpret", "interpret::place"], &["reference", "reference::fixed", "reference::table"]]),
+    ("compiler/rust/src", &[]),
 ];
 
 type Imports = BTreeMap<String, BTreeSet<String>>;

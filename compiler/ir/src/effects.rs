@@ -11,8 +11,8 @@ use crate::faults::{Faults, op_faults};
 use crate::loops::{Known, checked_locals, constant_position};
 use crate::visit::{self, Access};
 use crate::{
-    Argument, ArrayId, Class, ClassKind, Expr, ExprKind, FieldId, For, LocalId, Op, ParamId, Place, Program, Root,
-    Routine, RoutineId, RoutineKind, Statement, StatementKind, StructId, Type, reference,
+    Argument, ArrayId, Class, ClassKind, Expr, ExprKind, FieldId, For, LocalId, Op, ParamId, Place, Program,
+    Projection, Root, Routine, RoutineId, RoutineKind, Statement, StatementKind, StructId, Type, reference,
 };
 use std::collections::BTreeSet;
 
@@ -50,6 +50,8 @@ pub struct Effects {
     pub checked: Vec<bool>,
     /// Whether it makes references or follows them, and so needs to find all of the state.
     pub reaches: bool,
+    /// Whether it has faults that are at the place of its call.
+    pub faults_at_call: bool,
     /// Whether it follows references, and may read and write what they lead to.
     follows: bool,
 }
@@ -280,6 +282,7 @@ impl<'a> Finder<'a> {
         if place.is_followed() {
             self.reaches_any();
         }
+        self.effects.faults_at_call |= place.projections.iter().any(Projection::faults_at_call);
     }
 
     /// What is known of faults here.

@@ -6,7 +6,7 @@ mod follow;
 mod place;
 
 use crate::layout::{Layout, usize_of};
-use crate::{Place, Program, Routine, RoutineId, Value, reference};
+use crate::{Location, Place, Program, Routine, RoutineId, Value, reference};
 use core::fmt;
 use place::Scope;
 use staunch_runtime::{Context, Fault};
@@ -18,6 +18,15 @@ pub enum Stop {
     Fault(Fault),
     /// The scan used up the steps of [`Interpreter::set_budget`].
     OutOfSteps,
+}
+
+impl Stop {
+    fn of_call(self, at: Location) -> Self {
+        match self {
+            Self::Fault(fault) => Self::Fault(fault.of_call(at)),
+            Self::OutOfSteps => self,
+        }
+    }
 }
 
 /// One running program.

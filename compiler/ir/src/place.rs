@@ -31,8 +31,19 @@ pub enum Projection {
     /// faults with IndexOutOfRange at `at`.
     Index { index: Box<Expr>, at: Location },
     /// What the reference points to that the place up to here holds. What is looked at in the end is
-    /// checked: null, outside of the object, misaligned, and a view that is not allowed fault at `at`.
+    /// checked: null, outside of the object, misaligned, and a view that is not allowed fault at `at`. In a FUNCTION
+    /// that may be `Location::CALLER`: then they fault at the call.
     Deref { reference: Type, target: Type, at: Location },
+}
+
+impl Projection {
+    /// Whether it follows a reference, and a fault of that is at the place of the call of its routine.
+    pub fn faults_at_call(&self) -> bool {
+        match self {
+            Self::Deref { at, .. } => *at == Location::CALLER,
+            Self::Field(_) | Self::Index { .. } => false,
+        }
+    }
 }
 
 impl Place {

@@ -7,7 +7,8 @@ use crate::place::PlaceValue;
 use crate::runtime_call::by_pointer;
 use crate::signature::result_type;
 use cranelift_codegen::ir::{self as clif, InstBuilder};
-use staunch_ir::{Argument, Expr, Place, Repr, RoutineId, Type};
+use staunch_ir::effects::Effects;
+use staunch_ir::{Argument, Expr, Location, Place, Repr, RoutineId, Type};
 use staunch_runtime::{BlockInfo, Instruction};
 
 impl Function<'_, '_> {
@@ -17,6 +18,7 @@ impl Function<'_, '_> {
         instance: Option<&Place>,
         arguments: &[Argument],
         result: Option<&Place>,
+        at: Location,
     ) {
         let instance = instance.map(|place| self.reference(place));
         let mut values = self.start_of_call(callee, instance);
@@ -29,7 +31,7 @@ impl Function<'_, '_> {
         }
         let out = self.result_pointer(callee, result);
         values.extend(out);
-        let returned = self.call_routine(callee, &values);
+        let returned = self.call_routine(callee, &values, at);
         if let (Some(returned), Some(target)) = (returned, result) {
             match self.place_value(target) {
                 PlaceValue::Variable(variable) => self.builder.def_var(variable, returned),
@@ -47,10 +49,10 @@ impl Function<'_, '_> {
     }
 
     /// Calls a function, passes its fault on, and gives an elementary result.
-    fn call_routine(&mut self, callee: RoutineId, values: &[clif::Value]) -> Option<clif::Value> {
+    fn call_routine(&mut self, callee: RoutineId, values: &[clif::Value], at: Location) -> Option<clif::Value> {
         let function = self.module.function(callee);
         let function = self.function_ref(function);
-        let (faults, takes_turns) = (self.module.effects(callee).faults, self.module.effects(callee).turns);
+        let Effects { faults, turns: takes_turns, faults_at_call, .. } = *self.module.effects(callee);
         if takes_turns {
             self.spill_turns();
         }
@@ -59,7 +61,10 @@ impl Function<'_, '_> {
         if !faults {
             return results.first().copied();
         }
-        self.pass_fault(results[0]);
+        match faults_at_call {
+            true => self.pass_fault_of_call(results[0], at),
+            false => self.pass_fault(results[0]),
+        }
         if takes_turns {
             self.reload_turns();
         }

@@ -30,6 +30,23 @@ impl Function<'_, '_> {
         self.go_on_in(next);
     }
 
+    /// As `pass_fault`, for the code of what is called at `at` and has faults that are there.
+    pub(crate) fn pass_fault_of_call(&mut self, code: clif::Value, at: Location) {
+        let faulted = self.cold_block();
+        let next = self.builder.create_block();
+        self.ins().brif(code, faulted, &[], next, &[]);
+        self.go_on_in(faulted);
+        // The kind is the lowest byte of a code, the rest its place: none where it is the caller's.
+        let place = self.ins().ushr_imm_u(code, 8);
+        let is_callers = self.ins().icmp_imm_u(IntCC::Equal, place, 0);
+        let here = self.code(Fault { kind: FaultKind::DivideByZero, at }.code() & !0xFF);
+        let here = self.ins().bor(code, here);
+        let code = self.ins().select(is_callers, here, code);
+        let passing = self.passing_block();
+        self.ins().jump(passing, &[BlockArg::Value(code)]);
+        self.go_on_in(next);
+    }
+
     /// Returns a fault if `kind`, a byte from the runtime, is not 0.
     pub(crate) fn fault_of_kind(&mut self, kind: clif::Value, at: Location) {
         // The kind is the lowest byte of a code, and DivideByZero one that a code can hold.

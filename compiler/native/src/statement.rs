@@ -34,7 +34,7 @@ impl<'p> Function<'_, 'p> {
             StatementKind::Continue => return self.continue_loop(),
             StatementKind::Return => return self.return_from_loops(),
             StatementKind::Call { callee, instance, arguments, result } => {
-                self.call(*callee, instance.as_ref(), arguments, result.as_ref());
+                self.call(*callee, instance.as_ref(), arguments, result.as_ref(), statement.at);
             }
             StatementKind::External(it) => self.external(it),
             StatementKind::CallBlock { block, instruction, inputs } => {

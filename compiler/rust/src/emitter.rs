@@ -1,16 +1,20 @@
 //! What every part of the printer knows, and how types are written.
 
+use std::collections::BTreeSet;
+
 use proc_macro2::TokenStream;
 use quote::quote;
 use staunch_ir::effects::{Effects, Rules, effects};
 use staunch_ir::layout::Layout;
-use staunch_ir::{Location, Place, Program, Root, Routine, Type};
+use staunch_ir::{FieldId, Location, Place, Program, Root, Routine, StructId, Type};
 
 use crate::alias::{Origin, element};
-use crate::constant::{number, rust_path};
-use crate::flash::Constants;
+use crate::literal::{number, rust_path};
 use crate::names::{Names, ident};
-use crate::string;
+use crate::text;
+
+/// The constants of a program that are no part of its state: those that have one value in all instances.
+pub type Constants = BTreeSet<(StructId, FieldId)>;
 
 pub struct Emitter<'p> {
     pub program: &'p Program,
@@ -42,7 +46,7 @@ impl<'p> Emitter<'p> {
                 quote!(#repr)
             }
             Type::String(it) => {
-                let (head, capacity) = (string::head(ty), number(u64::from(it.capacity)));
+                let (head, capacity) = (text::head(ty), number(u64::from(it.capacity)));
                 quote!(#head<#capacity>)
             }
             Type::Enum(id) => {

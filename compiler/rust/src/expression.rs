@@ -5,11 +5,11 @@ use proc_macro2::TokenStream;
 use quote::quote;
 use staunch_ir::{Conversion, Expr, ExprKind, Op, Repr, Type, Value};
 
-use crate::constant::{literal, plain};
 use crate::function::Function;
+use crate::literal::{literal, plain};
 use crate::names::ident;
 use crate::precedence::{Code, Level};
-use crate::string;
+use crate::text;
 use staunch_ir::faults;
 
 impl Function<'_> {
@@ -206,7 +206,7 @@ impl Function<'_> {
         match (ty, value.ty) {
             (Type::String(to), Type::String(from)) if to == from => self.expr(value),
             (Type::String(_), Type::String(_)) => {
-                let (head, value) = (string::head(ty), self.text_reference(value));
+                let (head, value) = (text::head(ty), self.text_reference(value));
                 Code::postfix(quote!(#head::from_text(#value)))
             }
             (Type::Enum(to), Type::Enum(from)) if to == from => self.expr(value),

@@ -1,16 +1,11 @@
 //! CONSTANT variables as `const` items: their tables are in a small machine's flash, and not in its memory.
 
-use std::collections::BTreeSet;
-
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 use staunch_ir::{Const, ExprKind, FieldId, Program, Projection, StructId, Type, visit};
 
-use crate::emitter::Emitter;
+use crate::emitter::{Constants, Emitter};
 use crate::names::{Scope, screaming};
-
-/// The constants of a program that are no part of its state: those that have one value in all instances.
-pub type Constants = BTreeSet<(StructId, FieldId)>;
 
 /// The constants of POUs and of the globals, but for those to which some initial value of an instance gives
 /// another value.

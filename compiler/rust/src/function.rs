@@ -9,8 +9,7 @@ use staunch_ir::{Block, Class, ClassKind, LocalId, Mode, Place, Routine, Routine
 
 use crate::declare::{Declaration, Plan, plan};
 use crate::emitter::Emitter;
-use crate::index_hoist::HoistedIndex;
-use crate::loops::Loops;
+use crate::loop_state::{HoistedIndex, Loops};
 use crate::names::{LocalNames, ident};
 
 /// One function being printed.

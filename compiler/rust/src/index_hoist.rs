@@ -9,16 +9,8 @@ use staunch_ir::loops::Known;
 use staunch_ir::{ArrayId, Conversion, Expr, ExprKind, For, Location, Place, Projection, Type};
 
 use crate::function::Function;
+use crate::loop_state::HoistedIndex;
 use staunch_ir::visit;
-
-/// A counter's position in arrays of certain bounds.
-#[derive(Clone, Debug)]
-pub struct HoistedIndex {
-    counter: Place,
-    low: i64,
-    high: i64,
-    pub name: Ident,
-}
 
 /// Where a counter is as an index of arrays of one kind of bounds.
 struct Use {

@@ -5,9 +5,10 @@ use quote::quote;
 use staunch_ir::{Area, ClassKind, EnumId, Field, FieldId, Retain, RoutineId, RoutineKind, Section, StructId, Type};
 
 use crate::alias::Origin;
-use crate::constant::literal;
 use crate::emitter::Emitter;
 use crate::function::Role;
+use crate::literal::literal;
+use crate::text::readable;
 
 /// So many fields rustc compares by what it derives, which is one nested expression; it has no stack for thousands.
 const DERIVED_FIELDS: usize = 1000;
@@ -235,9 +236,4 @@ fn doc_line(line: &str) -> TokenStream {
     let text = readable(line.trim()).replace("```", "'''").replace("~~~", "---").replace('\t', " ");
     let text = if text.is_empty() { text } else { format!(" {text}") };
     quote!(#[doc = #text])
-}
-
-/// The text without what turns the direction of writing: rustc refuses it in comments.
-pub fn readable(text: &str) -> String {
-    text.replace(|it| matches!(it, '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}'), "")
 }

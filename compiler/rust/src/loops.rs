@@ -1,7 +1,7 @@
 //! Loops: WHILE where the shape allows, labels only where CONTINUE needs them, and counters kept
 //! where the optimiser sees them.
 
-use proc_macro2::{Ident, Literal, TokenStream};
+use proc_macro2::{Literal, TokenStream};
 use quote::{ToTokens, quote};
 use staunch_ir::loops::exit_condition;
 use staunch_ir::turns::{self, Ahead};
@@ -9,31 +9,9 @@ use staunch_ir::visit::{self, Access};
 use staunch_ir::{Block, Expr, For, Location, Place, Root, RoutineId, Statement, StatementKind, Step, Type, Value};
 
 use crate::function::Function;
+use crate::loop_state::Labels;
 use crate::names::ident;
 use crate::precedence::{Code, Level};
-
-/// The labels of the loops around a statement, innermost last.
-#[derive(Debug, Default)]
-pub struct Loops {
-    pub around: Vec<Labels>,
-    made: usize,
-    /// The one that has taken its turns before the first one: these, and its counter.
-    prepaid: Option<(Ident, Place)>,
-    /// How many operations the turns come to that are taken at once.
-    pub copied: usize,
-}
-
-#[derive(Clone, Debug)]
-pub struct Labels {
-    /// `Exit` inside of the body.
-    leave: TokenStream,
-    /// `Continue`.
-    next: TokenStream,
-    /// Before the loop, where something names it.
-    label: Option<TokenStream>,
-    /// Of the block around the body.
-    body: Option<TokenStream>,
-}
 
 /// A value, and the statement that finds it.
 pub struct Once {

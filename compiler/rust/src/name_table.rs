@@ -6,8 +6,8 @@ use quote::quote;
 use staunch_ir::{BlockId, FieldId, StructId, Type};
 use staunch_runtime::Direction;
 
-use crate::constant::number;
 use crate::emitter::Emitter;
+use crate::literal::number;
 use crate::names::ident;
 
 /// A row of the table.

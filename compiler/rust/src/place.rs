@@ -4,8 +4,8 @@ use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 use staunch_ir::{Expr, FieldId, Location, Place, Projection, Root, Type, Value};
 
-use crate::constant::{number, signed};
 use crate::function::Function;
+use crate::literal::{number, signed};
 use crate::names::ident;
 use crate::precedence::{Code, Level};
 use staunch_ir::faults;

@@ -9,8 +9,8 @@ use staunch_ir::startup::{self, Event, Fate, Startup};
 use staunch_ir::{ArrayId, BlockId, EnumId, FieldId, StructId, Type};
 use staunch_runtime::firmware::RECORD_OVERHEAD;
 
-use crate::constant::signed;
 use crate::emitter::Emitter;
+use crate::literal::signed;
 use crate::names::ident;
 
 /// A variable's place, or a reference to it.

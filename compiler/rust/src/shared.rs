@@ -7,12 +7,12 @@ use staunch_ir::reference::{Followed, followed, table, view, wanted};
 use staunch_ir::{ClassId, Place, Projection, Root, Type};
 use staunch_runtime::reference::{View, Wanted};
 
-use crate::constant::number;
 use crate::emitter::Emitter;
 use crate::function::Function;
+use crate::literal::number;
 use crate::names::ident;
 use crate::precedence::Code;
-use crate::string;
+use crate::text;
 
 impl Emitter<'_> {
     /// The whole state, and the table of the objects in it.
@@ -162,7 +162,7 @@ impl Function<'_> {
         let at = self.emitter.at(it.at);
         if matches!(place.ty, Type::String(_)) {
             let (reference, distance) = self.way(&it);
-            let (ty, as_units) = (self.emitter.ty(place.ty), string::as_units(place.ty));
+            let (ty, as_units) = (self.emitter.ty(place.ty), text::as_units(place.ty));
             return Some(quote! {
                 {
                     let (reference, distance) = (#reference, #distance);

@@ -7,8 +7,8 @@ use staunch_ir::{
     StatementKind, Type,
 };
 
-use crate::constant::{literal, plain};
 use crate::function::Function;
+use crate::literal::{literal, plain};
 use crate::names::ident;
 use crate::precedence::Level;
 use staunch_ir::faults;
@@ -59,7 +59,7 @@ impl Function<'_> {
         if !only {
             return None;
         }
-        let call = self.call(&statement.kind);
+        let call = self.call(statement);
         Some((self.assigned(next, target, call), then))
     }
 
@@ -81,11 +81,11 @@ impl Function<'_> {
                 quote!(#given_back return #value;)
             }
             StatementKind::Call { result: Some(result), .. } => {
-                let call = self.call(&statement.kind);
+                let call = self.call(statement);
                 self.assigned(statement, result, call)
             }
             StatementKind::Call { result: None, .. } => {
-                let call = self.call(&statement.kind);
+                let call = self.call(statement);
                 quote!(#call;)
             }
             StatementKind::External(it) => self.external(statement, it),
@@ -227,8 +227,8 @@ impl Function<'_> {
     }
 
     /// A call of a routine, as an expression.
-    fn call(&self, call: &StatementKind) -> TokenStream {
-        let StatementKind::Call { callee, instance, arguments, .. } = call else {
+    fn call(&self, call: &Statement) -> TokenStream {
+        let StatementKind::Call { callee, instance, arguments, .. } = &call.kind else {
             unreachable!("only calls are printed as calls")
         };
         let needs = &self.emitter.effects[callee.index()];
@@ -239,7 +239,8 @@ impl Function<'_> {
         let all = context.into_iter().chain(arguments).chain(globals);
         let head = self.call_head(*callee, instance.as_ref());
         let propagate = (needs.faults || is_scan).then(|| quote!(?));
-        quote!(#head(#(#all),*) #propagate)
+        let at = needs.faults_at_call.then(|| self.emitter.at(call.at));
+        quote!(#head(#(#all),*) #at #propagate)
     }
 
     fn call_head(&self, callee: RoutineId, instance: Option<&Place>) -> TokenStream {

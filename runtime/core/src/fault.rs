@@ -99,6 +99,11 @@ pub struct Location {
     pub line: u32,
 }
 
+impl Location {
+    /// Of a fault that is the caller's: the call gives it its own place.
+    pub const CALLER: Self = Self { file: 0, column: 0, line: 0 };
+}
+
 /// A fault and where in the source it happened: the only unexpected way out of a scan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fault {
@@ -112,6 +117,13 @@ impl Fault {
     pub const fn code(self) -> u64 {
         let line = if self.at.line > LINE_MAX { LINE_MAX } else { self.at.line };
         self.kind as u64 | (self.at.file as u64) << 8 | (self.at.column as u64) << 24 | (line as u64) << 40
+    }
+
+    /// The fault as a call passes it on: one that is [the caller's](Location::CALLER) is at the call.
+    #[must_use]
+    pub const fn of_call(self, at: Location) -> Self {
+        let is_callers = self.at.file == 0 && self.at.line == 0 && self.at.column == 0;
+        if is_callers { Self { kind: self.kind, at } } else { self }
     }
 
     /// The fault with this code; `None` for 0, and for what [`code`](Self::code) never gives.
@@ -165,7 +177,7 @@ impl fmt::Display for Fault {
 
 impl core::error::Error for Fault {}
 
-/// Gives the bare [`FaultKind`] of an operation its place in the source.
+/// Gives the bare [`FaultKind`] of an operation its place in the source, and a fault of a call that has none.
 pub trait OrFault<T> {
     /// `file` is the file's number in the program; `line` and `column` count from 1.
     fn at(self, file: u16, line: u32, column: u16) -> Result<T, Fault>;
@@ -177,6 +189,16 @@ impl<T> OrFault<T> for Result<T, FaultKind> {
         match self {
             Ok(value) => Ok(value),
             Err(kind) => Err(Fault { kind, at: Location { file, column, line } }),
+        }
+    }
+}
+
+impl<T> OrFault<T> for Result<T, Fault> {
+    #[inline]
+    fn at(self, file: u16, line: u32, column: u16) -> Result<T, Fault> {
+        match self {
+            Ok(value) => Ok(value),
+            Err(fault) => Err(fault.of_call(Location { file, column, line })),
         }
     }
 }

@@ -45,7 +45,8 @@ impl<'a> Passed<'a> {
 impl<'a> Machine<'a> {
     /// A call of a function or an instance; the value of a function that has one.
     ///
-    /// EN, and what ENO is connected with, come first; where EN is FALSE nothing else happens.
+    /// EN comes first; where it is FALSE, nothing else happens but that the target of ENO is found. Else that is found as
+    /// it is written, by who evaluates the arguments.
     pub(crate) fn call(
         &mut self,
         frame: &Frame<'a>,
@@ -59,19 +60,42 @@ impl<'a> Machine<'a> {
         for argument in arguments.iter().filter(|it| is_enable(it) && !declares) {
             match &argument.kind {
                 ArgumentKind::Input(_, value) => enabled = self.value_as(frame, value, &Type::BOOL)?.as_bool()?,
-                ArgumentKind::Output { target: Some(target), negated, .. } => {
-                    eno = Some((self.place(frame, target)?, *negated));
-                }
+                ArgumentKind::Output { target: Some(_), negated, .. } => eno = Some((argument, *negated)),
                 ArgumentKind::Output { .. } | ArgumentKind::Positional(_) => {}
             }
         }
+        let around = self.eno.take();
         let result =
             if enabled { self.call_enabled(frame, callee, arguments, asked)? } else { self.unset(frame, callee)? };
-        if let Some((target, negated)) = eno {
+        let found = std::mem::replace(&mut self.eno, around);
+        if let Some((argument, negated)) = eno {
+            let target = match found {
+                Some(target) => target,
+                None => self.target_of_enable(frame, argument)?,
+            };
             let target = self.checked(target)?;
             self.write(&target, &Value::bool(enabled != negated));
         }
         Ok(result)
+    }
+
+    /// Where an ENO leads.
+    fn target_of_enable(&mut self, frame: &Frame<'a>, eno: &'a Argument<'a>) -> Outcome<Place<'a>> {
+        match &eno.kind {
+            ArgumentKind::Output { target: Some(target), .. } => self.place(frame, target),
+            ArgumentKind::Output { target: None, .. } | ArgumentKind::Input(..) | ArgumentKind::Positional(_) => {
+                unknown("an ENO without a target")
+            }
+        }
+    }
+
+    /// Evaluates what an argument is for that no parameter takes: EN is known already, ENO leads somewhere.
+    pub(crate) fn enable_argument(&mut self, frame: &Frame<'a>, argument: &'a Argument<'a>) -> Outcome<()> {
+        if let ArgumentKind::Output { target: Some(_), .. } = &argument.kind {
+            // The arguments between may be calls with an ENO of their own, which put this one back.
+            self.eno = Some(self.target_of_enable(frame, argument)?);
+        }
+        Ok(())
     }
 
     /// Whether the callee has EN among its own parameters.
@@ -417,7 +441,11 @@ impl<'a> Machine<'a> {
         // A named argument that comes later does not take a parameter from a positional one.
         let mut taken: Vec<&str> = Vec::new();
         let declares = formals.iter().any(|it| it.name.eq_ignore_ascii_case("EN"));
-        for argument in arguments.iter().filter(|it| !is_enable(it) || declares) {
+        for argument in arguments {
+            if is_enable(argument) && !declares {
+                self.enable_argument(frame, argument)?;
+                continue;
+            }
             let (name, value, negated) = match &argument.kind {
                 ArgumentKind::Positional(value) => {
                     let outputs_last =

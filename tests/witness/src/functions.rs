@@ -7,7 +7,7 @@ use crate::operators::operator;
 use crate::storage::{Value, integer_cell};
 use crate::types::{Elementary, Type};
 use staunch_frontend::Span;
-use staunch_frontend::ast::{Argument, ArgumentKind, BinaryOp, Expr, Name};
+use staunch_frontend::ast::{Argument, ArgumentKind, BinaryOp, Expr, ExprKind, Name};
 use staunch_runtime::time::MILLISECOND;
 use staunch_runtime::{FaultKind, Value as Scalar, ops, text};
 
@@ -24,6 +24,9 @@ impl<'a> Machine<'a> {
     ) -> Outcome<Value<'a>> {
         let upper = name.text.to_ascii_uppercase();
         let at = name.span;
+        if arguments.iter().any(leads_to_a_part) {
+            return unknown("when the target of an ENO is found among the arguments of this function");
+        }
         if let Some(value) = self.reference_function(frame, &upper, arguments)? {
             return Ok(value);
         }
@@ -416,6 +419,14 @@ impl<'a> Machine<'a> {
 
 fn truncated<'a>(value: &Value<'a>, to: Elementary) -> Outcome<Value<'a>> {
     Ok(Value::scalar(to, ops::trunc_value(value.as_scalar()?, to.repr())))
+}
+
+/// Whether it is an ENO whose target has something to evaluate.
+fn leads_to_a_part(argument: &Argument<'_>) -> bool {
+    match &argument.kind {
+        ArgumentKind::Output { target: Some(target), .. } => !matches!(target.kind, ExprKind::Name(_)),
+        ArgumentKind::Output { target: None, .. } | ArgumentKind::Input(..) | ArgumentKind::Positional(_) => false,
+    }
 }
 
 /// The arguments as they are written, with the positions of their parameters.

@@ -48,6 +48,8 @@ pub struct Machine<'a> {
     programs: Vec<(usize, Place<'a>)>,
     pub(crate) context: Context,
     steps: u32,
+    /// Where the ENO of the call leads whose arguments are evaluated.
+    pub(crate) eno: Option<Place<'a>>,
 }
 
 /// The variables that a body can name, apart from the globals.
@@ -84,6 +86,7 @@ impl<'a> Machine<'a> {
             programs: Vec::new(),
             context: Context::default(),
             steps: 0,
+            eno: None,
         };
         this.start_globals()?;
         this.start_programs(programs)?;

@@ -27,8 +27,8 @@ pub(crate) struct Checked {
     pub left_out: Option<Span>,
 }
 
-/// Checks the bodies of all POUs, in the order of their slots, and then those of the instances of generic
-/// FUNCTIONs that they ask for. A body that is not kept is let go.
+/// Checks the bodies of all POUs, in the order of their slots, and then those of what
+/// they ask for: instances of generic FUNCTIONs, and routines that choose by a class. A body that is not kept is let go.
 pub(crate) fn check<'s>(decl: &mut Declarations<'s>, bodies: &mut [Vec<ast::Statement<'s>>], keep: Bodies) -> Checked {
     let mut checked = Checked { routines: Vec::new(), stacks: Vec::new(), left_out: None };
     for (slot, body) in bodies.iter_mut().enumerate() {
@@ -45,10 +45,8 @@ pub(crate) fn check<'s>(decl: &mut Declarations<'s>, bodies: &mut [Vec<ast::Stat
         }
     }
     let mut slot = bodies.len();
-    while let Some(instance) = decl.pous.get(slot).and_then(|it| it.instance.as_ref()) {
-        let (of, reported) = (instance.of, decl.log.diagnostics.len());
-        checked.check(decl, slot, &bodies[of], keep);
-        decl.say_of_instance(slot, reported);
+    while slot < decl.pous.len() {
+        checked.check_asked_for(decl, slot, bodies, keep);
         slot += 1;
     }
     let uncalled: Vec<_> = (0..bodies.len()).filter(|it| decl.is_generic(*it) && !decl.has_instances(*it)).collect();
@@ -65,6 +63,25 @@ impl Checked {
                 .for_each(|(routine, _)| routine.body = rest(&decl.program, std::mem::take(&mut routine.body)));
         }
         self.push(made, stack);
+    }
+
+    /// An instance of a generic FUNCTION, or what chooses by a class, which is made already.
+    fn check_asked_for<'s>(
+        &mut self,
+        decl: &mut Declarations<'s>,
+        slot: usize,
+        bodies: &[Vec<ast::Statement<'s>>],
+        keep: Bodies,
+    ) {
+        if let Some(routine) = decl.pous[slot].dispatch.as_deref().cloned() {
+            let stack = stack::of_body(&routine, &|ty| decl.size_at_most(ty));
+            return self.push(Some((routine, Uses::default())), stack);
+        }
+        let reported = decl.log.diagnostics.len();
+        if let Some(of) = decl.pous[slot].instance.as_ref().map(|it| it.of) {
+            self.check(decl, slot, &bodies[of], keep);
+            decl.say_of_instance(slot, reported);
+        }
     }
 
     fn push(&mut self, made: Option<(Routine, Uses)>, stack: u64) {
@@ -95,9 +112,10 @@ fn check_uncalled<'s>(decl: &mut Declarations<'s>, slot: usize, bodies: &[Vec<as
     let (reported, known) = (decl.log.diagnostics.len(), decl.pous.len());
     check_body(decl, slot, &bodies[slot], &mut None);
     let mut at = known;
-    while let Some(instance) = decl.pous.get(at).and_then(|it| it.instance.as_ref()) {
-        let of = instance.of;
-        check_body(decl, at, &bodies[of], &mut None);
+    while at < decl.pous.len() {
+        if let Some(of) = decl.pous[at].instance.as_ref().map(|it| it.of) {
+            check_body(decl, at, &bodies[of], &mut None);
+        }
         at += 1;
     }
     decl.forget_instances(known);

@@ -19,6 +19,7 @@ mod mock;
 mod named_program;
 mod needs;
 mod overload;
+mod own_variable;
 mod packing;
 mod pools;
 mod pou;

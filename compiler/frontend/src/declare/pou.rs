@@ -9,7 +9,7 @@ use crate::types::table::Resolved;
 use crate::{Code, Diagnostic, Span, dialect};
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{
-    BlockId, Const, Field, FieldId, Local, LocalId, Mode, Param, ParamId, Place, Program, Root, Section, Struct, Type,
+    Const, Field, FieldId, Local, LocalId, Mode, Param, ParamId, Place, Program, Root, Section, Struct, Type,
 };
 use std::rc::Rc;
 
@@ -25,7 +25,7 @@ pub(super) struct Builder<'s> {
     /// False when the result's type was refused.
     complete: bool,
     /// Whether what is being declared is a VAR_IN_OUT that is passed as a reference.
-    polymorphic: bool,
+    pub polymorphic: bool,
 }
 
 impl<'s> Declarations<'s> {
@@ -279,181 +279,8 @@ impl<'s> Declarations<'s> {
         self.report(Diagnostic::new(Code::E0403, span, message).help(help));
     }
 
-    fn declare_variables(
-        &mut self,
-        pou: &'s ast::Pou<'s>,
-        block: &'s ast::VarBlock<'s>,
-        decl: &'s ast::VarDecl<'s>,
-        owner_signature: Option<&Signature<'s>>,
-        builder: &mut Builder<'s>,
-    ) {
-        if block.kind == VarKind::Global && self.has_globals(pou) {
-            return;
-        }
-        let scope = Rc::clone(&builder.scope);
-        let owner = decl.names.first().map_or(pou.name.text, |it| it.text);
-        self.check_address_here(Some(pou.kind), block, decl);
-        if block.kind == VarKind::Inst {
-            drop(scope);
-            self.declare_instance_variables(pou, block, decl, owner_signature, builder);
-            return;
-        }
-        if block.kind == VarKind::External {
-            drop(scope);
-            self.check_is_own_instance(block, decl);
-            if self.is_early_external(decl) {
-                let scope = Rc::get_mut(&mut builder.scope).expect("no one else holds the scope between declarations");
-                self.declare_externals(block, decl, scope);
-            }
-            return;
-        }
-        self.check_one_name(decl);
-        if let (VarKind::InOut, Some(initial)) = (block.kind, &decl.initial) {
-            let whole = Span { start: decl.ty.span.end, ..initial.span };
-            self.report(
-                Diagnostic::new(Code::E0403, initial.span, "a VAR_IN_OUT has no initial value")
-                    .label("it stands for a variable of the caller")
-                    .help("delete it")
-                    .fix(whole, ""),
-            );
-        }
-        let reported = self.log.diagnostics.len();
-        let resolved = match open_bounds(pou, block, decl) {
-            Some((bounds, element)) => {
-                self.check_no_initial(decl);
-                self.open_array(bounds, element, &scope, owner)
-            }
-            None => match self.abstract_in_out(builder.slot, block, decl) {
-                Some(ty) => Some(Resolved::plain(ty)),
-                None if pou.kind.is_block() && self.is_bit(&decl.ty) => self.initial_bit(decl, &scope),
-                None => self.declared_type(decl, &scope, owner),
-            },
-        };
-        if !self.log.has_errors_since(reported) {
-            self.check_is_own_instance(block, decl);
-        }
-        drop(scope);
-        // What needs the value of a CONSTANT knows none where that was refused.
-        let resolved = resolved.filter(|_| !block.has_values() || !self.log.has_errors_since(reported));
-        let Some(resolved) = resolved.map(Rc::new) else {
-            decl.names.iter().for_each(|name| builder.refuse(*name));
-            return;
-        };
-        let reference = decl.names.iter().find_map(|it| self.polymorphic_type(builder.slot, block, *it, resolved.ty));
-        builder.polymorphic = reference.is_some();
-        let resolved = reference.map_or(resolved, |ty| Rc::new(Resolved::plain(ty)));
-        let is_plain = matches!(resolved.ty, Type::Elementary(_) | Type::Reference(_) | Type::String(_));
-        if block.constant.is_some() && decl.initial.is_none() && block.kind == VarKind::Var && is_plain {
-            self.report(
-                Diagnostic::new(Code::W0404, decl.span, format!("the CONSTANT `{owner}` has no value"))
-                    .label("it keeps its type's initial value")
-                    .help("give it one: `name : TYPE := value;`"),
-            );
-        }
-        if let Some(first) = decl.names.first() {
-            self.check_retain(block, resolved.ty, *first);
-        }
-        let starts_anew = block.kind == VarKind::Temp || (pou.kind.is_function() && block.kind == VarKind::Var);
-        if starts_anew && let Some(id) = self.remembers(resolved.ty) {
-            self.forgets(pou, decl, id);
-        }
-        for name in &decl.names {
-            if self.is_named_as_result(pou, *name) {
-                builder.refuse(*name);
-                continue;
-            }
-            let Some(place) = self.place_variable(pou, block, decl, *name, &resolved, builder) else {
-                builder.refuse(*name);
-                continue;
-            };
-            let mut variable = self.variable(*name, block, Rc::clone(&resolved), place);
-            if let Some(early) = builder.scope.constants.as_ref().and_then(|it| it.get(name.text)) {
-                variable.used = Rc::clone(&early.used);
-            }
-            if let Some(used) = self.used_in_generic(builder.slot, name.text) {
-                variable.used = used;
-            }
-            self.hide_private(&variable, builder);
-            let scope = Rc::get_mut(&mut builder.scope).expect("no one else holds the scope between declarations");
-            self.enter_variable(scope, variable);
-        }
-    }
-
-    /// Reports a variable that has its FUNCTION's or METHOD's name, which is that of the result there.
-    fn is_named_as_result(&mut self, pou: &ast::Pou<'s>, name: ast::Name<'s>) -> bool {
-        let without = pou.result.is_none() && self.dialect(pou.name.span).shows_inner_variables();
-        let has_result = pou.kind.is_function() && pou.kind != PouKind::Setter && !without;
-        let is_result = has_result && name.text.eq_ignore_ascii_case(pou.name.text);
-        if is_result {
-            self.report(
-                Diagnostic::new(Code::E0103, name.span, format!("`{}` is declared twice", name.text))
-                    .label(format!("inside the {} its name is its result", pou.kind.word()))
-                    .other(pou.name.span, "first declared here"),
-            );
-        }
-        is_result
-    }
-
-    /// The class of a VAR_IN_OUT that stands for instances of what extends an ABSTRACT one.
-    fn abstract_in_out(&mut self, slot: usize, block: &ast::VarBlock<'s>, decl: &ast::VarDecl<'s>) -> Option<Type> {
-        let ast::TypeKind::Named(path) = &decl.ty.kind else { return None };
-        let ty = self.class_at(path).filter(|_| self.may_be_polymorphic(slot, block))?;
-        let Type::Struct(state) = ty else { return None };
-        let class = self.slot_of_instance(state)?;
-        self.pous[class].ast.modifiers.is_abstract.is_some().then_some(ty)
-    }
-
-    /// The standard block in a type: it works with what it remembers of earlier calls.
-    fn remembers(&self, ty: Type) -> Option<BlockId> {
-        self.program.find_in(ty, &|it| match it {
-            Type::Block(id) => Some(id),
-            _ => None,
-        })
-    }
-
-    /// Reports a block whose state does not outlive the call.
-    fn forgets(&mut self, pou: &ast::Pou<'s>, decl: &ast::VarDecl<'s>, id: BlockId) {
-        let info = id.info();
-        let what = if info.pin("PT").is_some() {
-            "its time never passes"
-        } else if info.is_counter() {
-            "its count is lost"
-        } else if info.pin("CLK").is_some() {
-            "it takes every TRUE for an edge"
-        } else {
-            "its state is lost"
-        };
-        let (place, help) = match pou.kind {
-            PouKind::Function => ("a FUNCTION", "make this a FUNCTION_BLOCK, or take the block as a VAR_IN_OUT"),
-            PouKind::Method | PouKind::Getter | PouKind::Setter => {
-                ("a METHOD", "declare it in the FUNCTION_BLOCK, or take the block as a VAR_IN_OUT")
-            }
-            PouKind::Program
-            | PouKind::FunctionBlock
-            | PouKind::Class
-            | PouKind::Interface
-            | PouKind::Test
-            | PouKind::Action => ("VAR_TEMP", "declare it in VAR"),
-        };
-        let block = article(info.name);
-        self.report(
-            Diagnostic::new(Code::W0303, decl.span, format!("{block} in {place} starts anew at each call"))
-                .label(format!("so {what}"))
-                .help(help),
-        );
-    }
-
-    /// An array of any bounds is its caller's.
-    fn check_no_initial(&mut self, decl: &ast::VarDecl<'s>) {
-        let Some(initial) = &decl.initial else { return };
-        self.report(
-            Diagnostic::new(Code::E0403, initial.span, "an array of any bounds has no initial value")
-                .label("how many elements it has is known in a call only"),
-        );
-    }
-
     /// VAR_INST of a METHOD: its owner has the storage.
-    fn declare_instance_variables(
+    pub(super) fn declare_instance_variables(
         &mut self,
         pou: &ast::Pou<'s>,
         block: &'s ast::VarBlock<'s>,
@@ -479,13 +306,13 @@ impl<'s> Declarations<'s> {
                 continue;
             };
             let variable = self.variable(*name, block, resolved, place);
-            let scope = Rc::get_mut(&mut builder.scope).expect("no one else holds the scope between declarations");
+            let scope = builder.own_scope();
             self.enter_variable(scope, variable);
         }
     }
 
     /// Gives a variable its storage: a field of the instance, a local, or a parameter.
-    fn place_variable(
+    pub(super) fn place_variable(
         &mut self,
         pou: &'s ast::Pou<'s>,
         block: &'s ast::VarBlock<'s>,
@@ -654,32 +481,17 @@ fn signature_of_action<'s>(owner: &Signature<'s>, scope: Rc<Scope<'s>>) -> Signa
     Signature { scope: Rc::new(Scope::within(scope)), params, locals, result: None, edges: Vec::new(), ..owner.clone() }
 }
 
-/// What `ARRAY[*]` is made of, where a parameter may be one: the standard has it for inputs, outputs and
-/// in-outs of FUNCTIONs and METHODs, and for in-outs of FUNCTION_BLOCKs.
-fn open_bounds<'s>(
-    pou: &ast::Pou<'s>,
-    block: &ast::VarBlock<'s>,
-    decl: &'s ast::VarDecl<'s>,
-) -> Option<(&'s [ast::Bound<'s>], &'s ast::TypeSpec<'s>)> {
-    let may = if pou.kind.is_function() {
-        matches!(block.kind, VarKind::Input | VarKind::Output | VarKind::InOut)
-    } else {
-        pou.kind.is_block() && block.kind == VarKind::InOut
-    };
-    match &decl.ty.kind {
-        ast::TypeKind::Array { bounds, element } if may => {
-            bounds.iter().any(|it| matches!(it, ast::Bound::Open(_))).then_some((bounds, element))
-        }
-        _ => None,
-    }
-}
-
 fn within(inner: Span, outer: Span) -> bool {
     inner.file == outer.file && outer.start <= inner.start && inner.end <= outer.end
 }
 
 impl<'s> Builder<'s> {
-    fn refuse(&mut self, name: ast::Name<'s>) {
+    /// The scope, to add to.
+    pub fn own_scope(&mut self) -> &mut Scope<'s> {
+        Rc::get_mut(&mut self.scope).expect("no one else holds the scope between declarations")
+    }
+
+    pub fn refuse(&mut self, name: ast::Name<'s>) {
         Rc::get_mut(&mut self.scope).expect("no one else holds the scope between declarations").refuse(name);
     }
 

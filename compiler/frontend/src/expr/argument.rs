@@ -440,6 +440,7 @@ impl<'s> Checker<'_, 's> {
         call: &dyn Fn(&Parts) -> Option<StatementKind>,
         span: Span,
     ) -> Option<Parts> {
+        self.late_target_of(&mut parts, span)?;
         parts.schedule();
         let mut draft = self.until_outputs(&parts, call, span, Copies::Drafted)?;
         for at in parts.with(|it| matches!(it, Role::Target(..) | Role::Count(..))) {
@@ -549,7 +550,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// `OUT => target`, after the call.
-    fn connect(&mut self, parts: &Parts, at: usize) -> Option<()> {
+    pub(super) fn connect(&mut self, parts: &Parts, at: usize) -> Option<()> {
         let Part { role, span } = &parts.parts[at];
         let target = parts.written[at].place()?.clone();
         let (source, negated, view) = match role {

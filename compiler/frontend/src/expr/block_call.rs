@@ -7,10 +7,19 @@ use super::operand::Operand;
 use super::order::Held;
 use super::place::{Access, Found};
 use crate::diagnostic::wording::article;
-use crate::types::signature::{Target, pin_place};
+use crate::types::signature::{Formal, Target, pin_place};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Argument, BlockId, Conversion, Expr, FieldId, Place, Root, RoutineId, Section, StatementKind, Type};
 use staunch_runtime::Direction;
+
+/// What an ACTION of the POU itself has for an in-out that its call does not give.
+enum OwnInOut {
+    None,
+    /// The body was given it, and passes it on.
+    Passed(Place),
+    /// It is in the instance.
+    Kept,
+}
 
 impl<'s> Checker<'_, 's> {
     pub(crate) fn instance_call(
@@ -101,6 +110,7 @@ impl<'s> Checker<'_, 's> {
         let mut complete = true;
         let mut inputs = vec![None; info.inputs().count()];
         for at in as_written(&given) {
+            self.late_target_before(&mut parts, &given[at]);
             let parameter = &parameters[at];
             let made = match given[at] {
                 Given::Value(expr) if parameter.section == Section::InOut => {
@@ -176,18 +186,67 @@ impl<'s> Checker<'_, 's> {
         span: Span,
     ) -> Option<()> {
         self.may_call_method(&found, callee)?;
-        if self.decl.pous[slot].ast.kind == ast::PouKind::Class {
-            let name = self.decl.pous[slot].ast.name.text;
-            self.report(
-                Diagnostic::new(Code::E0305, callee, format!("`{name}` is a CLASS, which has no body"))
-                    .label("its METHODs are called"),
-            );
+        self.check_has_body(slot, callee)?;
+        let signature = self.decl.signature(slot)?;
+        let formals = &signature.formals;
+        let arguments = self.accepted(&signature, arguments)?;
+        let given = self.bind_block(slot, formals, &arguments, span)?;
+        let is_this = found.place.root == Root::Instance && found.place.projections.is_empty();
+        let dispatch = self.dispatch(&found.place, slot, callee, span);
+        if let Some(dispatch) = &dispatch {
+            self.check_in_outs(dispatch, slot, callee)?;
+        }
+        let mut parts = Parts::default();
+        parts.push(Held::Place(found.place), Role::Instance, callee);
+        let mut references = vec![None; formals.len()];
+        let is_right = self.block_parts(&mut parts, formals, &given, &mut references)?;
+        let own = self.own_in_outs(formals, is_this);
+        let is_whole = self.check_in_outs_given(slot, formals, &given, &own, callee);
+        if !is_right || !is_whole {
             return None;
         }
-        let signature = self.decl.signature(slot)?;
+        let call = |parts: &Parts| {
+            let argument = |at: usize| match (references[at], &own[at]) {
+                (Some(part), _) => Some(parts.argument(part)),
+                (None, OwnInOut::Passed(place)) => Some(Argument::Reference(place.clone())),
+                (None, OwnInOut::Kept | OwnInOut::None) => None,
+            };
+            let params = (0..formals.len()).filter(|at| is_in_out_param(&formals[*at]));
+            let arguments: Vec<_> = params.map(argument).collect::<Option<_>>()?;
+            let call = |callee, instance| {
+                let arguments = Vec::clone(&arguments);
+                StatementKind::Call { callee, instance: Some(instance), arguments, result: None }
+            };
+            let instance = parts.instance()?.clone();
+            Some(match &dispatch {
+                Some(dispatch) => dispatch.statement(&instance, &call),
+                None => call(RoutineId::next(slot), instance),
+            })
+        };
+        self.perform(parts, &call, span).map(drop)
+    }
+
+    fn check_has_body(&mut self, slot: usize, callee: Span) -> Option<()> {
+        if self.decl.pous[slot].ast.kind != ast::PouKind::Class {
+            return Some(());
+        }
+        let name = self.decl.pous[slot].ast.name.text;
+        self.report(
+            Diagnostic::new(Code::E0305, callee, format!("`{name}` is a CLASS, which has no body"))
+                .label("its METHODs are called"),
+        );
+        None
+    }
+
+    /// What a call of a body gives for each parameter.
+    fn bind_block<'a>(
+        &mut self,
+        slot: usize,
+        formals: &[Formal<'s>],
+        arguments: &'a [ast::Argument<'s>],
+        span: Span,
+    ) -> Option<Vec<Given<'a, 's>>> {
         let owner = self.decl.pous[slot].ast.name.text;
-        let formals = &signature.formals;
-        let arguments = &self.accepted(&signature, arguments)?;
         let parameters: Vec<_> =
             formals.iter().map(|it| Parameter { name: it.name.text, section: it.section }).collect();
         let is_known = |it: &ast::Argument<'s>| match &it.kind {
@@ -205,67 +264,73 @@ impl<'s> Checker<'_, 's> {
             let is_optional = |this: &Self, at: usize| this.has_initial(&formals[at], slot);
             self.require_all(owner, &parameters, &given, arguments, is_optional, span)?;
         }
-        let mut parts = Parts::default();
-        let is_this = found.place.root == Root::Instance && found.place.projections.is_empty();
-        let dispatch = self.dispatch(&found.place, slot, callee);
-        if let Some(dispatch) = &dispatch {
-            self.check_in_outs(dispatch, slot, callee)?;
-        }
-        parts.push(Held::Place(found.place), Role::Instance, callee);
-        let mut references = vec![None; formals.len()];
-        let mut complete = true;
-        for at in as_written(&given) {
+        Some(given)
+    }
+
+    /// Evaluates what a call of a body gives, in the order in which it is written; whether all of it is right.
+    /// `references` has the parts that are passed.
+    fn block_parts(
+        &mut self,
+        parts: &mut Parts,
+        formals: &[Formal<'s>],
+        given: &[Given<'_, 's>],
+        references: &mut [Option<usize>],
+    ) -> Option<bool> {
+        let mut is_right = true;
+        for at in as_written(given) {
+            self.late_target_before(parts, &given[at]);
             let formal = &formals[at];
             let ty = formal.resolved.ty;
             let made = match (formal.target, given[at]) {
                 (Target::Field(field), Given::Output { target: Some(target), negated }) => {
-                    self.target_part(&mut parts, target, negated, Source::Field(field, ty))
+                    self.target_part(parts, target, negated, Source::Field(field, ty))
                 }
                 (Target::Field(field), Given::Value(expr)) if formal.section == Section::InOut => {
-                    self.polymorphic_part(&mut parts, formal, Role::Stored(field, ty), expr)
+                    self.polymorphic_part(parts, formal, Role::Stored(field, ty), expr)
                 }
                 (Target::Field(field), Given::Value(expr)) => {
                     self.is_of_class(formal, expr)?;
-                    self.value_part(&mut parts, expr, ty, Role::Stored(field, ty))
+                    self.value_part(parts, expr, ty, Role::Stored(field, ty))
                 }
                 (Target::Param(_), Given::Value(expr)) => {
                     references[at] = Some(parts.written.len());
-                    self.in_out_part(&mut parts, formal, 1 + at, expr)
+                    self.in_out_part(parts, formal, 1 + at, expr)
                 }
                 (_, Given::Nothing | Given::Output { .. }) => Some(()),
             };
-            complete &= made.is_some();
+            is_right &= made.is_some();
         }
-        let in_outs = || (0..formals.len()).filter(|it| formals[*it].section == Section::InOut);
-        // An ACTION of the POU itself works with what that was given.
-        let own: Vec<_> = formals.iter().map(|it| self.passed_on(it.name).filter(|_| is_this)).collect();
-        let is_param = |it: &usize| matches!(formals[*it].target, Target::Param(_));
-        // What an ACTION of the POU itself works with is in the instance, or passed on.
-        let is_there = |it: usize| own[it].is_some() || is_this && !is_param(&it);
-        for at in in_outs().filter(|it| matches!(given[*it], Given::Nothing) && !is_there(*it)) {
-            self.report_no_variable(&formals[at], owner, callee);
-            complete = false;
-        }
-        if !complete {
-            return None;
-        }
-        let call = |parts: &Parts| {
-            let argument = |at: usize| match references[at] {
-                Some(part) => Some(parts.argument(part)),
-                None => own[at].clone().map(Argument::Reference),
-            };
-            let arguments: Vec<_> = in_outs().filter(is_param).map(argument).collect::<Option<_>>()?;
-            let call = |callee, instance| {
-                let arguments = Vec::clone(&arguments);
-                StatementKind::Call { callee, instance: Some(instance), arguments, result: None }
-            };
-            let instance = parts.instance()?.clone();
-            Some(match &dispatch {
-                Some(dispatch) => dispatch.statement(&instance, &call),
-                None => call(RoutineId::next(slot), instance),
-            })
+        Some(is_right)
+    }
+
+    /// What an ACTION of the POU itself works with: the in-outs that this was given.
+    fn own_in_outs(&self, formals: &[Formal<'s>], is_this: bool) -> Vec<OwnInOut> {
+        let own = |formal: &Formal<'s>| match self.passed_on(formal.name) {
+            _ if !is_this => OwnInOut::None,
+            Some(place) => OwnInOut::Passed(place),
+            None if is_in_out_param(formal) => OwnInOut::None,
+            None => OwnInOut::Kept,
         };
-        self.perform(parts, &call, span).map(drop)
+        formals.iter().map(own).collect()
+    }
+
+    /// Reports the in-outs that a call does not give, and nothing else does; whether there are none.
+    fn check_in_outs_given(
+        &mut self,
+        slot: usize,
+        formals: &[Formal<'s>],
+        given: &[Given<'_, 's>],
+        own: &[OwnInOut],
+        callee: Span,
+    ) -> bool {
+        let owner = self.decl.pous[slot].ast.name.text;
+        let is_missing = |at: &usize| {
+            let is_given = !matches!((&given[*at], &own[*at]), (Given::Nothing, OwnInOut::None));
+            formals[*at].section == Section::InOut && !is_given
+        };
+        let missing: Vec<_> = (0..formals.len()).filter(is_missing).collect();
+        missing.iter().for_each(|at| self.report_no_variable(&formals[*at], owner, callee));
+        missing.is_empty()
     }
 
     /// The arguments but those for parameters whose declarations were refused; `None` where it is not
@@ -301,6 +366,11 @@ impl<'s> Checker<'_, 's> {
             self.push(StatementKind::CallBlock { block: edge.trigger.clone(), instruction: 0, inputs }, span);
         }
     }
+}
+
+/// Whether it is a VAR_IN_OUT that a call passes; others are kept in the instance, as references.
+fn is_in_out_param(formal: &Formal<'_>) -> bool {
+    formal.section == Section::InOut && matches!(formal.target, Target::Param(_))
 }
 
 fn section(direction: Direction) -> Section {

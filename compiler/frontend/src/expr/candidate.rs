@@ -186,11 +186,12 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// Does what has no consequence but its result; `None` where something is reported of what is at `place`.
-    fn tried<T>(&mut self, place: Span, what: impl FnOnce(&mut Self) -> T) -> Option<T> {
+    pub(super) fn tried<T>(&mut self, place: Span, what: impl FnOnce(&mut Self) -> T) -> Option<T> {
         let reported = self.decl.log.diagnostics.len();
         let (locals, called) = (self.locals.len(), self.called.len());
         let uses = std::mem::take(&mut self.uses);
         let left_out = self.left_out;
+        let late = self.late.take();
         let outer = std::mem::take(&mut self.block);
         let result = what(self);
         self.block = outer;
@@ -198,6 +199,7 @@ impl<'s> Checker<'_, 's> {
         self.called.split_off(called);
         self.uses = uses;
         self.left_out = left_out;
+        self.late = late;
         let has_errors = self.decl.log.has_errors_since(reported);
         // What is said of an instance of a generic FUNCTION is said once.
         let said = self.decl.log.diagnostics.split_off(reported);

@@ -1,6 +1,7 @@
 //! The state of checking a body, or a constant expression.
 
 use super::call_tracking::Called;
+use super::late_target::LateTarget;
 use super::uses::Uses;
 use crate::testing::suite::WANTED;
 use crate::types::counter::Counter;
@@ -44,6 +45,8 @@ pub(crate) struct Checker<'d, 's> {
     pub left_out: Option<Span>,
     /// What is checked may never be evaluated, as a call whose EN is FALSE: a constant that faults there is no mistake.
     pub may_not_run: bool,
+    /// Where an ENO of the innermost call with one leads, while the call's arguments are evaluated.
+    pub late: Option<LateTarget<'s>>,
     /// What is executed of the body is counted.
     pub is_covered: bool,
     /// What an assertion of a suite compares: the globals that keep it if the assertion fails.
@@ -89,6 +92,7 @@ impl<'d, 's> Checker<'d, 's> {
             choices: FxHashMap::default(),
             left_out: None,
             may_not_run: false,
+            late: None,
             is_covered: false,
             compared: Vec::new(),
         }

@@ -1,20 +1,32 @@
 //! EN and ENO, which every call has: where EN is FALSE nothing of the call happens, and ENO is FALSE.
 
-use super::argument::{Parts, Source};
+use super::argument::{Parts, Role, Source};
+use super::binding::Given;
 use super::callee::Callee;
 use super::checker::Checker;
+use super::late_target::{Finding, LateTarget};
+use super::order::Held;
+use super::place::Found;
 use crate::types::signature::{Formal, Signature, Target};
 use crate::{Span, ast};
 use ast::ArgumentKind;
 use staunch_ir::{
-    Chars, Const, Expr, ExprKind, Location, ParamId, Place, Root, Section, Statement, StatementKind, Type, Value,
+    Block, Chars, Const, Expr, ExprKind, Location, ParamId, Place, Root, Section, Statement, StatementKind, Type, Value,
 };
 
 /// What a call gives for an EN and an ENO that its callee does not declare.
-#[derive(Clone, Copy)]
 pub(crate) struct Enable<'a, 's> {
     en: Option<&'a ast::Expr<'s>>,
-    eno: Option<(&'a ast::Expr<'s>, bool)>,
+    eno: Option<Eno<'a, 's>>,
+    /// The call's other arguments.
+    others: Vec<Span>,
+}
+
+/// What an ENO is connected with, and whether by NOT.
+#[derive(Clone, Copy)]
+struct Eno<'a, 's> {
+    target: &'a ast::Expr<'s>,
+    negated: bool,
 }
 
 impl<'s> Checker<'_, 's> {
@@ -30,7 +42,7 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let owns = self.own_parameters(what, callee);
-        let mut enable = Enable { en: None, eno: None };
+        let mut enable = Enable { en: None, eno: None, others: Vec::new() };
         let mut rest = Vec::new();
         for argument in arguments {
             match &argument.kind {
@@ -40,10 +52,11 @@ impl<'s> Checker<'_, 's> {
                 ArgumentKind::Output { target: Some(target), negated, .. }
                     if is_en(argument) && !owns.1 && enable.eno.is_none() =>
                 {
-                    enable.eno = Some((target, *negated));
+                    enable.eno = Some(Eno { target, negated: *negated });
                 }
                 ArgumentKind::Output { target: None, .. } if is_en(argument) && !owns.1 => {}
                 ArgumentKind::Input(..) | ArgumentKind::Output { .. } | ArgumentKind::Positional(_) => {
+                    enable.others.extend(value_of(argument).map(|it| it.span));
                     rest.push(argument.clone());
                 }
             }
@@ -66,8 +79,8 @@ impl<'s> Checker<'_, 's> {
         signature.map_or((false, false), |it| (own(&it, "EN").is_some(), own(&it, "ENO").is_some()))
     }
 
-    /// A call with EN or ENO. EN, and what ENO is connected with, are evaluated first; where EN is
-    /// FALSE, nothing else of the call is, and its value is the one that its result starts with.
+    /// A call with EN or ENO. EN is evaluated first, since all else depends on it; where it is FALSE, nothing else of the
+    /// call is, but where ENO leads, and the call's value is the one that its result starts with.
     pub(crate) fn enabled_call(
         &mut self,
         enable: Enable<'_, 's>,
@@ -77,37 +90,30 @@ impl<'s> Checker<'_, 's> {
     ) -> Option<Option<Expr>> {
         let at = self.at(span);
         let enabled = self.temporary("enabled", Type::BOOL);
-        let mut parts = Parts::default();
-        let en_first = match (enable.en, enable.eno) {
-            (Some(en), Some((eno, _))) => en.span.start < eno.span.start,
-            (_, None) | (None, _) => true,
+        let may_be_false = self.keep_en(enable.en, &enabled, span)?;
+        let (late, fixed) = match enable.eno {
+            Some(eno) if !self.is_fixed(eno.target) => (Some(eno), None),
+            eno => (None, eno),
         };
-        let mut may_be_false = false;
-        if en_first {
-            may_be_false = self.keep_en(enable.en, &mut parts, &enabled, span)?;
+        let mut parts = Parts::default();
+        if let Some(eno) = fixed {
+            self.target_part(&mut parts, eno.target, eno.negated, Source::Variable(enabled.clone()))?;
         }
-        if let Some((target, negated)) = enable.eno {
-            self.target_part(&mut parts, target, negated, Source::Variable(enabled.clone()))?;
-        }
-        if !en_first {
-            may_be_false = self.keep_en(enable.en, &mut parts, &enabled, span)?;
-        }
-        let mut made = None;
-        let mut result = None;
+        let around = std::mem::replace(
+            &mut self.late,
+            late.map(|it| LateTarget::new(it.target.clone(), it.negated, span, enable.others)),
+        );
         let outer = self.may_not_run;
         self.may_not_run |= may_be_false;
-        let then = self.nested(|this| {
-            made = call(this);
-            if let Some(Some(value)) = made.take_if(|it| it.is_some()) {
-                let place = this.temporary("result", value.ty);
-                this.assign(place.clone(), value, span);
-                result = Some(place);
-            }
-        });
+        let mut result = None;
+        let then = self.nested(|this| result = this.enabled_part(&enabled, span, call));
         self.may_not_run = outer;
-        if made.is_none() && result.is_none() {
-            return None;
-        }
+        self.late = around;
+        let result = result?;
+        let otherwise = match late.filter(|_| may_be_false) {
+            Some(eno) => self.told_alone(eno, &enabled)?,
+            None => Block::new(),
+        };
         if let Some(place) = &result {
             let initial = initial(self, place.ty).filter(|it| it.ty == place.ty);
             let initial = initial.unwrap_or_else(|| self.zero(place.ty, at));
@@ -115,24 +121,99 @@ impl<'s> Checker<'_, 's> {
         }
         let condition = Expr::load(enabled, at);
         let call = |_: &Parts| {
-            Some(StatementKind::If { condition: condition.clone(), then: then.clone(), otherwise: Vec::new() })
+            let (condition, then, otherwise) = (condition.clone(), then.clone(), otherwise.clone());
+            Some(StatementKind::If { condition, then, otherwise })
         };
         self.perform(parts, &call, span)?;
         Some(result.map(|place| Expr::load(place, at)))
     }
 
+    /// What happens where EN is TRUE; the inner place has the call's value.
+    fn enabled_part(
+        &mut self,
+        enabled: &Place,
+        span: Span,
+        call: impl FnOnce(&mut Self) -> Option<Option<Expr>>,
+    ) -> Option<Option<Place>> {
+        let result = call(self)?.map(|value| {
+            let place = self.temporary("result", value.ty);
+            self.assign(place.clone(), value, span);
+            place
+        });
+        // What evaluates no argument finds it here.
+        self.late_target_if(|_| true)?;
+        if let Some(LateTarget { finding: Finding::Found(place, view), target, negated, .. }) = self.late.take() {
+            let mut parts = Parts::default();
+            let role = Role::Target(Source::Variable(enabled.clone()), negated, view);
+            parts.push(Held::Place(place), role, target.span);
+            self.connect(&parts, 0)?;
+        }
+        Some(result)
+    }
+
+    /// Where EN is FALSE, ENO says so.
+    fn told_alone(&mut self, eno: Eno<'_, 's>, enabled: &Place) -> Option<Block> {
+        let mut made = None;
+        let block = self.nested(|this| {
+            let mut parts = Parts::default();
+            let found = this.target_part(&mut parts, eno.target, eno.negated, Source::Variable(enabled.clone()));
+            made = found.and_then(|()| this.connect(&parts, 0));
+        });
+        made.map(|()| block)
+    }
+
     /// Evaluates EN, where a call gives one, and says whether it may be FALSE.
-    fn keep_en(&mut self, en: Option<&ast::Expr<'s>>, parts: &mut Parts, enabled: &Place, span: Span) -> Option<bool> {
+    fn keep_en(&mut self, en: Option<&ast::Expr<'s>>, enabled: &Place, span: Span) -> Option<bool> {
         let at = self.at(span);
         let value = match en {
-            Some(en) => self.after_parts(&mut parts.written, |this| this.value(en, Type::BOOL))?,
+            Some(en) => self.value(en, Type::BOOL)?,
             None => Expr::bool(true, at),
         };
-        let faults = self.can_fault(&value);
-        parts.written.iter_mut().for_each(|it| self.hold(&mut it.held, &[], faults));
         let may_be_false = value.as_const() != Some(Value::Bool(true));
         self.assign(enabled.clone(), value, en.map_or(span, |it| it.span));
         Some(may_be_false)
+    }
+
+    /// Whether it does not matter when a target is found: nothing is evaluated for it.
+    fn is_fixed(&mut self, target: &ast::Expr<'s>) -> bool {
+        let found = self.tried(target.span, |this| {
+            let mut found = None;
+            let hoisted = this.nested(|this| found = this.place_or_view(target));
+            let place = found?.place;
+            Some(hoisted.is_empty() && !place.is_followed() && place.indices().all(|it| it.as_const().is_some()))
+        });
+        // What is wrong with it is said where it is found, whenever that is.
+        found.flatten().unwrap_or(true)
+    }
+
+    /// Finds where the ENO of a call leads, if that is written before this argument of it.
+    pub(super) fn late_target_before(&mut self, parts: &mut Parts, given: &Given<'_, 's>) {
+        if let Given::Value(expr) | Given::Output { target: Some(expr), .. } = given {
+            self.after_parts(&mut parts.written, |this| this.late_target_if(|it| it.is_before(expr.span)));
+        }
+    }
+
+    /// Finds where the ENO of a call leads, if that is written after all arguments.
+    pub(super) fn late_target_of(&mut self, parts: &mut Parts, call: Span) -> Option<()> {
+        self.after_parts(&mut parts.written, |this| this.late_target_if(|it| it.call == call))
+    }
+
+    /// Finds where the innermost ENO leads, once; `None` where that is nowhere, which has been reported.
+    pub(super) fn late_target_if(&mut self, is_it: impl Fn(&LateTarget<'s>) -> bool) -> Option<()> {
+        let Some(mut late) = self.late.take_if(|it| is_it(it)) else { return Some(()) };
+        if matches!(late.finding, Finding::Open) {
+            let found = self.place_or_view(&late.target).filter(|it| self.writable(it, late.target.span));
+            late.finding = found.map_or(Finding::Refused, |found| self.settled(found, late.target.span));
+        }
+        let is_refused = matches!(late.finding, Finding::Refused);
+        self.late = Some(late);
+        (!is_refused).then_some(())
+    }
+
+    fn settled(&mut self, mut found: Found<'s>, span: Span) -> Finding {
+        self.note_assigned(&found.place, span);
+        self.fix(&mut found.place);
+        Finding::Found(found.place, found.view)
     }
 
     /// The value that a result starts with.
@@ -175,6 +256,14 @@ fn place_of(formal: &Formal<'_>) -> Place {
     match formal.target {
         Target::Field(field) => Place::root(Root::Instance, Type::BOOL).field(field, Type::BOOL),
         Target::Param(at) => Place::root(Root::Param(ParamId::next(at)), Type::BOOL),
+    }
+}
+
+/// What is evaluated for an argument.
+fn value_of<'a, 's>(argument: &'a ast::Argument<'s>) -> Option<&'a ast::Expr<'s>> {
+    match &argument.kind {
+        ArgumentKind::Positional(value) | ArgumentKind::Input(_, value) => Some(value),
+        ArgumentKind::Output { target, .. } => target.as_ref(),
     }
 }
 

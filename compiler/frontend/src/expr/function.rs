@@ -62,7 +62,7 @@ impl<'s> Checker<'_, 's> {
         let dispatch = match instance {
             Some((place, callee)) => {
                 let place = self.receiver(place, callee)?;
-                let dispatch = self.dispatched(&place, slot, callee)?;
+                let dispatch = self.dispatched(&place, slot, callee, called.span)?;
                 written.parts.push(Held::Place(place), Role::Instance, callee);
                 Some(dispatch)
             }
@@ -123,8 +123,8 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// What a call of a METHOD on an instance depends on; the inner `None` is a direct call.
-    fn dispatched(&mut self, place: &Place, slot: usize, callee: Span) -> Option<Option<Dispatch>> {
-        let dispatch = self.dispatch(place, slot, callee);
+    fn dispatched(&mut self, place: &Place, slot: usize, callee: Span, span: Span) -> Option<Option<Dispatch>> {
+        let dispatch = self.dispatch(place, slot, callee, span);
         if dispatch.as_ref().is_some_and(|it| it.calls(|slot| self.decl.is_generic(slot))) {
             let what = "a call of a METHOD with parameters of a generic type, by what may refer to several classes,";
             self.decl.not_supported(callee, what);
@@ -146,6 +146,7 @@ impl<'s> Checker<'_, 's> {
         passed.resize_with(formals.len(), || None);
         let mut complete = true;
         for at in as_written(given) {
+            self.late_target_before(parts, &given[at]);
             let (number, formal) = (parts.written.len(), &formals[at]);
             let made = match (given[at], formal.word) {
                 (Given::Value(expr), None) => self.given_part(parts, signature, at, expr),

@@ -59,6 +59,7 @@ impl<'s> Checker<'_, 's> {
         let mut parts = Parts::default();
         let (mut found, mut complete) = (None, true);
         for at in as_written(&given) {
+            self.late_target_before(&mut parts, &given[at]);
             let made = match given[at] {
                 Given::Value(_) if at == 0 => {
                     found = self.tag_part(&mut parts, operand, instructions, name, &tag);

@@ -32,6 +32,7 @@ mod fold;
 mod function;
 pub(crate) mod generic_call;
 mod instruction;
+mod late_target;
 mod literal;
 mod logix_operands;
 mod logix_text;

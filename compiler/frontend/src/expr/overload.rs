@@ -199,11 +199,18 @@ impl<'s> Checker<'_, 's> {
             let side = written.last().and_then(|it| beside(it, None));
             let mut done: Vec<_> = written.iter_mut().filter_map(Operand::typed_mut).collect();
             // All operands are checked before giving up, so that one run reports every mistake.
-            match self.after(&mut done, |this| evaluate(this, *at, side)) {
+            let next = values[*at].span;
+            let evaluated = self.after(&mut done, |this| {
+                this.late_target_if(|it| it.is_before(next))?;
+                evaluate(this, *at, side)
+            });
+            match evaluated {
                 Some(operand) => written.push(operand),
                 None => complete = false,
             }
         }
+        let mut done: Vec<_> = written.iter_mut().filter_map(Operand::typed_mut).collect();
+        self.after(&mut done, |this| this.late_target_if(|it| it.is_among(values)))?;
         if !complete {
             return None;
         }

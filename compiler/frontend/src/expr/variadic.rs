@@ -19,7 +19,8 @@ impl<'s> Checker<'_, 's> {
         if compares(operator) && values.len() > 2 {
             return self.comparisons(operator, values, name);
         }
-        if !values.is_sorted_by_key(|it| it.span.start) {
+        let is_before_target = self.late.as_ref().is_some_and(|it| it.is_among(values));
+        if !values.is_sorted_by_key(|it| it.span.start) || is_before_target {
             return self.folded(operator, values, expected, name);
         }
         let mut values = values.iter();
@@ -32,7 +33,8 @@ impl<'s> Checker<'_, 's> {
         self.operand(&tree, expected)
     }
 
-    /// Operands that are not written in the order of their parameters: `SUB(IN2 := b, IN1 := a)`.
+    /// Operands that are not written in the order of their parameters, `SUB(IN2 := b, IN1 := a)`, or beside the target of
+    /// an ENO.
     fn folded(
         &mut self,
         op: BinaryOp,

@@ -12,7 +12,7 @@ pub(crate) fn report(decl: &mut Declarations<'_>) {
         let pou = &decl.pous[slot];
         let name = pou.ast.name;
         let is_named = matches!(pou.ast.kind, PouKind::Function | PouKind::FunctionBlock);
-        let is_written = pou.owner.is_none() && pou.instance.is_none() && pou.run.is_none();
+        let is_written = pou.owner.is_none() && pou.is_written();
         if !is_named || !is_written || pou.ast.external.is_some() || decl.names.space_of(name.span) != SpaceId::ROOT {
             continue;
         }

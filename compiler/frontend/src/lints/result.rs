@@ -8,7 +8,7 @@ use crate::{Code, Diagnostic, ast};
 /// The FUNCTIONs whose bodies do not name their result. What was refused may have assigned it.
 pub(crate) fn unassigned(decl: &Declarations<'_>) -> Vec<Diagnostic> {
     let unassigned = (0..decl.pous.len())
-        .filter(|slot| !decl.is_head(*slot))
+        .filter(|slot| !decl.is_head(*slot) && decl.pous[*slot].dispatch.is_none())
         .map(|slot| &decl.pous[slot])
         // The system asks for no result.
         .filter(|it| !INITIAL.iter().any(|name| Key(name) == Key(it.ast.name.text)))

@@ -62,7 +62,7 @@ impl Declarations<'_> {
     /// The PROGRAM or FUNCTION_BLOCK in a slot. Its body has the slot's number until routines are put in order.
     /// Those that runs of a CONFIGURATION hold have the names in `held`.
     fn class(&mut self, slot: usize, held: &FxHashSet<Key<'_>>) -> Option<Class> {
-        if self.is_run_of_named_program(slot) {
+        if self.is_run_of_named_program(slot) || self.pous[slot].dispatch.is_some() {
             return None;
         }
         let pou = self.pous[slot].ast;

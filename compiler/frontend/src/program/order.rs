@@ -23,7 +23,8 @@ pub(super) fn order(declarations: &mut Declarations<'_>, uses: Vec<Uses>, stacks
     // What starts nothing is called where a mistake has left its statements out.
     let called: FxHashSet<usize> = order.iter().flat_map(|it| &calls[*it]).copied().collect();
     let is_called = |at: usize| {
-        let is_idle = || declarations.starts_nothing(at) && !called.contains(&at);
+        let may_be_idle = || declarations.starts_nothing(at) || declarations.pous[at].dispatch.is_some();
+        let is_idle = || may_be_idle() && !called.contains(&at);
         at >= declarations.pous.len()
             || !declarations.is_generic(at)
                 && !declarations.is_head(at)
@@ -91,9 +92,11 @@ fn visit(start: usize, calls: &[Vec<usize>], marks: &mut [Mark], order: &mut Vec
 }
 
 fn report_recursion(declarations: &mut Declarations<'_>, cycle: &[usize]) {
-    let title = |at: usize| declarations.title(slot(declarations, at));
-    let first = declarations.pous[slot(declarations, cycle[0])].ast.name;
-    let way: Vec<_> = cycle.iter().chain(&cycle[..1]).map(|at| title(*at)).collect();
+    // What chooses by a class is not written: the calls go on in it.
+    let slots = cycle.iter().map(|at| slot(declarations, *at));
+    let slots: Vec<_> = slots.filter(|it| declarations.pous[*it].dispatch.is_none()).collect();
+    let first = declarations.pous[slots[0]].ast.name;
+    let way: Vec<_> = slots.iter().chain(&slots[..1]).map(|it| declarations.title(*it)).collect();
     declarations.report(
         Diagnostic::new(Code::E0310, first.span, format!("`{}` calls itself", way[0]))
             .label("recursion has no bound on its stack")

@@ -18,7 +18,9 @@ use crate::names::{Entry, Found, Meaning, Names, Sense, Site, SpaceId};
 use crate::spelling::Key;
 use crate::{Code, Diagnostic, Span, ast, start};
 use rustc_hash::{FxHashMap, FxHashSet};
-use staunch_ir::{BlockId, Location, Program, RefKind, RefType, ReferenceId, Section, SourceFile, StructId, Type};
+use staunch_ir::{
+    BlockId, Location, Program, RefKind, RefType, ReferenceId, Routine, Section, SourceFile, StructId, Type,
+};
 use staunch_runtime::Class;
 use std::rc::Rc;
 
@@ -53,6 +55,8 @@ pub(crate) struct PouSlot<'s> {
     pub words: Vec<Class>,
     /// Of a generic FUNCTION as calls ask for it.
     pub instance: Option<Instance>,
+    /// Of a routine that chooses, for many calls, by the class of an instance.
+    pub dispatch: Option<Box<Routine>>,
     pub slot: Slot<Rc<Signature<'s>>>,
 }
 
@@ -125,12 +129,14 @@ impl<'s> PouSlot<'s> {
             run: None,
             words: Vec::new(),
             instance: None,
+            dispatch: None,
             slot: Slot::Open,
         }
     }
 
-    fn is_written(&self) -> bool {
-        self.run.is_none() && self.instance.is_none()
+    /// Whether the source writes it, and once.
+    pub fn is_written(&self) -> bool {
+        self.run.is_none() && self.instance.is_none() && self.dispatch.is_none()
     }
 }
 
@@ -170,6 +176,9 @@ pub(crate) struct Declarations<'s> {
     pub program: Program,
     pub table: Table<'s>,
     pub generics: Generics,
+    /// The routines that choose by a class: by the type of the reference, the class that this leads to, and what is
+    /// called of that.
+    pub dispatches: FxHashMap<(Type, Type, usize), usize>,
     pub overloads: Overloads,
     /// What declarations say of the start of instances.
     pub starts: Starts<'s>,
@@ -204,6 +213,7 @@ impl<'s> Declarations<'s> {
             program: empty_program(files),
             table: Table::default(),
             generics: Generics::default(),
+            dispatches: FxHashMap::default(),
             overloads: Overloads::default(),
             starts: Starts::default(),
             pools: FxHashMap::default(),
@@ -233,8 +243,8 @@ impl<'s> Declarations<'s> {
         constants.get(path.last()?.text).filter(|it| it.section == Section::Internal)
     }
 
-    /// The POUs that the source writes, in its order; runs of a CONFIGURATION come after them, and then instances of
-    /// generic FUNCTIONs.
+    /// The POUs that the source writes, in its order; runs of a CONFIGURATION come after them, and then what calls ask
+    /// for: instances of generic FUNCTIONs, and routines that choose by a class.
     pub fn written_pous(&self) -> &[PouSlot<'s>] {
         &self.pous[..self.pous.partition_point(PouSlot::is_written)]
     }
@@ -279,7 +289,10 @@ impl<'s> Declarations<'s> {
 
     /// The name that a POU has for back ends: a TEST has a title, which is none.
     pub fn emitted_name(&self, slot: usize) -> String {
-        let PouSlot { ast: pou, instance, .. } = &self.pous[slot];
+        let PouSlot { ast: pou, instance, dispatch, .. } = &self.pous[slot];
+        if let Some(dispatch) = dispatch {
+            return dispatch.name.clone();
+        }
         if let Some(instance) = instance {
             return instance.name.clone();
         }

@@ -235,10 +235,11 @@ impl<'s> Declarations<'s> {
         Some(Rc::clone(&signature.scope.get(name)?.used))
     }
 
-    /// Lets go of instances that only FUNCTIONs asked for which nobody calls.
+    /// Lets go of instances, and of routines that choose by a class, that only FUNCTIONs asked for which nobody calls.
     pub fn forget_instances(&mut self, from: usize) {
         self.pous.truncate(from);
         self.generics.slots.retain(|_, slot| *slot < from);
+        self.dispatches.retain(|_, slot| *slot < from);
     }
 
     /// Whether calls ask for an instance of the FUNCTION in a slot.

@@ -5,6 +5,7 @@ pub(crate) mod coercion;
 pub(crate) mod counter;
 pub(crate) mod coverage;
 pub(crate) mod declarations;
+pub(crate) mod dispatches;
 pub(crate) mod generic;
 pub(crate) mod image;
 pub(crate) mod in_outs;

@@ -52,7 +52,8 @@ impl<'p> Interpreter<'p> {
             StatementKind::Call { callee, instance, arguments, result } => {
                 let instance = instance.as_ref().map(|place| self.resolve(frame, place)).transpose()?;
                 let inner = self.open(frame, *callee, instance, arguments)?;
-                self.block(&inner, &self.program.routine(*callee).body, cx)?;
+                let ended = self.block(&inner, &self.program.routine(*callee).body, cx);
+                ended.map_err(|it| it.of_call(statement.at))?;
                 self.close(frame, &inner, result.as_ref())?;
             }
             // What is outside is not here.

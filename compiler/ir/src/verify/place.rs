@@ -2,7 +2,7 @@
 
 use super::Verifier;
 use super::statement::Body;
-use crate::{FieldId, Location, Place, Projection, RefKind, RefType, Root, Type};
+use crate::{FieldId, Location, Place, Projection, RefKind, RefType, Root, RoutineKind, Type};
 
 impl Verifier<'_> {
     /// `place` exists and has the type it says.
@@ -23,6 +23,9 @@ impl Verifier<'_> {
             let Some(part) = part else { return };
             ty = part;
         }
+        let may_fault_at_call = body.routine.kind == RoutineKind::Function;
+        let faults_at_call = place.projections.iter().any(Projection::faults_at_call);
+        self.require(!faults_at_call || may_fault_at_call, at, "a fault at the call of what is no FUNCTION");
         let same = ty == place.ty || is_pin && Self::same_repr(ty, place.ty);
         self.require(same, at, format_args!("a place of type {ty:?} that says {:?}", place.ty));
     }

@@ -220,12 +220,14 @@ impl Writer {
             });
         }
         if self.random.once_in(12) {
-            arguments.push(format!("EN := {}", self.expression(&Ty::Bool, depth)));
+            let en = format!("EN := {}", self.expression(&Ty::Bool, depth));
+            arguments.insert(positional + self.random.below(arguments.len() - positional + 1), en);
         }
         if self.random.once_in(12)
             && let Some(place) = self.place_of(&Ty::Bool, true, depth)
         {
-            arguments.push(format!("ENO => {place}"));
+            arguments
+                .insert(positional + self.random.below(arguments.len() - positional + 1), format!("ENO => {place}"));
         }
         Some(arguments.join(", "))
     }
