@@ -174,6 +174,12 @@ fn run_with(sources: &Sources, options: &Options, keep: Bodies, whole: &mut Whol
     }
     let left_out = checked.left_out;
     let program = program::assemble(&mut declarations, &files, checked);
+    let is_recursive = declarations.log.diagnostics.iter().any(|it| it.code == Code::E0310);
+    if is_recursive && whole.referred.is_none() && !declarations.table.interfaces.slots.is_empty() {
+        // Perhaps only by a class to whose instances nothing refers.
+        whole.referred = Some(declarations.table.interfaces.referred.clone());
+        return None;
+    }
     let tests = program::tests::tests(&mut declarations, groups);
     let coverage = declarations.coverage.take().map(|it| it.points).unwrap_or_default();
     let compilation = finish(program.filter(|_| keep == Bodies::Kept), declarations.log, unassigned, left_out);

@@ -52,8 +52,8 @@ use crate::{
 };
 
 pub(crate) use diagnostics::controller_service;
-pub(crate) use pragma::attribute;
 use parser::{Extra, State};
+pub(crate) use pragma::attribute;
 
 /// The tree of a file. What does not parse is reported, and left out of the tree.
 pub fn parse<'s>(file: u16, text: &'s str, diagnostics: &mut Vec<Diagnostic>) -> File<'s> {

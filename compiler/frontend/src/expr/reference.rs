@@ -173,6 +173,7 @@ impl<'s> Checker<'_, 's> {
         let at = self.at(expr.span);
         let place = found.place;
         let reference = Expr::new(ty, ExprKind::AddressOf(Box::new(place.clone())), at);
+        self.decl.note_referred(place.ty);
         Some(self.told_apart(reference, &place, expr.span))
     }
 

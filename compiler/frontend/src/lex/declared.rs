@@ -54,7 +54,9 @@ impl<'s> Declared<'s> {
             Question::HasAttribute(_, name, attribute) => {
                 Some(find(&self.pous, name).is_some_and(|it| it.has(attribute)))
             }
-            Question::HasType(name, ty) => Some(self.variable(simple(name)?, at).is_some_and(|it| self.has_type(it, ty))),
+            Question::HasType(name, ty) => {
+                Some(self.variable(simple(name)?, at).is_some_and(|it| self.has_type(it, ty)))
+            }
             Question::HasConstantValue(name, value, operator) => {
                 let (constant, value) = (self.number(simple(name)?, at, 0)?, self.number(value, at, 0)?);
                 Some(compare(constant, value, operator))
@@ -101,9 +103,7 @@ impl<'s> Declared<'s> {
 
     /// A variable that is seen at a place: of a METHOD, of its class and what that EXTENDS, a global one.
     fn variable(&self, name: &str, at: Span) -> Option<&Declaration<'s>> {
-        let is_around = |it: &&Scope<'_>| {
-            it.span.file == at.file && it.span.start <= at.start && at.end <= it.span.end
-        };
+        let is_around = |it: &&Scope<'_>| it.span.file == at.file && it.span.start <= at.start && at.end <= it.span.end;
         // What is inside of another one comes after it.
         let around: Vec<_> = self.scopes.iter().filter(is_around).collect();
         around.iter().rev().find_map(|it| self.variable_of(it, name, 0)).or_else(|| find(&self.globals, name))

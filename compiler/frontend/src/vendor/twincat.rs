@@ -46,12 +46,7 @@ fn units<'t>(file: &'t str, reader: &mut Reader<'t>, out: &mut Assembly) -> Resu
 
 /// A task that was opened, to its end: a CONFIGURATION with the programs that it calls. Those of libraries, which
 /// have a namespace, are the visualisation's and its like.
-fn task<'t>(
-    file: &'t str,
-    reader: &mut Reader<'t>,
-    element: &Element<'t>,
-    out: &mut Assembly,
-) -> Result<(), Broken> {
+fn task<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, out: &mut Assembly) -> Result<(), Broken> {
     let place = &element.place;
     let name: Vec<Chunk> = element.attribute_text(file, "Name").into_iter().collect();
     let (mut interval, mut priority) = (Chunk::words("", place), Chunk::words("PRIORITY := 0", place));
