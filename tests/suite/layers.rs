@@ -8,7 +8,7 @@ use std::path::Path;
 const ROOT: &str = "compiler/frontend/src";
 
 /// The folders and files at the root, from the lowest.
-const LAYERS: [&str; 25] = [
+const LAYERS: [&str; 26] = [
     "vendor",
     "source",
     "diagnostic",
@@ -18,6 +18,7 @@ const LAYERS: [&str; 25] = [
     "foreign",
     "lex",
     "syntax",
+    "declared",
     "testing",
     "mutate",
     "start",

@@ -70,7 +70,7 @@ impl Build {
         self
     }
 
-    /// Adds every `.st` and `.iecst` file below a folder, and TwinCAT's `.TcPOU`, `.TcGVL`, `.TcDUT` and `.TcIO`,
+    /// Adds every `.st` and `.iecst` file below a folder, and TwinCAT's `.TcPOU`, `.TcGVL`, `.TcDUT`, `.TcIO` and `.TcTTO`,
     /// Rockwell's `.L5X` and Siemens' `.scl`.
     #[must_use]
     pub fn folder(self, path: impl Into<PathBuf>) -> Self {

@@ -30,6 +30,8 @@ pub struct File<'s> {
     pub test_pragmas: Vec<TestPragma<'s>>,
     /// The file as a whole, then the NAMESPACEs and POUs in it that change what a name means.
     pub regions: Vec<Region<'s>>,
+    /// Each `{IF …}` that is decided when all declarations are known.
+    pub undecided: Vec<Span>,
 }
 
 /// One test of the METHOD or FUNCTION after it, as Siemens AX has them.
@@ -232,7 +234,10 @@ pub struct Pou<'s> {
     pub pool: Option<Pool>,
     /// The comment that is directly before the POU, cleaned of its marks.
     pub doc: Option<String>,
+    /// The head, up to the name.
     pub span: Span,
+    /// From there to its END_.
+    pub extent: Span,
 }
 
 /// `{external}`, or `{external 'symbol'}`.
@@ -290,6 +295,7 @@ impl<'s> Pou<'s> {
             pool: None,
             doc: None,
             span,
+            extent: span,
         }
     }
 }

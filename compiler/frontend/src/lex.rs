@@ -2,10 +2,15 @@
 //! [`Kind::Unknown`] a run, reported here; comments and pragmas are kept aside.
 
 mod comment;
+mod condition;
 mod conditional;
+mod declared;
 mod kind;
 mod literal;
 
+pub use condition::Subject;
+pub use conditional::Known;
+pub use declared::{Declaration, Declared, Scope};
 pub use kind::Kind;
 pub use literal::{Fault, date, duration, integer, real, string};
 
@@ -31,15 +36,17 @@ pub struct Tokens<'s> {
     pub diagnostics: Vec<Diagnostic>,
     /// The end of the file is no end: an unclosed comment or too many errors came before it.
     pub cut: bool,
+    /// Each `{IF …}` that is decided when all declarations are known.
+    pub undecided: Vec<Span>,
 }
 
 /// Reads a text of at most `u32::MAX` bytes.
 pub fn lex(file: u16, text: &str) -> Tokens<'_> {
-    lex_with(file, text, &[])
+    lex_with(file, text, &[], Known::Never)
 }
 
-/// The same, where a project defines names for conditional compilation.
-pub fn lex_with<'s>(file: u16, text: &'s str, defined: &'s [String]) -> Tokens<'s> {
+/// The same, where a project defines names for conditional compilation, and some is known of what is declared.
+pub fn lex_with<'s>(file: u16, text: &'s str, defined: &'s [String], known: Known<'_, 's>) -> Tokens<'s> {
     // Real programs have a token for each five bytes or so.
     let guess = text.len() / 4 + 16;
     let tokens = Tokens { kinds: Vec::with_capacity(guess), places: Vec::with_capacity(guess), ..Tokens::default() };
@@ -54,7 +61,7 @@ pub fn lex_with<'s>(file: u16, text: &'s str, defined: &'s [String]) -> Tokens<'
     }
     let end = offset(text.len());
     reading.push(Kind::End, (end, end));
-    conditional::choose(&mut reading.tokens, defined);
+    conditional::choose(&mut reading.tokens, defined, known);
     reading.tokens
 }
 

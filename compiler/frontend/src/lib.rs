@@ -10,6 +10,8 @@ mod spelling;
 pub mod ast;
 mod lex;
 mod syntax;
+
+mod declared;
 mod testing;
 
 mod mutate;
@@ -48,6 +50,7 @@ pub use testing::{Assertion, Fixture, FixtureCase, Suite, Test};
 pub use types::coverage::{CoverageKind, CoveragePoint, Decision, Formula};
 pub use vendor::Reference;
 
+use lex::{Declared, Known, Subject};
 use log::Log;
 use rustc_hash::FxHashMap;
 use staunch_ir::Program;
@@ -171,6 +174,12 @@ fn run_with(sources: &Sources, options: &Options, keep: Bodies, whole: &mut Whol
     }
     let left_out = checked.left_out;
     let program = program::assemble(&mut declarations, &files, checked);
+    let is_recursive = declarations.log.diagnostics.iter().any(|it| it.code == Code::E0310);
+    if is_recursive && whole.referred.is_none() && !declarations.table.interfaces.slots.is_empty() {
+        // Perhaps only by a class to whose instances nothing refers.
+        whole.referred = Some(declarations.table.interfaces.referred.clone());
+        return None;
+    }
     let tests = program::tests::tests(&mut declarations, groups);
     let coverage = declarations.coverage.take().map(|it| it.points).unwrap_or_default();
     let compilation = finish(program.filter(|_| keep == Bodies::Kept), declarations.log, unassigned, left_out);
@@ -198,6 +207,7 @@ fn write_out<'s>(mut files: Vec<ast::File<'s>>, log: &mut Log<'s>) -> Trees<'s> 
     let stubs = library::prepare(&mut files, sources);
     let has_tests = testing::has_tests(&files);
     testing::suite::qualify(&mut files);
+    log.asked_attributes = declared::asked_attributes(&files, sources);
     files.iter().for_each(|it| log.read_pragmas(it));
     inherit::expand(&mut files, log);
     let groups = testing::expand(&mut files, log.options.tests, sources, &mut log.diagnostics);
@@ -219,7 +229,7 @@ fn parse_all<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Opt
             is_broken = true;
             continue;
         }
-        files.push(syntax::parse_with(number, &source.text, sources.defined(source), diagnostics));
+        files.push(syntax::parse_with(number, &source.text, sources.defined(source), Known::Later, diagnostics));
         diagnostics[before..].iter_mut().for_each(|it| at_the_end_of_a_body(it, source));
         // Only what does not parse is looked at again.
         if !source.is_assembled() && diagnostics[before..].iter().any(|it| it.severity == Severity::Error) {
@@ -227,11 +237,47 @@ fn parse_all<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Opt
         }
     }
     if foreign.is_empty() {
+        decide_later(&mut files, sources, diagnostics);
         return (!is_broken).then_some(files);
     }
     diagnostics.retain(|it| it.code == Code::E0033);
     diagnostics.extend(foreign);
     None
+}
+
+/// Reads the files once more whose conditions ask for what is declared.
+fn decide_later<'s>(files: &mut [ast::File<'s>], sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) {
+    if files.iter().all(|it| it.undecided.is_empty()) {
+        return;
+    }
+    let known = Declared { library: Some(library_has), ..declared::of(files, sources) };
+    for (file, number) in files.iter_mut().zip(0u16..).filter(|(it, _)| !it.undecided.is_empty()) {
+        diagnostics.retain(|it| it.span.file != number);
+        let source = sources.get(number);
+        let (undecided, before) = (std::mem::take(&mut file.undecided), diagnostics.len());
+        let text = source.text.as_str();
+        *file = syntax::parse_with(number, text, sources.defined(source), Known::All(&known), diagnostics);
+        diagnostics[before..].iter_mut().for_each(|it| at_the_end_of_a_body(it, source));
+        file.undecided = undecided;
+    }
+    let now = declared::of(files, sources);
+    diagnostics.extend(declared::changed(files, &known, &now));
+}
+
+/// Whether the library has a type or a POU of this name, in some dialect. Nothing, where what it has may be either.
+fn library_has(subject: Subject, name: &str) -> Option<bool> {
+    let is_text = name.eq_ignore_ascii_case("STRING") || name.eq_ignore_ascii_case("WSTRING");
+    let is_type = is_text || staunch_ir::Elementary::named(name).is_some();
+    let is_block = |it: &staunch_runtime::BlockInfo| it.name.eq_ignore_ascii_case(name);
+    let is_pou = names::functions::exists(name)
+        || staunch_runtime::BLOCKS.iter().any(is_block)
+        || prelude::units(name).any(|it| it.is_function());
+    match subject {
+        Subject::Type if is_type => Some(true),
+        Subject::Pou if is_pou => Some(true),
+        Subject::Type | Subject::Pou if prelude::units(name).next().is_some() => None,
+        Subject::Type | Subject::Pou | Subject::Variable | Subject::Task => Some(false),
+    }
 }
 
 /// A word that ends a body is not in the files of systems that keep bodies apart: what is not closed says so.

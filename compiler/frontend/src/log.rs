@@ -13,6 +13,8 @@ pub(crate) struct Log<'s> {
     pub diagnostics: Vec<Diagnostic>,
     /// Whether an error has named the setting that lets integers narrow.
     pub has_named_narrowing: bool,
+    /// The attributes that conditions ask for: `{IF hasattribute(…)}`.
+    pub asked_attributes: Vec<&'s str>,
     line_cache: LineCache,
 }
 
@@ -31,7 +33,15 @@ struct LineCache {
 impl<'s> Log<'s> {
     pub fn new(sources: &'s Sources, options: &'s Options) -> Self {
         let line_cache = LineCache::default();
-        Self { sources, options, dialects: Vec::new(), diagnostics: Vec::new(), has_named_narrowing: false, line_cache }
+        Self {
+            sources,
+            options,
+            dialects: Vec::new(),
+            diagnostics: Vec::new(),
+            has_named_narrowing: false,
+            asked_attributes: Vec::new(),
+            line_cache,
+        }
     }
 
     pub fn report(&mut self, diagnostic: Diagnostic) {

@@ -5,7 +5,7 @@ mod tcunit;
 
 use crate::dialect::Dialect;
 use crate::dialect::library::is_one_of;
-use crate::lex::{Kind, Tokens, lex_with};
+use crate::lex::{Kind, Known, Tokens, lex_with};
 use crate::options::Options;
 use crate::spelling::Key;
 use crate::{Code, Diagnostic, Severity, Source, Sources, Span};
@@ -317,7 +317,7 @@ struct Uses {
 impl Uses {
     fn read(&mut self, file: u16, source: &Source, defined: &[String], options: &Options) {
         let text = source.text.as_str();
-        let tokens = lex_with(file, text, defined);
+        let tokens = lex_with(file, text, defined, Known::Never);
         let dialect = dialect_of(&tokens, options);
         let mut types = TypeBlock::default();
         let mut heads = Heads::default();

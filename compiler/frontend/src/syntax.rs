@@ -47,32 +47,39 @@ use chumsky::{Parser, input::InputRef, primitive::custom};
 use crate::{
     ast::File,
     diagnostic::{Code, Diagnostic},
-    lex::{Kind, lex_with},
+    lex::{Kind, Known, lex_with},
     source::{Sources, Span},
 };
 
 pub(crate) use diagnostics::controller_service;
 use parser::{Extra, State};
+pub(crate) use pragma::attribute;
 
 /// The tree of a file. What does not parse is reported, and left out of the tree.
 pub fn parse<'s>(file: u16, text: &'s str, diagnostics: &mut Vec<Diagnostic>) -> File<'s> {
-    parse_with(file, text, &[], diagnostics)
+    parse_with(file, text, &[], Known::Never, diagnostics)
 }
 
 /// The tree of one of these files, with what its project defines. What does not parse is left out.
 pub fn parse_file(sources: &Sources, number: u16) -> File<'_> {
     let source = sources.get(number);
-    parse_with(number, &source.text, sources.defined(source), &mut Vec::new())
+    parse_with(number, &source.text, sources.defined(source), Known::Never, &mut Vec::new())
 }
 
-/// The same, where a project defines names for conditional compilation.
-pub fn parse_with<'s>(file: u16, text: &'s str, defined: &'s [String], diagnostics: &mut Vec<Diagnostic>) -> File<'s> {
+/// The same, where a project defines names for conditional compilation, and some is known of what is declared.
+pub fn parse_with<'s>(
+    file: u16,
+    text: &'s str,
+    defined: &'s [String],
+    known: Known<'_, 's>,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> File<'s> {
     if u32::try_from(text.len()).is_err() {
         let span = Span { file, start: 0, end: 0 };
         diagnostics.push(Diagnostic::new(Code::E0031, span, "the file is larger than 4 GiB"));
         return File::default();
     }
-    let mut tokens = lex_with(file, text, defined);
+    let mut tokens = lex_with(file, text, defined, known);
     invalid_names::mend(&mut tokens, text, file);
     let mut state = State::new(file, text, &tokens, namespace::file(file, text));
     let items = parse_items(&mut state);
@@ -82,7 +89,7 @@ pub fn parse_with<'s>(file: u16, text: &'s str, defined: &'s [String], diagnosti
     let test_pragmas = test_pragma::read(file, text, &tokens.pragmas, &mut found);
     found.sort_by_key(|it| (it.span.start, it.span.end));
     diagnostics.append(&mut found);
-    File { items, bindings, pragmas: tokens.pragmas, test_pragmas, regions }
+    File { items, bindings, pragmas: tokens.pragmas, test_pragmas, regions, undecided: tokens.undecided }
 }
 
 fn parse_items<'t, 's>(state: &mut State<'t, 's>) -> Vec<crate::ast::Item<'s>> {

@@ -236,6 +236,8 @@ pub struct Overlay {
     pub bit: u64,
     /// One bit, of type BOOL.
     pub is_bit: bool,
+    /// Its structure is packed: no other member has these bits.
+    pub is_packed: bool,
     pub doc: Option<String>,
     pub location: Location,
 }

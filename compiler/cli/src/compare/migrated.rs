@@ -28,7 +28,11 @@ pub fn write(from: &Session, path: &Path, sources: &Sources, names: &[Fix], to: 
 
 fn text(sources: &Sources, names: &[Fix], to: Dialect) -> String {
     // What a project file defines is not in the sources.
-    let mut parts: Vec<_> = sources.definitions().iter().map(|it| format!("{{define {it}}}")).collect();
+    let definition = |it: &String| match it.split_once('=') {
+        Some((name, value)) => format!("{{define {name} '{value}'}}"),
+        None => format!("{{define {it}}}"),
+    };
+    let mut parts: Vec<_> = sources.definitions().iter().map(definition).collect();
     let mut is_named = false;
     for (source, file) in sources.files().iter().zip(0u16..).filter(|(it, _)| !it.is_of_library()) {
         let text = renamed::with_own_names(&source.text, names.iter().filter(|it| it.span.file == file));

@@ -70,10 +70,17 @@ fn a_project_of_twincat_runs_as_it_lies() {
 fn what_a_project_defines_decides_what_is_compiled() {
     let folder = project("twincat-defines");
     let body =
-        "{IF defined(SIMULATION) AND defined(FAST)}{error 'both'}{ELSIF defined(SIMULATION)}{error 'slow'}{END_IF}";
+        "{IF defined(SIMULATION) AND defined(FAST)}{error 'both'}{ELSIF defined(SIMULATION)}{error 'slow'}{END_IF}
+        {IF hasvalue(LINE, '2')}{error 'line two'}{END_IF}";
     folder.write("POUs/MAIN.TcPOU", MAIN.replacen("<ST><![CDATA[", &format!("<ST><![CDATA[{body}"), 1));
     folder.staunch("check Line.plcproj").out(0);
-    for (defines, expected) in [("simulation", "slow"), ("SIMULATION, FAST", "both"), ("FAST;SIMULATION=1", "both")] {
+    let defined = [
+        ("simulation", "slow"),
+        ("SIMULATION, FAST", "both"),
+        ("FAST;SIMULATION=1", "both"),
+        ("FAST, Line := '2'", "line two"),
+    ];
+    for (defines, expected) in defined {
         let properties =
             format!("<PropertyGroup><CompilerDefines>{defines}</CompilerDefines></PropertyGroup><ItemGroup>");
         folder.write("Line.plcproj", PROJECT.replacen("<ItemGroup>", &properties, 1));

@@ -1,6 +1,7 @@
 //! What only a unit test has: assertions, the clock, mocks. An assertion keeps what it compares in variables
 //! of the test, so that who runs it can show them, and one that fails leaves the test.
 
+use crate::dialect::missing;
 use crate::expr::checker::Checker;
 use crate::expr::operand::Operand;
 use crate::expr::operator::{Sides, beside};
@@ -78,6 +79,12 @@ impl<'s> Checker<'_, 's> {
         let (word, count, form) = *WORDS.iter().find(|it| name.text.eq_ignore_ascii_case(it.0))?;
         if self.is_declared(*name) {
             return None;
+        }
+        if word == "MOCK" && arguments.len() > 1 {
+            // Siemens AX's, after `USING AxUnit.Mocking`.
+            let help = missing::namespace(missing::MOCKING).unwrap_or_default();
+            self.report(crate::log::unsupported(callee.span, "`AxUnit.Mocking.Mock`").help(help));
+            return Some(());
         }
         if !self.is_test() {
             return word.starts_with("MOCK").then(|| self.outside_of_a_test(*name));

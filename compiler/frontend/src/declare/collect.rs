@@ -1,7 +1,7 @@
 //! The names at file level.
 
 use super::list::Lists;
-use crate::dialect::Dialect;
+use crate::dialect::{Dialect, missing};
 use crate::names::{Entry, Found, Sense, SpaceId};
 use crate::spelling::Key;
 use crate::types::declarations::{Declarations, GlobalSlot, PouSlot, Slot, TypeSlot};
@@ -217,6 +217,10 @@ impl<'s> Declarations<'s> {
             return self.report(hidden);
         }
         let full = path.iter().map(|it| it.text).collect::<Vec<_>>().join(".");
+        if let Some(help) = missing::namespace(&full) {
+            let error = crate::log::unsupported(first.span.to(last.span), &format!("`{full}`"));
+            return self.report(error.help(help));
+        }
         let error = Diagnostic::new(Code::E0102, first.span.to(last.span), format!("there is no namespace `{full}`"))
             .label("no file of the program declares it");
         let near = crate::spelling::nearest(&full, self.names.namespaces()).map(str::to_owned);

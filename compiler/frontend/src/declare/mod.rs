@@ -55,6 +55,7 @@ pub(crate) fn declare<'s>(
     let mut declarations = Declarations::new(log, Declarations::build_instance);
     declarations.table.polymorphic = Polymorphic { known: whole.in_outs.clone(), ..Polymorphic::default() };
     declarations.program.reach = whole.reach;
+    declarations.table.interfaces.only.clone_from(&whole.referred);
     for (file, dialect) in declarations.program.files.iter_mut().zip(&declarations.log.dialects) {
         file.system = dialect.family();
     }

@@ -8,7 +8,8 @@ use crate::{Code, Diagnostic, Span, ast};
 /// Pragmas that change what a program means: to pass over them would compile another program.
 const DECIDING_PRAGMAS: [&str; 6] = ["if", "elsif", "else", "end_if", "define", "undefine"];
 /// What conditions of CODESYS's may ask for besides.
-const CONDITIONS: [&str; 5] = ["hasattribute", "hasconstantvalue", "hasvalue", "hastype", "project_defined"];
+const CONDITIONS: [&str; 6] =
+    ["hasattribute", "hasconstanttype", "hasconstantvalue", "hasvalue", "hastype", "project_defined"];
 /// Pragmas for editors and other tools.
 const HARMLESS_PRAGMAS: [&str; 11] =
     ["region", "endregion", "end_region", "info", "text", "flag", "analysis", "nobp", "bp", "flow", "noflow"];
@@ -199,7 +200,7 @@ impl Log<'_> {
         let message = format!("{what} in the pragma `{word}` is not supported yet");
         self.report(
             Diagnostic::new(Code::E0902, pragma.span, message)
-                .label("what is asked for here is `defined(NAME)`, with NOT, AND, OR and parentheses")
+                .label("nothing here says whether that holds")
                 .help("ask for a name that `{define NAME}`, or the project, defines where that holds"),
         );
     }
@@ -229,7 +230,8 @@ impl Log<'_> {
             return self.report(error.help(*help));
         }
         let of_a_tool = name.contains([':', '.', ' ']) || !after.trim().is_empty();
-        if ATTRIBUTES.iter().any(|it| it.eq_ignore_ascii_case(name)) {
+        let known = ATTRIBUTES.iter().chain(&self.asked_attributes);
+        if known.into_iter().any(|it| it.eq_ignore_ascii_case(name)) {
             return;
         }
         let near = nearest(name, ATTRIBUTES.iter().copied());

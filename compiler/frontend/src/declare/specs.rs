@@ -81,7 +81,12 @@ impl<'s> Declarations<'s> {
         let mut resolved = match (&decl.base, &decl.ty.kind) {
             (Some(base), TypeKind::Struct(members)) => {
                 let base = self.base_structure(base)?;
-                self.structure(members, Some(base), &scope, &name, doc, decl.ty.span)?
+                let most = decl.pack.map(|it| it.0);
+                self.structure(members, (Some(base), most), &scope, &name, doc, decl.ty.span)?
+            }
+            (None, TypeKind::Struct(members)) => {
+                let most = decl.pack.map(|it| it.0);
+                self.structure(members, (None, most), &scope, &name, doc, decl.ty.span)?
             }
             (Some(base), _) => {
                 self.report_no_structure(base);
@@ -150,7 +155,7 @@ impl<'s> Declarations<'s> {
             TypeKind::String { wide, capacity } => self.string(*wide, capacity.as_deref(), scope, spec.span),
             TypeKind::Subrange { base, low, high } => self.subrange(*base, low, high, scope),
             TypeKind::Array { bounds, element } => self.array_type(bounds, element, scope, name, spec.span),
-            TypeKind::Struct(members) => self.structure(members, None, scope, name, doc, spec.span),
+            TypeKind::Struct(members) => self.structure(members, (None, None), scope, name, doc, spec.span),
             TypeKind::Union(members) => self.union(members, scope, name, doc, spec.span),
             TypeKind::Enum { base, values } => self.enumeration(*base, values, scope, name, doc, spec.span),
             TypeKind::Reference { kind, target } => self.reference(*kind, target, scope, name),

@@ -62,7 +62,7 @@ impl<'s> Declarations<'s> {
     pub(super) fn structure(
         &mut self,
         members: &'s [ast::VarDecl<'s>],
-        base: Option<StructId>,
+        (base, most): (Option<StructId>, Option<u64>),
         scope: &Rc<Scope<'s>>,
         name: &str,
         doc: Option<String>,
@@ -108,10 +108,16 @@ impl<'s> Declarations<'s> {
         // A member that was refused has no field.
         let has_all = complete && base.is_none() && !has_bits;
         let extent = if has_all { self.relative_extent(members, &made.fields) } else { None };
-        let initial = struct_initial(&made.fields);
         let location = self.location(span);
         let Members { fields, overlays, align, .. } = made;
-        let id = self.push_struct(Struct { name: name.to_owned(), doc, location, fields, overlays, align });
+        let plain = Struct { name: name.to_owned(), doc, location, fields, overlays, align };
+        let own = base.map_or(0, |it| self.program.structure(it).fields.len());
+        let structure = match most.and_then(|most| self.packed(&plain, own, most)) {
+            Some(packed) => packed,
+            None => plain,
+        };
+        let initial = struct_initial(&structure.fields);
+        let id = self.push_struct(structure);
         self.table.relative.extend(extent.map(|it| (id, it)));
         self.table.bases.extend(base.map(|it| (id, it)));
         complete.then_some(Resolved { ty: Type::Struct(id), initial })
@@ -181,7 +187,7 @@ impl<'s> Declarations<'s> {
                 let variable = self.variable(*member, &block, Rc::clone(&resolved), place);
                 let Field { name, ty, doc, location, .. } = self.field(*member, &resolved, &block, decl);
                 self.enter_variable(&mut seen, variable);
-                overlays.push(Overlay { name, ty, field: STORAGE, bit, is_bit, doc, location });
+                overlays.push(Overlay { name, ty, field: STORAGE, bit, is_bit, is_packed: false, doc, location });
                 starts.push(resolved.initial.clone());
             }
         }
@@ -208,14 +214,7 @@ impl<'s> Declarations<'s> {
         unit: u64,
         location: Location,
     ) -> Option<Field> {
-        let element = match unit {
-            1 => Elementary::Byte,
-            2 => Elementary::Word,
-            4 => Elementary::Dword,
-            _ => Elementary::Lword,
-        };
-        let last = i64::try_from(size.div_ceil(unit)).ok()? - 1;
-        let ty = self.intern_array(0, last, Resolved::plain(Type::Elementary(element)));
+        let ty = self.units_of(size, unit)?;
         let mut initial = Const::Zero;
         for (overlay, start) in overlays.iter().zip(starts).filter(|(_, it)| **it != Const::Zero) {
             initial = self.with_overlay(ty, &initial, overlay, start);
@@ -223,6 +222,18 @@ impl<'s> Declarations<'s> {
         let names: Vec<_> = overlays.iter().map(|it| format!("`{}`", it.name)).collect();
         let doc = Some(format!("The bytes that {} share.", names.join(", ")));
         Some(storage("bytes", ty, initial, doc, location))
+    }
+
+    /// Unsigned numbers of `unit` bytes, which take `size`.
+    pub(super) fn units_of(&mut self, size: u64, unit: u64) -> Option<Type> {
+        let element = match unit {
+            1 => Elementary::Byte,
+            2 => Elementary::Word,
+            4 => Elementary::Dword,
+            _ => Elementary::Lword,
+        };
+        let last = i64::try_from(size.div_ceil(unit)).ok()? - 1;
+        Some(self.intern_array(0, last, Resolved::plain(Type::Elementary(element))))
     }
 
     /// The bytes of the smallest part of what a member of a UNION holds; what cannot share its bytes is reported.
@@ -378,7 +389,8 @@ impl Members {
         byte.doc = Some(format!("{}{word} `{}`", byte.doc.take().unwrap_or_default(), bit.name));
         let field = FieldId::next(self.fields.len() - 1);
         let Field { name, ty, doc, location, .. } = bit;
-        self.overlays.push(Overlay { name, ty, field, bit: at.into(), is_bit: true, doc, location });
+        let (is_bit, is_packed) = (true, false);
+        self.overlays.push(Overlay { name, ty, field, bit: at.into(), is_bit, is_packed, doc, location });
         self.free_bit = (at < 7).then_some(at + 1);
     }
 
@@ -398,7 +410,7 @@ fn number(byte: &Const) -> u8 {
 }
 
 /// A field that holds the bits of other members.
-fn storage(name: &str, ty: Type, initial: Const, doc: Option<String>, location: Location) -> Field {
+pub(super) fn storage(name: &str, ty: Type, initial: Const, doc: Option<String>, location: Location) -> Field {
     Field {
         name: name.to_owned(),
         ty,

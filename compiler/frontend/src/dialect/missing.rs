@@ -33,6 +33,15 @@ pub(crate) fn is_variable(dialect: Dialect, name: &str) -> bool {
     dialect == Dialect::Codesys && is_one_of(&VARIABLES, name)
 }
 
+/// Siemens AX's mocks: a FUNCTION or FUNCTION_BLOCK that runs in place of another one.
+pub(crate) const MOCKING: &str = "AxUnit.Mocking";
+
+/// What a program of Siemens AX has from a namespace that is not there, and what to write for it.
+pub(crate) fn namespace(full: &str) -> Option<&'static str> {
+    full.eq_ignore_ascii_case(MOCKING)
+        .then_some("write a TEST with `MOCK instance;`, or `MOCK_FUNCTION name RETURNS value;`")
+}
+
 /// The function that a type of a namespace is for, and without which it has no use.
 pub(crate) fn function_of_type(space: &str, name: &str) -> Option<&'static str> {
     let is_it = space.eq_ignore_ascii_case("__SYSTEM") && name.eq_ignore_ascii_case("VAR_INFO");

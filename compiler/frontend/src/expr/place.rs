@@ -47,7 +47,7 @@ fn selected(found: Found<'_>, part: Part) -> Found<'_> {
     let (before, address) = found.view.map_or((0, None), |it| (it.bit, it.address));
     let is_bit = part.ty == Elementary::Bool;
     let (ty, bit) = (Type::Elementary(part.ty), before + u64::from(part.shift));
-    Found { view: Some(Window { ty, bit, is_bit, address, is_selected: true }), ..found }
+    Found { view: Some(Window { ty, bit, is_bit, address, is_selected: true, is_packed: false }), ..found }
 }
 
 impl<'s> Checker<'_, 's> {

@@ -256,6 +256,7 @@ impl<'s> Checker<'_, 's> {
             this.assign(object.clone(), value, span);
             this.assign(is_used, Expr::bool(true, at), span);
             let reference = Expr::new(ty, ExprKind::AddressOf(Box::new(object.clone())), at);
+            this.decl.note_referred(object.ty);
             let reference = this.told_apart(reference, &object, span);
             this.assign(made.clone(), reference, span);
             this.start_made(object, given, span);

@@ -134,6 +134,9 @@ impl<'s> crate::types::declarations::Declarations<'s> {
         if let Some(function) = missing::function_of_type(&full, name.text) {
             return crate::log::unsupported(name.span, &format!("the function {function}"));
         }
+        if let Some(help) = missing::namespace(&format!("{full}.{}", name.text)) {
+            return crate::log::unsupported(name.span, &format!("`{full}.{}`", name.text)).help(help);
+        }
         let what = match space {
             Some(it) if self.names.is_list(it) => format!("the list `{full}` has no variable `{}`", name.text),
             Some(_) | None => format!("the namespace `{full}` has no `{}`", name.text),

@@ -180,14 +180,15 @@ impl<'s> Checker<'_, 's> {
             let bytes = Operand::Integer(bytes.into());
             reference = self.advance(Operand::Typed(reference), bytes, BinaryOp::Add, expr.span)?;
         }
+        self.decl.note_referred(place.ty);
         Some(self.told_apart(reference, &place, expr.span))
     }
 
     /// Whether a reference may lead to a view: it begins with a byte, and where addresses share bits it is aligned as what
-    /// keeps them is.
+    /// keeps them is. One that a packed structure does not align faults when it is followed.
     fn has_address(&self, place: &Place, view: Window) -> bool {
-        let fits = view.address.is_none() || self.decl.align_of(view.ty) <= self.unit_size(place);
-        !view.is_bit && !view.is_selected && fits
+        let is_aligned = view.address.is_none() || self.decl.align_of(view.ty) <= self.unit_size(place);
+        !view.is_bit && !view.is_selected && is_aligned
     }
 
     /// The copy that has the address of a CONSTANT; others are themselves.

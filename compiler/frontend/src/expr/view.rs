@@ -24,6 +24,13 @@ impl<'s> Checker<'_, 's> {
     pub(super) fn report_shared(&mut self, span: Span, view: Window) {
         let text = self.decl.log.sources.text(span).to_owned();
         let with = match view.address {
+            _ if view.is_packed => {
+                return self.report(
+                    Diagnostic::new(Code::E0410, span, format!("`{text}` is packed, and no variable of its own"))
+                        .label("it can be read and assigned, and be given to inputs and outputs")
+                        .help("use a variable of its own here, and assign that"),
+                );
+            }
             _ if view.is_selected => {
                 return self.report(
                     Diagnostic::new(Code::E0306, span, format!("`{text}` is no variable of its own"))

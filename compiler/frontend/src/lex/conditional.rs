@@ -2,6 +2,8 @@
 //! parsed, by what the project defines, and `{define X}` above in the file.
 
 use super::Tokens;
+use super::condition::{Condition, Facts, condition};
+use super::declared::Declared;
 use crate::ast::Name;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
@@ -19,7 +21,7 @@ struct Branch {
 
 /// What a pragma says of compilation.
 enum Word<'s> {
-    Define(&'s str),
+    Define(&'s str, Option<&'s str>),
     Undefine(&'s str),
     If(Option<Condition<'s>>),
     Elsif(Option<Condition<'s>>),
@@ -27,22 +29,29 @@ enum Word<'s> {
     EndIf,
 }
 
-enum Condition<'s> {
-    Defined(&'s str),
-    Not(Box<Condition<'s>>),
-    And(Box<Condition<'s>>, Box<Condition<'s>>),
-    Or(Box<Condition<'s>>, Box<Condition<'s>>),
+/// What is known of what a program declares.
+#[derive(Clone, Copy)]
+pub enum Known<'k, 's> {
+    /// Not yet: parts that it decides are left out, and where it would is noted.
+    Later,
+    /// It is not asked for: each part is kept that it may decide.
+    Never,
+    All(&'k Declared<'s>),
 }
 
 /// Takes out what is not compiled, where the project has defined some names already.
-pub fn choose<'s>(tokens: &mut Tokens<'s>, by_project: &'s [String]) {
+pub fn choose<'s>(tokens: &mut Tokens<'s>, by_project: &'s [String], known: Known<'_, 's>) {
     if !tokens.pragmas.iter().any(|it| matches!(word(it.text), Some(Word::If(_) | Word::EndIf))) {
         // What is defined is asked for nowhere.
-        tokens.pragmas.retain(|it| !matches!(word(it.text), Some(Word::Define(_) | Word::Undefine(_))));
+        tokens.pragmas.retain(|it| !matches!(word(it.text), Some(Word::Define(..) | Word::Undefine(_))));
         return;
     }
     let mut open: Vec<Branch> = Vec::new();
-    let mut defined: Vec<&str> = by_project.iter().map(String::as_str).collect();
+    let mut facts = Facts::new(by_project);
+    if let Known::All(declared) = known {
+        facts.declared = Some(declared);
+    }
+    let mut undecided = Vec::new();
     let mut left_out: Vec<(u32, u32)> = Vec::new();
     let mut since = None;
     let mut reports = Vec::new();
@@ -52,18 +61,20 @@ pub fn choose<'s>(tokens: &mut Tokens<'s>, by_project: &'s [String]) {
         // A condition that is not understood is refused with the other pragmas, where it would decide.
         let mut refused = false;
         match word {
-            Word::Define(name) if active => defined.push(name),
-            Word::Undefine(name) if active => defined.retain(|it| !it.eq_ignore_ascii_case(name)),
-            Word::Define(_) | Word::Undefine(_) => {}
-            Word::If(None) if active => {
-                let opened = pragma.span;
-                open.push(Branch { opened, around: true, chosen: true, active: true, otherwise: false });
-                return true;
-            }
+            Word::Define(name, value) if active => facts.define(name, value),
+            Word::Undefine(name) if active => facts.undefine(name),
+            Word::Define(..) | Word::Undefine(_) => {}
             Word::If(condition) => {
-                let holds = active && condition.is_some_and(|it| it.holds(&defined));
-                let opened = pragma.span;
-                open.push(Branch { opened, around: active, chosen: holds, active: holds, otherwise: false });
+                let answer = if active { decide(condition.as_ref(), &facts, pragma, known) } else { Answer::No };
+                refused = answer == Answer::Unknown;
+                undecided.extend((answer == Answer::Later).then_some(pragma.span));
+                open.push(Branch {
+                    opened: pragma.span,
+                    around: active,
+                    chosen: answer.is_last(),
+                    active: answer.is_in(),
+                    otherwise: false,
+                });
             }
             Word::Elsif(_) | Word::Else | Word::EndIf if open.is_empty() => {
                 reports.push(without_if(pragma));
@@ -74,9 +85,11 @@ pub fn choose<'s>(tokens: &mut Tokens<'s>, by_project: &'s [String]) {
                         reports.push(without_if(pragma));
                     }
                     let decides = branch.around && !branch.chosen;
-                    refused = decides && condition.is_none();
-                    branch.active = decides && condition.is_none_or(|it| it.holds(&defined));
-                    branch.chosen |= branch.active;
+                    let answer = if decides { decide(condition.as_ref(), &facts, pragma, known) } else { Answer::No };
+                    refused = answer == Answer::Unknown;
+                    undecided.extend((answer == Answer::Later).then_some(pragma.span));
+                    branch.active = answer.is_in();
+                    branch.chosen |= answer.is_last();
                 }
             }
             Word::Else => {
@@ -112,6 +125,7 @@ pub fn choose<'s>(tokens: &mut Tokens<'s>, by_project: &'s [String]) {
         left_out.extend(since.map(|start| (start, u32::MAX)));
     }
     leave_out(tokens, &left_out);
+    tokens.undecided = undecided;
     tokens.diagnostics.extend(reports);
 }
 
@@ -143,9 +157,10 @@ fn word(pragma: &str) -> Option<Word<'_>> {
     let end = pragma.find(|it: char| !it.is_ascii_alphanumeric() && it != '_').unwrap_or(pragma.len());
     let (word, rest) = (&pragma[..end], pragma[end..].trim());
     let name = || rest.split_whitespace().next().unwrap_or_default();
+    let value = || rest.split_once(|it: char| it.is_whitespace())?.1.trim().strip_prefix('\'')?.strip_suffix('\'');
     let is = |it: &str| word.eq_ignore_ascii_case(it);
     match () {
-        () if is("define") => Some(Word::Define(name())),
+        () if is("define") => Some(Word::Define(name(), value())),
         () if is("undefine") => Some(Word::Undefine(name())),
         () if is("if") => Some(Word::If(condition(rest))),
         () if is("elsif") => Some(Word::Elsif(condition(rest))),
@@ -155,72 +170,42 @@ fn word(pragma: &str) -> Option<Word<'_>> {
     }
 }
 
-impl Condition<'_> {
-    fn holds(&self, defined: &[&str]) -> bool {
-        match self {
-            Self::Defined(name) => defined.iter().any(|it| it.eq_ignore_ascii_case(name)),
-            Self::Not(it) => !it.holds(defined),
-            Self::And(a, b) => a.holds(defined) && b.holds(defined),
-            Self::Or(a, b) => a.holds(defined) || b.holds(defined),
-        }
+/// What a condition says of the part after it.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Answer {
+    Yes,
+    No,
+    /// It may be, and nobody asks.
+    Kept,
+    /// It is known when all is declared.
+    Later,
+    /// It asks for what is not understood.
+    Unknown,
+}
+
+impl Answer {
+    /// Whether the part is read. One that is refused is, so that one run finds all mistakes in it.
+    fn is_in(self) -> bool {
+        matches!(self, Self::Yes | Self::Kept | Self::Unknown)
+    }
+
+    /// Whether no later part of the IF is read.
+    fn is_last(self) -> bool {
+        matches!(self, Self::Yes | Self::Later | Self::Unknown)
     }
 }
 
-/// `defined(A) AND NOT defined(B)`; `None` for what asks for anything else.
-fn condition(text: &str) -> Option<Condition<'_>> {
-    if text.len() > LONGEST {
-        return None;
+fn decide<'s>(
+    condition: Option<&Condition<'s>>,
+    facts: &Facts<'_, 's>,
+    pragma: &Name<'_>,
+    known: Known<'_, 's>,
+) -> Answer {
+    match (condition.and_then(|it| it.holds(facts, pragma.span)), condition, known) {
+        (Some(true), ..) => Answer::Yes,
+        (Some(false), ..) => Answer::No,
+        (None, Some(condition), Known::Later) if condition.asks() => Answer::Later,
+        (None, Some(condition), Known::Never) if condition.asks() => Answer::Kept,
+        (None, ..) => Answer::Unknown,
     }
-    let (condition, rest) = disjunction(text, 0)?;
-    rest.trim().is_empty().then_some(condition)
-}
-
-/// No condition of a program has more bytes.
-const LONGEST: usize = 4096;
-/// Parentheses that are nested deeper are no condition of a program.
-const DEEPEST: usize = 50;
-
-fn disjunction(text: &str, depth: usize) -> Option<(Condition<'_>, &str)> {
-    let (mut left, mut rest) = conjunction(text, depth)?;
-    while let Some(after) = after_word(rest, "or") {
-        let (right, then) = conjunction(after, depth)?;
-        (left, rest) = (Condition::Or(Box::new(left), Box::new(right)), then);
-    }
-    Some((left, rest))
-}
-
-fn conjunction(text: &str, depth: usize) -> Option<(Condition<'_>, &str)> {
-    let (mut left, mut rest) = operand(text, depth)?;
-    while let Some(after) = after_word(rest, "and") {
-        let (right, then) = operand(after, depth)?;
-        (left, rest) = (Condition::And(Box::new(left), Box::new(right)), then);
-    }
-    Some((left, rest))
-}
-
-fn operand(text: &str, depth: usize) -> Option<(Condition<'_>, &str)> {
-    if depth > DEEPEST {
-        return None;
-    }
-    if let Some(after) = after_word(text, "not") {
-        let (inner, rest) = operand(after, depth + 1)?;
-        return Some((Condition::Not(Box::new(inner)), rest));
-    }
-    if let Some(after) = after_word(text, "defined") {
-        let (name, rest) = after.trim_start().strip_prefix('(')?.split_once(')')?;
-        let name = name.trim();
-        // `variable: x` and the like ask for what is declared.
-        let is_name = !name.is_empty() && name.bytes().all(|it| it.is_ascii_alphanumeric() || it == b'_');
-        return is_name.then_some((Condition::Defined(name), rest));
-    }
-    let (inner, rest) = disjunction(text.trim_start().strip_prefix('(')?, depth + 1)?;
-    Some((inner, rest.trim_start().strip_prefix(')')?))
-}
-
-/// What follows a word that the text begins with.
-fn after_word<'s>(text: &'s str, word: &str) -> Option<&'s str> {
-    let text = text.trim_start();
-    let (start, rest) = text.split_at_checked(word.len())?;
-    let ends = !rest.starts_with(|it: char| it.is_ascii_alphanumeric() || it == '_');
-    (start.eq_ignore_ascii_case(word) && ends).then_some(rest)
 }

@@ -100,7 +100,14 @@ impl<'s> Declarations<'s> {
         configurations: &[&'s ast::Configuration<'s>],
         bindings: &[&'s ast::Binding<'s>],
     ) {
-        if let [first, second, ..] = configurations {
+        // Each task of TwinCAT's is in a file of its own, and its CONFIGURATION and RESOURCE are not written there.
+        let is_task = |it: &&&ast::Configuration<'_>| {
+            let source = self.log.sources.get(it.span.file);
+            source.is_assembled() && it.resources.iter().all(|it| it.name.is_none())
+        };
+        let alone: Vec<_> = configurations.iter().filter(|it| !is_task(it)).collect();
+        let tasks = configurations.iter().find(is_task).filter(|_| !alone.is_empty());
+        if let [first, second, ..] = alone.into_iter().chain(tasks).collect::<Vec<_>>().as_slice() {
             self.report(
                 Diagnostic::new(Code::E0902, second.name.span, "a second CONFIGURATION is not supported yet")
                     .label("a program has one, with one or more RESOURCEs")

@@ -126,7 +126,8 @@ impl<'a, 's> Expected<'a, 's> {
 
     /// How a value is assigned that is an address by the type of what it is for: 0 and NULL have no name.
     pub fn by(&self, value: &Expr<'s>) -> Option<By> {
-        if !matches!(value.kind, ExprKind::Name(_) | ExprKind::Member(..) | ExprKind::Index(..)) {
+        let is_place = matches!(value.kind, ExprKind::Name(_) | ExprKind::Member(..) | ExprKind::Index(..));
+        if !is_place && !is_own_instance(value) {
             return None;
         }
         match self.kind()? {
@@ -136,8 +137,9 @@ impl<'a, 's> Expected<'a, 's> {
             }
             // As an input of a call.
             TypeKind::Reference { kind: RefKind::ReferenceTo, .. } => self.is_member.then_some(By::Binding),
-            TypeKind::Reference { .. }
-            | TypeKind::Array { .. }
+            // `p : POINTER TO Pump := THIS`
+            TypeKind::Reference { .. } => is_this(value).then_some(By::Assignment),
+            TypeKind::Array { .. }
             | TypeKind::String { .. }
             | TypeKind::Subrange { .. }
             | TypeKind::Struct(_)
@@ -170,6 +172,15 @@ impl<'a, 's> Expected<'a, 's> {
         let is_own = !self.is_member && matches!(self.ty?.kind, TypeKind::Array { .. });
         (is_own || is_number(low)).then_some((low, Self { ty: Some(element), ..*self }))
     }
+}
+
+/// `THIS^`
+fn is_own_instance(value: &Expr<'_>) -> bool {
+    matches!(&value.kind, ExprKind::Deref(inner) if is_this(inner))
+}
+
+fn is_this(value: &Expr<'_>) -> bool {
+    matches!(&value.kind, ExprKind::Name(name) if name.text.eq_ignore_ascii_case("THIS"))
 }
 
 fn is_number(bound: &Expr<'_>) -> bool {

@@ -164,6 +164,7 @@ fn body<'s>(input: &mut In<'_, '_, 's>, pou: &mut Pou<'s>, end: Kind, opened: Sp
     contents(input, pou);
     input.state().open.pop();
     close(input, end, opened);
+    pou.extent = opened.to(input.last());
 }
 
 fn close(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {

@@ -258,6 +258,7 @@ fn pou<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind) -> Item<'s> {
             diagnostics::missing_end(input, end, opened);
         }
     }
+    pou.extent = opened.to(input.last());
     if kind == PouKind::Class {
         report_parts_of_class(input, &mut pou);
     }

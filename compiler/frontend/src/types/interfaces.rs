@@ -95,10 +95,20 @@ impl Declarations<'_> {
         }
         let is_class = |pou: &crate::ast::Pou<'_>| pou.kind.is_block() && pou.modifiers.is_abstract.is_none();
         let classes: Vec<_> = (0..self.written_pous().len()).filter(|it| is_class(self.pous[*it].ast)).collect();
-        let found: Rc<[usize]> =
-            classes.into_iter().filter(|it| self.interfaces_of(*it).contains(&interface)).collect();
+        let has = |this: &mut Self, it: &usize| this.interfaces_of(*it).contains(&interface);
+        let mut found: Vec<usize> = classes.into_iter().filter(|it| has(self, it)).collect();
+        if let Some(only) = &self.table.interfaces.only {
+            found.retain(|it| only.contains(it));
+        }
+        let found: Rc<[usize]> = found.into();
         self.table.interfaces.implementers.insert(interface, Rc::clone(&found));
         found
+    }
+
+    /// A reference to an instance is made: only of such classes is what a variable of an INTERFACE refers to.
+    pub fn note_referred(&mut self, ty: Type) {
+        let class = if let Type::Struct(state) = ty { self.slot_of_instance(state) } else { None };
+        self.table.interfaces.referred.extend(class);
     }
 
     /// The routines that a name means on an instance, or on a variable of an INTERFACE.

@@ -146,16 +146,6 @@ impl<'s> Declarations<'s> {
         }
     }
 
-    /// The bytes of a structure whose members are aligned to no more than `most`.
-    pub fn packed_size(&self, id: StructId, most: u64) -> u64 {
-        let whole = self.program.structure(id).fields.iter().fold(Shape { size: 0, align: 1 }, |whole, it| {
-            let Shape { size, align } = self.shape(it.ty);
-            let align = align.min(most);
-            Shape { size: whole.size.next_multiple_of(align).saturating_add(size), align: whole.align.max(align) }
-        });
-        whole.size.next_multiple_of(whole.align)
-    }
-
     /// As the layout has it.
     fn shape(&self, ty: Type) -> Shape {
         match ty {

@@ -92,6 +92,10 @@ pub(crate) struct Interfaces {
     pub closures: FxHashMap<usize, Rc<FxHashSet<usize>>>,
     /// For those INTERFACEs that were asked for: the slots of the classes whose instances have them.
     pub implementers: FxHashMap<usize, Rc<[usize]>>,
+    /// The slots of the classes to whose instances something refers.
+    pub referred: FxHashSet<usize>,
+    /// Calls by INTERFACEs are of these alone.
+    pub only: Option<FxHashSet<usize>>,
     /// The numbers of the classes that references tell apart.
     pub numbers: FxHashMap<StructId, u64>,
     pub is_too_many: bool,

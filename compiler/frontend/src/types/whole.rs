@@ -11,6 +11,8 @@ pub(crate) struct Whole {
     /// The VAR_IN_OUTs that are given instances of what extends their classes.
     pub in_outs: FxHashSet<InOut>,
     pub reach: Reach,
+    /// The classes to whose instances something refers, where that decides what calls what.
+    pub referred: Option<FxHashSet<usize>>,
 }
 
 impl Whole {
@@ -20,7 +22,13 @@ impl Whole {
         self.in_outs.extend(found.in_outs);
         self.reach.references |= found.reach.references;
         self.reach.copies |= found.reach.copies;
-        before != (self.in_outs.len(), self.reach)
+        let referred = found.referred.unwrap_or_default();
+        let is_known = |all: &FxHashSet<usize>| referred.is_subset(all);
+        let is_more = !self.referred.as_ref().is_none_or(is_known);
+        if let Some(all) = &mut self.referred {
+            all.extend(referred);
+        }
+        is_more || before != (self.in_outs.len(), self.reach)
     }
 }
 
@@ -28,6 +36,6 @@ impl Declarations<'_> {
     /// What the bodies that were checked say of the whole program.
     pub fn whole(&self) -> Whole {
         let reach = Reach { references: !self.program.references.is_empty(), copies: self.table.copies.get() };
-        Whole { in_outs: self.polymorphic(), reach }
+        Whole { in_outs: self.polymorphic(), reach, referred: Some(self.table.interfaces.referred.clone()) }
     }
 }

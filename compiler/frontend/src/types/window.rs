@@ -14,17 +14,19 @@ pub(crate) struct Window {
     pub address: Option<Address>,
     /// It is selected from a variable: `.3`, `.%B1`.
     pub is_selected: bool,
+    /// It is a member of a packed structure, or a part of one.
+    pub is_packed: bool,
 }
 
 impl From<View> for Window {
     fn from(view: View) -> Self {
         let is_bit = view.ty == Type::BOOL;
-        Self { ty: view.ty, bit: view.bit, is_bit, address: Some(view.address), is_selected: false }
+        Self { ty: view.ty, bit: view.bit, is_bit, address: Some(view.address), is_selected: false, is_packed: false }
     }
 }
 
 impl From<&Overlay> for Window {
     fn from(it: &Overlay) -> Self {
-        Self { ty: it.ty, bit: it.bit, is_bit: it.is_bit, address: None, is_selected: false }
+        Self { ty: it.ty, bit: it.bit, is_bit: it.is_bit, address: None, is_selected: false, is_packed: it.is_packed }
     }
 }

@@ -76,7 +76,7 @@ pub fn references(text: &str) -> Vec<Reference> {
     found
 }
 
-/// The names in a PLC project's `CompilerDefines`, one of which may have a value after `=`.
+/// The names in a PLC project's `CompilerDefines`, each with its value after `=` where it has one: `Line=3`.
 pub fn definitions(text: &str) -> Vec<String> {
     let Some(mut reader) = Reader::new(text) else { return Vec::new() };
     let (mut found, mut is_it) = (Vec::new(), false);
@@ -84,14 +84,22 @@ pub fn definitions(text: &str) -> Vec<String> {
         match part {
             Part::Open(element) => is_it = element.name == "CompilerDefines",
             Part::Text(chunk) if is_it => {
-                let names = text[chunk.place].split([',', ';']).map(|it| it.split('=').next().unwrap_or_default());
-                found.extend(names.map(str::trim).filter(|it| !it.is_empty()).map(str::to_owned));
+                let definitions = text[chunk.place].split([',', ';']).map(definition);
+                found.extend(definitions.filter(|it| !it.is_empty()));
             }
             Part::Text(_) => {}
             Part::Close => is_it = false,
         }
     }
     found
+}
+
+/// `Line=3` of `Line := '3'`.
+fn definition(text: &str) -> String {
+    let Some((name, value)) = text.split_once('=') else { return text.trim().to_owned() };
+    let name = name.trim_end().trim_end_matches(':').trim();
+    let value = value.replace("&apos;", "'");
+    format!("{name}={}", value.trim().trim_matches('\''))
 }
 
 /// What is being read of a PLC project's list of files.

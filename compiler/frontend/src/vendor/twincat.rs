@@ -1,7 +1,7 @@
 //! TwinCAT 3's files, `.TcPOU`, `.TcGVL`, `.TcDUT` and `.TcIO`: declarations and bodies in CDATA sections; methods,
-//! properties and actions are elements beside them, and END_… is left out.
+//! properties and actions are elements beside them, and END_… is left out. A `.TcTTO` is a task.
 
-use super::assembly::{Assembly, Trouble};
+use super::assembly::{Assembly, Chunk, Trouble};
 use super::unit::{Body, Unit, What};
 use super::xml::{Broken, Element, Part, Reader};
 
@@ -34,12 +34,58 @@ fn units<'t>(file: &'t str, reader: &mut Reader<'t>, out: &mut Assembly) -> Resu
                     out.problem(Trouble::Odd, format!("`{}` has no declaration", unit.name), &place);
                 }
             }
+            "Task" => task(file, reader, &element, out)?,
             _ => reader.skip()?,
         }
     }
     if is_empty {
         out.problem(Trouble::Odd, "this file of TwinCAT's holds nothing".to_owned(), &root);
     }
+    Ok(())
+}
+
+/// A task that was opened, to its end: a CONFIGURATION with the programs that it calls. Those of libraries, which
+/// have a namespace, are the visualisation's and its like.
+fn task<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, out: &mut Assembly) -> Result<(), Broken> {
+    let place = &element.place;
+    let name: Vec<Chunk> = element.attribute_text(file, "Name").into_iter().collect();
+    let (mut interval, mut priority) = (Chunk::words("", place), Chunk::words("PRIORITY := 0", place));
+    let (mut programs, mut open) = (Vec::new(), vec!["Task"]);
+    while !open.is_empty() {
+        match reader.part()? {
+            Some(Part::Open(element)) => open.push(element.name),
+            Some(Part::Close) => drop(open.pop()),
+            Some(Part::Text(chunk)) => {
+                let (at, text) = (chunk.place.clone(), file[chunk.place.clone()].trim());
+                let is_number = !text.is_empty() && text.bytes().all(|it| it.is_ascii_digit());
+                match open.as_slice() {
+                    [_, "CycleTime" | "Priority"] if !is_number => {
+                        out.problem(Trouble::Odd, format!("`{text}` is no number"), &at);
+                    }
+                    [_, "CycleTime"] => interval = Chunk::words(format!("INTERVAL := T#{text}us, "), &at),
+                    [_, "Priority"] => priority = Chunk::words(format!("PRIORITY := {text}"), &at),
+                    [_, "PouCall", "Name"] if !text.contains('.') && !text.is_empty() => programs.push(chunk),
+                    _ => {}
+                }
+            }
+            None => break,
+        }
+    }
+    if programs.is_empty() {
+        return Ok(());
+    }
+    let mut words = vec![Chunk::words("{dialect 'codesys'}\nCONFIGURATION Config\nTASK ", place)];
+    words.extend(name.clone());
+    words.extend([Chunk::words("(", place), interval, priority, Chunk::words(");\n", place)]);
+    out.copy(file, &words);
+    for program in programs {
+        let at = program.place.clone();
+        let mut words = vec![Chunk::words("PROGRAM ", &at), program.clone(), Chunk::words(" WITH ", place)];
+        words.extend(name.clone());
+        words.extend([Chunk::words(" : ", place), program, Chunk::words(";\n", place)]);
+        out.copy(file, &words);
+    }
+    out.write("END_CONFIGURATION\n", place);
     Ok(())
 }
 

@@ -1,0 +1,145 @@
+//! What the trees of a program declare, as far as `{IF …}` asks for it.
+
+use crate::ast::{File, Item, Pou, PouKind, TypeDecl, VarBlock};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::lex::{Declaration, Declared, Scope};
+use crate::source::{Sources, Span};
+use crate::syntax::attribute;
+use rustc_hash::FxHashMap;
+
+/// What all files declare.
+pub(crate) fn of<'s>(files: &[File<'s>], sources: &'s Sources) -> Declared<'s> {
+    let mut declared = Declared::default();
+    for (file, number) in files.iter().zip(0u16..) {
+        let text = sources.get(number).text.as_str();
+        let reading = Reading { text, attributes: attributes(file, text) };
+        for item in &file.items {
+            reading.item(item, &mut declared);
+        }
+    }
+    declared
+}
+
+/// Where a condition that asks for declarations has decided some.
+pub(crate) fn changed(files: &[File<'_>], known: &Declared<'_>, now: &Declared<'_>) -> Vec<Diagnostic> {
+    let is_same = known.types == now.types
+        && known.pous == now.pous
+        && known.tasks == now.tasks
+        && known.globals == now.globals
+        && known.scopes == now.scopes;
+    let at = files.iter().flat_map(|it| &it.undecided).filter(|_| !is_same);
+    let refused = at.map(|span| {
+        Diagnostic::new(Code::E0902, *span, "a condition that asks for declarations decides declarations")
+            .label("what is declared has to be known before")
+            .help("ask for a name that `{define NAME}`, or the project, defines where that holds")
+    });
+    refused.collect()
+}
+
+/// What conditions ask for by `hasattribute(pou: P, 'a')`.
+pub(crate) fn asked_attributes<'s>(files: &[File<'s>], sources: &'s Sources) -> Vec<&'s str> {
+    let conditions = files.iter().flat_map(|it| &it.undecided).map(|it| sources.text(*it));
+    let asked = conditions.flat_map(|it| it.match_indices('\'').map(move |(at, _)| &it[at + 1..]));
+    asked.filter_map(|it| it.split_once('\'')).map(|it| it.0).collect()
+}
+
+/// The attributes before each token that has some, by its first byte.
+fn attributes<'s>(file: &File<'s>, text: &str) -> FxHashMap<u32, Vec<&'s str>> {
+    let mut found: FxHashMap<u32, Vec<&'s str>> = FxHashMap::default();
+    for pragma in &file.pragmas {
+        let next = next_token(text, pragma.span.end);
+        if let (Some(name), Some(next)) = (attribute(pragma.text), next) {
+            found.entry(next).or_default().push(name);
+        }
+    }
+    found
+}
+
+/// The first byte after a pragma that is of no space, comment or other pragma.
+fn next_token(text: &str, end_of_pragma: u32) -> Option<u32> {
+    let mut rest = text.get(usize::try_from(end_of_pragma).ok()?..)?.trim_start_matches('}').trim_start();
+    loop {
+        let end = match () {
+            () if rest.starts_with('{') => "}",
+            () if rest.starts_with("//") => "\n",
+            () if rest.starts_with("(*") => "*)",
+            () if rest.starts_with("/*") => "*/",
+            () => return u32::try_from(text.len() - rest.len()).ok(),
+        };
+        rest = rest.split_once(end)?.1.trim_start();
+    }
+}
+
+/// One file's items.
+struct Reading<'s> {
+    text: &'s str,
+    attributes: FxHashMap<u32, Vec<&'s str>>,
+}
+
+impl<'s> Reading<'s> {
+    fn item(&self, item: &Item<'s>, declared: &mut Declared<'s>) {
+        match item {
+            Item::Pou(pou) => self.pou(pou, declared),
+            Item::Types(types) => declared.types.extend(types.iter().map(|it| self.named(it))),
+            Item::Globals(block) => self.variables(block, &mut declared.globals),
+            Item::Configuration(it) => {
+                it.globals.iter().for_each(|block| self.variables(block, &mut declared.globals));
+                for resource in &it.resources {
+                    resource.globals.iter().for_each(|block| self.variables(block, &mut declared.globals));
+                    declared.tasks.extend(resource.tasks.iter().map(|it| it.name.text));
+                }
+            }
+            Item::Test(_) => {}
+        }
+    }
+
+    fn pou(&self, pou: &Pou<'s>, declared: &mut Declared<'s>) {
+        let base = pou.extends.or_else(|| pou.bases.first().and_then(|it| it.last().copied()));
+        let is_class = matches!(pou.kind, PouKind::FunctionBlock | PouKind::Class);
+        declared.pous.push(routine(pou, pou.name.text.to_owned()));
+        self.scope(pou, base.filter(|_| is_class).map(|it| it.text), declared);
+        for it in &pou.routines {
+            declared.pous.push(routine(it, format!("{}.{}", pou.name.text, it.name.text)));
+            // What a METHOD does not have itself is its class's.
+            self.scope(it, Some(pou.name.text), declared);
+        }
+    }
+
+    fn scope(&self, pou: &Pou<'s>, base: Option<&'s str>, declared: &mut Declared<'s>) {
+        let mut variables = Vec::new();
+        pou.blocks.iter().for_each(|block| self.variables(block, &mut variables));
+        declared.scopes.push(Scope { span: pou.extent, name: pou.name.text, base, variables });
+    }
+
+    fn named(&self, it: &TypeDecl<'s>) -> Declaration<'s> {
+        let ty = self.first_word(it.ty.span);
+        Declaration { name: it.name.text.to_owned(), attributes: it.attributes.clone(), ty, value: None }
+    }
+
+    fn variables(&self, block: &VarBlock<'s>, all: &mut Vec<Declaration<'s>>) {
+        for variable in &block.vars {
+            let ty = self.first_word(variable.ty.span);
+            let value = variable.initial.as_ref().filter(|_| block.has_values());
+            let value = value.and_then(|it| self.text(it.span));
+            let before = variable.names.first().and_then(|it| self.attributes.get(&it.span.start));
+            let attributes = before.cloned().unwrap_or_default();
+            let named = |name: &str| Declaration { name: name.to_owned(), attributes: attributes.clone(), ty, value };
+            all.extend(variable.names.iter().map(|it| named(it.text)));
+        }
+    }
+
+    fn first_word(&self, span: Span) -> &'s str {
+        let text = self.text(span).unwrap_or_default();
+        let end = text.find(|it: char| !it.is_alphanumeric() && it != '_').unwrap_or(text.len());
+        &text[..end]
+    }
+
+    fn text(&self, span: Span) -> Option<&'s str> {
+        let place = |it| usize::try_from(it).ok();
+        self.text.get(place(span.start)?..place(span.end)?)
+    }
+}
+
+fn routine<'s>(pou: &Pou<'s>, name: String) -> Declaration<'s> {
+    Declaration { name, attributes: pou.attributes.clone(), ty: "", value: None }
+}
