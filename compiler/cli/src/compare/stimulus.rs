@@ -3,7 +3,6 @@
 
 use super::Verdict;
 use super::pair::{Input, Pair, Row, Side};
-use super::scalar;
 use super::search::World;
 use super::trace::Trace;
 use crate::args::Compare;
@@ -95,7 +94,7 @@ fn name_columns(pair: &mut Pair, args: &Compare) {
     };
     let column = |name: String| {
         let scalars = [place(&pair.sides[0], &name)?, place(&pair.sides[1], &name)?];
-        Some(Input { scalars, initial: Value::Bool(false) })
+        Some(Input { scalars, initial: Value::Bool(false), texts: Vec::new() })
     };
     let found: Vec<Input> = names.filter_map(column).collect();
     if !found.is_empty() {
@@ -133,6 +132,7 @@ pub fn text(pair: &Pair, world: &World, trace: &Trace) -> String {
 }
 
 fn cell(pair: &Pair, input: &Input, value: Value) -> String {
-    let scalar = pair.scalar(0, input.scalars[0]);
-    scalar::spell(&pair.sides[0].program, scalar.ty, value)
+    let cell = input.spelled(&pair.sides[0].program, pair.scalar(0, input.scalars[0]).ty, value);
+    // In quotes an empty text is one.
+    if input.texts.is_empty() { cell } else { format!("\"{}\"", cell.replace('"', "\"\"")) }
 }
