@@ -625,8 +625,8 @@ fn what_the_world_outside_writes_is_told_apart_by_variable() {
     let out = difference(&format!("{arguments} --assume {}", assumed.display()));
     assert!(out.starts_with("iec and openplc differ after 3 scans:"), "{out}");
     let path = written("outside_text.st", &program("mode : STRING;", "c(s AND mode = 'GO', FALSE, 1); o := c.CV > 1;"));
-    let output = run(&format!("{} --from iec --to openplc --vars o -A warnings", path.display()));
-    assert_eq!(output.status.code(), Some(4), "{}", text(&output.stdout));
+    let out = difference(&format!("{} --from iec --to openplc --vars o -A warnings", path.display()));
+    assert!(out.starts_with("iec and openplc differ after 3 scans:"), "{out}");
 }
 
 #[test]
