@@ -73,6 +73,8 @@ impl Step {
 #[derive(Clone, Debug)]
 pub struct Row {
     pub event: Option<Event>,
+    /// What each input was given before the scan; the program may have written it since.
+    pub inputs: Vec<String>,
     pub states: [Vec<u8>; 2],
     pub faults: [Option<Fault>; 2],
 }
@@ -368,6 +370,13 @@ impl Pair {
         found
     }
 
+    fn given(&self, step: &Step) -> Vec<String> {
+        let program = &self.sides[0].program;
+        let spelled =
+            |(input, value): (&Input, &Value)| input.spelled(program, self.scalar(0, input.scalars[0]).ty, *value);
+        self.inputs.iter().zip(&step.inputs).map(spelled).collect()
+    }
+
     /// The first value of an input, as a trace shows it.
     pub fn shown(&self, input: &Input) -> String {
         let ty = self.scalar(0, input.scalars[0]).ty;
@@ -627,7 +636,7 @@ impl Pair {
         for step in steps {
             let faults = self.scan(step);
             let states = self.sides.each_ref().map(|it| it.state().to_vec());
-            rows.push(Row { event: step.event, states, faults });
+            rows.push(Row { event: step.event, inputs: self.given(step), states, faults });
             if faults.iter().any(Option::is_some) {
                 break;
             }
