@@ -29,6 +29,7 @@ mod name_table;
 mod place;
 mod retained;
 mod shared;
+mod short_circuit;
 mod statement;
 mod string;
 mod strips;

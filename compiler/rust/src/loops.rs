@@ -240,6 +240,11 @@ impl Function<'_> {
 
     /// `while` where the loop starts by leaving on a condition.
     fn while_condition<'s>(&mut self, body: &'s [Statement]) -> (Option<TokenStream>, &'s [Statement]) {
+        if let Some(it) = self.fold(body)
+            && exit_condition(it.reader).is_some()
+        {
+            return (Some(it.stay().tokens), it.after);
+        }
         let Some((test, rest)) = body.split_first() else { return (None, body) };
         let condition = exit_condition(test).filter(|it| it.as_const() != Some(Value::Bool(true)));
         let Some(condition) = condition else { return (None, body) };

@@ -11,6 +11,7 @@ use crate::function::Function;
 use crate::literal::{literal, plain};
 use crate::names::ident;
 use crate::precedence::Level;
+use crate::short_circuit::Folded;
 use staunch_ir::faults;
 
 impl Function<'_> {
@@ -22,9 +23,13 @@ impl Function<'_> {
         let mut printed = TokenStream::new();
         let mut rest = statements;
         while let [statement, after @ ..] = rest {
+            let all = rest;
             rest = after;
             printed.extend(self.mark(statement.at));
-            if let Some((joined, then)) = self.joined(statement, after) {
+            if let Some(folded) = self.fold(all) {
+                rest = folded.after;
+                printed.extend(self.reader(&folded));
+            } else if let Some((joined, then)) = self.joined(statement, after) {
                 rest = then;
                 printed.extend(joined);
             } else {
@@ -147,6 +152,10 @@ impl Function<'_> {
 
     fn if_else(&mut self, condition: &Expr, then: &Block, otherwise: &Block) -> TokenStream {
         let condition = self.expr(condition).tokens;
+        self.if_so(&condition, then, otherwise)
+    }
+
+    pub fn if_so(&mut self, condition: &TokenStream, then: &Block, otherwise: &Block) -> TokenStream {
         let then = self.block(then);
         let otherwise = match otherwise.as_slice() {
             [] => None,
@@ -154,10 +163,16 @@ impl Function<'_> {
                 let chained = self.if_else(condition, then, otherwise);
                 Some(quote!(else #chained))
             }
-            _ => {
-                let otherwise = self.block(otherwise);
-                Some(quote!(else { #otherwise }))
-            }
+            otherwise => match self.fold(otherwise).filter(Folded::is_all_and_an_if) {
+                Some(it) => {
+                    let chained = self.reader(&it);
+                    Some(quote!(else #chained))
+                }
+                None => {
+                    let otherwise = self.statements(otherwise);
+                    Some(quote!(else { #otherwise }))
+                }
+            },
         };
         quote!(if #condition { #then } #otherwise)
     }

@@ -103,11 +103,8 @@ impl Main {
     #[rustfmt::skip]
     pub fn scan(&mut self, cx: &Context) -> Result<(), Fault> {
         let mut half: i32 = 0;
-        let mut both: bool = self.go; // :15
-        if both {
-            both = self.n > 0;
-        }
-        if both {
+        if self.go && self.n > 0 {
+            // :15
             self.c = Color::GREEN;
         } else if self.n < -5 {
             self.c = Color::RED;

@@ -5,7 +5,8 @@ use super::assume::{Assumptions, Mentioned};
 use super::facts::{Facts, Name, Numbers};
 use super::pair::{Input, Matched, Pair};
 use super::scalar::{Role, Scalar};
-use staunch_ir::{Elementary, Program, Repr, Type, Value};
+use staunch_ir::{Chars, Elementary, Program, Repr, Type, Value};
+use staunch_runtime::StringType;
 use std::collections::HashSet;
 
 /// Combinations of inputs that are tried in every scan of an exhaustive search.
@@ -14,6 +15,8 @@ const MAX_VECTORS: usize = 512;
 const MAX_VALUES: usize = 64;
 /// A type or subrange of at most this many values is tried whole.
 const MAX_WHOLE: i128 = 300;
+/// Characters of a long text.
+const LONGEST: u16 = 300;
 
 /// The values of an input that are tried, the initial one first.
 #[derive(Clone, Debug)]
@@ -72,15 +75,13 @@ fn repr(pair: &Pair, input: &Input) -> Repr {
 pub struct Sources {
     pub inputs: Vec<Input>,
     pub kept: Vec<Input>,
-    /// Strings that nothing writes: no values of theirs are tried.
-    pub texts: Vec<Matched>,
 }
 
 /// The inputs by their declaration, and what the world outside must be writing: what no statement writes and some
 /// read, where it starts at zero, is retained, or an assumption speaks of it. Without an input by its declaration, all that no
 /// statement writes and some read.
 pub fn sources(pair: &Pair, facts: [&Facts; 2], assumed: &Mentioned) -> Sources {
-    let declared = typed(pair, pair.matched(|it| it.role == Role::Input));
+    let declared = typed(pair, facts, pair.matched(|it| it.role == Role::Input));
     let mut found = Sources { inputs: declared, ..Sources::default() };
     let is_alone = found.inputs.is_empty();
     for scalars in pair.matched(|it| it.role == Role::Variable) {
@@ -92,11 +93,8 @@ pub fn sources(pair: &Pair, facts: [&Facts; 2], assumed: &Mentioned) -> Sources 
         if writes == [true, true] && !is_named || !(reads(0) || reads(1)) {
             continue;
         }
-        let Some(input) = typed(pair, vec![scalars]).pop() else {
-            found.texts.extend((writes == [false, false]).then_some(scalars));
-            continue;
-        };
-        let is_set = input.initial == input.initial.repr().zero() || scalar.at.is_retained;
+        let Some(input) = typed(pair, facts, vec![scalars]).pop() else { continue };
+        let is_set = input.starts_at_zero() || scalar.at.is_retained;
         // What an instance is never given is its own business.
         let is_input = writes == [false, false] && (is_alone || is_set && !scalar.at.is_inner);
         if is_named || is_input {
@@ -113,24 +111,61 @@ fn is_written(scalar: &Scalar, facts: &Facts) -> bool {
     name(scalar).is_none_or(|it| facts.is_written(it, &scalar.way))
 }
 
-/// Those that both programs hold in one type.
-fn typed(pair: &Pair, found: Vec<Matched>) -> Vec<Input> {
+/// Those that both programs hold in one type, strings of any length; the world outside has no addresses to give.
+fn typed(pair: &Pair, facts: [&Facts; 2], found: Vec<Matched>) -> Vec<Input> {
     let input = |scalars: Matched| {
         let [a, b] = [pair.scalar(0, scalars[0]), pair.scalar(1, scalars[1])];
+        let bytes = &pair.sides[0].state()[a.offset..a.offset + a.size];
+        match [a.ty, b.ty] {
+            [Type::Reference(_), _] | [_, Type::Reference(_)] => return None,
+            [Type::String(x), Type::String(y)] if x.wide == y.wide => {
+                let capacity = x.capacity.min(y.capacity);
+                let near = [0, 1].map(|side: usize| texts_of(pair, facts, side, scalars));
+                let initial = Chars::read(StringType { capacity, ..x }, bytes);
+                let texts = texts(initial, near.concat(), StringType { capacity, ..x });
+                return Some(Input { scalars, initial: Value::U16(0), texts });
+            }
+            _ => {}
+        }
         let repr = pair.sides[0].program.repr(a.ty)?;
         // Two programs number their types for themselves.
-        (pair.sides[1].program.repr(b.ty)? == repr)
-            .then(|| Input { scalars, initial: Value::read(repr, &pair.sides[0].state()[a.offset..]) })
+        (pair.sides[1].program.repr(b.ty)? == repr).then(|| Input {
+            scalars,
+            initial: Value::read(repr, bytes),
+            texts: Vec::new(),
+        })
     };
     found.into_iter().filter_map(input).collect()
 }
 
-/// Inputs of both sides that are not tried: strings, and those that the two hold in different types.
+/// What a program compares a string with.
+fn texts_of(pair: &Pair, facts: [&Facts; 2], side: usize, scalars: Matched) -> Vec<Chars> {
+    name(pair.scalar(side, scalars[side])).map_or_else(Vec::new, |it| facts[side].texts(it))
+}
+
+/// What to try of a string: the initial one, those that it is compared with, none, another one, and a long one.
+fn texts(initial: Chars, near: Vec<Chars>, ty: StringType) -> Vec<Chars> {
+    let mut found = vec![initial];
+    let of = |letter: u8, length: usize| match ty.wide {
+        true => Chars::Wide(vec![letter.into(); length]),
+        false => Chars::Narrow(vec![letter; length]),
+    };
+    let full = of(b'x', ty.capacity.min(LONGEST).into());
+    let other = (b'a'..=b'z').map(|it| of(it, 1)).find(|it| !near.contains(it));
+    for text in near.into_iter().take(MAX_VALUES).chain([Chars::empty(ty)]).chain(other).chain([full]) {
+        if text.fits(ty) && !found.contains(&text) {
+            found.push(text);
+        }
+    }
+    found
+}
+
+/// Inputs of both sides that are not tried: references, and those that the two hold in different types.
 pub fn untried(pair: &Pair) -> Vec<&str> {
     let tried: HashSet<Matched> = pair.inputs.iter().map(|it| it.scalars).collect();
     let both = pair.matched(|it| it.role == Role::Input);
     let inputs = both.into_iter().filter(|it| !tried.contains(it));
-    inputs.chain(pair.texts.iter().copied()).map(|it| pair.path(it)).collect()
+    inputs.map(|it| pair.path(it)).collect()
 }
 
 /// Whether a program assigns an input of its own.
@@ -146,8 +181,30 @@ fn name(scalar: &Scalar) -> Option<Name> {
     scalar.field.map(|(structure, field)| Name::Field(structure, field))
 }
 
+/// The texts of a string input: one on every side where the programs ask for those alone whether it is equal to them. Of two
+/// types, the longer one holds more.
+fn choice_of_texts(pair: &Pair, facts: [&Facts; 2], input: &Input) -> Choice {
+    let scalars = [0, 1].map(|side: usize| pair.scalar(side, input.scalars[side]));
+    let both =
+        |holds: fn(&Facts, Name) -> bool| (0..2).all(|it| name(scalars[it]).is_some_and(|name| holds(facts[it], name)));
+    let least = scalars.iter().filter_map(|it| it.ty.string_type()).map(|it| usize::from(it.capacity)).min();
+    let near = [0, 1].map(|side: usize| texts_of(pair, facts, side, input.scalars)).concat();
+    let stays = || both(|facts, name| !facts.is_handed_on(name)) && near.iter().all(|it| Some(it.len()) < least);
+    let is_short = scalars[0].ty == scalars[1].ty || stays();
+    let covered = if both(|facts, name| !facts.is_read(name)) {
+        Some(Covered::Unread)
+    } else {
+        (both(Facts::only_compared) && is_short && near.len() <= MAX_VALUES).then_some(Covered::Compared)
+    };
+    let count = u16::try_from(input.texts.len()).unwrap_or(u16::MAX);
+    Choice { values: (0..count).map(Value::U16).collect(), covered, range: None }
+}
+
 /// The values of an input: on every side of what the programs compare it with, and of what is assumed of it.
 fn choice(pair: &Pair, facts: [&Facts; 2], input: &Input, assumed: Numbers) -> Choice {
+    if !input.texts.is_empty() {
+        return choice_of_texts(pair, facts, input);
+    }
     let program = &pair.sides[0].program;
     let scalars = [pair.scalar(0, input.scalars[0]), pair.scalar(1, input.scalars[1])];
     let names = scalars.map(name);

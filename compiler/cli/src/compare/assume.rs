@@ -6,7 +6,7 @@ use super::facts::Numbers;
 use super::pair::{Input, Pair};
 use crate::run;
 use staunch_host::{Event, Map};
-use staunch_ir::{Repr, Value};
+use staunch_ir::{Chars, Repr, Value};
 use std::cmp::Ordering;
 use std::collections::HashSet;
 use std::path::Path;
@@ -30,6 +30,8 @@ struct Named<'a> {
     /// With its NAMESPACE or list, of a global variable.
     full: Option<String>,
     subrange: Option<(i128, i128)>,
+    /// It has no order.
+    is_text: bool,
     value: Spelling<'a>,
 }
 
@@ -41,12 +43,17 @@ impl<'a> Named<'a> {
         let name = pair.path(input.scalars).to_owned();
         let (path, repr) = (name.clone(), input.initial.repr());
         let running: Vec<usize> = (0..map.instances.len()).collect();
+        let texts: Vec<String> = input.texts.iter().map(Chars::to_string).collect();
+        let is_text = !texts.is_empty();
         let value = move |text: &str| {
+            if is_text {
+                return position(&texts, text);
+            }
             let place = staunch_host::place_of(map, &running, &path)?;
             Ok(Value::read(repr, &staunch_host::bytes_of(map, place, text)?))
         };
         let full = pair.scalar(0, input.scalars[0]).full_name(&pair.sides[0].program);
-        Self { full, name, subrange: subrange(pair, input.scalars), value: Box::new(value) }
+        Self { full, name, is_text, subrange: subrange(pair, input.scalars), value: Box::new(value) }
     }
 }
 
@@ -55,6 +62,18 @@ impl Named<'_> {
         self.full.as_ref().is_some_and(|it| it.eq_ignore_ascii_case(name))
     }
 }
+
+/// Which of the texts that a string is tried with a literal is.
+fn position(texts: &[String], literal: &str) -> Result<Value, String> {
+    let found = texts.iter().position(|it| it == literal).and_then(|it| u16::try_from(it).ok());
+    found.map(Value::U16).ok_or_else(|| {
+        let shown: Vec<_> = texts.iter().filter(|it| it.len() < SHOWN).map(String::as_str).collect();
+        format!("it is not tried with {literal}, but with what the programs compare it with: {}", shown.join(", "))
+    })
+}
+
+/// Characters of a text that a message shows.
+const SHOWN: usize = 40;
 
 /// The limits of an input's subrange; where the two systems' differ, what is in both.
 fn subrange(pair: &Pair, scalars: [usize; 2]) -> Option<(i128, i128)> {
@@ -145,6 +164,9 @@ impl Assumptions {
             }
             [name, low, "..", high] => {
                 let at = parser.input(name)?;
+                if inputs[at].is_text {
+                    return Err(format!("`{name}` is a string, which has no range"));
+                }
                 let [first, last] = [low, high].map(|it| parser.limit(at, it));
                 let (first, last) = (first?, last?);
                 if order(first, last).is_none_or(Ordering::is_gt) {
@@ -358,10 +380,14 @@ impl Parser<'_> {
             ("=", Relation::Eq),
             ("<>", Relation::Ne),
         ];
+        let is_text = self.inputs[at].is_text;
         let Some((_, relation)) = relations.iter().find(|it| self.word(it.0)) else { return Ok(Condition::Is(at)) };
         let Some((value, rest)) = self.tokens.split_first() else {
             return Err("a value is missing at the end".to_owned());
         };
+        if is_text && !matches!(relation, Relation::Eq | Relation::Ne) {
+            return Err(format!("`{name}` is a string: it is compared by `=` and `<>`"));
+        }
         let limit = self.limit(at, value)?;
         self.tokens = rest;
         Ok(Condition::Compare(at, *relation, limit))
@@ -377,6 +403,11 @@ fn tokens(line: &str) -> Result<Vec<String>, String> {
         let operator = ["..", "<=", ">=", "<>", "<", ">", "=", "(", ")"].iter().find(|it| rest.starts_with(**it));
         let length = if let Some(it) = operator {
             it.len()
+        } else if matches!(first, '\'' | '"') {
+            rest[1..]
+                .find(first)
+                .map(|it| it + 2)
+                .ok_or_else(|| format!("a {first} that closes the text is missing"))?
         } else if first.is_alphanumeric() || matches!(first, '_' | '%' | '-') {
             word(rest)
         } else {
@@ -427,6 +458,7 @@ mod tests {
             name: name.to_owned(),
             full: None,
             subrange,
+            is_text: false,
             value,
         };
         let inputs = [

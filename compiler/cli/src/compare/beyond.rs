@@ -186,6 +186,10 @@ impl Walk<'_, '_> {
             Root::Local(_) | Root::Param(_) => None,
         };
         let mut found = None;
+        // What a reference leads to is not the variable that holds it.
+        if place.is_followed() {
+            return None;
+        }
         for projection in &place.projections {
             if let (Projection::Field(field), Some(structure)) = (projection, owner) {
                 found = Some((structure, *field));
@@ -231,7 +235,8 @@ fn is_alike(a: &Expr, b: &Expr) -> bool {
             x == y && a.ty.elementary() == b.ty.elementary() && is_alike(a_inner, b_inner)
         }
         (ExprKind::Text(x), ExprKind::Text(y)) => x == y,
-        (ExprKind::Aggregate(_), ExprKind::Aggregate(_)) => true,
+        // Where variables are is each program's own.
+        (ExprKind::Aggregate(_), ExprKind::Aggregate(_)) | (ExprKind::AddressOf(_), ExprKind::AddressOf(_)) => true,
         _ => false,
     }
 }

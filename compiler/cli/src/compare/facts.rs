@@ -6,8 +6,8 @@
 
 use super::scalar::Way;
 use staunch_ir::{
-    Argument, Block, Const, Conversion, Expr, ExprKind, FieldId, LocalId, Mode, Op, ParamId, Place, Program,
-    Projection, Root, Routine, RoutineId, Statement, StatementKind, Step, StructId, Type, Value, visit,
+    Argument, Block, Chars, Const, Conversion, Expr, ExprKind, FieldId, LocalId, Mode, Op, ParamId, Place, Program,
+    Projection, Root, Routine, RoutineId, Statement, StatementKind, Step, StructId, TextOp, Type, Value, visit,
 };
 use std::collections::{BTreeSet, HashMap, HashSet};
 
@@ -31,6 +31,8 @@ pub struct Facts {
     near: HashMap<Name, Numbers>,
     /// Values of the first go to the second, as they are.
     flows: HashSet<(Name, Name)>,
+    /// The texts that a string is compared with.
+    texts: HashMap<Name, Vec<Chars>>,
     /// What is worth trying, and proves nothing: it is found by going back through what is computed.
     hints: HashMap<Name, Numbers>,
     /// Used in another way than compared with constants and handed on.
@@ -87,6 +89,24 @@ impl Facts {
         let mut found = self.near(name);
         found.add_all(self.hints.get(&name).cloned().unwrap_or_default());
         found
+    }
+
+    pub fn texts(&self, name: Name) -> Vec<Chars> {
+        self.texts.get(&name).cloned().unwrap_or_default()
+    }
+
+    /// Whether its value goes to another variable, as it is.
+    pub fn is_handed_on(&self, name: Name) -> bool {
+        self.flows.iter().any(|it| it.0 == name)
+    }
+
+    fn near_to_text(&mut self, name: Name, text: &Chars) -> bool {
+        let known = self.texts.entry(name).or_default();
+        let is_new = !known.contains(text);
+        if is_new {
+            known.push(text.clone());
+        }
+        is_new
     }
 
     /// Takes the limits of what is computed back to what it is computed from.
@@ -148,6 +168,9 @@ impl Facts {
                 let before = (ours.integers.len(), ours.reals.len());
                 ours.add_all(theirs);
                 changed |= before != (ours.integers.len(), ours.reals.len());
+                for text in self.texts(to) {
+                    changed |= self.near_to_text(from, &text);
+                }
             }
         }
     }
@@ -180,7 +203,11 @@ impl Facts {
     /// being that.
     fn unwritten(&mut self, program: &Program, name: Name, ty: Type, initial: &Const) {
         match (initial, ty) {
-            (Const::Scalar(Value::Bool(_)) | Const::Zero | Const::Text(_), _) => {}
+            (Const::Scalar(Value::Bool(_)) | Const::Zero, _) => {}
+            (Const::Text(it), _) if !self.is_written_somewhere(name) => {
+                self.near_to_text(name, it);
+            }
+            (Const::Text(_), _) => {}
             (Const::Scalar(it), _) if !self.is_written_somewhere(name) => self.near_to(name, *it),
             (Const::Scalar(_), _) => {}
             (Const::Array(runs), Type::Array(id)) => {
@@ -430,6 +457,11 @@ impl<'p> Walk<'p, '_> {
                 }
             }
             ExprKind::Apply(op, operands) => match operands.as_slice() {
+                [a, b] if let (ExprKind::ApplyText(TextOp::Compare, texts), Some(_)) = (&a.kind, number(b)) => {
+                    let is_exact = matches!(op, Op::Eq | Op::Ne);
+                    self.texts(&texts[0], &texts[1], is_exact);
+                    self.texts(&texts[1], &texts[0], is_exact);
+                }
                 [a, b] if compares(*op) => {
                     self.comparison(a, b);
                     self.comparison(b, a);
@@ -477,6 +509,20 @@ impl<'p> Walk<'p, '_> {
             }
         }
         found
+    }
+
+    /// A text as it is compared with another.
+    fn texts(&mut self, a: &Expr, b: &Expr, is_exact: bool) {
+        match (self.variable(a), &b.kind) {
+            (Some(name), ExprKind::Text(text)) => {
+                self.facts.near_to_text(name, text);
+                if is_exact { self.operand(a) } else { self.expr(a) }
+            }
+            (name, _) => {
+                self.facts.flows.extend(name.zip(self.variable(b)));
+                self.expr(a);
+            }
+        }
     }
 
     /// `a` as it is compared with `b`.

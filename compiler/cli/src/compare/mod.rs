@@ -237,7 +237,7 @@ fn world(pair: &mut Pair, args: &Compare) -> Result<World, String> {
     let facts = facts.each_ref();
     let mentioned = args.assume.as_deref().map(Mentioned::read).transpose()?.unwrap_or_default();
     let sources = alphabet::sources(pair, facts, &mentioned);
-    (pair.inputs, pair.kept, pair.texts) = (sources.inputs, sources.kept, sources.texts);
+    (pair.inputs, pair.kept) = (sources.inputs, sources.kept);
     let assumptions = args.assume.as_deref().map(|it| Assumptions::read(it, pair)).transpose()?.unwrap_or_default();
     pair.never.clone_from(&assumptions.never);
     let alphabet = Alphabet::of(pair, facts, &assumptions);

@@ -6,7 +6,7 @@ use super::tolerance::{Passed, Tolerance};
 use crate::machine::Native;
 use staunch_frontend::Dialect;
 use staunch_host::{Bookmark, Drive, Event, Machine, Snapshot};
-use staunch_ir::{Program, Value};
+use staunch_ir::{Chars, Program, Type, Value};
 use staunch_runtime::{Fault, FaultKind};
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -36,6 +36,24 @@ pub struct Input {
     pub scalars: [usize; 2],
     /// What it holds before anything sets it.
     pub initial: Value,
+    /// Of a string, those that are tried: a value is the position of one.
+    pub texts: Vec<Chars>,
+}
+
+impl Input {
+    /// A value of it as a stimulus takes it, but for quotes.
+    pub fn spelled(&self, program: &Program, ty: Type, value: Value) -> String {
+        self.text(value).map_or_else(|| scalar::spell(program, ty, value), Chars::text)
+    }
+
+    fn text(&self, value: Value) -> Option<&Chars> {
+        self.texts.get(usize::try_from(value.as_integer()?).ok()?)
+    }
+
+    /// Whether it starts with what all memory starts with.
+    pub fn starts_at_zero(&self) -> bool {
+        self.texts.first().map_or_else(|| self.initial == self.initial.repr().zero(), Chars::is_empty)
+    }
 }
 
 /// What comes before one scan: an event, and a value for each input.
@@ -55,6 +73,8 @@ impl Step {
 #[derive(Clone, Debug)]
 pub struct Row {
     pub event: Option<Event>,
+    /// What each input was given before the scan; the program may have written it since.
+    pub inputs: Vec<String>,
     pub states: [Vec<u8>; 2],
     pub faults: [Option<Fault>; 2],
 }
@@ -106,8 +126,6 @@ pub struct Pair {
     pub inputs: Vec<Input>,
     /// What keeps its first value, because nothing writes it, though the world outside might.
     pub kept: Vec<Input>,
-    /// Strings that nothing writes.
-    pub texts: Vec<Matched>,
     /// What is compared after each scan, in the order of the declarations.
     pub compared: Vec<Matched>,
     /// Counters that both sides have.
@@ -173,6 +191,15 @@ impl Side {
         self.drive.keeps(event, offset)
     }
 
+    fn write_text(&mut self, scalar: usize, text: &Chars) {
+        let Scalar { offset, size, .. } = self.scalars.all[scalar];
+        let mut bytes = vec![0; size];
+        text.write(&mut bytes);
+        if self.state()[offset..offset + size] != bytes {
+            self.machine.write(offset, &bytes);
+        }
+    }
+
     fn write(&mut self, offset: usize, value: Value) {
         let mut bytes = [0; 8];
         value.write(&mut bytes);
@@ -183,7 +210,7 @@ impl Side {
     }
 
     pub fn show(&self, scalar: usize, state: &[u8]) -> String {
-        scalar::show(&self.program, &self.scalars.all[scalar], state)
+        scalar::show(&self.program, &self.scalars, &self.scalars.all[scalar], state)
     }
 }
 
@@ -193,7 +220,6 @@ impl Pair {
             sides,
             inputs: Vec::new(),
             kept: Vec::new(),
-            texts: Vec::new(),
             compared: Vec::new(),
             counters: Vec::new(),
             outputs: Vec::new(),
@@ -235,7 +261,8 @@ impl Pair {
             let (x, y) = (self.scalar(0, a), self.scalar(1, b));
             let (offsets, size) = ([x.offset, y.offset], x.size);
             let reprs = [self.sides[0].program.repr(x.ty), self.sides[1].program.repr(y.ty)];
-            if reprs[0] != reprs[1] || size != y.size {
+            let is_reference = matches!(x.ty, Type::Reference(_));
+            if reprs[0] != reprs[1] || size != y.size || is_reference {
                 found.singles.push([a, b]);
                 continue;
             }
@@ -343,9 +370,17 @@ impl Pair {
         found
     }
 
+    fn given(&self, step: &Step) -> Vec<String> {
+        let program = &self.sides[0].program;
+        let spelled =
+            |(input, value): (&Input, &Value)| input.spelled(program, self.scalar(0, input.scalars[0]).ty, *value);
+        self.inputs.iter().zip(&step.inputs).map(spelled).collect()
+    }
+
     /// The first value of an input, as a trace shows it.
     pub fn shown(&self, input: &Input) -> String {
-        scalar::spell(&self.sides[0].program, self.scalar(0, input.scalars[0]).ty, input.initial)
+        let ty = self.scalar(0, input.scalars[0]).ty;
+        input.texts.first().map_or_else(|| scalar::spell(&self.sides[0].program, ty, input.initial), Chars::to_string)
     }
 
     /// The inputs' values before anything sets them.
@@ -426,7 +461,10 @@ impl Pair {
                 side.drive.start_again(event, &mut side.machine);
             }
             for (input, value) in inputs.iter().zip(&step.inputs) {
-                side.write(side.scalars.all[input.scalars[number]].offset, *value);
+                match input.text(*value) {
+                    Some(text) => side.write_text(input.scalars[number], text),
+                    None => side.write(side.scalars.all[input.scalars[number]].offset, *value),
+                }
             }
             number += 1;
             side.drive.scan(side.machine.compiled()).err()
@@ -467,7 +505,8 @@ impl Pair {
 
     fn equal(&self, [a, b]: Matched, states: [&[u8]; 2]) -> bool {
         let programs = [&self.sides[0].program, &self.sides[1].program];
-        scalar::equal(programs, [self.scalar(0, a), self.scalar(1, b)], states)
+        let all = [&self.sides[0].scalars, &self.sides[1].scalars];
+        scalar::equal(programs, all, [self.scalar(0, a), self.scalar(1, b)], states)
     }
 
     fn all_equal(&self, comparison: &Comparison) -> bool {
@@ -597,7 +636,7 @@ impl Pair {
         for step in steps {
             let faults = self.scan(step);
             let states = self.sides.each_ref().map(|it| it.state().to_vec());
-            rows.push(Row { event: step.event, states, faults });
+            rows.push(Row { event: step.event, inputs: self.given(step), states, faults });
             if faults.iter().any(Option::is_some) {
                 break;
             }

@@ -2,6 +2,7 @@
 
 use staunch_ir::layout::{Layout, usize_of};
 use staunch_ir::{ArrayId, BlockId, FieldId, Program, Retain, Section, StructId, Type, Value};
+use staunch_runtime::reference::{ORIGIN, Reference};
 use staunch_runtime::{Direction, Pin, PinRole};
 
 /// Further elements of an array are not compared.
@@ -81,6 +82,8 @@ pub struct Scalars {
     pub blocks: Vec<Instance>,
     /// There are more than are listed.
     pub truncated: bool,
+    /// Where each lies, in the order of the state.
+    by_offset: Vec<(usize, usize)>,
 }
 
 /// What is handed down from a variable to its parts.
@@ -110,7 +113,20 @@ impl Scalars {
             walk.structure(&prefix, program.class(instance.program).state, usize_of(*offset));
         }
         walk.structure("", program.globals, usize_of(machine.globals));
-        walk.found
+        let mut found = walk.found;
+        found.by_offset = found.all.iter().enumerate().map(|(at, it)| (it.offset, at)).collect();
+        found.by_offset.sort_unstable();
+        found
+    }
+
+    /// What a reference leads to, and how many bytes into it: two programs number and place their variables for themselves.
+    fn denoted(&self, bytes: &[u8]) -> Option<(&Scalar, usize)> {
+        let bits = u64::from_ne_bytes(bytes.try_into().ok()?);
+        let address = usize_of(Reference::from_bits(bits).address.into());
+        let offset = address.checked_sub(usize_of(ORIGIN.into()))?;
+        let at = self.by_offset.partition_point(|it| it.0 <= offset).checked_sub(1)?;
+        let scalar = &self.all[self.by_offset[at].1];
+        Some((scalar, offset - scalar.offset))
     }
 }
 
@@ -180,9 +196,16 @@ impl Walk<'_> {
     }
 
     fn members(&mut self, path: &str, id: StructId, whole: Whole) {
-        let is_inner = whole.at.is_inner || self.program.classes.iter().any(|it| it.state == id);
+        let is_class = self.program.classes.iter().any(|it| it.state == id);
+        let is_inner = whole.at.is_inner || is_class;
         for (at, field) in self.program.structure(id).fields.iter().enumerate() {
-            let role = if field.constant { Role::Hidden } else { whole.role };
+            // Of an instance, no one but itself writes what is neither input nor output.
+            let is_inside = is_class && !matches!(field.section, Section::Input | Section::Output);
+            let role = match whole.role {
+                _ if field.constant => Role::Hidden,
+                Role::Input if is_inside => Role::Variable,
+                role => role,
+            };
             let number = FieldId::next(at);
             let offset = whole.offset + usize_of(self.layout.field(id, number));
             let is_retained = match field.retain {
@@ -265,9 +288,13 @@ fn number(value: Value) -> Option<i128> {
     }
 }
 
-/// Whether two systems hold the same value, by its number and not by its bits.
-pub fn equal(programs: [&Program; 2], scalars: [&Scalar; 2], states: [&[u8]; 2]) -> bool {
+/// Whether two systems hold the same value, by its number and not by its bits; a reference by what it leads to.
+pub fn equal(programs: [&Program; 2], all: [&Scalars; 2], scalars: [&Scalar; 2], states: [&[u8]; 2]) -> bool {
     let [a, b] = [0, 1].map(|side| &states[side][scalars[side].offset..scalars[side].offset + scalars[side].size]);
+    if let [Type::Reference(_), Type::Reference(_)] = scalars.map(|it| it.ty) {
+        let denoted = |side: usize, bytes| all[side].denoted(bytes).map(|it| (it.0.key.as_str(), it.1));
+        return denoted(0, a) == denoted(1, b);
+    }
     let reprs = [0, 1].map(|side| programs[side].repr(scalars[side].ty));
     match reprs {
         [Some(x), Some(y)] if x != y => {
@@ -296,8 +323,15 @@ fn characters(ty: Type, bytes: &[u8]) -> String {
 }
 
 /// The value as a trace shows it.
-pub fn show(program: &Program, scalar: &Scalar, state: &[u8]) -> String {
+pub fn show(program: &Program, all: &Scalars, scalar: &Scalar, state: &[u8]) -> String {
     let bytes = &state[scalar.offset..scalar.offset + scalar.size];
+    if let Type::Reference(_) = scalar.ty {
+        return match all.denoted(bytes) {
+            Some((it, 0)) => it.path.clone(),
+            Some((it, further)) => format!("{}+{further}", it.path),
+            None => "NULL".to_owned(),
+        };
+    }
     match program.repr(scalar.ty) {
         Some(repr) => spell(program, scalar.ty, Value::read(repr, bytes)),
         None => characters(scalar.ty, bytes),

@@ -111,7 +111,7 @@ pub fn not_found(pair: &Pair, world: &World, outcome: &Outcome) -> Verdict {
         left.push(format!("combinations of inputs other than the {} that change few of them", alphabet.vectors.len()));
     }
     let untried = listed(alphabet::untried(pair).into_iter().map(str::to_owned));
-    left.extend(untried.map(|it| format!("inputs that are strings, or of another type on the other system: {it}")));
+    left.extend(untried.map(|it| format!("inputs that are references, or of another type on the other system: {it}")));
     if !pair.whole {
         left.push("elements of long arrays".to_owned());
     }

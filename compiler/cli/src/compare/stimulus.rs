@@ -3,7 +3,6 @@
 
 use super::Verdict;
 use super::pair::{Input, Pair, Row, Side};
-use super::scalar;
 use super::search::World;
 use super::trace::Trace;
 use crate::args::Compare;
@@ -23,6 +22,8 @@ struct Recorder<'s> {
 struct Recorded {
     now: i64,
     event: Option<Event>,
+    /// As the scan begins.
+    given: Vec<u8>,
     state: Vec<u8>,
     fault: Option<Fault>,
 }
@@ -45,12 +46,14 @@ impl Machine for Recorder<'_> {
     }
 
     fn scan(&mut self, instance: usize, cx: &Context) -> Result<(), Fault> {
+        let before = self.machine.state().to_vec();
         let result = self.machine.scan(instance, cx);
         // Programs that run at one time make one scan.
         let same = self.scans.pop_if(|it| it.now == cx.now());
-        let event = self.event.take().or(same.and_then(|it| it.event));
+        let event = self.event.take().or(same.as_ref().and_then(|it| it.event));
+        let given = same.map_or(before, |it| it.given);
         let state = self.machine.state().to_vec();
-        self.scans.push(Recorded { now: cx.now(), event, state, fault: result.err() });
+        self.scans.push(Recorded { now: cx.now(), event, given, state, fault: result.err() });
         result
     }
 }
@@ -63,7 +66,8 @@ pub fn follow(pair: &mut Pair, args: &Compare) -> Result<Verdict, String> {
     let mut rows = Vec::new();
     let count = a.len().max(b.len());
     for (a, b) in a.into_iter().zip(b) {
-        rows.push(Row { event: a.event, states: [a.state, b.state], faults: [a.fault, b.fault] });
+        let inputs = pair.inputs.iter().map(|it| pair.sides[0].show(it.scalars[0], &a.given)).collect();
+        rows.push(Row { event: a.event, inputs, states: [a.state, b.state], faults: [a.fault, b.fault] });
         if rows.last().is_some_and(|row| !pair.differences(row).is_empty() || pair.faults_differ(row.faults)) {
             return Ok(Verdict::Differs { rows, trace: None, shortest: false });
         }
@@ -95,7 +99,7 @@ fn name_columns(pair: &mut Pair, args: &Compare) {
     };
     let column = |name: String| {
         let scalars = [place(&pair.sides[0], &name)?, place(&pair.sides[1], &name)?];
-        Some(Input { scalars, initial: Value::Bool(false) })
+        Some(Input { scalars, initial: Value::Bool(false), texts: Vec::new() })
     };
     let found: Vec<Input> = names.filter_map(column).collect();
     if !found.is_empty() {
@@ -133,6 +137,7 @@ pub fn text(pair: &Pair, world: &World, trace: &Trace) -> String {
 }
 
 fn cell(pair: &Pair, input: &Input, value: Value) -> String {
-    let scalar = pair.scalar(0, input.scalars[0]);
-    scalar::spell(&pair.sides[0].program, scalar.ty, value)
+    let cell = input.spelled(&pair.sides[0].program, pair.scalar(0, input.scalars[0]).ty, value);
+    // In quotes an empty text is one.
+    if input.texts.is_empty() { cell } else { format!("\"{}\"", cell.replace('"', "\"\"")) }
 }

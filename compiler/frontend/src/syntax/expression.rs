@@ -123,7 +123,14 @@ fn reduce<'s>(input: &mut In<'_, '_, 's>, mut right: Expr<'s>, base: usize, powe
     {
         let height = state.height.max(waiting.height);
         input.grow(height)?;
-        right = join(waiting.left, waiting.op, waiting.sign, right);
+        // `a ^ b` may be a power, or the XOR of C: what it gives is not known.
+        let is_known = waiting.op != BinaryOp::Power || input.text(waiting.sign) != "^";
+        right = if is_known {
+            join(waiting.left, waiting.op, waiting.sign, right)
+        } else {
+            let span = waiting.left.span.to(right.span);
+            Expr { kind: ExprKind::Error(vec![waiting.left, right]), span }
+        };
     }
     Ok(right)
 }

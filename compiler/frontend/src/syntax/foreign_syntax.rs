@@ -56,8 +56,8 @@ fn kind_before(input: &mut In<'_, '_, '_>) -> Option<Kind> {
     input.state().tokens.kinds.get(at).copied()
 }
 
-/// Reports a body in braces, which the lexer took for a pragma, between the last token and the next.
-pub fn braces(input: &mut In<'_, '_, '_>, opened: Span) -> bool {
+/// Reports a body in braces, which the lexer took for a pragma, between the last token and the next, unless its head was.
+pub fn braces(input: &mut In<'_, '_, '_>, opened: Span, reports: bool) -> bool {
     let (last, here) = (input.last(), input.here());
     let state = input.state();
     let pragmas = &state.tokens.pragmas;
@@ -67,7 +67,7 @@ pub fn braces(input: &mut In<'_, '_, '_>, opened: Span) -> bool {
     state.braces.push(span);
     let again = state.braced.contains(&opened);
     state.braced.push(opened);
-    if !again {
+    if !again && reports {
         let word = input.text(opened).to_ascii_uppercase();
         let shape = match word.as_str() {
             "IF" | "ELSIF" => "IF … THEN … END_IF",
@@ -116,6 +116,28 @@ pub fn counting_loop(input: &mut In<'_, '_, '_>) -> bool {
     input.report(
         Diagnostic::new(Code::E0020, span, "a FOR loop counts from one value to another")
             .label("expected a counter, `:=`, the first value, `TO` and the last")
+            .help("write `FOR i := 0 TO 9 DO … END_FOR`"),
+    );
+    true
+}
+
+/// `FOR x IN list`
+pub fn loop_over_a_list(input: &mut In<'_, '_, '_>, opened: Span) -> bool {
+    if !input.is_word("IN") {
+        return false;
+    }
+    let span = input.take();
+    let mut ahead = 0;
+    while !matches!(input.kind_ahead(ahead), Kind::Colon | Kind::Do | Kind::Semicolon | Kind::End) {
+        ahead += 1;
+    }
+    if input.kind_ahead(ahead) == Kind::Colon {
+        // Of Python, where nothing ends it.
+        input.state().braced.push(opened);
+    }
+    input.report(
+        Diagnostic::new(Code::E0020, span, "a FOR loop counts from one value to another")
+            .label("expected `:=`, the first value, `TO` and the last")
             .help("write `FOR i := 0 TO 9 DO … END_FOR`"),
     );
     true

@@ -281,28 +281,32 @@ pub fn skip_head(input: &mut In<'_, '_, '_>) {
     }
 }
 
-/// THEN, DO or OF. Another of them in its place is taken for it.
-pub fn missing_word(input: &mut In<'_, '_, '_>, word: Kind, opened: Span) {
+/// THEN, DO or OF. Another of them in its place is taken for it. Whether what is before it was read whole.
+pub fn missing_word(input: &mut In<'_, '_, '_>, word: Kind, opened: Span) -> bool {
     if diagnostics::swallowed(input) || input.kind() == Kind::End {
-        return;
+        return true;
     }
     foreign_syntax::extra_brackets(input, word);
     if input.eat(word).is_some() {
-        return;
+        return true;
     }
     if is_nearly(input, word) {
         let span = input.take();
-        return diagnostics::misspelt_keyword(input, word, span);
+        diagnostics::misspelt_keyword(input, word, span);
+        return true;
     }
     if input.kind() == Kind::Semicolon && input.kind_ahead(1) == word {
-        return extra_semicolon(input, word);
+        extra_semicolon(input, word);
+        return true;
     }
     if misspelt::is_misspelt_then(input, word) {
         let span = input.take();
-        return diagnostics::misspelt_keyword(input, word, span);
+        diagnostics::misspelt_keyword(input, word, span);
+        return true;
     }
     if let Some(ahead) = on_this_line(input, word) {
-        return missing_operator(input, word, ahead);
+        missing_operator(input, word, ahead);
+        return false;
     }
     let opener = input.text(opened).to_ascii_uppercase();
     let kind = input.kind();
@@ -326,6 +330,7 @@ pub fn missing_word(input: &mut In<'_, '_, '_>, word: Kind, opened: Span) {
     };
     let word = word.keyword().unwrap_or_default();
     input.report(it.other(opened, format!("this {opener} needs {}", crate::diagnostic::wording::article(word))));
+    true
 }
 
 /// Whether the current token is `word` with a slip: `THNE`.
@@ -359,10 +364,16 @@ fn on_this_line(input: &mut In<'_, '_, '_>, word: Kind) -> Option<usize> {
 fn missing_operator(input: &mut In<'_, '_, '_>, word: Kind, ahead: usize) {
     let (kind, here) = (input.kind(), input.here());
     let found = diagnostics::shown(input, kind, here);
+    let help = match input.text(here).to_ascii_uppercase().as_str() {
+        "IS" => "two values are compared by `=` and `<>`",
+        "IN" => "join comparisons: `x = 1 OR x = 2`, or write a CASE",
+        "BETWEEN" => "join two comparisons: `x >= 1 AND x <= 5`",
+        _ => "write `AND` or `OR` between two conditions",
+    };
     input.report(
         Diagnostic::new(Code::E0001, here, format!("expected an operator or {word}, found {found}"))
             .label("expected an operator before this")
-            .help("write `AND` or `OR` between two conditions"),
+            .help(help),
     );
     for _ in 0..=ahead {
         input.take();

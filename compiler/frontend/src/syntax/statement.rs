@@ -10,7 +10,7 @@ use crate::{
 use super::{
     block_ends, declaration, diagnostics,
     expression::{condition, expression, is_latch, postfix},
-    foreign_syntax, misspelt, mock,
+    foreign_statement, foreign_syntax, misspelt, mock,
     parser::{Expected, In, Parsed, Problem, TokenReader, too_long},
     recovery, routine,
     token_class::{closes, ends_statements, opens_statement},
@@ -31,6 +31,9 @@ fn list<'s>(
     ends: impl Fn(&mut In<'_, '_, 's>) -> bool,
 ) {
     loop {
+        if foreign_statement::skip(input) {
+            continue;
+        }
         match input.kind() {
             // A run of `;` means no more than one.
             Kind::Semicolon => {
@@ -295,10 +298,12 @@ fn header<'s, T>(
 ) -> Option<T> {
     let opened = input.last();
     let result = part(input);
+    let is_reported = matches!(&result, Err(problem) if problem.expected == Expected::Reported);
     match &result {
         Ok(_) if input.eat(ends).is_some() => {}
-        _ if foreign_syntax::braces(input, opened) => {}
-        Ok(_) => recovery::missing_word(input, ends, opened),
+        _ if foreign_syntax::braces(input, opened, !is_reported) => {}
+        Ok(_) if !recovery::missing_word(input, ends, opened) => return None,
+        Ok(_) => {}
         Err(problem) => {
             diagnostics::report(input, *problem);
             recovery::skip_header(input, ends, opened);
@@ -336,7 +341,7 @@ fn if_statement<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
             let colon = input.take();
             input.report(diagnostics::colon_behind_else(colon));
         } else if input.state().braced.contains(&opened) {
-            foreign_syntax::braces(input, opened);
+            foreign_syntax::braces(input, opened, true);
         }
         let body = body(input, opened);
         otherwise.get_or_insert(body);
@@ -468,6 +473,9 @@ fn for_loop<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
             return Err(Problem::REPORTED);
         }
         let counter = postfix(input)?;
+        if foreign_syntax::loop_over_a_list(input, opened) {
+            return Err(Problem::REPORTED);
+        }
         if let Some(sign) = input.eat(Kind::Equal) {
             let it = diagnostics::equal_for_assign(sign, "=");
             input.report(it);

@@ -102,10 +102,9 @@ impl Report<'_> {
 
     /// The inputs that change, or all of them.
     fn inputs(&self, pair: &Pair, rows: &[Row]) -> Vec<usize> {
-        let value = |row: &Row, at: usize| pair.sides[0].show(pair.inputs[at].scalars[0], &row.states[0]);
         let changes = |at: &usize| {
             let initial = pair.sides[0].show(pair.inputs[*at].scalars[0], pair.start()[0]);
-            rows.iter().any(|row| value(row, *at) != initial)
+            rows.iter().any(|row| row.inputs[*at] != initial)
         };
         let all = 0..pair.inputs.len();
         // Few are shown whole, so that a table does not look as if it had none.
@@ -116,7 +115,7 @@ impl Report<'_> {
     pub(super) fn lines(&self, pair: &Pair, rows: &[Row], inputs: &[usize], shown: &[Matched]) -> Vec<Option<Line>> {
         let mut lines = Vec::new();
         let mut next = 0;
-        let told = if self.args.shows_every_scan() { (0..rows.len()).collect() } else { telling(pair, rows) };
+        let told = if self.args.shows_every_scan() { (0..rows.len()).collect() } else { telling(rows) };
         for at in told {
             if at > next {
                 lines.push(None);
@@ -143,15 +142,14 @@ impl Report<'_> {
 
 /// Which rows tell the story: all of a short trace; of a longer one those in which an input
 /// changes, and the two at its end.
-fn telling(pair: &Pair, rows: &[Row]) -> Vec<usize> {
+fn telling(rows: &[Row]) -> Vec<usize> {
     if rows.len() <= HEAD + TAIL + 1 {
         return (0..rows.len()).collect();
     }
-    let inputs = |row: &Row| pair.inputs.iter().map(|it| pair.sides[0].show(it.scalars[0], &row.states[0])).collect();
-    let mut before: Vec<String> = Vec::new();
+    let mut before: &[String] = &[];
     let mut told = Vec::new();
     for (at, row) in rows.iter().enumerate() {
-        let now: Vec<String> = inputs(row);
+        let now = row.inputs.as_slice();
         if now != before || row.event.is_some() || at + 2 >= rows.len() {
             told.push(at);
         }
@@ -169,7 +167,7 @@ impl Line {
         Self {
             scan,
             event: row.event,
-            inputs: inputs.iter().map(|it| show(0, pair.inputs[*it].scalars[0])).collect(),
+            inputs: inputs.iter().map(|it| row.inputs[*it].clone()).collect(),
             cells: shown.iter().map(|[a, b]| [show(0, *a), show(1, *b)]).collect(),
         }
     }

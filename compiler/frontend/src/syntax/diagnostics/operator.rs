@@ -26,6 +26,7 @@ pub fn foreign_operator(input: &mut In<'_, '_, '_>, kind: Kind, op: BinaryOp, si
         .help(format!("write `{ours}`"))
         .fix(sign, replacement);
     match op {
+        BinaryOp::Power => it = it.note("bits and BOOLs that differ are joined by `XOR`"),
         BinaryOp::And => it = it.note("`AND_THEN` evaluates its right side only when it is needed"),
         BinaryOp::Or => it = it.note("`OR_ELSE` evaluates its right side only when it is needed"),
         _ => {}

@@ -212,7 +212,7 @@ fn habits_of_other_languages() {
            } else {
              x = 2;
            }
-           for (i = 0; i < 10; i++) { // E0020 E0020
+           for (i = 0; i < 10; i++) { // E0020
              x += 1;
            }
            if a then begin // E0020

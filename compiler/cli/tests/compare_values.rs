@@ -1,0 +1,175 @@
+//! Values that are no numbers: texts as inputs, references, and instances that a PROGRAM is given.
+
+use std::path::PathBuf;
+use std::process::Command;
+
+fn folder() -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("compare_values");
+    std::fs::create_dir_all(&folder).expect("a folder for the programs");
+    folder
+}
+
+fn written(name: &str, text: &str) -> String {
+    let path = folder().join(name);
+    std::fs::write(&path, text).expect("a file");
+    path.display().to_string()
+}
+
+fn compare(path: &str, (from, to): (&str, &str), more: &[&str]) -> (Option<i32>, String) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
+    command.args(["compare", path, "--from", from, "--to", to, "-A", "warnings", "--budget", "400000"]);
+    let output = command.args(more).env("NO_COLOR", "1").output().expect("the command starts");
+    let text = [output.stdout, output.stderr].concat();
+    (output.status.code(), String::from_utf8_lossy(&text).into_owned())
+}
+
+fn order(name: &str, declared: &str, condition: &str) -> String {
+    let body = format!("IF {condition} THEN c(CU := part, PV := 3); END_IF\nn := c.CV;");
+    let text = format!(
+        "PROGRAM p\nVAR_INPUT part : BOOL; END_VAR\nVAR_OUTPUT n : INT; END_VAR\nVAR c : CTU; END_VAR\n{declared}\n{body}\nEND_PROGRAM\n"
+    );
+    written(name, &text)
+}
+
+/// A counter that only a text lets count: trap 1 shows in its second scan.
+#[test]
+fn a_text_is_one_that_the_program_compares_it_with() {
+    let asked = [
+        ("literal.st", "VAR_INPUT code : STRING[20]; END_VAR", "code = 'START'"),
+        ("wide.st", "VAR_INPUT code : WSTRING[20]; END_VAR", "\"START\" = code"),
+        ("other.st", "VAR_INPUT code : STRING[20] := 'STOP'; END_VAR", "code <> 'STOP'"),
+        ("none.st", "VAR_INPUT code : STRING[20] := 'STOP'; END_VAR", "code = ''"),
+        ("ordered.st", "VAR_INPUT code : STRING[20]; END_VAR", "code > 'M'"),
+        ("length.st", "VAR_INPUT code : STRING[20]; END_VAR", "LEN(code) > 15"),
+        (
+            "constant.st",
+            "VAR_INPUT code : STRING[20]; END_VAR VAR wanted : STRING[20] := 'GO'; END_VAR",
+            "code = wanted",
+        ),
+        ("outside.st", "VAR code : STRING[20]; END_VAR", "code = 'START'"),
+    ];
+    for (name, declared, condition) in asked {
+        let assumed = written("input.txt", "input code\n");
+        let (code, text) = compare(&order(name, declared, condition), ("iec", "cscape"), &["--assume", &assumed]);
+        assert!(code == Some(1) && text.contains("differ after 2 scans"), "{name}: {text}");
+    }
+}
+
+/// Where it is only asked whether a text is equal to some, one that is none of them stands for all.
+#[test]
+fn texts_that_are_compared_alone_are_covered() {
+    let with = |name: &str, condition: &str, line: &str, systems| {
+        let source = order(name, "VAR_INPUT code : STRING[20]; END_VAR", condition);
+        compare(&source, systems, &["--assume", &written("assumed.txt", line)])
+    };
+    let (code, text) = with("equal.st", "code = 'START'", "code <> 'START'\n", ("iec", "cscape"));
+    assert!(code == Some(0) && text.contains("that the program compares code with"), "{text}");
+    let (code, text) = with("parts.st", "LEFT(code, 2) = 'ST'", "not part\n", ("iec", "cscape"));
+    assert!(code == Some(4) && text.contains("values of code other than the"), "{text}");
+    let (code, text) = with("unknown.st", "code = 'START'", "code = 'STOP'\n", ("iec", "cscape"));
+    assert!(code == Some(2) && text.contains("it is not tried with 'STOP', but with"), "{text}");
+    let (_, text) = with("order.st", "code = 'START'", "code < 'START'\n", ("iec", "cscape"));
+    assert!(text.contains("`code` is a string: it is compared by `=` and `<>`"), "{text}");
+    let (_, text) = with("range.st", "code = 'START'", "code 'A'..'B'\n", ("iec", "cscape"));
+    assert!(text.contains("`code` is a string, which has no range"), "{text}");
+    let (_, text) = with("open.st", "code = 'START'", "code = 'START\n", ("iec", "cscape"));
+    assert!(text.contains("a ' that closes the text is missing"), "{text}");
+}
+
+/// The same trace comes back from a file: a text with all that a cell may hold.
+#[test]
+fn a_text_goes_through_a_stimulus() {
+    let source = order("saved.st", "VAR_INPUT code : STRING[20]; END_VAR", "code = 'a,\"b\"; c'");
+    let saved = folder().join("saved.csv").display().to_string();
+    let (_, first) = compare(&source, ("iec", "cscape"), &["--save-stimulus", &saved]);
+    assert_eq!(
+        std::fs::read_to_string(&saved).ok().as_deref(),
+        Some("scan,part,code\n1,TRUE,\"a,\"\"b\"\"; c\"\n2,TRUE,\"a,\"\"b\"\"; c\"\n"),
+        "{first}"
+    );
+    let (code, again) = compare(&source, ("iec", "cscape"), &["--stimulus", &saved]);
+    assert!(code == Some(1) && again.contains("differ after 2 scans"), "{again}");
+}
+
+/// A text that one system's type is too short for may differ: only what both hold is tried.
+#[test]
+fn texts_of_two_lengths_are_not_covered_where_they_are_handed_on() {
+    let with = |name: &str, declared: &str, condition: &str| {
+        let source = order(name, declared, condition);
+        compare(&source, ("iec", "cscape"), &["--assume", &written("no_part.txt", "not part\n")])
+    };
+    let (code, text) = with("asked.st", "VAR_INPUT code : STRING; END_VAR", "code = 'START'");
+    assert_eq!(code, Some(0), "{text}");
+    let declared = "VAR_INPUT code : STRING; END_VAR VAR last : STRING; END_VAR\nlast := code;";
+    let (code, text) = with("handed_on.st", declared, "last = 'START'");
+    assert!(code == Some(4) && text.contains("values of code other than the"), "{text}");
+}
+
+const REFERRING: &str = "PROGRAM p
+VAR_INPUT left : BOOL; END_VAR
+VAR_OUTPUT n : INT; END_VAR
+VAR DECLARED END_VAR
+IF left THEN lead := ADR(a); ELSE lead := ADR(b); END_IF
+lead^ := (lead^ + 1) MOD 3;
+n := a;
+END_PROGRAM
+";
+
+/// Where variables are is each program's own; what a pointer leads to is compared.
+#[test]
+fn references_are_compared_by_what_they_lead_to() {
+    let first = "lead : POINTER TO INT; a, b : INT;";
+    let of = |name: &str, declared: &str| written(name, &REFERRING.replace("DECLARED", declared));
+    let systems = ("codesys", "codesys");
+    let original = of("here.st", first);
+    let moved = of("there.st", "more : LREAL; b, a : INT; lead : POINTER TO INT;");
+    let (code, text) = compare(&original, systems, &["--against", &moved]);
+    assert_eq!(code, Some(0), "{text}");
+    let turned = written("turned.st", &REFERRING.replace("DECLARED", first).replace("IF left", "IF NOT left"));
+    let (code, text) = compare(&original, systems, &["--against", &turned, "--vars", "lead"]);
+    assert!(code == Some(1) && text.contains("FALSE             b             a ◀"), "{text}");
+    let long = of("long.st", "s : STRING; lead : POINTER TO INT; a, b : INT;");
+    let (code, text) = compare(&long, ("codesys", "iec"), &["--assume", &written("no_run.txt", "no run\n")]);
+    assert!(code == Some(0) && !text.contains("`lead`"), "{text}");
+}
+
+/// The world outside has no address to give: such an input is said to be untried.
+#[test]
+fn a_reference_as_input_is_not_tried() {
+    let text = "PROGRAM p\nVAR_INPUT lead : POINTER TO INT; END_VAR\nVAR_OUTPUT n : BOOL; END_VAR\nn := lead <> 0;\nEND_PROGRAM\n";
+    let (code, text) =
+        compare(&written("given.st", text), ("codesys", "iec"), &["--assume", &written("r.txt", "no run\n")]);
+    assert!(
+        code == Some(4) && text.contains("inputs that are references, or of another type on the other system: lead"),
+        "{text}"
+    );
+}
+
+/// Of an instance that a PROGRAM is given, the inputs and outputs come from outside, and its memory does not.
+#[test]
+fn the_memory_of_an_instance_is_no_input() {
+    let text = "FUNCTION_BLOCK Station
+VAR_INPUT start : BOOL; END_VAR
+VAR_OUTPUT n : INT; END_VAR
+VAR c : CTU; armed : BOOL; END_VAR
+c(CU := start AND armed, PV := 3);
+n := c.CV;
+END_FUNCTION_BLOCK
+PROGRAM p
+VAR_INPUT s : Station; part : BOOL; END_VAR
+VAR_OUTPUT total : INT; END_VAR
+s(start := part);
+total := s.n;
+END_PROGRAM
+";
+    let (code, found) = compare(&written("station.st", text), ("iec", "cscape"), &[]);
+    assert_eq!(code, Some(0), "{found}");
+    let armed = written("armed.st", &text.replace("armed : BOOL", "armed : BOOL := TRUE"));
+    let (code, found) = compare(&armed, ("iec", "cscape"), &[]);
+    assert!(code == Some(1) && !found.contains("s.armed"), "{found}");
+    let reads = text
+        .replace("s(start := part);\n", "")
+        .replace("total := s.n", "IF s.start AND part THEN total := s.n; END_IF");
+    let (_, found) = compare(&written("reads.st", &reads), ("iec", "openplc"), &[]);
+    assert!(found.contains("compares s.n with; nothing writes s.armed (FALSE)"), "{found}");
+}
