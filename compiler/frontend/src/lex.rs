@@ -8,9 +8,7 @@ mod declared;
 mod kind;
 mod literal;
 
-pub use condition::Subject;
-pub use conditional::Known;
-pub use declared::{Declaration, Declared, Scope};
+pub use declared::{Declaration, Declared, Known, Scope, Subject};
 pub use kind::Kind;
 pub use literal::{Fault, date, duration, integer, real, string};
 

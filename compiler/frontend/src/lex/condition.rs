@@ -1,6 +1,6 @@
 //! What `{IF …}` asks for: what is defined, and what is declared.
 
-use super::declared::Declared;
+use super::declared::{Declared, Question, Subject};
 use crate::source::Span;
 
 /// A condition, as CODESYS and TwinCAT have them.
@@ -14,27 +14,6 @@ pub enum Condition<'s> {
     Not(Box<Condition<'s>>),
     And(Box<Condition<'s>>, Box<Condition<'s>>),
     Or(Box<Condition<'s>>, Box<Condition<'s>>),
-}
-
-/// What is asked of the declarations of a program.
-#[derive(Clone, Copy)]
-pub enum Question<'s> {
-    /// `defined(variable: x)`, `defined(type: T)` and their like.
-    Is(Subject, &'s str),
-    /// `hasattribute(pou: P, 'a')`
-    HasAttribute(Subject, &'s str, &'s str),
-    /// `hastype(variable: x, LREAL)`
-    HasType(&'s str, &'s str),
-    /// `hasconstantvalue(SIZE, 4, >=)`
-    HasConstantValue(&'s str, &'s str, &'s str),
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Subject {
-    Variable,
-    Type,
-    Pou,
-    Task,
 }
 
 /// What is known where a condition is read.

@@ -3,7 +3,7 @@
 
 use super::Tokens;
 use super::condition::{Condition, Facts, condition};
-use super::declared::Declared;
+use super::declared::Known;
 use crate::ast::Name;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
@@ -27,16 +27,6 @@ enum Word<'s> {
     Elsif(Option<Condition<'s>>),
     Else,
     EndIf,
-}
-
-/// What is known of what a program declares.
-#[derive(Clone, Copy)]
-pub enum Known<'k, 's> {
-    /// Not yet: parts that it decides are left out, and where it would is noted.
-    Later,
-    /// It is not asked for: each part is kept that it may decide.
-    Never,
-    All(&'k Declared<'s>),
 }
 
 /// Takes out what is not compiled, where the project has defined some names already.

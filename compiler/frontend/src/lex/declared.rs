@@ -1,8 +1,38 @@
 //! What a program declares, as far as `{IF …}` asks for it.
 
-use super::condition::{Question, Subject};
 use crate::source::Span;
 use staunch_runtime::literal;
+
+/// What is known of what a program declares.
+#[derive(Clone, Copy)]
+pub enum Known<'k, 's> {
+    /// Not yet: parts that it decides are left out, and where it would is noted.
+    Later,
+    /// It is not asked for: each part is kept that it may decide.
+    Never,
+    All(&'k Declared<'s>),
+}
+
+/// What is asked of the declarations of a program.
+#[derive(Clone, Copy)]
+pub enum Question<'s> {
+    /// `defined(variable: x)`, `defined(type: T)` and their like.
+    Is(Subject, &'s str),
+    /// `hasattribute(pou: P, 'a')`
+    HasAttribute(Subject, &'s str, &'s str),
+    /// `hastype(variable: x, LREAL)`
+    HasType(&'s str, &'s str),
+    /// `hasconstantvalue(SIZE, 4, >=)`
+    HasConstantValue(&'s str, &'s str, &'s str),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Subject {
+    Variable,
+    Type,
+    Pou,
+    Task,
+}
 
 /// The declarations of all files.
 #[derive(Default)]
