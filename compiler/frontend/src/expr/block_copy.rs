@@ -82,8 +82,12 @@ impl<'s> Checker<'_, 's> {
         let Some((instruction, names)) = instruction(name.text) else { return false };
         let is_known =
             self.scope.get(name.text).is_some() || self.decl.lookup(&[*name], Sense::Callee) != Meant::Nothing;
-        if is_known || self.decl.dialect(name.span).family() != Family::Logix || self.signature.is_none() {
+        if is_known || self.decl.dialect(name.span).family() != Family::Logix {
             return false;
+        }
+        // A constant is wanted: who asked says that this is no value.
+        if self.signature.is_none() {
+            return true;
         }
         if let Instruction::Service(service) = instruction {
             self.report(crate::syntax::controller_service(name.span, name.text, service));
