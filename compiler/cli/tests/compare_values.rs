@@ -173,3 +173,18 @@ END_PROGRAM
     let (_, found) = compare(&written("reads.st", &reads), ("iec", "openplc"), &[]);
     assert!(found.contains("compares s.n with; nothing writes s.armed (FALSE)"), "{found}");
 }
+
+/// A member of an element of an array is named by its own declaration, as any variable.
+#[test]
+fn a_member_of_an_element_is_a_finding_of_its_own() {
+    let text = "TYPE Row : STRUCT sum : DINT; END_STRUCT END_TYPE
+PROGRAM p
+VAR_INPUT a, b : INT; END_VAR
+VAR rows : ARRAY[1..2] OF Row; END_VAR
+rows[1].sum := a + b;
+END_PROGRAM
+";
+    let (code, text) =
+        compare(&written("rows.st", text), ("iec", "codesys"), &["--assume", &written("n.txt", "no run\n")]);
+    assert!(code == Some(1) && text.contains("`rows[1].sum` (width, ") && !text.contains("(variable, "), "{text}");
+}

@@ -2,9 +2,10 @@
 //! combinations of them.
 
 use super::assume::{Assumptions, Mentioned};
-use super::facts::{Facts, Name, Numbers};
+use super::facts::{Facts, Numbers};
 use super::pair::{Input, Matched, Pair};
 use super::scalar::{Role, Scalar};
+use super::walked::Name;
 use staunch_ir::{Chars, Elementary, Program, Repr, Type, Value};
 use staunch_runtime::StringType;
 use std::collections::HashSet;

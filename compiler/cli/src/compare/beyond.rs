@@ -3,10 +3,11 @@
 
 use super::pair::{Matched, Pair};
 use super::scalar::{Instance, Role};
+use super::walked::{Name, Walked};
 use staunch_host::Event;
 use staunch_ir::{
-    Block, Expr, ExprKind, FieldId, Location, Place, Program, Projection, Root, Routine, Statement, StatementKind,
-    StructId, visit,
+    Block, Expr, ExprKind, FieldId, Location, Place, Program, Routine, RoutineId, Statement, StatementKind, StructId,
+    visit,
 };
 use std::collections::{BTreeMap, HashSet};
 
@@ -120,9 +121,10 @@ pub fn location(program: &Program, (owner, field): Declared) -> Location {
 pub fn computed_apart(pair: &Pair) -> Vec<Candidate> {
     let [ours, theirs] = pair.sides.each_ref().map(|it| &it.program);
     let mut targets: BTreeMap<Declared, Location> = BTreeMap::new();
-    for a in &ours.routines {
+    for (at, a) in ours.routines.iter().enumerate() {
         if let Some(b) = theirs.routines.iter().find(|it| it.name == a.name && it.kind == a.kind) {
-            Walk { program: ours, routine: a, found: &mut targets }.blocks(&a.body, &b.body, None);
+            Walk { program: ours, routine: a, id: RoutineId::next(at), found: &mut targets }
+                .blocks(&a.body, &b.body, None);
         }
     }
     let variables = pair.matched(|it| it.role == Role::Variable).into_iter();
@@ -155,6 +157,7 @@ pub fn held_apart(pair: &Pair) -> Vec<Candidate> {
 struct Walk<'p, 'f> {
     program: &'p Program,
     routine: &'p Routine,
+    id: RoutineId,
     found: &'f mut BTreeMap<Declared, Location>,
 }
 
@@ -178,28 +181,12 @@ impl Walk<'_, '_> {
         }
     }
 
-    /// The variable that a place is a part of.
+    /// The variable that a place is; what a reference leads to is not the one that holds it.
     fn declared(&self, place: &Place) -> Option<Declared> {
-        let mut owner = match place.root {
-            Root::Instance => self.routine.state,
-            Root::Globals => Some(self.program.globals),
-            Root::Local(_) | Root::Param(_) => None,
-        };
-        let mut found = None;
-        // What a reference leads to is not the variable that holds it.
-        if place.is_followed() {
-            return None;
+        match Walked::of(self.program, (self.routine, self.id), place).variable()? {
+            Name::Field(owner, field) => Some((owner, field)),
+            Name::Local(..) | Name::Param(..) => None,
         }
-        for projection in &place.projections {
-            if let (Projection::Field(field), Some(structure)) = (projection, owner) {
-                found = Some((structure, *field));
-                owner = match self.program.structure(structure).fields[field.index()].ty {
-                    staunch_ir::Type::Struct(inner) => Some(inner),
-                    _ => None,
-                };
-            }
-        }
-        found
     }
 }
 

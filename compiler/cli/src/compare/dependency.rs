@@ -1,11 +1,11 @@
 //! What may come to differ because a variable or block does: all that its value decides, through assignments,
 //! conditions, calls and references. Variables are told apart by their declarations.
 
-use super::facts::Name;
+use super::walked::{Name, Walked};
 use staunch_ir::visit::{self, Access};
 use staunch_ir::{
-    Argument, FieldId, ParamId, Place, Program, Projection, Root, Routine, RoutineId, Statement, StatementKind,
-    StructId, Type, reference,
+    Argument, FieldId, ParamId, Place, Program, Root, Routine, RoutineId, Statement, StatementKind, StructId, Type,
+    reference,
 };
 use std::collections::{HashMap, HashSet};
 
@@ -173,26 +173,7 @@ impl Walk<'_, '_> {
 
     /// The variables that a place is a part of, the innermost last; whether it leads through a reference.
     fn names(&self, place: &Place) -> (Vec<Name>, bool) {
-        let mut names: Vec<Name> = match place.root {
-            Root::Instance | Root::Globals => Vec::new(),
-            Root::Local(id) => vec![Name::Local(self.id, id)],
-            Root::Param(id) => vec![Name::Param(self.id, id)],
-        };
-        let Some(mut ty) = self.program.root_type(self.routine, place.root) else { return (names, false) };
-        for projection in &place.projections {
-            ty = match (projection, ty) {
-                (Projection::Field(field), Type::Struct(id)) => {
-                    names.push(Name::Field(id, *field));
-                    match self.program.member(ty, *field) {
-                        Some(it) => it,
-                        None => return (names, false),
-                    }
-                }
-                (Projection::Index { .. }, Type::Array(id)) => self.program.array(id).element,
-                (Projection::Deref { .. }, _) => return (names, true),
-                (Projection::Field(_) | Projection::Index { .. }, _) => return (names, false),
-            };
-        }
-        (names, false)
+        let walked = Walked::of(self.program, (self.routine, self.id), place);
+        (walked.names, walked.is_followed)
     }
 }

@@ -1,23 +1,15 @@
 //! What a program's statements say of its inputs: the constants that each is compared with, and
 //! whether it is compared with constants alone.
 //!
-//! Variables are told apart by their declarations: all elements of an array are one, and so are a
-//! member of all instances of a block. What is found for one holds for each.
+//! Variables are told apart by their declarations. What is found for one holds for each.
 
 use super::scalar::Way;
+use super::walked::{Name, Walked};
 use staunch_ir::{
-    Argument, Block, Chars, Const, Conversion, Expr, ExprKind, FieldId, LocalId, Mode, Op, ParamId, Place, Program,
-    Projection, Root, Routine, RoutineId, Statement, StatementKind, Step, StructId, TextOp, Type, Value, visit,
+    Argument, Block, Chars, Const, Conversion, Expr, ExprKind, FieldId, Mode, Op, ParamId, Place, Program, Projection,
+    Root, Routine, RoutineId, Statement, StatementKind, Step, StructId, TextOp, Type, Value, visit,
 };
 use std::collections::{BTreeSet, HashMap, HashSet};
-
-/// A variable, by its declaration.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Name {
-    Field(StructId, FieldId),
-    Local(RoutineId, LocalId),
-    Param(RoutineId, ParamId),
-}
 
 /// Numbers that a variable is worth comparing with; reals keep their order.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -265,24 +257,7 @@ struct Walk<'p, 'f> {
 impl<'p> Walk<'p, '_> {
     /// The innermost declaration that a place is an element of; a pin of a block is none.
     fn name(&self, place: &Place) -> Option<Name> {
-        let mut ty = self.program.root_type(self.routine, place.root)?;
-        let mut name = match place.root {
-            Root::Instance | Root::Globals => None,
-            Root::Local(id) => Some(Name::Local(self.id, id)),
-            Root::Param(id) => Some(Name::Param(self.id, id)),
-        };
-        for projection in &place.projections {
-            ty = match (projection, ty) {
-                (Projection::Field(field), Type::Struct(id)) => {
-                    name = Some(Name::Field(id, *field));
-                    self.program.member(ty, *field)?
-                }
-                (Projection::Field(_), _) => return None,
-                (Projection::Index { .. }, Type::Array(id)) => self.program.array(id).element,
-                (Projection::Index { .. } | Projection::Deref { .. }, _) => return None,
-            };
-        }
-        name
+        Walked::of(self.program, (self.routine, self.id), place).variable()
     }
 
     /// The variable whose value an expression is, unchanged but for a wider type.

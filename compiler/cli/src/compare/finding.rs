@@ -2,7 +2,6 @@
 
 use super::accept::Accepted;
 use super::beyond::{self, Kind};
-use super::facts::Name;
 use super::pair::{Matched, Pair};
 use super::pitfall::{self, Cause, Habits, Pitfall, Use};
 use super::scalar::Role;
@@ -10,6 +9,7 @@ use super::search::{Outcome, Subject, World};
 use super::shrink::{self, Goal};
 use super::trace::Trace;
 use super::usage::{self, Usage};
+use super::walked::Name;
 use staunch_host::Event;
 use staunch_ir::Location;
 use staunch_runtime::PinRole;

@@ -13,6 +13,7 @@ mod scalar;
 
 mod facts;
 mod usage;
+mod walked;
 
 mod beyond;
 

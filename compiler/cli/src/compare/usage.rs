@@ -1,10 +1,8 @@
 //! How a program uses its counters: presets that are constants, counters that their own outputs
 //! reset or feed.
 
-use super::facts::Name;
-use staunch_ir::{
-    BlockId, Expr, FieldId, Place, Program, Projection, Root, Routine, RoutineId, StatementKind, Type, Value, visit,
-};
+use super::walked::{Name, Walked};
+use staunch_ir::{BlockId, Expr, FieldId, Place, Program, Routine, RoutineId, StatementKind, Type, Value, visit};
 use staunch_runtime::PinRole;
 use std::collections::{HashMap, HashSet};
 
@@ -60,22 +58,12 @@ impl<'p> Walk<'p> {
     }
 
     /// The variable that a place is a part of, and the pin of an instance where it is one.
-    fn source(&self, (routine, id): At<'p>, place: &Place) -> Option<Source> {
-        let (mut name, mut ty) = (root_name(id, place.root), self.program.root_type(routine, place.root)?);
-        for projection in &place.projections {
-            ty = match (projection, ty) {
-                (Projection::Field(field), Type::Struct(owner)) => {
-                    name = Some(Name::Field(owner, *field));
-                    self.program.member(ty, *field)?
-                }
-                (Projection::Field(pin), Type::Block(block)) => {
-                    return Some(Source::Pin(name?, role(block, *pin)?));
-                }
-                (Projection::Index { .. }, Type::Array(array)) => self.program.array(array).element,
-                (Projection::Field(_) | Projection::Index { .. } | Projection::Deref { .. }, _) => return None,
-            };
+    fn source(&self, at: At<'p>, place: &Place) -> Option<Source> {
+        let walked = Walked::of(self.program, at, place);
+        match walked.pin {
+            Some((block, pin)) => Some(Source::Pin(*walked.names.last()?, role(block, pin)?)),
+            None => walked.variable().map(Source::Variable),
         }
-        name.map(Source::Variable)
     }
 
     fn sources(&self, at: At<'p>, expr: &Expr) -> HashSet<Source> {
@@ -176,14 +164,6 @@ impl<'p> Walk<'p> {
             PinRole::Up | PinRole::Down if !keeps => usage.count_depends |= depends,
             _ => {}
         }
-    }
-}
-
-fn root_name(id: RoutineId, root: Root) -> Option<Name> {
-    match root {
-        Root::Instance | Root::Globals => None,
-        Root::Local(local) => Some(Name::Local(id, local)),
-        Root::Param(param) => Some(Name::Param(id, param)),
     }
 }
 

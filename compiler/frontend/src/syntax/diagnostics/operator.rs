@@ -18,6 +18,14 @@ pub fn equal_for_assign(sign: Span, text: &str) -> Diagnostic {
 }
 
 pub fn foreign_operator(input: &mut In<'_, '_, '_>, kind: Kind, op: BinaryOp, sign: Span) {
+    if kind == Kind::Caret {
+        input.report(
+            Diagnostic::new(Code::E0010, sign, "Structured Text has no `^` between two values")
+                .label("expected `**` or `XOR`")
+                .help("write `x ** 2.0` for a power, which is a REAL, and `a XOR b` for bits that differ"),
+        );
+        return;
+    }
     let ours = op.text();
     let replacement = spaced(input, ours, sign);
     let theirs = if kind == Kind::Name { format!("`{}`", input.text(sign)) } else { kind.to_string() };
@@ -26,7 +34,6 @@ pub fn foreign_operator(input: &mut In<'_, '_, '_>, kind: Kind, op: BinaryOp, si
         .help(format!("write `{ours}`"))
         .fix(sign, replacement);
     match op {
-        BinaryOp::Power => it = it.note("bits and BOOLs that differ are joined by `XOR`"),
         BinaryOp::And => it = it.note("`AND_THEN` evaluates its right side only when it is needed"),
         BinaryOp::Or => it = it.note("`OR_ELSE` evaluates its right side only when it is needed"),
         _ => {}
