@@ -30,7 +30,12 @@ enum Way {
 struct Unit {
     place: TokenStream,
     repr: Repr,
-    is_enumeration: bool,
+    /// The type of a variable of its own.
+    ty: Option<Type>,
+    /// It is one bit at its address.
+    is_bit: bool,
+    /// What a subrange may be.
+    range: Option<(i128, i128)>,
     /// It lies in a cell.
     is_cell: bool,
 }
@@ -128,7 +133,8 @@ impl Emitter<'_> {
 
     fn own(&self, part: Part) -> Io {
         let place = part.place.unwrap_or_default();
-        let unit = Unit { is_enumeration: part.is_enumeration, ..self.unit(place, part.repr) };
+        let is_bit = part.address.width == 1;
+        let unit = Unit { ty: Some(part.ty), is_bit, range: self.program.range(part.ty), ..self.unit(place, part.repr) };
         Io {
             variable: part.name,
             address: part.address,
@@ -139,7 +145,7 @@ impl Emitter<'_> {
     }
 
     fn unit(&self, place: TokenStream, repr: Repr) -> Unit {
-        Unit { place, repr, is_enumeration: false, is_cell: self.shared }
+        Unit { place, repr, ty: None, is_bit: false, range: None, is_cell: self.shared }
     }
 
     /// The numbers in a variable that shares its bits with others.
@@ -274,8 +280,12 @@ impl Unit {
         u64::from(self.repr.size()) * 8
     }
 
+    fn is_enumeration(&self) -> bool {
+        matches!(self.ty, Some(Type::Enum(_)))
+    }
+
     fn number(&self, place: TokenStream) -> TokenStream {
-        if self.is_enumeration { quote!(#place.0) } else { place }
+        if self.is_enumeration() { quote!(#place.0) } else { place }
     }
 
     fn read(&self) -> TokenStream {
@@ -296,13 +306,14 @@ impl Unit {
 
     fn write(&self) -> TokenStream {
         let place = &self.place;
-        let place = match (self.is_cell, self.is_enumeration) {
+        let place = match (self.is_cell, self.is_enumeration()) {
             (true, false) => quote!(*#place.get_mut()),
             (true, true) => self.number(quote!(#place.get_mut())),
             (false, _) => self.number(quote!(#place)),
         };
-        let value = match self.repr {
-            Repr::Bool => quote!(bits & 1 == 1),
+        let value = self.nearest(match self.repr {
+            Repr::Bool if self.is_bit => quote!(bits & 1 == 1),
+            Repr::Bool => quote!(bits & 255 != 0),
             Repr::U64 => quote!(bits),
             Repr::F32 => quote!(f32::from_bits(bits as u32)),
             Repr::F64 => quote!(f64::from_bits(bits)),
@@ -310,7 +321,22 @@ impl Unit {
                 let repr = format_ident!("{}", self.repr.rust_name());
                 quote!(bits as #repr)
             }
-        };
+        });
         quote!(#place = #value)
+    }
+
+    /// The value of the variable's type that any bits become.
+    fn nearest(&self, value: TokenStream) -> TokenStream {
+        match self.ty {
+            Some(Type::Elementary(it)) if it.is_day() => quote!(staunch_runtime::ops::start_of_day(#value)),
+            Some(Type::Elementary(it)) if it.is_time_of_day() => quote!(staunch_runtime::ops::time_of_day(#value)),
+            _ => match self.range {
+                Some((low, high)) => {
+                    let (low, high) = (Literal::i128_unsuffixed(low), Literal::i128_unsuffixed(high));
+                    quote!((#value).clamp(#low, #high))
+                }
+                None => value,
+            },
+        }
     }
 }

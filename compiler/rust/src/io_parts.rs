@@ -12,7 +12,7 @@ pub struct Part {
     pub name: String,
     pub address: Address,
     pub repr: Repr,
-    pub is_enumeration: bool,
+    pub ty: Type,
     /// Where it is kept; nothing where that is some bits of another field.
     pub place: Option<TokenStream>,
 }
@@ -45,8 +45,7 @@ impl Emitter<'_> {
                 // What an odd byte begins has no address of its own width.
                 let width = if way.bit.is_multiple_of(width.into()) { width } else { 8 };
                 let address = Address { bit: way.bit, width, ..whole };
-                let is_enumeration = matches!(ty, Type::Enum(_));
-                out.push(Part { name: way.name, address, repr, is_enumeration, place: way.place });
+                out.push(Part { name: way.name, address, repr, ty, place: way.place });
             }
             Type::String(_) | Type::Block(_) | Type::Reference(_) => {}
         }

@@ -89,6 +89,7 @@ TYPE Mode : (Off, Auto := 5); Head : STRUCT number : INT; mode : Mode; ready : B
 VAR_GLOBAL
     raw AT %IW10 : ARRAY[1..2, 0..1] OF INT; head AT %QB1 : Head; grid AT %MW0 : ARRAY[0..99] OF INT;
     heads AT %IB40 : ARRAY[0..1] OF Head; low AT %IB41 : BYTE; text AT %QB100 : STRING[4]; flags AT %QX90.0 : ARRAY[0..1] OF BOOL;
+    level AT %IW60 : INT(-4..5); clock AT %IL16 : TOD; day AT %IL17 : DATE; ok AT %IX150.1 : BOOL;
 END_VAR
 PROGRAM Main
 VAR r : REF_TO INT; END_VAR
@@ -97,6 +98,7 @@ head.number := raw[2, 1];
 IF heads[1].mode = Auto THEN head.mode := Auto; END_IF;
 head.ready := heads[1].ready AND low = 2;
 flags[1] := heads[0].ready;
+IF ok AND clock > TOD#10:00:00 AND day = D#1970-01-02 THEN grid[1] := level; END_IF;
 END_PROGRAM
 ";
 
@@ -110,7 +112,23 @@ fn main() {
         println!("{} {} {} {}", io.address, io.variable, io.bit, io.width);
         machine.globals.set_io(number, number as u64 + 1);
     }
+    for (number, io) in code::IO.iter().enumerate() {
+        match io.variable {
+            "level" => machine.globals.set_io(number, 0xFFFF),
+            "clock" | "day" => machine.globals.set_io(number, 86_400_000_000_000 + 36_000_000_000_001),
+            "heads[1].ready" => machine.globals.set_io(number, 2),
+            "ok" => machine.globals.set_io(number, 0xFF),
+            _ => {}
+        }
+    }
     machine.main.scan(&Context::first(0), &machine).unwrap();
+    println!("{}", machine.globals.grid[1].get());
+    for number in 0..code::IO.len() {
+        if code::IO[number].variable == "level" {
+            machine.globals.set_io(number, 700);
+            println!("{}", machine.globals.io(number));
+        }
+    }
     machine.globals.write_outputs(|io, bits| println!("{} := {bits}", io.variable));
     println!("{}", machine.globals.io(7));
 }
@@ -119,12 +137,16 @@ fn main() {
 /// Of arrays and structures each number is a row; the texts in them, and memory, have none.
 #[test]
 fn parts_of_what_is_at_addresses() {
-    // `head.mode` keeps what the test gave it: `heads[1].mode` is 9, and not Auto.
+    // `head.mode` keeps what the test gave it: `heads[1].mode` is not Auto.
     let expected = "\
 %IW10 raw[1,0] 160 16
 %IW11 raw[1,1] 176 16
 %IW12 raw[2,0] 192 16
 %IW13 raw[2,1] 208 16
+%IW60 level 960 16
+%IL16 clock 1024 64
+%IL17 day 1088 64
+%IX150.1 ok 1201 1
 %IW20 heads[0].number 320 16
 %IW21 heads[0].mode 336 16
 %IB44 heads[0].ready 352 8
@@ -137,12 +159,14 @@ fn parts_of_what_is_at_addresses() {
 %QB5 head.ready 40 8
 %QB90 flags[0] 720 8
 %QB91 flags[1] 728 8
+-1
+5
 head.number := 4
-head.mode := 13
+head.mode := 17
 head.ready := 0
 flags[0] := 1
 flags[1] := 1
-8
+1
 ";
     assert_eq!(output_of("firmware_parts", PARTS, PARTS_MAIN), expected);
 }

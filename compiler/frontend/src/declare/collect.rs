@@ -91,7 +91,7 @@ impl<'s> Declarations<'s> {
                     }
                     pou.routines.iter().for_each(|it| self.collect_routine(slot, it));
                     if self.has_globals(pou) {
-                        globals_of(pou).for_each(|it| self.collect_globals(it));
+                        globals_of(pou).for_each(|it| self.collect_globals_of(pou, it));
                     }
                 }
                 ast::Item::Globals(block) => self.collect_globals(block),
@@ -154,6 +154,18 @@ impl<'s> Declarations<'s> {
                 let space = self.names.space_of(name.span);
                 self.enter(*name, Entry::Global(self.globals.len()), false);
                 self.globals.push(GlobalSlot { space, name: *name, block, decl, slot: Slot::Open });
+            }
+        }
+    }
+
+    /// Those of a PROGRAM, whose names no other variable of it has.
+    fn collect_globals_of(&mut self, pou: &'s ast::Pou<'s>, block: &'s ast::VarBlock<'s>) {
+        self.collect_globals(block);
+        let own = pou.blocks.iter().filter(|it| !matches!(it.kind, ast::VarKind::Global | ast::VarKind::External));
+        let own: Vec<_> = own.flat_map(|it| &it.vars).flat_map(|it| &it.names).collect();
+        for global in block.vars.iter().flat_map(|it| &it.names) {
+            if let Some(other) = own.iter().find(|it| Key(it.text) == Key(global.text)) {
+                self.report(declared_twice(**other, global.span));
             }
         }
     }

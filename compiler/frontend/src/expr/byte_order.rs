@@ -37,10 +37,13 @@ impl<'s> Checker<'_, 's> {
         let Resolved { own: ty, mut operands, .. } = resolved;
         let value = operands.pop()?;
         let is_whole = matches!(ty, Type::Array(_) | Type::Struct(_));
-        if matches!(ty, Type::Elementary(_)) {
+        let without = match ty {
+            Type::Enum(_) | Type::String(_) => Some(ty),
+            _ => self.without_order(ty),
+        };
+        if without.is_none() && !is_whole {
             return Some((self.convert(Conversion::Value, ty, value), ty));
         }
-        let without = if is_whole { self.without_order(ty) } else { Some(ty) };
         let Some(part) = without else { return Some((value, ty)) };
         let (found, part) = (self.type_name(ty), self.type_name(part));
         let wanted = "a number, a bit string, a time or a character, or an array or a structure of them";
@@ -53,6 +56,8 @@ impl<'s> Checker<'_, 's> {
     /// What is in a type whose bytes have no order.
     fn without_order(&self, ty: Type) -> Option<Type> {
         match ty {
+            // Other bytes would be no day, and no time of day.
+            Type::Elementary(it) if it.is_day() || it.is_time_of_day() => Some(ty),
             Type::Elementary(_) | Type::Enum(_) => None,
             Type::String(it) => it.wide.then_some(ty),
             Type::Array(id) => self.without_order(self.decl.program.array(id).element),

@@ -1,7 +1,7 @@
 //! Pragmas that say something of what follows them.
 
 use crate::{
-    Span,
+    Code, Diagnostic, Span,
     ast::{External, Name, Pool},
 };
 
@@ -25,12 +25,19 @@ pub fn pool_here(input: &mut In<'_, '_, '_>) -> Option<Pool> {
 
 /// `{attribute 'pack_mode' := '1'}` between the last token and the next. CODESYS takes 0 and 1 for one another.
 pub fn pack_here(input: &mut In<'_, '_, '_>) -> Option<(u64, Span)> {
-    let mode = |it: &Name<'_>| {
-        let is_it = attribute(it.text)?.eq_ignore_ascii_case("pack_mode");
-        let value = it.text.rsplit_once(":=")?.1.trim().trim_matches('\'').trim();
-        is_it.then_some(value.parse::<u64>().ok()?.max(1))
-    };
-    pragmas_here(input).iter().find_map(|it| Some((mode(it)?, it.span)))
+    let is_it = |it: &&Name<'_>| attribute(it.text).is_some_and(|it| it.eq_ignore_ascii_case("pack_mode"));
+    let pragma = pragmas_here(input).iter().find(is_it).copied()?;
+    let value = pragma.text.rsplit_once(":=").map_or("", |it| it.1.trim());
+    let number = value.strip_prefix('\'').and_then(|it| it.strip_suffix('\''));
+    let mode = number.and_then(|it| it.trim().parse().ok()).filter(|it| [0, 1, 2, 4, 8].contains(it));
+    if mode.is_none() {
+        input.report(
+            Diagnostic::new(Code::W0514, pragma.span, "the attribute `pack_mode` is passed over")
+                .label("expected 0, 1, 2, 4 or 8")
+                .help("write `{attribute 'pack_mode' := '1'}` to have no bytes between members"),
+        );
+    }
+    mode.map(|it: u64| (it.max(1), pragma.span))
 }
 
 /// `{attribute 'instance-path'}` between the last token and the next.

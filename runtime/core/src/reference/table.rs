@@ -197,7 +197,10 @@ impl<'t> Table<'t> {
         let index = offset - found.start;
         let left = found.node.size - index;
         match (found.node.kind, view) {
-            (encode::TEXT, View::Number(1)) if index > found.node.characters() && rest > left => {
+            // What a text in a structure or array takes beyond its characters is as bytes between members.
+            (encode::TEXT, View::Number(1))
+                if index > found.node.characters() && around.is_some_and(|it| it.node.kind != encode::TEXT) =>
+            {
                 Ok(Part::Spread { at: offset })
             }
             (encode::TEXT, View::Number(1)) => self.characters(found, index),
