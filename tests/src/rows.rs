@@ -144,9 +144,13 @@ impl Row {
         }
     }
 
-    /// Strings have no order of their bytes.
+    /// Strings have no order of their bytes, and other bytes of days and times of day are none.
     fn leaves_out(&self, ty: Taken) -> bool {
-        self.signature.name.contains("ENDIAN") && matches!(ty, Taken::String | Taken::Wstring)
+        let has_no_order = match ty {
+            Taken::String | Taken::Wstring => true,
+            Taken::Elementary(it) => it.is_day() || it.is_time_of_day(),
+        };
+        self.signature.name.contains("ENDIAN") && has_no_order
     }
 
     /// The arguments' types with that of one parameter, and of all of its kind where that is one type in a call.

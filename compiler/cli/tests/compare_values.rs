@@ -188,3 +188,49 @@ END_PROGRAM
         compare(&written("rows.st", text), ("iec", "codesys"), &["--assume", &written("n.txt", "no run\n")]);
     assert!(code == Some(1) && text.contains("`rows[1].sum` (width, ") && !text.contains("(variable, "), "{text}");
 }
+
+/// Two texts stand for all that nothing names: no assumption may leave both out, and take the rest with them.
+#[test]
+fn texts_that_stand_for_others_are_not_assumed_away() {
+    let source = order("stand_in.st", "VAR_INPUT code : STRING[8]; END_VAR", "code <> 'STOP' AND code <> ''");
+    let assumed = written("stand_in.txt", "code <> 'a'\ncode <> 'xxxxxxxx'\n");
+    let (code, text) = compare(&source, ("iec", "openplc"), &["--assume", &assumed]);
+    assert!(code == Some(2) && text.contains("it is not tried with 'a', but with"), "{text}");
+}
+
+/// A standard block that is an input is given what its input pins take; what else might be written to it is not ruled out.
+#[test]
+fn standard_blocks_that_are_inputs_are_given_their_pins() {
+    let timed = written(
+        "given_timer.st",
+        "PROGRAM P\nVAR_INPUT t : TON; b : BOOL; END_VAR\nVAR_OUTPUT o : BOOL; END_VAR\nVAR k : CTU; END_VAR\n\
+         k(CU := b AND t.PT = T#5s, PV := 1);\no := k.CV > 1;\nEND_PROGRAM\n",
+    );
+    let (code, text) = compare(&timed, ("iec", "openplc"), &["--vars", "o"]);
+    assert!(code == Some(1) && text.contains("differ after 3 scans"), "{text}");
+    let counted = written(
+        "given_counters.st",
+        "PROGRAM P\nVAR_INPUT c : ARRAY[1..2] OF CTU; END_VAR\nVAR_OUTPUT n : INT; END_VAR\nc[2]();\nn := c[2].CV;\nEND_PROGRAM\n",
+    );
+    let (code, text) = compare(&counted, ("iec", "cscape"), &[]);
+    assert!(code == Some(1) && text.contains("differ after"), "{text}");
+    let latched = written(
+        "given_latch.st",
+        "PROGRAM P\nVAR_INPUT s : SR; b : BOOL; END_VAR\nVAR_OUTPUT o : BOOL; END_VAR\nVAR c : CTU; END_VAR\n\
+         c(CU := s.Q1, PV := 2);\no := c.CV > 2;\nEND_PROGRAM\n",
+    );
+    let (code, text) = compare(&latched, ("iec", "cscape"), &[]);
+    assert!(code == Some(4) && text.contains("outputs of blocks that are inputs: s.Q1"), "{text}");
+}
+
+/// An output that shares its bits on one system, and is written by another name, is one of its own on the other.
+#[test]
+fn an_output_that_one_system_alone_has_is_not_passed_over() {
+    let source = written(
+        "overlapping_outputs.st",
+        "PROGRAM P\nVAR_INPUT k : BOOL; END_VAR\nVAR w AT %QW0 : WORD; b AT %QX0.0 : BOOL; END_VAR\n\
+         IF k THEN w := WORD#1; ELSE w := WORD#0; END_IF\nEND_PROGRAM\n",
+    );
+    let (code, text) = compare(&source, ("iec", "openplc"), &[]);
+    assert!(code != Some(0) && !text.contains("are equal"), "{text}");
+}

@@ -134,7 +134,8 @@ impl Emitter<'_> {
     fn own(&self, part: Part) -> Io {
         let place = part.place.unwrap_or_default();
         let is_bit = part.address.width == 1;
-        let unit = Unit { ty: Some(part.ty), is_bit, range: self.program.range(part.ty), ..self.unit(place, part.repr) };
+        let unit =
+            Unit { ty: Some(part.ty), is_bit, range: self.program.range(part.ty), ..self.unit(place, part.repr) };
         Io {
             variable: part.name,
             address: part.address,

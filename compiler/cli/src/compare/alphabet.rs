@@ -123,8 +123,8 @@ fn typed(pair: &Pair, facts: [&Facts; 2], found: Vec<Matched>) -> Vec<Input> {
                 let capacity = x.capacity.min(y.capacity);
                 let near = [0, 1].map(|side: usize| texts_of(pair, facts, side, scalars));
                 let initial = Chars::read(StringType { capacity, ..x }, bytes);
-                let texts = texts(initial, near.concat(), StringType { capacity, ..x });
-                return Some(Input { scalars, initial: Value::U16(0), texts });
+                let (texts, named) = texts(initial, near.concat(), StringType { capacity, ..x });
+                return Some(Input { scalars, initial: Value::U16(0), texts, named });
             }
             _ => {}
         }
@@ -134,6 +134,7 @@ fn typed(pair: &Pair, facts: [&Facts; 2], found: Vec<Matched>) -> Vec<Input> {
             scalars,
             initial: Value::read(repr, bytes),
             texts: Vec::new(),
+            named: 0,
         })
     };
     found.into_iter().filter_map(input).collect()
@@ -144,8 +145,9 @@ fn texts_of(pair: &Pair, facts: [&Facts; 2], side: usize, scalars: Matched) -> V
     name(pair.scalar(side, scalars[side])).map_or_else(Vec::new, |it| facts[side].texts(it))
 }
 
-/// What to try of a string: the initial one, those that it is compared with, none, another one, and a long one.
-fn texts(initial: Chars, near: Vec<Chars>, ty: StringType) -> Vec<Chars> {
+/// What to try of a string: the initial one, those that it is compared with, none, another one, and a long one; and how many
+/// of them are before the other two.
+fn texts(initial: Chars, near: Vec<Chars>, ty: StringType) -> (Vec<Chars>, usize) {
     let mut found = vec![initial];
     let of = |letter: u8, length: usize| match ty.wide {
         true => Chars::Wide(vec![letter.into(); length]),
@@ -153,12 +155,15 @@ fn texts(initial: Chars, near: Vec<Chars>, ty: StringType) -> Vec<Chars> {
     };
     let full = of(b'x', ty.capacity.min(LONGEST).into());
     let other = (b'a'..=b'z').map(|it| of(it, 1)).find(|it| !near.contains(it));
-    for text in near.into_iter().take(MAX_VALUES).chain([Chars::empty(ty)]).chain(other).chain([full]) {
+    let mut add = |text: Chars| {
         if text.fits(ty) && !found.contains(&text) {
             found.push(text);
         }
-    }
-    found
+        found.len()
+    };
+    let named = near.into_iter().take(MAX_VALUES).chain([Chars::empty(ty)]).map(&mut add).last().unwrap_or(1);
+    let _ = other.into_iter().chain([full]).map(&mut add).last();
+    (found, named)
 }
 
 /// Inputs of both sides that are not tried: references, and those that the two hold in different types.
@@ -167,6 +172,12 @@ pub fn untried(pair: &Pair) -> Vec<&str> {
     let both = pair.matched(|it| it.role == Role::Input);
     let inputs = both.into_iter().filter(|it| !tried.contains(it));
     inputs.map(|it| pair.path(it)).collect()
+}
+
+/// Outputs of standard blocks that are inputs: they are compared, and only what a call leaves in them is tried.
+pub fn outputs_given(pair: &Pair) -> Vec<&str> {
+    let given = pair.matched(|it| it.at.is_given && matches!(it.role, Role::Output(_)));
+    given.into_iter().map(|it| pair.path(it)).collect()
 }
 
 /// Whether a program assigns an input of its own.

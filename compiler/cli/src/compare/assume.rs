@@ -43,7 +43,7 @@ impl<'a> Named<'a> {
         let name = pair.path(input.scalars).to_owned();
         let (path, repr) = (name.clone(), input.initial.repr());
         let running: Vec<usize> = (0..map.instances.len()).collect();
-        let texts: Vec<String> = input.texts.iter().map(Chars::to_string).collect();
+        let texts: Vec<String> = input.texts.iter().take(input.named).map(Chars::to_string).collect();
         let is_text = !texts.is_empty();
         let value = move |text: &str| {
             if is_text {

@@ -184,17 +184,22 @@ fn beyond_accepted(pair: &mut Pair, world: &World, args: &Compare, findings: &mu
         return differs(pair, world, trace, false, findings);
     }
     let is_told_apart = world.tolerance.as_ref().is_none_or(|it| it.beside.is_empty());
-    if outcome.complete && covers_all(pair, world) && is_told_apart {
+    if outcome.complete && covers_all(pair, world, args) && is_told_apart {
         return Verdict::Equal(scope::every_state(pair, world, &outcome));
     }
     scope::not_found(pair, world, &outcome)
 }
 
-/// Whether the search leaves nothing out that the inputs could do.
-fn covers_all(pair: &Pair, world: &World) -> bool {
-    world.alphabet.is_exact()
+/// Whether the search leaves nothing out that the inputs could do, and no output that one of the two alone has: where
+/// addresses share bits on one system, what is written by another name is an output of its own on the other.
+fn covers_all(pair: &Pair, world: &World, args: &Compare) -> bool {
+    let is_output = |it: &scalar::Scalar| it.at.is_output && it.field.is_some();
+    let has_all = args.vars.is_some() || pair.only_one_has(is_output).is_empty();
+    has_all
+        && world.alphabet.is_exact()
         && pair.whole
         && alphabet::untried(pair).is_empty()
+        && alphabet::outputs_given(pair).is_empty()
         && pair.only_one_has(|it| it.role == scalar::Role::Input).is_empty()
 }
 
@@ -270,7 +275,7 @@ fn verdict(pair: &mut Pair, world: &World, args: &Compare, findings: &mut Findin
         return stimulus::follow(pair, args);
     }
     let outcome = strategy::search(pair, world, args.budget, findings.open());
-    let exact = covers_all(pair, world);
+    let exact = covers_all(pair, world, args);
     findings.note(pair, world, &outcome, exact);
     if let Some(trace) = outcome.found.clone() {
         let is_tried = outcome.more_values == 0 && world.alphabet.complete;

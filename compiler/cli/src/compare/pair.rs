@@ -38,6 +38,8 @@ pub struct Input {
     pub initial: Value,
     /// Of a string, those that are tried: a value is the position of one.
     pub texts: Vec<Chars>,
+    /// How many of these an assumption may speak of: the others stand for all texts that nothing names.
+    pub named: usize,
 }
 
 impl Input {

@@ -51,6 +51,8 @@ pub struct Whereabouts {
     pub is_inner: bool,
     /// Declared RETAIN, itself or with what it is in.
     pub is_retained: bool,
+    /// In a standard block that is itself an input.
+    pub is_given: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -149,6 +151,7 @@ impl Walk<'_> {
                 is_output: field.section == Section::Output || at_output,
                 is_inner: false,
                 is_retained: field.retain == Retain::Kept,
+                is_given: false,
             };
             let way = Way { from: id, members: vec![number] };
             self.part(&path, field.ty, Whole { offset, role, field: Some((id, number)), way, at });
@@ -228,9 +231,14 @@ impl Walk<'_> {
         self.found.blocks.push(Instance { path: path.to_owned(), key: key.clone(), block: id, offset, field });
         for (at, pin) in id.info().pins.iter().enumerate() {
             let Some(ty) = id.pin_type(FieldId::next(at)) else { continue };
-            let role = if shows(pin) { Role::Output(number) } else { Role::Hidden };
-            let part =
-                Whole { offset: whole.offset + pin.offset, role, field: None, way: whole.way.clone(), at: whole.at };
+            let role = match (shows(pin), whole.role) {
+                (true, _) => Role::Output(number),
+                // A block that is itself an input is given what its pins take.
+                (false, Role::Input) if pin.direction == Direction::Input => Role::Input,
+                (false, _) => Role::Hidden,
+            };
+            let at = Whereabouts { is_given: whole.role == Role::Input, ..whole.at };
+            let part = Whole { offset: whole.offset + pin.offset, role, field: None, way: whole.way.clone(), at };
             self.scalar(&format!("{path}.{}", pin.name), &format!("{path}.{}", common_key(pin)), ty, part);
         }
     }
