@@ -11,29 +11,52 @@ use rustc_hash::FxHashMap;
 pub(crate) fn of<'s>(files: &[File<'s>], sources: &'s Sources) -> Declared<'s> {
     let mut declared = Declared::default();
     for (file, number) in files.iter().zip(0u16..) {
-        let text = sources.get(number).text.as_str();
-        let reading = Reading { text, attributes: attributes(file, text) };
-        for item in &file.items {
-            reading.item(item, &mut declared);
-        }
+        read(file, number, sources, &mut declared);
     }
     declared
 }
 
-/// Where a condition that asks for declarations has decided some.
-pub(crate) fn changed(files: &[File<'_>], known: &Declared<'_>, now: &Declared<'_>) -> Vec<Diagnostic> {
-    let is_same = known.types == now.types
-        && known.pous == now.pous
-        && known.tasks == now.tasks
-        && known.globals == now.globals
-        && known.scopes == now.scopes;
-    let at = files.iter().flat_map(|it| &it.undecided).filter(|_| !is_same);
-    let refused = at.map(|span| {
-        Diagnostic::new(Code::E0902, *span, "a condition that asks for declarations decides declarations")
+fn read<'s>(file: &File<'s>, number: u16, sources: &'s Sources, declared: &mut Declared<'s>) {
+    let text = sources.get(number).text.as_str();
+    let reading = Reading { text, attributes: attributes(file, text) };
+    for item in &file.items {
+        reading.item(item, declared);
+    }
+}
+
+/// Where conditions that ask for declarations have decided some of the file, as it was read before they were decided
+/// and after it. `read_one` reads it with one of them decided.
+pub(crate) fn changed<'s>(
+    [before, after]: [&File<'s>; 2],
+    sources: &'s Sources,
+    number: u16,
+    read_one: impl Fn(Span) -> File<'s>,
+) -> Vec<Diagnostic> {
+    let of = |file: &File<'s>| {
+        let mut declared = Declared::default();
+        read(file, number, sources, &mut declared);
+        declared
+    };
+    let before_all = of(before);
+    if is_same(&before_all, &of(after)) {
+        return Vec::new();
+    }
+    let mut deciding: Vec<Span> = before.undecided.clone();
+    deciding.retain(|it| !is_same(&before_all, &of(&read_one(*it))));
+    if deciding.is_empty() {
+        // It takes several.
+        deciding.clone_from(&before.undecided);
+    }
+    let refused = deciding.into_iter().map(|span| {
+        Diagnostic::new(Code::E0902, span, "a condition that asks for declarations decides declarations")
             .label("what is declared has to be known before")
             .help("ask for a name that `{define NAME}`, or the project, defines where that holds")
     });
     refused.collect()
+}
+
+fn is_same(a: &Declared<'_>, b: &Declared<'_>) -> bool {
+    a.types == b.types && a.pous == b.pous && a.tasks == b.tasks && a.globals == b.globals && a.scopes == b.scopes
 }
 
 /// What conditions ask for by `hasattribute(pou: P, 'a')`.

@@ -8,6 +8,7 @@ mod declared;
 mod kind;
 mod literal;
 
+pub use condition::miswritten;
 pub use declared::{Declaration, Declared, Known, Scope, Subject};
 pub use kind::Kind;
 pub use literal::{Fault, date, duration, integer, real, string};

@@ -236,13 +236,19 @@ fn parse_all<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Opt
             foreign.extend(foreign::recognise(number, source));
         }
     }
-    if foreign.is_empty() {
-        decide_later(&mut files, sources, diagnostics);
-        return (!is_broken).then_some(files);
+    if !foreign.is_empty() {
+        diagnostics.retain(|it| it.code == Code::E0033);
+        diagnostics.extend(foreign);
+        return None;
     }
-    diagnostics.retain(|it| it.code == Code::E0033);
-    diagnostics.extend(foreign);
-    None
+    if is_broken {
+        // What a part of such a file is good for is not known.
+        let is_undecided = |number| files.iter().any(|it| it.undecided.iter().any(|it| it.file == number));
+        diagnostics.retain(|it| it.code == Code::E0033 || !is_undecided(it.span.file));
+        return None;
+    }
+    decide_later(&mut files, sources, diagnostics);
+    Some(files)
 }
 
 /// Reads the files once more whose conditions ask for what is declared.
@@ -252,16 +258,23 @@ fn decide_later<'s>(files: &mut [ast::File<'s>], sources: &'s Sources, diagnosti
     }
     let known = Declared { library: Some(library_has), ..declared::of(files, sources) };
     for (file, number) in files.iter_mut().zip(0u16..).filter(|(it, _)| !it.undecided.is_empty()) {
-        diagnostics.retain(|it| it.span.file != number);
         let source = sources.get(number);
-        let (undecided, before) = (std::mem::take(&mut file.undecided), diagnostics.len());
-        let text = source.text.as_str();
-        *file = syntax::parse_with(number, text, sources.defined(source), Known::All(&known), diagnostics);
-        diagnostics[before..].iter_mut().for_each(|it| at_the_end_of_a_body(it, source));
-        file.undecided = undecided;
+        let read = |known, diagnostics: &mut Vec<Diagnostic>| {
+            syntax::parse_with(number, &source.text, sources.defined(source), known, diagnostics)
+        };
+        let mut found = Vec::new();
+        let first = std::mem::replace(file, read(Known::All(&known), &mut found));
+        if !found.iter().any(|it| it.severity == Severity::Error) {
+            // What is missing is not declared either way.
+            let read_one = |at| read(Known::One(&known, at), &mut Vec::new());
+            found.extend(declared::changed([&first, file], sources, number, read_one));
+        }
+        found.iter_mut().for_each(|it| at_the_end_of_a_body(it, source));
+        file.undecided = first.undecided;
+        diagnostics.retain(|it| it.span.file != number);
+        diagnostics.extend(source.problems().iter().map(|it| problem(number, it)));
+        diagnostics.append(&mut found);
     }
-    let now = declared::of(files, sources);
-    diagnostics.extend(declared::changed(files, &known, &now));
 }
 
 /// Whether the library has a type or a POU of this name, in some dialect. Nothing, where what it has may be either.

@@ -137,6 +137,13 @@ fn a_project_that_cannot_be_read_is_said() {
     folder.write("Line.plcproj", PROJECT.replace("MAIN.TcPOU", "NONE.TcPOU"));
     let absent = folder.staunch("check Line.plcproj").err(1);
     has(&absent, &["E0033", "POUs/NONE.TcPOU:1:1", "`NONE.TcPOU` is not there, and the project lists it"]);
+    // No condition is blamed for what is not known of its declarations.
+    let asks = MAIN.replacen("GVL_Line.parts :=", "{IF defined(task: FastTask)} {END_IF} GVL_Line.parts :=", 1);
+    folder.write("POUs/MAIN.TcPOU", asks);
+    folder.write("Line.plcproj", PROJECT.replacen("<ItemGroup>", "<ItemGroup><Compile Include=\"NONE.TcPOU\"/>", 1));
+    let absent = folder.staunch("check Line.plcproj --message-format short").err(1);
+    assert!(absent.contains("`NONE.TcPOU` is not there") && !absent.contains("E0902"), "{absent}");
+    folder.write("POUs/MAIN.TcPOU", MAIN);
     // As Windows finds it.
     folder.write("Line.plcproj", PROJECT.replace("MAIN.TcPOU", "Main.TCPOU"));
     has(&folder.staunch("check Line.plcproj -v").err(0), &["POUs/MAIN.TcPOU"]);

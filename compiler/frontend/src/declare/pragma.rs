@@ -186,6 +186,19 @@ impl Log<'_> {
     /// A condition of `{IF}` that asks for more than what is defined.
     fn report_condition(&mut self, pragma: ast::Name<'_>, word: &str) {
         let text = pragma.text.to_ascii_lowercase();
+        if let Some((operator, form)) = crate::lex::miswritten(pragma.text.trim().get(word.len()..).unwrap_or_default())
+        {
+            self.report(
+                Diagnostic::new(
+                    Code::E0001,
+                    pragma.span,
+                    format!("`{operator}` in the pragma `{word}` has another form"),
+                )
+                .label(format!("expected `{form}`"))
+                .help(format!("write `{form}`")),
+            );
+            return;
+        }
         let asked = CONDITIONS.iter().find(|it| text.contains(*it));
         let of_declared = ["variable", "type", "pou", "task", "resource"].iter().find(|kind| {
             let after =

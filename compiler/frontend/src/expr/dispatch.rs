@@ -186,15 +186,12 @@ impl<'s> Checker<'_, 's> {
         Some(())
     }
 
-    /// A reference to an instance, with the number of its class where calls may depend on that.
+    /// A reference to an instance, or to what begins with one, with the number of its class where calls may depend on
+    /// that.
     pub(crate) fn told_apart(&mut self, reference: Expr, place: &Place, span: Span) -> Expr {
         // What a reference leads to has its number there.
         let is_whole = matches!(place.projections.last(), Some(Projection::Deref { .. }));
-        let Type::Struct(state) = place.ty else { return reference };
-        let class = self.decl.slot_of_instance(state);
-        if is_whole || !class.is_some_and(|it| self.decl.is_told_apart(it)) {
-            return reference;
-        }
+        let Some(state) = self.decl.first_instance(place.ty).filter(|_| !is_whole) else { return reference };
         let (ty, at, lword) = (reference.ty, reference.at, Type::Elementary(Elementary::Lword));
         let number = self.decl.class_number(state, span) << CLASS;
         let constant = |value| Expr::constant(Elementary::Lword, Value::U64(value), at);

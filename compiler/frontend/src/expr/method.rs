@@ -338,12 +338,8 @@ impl<'s> Checker<'_, 's> {
             Ast::Paren(inner) => self.static_type(inner)?,
             Ast::Member(owner, name) => self.type_of_member(owner, *name)?,
             Ast::Index(base, indices) => {
-                let mut ty = self.static_type(base)?;
-                for _ in indices {
-                    let Type::Array(id) = ty else { return None };
-                    ty = self.decl.program.array(id).element;
-                }
-                ty
+                let first = self.static_type(base)?;
+                indices.iter().try_fold(first, |ty, index| self.type_of_element(ty, index.span))?
             }
             Ast::Deref(inner) if is_this(inner) => self.this()?.place.ty,
             Ast::Deref(inner) => {
@@ -366,6 +362,20 @@ impl<'s> Checker<'_, 's> {
                 Some(self.decl.program.target(id))
             }
             other => Some(other),
+        }
+    }
+
+    /// The type of an element of an array, or of what a POINTER TO leads to, where a dialect takes an index there.
+    fn type_of_element(&self, ty: Type, index: Span) -> Option<Type> {
+        match ty {
+            Type::Array(id) => Some(self.decl.program.array(id).element),
+            Type::Reference(_) => self.target_by_index(ty, index).map(|it| it.1),
+            Type::Elementary(_)
+            | Type::Subrange(..)
+            | Type::String(_)
+            | Type::Enum(_)
+            | Type::Struct(_)
+            | Type::Block(_) => None,
         }
     }
 

@@ -105,19 +105,30 @@ impl<'s> Checker<'_, 's> {
                 None
             }
             Ast::Literal(_) | Ast::Call(..) | Ast::Unary(..) | Ast::Binary(..) | Ast::Assign(..) => {
-                let error =
-                    Diagnostic::new(Code::E0306, expr.span, "a variable is expected here").label("this is a value");
-                let text = self.decl.log.sources.text(expr.span);
-                let called = matches!(expr.kind, Ast::Call(..)).then(|| text.split('(').next()).flatten();
-                self.report(match called {
-                    Some(name) => {
-                        error.help(format!("call it before, `{name}(…);`, and read its output then: `{name}.…`"))
-                    }
-                    None => error,
-                });
+                self.report_value(expr);
                 None
             }
         }
+    }
+
+    /// Reports a value where a variable is expected.
+    fn report_value(&mut self, expr: &ast::Expr<'s>) {
+        let error = Diagnostic::new(Code::E0306, expr.span, "a variable is expected here").label("this is a value");
+        let help = if let Ast::Call(callee, _) = &expr.kind {
+            let name = self.decl.log.sources.text(callee.span);
+            Some(match self.static_type(callee) {
+                Some(Type::Struct(_) | Type::Block(_)) => {
+                    format!("call it before, `{name}(…);`, and read its output then: `{name}.…`")
+                }
+                Some(_) | None => "put its result into a variable first, and name that here".to_owned(),
+            })
+        } else {
+            None
+        };
+        self.report(match help {
+            Some(help) => error.help(help),
+            None => error,
+        });
     }
 
     /// Whether `callee` is the name of an array.

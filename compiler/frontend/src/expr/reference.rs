@@ -614,9 +614,14 @@ impl<'s> Checker<'_, 's> {
 
     /// `p[i]` of a POINTER TO in CODESYS: what lies so many variables of its type after where it points.
     pub(crate) fn element_of_pointer(&mut self, found: &Found<'s>, index: &ast::Expr<'s>) -> Option<Option<Found<'s>>> {
-        let (id, RefType { kind, target }) = self.ref_type(self.type_of(found))?;
-        let is_indexed = kind == RefKind::PointerTo && self.decl.dialect(index.span).indexes_pointers();
-        is_indexed.then(|| self.indexed_pointer(found.clone(), (id, target), index))
+        let target = self.target_by_index(self.type_of(found), index.span)?;
+        Some(self.indexed_pointer(found.clone(), target, index))
+    }
+
+    /// The type of `p[i]` where `p` is a POINTER TO.
+    pub(super) fn target_by_index(&self, ty: Type, index: Span) -> Option<(ReferenceId, Type)> {
+        let (id, RefType { kind, target }) = self.ref_type(ty)?;
+        (kind == RefKind::PointerTo && self.decl.dialect(index).indexes_pointers()).then_some((id, target))
     }
 
     fn indexed_pointer(

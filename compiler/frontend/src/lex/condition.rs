@@ -182,8 +182,35 @@ fn has_type<'s>(parts: &[&'s str]) -> Option<Condition<'s>> {
 
 fn has_constant_value<'s>(parts: &[&'s str]) -> Option<Condition<'s>> {
     let [constant, value, operator] = parts else { return None };
-    let is_one = ["<", "<=", "=", "<>", ">=", ">"].contains(operator);
-    is_one.then_some(Condition::Declared(Question::HasConstantValue(path(constant)?, value, operator)))
+    COMPARISONS.contains(operator).then_some(Condition::Declared(Question::HasConstantValue(
+        path(constant)?,
+        value,
+        operator,
+    )))
+}
+
+const COMPARISONS: [&str; 6] = ["<", "<=", "=", "<>", ">=", ">"];
+
+/// The operator in a condition whose arguments are not written as it takes them, and how it takes these.
+pub fn miswritten(text: &str) -> Option<(&'static str, String)> {
+    let lower = text.to_ascii_lowercase();
+    ["hasvalue", "hasconstantvalue", "hastype", "hasattribute"].into_iter().find_map(|word| {
+        let after = after_word(text.get(lower.find(word)?..)?, word)?;
+        let parts = arguments(after).map(|it| it.0).unwrap_or_default();
+        let part = |at: usize, otherwise| parts.get(at).copied().filter(|it| !it.is_empty()).unwrap_or(otherwise);
+        let text = |otherwise| part(1, otherwise).trim_matches(['\'', '"']);
+        let form = match (word, parts.as_slice()) {
+            ("hasvalue", [_, value]) if quoted(value).is_some() => return None,
+            ("hasvalue", _) => format!("hasvalue({}, '{}')", part(0, "NAME"), text("1")),
+            ("hasconstantvalue", [_, _, operator]) if COMPARISONS.contains(operator) => return None,
+            ("hasconstantvalue", _) => format!("hasconstantvalue({}, {}, =)", part(0, "NAME"), part(1, "1")),
+            ("hastype", [_, _]) => return None,
+            ("hastype", _) => format!("hastype({}, {})", part(0, "variable: NAME"), part(1, "INT")),
+            (_, [_, attribute]) if quoted(attribute).is_some() => return None,
+            _ => format!("hasattribute({}, '{}')", part(0, "pou: NAME"), text("attribute")),
+        };
+        Some((word, form))
+    })
 }
 
 /// `pou: P`

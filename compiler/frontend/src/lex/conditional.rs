@@ -38,9 +38,6 @@ pub fn choose<'s>(tokens: &mut Tokens<'s>, by_project: &'s [String], known: Know
     }
     let mut open: Vec<Branch> = Vec::new();
     let mut facts = Facts::new(by_project);
-    if let Known::All(declared) = known {
-        facts.declared = Some(declared);
-    }
     let mut undecided = Vec::new();
     let mut left_out: Vec<(u32, u32)> = Vec::new();
     let mut since = None;
@@ -50,6 +47,7 @@ pub fn choose<'s>(tokens: &mut Tokens<'s>, by_project: &'s [String], known: Know
         let active = open.last().is_none_or(|it| it.active);
         // A condition that is not understood is refused with the other pragmas, where it would decide.
         let mut refused = false;
+        facts.declared = known.at(pragma.span);
         match word {
             Word::Define(name, value) if active => facts.define(name, value),
             Word::Undefine(name) if active => facts.undefine(name),
@@ -113,6 +111,7 @@ pub fn choose<'s>(tokens: &mut Tokens<'s>, by_project: &'s [String], known: Know
                 .help("write `{END_IF}` where it ends"),
         );
         left_out.extend(since.map(|start| (start, u32::MAX)));
+        tokens.cut |= since.is_some();
     }
     leave_out(tokens, &left_out);
     tokens.undecided = undecided;
@@ -194,7 +193,7 @@ fn decide<'s>(
     match (condition.and_then(|it| it.holds(facts, pragma.span)), condition, known) {
         (Some(true), ..) => Answer::Yes,
         (Some(false), ..) => Answer::No,
-        (None, Some(condition), Known::Later) if condition.asks() => Answer::Later,
+        (None, Some(condition), Known::Later | Known::One(..)) if condition.asks() => Answer::Later,
         (None, Some(condition), Known::Never) if condition.asks() => Answer::Kept,
         (None, ..) => Answer::Unknown,
     }

@@ -11,6 +11,19 @@ pub enum Known<'k, 's> {
     /// It is not asked for: each part is kept that it may decide.
     Never,
     All(&'k Declared<'s>),
+    /// For the condition here; for the others not yet.
+    One(&'k Declared<'s>, Span),
+}
+
+impl<'k, 's> Known<'k, 's> {
+    /// What a condition may ask for.
+    pub fn at(self, condition: Span) -> Option<&'k Declared<'s>> {
+        match self {
+            Self::All(declared) => Some(declared),
+            Self::One(declared, at) => Some(declared).filter(|_| at == condition),
+            Self::Later | Self::Never => None,
+        }
+    }
 }
 
 /// What is asked of the declarations of a program.

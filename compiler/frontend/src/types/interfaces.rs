@@ -107,8 +107,28 @@ impl Declarations<'_> {
 
     /// A reference to an instance is made: only of such classes is what a variable of an INTERFACE refers to.
     pub fn note_referred(&mut self, ty: Type) {
-        let class = if let Type::Struct(state) = ty { self.slot_of_instance(state) } else { None };
-        self.table.interfaces.referred.extend(class);
+        let first = self.first_instance(ty).and_then(|it| self.slot_of_instance(it));
+        self.table.interfaces.referred.extend(first);
+    }
+
+    /// The instance that lies where a variable begins, of a class that references tell apart: itself, the first element
+    /// of an array, the first member of a structure.
+    pub fn first_instance(&mut self, mut ty: Type) -> Option<StructId> {
+        loop {
+            ty = match ty {
+                Type::Array(id) => self.program.array(id).element,
+                Type::Struct(state) if self.slot_of_instance(state).is_some_and(|it| self.is_told_apart(it)) => {
+                    return Some(state);
+                }
+                Type::Struct(state) => self.program.structure(state).fields.first()?.ty,
+                Type::Elementary(_)
+                | Type::Reference(_)
+                | Type::Subrange(..)
+                | Type::String(_)
+                | Type::Enum(_)
+                | Type::Block(_) => return None,
+            };
+        }
     }
 
     /// The routines that a name means on an instance, or on a variable of an INTERFACE.
