@@ -107,6 +107,7 @@ pub fn program(tasks: &[Task]) -> Program {
         globals: StructId::next(tasks.len()),
         aliases: Vec::new(),
         global_paths: Vec::new(),
+        bound: Vec::new(),
         reentered: std::collections::BTreeSet::new(),
         reach: Reach::default(),
         places: std::collections::BTreeSet::new(),

@@ -294,11 +294,11 @@ pub struct Compare {
     #[command(flatten)]
     pub files: Files,
     /// The dialect that the program is written in
-    #[arg(long, value_parser = dialect, value_name = "DIALECT")]
-    pub from: Dialect,
+    #[arg(long, value_parser = named_dialect, value_name = "DIALECT")]
+    pub from: Named,
     /// The dialect that it moves to
-    #[arg(long, value_parser = dialect, value_name = "DIALECT")]
-    pub to: Dialect,
+    #[arg(long, value_parser = named_dialect, value_name = "DIALECT")]
+    pub to: Named,
     /// The program as rewritten for the other system, where it cannot stay as it is
     #[arg(long, value_name = "FILE")]
     pub against: Option<PathBuf>,
@@ -396,6 +396,19 @@ pub struct Man {
 pub struct New {
     /// The folder to make
     pub dir: PathBuf,
+}
+
+/// A dialect, by the name that it was asked for by.
+#[derive(Clone, Copy, Debug)]
+pub struct Named {
+    pub dialect: Dialect,
+    pub name: &'static str,
+}
+
+fn named_dialect(name: &str) -> Result<Named, String> {
+    let dialect = dialect(name)?;
+    let asked = Dialect::names().map(|it| it.0).find(|it| it.eq_ignore_ascii_case(name));
+    Ok(Named { dialect, name: asked.unwrap_or(dialect.name()) })
 }
 
 fn dialect(name: &str) -> Result<Dialect, String> {

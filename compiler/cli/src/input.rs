@@ -106,7 +106,7 @@ fn bytes(path: &Path) -> Result<(String, Vec<u8>), String> {
 }
 
 /// As messages and outputs have it: seen from the current folder, with the strokes of every system.
-fn shown(path: &Path) -> String {
+pub fn shown(path: &Path) -> String {
     let here = std::env::current_dir().ok();
     let below = here.as_deref().and_then(|it| path.strip_prefix(it).ok());
     let parts = below.unwrap_or(path).components().filter(|it| *it != std::path::Component::CurDir);

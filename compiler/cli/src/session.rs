@@ -2,7 +2,7 @@
 
 use crate::args::{Color, Common, Files, MessageFormat};
 use crate::{REJECTED, input, output};
-use staunch_build::Project;
+use staunch_build::{Project, listing};
 use staunch_frontend::{
     Compilation, CoveragePoint, Diagnostic, Dialect, Fix, Format, Level, Levels, Options, Severity, Sources, Span,
     Style, Test,
@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 pub struct Session {
     pub common: Common,
     pub project: Project,
-    /// The first source file, which outputs are named after.
+    /// The project that lists the sources, or the first of them: outputs are named after it.
     pub first: PathBuf,
     pub sources: Sources,
     /// `None` when the program was rejected.
@@ -100,8 +100,11 @@ impl Session {
         let start = Instant::now();
         let compilation = compile(&sources, &options(common, &project)?);
         let compile_time = start.elapsed();
-        let first = PathBuf::from(&sources.files()[0].path);
-        let mut session = Self::new(common.with(&project), project, first, sources, compile_time);
+        let first = match named.first().filter(|it| listing::is_list(it) && !it.is_dir()) {
+            Some(project) => input::shown(project),
+            None => sources.files()[0].path.clone(),
+        };
+        let mut session = Self::new(common.with(&project), project, PathBuf::from(first), sources, compile_time);
         session.say_what_was_read();
         let errors = session.accept(compilation, &levels, &[])?;
         Ok((session, errors))
@@ -255,6 +258,16 @@ impl Session {
                     .filter(|it| it.name.eq_ignore_ascii_case(asked) || of(it))
                     .cloned()
                     .collect();
+                let idle = program
+                    .classes
+                    .iter()
+                    .find(|it| it.kind == staunch_ir::ClassKind::Program && it.name.eq_ignore_ascii_case(asked));
+                if wanted.is_empty()
+                    && let Some(idle) = idle
+                {
+                    let name = &idle.name;
+                    return Err(format!("no task or CONFIGURATION runs the PROGRAM `{name}`; there {}", are(&names)));
+                }
                 if wanted.is_empty() {
                     return Err(format!("there is no PROGRAM `{asked}`; there {}", are(&names)));
                 }

@@ -144,6 +144,15 @@ fn what_is_not_found_is_not_ruled_out() {
 }
 
 #[test]
+fn a_system_has_the_name_that_it_is_asked_for_by() {
+    let source =
+        "PROGRAM Main VAR_INPUT up : BOOL; END_VAR VAR n : INT; END_VAR IF up THEN n := n + 1; END_IF END_PROGRAM";
+    let path = written("asked", source);
+    let out = run(&format!("{} --from TwinCAT --to codesys", path.display()));
+    assert!(text(&out.stdout).starts_with("twincat and codesys are equal"), "{}", text(&out.stdout));
+}
+
+#[test]
 fn one_system_does_not_differ_from_itself() {
     for dialect in ["iec", "cscape", "codesys"] {
         let output = run(&format!("held.st --from {dialect} --to {dialect}"));

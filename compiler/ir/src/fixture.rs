@@ -62,6 +62,7 @@ pub fn program(arrays: Vec<Array>, structs: Vec<Struct>, routines: Vec<Routine>)
         globals: StructId::next(structs.len() - 1),
         aliases: Vec::new(),
         global_paths: Vec::new(),
+        bound: Vec::new(),
         reentered: std::collections::BTreeSet::new(),
         reach: Reach::default(),
         places: std::collections::BTreeSet::new(),

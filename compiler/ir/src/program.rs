@@ -39,6 +39,8 @@ pub struct Program {
     pub aliases: Vec<Variable>,
     /// Of global variables that are in a NAMESPACE or a list: the name here, and that in full, `Plant.Panel.start`.
     pub global_paths: Vec<(String, String)>,
+    /// What a VAR_CONFIG binds to inputs.
+    pub bound: Vec<Bound>,
     pub classes: Vec<Class>,
     /// The states that METHODs or ACTIONs work on: while one routine of an instance runs, what it calls may
     /// come back to the instance by another.
@@ -51,6 +53,15 @@ pub struct Program {
     pub routines: Vec<Routine>,
     /// The programs that run, in order.
     pub instances: Vec<Instance>,
+}
+
+/// A variable into which what lies at an input's address is copied before each scan.
+#[derive(Clone, Debug)]
+pub struct Bound {
+    /// Of the PROGRAM whose instances hold it, unless the globals do.
+    pub state: Option<StructId>,
+    pub variable: Place,
+    pub address: Address,
 }
 
 /// Who besides a class's own routines may write the variables of its instances.

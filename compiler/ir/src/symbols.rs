@@ -8,8 +8,8 @@ use crate::loops::constant_position;
 use crate::startup::{self, Event, Fate, Startup};
 use crate::usage::used_globals;
 use crate::{
-    Address, BlockId, Class, ClassKind, FieldId, Program, Projection, Root, Section, StructId, Type, Variable, View,
-    reference,
+    Address, BlockId, Bound, Class, ClassKind, FieldId, Place, Program, Projection, Root, Section, StructId, Type,
+    Variable, View, reference,
 };
 use core::fmt::{self, Write};
 use staunch_runtime::{Direction, Pin};
@@ -31,6 +31,7 @@ pub const VERSION: u32 = 1;
 /// block      id  name  size            then its pins, as fields; only blocks in use
 /// field      name  type  offset  section  flags  address  low..high
 /// path       field of the globals  its name in full, of one in a NAMESPACE or a list
+/// bound      type  offset in the machine  address of the input that it is copied from before each scan
 /// object     offset in the machine  size
 /// globals    struct:id  offset
 /// instance   number  name  program  struct:id  offset  interval in ns  priority
@@ -92,7 +93,26 @@ impl Map<'_> {
             writeln!(self.text, "object\t{offset}\t{size}")?;
         }
         writeln!(self.text, "globals\tstruct:{}\t{}", self.program.globals.0, machine.globals)?;
+        self.bound()?;
         self.instances()
+    }
+
+    /// What a VAR_CONFIG binds to inputs.
+    fn bound(&mut self) -> fmt::Result {
+        // Several calls of a PROGRAM copy the same.
+        let mut lines = BTreeSet::new();
+        for Bound { state, variable, address } in &self.program.bound {
+            let bases: Vec<u64> = match state {
+                Some(state) => {
+                    let all = self.program.instances.iter().zip(&self.layout.machine.instances);
+                    all.filter(|it| self.program.class(it.0.program).state == *state).map(|it| *it.1).collect()
+                }
+                None => vec![0],
+            };
+            let offsets = bases.into_iter().filter_map(|it| Some(self.storage(*state, variable, None, it)?.0));
+            lines.extend(offsets.map(|it| (it, format!("bound\t{}\t{it}\t{address}", TypeName(variable.ty)))));
+        }
+        lines.into_iter().try_for_each(|it| writeln!(self.text, "{}", it.1))
     }
 
     fn enums(&mut self) -> fmt::Result {
@@ -151,7 +171,7 @@ impl Map<'_> {
     /// A field of the globals under its other names.
     fn aliases(&mut self) -> fmt::Result {
         for alias in &self.program.aliases {
-            let Some((offset, mut attributes)) = self.storage(None, alias, 0) else { continue };
+            let Some((offset, mut attributes)) = self.storage(None, &alias.place, alias.view, 0) else { continue };
             attributes.used = self.is_used(alias);
             let offset = offset - self.layout.machine.globals;
             let (section, ty) = (section_name(alias.section), type_of(alias));
@@ -226,7 +246,10 @@ impl Map<'_> {
 
     fn variables(&mut self, instance: usize, class: &Class, base: u64) -> fmt::Result {
         for variable in &class.variables {
-            let Some((offset, attributes)) = self.storage(Some(class.state), variable, base) else { continue };
+            let Some((offset, attributes)) = self.storage(Some(class.state), &variable.place, variable.view, base)
+            else {
+                continue;
+            };
             let section = section_name(variable.section);
             let ty = type_of(variable);
             write!(self.text, "variable\t{instance}\t{}\t{section}\t{ty}\t{offset}", variable.name)?;
@@ -237,15 +260,21 @@ impl Map<'_> {
 
     /// Where a variable lies in the machine, and the attributes of the field it is; `None` for
     /// one that lives for a call.
-    fn storage(&self, state: Option<StructId>, variable: &Variable, base: u64) -> Option<(u64, Attributes)> {
-        let (mut offset, structure) = match variable.place.root {
+    fn storage(
+        &self,
+        state: Option<StructId>,
+        place: &Place,
+        view: Option<View>,
+        base: u64,
+    ) -> Option<(u64, Attributes)> {
+        let (mut offset, structure) = match place.root {
             Root::Instance => (base, state?),
             Root::Globals => (self.layout.machine.globals, self.program.globals),
             Root::Local(_) | Root::Param(_) => return None,
         };
         let mut ty = Type::Struct(structure);
         let mut attributes = Attributes::NONE;
-        for projection in &variable.place.projections {
+        for projection in &place.projections {
             match (projection, ty) {
                 (Projection::Field(id), _) => {
                     offset += self.layout.offset(ty, *id);
@@ -260,7 +289,7 @@ impl Map<'_> {
                 (Projection::Deref { .. }, _) => unreachable!("verified IR: a variable is behind no reference"),
             }
         }
-        match variable.view {
+        match view {
             Some(View { bit, address, .. }) => {
                 Some((offset + bit / 8, Attributes { view: true, address: Some(address), ..Attributes::NONE }))
             }

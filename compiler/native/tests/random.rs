@@ -111,6 +111,7 @@ impl Maker {
             globals,
             aliases: Vec::new(),
             global_paths: Vec::new(),
+            bound: Vec::new(),
             reentered: std::collections::BTreeSet::new(),
             reach: Reach::default(),
             places: std::collections::BTreeSet::new(),

@@ -27,6 +27,8 @@ pub struct Map {
     pub(crate) objects: Vec<(usize, usize)>,
     /// Of globals in a NAMESPACE or a list: the name among the globals, and that in full.
     pub(crate) global_paths: Vec<(String, String)>,
+    /// What takes its value from an input before each scan: the type, the offset and the input's address.
+    pub(crate) bound: Vec<(Type, usize, String)>,
     pub instances: Vec<Instance>,
 }
 
@@ -197,6 +199,11 @@ impl Map {
                 self.global_paths.push((name, record.text()?.to_owned()));
                 Ok(())
             }
+            "bound" => {
+                let (ty, offset) = (record.ty()?, record.number()?);
+                self.bound.push((ty, offset, record.text()?.to_owned()));
+                Ok(())
+            }
             "globals" => {
                 self.globals = Some((record.ty()?, record.number()?));
                 Ok(())
@@ -238,7 +245,8 @@ impl Map {
         let variables = self.instances.iter().flat_map(|it| &it.variables).map(|it| it.ty);
         let roots = self.instances.iter().map(|it| it.ty).chain(self.globals.map(|it| it.0));
         let elements = self.arrays.values().map(|it| it.element);
-        let mut all = members.chain(variables).chain(roots).chain(elements);
+        let bound = self.bound.iter().map(|it| it.0);
+        let mut all = members.chain(variables).chain(roots).chain(elements).chain(bound);
         match all.find(|ty| !self.knows(*ty)) {
             Some(ty) => Err(Error::Map { line: 0, text: format!("{ty:?} is not in it") }),
             None => Ok(self),

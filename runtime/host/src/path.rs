@@ -295,14 +295,69 @@ fn element(map: &Map, place: Place, index: i64) -> Result<Place, String> {
     Ok(Place { range: place.range, ..part })
 }
 
+/// `%IW10`, and `%IW10.n` or `%IW10[3]` in what lies there. Of several variables there, it is one that has a value.
 fn by_address(map: &Map, running: &[usize], text: &str) -> Result<Place, String> {
-    let wanted = canonical(text);
+    let (address, rest) = split_address(text);
+    let path = format!("_{rest}");
+    let steps = steps(&path).ok_or_else(|| format!("`{text}` is not the name of a variable"))?;
+    let (mut found, mut error) = (None, None);
+    for place in at_address(map, running, address) {
+        match follow(map, place, &steps[1..]) {
+            Ok(place) if map.structure(place.ty).is_none() && map.array(place.ty).is_none() => return Ok(place),
+            Ok(place) => found = found.or(Some(place)),
+            Err(text) => error = error.or(Some(text)),
+        }
+    }
+    found.ok_or_else(|| error.unwrap_or_else(|| format!("no variable has the address `{address}`")))
+}
+
+/// An address, and the way from it to a member or an element.
+fn split_address(text: &str) -> (&str, &str) {
+    let starts_way = |(at, character): &(usize, char)| match character {
+        '[' => true,
+        '.' => !text[at + 1..].trim_start().starts_with(|it: char| it.is_ascii_digit()),
+        _ => false,
+    };
+    let end = text.char_indices().find(starts_way).map_or(text.len(), |it| it.0);
+    (text[..end].trim_end(), &text[end..])
+}
+
+/// The variables that lie at an address: a program's own come first.
+fn at_address(map: &Map, running: &[usize], address: &str) -> Vec<Place> {
+    let wanted = canonical(address);
     let has = |it: &&Variable| it.address.as_deref().is_some_and(|it| canonical(it) == wanted);
     let (globals, base) = map.globals();
-    let global = || globals.iter().find(has).map(|it| Place::of(it, base));
-    let own = running.iter().flat_map(|at| &map.instances[*at].variables).find(has);
-    let found = own.map(|it| Place::of(it, 0)).or_else(global).or_else(|| inside_blocks(map, running, &wanted));
-    found.ok_or_else(|| format!("no variable has the address `{text}`"))
+    let own = running.iter().flat_map(|at| &map.instances[*at].variables).filter(has).map(|it| Place::of(it, 0));
+    let global = globals.iter().filter(has).map(|it| Place::of(it, base));
+    own.chain(global).chain(inside_blocks(map, running, &wanted)).collect()
+}
+
+/// What the world writes for a variable: a VAR_CONFIG has its value copied from an address before each scan.
+pub(crate) fn written(map: &Map, running: &[usize], place: Place) -> Place {
+    let from = |(ty, offset, address): &(Type, usize, String)| {
+        let whole = Place { offset: *offset, ty: *ty, range: None, constant: false, input: false, is_shared: false };
+        let way = way_between(map, whole, place)?;
+        by_address(map, running, &format!("{address}{way}")).ok()
+    };
+    map.bound.iter().find_map(from).unwrap_or(place)
+}
+
+/// The way from a variable to a part of it.
+fn way_between(map: &Map, whole: Place, part: Place) -> Option<String> {
+    if (whole.offset, whole.ty) == (part.offset, part.ty) {
+        return Some(String::new());
+    }
+    let inside = part.offset.checked_sub(whole.offset).filter(|it| *it < map.size_of(whole.ty))?;
+    if let Some(array) = map.array(whole.ty) {
+        let position = inside.checked_div(array.stride)?;
+        let way = way_between(map, whole.part(array.element, position * array.stride), part)?;
+        let index = array.low.checked_add_unsigned(u64::try_from(position).ok()?)?;
+        return Some(format!("[{index}]{way}"));
+    }
+    map.structure(whole.ty)?.members.iter().find_map(|it| {
+        let way = way_between(map, whole.member(it), part)?;
+        Some(format!(".{}{way}", it.name))
+    })
 }
 
 /// An address inside a function block instance.

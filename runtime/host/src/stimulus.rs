@@ -184,7 +184,7 @@ impl Parser<'_> {
         let place = path::resolve(self.map, self.running, name).map_err(|text| self.at(cell, text))?;
         match place.constant {
             true => Err(self.at(cell, format!("`{name}` is CONSTANT: nothing writes it"))),
-            false => Ok(Column::Variable(place)),
+            false => Ok(Column::Variable(path::written(self.map, self.running, place))),
         }
     }
 

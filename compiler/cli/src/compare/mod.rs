@@ -69,40 +69,46 @@ enum Verdict {
 
 pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
     let args = &args.settled()?;
-    let common = Common { dialect: Some(args.from), ..common.clone() };
+    let common = Common { dialect: Some(args.from.dialect), ..common.clone() };
     let from = Session::start(&common, &args.files)?;
-    fixed::check(&from.sources, args.from, "--from", args.against.is_none() && args.from != args.to)?;
+    fixed::check(
+        &from.sources,
+        args.from.dialect,
+        "--from",
+        args.against.is_none() && args.from.dialect != args.to.dialect,
+    )?;
     let Some(program) = from.program_to_run(args.program.as_deref())? else {
         if from.common.format() == MessageFormat::Human {
-            eprintln!("the program is compared once `--from {}` accepts it", args.from.name());
+            eprintln!("the program is compared once `--from {}` accepts it", args.from.name);
         }
         return Ok(REJECTED);
     };
     let rewritten = rewrite(&from, args)?;
     let notes = rewritten.as_ref().map_or_else(Vec::new, |it| it.notes.clone());
     let to = match &rewritten {
-        Some(it) if args.against.is_none() => from.rewritten(args.to, &it.sources, |span| it.origin(span))?,
-        Some(it) => from.moved(args.to, Some(it.sources.clone()))?,
-        None => from.moved(args.to, None)?,
+        Some(it) if args.against.is_none() => from.rewritten(args.to.dialect, &it.sources, |span| it.origin(span))?,
+        Some(it) => from.moved(args.to.dialect, Some(it.sources.clone()))?,
+        None => from.moved(args.to.dialect, None)?,
     };
     let renamed = renamed::owners(&to.sources, to.renamed.iter().map(|it| it.span));
-    let missing = if args.against.is_some() { Vec::new() } else { missing::find(&from.sources, &program, args.to) };
-    let unknown = if args.against.is_some() { Vec::new() } else { missing::unknown(&program, args.to) };
+    let missing =
+        if args.against.is_some() { Vec::new() } else { missing::find(&from.sources, &program, args.to.dialect) };
+    let unknown = if args.against.is_some() { Vec::new() } else { missing::unknown(&program, args.to.dialect) };
     let report = report::Report { session: &from, args, notes, renamed: renamed.len(), missing, unknown };
     let moved = match to.program_to_run(args.program.as_deref())? {
         Some(moved) => moved,
         None => {
             args.write.iter().for_each(|it| eprintln!("no file is written to {}", it.display()));
-            return report.rejection(&rejection::find(&to, args.from, args.to));
+            return report.rejection(&rejection::find(&to, args.from.dialect, args.to.dialect));
         }
     };
     if let Some(path) = &args.write {
         let sources = rewritten.as_ref().map_or(&from.sources, |it| &it.sources);
-        migrated::write(&from, path, sources, &to.renamed, args.to)?;
+        migrated::write(&from, path, sources, &to.renamed, args.to.dialect)?;
     }
     let cycle = run::cycle(&from, args.cycle.as_deref())?;
     let same_program = is_same(&program, &moved);
-    let sides = [Side::new(args.from, program, cycle)?, Side::new(args.to, moved, cycle)?];
+    let sides = [Side::new(args.from.dialect, program, cycle)?, Side::new(args.to.dialect, moved, cycle)?];
     let mut pair = Pair::new(sides, &[]);
     let mut world = world(&mut pair, args)?;
     let only: Vec<String> = args.vars.iter().flat_map(|it| it.split(',')).map(|it| it.trim().to_owned()).collect();
@@ -221,11 +227,11 @@ fn rewrite(from: &Session, args: &Compare) -> Result<Option<logix::Rewritten>, S
     if let Some(path) = &args.against {
         let files = Files { files: vec![path.clone()] };
         let sources = input::read(&files.files, &[])?;
-        fixed::check(&sources, args.to, "--to", false)?;
+        fixed::check(&sources, args.to.dialect, "--to", false)?;
         return Ok(Some(logix::Rewritten::by_user(sources)));
     }
-    if args.to == Dialect::Logix && args.from != Dialect::Logix {
-        return Ok(logix::rewrite(&from.sources, args.from));
+    if args.to.dialect == Dialect::Logix && args.from.dialect != Dialect::Logix {
+        return Ok(logix::rewrite(&from.sources, args.from.dialect));
     }
     Ok(None)
 }

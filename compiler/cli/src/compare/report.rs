@@ -36,7 +36,7 @@ impl Report<'_> {
     }
 
     fn names(&self) -> [&'static str; 2] {
-        [self.args.from.name(), self.args.to.name()]
+        [self.args.from.name, self.args.to.name]
     }
 
     /// Prints all of it; the exit code.
@@ -165,11 +165,8 @@ impl Report<'_> {
     fn rewritten(&self) -> String {
         let mut text = String::new();
         if !self.notes.is_empty() {
-            let _ = writeln!(
-                text,
-                "{} needs the program rewritten; compared as:",
-                self.args.to.name().to_ascii_uppercase()
-            );
+            let _ =
+                writeln!(text, "{} needs the program rewritten; compared as:", self.args.to.name.to_ascii_uppercase());
             for (before, after) in &self.notes {
                 let _ = writeln!(text, "  - {before}\n  + {after}");
             }

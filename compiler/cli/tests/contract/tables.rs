@@ -52,6 +52,30 @@ END_TEST
 }
 
 #[test]
+fn what_a_var_config_binds_is_set_where_its_input_lies() {
+    let program = "TYPE Probe : STRUCT n : INT; a : ARRAY[1..2] OF INT; END_STRUCT; END_TYPE
+PROGRAM Main
+VAR probe AT %I* : Probe; go AT %I* : BOOL; y : INT; END_VAR
+IF go THEN y := y + probe.n * probe.a[2]; END_IF
+END_PROGRAM
+VAR_CONFIG Main.probe AT %IW10 : Probe; Main.go AT %IX0.0 : BOOL; END_VAR
+";
+    let table = "probe.n,%IW10.a[2],go,|,y\n4,5,TRUE,|,20\n-1,,,|,15\n,,FALSE,|,15\n";
+    let folder = Folder::with("table_bound_names", &[("bound.st", program), ("bound.csv", table)]);
+    for backend in ["native", "interpret", "rust"] {
+        has(&folder.staunch(&format!("test . --backend {backend}")).out(0), &["ok      bound", "1 passed, 0 failed"]);
+    }
+    let trace = "run bound.st --stimulus bound.csv --trace - --vars %IW10.n,%IW10.a[2],probe.n";
+    has(&folder.staunch(trace).out(0), &["scan,time_ms,%IW10.n,%IW10.a[2],probe.n\n1,0,4,5,4\n2,10,-1,5,-1\n"]);
+    folder.write("bound.csv", "probe.n,%IW10.n,|,y\n4,4,|,0\n");
+    has(&folder.staunch("test .").out(1), &["bound.csv:1:9: `%IW10.n` already has a column"]);
+    folder.write("bound.csv", "%IW10.m,|,y\n4,|,0\n");
+    has(&folder.staunch("test .").out(1), &["bound.csv:1:1: Probe has no member `m`"]);
+    folder.write("bound.csv", "%IW12.n,|,y\n4,|,0\n");
+    has(&folder.staunch("test .").out(1), &["bound.csv:1:1: no variable has the address `%IW12`"]);
+}
+
+#[test]
 fn the_first_scan_is_at_time_zero() {
     let program = "PROGRAM Main VAR_INPUT up : INT; END_VAR VAR n : INT; END_VAR n := n + up; END_PROGRAM";
     let table = "time,up,|,n\nT#0ms,1,|,1\nT#10ms,2,|,3\n";

@@ -150,6 +150,32 @@ fn a_project_that_cannot_be_read_is_said() {
 }
 
 #[test]
+fn tasks_say_what_runs() {
+    let folder = project("twincat-tasks");
+    let idle = "<TcPlcObject><POU Name=\"Idle\"><Declaration>PROGRAM Idle</Declaration></POU></TcPlcObject>";
+    folder.write("POUs/Idle.TcPOU", idle);
+    let task = |name: &str, calls: &str| {
+        let call = format!("<PouCall><Name>{calls}</Name></PouCall>");
+        format!("<TcPlcObject><Task Name=\"{name}\"><CycleTime>2000</CycleTime>{call}</Task></TcPlcObject>")
+    };
+    folder.write("Fast.TcTTO", task("Fast", "MAIN"));
+    folder.write("Slow.TcTTO", task("Slow", "MAIN"));
+    let with = |tasks: &[&str]| {
+        let files = tasks.iter().chain(&["POUs\\Idle.TcPOU"]).map(|it| format!("<Compile Include=\"{it}\"/>"));
+        PROJECT.replacen("<ItemGroup>", &format!("<ItemGroup>{}", files.collect::<String>()), 1)
+    };
+    folder.write("Line.plcproj", with(&["Fast.TcTTO"]));
+    // What is checked is the project, and not its first file.
+    has(&folder.staunch("check Line.plcproj").err(0), &["Checked Line.plcproj"]);
+    let idle = folder.staunch("run Line.plcproj --program idle").err(2);
+    has(&idle, &["no task or CONFIGURATION runs the PROGRAM `Idle`; there is MAIN"]);
+    has(&folder.staunch("run Line.plcproj --program None").err(2), &["there is no PROGRAM `None`; there is MAIN"]);
+    folder.write("Line.plcproj", with(&["Fast.TcTTO", "Slow.TcTTO"]));
+    let twice = folder.staunch("check Line.plcproj").err(1);
+    has(&twice, &["error[E0902]: the PROGRAM `MAIN` is called twice", "Slow.TcTTO:1:", "first called here"]);
+}
+
+#[test]
 fn a_solution_leads_to_its_project() {
     let folder = project("twincat-solution");
     let solution = "\u{feff}\nMicrosoft Visual Studio Solution File, Format Version 12.00\n\

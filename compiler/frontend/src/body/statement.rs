@@ -7,7 +7,7 @@ use crate::start::is_once;
 use crate::testing::suite::runs_suites;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, StatementKind as Ast_};
-use staunch_ir::{Block, Expr, StatementKind, Type};
+use staunch_ir::{Block, Expr, Root, StatementKind, Type};
 
 impl<'s> Checker<'_, 's> {
     /// The statements of a body, or of a branch of one.
@@ -189,6 +189,7 @@ impl<'s> Checker<'_, 's> {
         }
         if self.is_run() {
             self.check_binding(target, value)?;
+            self.note_binding(target, value);
         }
         self.assigned(std::slice::from_ref(target), value, span, false).map(drop)
     }
@@ -208,6 +209,16 @@ impl<'s> Checker<'_, 's> {
             );
         }
         None
+    }
+
+    fn note_binding(&mut self, target: &ast::Expr<'s>, value: &ast::Expr<'s>) {
+        let ast::ExprKind::Name(address) = value.kind else { return };
+        let state = self.signature.as_ref().and_then(|it| it.state);
+        if let Some(found) = self.place(target)
+            && found.place.root == Root::Instance
+        {
+            self.note_bound(state, found.place, address);
+        }
     }
 
     /// `r ?= x`: which instance a reference is given is known as the program runs. What is no instance is known when it is

@@ -3,9 +3,9 @@
 
 use super::checker::Checker;
 use crate::ast::{self, ExprKind};
-use crate::types::address::is_input;
+use crate::types::address::{self, is_input};
 use crate::types::synthetic::PROGRAM;
-use staunch_ir::{Expr, Place, Root};
+use staunch_ir::{Area, Expr, Place, Root, StructId};
 
 /// A variable of the PROGRAM, and what lies at its address.
 pub(super) struct Bound<'s> {
@@ -34,9 +34,16 @@ impl<'s> Checker<'_, 's> {
 
     pub(super) fn copy_in(&mut self, bound: &[Bound<'s>]) {
         for Bound { variable, located, address } in bound {
+            self.note_bound(None, variable.clone(), *address);
             let value = Expr::load(located.clone(), self.at(address.span));
             self.assign(variable.clone(), value, address.span);
         }
+    }
+
+    /// Notes what is copied from an input, for those who set inputs; in instances of `state`, or in the globals.
+    pub(crate) fn note_bound(&mut self, state: Option<StructId>, variable: Place, address: ast::Name<'s>) {
+        let Some(address) = address::parse(address.text).filter(|it| it.area == Area::Input) else { return };
+        self.decl.program.bound.push(staunch_ir::Bound { state, variable, address });
     }
 
     pub(super) fn copy_out(&mut self, bound: &[Bound<'s>]) {

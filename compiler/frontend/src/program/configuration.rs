@@ -121,7 +121,12 @@ impl<'s> Declarations<'s> {
         for resource in resources.clone() {
             self.names_once(resource.tasks.iter().map(|it| it.name));
         }
-        self.names_once(resources.flat_map(|it| &it.programs).map(|it| it.name));
+        let (called, declared): (Vec<_>, Vec<_>) = resources.partition(|it| {
+            let is_task = |it: &ast::ProgramInstance<'_>| self.log.sources.get(it.name.span.file).is_assembled();
+            it.name.is_none() && it.programs.iter().all(is_task)
+        });
+        self.names_once(declared.into_iter().flat_map(|it| &it.programs).map(|it| it.name));
+        self.called_once(called.into_iter().flat_map(|it| &it.programs).map(|it| it.name));
         // Unit tests run none of its instances.
         if !self.log.options.tests {
             self.check_bindings(configurations, bindings);
@@ -269,6 +274,21 @@ impl<'s> Declarations<'s> {
             if self.dialect(address.span) != Dialect::Codesys && !bound.contains(&Key(name.text)) {
                 self.report(crate::types::address::wrong(address));
             }
+        }
+    }
+
+    /// Reports a PROGRAM that tasks of TwinCAT's call twice: they have no names of their own for what runs.
+    fn called_once(&mut self, called: impl Iterator<Item = ast::Name<'s>>) {
+        let mut seen: FxHashMap<Key<'s>, Span> = FxHashMap::default();
+        for name in called {
+            let Some(first) = seen.insert(Key(name.text), name.span) else { continue };
+            let message = format!("the PROGRAM `{}` is called twice, which is not supported yet", name.text);
+            self.report(
+                Diagnostic::new(Code::E0902, name.span, message)
+                    .label("a task calls it again here")
+                    .other(first, "first called here")
+                    .help("let one task call it, and another PROGRAM do what the other task is for"),
+            );
         }
     }
 

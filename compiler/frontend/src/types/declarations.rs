@@ -640,6 +640,7 @@ pub(crate) fn empty_program(files: Vec<SourceFile>) -> Program {
         routines: Vec::new(),
         aliases: Vec::new(),
         global_paths: Vec::new(),
+        bound: Vec::new(),
         reentered: std::collections::BTreeSet::new(),
         reach: staunch_ir::Reach::default(),
         places: std::collections::BTreeSet::new(),

@@ -88,6 +88,7 @@ pub fn program(arrays: Vec<Array>, mut structs: Vec<Struct>, routines: Vec<Routi
         globals: StructId::next(structs.len() - 1),
         aliases: Vec::new(),
         global_paths: Vec::new(),
+        bound: Vec::new(),
         reentered: std::collections::BTreeSet::new(),
         reach: Reach::default(),
         places: std::collections::BTreeSet::new(),

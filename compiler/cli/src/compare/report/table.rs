@@ -81,7 +81,7 @@ impl Report<'_> {
             Some(pitfall) => {
                 let counter = cause.counter.as_ref().map_or_else(String::new, |it| format!(" (`{it}`)"));
                 let _ = writeln!(text, "Trap {}{counter}: {}", pitfall.number(), pitfall.sentence());
-                let _ = writeln!(text, "What to do: {}", pitfall.advice(self.args.from, self.args.to));
+                let _ = writeln!(text, "What to do: {}", pitfall.advice(self.args.from.dialect, self.args.to.dialect));
             }
             None => text += &self.unexplained(pair, &differences, findings),
         }
