@@ -223,6 +223,20 @@ fn standard_blocks_that_are_inputs_are_given_their_pins() {
     assert!(code == Some(4) && text.contains("outputs of blocks that are inputs: s.Q1"), "{text}");
 }
 
+/// A run that connects its PROGRAM with global variables has the PROGRAM's variables by their names.
+#[test]
+fn variables_of_a_connected_run_are_named() {
+    let source = written(
+        "connected.st",
+        "VAR_GLOBAL g : BOOL; END_VAR\nPROGRAM Pa\nVAR_INPUT b : BOOL; END_VAR\nVAR_OUTPUT o : BOOL; END_VAR\nVAR c : CTU; END_VAR\n\
+         c(CU := b, PV := 3);\no := c.CV = 4;\nEND_PROGRAM\n\
+         CONFIGURATION C\nRESOURCE R ON PLC\nTASK t1(INTERVAL := T#10ms, PRIORITY := 1);\nPROGRAM i1 WITH t1 : Pa(b := g);\n\
+         END_RESOURCE\nEND_CONFIGURATION\n",
+    );
+    let (code, text) = compare(&source, ("iec", "openplc"), &["--vars", "o"]);
+    assert!(code == Some(1) && text.contains("o openplc") && !text.contains("PROGRAM."), "{text}");
+}
+
 /// An output that shares its bits on one system, and is written by another name, is one of its own on the other.
 #[test]
 fn an_output_that_one_system_alone_has_is_not_passed_over() {

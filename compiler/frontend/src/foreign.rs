@@ -109,13 +109,15 @@ fn scl(text: &str) -> Option<Kind> {
     })
 }
 
-/// `#x` where no number and no type is before it.
+/// `#x` where no number and no type is before it; C's `#include` is none.
 fn has_local(line: &str) -> bool {
-    line.match_indices('#').any(|(at, _)| {
-        let before = line[..at].chars().next_back();
-        let after = line[at + 1..].chars().next();
-        !before.is_some_and(|it| it.is_alphanumeric() || it == '_') && after.is_some_and(char::is_alphabetic)
-    })
+    let is_preprocessor = line.strip_prefix('#').is_some_and(crate::lex::is_preprocessor);
+    !is_preprocessor
+        && line.match_indices('#').any(|(at, _)| {
+            let before = line[..at].chars().next_back();
+            let after = line[at + 1..].chars().next();
+            !before.is_some_and(|it| it.is_alphanumeric() || it == '_') && after.is_some_and(char::is_alphabetic)
+        })
 }
 
 /// `"DB".x`

@@ -7,6 +7,8 @@ use staunch_runtime::{Direction, Pin, PinRole};
 
 /// Further elements of an array are not compared.
 const MAX_ELEMENTS: u64 = 1024;
+/// The PROGRAM in a run that a CONFIGURATION connects with variables: a keyword, which no declaration can take.
+const HELD: &str = "PROGRAM";
 /// Further scalars of a program are not compared.
 const MAX_SCALARS: usize = 1 << 16;
 
@@ -112,9 +114,11 @@ impl Scalars {
         let mut walk = Walk { program, layout, found: Self::default() };
         for (instance, offset) in program.instances.iter().zip(&machine.instances) {
             let prefix = if program.instances.len() > 1 { format!("{}.", instance.name) } else { String::new() };
-            walk.structure(&prefix, program.class(instance.program).state, usize_of(*offset));
+            let state = program.class(instance.program).state;
+            walk.structure(&prefix, state, usize_of(*offset), &Way { from: state, members: Vec::new() });
         }
-        walk.structure("", program.globals, usize_of(machine.globals));
+        let globals = program.globals;
+        walk.structure("", globals, usize_of(machine.globals), &Way { from: globals, members: Vec::new() });
         let mut found = walk.found;
         found.by_offset = found.all.iter().enumerate().map(|(at, it)| (it.offset, at)).collect();
         found.by_offset.sort_unstable();
@@ -133,10 +137,17 @@ impl Scalars {
 }
 
 impl Walk<'_> {
-    /// The members of a PROGRAM or of the globals.
-    fn structure(&mut self, prefix: &str, id: StructId, base: usize) {
+    /// The members of a PROGRAM or of the globals, `to` which a way leads.
+    fn structure(&mut self, prefix: &str, id: StructId, base: usize, to: &Way) {
         for (at, field) in self.program.structure(id).fields.iter().enumerate() {
             let number = FieldId::next(at);
+            let mut way = to.clone();
+            way.members.push(number);
+            if let (Type::Struct(program), true) = (field.ty, field.name == HELD) {
+                let base = base + usize_of(self.layout.field(id, number));
+                self.structure(prefix, program, base, &way);
+                continue;
+            }
             let from_outside =
                 field.section == Section::Input || field.address.is_some_and(|it| it.area == staunch_ir::Area::Input);
             let role = match (field.constant, from_outside) {
@@ -153,7 +164,6 @@ impl Walk<'_> {
                 is_retained: field.retain == Retain::Kept,
                 is_given: false,
             };
-            let way = Way { from: id, members: vec![number] };
             self.part(&path, field.ty, Whole { offset, role, field: Some((id, number)), way, at });
         }
     }

@@ -113,7 +113,9 @@ pub fn not_found(pair: &Pair, world: &World, outcome: &Outcome) -> Verdict {
     let untried = listed(alphabet::untried(pair).into_iter().map(str::to_owned));
     left.extend(untried.map(|it| format!("inputs that are references, or of another type on the other system: {it}")));
     let given = listed(alphabet::outputs_given(pair).into_iter().map(str::to_owned));
-    left.extend(given.map(|it| format!("what the world outside might write to outputs of blocks that are inputs: {it}")));
+    left.extend(
+        given.map(|it| format!("what the world outside might write to outputs of blocks that are inputs: {it}")),
+    );
     if !pair.whole {
         left.push("elements of long arrays".to_owned());
     }
