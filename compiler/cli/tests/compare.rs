@@ -216,6 +216,47 @@ fn written(name: &str, source: &str) -> PathBuf {
 }
 
 #[test]
+fn shared_bits_have_the_names_of_their_variables() {
+    let path = written(
+        "shared_bits.st",
+        "TYPE Probe : STRUCT n : INT; ok : BOOL; END_STRUCT; END_TYPE
+PROGRAM Main
+VAR probe AT %IW0 : Probe; raw AT %IW0 : UINT; q AT %QW0 : Probe; low AT %QB0 : BYTE; c : CTU; END_VAR
+c(CU := probe.ok, PV := 3);
+q := probe;
+q.n := q.n + c.CV;
+IF c.Q THEN low := 0; END_IF
+END_PROGRAM
+",
+    );
+    let assumed = written("shared_bits.txt", "probe.n 2..5\n");
+    let assume = format!("--assume {} --all-inputs", assumed.display());
+    let out = run(&format!("{} --from iec --to codesys {assume}", path.display()));
+    let out = text(&out.stdout);
+    assert!(!out.contains("bits_of"), "{out}");
+    assert!(out.contains("scan  @event  probe.n  probe.ok  c.CV iec  c.CV codesys  q.n iec  q.n codesys"), "{out}");
+    assert!(out.contains("assumed: probe.n 2..5"), "{out}");
+    let moved = text(&run(&format!("{} --from iec --to logix", path.display())).stdout);
+    assert!(moved.contains("shared_bits.st:3: LOGIX has no BYTE (`low`)") && !moved.contains("bits_of"), "{moved}");
+}
+
+#[test]
+fn members_of_a_union_are_inputs_by_their_names() {
+    let path = written(
+        "union_input.st",
+        "TYPE Both : STRUCT OVERLAP w AT %B0 : WORD; b AT %X0.0 : BOOL; END_STRUCT; END_TYPE
+PROGRAM Main
+VAR_INPUT both : Both; END_VAR
+VAR c : CTU; END_VAR
+c(CU := both.b, PV := 3);
+END_PROGRAM
+",
+    );
+    let out = text(&run(&format!("{} --from iec --to codesys", path.display())).stdout);
+    assert!(out.contains("scan  @event  both.w  c.CV iec  c.CV codesys"), "{out}");
+}
+
+#[test]
 fn what_the_other_system_rejects_is_said_of_the_users_own_text() {
     let path = written(
         "word_preset.st",

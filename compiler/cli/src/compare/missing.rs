@@ -2,7 +2,8 @@
 //! goes on, and the user is told at each place.
 
 use staunch_frontend::{Dialect, Sources};
-use staunch_ir::{Elementary, Program, Type};
+use staunch_ir::{Elementary, FieldId, Location, Program, Projection, Root, Section, StructId, Type, Variable};
+use std::collections::BTreeMap;
 
 /// A variable whose type the other system has not.
 #[derive(Clone, Debug)]
@@ -18,13 +19,38 @@ pub struct Missing {
 /// In the order of the declarations.
 pub fn find(sources: &Sources, program: &Program, to: Dialect) -> Vec<Missing> {
     let mut found = Vec::new();
-    for structure in &program.structs {
-        for field in &structure.fields {
-            if let Some((what, instead)) = lacks(program, field.ty, to) {
-                let source = sources.files().get(usize::from(field.location.file));
-                let path = source.map_or_else(String::new, |it| it.path.clone());
-                let at = format!("{path}:{}", field.location.line);
-                found.push(Missing { subject: field.name.clone(), at, what, instead });
+    for (name, ty, location) in declared(program) {
+        if let Some((what, instead)) = lacks(program, ty, to) {
+            let source = sources.files().get(usize::from(location.file));
+            let path = source.map_or_else(String::new, |it| it.path.clone());
+            let at = format!("{path}:{}", location.line);
+            found.push(Missing { subject: name.to_owned(), at, what, instead });
+        }
+    }
+    found
+}
+
+/// The variables and members that are declared: where a field only keeps the bits of some, those.
+fn declared(program: &Program) -> Vec<(&str, Type, Location)> {
+    let mut found = Vec::new();
+    for (number, structure) in program.structs.iter().enumerate() {
+        for (at, field) in structure.fields.iter().enumerate() {
+            let id = FieldId::next(at);
+            if StructId::next(number) == program.globals && field.section == Section::Internal {
+                let own = program.classes.iter().flat_map(|it| &it.variables);
+                let is_in = |it: &&Variable| {
+                    it.place.root == Root::Globals
+                        && matches!(it.place.projections[..], [Projection::Field(it)] if it == id)
+                };
+                let views: BTreeMap<_, _> =
+                    own.chain(&program.aliases).filter(is_in).map(|it| (&it.name, it)).collect();
+                let views = views.into_values().filter_map(|it| Some((it.name.as_str(), it.view?.ty, field.location)));
+                found.extend(views);
+            } else if structure.is_storage(id) {
+                let overlays = structure.overlays.iter().filter(|it| it.field == id);
+                found.extend(overlays.map(|it| (it.name.as_str(), it.ty, it.location)));
+            } else {
+                found.push((field.name.as_str(), field.ty, field.location));
             }
         }
     }
@@ -36,8 +62,8 @@ pub fn unknown(program: &Program, to: Dialect) -> Vec<(String, String)> {
     if to != Dialect::Cscape {
         return Vec::new();
     }
-    let fields = program.structs.iter().flat_map(|it| &it.fields);
-    fields.filter_map(|it| Some((it.name.clone(), uncommon(program, it.ty)?))).collect()
+    let all = declared(program).into_iter();
+    all.filter_map(|(name, ty, _)| Some((name.to_owned(), uncommon(program, ty)?))).collect()
 }
 
 /// The name of a type that is not in a small controller's everyday set.

@@ -1,5 +1,7 @@
 //! The scalars of a program's state, by paths that two systems share.
 
+mod shared;
+
 use staunch_ir::layout::{Layout, usize_of};
 use staunch_ir::{ArrayId, BlockId, FieldId, Program, Retain, Section, StructId, Type, Value};
 use staunch_runtime::reference::{ORIGIN, Reference};
@@ -164,7 +166,16 @@ impl Walk<'_> {
                 is_retained: field.retain == Retain::Kept,
                 is_given: false,
             };
-            self.part(&path, field.ty, Whole { offset, role, field: Some((id, number)), way, at });
+            let mut whole = Whole { offset, role, field: Some((id, number)), way, at };
+            let views = self.views_of_global(id, number);
+            if !views.is_empty() {
+                let area = |area| views.iter().any(|it| it.area == Some(area));
+                whole.at.is_output |= area(staunch_ir::Area::Output);
+                if role == Role::Variable && area(staunch_ir::Area::Input) {
+                    whole.role = Role::Input;
+                }
+            }
+            self.kept(&path, field.ty, &views, whole);
         }
     }
 
@@ -230,7 +241,9 @@ impl Walk<'_> {
             let mut way = whole.way.clone();
             way.members.push(number);
             let field_of = Some((id, number));
-            self.part(&format!("{path}.{}", field.name), field.ty, Whole { offset, role, field: field_of, way, at });
+            let views = self.views_of_member(path, id, number);
+            let whole = Whole { offset, role, field: field_of, way, at };
+            self.kept(&format!("{path}.{}", field.name), field.ty, &views, whole);
         }
     }
 

@@ -9,7 +9,7 @@ use crate::types::image::Shared;
 use crate::types::table::{GLOBALS, Resolved};
 use crate::{Code, Diagnostic, Span};
 use rustc_hash::FxHashSet;
-use staunch_ir::{Address, Const, Elementary, Field, FieldId, Location, Place, Retain, Root, Section, Type, View};
+use staunch_ir::{Address, Const, Elementary, Field, FieldId, Place, Retain, Root, Section, Type, View};
 use std::cmp::Reverse;
 
 /// What lies at an address, among others.
@@ -153,7 +153,7 @@ impl<'s> Declarations<'s> {
             constant: false,
             address: None,
             doc: Some(format!("The bits from `{address}` on, which several variables share.")),
-            location: Location::default(),
+            location: self.location(it.first.span),
         };
         let at = self.add_synthetic(field, None);
         Member { field: self.addresses.own_fields().len() + at, ..*it }
@@ -261,7 +261,8 @@ impl<'s> Declarations<'s> {
         let mut error = Diagnostic::new(Code::E0409, span, "two initial values for the same bits")
             .label("another declaration says that they start otherwise")
             .help("give the value in one of the declarations");
-        if keeper.location != Location::default() {
+        // What nobody has declared has no place of its own.
+        if keeper.section != Section::Internal {
             error = error.other(self.log.name_at(keeper.location), "they are kept here");
         }
         self.report(error);
