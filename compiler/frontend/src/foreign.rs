@@ -152,13 +152,17 @@ fn statement_list(text: &str) -> Option<Kind> {
 
 fn is_statement_of_list(line: &str) -> bool {
     const BITS: [&str; 13] = ["U", "UN", "O", "ON", "A", "AN", "X", "XN", "S", "R", "=", "FP", "FN"];
+    const AREAS: [&str; 5] = ["E", "A", "I", "Q", "M"];
     let line = line.split("//").next().unwrap_or_default().trim().trim_end_matches(';');
     let words: Vec<&str> = without_label(line).split_whitespace().collect();
     let digits = |it: &str| !it.is_empty() && it.chars().all(|it| it.is_ascii_digit());
     let is_bit = |it: &str| it.split_once('.').is_some_and(|(byte, bit)| digits(byte) && bit.len() == 1 && digits(bit));
     let is_wide = |it: &str| ["B", "W", "D"].iter().any(|width| it.len() == 2 && it.ends_with(width));
     match words.as_slice() {
-        [operation, area, bit] if BITS.contains(operation) => ["E", "A", "I", "Q", "M"].contains(area) && is_bit(bit),
+        [operation, area, bit] if BITS.contains(operation) => AREAS.contains(area) && is_bit(bit),
+        [operation, place] if BITS.contains(operation) => {
+            AREAS.iter().filter_map(|it| place.strip_prefix(it)).any(is_bit)
+        }
         ["L" | "T", area, number] => is_wide(area) && digits(number),
         _ => false,
     }
