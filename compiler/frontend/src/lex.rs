@@ -173,7 +173,7 @@ impl<'s> Reading<'s> {
             Some('“' | '”' | '„') => it.help("a string is written between two `'`, a WSTRING between two `\"`"),
             Some('–' | '—' | '−') => it.help("write `-`"),
             Some('\u{a0}') => it.help("write an ordinary space"),
-            Some('#') if is_preprocessor(&self.text[index(place.1)..]) => it.help(
+            Some('#') if crate::source::is_preprocessor(&self.text[index(place.1)..]) => it.help(
                 "there is no preprocessor: declare a `VAR CONSTANT` for `#define`, and give all files to the command for `#include`",
             ),
             Some('#') if self.text[index(place.1)..].starts_with(|it: char| it.is_ascii_alphabetic()) => {
@@ -265,11 +265,4 @@ fn offset(at: usize) -> u32 {
 /// A stored offset as an index of the text.
 pub fn index(at: u32) -> usize {
     usize::try_from(at).unwrap_or(usize::MAX)
-}
-
-/// Whether a word of C's preprocessor follows.
-pub fn is_preprocessor(rest: &str) -> bool {
-    let word = rest.split(|it: char| !it.is_ascii_alphabetic()).next().unwrap_or_default();
-    let follows = rest[word.len()..].starts_with([' ', '\t', '\r', '\n']);
-    follows && ["include", "define", "undef", "ifdef", "ifndef", "endif", "pragma"].contains(&word)
 }
