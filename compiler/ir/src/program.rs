@@ -242,7 +242,7 @@ pub struct Variable {
 /// in an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct View {
-    /// BOOL for a single bit; an elementary type, or an array of them.
+    /// BOOL for a single bit; else any type but subranges, references and instances, or what holds them.
     pub ty: Type,
     /// The first bit.
     pub bit: u64,

@@ -216,6 +216,9 @@ impl<'a> Declarations<'a> {
                 Type::Reference(Reference { kind, target: Some(target) })
             }
             TypeKind::Union(declared) => {
+                if declared.iter().any(|it| it.address.is_some()) {
+                    return unknown("the location of a member");
+                }
                 let shared =
                     Type::Union(Rc::new(Record { pou: None, fields: self.fields(declared)?, edges: Vec::new() }));
                 if shared.bytes().is_none() {
