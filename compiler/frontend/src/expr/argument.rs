@@ -336,8 +336,16 @@ impl<'s> Checker<'_, 's> {
             if let Some(place) = place.filter(may_be_lent) {
                 return Some(place);
             }
-            let value = this.coerce(value, ty, expr.span)?;
             let copy = this.temporary(formal.name.text, ty);
+            if let Operand::Typed(Expr { kind: ExprKind::Load(heir), .. }) = &value
+                && this.decl.extends_structure(heir.ty, ty)
+            {
+                let at = this.at(expr.span);
+                let members = this.copied_members(heir, &copy, at);
+                this.block.extend(members);
+                return Some(copy);
+            }
+            let value = this.coerce(value, ty, expr.span)?;
             this.assign(copy.clone(), value, expr.span);
             Some(copy)
         })?;
