@@ -1,11 +1,17 @@
 //! The executors that run in this process, as the host sees them.
 
-use crate::run::map;
 use staunch_host::{Compiled, Domain, Machine, Map, Snapshot};
 use staunch_ir::Program;
 use staunch_ir::interpret::{Interpreter, Stop};
+use staunch_ir::layout::Layout;
 use staunch_native::Jit;
 use staunch_runtime::{Context, Fault};
+
+/// Where the variables are in a program's state.
+pub fn map(program: &Program) -> Result<Map, String> {
+    let text = staunch_ir::symbols::map_text(program, &Layout::new(program));
+    Map::parse(&text).map_err(|it| it.to_string())
+}
 
 /// Native code in memory.
 #[derive(Debug)]

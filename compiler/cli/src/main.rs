@@ -12,6 +12,7 @@ mod archive;
 mod build;
 mod header;
 mod link;
+mod linker;
 mod rustc;
 
 mod bench;
@@ -26,6 +27,7 @@ mod new;
 
 mod output;
 mod prototype;
+mod scratch;
 
 use args::{Cli, Command, Emit, MessageFormat};
 use session::Session;

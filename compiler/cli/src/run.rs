@@ -7,7 +7,6 @@ use crate::rustc::{self, Kind};
 use crate::session::Session;
 use staunch_host::{Machine, Map, Moment, Options};
 use staunch_ir::Program;
-use staunch_ir::layout::Layout;
 use std::process::Command;
 
 pub fn run(session: &Session, args: &Run) -> Result<u8, String> {
@@ -34,11 +33,6 @@ fn scans(session: &Session, args: &Run, map: &Map, machine: &mut dyn Machine) ->
             Ok(error.exit_code())
         }
     }
-}
-
-pub fn map(program: &Program) -> Result<Map, String> {
-    let text = staunch_ir::symbols::map_text(program, &Layout::new(program));
-    Map::parse(&text).map_err(|it| it.to_string())
 }
 
 /// The cycle of the command line, or of the project file.

@@ -2,7 +2,7 @@
 //! source that the command carries.
 
 use crate::cache;
-use crate::link;
+use crate::linker;
 use crate::toolchain::{Library, Rustc, WHOLE, link_args, run};
 use staunch_ir::Program;
 use std::ffi::OsString;
@@ -25,7 +25,7 @@ pub enum Kind {
 /// `$RUSTC` or `rustc`, after making sure that it can compile for `target`.
 pub fn find(target: Option<&str>) -> Result<Rustc, String> {
     let program = std::env::var_os("RUSTC").filter(|it| !it.is_empty()).unwrap_or_else(|| OsString::from("rustc"));
-    let rustc = Rustc { program, target: target.filter(|it| !link::is_host(it)).map(str::to_owned) };
+    let rustc = Rustc { program, target: target.filter(|it| !linker::is_host(it)).map(str::to_owned) };
     version(&rustc)?;
     if let Some(target) = &rustc.target {
         let output = Command::new(&rustc.program).args(["--print", "target-libdir", "--target", target]).output();
@@ -58,7 +58,7 @@ fn has_std(rustc: &Rustc) -> bool {
 /// needs a `std`.
 pub fn runtime(rustc: &Rustc) -> Result<PathBuf, String> {
     let version = version(rustc)?;
-    let target = link::describe(rustc);
+    let target = linker::describe(rustc);
     let key = cache::key("runtime", &[SOURCES, RECIPES[0], &version, target.as_bytes()]);
     cache::entry(&key, |folder| {
         let sources = folder.join("sources");
@@ -125,10 +125,10 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
 pub fn compile(program: &Program, kind: Kind, target: Option<&str>) -> Result<PathBuf, String> {
     let rustc = find(target)?;
     if kind == Kind::Executable && !has_std(&rustc) {
-        return Err(link::no_system(&link::describe(&rustc)));
+        return Err(linker::no_system(&linker::describe(&rustc)));
     }
     let linker = match kind {
-        Kind::Executable => link::linker_of_rustc(rustc.target.as_deref())?,
+        Kind::Executable => linker::of_rustc(rustc.target.as_deref())?,
         Kind::StaticLibrary | Kind::Object => None,
     };
     let runtime = runtime(&rustc)?;

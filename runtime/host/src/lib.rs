@@ -30,6 +30,7 @@ mod run;
 
 mod args;
 mod compiled;
+mod executable;
 mod signal;
 mod terminal;
 
@@ -40,11 +41,12 @@ mod fixture;
 
 pub use args::{Wish, parse_duration, parse_moment, parse_options, parse_within};
 pub use bench::{BenchOptions, Timing, bench};
-pub use compiled::{Code, Compiled, Init, Scan, Snapshot, main, main_with};
+pub use compiled::{Code, Compiled, Init, Scan, Snapshot};
 pub use csv::cells as csv_cells;
 pub use domain::Domain;
 pub use drive::{Bookmark, Drive};
 pub use error::Error;
+pub use executable::{main, main_with};
 pub use expected::{Expectations, ExpectedCell, ExpectedRow, When};
 pub use json::quote as json_text;
 pub use literal::parse as bytes_of;

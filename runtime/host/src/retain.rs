@@ -3,6 +3,7 @@
 //! A type is written with all that its bytes mean: an enumeration with its values, a subrange with its
 //! bounds, a standard block with its pins.
 
+mod content;
 mod format;
 mod keeper;
 mod kept;
@@ -15,7 +16,8 @@ use crate::map::{Map, Type};
 use crate::path;
 use crate::start::{Event, Part, kept_parts};
 use crate::{Error, Machine};
-use format::{Content, Found, Layout};
+use content::{Content, Found};
+use format::Layout;
 use keeper::Keeper;
 use kept::Kept;
 use staunch_runtime::Time;

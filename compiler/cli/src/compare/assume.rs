@@ -4,7 +4,7 @@
 use super::alphabet::{Choice, Covered};
 use super::facts::Numbers;
 use super::pair::{Input, Pair};
-use crate::run;
+use crate::machine;
 use staunch_host::{Event, Map};
 use staunch_ir::{Chars, Repr, Value};
 use std::cmp::Ordering;
@@ -130,7 +130,7 @@ fn uncommented(line: &str) -> &str {
 impl Assumptions {
     pub fn read(path: &Path, pair: &Pair) -> Result<Self, String> {
         let text = text(path)?;
-        let map = run::map(&pair.sides[0].program)?;
+        let map = machine::map(&pair.sides[0].program)?;
         let inputs: Vec<_> = pair.inputs.iter().map(|it| Named::of(pair, &map, it)).collect();
         let found = Self::parse(&text, &inputs);
         found.map_err(|(line, text)| format!("{}:{line}: {text}", path.display()))

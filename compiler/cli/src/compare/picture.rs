@@ -5,33 +5,15 @@ use super::search::World;
 use super::stimulus;
 use super::trace::Trace;
 use crate::args::Compare;
-use crate::{output, run};
+use crate::{machine, output, scratch};
 use staunch_host::{Error, Options};
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Of what differs, so many variables have lanes.
 const SHOWN: usize = 12;
 /// The line with the system's name above its picture.
 const HEADING: f64 = 28.0;
-
-/// A folder that is gone when the picture is drawn.
-struct Scratch(PathBuf);
-
-impl Scratch {
-    fn new() -> Result<Self, String> {
-        let folder = std::env::temp_dir().join(format!("staunch-compare-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).map_err(|it| format!("cannot write {}: {it}", folder.display()))?;
-        Ok(Self(folder))
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        // What is left there harms nobody.
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
 
 /// Draws the scans up to the difference.
 pub fn draw(
@@ -41,11 +23,11 @@ pub fn draw(
     path: &Path,
     (rows, trace): (&[Row], Option<&Trace>),
 ) -> Result<(), String> {
-    let scratch = Scratch::new()?;
+    let scratch = scratch::folder()?;
     let stimulus = match (&args.stimulus, trace) {
         (Some(given), _) => Some(given.clone()),
         (None, Some(trace)) => {
-            let saved = scratch.0.join("trace.csv");
+            let saved = scratch.path().join("trace.csv");
             output::write(&saved, stimulus::text(pair, world, trace).as_bytes())?;
             Some(saved)
         }
@@ -54,7 +36,7 @@ pub fn draw(
     let differences = rows.last().map_or_else(Vec::new, |it| pair.differences(it));
     let mut pictures = Vec::new();
     for side in 0..2 {
-        let svg = scratch.0.join(format!("{side}.svg"));
+        let svg = scratch.path().join(format!("{side}.svg"));
         let options = Options {
             scans: u64::try_from(rows.len()).ok(),
             cycle: args.cycle.as_deref().map(staunch_host::parse_duration).transpose()?,
@@ -64,7 +46,7 @@ pub fn draw(
             quiet: true,
             ..Options::default()
         };
-        let map = run::map(&pair.sides[side].program)?;
+        let map = machine::map(&pair.sides[side].program)?;
         match staunch_host::run(pair.sides[side].machine(), &map, &options) {
             // A fault ends the run, and the picture.
             Ok(_) | Err(Error::Fault { .. }) => {}

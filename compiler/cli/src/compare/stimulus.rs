@@ -6,7 +6,7 @@ use super::pair::{Input, Pair, Row, Side};
 use super::search::World;
 use super::trace::Trace;
 use crate::args::Compare;
-use crate::{machine::Native, run};
+use crate::machine::{self, Native};
 use staunch_host::{Error, Event, Machine, Options};
 use staunch_ir::Value;
 use staunch_runtime::{Context, Fault};
@@ -77,7 +77,7 @@ pub fn follow(pair: &mut Pair, args: &Compare) -> Result<Verdict, String> {
 }
 
 fn record(side: &mut Side, args: &Compare) -> Result<Vec<Recorded>, String> {
-    let map = run::map(&side.program)?;
+    let map = machine::map(&side.program)?;
     let cycle = args.cycle.as_deref().map(staunch_host::parse_duration).transpose()?;
     let options =
         Options { scans: args.scans, cycle, stimulus: args.stimulus.clone(), quiet: true, ..Options::default() };

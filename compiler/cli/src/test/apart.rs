@@ -1,16 +1,15 @@
 //! Tests in an executable of their own, which the back end `rust` makes: what it traces says how they went.
 
-use super::Outcome;
-use super::execute::{Pace, failed};
 use super::fixture::Step;
-use super::suite::{self, Ran, See};
-use super::table::Scratch;
+use super::outcome::{Outcome, failed};
+use super::suite::{self, Pace, Ran, See};
+use crate::scratch;
 use staunch_frontend::Test;
 use staunch_host::csv_cells;
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// A trace: its heading and rows, and the fault that ended it.
@@ -63,11 +62,11 @@ pub fn fixture(executable: &Path, test: &Test, turns: u64, pace: Pace, steps: &[
         let cells = values.iter().map(|it| format!(",{}", it.1.text()));
         text += &format!("{scan}{}\n", cells.collect::<String>());
     }
-    let stimulus = Scratch::new();
-    fs::write(&stimulus.0, text).map_err(|error| format!("{}: {error}", stimulus.0.display()))?;
+    let folder = scratch::folder()?;
+    let stimulus = stimulus(folder.path(), &text)?;
     let traced = |names: &[String]| {
         let mut command = Command::new(executable);
-        command.arg("--stimulus").arg(&stimulus.0).arg(format!("--cycle={}ns", pace.cycle));
+        command.arg("--stimulus").arg(&stimulus).arg(format!("--cycle={}ns", pace.cycle));
         trace(command, test, u64::try_from(steps.len()).unwrap_or(u64::MAX), turns, names)
     };
     // Without assertions there is no variable that says which has failed.
@@ -96,12 +95,12 @@ pub fn suite(
     wanted: usize,
     see: &mut See<'_>,
 ) -> Result<(), String> {
-    let stimulus = Scratch::new();
     let text = format!("scan,{}\n1,{wanted}\n", suite::variable(test, "__wanted"));
-    fs::write(&stimulus.0, text).map_err(|error| format!("{}: {error}", stimulus.0.display()))?;
+    let folder = scratch::folder()?;
+    let stimulus = stimulus(folder.path(), &text)?;
     let traced = |scans: u64, names: &[String]| {
         let mut command = Command::new(executable);
-        command.arg("--stimulus").arg(&stimulus.0).arg(format!("--cycle={}ns", pace.cycle));
+        command.arg("--stimulus").arg(&stimulus).arg(format!("--cycle={}ns", pace.cycle));
         trace(command, test, scans, turns, names)
     };
     let (over, count) = (format!("{}.__over", test.instance), suite::variable(test, "__count"));
@@ -127,6 +126,12 @@ pub fn suite(
         Ok(value)
     };
     see(&Ran { values: &values, fault: first.fault.clone() })
+}
+
+fn stimulus(folder: &Path, text: &str) -> Result<PathBuf, String> {
+    let path = folder.join("stimulus.csv");
+    fs::write(&path, text).map_err(|error| format!("{}: {error}", path.display()))?;
+    Ok(path)
 }
 
 /// The place and the kind of a fault, without the scan and the program that an executable adds.

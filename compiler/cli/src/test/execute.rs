@@ -3,11 +3,10 @@
 use super::apart;
 use super::coverage::Counts;
 use super::fixture::{self, Step};
-use super::suite::{self, Ran};
-use super::{Case, Outcome};
+use super::outcome::{Case, Outcome, failed};
+use super::suite::{self, Pace, Ran};
 use crate::args::{self, Backend};
 use crate::machine::{Interpreted, Native};
-use crate::run;
 use crate::rustc::{self, Kind};
 use crate::session::Session;
 use staunch_frontend::Test;
@@ -30,22 +29,6 @@ pub struct Suite<'p> {
     pub counts: Option<&'p Mutex<Counts>>,
 }
 
-/// The scans of a suite.
-#[derive(Clone, Copy, Debug)]
-pub struct Pace {
-    /// How many it may take.
-    pub scans: u64,
-    /// Between two of them, in nanoseconds.
-    pub cycle: i64,
-}
-
-impl Pace {
-    pub fn of(session: &Session, args: &args::Test) -> Result<Self, String> {
-        let cycle = run::cycle(session, None)?.unwrap_or(10_000_000);
-        Ok(Self { scans: args.scans.unwrap_or(10_000), cycle })
-    }
-}
-
 /// What one thread runs its tests on.
 pub struct Executor<'p> {
     runs: Runs<'p>,
@@ -58,9 +41,6 @@ enum Runs<'p> {
     Here(Box<dyn Machine + 'p>, Box<Map>),
     Apart(&'p PathBuf),
 }
-
-/// The variables of a test after its scans, by their names.
-pub type Values<'v> = dyn Fn(&str) -> Result<String, String> + 'v;
 
 impl<'p> Suite<'p> {
     pub fn new(
@@ -221,15 +201,4 @@ impl Executor<'_> {
 fn place_of(fault: Fault, map: &Map) -> String {
     let files: Vec<_> = map.files.iter().map(String::as_str).collect();
     fault.of(&files).to_string()
-}
-
-/// The assertion that failed, with what is kept of it.
-pub fn failed(test: &Test, values: &Values<'_>) -> Result<Outcome, String> {
-    // A suite without assertions has no such variable.
-    let number = if test.failed.is_empty() { 0 } else { values(&test.failed)?.parse::<usize>().unwrap_or(0) };
-    let Some(assertion) = number.checked_sub(1) else { return Ok(Outcome::Passed) };
-    let made = test.assertions.get(assertion).ok_or_else(|| format!("assertion {number} is not known"))?;
-    let shown = |name: &Option<String>| name.as_deref().map(values).transpose();
-    let (actual, expected, message) = (shown(&made.actual)?, shown(&made.expected)?, shown(&made.message)?);
-    Ok(Outcome::Failed { assertion, actual, expected, message })
 }

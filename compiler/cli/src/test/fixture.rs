@@ -1,7 +1,7 @@
 //! A fixture of AxUnit: its tests run one after another on one instance of it, each in a scan of its own. After a fault the
 //! others run on a fresh one.
 
-use super::{Case, Outcome};
+use super::outcome::{Case, Outcome};
 use staunch_frontend::{Fixture, Test};
 
 /// What a scan does.

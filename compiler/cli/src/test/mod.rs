@@ -6,6 +6,7 @@ mod execute;
 mod fixture;
 mod junit;
 mod mutants;
+mod outcome;
 mod parallel;
 mod report;
 mod suite;
@@ -17,43 +18,10 @@ use crate::{REJECTED, output};
 use coverage::{Counts, Coverage};
 use execute::Suite;
 use report::Report;
-use staunch_frontend::{Span, Test};
+use staunch_frontend::Test;
 use std::collections::HashSet;
 use std::sync::Mutex;
 use table::Table;
-
-/// How a test went.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Outcome {
-    Passed,
-    Failed {
-        /// The number of the assertion, from 0.
-        assertion: usize,
-        actual: Option<String>,
-        expected: Option<String>,
-        message: Option<String>,
-    },
-    /// What a table expected otherwise, a line each.
-    Differs(Vec<String>),
-    /// The test faulted: where, and why.
-    Faulted(String),
-    /// The test did not run: why.
-    Skipped(String),
-}
-
-impl Outcome {
-    /// Whether nothing is wrong.
-    pub fn is_fine(&self) -> bool {
-        matches!(self, Self::Passed | Self::Skipped(_))
-    }
-}
-
-/// A test that has run: a TEST, or one of a suite's.
-pub struct Case {
-    pub title: String,
-    pub span: Span,
-    pub outcome: Outcome,
-}
 
 pub fn test(session: &Session, args: &args::Test) -> Result<u8, String> {
     let Some(program) = session.program() else { return Ok(REJECTED) };

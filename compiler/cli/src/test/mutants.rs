@@ -1,9 +1,11 @@
 //! `--mutants`: the tests run on changed programs. A change that no test notices is reported.
 
 use super::coverage::Counts;
-use super::execute::{Pace, Suite};
+use super::execute::Suite;
+use super::outcome::Outcome;
+use super::parallel;
+use super::suite::Pace;
 use super::table::{self, Table};
-use super::{Outcome, parallel};
 use crate::args::{self, MessageFormat};
 use crate::output;
 use crate::session::Session;

@@ -1,7 +1,7 @@
 //! A line for each test, and what went wrong below it; or one JSON object a line.
 
+use super::outcome::{Case, Outcome};
 use super::table::Table;
-use super::{Case, Outcome};
 use crate::args::MessageFormat;
 use crate::session::Session;
 use staunch_frontend::{Assertion, Span, Test};

@@ -1,9 +1,26 @@
 //! A suite of TcUnit: it is called in scan after scan until its tests are finished, and says itself which there were.
 
-use super::execute::{Pace, Values, failed};
-use super::{Case, Outcome};
+use super::outcome::{Case, Outcome, Values, failed};
+use crate::session::Session;
+use crate::{args, run};
 use staunch_frontend::{Suite, Test};
 use staunch_host::format_time;
+
+/// The scans of a suite.
+#[derive(Clone, Copy, Debug)]
+pub struct Pace {
+    /// How many it may take.
+    pub scans: u64,
+    /// Between two of them, in nanoseconds.
+    pub cycle: i64,
+}
+
+impl Pace {
+    pub fn of(session: &Session, args: &args::Test) -> Result<Self, String> {
+        let cycle = run::cycle(session, None)?.unwrap_or(10_000_000);
+        Ok(Self { scans: args.scans.unwrap_or(10_000), cycle })
+    }
+}
 
 /// A suite that has run: until it was finished, for all its scans, or up to a fault.
 pub struct Ran<'v> {

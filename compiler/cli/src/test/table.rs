@@ -1,10 +1,12 @@
 //! A table is a test too: a CSV file beside a source, with inputs left of a `|` and what is expected right of it.
 
 use super::coverage::Counts;
-use super::{Outcome, Suite};
+use super::execute::Suite;
+use super::outcome::Outcome;
 use crate::args::Backend;
-use crate::machine::{Interpreted, Native};
+use crate::machine::{self, Interpreted, Native};
 use crate::run;
+use crate::scratch;
 use crate::session::Session;
 use staunch_host::{Expectations, Machine, Map, Moment, Options, When, csv_cells};
 use staunch_ir::Program;
@@ -12,7 +14,6 @@ use staunch_ir::layout::Layout;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::{fs, io};
 
 /// A table, and the source that it is beside.
@@ -74,15 +75,16 @@ fn ran(
 ) -> Result<Outcome, String> {
     let program = subject(session, program, table)?;
     let bytes = fs::read(&table.path).map_err(|error| format!("{}: {error}", table.path.display()))?;
-    let map = run::map(&program)?;
+    let map = machine::map(&program)?;
     let running: Vec<usize> = (0..map.instances.len()).collect();
     let expected = Expectations::parse(&table.path, &bytes, &map, &running).map_err(|error| error.to_string())?;
-    let trace = Scratch::new();
+    let folder = scratch::folder()?;
+    let trace = folder.path().join("trace.csv");
     let options = Options {
         cycle: run::cycle(session, None)?,
         loop_budget: Some(suite.turns),
         stimulus: Some(table.path.clone()),
-        trace: Some(trace.0.clone()),
+        trace: Some(trace.clone()),
         vars: Some(expected.variables.join(",")),
         quiet: true,
         ..Options::default()
@@ -105,26 +107,9 @@ fn ran(
         }
         Backend::Rust => apart(&program, &options)?,
     };
-    let text = fs::read_to_string(&trace.0).map_err(|error| format!("{}: {error}", trace.0.display()))?;
+    let text = fs::read_to_string(&trace).map_err(|error| format!("{}: {error}", trace.display()))?;
     let rows = csv_cells(&text).unwrap_or_default();
     Ok(compared(table, &expected, rows.get(1..).unwrap_or_default(), fault))
-}
-
-/// A file of this process alone, which goes when it has been read.
-pub struct Scratch(pub PathBuf);
-
-impl Scratch {
-    pub fn new() -> Self {
-        static NUMBER: AtomicUsize = AtomicUsize::new(0);
-        let number = NUMBER.fetch_add(1, Ordering::Relaxed);
-        Self(std::env::temp_dir().join(format!("staunch-{}-{number}.csv", std::process::id())))
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        let _ = fs::remove_file(&self.0);
-    }
 }
 
 /// The fault that ended the run.

@@ -7,15 +7,13 @@
 //! checksum, a sequence number, the program's clock, and the variables' bytes in the order of the
 //! head's lines. Numbers of the slot are little endian, and so are values on every supported target.
 
+use super::content::{Content, Found, Refusal, Slot, TEXT_VERSION, VERSION};
 use super::text;
 use staunch_runtime::{Crc32, Time, crc32};
 use std::fmt::Write as _;
 
 /// The first line, before the version.
 pub(super) const TITLE: &str = "staunch retained variables ";
-
-/// Version 1 named types without what they mean; version 2 was text alone, written as a whole.
-const VERSION: &str = "3";
 
 /// Slots do not share a sector, nor a page of what stores them, so that writing one leaves the other alone.
 pub(super) const SECTOR: usize = 4096;
@@ -39,24 +37,6 @@ pub(super) struct Layout {
     fingerprint: u32,
     /// Bytes of all values.
     size: usize,
-}
-
-/// One of the two slots.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Slot {
-    First,
-    Second,
-}
-
-impl Slot {
-    pub const BOTH: [Self; 2] = [Self::First, Self::Second];
-
-    pub const fn other(self) -> Self {
-        match self {
-            Self::First => Self::Second,
-            Self::Second => Self::First,
-        }
-    }
 }
 
 /// What a slot holds.
@@ -133,53 +113,12 @@ fn slot_checksum(fingerprint: u32, slot: &[u8]) -> u32 {
     Crc32::new().with(&fingerprint.to_le_bytes()).with(&slot[4..]).value()
 }
 
-/// What a file holds, whatever its version.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Content {
-    pub programs: String,
-    pub clock: Time,
-    /// Of each variable the path, the type, and the bytes if they can be read.
-    pub variables: Vec<(String, String, Option<Vec<u8>>)>,
-    /// Where the values were, in a file with slots.
-    pub found: Option<Found>,
-}
-
-/// The record that was taken.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Found {
-    pub slot: Slot,
-    pub sequence: u64,
-    pub values: Vec<u8>,
-    /// The other slot holds something that is no whole record: its writing did not end, or it was damaged.
-    pub other_is_broken: bool,
-}
-
-/// Why nothing can be recovered.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Refusal {
-    Foreign,
-    Version(String),
-    Damaged(&'static str),
-}
-
-impl Refusal {
-    pub fn text(&self) -> String {
-        match self {
-            Self::Foreign => "it does not hold retained variables".to_owned(),
-            Self::Version(other) => {
-                format!("its format is version {other}, and this Staunch reads version {VERSION} and {}", text::VERSION)
-            }
-            Self::Damaged(what) => format!("it is damaged: {what}"),
-        }
-    }
-}
-
 /// The last whole state of a file, of any bytes.
 pub(super) fn recover(file: &[u8]) -> Result<Content, Refusal> {
     let title = String::from_utf8_lossy(file.split(|it| *it == b'\n').next().unwrap_or_default());
     match title.strip_prefix(TITLE).map(str::trim_end) {
         Some(VERSION) => recover_slots(file),
-        Some(text::VERSION) => text::recover(file),
+        Some(TEXT_VERSION) => text::recover(file),
         Some(other) => Err(Refusal::Version(other.to_owned())),
         None => Err(Refusal::Foreign),
     }

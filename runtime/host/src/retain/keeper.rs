@@ -1,7 +1,8 @@
 //! Saves state after state so that, whenever the power goes, the last one that was saved can be
 //! recovered, or one whose saving had begun after it.
 
-use super::format::{Found, Layout, Record, Slot};
+use super::content::{Found, Slot};
+use super::format::{Layout, Record};
 use super::storage::{Storage, Which, write_all};
 use staunch_runtime::Time;
 use std::io;

@@ -1,10 +1,8 @@
 //! Files of version 2: text with a checksum, values in hexadecimal. They are read, and no longer
 //! written.
 
-use super::format::{Content, Refusal};
+use super::content::{Content, Refusal};
 use staunch_runtime::crc32;
-
-pub(super) const VERSION: &str = "2";
 
 pub(super) fn recover(file: &[u8]) -> Result<Content, Refusal> {
     let body = checked(file).ok_or(Refusal::Damaged("its checksum does not match"))?;
