@@ -36,7 +36,7 @@ pub fn build(session: &Session, args: &Build) -> Result<u8, String> {
         Emit::Obj | Emit::Lib | Emit::Exe => compile(&runnable(session, args)?, args, target, &out)?,
     }
     if out != Path::new("-") {
-        session.say("Wrote", &out);
+        session.say("Wrote", out.display());
     }
     Ok(0)
 }

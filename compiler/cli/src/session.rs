@@ -8,6 +8,7 @@ use staunch_frontend::{
     Style, Test,
 };
 use staunch_ir::Program;
+use std::fmt::Display;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -78,7 +79,11 @@ impl Session {
         if errors > 0 {
             return Ok(REJECTED);
         }
-        session.say("Checked", &session.first);
+        let others = session.sources.files().len() - 1;
+        match others > 0 && !listing::is_list(&session.first) {
+            true => session.say("Checked", format_args!("{} and {others} more", session.first.display())),
+            false => session.say("Checked", session.first.display()),
+        }
         Ok(0)
     }
 
@@ -123,9 +128,9 @@ impl Session {
             return;
         }
         if self.project.folder != Path::new("") {
-            self.say("Settings", &self.project.folder.join("staunch.toml"));
+            self.say("Settings", self.project.folder.join("staunch.toml").display());
         }
-        self.sources.files().iter().for_each(|it| self.say("Read", Path::new(&it.path)));
+        self.sources.files().iter().for_each(|it| self.say("Read", &it.path));
     }
 
     /// The same program, or `sources` in its place, as it moves to another dialect. What has been
@@ -295,10 +300,10 @@ impl Session {
     }
 
     /// A line for people on standard error, as cargo prints them.
-    pub fn say(&self, verb: &str, path: &Path) {
+    pub fn say(&self, verb: &str, what: impl Display) {
         let silent = self.common.quiet || self.common.format() != MessageFormat::Human;
         if !silent {
-            let _ = writeln!(std::io::stderr(), "{verb:>12} {}", path.display());
+            let _ = writeln!(std::io::stderr(), "{verb:>12} {what}");
         }
     }
 }

@@ -111,7 +111,7 @@ fn scl(text: &str) -> Option<Kind> {
 
 /// `#x` where no number and no type is before it; C's `#include` is none.
 fn has_local(line: &str) -> bool {
-    let is_preprocessor = line.strip_prefix('#').is_some_and(crate::source::is_preprocessor);
+    let is_preprocessor = line.strip_prefix('#').is_some_and(crate::spelling::is_preprocessor);
     !is_preprocessor
         && line.match_indices('#').any(|(at, _)| {
             let before = line[..at].chars().next_back();

@@ -173,7 +173,7 @@ impl<'s> Reading<'s> {
             Some('“' | '”' | '„') => it.help("a string is written between two `'`, a WSTRING between two `\"`"),
             Some('–' | '—' | '−') => it.help("write `-`"),
             Some('\u{a0}') => it.help("write an ordinary space"),
-            Some('#') if crate::source::is_preprocessor(&self.text[index(place.1)..]) => it.help(
+            Some('#') if crate::spelling::is_preprocessor(&self.text[index(place.1)..]) => it.help(
                 "there is no preprocessor: declare a `VAR CONSTANT` for `#define`, and give all files to the command for `#include`",
             ),
             Some('#') if self.text[index(place.1)..].starts_with(|it: char| it.is_ascii_alphabetic()) => {

@@ -425,12 +425,5 @@ impl Sources {
     }
 }
 
-/// Whether what follows a `#` is a word of C's preprocessor.
-pub fn is_preprocessor(rest: &str) -> bool {
-    let word = rest.split(|it: char| !it.is_ascii_alphabetic()).next().unwrap_or_default();
-    let follows = rest[word.len()..].starts_with([' ', '\t', '\r', '\n']);
-    follows && ["include", "define", "undef", "ifdef", "ifndef", "endif", "pragma"].contains(&word)
-}
-
 #[cfg(test)]
 mod tests;

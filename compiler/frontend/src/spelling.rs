@@ -57,3 +57,10 @@ pub(crate) fn nearest<'c>(name: &str, candidates: impl Iterator<Item = &'c str>)
 fn letters_of(name: &str) -> u64 {
     name.chars().fold(0, |set, letter| set | 1 << (u32::from(letter) % 64))
 }
+
+/// Whether what follows a `#` is a word of C's preprocessor.
+pub fn is_preprocessor(rest: &str) -> bool {
+    let word = rest.split(|it: char| !it.is_ascii_alphabetic()).next().unwrap_or_default();
+    let follows = rest[word.len()..].starts_with([' ', '\t', '\r', '\n']);
+    follows && ["include", "define", "undef", "ifdef", "ifndef", "endif", "pragma"].contains(&word)
+}

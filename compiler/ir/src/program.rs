@@ -176,6 +176,10 @@ pub struct Local {
     pub doc: Option<String>,
 }
 
+/// The field of a run that is more than a PROGRAM's body: the PROGRAM that it holds. A keyword, which no
+/// declaration can take.
+pub const HELD_PROGRAM: &str = "PROGRAM";
+
 /// A field of a structure, or a variable of a PROGRAM, FUNCTION_BLOCK or of the globals.
 #[derive(Clone, Debug)]
 pub struct Field {

@@ -1,11 +1,11 @@
 //! What an executable made of compiled code does.
 
+use crate::Error;
 use crate::args::{Wish, parse_options};
 use crate::bench::bench;
 use crate::compiled::{Code, Compiled};
 use crate::map::Map;
 use crate::run::{Options, run, title};
-use crate::Error;
 use std::ffi::OsString;
 use std::process::ExitCode;
 

@@ -3,14 +3,12 @@
 mod shared;
 
 use staunch_ir::layout::{Layout, usize_of};
-use staunch_ir::{ArrayId, BlockId, FieldId, Program, Retain, Section, StructId, Type, Value};
+use staunch_ir::{ArrayId, BlockId, FieldId, HELD_PROGRAM, Program, Retain, Section, StructId, Type, Value};
 use staunch_runtime::reference::{ORIGIN, Reference};
 use staunch_runtime::{Direction, Pin, PinRole};
 
 /// Further elements of an array are not compared.
 const MAX_ELEMENTS: u64 = 1024;
-/// The PROGRAM in a run that a CONFIGURATION connects with variables: a keyword, which no declaration can take.
-const HELD: &str = "PROGRAM";
 /// Further scalars of a program are not compared.
 const MAX_SCALARS: usize = 1 << 16;
 
@@ -145,7 +143,7 @@ impl Walk<'_> {
             let number = FieldId::next(at);
             let mut way = to.clone();
             way.members.push(number);
-            if let (Type::Struct(program), true) = (field.ty, field.name == HELD) {
+            if let (Type::Struct(program), true) = (field.ty, field.name == HELD_PROGRAM) {
                 let base = base + usize_of(self.layout.field(id, number));
                 self.structure(prefix, program, base, &way);
                 continue;

@@ -8,10 +8,11 @@
 
 use crate::spelling::Key;
 use crate::types::address::is_input;
-use crate::types::synthetic::{Binding, PROGRAM};
+use crate::types::synthetic::Binding;
 use crate::{Span, ast};
 use ast::{ExprKind, PouKind, StatementKind, VarKind};
 use rustc_hash::{FxHashMap, FxHashSet};
+use staunch_ir::HELD_PROGRAM;
 
 // A keyword, which no declaration can take.
 const TURN: &str = "CONFIGURATION";
@@ -151,7 +152,7 @@ pub(crate) fn declaration_of<'a, 's>(
 
 /// The PROGRAM that a run holds.
 fn held<'s>(span: Span) -> ast::Expr<'s> {
-    ast::Expr { kind: ExprKind::Name(ast::Name { text: PROGRAM, span }), span }
+    ast::Expr { kind: ExprKind::Name(ast::Name { text: HELD_PROGRAM, span }), span }
 }
 
 fn pou<'a, 's>(item: &'a ast::Item<'s>) -> Option<&'a ast::Pou<'s>> {
@@ -207,8 +208,8 @@ fn run<'s>(
     let named = |text| expr(ExprKind::Name(name(text)));
     let statement = |kind| ast::Statement { kind, span };
     let call = |text, arguments| statement(StatementKind::Expr(expr(ExprKind::Call(Box::new(named(text)), arguments))));
-    let mut vars = vec![variable(PROGRAM, [instance.namespace.as_slice(), &[instance.program]].concat())];
-    let mut body = vec![call(PROGRAM, instance.connections.clone())];
+    let mut vars = vec![variable(HELD_PROGRAM, [instance.namespace.as_slice(), &[instance.program]].concat())];
+    let mut body = vec![call(HELD_PROGRAM, instance.connections.clone())];
     let mut declared = FxHashSet::default();
     let (mut bound, mut valued) = (Vec::new(), Vec::new());
     for (target, located) in bindings {

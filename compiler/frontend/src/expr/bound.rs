@@ -4,7 +4,7 @@
 use super::checker::Checker;
 use crate::ast::{self, ExprKind};
 use crate::types::address::{self, is_input};
-use crate::types::synthetic::PROGRAM;
+use staunch_ir::HELD_PROGRAM;
 use staunch_ir::{Area, Expr, Place, Root, StructId};
 
 /// A variable of the PROGRAM, and what lies at its address.
@@ -58,7 +58,7 @@ impl<'s> Checker<'_, 's> {
 fn in_place_of_run<'s>(path: &ast::Expr<'s>, callee: &ast::Expr<'s>) -> ast::Expr<'s> {
     let inner = |base: &ast::Expr<'s>| Box::new(in_place_of_run(base, callee));
     let kind = match &path.kind {
-        ExprKind::Name(name) if name.text == PROGRAM => return callee.clone(),
+        ExprKind::Name(name) if name.text == HELD_PROGRAM => return callee.clone(),
         ExprKind::Member(base, name) => ExprKind::Member(inner(base), *name),
         ExprKind::Index(base, indices) => ExprKind::Index(inner(base), indices.clone()),
         other => other.clone(),

@@ -5,9 +5,9 @@ use crate::ast::{PouKind, VarDecl};
 use crate::declare::starts::members;
 use crate::testing::suite::SUITE;
 use crate::types::declarations::Declarations;
-use crate::types::synthetic::PROGRAM;
 use crate::{Code, Diagnostic, Span};
 use rustc_hash::{FxHashMap, FxHashSet};
+use staunch_ir::HELD_PROGRAM;
 use staunch_ir::{Chars, Const, FieldId, Location, Program, StructId, Type};
 
 /// The variables that start with the paths of their instances, by where they are declared, and what each variable of the
@@ -120,7 +120,7 @@ impl<'s> Declarations<'s> {
             let kind = slot.map(|it| self.pous[it].ast.kind);
             for (at, field) in program.structure(state).fields.iter().enumerate() {
                 let path = match field.name.as_str() {
-                    PROGRAM => instance.name.clone(),
+                    HELD_PROGRAM => instance.name.clone(),
                     SUITE => program.type_name(field.ty),
                     name if kind == Some(PouKind::Test) => name.to_owned(),
                     name => format!("{}.{name}", instance.name),

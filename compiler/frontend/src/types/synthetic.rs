@@ -32,9 +32,6 @@ impl<'s> Synthetic<'s> {
     }
 }
 
-/// The PROGRAM that a run holds: a keyword, which no declaration can take.
-pub(crate) const PROGRAM: &str = "PROGRAM";
-
 /// What a VAR_CONFIG binds: the variable, as a path from what the run holds, and its address.
 pub(crate) type Binding<'s> = (ast::Expr<'s>, ast::Name<'s>);
 
