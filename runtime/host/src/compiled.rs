@@ -1,8 +1,8 @@
 //! Compiled code as a machine.
 
-use crate::Machine;
 use crate::domain::Domain;
 use crate::map::Map;
+use crate::{Error, Machine};
 use staunch_runtime::{Context, Fault};
 use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -16,9 +16,9 @@ pub type Scan = unsafe extern "C" fn(state: *mut u8, cx: *const Context, instanc
 /// The entry points of a compiled program.
 #[derive(Clone, Copy)]
 pub struct Code {
-    pub(crate) map: &'static str,
-    pub(crate) init: Init,
-    pub(crate) scan: Scan,
+    map: &'static str,
+    init: Init,
+    scan: Scan,
 }
 
 impl Code {
@@ -26,6 +26,14 @@ impl Code {
     /// `init` and `scan` are the entry points of the program that `map` describes.
     pub const unsafe fn new(map: &'static str, init: Init, scan: Scan) -> Self {
         Self { map, init, scan }
+    }
+
+    /// The map, and a machine that runs the program.
+    pub(crate) fn machine(&self) -> Result<(Map, Compiled), Error> {
+        let map = Map::parse(self.map)?;
+        // SAFETY: `new` was promised that the entry points belong to the map.
+        let machine = unsafe { Compiled::new(&map, self.init, self.scan) };
+        Ok((map, machine))
     }
 }
 
@@ -179,7 +187,9 @@ impl Machine for Compiled {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixture::{map, offset_of};
+    use crate::executable::{main_with, version};
+    use crate::fixture::{MAP, map, offset_of};
+    use std::ffi::OsString;
 
     unsafe extern "C" fn init(state: *mut u8) {
         // SAFETY: the tests below give it the state of the fixture's map.
@@ -192,6 +202,10 @@ mod tests {
             *state.add(36) = instance as u8 + 7;
             if (*cx).now() >= 20_000_000 { 1 | 5 << 24 | 9 << 40 } else { 0 }
         }
+    }
+
+    fn arguments(text: &str) -> impl Iterator<Item = OsString> {
+        std::iter::once("garage").chain(text.split_whitespace()).map(OsString::from).collect::<Vec<_>>().into_iter()
     }
 
     #[test]
@@ -217,5 +231,19 @@ mod tests {
         machine.restore(&start);
         assert_eq!(machine.state(), start.bytes());
         machine.restore(&other.snapshot());
+    }
+
+    #[test]
+    #[cfg_attr(miri, ignore = "it measures time")]
+    fn an_executable_reports_as_the_command_does() {
+        // SAFETY: as above.
+        let code = unsafe { Code::new(MAP, init, scan) };
+        assert_eq!(main_with(code, arguments("--scans 2 -q")), 0);
+        assert_eq!(main_with(code, arguments("--bench --scans 2 --cycle 1us")), 3);
+        assert_eq!(main_with(code, arguments("--scans 9 -q")), 3);
+        assert_eq!(main_with(code, arguments("--scan 9")), 2);
+        assert_eq!(main_with(code, arguments("--scans 1 --vars nothing")), 2);
+        assert_eq!(main_with(code, arguments("--version")), 0);
+        assert_eq!(version(&map()), "Garage (garage.st), compiled by Staunch 1.2.3\n");
     }
 }

@@ -17,13 +17,11 @@ pub fn main(code: Code) -> ExitCode {
 /// [`main`] with the arguments given, the executable's name first. Returns the exit code, for a
 /// C `main`.
 pub fn main_with(code: Code, arguments: impl Iterator<Item = OsString>) -> u8 {
-    let started = Map::parse(code.map).and_then(|map| Ok((map, parse_options(arguments).map_err(Error::Usage)?)));
-    let (map, wish) = match started {
+    let started = code.machine().and_then(|it| Ok((it, parse_options(arguments).map_err(Error::Usage)?)));
+    let ((map, mut machine), wish) = match started {
         Ok(started) => started,
         Err(error) => return failed(&Options::default(), &error),
     };
-    // SAFETY: `Code::new` was promised that the entry points belong to the map.
-    let mut machine = unsafe { Compiled::new(&map, code.init, code.scan) };
     match wish {
         Wish::Run(options) => start(&mut machine, &map, options),
         Wish::Bench(options) => match bench(&mut machine, &map, &options) {
@@ -53,7 +51,7 @@ fn failed(options: &Options, error: &Error) -> u8 {
 }
 
 /// `Main (plant.st), compiled by Staunch 0.1.0`
-fn version(map: &Map) -> String {
+pub(crate) fn version(map: &Map) -> String {
     let all: Vec<usize> = (0..map.instances.len()).collect();
     format!("{} ({}), compiled by Staunch {}\n", title(map, &all), map.files.join(", "), map.compiler)
 }
@@ -63,42 +61,4 @@ fn print(text: &str) -> u8 {
     use std::io::Write;
     let _ = std::io::stdout().write_all(text.as_bytes());
     0
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::fixture::{MAP, map};
-    use staunch_runtime::Context;
-
-    unsafe extern "C" fn init(state: *mut u8) {
-        // SAFETY: the tests below give it the state of the fixture's map.
-        unsafe { state.write_bytes(0, 128) }
-    }
-
-    unsafe extern "C" fn scan(state: *mut u8, cx: *const Context, instance: u32) -> u64 {
-        // SAFETY: as above; the offset is below the map's size.
-        unsafe {
-            *state.add(36) = instance as u8 + 7;
-            if (*cx).now() >= 20_000_000 { 1 | 5 << 24 | 9 << 40 } else { 0 }
-        }
-    }
-
-    fn arguments(text: &str) -> impl Iterator<Item = OsString> {
-        std::iter::once("garage").chain(text.split_whitespace()).map(OsString::from).collect::<Vec<_>>().into_iter()
-    }
-
-    #[test]
-    #[cfg_attr(miri, ignore = "it measures time")]
-    fn an_executable_reports_as_the_command_does() {
-        // SAFETY: as above.
-        let code = unsafe { Code::new(MAP, init, scan) };
-        assert_eq!(main_with(code, arguments("--scans 2 -q")), 0);
-        assert_eq!(main_with(code, arguments("--bench --scans 2 --cycle 1us")), 3);
-        assert_eq!(main_with(code, arguments("--scans 9 -q")), 3);
-        assert_eq!(main_with(code, arguments("--scan 9")), 2);
-        assert_eq!(main_with(code, arguments("--scans 1 --vars nothing")), 2);
-        assert_eq!(main_with(code, arguments("--version")), 0);
-        assert_eq!(version(&map()), "Garage (garage.st), compiled by Staunch 1.2.3\n");
-    }
 }
