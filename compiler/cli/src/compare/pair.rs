@@ -6,7 +6,7 @@ use super::tolerance::{Passed, Tolerance};
 use crate::machine::Native;
 use staunch_frontend::Dialect;
 use staunch_host::{Bookmark, Drive, Event, Machine, Snapshot};
-use staunch_ir::{Chars, Program, Type, Value};
+use staunch_ir::{Chars, FieldId, Program, StructId, Type, Value};
 use staunch_runtime::{Fault, FaultKind};
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -286,6 +286,15 @@ impl Pair {
 
     pub fn scalar(&self, side: usize, at: usize) -> &Scalar {
         &self.sides[side].scalars.all[at]
+    }
+
+    /// The declaration of a variable, or of the block that an output is of.
+    pub fn declared(&self, side: usize, matched: Matched) -> Option<(StructId, FieldId)> {
+        let scalar = self.scalar(side, matched[side]);
+        match scalar.role {
+            Role::Output(block) => self.sides[side].scalars.blocks[block].field,
+            Role::Input | Role::Variable | Role::Hidden => scalar.field,
+        }
     }
 
     /// The path of what both sides have, in the words of the first.
