@@ -380,6 +380,9 @@ pub fn spell(program: &Program, ty: Type, value: Value) -> String {
         (None, Value::I64(time)) if let Some(ty) = ty.elementary().filter(|it| it.is_time()) => {
             staunch_host::format_time_as(ty, time)
         }
+        (None, other) if ty.elementary().is_some_and(staunch_ir::Elementary::is_char) => {
+            staunch_host::format_character(other)
+        }
         (None, Value::Bool(it)) => if it { "TRUE" } else { "FALSE" }.to_owned(),
         (None, Value::F32(it)) => format!("{it:?}"),
         (None, Value::F64(it)) => format!("{it:?}"),
