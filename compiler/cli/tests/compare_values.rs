@@ -94,6 +94,29 @@ END_PROGRAM
     }
 }
 
+/// Texts among bits that others share have their own names: as what differs, as inputs, and in a stimulus.
+#[test]
+fn a_text_among_shared_bits_is_one() {
+    let path = written(
+        "shared_text.st",
+        "PROGRAM p
+VAR last AT %IB3 : BYTE; code AT %IB0 : STRING[4]; shown AT %QB0 : STRING[5]; bit AT %QX2.0 : BOOL; c : CTU; END_VAR
+c(code = 'GO', FALSE, 2);
+shown := CONCAT(INT_TO_STRING(c.CV), code);
+END_PROGRAM
+",
+    );
+    let saved = folder().join("shared_text.csv").display().to_string();
+    let (code, text) = compare(&path, ("iec", "cscape"), &["--vars", "shown", "--save-stimulus", &saved]);
+    assert!(code == Some(1) && !text.contains("bits_of"), "{text}");
+    for line in ["  scan  code  last  shown iec  shown cscape", "     2    GO     0        1GO           2GO ◀"] {
+        assert!(text.contains(line), "{text}");
+    }
+    assert_eq!(std::fs::read_to_string(&saved).ok().as_deref(), Some("scan,code,last\n1,\"GO\",0\n2,\"GO\",0\n"));
+    let (code, again) = compare(&path, ("iec", "cscape"), &["--stimulus", &saved]);
+    assert!(code == Some(1) && again.contains("differ after 2 scans"), "{again}");
+}
+
 /// Where it is only asked whether a text is equal to some, one that is none of them stands for all.
 #[test]
 fn texts_that_are_compared_alone_are_covered() {

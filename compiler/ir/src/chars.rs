@@ -107,6 +107,14 @@ impl Chars {
         Some(if wide { Self::Wide(ascii.into_iter().map(u16::from).collect()) } else { Self::Narrow(ascii) })
     }
 
+    /// Its units as they lie in memory.
+    pub fn units_as_bytes(&self) -> Vec<u8> {
+        match self {
+            Self::Narrow(it) => it.clone(),
+            Self::Wide(it) => it.iter().flat_map(|it| it.to_ne_bytes()).collect(),
+        }
+    }
+
     /// One of its units by its position.
     pub fn unit(&self, at: usize) -> Option<u16> {
         match self {

@@ -1,7 +1,7 @@
 //! How values read: the cells of a trace.
 
 use crate::map::{Map, Type};
-use crate::path::{path_at, resolve};
+use crate::path::{path_at, resolve, view_at};
 use staunch_runtime::reference::ORIGIN;
 use staunch_runtime::text::characters;
 use staunch_runtime::{Elementary, Reference, Repr, StringType, Time, Value, format};
@@ -52,7 +52,11 @@ fn format_reference(map: &Map, bytes: &[u8], out: &mut String) {
     let reference = Reference::from_bits(bits);
     let object = usize::try_from(reference.object).ok().and_then(|it| map.objects.get(it.checked_sub(1)?));
     let named = object.and_then(|(offset, size)| {
-        let position = i64::from(reference.address) - i64::from(ORIGIN) - i64::try_from(*offset).ok()?;
+        let address = i64::from(reference.address) - i64::from(ORIGIN);
+        if let Some((path, start)) = usize::try_from(address).ok().and_then(|it| view_at(map, (*offset, *size), it)) {
+            return Some((path, address - i64::try_from(start).ok()?));
+        }
+        let position = address - i64::try_from(*offset).ok()?;
         Some((path_at(map, *offset, *size)?, position))
     });
     let _ = match named {

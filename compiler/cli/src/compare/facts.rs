@@ -36,6 +36,8 @@ pub struct Facts {
     read: HashSet<Name>,
     /// Every constant of the program that is a whole number or a time.
     pub constants: BTreeSet<i128>,
+    /// Every text of the program.
+    pub all_texts: Vec<Chars>,
     /// Every time of the program, in nanoseconds.
     pub times: BTreeSet<i64>,
 }
@@ -174,6 +176,12 @@ impl Facts {
                     changed |= self.near_to_text(from, &text);
                 }
             }
+        }
+    }
+
+    fn text(&mut self, text: &Chars) {
+        if !self.all_texts.contains(text) {
+            self.all_texts.push(text.clone());
         }
     }
 
@@ -431,7 +439,7 @@ impl<'p> Walk<'p, '_> {
     fn expr(&mut self, expr: &Expr) {
         match &expr.kind {
             ExprKind::Const(value) => self.facts.constant(Some(expr.ty), *value),
-            ExprKind::Text(_) => {}
+            ExprKind::Text(text) => self.facts.text(text),
             ExprKind::Aggregate(value) => self.facts.initial(Some(expr.ty), value),
             ExprKind::AddressOf(place) => {
                 self.indices(place);
