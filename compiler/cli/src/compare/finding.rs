@@ -63,6 +63,7 @@ pub fn uses(pair: &Pair) -> Vec<Use> {
             Event::ALL.map(|it| !pair.never.contains(&it) && keeps(it))
         };
         Use {
+            is_used: a.is_used || b.is_used,
             constant_preset: presets.len() == 1 && presets[0].is_some(),
             habits: Habits {
                 feeds_itself: a.feeds_itself || b.feeds_itself,
