@@ -10,13 +10,14 @@ use crate::{
 
 use super::{
     expression::is_latch,
+    foreign_block,
     parser::{In, TokenReader},
     recovery,
     token_class::{ends_statements, is_pou_end},
 };
 
 /// Tokens after which the end of a block is not looked for.
-const FURTHEST: usize = 2000;
+pub const FURTHEST: usize = 2000;
 
 /// Refuses and skips such a statement, if one starts here.
 pub fn skip(input: &mut In<'_, '_, '_>) -> bool {
@@ -36,7 +37,7 @@ pub fn skip(input: &mut In<'_, '_, '_>) -> bool {
     }
 }
 
-fn refuse(input: &mut In<'_, '_, '_>, span: Span, message: impl Into<String>, help: impl Into<String>) {
+pub fn refuse(input: &mut In<'_, '_, '_>, span: Span, message: impl Into<String>, help: impl Into<String>) {
     input.report(Diagnostic::new(Code::E0020, span, message).label("this is no statement here").help(help));
 }
 
@@ -172,6 +173,9 @@ fn function(input: &mut In<'_, '_, '_>) -> bool {
     let name = input.text(name);
     let help = format!("write `FUNCTION {name} : INT VAR_INPUT … END_VAR … END_FUNCTION` before this unit or after it");
     refuse(input, word, "a function is no statement, and has no braces", help);
+    if input.kind_ahead(after) == Kind::Colon && foreign_block::skip_further_in(input, word, after + 1) {
+        return true;
+    }
     skip_tokens(input, after);
     input.eat(Kind::Colon);
     true
@@ -285,7 +289,7 @@ fn behind_parentheses(input: &mut In<'_, '_, '_>, open: usize) -> usize {
 }
 
 /// Whether braces with statements are directly before the token so many ahead; they are no pragma then.
-fn has_braces(input: &mut In<'_, '_, '_>, ahead: usize) -> bool {
+pub fn has_braces(input: &mut In<'_, '_, '_>, ahead: usize) -> bool {
     let at = input.number() + ahead;
     let state = input.state();
     let (before, here) = (state.place(at - 1), state.place(at));
@@ -296,20 +300,20 @@ fn has_braces(input: &mut In<'_, '_, '_>, ahead: usize) -> bool {
     true
 }
 
-fn is_word(input: &mut In<'_, '_, '_>, ahead: usize, word: &str) -> bool {
+pub fn is_word(input: &mut In<'_, '_, '_>, ahead: usize, word: &str) -> bool {
     let at = input.number() + ahead;
     let span = input.state().place(at);
     input.kind_ahead(ahead) == Kind::Name && input.text(span).eq_ignore_ascii_case(word)
 }
 
 /// Whether the token so many ahead is the first on its line.
-fn starts_line(input: &mut In<'_, '_, '_>, ahead: usize) -> bool {
+pub fn starts_line(input: &mut In<'_, '_, '_>, ahead: usize) -> bool {
     let at = input.number() + ahead;
     let state = input.state();
     state.breaks(state.place(at - 1).end, state.place(at).start)
 }
 
-fn skip_tokens(input: &mut In<'_, '_, '_>, count: usize) {
+pub fn skip_tokens(input: &mut In<'_, '_, '_>, count: usize) {
     for _ in 0..count {
         input.take();
     }
@@ -317,7 +321,7 @@ fn skip_tokens(input: &mut In<'_, '_, '_>, count: usize) {
 }
 
 /// After the `;` of the line, or the line: what other languages have often ends without one.
-fn skip_rest(input: &mut In<'_, '_, '_>) {
+pub fn skip_rest(input: &mut In<'_, '_, '_>) {
     while !input.on_new_line() && !ends_statements(input.kind()) {
         if input.eat(Kind::Semicolon).is_some() {
             return;
