@@ -8,12 +8,15 @@ use crate::{
 };
 
 use super::{
-    block_ends::column,
-    foreign_statement::{FURTHEST, has_braces, is_word, refuse, skip_rest, skip_tokens, starts_line},
+    foreign_statement::{
+        FURTHEST, has_braces, is_further_in, is_word, refuse, skip_further_in, skip_rest, skip_tokens, starts_line,
+    },
     parser::{In, TokenReader},
     token_class::is_pou_end,
 };
 
+/// Tokens of a head: a whole program may be on one line.
+const LONGEST_HEAD: usize = 200;
 /// A condition of the user's is shown in help up to this length.
 const LONGEST: usize = 60;
 
@@ -36,7 +39,7 @@ pub fn skip(input: &mut In<'_, '_, '_>) -> bool {
 /// Tokens up to the end of the line.
 fn rest_of_line(input: &mut In<'_, '_, '_>) -> usize {
     let mut ahead = 1;
-    while !starts_line(input, ahead) && input.kind_ahead(ahead) != Kind::End {
+    while ahead < LONGEST_HEAD && !starts_line(input, ahead) && input.kind_ahead(ahead) != Kind::End {
         ahead += 1;
     }
     ahead
@@ -80,41 +83,6 @@ fn of_python(input: &mut In<'_, '_, '_>) -> bool {
             .help(help),
     );
     skip_further_in(input, word, end)
-}
-
-/// Whether a line starts so many tokens ahead that is further in than the line of a word, which is its first.
-fn is_further_in(input: &mut In<'_, '_, '_>, word: Span, ahead: usize) -> bool {
-    let at = input.number();
-    let state = input.state();
-    match (column(state.text, word), column(state.text, state.place(at + ahead))) {
-        (Some(own), Some(inner)) => own < inner,
-        _ => false,
-    }
-}
-
-/// After the lines that are further in than that of a word, and its `else`, where the first of them starts so many tokens ahead.
-pub fn skip_further_in(input: &mut In<'_, '_, '_>, word: Span, ahead: usize) -> bool {
-    if !is_further_in(input, word, ahead) {
-        return false;
-    }
-    let own = column(input.state().text, word).unwrap_or(0);
-    input.take();
-    loop {
-        let kind = input.kind();
-        if kind == Kind::End || is_pou_end(kind) {
-            return true;
-        }
-        if input.on_new_line() {
-            let here = input.here();
-            let goes_on = matches!(kind, Kind::Else | Kind::Elsif)
-                || ["ELIF", "EXCEPT", "FINALLY"].iter().any(|it| input.is_word(it));
-            let inner = column(input.state().text, here).unwrap_or(0);
-            if inner < own || inner == own && !goes_on {
-                return true;
-            }
-        }
-        input.take();
-    }
 }
 
 /// `FOR i IN 1..10 LOOP`, `WHILE x < 5 LOOP`

@@ -9,8 +9,8 @@ use crate::{
 };
 
 use super::{
+    block_ends::column,
     expression::is_latch,
-    foreign_block,
     parser::{In, TokenReader},
     recovery,
     token_class::{ends_statements, is_pou_end},
@@ -173,7 +173,7 @@ fn function(input: &mut In<'_, '_, '_>) -> bool {
     let name = input.text(name);
     let help = format!("write `FUNCTION {name} : INT VAR_INPUT … END_VAR … END_FUNCTION` before this unit or after it");
     refuse(input, word, "a function is no statement, and has no braces", help);
-    if input.kind_ahead(after) == Kind::Colon && foreign_block::skip_further_in(input, word, after + 1) {
+    if input.kind_ahead(after) == Kind::Colon && skip_further_in(input, word, after + 1) {
         return true;
     }
     skip_tokens(input, after);
@@ -352,5 +352,40 @@ fn skip_to_end_of(input: &mut In<'_, '_, '_>, word: &str) {
             return skip_tokens(input, ahead + 1 + usize::from(is_apart));
         }
         ahead += 1;
+    }
+}
+
+/// Whether a line starts so many tokens ahead that is further in than the line of a word, which is its first.
+pub fn is_further_in(input: &mut In<'_, '_, '_>, word: Span, ahead: usize) -> bool {
+    let at = input.number();
+    let state = input.state();
+    match (column(state.text, word), column(state.text, state.place(at + ahead))) {
+        (Some(own), Some(inner)) => own < inner,
+        _ => false,
+    }
+}
+
+/// After the lines that are further in than that of a word, and its `else`, where the first of them starts so many tokens ahead.
+pub fn skip_further_in(input: &mut In<'_, '_, '_>, word: Span, ahead: usize) -> bool {
+    if !is_further_in(input, word, ahead) {
+        return false;
+    }
+    let own = column(input.state().text, word).unwrap_or(0);
+    input.take();
+    loop {
+        let kind = input.kind();
+        if kind == Kind::End || is_pou_end(kind) {
+            return true;
+        }
+        if input.on_new_line() {
+            let here = input.here();
+            let goes_on = matches!(kind, Kind::Else | Kind::Elsif)
+                || ["ELIF", "EXCEPT", "FINALLY"].iter().any(|it| input.is_word(it));
+            let inner = column(input.state().text, here).unwrap_or(0);
+            if inner < own || inner == own && !goes_on {
+                return true;
+            }
+        }
+        input.take();
     }
 }
