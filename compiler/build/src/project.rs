@@ -24,6 +24,7 @@ pub struct Project {
     pub color: Option<String>,
     pub quiet: bool,
     pub verbose: bool,
+    text: String,
 }
 
 impl Project {
@@ -37,7 +38,8 @@ impl Project {
     /// The dialect that it names.
     pub fn dialect(&self) -> Result<Option<Dialect>, String> {
         let named = |name: &String| {
-            Dialect::named(name).ok_or_else(|| format!("{}: there is no dialect `{name}`", self.file()))
+            Dialect::named(name)
+                .ok_or_else(|| format!("{}: there is no dialect `{name}`", self.place("dialect", Some(name))))
         };
         self.dialect.as_ref().map(named).transpose()
     }
@@ -46,7 +48,15 @@ impl Project {
     pub fn levels(&self) -> Result<Levels, String> {
         let mut levels = Levels::default();
         for (level, names) in [(Level::Warn, &self.warn), (Level::Deny, &self.deny), (Level::Allow, &self.allow)] {
-            levels.add(level, names.iter().map(String::as_str)).map_err(|it| format!("{}: {it}", self.file()))?;
+            let key = match level {
+                Level::Warn => "warn",
+                Level::Deny => "deny",
+                Level::Allow => "allow",
+            };
+            for name in names {
+                let place = || self.place(key, Some(name));
+                levels.add(level, [name.as_str()]).map_err(|it| format!("{}: {it}", place()))?;
+            }
         }
         Ok(levels)
     }
@@ -54,6 +64,11 @@ impl Project {
     /// The project file, as messages name it: as seen from the current folder.
     pub fn file(&self) -> String {
         shown(&self.folder.join("staunch.toml"))
+    }
+
+    /// The file and the line of a setting, or of a text in it.
+    pub fn place(&self, key: &str, value: Option<&str>) -> String {
+        line_of(&self.text, key, value).map_or_else(|| self.file(), |line| format!("{}:{line}", self.file()))
     }
 
     /// A path of the file, as seen from `from`, with strokes as on every machine.
@@ -84,11 +99,24 @@ fn read(path: &Path) -> Result<Project, String> {
     let fail = |what: String| format!("{}: {what}", shown(path));
     let text = std::fs::read_to_string(path).map_err(|it| fail(it.to_string()))?;
     let table: toml::Table = text.parse().map_err(|it: toml::de::Error| fail(it.to_string()))?;
-    let mut project = Project { folder: path.parent().unwrap_or(Path::new(".")).to_owned(), ..Project::default() };
+    let folder = path.parent().unwrap_or(Path::new(".")).to_owned();
+    let mut project = Project { folder, text, ..Project::default() };
     for (key, value) in &table {
-        set(&mut project, key, value).map_err(fail)?;
+        set(&mut project, key, value).map_err(|it| format!("{}: {it}", project.place(key, None)))?;
     }
     Ok(project)
+}
+
+/// The line of a setting, or the first from there on that has a text in quotes, from 1.
+fn line_of(text: &str, key: &str, value: Option<&str>) -> Option<usize> {
+    let is_key = |line: &str| {
+        let name = line.split_once('=').map_or(line, |it| it.0).trim();
+        name.trim_matches(['"', '\'', '[', ']']) == key
+    };
+    let start = text.lines().position(is_key)?;
+    let has = |line: &str| value.is_some_and(|it| line.contains(&format!("\"{it}\"")));
+    let further = text.lines().skip(start).position(has);
+    Some(start + further.unwrap_or(0) + 1)
 }
 
 fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), String> {
@@ -145,6 +173,16 @@ fn texts(key: &str, value: &toml::Value) -> Result<Vec<String>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_setting_has_a_line() {
+        let text = "# dialect\ndialect = \"iec\"\nwarn = [\n  \"W0501\",\n  \"W0001\",\n]\n[tool]\nx = 1\n";
+        assert_eq!(line_of(text, "dialect", None), Some(2));
+        assert_eq!(line_of(text, "warn", Some("W0001")), Some(5));
+        assert_eq!(line_of(text, "warn", Some("W0002")), Some(3));
+        assert_eq!(line_of(text, "tool", None), Some(7));
+        assert_eq!(line_of(text, "cycle", None), None);
+    }
 
     #[test]
     fn paths_are_seen_from_a_folder() {

@@ -360,7 +360,30 @@ impl Compare {
             settled.files.files.push(file);
             settled.trace = Some(None);
         }
+        settled.is_of_two_sides()?;
         Ok(settled)
+    }
+
+    /// One text under one system would be compared with itself.
+    fn is_of_two_sides(&self) -> Result<(), String> {
+        if self.from.dialect != self.to.dialect {
+            return Ok(());
+        }
+        let systems = match self.from.name == self.to.name {
+            true => format!("--from and --to are both `{}`", self.from.name),
+            false => format!("`{}` and `{}` are one system", self.from.name, self.to.name),
+        };
+        let same = |a: &PathBuf, b: &PathBuf| a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b));
+        match (&self.against, self.files.files.as_slice()) {
+            (None, _) => Err(format!(
+                "{systems}: the program would be compared with itself. Name the system that it moves to, or give another \
+                 program with --against FILE"
+            )),
+            (Some(against), [one]) if same(against, one) => {
+                Err(format!("{systems}, and --against is the program itself: it would be compared with itself"))
+            }
+            (Some(_), _) => Ok(()),
+        }
     }
 
     pub fn shows_every_scan(&self) -> bool {

@@ -96,12 +96,16 @@ impl Session {
         let near = files.files.first().filter(|it| it.as_path() != Path::new("-"));
         let folder = near.map_or(Path::new("."), |it| if it.is_dir() { it } else { parent(it) });
         let project = Project::find(folder)?.unwrap_or_default();
-        let named = if files.files.is_empty() { seen(&project, &project.files)? } else { files.files.clone() };
+        let named = if files.files.is_empty() { seen(&project, "files", &project.files)? } else { files.files.clone() };
         if named.is_empty() {
             return Err("name a source file or folder, or list `files` in staunch.toml".to_owned());
         }
+        if let Some(cycle) = &project.cycle {
+            let place = || project.place("cycle", None);
+            staunch_host::parse_duration(cycle).map_err(|it| format!("{}: `cycle`: {it}", place()))?;
+        }
         let levels = levels(common, &project)?;
-        let sources = input::read(&named, &seen(&project, &project.libraries)?)?;
+        let sources = input::read(&named, &seen(&project, "libraries", &project.libraries)?)?;
         let start = Instant::now();
         let compilation = compile(&sources, &options(common, &project)?);
         let compile_time = start.elapsed();
@@ -315,12 +319,16 @@ fn covered(sources: &Sources, is_covered: bool) -> Option<u16> {
 }
 
 /// Paths of the project file, as seen from the current folder.
-fn seen(project: &Project, paths: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
+fn seen(project: &Project, key: &str, paths: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
     if paths.is_empty() {
         return Ok(Vec::new());
     }
     let here = std::env::current_dir().and_then(|it| it.canonicalize());
     let here = here.map_err(|it| format!("the current folder: {it}"))?;
+    if let Some(lacking) = paths.iter().find(|it| !project.folder.join(it).exists()) {
+        let name = lacking.display().to_string();
+        return Err(format!("{}: there is no file or folder `{name}`", project.place(key, Some(&name))));
+    }
     Ok(paths.iter().map(|it| project.seen_from(&here, it)).collect())
 }
 

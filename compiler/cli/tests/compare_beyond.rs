@@ -119,6 +119,33 @@ bit := s;",
         trap: None,
         scans: 1,
     },
+    // The byte that is copied is the low half of the word on one system alone, in both directions.
+    Planted {
+        name: "address_copied",
+        from: "iec",
+        to: "openplc",
+        source: "VAR_INPUT n : BYTE; END_VAR VAR byte_out AT %QB0 : BYTE; word_out AT %QW0 : WORD; copy : BYTE; END_VAR
+word_out := BYTE_TO_WORD(n);
+copy := byte_out;",
+        kind: "address",
+        subject: "copy",
+        line: 4,
+        trap: None,
+        scans: 1,
+    },
+    Planted {
+        name: "address_from_openplc",
+        from: "openplc",
+        to: "iec",
+        source: "VAR_INPUT s : BOOL; END_VAR VAR word AT %QW0 : WORD; bit AT %QX0.0 : BOOL; copy : WORD; END_VAR
+bit := s;
+copy := word;",
+        kind: "address",
+        subject: "word",
+        line: 3,
+        trap: None,
+        scans: 1,
+    },
     // A plain variable, which STOP -> RUN of CODESYS keeps.
     Planted {
         name: "retention",
@@ -184,6 +211,29 @@ fn each_kind_is_found_at_its_line() {
         let shown = format!("\"trap\":{trap},\"verdict\":\"reachable\",\"scans\":{},", it.scans);
         assert!(found.contains(&shown), "{}: not {shown}\n{found}", it.name);
     }
+}
+
+/// The reason is found through copies, calls and conditions; it is the one that comes first.
+#[test]
+fn what_follows_from_a_finding_is_said_to() {
+    let source = "VAR_INPUT n, k : INT; END_VAR
+VAR low AT %MW0 : INT; both AT %MD0 : DINT; a, b : DINT; big : DINT; c : CTU; END_VAR VAR_OUTPUT hit, wide : BOOL; END_VAR
+low := n; a := both; b := MAX(a, 0);
+IF b > 10 THEN hit := TRUE; ELSE hit := FALSE; END_IF
+c(CU := hit, R := FALSE, PV := 1);
+big := n + k; wide := big > 40000;";
+    let path = program("followed", source);
+    for (from, to) in [("iec", "openplc"), ("openplc", "iec")] {
+        for shown in ["hit", "c.Q", "b"] {
+            let (code, text) = compare(&path, from, to, &["--vars", shown]);
+            assert_eq!(code, Some(1), "{text}");
+            let reason =
+                format!("`{shown}` follows from `both` (address, {}:4): bits at an address are", path.display());
+            assert!(text.contains(&reason) && !text.contains("(variable, "), "{text}");
+        }
+    }
+    let (_, text) = compare(&path, "iec", "codesys", &["--vars", "wide"]);
+    assert!(text.contains(&format!("`wide` follows from `big` (width, {}:7): ", path.display())), "{text}");
 }
 
 /// What is the same on both systems is not said to differ, and what follows from a counter's trap fails no more than that.

@@ -55,6 +55,68 @@ fn a_text_is_one_that_the_program_compares_it_with() {
     }
 }
 
+/// A text that decides is found through what is computed of the input, and a character is shown as one.
+#[test]
+fn a_text_is_followed_back_to_the_input() {
+    let asked = [
+        ("cut.st", "STRING[20]", "s10 := code;", "s10 = 'START'", "START"),
+        ("part.st", "STRING[20]", "", "MID(code, 2, 3) = 'AB'", "xxAB"),
+        ("sought.st", "STRING[20]", "", "FIND(code, 'AB') > 0", "AB"),
+        ("function.st", "STRING[20]", "", "Is(code)", "ABC"),
+        ("in_out.st", "STRING[20]", "s20 := code; f(t := s20);", "f.q", "DEF"),
+        ("computed.st", "STRING[20]", "s10 := LEFT(code, 5);", "s10 = 'START'", "START"),
+        ("widened.st", "STRING[20]", "w := STRING_TO_WSTRING(code);", "w = \"START\"", "START"),
+        ("first.st", "STRING[20]", "ch := STRING_TO_CHAR(code);", "ch = 'Q'", "Q"),
+        ("character.st", "CHAR", "ch := code;", "ch = 'Q'", "Q"),
+        ("unseen.st", "CHAR", "ch := code;", "ch = '$N'", "$0A"),
+        ("text_of_it.st", "CHAR", "s10 := CHAR_TO_STRING(code);", "s10 = ','", ","),
+    ];
+    for (name, ty, before, condition, value) in asked {
+        let text = format!(
+            "FUNCTION Is : BOOL VAR_INPUT t : STRING; END_VAR Is := t = 'ABC'; END_FUNCTION
+FUNCTION_BLOCK FB VAR_IN_OUT t : STRING[20]; END_VAR VAR_OUTPUT q : BOOL; END_VAR q := t = 'DEF'; END_FUNCTION_BLOCK
+PROGRAM p
+VAR_INPUT code : {ty}; END_VAR VAR_OUTPUT n : INT; END_VAR
+VAR c : CTU; s10 : STRING[10]; s20 : STRING[20]; ch : CHAR; w : WSTRING[10]; f : FB; END_VAR
+{before}
+IF {condition} THEN c(CU := TRUE, PV := 3); END_IF
+n := c.CV;
+END_PROGRAM
+"
+        );
+        let path = written(name, &text);
+        let saved = folder().join("followed.csv").display().to_string();
+        let (code, text) = compare(&path, ("iec", "cscape"), &["--vars", "n", "--save-stimulus", &saved]);
+        assert!(code == Some(1) && text.contains("differ after 2 scans"), "{name}: {text}");
+        assert!(text.lines().any(|it| it.split_whitespace().eq(["1", value, "1", "1"])), "{name}: {text}");
+        let (code, again) = compare(&path, ("iec", "cscape"), &["--stimulus", &saved]);
+        assert!(code == Some(1) && again.contains("differ after 2 scans"), "{name}: {again}");
+    }
+}
+
+/// Texts among bits that others share have their own names: as what differs, as inputs, and in a stimulus.
+#[test]
+fn a_text_among_shared_bits_is_one() {
+    let path = written(
+        "shared_text.st",
+        "PROGRAM p
+VAR last AT %IB3 : BYTE; code AT %IB0 : STRING[4]; shown AT %QB0 : STRING[5]; bit AT %QX2.0 : BOOL; c : CTU; END_VAR
+c(code = 'GO', FALSE, 2);
+shown := CONCAT(INT_TO_STRING(c.CV), code);
+END_PROGRAM
+",
+    );
+    let saved = folder().join("shared_text.csv").display().to_string();
+    let (code, text) = compare(&path, ("iec", "cscape"), &["--vars", "shown", "--save-stimulus", &saved]);
+    assert!(code == Some(1) && !text.contains("bits_of"), "{text}");
+    for line in ["  scan  code  last  shown iec  shown cscape", "     2    GO     0        1GO           2GO ◀"] {
+        assert!(text.contains(line), "{text}");
+    }
+    assert_eq!(std::fs::read_to_string(&saved).ok().as_deref(), Some("scan,code,last\n1,\"GO\",0\n2,\"GO\",0\n"));
+    let (code, again) = compare(&path, ("iec", "cscape"), &["--stimulus", &saved]);
+    assert!(code == Some(1) && again.contains("differ after 2 scans"), "{again}");
+}
+
 /// Where it is only asked whether a text is equal to some, one that is none of them stands for all.
 #[test]
 fn texts_that_are_compared_alone_are_covered() {

@@ -18,6 +18,8 @@ pub(crate) fn recognise(file: u16, source: &Source) -> Option<Diagnostic> {
     let text = source.text.as_str();
     let kind = binary(text)
         .or_else(|| xml(text))
+        .or_else(|| json(text))
+        .or_else(|| python(text))
         .or_else(|| logix(text))
         .or_else(|| rungs(text))
         .or_else(|| scl(text))
@@ -62,6 +64,52 @@ fn xml(text: &str) -> Option<Kind> {
     };
     Some(Kind { name, at: start, help })
 }
+
+/// Whether a text is JSON, also where the lexer takes all of it for a pragma.
+pub(crate) fn is_json(source: &Source) -> bool {
+    json(&source.text).is_some()
+}
+
+/// `{"a": …`, `[{ …`: no pragma begins with a text in quotes, and no Structured Text with a bracket.
+fn json(text: &str) -> Option<Kind> {
+    let start = text.len() - text.trim_start().len();
+    let rest = &text[start..];
+    let member = |it: &str| {
+        let (name, after) = it.strip_prefix('"')?.split_once('"')?;
+        (!name.contains('\n') && after.trim_start().starts_with(':')).then_some(())
+    };
+    let is_object = rest.strip_prefix('{').is_some_and(|it| member(it.trim_start()).is_some());
+    let is_list = rest.strip_prefix('[').is_some_and(|it| it.trim_start().starts_with(['{', '"', '[']));
+    (is_object || is_list).then_some(Kind {
+        name: "JSON",
+        at: start,
+        help: "name the sources of the program, `.st` files or a folder of them",
+    })
+}
+
+/// A file whose first line of code is one of Python's: `import x`, `def f(x):`, `class X:`.
+fn python(text: &str) -> Option<Kind> {
+    let is_code = |line: &str| !line.starts_with(['#', '"', '\'', '@']);
+    let (at, line) = lines(text).find(|(_, line)| is_code(line))?;
+    let ends_block = line.split(" #").next().is_some_and(|it| it.trim_end().ends_with(':'));
+    let (word, rest) = line.split_once(' ')?;
+    let (is_it, help) = match word {
+        "def" | "async" => (
+            ends_block && rest.contains('('),
+            "write `FUNCTION Add : INT VAR_INPUT a, b : INT; END_VAR Add := a + b; END_FUNCTION`",
+        ),
+        "class" => (
+            ends_block,
+            "write `FUNCTION_BLOCK Motor VAR speed : INT; END_VAR METHOD Start … END_METHOD END_FUNCTION_BLOCK`",
+        ),
+        "import" => (!line.ends_with(';'), PYTHON),
+        "from" => (rest.contains(" import "), PYTHON),
+        _ => (false, PYTHON),
+    };
+    is_it.then_some(Kind { name: "Python", at, help })
+}
+
+const PYTHON: &str = "write `PROGRAM Main VAR x : INT; END_VAR x := x + 1; END_PROGRAM`";
 
 /// Logix's neutral text: a version, and then a CONTROLLER.
 fn logix(text: &str) -> Option<Kind> {

@@ -231,8 +231,9 @@ fn parse_all<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Opt
         }
         files.push(syntax::parse_with(number, &source.text, sources.defined(source), Known::Later, diagnostics));
         diagnostics[before..].iter_mut().for_each(|it| at_the_end_of_a_body(it, source));
-        // Only what does not parse is looked at again.
-        if !source.is_assembled() && diagnostics[before..].iter().any(|it| it.severity == Severity::Error) {
+        // Only what does not parse is looked at again, and JSON, which is one pragma.
+        let is_wrong = diagnostics[before..].iter().any(|it| it.severity == Severity::Error);
+        if !source.is_assembled() && (is_wrong || foreign::is_json(source)) {
             foreign.extend(foreign::recognise(number, source));
         }
     }

@@ -14,6 +14,7 @@ mod diagnostics;
 mod misspelt;
 
 mod block_ends;
+mod foreign_block;
 mod foreign_statement;
 mod foreign_syntax;
 mod invalid_names;

@@ -90,6 +90,39 @@ impl Chars {
         self.is_wide() == ty.wide && self.len() <= usize::from(ty.capacity)
     }
 
+    /// The text with so many other characters before it.
+    #[must_use]
+    pub fn after(&self, count: usize) -> Self {
+        match self {
+            Self::Narrow(it) => Self::Narrow([vec![b'x'; count], it.clone()].concat()),
+            Self::Wide(it) => Self::Wide([vec![u16::from(b'x'); count], it.clone()].concat()),
+        }
+    }
+
+    /// The same text in a string of other units, where it is ASCII.
+    pub fn of_width(&self, wide: bool) -> Option<Self> {
+        let units = (0..self.len()).filter_map(|it| self.unit(it));
+        let ascii: Option<Vec<u8>> = units.map(|it| u8::try_from(it).ok().filter(u8::is_ascii)).collect();
+        let ascii = ascii?;
+        Some(if wide { Self::Wide(ascii.into_iter().map(u16::from).collect()) } else { Self::Narrow(ascii) })
+    }
+
+    /// Its units as they lie in memory.
+    pub fn units_as_bytes(&self) -> Vec<u8> {
+        match self {
+            Self::Narrow(it) => it.clone(),
+            Self::Wide(it) => it.iter().flat_map(|it| it.to_ne_bytes()).collect(),
+        }
+    }
+
+    /// One of its units by its position.
+    pub fn unit(&self, at: usize) -> Option<u16> {
+        match self {
+            Self::Narrow(it) => it.get(at).copied().map(u16::from),
+            Self::Wide(it) => it.get(at).copied(),
+        }
+    }
+
     /// Leaves what a string of this capacity keeps.
     pub fn cut(&mut self, capacity: u16) {
         match self {

@@ -54,7 +54,7 @@ pub use map::{Instance, Map, Section, Structure, StructureKind, Type, Variable};
 pub use path::{Place, resolve as place_of};
 pub use run::{Moment, Options, RealTime, Summary, run};
 pub use start::Event;
-pub use value::{format_time, format_time_as, value_at};
+pub use value::{format_character, format_time, format_time_as, value_at};
 
 pub use staunch_runtime::Elementary;
 

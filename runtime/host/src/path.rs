@@ -150,6 +150,21 @@ pub(crate) fn path_at(map: &Map, offset: usize, size: usize) -> Option<String> {
     })
 }
 
+/// The variable that an offset of the state is in, and where it starts, if it is in what only keeps the bits of several: one
+/// that starts there before others, and a short one before long ones.
+pub(crate) fn view_at(map: &Map, (start, size): (usize, usize), offset: usize) -> Option<(String, usize)> {
+    let (globals, base) = map.globals();
+    let is_storage = |it: &&Variable| it.section == Section::Memory && base + it.offset == start;
+    globals.iter().find(is_storage).filter(|it| map.size_of(it.ty) == size)?;
+    let is_in = |it: &&Variable| {
+        let (from, length) = (base + it.offset, map.size_of(Place::of(it, base).ty));
+        it.view && !matches!(it.ty, Type::Bit(_)) && (from..from + length).contains(&offset)
+    };
+    let rank = |it: &&Variable| (base + it.offset != offset, map.size_of(it.ty));
+    let found = globals.iter().filter(is_in).min_by_key(rank)?;
+    Some((found.name.clone(), base + found.offset))
+}
+
 fn member_at(map: &Map, members: &[Variable], base: usize, offset: usize, size: usize) -> Option<String> {
     members.iter().find_map(|it| {
         let way = way_to(map, it.ty, base + it.offset, offset, size)?;

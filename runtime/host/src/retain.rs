@@ -196,7 +196,7 @@ impl Retained {
         machine: &mut dyn Machine,
     ) -> Option<String> {
         let Some(region) = self.regions.iter().find(|it| it.path.eq_ignore_ascii_case(path)) else {
-            return Some(format!("dropped the retained value of `{path}`: {}", self.why_gone(map, path, ty)));
+            return Some(format!("dropped the retained value of {}: {}", shown(path), self.why_gone(map, path, ty)));
         };
         // IEC names are the same in any case.
         let fits = |it: &&[u8]| it.len() == region.size && region.ty.eq_ignore_ascii_case(ty);
@@ -205,7 +205,7 @@ impl Retained {
                 machine.write(region.offset, bytes);
                 None
             }
-            None => Some(format!("dropped the retained value of `{path}`: {}", difference(ty, &region.ty))),
+            None => Some(format!("dropped the retained value of {}: {}", shown(path), difference(ty, &region.ty))),
         }
     }
 
@@ -223,6 +223,14 @@ impl Retained {
             return difference(ty, &type_text(map, place.ty, place.range));
         }
         "the program has this variable, but does not retain it".to_owned()
+    }
+}
+
+/// A variable by its name; what only keeps the bits of several by their address.
+fn shown(path: &str) -> String {
+    match path.strip_prefix("Globals.bits_of_") {
+        Some(address) => format!("the variables that share bits from `%{}` on", address.replace('_', ".")),
+        None => format!("`{path}`"),
     }
 }
 

@@ -8,7 +8,7 @@ use crate::retain::{Pace, Retention};
 use crate::schedule::Schedule;
 use crate::start::{Event, Start};
 use crate::stimulus::{Stimulus, Write};
-use crate::trace::{Row, Subject, Table, Trace};
+use crate::trace::{self, Row, Subject, Table, Trace};
 use crate::{Error, Machine, format_time, signal, terminal};
 use staunch_runtime::{Context, Time};
 use std::io::{self, Write as _};
@@ -156,17 +156,19 @@ pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Su
     if options.cycle.is_some_and(|it| it <= 0) {
         return Err(Error::Usage("the cycle is a time above zero".to_owned()));
     }
+    options.trace.as_deref().map_or(Ok(()), trace::check_name)?;
     let stimulus = options.stimulus.as_deref().map(|path| Stimulus::read(path, map, &running)).transpose()?;
     let columns = match options.shows_values() {
         true => columns(map, &running, options.vars.as_deref()).map_err(|it| Error::Usage(format!("--vars: {it}")))?,
         false => Vec::new(),
     };
-    let subject = Subject { map, columns, title: title(map, &running) };
+    let schedule = Schedule::new(map, &running, options.cycle);
+    let subject = Subject { map, columns, title: title(map, &running), cycle: schedule.shortest_period() };
     let mut runner = Runner {
         machine,
         map,
         options,
-        schedule: Schedule::new(map, &running, options.cycle),
+        schedule,
         stimulus: stimulus.unwrap_or_default(),
         next_row: 0,
         held: Vec::new(),

@@ -36,6 +36,8 @@ pub(crate) struct Subject<'a> {
     pub columns: Vec<Column>,
     /// Names the run to people.
     pub title: String,
+    /// Time between scans.
+    pub cycle: Time,
 }
 
 impl Subject<'_> {
@@ -54,6 +56,37 @@ pub(crate) trait Sink {
     fn flush(&mut self) -> io::Result<()>;
 }
 
+/// What a trace is written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Form {
+    Rows,
+    Waves,
+    Page,
+    Diagram,
+}
+
+impl Form {
+    /// By the file's ending; rows for one without, as `-` and devices are.
+    fn of(path: &Path) -> Result<Self, Error> {
+        let Some(ending) = path.extension().filter(|_| path.as_os_str() != "-") else { return Ok(Self::Rows) };
+        match ending.to_string_lossy().to_ascii_lowercase().as_str() {
+            "csv" => Ok(Self::Rows),
+            "vcd" => Ok(Self::Waves),
+            "html" | "htm" => Ok(Self::Page),
+            "svg" => Ok(Self::Diagram),
+            _ => Err(Error::Usage(format!(
+                "--trace {}: a trace ends in .csv, .vcd, .svg or .html; - is standard output",
+                path.display()
+            ))),
+        }
+    }
+}
+
+/// Whether a trace can have this name.
+pub(crate) fn check_name(path: &Path) -> Result<(), Error> {
+    Form::of(path).map(|_| ())
+}
+
 /// An open trace file.
 pub(crate) struct Trace {
     path: PathBuf,
@@ -61,19 +94,19 @@ pub(crate) struct Trace {
 }
 
 impl Trace {
-    /// The file's ending says the form: `.vcd`, `.svg`, `.html`, or else CSV; `-` is standard output.
+    /// The file's ending says the form; `-` is standard output.
     pub fn create(path: &Path, subject: &Subject<'_>) -> Result<Self, Error> {
         let file = |error| Error::file(path, "write", error);
+        let form = Form::of(path)?;
         let out: Box<dyn Write> = match path.as_os_str() == "-" {
             true => Box::new(BufWriter::new(io::stdout())),
             false => Box::new(BufWriter::with_capacity(1 << 16, File::create(path).map_err(file)?)),
         };
-        let ending = path.extension().map(|it| it.to_string_lossy().to_ascii_lowercase());
-        let sink = match ending.as_deref() {
-            Some("vcd") => waves::Waves::new(out, subject).map(|it| Box::new(it) as Box<dyn Sink>),
-            Some("html" | "htm") => Ok(Box::new(page::Page::new(out, subject)) as Box<dyn Sink>),
-            Some("svg") => Ok(Box::new(diagram::Diagram::new(out, subject)) as Box<dyn Sink>),
-            _ => rows::Rows::new(out, subject).map(|it| Box::new(it) as Box<dyn Sink>),
+        let sink = match form {
+            Form::Rows => rows::Rows::new(out, subject).map(|it| Box::new(it) as Box<dyn Sink>),
+            Form::Waves => waves::Waves::new(out, subject).map(|it| Box::new(it) as Box<dyn Sink>),
+            Form::Page => Ok(Box::new(page::Page::new(out, subject)) as Box<dyn Sink>),
+            Form::Diagram => Ok(Box::new(diagram::Diagram::new(out, subject)) as Box<dyn Sink>),
         };
         Ok(Self { path: path.to_owned(), sink: sink.map_err(file)? })
     }

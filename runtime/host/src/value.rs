@@ -1,7 +1,7 @@
 //! How values read: the cells of a trace.
 
 use crate::map::{Map, Type};
-use crate::path::{path_at, resolve};
+use crate::path::{path_at, resolve, view_at};
 use staunch_runtime::reference::ORIGIN;
 use staunch_runtime::text::characters;
 use staunch_runtime::{Elementary, Reference, Repr, StringType, Time, Value, format};
@@ -23,7 +23,7 @@ pub(crate) fn format(map: &Map, ty: Type, bytes: &[u8], out: &mut String) {
             match value {
                 // Writing to a String cannot fail.
                 Value::I64(time) if it.is_time() => _ = format::time(out, it, time),
-                _ if it.is_char() => format_character(value, out),
+                _ if it.is_char() => out.push_str(&format_character(value)),
                 _ => format_scalar(value, out),
             }
         }
@@ -52,7 +52,11 @@ fn format_reference(map: &Map, bytes: &[u8], out: &mut String) {
     let reference = Reference::from_bits(bits);
     let object = usize::try_from(reference.object).ok().and_then(|it| map.objects.get(it.checked_sub(1)?));
     let named = object.and_then(|(offset, size)| {
-        let position = i64::from(reference.address) - i64::from(ORIGIN) - i64::try_from(*offset).ok()?;
+        let address = i64::from(reference.address) - i64::from(ORIGIN);
+        if let Some((path, start)) = usize::try_from(address).ok().and_then(|it| view_at(map, (*offset, *size), it)) {
+            return Some((path, address - i64::try_from(start).ok()?));
+        }
+        let position = address - i64::try_from(*offset).ok()?;
         Some((path_at(map, *offset, *size)?, position))
     });
     let _ = match named {
@@ -124,18 +128,21 @@ fn decoded(ty: StringType, units: &[u8]) -> String {
 }
 
 /// `A`, or by its number what is hard to see: `$00`, `$D83D`.
-fn format_character(value: Value, out: &mut String) {
+pub fn format_character(value: Value) -> String {
     let (number, digits) = match value {
         Value::U8(it) => (u32::from(it), 2),
         Value::U16(it) => (u32::from(it), 4),
-        _ => return format_scalar(value, out),
+        _ => {
+            let mut out = String::new();
+            format_scalar(value, &mut out);
+            return out;
+        }
     };
     match char::from_u32(number) {
-        Some('$') => out.push_str("$$"),
-        Some(it) if it.is_ascii_graphic() => out.push(it),
-        Some(it) if !it.is_ascii() && !it.is_control() && !it.is_whitespace() => out.push(it),
-        // Writing to a String cannot fail.
-        _ => _ = write!(out, "${number:0digits$X}"),
+        Some('$') => "$$".to_owned(),
+        Some(it) if it.is_ascii_graphic() => it.to_string(),
+        Some(it) if !it.is_ascii() && !it.is_control() && !it.is_whitespace() => it.to_string(),
+        _ => format!("${number:0digits$X}"),
     }
 }
 

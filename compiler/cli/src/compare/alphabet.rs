@@ -122,7 +122,11 @@ fn typed(pair: &Pair, facts: [&Facts; 2], found: Vec<Matched>) -> Vec<Input> {
             [Type::String(x), Type::String(y)] if x.wide == y.wide => {
                 let capacity = x.capacity.min(y.capacity);
                 let near = [0, 1].map(|side: usize| texts_of(pair, facts, side, scalars));
-                let initial = Chars::read(StringType { capacity, ..x }, bytes);
+                let initial = match a.is_shared {
+                    // What shares its bits starts with zeros.
+                    true => Chars::empty(x),
+                    false => Chars::read(StringType { capacity, ..x }, bytes),
+                };
                 let (texts, named) = texts(initial, near.concat(), StringType { capacity, ..x });
                 return Some(Input { scalars, initial: Value::U16(0), texts, named });
             }
@@ -142,7 +146,12 @@ fn typed(pair: &Pair, facts: [&Facts; 2], found: Vec<Matched>) -> Vec<Input> {
 
 /// What a program compares a string with.
 fn texts_of(pair: &Pair, facts: [&Facts; 2], side: usize, scalars: Matched) -> Vec<Chars> {
-    name(pair.scalar(side, scalars[side])).map_or_else(Vec::new, |it| facts[side].texts(it))
+    let scalar = pair.scalar(side, scalars[side]);
+    // Which text goes where among shared bits is not followed.
+    if scalar.is_shared {
+        return facts[side].all_texts.clone();
+    }
+    name(scalar).map_or_else(Vec::new, |it| facts[side].texts(it))
 }
 
 /// What to try of a string: the initial one, those that it is compared with, none, another one, and a long one; and how many
@@ -206,7 +215,8 @@ fn choice_of_texts(pair: &Pair, facts: [&Facts; 2], input: &Input) -> Choice {
     let covered = if both(|facts, name| !facts.is_read(name)) {
         Some(Covered::Unread)
     } else {
-        (both(Facts::only_compared) && is_short && near.len() <= MAX_VALUES).then_some(Covered::Compared)
+        let is_own = scalars.iter().all(|it| !it.is_shared);
+        (is_own && both(Facts::only_compared) && is_short && near.len() <= MAX_VALUES).then_some(Covered::Compared)
     };
     let count = u16::try_from(input.texts.len()).unwrap_or(u16::MAX);
     Choice { values: (0..count).map(Value::U16).collect(), covered, range: None }

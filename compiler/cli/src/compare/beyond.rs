@@ -1,15 +1,13 @@
 //! What a move can change beside counters: timers, one-shots and latches, what is computed in other types,
 //! what an event keeps on one system alone, and faults.
 
+use super::apart::{self, Declared, Why};
+use super::dependency::Dependencies;
 use super::pair::{Matched, Pair};
 use super::scalar::{Instance, Role};
-use super::walked::{Name, Walked};
 use staunch_host::Event;
-use staunch_ir::{
-    Block, Expr, ExprKind, FieldId, Location, Place, Program, Routine, RoutineId, Statement, StatementKind, StructId,
-    visit,
-};
-use std::collections::{BTreeMap, HashSet};
+use staunch_ir::{Location, Program};
+use std::collections::HashSet;
 
 /// What a finding is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -20,7 +18,7 @@ pub enum Kind {
     Latch,
     /// A variable that the two systems compute in other types.
     Width,
-    /// A variable at an address whose bits others share on one of the two alone.
+    /// A variable at an address whose bits others share on one of the two alone, or that is computed of one.
     Address,
     /// A variable that an event leaves as it is on one of the two.
     Retention,
@@ -65,7 +63,7 @@ impl Kind {
                 "both systems run the same block, and what it is given differs"
             }
             Self::Width => "the two systems compute or hold it in other types",
-            Self::Address => "what is at its address shares bits on one of the two systems alone",
+            Self::Address => "bits at an address are shared on one of the two systems alone",
             Self::Retention => "one system keeps it",
             Self::Fault => "one system faults here, and the other goes on",
             Self::Variable => "no trap explains it: the two programs are not the same",
@@ -91,10 +89,9 @@ pub struct Candidate {
     pub variable: Matched,
     pub kind: Kind,
     pub at: Location,
+    /// Counters that decide it, by their positions among those of the pair.
+    pub counters: Vec<usize>,
 }
-
-/// Variables by their declarations.
-type Declared = (StructId, FieldId);
 
 /// The variables that an event leaves as they are on one side alone, one of each declaration.
 pub fn kept_by_one(pair: &Pair) -> Vec<Candidate> {
@@ -107,7 +104,7 @@ pub fn kept_by_one(pair: &Pair) -> Vec<Candidate> {
         let Some(declared) = scalars[0].field else { continue };
         if events().any(|it| keeps(0, it) != keeps(1, it)) && seen.insert(declared) {
             let at = location(&pair.sides[0].program, declared);
-            found.push(Candidate { variable: [a, b], kind: Kind::Retention, at });
+            found.push(Candidate { variable: [a, b], kind: Kind::Retention, at, counters: Vec::new() });
         }
     }
     found
@@ -117,27 +114,34 @@ pub fn location(program: &Program, (owner, field): Declared) -> Location {
     program.structure(owner).fields[field.index()].location
 }
 
-/// The variables that are assigned what the two systems compute in other types, or where a condition is.
+/// The variables that are assigned what the two systems compute in other types or where bits lie apart, or where a condition is.
 pub fn computed_apart(pair: &Pair) -> Vec<Candidate> {
-    let [ours, theirs] = pair.sides.each_ref().map(|it| &it.program);
-    let mut targets: BTreeMap<Declared, Location> = BTreeMap::new();
-    for (at, a) in ours.routines.iter().enumerate() {
-        if let Some(b) = theirs.routines.iter().find(|it| it.name == a.name && it.kind == a.kind) {
-            Walk { program: ours, routine: a, id: RoutineId::next(at), found: &mut targets }
-                .blocks(&a.body, &b.body, None);
-        }
-    }
+    let targets = apart::targets(pair.sides.each_ref().map(|it| &it.program));
     let variables = pair.matched(|it| it.role == Role::Variable).into_iter();
     let of = |variable: Matched| {
-        let declared = pair.scalar(0, variable[0]).field?;
-        let at = *targets.get(&declared)?;
+        let declared = [0, 1].map(|side: usize| pair.scalar(side, variable[side]).field);
+        let found = (0..2).find_map(|side| Some((side, targets[side].get(&declared[side]?)?)));
+        let (side, found) = found?;
         // What is held in one type is stored alike, but for the bits around it.
         let reprs = [0, 1].map(|side| pair.sides[side].program.repr(pair.scalar(side, variable[side]).ty));
-        let is_located = ours.structure(declared.0).fields[declared.1.index()].address.is_some();
-        let kind = if is_located && reprs[0] == reprs[1] { Kind::Address } else { Kind::Width };
-        Some(Candidate { variable, kind, at })
+        let is_located = |(owner, field): Declared| {
+            pair.sides[side].program.structure(owner).fields[field.index()].address.is_some()
+        };
+        let by_address = found.why == Why::Address || declared[side].is_some_and(is_located);
+        let kind = if by_address && reprs[0] == reprs[1] { Kind::Address } else { Kind::Width };
+        Some(Candidate { variable, kind, at: found.at, counters: Vec::new() })
     };
     variables.filter_map(of).collect()
+}
+
+/// Names the counters that decide each.
+pub fn note_counters(pair: &Pair, candidates: &mut [Candidate]) {
+    let dependencies = Dependencies::of(&pair.sides[0].program);
+    for counter in 0..pair.counters.len() {
+        let decided = pair.instances(counter)[0].field.map(|it| dependencies.follow(it)).unwrap_or_default();
+        let is_decided = |it: &&mut Candidate| pair.declared(0, it.variable).is_some_and(|it| decided.contains(&it));
+        candidates.iter_mut().filter(is_decided).for_each(|it| it.counters.push(counter));
+    }
 }
 
 /// The variables that the two systems hold in strings of other lengths, one of each declaration.
@@ -149,81 +153,7 @@ pub fn held_apart(pair: &Pair) -> Vec<Candidate> {
     let of = |variable: Matched| {
         let declared = pair.scalar(0, variable[0]).field?;
         let at = || location(&pair.sides[0].program, declared);
-        seen.insert(declared).then(|| Candidate { variable, kind: Kind::Width, at: at() })
+        seen.insert(declared).then(|| Candidate { variable, kind: Kind::Width, at: at(), counters: Vec::new() })
     };
     apart.filter_map(of).collect()
-}
-
-struct Walk<'p, 'f> {
-    program: &'p Program,
-    routine: &'p Routine,
-    id: RoutineId,
-    found: &'f mut BTreeMap<Declared, Location>,
-}
-
-impl Walk<'_, '_> {
-    /// `apart`: where a condition around the statements is computed in other types.
-    fn blocks(&mut self, a: &Block, b: &Block, apart: Option<Location>) {
-        for (a, b) in a.iter().zip(b).filter(|(a, b)| a.at == b.at) {
-            self.statement(a, b, apart);
-        }
-    }
-
-    fn statement(&mut self, a: &Statement, b: &Statement, apart: Option<Location>) {
-        let apart = if values_differ(a, b) { Some(a.at) } else { apart };
-        if let (StatementKind::Assign { target, .. }, Some(at)) = (&a.kind, apart)
-            && let Some(declared) = self.declared(target)
-        {
-            self.found.entry(declared).or_insert(at);
-        }
-        for (a, b) in a.kind.blocks().into_iter().zip(b.kind.blocks()) {
-            self.blocks(a, b, apart);
-        }
-    }
-
-    /// The variable that a place is; what a reference leads to is not the one that holds it.
-    fn declared(&self, place: &Place) -> Option<Declared> {
-        match Walked::of(self.program, (self.routine, self.id), place).variable()? {
-            Name::Field(owner, field) => Some((owner, field)),
-            Name::Local(..) | Name::Param(..) => None,
-        }
-    }
-}
-
-fn values_differ(a: &Statement, b: &Statement) -> bool {
-    let values = |it| {
-        let mut found: Vec<&Expr> = Vec::new();
-        visit::values(it, &mut |value| found.push(value));
-        found
-    };
-    let (a, b) = (values(a), values(b));
-    a.len() == b.len() && a.iter().zip(&b).any(|(a, b)| !is_alike(a, b))
-}
-
-/// Whether both compute the same in the same types; what variables are made of is their declarations' matter.
-fn is_alike(a: &Expr, b: &Expr) -> bool {
-    match (&a.kind, &b.kind) {
-        (ExprKind::Load(_), ExprKind::Load(_)) => true,
-        (ExprKind::Const(x), ExprKind::Const(y)) => {
-            x.as_integer() == y.as_integer() && (x.as_integer().is_some() || x == y)
-        }
-        (ExprKind::Apply(x, a_operands), ExprKind::Apply(y, b_operands)) => {
-            let operands = a_operands.len() == b_operands.len()
-                && a_operands
-                    .iter()
-                    .zip(b_operands)
-                    .all(|(a, b)| is_alike(a, b) && a.ty.elementary() == b.ty.elementary());
-            x == y && operands && a.ty.elementary() == b.ty.elementary()
-        }
-        (ExprKind::ApplyText(x, a), ExprKind::ApplyText(y, b)) => {
-            x == y && a.len() == b.len() && a.iter().zip(b).all(|(a, b)| is_alike(a, b))
-        }
-        (ExprKind::Convert(x, a_inner), ExprKind::Convert(y, b_inner)) => {
-            x == y && a.ty.elementary() == b.ty.elementary() && is_alike(a_inner, b_inner)
-        }
-        (ExprKind::Text(x), ExprKind::Text(y)) => x == y,
-        // Where variables are is each program's own.
-        (ExprKind::Aggregate(_), ExprKind::Aggregate(_)) | (ExprKind::AddressOf(_), ExprKind::AddressOf(_)) => true,
-        _ => false,
-    }
 }

@@ -36,12 +36,16 @@ pub struct Facts {
     read: HashSet<Name>,
     /// Every constant of the program that is a whole number or a time.
     pub constants: BTreeSet<i128>,
+    /// Every text of the program.
+    pub all_texts: Vec<Chars>,
     /// Every time of the program, in nanoseconds.
     pub times: BTreeSet<i64>,
 }
 
 /// Assignments in a row, through which a limit of the last target is followed back.
 const MAX_BACK: usize = 4;
+/// Characters before those that are asked for.
+const MAX_BEFORE: usize = 300;
 /// Limits of one variable that are followed back.
 const MAX_LIMITS: usize = 24;
 
@@ -109,8 +113,10 @@ impl Facts {
             let limits = self.worth_trying(*target);
             let integers = limits.integers.into_iter().map(Number::Integer);
             let limits: Vec<_> = integers.chain(limits.reals.into_iter().map(Number::Real)).take(MAX_LIMITS).collect();
+            let texts = self.texts(*target);
             let mut walk = Walk { program, routine, id: *id, facts: &mut found, computed: Vec::new() };
             limits.iter().for_each(|it| walk.compared(value, *it));
+            texts.iter().for_each(|it| walk.reaches(value, it));
         }
         // As they are: what is assigned, or handed to a call.
         for (from, to) in &self.flows {
@@ -120,6 +126,12 @@ impl Facts {
         }
         for (name, numbers) in found.near {
             self.hints.entry(name).or_default().add_all(numbers);
+        }
+        for (name, texts) in found.texts {
+            texts.iter().for_each(|it| _ = self.near_to_text(name, it));
+        }
+        for (from, to) in self.flows.clone() {
+            self.texts(to).iter().for_each(|it| _ = self.near_to_text(from, it));
         }
     }
 
@@ -164,6 +176,12 @@ impl Facts {
                     changed |= self.near_to_text(from, &text);
                 }
             }
+        }
+    }
+
+    fn text(&mut self, text: &Chars) {
+        if !self.all_texts.contains(text) {
+            self.all_texts.push(text.clone());
         }
     }
 
@@ -278,6 +296,9 @@ impl<'p> Walk<'p, '_> {
     }
 
     fn widens(&self, from: Type, to: Type) -> bool {
+        if let (Some(from), Some(to)) = (from.string_type(), to.string_type()) {
+            return from.wide == to.wide && from.capacity <= to.capacity;
+        }
         let range = |ty| self.program.repr(ty).and_then(staunch_runtime::Repr::range);
         match (range(from), range(to)) {
             (Some(from), Some(to)) => to.0 <= from.0 && from.1 <= to.1,
@@ -418,7 +439,7 @@ impl<'p> Walk<'p, '_> {
     fn expr(&mut self, expr: &Expr) {
         match &expr.kind {
             ExprKind::Const(value) => self.facts.constant(Some(expr.ty), *value),
-            ExprKind::Text(_) => {}
+            ExprKind::Text(text) => self.facts.text(text),
             ExprKind::Aggregate(value) => self.facts.initial(Some(expr.ty), value),
             ExprKind::AddressOf(place) => {
                 self.indices(place);
@@ -448,8 +469,73 @@ impl<'p> Walk<'p, '_> {
                     operands.iter().for_each(|it| self.expr(it));
                 }
             },
-            ExprKind::ApplyText(_, operands) => operands.iter().for_each(|it| self.expr(it)),
+            ExprKind::ApplyText(_, operands) => {
+                operands.iter().for_each(|it| self.expr(it));
+                self.together(operands);
+            }
             ExprKind::Convert(_, inner) => self.expr(inner),
+        }
+    }
+
+    /// What a text is sought in, or joined with, is worth being that text.
+    fn together(&mut self, operands: &[Expr]) {
+        for (at, operand) in operands.iter().enumerate() {
+            let ExprKind::Text(text) = &operand.kind else { continue };
+            let others = operands.iter().enumerate().filter(|it| it.0 != at);
+            others.for_each(|it| self.reaches(it.1, text));
+        }
+    }
+
+    /// Notes for which texts of its variables an expression is, or has in it, a text.
+    fn reaches(&mut self, expr: &Expr, text: &Chars) {
+        match &expr.kind {
+            ExprKind::Load(place) => {
+                if let Some(name) = self.name(place) {
+                    self.facts.near_to_text(name, text);
+                }
+            }
+            ExprKind::Convert(_, inner) => self.reaches(inner, text),
+            ExprKind::ApplyText(TextOp::Mid, operands) => {
+                let before = operands.last().and_then(Expr::as_const).and_then(Value::as_integer).unwrap_or(1) - 1;
+                self.reaches(&operands[0], &text.after(few(before)));
+            }
+            ExprKind::ApplyText(TextOp::FromChar | TextOp::FromWchar, operands) => {
+                if let (1, Some(unit)) = (text.len(), text.unit(0)) {
+                    self.compared(&operands[0], Number::Integer(unit.into()));
+                }
+            }
+            ExprKind::ApplyText(TextOp::Widen, operands) => {
+                text.of_width(false).iter().for_each(|it| self.reaches(&operands[0], it));
+            }
+            ExprKind::ApplyText(TextOp::Narrow, operands) => {
+                text.of_width(true).iter().for_each(|it| self.reaches(&operands[0], it));
+            }
+            ExprKind::ApplyText(_, operands) => operands.iter().for_each(|it| self.reaches(it, text)),
+            ExprKind::Const(_)
+            | ExprKind::Text(_)
+            | ExprKind::Aggregate(_)
+            | ExprKind::AddressOf(_)
+            | ExprKind::Apply(..) => {}
+        }
+    }
+
+    /// A number is a character of a text, after so many others.
+    fn is_character(&mut self, op: TextOp, operands: &[Expr], limit: Number) {
+        let Number::Integer(limit) = limit else { return };
+        let before = match op {
+            TextOp::CharAt | TextOp::WcharAt => {
+                let at = operands.get(1).and_then(Expr::as_const).and_then(Value::as_integer);
+                few(at.unwrap_or(0))
+            }
+            TextOp::ToChar | TextOp::ToWchar => 0,
+            _ => return,
+        };
+        let text = match op {
+            TextOp::WcharAt | TextOp::ToWchar => u16::try_from(limit).ok().map(|it| Chars::Wide(vec![it])),
+            _ => u8::try_from(limit).ok().map(|it| Chars::Narrow(vec![it])),
+        };
+        if let (Some(text), Some(from)) = (text, operands.first()) {
+            self.reaches(from, &text.after(before));
         }
     }
 
@@ -493,9 +579,12 @@ impl<'p> Walk<'p, '_> {
                 self.facts.near_to_text(name, text);
                 if is_exact { self.operand(a) } else { self.expr(a) }
             }
-            (name, _) => {
+            (name, other) => {
                 self.facts.flows.extend(name.zip(self.variable(b)));
                 self.expr(a);
+                if let ExprKind::Text(text) = other {
+                    self.reaches(a, text);
+                }
             }
         }
     }
@@ -544,11 +633,8 @@ impl<'p> Walk<'p, '_> {
                     }
                 }
             }
-            ExprKind::Const(_)
-            | ExprKind::Text(_)
-            | ExprKind::Aggregate(_)
-            | ExprKind::AddressOf(_)
-            | ExprKind::ApplyText(..) => {}
+            ExprKind::ApplyText(op, operands) => self.is_character(*op, operands, limit),
+            ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) | ExprKind::AddressOf(_) => {}
         }
     }
 }
@@ -621,6 +707,11 @@ fn number(expr: &Expr) -> Option<Number> {
         Value::Bool(_) => None,
         other => other.as_integer().map(Number::Integer),
     }
+}
+
+/// Characters before others: of far ones a string is too short.
+fn few(count: i128) -> usize {
+    usize::try_from(count).unwrap_or(0).min(MAX_BEFORE)
 }
 
 fn compares(op: Op) -> bool {

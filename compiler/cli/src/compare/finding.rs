@@ -63,6 +63,7 @@ pub fn uses(pair: &Pair) -> Vec<Use> {
             Event::ALL.map(|it| !pair.never.contains(&it) && keeps(it))
         };
         Use {
+            is_used: a.is_used || b.is_used,
             constant_preset: presets.len() == 1 && presets[0].is_some(),
             habits: Habits {
                 feeds_itself: a.feeds_itself || b.feeds_itself,
@@ -193,31 +194,12 @@ impl Findings {
         let found: Vec<_> = found.map(|it| described(pair, Subject::Parted(*it))).collect();
         let is_known =
             |it: &Finding, at| it.at == at && !matches!(it.verdict, Verdict::Impossible(_) | Verdict::Undecided);
-        let explains = |it: &Finding| {
-            let kinds = matches!(it.kind, Kind::Width | Kind::Address | Kind::Retention);
-            kinds
-                && matches!(it.verdict, Verdict::Reachable(_))
-                && found.iter().any(|(_, subject, _)| *subject == it.subject)
-        };
-        if self.all.iter().any(explains) {
-            return;
-        }
         for (kind, subject, at) in found {
             if !self.all.iter().any(|it| it.subject == subject && is_known(it, at)) {
                 let verdict = Verdict::Reachable(Some(trace.clone()));
                 self.all.push(Finding { kind, subject, at, pitfall: None, verdict });
             }
         }
-    }
-
-    /// The finding of a variable that says why it differs, where no trap does.
-    pub fn reason_for(&self, path: &str) -> Option<&Finding> {
-        let says = |it: &&Finding| {
-            it.subject == path
-                && matches!(it.kind, Kind::Width | Kind::Address | Kind::Retention)
-                && matches!(it.verdict, Verdict::Reachable(_))
-        };
-        self.all.iter().find(says)
     }
 
     /// What is seen of no counter's trap: the shortest trace is the first of several.

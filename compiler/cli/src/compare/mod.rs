@@ -11,10 +11,12 @@ mod normal;
 mod pair;
 mod scalar;
 
+mod dependency;
 mod facts;
 mod usage;
 mod walked;
 
+mod apart;
 mod beyond;
 
 mod alphabet;
@@ -38,8 +40,8 @@ mod pitfall;
 
 mod accept;
 mod finding;
+mod reason;
 
-mod dependency;
 mod tolerance;
 
 mod report;
@@ -215,7 +217,7 @@ fn differs(pair: &mut Pair, world: &World, trace: &Trace, shortest: bool, findin
     let differences = rows.last().map_or_else(Vec::new, |it| pair.differences(it));
     let cause = pitfall::cause(pair, &rows, &differences, &world.habits);
     findings.explain(&cause, trace);
-    if cause.pitfall.is_none() {
+    if cause.pitfall.is_none() && reason::find(pair, &rows, &differences, findings).is_none() {
         findings.unexplained(pair, &differences, trace);
     }
     Verdict::Differs { rows, trace: Some(trace.clone()), shortest }
@@ -262,6 +264,7 @@ fn world(pair: &mut Pair, args: &Compare) -> Result<World, String> {
     let mut computed = if args.against.is_none() { beyond::computed_apart(pair) } else { Vec::new() };
     let known: Vec<_> = computed.iter().map(|it| it.variable).collect();
     computed.extend(beyond::held_apart(pair).into_iter().filter(|it| !known.contains(&it.variable)));
+    beyond::note_counters(pair, &mut computed);
     Ok(World {
         alphabet,
         assumptions,

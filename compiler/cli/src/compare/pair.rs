@@ -6,7 +6,7 @@ use super::tolerance::{Passed, Tolerance};
 use crate::machine::Native;
 use staunch_frontend::Dialect;
 use staunch_host::{Bookmark, Drive, Event, Machine, Snapshot};
-use staunch_ir::{Chars, Program, Type, Value};
+use staunch_ir::{Chars, FieldId, Program, StructId, Type, Value};
 use staunch_runtime::{Fault, FaultKind};
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -194,9 +194,14 @@ impl Side {
     }
 
     fn write_text(&mut self, scalar: usize, text: &Chars) {
-        let Scalar { offset, size, .. } = self.scalars.all[scalar];
+        let Scalar { offset, size, is_shared, .. } = self.scalars.all[scalar];
         let mut bytes = vec![0; size];
-        text.write(&mut bytes);
+        if is_shared {
+            let units = text.units_as_bytes();
+            bytes[..units.len()].copy_from_slice(&units);
+        } else {
+            text.write(&mut bytes);
+        }
         if self.state()[offset..offset + size] != bytes {
             self.machine.write(offset, &bytes);
         }
@@ -263,7 +268,7 @@ impl Pair {
             let (x, y) = (self.scalar(0, a), self.scalar(1, b));
             let (offsets, size) = ([x.offset, y.offset], x.size);
             let reprs = [self.sides[0].program.repr(x.ty), self.sides[1].program.repr(y.ty)];
-            let is_reference = matches!(x.ty, Type::Reference(_));
+            let is_reference = matches!(x.ty, Type::Reference(_)) || x.is_shared || y.is_shared;
             if reprs[0] != reprs[1] || size != y.size || is_reference {
                 found.singles.push([a, b]);
                 continue;
@@ -286,6 +291,15 @@ impl Pair {
 
     pub fn scalar(&self, side: usize, at: usize) -> &Scalar {
         &self.sides[side].scalars.all[at]
+    }
+
+    /// The declaration of a variable, or of the block that an output is of.
+    pub fn declared(&self, side: usize, matched: Matched) -> Option<(StructId, FieldId)> {
+        let scalar = self.scalar(side, matched[side]);
+        match scalar.role {
+            Role::Output(block) => self.sides[side].scalars.blocks[block].field,
+            Role::Input | Role::Variable | Role::Hidden => scalar.field,
+        }
     }
 
     /// The path of what both sides have, in the words of the first.

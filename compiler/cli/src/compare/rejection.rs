@@ -3,6 +3,7 @@
 use super::pitfall::Pitfall;
 use crate::session::Session;
 use staunch_frontend::{Code, Diagnostic, Dialect, Severity};
+use staunch_ir::Elementary;
 use staunch_runtime::{BlockInfo, KeptCount, PinRole};
 
 /// What is in the way, and what to do.
@@ -91,7 +92,38 @@ fn of(to: &Session, error: &Diagnostic, from: Dialect, target: Dialect) -> Rejec
     }
 }
 
-/// Whether the error is about types, whose widths the move changes.
+/// Whether the error is about whole numbers that do not fit one another's types, and of no other type.
 fn widths(error: &Diagnostic) -> bool {
-    error.code.name().starts_with("E02")
+    let sides = match error.code {
+        Code::E0202 => 1,
+        Code::E0201 | Code::E0203 | Code::E0204 => 2,
+        _ => return false,
+    };
+    let words = error.message.split(|it: char| !it.is_ascii_alphanumeric() && it != '_');
+    let types: Vec<Elementary> = words.filter_map(elementary).collect();
+    types.len() >= sides && types.iter().all(|it| it.repr().is_integer() && it.is_integral())
+}
+
+fn elementary(name: &str) -> Option<Elementary> {
+    Elementary::ALL.iter().copied().find(|it| it.name() == name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use staunch_frontend::Span;
+
+    fn is_widths(code: Code, message: &str) -> bool {
+        widths(&Diagnostic::new(code, Span::default(), message))
+    }
+
+    #[test]
+    fn widths_are_those_of_whole_numbers() {
+        assert!(is_widths(Code::E0203, "expected INT, found WORD"));
+        assert!(is_widths(Code::E0202, "40000 does not fit INT"));
+        assert!(!is_widths(Code::E0201, "CASE selects by an integer or enumeration, this is STRING[80]"));
+        assert!(!is_widths(Code::E0203, "expected INT, found REAL"));
+        assert!(!is_widths(Code::E0203, "expected INT, found STRING[80]"));
+        assert!(!is_widths(Code::E0208, "the index 0 is out of range"));
+    }
 }

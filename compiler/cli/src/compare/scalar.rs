@@ -28,6 +28,8 @@ pub struct Scalar {
     /// The members from the PROGRAM's state, or from the globals, down to it.
     pub way: Way,
     pub at: Whereabouts,
+    /// Its bytes are bits that others share: a text lies there without its length, up to a zero.
+    pub is_shared: bool,
 }
 
 /// Members from a structure down to a variable; elements of arrays are not told apart.
@@ -98,6 +100,7 @@ struct Whole {
     field: Option<(StructId, FieldId)>,
     way: Way,
     at: Whereabouts,
+    is_shared: bool,
 }
 
 struct Walk<'p> {
@@ -164,7 +167,7 @@ impl Walk<'_> {
                 is_retained: field.retain == Retain::Kept,
                 is_given: false,
             };
-            let mut whole = Whole { offset, role, field: Some((id, number)), way, at };
+            let mut whole = Whole { offset, role, field: Some((id, number)), way, at, is_shared: false };
             let views = self.views_of_global(id, number);
             if !views.is_empty() {
                 let area = |area| views.iter().any(|it| it.area == Some(area));
@@ -193,11 +196,12 @@ impl Walk<'_> {
             self.found.truncated = true;
             return;
         }
-        let Whole { offset, role, field, way, at } = whole;
+        let Whole { offset, role, field, way, at, is_shared } = whole;
         let whole_from = way.from;
-        let size = usize_of(self.layout.size(ty));
+        let size = if is_shared { shared::size(ty) } else { None };
+        let size = size.unwrap_or_else(|| usize_of(self.layout.size(ty)));
         let (path, key) = (path.to_owned(), self.key(key, whole_from));
-        self.found.all.push(Scalar { path, key, ty, offset, size, role, field, way, at });
+        self.found.all.push(Scalar { path, key, ty, offset, size, role, field, way, at, is_shared });
     }
 
     /// The name by which the two systems' variables are matched: a local one may be called as a global one is.
@@ -240,7 +244,7 @@ impl Walk<'_> {
             way.members.push(number);
             let field_of = Some((id, number));
             let views = self.views_of_member(path, id, number);
-            let whole = Whole { offset, role, field: field_of, way, at };
+            let whole = Whole { offset, role, field: field_of, way, at, is_shared: whole.is_shared };
             self.kept(&format!("{path}.{}", field.name), field.ty, &views, whole);
         }
     }
@@ -259,7 +263,14 @@ impl Walk<'_> {
                 (false, _) => Role::Hidden,
             };
             let at = Whereabouts { is_given: whole.role == Role::Input, ..whole.at };
-            let part = Whole { offset: whole.offset + pin.offset, role, field: None, way: whole.way.clone(), at };
+            let part = Whole {
+                offset: whole.offset + pin.offset,
+                role,
+                field: None,
+                way: whole.way.clone(),
+                at,
+                is_shared: false,
+            };
             self.scalar(&format!("{path}.{}", pin.name), &format!("{path}.{}", common_key(pin)), ty, part);
         }
     }
@@ -331,20 +342,24 @@ pub fn equal(programs: [&Program; 2], all: [&Scalars; 2], scalars: [&Scalar; 2],
             number(a).is_some() && number(a) == number(b)
         }
         [Some(_), Some(_)] => a == b,
-        _ => a == b || text(scalars[0].ty, a) == text(scalars[1].ty, b),
+        _ => a == b || text(scalars[0], a) == text(scalars[1], b),
     }
 }
 
 /// The bytes of a string's characters, without what is after its end.
-fn text(ty: Type, bytes: &[u8]) -> &[u8] {
+fn text<'b>(scalar: &Scalar, bytes: &'b [u8]) -> &'b [u8] {
+    let unit = scalar.ty.string_type().map_or(1, |it| usize_of(it.unit_size().into()));
+    if scalar.is_shared {
+        let end = bytes.chunks_exact(unit).position(|it| it.iter().all(|it| *it == 0));
+        return end.map_or(bytes, |it| &bytes[..it * unit]);
+    }
     let Some((length, rest)) = bytes.split_first_chunk::<2>() else { return bytes };
-    let unit = ty.string_type().map_or(1, |it| usize_of(it.unit_size().into()));
     rest.get(..usize::from(u16::from_ne_bytes(*length)) * unit).unwrap_or(rest)
 }
 
-fn characters(ty: Type, bytes: &[u8]) -> String {
-    let bytes = text(ty, bytes);
-    if ty.string_type().is_none_or(|it| !it.wide) {
+fn characters(scalar: &Scalar, bytes: &[u8]) -> String {
+    let bytes = text(scalar, bytes);
+    if scalar.ty.string_type().is_none_or(|it| !it.wide) {
         return String::from_utf8_lossy(bytes).into_owned();
     }
     let units: Vec<u16> = bytes.chunks_exact(2).map(|it| u16::from_ne_bytes([it[0], it[1]])).collect();
@@ -363,7 +378,7 @@ pub fn show(program: &Program, all: &Scalars, scalar: &Scalar, state: &[u8]) -> 
     }
     match program.repr(scalar.ty) {
         Some(repr) => spell(program, scalar.ty, Value::read(repr, bytes)),
-        None => characters(scalar.ty, bytes),
+        None => characters(scalar, bytes),
     }
 }
 
@@ -377,6 +392,9 @@ pub fn spell(program: &Program, ty: Type, value: Value) -> String {
         (Some(named), _) => named.name.clone(),
         (None, Value::I64(time)) if let Some(ty) = ty.elementary().filter(|it| it.is_time()) => {
             staunch_host::format_time_as(ty, time)
+        }
+        (None, other) if ty.elementary().is_some_and(staunch_ir::Elementary::is_char) => {
+            staunch_host::format_character(other)
         }
         (None, Value::Bool(it)) => if it { "TRUE" } else { "FALSE" }.to_owned(),
         (None, Value::F32(it)) => format!("{it:?}"),

@@ -226,7 +226,9 @@ fn blocks_seen(pair: &Pair, event: Option<Event>) -> Vec<Sighting> {
 
 /// The variables that have parted by how they are computed: all that they are made of was the same.
 fn computed_seen(pair: &Pair, world: &World) -> Vec<Sighting> {
+    let agree = |counter: &usize| pair.outputs[*counter].iter().all(|it| !pair.differs_now(*it));
     let parted = world.computed.iter().enumerate().filter(|it| pair.newly_differs(it.1.variable));
+    let parted = parted.filter(|it| pair.counters_agree() || it.1.counters.iter().all(agree));
     let mut parted = parted.map(|(at, _)| (Subject::Computed(at), None)).peekable();
-    if parted.peek().is_some() && pair.agreed_in_all() && pair.counters_agree() { parted.collect() } else { Vec::new() }
+    if parted.peek().is_some() && pair.agreed_in_all() { parted.collect() } else { Vec::new() }
 }

@@ -139,5 +139,9 @@ pub fn text(pair: &Pair, world: &World, trace: &Trace) -> String {
 fn cell(pair: &Pair, input: &Input, value: Value) -> String {
     let cell = input.spelled(&pair.sides[0].program, pair.scalar(0, input.scalars[0]).ty, value);
     // In quotes an empty text is one.
-    if input.texts.is_empty() { cell } else { format!("\"{}\"", cell.replace('"', "\"\"")) }
+    if input.texts.is_empty() && !cell.contains(['"', ',']) {
+        cell
+    } else {
+        format!("\"{}\"", cell.replace('"', "\"\""))
+    }
 }

@@ -217,7 +217,7 @@ impl Builder<'_> {
     }
 
     fn fields(&self, variable: Matched) -> [Option<Declared>; 2] {
-        [0, 1].map(|side| declaration(self.pair, side, variable))
+        [0, 1].map(|side| self.pair.declared(side, variable))
     }
 
     /// The bit of a variable or block.
@@ -228,7 +228,7 @@ impl Builder<'_> {
         let follows =
             [0, 1].map(|side: usize| fields[side].map_or_else(HashSet::new, |it| self.dependencies[side].follow(it)));
         let is_in = |it: &&Matched| {
-            (0..2).any(|side| declaration(self.pair, side, **it).is_some_and(|it| follows[side].contains(&it)))
+            (0..2).any(|side| self.pair.declared(side, **it).is_some_and(|it| follows[side].contains(&it)))
         };
         let bit = self.found.cones.len();
         self.found.cones.push(self.pair.compared.iter().filter(is_in).copied().collect());
@@ -244,13 +244,4 @@ fn bytes_of(scalars: &Scalars, fields: &HashSet<Declared>) -> Vec<Range<usize>> 
     let blocks = scalars.blocks.iter().filter(|it| is_in(it.field));
     let variables = variables.map(|it| it.offset..it.offset + it.size);
     variables.chain(blocks.map(|it| it.offset..it.offset + it.block.info().size)).collect()
-}
-
-/// The declaration of a variable, or of the block that an output is of.
-fn declaration(pair: &Pair, side: usize, matched: Matched) -> Option<Declared> {
-    let scalar = pair.scalar(side, matched[side]);
-    match scalar.role {
-        Role::Output(block) => pair.sides[side].scalars.blocks[block].field,
-        Role::Input | Role::Variable | Role::Hidden => scalar.field,
-    }
 }

@@ -2,13 +2,17 @@
 //! reset or feed.
 
 use super::walked::{Name, Walked};
-use staunch_ir::{BlockId, Expr, FieldId, Place, Program, Routine, RoutineId, StatementKind, Type, Value, visit};
+use staunch_ir::{
+    BlockId, Expr, FieldId, Place, Program, Routine, RoutineId, Statement, StatementKind, Type, Value, reference, visit,
+};
 use staunch_runtime::PinRole;
 use std::collections::{HashMap, HashSet};
 
 /// What the statements say of the instances of one declaration.
 #[derive(Clone, Debug, Default)]
 pub struct Usage {
+    /// Something calls it, writes it, or may by a reference.
+    pub is_used: bool,
     /// The presets that it is given; `None` among them is one that is computed.
     pub presets: HashSet<Option<i128>>,
     /// Something other than FALSE resets or loads it.
@@ -27,6 +31,8 @@ pub fn of(program: &Program) -> HashMap<Name, Usage> {
     walk.each_statement(Walk::link);
     walk.close();
     walk.each_statement(Walk::note);
+    let lent = reference::reached(program).into_iter().map(|(owner, field)| Name::Field(owner, field));
+    lent.for_each(|it| walk.found.entry(it).or_default().is_used = true);
     walk.found
 }
 
@@ -49,10 +55,10 @@ struct Walk<'p> {
 type At<'p> = (&'p Routine, RoutineId);
 
 impl<'p> Walk<'p> {
-    fn each_statement(&mut self, see: fn(&mut Self, At<'p>, &'p StatementKind)) {
+    fn each_statement(&mut self, see: fn(&mut Self, At<'p>, &'p Statement)) {
         for (at, routine) in self.program.routines.iter().enumerate() {
             let mut found = Vec::new();
-            visit::statements(&routine.body, &mut |it| found.push(&it.kind));
+            visit::statements(&routine.body, &mut |it| found.push(it));
             found.into_iter().for_each(|it| see(self, (routine, RoutineId::next(at)), it));
         }
     }
@@ -80,8 +86,8 @@ impl<'p> Walk<'p> {
         }
     }
 
-    fn link(&mut self, at: At<'p>, statement: &'p StatementKind) {
-        let StatementKind::Assign { target, value } = statement else { return };
+    fn link(&mut self, at: At<'p>, statement: &'p Statement) {
+        let StatementKind::Assign { target, value } = &statement.kind else { return };
         let Some(Source::Variable(target)) = self.source(at, target) else { return };
         let sources = self.sources(at, value);
         let copied = self.copied(at, value);
@@ -108,8 +114,20 @@ impl<'p> Walk<'p> {
         }
     }
 
-    fn note(&mut self, at: At<'p>, statement: &'p StatementKind) {
-        match statement {
+    /// What a statement calls or writes is used, with all that it is in.
+    fn used(&mut self, at: At<'p>, statement: &'p Statement) {
+        let mut names = Vec::new();
+        visit::accesses(statement, &mut |place, access| {
+            if access != visit::Access::Read {
+                names.extend(Walked::of(self.program, at, place).names);
+            }
+        });
+        names.into_iter().for_each(|it| self.found.entry(it).or_default().is_used = true);
+    }
+
+    fn note(&mut self, at: At<'p>, statement: &'p Statement) {
+        self.used(at, statement);
+        match &statement.kind {
             StatementKind::Assign { target, value } => {
                 if let Some(Source::Pin(name, role)) = self.source(at, target) {
                     self.given(at, name, role, value);

@@ -175,6 +175,27 @@ fn a_project_file_holds_the_settings_of_the_command_line() {
     has(&folder.staunch("check good.st").err(2), &["`quiet` is true or false"]);
 }
 
+/// What a project file says is checked by every command, and reported at its line.
+#[test]
+fn a_setting_that_is_wrong_is_reported_at_its_line() {
+    let folder = Folder::new("wrong_setting");
+    folder.write("p.st", "PROGRAM P VAR x : INT; END_VAR x := 1; END_PROGRAM");
+    for (setting, line, text) in [
+        ("cycle = \"10\"", 2, "`cycle`: `10` is not a time above zero: write `10ms`"),
+        ("cycle = \"0ms\"", 2, "is not a time above zero"),
+        ("cycle = 10", 2, "`cycle` is a text in quotes"),
+        ("dialect = \"iecc\"", 2, "there is no dialect `iecc`"),
+        ("deny = [\n  \"W0501\",\n  \"E0203\",\n]", 4, "E0203 is an error"),
+        ("quiet = \"yes\"", 2, "`quiet` is true or false"),
+        ("libraries = [\"no\"]", 2, "there is no file or folder `no`"),
+    ] {
+        folder.write("staunch.toml", format!("# a plant\n{setting}\n"));
+        has(&folder.staunch("check p.st").err(2), &[&format!("staunch.toml:{line}: "), text]);
+    }
+    folder.write("staunch.toml", "files = [\n\"p.st\",\n\"q.st\"]\n");
+    has(&folder.staunch("check").err(2), &["staunch.toml:3: there is no file or folder `q.st`"]);
+}
+
 #[test]
 fn codes_are_explained() {
     let folder = Folder::new("explain");

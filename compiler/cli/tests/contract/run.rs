@@ -130,6 +130,20 @@ fn traces_are_waves_and_diagrams_too() {
     has(&folder.read("out.svg"), &["<svg", "pulse", "</svg>"]);
 }
 
+/// No ending is taken for another one in silence; a picture of one scan is a cycle wide.
+#[test]
+fn the_ending_of_a_trace_is_one_of_its_forms() {
+    let folder = Folder::new("trace_endings");
+    folder.write("p.st", "PROGRAM P VAR x : INT; END_VAR x := 1; END_PROGRAM");
+    for name in ["out.xyz", "out.txt", "out.csv.gz"] {
+        let error = folder.staunch(&format!("run p.st --scans 2 --trace {name}")).err(2);
+        has(&error, &[name, "a trace ends in .csv, .vcd, .svg or .html"]);
+        assert!(!folder.0.join(name).exists());
+    }
+    folder.staunch("run p.st --scans 1 --cycle 20ms --trace one.svg").out(0);
+    has(&folder.read("one.svg"), &[">20 ms</text>"]);
+}
+
 #[test]
 fn a_window_is_cut_by_scans_or_times() {
     let count = "PROGRAM Main VAR_OUTPUT n : INT; END_VAR n := n + 1; END_PROGRAM";

@@ -58,15 +58,8 @@ impl<'s> Checker<'_, 's> {
                 Type::String(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) | Type::Reference(_) => false,
             };
             if !allowed {
-                let found = self.type_name(value.ty);
-                self.report(
-                    Diagnostic::new(
-                        Code::E0201,
-                        selector.span,
-                        format!("CASE selects by an integer or enumeration, this is {found}"),
-                    )
-                    .label("expected an integer, a bit string or an enumeration"),
-                );
+                let not_one = self.not_a_selector(selector, arms, value.ty);
+                self.report(not_one);
             }
             allowed.then_some(value)
         });
@@ -92,6 +85,22 @@ impl<'s> Checker<'_, 's> {
         let selector = self.code_of_character(value?);
         self.push(StatementKind::Case { selector, arms: built, otherwise }, span);
         Some(())
+    }
+
+    /// A CASE selects by none of this type; of a text, an IF does.
+    fn not_a_selector(&self, selector: &ast::Expr<'s>, arms: &[ast::Arm<'s>], ty: Type) -> Diagnostic {
+        let message = format!("CASE selects by an integer or enumeration, this is {}", self.type_name(ty));
+        let error = Diagnostic::new(Code::E0201, selector.span, message)
+            .label("expected an integer, a bit string or an enumeration");
+        let is_text = matches!(ty, Type::String(_)) || ty.elementary().is_some_and(Elementary::is_char);
+        let text = |span| self.decl.log.sources.text(span);
+        match arms.first().and_then(|it| it.labels.first()).filter(|_| is_text) {
+            Some(first) => {
+                let (value, first) = (text(selector.span), text(first.low.span));
+                error.help(format!("write `IF {value} = {first} THEN … ELSIF {value} = … THEN … END_IF`"))
+            }
+            None => error,
+        }
     }
 
     /// A character selects by its code.

@@ -128,7 +128,7 @@ fn note_columns(input: &mut In<'_, '_, '_>, opened: Span, closed: Span) {
 }
 
 /// How far in a token is that is the first on its line.
-fn column(text: &str, span: Span) -> Option<usize> {
+pub fn column(text: &str, span: Span) -> Option<usize> {
     let before = text.get(..index(span.start))?;
     let line = before.trim_end_matches([' ', '\t']);
     (line.is_empty() || line.ends_with('\n')).then_some(before.len() - line.len())

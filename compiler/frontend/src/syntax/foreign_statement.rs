@@ -9,6 +9,7 @@ use crate::{
 };
 
 use super::{
+    block_ends::column,
     expression::is_latch,
     parser::{In, TokenReader},
     recovery,
@@ -16,7 +17,7 @@ use super::{
 };
 
 /// Tokens after which the end of a block is not looked for.
-const FURTHEST: usize = 2000;
+pub const FURTHEST: usize = 2000;
 
 /// Refuses and skips such a statement, if one starts here.
 pub fn skip(input: &mut In<'_, '_, '_>) -> bool {
@@ -36,7 +37,7 @@ pub fn skip(input: &mut In<'_, '_, '_>) -> bool {
     }
 }
 
-fn refuse(input: &mut In<'_, '_, '_>, span: Span, message: impl Into<String>, help: impl Into<String>) {
+pub fn refuse(input: &mut In<'_, '_, '_>, span: Span, message: impl Into<String>, help: impl Into<String>) {
     input.report(Diagnostic::new(Code::E0020, span, message).label("this is no statement here").help(help));
 }
 
@@ -172,6 +173,9 @@ fn function(input: &mut In<'_, '_, '_>) -> bool {
     let name = input.text(name);
     let help = format!("write `FUNCTION {name} : INT VAR_INPUT … END_VAR … END_FUNCTION` before this unit or after it");
     refuse(input, word, "a function is no statement, and has no braces", help);
+    if input.kind_ahead(after) == Kind::Colon && skip_further_in(input, word, after + 1) {
+        return true;
+    }
     skip_tokens(input, after);
     input.eat(Kind::Colon);
     true
@@ -285,7 +289,7 @@ fn behind_parentheses(input: &mut In<'_, '_, '_>, open: usize) -> usize {
 }
 
 /// Whether braces with statements are directly before the token so many ahead; they are no pragma then.
-fn has_braces(input: &mut In<'_, '_, '_>, ahead: usize) -> bool {
+pub fn has_braces(input: &mut In<'_, '_, '_>, ahead: usize) -> bool {
     let at = input.number() + ahead;
     let state = input.state();
     let (before, here) = (state.place(at - 1), state.place(at));
@@ -296,20 +300,20 @@ fn has_braces(input: &mut In<'_, '_, '_>, ahead: usize) -> bool {
     true
 }
 
-fn is_word(input: &mut In<'_, '_, '_>, ahead: usize, word: &str) -> bool {
+pub fn is_word(input: &mut In<'_, '_, '_>, ahead: usize, word: &str) -> bool {
     let at = input.number() + ahead;
     let span = input.state().place(at);
     input.kind_ahead(ahead) == Kind::Name && input.text(span).eq_ignore_ascii_case(word)
 }
 
 /// Whether the token so many ahead is the first on its line.
-fn starts_line(input: &mut In<'_, '_, '_>, ahead: usize) -> bool {
+pub fn starts_line(input: &mut In<'_, '_, '_>, ahead: usize) -> bool {
     let at = input.number() + ahead;
     let state = input.state();
     state.breaks(state.place(at - 1).end, state.place(at).start)
 }
 
-fn skip_tokens(input: &mut In<'_, '_, '_>, count: usize) {
+pub fn skip_tokens(input: &mut In<'_, '_, '_>, count: usize) {
     for _ in 0..count {
         input.take();
     }
@@ -317,7 +321,7 @@ fn skip_tokens(input: &mut In<'_, '_, '_>, count: usize) {
 }
 
 /// After the `;` of the line, or the line: what other languages have often ends without one.
-fn skip_rest(input: &mut In<'_, '_, '_>) {
+pub fn skip_rest(input: &mut In<'_, '_, '_>) {
     while !input.on_new_line() && !ends_statements(input.kind()) {
         if input.eat(Kind::Semicolon).is_some() {
             return;
@@ -348,5 +352,40 @@ fn skip_to_end_of(input: &mut In<'_, '_, '_>, word: &str) {
             return skip_tokens(input, ahead + 1 + usize::from(is_apart));
         }
         ahead += 1;
+    }
+}
+
+/// Whether a line starts so many tokens ahead that is further in than the line of a word, which is its first.
+pub fn is_further_in(input: &mut In<'_, '_, '_>, word: Span, ahead: usize) -> bool {
+    let at = input.number();
+    let state = input.state();
+    match (column(state.text, word), column(state.text, state.place(at + ahead))) {
+        (Some(own), Some(inner)) => own < inner,
+        _ => false,
+    }
+}
+
+/// After the lines that are further in than that of a word, and its `else`, where the first of them starts so many tokens ahead.
+pub fn skip_further_in(input: &mut In<'_, '_, '_>, word: Span, ahead: usize) -> bool {
+    if !is_further_in(input, word, ahead) {
+        return false;
+    }
+    let own = column(input.state().text, word).unwrap_or(0);
+    input.take();
+    loop {
+        let kind = input.kind();
+        if kind == Kind::End || is_pou_end(kind) {
+            return true;
+        }
+        if input.on_new_line() {
+            let here = input.here();
+            let goes_on = matches!(kind, Kind::Else | Kind::Elsif)
+                || ["ELIF", "EXCEPT", "FINALLY"].iter().any(|it| input.is_word(it));
+            let inner = column(input.state().text, here).unwrap_or(0);
+            if inner < own || inner == own && !goes_on {
+                return true;
+            }
+        }
+        input.take();
     }
 }

@@ -203,7 +203,7 @@ fn stands_for_name(before: Option<Kind>, word: Kind, next: Kind) -> bool {
     if matches!(word, Kind::True | Kind::False) || (operator && next == Kind::OpenParen) {
         return false;
     }
-    let assigned = matches!(next, Kind::Assign | Kind::Dot | Kind::OpenBracket | Kind::Arrow);
+    let assigned = matches!(next, Kind::Assign | Kind::Dot | Kind::OpenBracket | Kind::Arrow | Kind::Caret);
     let is_type = before == Some(Kind::Colon) && matches!(next, Kind::Semicolon | Kind::Assign);
     let called = next == Kind::OpenParen && !may_precede_parenthesis(word);
     assigned || is_type || called || before.is_some_and(wants_operand)
@@ -262,6 +262,7 @@ fn wants_operand(kind: Kind) -> bool {
             | Kind::While
             | Kind::Until
             | Kind::Case
+            | Kind::For
             | Kind::To
             | Kind::By
     )

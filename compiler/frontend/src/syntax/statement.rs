@@ -10,7 +10,7 @@ use crate::{
 use super::{
     block_ends, declaration, diagnostics,
     expression::{condition, expression, is_latch, postfix},
-    foreign_statement, foreign_syntax, misspelt, mock,
+    foreign_block, foreign_statement, foreign_syntax, misspelt, mock,
     parser::{Expected, In, Parsed, Problem, TokenReader, too_long},
     recovery, routine,
     token_class::{closes, ends_statements, opens_statement},
@@ -31,7 +31,7 @@ fn list<'s>(
     ends: impl Fn(&mut In<'_, '_, 's>) -> bool,
 ) {
     loop {
-        if foreign_statement::skip(input) {
+        if foreign_statement::skip(input) || foreign_block::skip(input) {
             continue;
         }
         match input.kind() {

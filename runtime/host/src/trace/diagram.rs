@@ -340,7 +340,7 @@ mod tests {
     use crate::trace::tests::{texts_written, values_written, written};
 
     fn subject<'a>(map: &'a crate::Map, vars: &str, title: &str) -> Subject<'a> {
-        Subject { map, columns: columns(map, &[0], Some(vars)).unwrap(), title: title.to_owned() }
+        Subject { map, columns: columns(map, &[0], Some(vars)).unwrap(), title: title.to_owned(), cycle: 10_000_000 }
     }
 
     #[test]

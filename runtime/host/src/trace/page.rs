@@ -106,7 +106,7 @@ mod tests {
     fn data_are_the_changes_with_their_texts() {
         let map = map();
         let columns = columns(&map, &[0], Some("up,c.CV,name,speed")).unwrap();
-        let subject = Subject { map: &map, columns, title: "</script>".to_owned() };
+        let subject = Subject { map: &map, columns, title: "</script>".to_owned(), cycle: 10_000_000 };
         let page = written(&subject, |out| Box::new(Page::new(out, &subject)));
         assert_eq!(
             data(&page),
@@ -121,8 +121,12 @@ mod tests {
     #[test]
     fn a_long_run_is_of_bounded_size_and_keeps_its_pulses() {
         let map = map();
-        let subject =
-            Subject { map: &map, columns: columns(&map, &[0], Some("up,level")).unwrap(), title: String::new() };
+        let subject = Subject {
+            map: &map,
+            columns: columns(&map, &[0], Some("up,level")).unwrap(),
+            title: String::new(),
+            cycle: 10_000_000,
+        };
         let values = |scan| (scan == 7_777, (scan % 50) as i16);
         let open = |out| Box::new(Page { out, timeline: Timeline::new(&subject, 2_000) }) as Box<dyn Sink>;
         let page = values_written(&subject, 20_000, values, open);

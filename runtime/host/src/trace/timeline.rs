@@ -119,6 +119,7 @@ pub(super) struct Timeline {
     first: Option<Time>,
     last: Time,
     before: Time,
+    cycle: Time,
     pub rows: u64,
     /// `(time, scan)` of the first row, and of those after which time and scans go on at another pace.
     pub scans: Vec<(Time, u64)>,
@@ -134,16 +135,27 @@ impl Timeline {
     pub fn new(subject: &Subject<'_>, pieces: usize) -> Self {
         let lanes: Vec<Lane> = subject.columns.iter().map(|_| Lane::default()).collect();
         let limit = (pieces / lanes.len().max(1)).max(500);
-        Self { lanes, limit, first: None, last: 0, before: 0, rows: 0, scans: Vec::new(), pace: None }
+        Self {
+            lanes,
+            limit,
+            cycle: subject.cycle,
+            first: None,
+            last: 0,
+            before: 0,
+            rows: 0,
+            scans: Vec::new(),
+            pace: None,
+        }
     }
 
     pub fn start(&self) -> Time {
         self.first.unwrap_or(0)
     }
 
-    /// The last value holds for as long as the scan before it did.
+    /// The last value holds for as long as the scan before it did; that of a single scan for a cycle.
     pub fn end(&self) -> Time {
-        self.last + (self.last - self.before).max(1_000)
+        let held = if self.rows > 1 { self.last - self.before } else { self.cycle };
+        self.last + held.max(1_000)
     }
 
     /// Time between the last two rows.
@@ -204,7 +216,12 @@ mod tests {
     /// A run of so many scans of 10 ms, in which `c.CV` is what `value` says.
     fn run(scans: u64, pieces: usize, value: impl Fn(u64) -> i16) -> Timeline {
         let map = map();
-        let subject = Subject { map: &map, columns: columns(&map, &[0], Some("c.CV")).unwrap(), title: String::new() };
+        let subject = Subject {
+            map: &map,
+            columns: columns(&map, &[0], Some("c.CV")).unwrap(),
+            title: String::new(),
+            cycle: 10_000_000,
+        };
         let mut timeline = Timeline::new(&subject, pieces);
         let mut state = vec![0; 128];
         for scan in 1..=scans {
@@ -255,7 +272,7 @@ mod tests {
     #[test]
     fn scans_are_counted_where_their_pace_changes() {
         let map = map();
-        let subject = Subject { map: &map, columns: Vec::new(), title: String::new() };
+        let subject = Subject { map: &map, columns: Vec::new(), title: String::new(), cycle: 10_000_000 };
         let mut timeline = Timeline::new(&subject, 10);
         for (scan, time) in [(1, 0), (2, 10), (3, 20), (4, 25), (5, 30), (6, 35)] {
             timeline.row(&subject, Row { scan, time, state: &[] });

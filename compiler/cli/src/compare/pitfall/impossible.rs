@@ -9,6 +9,8 @@ use staunch_runtime::{Family, PinRole};
 /// What the programs' texts say of a counter.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Use {
+    /// Something calls or writes it on one side at least.
+    pub is_used: bool,
     /// Its preset is the same constant in every call on both sides.
     pub constant_preset: bool,
     pub habits: Habits,
@@ -32,6 +34,7 @@ pub fn impossible(pitfall: Pitfall, instances: [&Instance; 2], usage: Use) -> Op
     let no_down = (!has(PinRole::Down)).then_some("it does not count down");
     let no_up = (!has(PinRole::Up)).then_some("it does not count up");
     match pitfall.number() {
+        _ if !usage.is_used => Some("it is never called"),
         1 => no_cscape,
         2 | 3 if parts(Family::Openplc) => Some("what OPENPLC does is trap 15"),
         2 => (a.stops == b.stops).then_some("both systems stop at PV, or neither does").or(no_up),

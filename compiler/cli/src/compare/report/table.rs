@@ -4,6 +4,7 @@ use super::super::finding::Findings;
 use super::super::line_of;
 use super::super::pair::{Matched, Pair, Row};
 use super::super::pitfall::Cause;
+use super::super::reason;
 use super::super::search::World;
 use super::Report;
 use staunch_host::Event;
@@ -83,18 +84,19 @@ impl Report<'_> {
                 let _ = writeln!(text, "Trap {}{counter}: {}", pitfall.number(), pitfall.sentence());
                 let _ = writeln!(text, "What to do: {}", pitfall.advice(self.args.from.dialect, self.args.to.dialect));
             }
-            None => text += &self.unexplained(pair, &differences, findings),
+            None => text += &self.unexplained(pair, rows, &differences, findings),
         }
         text
     }
 
     /// Why it differs, where it is not by a trap.
-    fn unexplained(&self, pair: &Pair, differences: &[Matched], findings: &Findings) -> String {
-        let known = differences.iter().find_map(|it| findings.reason_for(pair.path(*it)));
-        match known {
-            Some(it) => {
+    fn unexplained(&self, pair: &Pair, rows: &[Row], differences: &[Matched], findings: &Findings) -> String {
+        match reason::find(pair, rows, differences, findings) {
+            Some(reason::Reason { finding: it, of }) => {
                 let place = it.at.map_or_else(String::new, |at| format!(", {}", self.place(at)));
-                format!("`{}` ({}{place}): {}.\n", it.subject, it.kind.name(), it.kind.reason())
+                let path = pair.path(of);
+                let follows = if path == it.subject { String::new() } else { format!("`{path}` follows from ") };
+                format!("{follows}`{}` ({}{place}): {}.\n", it.subject, it.kind.name(), it.kind.reason())
             }
             None => "None of the traps explains it; see `docs/compare.md`.\n".to_owned(),
         }

@@ -4,6 +4,7 @@
 use super::{MAX_ELEMENTS, Role, Walk, Whole};
 use staunch_ir::layout::usize_of;
 use staunch_ir::{Area, FieldId, Place, Projection, Root, Section, StructId, Type, Variable};
+use std::collections::HashSet;
 use std::ops::Range;
 
 /// A variable that is some of the bits.
@@ -101,12 +102,15 @@ impl Walk<'_> {
         let is_touched = |bytes: &Range<usize>| leaves.iter().any(|it| it.meets(bytes));
         // What lies between the members of a structure is no one's.
         let gaps: Vec<_> = units.iter().filter(|it| !is_touched(&it.1)).map(|it| it.1.start).collect();
-        let shown = apart(leaves);
+        let (texts, others): (Vec<Leaf>, Vec<Leaf>) =
+            leaves.into_iter().partition(|it| matches!(it.ty, Type::String(_)));
+        let of_others: Vec<_> = others.iter().map(|it| it.bytes.clone()).collect();
+        let shown = apart(others);
         let covered =
             |bytes: &Range<usize>| bytes.clone().filter(|at| shown.iter().any(|it| it.bytes.contains(at))).count();
         let end = units.last().map_or(0, |it| it.1.end);
         let is_torn = units.iter().any(|it| !matches!(covered(&it.1), 0) && covered(&it.1) != it.1.len());
-        if shown.is_empty() || is_torn || shown.iter().any(|it| it.bytes.end > end) {
+        if shown.is_empty() && texts.is_empty() || is_torn || shown.iter().chain(&texts).any(|it| it.bytes.end > end) {
             return self.part(path, ty, whole);
         }
         let element = self.unit(ty);
@@ -114,7 +118,20 @@ impl Walk<'_> {
         let mut all: Vec<_> = rest.collect();
         all.extend(shown.iter().map(|it| (it.bytes.start, it.path.clone(), it.ty)));
         all.sort_by_key(|it| it.0);
+        // A text is shown whole, in place of bytes that no number has.
+        let is_others = |at: usize| of_others.iter().any(|it| it.contains(&at));
+        let of_text = |at: usize| texts.iter().position(|it| it.bytes.contains(&at) && !is_others(at));
+        let mut told = HashSet::new();
         for (at, path, ty) in all {
+            if let Some(number) = of_text(at) {
+                let text: &Leaf = &texts[number];
+                if told.insert(number) {
+                    let part = Whole { offset: whole.offset + text.bytes.start, is_shared: true, ..whole.clone() };
+                    self.part(&text.path, text.ty, part);
+                }
+                self.part(&path, ty, Whole { offset: whole.offset + at, role: Role::Hidden, ..whole.clone() });
+                continue;
+            }
             let role = if gaps.contains(&at) { Role::Hidden } else { whole.role };
             self.part(&path, ty, Whole { offset: whole.offset + at, role, ..whole.clone() });
         }
@@ -159,11 +176,16 @@ impl Walk<'_> {
             | Type::Reference(_)
             | Type::Block(_)
             | Type::Struct(_) => {
-                let bytes = start..start + usize_of(self.layout.size(ty));
+                let bytes = start..start + size(ty).unwrap_or_else(|| usize_of(self.layout.size(ty)));
                 out.push(Leaf { path: path.to_owned(), ty, bytes, is_number });
             }
         }
     }
+}
+
+/// Bytes of a text among bits that others share: it has a zero at its end in place of a length.
+pub fn size(ty: Type) -> Option<usize> {
+    ty.string_type().map(|it| (usize::from(it.capacity) + 1) * usize_of(it.unit_size().into()))
 }
 
 /// The largest of them that share nothing. One of few values is only shown for bytes that have no others.
