@@ -14,7 +14,7 @@ use staunch_tests::leaf::Leaves;
 const CASE: &str = "loops/of_every_kind";
 const KINDS: i16 = 24;
 /// The two other inputs.
-const INPUTS: [[i16; 2]; 6] = [[0, 0], [3, 1], [7, 2], [12, 5], [-4, 3], [30, 40]];
+const INPUTS: [[i16; 2]; 7] = [[0, 0], [3, 1], [7, 2], [12, 5], [-4, 3], [30, 40], [-9, -2]];
 /// Each budget up to here, and then one that suffices for all loops that end soon.
 const BUDGETS: u64 = 48;
 const LARGE: u64 = 5_000;

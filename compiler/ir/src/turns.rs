@@ -6,7 +6,7 @@ mod size;
 use crate::alias::{self, Frame};
 use crate::loops::{Known, exit_condition, is_private};
 use crate::{
-    Expr, ExprKind, For, Location, Op, Place, Program, RoutineId, Statement, StatementKind, Step, Value, faults, visit,
+    Expr, ExprKind, For, Location, Op, Place, Program, RoutineId, Statement, StatementKind, Value, faults, visit,
 };
 
 /// Whether a block, or what it calls, takes turns.
@@ -51,7 +51,6 @@ fn any(block: &[Statement], is: &dyn Fn(&StatementKind) -> bool) -> bool {
 /// A FOR loop whose turns are known.
 #[derive(Clone, Copy, Debug)]
 pub struct Ahead<'a> {
-    pub step: i128,
     /// The body without its `Turn`.
     pub body: &'a [Statement],
     /// Where that is.
@@ -61,9 +60,8 @@ pub struct Ahead<'a> {
 /// A FOR loop whose turns are known, from its counter and the last value for it.
 pub fn ahead<'a>(it: &'a For, callee_takes: &dyn Fn(RoutineId) -> bool) -> Option<Ahead<'a>> {
     let (turn, body) = it.body.split_first()?;
-    let Step::Constant(step) = it.step else { return None };
     let counts = matches!(turn.kind, StatementKind::Turn) && it.is_private && !takes_turns(body, callee_takes);
-    counts.then_some(Ahead { step, body, at: turn.at })
+    counts.then_some(Ahead { body, at: turn.at })
 }
 
 /// `WHILE i < last AND other DO … i := i + 1; … END_WHILE`: a variable that nothing else writes takes one

@@ -33,8 +33,8 @@ pub(crate) struct Running<'p> {
     /// What is not constant.
     last: Option<clif::Value>,
     step: Option<clif::Value>,
-    /// Where all turns are taken before the first one.
-    ahead: Option<Ahead<'p>>,
+    /// Where all turns are taken before the first one, by a constant step.
+    ahead: Option<(Ahead<'p>, i128)>,
     /// The last value that the turns are taken for, then.
     limit: Option<Variable>,
 }
@@ -59,7 +59,7 @@ impl<'p> Function<'_, 'p> {
             self.counters.push(it);
             self.registers.push(register);
         }
-        let body = running.ahead.map_or(&*it.body, |it| it.body);
+        let body = running.ahead.map_or(&*it.body, |it| it.0.body);
         let flow = self.turns_under(&Control::Count(running), body, &[]);
         if running.register.is_some() {
             self.registers.pop();
@@ -159,14 +159,14 @@ impl<'p> Function<'_, 'p> {
             self.further_turn(control, turn, after);
             return None;
         };
-        let (Some(ahead), Some(limit), Some(counter)) = (running.ahead, running.limit, running.register) else {
+        let (Some((ahead, step)), Some(limit), Some(counter)) = (running.ahead, running.limit, running.register) else {
             self.further_turn(control, turn, after);
             return None;
         };
         let pay = self.builder.create_block();
         self.further_turn(control, pay, after);
         self.go_on_in(pay);
-        let prepaid = Prepaid { counter: Counter::Register(counter), limit, step: ahead.step, is_stepped: false };
+        let prepaid = Prepaid { counter: Counter::Register(counter), limit, step, is_stepped: false };
         let last = self.last(running);
         self.take_turns(&prepaid, last, ahead.at);
         self.ins().jump(turn, &[]);
@@ -176,7 +176,7 @@ impl<'p> Function<'_, 'p> {
     /// Into a further turn, or past the loop.
     fn next_turn(&mut self, control: &Control<'p>, turn: clif::Block, after: clif::Block) {
         let Control::Count(running) = control else { return self.further_turn(control, turn, after) };
-        let (Some(ahead), Some(limit)) = (running.ahead, running.limit) else {
+        let (Some((ahead, _)), Some(limit)) = (running.ahead, running.limit) else {
             return self.further_turn(control, turn, after);
         };
         self.release_temporaries();

@@ -9,7 +9,7 @@ use cranelift_frontend::Variable;
 use staunch_ir::alias::Frame;
 use staunch_ir::loops::Known;
 use staunch_ir::turns::{self, Ahead, Linear};
-use staunch_ir::{Block, FaultKind, For, LocalId, Location, Place, Repr, RoutineId, Statement};
+use staunch_ir::{Block, FaultKind, For, LocalId, Location, Place, Repr, RoutineId, Statement, Step};
 use staunch_runtime::Context;
 
 /// A loop that has taken its turns. Values are of 64 bits.
@@ -86,9 +86,11 @@ impl<'p> Function<'_, 'p> {
         self.builder.def_var(variable, rest);
     }
 
-    pub(crate) fn ahead(&self, it: &'p For) -> Option<Ahead<'p>> {
+    /// A FOR loop that takes its turns before the first one, and its step, which is constant.
+    pub(crate) fn ahead(&self, it: &'p For) -> Option<(Ahead<'p>, i128)> {
         let takes_turns = |callee: RoutineId| self.module.effects(callee).turns;
-        turns::ahead(it, &takes_turns)
+        let Step::Constant(step) = it.step else { return None };
+        Some((turns::ahead(it, &takes_turns)?, step))
     }
 
     pub(crate) fn linear(&self, body: &'p [Statement]) -> Option<Linear<'p>> {

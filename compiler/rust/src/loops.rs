@@ -58,7 +58,7 @@ impl Function<'_> {
         });
         let takes_turns = |callee: RoutineId| self.emitter.effects[callee.index()].turns;
         let (ahead, number) = (turns::ahead(it, &takes_turns), self.loops.around.len());
-        let turns = ahead.map(|ahead| self.take_turns(it, &ahead, &last.value, number));
+        let turns = ahead.map(|ahead| self.take_turns(it, &ahead, (&last.value, &step.value), number));
         let limit = turns.as_ref().map_or_else(|| last.value.clone(), |it| it.limit.clone());
         let condition = self.further_turn(it, &limit, &step.value);
         let body = ahead.map_or(&*it.body, |it| it.body);
@@ -83,9 +83,19 @@ impl Function<'_> {
     }
 
     /// What takes the turns of a loop before the first one, and what ends it.
-    fn take_turns(&mut self, it: &For, ahead: &Ahead<'_>, last: &TokenStream, number: usize) -> Taken {
+    fn take_turns(
+        &mut self,
+        it: &For,
+        ahead: &Ahead<'_>,
+        (last, step): (&TokenStream, &TokenStream),
+        number: usize,
+    ) -> Taken {
         let (name, at) = (self.made_up("turns", number), self.emitter.at(ahead.at));
-        let (counter, step) = (self.count(&it.counter).tokens, Literal::i128_unsuffixed(ahead.step));
+        let counter = self.count(&it.counter).tokens;
+        let step = match &it.step {
+            Step::Constant(step) => Literal::i128_unsuffixed(*step).into_token_stream(),
+            Step::Variable(_) => quote!(i128::from(#step)),
+        };
         self.loops.prepaid = Some((name.clone(), it.counter.clone()));
         Taken {
             taken: quote!(let #name = cx.take_turns(#counter, #last, #step)#at?;),
