@@ -227,6 +227,11 @@ impl Dialect {
         matches!(self, Self::Siemens)
     }
 
+    /// `TO_USINT('0')` is the number of the character.
+    pub const fn takes_literals_as_characters(self) -> bool {
+        matches!(self, Self::Siemens)
+    }
+
     /// `TRUNC` takes whole numbers, which it leaves as they are.
     pub const fn truncates_integers(self) -> bool {
         matches!(self, Self::Codesys)
