@@ -217,9 +217,19 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
-    /// An instance of a FUNCTION_BLOCK of Structured Text may be copied, unless it holds one of the system's blocks.
+    /// An instance of a FUNCTION_BLOCK may be copied.
     pub const fn copies_instances(self) -> bool {
         matches!(self, Self::Codesys | Self::Siemens)
+    }
+
+    /// An instance of what EXTENDS a class may be assigned to one of the class, which takes what it has of it.
+    pub const fn copies_bases_of_instances(self) -> bool {
+        matches!(self, Self::Siemens)
+    }
+
+    /// `TO_USINT('0')` is the number of the character.
+    pub const fn takes_literals_as_characters(self) -> bool {
+        matches!(self, Self::Siemens)
     }
 
     /// `TRUNC` takes whole numbers, which it leaves as they are.

@@ -421,6 +421,27 @@ impl Program {
         }
     }
 
+    /// The state in `ty` that `is_state`, and the way to it: a block of the runtime's is passed over.
+    pub fn state_in(&self, ty: Type, is_state: &impl Fn(StructId) -> bool) -> Option<(String, Type)> {
+        match ty {
+            Type::Struct(id) if is_state(id) => Some((String::new(), ty)),
+            Type::Struct(id) => self.structure(id).fields.iter().find_map(|field| {
+                let (way, instance) = self.state_in(field.ty, is_state)?;
+                Some((format!(".{}{way}", field.name), instance))
+            }),
+            Type::Array(id) => {
+                let (way, instance) = self.state_in(self.array(id).element, is_state)?;
+                Some((format!("[…]{way}"), instance))
+            }
+            Type::Elementary(_)
+            | Type::Reference(_)
+            | Type::Subrange(..)
+            | Type::String(_)
+            | Type::Enum(_)
+            | Type::Block(_) => None,
+        }
+    }
+
     /// What `look` finds first in a variable of type `ty`: of the type itself, else of its elements or members.
     pub fn find_in<T>(&self, ty: Type, look: &impl Fn(Type) -> Option<T>) -> Option<T> {
         look(ty).or_else(|| match ty {

@@ -1,6 +1,7 @@
 //! The results as JUnit's XML has them: a suite for each file.
 
 use super::report::{Report, Result};
+use std::collections::HashMap;
 
 pub fn text(report: &Report<'_>) -> String {
     let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
@@ -10,14 +11,21 @@ pub fn text(report: &Report<'_>) -> String {
         let failed = suite.iter().filter(|it| !it.problem.is_empty()).count();
         let file = escaped(&suite[0].file);
         text += &format!("  <testsuite name=\"{file}\" tests=\"{}\" failures=\"{failed}\">\n", suite.len());
-        suite.iter().for_each(|it| text += &case(it));
+        let mut titles: HashMap<&str, u32> = HashMap::new();
+        for result in suite {
+            let count = titles.entry(&result.title).or_default();
+            *count += 1;
+            // What reads the file takes two tests of one name for one.
+            let title = if *count == 1 { result.title.clone() } else { format!("{} ({count})", result.title) };
+            text += &case(result, &title);
+        }
         text += "  </testsuite>\n";
     }
     text + "</testsuites>\n"
 }
 
-fn case(result: &Result) -> String {
-    let (title, file) = (escaped(&result.title), escaped(&result.file));
+fn case(result: &Result, title: &str) -> String {
+    let (title, file) = (escaped(title), escaped(&result.file));
     let head = format!("    <testcase name=\"{title}\" classname=\"{file}\" file=\"{file}\" line=\"{}\"", result.line);
     if let Some(why) = &result.skipped {
         return format!("{head}>\n      <skipped message=\"{}\"/>\n    </testcase>\n", escaped(why));

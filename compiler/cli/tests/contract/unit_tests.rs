@@ -217,6 +217,53 @@ TEST 'bad' ASSERT_EQ(Sum(1, 2), 4); END_TEST
 }
 
 #[test]
+fn tests_of_one_title_are_two_for_machines() {
+    let tests = "TEST 'same' ASSERT_TRUE(TRUE); END_TEST
+TEST 'same' ASSERT_TRUE(FALSE); END_TEST
+";
+    let folder = Folder::with("tests_junit_title", &[("same.st", tests)]);
+    folder.staunch("test . --junit out.xml --backend interpret").out(1);
+    has(&folder.read("out.xml"), &["<testcase name=\"same\"", "<testcase name=\"same (2)\""]);
+}
+
+const CHAIN: &str = "INTERFACE IStep
+METHOD Go : INT
+END_METHOD
+END_INTERFACE
+CLASS Last IMPLEMENTS IStep
+METHOD PUBLIC Go : INT
+    Go := 1;
+END_METHOD
+END_CLASS
+CLASS Step IMPLEMENTS IStep
+VAR PUBLIC next : IStep; END_VAR
+METHOD PUBLIC Go : INT
+    Go := next.Go();
+END_METHOD
+END_CLASS
+PROGRAM Main
+VAR last : Last; step : Step; n : INT; END_VAR
+    step.next := last;
+    n := step.Go();
+END_PROGRAM
+";
+
+#[test]
+fn recursion_of_a_test_is_not_the_programs() {
+    let tests = "TEST 'two steps'
+VAR one, two : Step; last : Last; END_VAR
+    two.next := last;
+    one.next := two;
+    ASSERT_EQ(one.Go(), 1);
+END_TEST
+";
+    let folder = Folder::with("tests_recursion", &[("chain.st", CHAIN), ("chain_test.st", tests)]);
+    folder.staunch("run . --scans 1 --backend interpret").out(0);
+    has(&folder.staunch("test . --backend interpret").err(1), &["error[E0310]: `Step.Go` calls itself"]);
+    has(&folder.staunch("check .").err(1), &["error[E0310]: `Step.Go` calls itself"]);
+}
+
+#[test]
 fn a_function_of_the_users_keeps_its_name() {
     let tests = "VAR_GLOBAL calls : INT; END_VAR
 FUNCTION ASSERT_EQ : BOOL

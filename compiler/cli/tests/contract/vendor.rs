@@ -173,6 +173,7 @@ fn tasks_say_what_runs() {
     folder.write("Line.plcproj", with(&["Fast.TcTTO", "Slow.TcTTO"]));
     let twice = folder.staunch("check Line.plcproj").err(1);
     has(&twice, &["error[E0902]: the PROGRAM `MAIN` is called twice", "Slow.TcTTO:1:", "first called here"]);
+    has(&twice, &["let each of the tasks call a PROGRAM of its own, whose body is `MAIN();`"]);
 }
 
 #[test]

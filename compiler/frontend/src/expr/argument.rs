@@ -525,7 +525,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// The statements that copy what a structure and one that it EXTENDS have in common: their first members.
-    fn copied_members(&self, from: &Place, to: &Place, at: Location) -> Block {
+    pub(crate) fn copied_members(&self, from: &Place, to: &Place, at: Location) -> Block {
         let fields = |it: &Place| match it.ty {
             Type::Struct(id) => self.decl.program.structure(id).fields.as_slice(),
             _ => &[],

@@ -4,7 +4,7 @@ use super::checker::{Checker, Context};
 use super::operand::Operand;
 use super::unresolved::not_constant;
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{Expr, Place, Type};
+use staunch_ir::{Expr, ExprKind, Place, Type};
 
 impl<'s> Checker<'_, 's> {
     /// `(a := b)`, of CODESYS: what `a` is given, where it is written.
@@ -83,7 +83,7 @@ impl<'s> Checker<'_, 's> {
         let mut place = found.place;
         let mut given = self.after_place(&mut place, |this| {
             if rest.is_empty() {
-                return this.value(value, ty);
+                return this.value_or_heir(value, ty);
             }
             let right = this.assigned(rest, value, span, true)?;
             this.coerce(Operand::Typed(right.read()), ty, value.span)
@@ -93,6 +93,11 @@ impl<'s> Checker<'_, 's> {
         } else {
             self.before_target(&place, &mut given);
         }
+        if writable && given.ty != ty && self.decl.extends(given.ty, ty) {
+            self.note_assigned(&place, target.span);
+            self.assign_part(&place, given);
+            return Some(Expr::bool(true, self.at(span)));
+        }
         if writable {
             self.note_assigned(&place, target.span);
             let read = if is_read { given.clone() } else { Expr::bool(true, self.at(span)) };
@@ -100,6 +105,34 @@ impl<'s> Checker<'_, 's> {
             return Some(read);
         }
         Some(given)
+    }
+
+    /// A value for a variable of type `ty`; in `siemens` also an instance of a class that EXTENDS the variable's, as it is.
+    fn value_or_heir(&mut self, value: &ast::Expr<'s>, ty: Type) -> Option<Expr> {
+        let slices = self.decl.dialect(value.span).copies_bases_of_instances();
+        if !slices || !matches!(ty, Type::Struct(it) if self.decl.is_instance(it)) {
+            return self.value(value, ty);
+        }
+        match self.operand(value, Some(ty))? {
+            Operand::Typed(heir) if heir.ty != ty && self.decl.extends(heir.ty, ty) => {
+                match self.decl.held_not_copied(heir.ty, value.span) {
+                    Some(message) => self.instance_is_no_value(&heir, message, value.span),
+                    None => Some(heir),
+                }
+            }
+            operand => self.coerce(operand, ty, value.span),
+        }
+    }
+
+    /// What an instance has of its base goes to an instance of that.
+    fn assign_part(&mut self, place: &Place, mut given: Expr) {
+        if !matches!(given.kind, ExprKind::Load(_)) {
+            self.save("assigned", &mut given);
+        }
+        if let ExprKind::Load(from) = &given.kind {
+            let members = self.copied_members(from, place, given.at);
+            self.block.extend(members);
+        }
     }
 
     /// What a statement of its own assigns, when it is more than a variable.

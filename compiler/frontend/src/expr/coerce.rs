@@ -218,7 +218,7 @@ impl<'s> Checker<'_, 's> {
         Some(crate::diagnostic::wording::list(&names.take(4).collect::<Vec<_>>()))
     }
 
-    fn instance_is_no_value(&mut self, expr: &Expr, message: String, span: Span) -> Option<Expr> {
+    pub(crate) fn instance_is_no_value(&mut self, expr: &Expr, message: String, span: Span) -> Option<Expr> {
         let outputs: Vec<String> = match expr.ty {
             Type::Block(id) => id.info().outputs().map(|it| it.name.to_owned()).collect(),
             Type::Struct(id) if self.decl.is_instance(id) => {

@@ -3,7 +3,7 @@
 use super::checker::Checker;
 use crate::names::functions::{self, Converted, How, Rounding};
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{Conversion, Elementary, Expr, Op, Type, Value};
+use staunch_ir::{Chars, Conversion, Elementary, Expr, Op, Type, Value};
 use staunch_runtime::time::SECOND;
 use staunch_runtime::{Class, Time};
 
@@ -17,6 +17,7 @@ impl<'s> Checker<'_, 's> {
         let value_expr = match parsed.from {
             Some(Converted::Elementary(from)) => self.value(value, Type::Elementary(from))?,
             Some(Converted::Text { wide }) => self.text(value, Some(wide), name)?,
+            None if self.is_character(value, parsed.to) => self.value(value, Type::Elementary(Elementary::Char))?,
             None => self.typed(value, None)?,
         };
         let to = match parsed.to {
@@ -34,6 +35,15 @@ impl<'s> Checker<'_, 's> {
         }
         let (number, from) = self.as_elementary(value_expr, value.span, name)?;
         self.between(number, from, to, name.span)
+    }
+
+    /// Whether what `TO_x` is given is one character, whose number is meant: SIMATIC AX converts no texts to numbers.
+    fn is_character(&self, value: &ast::Expr<'s>, to: Converted) -> bool {
+        let counts = matches!(to, Converted::Elementary(it) if it.is_integral() && it != Elementary::Bool);
+        let is_one = |it: &Chars| matches!(it, Chars::Narrow(bytes) if bytes.len() == 1);
+        counts
+            && self.decl.dialect(value.span).takes_literals_as_characters()
+            && matches!(&value.bare().kind, ast::ExprKind::Literal(ast::Literal { prefix: None, value: ast::LiteralValue::String(it) }) if is_one(it))
     }
 
     /// What is converted as a value of an elementary type: an enumeration's is its number.

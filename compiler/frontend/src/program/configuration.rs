@@ -287,7 +287,10 @@ impl<'s> Declarations<'s> {
                 Diagnostic::new(Code::E0902, name.span, message)
                     .label("a task calls it again here")
                     .other(first, "first called here")
-                    .help("let one task call it, and another PROGRAM do what the other task is for"),
+                    .help(format!(
+                        "let each of the tasks call a PROGRAM of its own, whose body is `{0}();`: there is one `{0}`, which both then call",
+                        name.text
+                    )),
             );
         }
     }

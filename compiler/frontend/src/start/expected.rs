@@ -135,8 +135,10 @@ impl<'a, 's> Expected<'a, 's> {
                 let is_interface = path.last().is_some_and(|it| self.types.interfaces.contains(&Key(it.text)));
                 is_interface.then_some(By::Assignment)
             }
-            // As an input of a call.
-            TypeKind::Reference { kind: RefKind::ReferenceTo, .. } => self.is_member.then_some(By::Binding),
+            // As an input of a call; `me : REFERENCE TO Pump := THIS^`.
+            TypeKind::Reference { kind: RefKind::ReferenceTo, .. } => {
+                (self.is_member || is_own_instance(value)).then_some(By::Binding)
+            }
             // `p : POINTER TO Pump := THIS`
             TypeKind::Reference { .. } => is_this(value).then_some(By::Assignment),
             TypeKind::Array { .. }

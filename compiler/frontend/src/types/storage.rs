@@ -89,7 +89,7 @@ impl<'s> Declarations<'s> {
     /// The instance in it that no dialect copies.
     fn never_copied(&self, ty: Type) -> Option<(String, Type)> {
         let is_block = |id| self.slot_of_instance(id).is_none_or(|it| self.pous[it].ast.kind.is_block());
-        self.program.instance_in(ty, &|id| self.is_instance(id) && !is_block(id))
+        self.program.state_in(ty, &|id| self.is_instance(id) && !is_block(id))
     }
 
     /// Whether some dialect copies what `ty` holds.

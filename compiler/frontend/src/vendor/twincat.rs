@@ -62,6 +62,13 @@ fn task<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, out: 
                     [_, "CycleTime" | "Priority"] if !is_number => {
                         out.problem(Trouble::Odd, format!("`{text}` is no number"), &at);
                     }
+                    [_, "CycleTime"] if text.bytes().all(|it| it == b'0') => {
+                        out.problem(
+                            Trouble::Odd,
+                            format!("`{text}` is no cycle time: it is in microseconds, and above 0"),
+                            &at,
+                        );
+                    }
                     [_, "CycleTime"] => interval = Chunk::words(format!("INTERVAL := T#{text}us, "), &at),
                     [_, "Priority"] => priority = Chunk::words(format!("PRIORITY := {text}"), &at),
                     [_, "PouCall", "Name"] if !text.contains('.') && !text.is_empty() => programs.push(chunk),

@@ -235,12 +235,9 @@ impl<'p> Verifier<'p> {
         self.require(result == external.result, at, "an external's result of another type");
     }
 
-    /// What holds an instance of one of the runtime's blocks is not copied.
+    /// An instance is copied where the program says that it does so.
     fn copied(&mut self, ty: Type, at: Location) {
         let program = self.program;
-        if let Some((way, _)) = program.instance_in(ty, &|_| false) {
-            self.report(at, format_args!("{} is copied with the instance at {way:?}", program.type_name(ty)));
-        }
         let holds_state = program.instance_in(ty, &|id| program.class_of_state(id).is_some()).is_some();
         self.require(
             program.reach.copies || !holds_state,
