@@ -111,7 +111,11 @@ impl<'a> Machine<'a> {
             "CONCAT_DATE_TOD" | "CONCAT_DATE_LTOD" => {
                 let (long, to) = if name.ends_with("LTOD") { (E::Ltod, E::Ldt) } else { (E::Tod, E::Dt) };
                 let values = self.given(frame, &[("IN1", Some(E::Date)), ("IN2", Some(long))], arguments)?;
-                return Ok(Some(at(to, values[0].as_integer()? + values[1].as_integer()?)?));
+                let point = values[0].as_integer()? + values[1].as_integer()?;
+                if i64::try_from(point).is_err() {
+                    return Err(self.fault(FaultKind::NoSuchDate, span));
+                }
+                return Ok(Some(at(to, point)?));
             }
             "CONCAT_DATE" => E::Date,
             "CONCAT_TOD" => E::Tod,
