@@ -30,6 +30,9 @@ impl<'a> Machine<'a> {
         if let Some(value) = self.reference_function(frame, &upper, arguments)? {
             return Ok(value);
         }
+        if let Some(value) = self.date_function(frame, &upper, arguments, at)? {
+            return Ok(value);
+        }
         match upper.as_str() {
             "MOVE" => self.value(frame, self.only(arguments)?, asked),
             "NOT" => {
@@ -370,6 +373,9 @@ impl<'a> Machine<'a> {
     fn converted_by_name(&self, value: &Value<'a>, to: Elementary, at: Span) -> Outcome<Value<'a>> {
         let scalar = value.as_scalar()?;
         let Some(from) = value.ty.base() else { return unknown("a conversion of this type") };
+        if from.is_date() || to.is_date() {
+            return self.date_converted(value, from, to, at);
+        }
         let real = from.is_real() || to.is_real();
         let wide = if real { Elementary::Lreal } else { Elementary::Lint };
         let factor = in_repr(Scalar::I64(MILLISECOND), wide).as_scalar()?;

@@ -23,6 +23,7 @@ mod statements;
 
 mod calls;
 mod classes;
+mod dates;
 mod edges;
 mod expressions;
 mod functions;

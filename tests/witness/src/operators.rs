@@ -87,6 +87,9 @@ impl<'a> Machine<'a> {
             return self.same_place(op, &a, &b);
         }
         let (Some(x), Some(y)) = (a.ty.base(), b.ty.base()) else { return unknown("these operands") };
+        if let Some(sum) = self.date_sum(op, &a, &b)? {
+            return Ok(sum);
+        }
         match op {
             BinaryOp::Power => {
                 let long = |it: Elementary| it == Elementary::Lreal || (it.is_integer() && it.repr().size() > 2);

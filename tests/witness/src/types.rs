@@ -23,11 +23,17 @@ pub(crate) enum Elementary {
     Lreal,
     Time,
     Ltime,
+    Date,
+    Ldate,
+    Tod,
+    Ltod,
+    Dt,
+    Ldt,
 }
 
 use Elementary as E;
 
-const ELEMENTARY: [(&str, E, Repr); 17] = [
+const ELEMENTARY: [(&str, E, Repr); 27] = [
     ("BOOL", E::Bool, Repr::Bool),
     ("SINT", E::Sint, Repr::I8),
     ("INT", E::Int, Repr::I16),
@@ -45,6 +51,17 @@ const ELEMENTARY: [(&str, E, Repr); 17] = [
     ("LREAL", E::Lreal, Repr::F64),
     ("TIME", E::Time, Repr::I64),
     ("LTIME", E::Ltime, Repr::I64),
+    ("DATE", E::Date, Repr::I64),
+    ("LDATE", E::Ldate, Repr::I64),
+    ("TOD", E::Tod, Repr::I64),
+    ("LTOD", E::Ltod, Repr::I64),
+    ("DT", E::Dt, Repr::I64),
+    ("LDT", E::Ldt, Repr::I64),
+    // Other names come after those that a table of types has first.
+    ("TIME_OF_DAY", E::Tod, Repr::I64),
+    ("LTIME_OF_DAY", E::Ltod, Repr::I64),
+    ("DATE_AND_TIME", E::Dt, Repr::I64),
+    ("LDATE_AND_TIME", E::Ldt, Repr::I64),
 ];
 
 impl Elementary {
@@ -64,6 +81,16 @@ impl Elementary {
         matches!(self, E::Time | E::Ltime)
     }
 
+    /// Whether this is a day, a time of day or a point in time.
+    pub fn is_date(self) -> bool {
+        matches!(self, E::Date | E::Ldate | E::Tod | E::Ltod | E::Dt | E::Ldt)
+    }
+
+    /// Whether this is no number, though an integer is behind it.
+    fn is_temporal(self) -> bool {
+        self.is_time() || self.is_date()
+    }
+
     pub fn is_bits(self) -> bool {
         matches!(self, E::Bool | E::Byte | E::Word | E::Dword | E::Lword)
     }
@@ -81,16 +108,16 @@ impl Elementary {
 
     /// Whether this is a number or a bit string of fewer than 32 bits.
     pub fn is_narrow(self) -> bool {
-        self.repr().is_integer() && !self.is_time() && self.repr().size() < 4
+        self.repr().is_integer() && self.repr().size() < 4
     }
 
     pub fn is_integer(self) -> bool {
-        self.repr().is_integer() && !self.is_time() && !self.is_bits()
+        self.repr().is_integer() && !self.is_temporal() && !self.is_bits()
     }
 
     /// Whether an integer literal can have this type.
     pub fn takes_integers(self) -> bool {
-        self.is_real() || (self.repr().is_integer() && !self.is_time())
+        self.is_real() || (self.repr().is_integer() && !self.is_temporal())
     }
 
     pub fn holds(self, number: i128) -> bool {
@@ -107,7 +134,8 @@ impl Elementary {
         match (self, to) {
             _ if self == to => true,
             (E::Time, E::Ltime) | (E::Real, E::Lreal) => true,
-            _ if self.is_time() || to.is_time() => false,
+            (E::Date, E::Ldate) | (E::Tod, E::Ltod) | (E::Dt, E::Ldt) => true,
+            _ if self.is_temporal() || to.is_temporal() => false,
             (E::Bool, _) => to.is_bits(),
             _ if self.is_bits() || to.is_bits() => self.is_bits() && to.is_bits() && bits(self) < bits(to),
             // A REAL holds integers of 16 bits, an LREAL of 32.

@@ -1,7 +1,7 @@
 //! Expressions of a type that is asked for.
 
 use super::Writer;
-use super::types::{BITS, NUMBERS, Ty, pins};
+use super::types::{BITS, DATES, NUMBERS, Ty, pins};
 
 impl Writer {
     /// A value of the type, or of one that widens to it.
@@ -20,6 +20,7 @@ impl Writer {
             Ty::Number(at) => self.integer(*at, depth),
             Ty::Bits(at) => self.bits(*at, depth),
             Ty::Time => self.time(depth),
+            Ty::Date(at) => self.date(*at, depth),
             Ty::Text(_) => self.string(depth),
             Ty::Level(at) => self.level(*at, depth),
             Ty::Color => self.color(depth),
@@ -80,6 +81,12 @@ impl Writer {
             Ty::Number(at) => (*self.random.one_of(&NUMBERS[*at].literals)).to_owned(),
             Ty::Bits(_) => (*self.random.one_of(&["16#0F", "16#FF", "16#81", "1", "0"])).to_owned(),
             Ty::Time => (*self.random.one_of(&["T#0s", "T#15ms", "T#20ms", "T#1s500ms", "T#-5ms"])).to_owned(),
+            Ty::Date(0) => (*self.random.one_of(&["D#1970-01-01", "D#2024-02-29", "D#1969-12-31"])).to_owned(),
+            Ty::Date(1) => (*self.random.one_of(&["TOD#00:00:00", "TOD#23:59:59.999", "TOD#12:30:00"])).to_owned(),
+            Ty::Date(_) => {
+                (*self.random.one_of(&["DT#1970-01-01-00:00:00", "DT#2024-02-29-23:59:59", "DT#1969-12-31-12:00:00"]))
+                    .to_owned()
+            }
             Ty::Text(_) => (*self.random.one_of(&["''", "'a'", "'bc'", "'xyz12'", "'hello world'"])).to_owned(),
             Ty::Color => (*self.random.one_of(&["Color#Red", "Color.Green", "Color#Blue"])).to_owned(),
             Ty::Level(at) => {
@@ -99,7 +106,7 @@ impl Writer {
             Ty::Number(at) => format!("{}#{literal}", NUMBERS[*at].name),
             Ty::Bits(at) => format!("{}#{literal}", BITS[*at]),
             Ty::Level(at) => format!("{}#{literal}", NUMBERS[self.types.levels[*at].0].name),
-            Ty::Bool | Ty::Time | Ty::Text(_) | Ty::Color | Ty::Pointer(_) | Ty::Interface => literal,
+            Ty::Bool | Ty::Time | Ty::Date(_) | Ty::Text(_) | Ty::Color | Ty::Pointer(_) | Ty::Interface => literal,
             Ty::Array(_) | Ty::Record(_) | Ty::Union(_) | Ty::Instance(_) | Ty::Standard(_) => {
                 unreachable!("no literal of this type")
             }
@@ -300,12 +307,34 @@ impl Writer {
 
     fn time(&mut self, depth: usize) -> String {
         let a = self.operand(&Ty::Time, depth - 1);
-        match self.random.below(6) {
+        match self.random.below(7) {
+            6 => {
+                let of = Ty::Date(self.random.below(3));
+                format!("({} - {})", self.operand(&of, depth - 1), self.operand(&of, depth - 1))
+            }
             0 => format!("({a} {} {})", self.random.one_of(&["+", "-"]), self.operand(&Ty::Time, depth - 1)),
             1 => format!("({a} * {})", self.operand(&Ty::Number(1), depth - 1)),
             2 => format!("({a} / MAX({}, 1))", self.operand(&Ty::Number(1), depth - 1)),
             3 => format!("DINT_TO_TIME({})", self.operand(&Ty::Number(2), depth - 1)),
             _ => a,
+        }
+    }
+
+    fn date(&mut self, at: usize, depth: usize) -> String {
+        let own = Ty::Date(at);
+        match self.random.below(4) {
+            // A day and a time have no sum, but in CODESYS.
+            0 if at > 0 => {
+                let sign = *self.random.one_of(&["+", "-"]);
+                format!("({} {sign} {})", self.operand(&own, depth - 1), self.operand(&Ty::Time, depth - 1))
+            }
+            1 => {
+                let other = (at + 1 + self.random.below(DATES.len() - 1)) % DATES.len();
+                let value = self.operand(&Ty::Date(other), depth - 1);
+                format!("{}_TO_{}({value})", DATES[other].0, DATES[at].0)
+            }
+            2 => format!("DINT_TO_{}({})", DATES[at].0, self.operand(&Ty::Number(2), depth - 1)),
+            _ => self.operand(&own, depth - 1),
         }
     }
 

@@ -14,7 +14,7 @@ use crate::random::Random;
 use call::{Parameter, Routine, Section};
 use scope::{Scope, Variable};
 use std::fmt::Write;
-use types::{Catalogue, NUMBERS, Ty};
+use types::{Catalogue, DATES, NUMBERS, Ty};
 
 /// A program as Structured Text.
 pub fn program(seed: u64) -> String {
@@ -295,8 +295,10 @@ impl Writer {
     }
 
     fn initial(&mut self, ty: &Ty) -> String {
-        let scalar =
-            matches!(ty, Ty::Bool | Ty::Number(_) | Ty::Bits(_) | Ty::Time | Ty::Text(_) | Ty::Color | Ty::Level(_));
+        let scalar = matches!(
+            ty,
+            Ty::Bool | Ty::Number(_) | Ty::Bits(_) | Ty::Time | Ty::Date(_) | Ty::Text(_) | Ty::Color | Ty::Level(_)
+        );
         match ty {
             _ if self.random.once_in(2) => String::new(),
             _ if scalar => format!(" := {}", self.literal(ty)),
@@ -549,7 +551,8 @@ impl Writer {
 
     /// Elementary types and their like.
     fn plain_type(&mut self) -> Ty {
-        match self.random.below(16) {
+        match self.random.below(18) {
+            16 | 17 => Ty::Date(self.random.below(DATES.len())),
             0..=6 => Ty::Number(self.random.below(NUMBERS.len())),
             7 | 8 => Ty::Number(*self.random.one_of(&[1, 2])),
             9 | 10 => Ty::Bool,

@@ -12,6 +12,8 @@ pub enum Ty {
     /// BYTE to LWORD.
     Bits(usize),
     Time,
+    /// A row of [`DATES`].
+    Date(usize),
     /// A text of this capacity.
     Text(usize),
     Color,
@@ -68,6 +70,10 @@ pub const NUMBERS: [Number; 10] = [
     },
 ];
 
+/// A day, a time of day, and points in time.
+pub const DATES: [(&str, Elementary); 4] =
+    [("DATE", Elementary::Date), ("TOD", Elementary::Tod), ("DT", Elementary::Dt), ("LDT", Elementary::Ldt)];
+
 pub const BITS: [&str; 4] = ["BYTE", "WORD", "DWORD", "LWORD"];
 const BIT_TYPES: [Elementary; 4] = [Elementary::Byte, Elementary::Word, Elementary::Dword, Elementary::Lword];
 
@@ -78,6 +84,7 @@ impl Ty {
             Self::Number(at) => Some(NUMBERS[*at].elementary),
             Self::Bits(at) => Some(BIT_TYPES[*at]),
             Self::Time => Some(Elementary::Time),
+            Self::Date(at) => Some(DATES[*at].1),
             Self::Text(_)
             | Self::Color
             | Self::Level(_)
@@ -162,6 +169,7 @@ impl Catalogue {
             Ty::Number(at) => NUMBERS[*at].name.to_owned(),
             Ty::Bits(at) => BITS[*at].to_owned(),
             Ty::Time => "TIME".to_owned(),
+            Ty::Date(at) => DATES[*at].0.to_owned(),
             Ty::Text(capacity) => format!("STRING[{capacity}]"),
             Ty::Color => "Color".to_owned(),
             Ty::Level(at) => format!("Level{at}"),
@@ -187,7 +195,7 @@ impl Catalogue {
             Ty::Array(at) => self.is_value(&self.arrays[*at].1),
             Ty::Record(at) => self.records[*at].iter().all(|(_, ty)| self.is_value(ty)),
             Ty::Bool | Ty::Number(_) | Ty::Bits(_) | Ty::Time | Ty::Text(_) | Ty::Color | Ty::Level(_) => true,
-            Ty::Union(_) | Ty::Pointer(_) | Ty::Interface => true,
+            Ty::Date(_) | Ty::Union(_) | Ty::Pointer(_) | Ty::Interface => true,
         }
     }
 
@@ -197,7 +205,8 @@ impl Catalogue {
             Ty::Bool | Ty::Number(_) | Ty::Bits(_) | Ty::Time | Ty::Color | Ty::Union(_) => true,
             Ty::Array(at) => self.is_shareable(&self.arrays[*at].1),
             Ty::Record(at) => self.records[*at].iter().all(|(_, ty)| self.is_shareable(ty)),
-            Ty::Text(_) | Ty::Level(_) | Ty::Instance(_) | Ty::Standard(_) | Ty::Pointer(_) | Ty::Interface => false,
+            Ty::Date(_) | Ty::Text(_) | Ty::Level(_) | Ty::Instance(_) | Ty::Standard(_) => false,
+            Ty::Pointer(_) | Ty::Interface => false,
         }
     }
 
@@ -261,7 +270,7 @@ impl Catalogue {
                 shapes.iter_mut().skip(1).for_each(|it| it.through = true);
             }
             Ty::Bool | Ty::Number(_) | Ty::Bits(_) | Ty::Time | Ty::Text(_) | Ty::Color | Ty::Level(_) => {}
-            Ty::Interface => {}
+            Ty::Date(_) | Ty::Interface => {}
         }
         shapes
     }
