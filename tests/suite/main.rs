@@ -4,6 +4,7 @@
 mod fixes;
 mod formatted;
 mod golden;
+mod mistakes;
 mod vectors;
 
 mod constants;

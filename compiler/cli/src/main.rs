@@ -76,6 +76,11 @@ fn main() -> ExitCode {
 
 fn report_panic(panic: &std::panic::PanicHookInfo<'_>) {
     eprintln!("internal error: {panic}");
+    // Where RUST_BACKTRACE asks for it.
+    let backtrace = std::backtrace::Backtrace::capture();
+    if backtrace.status() == std::backtrace::BacktraceStatus::Captured {
+        eprintln!("{backtrace}");
+    }
     eprintln!("This is a mistake in Staunch, not in your program. Please report it, with the source if you can,");
     eprintln!("at {}/issues (staunch {}).", env!("CARGO_PKG_REPOSITORY"), env!("CARGO_PKG_VERSION"));
 }

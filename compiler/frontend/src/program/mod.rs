@@ -42,6 +42,10 @@ pub(crate) fn assemble<'s>(
     order::order(declarations, uses, stacks)?;
     declarations.check_pins()?;
     declarations.check_escapes()?;
+    // What a mistake has left half declared is not put together.
+    if declarations.log.has_errors_since(0) {
+        return None;
+    }
     let program = std::mem::replace(&mut declarations.program, empty_program(Vec::new()));
     let settled = staunch_ir::shapes::settle(program);
     let settled = settled.map_err(|at| declarations.report_too_many_shapes(at)).ok()?;

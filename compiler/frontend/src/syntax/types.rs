@@ -134,10 +134,13 @@ fn named<'t, 's: 't>() -> impl Rule<'t, 's, TypeKind<'s>> {
     let range = range.delimited_by(token(Kind::OpenParen), token(Kind::CloseParen));
     let any_range = range.map(|(low, high)| Suffix::Range(low, high));
     let range = lists.not().ignore_then(any_range.clone());
-    let members = token(Kind::Dot).ignore_then(name()).repeated().collect().map(Suffix::Members);
+    let member = token(Kind::Dot).ignore_then(name());
+    let members = member.clone().repeated().collect().map(Suffix::Members);
+    let some_members = member.repeated().at_least(1).collect().map(Suffix::Members);
     let no_more = ahead(|input| input.kind() != Kind::OpenParen);
     let length = foreign_types::length().to(Suffix::Foreign);
-    let of_number = choice((values, range.clone(), length.clone(), members.clone().then_ignore(no_more)));
+    let alone = no_more.map(|()| Suffix::Members(Vec::new()));
+    let of_number = choice((values, range.clone(), length.clone(), some_members, alone));
     // What is in parentheses after another name may be for the FB_init of an instance.
     let of_other = choice((any_range, length, members));
     let number = ahead(is_elementary).ignore_then(name()).then(of_number);

@@ -157,7 +157,8 @@ impl<'t> Scl<'t> {
         self.notes();
         while self.at < self.tokens.len() {
             let end = self.text(self.at);
-            if end.len() > 4 && end[..4].eq_ignore_ascii_case("END_") && end[4..].eq_ignore_ascii_case(block.0) {
+            let word = end.split_at_checked(4).filter(|it| it.0.eq_ignore_ascii_case("END_"));
+            if word.is_some_and(|it| it.1.eq_ignore_ascii_case(block.0)) {
                 let place = self.place(self.at);
                 self.replace(place, block.2);
                 self.at += 1;
