@@ -37,7 +37,7 @@ pub fn word<'t, 's: 't>(word: &'static str) -> impl Rule<'t, 's, Span> {
 pub fn ahead<'t, 's: 't>(
     look: impl Fn(&mut InputRef<'t, '_, &'t [Kind], Extra<'t, 's>>) -> bool + Clone,
 ) -> impl Rule<'t, 's, ()> {
-    rule(move |input| if look(input) { Ok(()) } else { Err(input.problem(Expected::Reported)) })
+    rule(move |input| if look(input) { Ok(()) } else { Err(input.problem(Expected::Other)) })
 }
 
 /// `item, item, …`

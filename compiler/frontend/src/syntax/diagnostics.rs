@@ -88,6 +88,10 @@ pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
                 .help("write the type after the name: ` : INT`")
                 .fix(after, " : INT")
         }
+        (Expected::Other, _) => {
+            let it = Diagnostic::new(Code::E0001, span, format!("{shown} cannot be here"));
+            it.label("nothing that begins so goes on with this")
+        }
         (expected, _) => {
             let expected = said(expected);
             Diagnostic::new(Code::E0001, span, format!("expected {expected}, found {shown}"))
@@ -146,6 +150,7 @@ fn said(expected: Expected) -> String {
         Expected::Label => "a CASE label such as `1:` or `1..5, 8:`".into(),
         Expected::Action => "`:=` or a call".into(),
         Expected::Block => "PROGRAM, FUNCTION_BLOCK, FUNCTION, TYPE, VAR_GLOBAL or CONFIGURATION".into(),
+        Expected::Other => "something else".into(),
         Expected::Reported => String::new(),
     }
 }

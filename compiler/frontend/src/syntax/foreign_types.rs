@@ -23,7 +23,7 @@ pub fn brace_list<'t, 's: 't>(open: &'static str, close: &'static str) -> impl R
         let state = input.state();
         let from = state.tokens.pragmas.partition_point(|it| it.span.start < last.end);
         let list = state.tokens.pragmas.get(from).copied().filter(|it| it.span.end <= here.start);
-        let Some(list) = list else { return Err(input.problem(Expected::Reported)) };
+        let Some(list) = list else { return Err(input.problem(Expected::Other)) };
         state.braces.push(list.span);
         let whole = Span { start: list.span.start - 1, end: list.span.end + 1, ..list.span };
         let meant = format!("{open}{}{close}", list.text);

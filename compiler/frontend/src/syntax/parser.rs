@@ -51,6 +51,8 @@ pub enum Expected {
     /// `:=` or a call's `(`.
     Action,
     Block,
+    /// Something else, which other rules say better.
+    Other,
     /// The user has been told already.
     Reported,
 }
@@ -62,7 +64,8 @@ impl Problem {
 impl<'t> Error<'t, &'t [Kind]> for Problem {
     /// Of the problems of two rules that start at one token: what was reported, else the farther one.
     fn merge(self, other: Self) -> Self {
-        let first = self == Self::REPORTED || (other != Self::REPORTED && self.at > other.at);
+        let says_more = self.at > other.at || self.at == other.at && other.expected == Expected::Other;
+        let first = self == Self::REPORTED || (other != Self::REPORTED && says_more);
         if first { self } else { other }
     }
 }
