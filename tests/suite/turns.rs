@@ -1,5 +1,5 @@
 //! Compiled code takes the turns of loops in its own ways, many at once where it can. None can tell that from
-//! taking them one by one, as the interpreter does: for every budget a scan ends alike.
+//! taking them as the interpreter does: for every budget a scan ends alike.
 
 use staunch_host::Machine;
 use staunch_ir::interpret::{Interpreter, Stop};
@@ -18,6 +18,8 @@ const INPUTS: [[i16; 2]; 7] = [[0, 0], [3, 1], [7, 2], [12, 5], [-4, 3], [30, 40
 /// Each budget up to here, and then one that suffices for all loops that end soon.
 const BUDGETS: u64 = 48;
 const LARGE: u64 = 5_000;
+/// Around what a loop may have without taking any.
+const MANY: [[i16; 2]; 6] = [[1023, 3], [1024, 3], [1025, 12], [3, 1030], [1030, -1], [-1030, -2055]];
 
 #[test]
 fn loops_end_alike_at_every_budget() {
@@ -29,6 +31,10 @@ fn loops_end_alike_at_every_budget() {
     for kind in 0..KINDS {
         for [n, m] in INPUTS {
             (0..BUDGETS).chain([LARGE]).for_each(|budget| sweep.scan([kind, n, m], budget));
+        }
+        for [n, m] in MANY {
+            let around = Context::FREE_TURNS - 3..Context::FREE_TURNS + 9;
+            [0, 1, LARGE].into_iter().chain(around).for_each(|budget| sweep.scan([kind, n, m], budget));
         }
     }
     assert!(sweep.faulted > 1000 && sweep.ended > 1000, "{} faults, {} ends", sweep.faulted, sweep.ended);

@@ -110,6 +110,12 @@ impl<'a> Finder<'a> {
         block.iter().for_each(|it| self.statement(it));
     }
 
+    fn takes_turns(&mut self) {
+        self.effects.faults = true;
+        self.effects.context = true;
+        self.effects.turns = true;
+    }
+
     fn statement(&mut self, statement: &'a Statement) {
         visit::values(statement, &mut |it| {
             self.effects.faults |= self.asked(&|faults| faults.expr(it));
@@ -134,16 +140,16 @@ impl<'a> Finder<'a> {
                 it.instance.iter().for_each(|place| self.reads_and_writes(place));
                 self.effects.context |= it.instance.is_some();
             }
-            StatementKind::Turn => {
-                self.effects.faults = true;
-                self.effects.context = true;
-                self.effects.turns = true;
-            }
+            StatementKind::Turn => self.takes_turns(),
             StatementKind::Fault(_) => self.effects.faults = true,
             StatementKind::For(it) => {
                 let repr = self.program.repr(it.counter.ty);
                 self.effects.faults |= it.step_may_fault(repr.and_then(|repr| repr.range()));
+                if it.taking.is_ahead() {
+                    self.takes_turns();
+                }
             }
+            StatementKind::Loop { count: Some(it), .. } if it.taking.is_ahead() => self.takes_turns(),
             StatementKind::Assign { .. }
             | StatementKind::If { .. }
             | StatementKind::Case { .. }

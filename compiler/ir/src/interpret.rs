@@ -3,6 +3,7 @@
 
 mod execute;
 mod follow;
+mod loops;
 mod place;
 
 use crate::layout::{Layout, usize_of};
@@ -44,6 +45,8 @@ pub struct Interpreter<'p> {
     references: Vec<usize>,
     /// The inputs of a standard block between their evaluation and the call.
     inputs: Vec<Value>,
+    /// Whether the loop that is running takes no turns.
+    has_few_turns: bool,
     budget: Option<u64>,
     steps_left: Option<u64>,
 }
@@ -82,6 +85,7 @@ impl<'p> Interpreter<'p> {
             layout,
             references: Vec::new(),
             inputs: Vec::new(),
+            has_few_turns: false,
             budget: None,
             steps_left: None,
         }
@@ -100,6 +104,7 @@ impl<'p> Interpreter<'p> {
     /// One scan of an instance. After an early end the state stays as it was at that point.
     pub fn scan(&mut self, instance: usize, cx: &Context) -> Result<(), Stop> {
         self.steps_left = self.budget;
+        self.has_few_turns = false;
         let class = self.program.class(self.program.instances[instance].program);
         let state = usize_of(self.layout.machine.instances[instance]);
         let starts = if cx.first_scan { self.program.starts() } else { Vec::new() };

@@ -45,6 +45,7 @@ pub mod shapes;
 pub mod stack;
 pub mod startup;
 pub mod symbols;
+pub mod taking;
 pub mod turns;
 pub mod usage;
 
@@ -63,7 +64,7 @@ pub use program::{
     Module, Param, ParamId, Program, Reach, Retain, Routine, RoutineId, RoutineKind, Section, SourceFile, Variable,
     View,
 };
-pub use statement::{Argument, Arm, Block, For, Statement, StatementKind, Step};
+pub use statement::{Argument, Arm, Block, Count, For, Statement, StatementKind, Step, Taking};
 pub use types::{
     Array, ArrayId, BlockId, BoundsId, Const, Elementary, Enum, EnumId, Enumerator, InterfaceId, Overlay, RefKind,
     RefType, ReferenceId, Struct, StructId, Type,

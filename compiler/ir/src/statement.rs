@@ -1,6 +1,7 @@
 //! Statements, and what each of them means.
 
 use crate::{Expr, ExternalCall, FaultKind, Location, Place, RoutineId, Value};
+use staunch_runtime::Context;
 
 pub type Block = Vec<Statement>;
 
@@ -32,10 +33,11 @@ pub enum StatementKind {
     /// WHILE and REPEAT: runs `body` and then `continuing`, forever. `Exit` leaves it; `Continue`
     /// goes on with `continuing`, which itself holds `Exit` but no `Continue`. Each turn takes one
     /// of the scan's turns: `body` holds a `Turn` outside of inner blocks, unless each turn
-    /// [divides](crate::turns::divides) what the loop ends for.
+    /// [divides](crate::turns::divides) what the loop ends for, or `count` has taken all of them.
     Loop {
         body: Block,
         continuing: Block,
+        count: Option<Box<Count>>,
     },
     For(Box<For>),
     /// Takes one of the turns that the loops of a scan have; faults when none is left.
@@ -95,10 +97,55 @@ pub struct For {
     pub range: (i128, i128),
     /// Nothing but the loop itself writes the counter while the loop runs.
     pub is_private: bool,
-    /// Begins with a `Turn`, unless the loop [is short](For::is_short).
+    /// Begins with a `Turn`, unless the loop [is short](For::is_short), or has taken its turns before.
     pub body: Block,
+    /// By [`taking::settle`](crate::taking::settle), which comes after all else that changes loops.
+    pub taking: Taking,
     /// Where the step is written, for its faults.
     pub step_at: Location,
+}
+
+/// When a loop takes turns of the scan.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Taking {
+    /// Each by the `Turn` in the body.
+    #[default]
+    Each,
+    /// So too; but none, where the loop has [few](staunch_runtime::Context::FREE_TURNS) when it starts.
+    EachOfMany,
+    /// All before the first turn, with a fault at this place where they do not suffice. The body has no `Turn`.
+    Ahead(Location),
+    /// So too; but none, where the loop has few.
+    AheadOfMany(Location),
+}
+
+impl Taking {
+    pub fn is_ahead(self) -> bool {
+        match self {
+            Self::Each | Self::EachOfMany => false,
+            Self::Ahead(_) | Self::AheadOfMany(_) => true,
+        }
+    }
+
+    /// Whether a loop that has few turns takes none.
+    pub fn is_of_many(self) -> bool {
+        match self {
+            Self::Each | Self::Ahead(_) => false,
+            Self::EachOfMany | Self::AheadOfMany(_) => true,
+        }
+    }
+}
+
+/// How many turns a WHILE loop has at most, when it starts: those in which `counter` goes by `step` to `bound + offset`.
+#[derive(Clone, Debug)]
+pub struct Count {
+    pub counter: Place,
+    pub step: i128,
+    /// Of the counter's type.
+    pub bound: Expr,
+    /// 0; or -1 or 1 where the loop goes on while the counter is below or above its bound.
+    pub offset: i128,
+    pub taking: Taking,
 }
 
 /// By how much a FOR loop's counter changes.
@@ -111,9 +158,6 @@ pub enum Step {
 }
 
 impl For {
-    /// Turns that a loop may have without taking any of the scan's.
-    pub const FREE_TURNS: i128 = 1024;
-
     /// What the counter may be in the body, as far as constants say it. It holds for a private counter.
     pub fn bounds(&self) -> (i128, i128) {
         let constant = |it: &Expr| it.as_const().and_then(Value::as_integer);
@@ -148,7 +192,9 @@ impl For {
     pub fn over(counter: Place, first: Expr, last: Expr, body: Block, at: Location) -> Statement {
         let range = (i64::MIN.into(), i64::MAX.into());
         let is_private = true;
-        Self { counter, first, last, step: Step::Constant(1), range, is_private, body, step_at: at }.statement(at)
+        let taking = Taking::default();
+        Self { counter, first, last, step: Step::Constant(1), range, is_private, body, taking, step_at: at }
+            .statement(at)
     }
 
     /// The loop, whose body takes a turn first where it has to.
@@ -159,11 +205,15 @@ impl For {
         Statement::new(StatementKind::For(Box::new(self)), at)
     }
 
+    /// Whether the loop takes turns of the scan for its own.
+    pub fn takes_turns(&self) -> bool {
+        self.taking.is_ahead() || self.body.first().is_some_and(|it| matches!(it.kind, StatementKind::Turn))
+    }
+
     /// Whether constants show that the loop ends after few turns, together with those of the loops in it. What
     /// it calls may have loops of its own, so that a loop with a call is not short.
     pub fn is_short(&self) -> bool {
-        self.turns().is_some_and(|it| it < Self::FREE_TURNS)
-            && self.free_turns().is_some_and(|it| it <= Self::FREE_TURNS)
+        self.turns().is_some_and(|it| it < most_free()) && self.free_turns().is_some_and(|it| it <= most_free())
     }
 
     /// Its turns less one, at most, where constants show them.
@@ -180,17 +230,21 @@ impl For {
     }
 }
 
+/// Turns that a loop may have without taking any of the scan's.
+fn most_free() -> i128 {
+    Context::FREE_TURNS.into()
+}
+
 /// Of all loops in a block that take none of the scan's turns; `None` where a call is in it.
 fn free_turns(block: &[Statement]) -> Option<i128> {
     let mut sum = 0_i128;
     for statement in block {
         let own = match &statement.kind {
             StatementKind::Call { .. } => return None,
-            // A loop that takes turns has what is in it counted.
-            StatementKind::For(it) if matches!(it.body.first(), Some(first) if matches!(first.kind, StatementKind::Turn)) => {
-                0
-            }
+            // A loop that takes turns has what is in it counted, and takes none itself where it has few.
+            StatementKind::For(it) if it.takes_turns() => most_free(),
             StatementKind::For(it) => it.free_turns()?,
+            StatementKind::Loop { .. } => most_free(),
             kind => {
                 let inner: Option<Vec<i128>> = kind.blocks().into_iter().map(|it| free_turns(it)).collect();
                 inner?.into_iter().sum()
@@ -249,7 +303,7 @@ impl StatementKind {
             Self::Case { selector: _, arms, otherwise } => {
                 arms.iter().map(|arm| &arm.body).chain([otherwise]).collect()
             }
-            Self::Loop { body, continuing } => vec![body, continuing],
+            Self::Loop { body, continuing, count: _ } => vec![body, continuing],
             Self::For(it) => vec![&it.body],
             Self::Assign { .. }
             | Self::Turn
@@ -270,7 +324,7 @@ impl StatementKind {
             Self::Case { selector: _, arms, otherwise } => {
                 arms.iter_mut().map(|arm| &mut arm.body).chain([otherwise]).collect()
             }
-            Self::Loop { body, continuing } => vec![body, continuing],
+            Self::Loop { body, continuing, count: _ } => vec![body, continuing],
             Self::For(it) => vec![&mut it.body],
             Self::Assign { .. }
             | Self::Turn

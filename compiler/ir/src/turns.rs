@@ -1,24 +1,23 @@
-//! Which loops have a number of turns that is known when they start. Taking these turns at once, and giving
-//! back what an early end leaves, is taking them one by one, as long as nothing else takes turns meanwhile.
+//! Which loops have a number of turns that is known when they start.
 
 mod size;
 
 use crate::alias::{self, Frame};
 use crate::loops::{Known, exit_condition, is_private};
 use crate::{
-    Expr, ExprKind, For, Location, Op, Place, Program, RoutineId, Statement, StatementKind, Value, faults, visit,
+    Expr, ExprKind, Op, Place, Program, RoutineId, Statement, StatementKind, TextOp, Type, Value, faults, visit,
 };
 
 /// Whether a block, or what it calls, takes turns.
 pub fn takes_turns(block: &[Statement], callee_does: &dyn Fn(RoutineId) -> bool) -> bool {
     any(block, &|kind| match kind {
         StatementKind::Turn => true,
+        StatementKind::For(it) => it.taking.is_ahead(),
+        StatementKind::Loop { count, .. } => count.as_ref().is_some_and(|it| it.taking.is_ahead()),
         StatementKind::Call { callee, .. } => callee_does(*callee),
         StatementKind::Assign { .. }
         | StatementKind::If { .. }
         | StatementKind::Case { .. }
-        | StatementKind::Loop { .. }
-        | StatementKind::For(_)
         | StatementKind::Exit
         | StatementKind::Continue
         | StatementKind::Return
@@ -48,22 +47,6 @@ fn any(block: &[Statement], is: &dyn Fn(&StatementKind) -> bool) -> bool {
     found
 }
 
-/// A FOR loop whose turns are known.
-#[derive(Clone, Copy, Debug)]
-pub struct Ahead<'a> {
-    /// The body without its `Turn`.
-    pub body: &'a [Statement],
-    /// Where that is.
-    pub at: Location,
-}
-
-/// A FOR loop whose turns are known, from its counter and the last value for it.
-pub fn ahead<'a>(it: &'a For, callee_takes: &dyn Fn(RoutineId) -> bool) -> Option<Ahead<'a>> {
-    let (turn, body) = it.body.split_first()?;
-    let counts = matches!(turn.kind, StatementKind::Turn) && it.is_private && !takes_turns(body, callee_takes);
-    counts.then_some(Ahead { body, at: turn.at })
-}
-
 /// `WHILE i < last AND other DO … i := i + 1; … END_WHILE`: a variable that nothing else writes takes one
 /// step in each turn, toward a bound that stays, and does not wrap on its way.
 #[derive(Clone, Debug)]
@@ -73,50 +56,48 @@ pub struct Linear<'a> {
     /// The counter is at most `bound + offset` in each turn, at least where the step is negative.
     pub bound: &'a Expr,
     pub offset: i128,
-    /// What has to hold besides.
-    pub others: Vec<&'a Expr>,
-    /// The whole condition on which the loop is left.
-    pub leave: &'a Expr,
-    /// The body without condition and `Turn`.
-    pub body: &'a [Statement],
-    /// Which statement of it takes the step.
-    pub steps: usize,
-    /// Where the `Turn` is.
-    pub at: Location,
+    /// Whether something has to hold besides.
+    pub has_others: bool,
+    /// The condition's statements, and what leaves the loop.
+    pub test: &'a [Statement],
+    /// What comes after them, with the `Turn`.
+    pub rest: &'a [Statement],
 }
 
 /// A WHILE loop whose turns are known, but for an early end.
-pub fn linear<'a>(
-    known: &Known<'_>,
-    frame: &Frame<'_>,
-    body: &'a [Statement],
-    callee_takes: &dyn Fn(RoutineId) -> bool,
-) -> Option<Linear<'a>> {
-    let [test, turn, body @ ..] = body else { return None };
-    let leave = exit_condition(test)?;
-    let plain = matches!(turn.kind, StatementKind::Turn) && !takes_turns(body, callee_takes);
-    if !plain || any(body, &|kind| matches!(kind, StatementKind::Continue)) {
+pub fn linear<'a>(frame: &Frame<'_>, body: &'a [Statement]) -> Option<Linear<'a>> {
+    let (at, stays) = body.iter().enumerate().find_map(|(at, it)| {
+        let ExprKind::Apply(Op::Not, stays) = &exit_condition(it)?.kind else { return None };
+        Some((at, &stays[0]))
+    })?;
+    let (test, rest) = body.split_at(at + 1);
+    let before = &test[..at];
+    let stays = if before.is_empty() { stays } else { first_of_chain(before, stays)? };
+    if any(body, &|kind| matches!(kind, StatementKind::Continue)) {
         return None;
     }
-    let ExprKind::Apply(Op::Not, stay) = &leave.kind else { return None };
     let mut conditions = Vec::new();
-    parts(Op::And, &stay[0], &mut conditions);
-    (0..conditions.len()).find_map(|at| {
-        let mut others = conditions.clone();
-        let condition = others.remove(at);
-        if others.iter().any(|it| faults::expr_faults(known.program, it)) {
-            return None;
-        }
-        let (counter, bound, offset, steps, step) =
-            compared(condition).find_map(|(counter, bound, ahead, offset)| {
-                let (steps, step) = only_step(frame, body, counter)?;
-                let toward = (step > 0) == ahead && !alias::changes(frame, body, bound);
-                let fits =
-                    !faults::expr_faults(known.program, bound) && never_wraps(known, counter, bound, offset + step);
-                (toward && fits).then_some((counter, bound, offset, steps, step))
-            })?;
-        Some(Linear { counter, step, bound, offset, others, leave, body, steps, at: turn.at })
+    parts(Op::And, stays, &mut conditions);
+    let has_others = !before.is_empty() || conditions.len() > 1;
+    let known = Known { program: frame.program, loops: &[], checked: &|_| false };
+    conditions.into_iter().flat_map(compared).find_map(|(counter, bound, ahead, offset)| {
+        let step = only_step(frame, rest, counter).filter(|_| is_private(frame, counter, before))?;
+        let toward = (step > 0) == ahead && !alias::changes(frame, body, bound);
+        let fits = !faults::expr_faults(frame.program, bound) && never_wraps(&known, counter, bound, offset + step);
+        (toward && fits).then_some(Linear { counter, step, bound, offset, has_others, test, rest })
     })
+}
+
+/// `both := a; IF both THEN …; both := b; END_IF`, of which `a AND_THEN b` is made, and `both`: only where `a` holds that does.
+fn first_of_chain<'a>(before: &'a [Statement], both: &Expr) -> Option<&'a Expr> {
+    let (first, others) = before.split_first()?;
+    let StatementKind::Assign { target, value } = &first.kind else { return None };
+    let is_both = |it: &Expr| matches!(&it.kind, ExprKind::Load(place) if place.is_same_variable(target));
+    let is_asked = |it: &Statement| match &it.kind {
+        StatementKind::If { condition, otherwise, .. } => otherwise.is_empty() && is_both(condition),
+        _ => false,
+    };
+    (is_both(both) && others.iter().all(is_asked)).then_some(value)
 }
 
 /// Whether each turn divides a variable, `x := SHR(x, 1);` or `n := n / 10;`, until the loop is left for how small it is:
@@ -236,12 +217,12 @@ fn compared(condition: &Expr) -> impl Iterator<Item = (&Place, &Expr, bool, i128
     })
 }
 
-/// The one statement that writes `counter`, which each turn passes, and by how much it steps.
-fn only_step(frame: &Frame<'_>, body: &[Statement], counter: &Place) -> Option<(usize, i128)> {
+/// By how much the one statement steps that writes `counter`, and which each turn passes.
+fn only_step(frame: &Frame<'_>, body: &[Statement], counter: &Place) -> Option<i128> {
     let at = body.iter().position(|it| step_of(it, counter).is_some())?;
     let (before, after) = (&body[..at], &body[at + 1..]);
     let only = is_private(frame, counter, before) && is_private(frame, counter, after);
-    only.then_some(at).zip(step_of(&body[at], counter))
+    if only { step_of(&body[at], counter) } else { None }
 }
 
 /// `i := i + 1`
@@ -262,8 +243,22 @@ fn step_of(statement: &Statement, counter: &Place) -> Option<i128> {
 /// Whether a step from the last value leads to one of the counter's type.
 fn never_wraps(known: &Known<'_>, counter: &Place, bound: &Expr, way: i128) -> bool {
     let whole = known.program.repr(counter.ty).and_then(|repr| repr.range());
-    let (Some((least, most)), Some(bound_range)) = (whole, known.range(bound)) else { return false };
+    let (Some((least, most)), Some(bound_range)) = (whole, range_of_bound(known, bound)) else { return false };
     bound.ty == counter.ty && least <= bound_range.0 + way.min(0) && bound_range.1 + way.max(0) <= most
+}
+
+/// A string is never longer than its type says.
+fn range_of_bound(known: &Known<'_>, bound: &Expr) -> Option<(i128, i128)> {
+    match &bound.kind {
+        ExprKind::ApplyText(TextOp::Len, operands) => match operands.as_slice() {
+            [Expr { kind: ExprKind::Load(_), ty: Type::String(ty), .. }] => {
+                let (least, most) = known.range(bound)?;
+                Some((least.max(0), most.min(ty.capacity.into())))
+            }
+            _ => known.range(bound),
+        },
+        _ => known.range(bound),
+    }
 }
 
 #[cfg(test)]

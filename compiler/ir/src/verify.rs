@@ -10,6 +10,7 @@ mod expression;
 mod place;
 mod routine;
 mod statement;
+mod taking;
 mod types;
 
 use crate::{Location, Program};
@@ -26,7 +27,7 @@ pub struct Violation {
 
 /// Checks every invariant. A back end takes only what passes.
 pub fn verify(program: &Program) -> Result<(), Vec<Violation>> {
-    let mut verifier = Verifier { program, within: String::new(), violations: Vec::new() };
+    let mut verifier = Verifier { program, loopers: Vec::new(), within: String::new(), violations: Vec::new() };
     // Later steps rely on ids and types that the earlier ones found sound.
     for step in [Verifier::types, Verifier::routines, Verifier::bodies] {
         step(&mut verifier);
@@ -39,6 +40,8 @@ pub fn verify(program: &Program) -> Result<(), Vec<Violation>> {
 
 struct Verifier<'p> {
     program: &'p Program,
+    /// Which routines have loops.
+    loopers: Vec<bool>,
     within: String,
     violations: Vec<Violation>,
 }

@@ -27,15 +27,25 @@ impl<'p> Function<'_, 'p> {
         Some(copies)
     }
 
+    /// Whether a loop's body may be there twice.
+    pub(crate) fn may_copy(&mut self, body: &[Statement], continuing: &[Statement]) -> bool {
+        let callee_does = |callee: RoutineId| self.module.effects(callee).turns;
+        let size = turns::size_of_single(body, continuing, &callee_does).filter(|it| *it <= 2 * ENOUGH);
+        let Some(made) = size.map(|it| self.copied + it).filter(|it| *it <= MOST_IN_A_ROUTINE) else { return false };
+        self.copied = made;
+        true
+    }
+
+    /// From the first turn on, which is there, in the block `head`. Whether control goes on in `after`.
     pub(crate) fn turns_at_once(
         &mut self,
         control: &Control<'p>,
         copies: usize,
+        [head, after]: [clif::Block; 2],
         body: &'p [Statement],
         continuing: &'p [Statement],
-    ) -> Flow {
-        let [head, enough, few, after] = [(); 4].map(|()| self.builder.create_block());
-        self.further_turn(control, head, after);
+    ) -> bool {
+        let [enough, few] = [(); 2].map(|()| self.builder.create_block());
         self.builder.switch_to_block(head);
         let turns = self.turns.expect("verified IR: a turn is a loop's");
         let left = self.builder.use_var(turns);
@@ -66,15 +76,14 @@ impl<'p> Function<'_, 'p> {
 
         self.builder.switch_to_block(few);
         let frame = LoopFrame { next: self.builder.create_block(), ..LoopFrame::to(after) };
-        is_left |= self.one_by_one(control, frame, few, body, continuing);
-        self.join(&[if is_left { Flow::Continues } else { Flow::Leaves }], after)
+        self.one_by_one(control, frame, few, body, continuing) || is_left
     }
 
     /// One turn, after which the next one begins where the code goes on.
     fn one_of_several(
         &mut self,
         control: &Control<'p>,
-        frame: LoopFrame<'p>,
+        frame: LoopFrame,
         body: &'p [Statement],
         continuing: &'p [Statement],
     ) -> Flow {

@@ -4,7 +4,6 @@ use crate::Error;
 use crate::address::Address;
 use crate::module::{ModuleEmitter, Workspace};
 use crate::signature::{POINTER, clif_type, result_type};
-use crate::turns::Prepaid;
 use cranelift_codegen::ir::{self as clif, InstBuilder, StackSlot, UserFuncName};
 use cranelift_frontend::{FuncInstBuilder, FunctionBuilder, Variable};
 use cranelift_module::{DataId, FuncId};
@@ -23,7 +22,7 @@ pub(crate) struct Function<'a, 'p> {
     pub(crate) start: Start,
     pub(crate) locals: Vec<LocalSlot>,
     /// The innermost loop is the last.
-    pub(crate) loops: Vec<LoopFrame<'p>>,
+    pub(crate) loops: Vec<LoopFrame>,
     /// The turns that the scan has left, while a loop runs that takes some.
     pub(crate) turns: Option<Variable>,
     /// Where the copies of a body that are being emitted leave their loop, after so many turns.
@@ -66,22 +65,31 @@ pub(crate) enum LocalSlot {
 
 /// A loop that is being emitted.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct LoopFrame<'p> {
+pub(crate) struct LoopFrame {
     /// Runs `continuing`.
     pub(crate) next: clif::Block,
     pub(crate) after: clif::Block,
     pub(crate) is_continued: bool,
     pub(crate) is_left: bool,
-    /// Where its turns have been taken before the first one.
-    pub(crate) prepaid: Option<Prepaid<'p>>,
+    /// Whether it takes no turns.
+    pub(crate) few: Few,
     /// In a copy of its body: the turns that were had and not taken yet.
     pub(crate) taken: Option<i64>,
 }
 
-impl LoopFrame<'_> {
+/// Whether a loop's `Turn` takes none.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Few {
+    No,
+    Yes,
+    /// What it takes, 0 or 1.
+    Taken(clif::Value),
+}
+
+impl LoopFrame {
     /// Of a loop that goes on there, and has no end of a turn yet.
     pub(crate) fn to(after: clif::Block) -> Self {
-        Self { next: after, after, is_continued: false, is_left: false, prepaid: None, taken: None }
+        Self { next: after, after, is_continued: false, is_left: false, few: Few::No, taken: None }
     }
 }
 

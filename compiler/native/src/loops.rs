@@ -1,15 +1,14 @@
 //! Loops. What decides whether there is a further turn is in front of the loop and again at
 //! its end, so that a turn costs one branch.
 
-use crate::function::{Flow, Function, LoopFrame};
+use crate::function::{Few, Flow, Function, LoopFrame};
 use crate::place::PlaceValue;
 use crate::signature::clif_type;
-use crate::turns::{Counter, Prepaid};
+use crate::turns::{Size, Way};
 use cranelift_codegen::ir::{self as clif, InstBuilder, condcodes::IntCC, types};
 use cranelift_frontend::Variable;
 use staunch_ir::loops::{exit_condition, running};
-use staunch_ir::turns::Ahead;
-use staunch_ir::{Block, Expr, ExprKind, FaultKind, For, Location, Repr, Statement, Step, Value};
+use staunch_ir::{Block, Count, Expr, ExprKind, FaultKind, For, Location, Repr, Statement, Step, Taking, Value};
 
 /// Conditions of more operations than this are there once, and the loop's end jumps to them.
 const SMALL: usize = 8;
@@ -33,22 +32,20 @@ pub(crate) struct Running<'p> {
     /// What is not constant.
     last: Option<clif::Value>,
     step: Option<clif::Value>,
-    /// Where all turns are taken before the first one, by a constant step.
-    ahead: Option<(Ahead<'p>, i128)>,
-    /// The last value that the turns are taken for, then.
-    limit: Option<Variable>,
 }
 
 impl<'p> Function<'_, 'p> {
-    pub(crate) fn turns(&mut self, body: &'p Block, continuing: &'p Block) -> Flow {
+    pub(crate) fn turns(&mut self, body: &'p Block, continuing: &'p Block, count: Option<&'p Count>) -> Flow {
         let opens = self.open_turns(&[body, continuing]);
-        let flow = match body.split_first() {
-            Some(_) if let Some(it) = self.linear(body).filter(|it| is_small(it.leave)) => self.linear_loop(&it),
+        let (control, body) = match body.split_first() {
             Some((test, rest)) if let Some(leave) = exit_condition(test).filter(|it| is_small(it)) => {
-                self.turns_under(&Control::Unless(leave), rest, continuing)
+                (Control::Unless(leave), rest)
             }
-            _ => self.turns_under(&Control::Always, body, continuing),
+            _ => (Control::Always, &**body),
         };
+        let is_tested = matches!(control, Control::Unless(_));
+        let way = |this: &mut Self| count.map(|it| (it.taking, this.way_of_count(it, is_tested)));
+        let flow = self.turns_under(&control, way, body, continuing);
         self.close_turns(opens, flow)
     }
 
@@ -59,13 +56,23 @@ impl<'p> Function<'_, 'p> {
             self.counters.push(it);
             self.registers.push(register);
         }
-        let body = running.ahead.map_or(&*it.body, |it| it.0.body);
-        let flow = self.turns_under(&Control::Count(running), body, &[]);
+        let way = |this: &mut Self| (it.taking != Taking::Each).then(|| (it.taking, this.way_of_for(&running)));
+        let flow = self.turns_under(&Control::Count(running), way, &it.body, &[]);
         if running.register.is_some() {
             self.registers.pop();
             self.counters.pop();
         }
         self.close_turns(opens, flow)
+    }
+
+    fn way_of_for(&mut self, running: &Running<'p>) -> Way {
+        let (first, last) = (self.counter_value(running), self.last(running));
+        let step = match (&running.it.step, running.step) {
+            (_, Some(step)) => Size::Variable(step),
+            (Step::Constant(step), None) => Size::Constant(*step),
+            (Step::Variable(_), None) => unreachable!("a variable step is evaluated before the loop"),
+        };
+        Way { first, last, repr: running.repr, step, is_before: false, is_tested: true }
     }
 
     fn start_for(&mut self, it: &'p For, at: Location) -> Running<'p> {
@@ -80,11 +87,7 @@ impl<'p> Function<'_, 'p> {
             let is_zero = self.ins().icmp_imm_u(IntCC::Equal, step, 0);
             self.fault_if(is_zero, FaultKind::ZeroStep, it.step_at);
         }
-        let ahead = self.ahead(it);
-        let mut running = Running { it, repr, at, register: None, last, step, ahead, limit: None };
-        if ahead.is_some() {
-            running.limit = Some(self.builder.declare_var(types::I64));
-        }
+        let mut running = Running { it, repr, at, register: None, last, step };
         if it.is_private {
             let value = self.counter_value(&running);
             let register = self.builder.declare_var(types::I64);
@@ -117,24 +120,85 @@ impl<'p> Function<'_, 'p> {
         }
     }
 
-    fn turns_under(&mut self, control: &Control<'p>, body: &'p [Statement], continuing: &'p [Statement]) -> Flow {
-        let is_paid = matches!(control, Control::Count(Running { ahead: Some(_), .. }));
-        if !is_paid && let Some(copies) = self.copies(body, continuing) {
-            return self.turns_at_once(control, copies, body, continuing);
-        }
-        let [turn, next, after] = [(); 3].map(|()| self.builder.create_block());
-        let prepaid = self.first_turn(control, turn, after);
-        self.builder.switch_to_block(turn);
-        let frame = LoopFrame { next, prepaid, ..LoopFrame::to(after) };
-        let is_left = self.one_by_one(control, frame, turn, body, continuing);
+    /// A loop, and what it takes before its first turn.
+    fn turns_under(
+        &mut self,
+        control: &Control<'p>,
+        way: impl FnOnce(&mut Self) -> Option<(Taking, Way)>,
+        body: &'p [Statement],
+        continuing: &'p [Statement],
+    ) -> Flow {
+        let [start, after] = [(); 2].map(|()| self.builder.create_block());
+        self.further_turn(control, start, after);
+        self.builder.switch_to_block(start);
+        let is_left = match way(self) {
+            None => self.from_first_turn(control, start, after, body, continuing),
+            Some((Taking::EachOfMany, way)) => {
+                self.builder.seal_block(start);
+                let few = self.is_few(&way);
+                self.each_of_many(control, few, after, body, continuing)
+            }
+            Some((taking, way)) => {
+                self.builder.seal_block(start);
+                if let Taking::Ahead(at) | Taking::AheadOfMany(at) = taking {
+                    self.take_ahead(&way, taking.is_of_many(), at);
+                }
+                let turn = self.builder.create_block();
+                self.ins().jump(turn, &[]);
+                self.builder.switch_to_block(turn);
+                self.from_first_turn(control, turn, after, body, continuing)
+            }
+        };
         self.join(&[if is_left { Flow::Continues } else { Flow::Leaves }], after)
+    }
+
+    /// Where `few` is true, a loop without turns; else one that takes them. A large body is there once.
+    fn each_of_many(
+        &mut self,
+        control: &Control<'p>,
+        few: clif::Value,
+        after: clif::Block,
+        body: &'p [Statement],
+        continuing: &'p [Statement],
+    ) -> bool {
+        let [counted, free] = [(); 2].map(|()| self.builder.create_block());
+        if !self.may_copy(body, continuing) {
+            let [none, one] = [0, 1].map(|it| self.integer(types::I64, it));
+            let taken = self.ins().select(few, none, one);
+            self.ins().jump(counted, &[]);
+            self.builder.switch_to_block(counted);
+            let frame = LoopFrame { next: self.builder.create_block(), few: Few::Taken(taken), ..LoopFrame::to(after) };
+            return self.one_by_one(control, frame, counted, body, continuing);
+        }
+        self.ins().brif(few, free, &[], counted, &[]);
+        self.builder.switch_to_block(free);
+        let frame = LoopFrame { next: self.builder.create_block(), few: Few::Yes, ..LoopFrame::to(after) };
+        let is_left = self.one_by_one(control, frame, free, body, continuing);
+        self.builder.switch_to_block(counted);
+        self.from_first_turn(control, counted, after, body, continuing) || is_left
+    }
+
+    /// A loop from its first turn on, whose block is open and not sealed. Whether control goes on after it.
+    fn from_first_turn(
+        &mut self,
+        control: &Control<'p>,
+        turn: clif::Block,
+        after: clif::Block,
+        body: &'p [Statement],
+        continuing: &'p [Statement],
+    ) -> bool {
+        if let Some(copies) = self.copies(body, continuing) {
+            return self.turns_at_once(control, copies, [turn, after], body, continuing);
+        }
+        let frame = LoopFrame { next: self.builder.create_block(), ..LoopFrame::to(after) };
+        self.one_by_one(control, frame, turn, body, continuing)
     }
 
     /// A loop from its first turn on, whose block is open. Whether control goes on after it.
     pub(crate) fn one_by_one(
         &mut self,
         control: &Control<'p>,
-        frame: LoopFrame<'p>,
+        frame: LoopFrame,
         turn: clif::Block,
         body: &'p [Statement],
         continuing: &'p [Statement],
@@ -146,50 +210,11 @@ impl<'p> Function<'_, 'p> {
         if self.innermost().is_continued {
             self.go_on_in(frame.next);
             if self.end_of_turn(control, continuing) == Flow::Continues {
-                self.next_turn(control, turn, frame.after);
+                self.further_turn(control, turn, frame.after);
             }
         }
         self.builder.seal_block(turn);
         self.loops.pop().expect("pushed above").is_left
-    }
-
-    /// Into the first turn, or past the loop.
-    fn first_turn(&mut self, control: &Control<'p>, turn: clif::Block, after: clif::Block) -> Option<Prepaid<'p>> {
-        let Control::Count(running) = control else {
-            self.further_turn(control, turn, after);
-            return None;
-        };
-        let (Some((ahead, step)), Some(limit), Some(counter)) = (running.ahead, running.limit, running.register) else {
-            self.further_turn(control, turn, after);
-            return None;
-        };
-        let pay = self.builder.create_block();
-        self.further_turn(control, pay, after);
-        self.go_on_in(pay);
-        let prepaid = Prepaid { counter: Counter::Register(counter), limit, step, is_stepped: false };
-        let last = self.last(running);
-        self.take_turns(&prepaid, last, ahead.at);
-        self.ins().jump(turn, &[]);
-        Some(prepaid)
-    }
-
-    /// Into a further turn, or past the loop.
-    fn next_turn(&mut self, control: &Control<'p>, turn: clif::Block, after: clif::Block) {
-        let Control::Count(running) = control else { return self.further_turn(control, turn, after) };
-        let (Some((ahead, _)), Some(limit)) = (running.ahead, running.limit) else {
-            return self.further_turn(control, turn, after);
-        };
-        self.release_temporaries();
-        let (counter, limit) = (self.counter_value(running), self.builder.use_var(limit));
-        let past = self.is_past(running, running.repr == Repr::U64, counter, limit);
-        let end = self.builder.create_block();
-        self.ins().brif(past, end, &[], turn, &[]);
-        self.go_on_in(end);
-        // Where the turns did not suffice, the limit is before the last value.
-        let last = self.last(running);
-        let is_short = self.ins().icmp(IntCC::NotEqual, limit, last);
-        self.fault_if(is_short, FaultKind::LoopBudget, ahead.at);
-        self.ins().jump(after, &[]);
     }
 
     pub(crate) fn further_turn(&mut self, control: &Control<'p>, turn: clif::Block, after: clif::Block) {
@@ -351,13 +376,11 @@ impl<'p> Function<'_, 'p> {
         if repr.size() == 8 { value } else { self.ins().ireduce(clif_type(repr), value) }
     }
 
-    pub(crate) fn innermost(&mut self) -> &mut LoopFrame<'p> {
+    pub(crate) fn innermost(&mut self) -> &mut LoopFrame {
         self.loops.last_mut().expect("verified IR: EXIT and CONTINUE are in a loop")
     }
 
     pub(crate) fn leave_loop(&mut self) -> Flow {
-        let prepaid = self.innermost().prepaid;
-        self.give_back(prepaid);
         let after = self.turn_end();
         self.go(after)
     }

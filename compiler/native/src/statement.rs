@@ -27,7 +27,7 @@ impl<'p> Function<'_, 'p> {
             StatementKind::Case { selector, arms, otherwise } => {
                 return self.case(selector, arms, otherwise);
             }
-            StatementKind::Loop { body, continuing } => return self.turns(body, continuing),
+            StatementKind::Loop { body, continuing, count } => return self.turns(body, continuing, count.as_deref()),
             StatementKind::For(it) => return self.for_loop(it, statement.at),
             StatementKind::Turn => self.take_turn(statement.at),
             StatementKind::Exit => return self.leave_loop(),

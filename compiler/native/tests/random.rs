@@ -576,7 +576,17 @@ impl Maker {
         let mut body = self.statements(4, depth - 1);
         self.loops -= 1;
         body.insert(0, stmt(StatementKind::Turn));
-        Some(StatementKind::For(Box::new(For { counter, first, last, step, range, is_private, body, step_at: AT })))
+        Some(StatementKind::For(Box::new(For {
+            counter,
+            first,
+            last,
+            step,
+            range,
+            is_private,
+            body,
+            taking: Taking::Each,
+            step_at: AT,
+        })))
     }
 
     /// `LOOP … IF counter >= n THEN EXIT; counter := counter + 1`, where the counter is new.
@@ -595,7 +605,7 @@ impl Maker {
         continuing.extend(self.statements(1, 0));
         self.plain = plain;
         self.loops -= 1;
-        StatementKind::Loop { body, continuing }
+        StatementKind::Loop { body, continuing, count: None }
     }
 
     /// `WHILE counter < n AND … DO … counter := counter + 1; … END_WHILE`, where the counter is new, and the
@@ -631,7 +641,7 @@ impl Maker {
         body.extend(self.statements(2, depth - 1));
         self.plain = plain;
         self.loops -= 1;
-        StatementKind::Loop { body, continuing: Vec::new() }
+        StatementKind::Loop { body, continuing: Vec::new(), count: None }
     }
 
     fn call(&mut self) -> Option<StatementKind> {
@@ -758,7 +768,12 @@ struct Tally {
 }
 
 fn check(seed: u64, tally: &mut Tally) {
-    let program = Maker::program(seed);
+    let mut program = Maker::program(seed);
+    // Some take all turns one by one.
+    if !seed.is_multiple_of(3) {
+        taking::settle(&mut program);
+        verify::verify(&program).unwrap_or_else(|it| panic!("seed {seed}: {}", it[0]));
+    }
     let mut native = Native::new(&program);
     let mut interpreter = Interpreter::new(&program);
     interpreter.set_budget(Some(BUDGET));
@@ -767,7 +782,8 @@ fn check(seed: u64, tally: &mut Tally) {
     for scan in 0..SCANS {
         for instance in 0..program.instances.len() {
             // Every other program has few turns for its loops.
-            let turns = if seed.is_multiple_of(2) { seed / 2 % 64 } else { Context::TURNS };
+            let few = seed / 2 % 64 + if seed.is_multiple_of(4) { Context::FREE_TURNS } else { 0 };
+            let turns = if seed.is_multiple_of(2) { few } else { Context::TURNS };
             let [cx, native_cx] = [(); 2].map(|()| Context::new(scan * 10_000_000, scan == 0).with_turns(turns));
             let expected = interpreter.scan(instance, &cx);
             if expected == Err(Stop::OutOfSteps) {

@@ -20,8 +20,8 @@ use std::collections::{HashMap, HashSet};
 
 use staunch_ir::effects::{Effects, Rules, effects};
 use staunch_ir::{
-    Argument, Block, Expr, ExternalCall, FieldId, For, Mode, Param, ParamId, Place, Program, Projection, Root, Routine,
-    RoutineId, RoutineKind, Statement, StatementKind, Type,
+    Argument, Block, Count, Expr, ExternalCall, FieldId, For, Mode, Param, ParamId, Place, Program, Projection, Root,
+    Routine, RoutineId, RoutineKind, Statement, StatementKind, Type,
 };
 
 use call::Call;
@@ -223,8 +223,12 @@ impl Separator<'_> {
                     .collect(),
                 otherwise: self.block(body, otherwise),
             },
-            StatementKind::Loop { body: inner, continuing } => {
-                StatementKind::Loop { body: self.block(body, inner), continuing: self.block(body, continuing) }
+            StatementKind::Loop { body: inner, continuing, count } => {
+                let count = count.as_ref().map(|it| {
+                    let (counter, bound) = (body.place(&it.counter), body.expr(&it.bound));
+                    Box::new(Count { counter, bound, ..**it })
+                });
+                StatementKind::Loop { body: self.block(body, inner), continuing: self.block(body, continuing), count }
             }
             StatementKind::For(it) => StatementKind::For(Box::new(For {
                 counter: body.place(&it.counter),

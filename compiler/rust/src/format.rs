@@ -71,7 +71,7 @@ fn strips(text: &str) -> String {
     let marks: Vec<usize> = (0..lines.len()).filter(|at| lines[*at].trim_start().starts_with(STRIPS)).collect();
     let indent = |line: &str| line.len() - line.trim_start().len();
     for &mark in marks.iter().rev() {
-        let number: String = lines[mark].chars().filter(char::is_ascii_digit).collect();
+        let arguments = lines[mark].trim_start().trim_start_matches(STRIPS).trim_end_matches(");").to_owned();
         let outer = indent(&lines[mark]) - 4;
         let starts = |it: &String| indent(it) == outer && (it.contains("loop {") || it.contains("while ("));
         let ends = |it: &String| indent(it) == outer && it.trim_start() == "}";
@@ -79,7 +79,7 @@ fn strips(text: &str) -> String {
         let end = mark + lines[mark..].iter().position(ends).expect("the loop ends");
         lines[end].push_str(");");
         let head = lines[start].split_off(outer);
-        lines[start].push_str(&format!("strips!({number}; {head}"));
+        lines[start].push_str(&format!("strips!({arguments}; {head}"));
         lines.remove(mark);
     }
     lines.join("\n") + "\n"

@@ -33,6 +33,7 @@ mod short_circuit;
 mod statement;
 mod string;
 mod strips;
+mod turns;
 
 mod format;
 mod glue;

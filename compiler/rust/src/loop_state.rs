@@ -8,8 +8,8 @@ use staunch_ir::Place;
 pub struct Loops {
     pub around: Vec<Labels>,
     pub made: usize,
-    /// The one that has taken its turns before the first one: these, and its counter.
-    pub prepaid: Option<(Ident, Place)>,
+    /// Of the innermost loop: the variable that says that it has few turns, which it need not take.
+    pub few: Option<Ident>,
     /// How many operations the turns come to that are taken at once.
     pub copied: usize,
 }

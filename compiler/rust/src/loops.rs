@@ -4,14 +4,14 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::{ToTokens, quote};
 use staunch_ir::loops::exit_condition;
-use staunch_ir::turns::{self, Ahead};
 use staunch_ir::visit::{self, Access};
-use staunch_ir::{Block, Expr, For, Location, Place, Root, RoutineId, Statement, StatementKind, Step, Type, Value};
+use staunch_ir::{Block, Count, Expr, For, Location, Place, Root, Statement, StatementKind, Step, Type, Value};
 
 use crate::function::Function;
 use crate::loop_state::Labels;
 use crate::names::ident;
 use crate::precedence::{Code, Level};
+use crate::turns::Taken;
 
 /// A value, and the statement that finds it.
 pub struct Once {
@@ -19,28 +19,23 @@ pub struct Once {
     pub before: Option<TokenStream>,
 }
 
-/// The turns of a loop that are taken before the first one.
-struct Taken {
-    taken: TokenStream,
-    limit: TokenStream,
-    end: TokenStream,
-}
-
 impl Function<'_> {
-    pub fn repeat(&mut self, whole: &Block, continuing: &Block) -> TokenStream {
-        if let Some(printed) = self.linear_loop(whole, continuing) {
-            return printed;
-        }
+    pub fn repeat(&mut self, whole: &Block, continuing: &Block, count: Option<&Count>) -> TokenStream {
+        let Taken { before, few } = count.map(|it| self.count_turns(it)).unwrap_or_default();
         let (condition, body) = self.while_condition(whole);
-        let (strip, body) = self.strip(whole, body, continuing);
+        // The macro knows no loop of few turns without a condition at its start.
+        let strips = condition.is_some() || few.is_none();
+        let (strip, body) = if strips { self.strip((whole, continuing), body, few.as_ref()) } else { (None, body) };
         let labels = self.labels(body, !continuing.is_empty());
+        self.loops.few = few;
         let body = self.turn(&labels, body, |this| this.block(continuing));
+        self.loops.few = None;
         let label = &labels.label;
         match (condition, strip) {
-            (Some(condition), Some(strip)) => quote!(#label while (#condition) { #strip #body }),
-            (None, Some(strip)) => quote!(#label loop { #strip #body }),
-            (Some(condition), None) => quote!(#label while #condition { #body }),
-            (None, None) => quote!(#label loop { #body }),
+            (Some(condition), Some(strip)) => quote!(#before #label while (#condition) { #strip #body }),
+            (None, Some(strip)) => quote!(#before #label loop { #strip #body }),
+            (Some(condition), None) => quote!(#before #label while #condition { #body }),
+            (None, None) => quote!(#before #label loop { #body }),
         }
     }
 
@@ -56,17 +51,16 @@ impl Function<'_> {
             let (step, at) = (&step.value, self.emitter.at(it.step_at));
             quote!(if #step == 0 { return Err(FaultKind::ZeroStep)#at; })
         });
-        let takes_turns = |callee: RoutineId| self.emitter.effects[callee.index()].turns;
-        let (ahead, number) = (turns::ahead(it, &takes_turns), self.loops.around.len());
-        let turns = ahead.map(|ahead| self.take_turns(it, &ahead, (&last.value, &step.value), number));
-        let limit = turns.as_ref().map_or_else(|| last.value.clone(), |it| it.limit.clone());
-        let condition = self.further_turn(it, &limit, &step.value);
-        let body = ahead.map_or(&*it.body, |it| it.body);
+        let Taken { before: taken, few } = self.for_turns(it, &last.value, &step.value);
+        let condition = self.further_turn(it, &last.value, &step.value);
+        let (strip, body) =
+            if few.is_some() { self.strip((&it.body, &[]), &it.body, few.as_ref()) } else { (None, &*it.body) };
         let labels = self.labels(body, true);
         let reads = it.is_private && !matches!(it.counter.root, Root::Local(_)) && mentions(&it.body, &it.counter);
         let copy = reads.then(|| self.copy_counter(&it.counter));
         let outer = self.hoisted_indices.len();
         let subscripts = if it.is_private { self.find_subscripts(it) } else { TokenStream::new() };
+        self.loops.few = few;
         let body = self.turn(&labels, body, |this| {
             this.hoisted_indices.truncate(outer);
             if reads {
@@ -74,41 +68,13 @@ impl Function<'_> {
             }
             this.step(it, &last.value, &step.value, statement.at)
         });
+        self.loops.few = None;
         let (label, before, step_before) = (&labels.label, last.before, step.before);
-        let (taken, end) = turns.map(|it| (it.taken, it.end)).unzip();
-        if ahead.is_some() {
-            self.loops.prepaid = None;
+        let head = quote!(#first #before #step_before #zero #taken #label);
+        match strip {
+            Some(strip) => quote!(#head while (#condition) { #strip #copy #subscripts #body }),
+            None => quote!(#head while #condition { #copy #subscripts #body }),
         }
-        quote!(#first #before #step_before #zero #taken #label while #condition { #copy #subscripts #body } #end)
-    }
-
-    /// What takes the turns of a loop before the first one, and what ends it.
-    fn take_turns(
-        &mut self,
-        it: &For,
-        ahead: &Ahead<'_>,
-        (last, step): (&TokenStream, &TokenStream),
-        number: usize,
-    ) -> Taken {
-        let (name, at) = (self.made_up("turns", number), self.emitter.at(ahead.at));
-        let counter = self.count(&it.counter).tokens;
-        let step = match &it.step {
-            Step::Constant(step) => Literal::i128_unsuffixed(*step).into_token_stream(),
-            Step::Variable(_) => quote!(i128::from(#step)),
-        };
-        self.loops.prepaid = Some((name.clone(), it.counter.clone()));
-        Taken {
-            taken: quote!(let #name = cx.take_turns(#counter, #last, #step)#at?;),
-            limit: quote!(#name.limit),
-            end: quote!(#name.end(cx, #counter)#at?;),
-        }
-    }
-
-    /// Before RETURN: the loop that has taken its turns gives back what it will not have.
-    pub fn give_back(&self) -> Option<TokenStream> {
-        let (turns, counter) = self.loops.prepaid.as_ref()?;
-        let counter = self.count(counter).tokens;
-        Some(quote!(#turns.give_back(cx, #counter);))
     }
 
     /// What a loop's body and its end need of labels. A block around the body is what CONTINUE

@@ -73,17 +73,18 @@ impl Function<'_> {
             StatementKind::Assign { target, value } => self.assign(statement, target, value),
             StatementKind::If { condition, then, otherwise } => self.if_else(condition, then, otherwise),
             StatementKind::Case { selector, arms, otherwise } => self.case(selector, arms, otherwise),
-            StatementKind::Loop { body, continuing } => self.repeat(body, continuing),
+            StatementKind::Loop { body, continuing, count } => self.repeat(body, continuing, count.as_deref()),
             StatementKind::For(it) => self.for_loop(statement, it),
             StatementKind::Turn => {
                 let at = self.emitter.at(statement.at);
-                quote!(cx.take_turn()#at?;)
+                let take = quote!(cx.take_turn()#at?;);
+                self.loops.few.as_ref().map_or_else(|| take.clone(), |few| quote!(if !#few { #take }))
             }
             StatementKind::Exit => self.leave(),
             StatementKind::Continue => self.next(),
             StatementKind::Return => {
-                let (given_back, value) = (self.give_back(), self.returned());
-                quote!(#given_back return #value;)
+                let value = self.returned();
+                quote!(return #value;)
             }
             StatementKind::Call { result: Some(result), .. } => {
                 let call = self.call(statement);

@@ -53,7 +53,6 @@ pub use text::{StringType, Text, WideText};
 pub use time::Time;
 #[doc(hidden)]
 pub use turns::Strips;
-pub use turns::{Turns, TurnsBefore};
 
 /// Includes what `staunch_build` made of Structured Text, by its name there: the file's stem.
 ///

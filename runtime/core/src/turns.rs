@@ -1,4 +1,4 @@
-//! Loops that take all of their turns before the first one, or several at once.
+//! Loops whose number of turns is known before the first one, and loops that take several turns at once.
 
 use crate::ops::Integer;
 use crate::{Context, FaultKind};
@@ -7,120 +7,119 @@ mod strips;
 
 pub use strips::Strips;
 
-/// The turns that a FOR loop has taken.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Turns<T> {
-    /// The last value of the counter that they suffice for.
-    pub limit: T,
-    last: T,
-    step: i128,
-}
-
 impl Context {
-    /// Takes the turns of a loop whose counter goes from `first` by `step`, which is not 0, to `last`; where they
-    /// do not suffice, as many as there are. [`FaultKind::LoopBudget`] if it has a turn and none is left.
+    /// Turns that a loop may have without taking any, where their number is known before the first one, and no loop is
+    /// in it.
+    pub const FREE_TURNS: u64 = 1024;
+
+    /// Takes all turns of a loop whose counter goes from `first` by `step`, which is not 0, to `last`.
+    /// [`FaultKind::LoopBudget`] where they do not suffice: then none is taken.
     ///
     /// ```
     /// use staunch_runtime::{Context, FaultKind};
     /// let cx = Context::at(0).with_turns(5);
-    /// assert_eq!(cx.take_turns(1_i16, 3, 1)?.limit, 3);
-    /// assert_eq!(cx.take_turns(10_i16, 90, 10)?.limit, 20);
-    /// assert_eq!(cx.take_turns(1_i16, 3, 1).err(), Some(FaultKind::LoopBudget));
-    /// # Ok::<(), FaultKind>(())
+    /// assert_eq!(cx.take_turns(1_i16, 3, 1), Ok(()));
+    /// assert_eq!(cx.take_turns(10_i16, 30, 10), Err(FaultKind::LoopBudget));
+    /// assert_eq!(cx.take_turns(10_i16, 29, 10), Ok(()));
+    /// assert_eq!(cx.take_turns(3_i16, 1, 1), Ok(()));
     /// ```
     #[inline]
-    pub fn take_turns<T: Integer>(&self, first: T, last: T, step: i128) -> Result<Turns<T>, FaultKind> {
-        let turns = Turns { limit: last, last, step };
-        if turns.is_past(first) {
-            return Ok(turns);
+    pub fn take_turns<T: Integer>(&self, first: T, last: T, step: i128) -> Result<(), FaultKind> {
+        match further(first, last, step) {
+            Some(further) => self.take(further),
+            None => Ok(()),
         }
-        let (left, further) = (self.turns_left(), turns.after(first));
-        if further < left {
-            self.set_turns(left - further - 1);
-            return Ok(turns);
-        }
-        let further = left.checked_sub(1).ok_or(FaultKind::LoopBudget)?;
-        self.set_turns(0);
-        let way = further.wrapping_mul(size(step));
-        let start = first.extended();
-        let limit = if step > 0 { start.wrapping_add(way) } else { start.wrapping_sub(way) };
-        Ok(Turns { limit: T::of_low_bits(limit), ..turns })
     }
-}
 
-/// The turns that a loop has taken which goes on while its counter is before a bound.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TurnsBefore<T> {
-    /// The bound, or what is before it and next to the last value that the turns suffice for.
-    pub limit: T,
-    bound: T,
-}
+    /// [`Context::take_turns`] of a loop that goes on while its counter is before `bound`: below it, or above it where the step
+    /// is negative.
+    #[inline]
+    pub fn take_turns_before<T: Integer>(&self, first: T, bound: T, step: i128) -> Result<(), FaultKind> {
+        match further_before(first, bound, step) {
+            Some(further) => self.take(further),
+            None => Ok(()),
+        }
+    }
 
-impl Context {
-    /// [`Context::take_turns`] for a loop that goes on while its counter is before `bound`: below it, or above it where
-    /// the step is negative. There is a value from which a step leads to `bound` or past it, within the type.
+    /// [`Context::take_turns`] where they are more than [`Context::FREE_TURNS`]; else it takes none.
     ///
     /// ```
     /// use staunch_runtime::{Context, FaultKind};
-    /// let cx = Context::at(0).with_turns(5);
-    /// let all = cx.take_turns_before(0_i16, 3, 1)?;
-    /// assert_eq!((all.limit, all.end()), (3, Ok(())));
-    /// let some = cx.take_turns_before(10_i16, 90, 10)?;
-    /// assert_eq!((some.limit, some.end()), (21, Err(FaultKind::LoopBudget)));
-    /// # Ok::<(), FaultKind>(())
+    /// let cx = Context::at(0).with_turns(1030);
+    /// assert_eq!(cx.take_many_turns(1_i16, 1024, 1), Ok(()));
+    /// assert_eq!(cx.take_many_turns(1_i16, 1025, 1), Ok(()));
+    /// assert_eq!(cx.take_many_turns(1_i16, 1025, 1), Err(FaultKind::LoopBudget));
     /// ```
     #[inline]
-    pub fn take_turns_before<T: Integer>(&self, first: T, bound: T, step: i128) -> Result<TurnsBefore<T>, FaultKind> {
-        let is_before = if step > 0 { first < bound } else { first > bound };
-        if !is_before {
-            return Ok(TurnsBefore { limit: bound, bound });
+    pub fn take_many_turns<T: Integer>(&self, first: T, last: T, step: i128) -> Result<(), FaultKind> {
+        if Self::has_few_turns(first, last, step) { Ok(()) } else { self.take_turns(first, last, step) }
+    }
+
+    /// [`Context::take_turns_before`] where they are more than [`Context::FREE_TURNS`]; else it takes none.
+    #[inline]
+    pub fn take_many_turns_before<T: Integer>(&self, first: T, bound: T, step: i128) -> Result<(), FaultKind> {
+        if Self::has_few_turns_before(first, bound, step) { Ok(()) } else { self.take_turns_before(first, bound, step) }
+    }
+
+    /// Whether a loop whose counter goes from `first` by `step`, which is not 0, to `last` has no more than
+    /// [`Context::FREE_TURNS`].
+    #[inline]
+    pub fn has_few_turns<T: Integer>(first: T, last: T, step: i128) -> bool {
+        is_below(first, last, step, few(step))
+    }
+
+    /// [`Context::has_few_turns`] of a loop that goes on while its counter is before `bound`.
+    #[inline]
+    pub fn has_few_turns_before<T: Integer>(first: T, bound: T, step: i128) -> bool {
+        is_below(first, bound, step, few(step).saturating_add(1))
+    }
+
+    #[inline]
+    fn take(&self, further: u64) -> Result<(), FaultKind> {
+        let left = self.turns_left();
+        if further >= left {
+            return Err(FaultKind::LoopBudget);
         }
-        let one = if step > 0 { 1 } else { 1_u64.wrapping_neg() };
-        let last = T::of_low_bits(bound.extended().wrapping_sub(one));
-        let turns = self.take_turns(first, last, step)?;
-        let limit = T::of_low_bits(turns.limit.extended().wrapping_add(one));
-        Ok(TurnsBefore { limit, bound })
+        self.set_turns(left - further - 1);
+        Ok(())
     }
 }
 
-impl<T: PartialEq> TurnsBefore<T> {
-    /// After the loop, which nothing but its bound ends: [`FaultKind::LoopBudget`] where it would have gone further.
-    #[inline]
-    pub fn end(&self) -> Result<(), FaultKind> {
-        if self.limit == self.bound { Ok(()) } else { Err(FaultKind::LoopBudget) }
-    }
+/// How many turns come after the first one; `None` where there is none.
+#[inline]
+fn further<T: Integer>(first: T, last: T, step: i128) -> Option<u64> {
+    way(first, last, step).map(|it| it / size(step))
 }
 
-impl<T: Integer> Turns<T> {
-    /// After the loop, with its counter: [`FaultKind::LoopBudget`] where it came past the limit and would have
-    /// gone further.
-    #[inline]
-    pub fn end(&self, cx: &Context, counter: T) -> Result<(), FaultKind> {
-        if !self.is_past(counter) {
-            self.give_back(cx, counter);
-            return Ok(());
-        }
-        if self.limit == self.last { Ok(()) } else { Err(FaultKind::LoopBudget) }
-    }
+#[inline]
+fn further_before<T: Integer>(first: T, bound: T, step: i128) -> Option<u64> {
+    way(first, bound, step)?.checked_sub(1).map(|it| it / size(step))
+}
 
-    /// In the turn with `counter`: there will be no further one.
-    #[inline]
-    pub fn give_back(&self, cx: &Context, counter: T) {
-        cx.set_turns(cx.turns_left().wrapping_add(self.after(counter)));
-    }
+/// From `first` to `last`, if that is not past it.
+#[inline]
+fn way<T: Integer>(first: T, last: T, step: i128) -> Option<u64> {
+    let (low, high) = if step > 0 { (first, last) } else { (last, first) };
+    (low <= high).then(|| high.extended().wrapping_sub(low.extended()))
+}
 
-    #[inline]
-    fn is_past(&self, counter: T) -> bool {
-        if self.step > 0 { counter > self.limit } else { counter < self.limit }
+/// Whether the way from `first` to `last` is shorter, or there is none.
+#[inline]
+fn is_below<T: Integer>(first: T, last: T, step: i128, length: u64) -> bool {
+    if T::BITS > 32 {
+        return way(first, last, step).is_none_or(|it| it < length);
     }
+    // One comparison: as numbers with a sign, of which 64 bits hold all.
+    const SIGN: u64 = 1 << 63;
+    let (low, high) = if step > 0 { (first, last) } else { (last, first) };
+    let way = high.extended().wrapping_sub(low.extended());
+    way ^ SIGN < length ^ SIGN
+}
 
-    /// How many come after the one with `counter`, which is not past the limit.
-    #[inline]
-    fn after(&self, counter: T) -> u64 {
-        let (limit, counter) = (self.limit.extended(), counter.extended());
-        let way = if self.step > 0 { limit.wrapping_sub(counter) } else { counter.wrapping_sub(limit) };
-        way / size(self.step)
-    }
+/// What [`Context::FREE_TURNS`] steps come to.
+#[inline]
+fn few(step: i128) -> u64 {
+    size(step).saturating_mul(Context::FREE_TURNS)
 }
 
 /// A step's magnitude, which a counter's type holds.

@@ -109,17 +109,14 @@ pub fn sum(cx: &Context, n: i32, pace: i32) -> Result<i32, Fault> {
     if step == 0 {
         return Err(FaultKind::ZeroStep).at(TURNS_BY_A_VARIABLE_STEP_ST, 5, 20);
     }
-    let turns = cx
-        .take_turns(i, last, i128::from(step))
-        .at(TURNS_BY_A_VARIABLE_STEP_ST, 5, 1)?;
-    while if step > 0 { i <= turns.limit } else { i >= turns.limit } {
+    cx.take_many_turns(i, last, i128::from(step)).at(TURNS_BY_A_VARIABLE_STEP_ST, 5, 1)?;
+    while if step > 0 { i <= last } else { i >= last } {
         result = result.wrapping_add(i); // :6
         let Some(next_2) = i.checked_add(step) else {
             break;
         };
         i = next_2;
     }
-    turns.end(cx, i).at(TURNS_BY_A_VARIABLE_STEP_ST, 5, 1)?;
     Ok(result)
 }
 

@@ -116,16 +116,14 @@ impl Default for Globals {
 pub fn sum(cx: &Context, a: &mut [i32; 100], n: i32) -> Result<i32, Fault> {
     let mut result: i32 = 0;
     let mut i: i32 = 0;
-    let bound: i32 = n; // :7
-    let turns = cx.take_turns_before(i, bound, 1).at(TURNS_BY_STEPS_ST, 7, 1)?;
-    while i < turns.limit {
+    cx.take_many_turns_before(i, n, 1).at(TURNS_BY_STEPS_ST, 7, 1)?; // :7
+    while i < n {
         result = result
             .wrapping_add(
                 a[ops::index(i64::from(i), 0, 99).at(TURNS_BY_STEPS_ST, 8, 20)?],
             );
         i = i.wrapping_add(1); // :9
     }
-    turns.end().at(TURNS_BY_STEPS_ST, 7, 1)?;
     Ok(result)
 }
 

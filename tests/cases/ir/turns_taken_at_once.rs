@@ -30,7 +30,7 @@
 
 use staunch_runtime::{Context, Fault, OrFault};
 
-use staunch_runtime::firmware;
+use staunch_runtime::{firmware, strips};
 
 /// The sources, as the `file` of a fault's location counts them.
 pub const FILES: &[&str] = &["turns_taken_at_once.st"];
@@ -104,8 +104,9 @@ pub fn first(cx: &Context, n: i16, least: i16) -> Result<i16, Fault> {
     let mut result: i16 = 0;
     let mut i: i16 = 1; // :5
     let last: i16 = n;
-    let turns = cx.take_turns(i, last, 2).at(TURNS_TAKEN_AT_ONCE_ST, 5, 1)?;
-    while i <= turns.limit {
+    let few = Context::has_few_turns(i, last, 2);
+    strips!(32, few; while (i <= last) {
+        cx.take_turn().at(TURNS_TAKEN_AT_ONCE_ST, 5, 1)?;
         if i == 40 {
             // :6
             break;
@@ -113,15 +114,13 @@ pub fn first(cx: &Context, n: i16, least: i16) -> Result<i16, Fault> {
         if i >= least {
             // :7
             result = i; // :8
-            turns.give_back(cx, i); // :9
-            return Ok(result);
+            return Ok(result); // :9
         }
         let Some(next_2) = i.checked_add(2) else {
             break;
         };
         i = next_2;
-    }
-    turns.end(cx, i).at(TURNS_TAKEN_AT_ONCE_ST, 5, 1)?;
+    });
     Ok(result)
 }
 

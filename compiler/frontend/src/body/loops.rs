@@ -5,8 +5,8 @@ use crate::expr::operand::Operand;
 use crate::types::counter::{Counter, Shown};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{
-    Block, Conversion, Elementary, Expr, For, Location, Op, Place, Statement, StatementKind, Step, Type, Value, loops,
-    turns,
+    Block, Conversion, Elementary, Expr, For, Location, Op, Place, Statement, StatementKind, Step, Taking, Type, Value,
+    loops, turns,
 };
 
 impl<'s> Checker<'_, 's> {
@@ -28,7 +28,7 @@ impl<'s> Checker<'_, 's> {
         if !turns::divides(&self.frame(), &block, &[]) {
             block.insert(turn, Statement::new(StatementKind::Turn, self.at(span)));
         }
-        self.push(StatementKind::Loop { body: block, continuing: Vec::new() }, span);
+        self.push(StatementKind::Loop { body: block, continuing: Vec::new(), count: None }, span);
     }
 
     pub(super) fn repeat_loop(&mut self, body: &[ast::Statement<'s>], until: &ast::Expr<'s>, span: Span) {
@@ -48,7 +48,7 @@ impl<'s> Checker<'_, 's> {
         if !turns::divides(&self.frame(), &body, &continuing) {
             body.insert(0, Statement::new(StatementKind::Turn, self.at(span)));
         }
-        self.push(StatementKind::Loop { body, continuing }, span);
+        self.push(StatementKind::Loop { body, continuing, count: None }, span);
     }
 
     /// A loop whose condition never ends it needs a way out.
@@ -174,7 +174,8 @@ impl<'s> Checker<'_, 's> {
         }
         let range = self.decl.program.range(place.ty).or(ty.repr().range())?;
         let step_at = self.at(by.unwrap_or(counter).span);
-        let head = For { counter: place, first, last, step, range, is_private: false, body: Block::new(), step_at };
+        let (body, taking) = (Block::new(), Taking::Each);
+        let head = For { counter: place, first, last, step, range, is_private: false, body, taking, step_at };
         Some((head, shown))
     }
 

@@ -1,13 +1,12 @@
-//! Statements: control flow, writes and calls.
+//! Statements: branches, writes and calls.
 
 use super::{Frame, Interpreter, Stop};
 use crate::evaluate::{scalar, text};
 use crate::layout::usize_of;
 use crate::{
-    Argument, Arm, BlockId, Expr, ExprKind, For, Location, Mode, Place, Routine, RoutineId, Statement, StatementKind,
-    Step, Type, Value,
+    Argument, Arm, BlockId, Expr, ExprKind, Mode, Place, Routine, RoutineId, Statement, StatementKind, Type, Value,
 };
-use staunch_runtime::{Context, Fault, FaultKind, Instruction, ops};
+use staunch_runtime::{Context, Fault, FaultKind, Instruction};
 
 /// How a statement ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,10 +40,11 @@ impl<'p> Interpreter<'p> {
                 let block = self.arm(frame, selector, arms)?.unwrap_or(otherwise);
                 return self.block(frame, block, cx);
             }
-            StatementKind::Loop { body, continuing } => {
-                return self.turns(frame, body, continuing, cx);
+            StatementKind::Loop { body, continuing, count } => {
+                return self.turns(frame, body, continuing, count.as_deref(), cx);
             }
             StatementKind::For(it) => return self.for_loop(frame, it, statement.at, cx),
+            StatementKind::Turn if self.has_few_turns => {}
             StatementKind::Turn => cx.take_turn().map_err(|kind| Fault { kind, at: statement.at })?,
             StatementKind::Exit => return Ok(Flow::Exit),
             StatementKind::Continue => return Ok(Flow::Continue),
@@ -73,7 +73,7 @@ impl<'p> Interpreter<'p> {
         Ok(Flow::Next)
     }
 
-    fn step(&mut self) -> Result<(), Stop> {
+    pub(super) fn step(&mut self) -> Result<(), Stop> {
         if let Some(left) = &mut self.steps_left {
             *left = left.checked_sub(1).ok_or(Stop::OutOfSteps)?;
         }
@@ -92,63 +92,7 @@ impl<'p> Interpreter<'p> {
         Ok(arms.iter().find(holds).map(|arm| &arm.body))
     }
 
-    fn turns(
-        &mut self,
-        frame: &Frame,
-        body: &'p [Statement],
-        continuing: &'p [Statement],
-        cx: &Context,
-    ) -> Result<Flow, Stop> {
-        loop {
-            self.step()?;
-            for block in [body, continuing] {
-                match self.block(frame, block, cx)? {
-                    Flow::Next | Flow::Continue => {}
-                    Flow::Exit => return Ok(Flow::Next),
-                    Flow::Return => return Ok(Flow::Return),
-                }
-            }
-        }
-    }
-
-    fn for_loop(&mut self, frame: &Frame, it: &'p For, at: Location, cx: &Context) -> Result<Flow, Stop> {
-        self.assign(frame, &it.counter, &it.first)?;
-        let last = scalar(&self.scope(frame), &it.last)?;
-        let step = match &it.step {
-            Step::Constant(step) => *step,
-            Step::Variable(step) => integer(scalar(&self.scope(frame), step)?),
-        };
-        if step == 0 {
-            return Err(Fault { kind: FaultKind::ZeroStep, at: it.step_at }.into());
-        }
-        loop {
-            self.step()?;
-            let (_, value) = self.counter(frame, it)?;
-            let (value, last_turn) = (integer(value), integer(last));
-            if if step > 0 { value > last_turn } else { value < last_turn } {
-                return Ok(Flow::Next);
-            }
-            match self.block(frame, &it.body, cx)? {
-                Flow::Next | Flow::Continue => {}
-                Flow::Exit => return Ok(Flow::Next),
-                Flow::Return => return Ok(Flow::Return),
-            }
-            let (offset, value) = self.counter(frame, it)?;
-            match ops::step_value(value, step, last, it.range).map_err(|kind| Fault { kind, at })? {
-                Some(next) => next.write(&mut self.memory[offset..]),
-                None => return Ok(Flow::Next),
-            }
-        }
-    }
-
-    /// Where a loop's counter is, and its value.
-    fn counter(&self, frame: &Frame, it: &For) -> Result<(usize, Value), Fault> {
-        let offset = self.resolve(frame, &it.counter)?;
-        let repr = self.program.repr(it.counter.ty).expect("verified IR: an integer counter");
-        Ok((offset, Value::read(repr, &self.memory[offset..])))
-    }
-
-    fn assign(&mut self, frame: &Frame, target: &Place, value: &Expr) -> Result<(), Fault> {
+    pub(super) fn assign(&mut self, frame: &Frame, target: &Place, value: &Expr) -> Result<(), Fault> {
         if let Some(reached) = self.scope(frame).reached(target)? {
             return self.assign_reached(frame, &reached, value);
         }
@@ -290,7 +234,7 @@ fn block_id(place: &Place) -> BlockId {
     }
 }
 
-fn integer(value: Value) -> i128 {
+pub(super) fn integer(value: Value) -> i128 {
     value.as_integer().expect("verified IR: an integer")
 }
 

@@ -120,27 +120,29 @@ fn loops_run_continuing_after_continue_and_leave_at_exit() {
     let body =
         vec![stmt(StatementKind::Turn), when(is(count(), 3), StatementKind::Continue), assign(wide(), total_plus)];
     let continuing = vec![when(is(count(), 5), StatementKind::Exit), assign(count(), add(load(count()), int(1)))];
-    let run = run(vec![stmt(StatementKind::Loop { body, continuing }), assign(total(), load(wide()))]);
+    let run = run(vec![stmt(StatementKind::Loop { body, continuing, count: None }), assign(total(), load(wide()))]);
     assert_eq!((run.count, run.wide, run.total), (5, 1 + 2 + 4 + 5, 12));
 }
 
 #[test]
 fn return_leaves_loops_and_the_pou() {
     let body = vec![stmt(StatementKind::Turn), stmt(StatementKind::Return)];
-    let endless = stmt(StatementKind::Loop { body, continuing: Vec::new() });
+    let endless = stmt(StatementKind::Loop { body, continuing: Vec::new(), count: None });
     let run = run(vec![endless, assign(count(), int(1))]);
     assert_eq!((run.end, run.count), (Ok(()), 0));
 }
 
 #[test]
 fn an_endless_loop_runs_out_of_steps() {
-    let endless = stmt(StatementKind::Loop { body: vec![stmt(StatementKind::Turn)], continuing: Vec::new() });
+    let endless =
+        stmt(StatementKind::Loop { body: vec![stmt(StatementKind::Turn)], continuing: Vec::new(), count: None });
     assert_eq!(run(vec![endless]).end, Err(Stop::OutOfSteps));
 }
 
 #[test]
 fn an_endless_loop_uses_up_its_turns() {
-    let endless = stmt(StatementKind::Loop { body: vec![stmt(StatementKind::Turn)], continuing: Vec::new() });
+    let endless =
+        stmt(StatementKind::Loop { body: vec![stmt(StatementKind::Turn)], continuing: Vec::new(), count: None });
     let run = scans(vec![endless], &[Context::at(0).with_turns(1000)], None);
     assert_eq!(run.end, fault(FaultKind::LoopBudget, 7));
 }

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::fixture::{AT, assign, call_adder, count, int, lint, load, local, sample, stmt, temp, total, value, values};
-use crate::{Argument, Array, BoundsId, Const, Elementary, LocalId, RoutineId, Step, Type, apply};
+use crate::{Argument, Array, BoundsId, Const, Elementary, LocalId, RoutineId, Step, Taking, Type, apply};
 
 const MAIN: usize = 3;
 
@@ -15,6 +15,7 @@ fn counted(counter: Place, first: i16, last: i16, step: i128) -> For {
         range: (i16::MIN.into(), i16::MAX.into()),
         is_private: true,
         body: Vec::new(),
+        taking: Taking::Each,
         step_at: AT,
     }
 }
@@ -164,6 +165,7 @@ fn a_local_is_checked_while_only_checks_are_written_to_it() {
         range: (1, 9),
         is_private: false,
         body: vec![stmt(StatementKind::Turn)],
+        taking: Taking::Each,
         step_at: AT,
     })))]));
     let handed_on = with_index(|_| vec![]);

@@ -2,8 +2,8 @@
 
 use super::Printer;
 use crate::{
-    Argument, Arm, Block, Expr, ExternalCall, For, Place, Routine, RoutineId, RoutineKind, Statement, StatementKind,
-    Step, Type,
+    Argument, Arm, Block, Count, Expr, ExternalCall, For, Place, Routine, RoutineId, RoutineKind, Statement,
+    StatementKind, Step, Taking, Type,
 };
 use core::fmt;
 
@@ -28,7 +28,7 @@ impl Printer<'_> {
                 arms.iter().try_for_each(|arm| self.arm(routine, arm))?;
                 self.tail(routine, "else", otherwise)
             }
-            StatementKind::Loop { body, continuing } => {
+            StatementKind::Loop { body, continuing, .. } => {
                 self.block(routine, body)?;
                 self.tail(routine, "continuing", continuing)
             }
@@ -68,7 +68,8 @@ impl Printer<'_> {
             }
             StatementKind::If { condition, .. } => format!("if {}", self.expr(routine, condition)),
             StatementKind::Case { selector, .. } => format!("case {}", self.expr(routine, selector)),
-            StatementKind::Loop { .. } => "loop".to_owned(),
+            StatementKind::Loop { count: None, .. } => "loop".to_owned(),
+            StatementKind::Loop { count: Some(it), .. } => self.count(routine, it),
             StatementKind::For(it) => self.for_head(routine, it),
             StatementKind::Turn => "turn".to_owned(),
             StatementKind::Exit => "exit".to_owned(),
@@ -97,7 +98,19 @@ impl Printer<'_> {
             (self.place(routine, &it.counter), self.expr(routine, &it.first), self.expr(routine, &it.last));
         let (least, most) = it.range;
         let private = if it.is_private { " private" } else { "" };
-        format!("for{private} {counter} in {least}..{most} := {first} to {last} by {step}")
+        let taking = taking(it.taking);
+        format!("for{private} {counter} in {least}..{most} := {first} to {last} by {step}{taking}")
+    }
+
+    fn count(&self, routine: &Routine, it: &Count) -> String {
+        let (counter, bound) = (self.place(routine, &it.counter), self.expr(routine, &it.bound));
+        let way = match (it.step > 0, it.offset) {
+            (true, 0) => "to",
+            (false, 0) => "down to",
+            (true, _) => "below",
+            (false, _) => "down above",
+        };
+        format!("loop {counter} {way} {bound} by {}{}", it.step, taking(it.taking))
     }
 
     fn call_head(
@@ -151,4 +164,13 @@ impl Printer<'_> {
 
 fn label_text((low, high): (i128, i128)) -> String {
     if low == high { low.to_string() } else { format!("{low}..{high}") }
+}
+
+fn taking(it: Taking) -> &'static str {
+    match it {
+        Taking::Each => "",
+        Taking::EachOfMany => ", each of many turns",
+        Taking::Ahead(_) => ", all turns ahead",
+        Taking::AheadOfMany(_) => ", all of many turns ahead",
+    }
 }

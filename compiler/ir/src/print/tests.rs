@@ -83,6 +83,7 @@ fn statements() {
                 arms,
                 otherwise: vec![stmt(StatementKind::Continue)],
             })],
+            count: None,
             continuing: vec![call_counter(Expr::bool(true, AT), 5)],
         }),
         prescan_adder(RoutineId(2), adder()),

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::fixture::{AT, add, assign, call_adder, count, flag, int, load, local, sample, stmt, temp, wide};
-use crate::{Const, Elementary, LocalId, Repr, Step, Type};
+use crate::{Const, Elementary, For, LocalId, Repr, Step, Taking};
 
 const MAIN: usize = 3;
 
@@ -33,14 +33,13 @@ fn step(op: Op, place: &Place, by: i16) -> Statement {
     assign(place.clone(), Expr::apply(op, Type::INT, vec![load(place.clone()), int(by)], AT))
 }
 
-/// Step, offset, conditions besides, and which statement steps.
-fn found(body: &[Statement]) -> Option<(i128, i128, usize, usize)> {
+/// Step, offset, and whether there are conditions besides.
+fn found(body: &[Statement]) -> Option<(i128, i128, bool)> {
     let program = sample(Vec::new());
     let frame = Frame::of(&program, &program.routines[MAIN]);
-    let known = Known { program: &program, loops: &[], checked: &|_| false };
-    let linear = linear(&known, &frame, body, &|callee| callee == RoutineId(1))?;
+    let linear = linear(&frame, body)?;
     assert!(linear.counter.is_same_variable(&count()));
-    Some((linear.step, linear.offset, linear.others.len(), linear.steps))
+    Some((linear.step, linear.offset, linear.has_others))
 }
 
 /// `WHILE count op bound DO count := count + by; END_WHILE`
@@ -95,8 +94,8 @@ fn up() -> Statement {
 fn only_the_step_may_reach_the_counter_and_nothing_the_bound() {
     let other = || assign(wide(), load(wide()));
     let of = |body| found(&while_loop(below(), body));
-    assert_eq!(of(vec![up()]), Some((1, -1, 0, 0)));
-    assert_eq!(of(vec![other(), up(), other()]), Some((1, -1, 0, 1)));
+    assert_eq!(of(vec![up()]), Some((1, -1, false)));
+    assert_eq!(of(vec![other(), up(), other()]), Some((1, -1, false)));
     assert_eq!(of(vec![other()]), None);
     assert_eq!((of(vec![up(), up()]), of(vec![up(), call_adder(count())])), (None, None));
     assert_eq!(
@@ -111,15 +110,12 @@ fn only_the_step_may_reach_the_counter_and_nothing_the_bound() {
 }
 
 #[test]
-fn what_else_takes_turns_or_leaves_a_turn_early_is_not_linear() {
+fn what_leaves_a_turn_early_is_not_linear() {
     let of = |body| found(&while_loop(below(), body));
-    assert_eq!(of(vec![up(), turn()]), None);
-    // The callee takes turns.
-    assert_eq!(of(vec![up(), call_adder(wide())]), None);
+    assert!(of(vec![up(), turn()]).is_some() && of(vec![up(), call_adder(wide())]).is_some());
     assert!(of(vec![up(), stmt(StatementKind::Exit)]).is_some());
     assert_eq!(of(vec![stmt(StatementKind::Continue), up()]), None);
     assert_eq!(found(&[turn(), exit_where(not(below())), up()]), None);
-    assert_eq!(found(&[exit_where(not(below())), up(), turn()]), None);
     // What is left on another condition, or does not only leave.
     assert_eq!(found(&[exit_where(below()), turn(), up()]), None);
     let test = |then: StatementKind, otherwise| {
@@ -130,15 +126,34 @@ fn what_else_takes_turns_or_leaves_a_turn_early_is_not_linear() {
 }
 
 #[test]
-fn conditions_that_fault_are_evaluated_in_each_turn() {
+fn a_bound_does_not_fault_and_what_holds_besides_may() {
     let quotient = || Expr::apply(Op::Div, Type::INT, vec![int(100), load(temp())], AT);
     let both = |a, b| Expr::apply(Op::And, Type::BOOL, vec![a, b], AT);
     let of = |stay| found(&while_loop(stay, vec![up()]));
     assert_eq!(of(compare(Op::Lt, load(count()), quotient())), None);
-    assert_eq!(of(both(load(flag()), below())), Some((1, -1, 1, 0)));
-    assert_eq!(of(both(both(below(), load(flag())), load(flag()))), Some((1, -1, 2, 0)));
-    assert_eq!(of(both(below(), compare(Op::Gt, quotient(), int(0)))), None);
+    assert_eq!(of(both(load(flag()), below())), Some((1, -1, true)));
+    assert_eq!(of(both(both(below(), load(flag())), load(flag()))), Some((1, -1, true)));
+    assert_eq!(of(both(below(), compare(Op::Gt, quotient(), int(0)))), Some((1, -1, true)));
     assert_eq!(of(Expr::apply(Op::Or, Type::BOOL, vec![below(), load(flag())], AT)), None);
+}
+
+/// `i < n AND_THEN flag`, and `i < n OR_ELSE flag`.
+#[test]
+fn a_condition_may_be_a_chain_of_statements() {
+    let chain = |condition: Expr, then: Vec<Statement>, otherwise| {
+        let more = stmt(StatementKind::If { condition, then, otherwise });
+        vec![assign(flag(), below()), more, exit_where(not(load(flag()))), turn(), up()]
+    };
+    let other = || assign(flag(), compare(Op::Gt, load(temp()), int(0)));
+    let is = |body: &[Statement]| found(body) == Some((1, -1, true));
+    assert!(is(&chain(load(flag()), vec![other()], Vec::new())));
+    assert!(!is(&chain(not(load(flag())), vec![other()], Vec::new())));
+    assert!(!is(&chain(load(flag()), vec![other()], vec![other()])));
+    assert!(!is(&chain(load(flag()), vec![up(), other()], Vec::new())), "the counter is stepped elsewhere too");
+    assert!(!is(&chain(load(flag()), vec![assign(temp(), int(9))], Vec::new())), "the bound is another then");
+    let mut read_late = chain(load(flag()), vec![other()], Vec::new());
+    read_late.insert(2, assign(flag(), compare(Op::Gt, load(temp()), int(0))));
+    assert!(!is(&read_late));
 }
 
 const BITS: LocalId = LocalId(1);
@@ -227,28 +242,54 @@ fn divided_values_are_small_soon() {
     }
 }
 
+fn counted(is_private: bool, step: Step, body: Vec<Statement>) -> For {
+    let range = (i16::MIN.into(), i16::MAX.into());
+    let taking = Taking::Each;
+    For { counter: temp(), first: int(1), last: load(count()), step, range, is_private, body, taking, step_at: AT }
+}
+
+/// The statement, when its loop takes its turns, and how many statements its body keeps.
+fn settled(statement: Statement) -> (Taking, usize) {
+    let mut program = sample(vec![statement]);
+    crate::taking::settle(&mut program);
+    match &program.routines[MAIN].body[0].kind {
+        StatementKind::For(it) => (it.taking, it.body.len()),
+        StatementKind::Loop { body, count, .. } => (count.as_ref().map_or(Taking::Each, |it| it.taking), body.len()),
+        _ => unreachable!("a loop"),
+    }
+}
+
 #[test]
-fn a_counted_loop_says_its_turns_where_only_it_takes_any() {
-    let counted = |is_private, step, body: Vec<Statement>| {
-        let it = For {
-            counter: temp(),
-            first: int(1),
-            last: int(9),
-            step,
-            range: (i16::MIN.into(), i16::MAX.into()),
-            is_private,
-            body,
-            step_at: AT,
-        };
-        ahead(&it, &|callee| callee == RoutineId(1)).map(|it| it.body.len())
+fn a_loop_that_nothing_ends_early_takes_its_turns_ahead() {
+    let of = |is_private, body: Vec<Statement>| {
+        settled(stmt(StatementKind::For(Box::new(counted(is_private, Step::Constant(1), body)))))
     };
-    let one = || Step::Constant(1);
-    assert_eq!(counted(true, one(), vec![turn(), assign(count(), int(1))]), Some(1));
-    assert_eq!(counted(true, one(), vec![]), None);
-    assert_eq!(counted(true, one(), vec![assign(count(), int(1))]), None);
-    assert_eq!(counted(false, one(), vec![turn()]), None);
-    assert_eq!(counted(true, one(), vec![turn(), turn()]), None);
-    assert_eq!(counted(true, one(), vec![turn(), call_adder(wide())]), None);
-    let variable = Step::Variable(load(count()));
-    assert_eq!(counted(true, variable, vec![turn()]), Some(0));
+    let inner = || counted(true, Step::Constant(1), vec![turn()]).statement(AT);
+    let exit = || exit_where(load(flag()));
+    assert_eq!(of(true, vec![turn(), assign(wide(), load(wide()))]), (Taking::AheadOfMany(AT), 1));
+    assert_eq!(of(false, vec![turn()]), (Taking::Each, 1));
+    assert_eq!(of(true, vec![]), (Taking::Each, 0));
+    assert_eq!(of(true, vec![turn(), exit()]), (Taking::EachOfMany, 2));
+    assert_eq!(of(true, vec![turn(), stmt(StatementKind::Return)]), (Taking::EachOfMany, 2));
+    // What takes turns within.
+    assert_eq!(of(true, vec![turn(), inner()]), (Taking::Ahead(AT), 1));
+    assert_eq!(of(true, vec![turn(), inner(), exit()]), (Taking::Each, 3));
+    let exits_within = counted(true, Step::Constant(1), vec![turn(), exit()]);
+    let within = stmt(StatementKind::For(Box::new(exits_within)));
+    assert_eq!(of(true, vec![turn(), within]), (Taking::Ahead(AT), 1), "that EXIT is the inner loop's");
+    let variable = counted(true, Step::Variable(load(count())), vec![turn()]);
+    assert_eq!(settled(stmt(StatementKind::For(Box::new(variable)))), (Taking::AheadOfMany(AT), 0));
+
+    let of = |stay, body| {
+        let body = while_loop(stay, body);
+        settled(stmt(StatementKind::Loop { body, continuing: Vec::new(), count: None }))
+    };
+    assert_eq!(of(below(), vec![up()]), (Taking::AheadOfMany(AT), 2));
+    assert_eq!(of(below(), vec![up(), exit()]), (Taking::EachOfMany, 4));
+    let below_nine = compare(Op::Lt, load(count()), int(9));
+    assert_eq!(of(below_nine, vec![up(), inner()]), (Taking::Ahead(AT), 3));
+    assert_eq!(of(below(), vec![]), (Taking::Each, 2));
+    let both = Expr::apply(Op::And, Type::BOOL, vec![below(), load(flag())], AT);
+    assert_eq!(of(both.clone(), vec![up()]), (Taking::EachOfMany, 3));
+    assert_eq!(of(both, vec![up(), inner()]), (Taking::Each, 4));
 }

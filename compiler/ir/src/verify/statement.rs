@@ -6,7 +6,7 @@ use crate::{
     Argument, Arm, Block, ClassKind, Expr, ExprKind, ExternalCall, For, Location, Mode, Param, Place, Root, Routine,
     RoutineId, Statement, StatementKind, Step, Type,
 };
-use crate::{loops, turns};
+use crate::{loops, taking, turns};
 use staunch_runtime::BlockInfo;
 
 /// The block that is being checked, and where in it.
@@ -33,6 +33,7 @@ impl Body<'_> {
 
 impl<'p> Verifier<'p> {
     pub(super) fn bodies(&mut self) {
+        self.loopers = taking::loopers(self.program);
         for class in &self.program.classes {
             self.within.clone_from(&class.name);
             let body = self.program.routine(class.body);
@@ -73,10 +74,14 @@ impl<'p> Verifier<'p> {
                 self.case(body, selector, arms, at);
                 self.block(body, otherwise);
             }
-            StatementKind::Loop { body: block, continuing } => {
+            StatementKind::Loop { body: block, continuing, count } => {
                 let frame = Frame::of(self.program, body.routine);
-                let ends = block.iter().any(is_turn) || turns::divides(&frame, block, continuing);
+                let is_ahead = count.as_ref().is_some_and(|it| it.taking.is_ahead());
+                let ends = is_ahead || block.iter().any(is_turn) || turns::divides(&frame, block, continuing);
                 self.require(ends, at, "a loop that takes no turns");
+                if let Some(count) = count {
+                    self.count(body, block, continuing, count, at);
+                }
                 let inside = Body { in_loop: true, in_continuing: false, ..*body };
                 self.block(&inside, block);
                 self.block(&Body { in_continuing: true, ..inside }, continuing);
@@ -131,7 +136,8 @@ impl<'p> Verifier<'p> {
         let frame = Frame::of(self.program, body.routine);
         let private = !it.is_private || loops::is_private(&frame, &it.counter, &it.body);
         self.require(private, at, "a counter that others write is called private");
-        self.require(it.is_short() || it.body.first().is_some_and(is_turn), at, "a loop that takes no turns");
+        self.require(it.is_short() || it.takes_turns(), at, "a loop that takes no turns");
+        self.taking(it.taking, it.is_private, &[], &it.body, at);
         self.block(&Body { in_loop: true, in_continuing: false, ..*body }, &it.body);
     }
 
@@ -305,6 +311,6 @@ impl<'p> Verifier<'p> {
     }
 }
 
-fn is_turn(statement: &Statement) -> bool {
+pub(super) fn is_turn(statement: &Statement) -> bool {
     matches!(statement.kind, StatementKind::Turn)
 }

@@ -291,9 +291,12 @@ fn control_flow() {
     bad("CONTINUE outside", stmt(StatementKind::Continue));
     let turn = |inside: Vec<Statement>, continuing| {
         let body = [vec![stmt(StatementKind::Turn)], inside].concat();
-        stmt(StatementKind::Loop { body, continuing })
+        stmt(StatementKind::Loop { body, continuing, count: None })
     };
-    bad("takes no turns", stmt(StatementKind::Loop { body: Vec::new(), continuing: block(StatementKind::Exit) }));
+    bad(
+        "takes no turns",
+        stmt(StatementKind::Loop { body: Vec::new(), continuing: block(StatementKind::Exit), count: None }),
+    );
     bad("CONTINUE outside", turn(Vec::new(), block(StatementKind::Continue)));
     good(turn(block(StatementKind::Continue), block(StatementKind::Exit)));
     good(turn(Vec::new(), vec![turn(block(StatementKind::Continue), Vec::new())]));

@@ -8,6 +8,8 @@ use crate::Context;
 /// The optimiser unrolls the strip of `N` rounds. With the feature `small`, or where code is optimised for size, one by
 /// one is shorter.
 ///
+/// With a name after `N`, `strips!(8, few; …)`, the loop takes no turns where that is true.
+///
 /// ```
 /// use staunch_runtime::{Context, Fault, FaultKind, OrFault, strips};
 ///
@@ -27,6 +29,19 @@ use crate::Context;
 /// ```
 #[macro_export]
 macro_rules! strips {
+    ($n:literal, $few:ident; $($label:lifetime:)? while ($condition:expr) {
+        $cx:ident.take_turn().at($($at:tt)*)?;
+        $($body:tt)*
+    }) => {
+        // Two loops are faster than one, and longer.
+        if $few && !$crate::Strips::<$n>::IS_SMALL {
+            $($label:)? while $condition { $($body)* }
+        } else {
+            $crate::strips!(@ $cx, $n, {
+                $($label:)? loop
+            }, { if !$condition { break; } }, { if !$few { $cx.take_turn().at($($at)*)?; } }, { $($body)* })
+        }
+    };
     ($n:literal; $($label:lifetime:)? while ($condition:expr) {
         $cx:ident.take_turn().at($($at:tt)*)?;
         $($body:tt)*
@@ -80,6 +95,9 @@ pub struct Strips<'a, const N: u64> {
 }
 
 impl<'a, const N: u64> Strips<'a, N> {
+    /// Whether code is to be short.
+    pub const IS_SMALL: bool = cfg!(feature = "small");
+
     #[inline]
     pub fn new(cx: &'a Context) -> Self {
         Self { cx, left: cx.turns_left(), strip: 0 }
@@ -88,7 +106,7 @@ impl<'a, const N: u64> Strips<'a, N> {
     /// Takes a strip after one that is used; whether that many are left.
     #[inline]
     pub fn take(&mut self) -> bool {
-        let suffices = self.left >= N && !cfg!(feature = "small");
+        let suffices = self.left >= N && !Self::IS_SMALL;
         if suffices {
             self.left -= N;
             self.strip = N;
