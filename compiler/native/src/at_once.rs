@@ -8,7 +8,7 @@ use cranelift_codegen::ir::{self as clif, InstBuilder, condcodes::IntCC};
 use staunch_ir::{RoutineId, Statement, turns};
 
 /// Operations that the turns taken at once should come to, so that taking them is a small part.
-const ENOUGH: usize = 128;
+const ENOUGH: usize = 256;
 const MOST_COPIES: usize = 32;
 /// Operations of copies in one routine, so that its code grows by no more.
 const MOST_IN_A_ROUTINE: usize = 8192;

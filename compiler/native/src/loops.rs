@@ -132,7 +132,7 @@ impl<'p> Function<'_, 'p> {
         self.further_turn(control, start, after);
         self.builder.switch_to_block(start);
         let is_left = match way(self) {
-            None => self.from_first_turn(control, start, after, body, continuing),
+            None => self.first_turn_on(control, start, after, body, continuing),
             Some((Taking::EachOfMany, way)) => {
                 self.builder.seal_block(start);
                 let few = self.is_few(&way);
@@ -146,7 +146,7 @@ impl<'p> Function<'_, 'p> {
                 let turn = self.builder.create_block();
                 self.ins().jump(turn, &[]);
                 self.builder.switch_to_block(turn);
-                self.from_first_turn(control, turn, after, body, continuing)
+                self.first_turn_on(control, turn, after, body, continuing)
             }
         };
         self.join(&[if is_left { Flow::Continues } else { Flow::Leaves }], after)
@@ -175,11 +175,11 @@ impl<'p> Function<'_, 'p> {
         let frame = LoopFrame { next: self.builder.create_block(), few: Few::Yes, ..LoopFrame::to(after) };
         let is_left = self.one_by_one(control, frame, free, body, continuing);
         self.builder.switch_to_block(counted);
-        self.from_first_turn(control, counted, after, body, continuing) || is_left
+        self.first_turn_on(control, counted, after, body, continuing) || is_left
     }
 
     /// A loop from its first turn on, whose block is open and not sealed. Whether control goes on after it.
-    fn from_first_turn(
+    fn first_turn_on(
         &mut self,
         control: &Control<'p>,
         turn: clif::Block,

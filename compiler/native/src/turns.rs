@@ -133,6 +133,10 @@ impl<'p> Function<'_, 'p> {
                 let size = u64::try_from(step.unsigned_abs()).unwrap_or(u64::MAX);
                 let few = size.saturating_mul(Context::FREE_TURNS).saturating_add(u64::from(way.is_before));
                 let few = self.integer(types::I64, few.into());
+                // 64 bits hold the way between narrower values, with its sign.
+                if way.repr.size() < 8 {
+                    return self.ins().icmp(IntCC::SignedLessThan, length, few);
+                }
                 self.ins().icmp(IntCC::UnsignedLessThan, length, few)
             }
             Size::Variable(_) => {

@@ -15,8 +15,7 @@ fn main() -> Result<(), String> {
     let taken = staunch_frontend::compile(&sources, &options).program.ok_or("the file has errors")?;
     let mut plain = taken.clone();
     plain.routines.iter_mut().for_each(|it| without_turns(&mut it.body));
-    let mut machines =
-        [Executor::Native.machine(&plain, "")?, Executor::Native.machine(&taken, "")?];
+    let mut machines = [Executor::Native.machine(&plain, "")?, Executor::Native.machine(&taken, "")?];
     for instance in 0..taken.instances.len() {
         for machine in &mut machines {
             machine.scan(instance, &Context::first(0)).map_err(|it| format!("{it:?}"))?;
