@@ -1,13 +1,12 @@
 //! Findings that a plant lives with, and why: a file of lines as `parts 2: nobody reads CV past 50`.
 
-use super::beyond::Kind;
-use super::finding::{Finding, Findings, Verdict};
+use super::kind::Kind;
 use super::pitfall::Pitfall;
 use std::path::Path;
 
 #[derive(Clone, Debug, Default)]
 pub struct Accepted {
-    lines: Vec<Line>,
+    pub lines: Vec<Line>,
     path: String,
 }
 
@@ -19,7 +18,7 @@ enum What {
 }
 
 #[derive(Clone, Debug)]
-struct Line {
+pub struct Line {
     number: usize,
     /// A counter or variable; `*` is any.
     subject: String,
@@ -33,7 +32,7 @@ impl Accepted {
         Self::parse(&text, &shown).map_err(|(line, text)| format!("{shown}:{line}: {text}"))
     }
 
-    fn parse(text: &str, path: &str) -> Result<Self, (usize, String)> {
+    pub fn parse(text: &str, path: &str) -> Result<Self, (usize, String)> {
         let mut lines = Vec::new();
         for (number, line) in text.lines().enumerate() {
             let line = line.trim();
@@ -42,11 +41,6 @@ impl Accepted {
             }
         }
         Ok(Self { lines, path: path.to_owned() })
-    }
-
-    /// Whether a finding is accepted.
-    pub fn accepts(&self, finding: &Finding) -> bool {
-        self.lines.iter().any(|it| it.is_of(finding))
     }
 
     /// Whether a finding of this kind, subject and trap would be.
@@ -59,25 +53,13 @@ impl Accepted {
         !self.lines.is_empty()
     }
 
-    /// A sentence for each line that accepts nothing.
-    pub fn stale(&self, findings: &Findings) -> Vec<String> {
-        let stale = |line: &&Line| {
-            let open = |it: &&Finding| line.is_of(it) && !matches!(it.verdict, Verdict::Impossible(_));
-            !findings.all.iter().any(|it| open(&it))
+    /// A line's place, and what it accepts.
+    pub fn describe(&self, line: &Line) -> String {
+        let what = match line.what {
+            What::Trap(number) => format!("trap {number}"),
+            What::Kind(name) => name.to_owned(),
         };
-        let sentence = |it: &Line| {
-            let why = findings.all.iter().find(|finding| it.is_of(finding)).and_then(|it| match &it.verdict {
-                Verdict::Impossible(why) => Some(format!("is impossible: {why}")),
-                Verdict::Reachable(_) | Verdict::Undecided => None,
-            });
-            let why = why.unwrap_or_else(|| "is not found".to_owned());
-            let what = match it.what {
-                What::Trap(number) => format!("trap {number}"),
-                What::Kind(name) => name.to_owned(),
-            };
-            format!("{}:{}: {what} of `{}` is accepted, and {why}", self.path, it.number, it.subject)
-        };
-        self.lines.iter().filter(stale).map(sentence).collect()
+        format!("{}:{}: {what} of `{}`", self.path, line.number, line.subject)
     }
 }
 
@@ -101,11 +83,7 @@ impl Line {
         Ok(Self { number, subject: subject.to_owned(), what })
     }
 
-    fn is_of(&self, finding: &Finding) -> bool {
-        self.takes(finding.kind, &finding.subject, finding.pitfall)
-    }
-
-    fn takes(&self, kind: Kind, subject: &str, pitfall: Option<Pitfall>) -> bool {
+    pub fn takes(&self, kind: Kind, subject: &str, pitfall: Option<Pitfall>) -> bool {
         let subject = self.subject == "*" || self.subject.eq_ignore_ascii_case(subject);
         let what = match self.what {
             What::Trap(number) => pitfall.is_some_and(|it| it.number() == number),
@@ -121,38 +99,14 @@ mod tests {
 
     use super::*;
 
-    fn finding(verdict: Verdict) -> Finding {
-        Finding {
-            kind: Kind::Counter,
-            at: None,
-            subject: "parts".to_owned(),
-            pitfall: Some(Pitfall::numbered(2)),
-            verdict,
-        }
-    }
-
     #[test]
     fn a_line_accepts_a_trap_of_a_counter() {
         let accepted =
             Accepted::parse("# signed by Ada\nParts 2: nobody reads it\n* 5: no input at start", "a").unwrap();
-        assert!(accepted.accepts(&finding(Verdict::Undecided)));
-        let other = Finding { pitfall: Some(Pitfall::numbered(3)), ..finding(Verdict::Undecided) };
-        assert!(!accepted.accepts(&other));
-        assert!(accepted.accepts(&Finding { pitfall: Some(Pitfall::numbered(5)), ..other }));
-    }
-
-    #[test]
-    fn a_line_that_accepts_nothing_is_stale() {
-        let accepted = Accepted::parse("parts 2: nobody reads it\nparts 3: never below 0", "a.txt").unwrap();
-        let mut findings = Findings::default();
-        findings.all.push(finding(Verdict::Impossible("it does not count up".to_owned())));
-        assert_eq!(
-            accepted.stale(&findings),
-            [
-                "a.txt:1: trap 2 of `parts` is accepted, and is impossible: it does not count up",
-                "a.txt:2: trap 3 of `parts` is accepted, and is not found"
-            ]
-        );
+        let takes = |number: usize| accepted.takes(Kind::Counter, "parts", Some(Pitfall::numbered(number)));
+        assert!(takes(2));
+        assert!(!takes(3));
+        assert!(takes(5));
     }
 
     #[test]

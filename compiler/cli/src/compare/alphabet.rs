@@ -2,6 +2,7 @@
 //! combinations of them.
 
 use super::assume::{Assumptions, Mentioned};
+use super::choice::{Choice, Covered};
 use super::facts::{Facts, Numbers};
 use super::pair::{Input, Matched, Pair};
 use super::scalar::{Role, Scalar};
@@ -18,26 +19,6 @@ const MAX_VALUES: usize = 64;
 const MAX_WHOLE: i128 = 300;
 /// Characters of a long text.
 const LONGEST: u16 = 300;
-
-/// The values of an input that are tried, the initial one first.
-#[derive(Clone, Debug)]
-pub struct Choice {
-    pub values: Vec<Value>,
-    /// Why the values that are not tried would show nothing else; `None` where they might.
-    pub covered: Option<Covered>,
-    /// The whole numbers that the type, or its subrange, has.
-    pub range: Option<(i128, i128)>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Covered {
-    /// Every value is tried.
-    All,
-    /// The program compares it with constants alone, and values on every side of each are tried.
-    Compared,
-    /// Nothing reads it.
-    Unread,
-}
 
 #[derive(Clone, Debug)]
 pub struct Alphabet {

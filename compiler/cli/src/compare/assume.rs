@@ -1,7 +1,7 @@
 //! What a plant's inputs are said never to do: a file of lines as `Target 1..500`,
 //! `not (Start and Stop)`, `Part for at least 3 scans` and `no run`.
 
-use super::alphabet::{Choice, Covered};
+use super::choice::{Choice, Covered};
 use super::facts::Numbers;
 use super::pair::{Input, Pair};
 use crate::machine;

@@ -1,18 +1,16 @@
 //! For each counter and pitfall: reachable, with inputs that show it; impossible, and why; or undecided.
 
-use super::accept::Accepted;
-use super::beyond::{self, Kind};
+use super::accept::{Accepted, Line};
+use super::beyond;
+use super::kind::Kind;
 use super::pair::{Matched, Pair};
-use super::pitfall::{self, Cause, Habits, Pitfall, Use};
+use super::pitfall::{self, Cause, Pitfall, Use};
 use super::scalar::Role;
-use super::search::{Outcome, Subject, World};
+use super::search::{Outcome, World};
 use super::shrink::{self, Goal};
+use super::sighting::Subject;
 use super::trace::Trace;
-use super::usage::{self, Usage};
-use super::walked::Name;
-use staunch_host::Event;
 use staunch_ir::Location;
-use staunch_runtime::PinRole;
 use std::collections::HashMap;
 
 /// Findings whose traces are made shorter; the others keep theirs.
@@ -43,38 +41,6 @@ pub struct Findings {
     pub all: Vec<Finding>,
     /// Where in `all` those are that are of no counter.
     others: HashMap<Subject, usize>,
-}
-
-/// How both programs use each counter.
-pub fn uses(pair: &Pair) -> Vec<Use> {
-    let found = [0, 1].map(|side: usize| usage::of(&pair.sides[side].program));
-    let each = |at: usize| {
-        let instances = pair.instances(at);
-        let of = |side: usize| -> Usage {
-            let name = instances[side].field.map(|(owner, field)| Name::Field(owner, field));
-            name.and_then(|it| found[side].get(&it)).cloned().unwrap_or_default()
-        };
-        let [a, b] = [of(0), of(1)];
-        let presets: Vec<_> = a.presets.union(&b.presets).collect();
-        let kept = |side: usize| {
-            let count = instances[side].block.info().pin_for(PinRole::Count);
-            let keeps =
-                |event| count.is_some_and(|it| pair.sides[side].keeps(event, instances[side].offset + it.offset));
-            Event::ALL.map(|it| !pair.never.contains(&it) && keeps(it))
-        };
-        Use {
-            is_used: a.is_used || b.is_used,
-            constant_preset: presets.len() == 1 && presets[0].is_some(),
-            habits: Habits {
-                feeds_itself: a.feeds_itself || b.feeds_itself,
-                guards_itself: a.count_depends || b.count_depends,
-            },
-            resets: a.resets || b.resets,
-            reset_depends: a.reset_depends || b.reset_depends,
-            kept_alike: kept(0) == kept(1),
-        }
-    };
-    (0..pair.counters.len()).map(each).collect()
 }
 
 impl Findings {
@@ -131,7 +97,25 @@ impl Findings {
 
     /// Whether anything can be reached that is not accepted.
     pub fn fail(&self, accepted: &Accepted) -> bool {
-        self.all.iter().any(|it| it.is_reachable() && !accepted.accepts(it))
+        self.all.iter().any(|it| it.is_reachable() && !it.is_accepted(accepted))
+    }
+
+    /// A sentence for each line that accepts nothing.
+    pub fn stale(&self, accepted: &Accepted) -> Vec<String> {
+        let is_of = |it: &Finding, line: &Line| line.takes(it.kind, &it.subject, it.pitfall);
+        let stale = |line: &&Line| {
+            let open = |it: &&Finding| is_of(it, line) && !matches!(it.verdict, Verdict::Impossible(_));
+            !self.all.iter().any(|it| open(&it))
+        };
+        let sentence = |line: &Line| {
+            let why = self.all.iter().find(|it| is_of(it, line)).and_then(|it| match &it.verdict {
+                Verdict::Impossible(why) => Some(format!("is impossible: {why}")),
+                Verdict::Reachable(_) | Verdict::Undecided => None,
+            });
+            let why = why.unwrap_or_else(|| "is not found".to_owned());
+            format!("{} is accepted, and {why}", accepted.describe(line))
+        };
+        accepted.lines.iter().filter(stale).map(sentence).collect()
     }
 
     /// How many of counters are not decided.
@@ -264,6 +248,10 @@ impl Finding {
         matches!(self.verdict, Verdict::Reachable(Some(_))) && !follows
     }
 
+    pub fn is_accepted(&self, accepted: &Accepted) -> bool {
+        accepted.takes(self.kind, &self.subject, self.pitfall)
+    }
+
     /// Whether a trap of a counter is neither shown nor ruled out.
     pub fn is_open(&self) -> bool {
         self.kind == Kind::Counter && matches!(self.verdict, Verdict::Undecided)
@@ -274,5 +262,32 @@ impl Finding {
             Verdict::Reachable(trace) => trace.as_ref(),
             Verdict::Impossible(_) | Verdict::Undecided => None,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+
+    #[test]
+    fn a_line_that_accepts_nothing_is_stale() {
+        let accepted = Accepted::parse("parts 2: nobody reads it\nparts 3: never below 0", "a.txt").unwrap();
+        let finding = Finding {
+            kind: Kind::Counter,
+            at: None,
+            subject: "parts".to_owned(),
+            pitfall: Some(Pitfall::numbered(2)),
+            verdict: Verdict::Impossible("it does not count up".to_owned()),
+        };
+        let findings = Findings { all: vec![finding], ..Findings::default() };
+        assert_eq!(
+            findings.stale(&accepted),
+            [
+                "a.txt:1: trap 2 of `parts` is accepted, and is impossible: it does not count up",
+                "a.txt:2: trap 3 of `parts` is accepted, and is not found"
+            ]
+        );
     }
 }

@@ -17,12 +17,19 @@ mod usage;
 mod walked;
 
 mod apart;
+mod kind;
+
 mod beyond;
+mod passing;
+mod scan;
 
 mod alphabet;
 mod assume;
+mod choice;
 
 mod trace;
+
+mod sighting;
 
 mod search;
 
@@ -44,6 +51,8 @@ mod reason;
 
 mod tolerance;
 
+mod verdict;
+
 mod report;
 mod scope;
 
@@ -54,20 +63,11 @@ use alphabet::Alphabet;
 use assume::{Assumptions, Mentioned};
 use facts::Facts;
 use finding::Findings;
-use pair::{Pair, Row, Side};
+use pair::{Pair, Side};
 use search::World;
-use staunch_frontend::{Dialect, Sources};
+use staunch_frontend::Dialect;
 use trace::Trace;
-
-/// What the comparison came to.
-enum Verdict {
-    /// The rows up to the first difference.
-    Differs { rows: Vec<Row>, trace: Option<Trace>, shortest: bool },
-    /// Nothing differs, for this reason.
-    Equal(String),
-    /// Nothing was found to differ: what was tried, and what was not.
-    NotFound { tried: Vec<String>, left: Vec<String> },
-}
+use verdict::{Judged, Verdict};
 
 pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
     let args = &args.settled()?;
@@ -116,7 +116,7 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
     let only: Vec<String> = args.vars.iter().flat_map(|it| it.split(',')).map(|it| it.trim().to_owned()).collect();
     pair.compare_only(&only);
     check_compared(&pair, args, &only)?;
-    let uses = finding::uses(&pair);
+    let uses = pitfall::uses(&pair);
     let mut findings = Findings::new(&pair, &world, &uses, &renamed);
     let accepted = args.accept.as_deref().map(accept::Accepted::read).transpose()?.unwrap_or_default();
     let verdict = if same_program && args.stimulus.is_none() {
@@ -127,7 +127,7 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
     };
     let rest = match &verdict {
         Verdict::Differs { .. } if args.stimulus.is_none() && accepted.accepts_any() && !findings.fail(&accepted) => {
-            world.tolerance = Some(tolerance::Tolerance::of(&pair, &world, &uses, &accepted));
+            world.tolerance = Some(tolerance::Tolerance::of(&pair, &world.computed, &uses, &accepted));
             Some(beyond_accepted(&mut pair, &world, args, &mut findings))
         }
         Verdict::Differs { .. } | Verdict::Equal(_) | Verdict::NotFound { .. } => None,
@@ -171,12 +171,6 @@ fn check_compared(pair: &Pair, args: &Compare, only: &[String]) -> Result<(), St
     Ok(())
 }
 
-/// What the comparison came to; and, where all that it has found is accepted, what it comes to beyond that.
-pub struct Judged<'v> {
-    verdict: &'v Verdict,
-    rest: Option<&'v Verdict>,
-}
-
 /// The search goes on past what is accepted.
 fn beyond_accepted(pair: &mut Pair, world: &World, args: &Compare, findings: &mut Findings) -> Verdict {
     let outcome = strategy::search(pair, world, args.budget, 0);
@@ -188,7 +182,7 @@ fn beyond_accepted(pair: &mut Pair, world: &World, args: &Compare, findings: &mu
             let faults = pair.scan(step);
             search::look(pair, world, step.event, faults);
         }
-        pair.compared = world.tolerance.iter().flat_map(|it| pair.remaining_compared(it)).collect();
+        pair.compared = world.tolerance.iter().flat_map(|it| pair.remaining_compared(&it.passing)).collect();
         return differs(pair, world, trace, false, findings);
     }
     let is_told_apart = world.tolerance.as_ref().is_none_or(|it| it.beside.is_empty());
@@ -260,7 +254,7 @@ fn world(pair: &mut Pair, args: &Compare) -> Result<World, String> {
     }
     let wait = facts.iter().flat_map(|it| it.times.last().copied()).max().unwrap_or(0);
     let longest = usize::try_from(wait / pair.shortest_cycle().max(1)).unwrap_or(usize::MAX);
-    let habits = finding::uses(pair).into_iter().map(|it| it.habits).collect();
+    let habits = pitfall::uses(pair).into_iter().map(|it| it.habits).collect();
     let mut computed = if args.against.is_none() { beyond::computed_apart(pair) } else { Vec::new() };
     let known: Vec<_> = computed.iter().map(|it| it.variable).collect();
     computed.extend(beyond::held_apart(pair).into_iter().filter(|it| !known.contains(&it.variable)));
@@ -295,11 +289,4 @@ fn verdict(pair: &mut Pair, world: &World, args: &Compare, findings: &mut Findin
         return Ok(Verdict::Equal(scope::every_state(pair, world, &outcome)));
     }
     Ok(scope::not_found(pair, world, &outcome))
-}
-
-/// The text of a file by its number, for messages.
-fn line_of(sources: &Sources, file: u16, line: u32) -> String {
-    let text = &sources.file(file).text;
-    let at = usize::try_from(line.saturating_sub(1)).unwrap_or(0);
-    text.lines().nth(at).unwrap_or_default().trim().to_owned()
 }

@@ -2,12 +2,14 @@
 
 use super::normal::{self, Digest, Timer};
 use super::scalar::{self, Instance, Role, Scalar, Scalars};
-use super::tolerance::{Passed, Tolerance};
+pub use super::scan::{Faults, Input, Matched, Row, Step};
+
+use super::passing::{Passed, Passing};
 use crate::machine::Native;
 use staunch_frontend::Dialect;
 use staunch_host::{Bookmark, Drive, Event, Machine, Snapshot};
 use staunch_ir::{Chars, FieldId, Program, StructId, Type, Value};
-use staunch_runtime::{Fault, FaultKind};
+use staunch_runtime::FaultKind;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
@@ -28,64 +30,6 @@ pub struct Side {
     before: Vec<u8>,
     initial: Vec<u8>,
 }
-
-/// Something that the world outside sets.
-#[derive(Clone, Debug)]
-pub struct Input {
-    /// Its position among the scalars of each side.
-    pub scalars: [usize; 2],
-    /// What it holds before anything sets it.
-    pub initial: Value,
-    /// Of a string, those that are tried: a value is the position of one.
-    pub texts: Vec<Chars>,
-    /// How many of these an assumption may speak of: the others stand for all texts that nothing names.
-    pub named: usize,
-}
-
-impl Input {
-    /// A value of it as a stimulus takes it, but for quotes.
-    pub fn spelled(&self, program: &Program, ty: Type, value: Value) -> String {
-        self.text(value).map_or_else(|| scalar::spell(program, ty, value), Chars::text)
-    }
-
-    fn text(&self, value: Value) -> Option<&Chars> {
-        self.texts.get(usize::try_from(value.as_integer()?).ok()?)
-    }
-
-    /// Whether it starts with what all memory starts with.
-    pub fn starts_at_zero(&self) -> bool {
-        self.texts.first().map_or_else(|| self.initial == self.initial.repr().zero(), Chars::is_empty)
-    }
-}
-
-/// What comes before one scan: an event, and a value for each input.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Step {
-    pub event: Option<Event>,
-    pub inputs: Vec<Value>,
-}
-
-impl Step {
-    pub fn of(inputs: Vec<Value>) -> Self {
-        Self { event: None, inputs }
-    }
-}
-
-/// The states of both sides after a scan, and how the scan ended.
-#[derive(Clone, Debug)]
-pub struct Row {
-    pub event: Option<Event>,
-    /// What each input was given before the scan; the program may have written it since.
-    pub inputs: Vec<String>,
-    pub states: [Vec<u8>; 2],
-    pub faults: [Option<Fault>; 2],
-}
-
-/// How a scan ended on both sides.
-pub type Faults = [Option<Fault>; 2];
-
-/// Two scalars, or two instances, of one meaning, by their positions.
-pub type Matched = [usize; 2];
 
 /// A state of both sides that can be gone back to.
 #[derive(Clone, Debug)]
@@ -541,27 +485,27 @@ impl Pair {
 
     /// Whether anything differs that does not follow from accepted findings seen since the start; and whether
     /// nothing is left to compare.
-    pub fn differs_beyond(&mut self, tolerance: &Tolerance, seen: &Passed, faults: Faults) -> (bool, bool) {
+    pub fn differs_beyond(&mut self, passing: &Passing, seen: &Passed, faults: Faults) -> (bool, bool) {
         self.passed.resize(self.passed.len().max(seen.len()), 0);
         self.passed.iter_mut().zip(seen).for_each(|(all, it)| *all |= it);
         if !self.remaining.contains_key(&self.passed) {
-            let remaining = self.remaining_compared(tolerance);
+            let remaining = self.remaining_compared(passing);
             let comparison = self.comparison(&remaining);
-            let idle = [0, 1].map(|side| tolerance.idle_bytes(side, &self.passed));
+            let idle = [0, 1].map(|side| passing.idle_bytes(side, &self.passed));
             let known = Remaining { is_empty: remaining.is_empty(), comparison, idle };
             self.remaining.insert(self.passed.clone(), known);
         }
         let Remaining { is_empty, comparison, .. } = &self.remaining[&self.passed];
         if self.faults_differ(faults) {
-            let accepted = (0..2).all(|side| faults[side].is_none() || tolerance.accepts_fault(side));
+            let accepted = (0..2).all(|side| faults[side].is_none() || passing.accepts_fault(side));
             return (!accepted, *is_empty);
         }
-        (!self.all_equal(comparison), *is_empty && tolerance.is_faultless())
+        (!self.all_equal(comparison), *is_empty && passing.is_faultless)
     }
 
     /// What is still compared after the accepted findings that have been seen.
-    pub fn remaining_compared(&self, tolerance: &Tolerance) -> Vec<Matched> {
-        self.compared.iter().copied().filter(|it| tolerance.remains(*it, &self.passed)).collect()
+    pub fn remaining_compared(&self, passing: &Passing) -> Vec<Matched> {
+        self.compared.iter().copied().filter(|it| passing.remains(*it, &self.passed)).collect()
     }
 
     /// Whether these do not show the same.

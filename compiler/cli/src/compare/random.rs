@@ -2,7 +2,7 @@
 //! order nor novelty leads to. A number that the program computes with has more values than can be tried; some are drawn by
 //! chance for each sequence, so that they come again in it.
 
-use super::alphabet::Choice;
+use super::choice::Choice;
 use super::guided::Guided;
 use super::pair::Step;
 use super::search::Search;

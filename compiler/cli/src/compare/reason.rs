@@ -1,9 +1,9 @@
 //! Why variables differ, where no trap says so: the finding of what they come from, through assignments, conditions and
 //! calls.
 
-use super::beyond::Kind;
 use super::dependency::Dependencies;
 use super::finding::{Finding, Findings, Verdict};
+use super::kind::Kind;
 use super::pair::{Matched, Pair, Row};
 use super::scalar::Role;
 

@@ -11,7 +11,8 @@ use super::pair::Pair;
 use super::pitfall::{self, Cause, Pitfall};
 use super::rejection::Rejection;
 use super::search::World;
-use super::{Judged, Verdict, stimulus};
+use super::stimulus;
+use super::verdict::{Judged, Verdict};
 use crate::args::{Compare, MessageFormat};
 use crate::session::Session;
 use crate::{NOT_FOUND, REJECTED, output};
@@ -68,7 +69,7 @@ impl Report<'_> {
         if !self.session.common.quiet || code != 0 {
             output::print(text.as_bytes())?;
         }
-        for line in accepted.stale(findings) {
+        for line in findings.stale(accepted) {
             eprintln!("warning: {line}");
         }
         Ok(code)

@@ -1,18 +1,18 @@
 //! What a search has shown where it found no difference: what was tried, and what was not.
 
+use super::alphabet;
+use super::choice::Covered;
 use super::pair::Pair;
 use super::search::{Outcome, World};
-use super::{Verdict, alphabet};
+use super::verdict::Verdict;
 use staunch_host::Event;
 use std::fmt::Write;
 
 /// What an exhausted search has shown.
 pub fn every_state(pair: &Pair, world: &World, outcome: &Outcome) -> String {
     let compared = world.alphabet.choices.iter().zip(&pair.inputs);
-    let compared: Vec<&str> = compared
-        .filter(|it| it.0.covered == Some(alphabet::Covered::Compared))
-        .map(|it| pair.path(it.1.scalars))
-        .collect();
+    let compared: Vec<&str> =
+        compared.filter(|it| it.0.covered == Some(Covered::Compared)).map(|it| pair.path(it.1.scalars)).collect();
     let mut text = format!("every reachable state was seen ({} scans)", outcome.scans);
     match compared.as_slice() {
         [] => {

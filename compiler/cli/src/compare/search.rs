@@ -6,10 +6,11 @@ use super::assume::Assumptions;
 use super::beyond::Candidate;
 use super::pair::{Faults, Matched, Pair, Step};
 use super::pitfall::{self, Habits, Pitfall};
+use super::sighting::{Sighting, Subject};
 use super::tolerance::Tolerance;
 use super::trace::Trace;
 use staunch_host::Event;
-use staunch_ir::{Location, Value};
+use staunch_ir::Value;
 use staunch_runtime::Fault;
 use std::collections::{BTreeSet, HashMap};
 
@@ -38,25 +39,6 @@ pub struct World {
     /// What is accepted, where the search goes on past it.
     pub tolerance: Option<Tolerance>,
 }
-
-/// What a pitfall was seen on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Subject {
-    /// A counter, by its position among those of the pair.
-    Counter(usize),
-    /// Another block, by its position among those of the pair.
-    Block(usize),
-    /// A variable that an event parts, by its scalars.
-    Variable(Matched),
-    /// A variable that the two systems compute in other types, by its position among the candidates.
-    Computed(usize),
-    /// A variable that is accepted to differ, or that does for no known reason.
-    Parted(Matched),
-    /// A fault on one side, and where.
-    Fault(usize, Location),
-}
-
-pub type Sighting = (Subject, Option<Pitfall>);
 
 /// What one scan showed.
 #[derive(Debug, Default)]
@@ -182,7 +164,7 @@ pub fn look(pair: &mut Pair, world: &World, event: Option<Event>, faults: Faults
     };
     let passed = tolerance.passed(pair, event, &sightings);
     sightings.extend(tolerance.parted(pair));
-    let (differs, nothing_left) = pair.differs_beyond(tolerance, &passed, faults);
+    let (differs, nothing_left) = pair.differs_beyond(&tolerance.passing, &passed, faults);
     Seen { differs, nothing_left, sightings }
 }
 

@@ -1,7 +1,8 @@
 //! A sequence of inputs without what its difference does not need.
 
 use super::pair::{Pair, Step};
-use super::search::{self, Sighting, World};
+use super::search::{self, World};
+use super::sighting::Sighting;
 use super::trace::{Group, Trace};
 
 /// Scans that making the sequence to the first difference shorter may take.

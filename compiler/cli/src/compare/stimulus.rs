@@ -1,10 +1,10 @@
 //! Both systems under a stimulus: the host drives each, and what it leaves after each scan is kept.
 //! And a sequence of inputs as a stimulus.
 
-use super::Verdict;
 use super::pair::{Input, Pair, Row, Side};
 use super::search::World;
 use super::trace::Trace;
+use super::verdict::Verdict;
 use crate::args::Compare;
 use crate::machine::{self, Native};
 use staunch_host::{Error, Event, Machine, Options};

@@ -2,12 +2,14 @@
 //! all that its counter, block or variable decides. What else is compared still is.
 
 use super::accept::Accepted;
-use super::beyond::{self, Kind};
+use super::beyond::{self, Candidate};
 use super::dependency::Dependencies;
+use super::kind::Kind;
 use super::pair::{Matched, Pair};
+use super::passing::{Passed, Passing};
 use super::pitfall::{Pitfall, Use};
 use super::scalar::{Role, Scalars};
-use super::search::{Sighting, Subject, World};
+use super::sighting::{Sighting, Subject};
 use staunch_host::Event;
 use staunch_ir::effects::{Rules, effects};
 use staunch_ir::{FieldId, StructId};
@@ -15,9 +17,6 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 type Declared = (StructId, FieldId);
-
-/// Which accepted findings have been seen since the start, a bit each.
-pub type Passed = Vec<u64>;
 
 #[derive(Debug)]
 pub struct Tolerance {
@@ -29,40 +28,35 @@ pub struct Tolerance {
     parted: Vec<Matched>,
     /// What an event is accepted to part.
     events: Vec<(Event, usize)>,
-    /// Whether a fault on one side is accepted.
-    faults: [bool; 2],
-    /// For each bit, what is compared and may follow from it.
-    cones: Vec<HashSet<Matched>>,
-    /// And the bytes of both states that do, which then decide nothing else.
-    bytes: Vec<[Vec<Range<usize>>; 2]>,
+    /// What each bit leaves out of the comparison.
+    pub passing: Passing,
     /// Variables and blocks that are not accepted, of declarations of which others are: what they decide is not told apart.
     pub beside: Vec<String>,
-    /// Neither program can fault, so that nothing is left where all that is compared is passed over.
-    is_faultless: bool,
 }
 
 impl Tolerance {
-    pub fn of(pair: &Pair, world: &World, uses: &[Use], accepted: &Accepted) -> Self {
+    pub fn of(pair: &Pair, computed: &[Candidate], uses: &[Use], accepted: &Accepted) -> Self {
         let found = Self {
             sightings: HashMap::new(),
             differing: Vec::new(),
             parted: Vec::new(),
             events: Vec::new(),
-            faults: [0, 1].map(|side: usize| accepted.takes(Kind::Fault, pair.sides[side].dialect.name(), None)),
-            cones: Vec::new(),
-            bytes: Vec::new(),
+            passing: Passing {
+                faults: [0, 1].map(|side: usize| accepted.takes(Kind::Fault, pair.sides[side].dialect.name(), None)),
+                is_faultless: pair
+                    .sides
+                    .iter()
+                    .all(|it| effects(&it.program, &Rules::PLAIN).iter().all(|routine| !routine.faults)),
+                ..Passing::default()
+            },
             beside: Vec::new(),
-            is_faultless: pair
-                .sides
-                .iter()
-                .all(|it| effects(&it.program, &Rules::PLAIN).iter().all(|routine| !routine.faults)),
         };
         let roots = HashMap::new();
         let dependencies = pair.sides.each_ref().map(|it| Dependencies::of(&it.program));
         let mut builder = Builder { pair, accepted, dependencies, roots, subjects: HashMap::new(), found };
         builder.counters(uses);
         builder.blocks();
-        builder.variables(world);
+        builder.variables(computed);
         builder.found.beside = builder.beside();
         builder.found
     }
@@ -85,32 +79,6 @@ impl Tolerance {
     pub fn parted(&self, pair: &Pair) -> impl Iterator<Item = Sighting> {
         self.parted.iter().filter(|it| pair.newly_differs(**it)).map(|it| (Subject::Parted(*it), None))
     }
-
-    pub fn accepts_fault(&self, side: usize) -> bool {
-        self.faults[side]
-    }
-
-    /// Whether this is compared still.
-    pub fn remains(&self, matched: Matched, passed: &Passed) -> bool {
-        !self.cones.iter().enumerate().any(|(bit, cone)| is_set(passed, bit) && cone.contains(&matched))
-    }
-
-    /// Bytes of a side's state that decide nothing but what is passed over.
-    pub fn idle_bytes(&self, side: usize, passed: &Passed) -> Vec<Range<usize>> {
-        if !self.is_faultless {
-            return Vec::new();
-        }
-        let set = self.bytes.iter().enumerate().filter(|it| is_set(passed, it.0));
-        set.flat_map(|it| it.1[side].iter().cloned()).collect()
-    }
-
-    pub fn is_faultless(&self) -> bool {
-        self.is_faultless
-    }
-}
-
-fn is_set(passed: &Passed, bit: usize) -> bool {
-    passed.get(bit / 64).is_some_and(|it| it >> (bit % 64) & 1 == 1)
 }
 
 struct Builder<'p> {
@@ -162,7 +130,7 @@ impl Builder<'_> {
         }
     }
 
-    fn variables(&mut self, world: &World) {
+    fn variables(&mut self, computed: &[Candidate]) {
         let pair = self.pair;
         let kept = beyond::kept_by_one(pair);
         let listed: HashMap<Declared, Matched> =
@@ -176,7 +144,7 @@ impl Builder<'_> {
                 self.found.events.extend(apart.map(|it| (it, bit)));
             }
         }
-        for it in &world.computed {
+        for it in computed {
             if self.accepted.takes(it.kind, pair.path(it.variable), None) {
                 let bit = self.root(self.fields(it.variable));
                 self.found.differing.push((it.variable, bit));
@@ -230,9 +198,12 @@ impl Builder<'_> {
         let is_in = |it: &&Matched| {
             (0..2).any(|side| self.pair.declared(side, **it).is_some_and(|it| follows[side].contains(&it)))
         };
-        let bit = self.found.cones.len();
-        self.found.cones.push(self.pair.compared.iter().filter(is_in).copied().collect());
-        self.found.bytes.push([0, 1].map(|side: usize| bytes_of(&self.pair.sides[side].scalars, &follows[side])));
+        let bit = self.found.passing.cones.len();
+        self.found.passing.cones.push(self.pair.compared.iter().filter(is_in).copied().collect());
+        self.found
+            .passing
+            .bytes
+            .push([0, 1].map(|side: usize| bytes_of(&self.pair.sides[side].scalars, &follows[side])));
         self.roots.insert(fields, bit);
         bit
     }

@@ -1,6 +1,6 @@
 //! What a variable's parts are, as the text declares them: which of them are counters.
 
-use super::Counter;
+use super::counter::Counter;
 use staunch_frontend::Dialect;
 use staunch_frontend::ast::{Expr, ExprKind, File, Item, Name, Pou, TypeKind, TypeSpec, VarBlock, VarDecl};
 use std::collections::HashMap;

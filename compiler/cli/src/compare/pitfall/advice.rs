@@ -1,7 +1,7 @@
 //! What to do about a pitfall, by the direction of the move: what keeps a count on one system loses it on another.
 //! Each text is proved in each of its directions, by the cases of `tests/compare/advice.txt`.
 
-use super::Pitfall;
+use super::list::Pitfall;
 use staunch_frontend::Dialect::{self, Codesys, Cscape, Iec, Logix, Openplc};
 
 /// Where no text is proved.

@@ -2,8 +2,8 @@
 
 use super::super::pair::{Matched, Pair, Row};
 use super::super::scalar::{Instance, Role};
-use super::Pitfall;
 use super::classify::{Case, Habits, Kind, Pins, classify, counts_without_edge};
+use super::list::Pitfall;
 use staunch_host::Event;
 use staunch_runtime::PinRole;
 

@@ -1,6 +1,6 @@
 //! Which pitfall a counter's difference shows, by what is known of the counter on both sides.
 
-use super::Pitfall;
+use super::list::Pitfall;
 use staunch_runtime::{Family, Repr};
 
 /// A counter on one side, at the end of a scan.

@@ -1,9 +1,13 @@
 //! Which pitfalls cannot happen to a counter.
 
+use super::super::pair::Pair;
 use super::super::scalar::Instance;
-use super::Pitfall;
+use super::super::usage::{self, Usage};
+use super::super::walked::Name;
 use super::cause::kind;
 use super::classify::{Habits, goes_below};
+use super::list::Pitfall;
+use staunch_host::Event;
 use staunch_runtime::{Family, PinRole};
 
 /// What the programs' texts say of a counter.
@@ -20,6 +24,38 @@ pub struct Use {
     pub reset_depends: bool,
     /// Both systems keep, or lose, the same of it.
     pub kept_alike: bool,
+}
+
+/// How both programs use each counter.
+pub fn uses(pair: &Pair) -> Vec<Use> {
+    let found = [0, 1].map(|side: usize| usage::of(&pair.sides[side].program));
+    let each = |at: usize| {
+        let instances = pair.instances(at);
+        let of = |side: usize| -> Usage {
+            let name = instances[side].field.map(|(owner, field)| Name::Field(owner, field));
+            name.and_then(|it| found[side].get(&it)).cloned().unwrap_or_default()
+        };
+        let [a, b] = [of(0), of(1)];
+        let presets: Vec<_> = a.presets.union(&b.presets).collect();
+        let kept = |side: usize| {
+            let count = instances[side].block.info().pin_for(PinRole::Count);
+            let keeps =
+                |event| count.is_some_and(|it| pair.sides[side].keeps(event, instances[side].offset + it.offset));
+            Event::ALL.map(|it| !pair.never.contains(&it) && keeps(it))
+        };
+        Use {
+            is_used: a.is_used || b.is_used,
+            constant_preset: presets.len() == 1 && presets[0].is_some(),
+            habits: Habits {
+                feeds_itself: a.feeds_itself || b.feeds_itself,
+                guards_itself: a.count_depends || b.count_depends,
+            },
+            resets: a.resets || b.resets,
+            reset_depends: a.reset_depends || b.reset_depends,
+            kept_alike: kept(0) == kept(1),
+        }
+    };
+    (0..pair.counters.len()).map(each).collect()
 }
 
 /// Why a pitfall cannot happen to a counter, by the two systems' rules and the program's text alone.

@@ -1,10 +1,12 @@
 //! The report as JSON: an object for each finding, and one for the verdict.
 
+use super::super::accept::Accepted;
 use super::super::finding::{self, Finding, Findings};
 use super::super::pair::{Matched, Pair, Row};
 use super::super::pitfall::Cause;
 use super::super::search::World;
-use super::super::{Judged, Verdict, accept::Accepted, stimulus};
+use super::super::stimulus;
+use super::super::verdict::{Judged, Verdict};
 use super::table::{Line, SHOWN};
 use super::{Report, number};
 use staunch_host::json_text as quoted;
@@ -104,7 +106,7 @@ impl Report<'_> {
             finding.kind.name(),
             quoted(&finding.subject),
             number(finding.pitfall),
-            accepted.accepts(finding)
+            finding.is_accepted(accepted)
         )
     }
 
