@@ -1,10 +1,10 @@
 //! What is known of each counter, block and variable, as a list.
 
-use super::super::accept::Accepted;
-use super::super::finding::{self, Finding, Findings};
-use super::super::kind::Kind;
-use super::super::trace::Trace;
 use super::Report;
+use crate::compare::difference::accept::Accepted;
+use crate::compare::difference::kind::Kind;
+use crate::compare::findings::finding::{self, Finding, Findings};
+use crate::compare::search::trace::Trace;
 use staunch_ir::Location;
 use std::fmt::Write;
 

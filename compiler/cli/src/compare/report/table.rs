@@ -1,11 +1,11 @@
 //! A difference as a table: the scans that tell it, with the inputs that change and what parts.
 
-use super::super::finding::Findings;
-use super::super::pair::{Matched, Pair, Row};
-use super::super::pitfall::Cause;
-use super::super::reason;
-use super::super::search::World;
 use super::Report;
+use crate::compare::difference::pitfall::Cause;
+use crate::compare::findings::finding::Findings;
+use crate::compare::findings::reason;
+use crate::compare::pair::{Matched, Pair, Row};
+use crate::compare::search::world::World;
 use staunch_frontend::Sources;
 use staunch_host::Event;
 use std::fmt::Write;
