@@ -1,40 +1,25 @@
 //! One program under two dialects, scanned side by side.
 
 mod normal;
-pub mod scan;
 
+mod scan;
+mod side;
+
+mod comparison;
+mod matching;
 pub mod passing;
 
-use crate::compare::program::scalar::{self, Instance, Role, Scalar, Scalars};
-use normal::{Digest, Timer};
 pub use scan::{Faults, Input, Matched, Row, Step};
+pub use side::Side;
 
-use crate::machine::Native;
+use crate::compare::program::scalar::{self, Instance, Role, Scalar};
+use comparison::Comparison;
 use passing::{Passed, Passing};
-use staunch_frontend::Dialect;
-use staunch_host::{Bookmark, Drive, Event, Machine, Snapshot};
-use staunch_ir::{Chars, FieldId, Program, StructId, Type, Value};
+use staunch_host::{Bookmark, Event, Machine, Snapshot};
+use staunch_ir::{Chars, FieldId, StructId, Value};
 use staunch_runtime::FaultKind;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::ops::Range;
-
-/// The program as one system runs it.
-pub struct Side {
-    pub dialect: Dialect,
-    pub program: Program,
-    pub scalars: Scalars,
-    machine: Native,
-    drive: Drive,
-    start: Bookmark,
-    timers: Vec<Timer>,
-    /// States at different times are different ones.
-    reads_clock: bool,
-    /// Of the states that keys are made of.
-    digest: Digest,
-    /// The state before the last scan.
-    before: Vec<u8>,
-    initial: Vec<u8>,
-}
 
 /// A state of both sides that can be gone back to.
 #[derive(Clone, Debug)]
@@ -44,13 +29,6 @@ pub struct Place {
     passed: Passed,
 }
 
-/// Bytes whose equality is that of values; and scalars that the two sides hold in different types.
-#[derive(Debug, Default)]
-struct Comparison {
-    runs: Vec<Run>,
-    singles: Vec<Matched>,
-}
-
 /// What is compared after some accepted findings have been seen, and what of the states decides nothing of it.
 #[derive(Debug)]
 struct Remaining {
@@ -58,19 +36,6 @@ struct Remaining {
     comparison: Comparison,
     idle: [Vec<Range<usize>>; 2],
 }
-
-/// Scalars that lie one after the other on both sides.
-#[derive(Debug)]
-struct Run {
-    offsets: [usize; 2],
-    length: usize,
-    scalars: Vec<Matched>,
-    /// Other bytes are other values.
-    is_exact: bool,
-}
-
-/// A run is no longer, so that what differs is found near it.
-const MAX_RUN: usize = 512;
 
 pub struct Pair {
     pub sides: [Side; 2],
@@ -107,69 +72,6 @@ pub struct Pair {
     pub scans: u64,
 }
 
-impl Side {
-    pub fn new(dialect: Dialect, program: Program, cycle: Option<i64>) -> Result<Self, String> {
-        let (machine, map) = Native::new(&program)?;
-        let scalars = Scalars::of(&program);
-        let drive = Drive::new(&map, cycle);
-        let (timers, reads_clock) = (normal::timers(&scalars.blocks), normal::reads_clock(&program));
-        let (start, before) = (drive.bookmark(), machine.state().to_vec());
-        Ok(Self {
-            dialect,
-            program,
-            scalars,
-            machine,
-            drive,
-            start,
-            timers,
-            reads_clock,
-            digest: Digest::default(),
-            initial: before.clone(),
-            before,
-        })
-    }
-
-    pub fn state(&self) -> &[u8] {
-        self.machine.state()
-    }
-
-    pub fn machine(&mut self) -> &mut Native {
-        &mut self.machine
-    }
-
-    /// Whether an event keeps the byte at this offset.
-    pub fn keeps(&self, event: Event, offset: usize) -> bool {
-        self.drive.keeps(event, offset)
-    }
-
-    fn write_text(&mut self, scalar: usize, text: &Chars) {
-        let Scalar { offset, size, is_shared, .. } = self.scalars.all[scalar];
-        let mut bytes = vec![0; size];
-        if is_shared {
-            let units = text.units_as_bytes();
-            bytes[..units.len()].copy_from_slice(&units);
-        } else {
-            text.write(&mut bytes);
-        }
-        if self.state()[offset..offset + size] != bytes {
-            self.machine.write(offset, &bytes);
-        }
-    }
-
-    fn write(&mut self, offset: usize, value: Value) {
-        let mut bytes = [0; 8];
-        value.write(&mut bytes);
-        let size = usize::try_from(value.repr().size()).expect("reprs are small");
-        if self.state()[offset..offset + size] != bytes[..size] {
-            self.machine.write(offset, &bytes[..size]);
-        }
-    }
-
-    pub fn show(&self, scalar: usize, state: &[u8]) -> String {
-        scalar::show(&self.program, &self.scalars, &self.scalars.all[scalar], state)
-    }
-}
-
 impl Pair {
     pub fn new(sides: [Side; 2], only: &[String]) -> Self {
         let mut pair = Self {
@@ -194,48 +96,21 @@ impl Pair {
             never: Vec::new(),
             scans: 0,
         };
-        pair.counters = pair.find_blocks(true);
-        pair.blocks = pair.find_blocks(false);
+        pair.counters = matching::blocks(&pair.sides, true);
+        pair.blocks = matching::blocks(&pair.sides, false);
         pair.whole = !pair.sides.iter().any(|it| it.scalars.truncated);
-        (pair.outputs, pair.block_outputs) = (pair.find_outputs(&pair.counters), pair.find_outputs(&pair.blocks));
-        pair.counter_bytes = pair.comparison(&pair.outputs.concat());
-        pair.block_bytes = pair.comparison(&pair.block_outputs.concat());
+        (pair.outputs, pair.block_outputs) =
+            (matching::outputs(&pair.sides, &pair.counters), matching::outputs(&pair.sides, &pair.blocks));
+        pair.counter_bytes = Comparison::of(&pair.sides, &pair.outputs.concat());
+        pair.block_bytes = Comparison::of(&pair.sides, &pair.block_outputs.concat());
         pair.compare_only(only);
         pair
     }
 
     /// The variables that are compared: all that both sides have, or those that are named.
     pub fn compare_only(&mut self, only: &[String]) {
-        self.compared = self.find_compared(only);
-        self.compared_bytes = self.comparison(&self.compared);
-    }
-
-    /// What lies alike on both sides is compared in one go.
-    fn comparison(&self, matched: &[Matched]) -> Comparison {
-        let mut found = Comparison::default();
-        for [a, b] in matched.iter().copied() {
-            let (x, y) = (self.scalar(0, a), self.scalar(1, b));
-            let (offsets, size) = ([x.offset, y.offset], x.size);
-            let reprs = [self.sides[0].program.repr(x.ty), self.sides[1].program.repr(y.ty)];
-            let is_reference = matches!(x.ty, Type::Reference(_)) || x.is_shared || y.is_shared;
-            if reprs[0] != reprs[1] || size != y.size || is_reference {
-                found.singles.push([a, b]);
-                continue;
-            }
-            // What is beyond the end of a string is no part of its value.
-            let is_exact = reprs[0].is_some();
-            match found.runs.last_mut() {
-                Some(Run { offsets: start, length, scalars, is_exact: exact })
-                    if [start[0] + *length, start[1] + *length] == offsets && *length < MAX_RUN =>
-                {
-                    *length += size;
-                    scalars.push([a, b]);
-                    *exact &= is_exact;
-                }
-                _ => found.runs.push(Run { offsets, length: size, scalars: vec![[a, b]], is_exact }),
-            }
-        }
-        found
+        self.compared = matching::compared(&self.sides, &self.inputs, only);
+        self.compared_bytes = Comparison::of(&self.sides, &self.compared);
     }
 
     pub fn scalar(&self, side: usize, at: usize) -> &Scalar {
@@ -258,81 +133,17 @@ impl Pair {
 
     /// The scalars that both sides have, by their common names.
     pub fn matched(&self, wanted: impl Fn(&Scalar) -> bool) -> Vec<Matched> {
-        let other = self.sides[1].scalars.all.iter().enumerate();
-        let other: HashMap<&str, usize> = other.map(|(at, scalar)| (scalar.key.as_str(), at)).collect();
-        let all = self.sides[0].scalars.all.iter().enumerate();
-        let wanted = all.filter(|(_, scalar)| wanted(scalar));
-        wanted.filter_map(|(at, scalar)| Some([at, *other.get(scalar.key.as_str())?])).collect()
-    }
-
-    /// Instances on both sides: those that count, or the others.
-    fn find_blocks(&self, count: bool) -> Vec<Matched> {
-        let others = self.sides[1].scalars.blocks.iter().enumerate().filter(|(_, it)| it.counts() == count);
-        let others: HashMap<&str, usize> = others.map(|(at, it)| (it.key.as_str(), at)).collect();
-        let counterpart = |it: &Instance| others.get(it.key.as_str()).copied();
-        let ours = self.sides[0].scalars.blocks.iter().enumerate().filter(|(_, it)| it.counts() == count);
-        ours.filter_map(|(at, it)| Some([at, counterpart(it)?])).collect()
-    }
-
-    fn find_outputs(&self, blocks: &[Matched]) -> Vec<Vec<Matched>> {
-        let all = self.matched(|it| matches!(it.role, Role::Output(_)));
-        let of = |[counter, _]: &Matched| {
-            let own = |it: &&Matched| self.scalar(0, it[0]).role == Role::Output(*counter);
-            all.iter().filter(own).copied().collect()
-        };
-        blocks.iter().map(of).collect()
-    }
-
-    /// Whether a name, as a user writes it, is that of a scalar or of what it is in. It may begin with the one PROGRAM, as it
-    /// may for a run.
-    fn is_named(&self, side: usize, at: usize, name: &str) -> bool {
-        let scalar = self.scalar(side, at);
-        let starts = |path: &str, name: &str| {
-            let (path, name) = (path.to_ascii_lowercase(), name.to_ascii_lowercase());
-            path.strip_prefix(&name).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
-        };
-        let key = scalar.key.strip_prefix("globals.").unwrap_or(&scalar.key);
-        let is = |name: &str| starts(key, name) || starts(&scalar.key, name) || starts(&scalar.path, name);
-        let program = &self.sides[side].program;
-        // A variable of a list may be named in full.
-        let full = scalar.full_name(program);
-        let within = name.split_once('.').filter(|(first, _)| match program.instances.as_slice() {
-            [one] => [&one.name, &program.class(one.program).name].into_iter().any(|it| it.eq_ignore_ascii_case(first)),
-            _ => false,
-        });
-        is(name) || full.is_some_and(|it| starts(&it, name)) || within.is_some_and(|(_, rest)| is(rest))
+        matching::matched(&self.sides, wanted)
     }
 
     /// A name that nothing has which is compared; with how many sides have it otherwise.
     pub fn unknown_name<'n>(&self, only: &'n [String]) -> Option<(&'n str, usize)> {
-        let both = self.matched(|it| it.role != Role::Hidden);
-        let known = |name: &str| both.iter().any(|[a, b]| self.is_named(0, *a, name) || self.is_named(1, *b, name));
-        let name = only.iter().find(|it| !known(it))?;
-        let has = |side: &usize| (0..self.sides[*side].scalars.all.len()).any(|at| self.is_named(*side, at, name));
-        Some((name, [0, 1].iter().filter(|it| has(it)).count()))
+        matching::unknown_name(&self.sides, only)
     }
 
     /// Variables and outputs of blocks that only one side has: its number, and their paths.
     pub fn only_one_has(&self, wanted: impl Fn(&Scalar) -> bool) -> Vec<(usize, &str)> {
-        let keys = [0, 1].map(|side: usize| self.sides[side].scalars.all.iter().map(|it| it.key.as_str()).collect());
-        let keys: [HashSet<&str>; 2] = keys;
-        let of = |side: usize| {
-            let all = self.sides[side].scalars.all.iter().filter(|it| it.role != Role::Hidden);
-            let (wanted, other) = (&wanted, &keys[1 - side]);
-            all.filter(move |it| wanted(it) && !other.contains(it.key.as_str())).map(move |it| (side, it.path.as_str()))
-        };
-        of(0).chain(of(1)).collect()
-    }
-
-    fn find_compared(&self, only: &[String]) -> Vec<Matched> {
-        let inputs: Vec<_> = self.inputs.iter().map(|it| it.scalars[0]).collect();
-        let shows = |it: &Scalar| matches!(it.role, Role::Variable | Role::Output(_));
-        let mut found = self.matched(shows);
-        found.retain(|[a, b]| {
-            let asked = only.is_empty() || only.iter().any(|it| self.is_named(0, *a, it) || self.is_named(1, *b, it));
-            shows(self.scalar(1, *b)) && !inputs.contains(a) && asked
-        });
-        found
+        matching::only_one_has(&self.sides, wanted)
     }
 
     fn given(&self, step: &Step) -> Vec<String> {
@@ -468,19 +279,12 @@ impl Pair {
         normal::hash(&self.rest)
     }
 
-    fn equal(&self, [a, b]: Matched, states: [&[u8]; 2]) -> bool {
-        let programs = [&self.sides[0].program, &self.sides[1].program];
-        let all = [&self.sides[0].scalars, &self.sides[1].scalars];
-        scalar::equal(programs, all, [self.scalar(0, a), self.scalar(1, b)], states)
+    fn equal(&self, matched: Matched, states: [&[u8]; 2]) -> bool {
+        comparison::equal(&self.sides, matched, states)
     }
 
     fn all_equal(&self, comparison: &Comparison) -> bool {
-        let states = self.states();
-        comparison
-            .runs
-            .iter()
-            .all(|it| it.is_same(states) || !it.is_exact && it.scalars.iter().all(|it| self.equal(*it, states)))
-            && comparison.singles.iter().all(|it| self.equal(*it, states))
+        comparison.is_same(&self.sides, self.states())
     }
 
     /// Whether the compared values, or how the scan ended, differ.
@@ -495,7 +299,7 @@ impl Pair {
         self.passed.iter_mut().zip(seen).for_each(|(all, it)| *all |= it);
         if !self.remaining.contains_key(&self.passed) {
             let remaining = self.remaining_compared(passing);
-            let comparison = self.comparison(&remaining);
+            let comparison = Comparison::of(&self.sides, &remaining);
             let idle = [0, 1].map(|side| passing.idle_bytes(side, &self.passed));
             let known = Remaining { is_empty: remaining.is_empty(), comparison, idle };
             self.remaining.insert(self.passed.clone(), known);
@@ -607,13 +411,6 @@ impl Pair {
             }
         }
         rows
-    }
-}
-
-impl Run {
-    fn is_same(&self, states: [&[u8]; 2]) -> bool {
-        let of = |side: usize| &states[side][self.offsets[side]..self.offsets[side] + self.length];
-        of(0) == of(1)
     }
 }
 
