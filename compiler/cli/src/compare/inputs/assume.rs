@@ -1,15 +1,23 @@
 //! What a plant's inputs are said never to do: a file of lines as `Target 1..500`,
 //! `not (Start and Stop)`, `Part for at least 3 scans` and `no run`.
 
+mod condition;
+
+mod parser;
+mod tokens;
+
 use super::choice::{Choice, Covered};
-use crate::compare::pair::{Input, Pair};
+use crate::compare::pair::Pair;
 use crate::compare::program::facts::Numbers;
 use crate::machine;
-use staunch_host::{Event, Map};
-use staunch_ir::{Chars, Repr, Value};
+use condition::{Condition, is_within, order};
+use parser::{Named, Parser};
+use staunch_host::Event;
+use staunch_ir::{Repr, Value};
 use std::cmp::Ordering;
 use std::collections::HashSet;
 use std::path::Path;
+use tokens::{tokens, uncommented};
 
 #[derive(Clone, Debug, Default)]
 pub struct Assumptions {
@@ -22,83 +30,6 @@ pub struct Assumptions {
     pub never: Vec<Event>,
     /// The lines, as they are written.
     pub lines: Vec<String>,
-}
-
-/// An input as the lines name it, and how its values are written.
-struct Named<'a> {
-    name: String,
-    /// With its NAMESPACE or list, of a global variable.
-    full: Option<String>,
-    subrange: Option<(i128, i128)>,
-    /// It has no order.
-    is_text: bool,
-    value: Spelling<'a>,
-}
-
-/// The value that a text is of an input's type.
-type Spelling<'a> = Box<dyn Fn(&str) -> Result<Value, String> + 'a>;
-
-impl<'a> Named<'a> {
-    fn of(pair: &Pair, map: &'a Map, input: &Input) -> Self {
-        let name = pair.path(input.scalars).to_owned();
-        let (path, repr) = (name.clone(), input.initial.repr());
-        let running: Vec<usize> = (0..map.instances.len()).collect();
-        let texts: Vec<String> = input.texts.iter().take(input.named).map(Chars::to_string).collect();
-        let is_text = !texts.is_empty();
-        let value = move |text: &str| {
-            if is_text {
-                return position(&texts, text);
-            }
-            let place = staunch_host::place_of(map, &running, &path)?;
-            Ok(Value::read(repr, &staunch_host::bytes_of(map, place, text)?))
-        };
-        let full = pair.scalar(0, input.scalars[0]).full_name(&pair.sides[0].program);
-        Self { full, name, is_text, subrange: subrange(pair, input.scalars), value: Box::new(value) }
-    }
-}
-
-impl Named<'_> {
-    fn is_in_full(&self, name: &str) -> bool {
-        self.full.as_ref().is_some_and(|it| it.eq_ignore_ascii_case(name))
-    }
-}
-
-/// Which of the texts that a string is tried with a literal is.
-fn position(texts: &[String], literal: &str) -> Result<Value, String> {
-    let found = texts.iter().position(|it| it == literal).and_then(|it| u16::try_from(it).ok());
-    found.map(Value::U16).ok_or_else(|| {
-        let shown: Vec<_> = texts.iter().filter(|it| it.len() < SHOWN).map(String::as_str).collect();
-        format!("it is not tried with {literal}, but with what the programs compare it with: {}", shown.join(", "))
-    })
-}
-
-/// Characters of a text that a message shows.
-const SHOWN: usize = 40;
-
-/// The limits of an input's subrange; where the two systems' differ, what is in both.
-fn subrange(pair: &Pair, scalars: [usize; 2]) -> Option<(i128, i128)> {
-    let both = [0, 1].map(|side| pair.sides[side].program.range(pair.scalar(side, scalars[side]).ty));
-    let limits = both.into_iter().flatten();
-    limits.reduce(|all, it| (all.0.max(it.0), all.1.min(it.1)))
-}
-
-#[derive(Clone, Debug)]
-enum Condition {
-    Is(usize),
-    Compare(usize, Relation, Value),
-    Not(Box<Condition>),
-    And(Box<Condition>, Box<Condition>),
-    Or(Box<Condition>, Box<Condition>),
-}
-
-#[derive(Clone, Copy, Debug)]
-enum Relation {
-    Lt,
-    Le,
-    Gt,
-    Ge,
-    Eq,
-    Ne,
 }
 
 /// The names of variables that the lines speak of.
@@ -118,13 +49,6 @@ impl Mentioned {
 
 fn text(path: &Path) -> Result<String, String> {
     std::fs::read_to_string(path).map_err(|it| format!("cannot read {}: {it}", path.display()))
-}
-
-/// A line without its remark: `T#5s` is a value.
-fn uncommented(line: &str) -> &str {
-    let is_remark = |at: &usize| !line[..*at].ends_with(|it: char| it.is_alphanumeric());
-    let remark = line.match_indices('#').map(|it| it.0).find(is_remark);
-    line[..remark.unwrap_or(line.len())].trim()
 }
 
 impl Assumptions {
@@ -248,51 +172,6 @@ impl Assumptions {
     }
 }
 
-impl Condition {
-    fn holds(&self, inputs: &[Value]) -> bool {
-        match self {
-            Self::Is(at) => inputs[*at] == Value::Bool(true),
-            Self::Compare(at, relation, limit) => {
-                let ordering = order(inputs[*at], *limit);
-                match relation {
-                    Relation::Lt => ordering.is_some_and(Ordering::is_lt),
-                    Relation::Le => ordering.is_some_and(Ordering::is_le),
-                    Relation::Gt => ordering.is_some_and(Ordering::is_gt),
-                    Relation::Ge => ordering.is_some_and(Ordering::is_ge),
-                    Relation::Eq => ordering.is_some_and(Ordering::is_eq),
-                    Relation::Ne => ordering.is_none_or(Ordering::is_ne),
-                }
-            }
-            Self::Not(inner) => !inner.holds(inputs),
-            Self::And(a, b) => a.holds(inputs) && b.holds(inputs),
-            Self::Or(a, b) => a.holds(inputs) || b.holds(inputs),
-        }
-    }
-
-    fn near(&self, input: usize, found: &mut Numbers) {
-        match self {
-            Self::Compare(at, _, limit) if *at == input => found.add(*limit),
-            Self::Is(_) | Self::Compare(..) => {}
-            Self::Not(inner) => inner.near(input, found),
-            Self::And(a, b) | Self::Or(a, b) => [a, b].into_iter().for_each(|it| it.near(input, found)),
-        }
-    }
-}
-
-/// Two values of one type; a NaN is in no order.
-fn order(a: Value, b: Value) -> Option<Ordering> {
-    match (a, b) {
-        (Value::F32(a), Value::F32(b)) => a.partial_cmp(&b),
-        (Value::F64(a), Value::F64(b)) => a.partial_cmp(&b),
-        (Value::Bool(a), Value::Bool(b)) => Some(a.cmp(&b)),
-        _ => Some(a.as_integer()?.cmp(&b.as_integer()?)),
-    }
-}
-
-fn is_within(value: Value, low: Value, high: Value) -> bool {
-    order(low, value).is_some_and(Ordering::is_le) && order(value, high).is_some_and(Ordering::is_le)
-}
-
 /// Values to try of a range, and whether they are all of it.
 fn within(low: Value, high: Value, repr: Repr) -> (Vec<Value>, bool) {
     let (Some(first), Some(last)) = (low.as_integer(), high.as_integer()) else { return (vec![low, high], false) };
@@ -301,150 +180,11 @@ fn within(low: Value, high: Value, repr: Repr) -> (Vec<Value>, bool) {
     (numbers.into_iter().filter_map(|it| repr.integer(it)).collect(), whole)
 }
 
-struct Parser<'t> {
-    tokens: &'t [String],
-    inputs: &'t [Named<'t>],
-}
-
-impl Parser<'_> {
-    fn input(&self, name: &str) -> Result<usize, String> {
-        let is_it = |it: &Named<'_>| it.name.eq_ignore_ascii_case(name) || it.is_in_full(name);
-        let found = self.inputs.iter().position(is_it);
-        found.ok_or_else(|| match self.inputs {
-            [] => format!("`{name}` is no input: the program has none"),
-            inputs => {
-                let names: Vec<_> = inputs.iter().map(|it| it.name.as_str()).collect();
-                format!("`{name}` is no input; they are {}", names.join(", "))
-            }
-        })
-    }
-
-    /// A value of an input.
-    fn limit(&self, input: usize, text: &str) -> Result<Value, String> {
-        let Named { name, subrange, value, .. } = &self.inputs[input];
-        let inside = |limit: &Value| {
-            let number = limit.as_integer();
-            number.is_none_or(|it| subrange.is_none_or(|(low, high)| (low..=high).contains(&it)))
-        };
-        let limit = value(text).map_err(|it| format!("{name}: {it}"))?;
-        match subrange {
-            Some((low, high)) if !inside(&limit) => {
-                Err(format!("`{name}` is declared as {low}..{high}, and {text} is not within that"))
-            }
-            Some(_) | None => Ok(limit),
-        }
-    }
-
-    fn word(&mut self, word: &str) -> bool {
-        let is = self.tokens.first().is_some_and(|it| it.eq_ignore_ascii_case(word));
-        if is {
-            self.tokens = &self.tokens[1..];
-        }
-        is
-    }
-
-    fn either(&mut self) -> Result<Condition, String> {
-        let mut left = self.both()?;
-        while self.word("or") {
-            left = Condition::Or(Box::new(left), Box::new(self.both()?));
-        }
-        Ok(left)
-    }
-
-    fn both(&mut self) -> Result<Condition, String> {
-        let mut left = self.one()?;
-        while self.word("and") {
-            left = Condition::And(Box::new(left), Box::new(self.one()?));
-        }
-        Ok(left)
-    }
-
-    fn one(&mut self) -> Result<Condition, String> {
-        if self.word("not") {
-            return Ok(Condition::Not(Box::new(self.one()?)));
-        }
-        if self.word("(") {
-            let inner = self.either()?;
-            return if self.word(")") { Ok(inner) } else { Err("a `)` is missing".to_owned()) };
-        }
-        let Some((name, rest)) = self.tokens.split_first() else {
-            return Err("an input is missing at the end".to_owned());
-        };
-        let at = self.input(name)?;
-        self.tokens = rest;
-        let relations = [
-            ("<", Relation::Lt),
-            ("<=", Relation::Le),
-            (">", Relation::Gt),
-            (">=", Relation::Ge),
-            ("=", Relation::Eq),
-            ("<>", Relation::Ne),
-        ];
-        let is_text = self.inputs[at].is_text;
-        let Some((_, relation)) = relations.iter().find(|it| self.word(it.0)) else { return Ok(Condition::Is(at)) };
-        let Some((value, rest)) = self.tokens.split_first() else {
-            return Err("a value is missing at the end".to_owned());
-        };
-        if is_text && !matches!(relation, Relation::Eq | Relation::Ne) {
-            return Err(format!("`{name}` is a string: it is compared by `=` and `<>`"));
-        }
-        let limit = self.limit(at, value)?;
-        self.tokens = rest;
-        Ok(Condition::Compare(at, *relation, limit))
-    }
-}
-
-/// Names as `s[3].part`, values as `-5`, `0.5`, `T#1m30s` and `Mode#Auto` are one token each, and so are `..` and each
-/// operator.
-fn tokens(line: &str) -> Result<Vec<String>, String> {
-    let mut found: Vec<String> = Vec::new();
-    let mut rest = line.trim_start();
-    while let Some(first) = rest.chars().next() {
-        let operator = ["..", "<=", ">=", "<>", "<", ">", "=", "(", ")"].iter().find(|it| rest.starts_with(**it));
-        let length = if let Some(it) = operator {
-            it.len()
-        } else if matches!(first, '\'' | '"') {
-            rest[1..]
-                .find(first)
-                .map(|it| it + 2)
-                .ok_or_else(|| format!("a {first} that closes the text is missing"))?
-        } else if first.is_alphanumeric() || matches!(first, '_' | '%' | '-') {
-            word(rest)
-        } else {
-            return Err(format!("`{first}` is not expected"));
-        };
-        found.push(rest[..length].to_owned());
-        rest = rest[length..].trim_start();
-    }
-    Ok(found)
-}
-
-/// The bytes of the name or value that a text begins with: it ends before `..`.
-fn word(text: &str) -> usize {
-    let is_number = text.starts_with(|it: char| it.is_ascii_digit() || it == '-');
-    let mut is_typed = false;
-    let mut before = ' ';
-    for (at, it) in text.char_indices() {
-        is_typed |= it == '#';
-        let belongs = it.is_alphanumeric()
-            || matches!(it, '_' | '%' | '#')
-            || it == '.' && !text[at..].starts_with("..")
-            || matches!(it, '[' | ']' | ',') && !is_number
-            // `-5`, `1e-3`, `T#-5s`, `DT#2024-01-31-12:30:00`
-            || it == '-' && (at == 0 || is_typed || is_number && matches!(before, 'e' | 'E'))
-            || it == ':' && is_typed;
-        if !belongs {
-            return at;
-        }
-        before = it;
-    }
-    text.len()
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
 
+    use super::parser::Spelling;
     use super::*;
 
     fn parsed(text: &str) -> Result<Assumptions, (usize, String)> {
@@ -503,22 +243,6 @@ mod tests {
         assert_eq!(choice.values, [1.0, 0.5, 2.5].map(Value::F32));
         let inputs = |level: f32| [Value::Bool(false), Value::Bool(false), Value::I16(50), Value::F32(level)];
         assert!(found.allow(&inputs(2.5)) && !found.allow(&inputs(2.6)) && !found.allow(&inputs(f32::NAN)));
-    }
-
-    #[test]
-    fn a_remark_is_no_value() {
-        assert_eq!(uncommented(" Wait T#1s..T#5s  # the panel's"), "Wait T#1s..T#5s");
-        assert_eq!(uncommented("# all"), "");
-        assert_eq!(uncommented("Start # T#5s"), "Start");
-    }
-
-    #[test]
-    fn values_are_one_token() {
-        let line = "a T#-1m30s..T#2.5s DT#2024-01-31-12:30:00 Mode#Auto 16#FF -5..1e-3 s[1,2].x";
-        let found =
-            ["a", "T#-1m30s", "..", "T#2.5s", "DT#2024-01-31-12:30:00", "Mode#Auto", "16#FF", "-5", "..", "1e-3"];
-        let expected: Vec<_> = found.into_iter().chain(["s[1,2].x"]).collect();
-        assert_eq!(tokens(line).unwrap(), expected);
     }
 
     #[test]
