@@ -54,7 +54,7 @@ const CIRCLES: [(&str, &[&[&str]]); 6] = [
     ),
     ("compiler/ir/src", &[&["interpret", "interpret::place"], &["reference", "reference::fixed", "reference::table"]]),
     ("compiler/rust/src", &[]),
-    ("compiler/native/src", &[&["function", "turns"]]),
+    ("compiler/native/src", &[]),
     ("compiler/cli/src", &[]),
     ("runtime/host/src", &[&["trace", "trace::table"]]),
 ];

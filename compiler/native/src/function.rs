@@ -3,8 +3,8 @@
 use crate::Error;
 use crate::address::Address;
 use crate::module::{ModuleEmitter, Workspace};
+use crate::prepaid::Prepaid;
 use crate::signature::{POINTER, clif_type, result_type};
-use crate::turns::Prepaid;
 use cranelift_codegen::ir::{self as clif, InstBuilder, StackSlot, UserFuncName};
 use cranelift_frontend::{FuncInstBuilder, FunctionBuilder, Variable};
 use cranelift_module::{DataId, FuncId};

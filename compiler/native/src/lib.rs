@@ -12,6 +12,7 @@ mod target;
 mod address;
 mod module;
 mod operands;
+mod prepaid;
 mod signature;
 
 mod at_once;

@@ -3,8 +3,8 @@
 
 use crate::function::{Flow, Function, LoopFrame};
 use crate::place::PlaceValue;
+use crate::prepaid::{Counter, Prepaid};
 use crate::signature::clif_type;
-use crate::turns::{Counter, Prepaid};
 use cranelift_codegen::ir::{self as clif, InstBuilder, condcodes::IntCC, types};
 use cranelift_frontend::Variable;
 use staunch_ir::loops::{exit_condition, running};

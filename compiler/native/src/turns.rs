@@ -3,31 +3,14 @@
 //! A loop whose bounds say how many it has takes them all before the first one.
 
 use crate::function::{Flow, Function, LoopFrame};
+use crate::prepaid::{Counter, Prepaid};
 use cranelift_codegen::ir as clif;
 use cranelift_codegen::ir::{InstBuilder, MemFlagsData, condcodes::IntCC, types};
-use cranelift_frontend::Variable;
 use staunch_ir::alias::Frame;
 use staunch_ir::loops::Known;
 use staunch_ir::turns::{self, Ahead, Linear};
-use staunch_ir::{Block, FaultKind, For, LocalId, Location, Place, Repr, RoutineId, Statement, Step};
+use staunch_ir::{Block, FaultKind, For, LocalId, Location, Repr, RoutineId, Statement, Step};
 use staunch_runtime::Context;
-
-/// A loop that has taken its turns. Values are of 64 bits.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Prepaid<'p> {
-    pub(crate) counter: Counter<'p>,
-    /// The last value that a turn has been taken for.
-    pub(crate) limit: Variable,
-    pub(crate) step: i128,
-    /// Whether the present turn has taken its step.
-    pub(crate) is_stepped: bool,
-}
-
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Counter<'p> {
-    Register(Variable),
-    Variable(&'p Place),
-}
 
 impl<'p> Function<'_, 'p> {
     /// Before a loop, whose blocks may take turns. Returns whether it is the outermost that does.
