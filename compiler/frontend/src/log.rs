@@ -56,6 +56,10 @@ impl<'s> Log<'s> {
         self.report(unsupported(span, what));
     }
 
+    pub fn has_errors(&self) -> bool {
+        self.has_errors_since(0)
+    }
+
     /// Whether errors were reported since there were `reported` diagnostics.
     pub fn has_errors_since(&self, reported: usize) -> bool {
         self.diagnostics[reported..].iter().any(|it| it.severity == Severity::Error)

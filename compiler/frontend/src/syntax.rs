@@ -15,6 +15,7 @@ mod misspelt;
 
 mod block_ends;
 mod foreign_block;
+mod foreign_reader;
 mod foreign_statement;
 mod foreign_syntax;
 mod invalid_names;

@@ -1,73 +1,42 @@
 //! `staunch compare`: what a move of a program from one system to another changes.
+//!
+//! The folders are layers, and each imports from those before it: the program's text for the other system, what each
+//! program's text says, both side by side, what their inputs may be, how they may come to differ, the search for inputs
+//! that make them, what it has found, and the report.
 
-mod fixed;
-mod logix;
-mod migrated;
-mod missing;
-mod rejection;
-mod renamed;
+mod other;
+mod program;
 
-mod normal;
 mod pair;
-mod scalar;
 
-mod dependency;
-mod facts;
-mod usage;
-mod walked;
+mod inputs;
 
-mod apart;
-mod beyond;
-
-mod alphabet;
-mod assume;
-
-mod trace;
+mod difference;
 
 mod search;
 
-mod exhaustive;
-mod guided;
-mod novelty;
-mod random;
-mod shrink;
-mod strategy;
-
-mod picture;
-mod stimulus;
-
-mod pitfall;
-
-mod accept;
-mod finding;
-mod reason;
-
-mod tolerance;
+mod findings;
 
 mod report;
-mod scope;
 
 use crate::args::{Common, Compare, Files, MessageFormat};
 use crate::session::Session;
 use crate::{REJECTED, input, run};
-use alphabet::Alphabet;
-use assume::{Assumptions, Mentioned};
-use facts::Facts;
-use finding::Findings;
-use pair::{Pair, Row, Side};
-use search::World;
-use staunch_frontend::{Dialect, Sources};
-use trace::Trace;
-
-/// What the comparison came to.
-enum Verdict {
-    /// The rows up to the first difference.
-    Differs { rows: Vec<Row>, trace: Option<Trace>, shortest: bool },
-    /// Nothing differs, for this reason.
-    Equal(String),
-    /// Nothing was found to differ: what was tried, and what was not.
-    NotFound { tried: Vec<String>, left: Vec<String> },
-}
+use difference::accept::Accepted;
+use difference::pitfall;
+use findings::finding::Findings;
+use findings::reason;
+use inputs::alphabet;
+use other::{fixed, logix, migrated, missing, renamed};
+use pair::{Pair, Side, Step};
+use program::scalar::{Role, Scalar};
+use report::verdict::{Judged, Verdict};
+use report::{Report, picture, rejection, scope, stimulus};
+use search::tolerance::Tolerance;
+use search::trace::Trace;
+use search::world::World;
+use search::{look, strategy};
+use staunch_frontend::Dialect;
 
 pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
     let args = &args.settled()?;
@@ -96,7 +65,7 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
     let missing =
         if args.against.is_some() { Vec::new() } else { missing::find(&from.sources, &program, args.to.dialect) };
     let unknown = if args.against.is_some() { Vec::new() } else { missing::unknown(&program, args.to.dialect) };
-    let report = report::Report { session: &from, args, notes, renamed: renamed.len(), missing, unknown };
+    let report = Report { session: &from, args, notes, renamed: renamed.len(), missing, unknown };
     let moved = match to.program_to_run(args.program.as_deref())? {
         Some(moved) => moved,
         None => {
@@ -112,13 +81,13 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
     let same_program = is_same(&program, &moved);
     let sides = [Side::new(args.from.dialect, program, cycle)?, Side::new(args.to.dialect, moved, cycle)?];
     let mut pair = Pair::new(sides, &[]);
-    let mut world = world(&mut pair, args)?;
+    let mut world = World::of(&mut pair, args)?;
     let only: Vec<String> = args.vars.iter().flat_map(|it| it.split(',')).map(|it| it.trim().to_owned()).collect();
     pair.compare_only(&only);
     check_compared(&pair, args, &only)?;
-    let uses = finding::uses(&pair);
+    let uses = pitfall::uses(&pair);
     let mut findings = Findings::new(&pair, &world, &uses, &renamed);
-    let accepted = args.accept.as_deref().map(accept::Accepted::read).transpose()?.unwrap_or_default();
+    let accepted = args.accept.as_deref().map(Accepted::read).transpose()?.unwrap_or_default();
     let verdict = if same_program && args.stimulus.is_none() {
         findings.all_impossible("both systems run the same program");
         Verdict::Equal("both systems run the same program: no statement, type, block or retention differs".to_owned())
@@ -127,7 +96,7 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
     };
     let rest = match &verdict {
         Verdict::Differs { .. } if args.stimulus.is_none() && accepted.accepts_any() && !findings.fail(&accepted) => {
-            world.tolerance = Some(tolerance::Tolerance::of(&pair, &world, &uses, &accepted));
+            world.tolerance = Some(Tolerance::of(&pair, &world.computed, &uses, &accepted));
             Some(beyond_accepted(&mut pair, &world, args, &mut findings))
         }
         Verdict::Differs { .. } | Verdict::Equal(_) | Verdict::NotFound { .. } => None,
@@ -171,24 +140,18 @@ fn check_compared(pair: &Pair, args: &Compare, only: &[String]) -> Result<(), St
     Ok(())
 }
 
-/// What the comparison came to; and, where all that it has found is accepted, what it comes to beyond that.
-pub struct Judged<'v> {
-    verdict: &'v Verdict,
-    rest: Option<&'v Verdict>,
-}
-
 /// The search goes on past what is accepted.
 fn beyond_accepted(pair: &mut Pair, world: &World, args: &Compare, findings: &mut Findings) -> Verdict {
     let outcome = strategy::search(pair, world, args.budget, 0);
     findings.note(pair, world, &outcome, false);
     if let Some(trace) = &outcome.found {
-        let steps: Vec<pair::Step> = trace.steps().cloned().collect();
+        let steps: Vec<Step> = trace.steps().cloned().collect();
         pair.init();
         for step in &steps {
             let faults = pair.scan(step);
-            search::look(pair, world, step.event, faults);
+            look::look(pair, world, step.event, faults);
         }
-        pair.compared = world.tolerance.iter().flat_map(|it| pair.remaining_compared(it)).collect();
+        pair.compared = world.tolerance.iter().flat_map(|it| pair.remaining_compared(&it.passing)).collect();
         return differs(pair, world, trace, false, findings);
     }
     let is_told_apart = world.tolerance.as_ref().is_none_or(|it| it.beside.is_empty());
@@ -201,18 +164,18 @@ fn beyond_accepted(pair: &mut Pair, world: &World, args: &Compare, findings: &mu
 /// Whether the search leaves nothing out that the inputs could do, and no output that one of the two alone has: where
 /// addresses share bits on one system, what is written by another name is an output of its own on the other.
 fn covers_all(pair: &Pair, world: &World, args: &Compare) -> bool {
-    let is_output = |it: &scalar::Scalar| it.at.is_output && it.field.is_some();
+    let is_output = |it: &Scalar| it.at.is_output && it.field.is_some();
     let has_all = args.vars.is_some() || pair.only_one_has(is_output).is_empty();
     has_all
         && world.alphabet.is_exact()
         && pair.whole
         && alphabet::untried(pair).is_empty()
         && alphabet::outputs_given(pair).is_empty()
-        && pair.only_one_has(|it| it.role == scalar::Role::Input).is_empty()
+        && pair.only_one_has(|it| it.role == Role::Input).is_empty()
 }
 
 fn differs(pair: &mut Pair, world: &World, trace: &Trace, shortest: bool, findings: &mut Findings) -> Verdict {
-    let steps: Vec<pair::Step> = trace.steps().cloned().collect();
+    let steps: Vec<Step> = trace.steps().cloned().collect();
     let rows = pair.replay(&steps);
     let differences = rows.last().map_or_else(Vec::new, |it| pair.differences(it));
     let cause = pitfall::cause(pair, &rows, &differences, &world.habits);
@@ -245,40 +208,6 @@ fn is_same(a: &staunch_ir::Program, b: &staunch_ir::Program) -> bool {
     print(a) == print(b) && map_text(a, &Layout::new(a)) == map_text(b, &Layout::new(b))
 }
 
-/// The inputs, and what is known of them.
-fn world(pair: &mut Pair, args: &Compare) -> Result<World, String> {
-    let facts = [0, 1].map(|side: usize| Facts::of(&pair.sides[side].program));
-    let facts = facts.each_ref();
-    let mentioned = args.assume.as_deref().map(Mentioned::read).transpose()?.unwrap_or_default();
-    let sources = alphabet::sources(pair, facts, &mentioned);
-    (pair.inputs, pair.kept) = (sources.inputs, sources.kept);
-    let assumptions = args.assume.as_deref().map(|it| Assumptions::read(it, pair)).transpose()?.unwrap_or_default();
-    pair.never.clone_from(&assumptions.never);
-    let alphabet = Alphabet::of(pair, facts, &assumptions);
-    if alphabet.vectors.is_empty() {
-        return Err("the assumptions allow no combination of the values of inputs that are tried".to_owned());
-    }
-    let wait = facts.iter().flat_map(|it| it.times.last().copied()).max().unwrap_or(0);
-    let longest = usize::try_from(wait / pair.shortest_cycle().max(1)).unwrap_or(usize::MAX);
-    let habits = finding::uses(pair).into_iter().map(|it| it.habits).collect();
-    let mut computed = if args.against.is_none() { beyond::computed_apart(pair) } else { Vec::new() };
-    let known: Vec<_> = computed.iter().map(|it| it.variable).collect();
-    computed.extend(beyond::held_apart(pair).into_iter().filter(|it| !known.contains(&it.variable)));
-    beyond::note_counters(pair, &mut computed);
-    Ok(World {
-        alphabet,
-        assumptions,
-        initial: pair.initial(),
-        depth: args.depth,
-        constants: facts.iter().flat_map(|it| it.constants.iter().copied()).collect(),
-        longest: longest.min(20_000),
-        inputs_written: alphabet::are_written(pair, facts),
-        habits,
-        computed,
-        tolerance: None,
-    })
-}
-
 fn verdict(pair: &mut Pair, world: &World, args: &Compare, findings: &mut Findings) -> Result<Verdict, String> {
     if args.stimulus.is_some() {
         return stimulus::follow(pair, args);
@@ -295,11 +224,4 @@ fn verdict(pair: &mut Pair, world: &World, args: &Compare, findings: &mut Findin
         return Ok(Verdict::Equal(scope::every_state(pair, world, &outcome)));
     }
     Ok(scope::not_found(pair, world, &outcome))
-}
-
-/// The text of a file by its number, for messages.
-fn line_of(sources: &Sources, file: u16, line: u32) -> String {
-    let text = &sources.file(file).text;
-    let at = usize::try_from(line.saturating_sub(1)).unwrap_or(0);
-    text.lines().nth(at).unwrap_or_default().trim().to_owned()
 }

@@ -43,7 +43,7 @@ pub(crate) fn assemble<'s>(
     declarations.check_pins()?;
     declarations.check_escapes()?;
     // What a mistake has left half declared is not put together.
-    if declarations.log.has_errors_since(0) {
+    if declarations.log.has_errors() {
         return None;
     }
     let program = std::mem::replace(&mut declarations.program, empty_program(Vec::new()));

@@ -14,7 +14,7 @@ const MAX_STACK: u64 = 1 << 20;
 pub(super) fn order(declarations: &mut Declarations<'_>, uses: Vec<Uses>, stacks: Vec<u64>) -> Option<()> {
     let mut calls = all_callees(declarations);
     let mut order = sorted(declarations, &calls)?;
-    if !declarations.log.has_errors_since(0) && super::prescan::add(declarations, uses, &order) {
+    if !declarations.log.has_errors() && super::prescan::add(declarations, uses, &order) {
         // A prescan calls those of contained instances.
         calls = all_callees(declarations);
         order = sorted(declarations, &calls)?;

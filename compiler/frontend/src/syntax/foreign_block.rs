@@ -1,5 +1,5 @@
-//! Blocks of other languages that no keyword of Structured Text ends, each answered once and passed over: those of Python, which
-//! indentation ends, LOOP of Ada, SWITCH and FOREACH without parentheses.
+//! Blocks of other languages, each answered once and passed over: those of Python, which indentation ends, LOOP of Ada, SWITCH,
+//! FOREACH, WITH, and a loop that starts with DO.
 
 use crate::{
     diagnostic::{Code, Diagnostic},
@@ -8,10 +8,13 @@ use crate::{
 };
 
 use super::{
-    foreign_statement::{
-        FURTHEST, has_braces, is_further_in, is_word, refuse, skip_further_in, skip_rest, skip_tokens, starts_line,
+    expression::is_latch,
+    foreign_reader::{
+        FURTHEST, behind_parentheses, has_braces, is_further_in, is_word, refuse, skip_further_in, skip_rest,
+        skip_to_end_of, skip_tokens, starts_line,
     },
     parser::{In, TokenReader},
+    recovery,
     token_class::is_pou_end,
 };
 
@@ -31,6 +34,11 @@ pub fn skip(input: &mut In<'_, '_, '_>) -> bool {
         (Kind::Exit, Kind::Name) => exit_when(input),
         (Kind::Name, Kind::Name | Kind::Integer) if input.is_word("SWITCH") => switch(input),
         (Kind::Name, Kind::Name) if input.is_word("FOREACH") => each(input),
+        (Kind::Name, Kind::OpenParen) if input.is_word("SWITCH") => in_braces(input, refuse_switch),
+        (Kind::Name, Kind::OpenParen) if input.is_word("FOREACH") => in_braces(input, refuse_each),
+        (Kind::Name, Kind::Name) if input.is_word("WITH") => !is_latch(input, 1) && with(input),
+        (Kind::Name, Kind::Case) if input.is_word("SELECT") => select(input),
+        (Kind::Do, _) => do_loop(input),
         (Kind::Name, _) if input.is_word("LOOP") => endless(input),
         _ => false,
     }
@@ -201,6 +209,76 @@ fn exit_when(input: &mut In<'_, '_, '_>) -> bool {
     true
 }
 
+/// `SWITCH (x) { … }`, `foreach (int v in a) { … }`: what is in braces the lexer took for a pragma.
+fn in_braces(input: &mut In<'_, '_, '_>, refuse: fn(&mut In<'_, '_, '_>)) -> bool {
+    let after = behind_parentheses(input, 1);
+    if !has_braces(input, after) {
+        return false;
+    }
+    refuse(input);
+    skip_tokens(input, after);
+    true
+}
+
+fn refuse_switch(input: &mut In<'_, '_, '_>) {
+    refuse_choice(input, "SWITCH", None);
+}
+
+/// A CASE by another name, of this value.
+fn refuse_choice(input: &mut In<'_, '_, '_>, name: &str, value: Option<&str>) {
+    let word = input.here();
+    let help = format!("write `CASE {} OF 1: …; 2, 3: …; ELSE …; END_CASE`", value.unwrap_or("x"));
+    refuse(input, word, format!("Structured Text has no {name}"), help);
+}
+
+fn refuse_each(input: &mut In<'_, '_, '_>) {
+    let word = input.here();
+    refuse(input, word, "Structured Text has no FOREACH", "write `FOR i := 0 TO 9 DO … a[i] … END_FOR`");
+}
+
+/// `WITH s DO … END_WITH`
+fn with(input: &mut In<'_, '_, '_>) -> bool {
+    let word = input.here();
+    refuse(input, word, "Structured Text has no WITH", "write the variable before each member: `s.x := 1;`");
+    skip_to_end_of(input, "WITH");
+    true
+}
+
+/// `Select Case x … End Select`
+fn select(input: &mut In<'_, '_, '_>) -> bool {
+    refuse_choice(input, "SELECT", None);
+    skip_to_end_of(input, "SELECT");
+    true
+}
+
+/// `do { … } while (x < 5);`, `Do While x < 5 … Loop`
+fn do_loop(input: &mut In<'_, '_, '_>) -> bool {
+    let word = input.here();
+    let (message, help) =
+        ("Structured Text has no DO at the start of a loop", "write `REPEAT … UNTIL x >= 5 END_REPEAT`");
+    if has_braces(input, 1) {
+        refuse(input, word, message, help);
+        input.take();
+        if input.kind() == Kind::While {
+            recovery::skip_operands(input);
+        }
+        return true;
+    }
+    let is_of_basic = matches!(input.kind_ahead(1), Kind::While | Kind::Until) && !starts_line(input, 1);
+    if is_of_basic {
+        refuse(input, word, message, "write `WHILE x < 5 DO … END_WHILE`");
+        while !input.is_word("LOOP") {
+            let kind = input.kind();
+            if kind == Kind::End || is_pou_end(kind) {
+                return true;
+            }
+            input.take();
+        }
+        skip_tokens(input, 1);
+    }
+    is_of_basic
+}
+
 /// `SWITCH x … END_SWITCH`, `switch x { … }`
 fn switch(input: &mut In<'_, '_, '_>) -> bool {
     let end = rest_of_line(input);
@@ -214,9 +292,7 @@ fn switch(input: &mut In<'_, '_, '_>) -> bool {
     };
     let Some(count) = block_to(input, end, ends) else { return false };
     let value = written(input, 1, end);
-    let word = input.here();
-    let help = format!("write `CASE {} OF 1: …; 2, 3: …; ELSE …; END_CASE`", value.as_deref().unwrap_or("x"));
-    refuse(input, word, "Structured Text has no SWITCH", help);
+    refuse_choice(input, "SWITCH", value.as_deref());
     skip_tokens(input, count);
     true
 }
@@ -238,8 +314,7 @@ fn each(input: &mut In<'_, '_, '_>) -> bool {
         (depth == 0).then_some(ahead + 1 + usize::from(named))
     };
     let count = block_to(input, end, ends);
-    let word = input.here();
-    refuse(input, word, "Structured Text has no FOREACH", "write `FOR i := 0 TO 9 DO … a[i] … END_FOR`");
+    refuse_each(input);
     match count {
         Some(count) => skip_tokens(input, count),
         None => skip_rest(input),

@@ -1,10 +1,10 @@
 //! What is known of each counter, block and variable, as a list.
 
-use super::super::accept::Accepted;
-use super::super::beyond::Kind;
-use super::super::finding::{self, Finding, Findings};
-use super::super::trace::Trace;
 use super::Report;
+use crate::compare::difference::accept::Accepted;
+use crate::compare::difference::kind::Kind;
+use crate::compare::findings::finding::{self, Finding, Findings};
+use crate::compare::search::trace::Trace;
 use staunch_ir::Location;
 use std::fmt::Write;
 
@@ -49,7 +49,7 @@ impl Report<'_> {
 impl Report<'_> {
     /// Why the command fails, although some of what was found is accepted.
     pub(super) fn not_accepted(&self, findings: &Findings, accepted: &Accepted) -> String {
-        let open = findings.all.iter().filter(|it| it.is_reachable() && !accepted.accepts(it));
+        let open = findings.all.iter().filter(|it| it.is_reachable() && !it.is_accepted(accepted));
         let names = open.map(|it| match it.pitfall {
             Some(pitfall) => format!("`{} {}`", it.subject, pitfall.number()),
             None => format!("`{} {}`", it.subject, it.kind.name()),
@@ -95,7 +95,7 @@ fn reached(finding: &Finding, trace: Option<&Trace>) -> String {
 }
 
 fn note(finding: &Finding, accepted: &Accepted) -> &'static str {
-    if accepted.accepts(finding) { " (accepted)" } else { "" }
+    if finding.is_accepted(accepted) { " (accepted)" } else { "" }
 }
 
 /// The pitfalls that cannot happen, by the reasons why.

@@ -1,12 +1,14 @@
 //! The report as JSON: an object for each finding, and one for the verdict.
 
-use super::super::finding::{self, Finding, Findings};
-use super::super::pair::{Matched, Pair, Row};
-use super::super::pitfall::Cause;
-use super::super::search::World;
-use super::super::{Judged, Verdict, accept::Accepted, stimulus};
+use super::stimulus;
 use super::table::{Line, SHOWN};
+use super::verdict::{Judged, Verdict};
 use super::{Report, number};
+use crate::compare::difference::accept::Accepted;
+use crate::compare::difference::pitfall::Cause;
+use crate::compare::findings::finding::{self, Finding, Findings};
+use crate::compare::pair::{Matched, Pair, Row};
+use crate::compare::search::world::World;
 use staunch_host::json_text as quoted;
 use std::fmt::Write;
 
@@ -104,7 +106,7 @@ impl Report<'_> {
             finding.kind.name(),
             quoted(&finding.subject),
             number(finding.pitfall),
-            accepted.accepts(finding)
+            finding.is_accepted(accepted)
         )
     }
 

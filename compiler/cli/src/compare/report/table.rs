@@ -1,12 +1,12 @@
 //! A difference as a table: the scans that tell it, with the inputs that change and what parts.
 
-use super::super::finding::Findings;
-use super::super::line_of;
-use super::super::pair::{Matched, Pair, Row};
-use super::super::pitfall::Cause;
-use super::super::reason;
-use super::super::search::World;
 use super::Report;
+use crate::compare::difference::pitfall::Cause;
+use crate::compare::findings::finding::Findings;
+use crate::compare::findings::reason;
+use crate::compare::pair::{Matched, Pair, Row};
+use crate::compare::search::world::World;
+use staunch_frontend::Sources;
 use staunch_host::Event;
 use std::fmt::Write;
 
@@ -228,6 +228,13 @@ fn aligned(table: &[Vec<String>]) -> String {
         text.push('\n');
     }
     text
+}
+
+/// The text of a file by its number, for messages.
+fn line_of(sources: &Sources, file: u16, line: u32) -> String {
+    let text = &sources.file(file).text;
+    let at = usize::try_from(line.saturating_sub(1)).unwrap_or(0);
+    text.lines().nth(at).unwrap_or_default().trim().to_owned()
 }
 
 #[cfg(test)]

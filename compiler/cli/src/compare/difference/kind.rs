@@ -1,0 +1,77 @@
+//! What a finding can be about.
+
+use crate::compare::program::scalar::Instance;
+
+/// What a finding is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Kind {
+    Counter,
+    Timer,
+    OneShot,
+    Latch,
+    /// A variable that the two systems compute in other types.
+    Width,
+    /// A variable at an address whose bits others share on one of the two alone, or that is computed of one.
+    Address,
+    /// A variable that an event leaves as it is on one of the two.
+    Retention,
+    Fault,
+    /// A variable that differs, and no trap or kind says why: the two programs are not the same.
+    Variable,
+}
+
+impl Kind {
+    pub const ALL: [Self; 9] = [
+        Self::Counter,
+        Self::Timer,
+        Self::OneShot,
+        Self::Latch,
+        Self::Width,
+        Self::Address,
+        Self::Retention,
+        Self::Fault,
+        Self::Variable,
+    ];
+
+    /// In findings, and in the lines that accept them.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Counter => "counter",
+            Self::Timer => "timer",
+            Self::OneShot => "one-shot",
+            Self::Latch => "latch",
+            Self::Width => "width",
+            Self::Address => "address",
+            Self::Retention => "retention",
+            Self::Fault => "fault",
+            Self::Variable => "variable",
+        }
+    }
+
+    /// Why it differs, where no trap says so.
+    pub const fn reason(self) -> &'static str {
+        match self {
+            Self::Counter => "what it is given differs, or no trap explains it",
+            Self::Timer | Self::OneShot | Self::Latch => {
+                "both systems run the same block, and what it is given differs"
+            }
+            Self::Width => "the two systems compute or hold it in other types",
+            Self::Address => "bits at an address are shared on one of the two systems alone",
+            Self::Retention => "one system keeps it",
+            Self::Fault => "one system faults here, and the other goes on",
+            Self::Variable => "no trap explains it: the two programs are not the same",
+        }
+    }
+
+    /// Of a standard block that does not count.
+    pub fn of(instance: &Instance) -> Self {
+        let info = instance.block.info();
+        if info.instructions.iter().any(|it| it.needs_context) {
+            Self::Timer
+        } else if info.pin("CLK").is_some() {
+            Self::OneShot
+        } else {
+            Self::Latch
+        }
+    }
+}

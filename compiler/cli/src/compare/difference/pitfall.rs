@@ -1,0 +1,16 @@
+//! The pitfalls of a move between systems, which of them a difference shows, and which cannot happen.
+
+mod list;
+
+mod classify;
+
+mod cause;
+
+mod impossible;
+
+mod advice;
+
+pub use cause::{Cause, cause, seen};
+pub use classify::Habits;
+pub use impossible::{Use, impossible, uses};
+pub use list::Pitfall;

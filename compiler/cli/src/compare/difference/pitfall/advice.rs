@@ -1,0 +1,325 @@
+//! What to do about a pitfall, by the direction of the move: what keeps a count on one system loses it on another.
+//! Each text is proved in each of its directions, by the cases of `tests/compare/advice.txt`.
+
+use super::list::Pitfall;
+use staunch_frontend::Dialect::{self, Codesys, Cscape, Iec, Logix, Openplc};
+
+/// Where no text is proved.
+const OWN: &str =
+    "No way of writing it is proved for this direction: write it anew, and compare that with `--against`.";
+
+/// What is said about some pitfalls on a move from one of these systems to one of those.
+struct Advice {
+    /// What its cases call it.
+    #[cfg_attr(not(test), expect(dead_code, reason = "a test finds the cases by it"))]
+    name: &'static str,
+    pitfalls: &'static [usize],
+    from: &'static [Dialect],
+    to: &'static [Dialect],
+    text: &'static str,
+}
+
+/// Of the systems whose counters are blocks, all but Cscape.
+const NOT_CSCAPE: &[Dialect] = &[Iec, Codesys, Openplc];
+
+const fn advice(
+    name: &'static str,
+    pitfalls: &'static [usize],
+    from: &'static [Dialect],
+    to: &'static [Dialect],
+    text: &'static str,
+) -> Advice {
+    Advice { name, pitfalls, from, to, text }
+}
+
+/// What holds between the systems whose counters are blocks.
+const BLOCKS: &[Advice] = &[
+    advice(
+        "edge",
+        &[1, 6, 12],
+        NOT_CSCAPE,
+        &[Cscape],
+        "Feed the counter from an R_TRIG: `e(CLK := sensor); c(CU := e.Q, …)`.",
+    ),
+    advice(
+        "every call",
+        &[1, 6, 12],
+        &[Cscape],
+        NOT_CSCAPE,
+        "Make an edge in each call, and stop at the preset (here 50) as CSCAPE does: \
+         `c(CU := FALSE, R := …); c(CU := sensor AND c.CV < 50, R := …)`.",
+    ),
+    advice("great preset", &[2], &[Iec, Codesys], &[Cscape], GREAT_PRESET),
+    advice("great preset", &[15], &[Iec, Codesys], &[Openplc], GREAT_PRESET),
+    advice("great preset", &[10], &[Iec, Codesys], &[Cscape], GREAT_PRESET),
+    advice(
+        "great preset, below",
+        &[10],
+        &[Openplc],
+        &[Cscape],
+        "Count only below the preset, let PV be 32767, and compare the count yourself: \
+         `e(CLK := sensor); c(CU := e.Q AND c.CV < preset, PV := 32767, …)`, `c.CV >= preset`.",
+    ),
+    advice(
+        "equal to the preset",
+        &[10],
+        &[Cscape],
+        NOT_CSCAPE,
+        "Count only below the preset, and ask for `c.CV = preset` instead of Q: \
+         `e(CLK := sensor); c(CU := e.Q AND c.CV < preset, …)`.",
+    ),
+    advice(
+        "below the preset",
+        &[2],
+        &[Cscape],
+        &[Iec, Codesys],
+        "Count only below the preset (here 50): `e(CLK := sensor); c(CU := e.Q AND c.CV < 50, …)`.",
+    ),
+    advice(
+        "between 0 and the preset",
+        &[15],
+        &[Openplc],
+        &[Iec, Codesys],
+        "Count up only below the preset (here 50), and on IEC down only above 0: \
+         `e(CLK := sensor); c(CU := e.Q AND c.CV < 50, …)`, `c(CD := e.Q AND c.CV > 0, …)`.",
+    ),
+    advice("above 0", &[3], &[Codesys, Cscape], &[Iec], ABOVE_0),
+    advice("above 0", &[14], &[Codesys, Openplc], &[Iec], ABOVE_0),
+    advice("above 0", &[14], &[Openplc], &[Codesys], ABOVE_0),
+    advice("own variable", &[3], &[Iec], &[Cscape, Codesys], OWN_VARIABLE),
+    advice("own variable", &[15], &[Iec], &[Openplc], OWN_VARIABLE),
+    advice(
+        "count up to 32767",
+        &[8],
+        &[Iec, Openplc],
+        &[Codesys],
+        "Keep the count within 0..32767: `e(CLK := pulse); c(CU := e.Q AND c.CV < 32767, …)`.",
+    ),
+    advice(
+        "preset from 0",
+        &[8],
+        &[Iec, Openplc],
+        &[Codesys],
+        "Give a preset that can be negative as `INT_TO_WORD(MAX(preset, 0))`.",
+    ),
+    advice("wider", &[8], &[Codesys], &[Iec, Openplc], "Count in a CTU_DINT, which holds what a WORD does."),
+    advice(
+        "own variable, wider",
+        &[8],
+        &[Codesys],
+        &[Cscape],
+        "Count in a DINT of your own: `e(CLK := pulse); IF e.Q AND n < preset THEN n := n + 1; END_IF`, `n >= preset` in place of Q.",
+    ),
+    advice(
+        "positions",
+        &[9],
+        &[Iec, Codesys, Openplc, Cscape],
+        &[Iec, Codesys, Openplc, Cscape],
+        "Give the inputs by position, or rename the pins as the lints say; `--write` does.",
+    ),
+    advice(
+        "fall",
+        &[16],
+        &[Iec, Codesys, Cscape, Logix],
+        &[Openplc],
+        "Find the edge yourself: `fell := before AND NOT sensor; before := sensor;`.",
+    ),
+    advice(
+        "fall from TRUE",
+        &[16],
+        &[Openplc],
+        &[Iec, Codesys, Cscape, Logix],
+        "Find the edge yourself, with `before` initially TRUE: `fell := before AND NOT sensor; before := sensor;`.",
+    ),
+    advice(
+        "retain",
+        &[11],
+        &[Iec, Codesys, Openplc, Cscape, Logix],
+        &[Iec, Codesys, Openplc, Cscape, Logix],
+        "Declare RETAIN what both are to keep, also in the program that moves (on CSCAPE R_CTU or R_CTD with a RETAIN RCV); CSCAPE, \
+         IEC and OPENPLC have no variable that only STOP -> RUN keeps. Logix keeps all.",
+    ),
+];
+
+/// What holds on a move to Logix.
+const TO_LOGIX: &[Advice] = &[
+    advice(
+        "every scan",
+        &[1, 2, 5, 6, 10, 12, 13],
+        &[Cscape],
+        &[Logix],
+        "Count in each scan, below the preset, and compare the count yourself: `c.CU := FALSE; CTU(c, sensor AND c.ACC < c.PRE);`, \
+         `c.ACC >= c.PRE` in place of Q, and `c.ACC = c.PRE` where the preset moves.",
+    ),
+    advice(
+        "edge on Logix",
+        &[5, 6, 12],
+        NOT_CSCAPE,
+        &[Logix],
+        "Find the edge yourself: `edge := sensor AND NOT before; before := sensor; c.CU := FALSE; CTU(c, edge);`, and ask for \
+         `c.ACC >= c.PRE` instead of DN.",
+    ),
+    advice("no DN", &[13], NOT_CSCAPE, &[Logix], "Ask for `c.ACC >= c.PRE` instead of DN."),
+    advice(
+        "count and load",
+        &[4],
+        &[Iec, Codesys, Openplc, Cscape],
+        &[Logix],
+        "Ask for `c.ACC <= 0` instead of DN, and load after the CTD: `IF load THEN c.ACC := c.PRE; END_IF`.",
+    ),
+    advice("above 0 on Logix", &[3], &[Codesys], &[Logix], ABOVE_0_ON_LOGIX),
+    advice("above 0 on Logix", &[14], &[Codesys, Openplc], &[Logix], ABOVE_0_ON_LOGIX),
+    advice(
+        "above 0 in every scan",
+        &[3],
+        &[Cscape],
+        &[Logix],
+        "Count in each scan, above 0: `c.CD := FALSE; CTD(c, pulse AND c.ACC > 0);`.",
+    ),
+    advice(
+        "between 0 and the preset on Logix",
+        &[15],
+        &[Openplc],
+        &[Logix],
+        "Count only below the preset, and down only above 0: `edge := sensor AND NOT before AND c.ACC < c.PRE; before := sensor; \
+         c.CU := FALSE; CTU(c, edge);`, with CTD `c.ACC > 0` and `c.CD`.",
+    ),
+    advice(
+        "before the limit",
+        &[7],
+        &[Iec, Openplc],
+        &[Logix],
+        "Stop the count before its limit: `edge := pulse AND NOT before AND c.ACC < 2147483647; before := pulse;`.",
+    ),
+    advice(
+        "limit of the old type",
+        &[8],
+        NOT_CSCAPE,
+        &[Logix],
+        "Stop the count where the old type did, at 32767 of an INT or 65535 of a WORD: \
+         `edge := pulse AND NOT before AND c.ACC < 32767; before := pulse; c.CU := FALSE; CTU(c, edge);`.",
+    ),
+];
+
+/// What holds on a move from Logix.
+const FROM_LOGIX: &[Advice] = &[
+    advice(
+        "edge of Logix",
+        &[5, 6, 12],
+        &[Logix],
+        NOT_CSCAPE,
+        "Find the edge yourself, with `before` initially TRUE and not RETAIN; a reset forgets it: \
+         `edge := sensor AND NOT before; before := sensor AND NOT clear; c(CU := FALSE, R := clear, …); c(CU := edge, R := clear, …);`.",
+    ),
+    advice(
+        "edge of Logix in each scan",
+        &[1, 5, 6, 12],
+        &[Logix],
+        &[Cscape],
+        "Find the edge yourself, with `before` initially TRUE and not RETAIN; a reset forgets it: \
+         `edge := sensor AND NOT before; before := sensor AND NOT clear; c(CU := edge, R := clear, PV := 32767, RCV := kept);`.",
+    ),
+    advice("great preset for Logix", &[2, 10], &[Logix], &[Cscape], GREAT_PRESET),
+    advice("great preset for OPENPLC", &[15], &[Logix], &[Openplc], GREAT_PRESET),
+    advice(
+        "DN as it was",
+        &[13],
+        &[Logix],
+        &[Iec, Codesys, Openplc, Cscape],
+        "Ask for it only while the rung is TRUE, in a RETAIN variable: `IF rung THEN full := c.CV >= preset; END_IF`.",
+    ),
+    advice(
+        "DN of a CTD",
+        &[4],
+        &[Logix],
+        &[Iec],
+        "DN of Logix is `c.CV >= preset`, and not Q: `IF rung THEN done := c.CV >= preset; END_IF`, with `done` RETAIN.",
+    ),
+    advice(
+        "DN of a variable",
+        &[4],
+        &[Logix],
+        &[Codesys, Cscape, Openplc],
+        "Count in a RETAIN variable of your own: `IF edge THEN n := n - 1; END_IF`; DN of Logix is \
+         `IF rung THEN done := n >= preset; END_IF`.",
+    ),
+    advice("own variable for Logix", &[3], &[Logix], &[Codesys, Cscape], LOGIX_VARIABLE),
+    advice("own variable for Logix", &[7], &[Logix], &[Iec, Openplc], LOGIX_VARIABLE),
+    advice("own variable for Logix", &[8], &[Logix], &[Codesys, Cscape], LOGIX_VARIABLE),
+    advice("own variable for Logix", &[15], &[Logix], &[Openplc], LOGIX_VARIABLE),
+    advice("wider", &[8], &[Logix], &[Iec, Openplc], "Count in a CTU_DINT, which holds what a COUNTER does."),
+];
+
+const GREAT_PRESET: &str = "Let PV be the greatest value of its type (32767 of an INT), and compare the count yourself: \
+     `c.CV >= 50` in place of Q, `c.CV > 60`.";
+
+const ABOVE_0: &str = "Put the edge first: `e(CLK := pulse); c(CD := e.Q AND c.CV > 0, …)`.";
+
+const ABOVE_0_ON_LOGIX: &str =
+    "Put the edge first: `edge := pulse AND NOT before AND c.ACC > 0; before := pulse; c.CD := FALSE; CTD(c, edge);`.";
+
+const OWN_VARIABLE: &str = "Count below 0 in a variable of your own: \
+     `e(CLK := pulse); IF load THEN n := 50; ELSIF e.Q THEN n := n - 1; END_IF`.";
+
+const LOGIX_VARIABLE: &str = "Count in a RETAIN DINT of your own, with `before` initially TRUE and not RETAIN: \
+     `edge := rung AND NOT before; before := rung; IF edge THEN n := n + 1; END_IF`.";
+
+fn all() -> impl Iterator<Item = &'static Advice> {
+    BLOCKS.iter().chain(TO_LOGIX).chain(FROM_LOGIX)
+}
+
+impl Pitfall {
+    /// What to do on the system that the program moves to.
+    pub fn advice(self, from: Dialect, to: Dialect) -> String {
+        let mut texts: Vec<&str> = said(self.number(), from, to).map(|it| it.text).collect();
+        texts.dedup();
+        if texts.is_empty() {
+            return OWN.to_owned();
+        }
+        let text = texts.join(" ");
+        match to {
+            Cscape | Codesys => text.replace("R := ", "RESET := "),
+            Iec | Openplc | Logix | Dialect::Siemens => text,
+        }
+    }
+}
+
+fn said(pitfall: usize, from: Dialect, to: Dialect) -> impl Iterator<Item = &'static Advice> {
+    all().filter(move |it| it.pitfalls.contains(&pitfall) && it.from.contains(&from) && it.to.contains(&to))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Advice, Dialect, all};
+
+    const CASES: &str = include_str!("../../../../tests/compare/advice.txt");
+
+    /// Whether a case has the advice for a pitfall and a direction.
+    fn is_proved(it: &Advice, pitfall: usize, from: Dialect, to: Dialect) -> bool {
+        let heads = CASES.lines().filter_map(|it| it.strip_prefix("trap "));
+        heads.into_iter().any(|head| {
+            let (number, rest) = head.split_once(": ").expect("a trap");
+            let mut parts = rest.split("; ");
+            let (directions, name) = (parts.next().expect("directions"), parts.last());
+            let (a, b) = directions.split_once(" -> ").expect("two sides");
+            let has = |list: &str, dialect: Dialect| list.split(", ").any(|it| it == dialect.name());
+            number == pitfall.to_string() && name == Some(it.name) && has(a, from) && has(b, to)
+        })
+    }
+
+    #[test]
+    fn each_text_has_a_case_in_each_direction() {
+        let mut missing = Vec::new();
+        for it in all() {
+            for pitfall in it.pitfalls.iter().copied() {
+                let directions = it.from.iter().flat_map(|from| it.to.iter().map(move |to| (*from, *to)));
+                for (from, to) in directions.filter(|(from, to)| from != to) {
+                    if !is_proved(it, pitfall, from, to) {
+                        missing.push(format!("trap {pitfall}: {} -> {}; {}", from.name(), to.name(), it.name));
+                    }
+                }
+            }
+        }
+        assert!(missing.is_empty(), "not proved:\n{}", missing.join("\n"));
+    }
+}

@@ -1,0 +1,205 @@
+//! Which pitfall a counter's difference shows, by what is known of the counter on both sides.
+
+use super::list::Pitfall;
+use staunch_runtime::{Family, Repr};
+
+/// A counter on one side, at the end of a scan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Pins {
+    pub up: bool,
+    pub down: bool,
+    pub reset: bool,
+    pub load: bool,
+    pub preset: i128,
+    pub count: i128,
+    /// Q or DN; QU of an up-down counter.
+    pub done: bool,
+    /// QD of an up-down counter.
+    pub empty: bool,
+}
+
+/// A counter's kind on one side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Kind {
+    pub family: Family,
+    pub repr: Repr,
+    /// It counts up only below its preset, and down only above 0.
+    pub stops: bool,
+}
+
+/// How a program uses a counter, as far as it decides which pitfall is seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Habits {
+    /// Its own output resets it.
+    pub feeds_itself: bool,
+    /// What it counts depends on its own count.
+    pub guards_itself: bool,
+}
+
+/// All that is known of a counter that differs. The first of two is the system the program comes
+/// from.
+#[derive(Clone, Copy, Debug)]
+pub struct Case {
+    pub kinds: [Kind; 2],
+    pub before: [Pins; 2],
+    pub now: [Pins; 2],
+    /// It is the first scan of all.
+    pub first: bool,
+    pub restarted: bool,
+    /// The counter is reset by its own output.
+    pub feeds_itself: bool,
+    /// What it counts depends on its own count.
+    pub guards_itself: bool,
+    pub counts_down: bool,
+}
+
+impl Case {
+    fn has(&self, family: Family) -> bool {
+        self.kinds.iter().any(|it| it.family == family)
+    }
+
+    /// Whether one side is of this family and the other is not.
+    fn parts(&self, family: Family) -> bool {
+        self.has(family) && self.kinds[0].family != self.kinds[1].family
+    }
+
+    fn up(&self) -> bool {
+        self.now.iter().any(|it| it.up)
+    }
+
+    fn down(&self) -> bool {
+        self.now.iter().any(|it| it.down)
+    }
+
+    fn is_wider(&self) -> bool {
+        self.kinds[0].repr != self.kinds[1].repr
+    }
+
+    /// A count at a limit of its type is where the other goes on.
+    fn at_limit(&self) -> bool {
+        (0..2).any(|side| {
+            let limits = self.kinds[side].repr.range().unwrap_or((0, 0));
+            let own = [self.before[side].count, self.now[side].count];
+            own.iter().any(|it| *it == limits.1 || *it == limits.0 && limits.0 < 0)
+        })
+    }
+
+    /// One side is below 0, the other stays at it, by their rules.
+    fn past_zero(&self) -> bool {
+        let [a, b] = self.now;
+        goes_below(self.kinds[0]) != goes_below(self.kinds[1])
+            && a.count.min(b.count) < 0
+            && a.count.max(b.count) == 0
+            && self.down()
+    }
+
+    /// CD rises on one side alone, where the other has held it since the call before: a guard has made the edge.
+    fn makes_an_edge(&self) -> bool {
+        (0..2).any(|side| {
+            let (rises, held) = (side, 1 - side);
+            let rises = !self.before[rises].down && self.now[rises].down;
+            rises && self.before[held].down && self.now[held].down
+        })
+    }
+
+    /// What the counter is given differs: what is upstream of it has parted.
+    fn given_differs(&self) -> bool {
+        let logix = self.has(Family::Logix);
+        let [a, b] = self.now;
+        let resets = !logix && (a.reset != b.reset || a.load != b.load);
+        a.up != b.up || a.down != b.down || resets
+    }
+}
+
+/// Which pitfall a counter's difference shows, if one does.
+pub fn classify(case: &Case) -> Option<Pitfall> {
+    let [a, b] = case.now;
+    let number = if case.restarted {
+        Some(if case.before.iter().all(|it| it.count == 0) && case.parts(Family::Logix) { 5 } else { 11 })
+    } else if a.preset != b.preset && case.is_wider() && (a.preset < 0 || b.preset < 0) {
+        Some(8)
+    } else if a.count != b.count {
+        counts(case)
+    } else {
+        outputs(case)
+    };
+    number.map(Pitfall::numbered)
+}
+
+fn counts(case: &Case) -> Option<usize> {
+    let [a, b] = case.now;
+    if case.at_limit() {
+        // What stops one side's count, or turns it round, is its width where the other's is wider.
+        return Some(if case.is_wider() { 8 } else { 7 });
+    }
+    let was_reset = case.before.iter().any(|it| it.reset || it.load);
+    let is_reset = case.now.iter().any(|it| it.reset || it.load);
+    if case.first && case.parts(Family::Logix) && (case.up() || case.down()) {
+        return Some(5);
+    }
+    if case.guards_itself && case.makes_an_edge() {
+        return Some(14);
+    }
+    let counts_again = case.parts(Family::Logix) || case.parts(Family::Cscape);
+    if counts_again && was_reset && !is_reset && (case.up() || case.down()) && !case.past_zero() {
+        return Some(if case.feeds_itself { 12 } else { 6 });
+    }
+    if counts_without_edge(case) {
+        return Some(6);
+    }
+    if case.feeds_itself && is_reset {
+        return Some(12);
+    }
+    if case.parts(Family::Logix) && case.now.iter().any(|it| it.load) {
+        return Some(4);
+    }
+    if case.past_zero() {
+        return Some(if case.parts(Family::Openplc) { 15 } else { 3 });
+    }
+    beyond_preset(case).or_else(|| (case.parts(Family::Cscape) && !case.given_differs()).then_some(1)).or_else(|| {
+        let same_bits = (a.count - b.count).rem_euclid(1 << 16) == 0;
+        (case.is_wider() && same_bits).then_some(8)
+    })
+}
+
+/// Logix has counted although the rung was TRUE before: a reset has made it forget.
+pub(super) fn counts_without_edge(case: &Case) -> bool {
+    let Some(side) = case.kinds.iter().position(|it| it.family == Family::Logix) else { return false };
+    let other = 1 - side;
+    let held = case.before[other].up && case.now[other].up;
+    case.parts(Family::Logix) && held && case.now[side].count > case.before[side].count
+}
+
+/// One side stops at the preset, the other goes past it.
+fn beyond_preset(case: &Case) -> Option<usize> {
+    let [a, b] = case.now;
+    let stops = case.kinds[0].stops != case.kinds[1].stops;
+    let number = if case.parts(Family::Openplc) { 15 } else { 2 };
+    (stops && case.up() && a.count.min(b.count) >= a.preset.min(b.preset)).then_some(number)
+}
+
+/// The counts agree, the outputs do not.
+fn outputs(case: &Case) -> Option<usize> {
+    let [a, b] = case.now;
+    if (a.done, a.empty) == (b.done, b.empty) || a.preset != b.preset && !case.is_wider() {
+        return None;
+    }
+    if case.parts(Family::Logix) {
+        return Some(if case.counts_down { 4 } else { 13 });
+    }
+    if case.parts(Family::Cscape) && a.count < 0 && case.counts_down {
+        return Some(3);
+    }
+    if case.is_wider() && (a.preset < 0 || a.count < 0) {
+        return Some(8);
+    }
+    case.parts(Family::Cscape).then_some(10)
+}
+
+/// Whether a count of this kind can be negative.
+pub(super) fn goes_below(kind: Kind) -> bool {
+    matches!(kind.family, Family::Iec | Family::Logix) && kind.repr.is_signed()
+}
+
+#[cfg(test)]
+mod tests;

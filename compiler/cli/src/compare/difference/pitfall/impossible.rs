@@ -1,0 +1,92 @@
+//! Which pitfalls cannot happen to a counter.
+
+use super::cause::kind;
+use super::classify::{Habits, goes_below};
+use super::list::Pitfall;
+use crate::compare::pair::Pair;
+use crate::compare::program::scalar::Instance;
+use crate::compare::program::usage::{self, Usage};
+use crate::compare::program::walked::Name;
+use staunch_host::Event;
+use staunch_runtime::{Family, PinRole};
+
+/// What the programs' texts say of a counter.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Use {
+    /// Something calls or writes it on one side at least.
+    pub is_used: bool,
+    /// Its preset is the same constant in every call on both sides.
+    pub constant_preset: bool,
+    pub habits: Habits,
+    /// Something resets or loads it.
+    pub resets: bool,
+    /// What resets it depends on its own outputs in some way.
+    pub reset_depends: bool,
+    /// Both systems keep, or lose, the same of it.
+    pub kept_alike: bool,
+}
+
+/// How both programs use each counter.
+pub fn uses(pair: &Pair) -> Vec<Use> {
+    let found = [0, 1].map(|side: usize| usage::of(&pair.sides[side].program));
+    let each = |at: usize| {
+        let instances = pair.instances(at);
+        let of = |side: usize| -> Usage {
+            let name = instances[side].field.map(|(owner, field)| Name::Field(owner, field));
+            name.and_then(|it| found[side].get(&it)).cloned().unwrap_or_default()
+        };
+        let [a, b] = [of(0), of(1)];
+        let presets: Vec<_> = a.presets.union(&b.presets).collect();
+        let kept = |side: usize| {
+            let count = instances[side].block.info().pin_for(PinRole::Count);
+            let keeps =
+                |event| count.is_some_and(|it| pair.sides[side].keeps(event, instances[side].offset + it.offset));
+            Event::ALL.map(|it| !pair.never.contains(&it) && keeps(it))
+        };
+        Use {
+            is_used: a.is_used || b.is_used,
+            constant_preset: presets.len() == 1 && presets[0].is_some(),
+            habits: Habits {
+                feeds_itself: a.feeds_itself || b.feeds_itself,
+                guards_itself: a.count_depends || b.count_depends,
+            },
+            resets: a.resets || b.resets,
+            reset_depends: a.reset_depends || b.reset_depends,
+            kept_alike: kept(0) == kept(1),
+        }
+    };
+    (0..pair.counters.len()).map(each).collect()
+}
+
+/// Why a pitfall cannot happen to a counter, by the two systems' rules and the program's text alone.
+pub fn impossible(pitfall: Pitfall, instances: [&Instance; 2], usage: Use) -> Option<&'static str> {
+    let kinds = instances.map(kind);
+    let [Some(a), Some(b)] = kinds else { return Some("it is no counter") };
+    let parts = |family: Family| (a.family == family) != (b.family == family);
+    let has = |role: PinRole| instances.iter().any(|it| it.has(role));
+    let same_kind = a == b;
+    let no_cscape = (!parts(Family::Cscape)).then_some("CSCAPE is neither, or both, of the two systems");
+    let no_logix = (!parts(Family::Logix)).then_some("Logix is neither, or both, of the two systems");
+    let no_down = (!has(PinRole::Down)).then_some("it does not count down");
+    let no_up = (!has(PinRole::Up)).then_some("it does not count up");
+    match pitfall.number() {
+        _ if !usage.is_used => Some("it is never called"),
+        1 => no_cscape,
+        2 | 3 if parts(Family::Openplc) => Some("what OPENPLC does is trap 15"),
+        2 => (a.stops == b.stops).then_some("both systems stop at PV, or neither does").or(no_up),
+        3 => no_down.or_else(|| (goes_below(a) == goes_below(b)).then_some("both systems do the same at 0")),
+        4 => no_logix.or((!has(PinRole::Down) || has(PinRole::Up)).then_some("it is no CTD")),
+        5 | 13 => no_logix,
+        6 => no_logix.and(no_cscape).or((!usage.resets).then_some("nothing resets or loads it")),
+        7 => (a.repr != b.repr || same_kind || !parts(Family::Logix))
+            .then_some("both systems do the same at a limit, or have other limits"),
+        8 => (a.repr == b.repr).then_some("both systems count in the same type"),
+        9 => Some("its pins have the same names, or are given by position"),
+        10 => no_cscape.or(usage.constant_preset.then_some("its preset is one constant")),
+        11 => usage.kept_alike.then_some("both systems keep, or lose, the same of it"),
+        12 => (!usage.reset_depends).then_some("what resets it does not depend on its own output"),
+        14 => no_down.or((!usage.habits.guards_itself).then_some("no input of it depends on its own count")),
+        _ if !parts(Family::Openplc) => Some("OPENPLC is neither, or both, of the two systems"),
+        _ => (a.stops == b.stops && goes_below(a) == goes_below(b)).then_some("the other system stops as OPENPLC does"),
+    }
+}

@@ -1,0 +1,4 @@
+//! What the search has found: of each difference that is possible, whether it can be reached.
+
+pub mod finding;
+pub mod reason;

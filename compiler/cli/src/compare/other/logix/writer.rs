@@ -1,0 +1,386 @@
+//! The instructions in place of a file's counter blocks.
+
+use super::counter::{Counter, Direction, Input};
+use super::edit::{Edit, bounds};
+use super::shape::{Shape, Shapes};
+use staunch_frontend::Span;
+use staunch_frontend::ast::{
+    Argument, ArgumentKind, BinaryOp, Expr, ExprKind, File, Initial, InitialKind, Item, Name, Pou, Statement,
+    StatementKind, TypeKind, TypeSpec, VarBlock, VarDecl,
+};
+use staunch_runtime::PinRole;
+
+/// What is written for one file.
+pub struct Writer<'t, 'f> {
+    text: &'t str,
+    pub shapes: Shapes<'f>,
+    pub edits: Vec<Edit>,
+}
+
+/// Counting, then resetting: reset wins.
+fn up(owner: &str, counts: Option<&str>, resets: Option<&str>) -> Vec<String> {
+    let count = counts.map(|it| format!("CTU({owner}, {it})"));
+    let reads_itself = |it: &&str| it.to_ascii_uppercase().contains(&format!("{}.", owner.to_ascii_uppercase()));
+    // A reset that reads the counter is decided before the instruction that counts changes it.
+    if let (Some(reset), Some(count)) = (resets.filter(reads_itself), &count) {
+        return vec![format!("IF {reset} THEN {count}; RES({owner}, TRUE); ELSE {count}; END_IF")];
+    }
+    let reset = resets.map(|it| format!("RES({owner}, {it})"));
+    count.into_iter().chain(reset).collect()
+}
+
+impl<'t, 'f> Writer<'t, 'f> {
+    pub fn new(text: &'t str, shapes: Shapes<'f>) -> Self {
+        Self { text, shapes, edits: Vec::new() }
+    }
+
+    pub fn file(&mut self, file: &'f File<'f>) {
+        for item in &file.items {
+            match item {
+                Item::Globals(block) => self.block(block),
+                Item::Configuration(it) => it.globals.iter().for_each(|it| self.block(it)),
+                Item::Types(decls) => decls.iter().for_each(|it| {
+                    self.ty(&it.ty);
+                    if let (Some(initial), Some(shape)) = (&it.initial, self.shapes.of_type(&it.ty)) {
+                        self.initial(shape, initial);
+                    }
+                }),
+                Item::Pou(_) | Item::Test(_) => {}
+            }
+        }
+        for item in &file.items {
+            if let Item::Pou(pou) = item {
+                self.pou(pou);
+            }
+        }
+    }
+
+    fn pou(&mut self, pou: &'f Pou<'f>) {
+        let outer = self.shapes.variables();
+        for block in &pou.blocks {
+            block.vars.iter().for_each(|it| self.shapes.declare(it));
+            self.block(block);
+        }
+        self.statements(&pou.body);
+        pou.routines.iter().for_each(|it| self.pou(it));
+        self.shapes.go_back(outer);
+    }
+
+    fn block(&mut self, block: &'f VarBlock<'f>) {
+        block.vars.iter().for_each(|it| self.declaration(it));
+    }
+
+    fn declaration(&mut self, decl: &'f VarDecl<'f>) {
+        self.ty(&decl.ty);
+        let Some(initial) = &decl.initial else { return };
+        match (self.shapes.of_type(&decl.ty), &initial.kind) {
+            (Some(Shape::Counter(counter)), InitialKind::Fields(fields)) => {
+                let kept = self.fields(counter, fields);
+                let text = if kept.is_empty() { String::new() } else { format!(" := ({})", kept.join(", ")) };
+                self.edit(Span { start: decl.ty.span.end, ..initial.span }, text);
+            }
+            (Some(shape), _) => self.initial(shape, initial),
+            (None, _) => {}
+        }
+    }
+
+    /// The counters in a type that is written out.
+    fn ty(&mut self, ty: &'f TypeSpec<'f>) {
+        match &ty.kind {
+            TypeKind::Named(_) => {
+                if let (Some(Shape::Counter(counter)), true) = (self.shapes.of_type(ty), self.is_block(ty)) {
+                    self.edit(ty.span, counter.tag.name.to_owned());
+                }
+            }
+            TypeKind::Array { element, .. } => self.ty(element),
+            TypeKind::Reference { target, .. } => self.ty(target),
+            TypeKind::Struct(members) | TypeKind::Union(members) => {
+                members.iter().for_each(|it| self.declaration(it));
+            }
+            TypeKind::String { .. } | TypeKind::Subrange { .. } | TypeKind::Enum { .. } | TypeKind::Error => {}
+        }
+    }
+
+    /// Whether a type names the block itself, and not a type that is one.
+    fn is_block(&self, ty: &TypeSpec<'_>) -> bool {
+        match &ty.kind {
+            TypeKind::Named(names) => {
+                names.len() == 1 && Counter::named(names[0].text, self.shapes.dialect()).is_some()
+            }
+            TypeKind::String { .. }
+            | TypeKind::Subrange { .. }
+            | TypeKind::Array { .. }
+            | TypeKind::Struct(_)
+            | TypeKind::Enum { .. }
+            | TypeKind::Reference { .. }
+            | TypeKind::Union(_)
+            | TypeKind::Error => false,
+        }
+    }
+
+    /// The initial values of counters in arrays and structures.
+    fn initial(&mut self, shape: Shape<'f>, initial: &Initial<'_>) {
+        match (&initial.kind, shape) {
+            (InitialKind::Fields(fields), Shape::Counter(counter)) => {
+                let kept = self.fields(counter, fields);
+                let text = if kept.is_empty() { "PRE := 0".to_owned() } else { kept.join(", ") };
+                self.edit(initial.span, format!("({text})"));
+            }
+            (InitialKind::Fields(fields), _) => {
+                for (name, value) in fields {
+                    if let Some(shape) = self.shapes.member(shape, *name) {
+                        self.initial(shape, value);
+                    }
+                }
+            }
+            (InitialKind::Elements(elements), _) => {
+                let Some(shape) = self.shapes.element(shape) else { return };
+                elements.iter().flat_map(|it| &it.values).for_each(|it| self.initial(shape, it));
+            }
+            (InitialKind::Value(_) | InitialKind::Bind(_), _) => {}
+        }
+    }
+
+    fn fields(&self, counter: Counter, fields: &[(Name<'_>, Initial<'_>)]) -> Vec<String> {
+        fields.iter().filter_map(|it| self.field(counter, it)).collect()
+    }
+
+    /// An initial value by its tag's name; none where the tag needs none.
+    fn field(&self, counter: Counter, (name, value): &(Name<'_>, Initial<'_>)) -> Option<String> {
+        let (start, end) = bounds(value.span);
+        let value = &self.text[start..end];
+        match counter.member(name.text) {
+            Some(tag) => Some(format!("{tag} := {value}")),
+            // An input that is FALSE does nothing, and an output is computed anew by each call.
+            None if value.eq_ignore_ascii_case("FALSE") || name.text.eq_ignore_ascii_case("QD") => None,
+            // Nothing stands for it; the compiler says so at this place.
+            None => Some(format!("{} := {value}", name.text)),
+        }
+    }
+
+    fn edit(&mut self, span: Span, text: String) {
+        let (start, end) = bounds(span);
+        self.edits.push(Edit { start, end, text });
+    }
+
+    fn counter(&self, expr: &Expr<'_>) -> Option<Counter> {
+        match self.shapes.of_expr(expr)? {
+            Shape::Counter(counter) => Some(counter),
+            Shape::Type(_) | Shape::Instance(_) => None,
+        }
+    }
+
+    fn statements(&mut self, statements: &[Statement<'_>]) {
+        statements.iter().for_each(|it| self.statement(it));
+    }
+
+    fn statement(&mut self, statement: &Statement<'_>) {
+        match &statement.kind {
+            StatementKind::Assign { target, value }
+            | StatementKind::SetReset { target, value, .. }
+            | StatementKind::Bind { target, value }
+            | StatementKind::Attempt { target, value } => {
+                self.expr(target, false);
+                self.expr(value, true);
+            }
+            StatementKind::AssignAll { targets, value } => {
+                targets.iter().for_each(|it| self.expr(it, false));
+                self.expr(value, true);
+            }
+            StatementKind::Expr(expr) => match &expr.kind {
+                ExprKind::Call(callee, arguments) => match self.counter(callee) {
+                    Some(counter) => self.call(expr.span, callee, counter, arguments),
+                    None => self.expr(expr, true),
+                },
+                _ => self.expr(expr, true),
+            },
+            StatementKind::If { branches, otherwise } => {
+                for (condition, body) in branches {
+                    self.expr(condition, true);
+                    self.statements(body);
+                }
+                self.statements(otherwise.as_deref().unwrap_or_default());
+            }
+            StatementKind::Case { selector, arms, otherwise } => {
+                self.expr(selector, true);
+                arms.iter().for_each(|it| self.statements(&it.body));
+                self.statements(otherwise.as_deref().unwrap_or_default());
+            }
+            StatementKind::For { from, to, by, body, .. } => {
+                [from, to].into_iter().chain(by).for_each(|it| self.expr(it, true));
+                self.statements(body);
+            }
+            StatementKind::While { condition, body } => {
+                self.expr(condition, true);
+                self.statements(body);
+            }
+            StatementKind::Repeat { body, until } => {
+                self.statements(body);
+                self.expr(until, true);
+            }
+            StatementKind::ReturnIf(condition) => self.expr(condition, true),
+            StatementKind::Empty
+            | StatementKind::Exit
+            | StatementKind::Continue
+            | StatementKind::Return
+            | StatementKind::Error => {}
+        }
+    }
+
+    /// Members of counters by their Logix names. `narrow`: a count takes its old type again.
+    fn expr(&mut self, expr: &Expr<'_>, narrow: bool) {
+        match &expr.kind {
+            ExprKind::Literal(_) | ExprKind::Name(_) | ExprKind::Address(_) => {}
+            ExprKind::Member(base, name) => match self.counter(base) {
+                Some(counter) => self.member(expr, base, *name, counter, narrow),
+                None => self.expr(base, narrow),
+            },
+            ExprKind::Part(inner, _) | ExprKind::Deref(inner) | ExprKind::Unary(_, inner) | ExprKind::Paren(inner) => {
+                self.expr(inner, narrow);
+            }
+            ExprKind::Index(base, indices) => {
+                self.expr(base, narrow);
+                indices.iter().for_each(|it| self.expr(it, true));
+            }
+            ExprKind::Error(parts) => parts.iter().for_each(|it| self.expr(it, narrow)),
+            ExprKind::Assign(sides, _) => {
+                self.expr(&sides[0], false);
+                self.expr(&sides[1], true);
+            }
+            ExprKind::Call(callee, arguments) => {
+                self.expr(callee, narrow);
+                arguments.iter().for_each(|it| self.argument(it));
+            }
+            ExprKind::Binary(sides, op, _) => {
+                let compares = matches!(
+                    op,
+                    BinaryOp::Lt | BinaryOp::Gt | BinaryOp::Le | BinaryOp::Ge | BinaryOp::Eq | BinaryOp::Ne
+                );
+                sides.iter().for_each(|it| self.expr(it, narrow && !compares));
+            }
+        }
+    }
+
+    fn argument(&mut self, argument: &Argument<'_>) {
+        match &argument.kind {
+            ArgumentKind::Positional(value) | ArgumentKind::Input(_, value) => self.expr(value, true),
+            ArgumentKind::Output { target, .. } => target.iter().for_each(|it| self.expr(it, false)),
+        }
+    }
+
+    fn member(&mut self, expr: &Expr<'_>, base: &Expr<'_>, name: Name<'_>, counter: Counter, narrow: bool) {
+        self.expr(base, true);
+        let (start, end) = bounds(base.span);
+        let owner = self.apply(start, end);
+        let text = match (counter.member(name.text), counter.narrow) {
+            (Some(tag @ ("ACC" | "PRE")), Some(conversion)) if narrow => format!("{conversion}({owner}.{tag})"),
+            (Some(tag), _) => format!("{owner}.{tag}"),
+            (None, _) if name.text.eq_ignore_ascii_case("QD") => format!("({owner}.ACC <= 0)"),
+            // Nothing stands for it; the compiler says so at this place.
+            (None, _) => return,
+        };
+        self.replace(expr.span, text);
+    }
+
+    /// A call as instructions. What its inputs are is decided before the first of them.
+    fn call(&mut self, span: Span, callee: &Expr<'_>, counter: Counter, arguments: &[Argument<'_>]) {
+        self.expr(callee, true);
+        let (start, end) = bounds(callee.span);
+        let owner = self.apply(start, end);
+        if owner != self.text[start..end] {
+            // The instructions would change the count that says which counter they are for. The compiler says that
+            // a COUNTER is not called.
+            return arguments.iter().for_each(|it| self.argument(it));
+        }
+        arguments.iter().for_each(|it| self.argument(it));
+        let given = self.inputs(counter, arguments);
+        let input = |input: Input| given.iter().find(|it| it.0 == input).map(|it| it.1.as_str());
+        let get = |role: PinRole| input(Input::Pin(role));
+        let mut lines = Vec::new();
+        lines.extend(get(PinRole::Preset).map(|it| format!("{owner}.PRE := {it}")));
+        match counter.direction {
+            Direction::Up => lines.extend(up(&owner, get(PinRole::Up), get(PinRole::Reset))),
+            Direction::Down => {
+                lines.extend(get(PinRole::Down).map(|it| format!("CTD({owner}, {it})")));
+                lines.extend(get(PinRole::Load).map(|it| format!("IF {it} THEN {owner}.ACC := {owner}.PRE; END_IF")));
+            }
+            Direction::Both => {
+                for role in [PinRole::Up, PinRole::Down, PinRole::Reset] {
+                    let member = counter.tag.pin_for(role);
+                    lines.extend(get(role).zip(member).map(|(it, member)| format!("{owner}.{} := {it}", member.name)));
+                }
+                lines.push(format!("CTUD({owner})"));
+                lines.extend(get(PinRole::Load).map(|it| format!("IF {it} THEN {owner}.ACC := {owner}.PRE; END_IF")));
+            }
+        }
+        lines.extend(input(Input::Kept).map(|it| format!("{it} := DINT_TO_INT({owner}.ACC)")));
+        for argument in arguments {
+            if let ArgumentKind::Output { name, negated, target: Some(target) } = &argument.kind {
+                let (start, end) = bounds(target.span);
+                let value = match (name.text.to_ascii_uppercase().as_str(), counter.narrow) {
+                    ("CV", Some(conversion)) => format!("{conversion}({owner}.ACC)"),
+                    ("CV", None) => format!("{owner}.ACC"),
+                    ("QD", _) => format!("{owner}.ACC <= 0"),
+                    _ => format!("{owner}.DN"),
+                };
+                let not = if *negated { "NOT " } else { "" };
+                lines.push(format!("{} := {not}{value}", self.apply(start, end)));
+            }
+        }
+        self.replace(span, lines.join("; "));
+    }
+
+    /// Replaces a call; the replacements inside it are part of this one.
+    fn replace(&mut self, span: Span, text: String) {
+        let (from, to) = bounds(span);
+        self.edits.retain(|it| it.start < from || it.end > to);
+        self.edits.push(Edit { start: from, end: to, text });
+    }
+
+    /// The inputs with the replacements inside them.
+    fn inputs(&self, counter: Counter, arguments: &[Argument<'_>]) -> Vec<(Input, String)> {
+        let mut found = Vec::new();
+        for (at, argument) in arguments.iter().enumerate() {
+            let (input, value) = match &argument.kind {
+                ArgumentKind::Positional(value) => (counter.input_at(at), value),
+                ArgumentKind::Input(name, value) => (counter.input_named(name.text), value),
+                ArgumentKind::Output { .. } => continue,
+            };
+            let (start, end) = bounds(value.span);
+            found.extend(input.map(|it| (it, self.apply(start, end))));
+        }
+        found
+    }
+
+    /// The text from `start` to `end` with the replacements in it.
+    pub fn apply(&self, start: usize, end: usize) -> String {
+        let mut edits: Vec<&Edit> = self.edits.iter().filter(|it| it.start >= start && it.end <= end).collect();
+        edits.sort_by_key(|it| it.start);
+        let mut out = String::new();
+        let mut at = start;
+        for edit in edits {
+            out.push_str(&self.text[at..edit.start]);
+            out.push_str(&edit.text);
+            at = edit.end;
+        }
+        out.push_str(&self.text[at..end]);
+        out
+    }
+
+    /// The lines that change, before and after.
+    pub fn notes(&self) -> Vec<(String, String)> {
+        let mut notes: Vec<(String, String)> = Vec::new();
+        let mut edits: Vec<&Edit> = self.edits.iter().collect();
+        edits.sort_by_key(|it| it.start);
+        for edit in edits {
+            let start = self.text[..edit.start].rfind('\n').map_or(0, |it| it + 1);
+            let end = self.text[edit.end..].find('\n').map_or(self.text.len(), |it| edit.end + it);
+            let one_line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+            let note = (one_line(&self.text[start..end]), one_line(&self.apply(start, end)));
+            if notes.last() != Some(&note) {
+                notes.push(note);
+            }
+        }
+        notes
+    }
+}

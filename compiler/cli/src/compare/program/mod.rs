@@ -1,0 +1,11 @@
+//! What the text of one program says: its variables, what they are made of and compared with, and how it uses its
+//! counters; and what two programs compute in other types.
+
+pub mod scalar;
+pub mod walked;
+
+pub mod dependency;
+pub mod facts;
+pub mod usage;
+
+pub mod apart;

@@ -1,0 +1,129 @@
+//! Why a program cannot be compared: the other system rejects it.
+
+use crate::compare::difference::pitfall::Pitfall;
+use crate::session::Session;
+use staunch_frontend::{Code, Diagnostic, Dialect, Severity};
+use staunch_ir::Elementary;
+use staunch_runtime::{BlockInfo, KeptCount, PinRole};
+
+/// What is in the way, and what to do.
+pub struct Rejection {
+    pub pitfall: Option<Pitfall>,
+    pub why: String,
+    pub advice: String,
+}
+
+const TO_LOGIX: &str =
+    "Logix has no counter blocks. Declare a COUNTER (it has CU CD DN OV UN : BOOL; PRE ACC : DINT) and write its \
+instructions, one a rung:
+    c.PRE := preset;
+    CTU(Counter := c, RungIn := sensor);
+    light := c.DN;
+    RES(Counter := c, RungIn := clear);
+Give the rewritten program with --against FILE to compare it";
+
+const FROM_LOGIX: &str = "A COUNTER and its instructions become an instance and its call: CTU(c, rung) and RES(c, clear) are \
+`c(CU := rung, R := clear, PV := preset)`, c.DN is c.Q, c.ACC is c.CV. Give the rewritten program with --against FILE to \
+compare it";
+
+const TIMERS_FROM_LOGIX: &str = "A TIMER and its instructions become an instance and its call: TON(t, rung) is \
+`t(IN := rung, PT := preset)` of a TON with a TIME, t.DN is t.Q, t.ACC is t.ET; an RTO has no counterpart. ONS and OSR become \
+an R_TRIG, OSF an F_TRIG, OTL and OTU an IF. Give the rewritten program with --against FILE to compare it";
+
+/// What Logix has beside its counters, by name.
+const TIMERS_OF_LOGIX: [&str; 9] = ["TIMER", "TON", "TOF", "RTO", "ONS", "OSR", "OSF", "OTL", "OTU"];
+
+/// The reason after the first error.
+pub fn find(to: &Session, from: Dialect, target: Dialect) -> Rejection {
+    let errors = to.diagnostics.iter().filter(|it| it.severity == Severity::Error);
+    let found = errors.map(|it| of(to, it, from, target));
+    let mut found: Vec<_> = found.collect();
+    let at = found.iter().position(|it| it.pitfall.is_some()).unwrap_or(0);
+    if found.is_empty() {
+        return Rejection {
+            pitfall: None,
+            why: format!("{} rejects the program", target.name()),
+            advice: String::new(),
+        };
+    }
+    found.swap_remove(at)
+}
+
+fn of(to: &Session, error: &Diagnostic, from: Dialect, target: Dialect) -> Rejection {
+    let name = to.sources.text(error.span).to_ascii_uppercase();
+    let system = target.name().to_ascii_uppercase();
+    let block = matches!(error.code, Code::E0309 | Code::E0102 | Code::E0305 | Code::E0307);
+    let why = format!("{system} rejects the program: {}", error.message);
+    let pitfall = |number| Some(Pitfall::numbered(number));
+    if target == Dialect::Logix && (block || error.code == Code::E0301) {
+        return Rejection { pitfall: None, why, advice: TO_LOGIX.to_owned() };
+    }
+    if from == Dialect::Logix && block && TIMERS_OF_LOGIX.contains(&name.as_str()) {
+        return Rejection { pitfall: None, why, advice: TIMERS_FROM_LOGIX.to_owned() };
+    }
+    if from == Dialect::Logix && block {
+        return Rejection { pitfall: pitfall(11), why, advice: FROM_LOGIX.to_owned() };
+    }
+    let counter = from.block(&name);
+    let kept = counter.and_then(|it| it.facts.kept);
+    let both = |it: &BlockInfo| it.pin_for(PinRole::Up).is_some() && it.pin_for(PinRole::Down).is_some();
+    match kept {
+        Some(KeptCount { plain, .. }) => {
+            let advice = format!("Use a {plain} in VAR RETAIN, without RCV; its count survives a restart there");
+            Rejection { pitfall: pitfall(11), why, advice }
+        }
+        None if counter.is_some_and(both) && target == Dialect::Cscape => {
+            let advice = "Use a CTU and a CTD and subtract, or count in a variable of your own".to_owned();
+            Rejection { pitfall: None, why, advice }
+        }
+        None if block => Rejection {
+            pitfall: None,
+            why,
+            advice: "Write the program for that system, with a block that it has or that names its family, and give it with \
+                     --against FILE to compare it"
+                .to_owned(),
+        },
+        None if widths(error) => Rejection {
+            pitfall: pitfall(8),
+            why,
+            advice: "Convert the count or the preset explicitly, as `WORD_TO_INT(…)`".to_owned(),
+        },
+        None => Rejection { pitfall: None, why, advice: "Change it as the message says".to_owned() },
+    }
+}
+
+/// Whether the error is about whole numbers that do not fit one another's types, and of no other type.
+fn widths(error: &Diagnostic) -> bool {
+    let sides = match error.code {
+        Code::E0202 => 1,
+        Code::E0201 | Code::E0203 | Code::E0204 => 2,
+        _ => return false,
+    };
+    let words = error.message.split(|it: char| !it.is_ascii_alphanumeric() && it != '_');
+    let types: Vec<Elementary> = words.filter_map(elementary).collect();
+    types.len() >= sides && types.iter().all(|it| it.repr().is_integer() && it.is_integral())
+}
+
+fn elementary(name: &str) -> Option<Elementary> {
+    Elementary::ALL.iter().copied().find(|it| it.name() == name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use staunch_frontend::Span;
+
+    fn is_widths(code: Code, message: &str) -> bool {
+        widths(&Diagnostic::new(code, Span::default(), message))
+    }
+
+    #[test]
+    fn widths_are_those_of_whole_numbers() {
+        assert!(is_widths(Code::E0203, "expected INT, found WORD"));
+        assert!(is_widths(Code::E0202, "40000 does not fit INT"));
+        assert!(!is_widths(Code::E0201, "CASE selects by an integer or enumeration, this is STRING[80]"));
+        assert!(!is_widths(Code::E0203, "expected INT, found REAL"));
+        assert!(!is_widths(Code::E0203, "expected INT, found STRING[80]"));
+        assert!(!is_widths(Code::E0208, "the index 0 is out of range"));
+    }
+}

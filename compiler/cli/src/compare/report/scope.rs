@@ -1,0 +1,127 @@
+//! What a search has shown where it found no difference: what was tried, and what was not.
+
+use super::verdict::Verdict;
+use crate::compare::inputs::alphabet;
+use crate::compare::inputs::choice::Covered;
+use crate::compare::pair::Pair;
+use crate::compare::search::progress::Outcome;
+use crate::compare::search::world::World;
+use staunch_host::Event;
+use std::fmt::Write;
+
+/// What an exhausted search has shown.
+pub fn every_state(pair: &Pair, world: &World, outcome: &Outcome) -> String {
+    let compared = world.alphabet.choices.iter().zip(&pair.inputs);
+    let compared: Vec<&str> =
+        compared.filter(|it| it.0.covered == Some(Covered::Compared)).map(|it| pair.path(it.1.scalars)).collect();
+    let mut text = format!("every reachable state was seen ({} scans)", outcome.scans);
+    match compared.as_slice() {
+        [] => {
+            text.push_str(", under every value of the inputs");
+            // What else is written from outside was not looked at.
+            let names = listed(pair.inputs.iter().map(|it| pair.path(it.scalars).to_owned()));
+            text += &names.map_or_else(String::new, |it| format!(" ({it})"));
+        }
+        names => {
+            let _ = write!(
+                text,
+                ", under every value of the inputs on every side of the constants that the program compares {} with",
+                names.join(", ")
+            );
+        }
+    }
+    if let Some(events) = events(pair) {
+        let _ = write!(text, ", with {events} at every point");
+    }
+    if pair.sides.iter().any(|it| !it.program.structure(it.program.globals).fields.is_empty()) {
+        text.push_str("; nothing else is taken to be written from outside");
+    }
+    assumed(&mut text, world);
+    for limit in [kept(pair), of_one(pair)].into_iter().flatten() {
+        let _ = write!(text, "; {limit}");
+    }
+    text
+}
+
+/// What has its first value throughout.
+fn kept(pair: &Pair) -> Option<String> {
+    let names = listed(pair.kept.iter().map(|it| format!("{} ({})", pair.path(it.scalars), pair.shown(it))))?;
+    Some(format!(
+        "nothing writes {names}, and the initial value was all that was tried (an assumption about a variable makes it an input)"
+    ))
+}
+
+/// What is not compared because one program alone has it.
+fn of_one(pair: &Pair) -> Option<String> {
+    let names = listed(pair.only_one_has(|_| true).into_iter().map(|it| it.1.to_owned()))?;
+    Some(format!("not compared, since one program alone has it: {names}"))
+}
+
+/// A few names, and how many more there are.
+fn listed(names: impl Iterator<Item = String>) -> Option<String> {
+    const SHOWN: usize = 5;
+    let names: Vec<_> = names.collect();
+    let more = names.len().saturating_sub(SHOWN);
+    let shown = names.iter().take(SHOWN).cloned().reduce(|all, it| format!("{all}, {it}"))?;
+    Some(if more > 0 { format!("{shown} and {more} more") } else { shown })
+}
+
+/// The events that are tried.
+fn events(pair: &Pair) -> Option<String> {
+    let words = pair.events().into_iter().map(|it| match it {
+        Event::Restart => "a restart",
+        Event::Run => "STOP -> RUN",
+        Event::Reset => "a reset",
+    });
+    words.map(str::to_owned).reduce(|all, it| format!("{all} and {it}"))
+}
+
+fn assumed(text: &mut String, world: &World) {
+    if !world.assumptions.lines.is_empty() {
+        let _ = write!(text, "; assumed: {}", world.assumptions.lines.join("; "));
+    }
+}
+
+/// What a search that found nothing has tried, and what it has not.
+pub fn not_found(pair: &Pair, world: &World, outcome: &Outcome) -> Verdict {
+    let alphabet = &world.alphabet;
+    let mut tried = vec![match outcome.complete {
+        true => "every state that the values tried can reach".to_owned(),
+        false => format!("every sequence of inputs over {} scans", outcome.depth),
+    }];
+    if outcome.places > 0 {
+        tried.push(format!("inputs that hold, pulse and wait, from {} states", outcome.places));
+    }
+    tried.extend(events(pair).map(|it| format!("{it} at each of them")));
+    if outcome.more_values > 0 {
+        tried.push(format!("{} further values of inputs, drawn by chance", outcome.more_values));
+    }
+    tried.push(format!("{} scans in all", outcome.scans));
+    if !world.assumptions.lines.is_empty() {
+        tried.push(format!("assumed: {}", world.assumptions.lines.join("; ")));
+    }
+    let mut left = Vec::new();
+    if !outcome.complete {
+        left.push("longer sequences; a larger --budget tries more of them".to_owned());
+    }
+    for (choice, input) in alphabet.choices.iter().zip(&pair.inputs).filter(|it| it.0.covered.is_none()) {
+        let path = pair.path(input.scalars);
+        left.push(format!("values of {path} other than the {} that were tried", choice.values.len()));
+    }
+    if !alphabet.complete {
+        left.push(format!("combinations of inputs other than the {} that change few of them", alphabet.vectors.len()));
+    }
+    let untried = listed(alphabet::untried(pair).into_iter().map(str::to_owned));
+    left.extend(untried.map(|it| format!("inputs that are references, or of another type on the other system: {it}")));
+    let given = listed(alphabet::outputs_given(pair).into_iter().map(str::to_owned));
+    left.extend(
+        given.map(|it| format!("what the world outside might write to outputs of blocks that are inputs: {it}")),
+    );
+    if !pair.whole {
+        left.push("elements of long arrays".to_owned());
+    }
+    left.extend(kept(pair).into_iter().chain(of_one(pair)));
+    let beside = world.tolerance.iter().flat_map(|it| it.beside.iter().cloned());
+    left.extend(listed(beside).map(|it| format!("what {it} decides, which is declared with what is accepted")));
+    Verdict::NotFound { tried, left }
+}

@@ -1,0 +1,20 @@
+//! What a comparison came to.
+
+use crate::compare::pair::Row;
+use crate::compare::search::trace::Trace;
+
+/// What the comparison came to.
+pub enum Verdict {
+    /// The rows up to the first difference.
+    Differs { rows: Vec<Row>, trace: Option<Trace>, shortest: bool },
+    /// Nothing differs, for this reason.
+    Equal(String),
+    /// Nothing was found to differ: what was tried, and what was not.
+    NotFound { tried: Vec<String>, left: Vec<String> },
+}
+
+/// What the comparison came to; and, where all that it has found is accepted, what it comes to beyond that.
+pub struct Judged<'v> {
+    pub verdict: &'v Verdict,
+    pub rest: Option<&'v Verdict>,
+}

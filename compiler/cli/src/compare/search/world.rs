@@ -1,0 +1,70 @@
+//! What the search knows of the world around the programs.
+
+use super::tolerance::Tolerance;
+use crate::args::Compare;
+use crate::compare::difference::beyond::{self, Candidate};
+use crate::compare::difference::pitfall::{self, Habits};
+use crate::compare::inputs::alphabet::{self, Alphabet};
+use crate::compare::inputs::assume::{Assumptions, Mentioned};
+use crate::compare::pair::Pair;
+use crate::compare::program::facts::Facts;
+use staunch_ir::Value;
+use std::collections::BTreeSet;
+
+#[derive(Debug)]
+pub struct World {
+    pub alphabet: Alphabet,
+    pub assumptions: Assumptions,
+    /// The inputs before anything sets them.
+    pub initial: Vec<Value>,
+    /// Every sequence of more scans is left to patterns.
+    pub depth: Option<usize>,
+    /// Every constant of the programs.
+    pub constants: BTreeSet<i128>,
+    /// Scans that the longest wait in the programs takes.
+    pub longest: usize,
+    /// Whether a program assigns its own inputs, so that a stimulus has to write them in each scan.
+    pub inputs_written: bool,
+    /// How the programs use each counter.
+    pub habits: Vec<Habits>,
+    /// Variables that the two systems compute in other types.
+    pub computed: Vec<Candidate>,
+    /// What is accepted, where the search goes on past it.
+    pub tolerance: Option<Tolerance>,
+}
+
+impl World {
+    /// The inputs, and what is known of them.
+    pub fn of(pair: &mut Pair, args: &Compare) -> Result<Self, String> {
+        let facts = [0, 1].map(|side: usize| Facts::of(&pair.sides[side].program));
+        let facts = facts.each_ref();
+        let mentioned = args.assume.as_deref().map(Mentioned::read).transpose()?.unwrap_or_default();
+        let sources = alphabet::sources(pair, facts, &mentioned);
+        (pair.inputs, pair.kept) = (sources.inputs, sources.kept);
+        let assumptions = args.assume.as_deref().map(|it| Assumptions::read(it, pair)).transpose()?.unwrap_or_default();
+        pair.never.clone_from(&assumptions.never);
+        let alphabet = Alphabet::of(pair, facts, &assumptions);
+        if alphabet.vectors.is_empty() {
+            return Err("the assumptions allow no combination of the values of inputs that are tried".to_owned());
+        }
+        let wait = facts.iter().flat_map(|it| it.times.last().copied()).max().unwrap_or(0);
+        let longest = usize::try_from(wait / pair.shortest_cycle().max(1)).unwrap_or(usize::MAX);
+        let habits = pitfall::uses(pair).into_iter().map(|it| it.habits).collect();
+        let mut computed = if args.against.is_none() { beyond::computed_apart(pair) } else { Vec::new() };
+        let known: Vec<_> = computed.iter().map(|it| it.variable).collect();
+        computed.extend(beyond::held_apart(pair).into_iter().filter(|it| !known.contains(&it.variable)));
+        beyond::note_counters(pair, &mut computed);
+        Ok(Self {
+            alphabet,
+            assumptions,
+            initial: pair.initial(),
+            depth: args.depth,
+            constants: facts.iter().flat_map(|it| it.constants.iter().copied()).collect(),
+            longest: longest.min(20_000),
+            inputs_written: alphabet::are_written(pair, facts),
+            habits,
+            computed,
+            tolerance: None,
+        })
+    }
+}
