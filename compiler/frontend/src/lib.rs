@@ -158,6 +158,7 @@ fn run_with(sources: &Sources, options: &Options, keep: Bodies, whole: &mut Whol
     bodies.extend(runs.iter_mut().map(|it| std::mem::take(&mut it.body)));
     let mut declarations = declare::declare(log, whole, &files, &runs, &bodies);
     declarations.coverage = options.coverage.map(|files| Coverage { files, ..Coverage::default() });
+    declarations.tests.exchanged.clone_from(&groups.exchanged);
     declarations.tests.fixtures = groups.fixtures.keys().copied().collect();
     declarations.tests.callers = testing::fixture::callers(&files);
     let checked = body::check(&mut declarations, &mut bodies, keep);
