@@ -17,7 +17,7 @@ use crate::spelling::Key;
 use crate::{Diagnostic, Sources, Span};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
-use tree::{assign, literal, named, variables};
+use tree::{assign, is_named, literal, named, variables};
 
 /// TRUE once SETUP has run, so that the next scan is for TEARDOWN.
 const BEGUN: &str = "__begun";
@@ -148,10 +148,6 @@ fn mocks_an_instance(item: &Item<'_>) -> bool {
         found |= matches!(&it.kind, ExprKind::Call(callee, _) if is_named(callee, "MOCK"));
     });
     found
-}
-
-fn is_named(expr: &Expr<'_>, name: &str) -> bool {
-    matches!(&expr.kind, ExprKind::Name(it) if it.text.eq_ignore_ascii_case(name))
 }
 
 /// `IF __mocked THEN __calls := __calls + 1; RETURN; END_IF` before the body. METHODs run, but for those without a body.

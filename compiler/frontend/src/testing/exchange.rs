@@ -1,7 +1,7 @@
 //! AxUnit's mocks: `AxUnit.Mocking.Mock(NAME_OF(A), NAME_OF(B), payload)` lets B run in place of A. A's body begins with a
 //! call of each B that some `Mock` names, under the condition that the library's `__mocks` has its number.
 
-use super::tree::{literal, named, statement};
+use super::tree::{is_named, literal, named, statement};
 use crate::ast::{
     Argument, ArgumentKind, BinaryOp, Expr, ExprKind, File, Item, LiteralValue, Name, Pou, PouKind, Statement,
     StatementKind, TypeKind, TypeSpec, VarBlock, VarDecl, VarKind, each_expr,
@@ -102,7 +102,7 @@ pub(crate) fn number<'s>(value: u16, at: Span) -> Expr<'s> {
 pub(crate) fn names<'s>(expr: &Expr<'s>, sources: &'s Sources) -> Option<Vec<Name<'s>>> {
     match &expr.kind {
         ExprKind::Call(callee, arguments) => match arguments.as_slice() {
-            [Argument { kind: ArgumentKind::Positional(it), .. }] if super::is_named(callee, "NAME_OF") => it.path(),
+            [Argument { kind: ArgumentKind::Positional(it), .. }] if is_named(callee, "NAME_OF") => it.path(),
             _ => None,
         },
         ExprKind::Literal(it) if matches!(it.value, LiteralValue::String(_)) => {
