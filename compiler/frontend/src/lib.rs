@@ -154,14 +154,16 @@ fn run_with(sources: &Sources, options: &Options, keep: Bodies, whole: &mut Whol
     };
     let Trees { mut files, groups, stubs, allowances, has_tests } = write_out(files, &mut log);
     let mut bodies: Vec<_> = files.iter_mut().flat_map(ast::File::take_bodies).collect();
-    let mut runs = declare::run::runs(&files, options.tests);
+    let mut runs = declare::run::runs(&files, options.tests, sources, &whole.shared);
     bodies.extend(runs.iter_mut().map(|it| std::mem::take(&mut it.body)));
     let mut declarations = declare::declare(log, whole, &files, &runs, &bodies);
     declarations.coverage = options.coverage.map(|files| Coverage { files, ..Coverage::default() });
+    declarations.tests.exchanged.clone_from(&groups.exchanged);
     declarations.tests.fixtures = groups.fixtures.keys().copied().collect();
     declarations.tests.callers = testing::fixture::callers(&files);
     let checked = body::check(&mut declarations, &mut bodies, keep);
-    if whole.grow(declarations.whole()) {
+    let shared = declarations.shared_programs(&files);
+    if whole.grow(Whole { shared, ..declarations.whole() }) {
         return None;
     }
     let unassigned = lints::result::unassigned(&declarations);

@@ -49,6 +49,9 @@ const LINE_END: &str = "\n";
 /// What the namespaces of the library are in.
 const SYSTEM: &str = "System";
 
+/// AxUnit's mocks, which are there where they are named: `AxUnit.Mocking`, or `Mocking` after `USING AxUnit`.
+const MOCKING: &str = "AxUnit.Mocking";
+
 /// The namespace of what is handed on for an input of ANY, and its members.
 const ANY: &str = "__SYSTEM";
 const OF_ANY: [&str; 3] = ["TypeClass", "pValue", "diSize"];
@@ -194,6 +197,7 @@ pub(crate) const UNITS: &[Unit] = units! {
     Space    "System.Math"      "system_math";
     Space    "System.DateTime"  "system_datetime"  "SPLIT_LDT" "SPLIT_DATE" "SPLIT_LTOD";
     Open     "AxUnit"           "axunit"           [Iec Siemens];
+    Open     "AxUnit.Mocking"   "axunit_mocking"   [Iec Siemens] "AxUnit";
     Space    "TcUnit"           (tcunit::TEXT);
     Space    "IBaseLibrary"     "ibaselibrary"     [Codesys];
     Space    "__SYSTEM"         "system_any"       [Codesys];
@@ -340,7 +344,9 @@ impl Uses {
             }
             let is_space = is_system(word(at)) && tokens.kinds.get(at + 1) == Some(&Kind::Dot);
             let space = is_space.then(|| format!("{SYSTEM}.{}", word(at + 2)));
-            let name = space.as_deref().unwrap_or(word(at));
+            let names_mocking = word(at).eq_ignore_ascii_case("Mocking") && before != Some(Kind::Dot)
+                || word(at).eq_ignore_ascii_case("AxUnit") && word(at + 2).eq_ignore_ascii_case("Mocking");
+            let name = if names_mocking { MOCKING } else { space.as_deref().unwrap_or(word(at)) };
             let Some(any) = units(name).next() else { continue };
             let unit = unit(name, dialect);
             // `Tc2_System.DRAND`

@@ -1,6 +1,7 @@
 //! Unit tests in Structured Text. Each TEST becomes a POU of its own, with the variables and statements of
 //! its file's SETUP before its own; a second scan runs TEARDOWN. The rest of a test is an ordinary body.
 
+pub(crate) mod exchange;
 pub(crate) mod fixture;
 pub(crate) mod suite;
 pub(crate) mod tree;
@@ -16,7 +17,7 @@ use crate::spelling::Key;
 use crate::{Diagnostic, Sources, Span};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
-use tree::{assign, literal, named, variables};
+use tree::{assign, is_named, literal, named, variables};
 
 /// TRUE once SETUP has run, so that the next scan is for TEARDOWN.
 const BEGUN: &str = "__begun";
@@ -51,6 +52,8 @@ pub struct Test {
 pub(crate) struct Groups {
     pub suites: FxHashMap<Span, Suite>,
     pub fixtures: FxHashMap<Span, Fixture>,
+    /// What AxUnit's mocks exchange.
+    pub exchanged: exchange::Numbers,
 }
 
 /// An assertion, and the variables that hold what it compared when it failed.
@@ -67,10 +70,10 @@ pub struct Assertion {
 }
 
 /// The tests of the files become POUs, or, where they do not run, are left out.
-pub(crate) fn expand(
-    files: &mut [File<'_>],
+pub(crate) fn expand<'s>(
+    files: &mut [File<'s>],
     run: bool,
-    sources: &Sources,
+    sources: &'s Sources,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Groups {
     let is_test = |it: &Item<'_>| matches!(it, Item::Test(_));
@@ -86,6 +89,7 @@ pub(crate) fn expand(
         });
         pous.for_each(can_be_mocked);
     }
+    let exchanged = exchange::expand(files, sources);
     for file in files.iter_mut() {
         // What a CONFIGURATION runs does not run beside the tests.
         let configurations = file.items.iter_mut().filter_map(|it| match it {
@@ -97,7 +101,8 @@ pub(crate) fn expand(
         file.items = items;
         file.items.extend(whole_tests(tests).map(Item::Pou));
     }
-    Groups { fixtures: fixture::expand(files, sources, diagnostics), suites: suite::expand(files) }
+    let fixtures = fixture::expand(files, sources, !exchanged.is_empty(), diagnostics);
+    Groups { fixtures, suites: suite::expand(files), exchanged }
 }
 
 /// Whether the sources hold unit tests.
@@ -143,10 +148,6 @@ fn mocks_an_instance(item: &Item<'_>) -> bool {
         found |= matches!(&it.kind, ExprKind::Call(callee, _) if is_named(callee, "MOCK"));
     });
     found
-}
-
-fn is_named(expr: &Expr<'_>, name: &str) -> bool {
-    matches!(&expr.kind, ExprKind::Name(it) if it.text.eq_ignore_ascii_case(name))
 }
 
 /// `IF __mocked THEN __calls := __calls + 1; RETURN; END_IF` before the body. METHODs run, but for those without a body.

@@ -159,3 +159,130 @@ END_NAMESPACE
     assert_eq!(ran.code, 0, "{}{}", ran.out, ran.err);
     has(&ran.out, &["2 of 2 100 %", "3 mutants killed, 0 survived"]);
 }
+
+/// After Siemens' introduction to mocks: `GetANumber` calls `GetNumber1`, which gives 1.
+const MOCKS: &str = "USING AxUnit;
+USING AxUnit.Assert;
+USING System.Timer;
+NAMESPACE UserLibrary
+    FUNCTION GetANumber : INT
+        GetANumber := GetNumber1();
+    END_FUNCTION
+    FUNCTION GetNumber1 : INT
+        GetNumber1 := 1;
+    END_FUNCTION
+    FUNCTION Split
+    VAR_INPUT total : INT; END_VAR
+    VAR_OUTPUT half : INT; END_VAR
+    VAR_IN_OUT sum : INT; END_VAR
+        half := total / 2;
+        sum := sum + total;
+    END_FUNCTION
+    CLASS Waits
+        VAR timer : OnDelay; END_VAR
+        METHOD PUBLIC Done : BOOL
+            timer(signal := TRUE, duration := LT#5s);
+            Done := timer.output;
+        END_METHOD
+    END_CLASS
+END_NAMESPACE
+NAMESPACE MyTest
+    USING UserLibrary;
+    FUNCTION GetNumber2_Mock : INT
+        GetNumber2_Mock := 2;
+    END_FUNCTION
+    FUNCTION FromPayload : INT
+    VAR_TEMP p : REF_TO Numbers; END_VAR
+        p ?= AxUnit.Mocking.GetPayload();
+        IF p <> NULL THEN
+            p^.calls := p^.calls + 1;
+            FromPayload := p^.value;
+        END_IF;
+    END_FUNCTION
+    FUNCTION SplitMock
+    VAR_INPUT total : INT; END_VAR
+    VAR_OUTPUT half : INT; END_VAR
+    VAR_IN_OUT sum : INT; END_VAR
+        half := total - GetNumber1();
+        sum := 0;
+    END_FUNCTION
+    FUNCTION_BLOCK IsDone
+    VAR_INPUT signal : BOOL; duration : LTIME; END_VAR
+    VAR_OUTPUT output : BOOL; elapsedTime : LTIME; END_VAR
+    VAR calls : INT; END_VAR
+        calls := calls + 1;
+        output := signal AND calls > 1;
+    END_FUNCTION_BLOCK
+    CLASS Numbers IMPLEMENTS AxUnit.Mocking.IPayload
+        VAR PUBLIC value, calls : INT; END_VAR
+    END_CLASS
+    {TestFixture}
+    CLASS MyFixture
+        VAR numbers, others : Numbers; waits : Waits; END_VAR
+        {Test}
+        METHOD PUBLIC A_runs_another_function
+            Equal(1, GetANumber());
+            Mocking.Mock(NAME_OF(GetNumber1), NAME_OF(GetNumber2_Mock));
+            Equal(2, GetANumber());
+        END_METHOD
+        {Test}
+        METHOD PUBLIC B_begins_anew
+            Equal(1, GetANumber());
+        END_METHOD
+        {Test}
+        METHOD PUBLIC C_has_payloads
+            numbers.value := 123;
+            others.value := 456;
+            AxUnit.Mocking.Mock(NAME_OF(GetNumber1), NAME_OF(FromPayload), numbers);
+            Equal(123, GetANumber());
+            AxUnit.Mocking.Mock(payload := others, mockFn := NAME_OF(FromPayload), mockeeFn := 'UserLibrary.GetNumber1');
+            Equal(456, GetANumber());
+            Equal(456, GetANumber());
+            Equal(1, numbers.calls);
+            Equal(2, others.calls);
+            AxUnit.Mocking.Mock(NAME_OF(GetNumber1), NAME_OF(FromPayload));
+            Equal(0, GetANumber());
+        END_METHOD
+        {Test}
+        METHOD PUBLIC D_passes_all_parameters
+        VAR_TEMP half, sum : INT; END_VAR
+            sum := 5;
+            AxUnit.Mocking.Mock(NAME_OF(Split), NAME_OF(SplitMock));
+            AxUnit.Mocking.Mock(NAME_OF(GetNumber1), NAME_OF(GetNumber2_Mock));
+            Split(total := 10, half => half, sum := sum);
+            Equal(8, half);
+            Equal(0, sum);
+        END_METHOD
+        {Test}
+        METHOD PUBLIC E_runs_another_block
+            Equal(FALSE, waits.Done());
+            AxUnit.Mocking.Mock(NAME_OF(OnDelay), NAME_OF(IsDone));
+            Equal(FALSE, waits.Done());
+            Equal(TRUE, waits.Done());
+        END_METHOD
+    END_CLASS
+END_NAMESPACE
+";
+
+#[test]
+fn mocks_run_in_place_of_functions_and_blocks() {
+    let folder = Folder::new("axunit_mocks");
+    folder.write("mocks.st", MOCKS);
+    for backend in ["interpret", "native", "rust"] {
+        let ran = folder.staunch(&format!("test mocks.st --dialect siemens --backend {backend}"));
+        assert_eq!(ran.code, 0, "{backend}: {}{}", ran.out, ran.err);
+        has(&ran.out, &["5 passed, 0 failed"]);
+    }
+    // One that does not come is found.
+    let none =
+        MOCKS.replace("Mocking.Mock(NAME_OF(GetNumber1), NAME_OF(GetNumber2_Mock));\n            Equal", "Equal");
+    folder.write("mocks.st", none);
+    has(&folder.staunch("test mocks.st --dialect siemens").out, &["expected to be 2, found 1"]);
+    // What the program itself is has none of it.
+    folder.write(
+        "mocks.st",
+        format!("{MOCKS}PROGRAM Main VAR x : INT; END_VAR x := UserLibrary.GetANumber(); END_PROGRAM"),
+    );
+    assert_eq!(folder.staunch("build mocks.st --dialect siemens --emit rust -o out.rs").code, 0);
+    assert!(!folder.read("out.rs").contains("__kept_payload"));
+}

@@ -4,6 +4,7 @@
 use super::assertion::Claim;
 use crate::expr::checker::Checker;
 use crate::names::{Entry, Found, Meaning, Sense};
+use crate::testing::exchange;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ArgumentKind, BinaryOp};
 use staunch_ir::{Elementary, Expr, Op, Type, Value};
@@ -27,8 +28,10 @@ const COMPARISONS: [Comparison; 6] = [
 /// What an assertion of a project's own says to AxUnit.
 const SUCCEED: &str = "AxUnit.ResultFunctions.axunit_Succeed";
 const FAIL: &str = "AxUnit.ResultFunctions.axunit_Fail";
+/// Lets something run in place of another.
+const MOCK: &str = "AxUnit.Mocking.Mock";
 /// Where these are declared.
-const LIBRARY: &str = "library/axunit.st";
+const LIBRARIES: [&str; 2] = ["library/axunit.st", "library/axunit.mocking.st"];
 
 const fn of(name: &'static str, parameters: [&'static str; 2], op: BinaryOp, wants: &'static str) -> Comparison {
     Comparison { name, parameters, op, wants }
@@ -49,7 +52,7 @@ impl<'s> Checker<'_, 's> {
             return Some(());
         };
         let name = self.decl.pous[slot].ast.name;
-        if self.decl.log.sources.get(name.span.file).path != LIBRARY {
+        if !LIBRARIES.contains(&self.decl.log.sources.get(name.span.file).path.as_str()) {
             return None;
         }
         let in_full = self.decl.name_in_full(name);
@@ -58,6 +61,7 @@ impl<'s> Checker<'_, 's> {
             Some(comparison) => self.axunit_comparison(comparison, called, arguments, span),
             None if in_full == SUCCEED => return Some(()),
             None if in_full == FAIL => self.axunit_failure(called, arguments, span),
+            None if in_full == MOCK => self.axunit_mock(called, arguments, span),
             None => return None,
         };
         if made.is_none() {
@@ -72,7 +76,7 @@ impl<'s> Checker<'_, 's> {
         let path = callee.path()?;
         let is_one =
             |it: &str| it.rsplit('.').next().is_some_and(|it| it.eq_ignore_ascii_case(path[path.len() - 1].text));
-        if !COMPARISONS.iter().map(|it| it.name).chain([SUCCEED, FAIL]).any(is_one) {
+        if !COMPARISONS.iter().map(|it| it.name).chain([SUCCEED, FAIL, MOCK]).any(is_one) {
             return None;
         }
         let first = path[0];
@@ -128,6 +132,53 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// What is given for each parameter.
+    /// `Mock(NAME_OF(A), NAME_OF(B), payload)`: a call of what changes the number of what runs in place of A.
+    fn axunit_mock(&mut self, name: ast::Name<'s>, arguments: &[ast::Argument<'s>], span: Span) -> Option<()> {
+        let parameters = ["mockeeFn", "mockFn", "payload"];
+        let [Some(mockee), Some(mock), payload] = self.axunit_arguments(name, parameters, arguments, span)? else {
+            return self.wrong_arguments(name, &parameters, span);
+        };
+        let (a, b) = (self.exchangeable(mockee)?, self.exchangeable(mock)?);
+        if !self.decl.log.options.tests {
+            return payload.map_or(Some(()), |it| self.operand(it, None).map(drop));
+        }
+        let places = (self.decl.pous[a].ast.name.span, self.decl.pous[b].ast.name.span);
+        let Some((exchanged, which)) = self.decl.tests.exchanged.get(&places).copied() else {
+            let [a, b] = [a, b].map(|it| self.decl.name_in_full(self.decl.pous[it].ast.name));
+            self.report(
+                Diagnostic::new(Code::E0316, mock.span, format!("`{b}` cannot run in place of `{a}`"))
+                    .label("expected a FUNCTION for a FUNCTION, or a FUNCTION_BLOCK for one, with the same parameters")
+                    .help("METHODs, and FUNCTION_BLOCKs that EXTEND others or are extended, cannot be exchanged yet"),
+            );
+            return None;
+        };
+        let argument = |it: ast::Expr<'s>| ast::Argument { span: it.span, kind: ArgumentKind::Positional(it) };
+        let numbers = [exchanged, which].map(|it| exchange::number(it, span));
+        let given: Vec<_> = numbers.into_iter().chain(payload.cloned()).map(argument).collect();
+        let callee = exchange::function(if payload.is_some() { exchange::WITH } else { exchange::ALONE }, span);
+        let kind = ast::ExprKind::Call(Box::new(callee.clone()), given.clone());
+        self.call_statement(&ast::Expr { kind, span }, &callee, &given);
+        Some(())
+    }
+
+    /// The slot of the FUNCTION or FUNCTION_BLOCK that `NAME_OF(A)`, or a text with its name, means.
+    fn exchangeable(&mut self, expr: &ast::Expr<'s>) -> Option<usize> {
+        let path = exchange::names(expr, self.decl.log.sources).unwrap_or_default();
+        let found = [Sense::Callee, Sense::Type].into_iter().find_map(|sense| match self.decl.lookup(&path, sense) {
+            Found::One(Meaning::Declared(Entry::Pou(slot))) => Some(slot),
+            Found::One(_) | Found::Several(_) | Found::Nothing => None,
+        });
+        if found.is_none() {
+            let text = self.decl.log.sources.text(expr.span).to_owned();
+            self.report(
+                Diagnostic::new(Code::E0316, expr.span, format!("`{text}` names no FUNCTION or FUNCTION_BLOCK"))
+                    .label("what is exchanged, and what runs in its place, are known by their names")
+                    .help("write `NAME_OF(Name)`, or its name in full, `'Space.Name'`"),
+            );
+        }
+        found
+    }
+
     fn axunit_arguments<'a, const N: usize>(
         &mut self,
         name: ast::Name<'s>,

@@ -1,7 +1,7 @@
-//! PROGRAMs that others name: such a one does not run by itself. It has one instance, which the globals
-//! hold under its name.
+//! PROGRAMs that others name: such a one has one instance, which the globals hold under its name. Where bodies call it,
+//! it does not run by itself, unless a CONFIGURATION lists it.
 
-use super::run::Run;
+use super::run::{Listing, Run, has_in_outs, listing};
 use crate::dialect::missing;
 use crate::names::{Entry, Found, Meaning, Sense};
 use crate::spelling::Key;
@@ -86,6 +86,23 @@ impl<'s> Declarations<'s> {
     fn is_action(&self, program: usize, path: &[ast::Name<'s>]) -> bool {
         let last = path.last().and_then(|it| self.pous[program].routines.get(&Key(it.text))?.called);
         last.is_some_and(|it| self.pous[it.0].ast.kind == ast::PouKind::Action)
+    }
+
+    /// The names of those that run by themselves nevertheless. What a VAR_CONFIG binds is not among them: its run holds it.
+    pub(crate) fn shared_programs(&self, files: &[ast::File<'s>]) -> FxHashSet<Span> {
+        if self.log.options.tests {
+            return FxHashSet::default();
+        }
+        let is_shared = |(slot, named): &(&usize, &NamedProgram<'s>)| {
+            let pou = self.pous[**slot].ast;
+            let runs = || match listing(files, self.log.sources, Key(pou.name.text)) {
+                Listing::Absent => !named.is_called,
+                Listing::One => true,
+                Listing::Others | Listing::Several => false,
+            };
+            named.run.is_none() && !self.is_of_library(**slot) && !has_in_outs(pou) && runs()
+        };
+        self.named_programs.iter().filter(is_shared).map(|(slot, _)| self.pous[*slot].ast.name.span).collect()
     }
 
     fn name_program(&mut self, slot: usize, first: Span, runs: bool, is_empty: bool, wrapped: &'s [Run<'s>]) {

@@ -5,11 +5,14 @@
 //!
 //! What VAR_CONFIG binds is a variable of its instance, into which the run copies what lies at the address before
 //! the call; what is no input is copied back after it.
+//!
+//! A PROGRAM that has one instance among the globals, since tasks of TwinCAT's share it or bodies name it, has runs that
+//! hold nothing and call it by its name.
 
 use crate::spelling::Key;
 use crate::types::address::is_input;
 use crate::types::synthetic::Binding;
-use crate::{Span, ast};
+use crate::{Sources, Span, ast};
 use ast::{ExprKind, PouKind, StatementKind, VarKind};
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::HELD_PROGRAM;
@@ -29,21 +32,68 @@ pub(crate) struct Run<'s> {
     pub instance: Span,
 }
 
+type Listed<'a, 's> = (&'a ast::Resource<'s>, &'a ast::ProgramInstance<'s>);
+
+fn configurations<'a, 's>(files: &'a [ast::File<'s>]) -> impl Iterator<Item = &'a ast::Configuration<'s>> {
+    files.iter().flat_map(|it| &it.items).filter_map(|it| match it {
+        ast::Item::Configuration(it) => Some(it),
+        ast::Item::Pou(_) | ast::Item::Types(_) | ast::Item::Globals(_) | ast::Item::Test(_) => None,
+    })
+}
+
+/// The runs that CONFIGURATIONs list.
+fn listed<'a, 's>(files: &'a [ast::File<'s>]) -> Vec<Listed<'a, 's>> {
+    let resources = configurations(files).flat_map(|it| &it.resources);
+    resources.flat_map(|resource| resource.programs.iter().map(move |it| (resource, it))).collect()
+}
+
+/// Whether what a RESOURCE lists are the calls of a task of TwinCAT's, which have no names of their own.
+pub(crate) fn is_task(resource: &ast::Resource<'_>, sources: &Sources) -> bool {
+    let is_of_it = |it: &ast::ProgramInstance<'_>| sources.get(it.name.span.file).is_assembled();
+    resource.name.is_none() && resource.programs.iter().all(is_of_it)
+}
+
+/// How CONFIGURATIONs list a PROGRAM.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Listing {
+    /// None lists any PROGRAM.
+    Absent,
+    /// They list others.
+    Others,
+    /// Each run is of the one instance: there is one run, or tasks of TwinCAT's call the PROGRAM.
+    One,
+    /// Each run has an instance of its own.
+    Several,
+}
+
+/// How the PROGRAM of a name is listed. What is connected with variables, or waits for a SINGLE, has an instance of its own.
+pub(crate) fn listing(files: &[ast::File<'_>], sources: &Sources, program: Key<'_>) -> Listing {
+    let all = listed(files);
+    if all.is_empty() {
+        return Listing::Absent;
+    }
+    let its: Vec<_> = all.into_iter().filter(|it| Key(it.1.program.text) == program).collect();
+    let is_plain = |(resource, it): &Listed<'_, '_>| it.connections.is_empty() && trigger(resource, it).is_none();
+    match its.as_slice() {
+        [] => Listing::Others,
+        [one] if is_plain(one) => Listing::One,
+        several if several.iter().all(|it| is_task(it.0, sources)) => Listing::One,
+        _ => Listing::Several,
+    }
+}
+
 /// The runs of all configurations that take a PROGRAM of their own. Where one run of a PROGRAM does, its
-/// other ones do as well. Unit tests run no PROGRAM by itself.
-pub(crate) fn runs<'a, 's>(files: &'a [ast::File<'s>], tests: bool) -> Vec<Run<'s>> {
+/// other ones do as well. Unit tests run no PROGRAM by itself. Those with their names in `shared` have one instance.
+pub(crate) fn runs<'a, 's>(
+    files: &'a [ast::File<'s>],
+    tests: bool,
+    sources: &Sources,
+    shared: &FxHashSet<Span>,
+) -> Vec<Run<'s>> {
     let items = || files.iter().flat_map(|it| &it.items);
-    let configurations = || {
-        items().filter_map(|it| match it {
-            ast::Item::Configuration(it) => Some(it),
-            ast::Item::Pou(_) | ast::Item::Types(_) | ast::Item::Globals(_) | ast::Item::Test(_) => None,
-        })
-    };
-    let resources = configurations().flat_map(|it| &it.resources);
-    let listed: Vec<_> =
-        resources.flat_map(|resource| resource.programs.iter().map(move |it| (resource, it))).collect();
+    let listed = listed(files);
     let in_files = files.iter().flat_map(|it| &it.bindings);
-    let bindings: Vec<_> = configurations().flat_map(|it| &it.bindings).chain(in_files).collect();
+    let bindings: Vec<_> = configurations(files).flat_map(|it| &it.bindings).chain(in_files).collect();
     let pous: FxHashMap<_, _> = items().filter_map(pou).map(|it| (Key(it.name.text), it)).collect();
     let bound_in = |resource: &ast::Resource<'s>, it: &ast::ProgramInstance<'s>| {
         let bound = |binding: &&'a ast::Binding<'s>| {
@@ -59,8 +109,11 @@ pub(crate) fn runs<'a, 's>(files: &'a [ast::File<'s>], tests: bool) -> Vec<Run<'
         let resource = ast::Resource::default();
         // What nothing connects is reported where the instances are.
         let programs = items().filter_map(program).filter(|it| !has_in_outs(it));
-        let runs = programs.filter_map(|it| by_name(it, &bindings));
-        return runs.map(|it| run(&it, None, bound_in(&resource, &it))).collect();
+        let own = |it: &ast::Pou<'s>| match by_name(it, &bindings) {
+            Some(it) => Some(run(&it, None, bound_in(&resource, &it))),
+            None => shared.contains(&it.name.span).then(|| call(&unlisted(it, it.name.span))),
+        };
+        return programs.filter_map(own).collect();
     }
     let programs: FxHashMap<_, _> = items().filter_map(program).map(|it| (Key(it.name.text), it)).collect();
     let has_paths = items().filter_map(pou).any(has_instance_path);
@@ -69,18 +122,40 @@ pub(crate) fn runs<'a, 's>(files: &'a [ast::File<'s>], tests: bool) -> Vec<Run<'
         let is_bound = bindings.iter().any(|binding| within(&binding.target, resource, it).is_some());
         let is_same = |other: &&(_, &ast::ProgramInstance<'s>)| Key(other.1.program.text) == Key(it.program.text);
         // Instances with other paths have other initial values.
-        let has_path = has_paths && listed.iter().filter(is_same).count() > 1;
+        let has_path = has_paths && !is_task(resource, sources) && listed.iter().filter(is_same).count() > 1;
         takes || has_path || is_bound || !it.connections.is_empty() || trigger(resource, it).is_some()
     };
     let wrapped: FxHashSet<_> = listed.iter().filter(asks).map(|(_, it)| Key(it.program.text)).collect();
-    let known = |it: &&ast::ProgramInstance<'s>| {
+    let is_shared = |resource: &ast::Resource<'s>, program: &ast::Pou<'s>| {
+        let is_same = |it: &&Listed<'_, 's>| Key(it.1.program.text) == Key(program.name.text);
+        let is_called_twice = || is_task(resource, sources) && listed.iter().filter(is_same).count() > 1;
+        !tests && (shared.contains(&program.name.span) || is_called_twice())
+    };
+    let own = |(resource, it): &Listed<'_, 's>| {
         let key = Key(it.program.text);
-        wrapped.contains(&key) && programs.contains_key(&key)
+        let program = programs.get(&key)?;
+        match wrapped.contains(&key) {
+            true => Some(run(it, trigger(resource, it), bound_in(resource, it))),
+            false => is_shared(resource, program).then(|| call(it)),
+        }
     };
-    let run = |(resource, it): (&ast::Resource<'s>, &ast::ProgramInstance<'s>)| {
-        run(it, trigger(resource, it), bound_in(resource, it))
+    listed.iter().filter_map(own).collect()
+}
+
+/// The run of a PROGRAM with one instance, which is among the globals.
+fn call<'s>(instance: &ast::ProgramInstance<'s>) -> Run<'s> {
+    let span = instance.program.span;
+    let expr = |kind| ast::Expr { kind, span };
+    let (first, rest) = match instance.namespace.split_first() {
+        Some((first, rest)) => (*first, [rest, &[instance.program]].concat()),
+        None => (instance.program, Vec::new()),
     };
-    listed.into_iter().filter(|(_, it)| known(it)).map(run).collect()
+    let member = |base, name| expr(ExprKind::Member(Box::new(base), name));
+    let callee = rest.into_iter().fold(expr(ExprKind::Name(first)), member);
+    let kind = StatementKind::Expr(expr(ExprKind::Call(Box::new(callee), Vec::new())));
+    let pou = ast::Pou::new(PouKind::Program, instance.program, span);
+    let body = vec![ast::Statement { kind, span }];
+    Run { pou, body, bound: Vec::new(), valued: Vec::new(), instance: instance.name.span }
 }
 
 fn has_instance_path(pou: &ast::Pou<'_>) -> bool {

@@ -382,14 +382,12 @@ impl<'s> Checker<'_, 's> {
     /// The FUNCTION or METHOD that is called.
     fn called_slot(&self, callee: &ast::Expr<'s>) -> Option<usize> {
         match &callee.kind {
-            Ast::Member(..) => self.one_of(&self.methods_of_call(callee)),
+            Ast::Member(..) => match self.methods_of_call(callee) {
+                none if none.is_empty() => self.function_of_path(&callee.path()?),
+                methods => self.one_of(&methods),
+            },
             Ast::Name(name) if self.own_routine(*name).is_some() => self.one_of(&self.methods_of_call(callee)),
-            Ast::Name(name) => {
-                let found = self.decl.lookup(&[*name], Sense::Callee);
-                let names::Found::One(Meaning::Declared(Entry::Pou(slot))) = found else { return None };
-                let is_function = self.decl.pous[slot].ast.kind == PouKind::Function;
-                self.one_of(&self.decl.all_of_a_name(slot)).filter(|_| is_function)
-            }
+            Ast::Name(name) => self.function_of_path(&[*name]),
             Ast::Literal(_)
             | Ast::Address(_)
             | Ast::Part(..)
@@ -402,6 +400,14 @@ impl<'s> Checker<'_, 's> {
             | Ast::Paren(_)
             | Ast::Error(_) => None,
         }
+    }
+
+    fn function_of_path(&self, path: &[ast::Name<'s>]) -> Option<usize> {
+        let is_variable = path.len() > 1 && self.scope.get(path[0].text).is_some();
+        let found = self.decl.lookup(path, Sense::Callee);
+        let names::Found::One(Meaning::Declared(Entry::Pou(slot))) = found else { return None };
+        let is_function = self.decl.pous[slot].ast.kind == PouKind::Function && !is_variable;
+        self.one_of(&self.decl.all_of_a_name(slot)).filter(|_| is_function)
     }
 
     /// Any of several with one type of result: which one is meant is not known without looking at the arguments.

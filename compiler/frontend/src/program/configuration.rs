@@ -1,7 +1,9 @@
 //! CONFIGURATION, RESOURCE and TASK: which programs run, and how often.
 
 use crate::ast;
-use crate::declare::run::{declaration_of, has_in_outs, is_false, property, unlisted, within};
+use crate::declare::run::{
+    Listing, declaration_of, has_in_outs, is_false, is_task, listing, property, unlisted, within,
+};
 use crate::dialect::Dialect;
 use crate::expr::constant::constant;
 use crate::names::{Entry, Found, Meaning, Sense};
@@ -40,8 +42,11 @@ pub(super) fn instances<'s>(declarations: &mut Declarations<'s>, files: &'s [ast
         return;
     }
     let is_program = |at: &usize| declarations.pous[*at].ast.kind == ast::PouKind::Program;
-    let is_alone =
-        |at: &usize| is_program(at) && !declarations.is_of_library(*at) && !declarations.is_named_program(*at);
+    let is_shared =
+        |at: usize| runs.get(&declarations.pous[at].ast.name.span).is_some_and(|it| declarations.is_run_of_shared(*it));
+    let is_alone = |at: &usize| {
+        is_program(at) && !declarations.is_of_library(*at) && (!declarations.is_named_program(*at) || is_shared(*at))
+    };
     let programs: Vec<_> = (0..declarations.written_pous().len()).filter(is_alone).collect();
     for at in programs {
         if declarations.report_not_connected(at) {
@@ -101,12 +106,12 @@ impl<'s> Declarations<'s> {
         bindings: &[&'s ast::Binding<'s>],
     ) {
         // Each task of TwinCAT's is in a file of its own, and its CONFIGURATION and RESOURCE are not written there.
-        let is_task = |it: &&&ast::Configuration<'_>| {
+        let is_of_task = |it: &&&ast::Configuration<'_>| {
             let source = self.log.sources.get(it.span.file);
             source.is_assembled() && it.resources.iter().all(|it| it.name.is_none())
         };
-        let alone: Vec<_> = configurations.iter().filter(|it| !is_task(it)).collect();
-        let tasks = configurations.iter().find(is_task).filter(|_| !alone.is_empty());
+        let alone: Vec<_> = configurations.iter().filter(|it| !is_of_task(it)).collect();
+        let tasks = configurations.iter().find(is_of_task).filter(|_| !alone.is_empty());
         if let [first, second, ..] = alone.into_iter().chain(tasks).collect::<Vec<_>>().as_slice() {
             self.report(
                 Diagnostic::new(Code::E0902, second.name.span, "a second CONFIGURATION is not supported yet")
@@ -121,12 +126,11 @@ impl<'s> Declarations<'s> {
         for resource in resources.clone() {
             self.names_once(resource.tasks.iter().map(|it| it.name));
         }
-        let (called, declared): (Vec<_>, Vec<_>) = resources.partition(|it| {
-            let is_task = |it: &ast::ProgramInstance<'_>| self.log.sources.get(it.name.span.file).is_assembled();
-            it.name.is_none() && it.programs.iter().all(is_task)
-        });
+        let (called, declared): (Vec<_>, Vec<_>) = resources.partition(|it| is_task(it, self.log.sources));
         self.names_once(declared.into_iter().flat_map(|it| &it.programs).map(|it| it.name));
-        self.called_once(called.into_iter().flat_map(|it| &it.programs).map(|it| it.name));
+        let is_held = |it: &&ast::ProgramInstance<'s>| !self.is_shared_run(it);
+        let held: Vec<_> = called.into_iter().flat_map(|it| &it.programs).filter(is_held).map(|it| it.name).collect();
+        self.called_once(held.into_iter());
         // Unit tests run none of its instances.
         if !self.log.options.tests {
             self.check_bindings(configurations, bindings);
@@ -418,18 +422,33 @@ impl<'s> Declarations<'s> {
                 return None;
             }
         };
-        if self.report_called_and_listed(program, instance.program.span) {
+        let run = runs.get(&instance.name.span).copied();
+        let is_shared = run.is_some_and(|it| self.is_run_of_shared(it));
+        if !is_shared && self.report_called_and_listed(program, instance.program.span) {
             return None;
         }
-        let run = runs.get(&instance.name.span).copied();
         let class = self.class_of_slot(run.unwrap_or(program))?;
         self.program.instances.push(Instance {
-            name: instance.name.text.to_owned(),
+            name: self.name_of_run(instance),
             program: class,
             interval: timing.interval,
             priority: timing.priority,
         });
         Some(program)
+    }
+
+    fn is_shared_run(&self, instance: &ast::ProgramInstance<'s>) -> bool {
+        (0..self.pous.len()).any(|it| self.pous[it].run == Some(instance.name.span) && self.is_run_of_shared(it))
+    }
+
+    /// The name of a run; that of a PROGRAM that several tasks of TwinCAT's call has the task before it, from the second on.
+    fn name_of_run(&self, instance: &ast::ProgramInstance<'s>) -> String {
+        let name = instance.name.text;
+        let is_known = |name: &str| self.program.instances.iter().any(|it| it.name.eq_ignore_ascii_case(name));
+        match instance.task {
+            Some(task) if self.is_shared_run(instance) && is_known(name) => format!("{}_{name}", task.text),
+            _ => name.to_owned(),
+        }
     }
 
     fn not_a_program(&mut self, name: ast::Name<'s>, at: usize) {
@@ -488,38 +507,42 @@ impl<'s> Declarations<'s> {
         timing
     }
 
-    /// Whether the POU in a slot is of a library: a PROGRAM of one does not run by itself.
-    pub(super) fn is_of_library(&self, slot: usize) -> bool {
-        self.log.sources.get(self.pous[slot].ast.span.file).is_of_library()
-    }
-
-    /// Reports PROGRAMs whose variables are read, but which nobody calls: they run by themselves, and
-    /// their variables belong to those runs.
-    pub(super) fn check_named_programs(&mut self) {
+    /// Reports PROGRAMs whose variables are read, and which have no run that could be of what is read. Where a CONFIGURATION
+    /// lists others, they have their initial values.
+    pub(super) fn check_named_programs(&mut self, files: &[ast::File<'s>]) {
+        let sources = self.log.sources;
+        let is_idle = |it: ast::Name<'s>| listing(files, sources, Key(it.text)) == Listing::Others;
         let mut alone: Vec<_> =
             self.named_programs.iter().filter(|(at, it)| !it.is_called && !self.is_of_library(**at)).collect();
         alone.sort_by_key(|(slot, _)| **slot);
         let alone: Vec<_> = alone.into_iter().map(|(_, it)| (it.variable.name, it.first)).collect();
         for (name, span) in alone {
+            if !self.log.options.tests && is_idle(name) {
+                continue;
+            }
             self.report(
-                Diagnostic::new(Code::E0902, span, format!("reading `{}`, a PROGRAM that runs by itself", name.text))
-                    .label("only those that are called by name can be read from outside yet")
-                    .other(name.span, "nobody calls it")
-                    .help("share the value in a VAR_GLOBAL"),
+                Diagnostic::new(Code::E0902, span, format!("reading `{}`, a PROGRAM that nobody calls", name.text))
+                    .label("no run of it belongs to what is read")
+                    .other(name.span, "declared here")
+                    .help(format!("call it: `{}();`", name.text)),
             );
         }
     }
 
-    /// Reports a PROGRAM that a CONFIGURATION lists, and others call.
+    /// Reports a PROGRAM that others name, and that a CONFIGURATION lists so that a run has an instance of its own.
     pub fn report_called_and_listed(&mut self, slot: usize, listed: Span) -> bool {
         let Some(named) = self.named_programs.get(&slot) else { return false };
         let (name, first) = (named.variable.name.text, named.first);
-        self.report(
-            Diagnostic::new(Code::E0902, listed, format!("`{name}` both runs in a RESOURCE and is called by name"))
-                .label("one of the two is supported, not both yet")
-                .other(first, "named here")
-                .help("delete it here, or call it nowhere"),
-        );
+        let message = format!("`{name}` is named, and runs with an instance of its own");
+        // Each of its runs says the same.
+        if self.log.diagnostics.iter().all(|it| it.message != message) {
+            self.report(
+                Diagnostic::new(Code::E0902, listed, message)
+                    .label("one of several runs, or one with connections, a SINGLE or a VAR_CONFIG")
+                    .other(first, "this means the one instance of the PROGRAM")
+                    .help("list it once and connect nothing, or name it nowhere"),
+            );
+        }
         true
     }
 }

@@ -19,7 +19,8 @@ use rustc_hash::FxHashSet;
 use staunch_ir::layout::{Layout, TooLarge};
 use staunch_ir::reference::objects;
 use staunch_ir::{
-    Argument, Block, Class, ClassId, ClassKind, Location, Place, Program, Root, RoutineId, StatementKind, Type,
+    Argument, Block, Class, ClassId, ClassKind, Location, Place, Program, Root, RoutineId, Statement, StatementKind,
+    Type,
 };
 use staunch_runtime::reference::CLASS;
 use std::rc::Rc;
@@ -36,7 +37,7 @@ pub(crate) fn assemble<'s>(
     let held = declarations.runs().iter().map(|it| Key(it.ast.name.text)).collect();
     let slots = 0..declarations.pous.len();
     declarations.program.classes = slots.filter_map(|slot| declarations.class(slot, &held)).collect();
-    declarations.check_named_programs();
+    declarations.check_named_programs(files);
     configuration::instances(declarations, files);
     declarations.set_instance_paths();
     order::order(declarations, uses, stacks)?;
@@ -90,6 +91,7 @@ impl Declarations<'_> {
         };
         let signature = self.signature(slot)?;
         let variables = match self.pous[slot].run {
+            Some(_) if self.is_run_of_shared(slot) => self.variables_of_shared(slot).unwrap_or_default(),
             Some(_) => self.variables_of_run(slot, &signature)?,
             None => variables(&self.image, &signature),
         };
@@ -126,6 +128,26 @@ impl Declarations<'_> {
                     }
                 }
                 Root::Globals | Root::Local(_) => {}
+            }
+        }
+        Some(variables)
+    }
+
+    /// The variables of the one instance that a run calls. The first run of a PROGRAM has them.
+    fn variables_of_shared(&mut self, slot: usize) -> Option<Vec<staunch_ir::Variable>> {
+        let call = |slot: usize| self.program.routines[slot].body.iter().find_map(call_of_instance);
+        let (callee, Place { root: held, projections: way, .. }) = call(slot).map(|it| (it.0, it.1.clone()))?;
+        let mut before = self.written_pous().len()..slot;
+        if before.any(|it| self.is_run_of_shared(it) && call(it).is_some_and(|it| it.0 == callee)) {
+            return None;
+        }
+        let signature = self.signature(callee.index())?;
+        let mut variables = variables(&self.image, &signature);
+        variables.retain(|it| !matches!(it.place.root, Root::Local(_)));
+        for Place { root, projections, .. } in variables.iter_mut().map(|it| &mut it.place) {
+            if *root == Root::Instance {
+                *root = held;
+                projections.splice(0..0, way.iter().cloned());
             }
         }
         Some(variables)
@@ -176,6 +198,13 @@ fn variables(image: &Image, signature: &Signature<'_>) -> Vec<staunch_ir::Variab
         staunch_ir::Variable { name: it.name.text.to_owned(), section: it.section, place, view }
     };
     signature.scope.variables.iter().filter(|it| !crate::start::is_hidden(it.name.text)).map(variable).collect()
+}
+
+fn call_of_instance(statement: &Statement) -> Option<(RoutineId, &Place)> {
+    match &statement.kind {
+        StatementKind::Call { callee, instance, .. } => instance.as_ref().map(|it| (*callee, it)),
+        _ => None,
+    }
 }
 
 /// What the call of a routine in the block passes.

@@ -181,6 +181,7 @@ pub(crate) fn leave_out(files: &mut [File<'_>]) {
 pub(crate) fn expand(
     files: &mut [File<'_>],
     sources: &Sources,
+    has_mocks: bool,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> FxHashMap<Span, Fixture> {
     let marks = Marks::of(files);
@@ -194,7 +195,7 @@ pub(crate) fn expand(
             let Item::Pou(pou) = item else { continue };
             if marks.is_fixture(pou) {
                 let written = Written::of(pou, &marks, diagnostics);
-                tests.push(Item::Pou(written.test(pou)));
+                tests.push(Item::Pou(written.test(pou, has_mocks)));
                 let case = |it: Test<'_, '_>| FixtureCase { title: it.title(sources), span: it.pragma.span };
                 fixtures.insert(pou.name.span, Fixture { cases: written.tests.into_iter().map(case).collect() });
             } else {
@@ -271,9 +272,10 @@ impl<'a, 's> Written<'a, 's> {
     /// __fixture.Before();
     /// CASE __test OF 1: __fixture.Test1(); … END_CASE
     /// __fixture.After();
+    /// AxUnit.Mocking.__exchange_back();
     /// IF __last THEN … END_IF
     /// ```
-    fn test(&self, pou: &Pou<'s>) -> Pou<'s> {
+    fn test(&self, pou: &Pou<'s>, has_mocks: bool) -> Pou<'s> {
         let at = pou.name.span;
         let mut body = Vec::new();
         let when = |condition: &'static str, setup| {
@@ -297,6 +299,7 @@ impl<'a, 's> Written<'a, 's> {
             body.push(statement(StatementKind::Case { selector: named(NUMBER, at), arms, otherwise: None }, at));
         }
         body.extend(self.calls(Setup::After));
+        body.extend(has_mocks.then(|| super::exchange::back(at)));
         body.push(when(LAST, Setup::Last));
         let variable = |name: &'static str, ty: Name<'s>| {
             let ty = TypeSpec { kind: TypeKind::Named(vec![ty]), span: at };

@@ -18,6 +18,10 @@ pub(crate) fn named(name: &'static str, at: Span) -> Expr<'static> {
     Expr { kind: ExprKind::Name(Name { text: name, span: at }), span: at }
 }
 
+pub(crate) fn is_named(expr: &Expr<'_>, name: &str) -> bool {
+    matches!(&expr.kind, ExprKind::Name(it) if it.text.eq_ignore_ascii_case(name))
+}
+
 pub(crate) fn literal<'s>(value: LiteralValue<'s>, at: Span) -> Expr<'s> {
     Expr { kind: ExprKind::Literal(Literal { prefix: None, value }), span: at }
 }

@@ -259,7 +259,18 @@ impl<'s> Declarations<'s> {
     pub fn run_of_program(&self, slot: usize) -> Option<usize> {
         let first = self.written_pous().len();
         let name = self.pous[slot].ast.name.span;
-        self.runs().iter().position(|it| it.run == Some(name)).map(|at| first + at)
+        let is_it = |it: &PouSlot<'_>| it.run == Some(name) && !it.ast.blocks.is_empty();
+        self.runs().iter().position(is_it).map(|at| first + at)
+    }
+
+    /// Whether a slot is that of a run that holds nothing: it calls the one instance of its PROGRAM.
+    pub fn is_run_of_shared(&self, slot: usize) -> bool {
+        self.pous[slot].run.is_some() && self.pous[slot].ast.blocks.is_empty()
+    }
+
+    /// Whether the POU in a slot is of a library: a PROGRAM of one does not run by itself.
+    pub fn is_of_library(&self, slot: usize) -> bool {
+        self.log.sources.get(self.pous[slot].ast.span.file).is_of_library()
     }
 
     /// Whether a name is that of the PROGRAM in a run of a CONFIGURATION.

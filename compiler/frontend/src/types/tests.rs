@@ -2,6 +2,7 @@
 
 use crate::Span;
 use crate::testing::Assertion;
+use crate::testing::exchange::Numbers;
 use crate::testing::fixture::Caller;
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{Place, Variable};
@@ -23,6 +24,8 @@ pub(crate) struct Tests {
     pub callers: FxHashMap<Span, Caller>,
     /// The FUNCTIONs that some test replaces.
     pub mocks: FxHashMap<usize, FunctionMock>,
+    /// What AxUnit's mocks exchange.
+    pub exchanged: Numbers,
 }
 
 /// Globals: whether a FUNCTION is replaced, the value that it then has, and how often it was called since.

@@ -3,6 +3,7 @@
 
 use super::declarations::Declarations;
 use super::in_outs::InOut;
+use crate::Span;
 use rustc_hash::FxHashSet;
 use staunch_ir::Reach;
 
@@ -13,13 +14,16 @@ pub(crate) struct Whole {
     pub reach: Reach,
     /// The classes to whose instances something refers, where that decides what calls what.
     pub referred: Option<FxHashSet<usize>>,
+    /// The names of PROGRAMs that run by themselves, and that bodies name: they have one instance, among the globals.
+    pub shared: FxHashSet<Span>,
 }
 
 impl Whole {
     /// Takes over what a check of the program has found; whether that is more than it was checked with.
     pub fn grow(&mut self, found: Self) -> bool {
-        let before = (self.in_outs.len(), self.reach);
+        let before = (self.in_outs.len(), self.shared.len(), self.reach);
         self.in_outs.extend(found.in_outs);
+        self.shared.extend(found.shared);
         self.reach.references |= found.reach.references;
         self.reach.copies |= found.reach.copies;
         let referred = found.referred.unwrap_or_default();
@@ -28,7 +32,7 @@ impl Whole {
         if let Some(all) = &mut self.referred {
             all.extend(referred);
         }
-        is_more || before != (self.in_outs.len(), self.reach)
+        is_more || before != (self.in_outs.len(), self.shared.len(), self.reach)
     }
 }
 
@@ -36,6 +40,7 @@ impl Declarations<'_> {
     /// What the bodies that were checked say of the whole program.
     pub fn whole(&self) -> Whole {
         let reach = Reach { references: !self.program.references.is_empty(), copies: self.table.copies.get() };
-        Whole { in_outs: self.polymorphic(), reach, referred: Some(self.table.interfaces.referred.clone()) }
+        let (in_outs, referred) = (self.polymorphic(), Some(self.table.interfaces.referred.clone()));
+        Whole { in_outs, reach, referred, shared: FxHashSet::default() }
     }
 }
