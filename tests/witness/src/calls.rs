@@ -430,6 +430,12 @@ impl<'a> Machine<'a> {
         parameters.map(|it| Formal { name: it.name, kind: it.kind, ty: it.slot.ty.clone() }).collect()
     }
 
+    /// What the run of a PROGRAM is connected with.
+    pub(crate) fn arguments_of(&mut self, pou: usize, arguments: &'a [Argument<'a>]) -> Outcome<Vec<Passed<'a>>> {
+        let formals = self.formals(pou);
+        self.passed(&Frame::default(), &formals, arguments)
+    }
+
     /// What the arguments give, in the order in which they are written.
     fn passed(
         &mut self,

@@ -62,10 +62,8 @@ pub(crate) struct Declarations<'a> {
 }
 
 impl<'a> Declarations<'a> {
-    pub fn new(files: &'a [ast::File<'a>]) -> Outcome<Self> {
-        let dialect = files.iter().flat_map(|it| &it.pragmas).find_map(|it| it.text.trim().strip_prefix("dialect"));
-        let dialect = dialect.and_then(|it| Family::named(it.trim().trim_matches('\'')));
-        let family = dialect.unwrap_or(Family::Iec);
+    pub fn new(files: &'a [ast::File<'a>], family: Family) -> Outcome<Self> {
+        let family = family_of(files, family)?;
         let capacity = if matches!(family, Family::Iec | Family::Openplc) { 254 } else { 80 };
         let mut this = Self {
             files,
@@ -94,7 +92,12 @@ impl<'a> Declarations<'a> {
                 }
                 Item::Pou(pou) => this.pou(pou, None)?,
                 Item::Types(_) => {}
-                Item::Configuration(_) => return unknown("a CONFIGURATION"),
+                Item::Configuration(it) => {
+                    for block in it.globals.iter().chain(it.resources.iter().flat_map(|it| &it.globals)) {
+                        let mut variables = this.variables(block)?;
+                        this.globals.append(&mut variables);
+                    }
+                }
                 Item::Test(_) => return unknown("a TEST"),
             }
         }
@@ -113,6 +116,9 @@ impl<'a> Declarations<'a> {
         let (name, kind, body, implements) = (pou.name.text, pou.kind, pou.body.as_slice(), pou.implements.as_slice());
         if kind == PouKind::Method && name.eq_ignore_ascii_case("FB_init") {
             return unknown("FB_init");
+        }
+        if pou.attributes.iter().any(|it| it.eq_ignore_ascii_case("call_after_init")) {
+            return unknown("call_after_init");
         }
         if kind == PouKind::Interface {
             let (base, result, variables) = (None, None, Vec::new());
@@ -415,6 +421,17 @@ impl<'a> Declarations<'a> {
     pub fn type_of(&mut self, spec: &'a ast::TypeSpec<'a>) -> Outcome<Type<'a>> {
         Ok(self.spec(spec)?.ty)
     }
+}
+
+/// What a file's pragma says, or else this family.
+fn family_of(files: &[ast::File<'_>], family: Family) -> Outcome<Family> {
+    let named = |it: &ast::File<'_>| {
+        let name = it.pragmas.iter().find_map(|it| it.text.trim().strip_prefix("dialect"));
+        name.and_then(|it| Family::named(it.trim().trim_matches('\'')))
+    };
+    let mut families = files.iter().map(|it| named(it).unwrap_or(family));
+    let first = families.next().unwrap_or(family);
+    if families.all(|it| it == first) { Ok(first) } else { unknown("files of several dialects") }
 }
 
 /// Whether instances keep a variable of this section.

@@ -62,6 +62,7 @@ impl<'a> Machine<'a> {
             }
             _ => match operator(&upper) {
                 Some(op) => self.operator_function(frame, op, &positions(&["IN1", "IN2"], arguments)?, asked, at),
+                None if !upper.contains("TO_") && !upper.contains("TRUNC") => unknown(&format!("the function {upper}")),
                 None => self.conversion(frame, &upper, self.only(arguments)?, asked, at),
             },
         }
@@ -369,7 +370,7 @@ impl<'a> Machine<'a> {
         self.converted_by_name(&value, named(to)?, at)
     }
 
-    /// TIME and numbers meet at milliseconds; of a bit string BOOL takes the rightmost bit.
+    /// TIME and numbers meet at milliseconds; of a bit string or an integer BOOL takes the rightmost bit.
     fn converted_by_name(&self, value: &Value<'a>, to: Elementary, at: Span) -> Outcome<Value<'a>> {
         let scalar = value.as_scalar()?;
         let Some(from) = value.ty.base() else { return unknown("a conversion of this type") };
@@ -389,7 +390,7 @@ impl<'a> Machine<'a> {
                 Ok(in_repr(count.as_scalar()?, to))
             }
             _ if to == Elementary::Bool && self.is_codesys() => Ok(Value::bool(value.as_integer()? != 0)),
-            _ if to == Elementary::Bool && from.is_bits() && from != Elementary::Bool => {
+            _ if to == Elementary::Bool && from != Elementary::Bool && !real => {
                 Ok(Value::bool(value.as_integer()? & 1 == 1))
             }
             _ => Ok(in_repr(scalar, to)),

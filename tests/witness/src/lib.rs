@@ -19,7 +19,9 @@ mod shared;
 mod storage;
 
 mod machine;
+mod runs;
 mod statements;
+mod traces;
 
 mod calls;
 mod classes;
@@ -37,3 +39,4 @@ pub mod random;
 pub mod shrink;
 
 pub use machine::{Machine, Stop};
+pub use traces::Input;

@@ -16,7 +16,11 @@ impl<'a> Machine<'a> {
         match cell {
             Cell::Reference(Some(mut place)) => {
                 if let (RefKind::Pointer | RefKind::Alias, Some(target)) = (reference.kind, reference.target) {
-                    place.declared = self.declared.type_of(target)?.class();
+                    let declared = self.declared.type_of(target)?;
+                    if !declared.looks_like(&place.ty) {
+                        return unknown("a reference to what has another type");
+                    }
+                    place.declared = declared.class();
                 }
                 Ok(*place)
             }
@@ -148,6 +152,10 @@ impl<'a> Machine<'a> {
             "__ISVALIDREF" => {
                 let place = self.unfollowed(frame, positional(0)?)?;
                 let place = self.checked(place)?;
+                if !matches!(place.ty, Type::Reference(_)) {
+                    // An in-out is always there.
+                    return Ok(Some(Value::bool(true)));
+                }
                 Ok(Some(Value::bool(matches!(self.memory[place.at], Cell::Reference(Some(_))))))
             }
             "__QUERYINTERFACE" => {

@@ -160,6 +160,10 @@ impl<'a> Machine<'a> {
                 let mut at = 0;
                 for element in elements {
                     let count = element.count.as_ref().map_or(Ok(1), |it| self.value(frame, it, None)?.as_integer())?;
+                    if element.values.is_empty() {
+                        // `4()`: what the elements' type says.
+                        at += usize::try_from(count).unwrap_or(0);
+                    }
                     for _ in 0..count {
                         for value in &element.values {
                             let Some(element) = place.nth(at) else { return unknown("too many elements") };

@@ -237,6 +237,24 @@ impl Type<'_> {
         }
     }
 
+    /// Whether a reference that is declared with this type sees in the other what it is.
+    pub fn looks_like(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Array(a), Self::Array(b)) => {
+                (a.low, a.high) == (b.low, b.high) && a.element.ty.looks_like(&b.element.ty)
+            }
+            (Self::Elementary(a), Self::Elementary(b)) => a == b,
+            (Self::Subrange(a, ..), Self::Subrange(b, ..)) => a == b,
+            (Self::Enum(a), Self::Enum(b)) => Rc::ptr_eq(a, b),
+            (Self::Text(a), Self::Text(b)) => a == b,
+            // Of an heir what a base has.
+            (Self::Record(a), Self::Record(b)) => a.pou.is_some() == b.pou.is_some(),
+            (Self::Union(_), Self::Union(_)) | (Self::Reference(_), Self::Reference(_)) => true,
+            (Self::Block(a), Self::Block(b)) => std::ptr::eq(*a, *b),
+            _ => false,
+        }
+    }
+
     /// The POU that this is an instance of.
     pub fn class(&self) -> Option<usize> {
         match self {

@@ -1,0 +1,106 @@
+//! The golden cases: what the loop of scans did to the interpreter is done to the witness, stimulus and restarts too.
+
+use crate::case::{Case, Pin, discover};
+use crate::compare::{Scan, Verdict, difference};
+use crate::leaf::Read;
+use crate::recorded::{Event, recorded};
+use crate::scan::Table;
+use staunch_frontend::{Sources, ast, parse_file};
+use staunch_runtime::{Family, FaultKind};
+use staunch_witness::{Input, Machine, Stop};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+#[test]
+fn golden_cases() {
+    let (cases, _) = discover(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases"));
+    let chosen = std::env::var("STAUNCH_CASE").ok();
+    let is_chosen =
+        |it: &Case| it.pins.contains(&Pin::Scan) && chosen.as_ref().is_none_or(|name| it.name.contains(name));
+    let mut unknown: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    let (mut compared, mut wrong) = (0, 0);
+    for case in cases.iter().filter(|it| is_chosen(it)) {
+        match compare(case) {
+            Verdict::Same { .. } => compared += 1,
+            Verdict::Endless => unknown.entry("how it ends".to_owned()).or_default().push(case.name.clone()),
+            Verdict::Rejected(reason) => unknown.entry(reason).or_default().push(case.name.clone()),
+            Verdict::Differs(how) => {
+                println!("{}: {how}", case.name);
+                wrong += 1;
+            }
+        }
+    }
+    let mut reasons: Vec<_> = unknown.iter().collect();
+    reasons.sort_by_key(|it| std::cmp::Reverse(it.1.len()));
+    for (reason, names) in reasons {
+        println!("{} not compared, {reason}: {}", names.len(), names.join(", "));
+    }
+    println!("{compared} cases compared");
+    assert_eq!(wrong, 0, "of {compared} cases");
+}
+
+fn compare(case: &Case) -> Verdict {
+    let (sources, compilation) = case.compile();
+    let Some(program) = compilation.program else { return Verdict::Rejected("it is refused".to_owned()) };
+    let table = match Table::parse(&case.pinned(Pin::Scan)) {
+        Ok(table) => table,
+        Err(problem) => return Verdict::Differs(problem),
+    };
+    let settings = case.settings();
+    if settings.options.ctu_stop_at_pv {
+        return Verdict::Rejected("a counter that stops at PV".to_owned());
+    }
+    let family = settings.options.dialect.family();
+    // The witness has no prescan of Logix: programs with its counters start without one.
+    let is_logix = family == Family::Logix || sources.files().iter().any(|it| it.text.contains("LOGIX."));
+    let events = match recorded(&program, &table, &settings, !is_logix, &case.module()) {
+        Ok(events) => events,
+        Err(problem) => return Verdict::Differs(problem),
+    };
+    let files: Vec<ast::File<'_>> = (0..).zip(sources.files()).map(|(at, _)| parse_file(&sources, at)).collect();
+    replayed(&sources, &files, family, events).unwrap_or_else(|stop| match stop {
+        Stop::Endless => Verdict::Endless,
+        Stop::Unknown(what) => Verdict::Rejected(what),
+        Stop::Fault(fault) => Verdict::Differs(format!("the witness faults at the start: {fault}")),
+    })
+}
+
+fn replayed<'a>(
+    sources: &'a Sources,
+    files: &'a [ast::File<'a>],
+    family: Family,
+    events: Vec<Event>,
+) -> Result<Verdict, Stop> {
+    let mut machine = Machine::new(sources, files, family)?;
+    let mut number = 0;
+    for event in events {
+        match event {
+            Event::Init => machine = Machine::new(sources, files, family)?,
+            Event::Put(path, Read::Scalar(value)) => machine.put(&path, Input::Scalar(value))?,
+            Event::Put(path, Read::Text(text)) => machine.put(&path, Input::Text(text.text().as_bytes().to_vec()))?,
+            Event::Scan(instance, context, theirs) => {
+                number += 1;
+                if theirs.end.is_some_and(|it| it.kind == FaultKind::LoopBudget) {
+                    return Err(Stop::Unknown("a loop budget".to_owned()));
+                }
+                let end = match machine.scan(&instance, &context) {
+                    Ok(()) => None,
+                    Err(Stop::Fault(fault)) => Some(fault),
+                    Err(stop) => return Err(stop),
+                };
+                let ours = Scan { end, variables: machine.variables() };
+                if !have_any_in_common(&theirs, &ours) {
+                    return Err(Stop::Unknown("any of the variables".to_owned()));
+                }
+                if let Some(how) = difference(number, "interpreter", &theirs, "witness", &ours) {
+                    return Ok(Verdict::Differs(how));
+                }
+            }
+        }
+    }
+    Ok(Verdict::Same { faulted: false })
+}
+
+fn have_any_in_common(a: &Scan, b: &Scan) -> bool {
+    a.variables.iter().any(|it| b.variables.iter().any(|other| it.0 == other.0))
+}
