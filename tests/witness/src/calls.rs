@@ -101,8 +101,8 @@ impl<'a> Machine<'a> {
     /// Whether the callee has EN among its own parameters.
     fn declares_enable(&self, frame: &Frame<'a>, callee: &Expr<'a>) -> bool {
         let ExprKind::Name(name) = &callee.kind else { return false };
-        let instance = self.variable(frame, name.text).and_then(|it| it.ty.class());
-        let pou = instance.or_else(|| self.declared.pou_named(name.text));
+        let instance = self.variable(frame, name).and_then(|it| it.ty.class());
+        let pou = instance.or_else(|| self.declared.pou_named(&[*name]));
         pou.is_some_and(|it| self.formals(it).iter().any(|it| it.name.eq_ignore_ascii_case("EN")))
     }
 
@@ -128,7 +128,7 @@ impl<'a> Machine<'a> {
         let ExprKind::Name(name) = &callee.kind else { return Ok(None) };
         let own = self.own_routine(frame, name.text).map(|it| it.0);
         let function =
-            own.or_else(|| self.declared.pou_named(name.text)).map(|it| self.declared.pous[it].result.clone());
+            own.or_else(|| self.declared.pou_named(&[*name])).map(|it| self.declared.pous[it].result.clone());
         let Some(Some(slot)) = function else { return Ok(None) };
         let place = self.allocate(&slot.ty);
         self.start(&Frame::default(), &place, slot.initial)?;
@@ -150,11 +150,11 @@ impl<'a> Machine<'a> {
                     return self.call_routine(frame, own, &instance, arguments);
                 }
                 let local = frame.names.contains_key(&name.text.to_ascii_uppercase());
-                let function = self.declared.pou_named(name.text);
+                let function = self.declared.pou_named(&[*name]);
                 let function = function.filter(|it| self.declared.pous[*it].kind == PouKind::Function);
                 match function {
                     Some(function) => self.call_function(frame, function, arguments),
-                    None if local || self.globals.contains_key(&name.text.to_ascii_uppercase()) => {
+                    None if local || self.variable(frame, name).is_some() => {
                         let instance = self.place(frame, callee)?;
                         self.call_instance(frame, &instance, arguments)
                     }
@@ -166,6 +166,15 @@ impl<'a> Machine<'a> {
                     self.call_instruction(frame, name, arguments).map(Some)
                 }
                 _ => {
+                    if let Some(path) = self.outer_path(frame, callee) {
+                        match self.declared.pou_named(&path) {
+                            Some(pou) if self.declared.pous[pou].kind == PouKind::Function => {
+                                return self.call_function(frame, pou, arguments);
+                            }
+                            None if is_library(&path) => return self.standard(frame, name, arguments, asked).map(Some),
+                            Some(_) | None => {}
+                        }
+                    }
                     let above = if is_super(base) { Some(self.above(frame)?) } else { None };
                     let base = self.receiver(frame, base)?;
                     if let Type::Record(record) = &base.ty
@@ -222,6 +231,7 @@ impl<'a> Machine<'a> {
         let formals = self.formals(called);
         let size = self.memory.len();
         let mut outer = Frame { class: Some(owner), ..self.frame_of(instance, if method { owner } else { called }) };
+        self.name_addresses(&mut outer, owner)?;
         for variable in self.declared.pous[owner].variables.iter().filter(|it| it.kind == VarKind::Stat) {
             let key = variable.name.to_ascii_uppercase();
             outer.names.insert(key.clone(), self.statics[&(owner, key)].clone());
@@ -297,8 +307,17 @@ impl<'a> Machine<'a> {
     /// One call of an instance whose arguments have been found.
     pub(crate) fn run_instance(&mut self, pou: usize, instance: &Place<'a>, passed: Vec<Passed<'a>>) -> Outcome<()> {
         let size = self.memory.len();
-        let (own, copies) = self.enter(pou, self.instance_frame(instance), &passed)?;
+        let mut outer = self.instance_frame(instance);
+        self.name_addresses(&mut outer, pou)?;
+        let (own, copies) = self.enter(pou, outer, &passed)?;
+        let is_program = self.declared.pous[pou].kind == PouKind::Program;
+        if is_program {
+            self.take_bound(instance);
+        }
         self.body(&own, pou)?;
+        if is_program {
+            self.give_bound(instance);
+        }
         self.copy_back(&copies);
         self.connect(&own, passed)?;
         self.memory.truncate(size);
@@ -554,6 +573,11 @@ impl<'a> Machine<'a> {
             self.memory[instance.at + number] = Cell::Scalar(Scalar::read(pin.ty.repr(), &bytes[pin.offset..]));
         }
     }
+}
+
+/// `Standard.LEN`
+fn is_library(path: &[Name<'_>]) -> bool {
+    matches!(path, [library, _] if ["Standard", "Tc2_Standard"].iter().any(|it| it.eq_ignore_ascii_case(library.text)))
 }
 
 /// Whether an in-out of this type is a copy: a text of another capacity, and what shares its bytes.

@@ -14,7 +14,9 @@
 
 mod types;
 
+mod constants;
 mod declarations;
+mod names;
 mod shared;
 mod storage;
 
@@ -23,6 +25,8 @@ mod runs;
 mod statements;
 mod traces;
 
+mod addresses;
+mod bindings;
 mod calls;
 mod classes;
 mod dates;

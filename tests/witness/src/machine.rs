@@ -1,8 +1,8 @@
 //! A program that runs: its memory and its scans.
 
+use crate::bindings::Binding;
 use crate::declarations::Declarations;
 use crate::runs::Run;
-use crate::shared::Window;
 use crate::storage::{Cell, Place};
 use crate::types::Type;
 use staunch_frontend::ast::{File, VarKind};
@@ -29,8 +29,6 @@ pub(crate) fn unknown<T>(what: &str) -> Outcome<T> {
 
 /// Statements and turns of loops that a scan may take.
 const STEPS: u32 = 20_000;
-/// Bytes of each area of the process image.
-const IMAGE: usize = 1024;
 
 #[derive(Debug)]
 pub struct Machine<'a> {
@@ -38,11 +36,12 @@ pub struct Machine<'a> {
     sources: &'a Sources,
     pub(crate) memory: Vec<Cell<'a>>,
     pub(crate) globals: HashMap<String, Place<'a>>,
-    /// The bytes of each area of the process image: %I, %Q and %M.
-    pub(crate) images: HashMap<char, usize>,
+    /// The bytes of each area of the process image.
+    pub(crate) images: HashMap<String, usize>,
     /// VAR_STAT, by POU and name.
     pub(crate) statics: HashMap<(usize, String), Place<'a>>,
     pub(crate) runs: Vec<Run<'a>>,
+    pub(crate) bindings: Vec<Binding<'a>>,
     pub(crate) context: Context,
     steps: u32,
     /// Where the ENO of the call leads whose arguments are evaluated.
@@ -73,25 +72,24 @@ impl<'a> Machine<'a> {
             images: HashMap::new(),
             statics: HashMap::new(),
             runs: Vec::new(),
+            bindings: Vec::new(),
             context: Context::default(),
             steps: 0,
             eno: None,
         };
+        this.start_images();
         this.start_globals()?;
+        this.start_addresses()?;
         this.start_runs(files)?;
+        this.start_bindings(files)?;
         Ok(this)
     }
 
     fn start_globals(&mut self) -> Outcome<()> {
-        for area in ['I', 'Q', 'M'] {
-            self.images.insert(area, self.memory.len());
-            self.memory.push(Cell::Bytes(vec![0; IMAGE]));
-        }
-        let declared =
-            self.declared.globals.iter().map(|it| (it.name.to_ascii_uppercase(), it.slot.clone(), it.address));
+        let declared = self.declared.globals.iter().map(|it| (it.key.clone(), it.slot.clone(), it.address.clone()));
         for (name, slot, address) in declared.collect::<Vec<_>>() {
             let place = match address {
-                Some((area, window)) => self.at_address(area, window, &slot.ty)?,
+                Some(address) => self.at_address(&address, &slot.ty)?,
                 None => self.allocate(&slot.ty),
             };
             self.start(&Frame::default(), &place, slot.initial)?;
@@ -107,16 +105,6 @@ impl<'a> Machine<'a> {
             }
         }
         Ok(())
-    }
-
-    /// What lies at a direct address.
-    pub(crate) fn at_address(&self, area: char, window: Window, ty: &Type<'a>) -> Outcome<Place<'a>> {
-        match (self.images.get(&area), ty.bytes()) {
-            (Some(at), Some(bytes)) if window.bit / 8 + bytes <= IMAGE => {
-                Ok(Place { at: *at, ty: ty.clone(), nowhere: None, declared: None, window: Some(window) })
-            }
-            _ => unknown("this address"),
-        }
     }
 
     /// One scan of an instance of a PROGRAM. After an early end the variables stay as they were then.

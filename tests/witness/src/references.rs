@@ -96,7 +96,7 @@ impl<'a> Machine<'a> {
     /// Whether an expression is a variable, or a part of one.
     pub(crate) fn is_variable(&mut self, frame: &Frame<'a>, expr: &'a Expr<'a>) -> Outcome<bool> {
         let is_place = match &expr.kind {
-            ExprKind::Name(name) => self.variable(frame, name.text).is_some(),
+            ExprKind::Name(name) => self.variable(frame, name).is_some(),
             ExprKind::Deref(inner) => is_this(inner) || !is_super(inner),
             ExprKind::Member(..) | ExprKind::Index(..) => true,
             _ => false,
@@ -125,10 +125,10 @@ impl<'a> Machine<'a> {
     }
 
     fn attempted(&self, value: &Value<'a>, reference: Reference<'a>) -> Outcome<Cell<'a>> {
-        let name = reference.target.and_then(crate::declarations::name_of);
-        let Some(name) = name else { return unknown("?= to a type without a name") };
+        let target = reference.target.and_then(|it| self.declared.pou_named(crate::declarations::path_of(it)));
+        let Some(target) = target else { return unknown("?= to a type without a name") };
         let Cell::Reference(to) = &value.cells[0] else { return unknown("?= of what is no reference") };
-        let fits = |it: &Place<'a>| it.ty.class().is_some_and(|it| self.declared.is_a(it, name));
+        let fits = |it: &Place<'a>| it.ty.class().is_some_and(|it| self.declared.is_a(it, target));
         Ok(Cell::Reference(to.clone().filter(|it| fits(it))))
     }
 

@@ -166,7 +166,9 @@ impl<'a> Machine<'a> {
                     }
                     for _ in 0..count {
                         for value in &element.values {
-                            let Some(element) = place.nth(at) else { return unknown("too many elements") };
+                            let Some(element) = place.nth(at).filter(|it| it.at < self.memory.len()) else {
+                                return unknown("too many elements");
+                            };
                             self.start(frame, &element, Some(value))?;
                             at += 1;
                         }

@@ -29,22 +29,53 @@ impl<'a> Machine<'a> {
         let places = self.places();
         let named = |path: &str| places.iter().find(|it| it.0.eq_ignore_ascii_case(path));
         // Which PROGRAMs run is known when they have.
-        let Some((_, place)) = named(path).or_else(|| named(&format!("Globals.{path}"))) else {
+        let place = named(path).or_else(|| named(&format!("Globals.{path}"))).map(|it| it.1.clone());
+        let size = match &value {
+            Input::Scalar(Scalar::Bool(_)) => 0,
+            Input::Scalar(it) => it.repr().size(),
+            Input::Text(_) => 1,
+        };
+        let Some(place) = place.or_else(|| self.address_of(path, size)) else {
             return unknown(&format!("a variable {path}"));
         };
         let cell = match value {
             Input::Scalar(it) => Cell::Scalar(it),
             Input::Text(it) => Cell::Text(it),
         };
-        self.write(place, &Value { ty: place.ty.clone(), cells: vec![cell] });
+        self.write(&place, &Value { ty: place.ty.clone(), cells: vec![cell] });
         Ok(())
+    }
+
+    /// What lies at a direct address that the executors gave a name of their own, of so many bytes, or of one bit.
+    pub fn addressed(&self, path: &str, size: u32) -> Option<String> {
+        let place = self.address_of(path, size)?;
+        Some(shown(&self.read(&place).cells[0]))
+    }
+
+    /// `Globals.IX0_3` is `%IX0.3`; `Globals.bits_of_MB8[2]` comes two after what is at `%MB8`.
+    fn address_of(&self, path: &str, size: u32) -> Option<Place<'a>> {
+        let name = path.strip_prefix("Globals.")?;
+        let Some(bits) = name.strip_prefix("bits_of_") else {
+            return self.at_name(&name.replace('_', ".")).ok();
+        };
+        let (start, index) = bits.split_once('[')?;
+        let start: usize = start.trim_start_matches(|it: char| it.is_ascii_alphabetic()).parse().ok()?;
+        let index: usize = index.trim_end_matches(']').parse().ok()?;
+        let units = [(1, "B"), (2, "W"), (4, "D"), (8, "L")];
+        let (bytes, letter) = units.into_iter().find(|it| it.0 == size)?;
+        let bytes = usize::try_from(bytes).ok()?;
+        self.at_name(&format!("{}{letter}{}", bits.get(..1)?, start / bytes + index)).ok()
     }
 
     /// Path and place of each variable that is no whole of others.
     fn places(&self) -> Vec<(String, Place<'a>)> {
         let mut found = Vec::new();
         for it in &self.declared.globals {
-            self.leaves(&format!("Globals.{}", it.name), &self.globals[&it.name.to_ascii_uppercase()], &mut found);
+            let place = &self.globals[&it.key];
+            self.leaves(&format!("Globals.{}", it.key.replace('.', "_")), place, &mut found);
+            if !self.globals.contains_key(&it.name.to_ascii_uppercase()) {
+                self.leaves(&format!("Globals.{}", it.name), place, &mut found);
+            }
         }
         for (number, pou) in self.declared.pous.iter().enumerate() {
             for it in pou.variables.iter().filter(|it| it.kind == VarKind::Stat) {
@@ -56,11 +87,20 @@ impl<'a> Machine<'a> {
                     self.leaves(&format!("Globals.{name}"), place, &mut found);
                 }
             }
+            for it in &pou.variables {
+                if let Some(place) = it.address.as_ref().and_then(|at| self.at_address(at, &it.slot.ty).ok())
+                    && !self.globals.contains_key(&it.name.to_ascii_uppercase())
+                {
+                    self.leaves(&format!("Globals.{}", it.name), &place, &mut found);
+                }
+            }
         }
         for run in &self.runs {
             // The globals hold a PROGRAM that only others call.
             let path = if run.runs { run.name.to_owned() } else { format!("Globals.{}", run.name) };
             self.leaves(&path, &run.place, &mut found);
+            // What is connected is beside it.
+            self.leaves(&format!("{path}.program"), &run.place, &mut found);
         }
         found
     }

@@ -194,7 +194,6 @@ pub(crate) enum RefKind {
 
 #[derive(Debug)]
 pub(crate) struct Enum {
-    pub name: String,
     pub base: Elementary,
     pub values: Vec<(String, Scalar)>,
 }

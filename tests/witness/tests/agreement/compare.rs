@@ -160,9 +160,10 @@ fn differences(name: &str, scans: &[Scan], other_name: &str, others: &[Scan]) ->
 /// The first variable in which two scans differ. The second need not have all variables: constants and temporaries of the
 /// front end are no program's.
 pub fn difference(number: u32, name: &str, scan: &Scan, other_name: &str, other: &Scan) -> Option<String> {
-    let values: HashMap<&str, &str> = other.variables.iter().map(|it| (it.0.as_str(), it.1.as_str())).collect();
+    let values: HashMap<String, &str> =
+        other.variables.iter().map(|it| (it.0.to_ascii_uppercase(), it.1.as_str())).collect();
     for (path, value) in &scan.variables {
-        if let Some(theirs) = values.get(path.as_str())
+        if let Some(theirs) = values.get(&path.to_ascii_uppercase())
             && theirs != value
         {
             return Some(format!("scan {number}: {path} is {value} ({name}), {theirs} ({other_name})"));

@@ -88,7 +88,8 @@ fn replayed<'a>(
                     Err(Stop::Fault(fault)) => Some(fault),
                     Err(stop) => return Err(stop),
                 };
-                let ours = Scan { end, variables: machine.variables() };
+                let mut ours = Scan { end, variables: machine.variables() };
+                add_addresses(&machine, &theirs, &mut ours);
                 if !have_any_in_common(&theirs, &ours) {
                     return Err(Stop::Unknown("any of the variables".to_owned()));
                 }
@@ -102,5 +103,17 @@ fn replayed<'a>(
 }
 
 fn have_any_in_common(a: &Scan, b: &Scan) -> bool {
-    a.variables.iter().any(|it| b.variables.iter().any(|other| it.0 == other.0))
+    a.variables.iter().any(|it| b.variables.iter().any(|other| it.0.eq_ignore_ascii_case(&other.0)))
+}
+
+/// What lies at addresses has names of the executors' own.
+fn add_addresses(machine: &Machine<'_>, theirs: &Scan, ours: &mut Scan) {
+    let sizes = [("Bool", 0), ("U8", 1), ("U16", 2), ("U32", 4), ("U64", 8)];
+    for (path, value) in &theirs.variables {
+        let size = sizes.iter().find(|it| value.split('(').next() == Some(it.0)).map(|it| it.1);
+        let is_known = ours.variables.iter().any(|it| it.0.eq_ignore_ascii_case(path));
+        if let Some(size) = size.filter(|_| path.starts_with("Globals.") && !is_known) {
+            ours.variables.extend(machine.addressed(path, size).map(|it| (path.clone(), it)));
+        }
+    }
 }

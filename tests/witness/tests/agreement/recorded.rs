@@ -2,7 +2,7 @@
 
 use crate::case::Settings;
 use crate::compare::Scan;
-use crate::leaf::{Leaves, Read};
+use crate::leaf::{Leaf, Leaves, Read};
 use crate::scan::Table;
 use staunch_host::{Domain, Error, Machine, Map, Options, run};
 use staunch_ir::Program;
@@ -71,8 +71,15 @@ impl Machine for Recorder<'_> {
 
     fn write(&mut self, offset: usize, bytes: &[u8]) {
         self.domain.write(self.interpreter.state_mut(), offset, bytes);
-        let range = offset..offset + bytes.len();
-        let written = self.leaves.values(self.interpreter.state()).into_iter().filter(|it| range.contains(&it.offset));
+        let end = offset + bytes.len();
+        let is_written = |it: &Leaf| {
+            let size = match &it.value {
+                Read::Scalar(it) => usize::try_from(it.repr().size()).unwrap_or(1),
+                Read::Text(_) => 1,
+            };
+            it.offset < end && it.offset + size > offset
+        };
+        let written = self.leaves.values(self.interpreter.state()).into_iter().filter(is_written);
         self.events.extend(written.map(|it| Event::Put(it.path, it.value)));
     }
 
