@@ -28,14 +28,14 @@ impl<'a> Machine<'a> {
     fn start_binding(&mut self, binding: &'a ast::Binding<'a>) -> Outcome<()> {
         let place = self.bound(&binding.target)?;
         let initial = binding.located.initial.as_ref();
-        if initial.is_some() {
-            self.start(&Frame::default(), &place, initial)?;
-        }
-        let Some(name) = binding.located.address else { return Ok(()) };
+        let Some(name) = binding.located.address else { return self.start(&Frame::default(), &place, initial) };
         let address = Address::read(name.text, self.declared.family)?;
         let image = self.at_address(&address, &place.ty)?;
-        // The address starts as the variable does.
-        self.write(&image, &self.read(&place));
+        match initial {
+            Some(_) => self.start(&Frame::default(), &image, initial)?,
+            // The address starts as the variable does.
+            None => self.write(&image, &self.read(&place)),
+        }
         self.bindings.push(Binding { place, image, is_input: address.is_input() });
         Ok(())
     }

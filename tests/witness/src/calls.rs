@@ -5,6 +5,7 @@ use crate::classes::is_super;
 use crate::declarations::Variable;
 use crate::machine::{Frame, Machine, Outcome, unknown};
 use crate::places::pin_type;
+use crate::starts::Assigns;
 use crate::storage::{Cell, Place, Value};
 use crate::types::Type;
 use staunch_frontend::Span;
@@ -347,7 +348,15 @@ impl<'a> Machine<'a> {
                 in_outs.push((argument.unwrap_or(0), key, place, slot.ty));
             } else if !own.names.contains_key(&key) {
                 let place = self.allocate(&slot.ty);
-                self.start(&own, &place, slot.initial)?;
+                if kind != VarKind::Input && self.is_constructed(&slot.ty) {
+                    let before = std::mem::replace(&mut self.assigns, Assigns::VALUES);
+                    let started = self.start(&own, &place, slot.initial);
+                    self.assigns = before;
+                    started?;
+                    self.construct(&own, &place, &slot)?;
+                } else {
+                    self.start(&own, &place, slot.initial)?;
+                }
                 own.names.insert(key.clone(), place);
             }
             if let Some(Given::Value(value)) = given {
@@ -453,6 +462,23 @@ impl<'a> Machine<'a> {
     pub(crate) fn arguments_of(&mut self, pou: usize, arguments: &'a [Argument<'a>]) -> Outcome<Vec<Passed<'a>>> {
         let formals = self.formals(pou);
         self.passed(&Frame::default(), &formals, arguments)
+    }
+
+    /// The values of a routine's inputs but for some.
+    pub(crate) fn values_of(
+        &mut self,
+        frame: &Frame<'a>,
+        routine: usize,
+        arguments: &'a [Argument<'a>],
+        without: &[&str],
+    ) -> Outcome<Vec<(&'a str, Value<'a>)>> {
+        let mut formals = self.formals(routine);
+        formals.retain(|it| !without.iter().any(|name| it.name.eq_ignore_ascii_case(name)));
+        let values = self.passed(frame, &formals, arguments)?.into_iter().map(|it| match it.given {
+            Given::Value(value) => Ok((it.name, value)),
+            Given::Place(_) | Given::Output { .. } => unknown("an argument of FB_init that is no input"),
+        });
+        values.collect()
     }
 
     /// What the arguments give, in the order in which they are written.

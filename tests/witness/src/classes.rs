@@ -16,6 +16,20 @@ impl<'a> Declarations<'a> {
         std::iter::successors(Some(class), |it| self.pous[*it].base)
     }
 
+    /// A class after those above it.
+    pub fn line_down(&self, class: usize) -> Vec<usize> {
+        let mut line: Vec<usize> = self.line(class).collect();
+        line.reverse();
+        line
+    }
+
+    /// The METHOD of that name that a class itself declares.
+    pub fn own_routine(&self, class: usize, name: &str) -> Option<usize> {
+        self.pous
+            .iter()
+            .position(|it| it.owner == Some(class) && it.kind == PouKind::Method && it.name.eq_ignore_ascii_case(name))
+    }
+
     fn routine_where(&self, class: usize, name: &str, fits: impl Fn(PouKind) -> bool) -> Option<usize> {
         self.line(class).find_map(|class| {
             let own = |it: &crate::declarations::Pou<'a>| it.owner == Some(class) && fits(it.kind);

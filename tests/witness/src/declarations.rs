@@ -21,6 +21,8 @@ pub(crate) struct Pou<'a> {
     pub base: Option<usize>,
     /// What it IMPLEMENTS, or an INTERFACE EXTENDS.
     pub implements: Vec<usize>,
+    /// Whether it has the attribute `call_after_init`.
+    pub after_init: bool,
     /// How many variables its instances keep.
     pub fields: usize,
     pub result: Option<Slot<'a>>,
@@ -115,15 +117,22 @@ impl<'a> Declarations<'a> {
         let key = self.names.key(&pou.name);
         let (name, kind, body) = (pou.name.text, pou.kind, pou.body.as_slice());
         let (base, implements) = self.bases(pou)?;
-        if kind == PouKind::Method && name.eq_ignore_ascii_case("FB_init") {
-            return unknown("FB_init");
-        }
-        if pou.attributes.iter().any(|it| it.eq_ignore_ascii_case("call_after_init")) {
-            return unknown("call_after_init");
-        }
+        let after_init = pou.attributes.iter().any(|it| it.eq_ignore_ascii_case("call_after_init"));
         if kind == PouKind::Interface {
             let (base, result, variables) = (None, None, Vec::new());
-            self.pous.push(Pou { name, key, kind, owner, base, implements, fields: 0, result, variables, body });
+            self.pous.push(Pou {
+                name,
+                key,
+                kind,
+                owner,
+                base,
+                implements,
+                fields: 0,
+                after_init,
+                result,
+                variables,
+                body,
+            });
             return Ok(());
         }
         let variables = self.variables_of(pou)?;
@@ -133,7 +142,7 @@ impl<'a> Declarations<'a> {
             .map(|it| 1 + usize::from(it.is_edge))
             .sum();
         let result = pou.result.as_ref().map(|it| self.slot(it, None)).transpose()?;
-        self.pous.push(Pou { name, key, kind, owner, base, implements, fields, result, variables, body });
+        self.pous.push(Pou { name, key, kind, owner, base, implements, fields, after_init, result, variables, body });
         Ok(())
     }
 
@@ -185,6 +194,8 @@ impl<'a> Declarations<'a> {
                 return unknown("the path of an instance");
             }
             let slot = self.slot(&declared.ty, declared.initial.as_ref())?;
+            let is_kept = block.retain.is_some() || block.persistent.is_some();
+            let slot = Slot { construction: declared.construction.as_deref(), is_kept, ..slot };
             if address.is_some() && slot.ty.bytes().is_none() {
                 return unknown("this type at an address");
             }
@@ -246,16 +257,16 @@ impl<'a> Declarations<'a> {
             }
             TypeKind::String { wide: true, .. } | TypeKind::Error => return unknown("this type"),
         };
-        Ok(Slot { ty, initial: None })
+        Ok(Slot::of(ty))
     }
 
     /// `ARRAY[a, b] OF t` is an array of arrays.
     fn array(&mut self, bounds: &'a [ast::Bound<'a>], element: &'a ast::TypeSpec<'a>) -> Outcome<Type<'a>> {
         let mut slot = self.spec(element)?;
-        for bound in bounds.iter().rev() {
+        for (bound, dimensions) in bounds.iter().rev().zip(1..) {
             let ast::Bound::Range(low, high) = bound else { return unknown("ARRAY[*]") };
             let (low, high) = (self.number(low)?, self.number(high)?);
-            slot = Slot { ty: Type::Array(Rc::new(Array { low, high, element: slot })), initial: None };
+            slot = Slot::of(Type::Array(Rc::new(Array { low, high, element: slot, dimensions })));
         }
         Ok(slot.ty)
     }
@@ -264,8 +275,9 @@ impl<'a> Declarations<'a> {
         let mut fields = Vec::new();
         for it in declared {
             let slot = self.slot(&it.ty, it.initial.as_ref())?;
+            let slot = Slot { construction: it.construction.as_deref(), ..slot };
             let trigger = it.edge.map(|(edge, _)| self.block(edges::block_of(edge))).transpose()?;
-            let trigger = trigger.map(|it| Slot { ty: Type::Block(it), initial: None });
+            let trigger = trigger.map(|it| Slot::of(Type::Block(it)));
             for name in &it.names {
                 fields.push((name.text.to_owned(), slot.clone()));
                 fields.extend(trigger.clone().map(|it| (edges::trigger_of(name.text), it)));
@@ -291,7 +303,7 @@ impl<'a> Declarations<'a> {
 
     /// The type of this name: elementary, declared, a POU's instance, or a standard block.
     fn named(&mut self, path: &[Name<'a>]) -> Outcome<Slot<'a>> {
-        let slot = |ty| Ok(Slot { ty, initial: None });
+        let slot = |ty| Ok(Slot::of(ty));
         match (path, self.names.find(path)) {
             (_, Some((_, Declared::Type(declared)))) => self.declared(declared),
             (_, Some((_, Declared::Pou(number, pou)))) => slot(self.instance(pou, number)?),
@@ -320,7 +332,7 @@ impl<'a> Declarations<'a> {
         let slot = match &declared.ty.kind {
             TypeKind::Enum { base, values } => {
                 let made = self.enumeration(base.as_ref(), values)?;
-                Slot { ty: Type::Enum(made), initial: None }
+                Slot::of(Type::Enum(made))
             }
             TypeKind::Struct(own) => {
                 let mut fields = match &declared.base {
@@ -331,7 +343,7 @@ impl<'a> Declarations<'a> {
                     },
                 };
                 fields.extend(self.fields(own)?);
-                Slot { ty: Type::Record(Rc::new(Record { pou: None, fields, edges: Vec::new() })), initial: None }
+                Slot::of(Type::Record(Rc::new(Record { pou: None, fields, edges: Vec::new() })))
             }
             _ => self.spec(&declared.ty)?,
         };
@@ -354,7 +366,9 @@ impl<'a> Declarations<'a> {
         };
         for block in pou.blocks.iter().filter(|it| is_field(it.kind)) {
             // What lies at an address is no part of an instance.
-            fields.extend(self.fields(block.vars.iter().filter(|it| it.known_address().is_none()))?);
+            let own = self.fields(block.vars.iter().filter(|it| it.known_address().is_none()))?;
+            let is_kept = block.retain.is_some() || block.persistent.is_some();
+            fields.extend(own.into_iter().map(|(name, slot)| (name, Slot { is_kept, ..slot })));
             let own = block.vars.iter().filter(|it| it.edge.is_some()).flat_map(|it| &it.names);
             edges.extend(own.map(|it| it.text.to_owned()));
         }

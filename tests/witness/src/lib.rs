@@ -18,6 +18,7 @@ mod constants;
 mod declarations;
 mod names;
 mod shared;
+mod starts;
 mod storage;
 
 mod machine;
@@ -29,6 +30,7 @@ mod addresses;
 mod bindings;
 mod calls;
 mod classes;
+mod construction;
 mod dates;
 mod edges;
 mod expressions;

@@ -3,6 +3,7 @@
 use crate::bindings::Binding;
 use crate::declarations::Declarations;
 use crate::runs::Run;
+use crate::starts::Assigns;
 use crate::storage::{Cell, Place};
 use crate::types::Type;
 use staunch_frontend::ast::{File, VarKind};
@@ -42,6 +43,12 @@ pub struct Machine<'a> {
     pub(crate) statics: HashMap<(usize, String), Place<'a>>,
     pub(crate) runs: Vec<Run<'a>>,
     pub(crate) bindings: Vec<Binding<'a>>,
+    /// What initial values assign now.
+    pub(crate) assigns: Assigns,
+    /// Whether instances have started.
+    pub(crate) has_started: bool,
+    /// Whether this is a start after the first: what is RETAIN has been kept.
+    pub(crate) is_again: bool,
     pub(crate) context: Context,
     steps: u32,
     /// Where the ENO of the call leads whose arguments are evaluated.
@@ -59,11 +66,12 @@ pub(crate) struct Frame<'a> {
 }
 
 impl<'a> Machine<'a> {
-    /// A program in its initial state. Files that name no dialect are of this family.
+    /// A program in its initial state. Files that name no dialect are of this family. Of PROGRAMs that no CONFIGURATION lists
+    /// those that are `running` do so by themselves, and others are called.
     ///
     /// # Errors
     /// What the witness does not know.
-    pub fn new(sources: &'a Sources, files: &'a [File<'a>], family: Family) -> Result<Self, Stop> {
+    pub fn new(sources: &'a Sources, files: &'a [File<'a>], family: Family, running: &[&str]) -> Result<Self, Stop> {
         let mut this = Self {
             declared: Declarations::new(files, family)?,
             sources,
@@ -73,6 +81,9 @@ impl<'a> Machine<'a> {
             statics: HashMap::new(),
             runs: Vec::new(),
             bindings: Vec::new(),
+            assigns: Assigns::VALUES,
+            has_started: false,
+            is_again: false,
             context: Context::default(),
             steps: 0,
             eno: None,
@@ -80,8 +91,9 @@ impl<'a> Machine<'a> {
         this.start_images();
         this.start_globals()?;
         this.start_addresses()?;
-        this.start_runs(files)?;
+        this.start_runs(files, running)?;
         this.start_bindings(files)?;
+        this.assigns = Assigns::ALL;
         Ok(this)
     }
 
@@ -115,9 +127,22 @@ impl<'a> Machine<'a> {
         self.context = context.clone();
         self.steps = 0;
         let size = self.memory.len();
-        let end = self.run(instance);
+        let end = self.start_and_run(instance);
         self.memory.truncate(size);
         end
+    }
+
+    fn start_and_run(&mut self, instance: &str) -> Outcome<()> {
+        if !self.has_started {
+            self.start_instances()?;
+            self.has_started = true;
+        }
+        self.run(instance)
+    }
+
+    /// A start after the first.
+    pub fn starts_again(&mut self) {
+        self.is_again = true;
     }
 
     /// Counts a statement, or a turn of a loop.

@@ -14,7 +14,7 @@ pub(crate) struct Run<'a> {
     /// What a CONFIGURATION connects it with.
     connections: &'a [Argument<'a>],
     task: Task<'a>,
-    /// Whether it has run by itself, and not only where others call it.
+    /// Whether it runs by itself, and not only where others call it.
     pub runs: bool,
 }
 
@@ -34,11 +34,12 @@ struct Listed<'a> {
     pou: usize,
     connections: &'a [Argument<'a>],
     task: Task<'a>,
+    runs: bool,
 }
 
 impl<'a> Machine<'a> {
     /// The instances of the CONFIGURATION, and each PROGRAM that it does not list under its own name.
-    pub(crate) fn start_runs(&mut self, files: &'a [File<'a>]) -> Outcome<()> {
+    pub(crate) fn start_runs(&mut self, files: &'a [File<'a>], running: &[&str]) -> Outcome<()> {
         let mut listed = Vec::new();
         for resource in configurations(files).flat_map(|it| &it.resources) {
             listed.append(&mut self.listed(resource)?);
@@ -46,7 +47,8 @@ impl<'a> Machine<'a> {
         for pou in 0..self.declared.pous.len() {
             if self.declared.pous[pou].kind == PouKind::Program && !listed.iter().any(|it| it.pou == pou) {
                 let (name, connections) = (self.declared.pous[pou].name, &[] as &[_]);
-                let place = self.start_run(Listed { name, pou, connections, task: Task::default() })?;
+                let runs = running.iter().any(|it| it.eq_ignore_ascii_case(name));
+                let place = self.start_run(Listed { name, pou, connections, task: Task::default(), runs })?;
                 self.globals.insert(self.declared.pous[pou].key.clone(), place);
             }
         }
@@ -64,16 +66,16 @@ impl<'a> Machine<'a> {
                 properties.find(|it| it.0.text.eq_ignore_ascii_case(name)).map(|it| &it.1)
             };
             let task = Task { single: property("SINGLE"), interval: property("INTERVAL"), was_single: false, next: 0 };
-            Ok(Listed { name: it.name.text, pou, connections: &it.connections, task })
+            Ok(Listed { name: it.name.text, pou, connections: &it.connections, task, runs: true })
         });
         listed.collect()
     }
 
-    fn start_run(&mut self, Listed { name, pou, connections, task }: Listed<'a>) -> Outcome<Place<'a>> {
+    fn start_run(&mut self, Listed { name, pou, connections, task, runs }: Listed<'a>) -> Outcome<Place<'a>> {
         let ty = self.declared.instance_of(pou)?;
         let place = self.allocate(&ty);
         self.start(&Frame::default(), &place, None)?;
-        self.runs.push(Run { name, pou, place: place.clone(), connections, task, runs: false });
+        self.runs.push(Run { name, pou, place: place.clone(), connections, task, runs });
         Ok(place)
     }
 
@@ -82,7 +84,6 @@ impl<'a> Machine<'a> {
         let Some(at) = self.runs.iter().position(|it| it.name.eq_ignore_ascii_case(name)) else {
             return unknown("this run");
         };
-        self.runs[at].runs = true;
         if !self.is_due(at)? {
             return Ok(());
         }

@@ -133,6 +133,19 @@ impl<'a> Place<'a> {
     }
 }
 
+impl<'a> Place<'a> {
+    /// The element that comes after so many others in the row in which they are written.
+    pub fn flat(&self, number: usize) -> Option<Self> {
+        let Type::Array(array) = &self.ty else { return None };
+        let Type::Array(inner) = &array.element.ty else { return self.nth(number).filter(|_| number < array.count()) };
+        if array.dimensions == 1 {
+            return self.nth(number).filter(|_| number < array.count());
+        }
+        let each = inner.elements();
+        self.nth(number / each).filter(|_| number / each < array.count())?.flat(number % each)
+    }
+}
+
 impl<'a> Machine<'a> {
     /// What lies at a place among shared bytes. A type that cannot be there was refused when it was declared.
     pub(crate) fn unpacked(&self, place: &Place<'a>, window: Window) -> Vec<Cell<'a>> {

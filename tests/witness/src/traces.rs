@@ -26,10 +26,13 @@ impl<'a> Machine<'a> {
     /// # Errors
     /// Where there is no such variable.
     pub fn put(&mut self, path: &str, value: Input) -> Result<(), Stop> {
+        if path.ends_with("__started") {
+            // An event that keeps all keeps that instances have started.
+            self.has_started |= matches!(value, Input::Scalar(Scalar::Bool(true)));
+            return Ok(());
+        }
         let places = self.places();
-        let named = |path: &str| places.iter().find(|it| it.0.eq_ignore_ascii_case(path));
-        // Which PROGRAMs run is known when they have.
-        let place = named(path).or_else(|| named(&format!("Globals.{path}"))).map(|it| it.1.clone());
+        let place = places.iter().find(|it| it.0.eq_ignore_ascii_case(path)).map(|it| it.1.clone());
         let size = match &value {
             Input::Scalar(Scalar::Bool(_)) => 0,
             Input::Scalar(it) => it.repr().size(),

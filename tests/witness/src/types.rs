@@ -1,6 +1,6 @@
 //! Types, and which of them widen to which.
 
-use staunch_frontend::ast::{Initial, TypeSpec};
+use staunch_frontend::ast::{Construction, Initial, TypeSpec};
 use staunch_runtime::{BlockInfo, Repr, Value as Scalar};
 use std::rc::Rc;
 
@@ -203,6 +203,8 @@ pub(crate) struct Array<'a> {
     pub low: i128,
     pub high: i128,
     pub element: Slot<'a>,
+    /// Of `ARRAY[a, b] OF t` 2: its elements, and their elements, are written in one row.
+    pub dimensions: usize,
 }
 
 #[derive(Debug)]
@@ -219,6 +221,16 @@ pub(crate) struct Record<'a> {
 pub(crate) struct Slot<'a> {
     pub ty: Type<'a>,
     pub initial: Option<&'a Initial<'a>>,
+    /// What its instances' FB_init is given.
+    pub construction: Option<&'a Construction<'a>>,
+    /// Whether it is RETAIN.
+    pub is_kept: bool,
+}
+
+impl<'a> Slot<'a> {
+    pub fn of(ty: Type<'a>) -> Self {
+        Self { ty, initial: None, construction: None, is_kept: false }
+    }
 }
 
 impl Type<'_> {
@@ -291,5 +303,13 @@ impl Type<'_> {
 impl Array<'_> {
     pub fn count(&self) -> usize {
         usize::try_from(self.high - self.low + 1).unwrap_or(0)
+    }
+
+    /// How many elements are written in one row.
+    pub fn elements(&self) -> usize {
+        match &self.element.ty {
+            Type::Array(inner) if self.dimensions > 1 => self.count() * inner.elements(),
+            _ => self.count(),
+        }
     }
 }

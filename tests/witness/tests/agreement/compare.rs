@@ -99,7 +99,7 @@ fn witnessed(sources: &Sources, instance: &str, text: &str) -> Result<Vec<Scan>,
         Stop::Unknown(what) => Verdict::Rejected(format!("the witness does not know {what}")),
         Stop::Fault(_) => Verdict::Differs("the witness faults in an initial value".to_owned()),
     };
-    let mut machine = Machine::new(sources, &files, Family::Iec).map_err(unknown)?;
+    let mut machine = Machine::new(sources, &files, Family::Iec, &[instance]).map_err(unknown)?;
     let mut scans = Vec::new();
     for context in contexts(text) {
         let end = match machine.scan(instance, &context) {

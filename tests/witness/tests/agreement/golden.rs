@@ -5,7 +5,7 @@ use crate::compare::{Scan, Verdict, difference};
 use crate::leaf::Read;
 use crate::recorded::{Event, recorded};
 use crate::scan::Table;
-use staunch_frontend::{Sources, ast, parse_file};
+use staunch_frontend::{ast, parse_file};
 use staunch_runtime::{Family, FaultKind};
 use staunch_witness::{Input, Machine, Stop};
 use std::collections::BTreeMap;
@@ -58,24 +58,26 @@ fn compare(case: &Case) -> Verdict {
         Err(problem) => return Verdict::Differs(problem),
     };
     let files: Vec<ast::File<'_>> = (0..).zip(sources.files()).map(|(at, _)| parse_file(&sources, at)).collect();
-    replayed(&sources, &files, family, events).unwrap_or_else(|stop| match stop {
+    let running: Vec<&str> = program.instances.iter().map(|it| it.name.as_str()).collect();
+    let start = || Machine::new(&sources, &files, family, &running);
+    replayed(&start, events).unwrap_or_else(|stop| match stop {
         Stop::Endless => Verdict::Endless,
         Stop::Unknown(what) => Verdict::Rejected(what),
         Stop::Fault(fault) => Verdict::Differs(format!("the witness faults at the start: {fault}")),
     })
 }
 
-fn replayed<'a>(
-    sources: &'a Sources,
-    files: &'a [ast::File<'a>],
-    family: Family,
-    events: Vec<Event>,
-) -> Result<Verdict, Stop> {
-    let mut machine = Machine::new(sources, files, family)?;
+fn replayed<'a>(start: &dyn Fn() -> Result<Machine<'a>, Stop>, events: Vec<Event>) -> Result<Verdict, Stop> {
+    let mut machine = start()?;
     let mut number = 0;
     for event in events {
         match event {
-            Event::Init => machine = Machine::new(sources, files, family)?,
+            Event::Init => {
+                machine = start()?;
+                if number > 0 {
+                    machine.starts_again();
+                }
+            }
             Event::Put(path, Read::Scalar(value)) => machine.put(&path, Input::Scalar(value))?,
             Event::Put(path, Read::Text(text)) => machine.put(&path, Input::Text(text.text().as_bytes().to_vec()))?,
             Event::Scan(instance, context, theirs) => {
