@@ -85,7 +85,7 @@ impl<'a> Machine<'a> {
         }
     }
 
-    fn construct_instance(
+    pub(crate) fn construct_instance(
         &mut self,
         frame: &Frame<'a>,
         place: &Place<'a>,
@@ -133,7 +133,7 @@ impl<'a> Machine<'a> {
     }
 
     /// METHODs with the attribute of a class that has it, the bases' first.
-    fn call_after_init(&mut self, place: &Place<'a>) -> Outcome<()> {
+    pub(crate) fn call_after_init(&mut self, place: &Place<'a>) -> Outcome<()> {
         if let Type::Array(array) = &place.ty {
             for number in 0..array.count() {
                 if let Some(element) = place.nth(number) {

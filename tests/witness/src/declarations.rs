@@ -302,7 +302,7 @@ impl<'a> Declarations<'a> {
     }
 
     /// The type of this name: elementary, declared, a POU's instance, or a standard block.
-    fn named(&mut self, path: &[Name<'a>]) -> Outcome<Slot<'a>> {
+    pub(crate) fn named(&mut self, path: &[Name<'a>]) -> Outcome<Slot<'a>> {
         let slot = |ty| Ok(Slot::of(ty));
         match (path, self.names.find(path)) {
             (_, Some((_, Declared::Type(declared)))) => self.declared(declared),
@@ -324,7 +324,7 @@ impl<'a> Declarations<'a> {
         block(self.family, name).or_else(|_| block(Family::Iec, name))
     }
 
-    fn declared(&mut self, declared: &'a ast::TypeDecl<'a>) -> Outcome<Slot<'a>> {
+    pub(crate) fn declared(&mut self, declared: &'a ast::TypeDecl<'a>) -> Outcome<Slot<'a>> {
         let key = self.names.key(&declared.name);
         if let Some(known) = self.types.get(&key) {
             return Ok(known.clone());

@@ -27,7 +27,7 @@ impl<'a> Machine<'a> {
         if arguments.iter().any(leads_to_a_part) {
             return unknown("when the target of an ENO is found among the arguments of this function");
         }
-        if let Some(value) = self.reference_function(frame, &upper, arguments)? {
+        if let Some(value) = self.reference_function(frame, &upper, arguments, at)? {
             return Ok(value);
         }
         if let Some(value) = self.date_function(frame, &upper, arguments, at)? {

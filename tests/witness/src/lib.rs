@@ -37,6 +37,7 @@ mod expressions;
 mod functions;
 mod operators;
 mod places;
+mod pools;
 mod promotion;
 mod references;
 

@@ -2,6 +2,7 @@
 
 use crate::bindings::Binding;
 use crate::declarations::Declarations;
+use crate::pools::Berth;
 use crate::runs::Run;
 use crate::starts::Assigns;
 use crate::storage::{Cell, Place};
@@ -43,6 +44,7 @@ pub struct Machine<'a> {
     pub(crate) statics: HashMap<(usize, String), Place<'a>>,
     pub(crate) runs: Vec<Run<'a>>,
     pub(crate) bindings: Vec<Binding<'a>>,
+    pub(crate) pool: Vec<Berth<'a>>,
     /// What initial values assign now.
     pub(crate) assigns: Assigns,
     /// Whether instances have started.
@@ -82,6 +84,7 @@ impl<'a> Machine<'a> {
             runs: Vec::new(),
             bindings: Vec::new(),
             assigns: Assigns::VALUES,
+            pool: Vec::new(),
             has_started: false,
             is_again: false,
             context: Context::default(),
@@ -91,6 +94,7 @@ impl<'a> Machine<'a> {
         this.start_images();
         this.start_globals()?;
         this.start_addresses()?;
+        this.start_pools()?;
         this.start_runs(files, running)?;
         this.start_bindings(files)?;
         this.assigns = Assigns::ALL;

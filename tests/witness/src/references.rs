@@ -22,6 +22,9 @@ impl<'a> Machine<'a> {
                     }
                     place.declared = declared.class();
                 }
+                if self.is_deleted(&place) {
+                    place.nowhere = Some((span, FaultKind::Deleted));
+                }
                 Ok(*place)
             }
             _ => match reference.target {
@@ -30,7 +33,13 @@ impl<'a> Machine<'a> {
                         RefKind::Interface => self.declared.implementer(target)?,
                         RefKind::Pointer | RefKind::Alias => self.declared.type_of(target)?,
                     };
-                    Ok(Place { at: 0, ty, nowhere: Some(span), declared: None, window: None })
+                    Ok(Place {
+                        at: 0,
+                        ty,
+                        nowhere: Some((span, FaultKind::NullReference)),
+                        declared: None,
+                        window: None,
+                    })
                 }
                 None => unknown("a reference to nothing"),
             },
@@ -40,7 +49,7 @@ impl<'a> Machine<'a> {
     /// The place, if it is somewhere.
     pub(crate) fn checked(&self, place: Place<'a>) -> Outcome<Place<'a>> {
         match place.nowhere {
-            Some(span) => Err(self.fault(FaultKind::NullReference, span)),
+            Some((span, kind)) => Err(self.fault(kind, span)),
             None => Ok(place),
         }
     }
@@ -138,6 +147,7 @@ impl<'a> Machine<'a> {
         frame: &Frame<'a>,
         name: &str,
         arguments: &'a [Argument<'a>],
+        span: Span,
     ) -> Outcome<Option<Value<'a>>> {
         let positional = |at: usize| match arguments.get(at).map(|it| &it.kind) {
             Some(ArgumentKind::Positional(it)) => Ok(it),
@@ -149,6 +159,8 @@ impl<'a> Machine<'a> {
                 let ty = Type::Reference(Reference { kind: RefKind::Pointer, target: None });
                 Ok(Some(Value { ty, cells: vec![Cell::Reference(Some(Box::new(place)))] }))
             }
+            "__NEW" if arguments.len() == 1 => self.make(frame, positional(0)?).map(Some),
+            "__DELETE" => self.delete(frame, positional(0)?, span).map(|()| Some(Value::bool(true))),
             "__ISVALIDREF" => {
                 let place = self.unfollowed(frame, positional(0)?)?;
                 let place = self.checked(place)?;

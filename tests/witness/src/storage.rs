@@ -28,8 +28,8 @@ pub(crate) struct Value<'a> {
 pub(crate) struct Place<'a> {
     pub at: usize,
     pub ty: Type<'a>,
-    /// Where a reference to nothing was followed: the place faults when it is used.
-    pub nowhere: Option<Span>,
+    /// Where a reference to nothing, or to what was deleted, was followed: the place faults when it is used.
+    pub nowhere: Option<(Span, FaultKind)>,
     /// The class that a reference or an in-out declares, where `ty` may be one that extends it.
     pub declared: Option<usize>,
     /// Where it begins in a cell that is shared.
