@@ -84,7 +84,14 @@ impl<'a> Machine<'a> {
             _ => return unknown("this address"),
         }
         let Some(at) = self.images.get(&address.image) else { return unknown("this area") };
-        Ok(Place { at: *at, ty: ty.clone(), nowhere: None, declared: None, window: Some(address.window) })
+        Ok(Place {
+            at: *at,
+            ty: ty.clone(),
+            nowhere: None,
+            declared: None,
+            window: Some(address.window),
+            character: None,
+        })
     }
 
     /// Adds the variables of a POU that lie at addresses to the names of its body.

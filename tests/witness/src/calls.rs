@@ -406,9 +406,9 @@ impl<'a> Machine<'a> {
     /// The variable that a VAR_IN_OUT stands for: the caller's, or a copy of it.
     fn in_out(&mut self, given: &Place<'a>, ty: &Type<'a>) -> Place<'a> {
         match (&given.ty, ty) {
-            (Type::Text(from), Type::Text(to)) if from != to => {
+            (Type::Text(from), Type::Text(to)) if from != to && given.window.is_none() => {
                 let copy = self.allocate(ty);
-                self.memory[copy.at] = cut(&self.memory[given.at], *to);
+                self.memory[copy.at] = cut(&self.memory[given.at], to.capacity);
                 copy
             }
             // What shares its bytes goes in as a copy, and comes back when the call ends.
@@ -425,7 +425,9 @@ impl<'a> Machine<'a> {
     pub(crate) fn copy_back(&mut self, copies: &[(Place<'a>, Place<'a>)]) {
         for (copy, given) in copies {
             match given.ty {
-                Type::Text(capacity) => self.memory[given.at] = cut(&self.memory[copy.at], capacity),
+                Type::Text(text) if given.window.is_none() => {
+                    self.memory[given.at] = cut(&self.memory[copy.at], text.capacity);
+                }
                 _ => self.write(given, &self.read(copy)),
             }
         }
@@ -622,7 +624,7 @@ pub(crate) fn is_enable(argument: &Argument<'_>) -> bool {
 
 fn cut<'a>(text: &Cell<'a>, capacity: usize) -> Cell<'a> {
     match text {
-        Cell::Text(bytes) => Cell::Text(bytes.iter().copied().take(capacity).collect()),
+        Cell::Text(units) => Cell::Text(units.iter().copied().take(capacity).collect()),
         Cell::Scalar(_) | Cell::Reference(_) | Cell::Bytes(_) => text.clone(),
     }
 }

@@ -4,7 +4,7 @@ use crate::addresses::Address;
 use crate::edges;
 use crate::machine::{Outcome, unknown};
 use crate::names::{Declared, Names};
-use crate::types::{Array, Elementary, Enum, Record, RefKind, Reference, Slot, Type};
+use crate::types::{Array, Elementary, Enum, Record, RefKind, Reference, Slot, Text, Type};
 use staunch_frontend::ast::{self, Initial, Item, Name, PouKind, TypeKind, VarKind};
 use staunch_runtime::{BLOCKS, BlockInfo, Family};
 use std::collections::HashMap;
@@ -223,9 +223,10 @@ impl<'a> Declarations<'a> {
                 }
                 Some(_) | None => return self.named(path),
             },
-            TypeKind::String { wide: false, capacity } => {
+            TypeKind::String { wide, capacity } => {
                 let capacity = capacity.as_ref().map(|it| self.number(it)).transpose()?;
-                Type::Text(capacity.map_or(self.capacity, |it| usize::try_from(it).unwrap_or(0)))
+                let capacity = capacity.map_or(self.capacity, |it| usize::try_from(it).unwrap_or(0));
+                Type::Text(Text { capacity, wide: *wide })
             }
             TypeKind::Subrange { base, low, high } => match self.named(&[*base])?.ty.elementary() {
                 Some(base) => Type::Subrange(base, self.number(low)?, self.number(high)?),
@@ -255,7 +256,7 @@ impl<'a> Declarations<'a> {
                 }
                 shared
             }
-            TypeKind::String { wide: true, .. } | TypeKind::Error => return unknown("this type"),
+            TypeKind::Error => return unknown("this type"),
         };
         Ok(Slot::of(ty))
     }

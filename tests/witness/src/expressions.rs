@@ -4,7 +4,9 @@ use crate::classes::is_this;
 use crate::machine::{Frame, Machine, Outcome, unknown};
 use crate::references::{is_null, null};
 use crate::storage::{Cell, Value, integer_cell};
+use crate::texts::units;
 use crate::types::{Elementary, Type};
+use staunch_frontend::Span;
 use staunch_frontend::ast::{BinaryOp, Chars, Expr, ExprKind, Literal, LiteralValue, Name, UnaryOp};
 use staunch_runtime::{Value as Scalar, ops};
 
@@ -124,11 +126,13 @@ impl<'a> Machine<'a> {
                 Some(ty) => Ok(Value::scalar(ty, Scalar::I64(*nanoseconds))),
                 None => unknown("literals of dates"),
             },
-            (None, LiteralValue::String(chars)) => match &**chars {
-                Chars::Narrow(bytes) => Ok(Value::text(bytes.clone())),
-                Chars::Wide(_) => unknown("WSTRING"),
-            },
-            (Some(_), LiteralValue::String(_)) => unknown("typed literals of text"),
+            (prefix, LiteralValue::String(chars)) => {
+                let value = Value::text(units(chars), matches!(**chars, Chars::Wide(_)));
+                match prefix.as_ref().and_then(|it| Elementary::named(it.text)) {
+                    Some(ty) => self.converted(value, &Type::Elementary(ty), Span::default()),
+                    None => Ok(value),
+                }
+            }
             (Some(ty), value) => match Elementary::named(ty.text) {
                 Some(ty) => typed_number(value, false, ty),
                 None => unknown("the type of a literal"),

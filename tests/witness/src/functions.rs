@@ -9,10 +9,10 @@ use crate::types::{Elementary, Type};
 use staunch_frontend::Span;
 use staunch_frontend::ast::{Argument, ArgumentKind, BinaryOp, Expr, ExprKind, Name};
 use staunch_runtime::time::MILLISECOND;
-use staunch_runtime::{FaultKind, Value as Scalar, ops, text};
+use staunch_runtime::{FaultKind, Value as Scalar, ops};
 
 /// An argument, and the position of its parameter.
-type Given<'a> = (usize, &'a Expr<'a>);
+pub(crate) type Given<'a> = (usize, &'a Expr<'a>);
 
 impl<'a> Machine<'a> {
     pub(crate) fn standard(
@@ -59,6 +59,9 @@ impl<'a> Machine<'a> {
             "MUX" => self.choice(frame, &positions(&["K", "IN0", "IN1"], arguments)?, asked, true, at),
             "LEN" | "FIND" | "LEFT" | "RIGHT" | "MID" | "CONCAT" | "INSERT" | "DELETE" | "REPLACE" => {
                 self.text_function(frame, &upper, arguments)
+            }
+            "WLEN" | "WFIND" | "WLEFT" | "WRIGHT" | "WMID" | "WCONCAT" | "WINSERT" | "WDELETE" | "WREPLACE" => {
+                self.text_function(frame, &upper[1..], arguments)
             }
             _ => match operator(&upper) {
                 Some(op) => self.operator_function(frame, op, &positions(&["IN1", "IN2"], arguments)?, asked, at),
@@ -121,11 +124,13 @@ impl<'a> Machine<'a> {
         let mut values = values.into_iter();
         let Some(mut best) = values.next() else { return unknown("a function without arguments") };
         for value in values {
-            best = match (value.ty.elementary(), &value.ty) {
-                (Some(ty), _) => self.computed(name, ty, &[best.as_scalar()?, value.as_scalar()?], at)?,
-                (None, Type::Text(_)) => {
-                    let order = text::compare(value.as_text()?, best.as_text()?);
-                    if (name == "MAX" && order > 0) || (name == "MIN" && order < 0) { value } else { best }
+            let ty = value.ty.elementary().filter(|_| !value.is_text());
+            best = match ty {
+                Some(ty) => self.computed(name, ty, &[best.as_scalar()?, value.as_scalar()?], at)?,
+                None if value.is_text() && best.is_text() => {
+                    let order = value.as_text()?.cmp(&best.as_text()?);
+                    let is_better = if name == "MAX" { order.is_gt() } else { order.is_lt() };
+                    if is_better { value } else { best }
                 }
                 _ => return unknown("MAX of this type"),
             };
@@ -142,10 +147,11 @@ impl<'a> Machine<'a> {
     ) -> Outcome<Value<'a>> {
         let values = self.of_one_type(frame, given, asked)?;
         let [low, value, high] = values.as_slice() else { return unknown("LIMIT without three arguments") };
-        match value.ty.elementary() {
+        let ty = value.ty.elementary().filter(|_| !values.iter().any(Value::is_text));
+        match ty {
             Some(ty) => self.computed("LIMIT", ty, &[low.as_scalar()?, value.as_scalar()?, high.as_scalar()?], at),
-            None if text::compare(value.as_text()?, low.as_text()?) < 0 => Ok(low.clone()),
-            None if text::compare(value.as_text()?, high.as_text()?) > 0 => Ok(high.clone()),
+            None if value.as_text()? < low.as_text()? => Ok(low.clone()),
+            None if value.as_text()? > high.as_text()? => Ok(high.clone()),
             None => Ok(value.clone()),
         }
     }
@@ -304,43 +310,6 @@ impl<'a> Machine<'a> {
         Ok(result)
     }
 
-    fn text_function(&mut self, frame: &Frame<'a>, name: &str, arguments: &'a [Argument<'a>]) -> Outcome<Value<'a>> {
-        let names: &[&str] = match name {
-            "LEN" => &["IN"],
-            "FIND" | "CONCAT" => &["IN1", "IN2"],
-            "LEFT" | "RIGHT" => &["IN", "L"],
-            "MID" | "DELETE" => &["IN", "L", "P"],
-            "INSERT" => &["IN1", "IN2", "P"],
-            _ => &["IN1", "IN2", "L", "P"],
-        };
-        let mut values: Vec<(usize, Value<'a>)> = Vec::new();
-        for (position, expr) in positions(names, arguments)? {
-            let counts = names.get(position).is_some_and(|it| matches!(*it, "L" | "P"));
-            let value = if counts { self.value_as(frame, expr, &Type::LINT)? } else { self.value(frame, expr, None)? };
-            values.push((position, value));
-        }
-        values.sort_by_key(|it| it.0);
-        let text = |at: usize| values[at].1.as_text();
-        let count = |at: usize| values[at].1.as_integer().map(|it| i64::try_from(it).unwrap_or(0));
-        if let "LEN" | "FIND" = name {
-            let number = if name == "LEN" { text::len(text(0)?) } else { text::find(text(0)?, text(1)?) };
-            return Ok(Value::scalar(Elementary::Int, Scalar::I16(number)));
-        }
-        let (mut length, mut bytes) = (0, vec![0; usize::from(u16::MAX)]);
-        let out = &mut text::Destination::new(&mut length, &mut bytes);
-        match name {
-            "LEFT" => text::left(text(0)?, count(1)?, out),
-            "RIGHT" => text::right(text(0)?, count(1)?, out),
-            "MID" => text::mid(text(0)?, count(1)?, count(2)?, out),
-            "DELETE" => text::delete(text(0)?, count(1)?, count(2)?, out),
-            "INSERT" => text::insert(text(0)?, text(1)?, count(2)?, out),
-            "REPLACE" => text::replace(text(0)?, text(1)?, count(2)?, count(3)?, out),
-            _ => values.iter().try_for_each(|it| it.1.as_text().map(|it| out.write(it)))?,
-        }
-        bytes.truncate(usize::from(length));
-        Ok(Value::text(bytes))
-    }
-
     /// `INT_TO_REAL`, `TO_REAL`, `TRUNC`, `TRUNC_INT`, `REAL_TRUNC_INT`.
     fn conversion(
         &mut self,
@@ -363,10 +332,20 @@ impl<'a> Machine<'a> {
         }
         if let Some(to) = name.strip_prefix("TO_") {
             let value = self.value(frame, expr, None)?;
+            if let Some(converted) = self.text_converted(&value, to)? {
+                return Ok(converted);
+            }
             return self.converted_by_name(&value, named(to)?, at);
         }
         let Some((from, to)) = name.split_once("_TO_") else { return unknown(&format!("the function {name}")) };
-        let value = self.value_as(frame, expr, &Type::Elementary(named(from)?))?;
+        let value = match Elementary::named(from) {
+            Some(from) => self.value_as(frame, expr, &Type::Elementary(from))?,
+            None if from == "STRING" || from == "WSTRING" => self.value(frame, expr, None)?,
+            None => return unknown(&format!("the function {name}")),
+        };
+        if let Some(converted) = self.text_converted(&value, to)? {
+            return Ok(converted);
+        }
         self.converted_by_name(&value, named(to)?, at)
     }
 
@@ -437,7 +416,7 @@ fn leads_to_a_part(argument: &Argument<'_>) -> bool {
 }
 
 /// The arguments as they are written, with the positions of their parameters.
-fn positions<'a>(names: &[&str], arguments: &'a [Argument<'a>]) -> Outcome<Vec<Given<'a>>> {
+pub(crate) fn positions<'a>(names: &[&str], arguments: &'a [Argument<'a>]) -> Outcome<Vec<Given<'a>>> {
     let mut given: Vec<Given<'a>> = Vec::new();
     for argument in arguments.iter().filter(|it| !is_enable(it)) {
         let (position, expr) = match &argument.kind {

@@ -20,6 +20,7 @@ mod names;
 mod shared;
 mod starts;
 mod storage;
+mod texts;
 
 mod machine;
 mod runs;

@@ -9,6 +9,13 @@ use crate::types::{Elementary, RefKind, Type};
 use staunch_frontend::ast::{Expr, ExprKind, Name};
 use staunch_runtime::{BlockInfo, Direction, FaultKind};
 
+/// A character of a text: how many come before it, and how many there can be.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Character {
+    pub at: usize,
+    pub capacity: usize,
+}
+
 /// What `.3` or `.%B1` selects: its type, and the number of its first bit.
 struct Part {
     ty: Elementary,
@@ -99,8 +106,11 @@ impl<'a> Machine<'a> {
     }
 
     pub(crate) fn element(&mut self, frame: &Frame<'a>, base: &Place<'a>, index: &'a Expr<'a>) -> Outcome<Place<'a>> {
-        let Type::Array(array) = &base.ty else { return unknown("an index of what is no array") };
         let number = self.value(frame, index, None)?.as_integer()?;
+        if let (Type::Text(text), None) = (&base.ty, base.window) {
+            return self.character(base, *text, number, (FaultKind::IndexOutOfRange, index.span));
+        }
+        let Type::Array(array) = &base.ty else { return unknown("an index of what is no array") };
         if !(array.low..=array.high).contains(&number) {
             return Err(self.fault(FaultKind::IndexOutOfRange, index.span));
         }

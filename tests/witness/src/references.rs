@@ -39,6 +39,7 @@ impl<'a> Machine<'a> {
                         nowhere: Some((span, FaultKind::NullReference)),
                         declared: None,
                         window: None,
+                        character: None,
                     })
                 }
                 None => unknown("a reference to nothing"),

@@ -56,7 +56,7 @@ impl<'a> Type<'a> {
                 Some(Layout { size: whole.size.next_multiple_of(whole.align), ..whole })
             }
             // Its characters, and a zero.
-            Self::Text(capacity) => Some(Layout { size: capacity + 1, align: 1 }),
+            Self::Text(it) => Some(Layout { size: (it.capacity + 1) * it.unit(), align: it.unit() }),
             Self::Subrange(..) | Self::Record(_) | Self::Block(_) | Self::Reference(_) => None,
         }
     }
@@ -71,7 +71,7 @@ impl<'a> Type<'a> {
             Self::Record(it) | Self::Union(it) => {
                 it.fields.iter().filter_map(|(_, slot)| slot.ty.smallest_part()).min_by_key(|it| it.repr().size())
             }
-            Self::Text(_) => Some(Elementary::Byte),
+            Self::Text(it) => Some(if it.wide { Elementary::Word } else { Elementary::Byte }),
             Self::Subrange(..) | Self::Block(_) | Self::Reference(_) => None,
         }
     }
@@ -157,9 +157,10 @@ impl<'a> Machine<'a> {
                 let size = place.ty.bytes().unwrap_or(0);
                 vec![Cell::Bytes(self.bytes_of(place)[first..first + size].to_vec())]
             }
-            Type::Text(capacity) => {
-                let bytes = &self.bytes_of(place)[first..first + capacity];
-                vec![Cell::Text(bytes.iter().copied().take_while(|it| *it != 0).collect())]
+            Type::Text(text) => {
+                let bytes = &self.bytes_of(place)[first..first + text.capacity * text.unit()];
+                let units = bytes.chunks(text.unit()).map(|it| u16::from_le_bytes([it[0], *it.get(1).unwrap_or(&0)]));
+                vec![Cell::Text(units.take_while(|it| *it != 0).collect())]
             }
             ty => {
                 let bytes = &self.bytes_of(place)[first..];
@@ -207,8 +208,10 @@ impl<'a> Machine<'a> {
             Cell::Bytes(own) => bytes[first..first + own.len()].copy_from_slice(own),
             // What comes after the zero stays.
             Cell::Text(text) => {
-                bytes[first..first + text.len()].copy_from_slice(text);
-                bytes[first + text.len()] = 0;
+                let Type::Text(ty) = place.ty else { return };
+                for (unit, to) in text.iter().chain([&0]).zip(bytes[first..].chunks_mut(ty.unit())) {
+                    to.copy_from_slice(&unit.to_le_bytes()[..ty.unit()]);
+                }
             }
             Cell::Reference(_) => {}
         }

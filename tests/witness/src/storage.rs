@@ -2,15 +2,17 @@
 //! cells start, and its type; two paths to one variable are the same place.
 
 use crate::machine::{Machine, Outcome, unknown};
+use crate::places::Character;
 use crate::shared::Window;
-use crate::types::{Elementary, Type};
+use crate::texts::Units;
+use crate::types::{Elementary, Text, Type};
 use staunch_frontend::Span;
 use staunch_runtime::{FaultKind, Value as Scalar};
 
 #[derive(Clone, Debug)]
 pub(crate) enum Cell<'a> {
     Scalar(Scalar),
-    Text(Vec<u8>),
+    Text(Units),
     /// What several variables share.
     Bytes(Vec<u8>),
     /// What a reference leads to, as it was declared there: an instance's own class.
@@ -34,6 +36,8 @@ pub(crate) struct Place<'a> {
     pub declared: Option<usize>,
     /// Where it begins in a cell that is shared.
     pub window: Option<Window>,
+    /// Which character of the text there it is.
+    pub character: Option<Character>,
 }
 
 impl<'a> Value<'a> {
@@ -45,8 +49,9 @@ impl<'a> Value<'a> {
         Self::scalar(Elementary::Bool, Scalar::Bool(value))
     }
 
-    pub fn text(bytes: Vec<u8>) -> Self {
-        Self { ty: Type::Text(usize::from(u16::MAX)), cells: vec![Cell::Text(bytes)] }
+    pub fn text(units: Units, wide: bool) -> Self {
+        let ty = Type::Text(Text { capacity: usize::from(u16::MAX), wide });
+        Self { ty, cells: vec![Cell::Text(units)] }
     }
 
     /// The elementary value, of an enumeration that of its base.
@@ -67,19 +72,19 @@ impl<'a> Value<'a> {
             _ => unknown("a condition that is not a BOOL"),
         }
     }
-
-    pub fn as_text(&self) -> Outcome<&[u8]> {
-        match self.cells.as_slice() {
-            [Cell::Text(it)] => Ok(it),
-            _ => unknown("a value that is not a text"),
-        }
-    }
 }
 
 impl<'a> Place<'a> {
     /// A part that starts `offset` cells in.
     pub fn part(&self, offset: usize, ty: &Type<'a>) -> Self {
-        Self { at: self.at + offset, ty: ty.clone(), nowhere: self.nowhere, declared: None, window: None }
+        Self {
+            at: self.at + offset,
+            ty: ty.clone(),
+            nowhere: self.nowhere,
+            declared: None,
+            window: None,
+            character: None,
+        }
     }
 }
 
@@ -89,24 +94,31 @@ impl<'a> Machine<'a> {
             Type::Subrange(base, ..) => Type::Elementary(*base),
             other => other.clone(),
         };
-        let cells = match place.window {
-            Some(window) => self.unpacked(place, window),
-            None => self.memory[place.at..place.at + place.ty.size()].to_vec(),
+        let cells = match (place.window, place.character) {
+            (Some(window), _) => self.unpacked(place, window),
+            (None, Some(character)) => vec![self.read_character(place, character.at)],
+            (None, None) => self.memory[place.at..place.at + place.ty.size()].to_vec(),
         };
         Value { ty, cells }
     }
 
     /// Stores a value that has the place's type already.
     pub(crate) fn write(&mut self, place: &Place<'a>, value: &Value<'a>) {
-        match place.window {
-            Some(window) => self.pack(place, window, &value.cells),
-            None => self.memory[place.at..place.at + value.cells.len()].clone_from_slice(&value.cells),
+        match (place.window, place.character) {
+            (Some(window), _) => self.pack(place, window, &value.cells),
+            (None, Some(character)) => self.write_character(place, character, &value.cells[0]),
+            (None, None) => self.memory[place.at..place.at + value.cells.len()].clone_from_slice(&value.cells),
         }
     }
 
     /// The value as one of `ty`: widened, cut at a text's capacity, checked against a subrange.
     pub(crate) fn converted(&self, value: Value<'a>, ty: &Type<'a>, span: Span) -> Outcome<Value<'a>> {
         match ty {
+            // A literal of one character is one where that is wanted.
+            Type::Elementary(to @ (Elementary::Char | Elementary::Wchar)) => match value.as_text()?.as_slice() {
+                [unit] => Ok(Value { ty: ty.clone(), cells: vec![integer_cell(*to, i128::from(*unit))] }),
+                _ => unknown("a text where a character is asked for"),
+            },
             Type::Elementary(to) => self.widened(&value, *to),
             Type::Subrange(base, low, high) => {
                 let value = self.widened(&value, *base)?;
@@ -115,10 +127,10 @@ impl<'a> Machine<'a> {
                 }
                 Err(self.fault(FaultKind::SubrangeViolated, span))
             }
-            Type::Text(capacity) => {
-                let mut bytes = value.as_text()?.to_vec();
-                bytes.truncate(*capacity);
-                Ok(Value { ty: ty.clone(), cells: vec![Cell::Text(bytes)] })
+            Type::Text(text) => {
+                let mut units = value.as_text()?;
+                units.truncate(text.capacity);
+                Ok(Value { ty: ty.clone(), cells: vec![Cell::Text(units)] })
             }
             Type::Reference(_) => Ok(Value { ty: ty.clone(), cells: value.cells }),
             Type::Enum(_) | Type::Array(_) | Type::Record(_) | Type::Union(_) | Type::Block(_) => Ok(value),
@@ -137,7 +149,7 @@ impl<'a> Machine<'a> {
     pub(crate) fn allocate(&mut self, ty: &Type<'a>) -> Place<'a> {
         let at = self.memory.len();
         self.memory.resize(at + ty.size(), Cell::Scalar(Scalar::Bool(false)));
-        Place { at, ty: ty.clone(), nowhere: None, declared: None, window: None }
+        Place { at, ty: ty.clone(), nowhere: None, declared: None, window: None, character: None }
     }
 }
 

@@ -4,6 +4,7 @@ use crate::machine::{Machine, Stop, unknown};
 use crate::places::pin_type;
 use crate::shared::Window;
 use crate::storage::{Cell, Place, Value};
+use crate::texts;
 use crate::types::Type;
 use staunch_frontend::ast::VarKind;
 use staunch_runtime::Value as Scalar;
@@ -12,13 +13,13 @@ use staunch_runtime::Value as Scalar;
 #[derive(Clone, Debug)]
 pub enum Input {
     Scalar(Scalar),
-    Text(Vec<u8>),
+    Text(Vec<u16>),
 }
 
 impl<'a> Machine<'a> {
     /// Path and value of each variable, as the executors' traces name them.
     pub fn variables(&self) -> Vec<(String, String)> {
-        self.places().into_iter().map(|(path, place)| (path, shown(&self.read(&place).cells[0]))).collect()
+        self.places().into_iter().map(|(path, place)| (path, shown(&place.ty, &self.read(&place).cells[0]))).collect()
     }
 
     /// Gives a variable a value from outside.
@@ -26,9 +27,10 @@ impl<'a> Machine<'a> {
     /// # Errors
     /// Where there is no such variable.
     pub fn put(&mut self, path: &str, value: Input) -> Result<(), Stop> {
-        if path.ends_with("__started") {
+        let own = path.rsplit('.').next().unwrap_or_default();
+        if own.starts_with("__") {
             // An event that keeps all keeps that instances have started.
-            self.has_started |= matches!(value, Input::Scalar(Scalar::Bool(true)));
+            self.has_started |= own.ends_with("started") && matches!(value, Input::Scalar(Scalar::Bool(true)));
             return Ok(());
         }
         let places = self.places();
@@ -52,7 +54,7 @@ impl<'a> Machine<'a> {
     /// What lies at a direct address that the executors gave a name of their own, of so many bytes, or of one bit.
     pub fn addressed(&self, path: &str, size: u32) -> Option<String> {
         let place = self.address_of(path, size)?;
-        Some(shown(&self.read(&place).cells[0]))
+        Some(shown(&place.ty, &self.read(&place).cells[0]))
     }
 
     /// `Globals.IX0_3` is `%IX0.3`; `Globals.bits_of_MB8[2]` comes two after what is at `%MB8`.
@@ -149,13 +151,13 @@ impl<'a> Machine<'a> {
 }
 
 /// A value as its bits, but for a NaN: which one it is, processors decide.
-fn shown(cell: &Cell<'_>) -> String {
+fn shown(ty: &Type<'_>, cell: &Cell<'_>) -> String {
     match cell {
         Cell::Scalar(Scalar::F32(it)) if it.is_nan() => "NaN".to_owned(),
         Cell::Scalar(Scalar::F64(it)) if it.is_nan() => "NaN".to_owned(),
         Cell::Scalar(it) => format!("{it:?}"),
         Cell::Reference(_) => "a reference".to_owned(),
         Cell::Bytes(it) => format!("{it:?}"),
-        Cell::Text(bytes) => format!("{:?}", String::from_utf8_lossy(bytes)),
+        Cell::Text(units) => texts::shown(units, matches!(ty, Type::Text(it) if it.wide)),
     }
 }

@@ -79,7 +79,7 @@ fn replayed<'a>(start: &dyn Fn() -> Result<Machine<'a>, Stop>, events: Vec<Event
                 }
             }
             Event::Put(path, Read::Scalar(value)) => machine.put(&path, Input::Scalar(value))?,
-            Event::Put(path, Read::Text(text)) => machine.put(&path, Input::Text(text.text().as_bytes().to_vec()))?,
+            Event::Put(path, Read::Text(text)) => machine.put(&path, Input::Text(units(&text)))?,
             Event::Scan(instance, context, theirs) => {
                 number += 1;
                 if theirs.end.is_some_and(|it| it.kind == FaultKind::LoopBudget) {
@@ -118,4 +118,8 @@ fn add_addresses(machine: &Machine<'_>, theirs: &Scan, ours: &mut Scan) {
             ours.variables.extend(machine.addressed(path, size).map(|it| (path.clone(), it)));
         }
     }
+}
+
+fn units(text: &ast::Chars) -> Vec<u16> {
+    (0..text.len()).filter_map(|it| text.unit(it)).collect()
 }
