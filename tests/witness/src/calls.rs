@@ -347,7 +347,13 @@ impl<'a> Machine<'a> {
             } else if let Some(Given::Place(place)) = given {
                 in_outs.push((argument.unwrap_or(0), key, place, slot.ty));
             } else if !own.names.contains_key(&key) {
-                let place = self.allocate(&slot.ty);
+                // An ARRAY[*] is what the call gives.
+                let ty = match given {
+                    Some(Given::Value(value)) if is_open(&slot.ty) => value.ty.clone(),
+                    Some(Given::Output { target, .. }) if is_open(&slot.ty) => target.ty.clone(),
+                    Some(_) | None => slot.ty.clone(),
+                };
+                let place = self.allocate(&ty);
                 if kind != VarKind::Input && self.is_constructed(&slot.ty) {
                     let before = std::mem::replace(&mut self.assigns, Assigns::VALUES);
                     let started = self.start(&own, &place, slot.initial);
@@ -606,6 +612,10 @@ impl<'a> Machine<'a> {
 /// `Standard.LEN`
 fn is_library(path: &[Name<'_>]) -> bool {
     matches!(path, [library, _] if ["Standard", "Tc2_Standard"].iter().any(|it| it.eq_ignore_ascii_case(library.text)))
+}
+
+fn is_open(ty: &Type<'_>) -> bool {
+    matches!(ty, Type::Array(it) if it.is_open)
 }
 
 /// Whether an in-out of this type is a copy: a text of another capacity, and what shares its bytes.

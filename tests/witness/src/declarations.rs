@@ -178,6 +178,10 @@ impl<'a> Declarations<'a> {
             if block.kind == VarKind::Inst {
                 return unknown("VAR_INST");
             }
+            if block.kind == VarKind::InOut && block.constant.is_some() {
+                // What is CONSTANT goes into it as a copy.
+                return unknown("VAR_IN_OUT CONSTANT");
+            }
             // An external variable is the global of its name.
             if block.kind != VarKind::External {
                 variables.extend(self.variables(block)?);
@@ -264,10 +268,15 @@ impl<'a> Declarations<'a> {
     /// `ARRAY[a, b] OF t` is an array of arrays.
     fn array(&mut self, bounds: &'a [ast::Bound<'a>], element: &'a ast::TypeSpec<'a>) -> Outcome<Type<'a>> {
         let mut slot = self.spec(element)?;
+        if bounds.is_empty() {
+            return unknown("an array without bounds");
+        }
         for (bound, dimensions) in bounds.iter().rev().zip(1..) {
-            let ast::Bound::Range(low, high) = bound else { return unknown("ARRAY[*]") };
-            let (low, high) = (self.number(low)?, self.number(high)?);
-            slot = Slot::of(Type::Array(Rc::new(Array { low, high, element: slot, dimensions })));
+            let (low, high, is_open) = match bound {
+                ast::Bound::Range(low, high) => (self.number(low)?, self.number(high)?, false),
+                ast::Bound::Open(_) => (0, -1, true),
+            };
+            slot = Slot::of(Type::Array(Rc::new(Array { low, high, element: slot, dimensions, is_open })));
         }
         Ok(slot.ty)
     }

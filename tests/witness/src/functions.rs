@@ -52,6 +52,25 @@ impl<'a> Machine<'a> {
                 let ty = value.ty.elementary().and_then(|it| it.meets(Elementary::Real)).unwrap_or(Elementary::Lreal);
                 self.applied(&upper, ty, &[in_repr(value.as_scalar()?, ty).as_scalar()?], at)
             }
+            "LOWER_BOUND" | "UPPER_BOUND" => self.bound_of(frame, &upper, &positions(&["ARR", "DIM"], arguments)?),
+            "ASSERT" => {
+                if self.value_as(frame, self.only(arguments)?, &Type::BOOL)?.as_bool()? {
+                    return Ok(Value::bool(true));
+                }
+                Err(self.fault(FaultKind::AssertionFailed, at))
+            }
+            "ATAN2" => {
+                let real = Type::Elementary(default_type(Untyped::Real, asked));
+                let values = self.of_one_type(frame, &positions(&["Y", "X"], arguments)?, Some(&real))?;
+                let ty = values
+                    .iter()
+                    .filter_map(|it| it.ty.elementary()?.meets(Elementary::Real))
+                    .max_by_key(|it| it.repr().size());
+                let ty = ty.unwrap_or(Elementary::Lreal);
+                let operands: Outcome<Vec<Scalar>> =
+                    values.iter().map(|it| in_repr(it.as_scalar()?, ty).as_scalar()).collect();
+                self.applied("ATAN2", ty, &operands?, at)
+            }
             "SHL" | "SHR" | "ROL" | "ROR" => self.shift(frame, &upper, &positions(&["IN", "N"], arguments)?, asked, at),
             "MAX" | "MIN" => self.extreme(frame, &upper, &positions(&["IN1", "IN2"], arguments)?, asked, at),
             "LIMIT" => self.limit(frame, &positions(&["MN", "IN", "MX"], arguments)?, asked, at),
@@ -65,10 +84,48 @@ impl<'a> Machine<'a> {
             }
             _ => match operator(&upper) {
                 Some(op) => self.operator_function(frame, op, &positions(&["IN1", "IN2"], arguments)?, asked, at),
+                None if typed(&upper).is_some() => self.typed_function(frame, &upper, arguments, at),
                 None if !upper.contains("TO_") && !upper.contains("TRUNC") => unknown(&format!("the function {upper}")),
                 None => self.conversion(frame, &upper, self.only(arguments)?, asked, at),
             },
         }
+    }
+
+    /// `ADD_DINT`: operands become the type that the name says.
+    fn typed_function(
+        &mut self,
+        frame: &Frame<'a>,
+        name: &str,
+        arguments: &'a [Argument<'a>],
+        at: Span,
+    ) -> Outcome<Value<'a>> {
+        let Some((op, ty)) = typed(name) else { return unknown("a typed function") };
+        let mut values = Vec::new();
+        for (position, expr) in positions(&["IN1", "IN2"], arguments)? {
+            values.push((position, self.value_as(frame, expr, &Type::Elementary(ty))?));
+        }
+        values.sort_by_key(|it| it.0);
+        let values: Vec<_> = values.into_iter().map(|it| it.1).collect();
+        self.folded(op, values, at, None)
+    }
+
+    fn bound_of(&mut self, frame: &Frame<'a>, name: &str, given: &[Given<'a>]) -> Outcome<Value<'a>> {
+        let (mut ty, mut dimension) = (None, 1);
+        for (position, expr) in given {
+            match position {
+                0 => ty = Some(self.place(frame, expr)?.ty),
+                _ => dimension = self.value(frame, expr, None)?.as_integer()?,
+            }
+        }
+        for _ in 1..dimension {
+            ty = match ty {
+                Some(Type::Array(array)) => Some(array.element.ty.clone()),
+                other => other,
+            };
+        }
+        let Some(Type::Array(array)) = ty else { return unknown("a bound of what is no array") };
+        let number = if name == "LOWER_BOUND" { array.low } else { array.high };
+        Ok(Value { ty: Type::Elementary(Elementary::Dint), cells: vec![integer_cell(Elementary::Dint, number)] })
     }
 
     fn only(&self, arguments: &'a [Argument<'a>]) -> Outcome<&'a Expr<'a>> {
@@ -295,6 +352,19 @@ impl<'a> Machine<'a> {
         } else {
             self.of_one_type(frame, given, asked.filter(|_| !compares))?
         };
+        self.folded(op, values, at, asked)
+    }
+
+    /// An operator between all values.
+    fn folded(
+        &mut self,
+        op: BinaryOp,
+        values: Vec<Value<'a>>,
+        at: Span,
+        asked: Option<&Type<'a>>,
+    ) -> Outcome<Value<'a>> {
+        let compares =
+            matches!(op, BinaryOp::Lt | BinaryOp::Gt | BinaryOp::Le | BinaryOp::Ge | BinaryOp::Eq | BinaryOp::Ne);
         if compares {
             let mut all = true;
             for pair in values.windows(2) {
@@ -401,6 +471,12 @@ impl<'a> Machine<'a> {
         }
         Ok(Some(ty))
     }
+}
+
+/// The operator and the type of `ADD_DINT`.
+fn typed(name: &str) -> Option<(BinaryOp, Elementary)> {
+    let (name, ty) = name.split_once('_')?;
+    Some((operator(name)?, Elementary::named(ty)?))
 }
 
 fn truncated<'a>(value: &Value<'a>, to: Elementary) -> Outcome<Value<'a>> {

@@ -226,6 +226,8 @@ pub(crate) struct Array<'a> {
     pub element: Slot<'a>,
     /// Of `ARRAY[a, b] OF t` 2: its elements, and their elements, are written in one row.
     pub dimensions: usize,
+    /// Of `ARRAY[*]`: each call gives an array of its own bounds.
+    pub is_open: bool,
 }
 
 #[derive(Debug)]
