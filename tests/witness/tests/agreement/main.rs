@@ -56,8 +56,8 @@ fn random_programs() {
         if number < SHRUNK {
             let native = how.contains("native");
             let small =
-                shrink::shrink(&generate::program(*seed), &|it| matches!(compare(it, native), Verdict::Differs(_)));
-            println!("{}\n{small}", compare(&small, native));
+                shrink::shrink(&generate::program(*seed), &|it| matches!(caught(it, native), Verdict::Differs(_)));
+            println!("{}\n{small}", caught(&small, native));
         }
     }
     assert!(all.different.is_empty(), "{} of {count} programs differ", all.different.len());
@@ -89,7 +89,8 @@ fn tally(seeds: impl Iterator<Item = u64>) -> Tally {
     let mut tally = Tally::default();
     for seed in seeds {
         let text = generate::program(seed);
-        match compare(&text, seed % native_every() == 0) {
+        // A panic is shown with its seed, and its program is made small as others are.
+        match caught(&text, seed % native_every() == 0) {
             Verdict::Same { faulted } => tally.faulted += u64::from(faulted),
             Verdict::Endless => tally.endless += 1,
             Verdict::Rejected(reason) => tally.rejected.entry(reason).or_insert((0, seed)).0 += 1,
@@ -97,6 +98,10 @@ fn tally(seeds: impl Iterator<Item = u64>) -> Tally {
         }
     }
     tally
+}
+
+fn caught(text: &str, with_native: bool) -> Verdict {
+    std::panic::catch_unwind(|| compare(text, with_native)).unwrap_or_else(|_| Verdict::Differs("a panic".to_owned()))
 }
 
 /// Native code of each so many programs is compared: of all where it is compiled fast.
