@@ -5,6 +5,7 @@ use crate::classes::is_super;
 use crate::declarations::Variable;
 use crate::machine::{Frame, Machine, Outcome, unknown};
 use crate::places::pin_type;
+use crate::starts::Assigns;
 use crate::storage::{Cell, Place, Value};
 use crate::types::Type;
 use staunch_frontend::Span;
@@ -101,8 +102,8 @@ impl<'a> Machine<'a> {
     /// Whether the callee has EN among its own parameters.
     fn declares_enable(&self, frame: &Frame<'a>, callee: &Expr<'a>) -> bool {
         let ExprKind::Name(name) = &callee.kind else { return false };
-        let instance = self.variable(frame, name.text).and_then(|it| it.ty.class());
-        let pou = instance.or_else(|| self.declared.pou_named(name.text));
+        let instance = self.variable(frame, name).and_then(|it| it.ty.class());
+        let pou = instance.or_else(|| self.declared.pou_named(&[*name]));
         pou.is_some_and(|it| self.formals(it).iter().any(|it| it.name.eq_ignore_ascii_case("EN")))
     }
 
@@ -128,7 +129,7 @@ impl<'a> Machine<'a> {
         let ExprKind::Name(name) = &callee.kind else { return Ok(None) };
         let own = self.own_routine(frame, name.text).map(|it| it.0);
         let function =
-            own.or_else(|| self.declared.pou_named(name.text)).map(|it| self.declared.pous[it].result.clone());
+            own.or_else(|| self.declared.pou_named(&[*name])).map(|it| self.declared.pous[it].result.clone());
         let Some(Some(slot)) = function else { return Ok(None) };
         let place = self.allocate(&slot.ty);
         self.start(&Frame::default(), &place, slot.initial)?;
@@ -150,11 +151,11 @@ impl<'a> Machine<'a> {
                     return self.call_routine(frame, own, &instance, arguments);
                 }
                 let local = frame.names.contains_key(&name.text.to_ascii_uppercase());
-                let function = self.declared.pou_named(name.text);
+                let function = self.declared.pou_named(&[*name]);
                 let function = function.filter(|it| self.declared.pous[*it].kind == PouKind::Function);
                 match function {
                     Some(function) => self.call_function(frame, function, arguments),
-                    None if local || self.globals.contains_key(&name.text.to_ascii_uppercase()) => {
+                    None if local || self.variable(frame, name).is_some() => {
                         let instance = self.place(frame, callee)?;
                         self.call_instance(frame, &instance, arguments)
                     }
@@ -166,6 +167,15 @@ impl<'a> Machine<'a> {
                     self.call_instruction(frame, name, arguments).map(Some)
                 }
                 _ => {
+                    if let Some(path) = self.outer_path(frame, callee) {
+                        match self.declared.pou_named(&path) {
+                            Some(pou) if self.declared.pous[pou].kind == PouKind::Function => {
+                                return self.call_function(frame, pou, arguments);
+                            }
+                            None if is_library(&path) => return self.standard(frame, name, arguments, asked).map(Some),
+                            Some(_) | None => {}
+                        }
+                    }
                     let above = if is_super(base) { Some(self.above(frame)?) } else { None };
                     let base = self.receiver(frame, base)?;
                     if let Type::Record(record) = &base.ty
@@ -222,6 +232,7 @@ impl<'a> Machine<'a> {
         let formals = self.formals(called);
         let size = self.memory.len();
         let mut outer = Frame { class: Some(owner), ..self.frame_of(instance, if method { owner } else { called }) };
+        self.name_addresses(&mut outer, owner)?;
         for variable in self.declared.pous[owner].variables.iter().filter(|it| it.kind == VarKind::Stat) {
             let key = variable.name.to_ascii_uppercase();
             outer.names.insert(key.clone(), self.statics[&(owner, key)].clone());
@@ -297,8 +308,17 @@ impl<'a> Machine<'a> {
     /// One call of an instance whose arguments have been found.
     pub(crate) fn run_instance(&mut self, pou: usize, instance: &Place<'a>, passed: Vec<Passed<'a>>) -> Outcome<()> {
         let size = self.memory.len();
-        let (own, copies) = self.enter(pou, self.instance_frame(instance), &passed)?;
+        let mut outer = self.instance_frame(instance);
+        self.name_addresses(&mut outer, pou)?;
+        let (own, copies) = self.enter(pou, outer, &passed)?;
+        let is_program = self.declared.pous[pou].kind == PouKind::Program;
+        if is_program {
+            self.take_bound(instance);
+        }
         self.body(&own, pou)?;
+        if is_program {
+            self.give_bound(instance);
+        }
         self.copy_back(&copies);
         self.connect(&own, passed)?;
         self.memory.truncate(size);
@@ -327,8 +347,22 @@ impl<'a> Machine<'a> {
             } else if let Some(Given::Place(place)) = given {
                 in_outs.push((argument.unwrap_or(0), key, place, slot.ty));
             } else if !own.names.contains_key(&key) {
-                let place = self.allocate(&slot.ty);
-                self.start(&own, &place, slot.initial)?;
+                // An ARRAY[*] is what the call gives.
+                let ty = match given {
+                    Some(Given::Value(value)) if is_open(&slot.ty) => value.ty.clone(),
+                    Some(Given::Output { target, .. }) if is_open(&slot.ty) => target.ty.clone(),
+                    Some(_) | None => slot.ty.clone(),
+                };
+                let place = self.allocate(&ty);
+                if kind != VarKind::Input && self.is_constructed(&slot.ty) {
+                    let before = std::mem::replace(&mut self.assigns, Assigns::VALUES);
+                    let started = self.start(&own, &place, slot.initial);
+                    self.assigns = before;
+                    started?;
+                    self.construct(&own, &place, &slot)?;
+                } else {
+                    self.start(&own, &place, slot.initial)?;
+                }
                 own.names.insert(key.clone(), place);
             }
             if let Some(Given::Value(value)) = given {
@@ -378,9 +412,9 @@ impl<'a> Machine<'a> {
     /// The variable that a VAR_IN_OUT stands for: the caller's, or a copy of it.
     fn in_out(&mut self, given: &Place<'a>, ty: &Type<'a>) -> Place<'a> {
         match (&given.ty, ty) {
-            (Type::Text(from), Type::Text(to)) if from != to => {
+            (Type::Text(from), Type::Text(to)) if from != to && given.window.is_none() => {
                 let copy = self.allocate(ty);
-                self.memory[copy.at] = cut(&self.memory[given.at], *to);
+                self.memory[copy.at] = cut(&self.memory[given.at], to.capacity);
                 copy
             }
             // What shares its bytes goes in as a copy, and comes back when the call ends.
@@ -397,7 +431,9 @@ impl<'a> Machine<'a> {
     pub(crate) fn copy_back(&mut self, copies: &[(Place<'a>, Place<'a>)]) {
         for (copy, given) in copies {
             match given.ty {
-                Type::Text(capacity) => self.memory[given.at] = cut(&self.memory[copy.at], capacity),
+                Type::Text(text) if given.window.is_none() => {
+                    self.memory[given.at] = cut(&self.memory[copy.at], text.capacity);
+                }
                 _ => self.write(given, &self.read(copy)),
             }
         }
@@ -428,6 +464,29 @@ impl<'a> Machine<'a> {
     fn formals(&self, pou: usize) -> Vec<Formal<'a>> {
         let parameters = self.declared.pous[pou].variables.iter().filter(|it| it.is_parameter());
         parameters.map(|it| Formal { name: it.name, kind: it.kind, ty: it.slot.ty.clone() }).collect()
+    }
+
+    /// What the run of a PROGRAM is connected with.
+    pub(crate) fn arguments_of(&mut self, pou: usize, arguments: &'a [Argument<'a>]) -> Outcome<Vec<Passed<'a>>> {
+        let formals = self.formals(pou);
+        self.passed(&Frame::default(), &formals, arguments)
+    }
+
+    /// The values of a routine's inputs but for some.
+    pub(crate) fn values_of(
+        &mut self,
+        frame: &Frame<'a>,
+        routine: usize,
+        arguments: &'a [Argument<'a>],
+        without: &[&str],
+    ) -> Outcome<Vec<(&'a str, Value<'a>)>> {
+        let mut formals = self.formals(routine);
+        formals.retain(|it| !without.iter().any(|name| it.name.eq_ignore_ascii_case(name)));
+        let values = self.passed(frame, &formals, arguments)?.into_iter().map(|it| match it.given {
+            Given::Value(value) => Ok((it.name, value)),
+            Given::Place(_) | Given::Output { .. } => unknown("an argument of FB_init that is no input"),
+        });
+        values.collect()
     }
 
     /// What the arguments give, in the order in which they are written.
@@ -550,6 +609,15 @@ impl<'a> Machine<'a> {
     }
 }
 
+/// `Standard.LEN`
+fn is_library(path: &[Name<'_>]) -> bool {
+    matches!(path, [library, _] if ["Standard", "Tc2_Standard"].iter().any(|it| it.eq_ignore_ascii_case(library.text)))
+}
+
+fn is_open(ty: &Type<'_>) -> bool {
+    matches!(ty, Type::Array(it) if it.is_open)
+}
+
 /// Whether an in-out of this type is a copy: a text of another capacity, and what shares its bytes.
 fn is_copied(given: &Place<'_>, ty: &Type<'_>) -> bool {
     matches!((&given.ty, ty), (Type::Text(from), Type::Text(to)) if from != to) || given.window.is_some()
@@ -566,7 +634,7 @@ pub(crate) fn is_enable(argument: &Argument<'_>) -> bool {
 
 fn cut<'a>(text: &Cell<'a>, capacity: usize) -> Cell<'a> {
     match text {
-        Cell::Text(bytes) => Cell::Text(bytes.iter().copied().take(capacity).collect()),
+        Cell::Text(units) => Cell::Text(units.iter().copied().take(capacity).collect()),
         Cell::Scalar(_) | Cell::Reference(_) | Cell::Bytes(_) => text.clone(),
     }
 }

@@ -4,16 +4,30 @@
 //! a place of the heir's type. So what is called is what the place's own type has.
 
 use crate::calls::Passed;
-use crate::declarations::{Declarations, name_of};
+use crate::declarations::{Declarations, path_of};
 use crate::machine::{Frame, Machine, Outcome, unknown};
 use crate::storage::{Place, Value};
 use crate::types::{RefKind, Type};
-use staunch_frontend::ast::{Expr, ExprKind, Item, Pou, PouKind, TypeSpec, VarKind};
+use staunch_frontend::ast::{Expr, ExprKind, PouKind, TypeSpec, VarKind};
 
 impl<'a> Declarations<'a> {
     /// A class, and those above it.
     fn line(&self, class: usize) -> impl Iterator<Item = usize> {
         std::iter::successors(Some(class), |it| self.pous[*it].base)
+    }
+
+    /// A class after those above it.
+    pub fn line_down(&self, class: usize) -> Vec<usize> {
+        let mut line: Vec<usize> = self.line(class).collect();
+        line.reverse();
+        line
+    }
+
+    /// The METHOD of that name that a class itself declares.
+    pub fn own_routine(&self, class: usize, name: &str) -> Option<usize> {
+        self.pous
+            .iter()
+            .position(|it| it.owner == Some(class) && it.kind == PouKind::Method && it.name.eq_ignore_ascii_case(name))
     }
 
     fn routine_where(&self, class: usize, name: &str, fits: impl Fn(PouKind) -> bool) -> Option<usize> {
@@ -37,36 +51,23 @@ impl<'a> Declarations<'a> {
         self.routine_where(class, name, |it| matches!(it, PouKind::Getter | PouKind::Setter)).is_some()
     }
 
-    /// Whether a class is, extends or implements what has that name.
-    pub fn is_a(&self, class: usize, name: &str) -> bool {
-        self.line(class).any(|it| {
-            let pou = &self.pous[it];
-            pou.name.eq_ignore_ascii_case(name) || pou.implements.iter().any(|it| self.interface_is(it.text, name))
-        })
+    /// Whether a class is, extends or implements the other.
+    pub fn is_a(&self, class: usize, other: usize) -> bool {
+        self.line(class)
+            .any(|it| it == other || self.pous[it].implements.iter().any(|it| self.interface_is(*it, other)))
     }
 
     /// A class that has an interface, for what a call through it is given.
     pub fn implementer(&mut self, interface: &'a TypeSpec<'a>) -> Outcome<Type<'a>> {
-        let name = name_of(interface).unwrap_or_default();
+        let Some(interface) = self.pou_named(path_of(interface)) else { return unknown("this INTERFACE") };
         let mut classes = (0..self.pous.len()).filter(|it| self.pous[*it].owner.is_none());
-        let found = classes.find(|it| self.pous[*it].kind != PouKind::Interface && self.is_a(*it, name));
+        let found = classes.find(|it| self.pous[*it].kind != PouKind::Interface && self.is_a(*it, interface));
         found.map_or_else(|| unknown("an interface that no class has"), |it| self.instance_of(it))
     }
 
-    fn interface_is(&self, interface: &str, name: &str) -> bool {
-        let above = || self.pous.iter().find(|it| it.name.eq_ignore_ascii_case(interface));
-        interface.eq_ignore_ascii_case(name)
-            || above().is_some_and(|it| it.implements.iter().any(|it| self.interface_is(it.text, name)))
+    fn interface_is(&self, interface: usize, other: usize) -> bool {
+        interface == other || self.pous[interface].implements.iter().any(|it| self.interface_is(*it, other))
     }
-}
-
-/// The POU of that name in the files, and its number among them.
-pub(crate) fn pou_of<'a>(files: &'a [staunch_frontend::ast::File<'a>], name: &str) -> Option<(usize, &'a Pou<'a>)> {
-    let pous = files.iter().flat_map(|it| &it.items).filter_map(|it| match it {
-        Item::Pou(pou) => Some(pou),
-        Item::Globals(_) | Item::Types(_) | Item::Configuration(_) | Item::Test(_) => None,
-    });
-    pous.enumerate().find(|(_, it)| it.name.text.eq_ignore_ascii_case(name))
 }
 
 impl<'a> Machine<'a> {
@@ -89,6 +90,7 @@ impl<'a> Machine<'a> {
         let Some((_, instance)) = frame.this.clone() else { return unknown("SUPER without an instance") };
         let size = self.memory.len();
         let mut outer = self.frame_of(&instance, above);
+        self.name_addresses(&mut outer, above)?;
         for variable in self.declared.pous[above].variables.iter().filter(|it| it.kind == VarKind::InOut) {
             let key = variable.name.to_ascii_uppercase();
             outer.names.extend(frame.names.get(&key).map(|place| (key, place.clone())));
@@ -110,7 +112,7 @@ impl<'a> Machine<'a> {
         match &expr.kind {
             ExprKind::Paren(inner) => self.property(frame, inner),
             ExprKind::Name(name) => {
-                let hidden = self.variable(frame, name.text).is_some();
+                let hidden = self.variable(frame, name).is_some();
                 let own = frame.class.is_some_and(|it| self.declared.has_property(it, name.text));
                 Ok(frame.this.clone().filter(|_| own && !hidden).map(|(class, it)| (name.text, class, it)))
             }
@@ -127,7 +129,7 @@ impl<'a> Machine<'a> {
     }
 
     fn is_type(&self, frame: &Frame<'a>, base: &Expr<'a>) -> bool {
-        matches!(&base.kind, ExprKind::Name(name) if self.variable(frame, name.text).is_none())
+        matches!(&base.kind, ExprKind::Name(name) if self.variable(frame, name).is_none())
             && !is_this(base)
             && !is_super(base)
     }

@@ -1,11 +1,13 @@
 //! Expressions: each operand in its turn, from left to right.
 
-use crate::classes::{is_super, is_this};
+use crate::classes::is_this;
 use crate::machine::{Frame, Machine, Outcome, unknown};
 use crate::references::{is_null, null};
 use crate::storage::{Cell, Value, integer_cell};
+use crate::texts::units;
 use crate::types::{Elementary, Type};
-use staunch_frontend::ast::{BinaryOp, Chars, Expr, ExprKind, Literal, LiteralValue, UnaryOp};
+use staunch_frontend::Span;
+use staunch_frontend::ast::{BinaryOp, Chars, Expr, ExprKind, Literal, LiteralValue, Name, UnaryOp};
 use staunch_runtime::{Value as Scalar, ops};
 
 /// A number without a type of its own: it takes the one that its place asks for.
@@ -46,7 +48,7 @@ impl<'a> Machine<'a> {
         match &expr.kind {
             ExprKind::Paren(inner) => self.value(frame, inner, asked),
             ExprKind::Literal(literal) => self.literal(literal),
-            ExprKind::Name(name) => match self.variable(frame, name.text) {
+            ExprKind::Name(name) => match self.variable(frame, name) {
                 Some(_) => self.stored(frame, expr),
                 None if is_null(expr) => Ok(null()),
                 None if is_this(expr) => {
@@ -61,21 +63,7 @@ impl<'a> Machine<'a> {
                         .map_or_else(|| unknown(&format!("the name {}", name.text)), Ok),
                 },
             },
-            ExprKind::Member(base, name) => match &base.kind {
-                ExprKind::Name(ty) if self.variable(frame, ty.text).is_none() && !is_this(base) && !is_super(base) => {
-                    match self.property(frame, base)? {
-                        Some(_) => self.stored(frame, expr),
-                        None => self
-                            .declared
-                            .enumerator(ty.text, name.text)
-                            .map_or_else(|| unknown(&format!("the name {}", ty.text)), Ok),
-                    }
-                }
-                _ => match self.property(frame, expr)? {
-                    Some((name, class, instance)) => self.got(name, class, &instance),
-                    None => self.stored(frame, expr),
-                },
-            },
+            ExprKind::Member(base, name) => self.of_member(frame, expr, base, name),
             ExprKind::Index(..) | ExprKind::Deref(_) | ExprKind::Address(_) => self.stored(frame, expr),
             ExprKind::Part(base, part) => self.part(frame, base, part),
             ExprKind::Call(callee, arguments) => match self.call(frame, callee, arguments, asked)? {
@@ -85,6 +73,25 @@ impl<'a> Machine<'a> {
             ExprKind::Unary(op, inner) => self.unary(frame, *op, inner, asked),
             ExprKind::Binary(sides, op, at) => self.binary(frame, *op, &sides[0], &sides[1], *at, asked),
             ExprKind::Assign(..) | ExprKind::Error(_) => unknown("this expression"),
+        }
+    }
+
+    /// `a.b`: an enumerator of the type `a`, what a PROPERTY gives, or a part of a variable.
+    fn of_member(
+        &mut self,
+        frame: &Frame<'a>,
+        expr: &'a Expr<'a>,
+        base: &'a Expr<'a>,
+        name: &Name<'a>,
+    ) -> Outcome<Value<'a>> {
+        if let Some(ty) = self.outer_path(frame, base)
+            && let Some(value) = self.declared.enumerator(&ty, name.text)
+        {
+            return Ok(value);
+        }
+        match self.property(frame, expr)? {
+            Some((name, class, instance)) => self.got(name, class, &instance),
+            None => self.stored(frame, expr),
         }
     }
 
@@ -109,21 +116,23 @@ impl<'a> Machine<'a> {
         }
     }
 
-    fn literal(&self, literal: &'a Literal<'a>) -> Outcome<Value<'a>> {
+    fn literal(&mut self, literal: &'a Literal<'a>) -> Outcome<Value<'a>> {
         match (&literal.prefix, &literal.value) {
             (Some(ty), LiteralValue::Enumerator(name)) => {
-                self.declared.enumerator(ty.text, name.text).map_or_else(|| unknown("this enumerator"), Ok)
+                self.declared.enumerator(&[**ty], name.text).map_or_else(|| unknown("this enumerator"), Ok)
             }
             (_, LiteralValue::Bool(it)) => Ok(Value::bool(*it)),
             (_, LiteralValue::Time { ty, nanoseconds }) => match Elementary::named(ty.name()) {
                 Some(ty) => Ok(Value::scalar(ty, Scalar::I64(*nanoseconds))),
                 None => unknown("literals of dates"),
             },
-            (None, LiteralValue::String(chars)) => match &**chars {
-                Chars::Narrow(bytes) => Ok(Value::text(bytes.clone())),
-                Chars::Wide(_) => unknown("WSTRING"),
-            },
-            (Some(_), LiteralValue::String(_)) => unknown("typed literals of text"),
+            (prefix, LiteralValue::String(chars)) => {
+                let value = Value::text(units(chars), matches!(**chars, Chars::Wide(_)));
+                match prefix.as_ref().and_then(|it| Elementary::named(it.text)) {
+                    Some(ty) => self.converted(value, &Type::Elementary(ty), Span::default()),
+                    None => Ok(value),
+                }
+            }
             (Some(ty), value) => match Elementary::named(ty.text) {
                 Some(ty) => typed_number(value, false, ty),
                 None => unknown("the type of a literal"),

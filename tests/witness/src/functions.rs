@@ -9,10 +9,10 @@ use crate::types::{Elementary, Type};
 use staunch_frontend::Span;
 use staunch_frontend::ast::{Argument, ArgumentKind, BinaryOp, Expr, ExprKind, Name};
 use staunch_runtime::time::MILLISECOND;
-use staunch_runtime::{FaultKind, Value as Scalar, ops, text};
+use staunch_runtime::{FaultKind, Value as Scalar, ops};
 
 /// An argument, and the position of its parameter.
-type Given<'a> = (usize, &'a Expr<'a>);
+pub(crate) type Given<'a> = (usize, &'a Expr<'a>);
 
 impl<'a> Machine<'a> {
     pub(crate) fn standard(
@@ -27,7 +27,7 @@ impl<'a> Machine<'a> {
         if arguments.iter().any(leads_to_a_part) {
             return unknown("when the target of an ENO is found among the arguments of this function");
         }
-        if let Some(value) = self.reference_function(frame, &upper, arguments)? {
+        if let Some(value) = self.reference_function(frame, &upper, arguments, at)? {
             return Ok(value);
         }
         if let Some(value) = self.date_function(frame, &upper, arguments, at)? {
@@ -52,6 +52,25 @@ impl<'a> Machine<'a> {
                 let ty = value.ty.elementary().and_then(|it| it.meets(Elementary::Real)).unwrap_or(Elementary::Lreal);
                 self.applied(&upper, ty, &[in_repr(value.as_scalar()?, ty).as_scalar()?], at)
             }
+            "LOWER_BOUND" | "UPPER_BOUND" => self.bound_of(frame, &upper, &positions(&["ARR", "DIM"], arguments)?),
+            "ASSERT" => {
+                if self.value_as(frame, self.only(arguments)?, &Type::BOOL)?.as_bool()? {
+                    return Ok(Value::bool(true));
+                }
+                Err(self.fault(FaultKind::AssertionFailed, at))
+            }
+            "ATAN2" => {
+                let real = Type::Elementary(default_type(Untyped::Real, asked));
+                let values = self.of_one_type(frame, &positions(&["Y", "X"], arguments)?, Some(&real))?;
+                let ty = values
+                    .iter()
+                    .filter_map(|it| it.ty.elementary()?.meets(Elementary::Real))
+                    .max_by_key(|it| it.repr().size());
+                let ty = ty.unwrap_or(Elementary::Lreal);
+                let operands: Outcome<Vec<Scalar>> =
+                    values.iter().map(|it| in_repr(it.as_scalar()?, ty).as_scalar()).collect();
+                self.applied("ATAN2", ty, &operands?, at)
+            }
             "SHL" | "SHR" | "ROL" | "ROR" => self.shift(frame, &upper, &positions(&["IN", "N"], arguments)?, asked, at),
             "MAX" | "MIN" => self.extreme(frame, &upper, &positions(&["IN1", "IN2"], arguments)?, asked, at),
             "LIMIT" => self.limit(frame, &positions(&["MN", "IN", "MX"], arguments)?, asked, at),
@@ -60,11 +79,53 @@ impl<'a> Machine<'a> {
             "LEN" | "FIND" | "LEFT" | "RIGHT" | "MID" | "CONCAT" | "INSERT" | "DELETE" | "REPLACE" => {
                 self.text_function(frame, &upper, arguments)
             }
+            "WLEN" | "WFIND" | "WLEFT" | "WRIGHT" | "WMID" | "WCONCAT" | "WINSERT" | "WDELETE" | "WREPLACE" => {
+                self.text_function(frame, &upper[1..], arguments)
+            }
             _ => match operator(&upper) {
                 Some(op) => self.operator_function(frame, op, &positions(&["IN1", "IN2"], arguments)?, asked, at),
+                None if typed(&upper).is_some() => self.typed_function(frame, &upper, arguments, at),
+                None if !upper.contains("TO_") && !upper.contains("TRUNC") => unknown(&format!("the function {upper}")),
                 None => self.conversion(frame, &upper, self.only(arguments)?, asked, at),
             },
         }
+    }
+
+    /// `ADD_DINT`: operands become the type that the name says.
+    fn typed_function(
+        &mut self,
+        frame: &Frame<'a>,
+        name: &str,
+        arguments: &'a [Argument<'a>],
+        at: Span,
+    ) -> Outcome<Value<'a>> {
+        let Some((op, ty)) = typed(name) else { return unknown("a typed function") };
+        let mut values = Vec::new();
+        for (position, expr) in positions(&["IN1", "IN2"], arguments)? {
+            values.push((position, self.value_as(frame, expr, &Type::Elementary(ty))?));
+        }
+        values.sort_by_key(|it| it.0);
+        let values: Vec<_> = values.into_iter().map(|it| it.1).collect();
+        self.folded(op, values, at, None)
+    }
+
+    fn bound_of(&mut self, frame: &Frame<'a>, name: &str, given: &[Given<'a>]) -> Outcome<Value<'a>> {
+        let (mut ty, mut dimension) = (None, 1);
+        for (position, expr) in given {
+            match position {
+                0 => ty = Some(self.place(frame, expr)?.ty),
+                _ => dimension = self.value(frame, expr, None)?.as_integer()?,
+            }
+        }
+        for _ in 1..dimension {
+            ty = match ty {
+                Some(Type::Array(array)) => Some(array.element.ty.clone()),
+                other => other,
+            };
+        }
+        let Some(Type::Array(array)) = ty else { return unknown("a bound of what is no array") };
+        let number = if name == "LOWER_BOUND" { array.low } else { array.high };
+        Ok(Value { ty: Type::Elementary(Elementary::Dint), cells: vec![integer_cell(Elementary::Dint, number)] })
     }
 
     fn only(&self, arguments: &'a [Argument<'a>]) -> Outcome<&'a Expr<'a>> {
@@ -120,11 +181,13 @@ impl<'a> Machine<'a> {
         let mut values = values.into_iter();
         let Some(mut best) = values.next() else { return unknown("a function without arguments") };
         for value in values {
-            best = match (value.ty.elementary(), &value.ty) {
-                (Some(ty), _) => self.computed(name, ty, &[best.as_scalar()?, value.as_scalar()?], at)?,
-                (None, Type::Text(_)) => {
-                    let order = text::compare(value.as_text()?, best.as_text()?);
-                    if (name == "MAX" && order > 0) || (name == "MIN" && order < 0) { value } else { best }
+            let ty = value.ty.elementary().filter(|_| !value.is_text());
+            best = match ty {
+                Some(ty) => self.computed(name, ty, &[best.as_scalar()?, value.as_scalar()?], at)?,
+                None if value.is_text() && best.is_text() => {
+                    let order = value.as_text()?.cmp(&best.as_text()?);
+                    let is_better = if name == "MAX" { order.is_gt() } else { order.is_lt() };
+                    if is_better { value } else { best }
                 }
                 _ => return unknown("MAX of this type"),
             };
@@ -141,10 +204,11 @@ impl<'a> Machine<'a> {
     ) -> Outcome<Value<'a>> {
         let values = self.of_one_type(frame, given, asked)?;
         let [low, value, high] = values.as_slice() else { return unknown("LIMIT without three arguments") };
-        match value.ty.elementary() {
+        let ty = value.ty.elementary().filter(|_| !values.iter().any(Value::is_text));
+        match ty {
             Some(ty) => self.computed("LIMIT", ty, &[low.as_scalar()?, value.as_scalar()?, high.as_scalar()?], at),
-            None if text::compare(value.as_text()?, low.as_text()?) < 0 => Ok(low.clone()),
-            None if text::compare(value.as_text()?, high.as_text()?) > 0 => Ok(high.clone()),
+            None if value.as_text()? < low.as_text()? => Ok(low.clone()),
+            None if value.as_text()? > high.as_text()? => Ok(high.clone()),
             None => Ok(value.clone()),
         }
     }
@@ -288,6 +352,19 @@ impl<'a> Machine<'a> {
         } else {
             self.of_one_type(frame, given, asked.filter(|_| !compares))?
         };
+        self.folded(op, values, at, asked)
+    }
+
+    /// An operator between all values.
+    fn folded(
+        &mut self,
+        op: BinaryOp,
+        values: Vec<Value<'a>>,
+        at: Span,
+        asked: Option<&Type<'a>>,
+    ) -> Outcome<Value<'a>> {
+        let compares =
+            matches!(op, BinaryOp::Lt | BinaryOp::Gt | BinaryOp::Le | BinaryOp::Ge | BinaryOp::Eq | BinaryOp::Ne);
         if compares {
             let mut all = true;
             for pair in values.windows(2) {
@@ -301,43 +378,6 @@ impl<'a> Machine<'a> {
             result = self.operate(op, result, value, at, asked)?;
         }
         Ok(result)
-    }
-
-    fn text_function(&mut self, frame: &Frame<'a>, name: &str, arguments: &'a [Argument<'a>]) -> Outcome<Value<'a>> {
-        let names: &[&str] = match name {
-            "LEN" => &["IN"],
-            "FIND" | "CONCAT" => &["IN1", "IN2"],
-            "LEFT" | "RIGHT" => &["IN", "L"],
-            "MID" | "DELETE" => &["IN", "L", "P"],
-            "INSERT" => &["IN1", "IN2", "P"],
-            _ => &["IN1", "IN2", "L", "P"],
-        };
-        let mut values: Vec<(usize, Value<'a>)> = Vec::new();
-        for (position, expr) in positions(names, arguments)? {
-            let counts = names.get(position).is_some_and(|it| matches!(*it, "L" | "P"));
-            let value = if counts { self.value_as(frame, expr, &Type::LINT)? } else { self.value(frame, expr, None)? };
-            values.push((position, value));
-        }
-        values.sort_by_key(|it| it.0);
-        let text = |at: usize| values[at].1.as_text();
-        let count = |at: usize| values[at].1.as_integer().map(|it| i64::try_from(it).unwrap_or(0));
-        if let "LEN" | "FIND" = name {
-            let number = if name == "LEN" { text::len(text(0)?) } else { text::find(text(0)?, text(1)?) };
-            return Ok(Value::scalar(Elementary::Int, Scalar::I16(number)));
-        }
-        let (mut length, mut bytes) = (0, vec![0; usize::from(u16::MAX)]);
-        let out = &mut text::Destination::new(&mut length, &mut bytes);
-        match name {
-            "LEFT" => text::left(text(0)?, count(1)?, out),
-            "RIGHT" => text::right(text(0)?, count(1)?, out),
-            "MID" => text::mid(text(0)?, count(1)?, count(2)?, out),
-            "DELETE" => text::delete(text(0)?, count(1)?, count(2)?, out),
-            "INSERT" => text::insert(text(0)?, text(1)?, count(2)?, out),
-            "REPLACE" => text::replace(text(0)?, text(1)?, count(2)?, count(3)?, out),
-            _ => values.iter().try_for_each(|it| it.1.as_text().map(|it| out.write(it)))?,
-        }
-        bytes.truncate(usize::from(length));
-        Ok(Value::text(bytes))
     }
 
     /// `INT_TO_REAL`, `TO_REAL`, `TRUNC`, `TRUNC_INT`, `REAL_TRUNC_INT`.
@@ -362,14 +402,24 @@ impl<'a> Machine<'a> {
         }
         if let Some(to) = name.strip_prefix("TO_") {
             let value = self.value(frame, expr, None)?;
+            if let Some(converted) = self.text_converted(&value, to)? {
+                return Ok(converted);
+            }
             return self.converted_by_name(&value, named(to)?, at);
         }
         let Some((from, to)) = name.split_once("_TO_") else { return unknown(&format!("the function {name}")) };
-        let value = self.value_as(frame, expr, &Type::Elementary(named(from)?))?;
+        let value = match Elementary::named(from) {
+            Some(from) => self.value_as(frame, expr, &Type::Elementary(from))?,
+            None if from == "STRING" || from == "WSTRING" => self.value(frame, expr, None)?,
+            None => return unknown(&format!("the function {name}")),
+        };
+        if let Some(converted) = self.text_converted(&value, to)? {
+            return Ok(converted);
+        }
         self.converted_by_name(&value, named(to)?, at)
     }
 
-    /// TIME and numbers meet at milliseconds; of a bit string BOOL takes the rightmost bit.
+    /// TIME and numbers meet at milliseconds; of a bit string or an integer BOOL takes the rightmost bit.
     fn converted_by_name(&self, value: &Value<'a>, to: Elementary, at: Span) -> Outcome<Value<'a>> {
         let scalar = value.as_scalar()?;
         let Some(from) = value.ty.base() else { return unknown("a conversion of this type") };
@@ -389,7 +439,7 @@ impl<'a> Machine<'a> {
                 Ok(in_repr(count.as_scalar()?, to))
             }
             _ if to == Elementary::Bool && self.is_codesys() => Ok(Value::bool(value.as_integer()? != 0)),
-            _ if to == Elementary::Bool && from.is_bits() && from != Elementary::Bool => {
+            _ if to == Elementary::Bool && from != Elementary::Bool && !real => {
                 Ok(Value::bool(value.as_integer()? & 1 == 1))
             }
             _ => Ok(in_repr(scalar, to)),
@@ -423,6 +473,12 @@ impl<'a> Machine<'a> {
     }
 }
 
+/// The operator and the type of `ADD_DINT`.
+fn typed(name: &str) -> Option<(BinaryOp, Elementary)> {
+    let (name, ty) = name.split_once('_')?;
+    Some((operator(name)?, Elementary::named(ty)?))
+}
+
 fn truncated<'a>(value: &Value<'a>, to: Elementary) -> Outcome<Value<'a>> {
     Ok(Value::scalar(to, ops::trunc_value(value.as_scalar()?, to.repr())))
 }
@@ -436,7 +492,7 @@ fn leads_to_a_part(argument: &Argument<'_>) -> bool {
 }
 
 /// The arguments as they are written, with the positions of their parameters.
-fn positions<'a>(names: &[&str], arguments: &'a [Argument<'a>]) -> Outcome<Vec<Given<'a>>> {
+pub(crate) fn positions<'a>(names: &[&str], arguments: &'a [Argument<'a>]) -> Outcome<Vec<Given<'a>>> {
     let mut given: Vec<Given<'a>> = Vec::new();
     for argument in arguments.iter().filter(|it| !is_enable(it)) {
         let (position, expr) = match &argument.kind {

@@ -14,21 +14,31 @@
 
 mod types;
 
+mod constants;
 mod declarations;
+mod names;
 mod shared;
+mod starts;
 mod storage;
+mod texts;
 
 mod machine;
+mod runs;
 mod statements;
+mod traces;
 
+mod addresses;
+mod bindings;
 mod calls;
 mod classes;
+mod construction;
 mod dates;
 mod edges;
 mod expressions;
 mod functions;
 mod operators;
 mod places;
+mod pools;
 mod promotion;
 mod references;
 
@@ -37,3 +47,4 @@ pub mod random;
 pub mod shrink;
 
 pub use machine::{Machine, Stop};
+pub use traces::Input;

@@ -7,7 +7,7 @@ use crate::storage::Value;
 use crate::types::{Elementary, Type};
 use staunch_frontend::Span;
 use staunch_frontend::ast::{BinaryOp, Expr};
-use staunch_runtime::{Family, FaultKind, Outcome as _, Repr, Scalar as _, Value as Scalar, ops, text, with_repr};
+use staunch_runtime::{Family, FaultKind, Outcome as _, Repr, Scalar as _, Value as Scalar, ops, with_repr};
 
 impl<'a> Machine<'a> {
     pub(crate) fn binary(
@@ -79,8 +79,9 @@ impl<'a> Machine<'a> {
         at: Span,
         asked: Option<&Type<'a>>,
     ) -> Outcome<Value<'a>> {
-        if let (Type::Text(_), Type::Text(_)) = (&a.ty, &b.ty) {
-            let order = Scalar::I16(text::compare(a.as_text()?, b.as_text()?));
+        if a.is_text() && b.is_text() {
+            // Unit by unit; a text comes after those that it begins with.
+            let order = Scalar::I16(a.as_text()?.cmp(&b.as_text()?) as i16);
             return self.applied(name(op), Elementary::Int, &[order, Scalar::I16(0)], at);
         }
         if let (Type::Reference(_), Type::Reference(_)) = (&a.ty, &b.ty) {

@@ -1,13 +1,20 @@
 //! Places: where a variable, or a part of one, lies. Each index is evaluated and checked in its turn.
 
 use crate::classes::{is_super, is_this};
+use crate::constants::path;
 use crate::machine::{Frame, Machine, Outcome, unknown};
-use crate::shared::address;
 use crate::statements::Flow;
 use crate::storage::{Place, Value, integer_cell};
 use crate::types::{Elementary, RefKind, Type};
 use staunch_frontend::ast::{Expr, ExprKind, Name};
 use staunch_runtime::{BlockInfo, Direction, FaultKind};
+
+/// A character of a text: how many come before it, and how many there can be.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Character {
+    pub at: usize,
+    pub capacity: usize,
+}
 
 /// What `.3` or `.%B1` selects: its type, and the number of its first bit.
 struct Part {
@@ -38,9 +45,12 @@ impl<'a> Machine<'a> {
             ExprKind::Name(_) if is_this(expr) || is_super(expr) => this(frame),
             ExprKind::Deref(inner) => self.dereferenced(frame, inner, expr.span),
             ExprKind::Name(name) => {
-                self.variable(frame, name.text).map_or_else(|| unknown(&format!("the name {}", name.text)), Ok)
+                self.variable(frame, name).map_or_else(|| unknown(&format!("the name {}", name.text)), Ok)
             }
             ExprKind::Member(base, name) => {
+                if let Some(global) = self.named_global(frame, expr) {
+                    return Ok(global);
+                }
                 let base = self.receiver(frame, base)?;
                 self.member(&base, name.text).map_or_else(|| unknown(&format!("the member {}", name.text)), Ok)
             }
@@ -51,10 +61,7 @@ impl<'a> Machine<'a> {
                 }
                 Ok(place)
             }
-            ExprKind::Address(name) => {
-                let (area, window, ty) = address(name.text)?;
-                self.at_address(area, window, &Type::Elementary(ty))
-            }
+            ExprKind::Address(name) => self.at_name(name.text),
             ExprKind::Literal(_)
             | ExprKind::Part(..)
             | ExprKind::Call(..)
@@ -65,9 +72,22 @@ impl<'a> Machine<'a> {
         }
     }
 
-    pub(crate) fn variable(&self, frame: &Frame<'a>, name: &str) -> Option<Place<'a>> {
-        let key = name.to_ascii_uppercase();
-        frame.names.get(&key).or_else(|| self.globals.get(&key)).cloned()
+    pub(crate) fn variable(&self, frame: &Frame<'a>, name: &Name<'a>) -> Option<Place<'a>> {
+        let global = || self.globals.get(&self.declared.names.variable(&[*name])?);
+        frame.names.get(&name.text.to_ascii_uppercase()).or_else(global).cloned()
+    }
+
+    /// `Plant.Pumps.level`: what a namespace holds.
+    fn named_global(&self, frame: &Frame<'a>, expr: &Expr<'a>) -> Option<Place<'a>> {
+        let path = self.outer_path(frame, expr)?;
+        self.globals.get(&self.declared.names.variable(&path)?).cloned()
+    }
+
+    /// The names of a path that begins with no variable of the body.
+    pub(crate) fn outer_path(&self, frame: &Frame<'a>, expr: &Expr<'a>) -> Option<Vec<Name<'a>>> {
+        let path = path(expr)?;
+        let is_own = frame.names.contains_key(&path.first()?.text.to_ascii_uppercase());
+        (!is_own).then_some(path)
     }
 
     pub(crate) fn member(&self, base: &Place<'a>, name: &str) -> Option<Place<'a>> {
@@ -85,9 +105,12 @@ impl<'a> Machine<'a> {
         }
     }
 
-    fn element(&mut self, frame: &Frame<'a>, base: &Place<'a>, index: &'a Expr<'a>) -> Outcome<Place<'a>> {
-        let Type::Array(array) = &base.ty else { return unknown("an index of what is no array") };
+    pub(crate) fn element(&mut self, frame: &Frame<'a>, base: &Place<'a>, index: &'a Expr<'a>) -> Outcome<Place<'a>> {
         let number = self.value(frame, index, None)?.as_integer()?;
+        if let (Type::Text(text), None) = (&base.ty, base.window) {
+            return self.character(base, *text, number, (FaultKind::IndexOutOfRange, index.span));
+        }
+        let Type::Array(array) = &base.ty else { return unknown("an index of what is no array") };
         if !(array.low..=array.high).contains(&number) {
             return Err(self.fault(FaultKind::IndexOutOfRange, index.span));
         }

@@ -16,7 +16,14 @@ impl<'a> Machine<'a> {
         match cell {
             Cell::Reference(Some(mut place)) => {
                 if let (RefKind::Pointer | RefKind::Alias, Some(target)) = (reference.kind, reference.target) {
-                    place.declared = self.declared.type_of(target)?.class();
+                    let declared = self.declared.type_of(target)?;
+                    if !declared.looks_like(&place.ty) {
+                        return unknown("a reference to what has another type");
+                    }
+                    place.declared = declared.class();
+                }
+                if self.is_deleted(&place) {
+                    place.nowhere = Some((span, FaultKind::Deleted));
                 }
                 Ok(*place)
             }
@@ -26,7 +33,14 @@ impl<'a> Machine<'a> {
                         RefKind::Interface => self.declared.implementer(target)?,
                         RefKind::Pointer | RefKind::Alias => self.declared.type_of(target)?,
                     };
-                    Ok(Place { at: 0, ty, nowhere: Some(span), declared: None, window: None })
+                    Ok(Place {
+                        at: 0,
+                        ty,
+                        nowhere: Some((span, FaultKind::NullReference)),
+                        declared: None,
+                        window: None,
+                        character: None,
+                    })
                 }
                 None => unknown("a reference to nothing"),
             },
@@ -36,7 +50,7 @@ impl<'a> Machine<'a> {
     /// The place, if it is somewhere.
     pub(crate) fn checked(&self, place: Place<'a>) -> Outcome<Place<'a>> {
         match place.nowhere {
-            Some(span) => Err(self.fault(FaultKind::NullReference, span)),
+            Some((span, kind)) => Err(self.fault(kind, span)),
             None => Ok(place),
         }
     }
@@ -92,7 +106,7 @@ impl<'a> Machine<'a> {
     /// Whether an expression is a variable, or a part of one.
     pub(crate) fn is_variable(&mut self, frame: &Frame<'a>, expr: &'a Expr<'a>) -> Outcome<bool> {
         let is_place = match &expr.kind {
-            ExprKind::Name(name) => self.variable(frame, name.text).is_some(),
+            ExprKind::Name(name) => self.variable(frame, name).is_some(),
             ExprKind::Deref(inner) => is_this(inner) || !is_super(inner),
             ExprKind::Member(..) | ExprKind::Index(..) => true,
             _ => false,
@@ -121,10 +135,10 @@ impl<'a> Machine<'a> {
     }
 
     fn attempted(&self, value: &Value<'a>, reference: Reference<'a>) -> Outcome<Cell<'a>> {
-        let name = reference.target.and_then(crate::declarations::name_of);
-        let Some(name) = name else { return unknown("?= to a type without a name") };
+        let target = reference.target.and_then(|it| self.declared.pou_named(crate::declarations::path_of(it)));
+        let Some(target) = target else { return unknown("?= to a type without a name") };
         let Cell::Reference(to) = &value.cells[0] else { return unknown("?= of what is no reference") };
-        let fits = |it: &Place<'a>| it.ty.class().is_some_and(|it| self.declared.is_a(it, name));
+        let fits = |it: &Place<'a>| it.ty.class().is_some_and(|it| self.declared.is_a(it, target));
         Ok(Cell::Reference(to.clone().filter(|it| fits(it))))
     }
 
@@ -134,6 +148,7 @@ impl<'a> Machine<'a> {
         frame: &Frame<'a>,
         name: &str,
         arguments: &'a [Argument<'a>],
+        span: Span,
     ) -> Outcome<Option<Value<'a>>> {
         let positional = |at: usize| match arguments.get(at).map(|it| &it.kind) {
             Some(ArgumentKind::Positional(it)) => Ok(it),
@@ -145,9 +160,15 @@ impl<'a> Machine<'a> {
                 let ty = Type::Reference(Reference { kind: RefKind::Pointer, target: None });
                 Ok(Some(Value { ty, cells: vec![Cell::Reference(Some(Box::new(place)))] }))
             }
+            "__NEW" if arguments.len() == 1 => self.make(frame, positional(0)?).map(Some),
+            "__DELETE" => self.delete(frame, positional(0)?, span).map(|()| Some(Value::bool(true))),
             "__ISVALIDREF" => {
                 let place = self.unfollowed(frame, positional(0)?)?;
                 let place = self.checked(place)?;
+                if !matches!(place.ty, Type::Reference(_)) {
+                    // An in-out is always there.
+                    return Ok(Some(Value::bool(true)));
+                }
                 Ok(Some(Value::bool(matches!(self.memory[place.at], Cell::Reference(Some(_))))))
             }
             "__QUERYINTERFACE" => {

@@ -1,10 +1,13 @@
 //! Bytes that several variables share: the members of a UNION, and variables whose direct addresses overlap.
 //! A place there is some bits of one cell, the lowest byte first. Structures lie there as C has them.
 
-use crate::machine::{Machine, Outcome, unknown};
+use crate::machine::Machine;
 use crate::storage::{Cell, Place, Value};
 use crate::types::{Elementary, Type};
 use staunch_runtime::Value as Scalar;
+
+/// Nanoseconds.
+const DAY: i64 = 86_400_000_000_000;
 
 /// Where in its cell a place begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,7 +55,9 @@ impl<'a> Type<'a> {
                 }
                 Some(Layout { size: whole.size.next_multiple_of(whole.align), ..whole })
             }
-            Self::Subrange(..) | Self::Text(_) | Self::Record(_) | Self::Block(_) | Self::Reference(_) => None,
+            // Its characters, and a zero.
+            Self::Text(it) => Some(Layout { size: (it.capacity + 1) * it.unit(), align: it.unit() }),
+            Self::Subrange(..) | Self::Record(_) | Self::Block(_) | Self::Reference(_) => None,
         }
     }
 
@@ -66,7 +71,8 @@ impl<'a> Type<'a> {
             Self::Record(it) | Self::Union(it) => {
                 it.fields.iter().filter_map(|(_, slot)| slot.ty.smallest_part()).min_by_key(|it| it.repr().size())
             }
-            Self::Subrange(..) | Self::Text(_) | Self::Block(_) | Self::Reference(_) => None,
+            Self::Text(it) => Some(if it.wide { Elementary::Word } else { Elementary::Byte }),
+            Self::Subrange(..) | Self::Block(_) | Self::Reference(_) => None,
         }
     }
 
@@ -127,6 +133,19 @@ impl<'a> Place<'a> {
     }
 }
 
+impl<'a> Place<'a> {
+    /// The element that comes after so many others in the row in which they are written.
+    pub fn flat(&self, number: usize) -> Option<Self> {
+        let Type::Array(array) = &self.ty else { return None };
+        let Type::Array(inner) = &array.element.ty else { return self.nth(number).filter(|_| number < array.count()) };
+        if array.dimensions == 1 {
+            return self.nth(number).filter(|_| number < array.count());
+        }
+        let each = inner.elements();
+        self.nth(number / each).filter(|_| number / each < array.count())?.flat(number % each)
+    }
+}
+
 impl<'a> Machine<'a> {
     /// What lies at a place among shared bytes. A type that cannot be there was refused when it was declared.
     pub(crate) fn unpacked(&self, place: &Place<'a>, window: Window) -> Vec<Cell<'a>> {
@@ -138,6 +157,11 @@ impl<'a> Machine<'a> {
                 let size = place.ty.bytes().unwrap_or(0);
                 vec![Cell::Bytes(self.bytes_of(place)[first..first + size].to_vec())]
             }
+            Type::Text(text) => {
+                let bytes = &self.bytes_of(place)[first..first + text.capacity * text.unit()];
+                let units = bytes.chunks(text.unit()).map(|it| u16::from_le_bytes([it[0], *it.get(1).unwrap_or(&0)]));
+                vec![Cell::Text(units.take_while(|it| *it != 0).collect())]
+            }
             ty => {
                 let bytes = &self.bytes_of(place)[first..];
                 let scalar = match ty.base() {
@@ -145,7 +169,7 @@ impl<'a> Machine<'a> {
                         let mask = if window.single { 1 << (window.bit % 8) } else { u8::MAX };
                         Scalar::Bool(bytes[0] & mask != 0)
                     }
-                    Some(base) => Scalar::read(base.repr(), bytes),
+                    Some(base) => on_its_day(base, Scalar::read(base.repr(), bytes)),
                 };
                 vec![Cell::Scalar(scalar)]
             }
@@ -182,7 +206,14 @@ impl<'a> Machine<'a> {
             Cell::Scalar(Scalar::Bool(value)) => bytes[first] = u8::from(*value),
             Cell::Scalar(value) => value.write(&mut bytes[first..]),
             Cell::Bytes(own) => bytes[first..first + own.len()].copy_from_slice(own),
-            Cell::Text(_) | Cell::Reference(_) => {}
+            // What comes after the zero stays.
+            Cell::Text(text) => {
+                let Type::Text(ty) = place.ty else { return };
+                for (unit, to) in text.iter().chain([&0]).zip(bytes[first..].chunks_mut(ty.unit())) {
+                    to.copy_from_slice(&unit.to_le_bytes()[..ty.unit()]);
+                }
+            }
+            Cell::Reference(_) => {}
         }
     }
 
@@ -194,27 +225,11 @@ impl<'a> Machine<'a> {
     }
 }
 
-/// A direct address: its area, and where it begins there. `%MW1` is bytes 2 and 3.
-pub(crate) fn address(text: &str) -> Outcome<(char, Window, Elementary)> {
-    let text = text.trim_start_matches('%').to_ascii_uppercase();
-    let mut letters = text.chars();
-    let area = letters.next().unwrap_or('?');
-    let rest = letters.as_str();
-    let digits = rest.trim_start_matches(|it: char| it.is_ascii_alphabetic());
-    let size = &rest[..rest.len() - digits.len()];
-    let (bytes, ty) = match size {
-        "" | "X" => (0, Elementary::Bool),
-        "B" => (1, Elementary::Byte),
-        "W" => (2, Elementary::Word),
-        "D" => (4, Elementary::Dword),
-        "L" => (8, Elementary::Lword),
-        _ => return unknown("this address"),
-    };
-    let numbers: Result<Vec<usize>, _> = digits.split('.').map(str::parse).collect();
-    let bit = match (bytes, numbers.as_deref()) {
-        (0, Ok([byte, bit])) if *bit < 8 => 8 * byte + bit,
-        (1.., Ok([number])) => 8 * bytes * number,
-        _ => return unknown("this address"),
-    };
-    Ok((area, Window { bit, single: bytes == 0 }, ty))
+/// Of any bits a DATE is the midnight before, a TOD the time of day.
+fn on_its_day(ty: Elementary, value: Scalar) -> Scalar {
+    match (ty, value) {
+        (Elementary::Date | Elementary::Ldate, Scalar::I64(it)) => Scalar::I64(it - it.rem_euclid(DAY)),
+        (Elementary::Tod | Elementary::Ltod, Scalar::I64(it)) => Scalar::I64(it.rem_euclid(DAY)),
+        _ => value,
+    }
 }

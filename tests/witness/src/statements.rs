@@ -133,6 +133,9 @@ impl<'a> Machine<'a> {
         otherwise: Option<&'a [Statement<'a>]>,
     ) -> Outcome<Flow> {
         let selector = self.value(frame, selector, None)?;
+        if let Type::Text(_) = selector.ty {
+            return self.select_text(frame, &selector, arms, otherwise);
+        }
         let number = selector.as_integer()?;
         for arm in arms {
             for label in &arm.labels {
@@ -142,6 +145,23 @@ impl<'a> Machine<'a> {
                     None => low,
                 };
                 if (low..=high).contains(&number) {
+                    return self.block(frame, &arm.body);
+                }
+            }
+        }
+        self.block(frame, otherwise.unwrap_or_default())
+    }
+
+    fn select_text(
+        &mut self,
+        frame: &Frame<'a>,
+        selector: &Value<'a>,
+        arms: &'a [Arm<'a>],
+        otherwise: Option<&'a [Statement<'a>]>,
+    ) -> Outcome<Flow> {
+        for arm in arms {
+            for label in &arm.labels {
+                if self.value(frame, &label.low, None)?.as_text()? == selector.as_text()? {
                     return self.block(frame, &arm.body);
                 }
             }

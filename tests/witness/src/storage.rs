@@ -1,17 +1,18 @@
 //! Memory: a list of cells, each one elementary value or one text. A place is where a variable's
 //! cells start, and its type; two paths to one variable are the same place.
 
-use crate::machine::{Frame, Machine, Outcome, Stop, unknown};
+use crate::machine::{Machine, Outcome, unknown};
+use crate::places::Character;
 use crate::shared::Window;
-use crate::types::{Elementary, Slot, Type};
+use crate::texts::Units;
+use crate::types::{Elementary, Text, Type};
 use staunch_frontend::Span;
-use staunch_frontend::ast::{Initial, InitialKind};
 use staunch_runtime::{FaultKind, Value as Scalar};
 
 #[derive(Clone, Debug)]
 pub(crate) enum Cell<'a> {
     Scalar(Scalar),
-    Text(Vec<u8>),
+    Text(Units),
     /// What several variables share.
     Bytes(Vec<u8>),
     /// What a reference leads to, as it was declared there: an instance's own class.
@@ -29,12 +30,14 @@ pub(crate) struct Value<'a> {
 pub(crate) struct Place<'a> {
     pub at: usize,
     pub ty: Type<'a>,
-    /// Where a reference to nothing was followed: the place faults when it is used.
-    pub nowhere: Option<Span>,
+    /// Where a reference to nothing, or to what was deleted, was followed: the place faults when it is used.
+    pub nowhere: Option<(Span, FaultKind)>,
     /// The class that a reference or an in-out declares, where `ty` may be one that extends it.
     pub declared: Option<usize>,
     /// Where it begins in a cell that is shared.
     pub window: Option<Window>,
+    /// Which character of the text there it is.
+    pub character: Option<Character>,
 }
 
 impl<'a> Value<'a> {
@@ -46,8 +49,9 @@ impl<'a> Value<'a> {
         Self::scalar(Elementary::Bool, Scalar::Bool(value))
     }
 
-    pub fn text(bytes: Vec<u8>) -> Self {
-        Self { ty: Type::Text(usize::from(u16::MAX)), cells: vec![Cell::Text(bytes)] }
+    pub fn text(units: Units, wide: bool) -> Self {
+        let ty = Type::Text(Text { capacity: usize::from(u16::MAX), wide });
+        Self { ty, cells: vec![Cell::Text(units)] }
     }
 
     /// The elementary value, of an enumeration that of its base.
@@ -68,19 +72,19 @@ impl<'a> Value<'a> {
             _ => unknown("a condition that is not a BOOL"),
         }
     }
-
-    pub fn as_text(&self) -> Outcome<&[u8]> {
-        match self.cells.as_slice() {
-            [Cell::Text(it)] => Ok(it),
-            _ => unknown("a value that is not a text"),
-        }
-    }
 }
 
 impl<'a> Place<'a> {
     /// A part that starts `offset` cells in.
     pub fn part(&self, offset: usize, ty: &Type<'a>) -> Self {
-        Self { at: self.at + offset, ty: ty.clone(), nowhere: self.nowhere, declared: None, window: None }
+        Self {
+            at: self.at + offset,
+            ty: ty.clone(),
+            nowhere: self.nowhere,
+            declared: None,
+            window: None,
+            character: None,
+        }
     }
 }
 
@@ -90,24 +94,31 @@ impl<'a> Machine<'a> {
             Type::Subrange(base, ..) => Type::Elementary(*base),
             other => other.clone(),
         };
-        let cells = match place.window {
-            Some(window) => self.unpacked(place, window),
-            None => self.memory[place.at..place.at + place.ty.size()].to_vec(),
+        let cells = match (place.window, place.character) {
+            (Some(window), _) => self.unpacked(place, window),
+            (None, Some(character)) => vec![self.read_character(place, character.at)],
+            (None, None) => self.memory[place.at..place.at + place.ty.size()].to_vec(),
         };
         Value { ty, cells }
     }
 
     /// Stores a value that has the place's type already.
     pub(crate) fn write(&mut self, place: &Place<'a>, value: &Value<'a>) {
-        match place.window {
-            Some(window) => self.pack(place, window, &value.cells),
-            None => self.memory[place.at..place.at + value.cells.len()].clone_from_slice(&value.cells),
+        match (place.window, place.character) {
+            (Some(window), _) => self.pack(place, window, &value.cells),
+            (None, Some(character)) => self.write_character(place, character, &value.cells[0]),
+            (None, None) => self.memory[place.at..place.at + value.cells.len()].clone_from_slice(&value.cells),
         }
     }
 
     /// The value as one of `ty`: widened, cut at a text's capacity, checked against a subrange.
     pub(crate) fn converted(&self, value: Value<'a>, ty: &Type<'a>, span: Span) -> Outcome<Value<'a>> {
         match ty {
+            // A literal of one character is one where that is wanted.
+            Type::Elementary(to @ (Elementary::Char | Elementary::Wchar)) => match value.as_text()?.as_slice() {
+                [unit] => Ok(Value { ty: ty.clone(), cells: vec![integer_cell(*to, i128::from(*unit))] }),
+                _ => unknown("a text where a character is asked for"),
+            },
             Type::Elementary(to) => self.widened(&value, *to),
             Type::Subrange(base, low, high) => {
                 let value = self.widened(&value, *base)?;
@@ -116,10 +127,10 @@ impl<'a> Machine<'a> {
                 }
                 Err(self.fault(FaultKind::SubrangeViolated, span))
             }
-            Type::Text(capacity) => {
-                let mut bytes = value.as_text()?.to_vec();
-                bytes.truncate(*capacity);
-                Ok(Value { ty: ty.clone(), cells: vec![Cell::Text(bytes)] })
+            Type::Text(text) => {
+                let mut units = value.as_text()?;
+                units.truncate(text.capacity);
+                Ok(Value { ty: ty.clone(), cells: vec![Cell::Text(units)] })
             }
             Type::Reference(_) => Ok(Value { ty: ty.clone(), cells: value.cells }),
             Type::Enum(_) | Type::Array(_) | Type::Record(_) | Type::Union(_) | Type::Block(_) => Ok(value),
@@ -138,124 +149,10 @@ impl<'a> Machine<'a> {
     pub(crate) fn allocate(&mut self, ty: &Type<'a>) -> Place<'a> {
         let at = self.memory.len();
         self.memory.resize(at + ty.size(), Cell::Scalar(Scalar::Bool(false)));
-        Place { at, ty: ty.clone(), nowhere: None, declared: None, window: None }
-    }
-
-    /// Gives a variable its initial value.
-    pub(crate) fn start(
-        &mut self,
-        frame: &Frame<'a>,
-        place: &Place<'a>,
-        initial: Option<&'a Initial<'a>>,
-    ) -> Outcome<()> {
-        match initial.map(|it| &it.kind) {
-            None => self.start_unset(frame, place),
-            Some(InitialKind::Value(expr)) => {
-                let value = self.value_as(frame, expr, &place.ty)?;
-                self.write(place, &value);
-                Ok(())
-            }
-            Some(InitialKind::Elements(elements)) => {
-                self.start_unset(frame, place)?;
-                let mut at = 0;
-                for element in elements {
-                    let count = element.count.as_ref().map_or(Ok(1), |it| self.value(frame, it, None)?.as_integer())?;
-                    for _ in 0..count {
-                        for value in &element.values {
-                            let Some(element) = place.nth(at) else { return unknown("too many elements") };
-                            self.start(frame, &element, Some(value))?;
-                            at += 1;
-                        }
-                    }
-                }
-                Ok(())
-            }
-            Some(InitialKind::Bind(_)) => Err(Stop::Unknown("REF= as an initial value".into())),
-            Some(InitialKind::Fields(fields)) => {
-                self.start_unset(frame, place)?;
-                for (name, initial) in fields {
-                    let field = self.member(place, name.text).ok_or(Stop::Unknown("an unknown member".into()))?;
-                    self.start(frame, &field, Some(initial))?;
-                }
-                Ok(())
-            }
-        }
-    }
-
-    /// What a variable starts with that has no initial value of its own.
-    fn start_unset(&mut self, frame: &Frame<'a>, place: &Place<'a>) -> Outcome<()> {
-        if place.window.is_some() {
-            // The shared bytes are zeros until an initial value says otherwise.
-            return Ok(());
-        }
-        match &place.ty {
-            Type::Elementary(it) => self.memory[place.at] = Cell::Scalar(it.repr().zero()),
-            // Edition 2, 2.3.3.2: the leftmost value.
-            Type::Subrange(base, low, _) => self.memory[place.at] = integer_cell(*base, *low),
-            Type::Enum(it) => self.memory[place.at] = Cell::Scalar(it.values[0].1),
-            Type::Text(_) => self.memory[place.at] = Cell::Text(Vec::new()),
-            Type::Reference(_) => self.memory[place.at] = Cell::Reference(None),
-            Type::Union(union) => {
-                self.memory[place.at] = Cell::Bytes(vec![0; place.ty.bytes().unwrap_or(0)]);
-                for (number, (_, slot)) in union.fields.iter().enumerate() {
-                    if let Some(member) = place.field(number) {
-                        self.start_member(frame, &member, slot)?;
-                    }
-                }
-            }
-            Type::Array(array) => {
-                let size = array.element.ty.size();
-                for number in 0..array.count() {
-                    self.start_slot(frame, &place.part(number * size, &array.element.ty), &array.element)?;
-                }
-            }
-            Type::Record(record) => {
-                // The initial values of an instance may use those declared before them.
-                let own = record.pou.map(|_| self.instance_frame(place));
-                let mut offset = 0;
-                for (_, slot) in &record.fields {
-                    self.start_slot(own.as_ref().unwrap_or(frame), &place.part(offset, &slot.ty), slot)?;
-                    offset += slot.ty.size();
-                }
-            }
-            Type::Block(info) => {
-                for (number, pin) in info.pins.iter().enumerate() {
-                    let value = if pin.starts_true { Scalar::Bool(true) } else { pin.ty.repr().zero() };
-                    self.memory[place.at + number] = Cell::Scalar(value);
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// A member of a UNION that starts as all zeros leaves the others as they start.
-    fn start_member(&mut self, frame: &Frame<'a>, member: &Place<'a>, slot: &Slot<'a>) -> Outcome<()> {
-        let alone = self.allocate(&slot.ty);
-        self.start_slot(frame, &alone, slot)?;
-        let value = self.read(&alone);
-        self.memory.truncate(alone.at);
-        if !value.cells.iter().all(is_zero) {
-            self.write(member, &value);
-        }
-        Ok(())
-    }
-
-    fn start_slot(&mut self, frame: &Frame<'a>, place: &Place<'a>, slot: &Slot<'a>) -> Outcome<()> {
-        self.start(frame, place, slot.initial)
+        Place { at, ty: ty.clone(), nowhere: None, declared: None, window: None, character: None }
     }
 }
 
 pub(crate) fn integer_cell<'a>(ty: Elementary, number: i128) -> Cell<'a> {
     Cell::Scalar(ty.repr().integer(number).unwrap_or(ty.repr().zero()))
-}
-
-fn is_zero(cell: &Cell<'_>) -> bool {
-    match cell {
-        Cell::Scalar(Scalar::F32(it)) => it.to_bits() == 0,
-        Cell::Scalar(Scalar::F64(it)) => it.to_bits() == 0,
-        Cell::Scalar(Scalar::Bool(it)) => !it,
-        Cell::Scalar(it) => it.as_integer() == Some(0),
-        Cell::Bytes(it) => it.iter().all(|it| *it == 0),
-        Cell::Text(_) | Cell::Reference(_) => false,
-    }
 }

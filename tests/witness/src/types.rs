@@ -1,6 +1,6 @@
 //! Types, and which of them widen to which.
 
-use staunch_frontend::ast::{Initial, TypeSpec};
+use staunch_frontend::ast::{Construction, Initial, TypeSpec};
 use staunch_runtime::{BlockInfo, Repr, Value as Scalar};
 use std::rc::Rc;
 
@@ -29,11 +29,13 @@ pub(crate) enum Elementary {
     Ltod,
     Dt,
     Ldt,
+    Char,
+    Wchar,
 }
 
 use Elementary as E;
 
-const ELEMENTARY: [(&str, E, Repr); 27] = [
+const ELEMENTARY: [(&str, E, Repr); 29] = [
     ("BOOL", E::Bool, Repr::Bool),
     ("SINT", E::Sint, Repr::I8),
     ("INT", E::Int, Repr::I16),
@@ -57,6 +59,8 @@ const ELEMENTARY: [(&str, E, Repr); 27] = [
     ("LTOD", E::Ltod, Repr::I64),
     ("DT", E::Dt, Repr::I64),
     ("LDT", E::Ldt, Repr::I64),
+    ("CHAR", E::Char, Repr::U8),
+    ("WCHAR", E::Wchar, Repr::U16),
     // Other names come after those that a table of types has first.
     ("TIME_OF_DAY", E::Tod, Repr::I64),
     ("LTIME_OF_DAY", E::Ltod, Repr::I64),
@@ -86,9 +90,13 @@ impl Elementary {
         matches!(self, E::Date | E::Ldate | E::Tod | E::Ltod | E::Dt | E::Ldt)
     }
 
+    pub fn is_char(self) -> bool {
+        matches!(self, E::Char | E::Wchar)
+    }
+
     /// Whether this is no number, though an integer is behind it.
-    fn is_temporal(self) -> bool {
-        self.is_time() || self.is_date()
+    fn is_other(self) -> bool {
+        self.is_time() || self.is_date() || self.is_char()
     }
 
     pub fn is_bits(self) -> bool {
@@ -108,16 +116,16 @@ impl Elementary {
 
     /// Whether this is a number or a bit string of fewer than 32 bits.
     pub fn is_narrow(self) -> bool {
-        self.repr().is_integer() && self.repr().size() < 4
+        self.repr().is_integer() && self.repr().size() < 4 && !self.is_char()
     }
 
     pub fn is_integer(self) -> bool {
-        self.repr().is_integer() && !self.is_temporal() && !self.is_bits()
+        self.repr().is_integer() && !self.is_other() && !self.is_bits()
     }
 
     /// Whether an integer literal can have this type.
     pub fn takes_integers(self) -> bool {
-        self.is_real() || (self.repr().is_integer() && !self.is_temporal())
+        self.is_real() || (self.repr().is_integer() && !self.is_other())
     }
 
     pub fn holds(self, number: i128) -> bool {
@@ -135,7 +143,7 @@ impl Elementary {
             _ if self == to => true,
             (E::Time, E::Ltime) | (E::Real, E::Lreal) => true,
             (E::Date, E::Ldate) | (E::Tod, E::Ltod) | (E::Dt, E::Ldt) => true,
-            _ if self.is_temporal() || to.is_temporal() => false,
+            _ if self.is_other() || to.is_other() => false,
             (E::Bool, _) => to.is_bits(),
             _ if self.is_bits() || to.is_bits() => self.is_bits() && to.is_bits() && bits(self) < bits(to),
             // A REAL holds integers of 16 bits, an LREAL of 32.
@@ -164,8 +172,7 @@ pub(crate) enum Type<'a> {
     /// An integer between bounds, which each write checks.
     Subrange(Elementary, i128, i128),
     Enum(Rc<Enum>),
-    /// Text of at most so many bytes.
-    Text(usize),
+    Text(Text),
     Array(Rc<Array<'a>>),
     /// A structure, or an instance of a user's POU.
     Record(Rc<Record<'a>>),
@@ -173,6 +180,20 @@ pub(crate) enum Type<'a> {
     Union(Rc<Record<'a>>),
     Block(&'static BlockInfo),
     Reference(Reference<'a>),
+}
+
+/// A STRING or WSTRING, and how many bytes or code units it holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Text {
+    pub capacity: usize,
+    pub wide: bool,
+}
+
+impl Text {
+    /// Bytes of a unit.
+    pub fn unit(self) -> usize {
+        if self.wide { 2 } else { 1 }
+    }
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -194,7 +215,6 @@ pub(crate) enum RefKind {
 
 #[derive(Debug)]
 pub(crate) struct Enum {
-    pub name: String,
     pub base: Elementary,
     pub values: Vec<(String, Scalar)>,
 }
@@ -204,6 +224,10 @@ pub(crate) struct Array<'a> {
     pub low: i128,
     pub high: i128,
     pub element: Slot<'a>,
+    /// Of `ARRAY[a, b] OF t` 2: its elements, and their elements, are written in one row.
+    pub dimensions: usize,
+    /// Of `ARRAY[*]`: each call gives an array of its own bounds.
+    pub is_open: bool,
 }
 
 #[derive(Debug)]
@@ -220,6 +244,16 @@ pub(crate) struct Record<'a> {
 pub(crate) struct Slot<'a> {
     pub ty: Type<'a>,
     pub initial: Option<&'a Initial<'a>>,
+    /// What its instances' FB_init is given.
+    pub construction: Option<&'a Construction<'a>>,
+    /// Whether it is RETAIN.
+    pub is_kept: bool,
+}
+
+impl<'a> Slot<'a> {
+    pub fn of(ty: Type<'a>) -> Self {
+        Self { ty, initial: None, construction: None, is_kept: false }
+    }
 }
 
 impl Type<'_> {
@@ -234,6 +268,24 @@ impl Type<'_> {
             Self::Array(it) => it.element.ty.size() * it.count(),
             Self::Record(it) => it.fields.iter().map(|(_, slot)| slot.ty.size()).sum(),
             Self::Block(info) => info.pins.len(),
+        }
+    }
+
+    /// Whether a reference that is declared with this type sees in the other what it is.
+    pub fn looks_like(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Array(a), Self::Array(b)) => {
+                (a.low, a.high) == (b.low, b.high) && a.element.ty.looks_like(&b.element.ty)
+            }
+            (Self::Elementary(a), Self::Elementary(b)) => a == b,
+            (Self::Subrange(a, ..), Self::Subrange(b, ..)) => a == b,
+            (Self::Enum(a), Self::Enum(b)) => Rc::ptr_eq(a, b),
+            (Self::Text(a), Self::Text(b)) => a == b,
+            // Of an heir what a base has.
+            (Self::Record(a), Self::Record(b)) => a.pou.is_some() == b.pou.is_some(),
+            (Self::Union(_), Self::Union(_)) | (Self::Reference(_), Self::Reference(_)) => true,
+            (Self::Block(a), Self::Block(b)) => std::ptr::eq(*a, *b),
+            _ => false,
         }
     }
 
@@ -274,5 +326,13 @@ impl Type<'_> {
 impl Array<'_> {
     pub fn count(&self) -> usize {
         usize::try_from(self.high - self.low + 1).unwrap_or(0)
+    }
+
+    /// How many elements are written in one row.
+    pub fn elements(&self) -> usize {
+        match &self.element.ty {
+            Type::Array(inner) if self.dimensions > 1 => self.count() * inner.elements(),
+            _ => self.count(),
+        }
     }
 }

@@ -20,12 +20,28 @@ pub struct Routine {
     pub state: Vec<Variable>,
     /// Whether a call may lead to an heir of what an in-out is declared with.
     pub tainted: bool,
+    /// What a block's FB_init is given, if it has one.
+    pub init: Option<Vec<Parameter>>,
+    /// Whether a block has a METHOD with `call_after_init`.
+    pub is_after_init: bool,
 }
 
 impl Routine {
     pub fn new(name: String, result: Option<Ty>, parameters: Vec<Parameter>) -> Self {
         let (methods, actions, properties, state) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        Self { name, result, parameters, methods, actions, properties, level: 0, state, tainted: false }
+        Self {
+            name,
+            result,
+            parameters,
+            methods,
+            actions,
+            properties,
+            level: 0,
+            state,
+            tainted: false,
+            init: None,
+            is_after_init: false,
+        }
     }
 }
 
@@ -34,6 +50,14 @@ pub struct Parameter {
     pub name: String,
     pub ty: Ty,
     pub section: Section,
+}
+
+impl Parameter {
+    /// The variable of a body that it is; inputs are not assigned.
+    pub fn variable(&self) -> Variable {
+        let writable = self.section != Section::Input;
+        Variable { name: self.name.clone(), ty: self.ty.clone(), writable, lasts: false, located: false }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -242,8 +266,9 @@ impl Writer {
             },
             Section::InOut => {
                 let place = match ty {
-                    Ty::Text(_) if self.random.once_in(3) => {
-                        self.in_out_place(depth, |_, it| matches!(it, Ty::Text(_)))
+                    Ty::Text(_) | Ty::Wide(_) if self.random.once_in(3) => {
+                        let wide = ty.is_text(true);
+                        self.in_out_place(depth, |_, it| it.is_text(wide))
                     }
                     Ty::Instance(base) => {
                         let fits =
@@ -265,7 +290,7 @@ impl Writer {
                 let place = self.some_place(true, depth, |this, it| {
                     it == ty
                         || (this.widens(from, it) && !negated)
-                        || (matches!(ty, Ty::Text(_)) && matches!(it, Ty::Text(_)))
+                        || [false, true].into_iter().any(|wide| ty.is_text(wide) && it.is_text(wide))
                 });
                 Some((negated, place?.0))
             }

@@ -28,8 +28,12 @@ impl Writer {
             None if has_interface => " IMPLEMENTS IDo".to_owned(),
             None => String::new(),
         };
-        self.line(&format!("FUNCTION_BLOCK {name}{head}"));
         let above = base.map(|it| self.blocks[it].clone());
+        let is_after_init = above.as_ref().map_or(self.codesys && self.random.once_in(4), |it| it.is_after_init);
+        if is_after_init {
+            self.line("{attribute 'call_after_init'}");
+        }
+        self.line(&format!("FUNCTION_BLOCK {name}{head}"));
         let level = above.as_ref().map_or(0, |it| it.level + 1);
         let prefix = "h".repeat(level);
         let mut parameters = above.as_ref().map(|it| it.parameters.clone()).unwrap_or_default();
@@ -73,6 +77,13 @@ impl Writer {
             self.method(routine);
         }
         self.above = Vec::new();
+        self.own.init = above.as_ref().and_then(|it| it.init.clone());
+        if self.codesys && self.random.once_in(2) {
+            self.initializer(number);
+        }
+        if is_after_init {
+            self.after_init();
+        }
         self.loop_prefix = loop_prefix;
         self.own.actions = above.as_ref().map(|it| it.actions.clone()).unwrap_or_default();
         if self.own.actions.is_empty() && self.random.once_in(3) {

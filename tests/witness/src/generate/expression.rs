@@ -21,7 +21,9 @@ impl Writer {
             Ty::Bits(at) => self.bits(*at, depth),
             Ty::Time => self.time(depth),
             Ty::Date(at) => self.date(*at, depth),
-            Ty::Text(_) => self.string(depth),
+            Ty::Text(_) => self.string(false, depth),
+            Ty::Wide(_) => self.string(true, depth),
+            Ty::Char(wide) => self.character(*wide, depth),
             Ty::Level(at) => self.level(*at, depth),
             Ty::Color => self.color(depth),
             Ty::Array(_) | Ty::Record(_) | Ty::Union(_) => self.leaf(ty),
@@ -83,11 +85,15 @@ impl Writer {
             Ty::Time => (*self.random.one_of(&["T#0s", "T#15ms", "T#20ms", "T#1s500ms", "T#-5ms"])).to_owned(),
             Ty::Date(0) => (*self.random.one_of(&["D#1970-01-01", "D#2024-02-29", "D#1969-12-31"])).to_owned(),
             Ty::Date(1) => (*self.random.one_of(&["TOD#00:00:00", "TOD#23:59:59.999", "TOD#12:30:00"])).to_owned(),
+            Ty::Date(4) => (*self.random.one_of(&["LD#1970-01-01", "LD#2024-02-29", "LD#1969-12-31"])).to_owned(),
+            Ty::Date(5) => (*self.random.one_of(&["LTOD#00:00:00", "LTOD#23:59:59.999999999"])).to_owned(),
             Ty::Date(_) => {
                 (*self.random.one_of(&["DT#1970-01-01-00:00:00", "DT#2024-02-29-23:59:59", "DT#1969-12-31-12:00:00"]))
                     .to_owned()
             }
-            Ty::Text(_) => (*self.random.one_of(&["''", "'a'", "'bc'", "'xyz12'", "'hello world'"])).to_owned(),
+            Ty::Text(_) => self.text_literal(false),
+            Ty::Wide(_) => self.text_literal(true),
+            Ty::Char(wide) => self.character_literal(*wide),
             Ty::Color => (*self.random.one_of(&["Color#Red", "Color.Green", "Color#Blue"])).to_owned(),
             Ty::Level(at) => {
                 let (_, low, high) = self.types.levels[*at];
@@ -106,7 +112,9 @@ impl Writer {
             Ty::Number(at) => format!("{}#{literal}", NUMBERS[*at].name),
             Ty::Bits(at) => format!("{}#{literal}", BITS[*at]),
             Ty::Level(at) => format!("{}#{literal}", NUMBERS[self.types.levels[*at].0].name),
-            Ty::Bool | Ty::Time | Ty::Date(_) | Ty::Text(_) | Ty::Color | Ty::Pointer(_) | Ty::Interface => literal,
+            Ty::Char(wide) => format!("{}#{literal}", if *wide { "WCHAR" } else { "CHAR" }),
+            Ty::Bool | Ty::Time | Ty::Date(_) | Ty::Text(_) | Ty::Wide(_) | Ty::Color => literal,
+            Ty::Pointer(_) | Ty::Interface => literal,
             Ty::Array(_) | Ty::Record(_) | Ty::Union(_) | Ty::Instance(_) | Ty::Standard(_) => {
                 unreachable!("no literal of this type")
             }
@@ -194,8 +202,29 @@ impl Writer {
                 let value = self.operand(&from, depth - 1);
                 format!("{}_TO_{}({value})", self.types.name(&from), self.types.name(ty))
             }
-            17 => match self.random.below(4) {
-                0 => format!("INT_TO_{}(LEN({}))", NUMBERS[at].name, self.string(depth - 1)),
+            17 => match self.random.below(8) {
+                0 | 4 => {
+                    let wide = self.random.once_in(2);
+                    format!("INT_TO_{}(LEN({}))", NUMBERS[at].name, self.string(wide, depth - 1))
+                }
+                5 => {
+                    let wide = self.random.once_in(2);
+                    let (a, b) = (self.string(wide, depth - 1), self.string(wide, depth - 1));
+                    format!("INT_TO_{}(FIND({a}, {b}))", NUMBERS[at].name)
+                }
+                6 if !self.codesys => {
+                    let of = Ty::Char(self.random.once_in(2));
+                    format!("TO_{}({})", NUMBERS[at].name, self.operand(&of, depth - 1))
+                }
+                7 => {
+                    let day = Ty::Date(*self.random.one_of(&[0, 2]));
+                    let day = if self.random.once_in(2) { Ty::Date(0) } else { day };
+                    let of = match day {
+                        Ty::Date(0) => self.operand(&day, depth - 1),
+                        _ => format!("DT_TO_DATE({})", self.operand(&day, depth - 1)),
+                    };
+                    format!("INT_TO_{}(DAY_OF_WEEK({of}))", NUMBERS[at].name)
+                }
                 1 => format!("TO_{}({})", NUMBERS[at].name, self.operand(&Ty::Color, depth - 1)),
                 2 => format!("TIME_TO_{}({})", NUMBERS[at].name, self.operand(&Ty::Time, depth - 1)),
                 _ => format!("REAL_TRUNC_{}({})", NUMBERS[at].name, self.operand(&Ty::Number(8), depth - 1)),
@@ -245,7 +274,14 @@ impl Writer {
                 format!("({a} {} {b})", self.random.one_of(&["=", "<>"]))
             }
             7 => {
-                let (a, b) = (self.string(depth - 1), self.string(depth - 1));
+                let wide = self.random.once_in(2);
+                let (a, b) = match self.random.below(3) {
+                    0 if !self.codesys => {
+                        let of = Ty::Char(wide);
+                        (self.operand(&of, depth - 1), self.expression(&of, depth - 1))
+                    }
+                    _ => (self.string(wide, depth - 1), self.string(wide, depth - 1)),
+                };
                 format!("({a} {} {b})", self.random.one_of(&["=", "<", ">="]))
             }
             8 => format!("(tick MOD {} = {})", self.random.below(3) + 2, self.random.below(2))
@@ -296,6 +332,7 @@ impl Writer {
                 format!("{name}({a}, {})", self.operand(&Ty::Number(1), depth - 1))
             }
             3 => format!("NOT {a}"),
+            5 if self.codesys && at < 2 => self.character_of_text(at == 1, depth - 1).unwrap_or(a),
             4 => {
                 let from = self.number_type();
                 let value = self.operand(&from, depth - 1);
@@ -310,6 +347,15 @@ impl Writer {
         match self.random.below(7) {
             6 => {
                 let of = Ty::Date(self.random.below(3));
+                if self.random.once_in(3) {
+                    let name = DATES[match of {
+                        Ty::Date(it) => it,
+                        _ => 0,
+                    }]
+                    .0;
+                    let (a, b) = (self.operand(&of, depth - 1), self.operand(&of, depth - 1));
+                    return format!("SUB_{name}_{name}({a}, {b})");
+                }
                 format!("({} - {})", self.operand(&of, depth - 1), self.operand(&of, depth - 1))
             }
             0 => format!("({a} {} {})", self.random.one_of(&["+", "-"]), self.operand(&Ty::Time, depth - 1)),
@@ -322,9 +368,9 @@ impl Writer {
 
     fn date(&mut self, at: usize, depth: usize) -> String {
         let own = Ty::Date(at);
-        match self.random.below(4) {
+        match self.random.below(6) {
             // A day and a time have no sum, but in CODESYS.
-            0 if at > 0 => {
+            0 if !matches!(at, 0 | 4) => {
                 let sign = *self.random.one_of(&["+", "-"]);
                 format!("({} {sign} {})", self.operand(&own, depth - 1), self.operand(&Ty::Time, depth - 1))
             }
@@ -334,27 +380,39 @@ impl Writer {
                 format!("{}_TO_{}({value})", DATES[other].0, DATES[at].0)
             }
             2 => format!("DINT_TO_{}({})", DATES[at].0, self.operand(&Ty::Number(2), depth - 1)),
+            3 => self.made_date(at, depth).unwrap_or_else(|| self.operand(&own, depth - 1)),
             _ => self.operand(&own, depth - 1),
         }
     }
 
-    pub(super) fn string(&mut self, depth: usize) -> String {
-        if depth == 0 {
-            let place = self.some_place(false, 0, |_, it| matches!(it, Ty::Text(_)));
-            return place.map_or_else(|| self.literal(&Ty::Text(8)), |it| it.0);
-        }
-        let count = |this: &mut Self| this.expression(&Ty::Number(1), depth - 1);
-        let a = self.string(depth - 1);
-        match self.random.below(9) {
-            0 | 1 => format!("CONCAT({a}, {})", self.string(depth - 1)),
-            2 => format!("LEFT({a}, {})", count(self)),
-            3 => format!("MID({a}, 2, {})", count(self)),
-            4 => format!("INSERT({a}, {}, {})", self.string(depth - 1), count(self)),
-            5 => self.function_call(depth, |it| matches!(it, Ty::Text(_))).unwrap_or(a),
-            6 => self.literal(&Ty::Text(8)),
-            7 => format!("MAX({a}, {})", self.string(depth - 1)),
-            _ => a,
-        }
+    /// A date of its parts, or by a function's name; now and then of parts that make none.
+    fn made_date(&mut self, at: usize, depth: usize) -> Option<String> {
+        let part = |this: &mut Self, low: i64, high: i64| {
+            let value = this.operand(&Ty::Number(1), depth - 1);
+            let high = if this.random.once_in(24) { high + 1 } else { high };
+            format!("LIMIT({low}, {value}, {high})")
+        };
+        let made = match at {
+            0 => format!("CONCAT_DATE({}, {}, {})", part(self, 1970, 2100), part(self, 1, 12), part(self, 1, 28)),
+            1 if self.random.once_in(2) => {
+                let (time, name) = (self.operand(&Ty::Time, depth - 1), *self.random.one_of(&["ADD", "SUB"]));
+                format!("{name}_TOD_TIME({}, {time})", self.operand(&Ty::Date(1), depth - 1))
+            }
+            1 => {
+                let (hour, minute) = (part(self, 0, 23), part(self, 0, 59));
+                format!("CONCAT_TOD({hour}, {minute}, {}, {})", part(self, 0, 59), part(self, 0, 999))
+            }
+            2 if self.random.once_in(2) => {
+                let day = self.operand(&Ty::Date(0), depth - 1);
+                format!("CONCAT_DATE_TOD({day}, {})", self.operand(&Ty::Date(1), depth - 1))
+            }
+            2 => {
+                let (time, name) = (self.operand(&Ty::Time, depth - 1), *self.random.one_of(&["ADD", "SUB"]));
+                format!("{name}_DT_TIME({}, {time})", self.operand(&Ty::Date(2), depth - 1))
+            }
+            _ => return None,
+        };
+        Some(made)
     }
 
     fn color(&mut self, depth: usize) -> String {

@@ -7,7 +7,9 @@ mod call;
 mod class;
 mod expression;
 mod scope;
+mod start;
 mod statement;
+mod text;
 mod types;
 
 use crate::random::Random;
@@ -288,7 +290,7 @@ impl Writer {
     fn declare(&mut self, name: &str, ty: Ty) -> Variable {
         let initial = self.initial(&ty);
         self.inside(|this| {
-            let shown = this.types.name(&ty);
+            let shown = this.types.name(&ty) + &this.construction(&ty);
             this.line(&format!("{name} : {shown}{initial};"));
         });
         Variable { name: name.to_owned(), ty, writable: true, lasts: false, located: false }
@@ -297,14 +299,24 @@ impl Writer {
     fn initial(&mut self, ty: &Ty) -> String {
         let scalar = matches!(
             ty,
-            Ty::Bool | Ty::Number(_) | Ty::Bits(_) | Ty::Time | Ty::Date(_) | Ty::Text(_) | Ty::Color | Ty::Level(_)
+            Ty::Bool
+                | Ty::Number(_)
+                | Ty::Bits(_)
+                | Ty::Time
+                | Ty::Date(_)
+                | Ty::Text(_)
+                | Ty::Wide(_)
+                | Ty::Char(_)
+                | Ty::Color
+                | Ty::Level(_)
         );
         match ty {
             _ if self.random.once_in(2) => String::new(),
             _ if scalar => format!(" := {}", self.literal(ty)),
+            Ty::Instance(at) if *at < self.types.blocks.len() => self.initial_inputs(*at),
             Ty::Array(at) => {
                 let (bounds, element) = self.types.arrays[*at].clone();
-                let scalar = matches!(element, Ty::Number(_) | Ty::Bits(_) | Ty::Text(_) | Ty::Color);
+                let scalar = matches!(element, Ty::Number(_) | Ty::Bits(_) | Ty::Text(_) | Ty::Wide(_) | Ty::Color);
                 if bounds.len() > 1 || !scalar {
                     return String::new();
                 }
@@ -551,8 +563,11 @@ impl Writer {
 
     /// Elementary types and their like.
     fn plain_type(&mut self) -> Ty {
-        match self.random.below(18) {
-            16 | 17 => Ty::Date(self.random.below(DATES.len())),
+        match self.random.below(22) {
+            18 | 19 => Ty::Wide(*self.random.one_of(&[3, 5, 8])),
+            20 if !self.codesys => Ty::Char(false),
+            21 if !self.codesys => Ty::Char(true),
+            16 | 17 | 20 | 21 => Ty::Date(self.random.below(DATES.len())),
             0..=6 => Ty::Number(self.random.below(NUMBERS.len())),
             7 | 8 => Ty::Number(*self.random.one_of(&[1, 2])),
             9 | 10 => Ty::Bool,

@@ -159,7 +159,7 @@ impl Writer {
     }
 
     /// An index that is in range, but for a few: a program that always faults tests little.
-    fn index(&mut self, (low, high): (i64, i64), depth: usize) -> String {
+    pub(super) fn index(&mut self, (low, high): (i64, i64), depth: usize) -> String {
         let span = usize::try_from(high - low + 1).unwrap_or(1);
         let constant = |this: &mut Self| (low + i64::try_from(this.random.below(span)).unwrap_or(0)).to_string();
         if depth == 0 || self.fuel == 0 {

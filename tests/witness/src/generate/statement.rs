@@ -57,6 +57,9 @@ impl Writer {
     }
 
     fn bit_or_set(&mut self) {
+        if self.random.once_in(4) {
+            return self.assign_character();
+        }
         let value = self.expression(&Ty::Bool, 2);
         if self.random.once_in(2)
             && let Some((place, _)) = self.some_place(true, 2, |_, it| matches!(it, Ty::Bits(_)))

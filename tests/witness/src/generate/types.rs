@@ -14,8 +14,12 @@ pub enum Ty {
     Time,
     /// A row of [`DATES`].
     Date(usize),
-    /// A text of this capacity.
+    /// A STRING of this capacity.
     Text(usize),
+    /// A WSTRING.
+    Wide(usize),
+    /// CHAR, or WCHAR.
+    Char(bool),
     Color,
     Level(usize),
     Array(usize),
@@ -71,8 +75,14 @@ pub const NUMBERS: [Number; 10] = [
 ];
 
 /// A day, a time of day, and points in time.
-pub const DATES: [(&str, Elementary); 4] =
-    [("DATE", Elementary::Date), ("TOD", Elementary::Tod), ("DT", Elementary::Dt), ("LDT", Elementary::Ldt)];
+pub const DATES: [(&str, Elementary); 6] = [
+    ("DATE", Elementary::Date),
+    ("TOD", Elementary::Tod),
+    ("DT", Elementary::Dt),
+    ("LDT", Elementary::Ldt),
+    ("LDATE", Elementary::Ldate),
+    ("LTOD", Elementary::Ltod),
+];
 
 pub const BITS: [&str; 4] = ["BYTE", "WORD", "DWORD", "LWORD"];
 const BIT_TYPES: [Elementary; 4] = [Elementary::Byte, Elementary::Word, Elementary::Dword, Elementary::Lword];
@@ -85,7 +95,9 @@ impl Ty {
             Self::Bits(at) => Some(BIT_TYPES[*at]),
             Self::Time => Some(Elementary::Time),
             Self::Date(at) => Some(DATES[*at].1),
+            Self::Char(wide) => Some(if *wide { Elementary::Wchar } else { Elementary::Char }),
             Self::Text(_)
+            | Self::Wide(_)
             | Self::Color
             | Self::Level(_)
             | Self::Array(_)
@@ -110,6 +122,11 @@ impl Ty {
 
     pub fn is_integer(&self) -> bool {
         matches!(self, Self::Number(at) if *at < 8)
+    }
+
+    /// Whether it is a WSTRING, or a STRING.
+    pub fn is_text(&self, wide: bool) -> bool {
+        if wide { matches!(self, Self::Wide(_)) } else { matches!(self, Self::Text(_)) }
     }
 
     pub fn is_signed(&self) -> bool {
@@ -171,6 +188,8 @@ impl Catalogue {
             Ty::Time => "TIME".to_owned(),
             Ty::Date(at) => DATES[*at].0.to_owned(),
             Ty::Text(capacity) => format!("STRING[{capacity}]"),
+            Ty::Wide(capacity) => format!("WSTRING[{capacity}]"),
+            Ty::Char(wide) => if *wide { "WCHAR" } else { "CHAR" }.to_owned(),
             Ty::Color => "Color".to_owned(),
             Ty::Level(at) => format!("Level{at}"),
             Ty::Array(at) => format!("List{at}"),
@@ -195,7 +214,7 @@ impl Catalogue {
             Ty::Array(at) => self.is_value(&self.arrays[*at].1),
             Ty::Record(at) => self.records[*at].iter().all(|(_, ty)| self.is_value(ty)),
             Ty::Bool | Ty::Number(_) | Ty::Bits(_) | Ty::Time | Ty::Text(_) | Ty::Color | Ty::Level(_) => true,
-            Ty::Date(_) | Ty::Union(_) | Ty::Pointer(_) | Ty::Interface => true,
+            Ty::Date(_) | Ty::Wide(_) | Ty::Char(_) | Ty::Union(_) | Ty::Pointer(_) | Ty::Interface => true,
         }
     }
 
@@ -205,7 +224,8 @@ impl Catalogue {
             Ty::Bool | Ty::Number(_) | Ty::Bits(_) | Ty::Time | Ty::Color | Ty::Union(_) => true,
             Ty::Array(at) => self.is_shareable(&self.arrays[*at].1),
             Ty::Record(at) => self.records[*at].iter().all(|(_, ty)| self.is_shareable(ty)),
-            Ty::Date(_) | Ty::Text(_) | Ty::Level(_) | Ty::Instance(_) | Ty::Standard(_) => false,
+            Ty::Date(_) | Ty::Text(_) | Ty::Wide(_) | Ty::Char(_) => true,
+            Ty::Level(_) | Ty::Instance(_) | Ty::Standard(_) => false,
             Ty::Pointer(_) | Ty::Interface => false,
         }
     }
@@ -270,7 +290,7 @@ impl Catalogue {
                 shapes.iter_mut().skip(1).for_each(|it| it.through = true);
             }
             Ty::Bool | Ty::Number(_) | Ty::Bits(_) | Ty::Time | Ty::Text(_) | Ty::Color | Ty::Level(_) => {}
-            Ty::Date(_) | Ty::Interface => {}
+            Ty::Date(_) | Ty::Wide(_) | Ty::Char(_) | Ty::Interface => {}
         }
         shapes
     }

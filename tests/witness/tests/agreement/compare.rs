@@ -7,7 +7,7 @@ use staunch_ir::Program;
 use staunch_ir::interpret::{Interpreter, Stop as Early};
 use staunch_ir::symbols::map_text;
 use staunch_native::Jit;
-use staunch_runtime::{Context, Fault};
+use staunch_runtime::{Context, Family, Fault};
 use staunch_witness::{Machine, Stop};
 use std::collections::HashMap;
 use std::fmt;
@@ -43,9 +43,9 @@ impl fmt::Display for Verdict {
 
 /// How a scan ended, and all variables then.
 #[derive(PartialEq)]
-struct Scan {
-    end: Option<Fault>,
-    variables: Vec<(String, String)>,
+pub struct Scan {
+    pub end: Option<Fault>,
+    pub variables: Vec<(String, String)>,
 }
 
 /// Compares the witness, the interpreter and, if asked to, native code.
@@ -59,11 +59,10 @@ pub fn compare(text: &str, with_native: bool) -> Verdict {
         let shown = shown.split_once("error").map_or(shown.clone(), |it| it.1.to_owned());
         return Verdict::Rejected(shown.trim().to_owned());
     };
-    // The witness runs one, which calls the others.
-    if program.instances.len() > 1 {
+    let [instance] = program.instances.as_slice() else {
         return Verdict::Rejected("several PROGRAMs run by themselves".to_owned());
-    }
-    let witnessed = match witnessed(&sources, text) {
+    };
+    let witnessed = match witnessed(&sources, &instance.name, text) {
         Ok(scans) => scans,
         Err(verdict) => return verdict,
     };
@@ -71,7 +70,7 @@ pub fn compare(text: &str, with_native: bool) -> Verdict {
         Some(scans) => scans,
         None => return Verdict::Differs("only the interpreter does not end".to_owned()),
     };
-    if let Some(how) = difference("interpreter", &interpreted, "witness", &witnessed) {
+    if let Some(how) = differences("interpreter", &interpreted, "witness", &witnessed) {
         return Verdict::Differs(how);
     }
     let faulted = witnessed.last().is_some_and(|it| it.end.is_some());
@@ -80,7 +79,7 @@ pub fn compare(text: &str, with_native: bool) -> Verdict {
     }
     match native(&program, text) {
         Err(error) => Verdict::Differs(error),
-        Ok(native) => match difference("native code", &native, "interpreter", &interpreted) {
+        Ok(native) => match differences("native code", &native, "interpreter", &interpreted) {
             Some(how) => Verdict::Differs(how),
             None => Verdict::Same { faulted },
         },
@@ -93,17 +92,17 @@ fn contexts(text: &str) -> impl Iterator<Item = Context> {
     (0..SCANS).map(move |scan| Context::new(scan * CYCLE, prescan && scan == 0).with_turns(TURNS))
 }
 
-fn witnessed(sources: &Sources, text: &str) -> Result<Vec<Scan>, Verdict> {
+fn witnessed(sources: &Sources, instance: &str, text: &str) -> Result<Vec<Scan>, Verdict> {
     let files = [parse(0, text, &mut Vec::new())];
     let unknown = |stop| match stop {
         Stop::Endless => Verdict::Endless,
         Stop::Unknown(what) => Verdict::Rejected(format!("the witness does not know {what}")),
         Stop::Fault(_) => Verdict::Differs("the witness faults in an initial value".to_owned()),
     };
-    let mut machine = Machine::new(sources, &files).map_err(unknown)?;
+    let mut machine = Machine::new(sources, &files, Family::Iec, &[instance]).map_err(unknown)?;
     let mut scans = Vec::new();
     for context in contexts(text) {
-        let end = match machine.scan(&context) {
+        let end = match machine.scan(instance, &context) {
             Ok(()) => None,
             Err(Stop::Fault(fault)) => Some(fault),
             Err(stop) => return Err(unknown(stop)),
@@ -152,23 +151,27 @@ fn native(program: &Program, text: &str) -> Result<Vec<Scan>, String> {
     Ok(scans)
 }
 
-/// The first scan and variable in which two runs differ. The second need not have all variables:
-/// constants and temporaries of the front end are no program's.
-fn difference(name: &str, scans: &[Scan], other_name: &str, others: &[Scan]) -> Option<String> {
-    for (number, (scan, other)) in scans.iter().zip(others).enumerate() {
-        let number = number + 1;
-        let values: HashMap<&str, &str> = other.variables.iter().map(|it| (it.0.as_str(), it.1.as_str())).collect();
-        for (path, value) in &scan.variables {
-            if let Some(theirs) = values.get(path.as_str())
-                && theirs != value
-            {
-                return Some(format!("scan {number}: {path} is {value} ({name}), {theirs} ({other_name})"));
-            }
+/// The first scan and variable in which two runs differ.
+fn differences(name: &str, scans: &[Scan], other_name: &str, others: &[Scan]) -> Option<String> {
+    let mut pairs = scans.iter().zip(others).zip(1..);
+    pairs.find_map(|((scan, other), number)| difference(number, name, scan, other_name, other))
+}
+
+/// The first variable in which two scans differ. The second need not have all variables: constants and temporaries of the
+/// front end are no program's.
+pub fn difference(number: u32, name: &str, scan: &Scan, other_name: &str, other: &Scan) -> Option<String> {
+    let values: HashMap<String, &str> =
+        other.variables.iter().map(|it| (it.0.to_ascii_uppercase(), it.1.as_str())).collect();
+    for (path, value) in &scan.variables {
+        if let Some(theirs) = values.get(&path.to_ascii_uppercase())
+            && theirs != value
+        {
+            return Some(format!("scan {number}: {path} is {value} ({name}), {theirs} ({other_name})"));
         }
-        if scan.end != other.end {
-            let shown = |end: Option<Fault>| end.map_or("no fault".to_owned(), |it| it.to_string());
-            return Some(format!("scan {number}: {} ({name}), {} ({other_name})", shown(scan.end), shown(other.end)));
-        }
+    }
+    if scan.end != other.end {
+        let shown = |end: Option<Fault>| end.map_or("no fault".to_owned(), |it| it.to_string());
+        return Some(format!("scan {number}: {} ({name}), {} ({other_name})", shown(scan.end), shown(other.end)));
     }
     None
 }

@@ -1,18 +1,25 @@
 //! The witness and the executors do the same: on random programs, and on the golden cases as far as
 //! the witness knows what they use.
 //!
-//! `STAUNCH_SEEDS=first..end` chooses the programs, `STAUNCH_PROGRAM=file.st` compares one file.
+//! `STAUNCH_SEEDS=first..end` chooses the programs, `STAUNCH_PROGRAM=file.st` compares one file, `STAUNCH_CASE=name` one
+//! golden case.
 #![allow(clippy::unwrap_used)]
 
+#[path = "../../../src/case.rs"]
+mod case;
 mod compare;
+mod golden;
 #[path = "../../../src/leaf.rs"]
 mod leaf;
+mod recorded;
+#[expect(dead_code, reason = "only the stimulus is read")]
+#[path = "../../../src/scan.rs"]
+mod scan;
 
 use compare::{Verdict, compare};
 use staunch_witness::{generate, shrink};
 use std::collections::BTreeMap;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
 
 /// Programs that each run of the tests compares.
 const PROGRAMS: u64 = 1000;
@@ -49,8 +56,8 @@ fn random_programs() {
         if number < SHRUNK {
             let native = how.contains("native");
             let small =
-                shrink::shrink(&generate::program(*seed), &|it| matches!(compare(it, native), Verdict::Differs(_)));
-            println!("{}\n{small}", compare(&small, native));
+                shrink::shrink(&generate::program(*seed), &|it| matches!(caught(it, native), Verdict::Differs(_)));
+            println!("{}\n{small}", caught(&small, native));
         }
     }
     assert!(all.different.is_empty(), "{} of {count} programs differ", all.different.len());
@@ -82,7 +89,8 @@ fn tally(seeds: impl Iterator<Item = u64>) -> Tally {
     let mut tally = Tally::default();
     for seed in seeds {
         let text = generate::program(seed);
-        match compare(&text, seed % native_every() == 0) {
+        // A panic is shown with its seed, and its program is made small as others are.
+        match caught(&text, seed % native_every() == 0) {
             Verdict::Same { faulted } => tally.faulted += u64::from(faulted),
             Verdict::Endless => tally.endless += 1,
             Verdict::Rejected(reason) => tally.rejected.entry(reason).or_insert((0, seed)).0 += 1,
@@ -90,6 +98,10 @@ fn tally(seeds: impl Iterator<Item = u64>) -> Tally {
         }
     }
     tally
+}
+
+fn caught(text: &str, with_native: bool) -> Verdict {
+    std::panic::catch_unwind(|| compare(text, with_native)).unwrap_or_else(|_| Verdict::Differs("a panic".to_owned()))
 }
 
 /// Native code of each so many programs is compared: of all where it is compiled fast.
@@ -100,46 +112,6 @@ fn native_every() -> u64 {
 fn range(text: &str) -> Range<u64> {
     let (first, end) = text.split_once("..").expect("first..end");
     first.parse().unwrap()..end.parse().unwrap()
-}
-
-/// The golden cases that run, without their stimulus.
-#[test]
-fn golden_cases() {
-    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases");
-    let mut unknown = BTreeMap::new();
-    let (mut compared, mut wrong) = (0, 0);
-    for path in programs(&cases) {
-        let text = std::fs::read_to_string(&path).unwrap();
-        match compare(&text, true) {
-            Verdict::Same { .. } => compared += 1,
-            Verdict::Endless => {}
-            Verdict::Rejected(reason) => *unknown.entry(reason).or_insert(0) += 1,
-            Verdict::Differs(how) => {
-                println!("{}: {how}", path.display());
-                wrong += 1;
-            }
-        }
-    }
-    for (reason, times) in unknown.iter().filter(|it| it.0.starts_with("the witness")) {
-        println!("{times} {reason}");
-    }
-    println!("{compared} cases compared");
-    assert_eq!(wrong, 0, "of {compared} cases");
-}
-
-/// The cases with a `.scan` file, of one source file.
-fn programs(folder: &Path) -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            found.extend(programs(&path));
-        } else if path.extension().is_some_and(|it| it == "st") && path.with_extension("scan").exists() {
-            found.push(path);
-        }
-    }
-    found.sort();
-    found
 }
 
 /// Prints the program of `STAUNCH_SEED`.

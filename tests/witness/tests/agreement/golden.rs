@@ -1,0 +1,125 @@
+//! The golden cases: what the loop of scans did to the interpreter is done to the witness, stimulus and restarts too.
+
+use crate::case::{Case, Pin, discover};
+use crate::compare::{Scan, Verdict, difference};
+use crate::leaf::Read;
+use crate::recorded::{Event, recorded};
+use crate::scan::Table;
+use staunch_frontend::{ast, parse_file};
+use staunch_runtime::{Family, FaultKind};
+use staunch_witness::{Input, Machine, Stop};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+#[test]
+fn golden_cases() {
+    let (cases, _) = discover(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases"));
+    let chosen = std::env::var("STAUNCH_CASE").ok();
+    let is_chosen =
+        |it: &Case| it.pins.contains(&Pin::Scan) && chosen.as_ref().is_none_or(|name| it.name.contains(name));
+    let mut unknown: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    let (mut compared, mut wrong) = (0, 0);
+    for case in cases.iter().filter(|it| is_chosen(it)) {
+        match compare(case) {
+            Verdict::Same { .. } => compared += 1,
+            Verdict::Endless => unknown.entry("how it ends".to_owned()).or_default().push(case.name.clone()),
+            Verdict::Rejected(reason) => unknown.entry(reason).or_default().push(case.name.clone()),
+            Verdict::Differs(how) => {
+                println!("{}: {how}", case.name);
+                wrong += 1;
+            }
+        }
+    }
+    let mut reasons: Vec<_> = unknown.iter().collect();
+    reasons.sort_by_key(|it| std::cmp::Reverse(it.1.len()));
+    for (reason, names) in reasons {
+        println!("{} not compared, {reason}: {}", names.len(), names.join(", "));
+    }
+    println!("{compared} cases compared");
+    assert_eq!(wrong, 0, "of {compared} cases");
+}
+
+fn compare(case: &Case) -> Verdict {
+    let (sources, compilation) = case.compile();
+    let Some(program) = compilation.program else { return Verdict::Rejected("it is refused".to_owned()) };
+    let table = match Table::parse(&case.pinned(Pin::Scan)) {
+        Ok(table) => table,
+        Err(problem) => return Verdict::Differs(problem),
+    };
+    let settings = case.settings();
+    if settings.options.ctu_stop_at_pv {
+        return Verdict::Rejected("a counter that stops at PV".to_owned());
+    }
+    let family = settings.options.dialect.family();
+    // The witness has no prescan of Logix: programs with its counters start without one.
+    let is_logix = family == Family::Logix || sources.files().iter().any(|it| it.text.contains("LOGIX."));
+    let events = match recorded(&program, &table, &settings, !is_logix, &case.module()) {
+        Ok(events) => events,
+        Err(problem) => return Verdict::Differs(problem),
+    };
+    let files: Vec<ast::File<'_>> = (0..).zip(sources.files()).map(|(at, _)| parse_file(&sources, at)).collect();
+    let running: Vec<&str> = program.instances.iter().map(|it| it.name.as_str()).collect();
+    let start = || Machine::new(&sources, &files, family, &running);
+    replayed(&start, events).unwrap_or_else(|stop| match stop {
+        Stop::Endless => Verdict::Endless,
+        Stop::Unknown(what) => Verdict::Rejected(what),
+        Stop::Fault(fault) => Verdict::Differs(format!("the witness faults at the start: {fault}")),
+    })
+}
+
+fn replayed<'a>(start: &dyn Fn() -> Result<Machine<'a>, Stop>, events: Vec<Event>) -> Result<Verdict, Stop> {
+    let mut machine = start()?;
+    let mut number = 0;
+    for event in events {
+        match event {
+            Event::Init => {
+                machine = start()?;
+                if number > 0 {
+                    machine.starts_again();
+                }
+            }
+            Event::Put(path, Read::Scalar(value)) => machine.put(&path, Input::Scalar(value))?,
+            Event::Put(path, Read::Text(text)) => machine.put(&path, Input::Text(units(&text)))?,
+            Event::Scan(instance, context, theirs) => {
+                number += 1;
+                if theirs.end.is_some_and(|it| it.kind == FaultKind::LoopBudget) {
+                    return Err(Stop::Unknown("a loop budget".to_owned()));
+                }
+                let end = match machine.scan(&instance, &context) {
+                    Ok(()) => None,
+                    Err(Stop::Fault(fault)) => Some(fault),
+                    Err(stop) => return Err(stop),
+                };
+                let mut ours = Scan { end, variables: machine.variables() };
+                add_addresses(&machine, &theirs, &mut ours);
+                if !have_any_in_common(&theirs, &ours) {
+                    return Err(Stop::Unknown("any of the variables".to_owned()));
+                }
+                if let Some(how) = difference(number, "interpreter", &theirs, "witness", &ours) {
+                    return Ok(Verdict::Differs(how));
+                }
+            }
+        }
+    }
+    Ok(Verdict::Same { faulted: false })
+}
+
+fn have_any_in_common(a: &Scan, b: &Scan) -> bool {
+    a.variables.iter().any(|it| b.variables.iter().any(|other| it.0.eq_ignore_ascii_case(&other.0)))
+}
+
+/// What lies at addresses has names of the executors' own.
+fn add_addresses(machine: &Machine<'_>, theirs: &Scan, ours: &mut Scan) {
+    let sizes = [("Bool", 0), ("U8", 1), ("U16", 2), ("U32", 4), ("U64", 8)];
+    for (path, value) in &theirs.variables {
+        let size = sizes.iter().find(|it| value.split('(').next() == Some(it.0)).map(|it| it.1);
+        let is_known = ours.variables.iter().any(|it| it.0.eq_ignore_ascii_case(path));
+        if let Some(size) = size.filter(|_| path.starts_with("Globals.") && !is_known) {
+            ours.variables.extend(machine.addressed(path, size).map(|it| (path.clone(), it)));
+        }
+    }
+}
+
+fn units(text: &ast::Chars) -> Vec<u16> {
+    (0..text.len()).filter_map(|it| text.unit(it)).collect()
+}
