@@ -5,6 +5,7 @@ use staunch_ir::{Argument, Place, StatementKind, Type, visit};
 use staunch_tests::case::{self, Case, Pin};
 use staunch_tests::{cases, golden};
 use std::collections::BTreeSet;
+use std::hash::{DefaultHasher, Hash, Hasher};
 
 include!(concat!(env!("OUT_DIR"), "/golden_tests.rs"));
 
@@ -21,6 +22,17 @@ fn nothing_lies_about() {
     let (cases, problems) = case::discover(&cases());
     assert!(problems.is_empty(), "{}", problems.join("\n"));
     assert!(cases.len() > 100, "only {} cases", cases.len());
+}
+
+/// For `.ci/mutants`: where the front end makes of a case what it made before, that case sees no change of it.
+#[test]
+#[ignore = "it only prints"]
+fn print_what_is_made_of_each() {
+    for case in case::discover(&cases()).0 {
+        let mut made = DefaultHasher::new();
+        format!("{:?}", case.compile().1).hash(&mut made);
+        println!("made {} {:x}", case.module(), made.finish());
+    }
 }
 
 /// Each kind of statement, and each way in which a call hands something over, is pinned as IR.

@@ -75,6 +75,7 @@ impl VisitMut for Inserter<'_> {
     fn visit_impl_item_mut(&mut self, item: &mut syn::ImplItem) {
         if let syn::ImplItem::Fn(it) = item
             && it.sig.constness.is_none()
+            && !is_test(&it.attrs)
         {
             self.visit_block_mut(&mut it.block);
         }
@@ -145,7 +146,8 @@ impl VisitMut for Inserter<'_> {
     }
 }
 
-fn is_test(attributes: &[Attribute]) -> bool {
+/// Whether an item is there for tests alone, or for some targets: what is not built cannot be changed either.
+pub fn is_test(attributes: &[Attribute]) -> bool {
     attributes.iter().any(|it| it.path().is_ident("test") || it.path().is_ident("cfg"))
 }
 

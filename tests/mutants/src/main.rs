@@ -1,7 +1,7 @@
 //! `mutants TREE LIST SKIP FILE…`: puts every mutant of the files of a copy of the sources into them, each behind a
 //! switch, so that one build holds all. The program that is made asks `STAUNCH_MUTANT` for the one that is on.
 //! `LIST` gets a line for each: its number, its place and what it changes. The numbers in the file `SKIP` get no
-//! switch: what they would make does not compile.
+//! switch: what they would make does not compile. What is for tests alone gets none either.
 
 mod insert;
 
@@ -35,6 +35,9 @@ fn main() -> io::Result<()> {
     let mut crates = HashSet::new();
     for path in arguments {
         let file = tree.join(&path);
+        if is_for_tests(&file)? {
+            continue;
+        }
         let text = fs::read_to_string(&file)?;
         let mut syntax = syn::parse_file(&text).map_err(|it| io::Error::other(format!("{path}: {it}")))?;
         for mutant in insert::insert(&mut syntax, first, &skip) {
@@ -49,6 +52,22 @@ fn main() -> io::Result<()> {
         fs::write(&root, text + SWITCH)?;
     }
     fs::write(list, lines)
+}
+
+/// Whether the module that a file is says `#[cfg(test)]` where it is declared. A name says nothing: the compiler has
+/// modules `tests` that are about those of its users.
+fn is_for_tests(file: &Path) -> io::Result<bool> {
+    let (Some(folder), Some(name)) = (file.parent(), file.file_stem()) else { return Ok(false) };
+    let parents =
+        ["mod.rs", "lib.rs", "main.rs"].map(|it| folder.join(it)).into_iter().chain([folder.with_extension("rs")]);
+    for parent in parents.filter(|it| it.exists() && it != file) {
+        let syntax = syn::parse_file(&fs::read_to_string(&parent)?).map_err(io::Error::other)?;
+        let is_declared = |it: &syn::Item| matches!(it, syn::Item::Mod(it) if it.content.is_none() && *name == *it.ident.to_string() && insert::is_test(&it.attrs));
+        if syntax.items.iter().any(is_declared) {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }
 
 /// The file of the crate that a module is in.

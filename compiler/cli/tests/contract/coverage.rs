@@ -111,6 +111,23 @@ END_FUNCTION_BLOCK
     assert!(!out.contains("o_test.st") && !out.contains("library"), "{out}");
 }
 
+/// What the first call alone does is written by nobody; what is after it is counted.
+#[test]
+fn what_starts_variables_is_not_counted() {
+    let source = "FUNCTION Second : INT
+VAR_INPUT a : INT; END_VAR
+VAR_STAT x : INT; p : POINTER TO INT := ADR(x); END_VAR
+p^ := a;
+IF a > 8 THEN x := 0; END_IF
+Second := x + 1;
+END_FUNCTION
+TEST 'once' ASSERT_EQ(Second(7), 8); END_TEST
+";
+    let folder = Folder::with("coverage_started", &[("s.st", source)]);
+    let out = folder.staunch("test . -q -A warnings --dialect codesys --coverage table").out(0);
+    has(&out, &["\ns.st          3 of 4  75 %     1 of 2  50 %     0 of 1   0 %\n", "\ns.st:5:15: not executed\n"]);
+}
+
 #[test]
 fn wrong_usage() {
     let folder = Folder::with("coverage_usage", &[("f.st", SOURCE), ("f_test.st", TESTS)]);

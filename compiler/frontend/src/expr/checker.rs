@@ -34,8 +34,6 @@ pub(crate) struct Checker<'d, 's> {
     /// How many loops are around the statement.
     pub loops: usize,
     pub uses: Uses,
-    /// Where in `uses.assigned` a variable is, by a hash of it.
-    pub first_assigned: FxHashMap<u64, usize>,
     pub context: Context,
     /// Instances called so far on the way to this statement.
     pub called: Called,
@@ -86,7 +84,6 @@ impl<'d, 's> Checker<'d, 's> {
             counters: Vec::new(),
             loops: 0,
             uses: Uses::default(),
-            first_assigned: FxHashMap::default(),
             context,
             called: Called::default(),
             choices: FxHashMap::default(),

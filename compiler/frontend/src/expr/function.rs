@@ -78,7 +78,11 @@ impl<'s> Checker<'_, 's> {
         } else {
             (slot, Rc::clone(&signature))
         };
-        if !enough || !self.write_left_out(&mut written, &signature, &given, slot, span) || !complete {
+        if !enough {
+            return None;
+        }
+        self.write_left_out(&mut written, &signature, &given, slot, span);
+        if !complete {
             return None;
         }
         let Written { mut parts, open, mut passed } = written;
@@ -174,7 +178,7 @@ impl<'s> Checker<'_, 's> {
         complete
     }
 
-    /// Passes what a call does not name; whether all of it may be left out.
+    /// Passes what a call does not name. What may not be left out is not passed, so that the call is not made.
     fn write_left_out(
         &mut self,
         written: &mut Written,
@@ -182,15 +186,12 @@ impl<'s> Checker<'_, 's> {
         given: &[Given<'_, 's>],
         slot: usize,
         span: Span,
-    ) -> bool {
-        let mut complete = true;
+    ) {
         for (at, given) in given.iter().enumerate() {
             if let Given::Nothing | Given::Output { target: None, .. } = given {
                 written.passed[at] = self.left_out(signature, at, slot, span);
-                complete &= written.passed[at].is_some();
             }
         }
-        complete
     }
 
     /// The statements that give a FUNCTION's outputs their initial values: it keeps none from its last call.

@@ -6,10 +6,8 @@ use super::uses::{
     same_storage, several_counts, shared_count,
 };
 use crate::{Code, Diagnostic, Span, ast};
-use rustc_hash::FxHasher;
 use staunch_ir::alias::may_hold;
-use staunch_ir::{Place, Projection, Root, Type};
-use std::hash::{Hash, Hasher};
+use staunch_ir::{FieldId, Place, Projection, Root, Type};
 
 impl<'s> Checker<'_, 's> {
     pub(crate) fn used_instruction(&mut self, place: &Place, instruction: usize) {
@@ -100,14 +98,9 @@ impl<'s> Checker<'_, 's> {
 
     /// A variable is noted where it is assigned first: large programs assign the same ones over and over.
     pub(crate) fn note_assigned(&mut self, place: &Place, span: Span) {
-        if let Some(key) = variable_key(place) {
-            let next = self.uses.assigned.len();
-            let first = *self.first_assigned.entry(key).or_insert(next);
-            if self.uses.assigned.get(first).is_some_and(|it| it.place.is_same_variable(place)) {
-                return;
-            }
+        if members_of(place).is_none_or(|members| self.uses.noted.insert((place.root, members))) {
+            self.uses.assigned.push(Assigned { place: place.clone(), span, passed_for: None });
         }
-        self.uses.assigned.push(Assigned { place: place.clone(), span, passed_for: None });
     }
 
     pub(crate) fn note_passed(&mut self, place: &Place, span: Span, declared: Span) {
@@ -130,13 +123,11 @@ impl<'s> Checker<'_, 's> {
     }
 }
 
-/// A hash of a variable or a member of one; `None` for what has subscripts or leads through a reference.
-fn variable_key(place: &Place) -> Option<u64> {
-    let mut hasher = FxHasher::default();
-    place.root.hash(&mut hasher);
-    for projection in &place.projections {
-        let Projection::Field(id) = projection else { return None };
-        id.hash(&mut hasher);
-    }
-    Some(hasher.finish())
+/// The members that lead to a part of a variable; `None` for what has subscripts or leads through a reference.
+fn members_of(place: &Place) -> Option<Vec<FieldId>> {
+    let member = |it: &Projection| match it {
+        Projection::Field(id) => Some(*id),
+        Projection::Index { .. } | Projection::Deref { .. } => None,
+    };
+    place.projections.iter().map(member).collect()
 }

@@ -1,7 +1,8 @@
 //! Notes which counters the first scan after a start, a restart or IDLE -> RUN prepares.
 
 use crate::{Code, Diagnostic, Span};
-use staunch_ir::{Expr, ExprKind, Location, Place, Projection, alias};
+use rustc_hash::FxHashSet;
+use staunch_ir::{Expr, ExprKind, FieldId, Location, Place, Projection, Root, alias};
 
 /// What a POU does with counters, in places of the POU's own.
 #[derive(Debug, Default)]
@@ -10,6 +11,8 @@ pub(crate) struct Uses {
     pub instructions: Vec<(Place, Preparation)>,
     pub counts: Vec<KeptCount>,
     pub assigned: Vec<Assigned>,
+    /// The variables, and members of such, that are among these.
+    pub noted: FxHashSet<(Root, Vec<FieldId>)>,
 }
 
 /// What an instruction does before the first scan.

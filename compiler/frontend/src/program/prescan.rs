@@ -42,7 +42,7 @@ fn of_their_classes(declarations: &Declarations<'_>, uses: &mut [Uses]) {
     for (at, pou) in declarations.pous.iter().enumerate() {
         let Some(owner) = pou.owner else { continue };
         let routine = &declarations.program.routines[at];
-        let Uses { instructions, counts, assigned } = std::mem::take(&mut uses[at]);
+        let Uses { instructions, counts, assigned, noted: _ } = std::mem::take(&mut uses[at]);
         for (place, instruction) in instructions.into_iter().filter(|(place, _)| lasts(place) && !reads_param(place)) {
             let place = named::before_calls(&declarations.program, routine, &place);
             reach::add_instruction(&mut uses[owner], place, instruction);

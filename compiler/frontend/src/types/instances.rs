@@ -84,7 +84,7 @@ impl<'s> Declarations<'s> {
         within: Option<usize>,
     ) -> Option<usize> {
         if let Some(way) = self.calls_itself(of, within) {
-            self.report_generic_recursion(of, &way, call);
+            self.report_generic_recursion(way, call);
             return None;
         }
         if let Some(slot) = self.generics.slots.get(&(of, types.clone())) {
@@ -114,30 +114,37 @@ impl<'s> Declarations<'s> {
         matches!(self.pous[slot].slot, Slot::Done(_)).then_some(slot)
     }
 
-    /// The FUNCTIONs on the way from `of` to a call of it, where `within` is on one.
+    /// The slots on the way from `of` to a call of it, where `within` is on one.
     fn calls_itself(&self, of: usize, within: Option<usize>) -> Option<Vec<usize>> {
         let mut way = Vec::new();
         let mut at = within;
         while let Some(slot) = at {
-            let instance = self.pous[slot].instance.as_ref();
-            let caller = instance.map_or(slot, |it| it.of);
-            way.push(caller);
-            if caller == of {
+            way.push(slot);
+            if self.as_written(slot) == of {
                 way.reverse();
                 return Some(way);
             }
-            at = instance.and_then(|it| it.within);
+            at = self.pous[slot].instance.as_ref().and_then(|it| it.within);
         }
         None
     }
 
-    /// With other types it calls itself all the same: what it is given does not decide what it calls.
-    fn report_generic_recursion(&mut self, of: usize, way: &[usize], call: Span) {
-        let name = self.pous[of].ast.name;
-        let way: Vec<_> = way.iter().chain([&of]).map(|it| self.pous[*it].ast.name.text).collect();
+    /// The slot of the FUNCTION that one in a slot is an instance of, or is.
+    fn as_written(&self, slot: usize) -> usize {
+        self.pous[slot].instance.as_ref().map_or(slot, |it| it.of)
+    }
+
+    /// With other types it calls itself all the same: what it is given does not decide what it calls. Wherever a call
+    /// enters the circle, that is said of the first of it in the text, so that it is said once.
+    fn report_generic_recursion(&mut self, mut way: Vec<usize>, last: Span) {
+        let again = self.pous[way[0]].ast.name.text;
+        let first = (0..way.len()).min_by_key(|it| self.as_written(way[*it])).unwrap_or_default();
+        way.rotate_left(first);
+        let name = self.pous[way[0]].ast.name;
+        let way: Vec<_> = way.iter().chain([&way[0]]).map(|it| self.pous[*it].ast.name.text).collect();
         let error = Diagnostic::new(Code::E0310, name.span, format!("`{}` calls itself", name.text))
             .label("recursion has no bound on its stack")
-            .other(call, "called here")
+            .other(last, format!("`{again}` is called here"))
             .note(format!("the calls go {}", way.join(" -> ")))
             .help("write it as a loop");
         self.report(error);
