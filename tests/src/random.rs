@@ -1,9 +1,11 @@
 //! Which of the witness's random programs are also compiled as generated Rust.
 
 use staunch_frontend::{Source, Sources, parse};
-use staunch_runtime::Context;
+use staunch_runtime::{Context, Family};
 use staunch_witness::{Machine, generate};
 
+/// What runs in each of them.
+const INSTANCE: &str = "Main";
 /// So many programs.
 const PRINTED: usize = 20;
 /// Scans of each.
@@ -32,6 +34,6 @@ fn ends(text: &str) -> bool {
     let mut sources = Sources::default();
     sources.add(Source::new("program.st", text.to_owned()));
     let files = [parse(0, text, &mut Vec::new())];
-    let machine = Machine::new(&sources, &files);
-    machine.is_ok_and(|mut it| (0..SCANS).all(|scan| it.scan(&context(scan)).is_ok()))
+    let machine = Machine::new(&sources, &files, Family::Iec, &[INSTANCE]);
+    machine.is_ok_and(|mut it| (0..SCANS).all(|scan| it.scan(INSTANCE, &context(scan)).is_ok()))
 }
