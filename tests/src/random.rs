@@ -1,7 +1,7 @@
 //! Which of the witness's random programs are also compiled as generated Rust.
 
 use staunch_frontend::{Source, Sources, parse};
-use staunch_runtime::Context;
+use staunch_runtime::{Context, Family};
 use staunch_witness::{Machine, generate};
 
 /// So many programs.
@@ -32,6 +32,6 @@ fn ends(text: &str) -> bool {
     let mut sources = Sources::default();
     sources.add(Source::new("program.st", text.to_owned()));
     let files = [parse(0, text, &mut Vec::new())];
-    let machine = Machine::new(&sources, &files);
-    machine.is_ok_and(|mut it| (0..SCANS).all(|scan| it.scan(&context(scan)).is_ok()))
+    let machine = Machine::new(&sources, &files, Family::Iec, &["Main"]);
+    machine.is_ok_and(|mut it| (0..SCANS).all(|scan| it.scan("Main", &context(scan)).is_ok()))
 }

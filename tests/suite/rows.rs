@@ -2,7 +2,7 @@
 //! function, on the witness; each other type is refused.
 
 use staunch_frontend::{Dialect, Options, Severity, Source, Sources, compile, parse};
-use staunch_runtime::Context;
+use staunch_runtime::{Context, Family};
 use staunch_tests::execute::Executor;
 use staunch_tests::leaf::Leaves;
 use staunch_tests::rows::{self, Row};
@@ -82,8 +82,8 @@ fn witnessed(row: Row, call: Vec<rows::Taken>) -> bool {
     let text = row.program("Main", &[call]);
     let sources = sources(text.clone());
     let files = [parse(0, &text, &mut Vec::new())];
-    let Ok(mut witness) = Machine::new(&sources, &files) else { return false };
-    if witness.scan(&Context::at(0)).is_err() {
+    let Ok(mut witness) = Machine::new(&sources, &files, Family::Iec, &["Main"]) else { return false };
+    if witness.scan("Main", &Context::at(0)).is_err() {
         return false;
     }
     let theirs: HashMap<_, _> = witness.variables().into_iter().collect();
