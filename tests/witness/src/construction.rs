@@ -6,7 +6,7 @@ use crate::machine::{Frame, Machine, Outcome};
 use crate::starts::Assigns;
 use crate::storage::{Place, Value};
 use crate::types::{Slot, Type};
-use staunch_frontend::ast::{Argument, PouKind, VarKind};
+use staunch_frontend::ast::{Argument, Initial, InitialKind, PouKind, VarKind};
 
 impl<'a> Machine<'a> {
     /// All instances, before the first scan of any PROGRAM: global ones first, then those of PROGRAMs.
@@ -32,6 +32,9 @@ impl<'a> Machine<'a> {
             return Ok(());
         }
         self.assign_references(frame, place, slot)?;
+        if let Some(initial) = slot.initial.filter(|_| self.is_constructed(&place.ty)) {
+            self.unassign(place, initial)?;
+        }
         let lists = slot.construction.map_or(&[][..], |it| &it.lists);
         self.construct_inside(frame, place, lists)?;
         if slot.initial.is_some() && self.is_constructed(&place.ty) {
@@ -51,6 +54,53 @@ impl<'a> Machine<'a> {
         let assigned = self.start(frame, place, slot.initial);
         self.assigns = before;
         assigned
+    }
+
+    /// FB_init sees what the class says, not what the declaration gives the instance.
+    fn unassign(&mut self, place: &Place<'a>, initial: &'a Initial<'a>) -> Outcome<()> {
+        match &initial.kind {
+            InitialKind::Fields(fields) => {
+                let Type::Record(record) = place.ty.clone() else { return Ok(()) };
+                for (name, initial) in fields {
+                    let number = record.fields.iter().position(|it| it.0.eq_ignore_ascii_case(name.text));
+                    let Some((number, field)) = number.and_then(|it| Some((it, place.field(it)?))) else { continue };
+                    match (&field.ty, record.pou) {
+                        (Type::Record(_) | Type::Array(_), _) => self.unassign(&field, initial)?,
+                        (Type::Reference(_), _) => {}
+                        (_, Some(_)) => {
+                            let own = self.instance_frame(place);
+                            self.restart_field(&own, &field, record.fields[number].1.initial)?;
+                        }
+                        (_, None) => {}
+                    }
+                }
+                Ok(())
+            }
+            InitialKind::Elements(elements) => {
+                let mut at = 0;
+                for element in elements {
+                    let count = element.count.as_ref().map_or(Ok(1), |it| self.declared.number(it))?;
+                    for _ in 0..count {
+                        at += usize::from(element.values.is_empty());
+                        for value in &element.values {
+                            if let Some(element) = place.flat(at) {
+                                self.unassign(&element, value)?;
+                            }
+                            at += 1;
+                        }
+                    }
+                }
+                Ok(())
+            }
+            InitialKind::Value(_) | InitialKind::Bind(_) => Ok(()),
+        }
+    }
+
+    fn restart_field(&mut self, frame: &Frame<'a>, field: &Place<'a>, initial: Option<&'a Initial<'a>>) -> Outcome<()> {
+        let before = std::mem::replace(&mut self.assigns, Assigns::VALUES);
+        let started = self.start(frame, field, initial);
+        self.assigns = before;
+        started
     }
 
     /// What is inside of a variable; of an instance also its own FB_init.

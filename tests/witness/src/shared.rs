@@ -26,7 +26,15 @@ struct Layout {
 impl<'a> Type<'a> {
     /// How many bytes a value takes among shared ones; `None` where it cannot be there.
     pub fn bytes(&self) -> Option<usize> {
-        self.layout().map(|it| it.size)
+        self.shared_layout().map(|it| it.size)
+    }
+
+    /// A text by itself is its characters and a zero.
+    fn shared_layout(&self) -> Option<Layout> {
+        match self {
+            Self::Text(it) => Some(Layout { size: (it.capacity + 1) * it.unit(), align: it.unit() }),
+            _ => self.layout(),
+        }
     }
 
     fn layout(&self) -> Option<Layout> {
@@ -49,14 +57,14 @@ impl<'a> Type<'a> {
             Self::Union(it) => {
                 let mut whole = Layout { size: 0, align: 1 };
                 for (_, slot) in &it.fields {
-                    let field = slot.ty.layout()?;
+                    let field = slot.ty.shared_layout()?;
                     whole.size = whole.size.max(field.size);
                     whole.align = whole.align.max(field.align);
                 }
                 Some(Layout { size: whole.size.next_multiple_of(whole.align), ..whole })
             }
-            // Its characters, and a zero.
-            Self::Text(it) => Some(Layout { size: (it.capacity + 1) * it.unit(), align: it.unit() }),
+            // In structures and arrays it lies as it does anywhere, with room for its length.
+            Self::Text(it) => Some(Layout { size: 2 + (it.capacity * it.unit()).next_multiple_of(2), align: 2 }),
             Self::Subrange(..) | Self::Record(_) | Self::Block(_) | Self::Reference(_) => None,
         }
     }
@@ -127,7 +135,7 @@ impl<'a> Place<'a> {
         let Type::Array(array) = &self.ty else { return None };
         let element = &array.element.ty;
         match self.window {
-            Some(window) => Some(self.further(window, number * element.bytes()?, element)),
+            Some(window) => Some(self.further(window, number * element.layout()?.size, element)),
             None => Some(self.part(number * element.size(), element)),
         }
     }
@@ -206,10 +214,11 @@ impl<'a> Machine<'a> {
             Cell::Scalar(Scalar::Bool(value)) => bytes[first] = u8::from(*value),
             Cell::Scalar(value) => value.write(&mut bytes[first..]),
             Cell::Bytes(own) => bytes[first..first + own.len()].copy_from_slice(own),
-            // What comes after the zero stays.
+            // Zeros to its end.
             Cell::Text(text) => {
                 let Type::Text(ty) = place.ty else { return };
-                for (unit, to) in text.iter().chain([&0]).zip(bytes[first..].chunks_mut(ty.unit())) {
+                let units = text.iter().chain(std::iter::repeat(&0)).take(ty.capacity + 1);
+                for (unit, to) in units.zip(bytes[first..].chunks_mut(ty.unit())) {
                     to.copy_from_slice(&unit.to_le_bytes()[..ty.unit()]);
                 }
             }

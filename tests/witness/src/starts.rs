@@ -31,9 +31,7 @@ impl<'a> Machine<'a> {
         place: &Place<'a>,
         initial: Option<&'a Initial<'a>>,
     ) -> Outcome<()> {
-        // An instance with FB_init has what its declaration gives it after that.
-        let waits = !self.assigns.references && self.is_constructed(&place.ty);
-        match initial.filter(|_| !waits).map(|it| &it.kind) {
+        match initial.map(|it| &it.kind) {
             None => self.start_unset(frame, place),
             Some(InitialKind::Value(expr) | InitialKind::Bind(expr)) => {
                 let is_wanted =
@@ -151,6 +149,7 @@ fn is_zero(cell: &Cell<'_>) -> bool {
         Cell::Scalar(Scalar::Bool(it)) => !it,
         Cell::Scalar(it) => it.as_integer() == Some(0),
         Cell::Bytes(it) => it.iter().all(|it| *it == 0),
-        Cell::Text(_) | Cell::Reference(_) => false,
+        Cell::Text(it) => it.is_empty(),
+        Cell::Reference(_) => false,
     }
 }

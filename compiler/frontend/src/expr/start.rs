@@ -31,8 +31,7 @@ struct Given<'a, 's> {
     /// One list of them for each element.
     lists: Option<&'a ast::Construction<'s>>,
     initial: Option<&'a ast::Initial<'s>>,
-    /// What it starts as, by its type and by the declaration.
-    default: Const,
+    /// What it starts as, by the declaration.
     value: Const,
     span: Span,
 }
@@ -213,16 +212,14 @@ impl<'s> Checker<'_, 's> {
 
     /// Starts what `__NEW` has made, with the arguments for its FB_init.
     pub(super) fn start_made(&mut self, place: Place, arguments: &[ast::Argument<'s>], span: Span) {
-        let default = self.decl.start_of(place.ty);
-        let value = default.clone();
-        self.start_place(place, &Given { arguments, lists: None, initial: None, default, value, span });
+        let value = self.decl.start_of(place.ty);
+        self.start_place(place, &Given { arguments, lists: None, initial: None, value, span });
     }
 
     /// Calls the METHODs FB_exit of an instance that `__DELETE` is given, an heir's before its base's.
     pub(super) fn exit(&mut self, class: usize, place: &Place, span: Span) {
         for method in self.decl.system_methods(class, EXIT).into_iter().rev() {
-            let given =
-                Given { arguments: &[], lists: None, initial: None, default: Const::Zero, value: Const::Zero, span };
+            let given = Given { arguments: &[], lists: None, initial: None, value: Const::Zero, span };
             let arguments = self.arguments_of(method, &given);
             if self.may_be_called_by_delete(method, arguments.len()) {
                 self.call_system(method, place.clone(), &arguments, span);
@@ -254,7 +251,6 @@ impl<'s> Checker<'_, 's> {
             arguments: arguments.map_or(&[], Vec::as_slice),
             lists: construction.filter(|it| it.is_of_elements),
             initial: declared.and_then(|it| it.initial.as_ref()),
-            default: self.decl.start_of(place.ty),
             value,
             span: construction.map_or(span, |it| it.span),
         };
@@ -283,8 +279,10 @@ impl<'s> Checker<'_, 's> {
     fn start_instance(&mut self, place: Place, id: StructId, class: usize, given: &Given<'_, 's>) {
         let initial = self.decl.initial_methods(class);
         let mut values = Vec::new();
-        if let Some(written) = given.initial.filter(|_| !initial.is_empty()) {
-            self.values_given(place.clone(), written, (&given.default, &given.value), &mut values);
+        if let Some(written) = given.initial {
+            // FB_init sees what the class itself says.
+            let default = self.decl.start_of(place.ty);
+            self.values_given((place.clone(), !initial.is_empty()), written, (&default, &given.value), &mut values);
         }
         for Assigned { place, default, .. } in &values {
             self.assign_constant(place, default, given.span);
@@ -421,7 +419,7 @@ impl<'s> Checker<'_, 's> {
             if !self.decl.is_started(field.ty) {
                 continue;
             }
-            let (default, value) = (given.default.part(at), given.value.part(at));
+            let value = given.value.part(at);
             match initial {
                 Some(initial) => {
                     let construction = declared.and_then(|it| it.construction.as_deref());
@@ -429,7 +427,7 @@ impl<'s> Checker<'_, 's> {
                     let lists = construction.filter(|it| it.is_of_elements);
                     let arguments = list.map_or(&[][..], Vec::as_slice);
                     let initial = Some(initial);
-                    self.start_place(member, &Given { arguments, lists, initial, default, value, span: given.span });
+                    self.start_place(member, &Given { arguments, lists, initial, value, span: given.span });
                 }
                 None => self.start_declared(member, declared, value, given.span),
             }
@@ -462,7 +460,7 @@ impl<'s> Checker<'_, 's> {
             ty = array.element;
         }
         let at = self.at(given.span);
-        if given.lists.is_none() && given.initial.is_none() {
+        if given.lists.is_none() && given.initial.is_none() && is_uniform(&given.value, shape.len()) {
             let nested = Given { lists: None, initial: None, ..given.clone() };
             return self.start_in_loops(place, &shape, &nested);
         }
@@ -475,24 +473,28 @@ impl<'s> Checker<'_, 's> {
             );
             return;
         }
+        let mut written = Vec::new();
+        if let Some(initial) = given.initial {
+            self.written_elements(initial, usize::try_from(total).unwrap_or(usize::MAX), &mut written);
+        }
         for number in 0..total {
             let (mut element, mut rest, mut stride) = (place.clone(), number, total);
-            let (mut default, mut value) = (given.default.clone(), given.value.clone());
+            let mut value = given.value.clone();
             for (low, high, ty) in &shape {
                 stride /= high - low + 1;
                 let index = rest / stride;
                 rest %= stride;
                 let position = usize::try_from(index).unwrap_or_default();
-                (default, value) = (default.part(position), value.part(position));
+                value = value.part(position);
                 let lint = Expr::constant(Elementary::Lint, Value::I64(low + index), at);
                 element = element.index(lint, *ty, at);
             }
             let position = usize::try_from(number).unwrap_or_default();
             let list = given.lists.and_then(|it| it.lists.get(position));
             let arguments = list.map_or(given.arguments, Vec::as_slice);
-            let initial = given.initial.and_then(|it| element_of(it, position));
+            let initial = written.get(position).copied().flatten();
             let span = list.and_then(|it| it.first()).map_or(given.span, |it| it.span);
-            self.start_place(element, &Given { arguments, lists: None, initial, default, value, span });
+            self.start_place(element, &Given { arguments, lists: None, initial, value, span });
         }
     }
 
@@ -503,15 +505,40 @@ impl<'s> Checker<'_, 's> {
         self.locals.push(Local { name: "element".to_owned(), ty: Type::LINT, initial: Const::Zero, doc: None });
         let counter = Place::local(counter, Type::LINT);
         let one = place.index(Expr::load(counter.clone(), at), *element, at);
-        let body = self.nested(|this| this.start_in_loops(one, inner, given));
+        let alike = Given { value: given.value.part(0), ..given.clone() };
+        let body = self.nested(|this| this.start_in_loops(one, inner, &alike));
         let lint = |value| Expr::constant(Elementary::Lint, Value::I64(value), at);
         self.block.push(For::over(counter, lint(*low), lint(*high), body, at));
     }
 
-    /// The variables of an instance that its declaration gives values.
+    /// The initial values of an array's elements, and of those of arrays in it, in one row; `4()` has none.
+    fn written_elements<'a>(
+        &mut self,
+        initial: &'a ast::Initial<'s>,
+        most: usize,
+        found: &mut Vec<Option<&'a ast::Initial<'s>>>,
+    ) {
+        let InitialKind::Elements(elements) = &initial.kind else { return found.push(Some(initial)) };
+        let scope = Rc::clone(&self.scope);
+        for element in elements {
+            let count = element.count.as_ref().map_or(Some(1), |it| self.decl.constant_integer(it, &scope));
+            for _ in 0..count.unwrap_or(0) {
+                if found.len() >= most {
+                    return;
+                }
+                if element.values.is_empty() {
+                    found.push(None);
+                }
+                element.values.iter().for_each(|it| self.written_elements(it, most, found));
+            }
+        }
+    }
+
+    /// The variables of an instance that its declaration gives values, and that an FB_init may write: its own, or that of
+    /// an instance inside.
     fn values_given(
-        &self,
-        place: Place,
+        &mut self,
+        (place, is_written): (Place, bool),
         written: &ast::Initial<'s>,
         (default, value): (&Const, &Const),
         found: &mut Vec<Assigned>,
@@ -521,12 +548,13 @@ impl<'s> Checker<'_, 's> {
                 let Some(field) = self.decl.field_named(id, name.text) else { continue };
                 let Some(ty) = self.decl.program.member(place.ty, field) else { continue };
                 let parts = (&default.part(field.index()), &value.part(field.index()));
-                self.values_given(place.clone().field(field, ty), written, parts, found);
+                let is_written = is_written || self.decl.is_started(ty);
+                self.values_given((place.clone().field(field, ty), is_written), written, parts, found);
             }
             return;
         }
         // An instance is no value.
-        if self.decl.program.instance_in(place.ty, &|it| self.decl.is_instance(it)).is_none() {
+        if is_written && self.decl.program.instance_in(place.ty, &|it| self.decl.is_instance(it)).is_none() {
             found.push(Assigned { place, default: default.clone(), value: value.clone() });
         }
     }
@@ -557,11 +585,12 @@ fn member_of<'a, 's>(initial: &'a ast::Initial<'s>, name: &str) -> Option<&'a as
     fields.iter().find(|(it, _)| Key(it.text) == Key(name)).map(|it| &it.1)
 }
 
-/// What an initial value says of an element, where it lists them one by one.
-fn element_of<'a, 's>(initial: &'a ast::Initial<'s>, position: usize) -> Option<&'a ast::Initial<'s>> {
-    let InitialKind::Elements(elements) = &initial.kind else { return None };
-    match elements.get(position)? {
-        ast::Element { count: None, values } if elements.iter().all(|it| it.count.is_none()) => values.first(),
-        ast::Element { .. } => None,
+/// Whether all elements of an array of so many dimensions have one value.
+fn is_uniform(value: &Const, dimensions: usize) -> bool {
+    match value {
+        Const::Array(runs) if dimensions > 0 => {
+            runs.len() <= 1 && runs.iter().all(|(_, element)| is_uniform(element, dimensions - 1))
+        }
+        Const::Zero | Const::Scalar(_) | Const::Text(_) | Const::Array(_) | Const::Struct(_) => true,
     }
 }

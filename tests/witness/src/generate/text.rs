@@ -59,7 +59,8 @@ impl Writer {
 
     /// `s[i]`: a CHAR of the standard, a BYTE or a WORD of CODESYS.
     pub(super) fn character_of_text(&mut self, wide: bool, depth: usize) -> Option<String> {
-        let (place, ty) = self.some_place(false, 0, |_, it| it.is_text(wide))?;
+        // What is in a UNION has no characters of its own.
+        let (place, ty) = self.direct_place(0, |_, it| it.is_text(wide))?;
         Some(self.indexed_text(&place, &ty, depth))
     }
 

@@ -55,8 +55,12 @@ fn random_programs() {
         println!("seed {seed}: {how}");
         if number < SHRUNK {
             let native = how.contains("native");
+            // A panic is made again and again then.
+            let hook = std::panic::take_hook();
+            std::panic::set_hook(Box::new(|_| {}));
             let small =
                 shrink::shrink(&generate::program(*seed), &|it| matches!(caught(it, native), Verdict::Differs(_)));
+            std::panic::set_hook(hook);
             println!("{}\n{small}", caught(&small, native));
         }
     }
@@ -101,7 +105,10 @@ fn tally(seeds: impl Iterator<Item = u64>) -> Tally {
 }
 
 fn caught(text: &str, with_native: bool) -> Verdict {
-    std::panic::catch_unwind(|| compare(text, with_native)).unwrap_or_else(|_| Verdict::Differs("a panic".to_owned()))
+    std::panic::catch_unwind(|| compare(text, with_native)).unwrap_or_else(|panic| {
+        let said = panic.downcast_ref::<String>().map_or("", |it| it);
+        Verdict::Differs(format!("a panic: {said}"))
+    })
 }
 
 /// Native code of each so many programs is compared: of all where it is compiled fast.
