@@ -2,7 +2,7 @@
 //!
 //! The folders are layers, and each imports from those before it: the program's text for the other system, what each
 //! program's text says, both side by side, what their inputs may be, how they may come to differ, the search for inputs
-//! that make them, what it has found, and the report.
+//! that make them, what it has found, what that comes to, and the report.
 
 mod other;
 mod program;
@@ -17,6 +17,8 @@ mod search;
 
 mod findings;
 
+mod verdict;
+
 mod report;
 
 use crate::args::{Common, Compare, Files, MessageFormat};
@@ -25,18 +27,14 @@ use crate::{REJECTED, input, run};
 use difference::accept::Accepted;
 use difference::pitfall;
 use findings::finding::Findings;
-use findings::reason;
-use inputs::alphabet;
 use other::{fixed, logix, migrated, missing, renamed};
-use pair::{Pair, Side, Step};
-use program::scalar::{Role, Scalar};
-use report::verdict::{Judged, Verdict};
-use report::{Report, picture, rejection, scope, stimulus};
+use pair::{Pair, Side};
+use report::{Report, picture, rejection};
 use search::tolerance::Tolerance;
-use search::trace::Trace;
 use search::world::World;
-use search::{look, strategy};
 use staunch_frontend::Dialect;
+use staunch_ir::Program;
+use verdict::{Judged, Verdict, judge};
 
 pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
     let args = &args.settled()?;
@@ -77,7 +75,13 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
         let sources = rewritten.as_ref().map_or(&from.sources, |it| &it.sources);
         migrated::write(&from, path, sources, &to.renamed, args.to.dialect)?;
     }
-    let cycle = run::cycle(&from, args.cycle.as_deref())?;
+    side_by_side(&report, [program, moved], &renamed)
+}
+
+/// Runs both systems' programs.
+fn side_by_side(report: &Report, [program, moved]: [Program; 2], renamed: &[Option<String>]) -> Result<u8, String> {
+    let args = report.args;
+    let cycle = run::cycle(report.session, args.cycle.as_deref())?;
     let same_program = is_same(&program, &moved);
     let sides = [Side::new(args.from.dialect, program, cycle)?, Side::new(args.to.dialect, moved, cycle)?];
     let mut pair = Pair::new(sides, &[]);
@@ -86,18 +90,18 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
     pair.compare_only(&only);
     check_compared(&pair, args, &only)?;
     let uses = pitfall::uses(&pair);
-    let mut findings = Findings::new(&pair, &world, &uses, &renamed);
+    let mut findings = Findings::new(&pair, &world, &uses, renamed);
     let accepted = args.accept.as_deref().map(Accepted::read).transpose()?.unwrap_or_default();
     let verdict = if same_program && args.stimulus.is_none() {
         findings.all_impossible("both systems run the same program");
         Verdict::Equal("both systems run the same program: no statement, type, block or retention differs".to_owned())
     } else {
-        verdict(&mut pair, &world, args, &mut findings)?
+        judge::judge(&mut pair, &world, args, &mut findings)?
     };
     let rest = match &verdict {
         Verdict::Differs { .. } if args.stimulus.is_none() && accepted.accepts_any() && !findings.fail(&accepted) => {
             world.tolerance = Some(Tolerance::of(&pair, &world.computed, &uses, &accepted));
-            Some(beyond_accepted(&mut pair, &world, args, &mut findings))
+            Some(judge::beyond_accepted(&mut pair, &world, args, &mut findings))
         }
         Verdict::Differs { .. } | Verdict::Equal(_) | Verdict::NotFound { .. } => None,
     };
@@ -140,52 +144,6 @@ fn check_compared(pair: &Pair, args: &Compare, only: &[String]) -> Result<(), St
     Ok(())
 }
 
-/// The search goes on past what is accepted.
-fn beyond_accepted(pair: &mut Pair, world: &World, args: &Compare, findings: &mut Findings) -> Verdict {
-    let outcome = strategy::search(pair, world, args.budget, 0);
-    findings.note(pair, world, &outcome, false);
-    if let Some(trace) = &outcome.found {
-        let steps: Vec<Step> = trace.steps().cloned().collect();
-        pair.init();
-        for step in &steps {
-            let faults = pair.scan(step);
-            look::look(pair, world, step.event, faults);
-        }
-        pair.compared = world.tolerance.iter().flat_map(|it| pair.remaining_compared(&it.passing)).collect();
-        return differs(pair, world, trace, false, findings);
-    }
-    let is_told_apart = world.tolerance.as_ref().is_none_or(|it| it.beside.is_empty());
-    if outcome.complete && covers_all(pair, world, args) && is_told_apart {
-        return Verdict::Equal(scope::every_state(pair, world, &outcome));
-    }
-    scope::not_found(pair, world, &outcome)
-}
-
-/// Whether the search leaves nothing out that the inputs could do, and no output that one of the two alone has: where
-/// addresses share bits on one system, what is written by another name is an output of its own on the other.
-fn covers_all(pair: &Pair, world: &World, args: &Compare) -> bool {
-    let is_output = |it: &Scalar| it.at.is_output && it.field.is_some();
-    let has_all = args.vars.is_some() || pair.only_one_has(is_output).is_empty();
-    has_all
-        && world.alphabet.is_exact()
-        && pair.whole
-        && alphabet::untried(pair).is_empty()
-        && alphabet::outputs_given(pair).is_empty()
-        && pair.only_one_has(|it| it.role == Role::Input).is_empty()
-}
-
-fn differs(pair: &mut Pair, world: &World, trace: &Trace, shortest: bool, findings: &mut Findings) -> Verdict {
-    let steps: Vec<Step> = trace.steps().cloned().collect();
-    let rows = pair.replay(&steps);
-    let differences = rows.last().map_or_else(Vec::new, |it| pair.differences(it));
-    let cause = pitfall::cause(pair, &rows, &differences, &world.habits);
-    findings.explain(&cause, trace);
-    if cause.pitfall.is_none() && reason::find(pair, &rows, &differences, findings).is_none() {
-        findings.unexplained(pair, &differences, trace);
-    }
-    Verdict::Differs { rows, trace: Some(trace.clone()), shortest }
-}
-
 /// The other system's program where it is another text: the user's, or, for Logix, one with its
 /// instructions in place of blocks.
 fn rewrite(from: &Session, args: &Compare) -> Result<Option<logix::Rewritten>, String> {
@@ -203,25 +161,7 @@ fn rewrite(from: &Session, args: &Compare) -> Result<Option<logix::Rewritten>, S
 
 /// Whether both systems run one program: the statements and types with their blocks, and where each
 /// variable lies and whether it is retained, are the same.
-fn is_same(a: &staunch_ir::Program, b: &staunch_ir::Program) -> bool {
+fn is_same(a: &Program, b: &Program) -> bool {
     use staunch_ir::{layout::Layout, print, symbols::map_text};
     print(a) == print(b) && map_text(a, &Layout::new(a)) == map_text(b, &Layout::new(b))
-}
-
-fn verdict(pair: &mut Pair, world: &World, args: &Compare, findings: &mut Findings) -> Result<Verdict, String> {
-    if args.stimulus.is_some() {
-        return stimulus::follow(pair, args);
-    }
-    let outcome = strategy::search(pair, world, args.budget, findings.open());
-    let exact = covers_all(pair, world, args);
-    findings.note(pair, world, &outcome, exact);
-    if let Some(trace) = outcome.found.clone() {
-        let is_tried = outcome.more_values == 0 && world.alphabet.complete;
-        let shortest = is_tried && outcome.depth + 1 >= trace.scans();
-        return Ok(differs(pair, world, &trace, shortest, findings));
-    }
-    if outcome.complete && exact {
-        return Ok(Verdict::Equal(scope::every_state(pair, world, &outcome)));
-    }
-    Ok(scope::not_found(pair, world, &outcome))
 }

@@ -1,11 +1,7 @@
 //! What `staunch compare` prints: a table and a list for people, or an object a finding.
 
-pub mod rejection;
-pub mod scope;
-pub mod stimulus;
-pub mod verdict;
-
 pub mod picture;
+pub mod rejection;
 
 mod listed;
 mod objects;
@@ -18,12 +14,12 @@ use crate::compare::findings::finding::Findings;
 use crate::compare::other::missing::Missing;
 use crate::compare::pair::Pair;
 use crate::compare::search::world::World;
+use crate::compare::verdict::{Judged, Verdict, stimulus};
 use crate::session::Session;
 use crate::{NOT_FOUND, REJECTED, output};
 use rejection::Rejection;
 use staunch_host::json_text as quoted;
 use std::fmt::Write;
-use verdict::{Judged, Verdict};
 
 pub struct Report<'s> {
     pub session: &'s Session,

@@ -1,14 +1,13 @@
 //! The report as JSON: an object for each finding, and one for the verdict.
 
-use super::stimulus;
 use super::table::{Line, SHOWN};
-use super::verdict::{Judged, Verdict};
 use super::{Report, number};
 use crate::compare::difference::accept::Accepted;
 use crate::compare::difference::pitfall::Cause;
 use crate::compare::findings::finding::{self, Finding, Findings};
 use crate::compare::pair::{Matched, Pair, Row};
 use crate::compare::search::world::World;
+use crate::compare::verdict::{Judged, Verdict, stimulus};
 use staunch_host::json_text as quoted;
 use std::fmt::Write;
 

@@ -1,10 +1,10 @@
 //! The trace as a picture: the same scans under each system, one above the other, drawn by the host.
 
-use super::stimulus;
 use crate::args::Compare;
 use crate::compare::pair::{Matched, Pair, Row};
 use crate::compare::search::trace::Trace;
 use crate::compare::search::world::World;
+use crate::compare::verdict::stimulus;
 use crate::{machine, output, scratch};
 use staunch_host::{Error, Options};
 use std::fmt::Write;

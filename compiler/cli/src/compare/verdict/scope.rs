@@ -1,6 +1,6 @@
 //! What a search has shown where it found no difference: what was tried, and what was not.
 
-use super::verdict::Verdict;
+use super::Verdict;
 use crate::compare::inputs::alphabet;
 use crate::compare::inputs::choice::Covered;
 use crate::compare::pair::Pair;

@@ -1,7 +1,7 @@
 //! Both systems under a stimulus: the host drives each, and what it leaves after each scan is kept.
 //! And a sequence of inputs as a stimulus.
 
-use super::verdict::Verdict;
+use super::Verdict;
 use crate::args::Compare;
 use crate::compare::pair::{Input, Pair, Row, Side};
 use crate::compare::search::trace::Trace;

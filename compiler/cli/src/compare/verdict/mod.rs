@@ -1,4 +1,9 @@
-//! What a comparison came to.
+//! What a comparison came to, and on what grounds.
+
+pub mod scope;
+pub mod stimulus;
+
+pub mod judge;
 
 use crate::compare::pair::Row;
 use crate::compare::search::trace::Trace;

@@ -1,0 +1,78 @@
+//! The search, and what follows from what it has found.
+
+use super::{Verdict, scope, stimulus};
+use crate::args::Compare;
+use crate::compare::difference::pitfall;
+use crate::compare::findings::finding::Findings;
+use crate::compare::findings::reason;
+use crate::compare::inputs::alphabet;
+use crate::compare::pair::{Pair, Step};
+use crate::compare::program::scalar::{Role, Scalar};
+use crate::compare::search::trace::Trace;
+use crate::compare::search::world::World;
+use crate::compare::search::{look, strategy};
+
+/// What the search, or a stimulus, shows.
+pub fn judge(pair: &mut Pair, world: &World, args: &Compare, findings: &mut Findings) -> Result<Verdict, String> {
+    if args.stimulus.is_some() {
+        return stimulus::follow(pair, args);
+    }
+    let outcome = strategy::search(pair, world, args.budget, findings.open());
+    let exact = covers_all(pair, world, args);
+    findings.note(pair, world, &outcome, exact);
+    if let Some(trace) = outcome.found.clone() {
+        let is_tried = outcome.more_values == 0 && world.alphabet.complete;
+        let shortest = is_tried && outcome.depth + 1 >= trace.scans();
+        return Ok(differs(pair, world, &trace, shortest, findings));
+    }
+    if outcome.complete && exact {
+        return Ok(Verdict::Equal(scope::every_state(pair, world, &outcome)));
+    }
+    Ok(scope::not_found(pair, world, &outcome))
+}
+
+/// The search goes on past what is accepted.
+pub fn beyond_accepted(pair: &mut Pair, world: &World, args: &Compare, findings: &mut Findings) -> Verdict {
+    let outcome = strategy::search(pair, world, args.budget, 0);
+    findings.note(pair, world, &outcome, false);
+    if let Some(trace) = &outcome.found {
+        let steps: Vec<Step> = trace.steps().cloned().collect();
+        pair.init();
+        for step in &steps {
+            let faults = pair.scan(step);
+            look::look(pair, world, step.event, faults);
+        }
+        pair.compared = world.tolerance.iter().flat_map(|it| pair.remaining_compared(&it.passing)).collect();
+        return differs(pair, world, trace, false, findings);
+    }
+    let is_told_apart = world.tolerance.as_ref().is_none_or(|it| it.beside.is_empty());
+    if outcome.complete && covers_all(pair, world, args) && is_told_apart {
+        return Verdict::Equal(scope::every_state(pair, world, &outcome));
+    }
+    scope::not_found(pair, world, &outcome)
+}
+
+/// Whether the search leaves nothing out that the inputs could do, and no output that one of the two alone has: where
+/// addresses share bits on one system, what is written by another name is an output of its own on the other.
+fn covers_all(pair: &Pair, world: &World, args: &Compare) -> bool {
+    let is_output = |it: &Scalar| it.at.is_output && it.field.is_some();
+    let has_all = args.vars.is_some() || pair.only_one_has(is_output).is_empty();
+    has_all
+        && world.alphabet.is_exact()
+        && pair.whole
+        && alphabet::untried(pair).is_empty()
+        && alphabet::outputs_given(pair).is_empty()
+        && pair.only_one_has(|it| it.role == Role::Input).is_empty()
+}
+
+fn differs(pair: &mut Pair, world: &World, trace: &Trace, shortest: bool, findings: &mut Findings) -> Verdict {
+    let steps: Vec<Step> = trace.steps().cloned().collect();
+    let rows = pair.replay(&steps);
+    let differences = rows.last().map_or_else(Vec::new, |it| pair.differences(it));
+    let cause = pitfall::cause(pair, &rows, &differences, &world.habits);
+    findings.explain(&cause, trace);
+    if cause.pitfall.is_none() && reason::find(pair, &rows, &differences, findings).is_none() {
+        findings.unexplained(pair, &differences, trace);
+    }
+    Verdict::Differs { rows, trace: Some(trace.clone()), shortest }
+}
