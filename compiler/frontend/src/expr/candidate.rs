@@ -201,12 +201,9 @@ impl<'s> Checker<'_, 's> {
         self.left_out = left_out;
         self.late = late;
         let has_errors = self.decl.log.has_errors_since(reported);
-        // What is said of an instance of a generic FUNCTION is said once.
+        // What is said elsewhere is of an instance of a generic FUNCTION, and is said once.
         let said = self.decl.log.diagnostics.split_off(reported);
-        let is_elsewhere =
-            |it: &Diagnostic| self.decl.pous.iter().any(|pou| pou.instance.is_some() && within(it.span, pou.ast.span));
-        let kept: Vec<_> = said.into_iter().filter(|it| !within(it.span, place) && is_elsewhere(it)).collect();
-        self.decl.log.diagnostics.extend(kept);
+        self.decl.log.diagnostics.extend(said.into_iter().filter(|it| !within(it.span, place)));
         (!has_errors).then_some(result)
     }
 

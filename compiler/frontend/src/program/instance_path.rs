@@ -89,9 +89,9 @@ impl<'s> Declarations<'s> {
     fn path_roots(&mut self) -> Vec<(StructId, FieldId, String)> {
         let mut roots = Vec::new();
         let mut of_globals: FxHashMap<Location, String> = FxHashMap::default();
-        for at in 0..self.globals.len() {
-            let name = self.globals[at].name;
-            let path = self.names.in_full(self.globals[at].space, name.text);
+        let globals: Vec<_> = self.globals.iter().map(|it| (it.name, it.space)).collect();
+        for (name, space) in globals {
+            let path = self.names.in_full(space, name.text);
             of_globals.insert(self.location(name.span), path);
         }
         for slot in 0..self.pous.len() {
