@@ -165,6 +165,7 @@ impl<'s> Declarations<'s> {
         }
         let error = match routine {
             Some(routine) if self.is_alike(routine, head) => return,
+            None if self.has_unknown_base(class) => return,
             Some(routine) => {
                 let span = self.pous[routine].ast.name.span;
                 Diagnostic::new(Code::E0403, span, format!("`{title}` has another head"))

@@ -2,6 +2,7 @@
 
 use crate::ast::{self, PouKind, VarKind};
 use crate::diagnostic::wording::article;
+use crate::dialect::Dialect;
 use crate::types::declarations::Declarations;
 use crate::types::scope::Scope;
 use crate::types::signature::{EdgeInput, Formal, Signature, Target, pin_place};
@@ -268,6 +269,7 @@ impl<'s> Declarations<'s> {
 
     fn check_constant_section(&mut self, kind: VarKind, span: Span) {
         let (message, help) = match kind {
+            VarKind::Output if self.dialect(span) == Dialect::Codesys => return,
             VarKind::Output => ("a VAR_OUTPUT cannot be CONSTANT", "declare it in VAR CONSTANT"),
             VarKind::InOut if self.dialect(span).has_constant_in_outs() => return,
             VarKind::InOut => ("a VAR_IN_OUT cannot be CONSTANT", "declare what is only read in VAR_INPUT"),

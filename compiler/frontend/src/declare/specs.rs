@@ -2,7 +2,7 @@
 
 use crate::ast::{self, Bound, TypeKind};
 use crate::diagnostic::wording::list;
-use crate::dialect::{self, missing};
+use crate::dialect::{self, Dialect, missing};
 use crate::expr::unresolved::{block_of_another_dialect, no_such_block};
 use crate::names::{Entry, Found, Meaning, Sense};
 use crate::prelude;
@@ -395,7 +395,10 @@ impl<'s> Declarations<'s> {
         scope: &Rc<Scope<'s>>,
     ) -> Option<Resolved> {
         let resolved = self.resolve_name(base)?;
-        let made_of = match resolved.ty.elementary().filter(|it| it.is_integer()) {
+        // CODESYS counts bit strings among the integers.
+        let takes_bits = self.dialect(base.span) == Dialect::Codesys;
+        let is_bits = |it: &Elementary| takes_bits && it.is_bits() && *it != Elementary::Bool;
+        let made_of = match resolved.ty.elementary().filter(|it| it.is_integer() || is_bits(it)) {
             Some(it) => it,
             None => {
                 self.report(

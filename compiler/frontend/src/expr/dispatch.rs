@@ -209,6 +209,9 @@ impl<'s> Checker<'_, 's> {
         let class = self.decl.slot_of_instance(state)?;
         let interface = self.decl.interface_of(ty)?;
         if !self.decl.interfaces_of(class).contains(&interface) {
+            if self.decl.has_unknown_parts(class) {
+                return Some(None);
+            }
             let (wanted, found) = (self.type_name(ty), self.type_name(Type::Struct(state)));
             let declared = self.decl.pous[class].ast.name.span;
             self.report(
@@ -229,6 +232,9 @@ impl<'s> Checker<'_, 's> {
             && self.decl.interfaces_of(from).contains(&to)
         {
             return Some(self.convert(Conversion::Same, ty, value));
+        }
+        if to.is_some() && from.is_some_and(|it| self.decl.has_unknown_parts(it)) {
+            return None;
         }
         let (expected, found) = (self.type_name(ty), self.type_name(value.ty));
         let error = Diagnostic::new(Code::E0201, span, format!("expected {expected}, found {found}"))
@@ -253,6 +259,9 @@ impl<'s> Checker<'_, 's> {
         let routines = all.iter().flat_map(|it| &self.decl.pous[*it].ast.routines);
         let near = nearest(name.text, routines.map(|it| it.name.text)).map(str::to_owned);
         let (called, title) = (self.decl.routines_on(ty, name.text), self.type_name(ty));
+        if called.is_none() && self.decl.has_unknown_parts(interface) {
+            return true;
+        }
         let error = match called {
             Some(_) => Diagnostic::new(Code::E0306, name.span, format!("`{}` is a METHOD of `{title}`", name.text))
                 .label("it is called with parentheses")

@@ -240,7 +240,7 @@ impl<'s> Declarations<'s> {
     /// What a path means that is a CONSTANT by the name of its POU.
     pub fn constant_of_pou(&self, path: &[ast::Name<'s>]) -> Option<&Rc<Variable<'s>>> {
         let constants = self.constants.get(&self.pou_of_constant(path)?)?;
-        constants.get(path.last()?.text).filter(|it| it.section == Section::Internal)
+        constants.get(path.last()?.text).filter(|it| matches!(it.section, Section::Internal | Section::Output))
     }
 
     /// The POUs that the source writes, in its order; runs of a CONFIGURATION come after them, and then what calls ask
@@ -585,7 +585,8 @@ impl<'s> Declarations<'s> {
 
     pub fn unknown_member(&mut self, name: ast::Name<'s>, ty: Type, near: Option<&str>) {
         let class = if let Type::Struct(id) = ty { self.slot_of_instance(id) } else { None };
-        if class.is_some_and(|it| self.has_unknown_base(it)) {
+        let class = class.or_else(|| self.interface_of(ty));
+        if class.is_some_and(|it| self.has_unknown_parts(it)) {
             return;
         }
         let owner = self.program.type_name(ty);

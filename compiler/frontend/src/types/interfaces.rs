@@ -88,6 +88,16 @@ impl Declarations<'_> {
         })
     }
 
+    /// The same, also of what a class or INTERFACE has by its INTERFACEs.
+    pub fn has_unknown_parts(&mut self, slot: usize) -> bool {
+        let interfaces = self.interfaces_of(slot);
+        let classes = std::iter::successors(Some(slot), |it| self.base_of(*it));
+        let mut all = classes.chain(interfaces.iter().copied());
+        all.any(|it| {
+            !self.pous[it].ast.bases.iter().all(|path| matches!(self.lookup(path, Sense::Type), Found::One(_)))
+        })
+    }
+
     /// The classes whose instances a variable of the INTERFACE in a slot may refer to.
     pub fn implementers(&mut self, interface: usize) -> Rc<[usize]> {
         if let Some(known) = self.table.interfaces.implementers.get(&interface) {

@@ -72,7 +72,7 @@ impl Verifier<'_> {
 
     fn subrange(&mut self, base: Elementary, id: BoundsId, at: Location) {
         let bounds = self.program.bounds.get(id.index());
-        let holds = base.repr().range().filter(|_| base.is_integer());
+        let holds = base.repr().range().filter(|_| base.is_integer() || base.is_bits() && base != Elementary::Bool);
         let inside =
             bounds.zip(holds).is_some_and(|((low, high), (min, max))| min <= *low && low <= high && *high <= max);
         self.require(inside, at, "a subrange that does not fit what it is made of");
