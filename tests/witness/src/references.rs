@@ -22,6 +22,10 @@ impl<'a> Machine<'a> {
                     }
                     place.declared = declared.class();
                 }
+                if matches!(self.memory.get(place.at), Some(Cell::Text(text)) if text.contains(&0)) {
+                    // A reference sees a text up to its first zero, which its name does not.
+                    return unknown("a text with a zero in it, by a reference");
+                }
                 if self.is_deleted(&place) {
                     place.nowhere = Some((span, FaultKind::Deleted));
                 }

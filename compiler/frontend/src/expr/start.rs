@@ -207,7 +207,9 @@ impl<'s> Checker<'_, 's> {
         let at = self.at(variable.name.span);
         let declared = self.decl.starts.declared.get(&at).copied();
         let (span, value) = (variable.name.span, variable.resolved.initial.clone());
-        self.start_declared(variable.place.clone(), declared, value, span);
+        // Globals whose addresses overlap others have moved them; an instance shares no bits itself.
+        let (place, _) = self.decl.image.stored(&variable.place);
+        self.start_declared(place, declared, value, span);
     }
 
     /// Starts what `__NEW` has made, with the arguments for its FB_init.
