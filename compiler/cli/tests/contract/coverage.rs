@@ -125,7 +125,7 @@ TEST 'once' ASSERT_EQ(Second(7), 8); END_TEST
 ";
     let folder = Folder::with("coverage_started", &[("s.st", source)]);
     let out = folder.staunch("test . -q -A warnings --dialect codesys --coverage table").out(0);
-    has(&out, &["\ns.st          3 of 4  75 %     1 of 2  50 %     0 of 1   0 %\n", "\ns.st:5:15: not executed\n"]);
+    has(&out, &["\ns.st          3 of 4  75 %      1 of 2  50 %      0 of 1   0 %\n", "\ns.st:5:15: not executed\n"]);
 }
 
 #[test]
