@@ -36,6 +36,16 @@ impl<'a> Machine<'a> {
             self.unassign(place, initial)?;
         }
         let lists = slot.construction.map_or(&[][..], |it| &it.lists);
+        if let (Type::Array(array), None) = (&place.ty, slot.initial) {
+            // One element starts after the other.
+            for number in 0..array.elements() {
+                let Some(element) = place.flat(number) else { continue };
+                let own = if lists.len() > 1 { lists.get(number..=number).unwrap_or_default() } else { lists };
+                self.construct_inside(frame, &element, own)?;
+                self.call_after_init(&element)?;
+            }
+            return Ok(());
+        }
         self.construct_inside(frame, place, lists)?;
         if slot.initial.is_some() && self.is_constructed(&place.ty) {
             let before = std::mem::replace(&mut self.assigns, Assigns::NAMED);
