@@ -69,7 +69,7 @@ fn native(program: &Program, options: &BenchOptions) -> Result<Figures, Stop> {
 }
 
 fn stop(error: Error) -> Stop {
-    eprintln!("error: {error}");
+    output::tell(format_args!("error: {error}"));
     Stop::Code(error.exit_code())
 }
 

@@ -68,21 +68,23 @@ fn main() -> ExitCode {
         Ok(Ok(code)) => ExitCode::from(code),
         Ok(Err(_)) => ExitCode::from(INTERNAL),
         Err(error) => {
-            eprintln!("error: cannot start a thread: {error}");
+            output::tell(format_args!("error: cannot start a thread: {error}"));
             ExitCode::from(USAGE)
         }
     }
 }
 
 fn report_panic(panic: &std::panic::PanicHookInfo<'_>) {
-    eprintln!("internal error: {panic}");
+    output::tell(format_args!("internal error: {panic}"));
     // Where RUST_BACKTRACE asks for it.
     let backtrace = std::backtrace::Backtrace::capture();
     if backtrace.status() == std::backtrace::BacktraceStatus::Captured {
-        eprintln!("{backtrace}");
+        output::tell(format_args!("{backtrace}"));
     }
-    eprintln!("This is a mistake in Staunch, not in your program. Please report it, with the source if you can,");
-    eprintln!("at {}/issues (staunch {}).", env!("CARGO_PKG_REPOSITORY"), env!("CARGO_PKG_VERSION"));
+    output::tell(format_args!(
+        "This is a mistake in Staunch, not in your program. Please report it, with the source if you can,"
+    ));
+    output::tell(format_args!("at {}/issues (staunch {}).", env!("CARGO_PKG_REPOSITORY"), env!("CARGO_PKG_VERSION")));
 }
 
 /// Says what went wrong where the format's readers look.
@@ -93,7 +95,7 @@ fn report(format: MessageFormat, message: &str) {
             // A reader that has gone away wants no more.
             let _ = std::io::stdout().write_all(object.as_bytes());
         }
-        MessageFormat::Human | MessageFormat::Short => eprintln!("error: {message}"),
+        MessageFormat::Human | MessageFormat::Short => output::tell(format_args!("error: {message}")),
     }
 }
 

@@ -1,6 +1,7 @@
 //! `staunch new`: a folder with a program, its stimulus and a project file.
 
 use crate::args;
+use crate::output;
 use std::fs;
 use std::path::Path;
 
@@ -87,7 +88,7 @@ pub fn new(args: &args::New, common: &args::Common) -> Result<u8, String> {
         write(&args.dir.join(name), text)?;
     }
     if !common.quiet {
-        eprintln!("{:>12} {}", "Created", args.dir.display());
+        output::tell(format_args!("{:>12} {}", "Created", args.dir.display()));
     }
     Ok(0)
 }

@@ -1,16 +1,22 @@
-//! Files, and standard output, whose reader may leave early.
+//! Files, standard output, and standard error, whose readers may leave early.
 
+use std::fmt::Display;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
-/// Writes to standard output. A reader that has left, as `head` does, ends the command quietly.
+/// Writes to standard output. A reader that has left, as `head` does, wants no more; the exit code is what it would be.
 pub fn print(bytes: &[u8]) -> Result<(), String> {
     let mut out = std::io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {
         Ok(()) => Ok(()),
-        Err(error) if error.kind() == ErrorKind::BrokenPipe => std::process::exit(0),
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
         Err(error) => Err(format!("standard output: {error}")),
     }
+}
+
+/// Writes a line to standard error. Where that is closed, nobody is there to be told.
+pub fn tell(line: impl Display) {
+    let _ = writeln!(std::io::stderr().lock(), "{line}");
 }
 
 /// Writes a whole file, or standard output for `-`.

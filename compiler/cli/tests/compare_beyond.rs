@@ -422,3 +422,43 @@ t(IN := a, PT := T#30ms); latch(t.Q, FALSE); mask := 3;",
     assert_eq!(output.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&output.stderr).contains("no_ctud.st:3:"), "{output:?}");
 }
+
+/// What the event itself parts is the finding, also where the scan after it hides that; not what follows from it.
+#[test]
+fn what_an_event_parts_is_named_and_not_what_follows() {
+    let path = program(
+        "lost_by_an_event",
+        "VAR_INPUT i : BOOL; END_VAR
+VAR RETAIN keep : INT; END_VAR
+VAR m : BOOL; END_VAR
+IF i AND NOT m THEN keep := keep + 1; END_IF;
+m := i;",
+    );
+    let (code, text) = compare(&path, "iec", "codesys", &[]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.contains("`m` (retention") && text.contains("  reachable after 2 scans: trap 11"), "{text}");
+    assert!(!text.contains("`keep` (retention"), "both systems keep it:\n{text}");
+    let accept = folder().join("lost_by_an_event.txt");
+    std::fs::write(&accept, "m 11: the plant is never stopped while it runs\n").expect("a file");
+    let (code, text) = compare(&path, "iec", "codesys", &["--accept", &accept.display().to_string()]);
+    // The search may end before every state was seen.
+    assert!(matches!(code, Some(0 | 4)) && text.contains("That is accepted."), "{text}");
+}
+
+/// The verdict is the exit code, also where nobody reads what is printed.
+#[test]
+fn a_reader_that_leaves_does_not_change_the_verdict() {
+    let path = program("left_early", "VAR_INPUT i : BOOL; END_VAR\nVAR c : CTU; END_VAR\nc(CU := i, PV := 2);");
+    let command = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
+        let (reader, writer) = std::io::pipe().expect("a pipe");
+        drop(reader);
+        command.args(arguments).stdout(writer.try_clone().expect("a handle")).stderr(writer);
+        command.status().expect("it starts").code()
+    };
+    let path = path.display().to_string();
+    assert_eq!(command(&["compare", &path, "--from", "iec", "--to", "codesys"]), Some(1));
+    assert_eq!(command(&["check", &path]), Some(0));
+    assert_eq!(command(&["check", &path, "--dialect", "siemens"]), Some(1));
+    assert_eq!(command(&["check", "there/is/no/such/file.st"]), Some(2));
+}

@@ -85,3 +85,9 @@ impl fmt::Display for Error {
 }
 
 impl std::error::Error for Error {}
+
+/// Writes a line to standard error. Where that is closed, nobody is there to be told, and the program runs on.
+pub(crate) fn tell(line: impl fmt::Display) {
+    use io::Write as _;
+    let _ = writeln!(io::stderr().lock(), "{line}");
+}

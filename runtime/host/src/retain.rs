@@ -92,7 +92,7 @@ impl Retention {
         };
         let values = self.kept.of(state);
         let path = self.path.clone();
-        let tell = move |text: &str| eprintln!("warning: {}: {text}", path.display());
+        let tell = move |text: &str| crate::error::tell(format_args!("warning: {}: {text}", path.display()));
         let writer = Writer::start(keeper, pace, values, tell);
         self.saving = Saving::Always(writer.map_err(|error| Error::file(&self.path, "write", error))?);
         Ok(())

@@ -94,7 +94,7 @@ impl Options {
         match error {
             Error::ClosedPipe => {}
             error if self.json => drop(self.print_json(&error.json())),
-            error => eprintln!("error: {error}"),
+            error => crate::error::tell(format_args!("error: {error}")),
         }
     }
 
@@ -263,7 +263,7 @@ impl Runner<'_> {
         if let Some(path) = &self.options.retain {
             let (retention, loaded) = Retention::load(self.map, path, self.machine)?;
             for note in loaded.notes {
-                eprintln!("note: {}: {note}", path.display());
+                crate::error::tell(format_args!("note: {}: {note}", path.display()));
             }
             self.epoch = loaded.clock;
             self.retention = Some(retention);
@@ -416,7 +416,7 @@ impl Runner<'_> {
         let clock = self.saved_clock();
         let saved = self.retention.as_mut().map_or(Ok(()), |it| it.finish(clock, self.machine.state()));
         if self.out.rows == 0 && (self.options.from.is_some() || self.options.to.is_some()) {
-            eprintln!("note: no scan lies between --from and --to");
+            crate::error::tell(format_args!("note: no scan lies between --from and --to"));
         }
         match &mut self.out.trace {
             Some(trace) => trace.finish(subject).and(saved),

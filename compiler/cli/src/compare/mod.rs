@@ -22,6 +22,7 @@ mod verdict;
 mod report;
 
 use crate::args::{Common, Compare, Files, MessageFormat};
+use crate::output;
 use crate::session::Session;
 use crate::{REJECTED, input, run};
 use difference::accept::Accepted;
@@ -48,7 +49,7 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
     )?;
     let Some(program) = from.program_to_run(args.program.as_deref())? else {
         if from.common.format() == MessageFormat::Human {
-            eprintln!("the program is compared once `--from {}` accepts it", args.from.name);
+            output::tell(format_args!("the program is compared once `--from {}` accepts it", args.from.name));
         }
         return Ok(REJECTED);
     };
@@ -67,7 +68,7 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
     let moved = match to.program_to_run(args.program.as_deref())? {
         Some(moved) => moved,
         None => {
-            args.write.iter().for_each(|it| eprintln!("no file is written to {}", it.display()));
+            args.write.iter().for_each(|it| output::tell(format_args!("no file is written to {}", it.display())));
             return report.rejection(&rejection::find(&to, args.from.dialect, args.to.dialect));
         }
     };

@@ -44,6 +44,8 @@ pub(crate) fn block_of_another_dialect(dialect: Dialect, is_moved: bool, name: a
         .note(format!("the dialect {} has it", list(&others)));
     // Who names a structure of Logix calls its instructions too, which a family's name has to precede as well.
     Some(match (others.as_slice(), owners.as_slice()) {
+        // What is written in their place is another call, which `compare` says.
+        (_, [Family::Logix]) if is_moved => error,
         ([one], [Family::Logix]) => error.help(format!(
             "start the file with `{{dialect '{one}'}}`, or write `{}`, and `LOGIX.` before each instruction: `LOGIX.{instruction}(…)`",
             qualified[0],

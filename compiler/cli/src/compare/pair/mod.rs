@@ -235,6 +235,7 @@ impl Pair {
             side.before.copy_from_slice(side.machine.state());
             if let Some(event) = step.event {
                 side.drive.start_again(event, &mut side.machine);
+                side.restarted.copy_from_slice(side.machine.state());
             }
             for (input, value) in inputs.iter().zip(&step.inputs) {
                 match input.text(*value) {
@@ -387,6 +388,13 @@ impl Pair {
         let mut found: Vec<Matched> = variables.filter(|it| self.newly_differs(*it)).collect();
         found.sort_unstable();
         found
+    }
+
+    /// Variables that the event before the last scan has made differ, before anything ran.
+    pub fn parted_by_event(&self) -> Vec<Matched> {
+        let restarted = self.sides.each_ref().map(|it| it.restarted.as_slice());
+        let variables = self.compared.iter().filter(|it| self.scalar(0, it[0]).role == Role::Variable);
+        variables.copied().filter(|it| self.agreed(*it) && !self.equal(*it, restarted)).collect()
     }
 
     /// What differs, in the order of the declarations.

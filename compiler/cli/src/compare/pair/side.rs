@@ -21,6 +21,8 @@ pub struct Side {
     pub(super) digest: Digest,
     /// The state before the last scan.
     pub(super) before: Vec<u8>,
+    /// After the last event, before anything ran.
+    pub(super) restarted: Vec<u8>,
     pub(super) initial: Vec<u8>,
 }
 
@@ -41,6 +43,7 @@ impl Side {
             timers,
             reads_clock,
             digest: Digest::default(),
+            restarted: before.clone(),
             initial: before.clone(),
             before,
         })

@@ -72,7 +72,7 @@ impl Report<'_> {
             output::print(text.as_bytes())?;
         }
         for line in findings.stale(accepted) {
-            eprintln!("warning: {line}");
+            output::tell(format_args!("warning: {line}"));
         }
         Ok(code)
     }

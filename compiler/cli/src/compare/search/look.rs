@@ -50,7 +50,9 @@ fn sightings(pair: &Pair, world: &World, event: Option<Event>, faults: Faults) -
         sightings.extend(faults.into_iter().enumerate().filter_map(of));
     }
     if event.is_some() && differs {
-        let restarted = pair.newly_different();
+        // What follows from what the event has parted is no finding of its own.
+        let parted = pair.parted_by_event();
+        let restarted = if parted.is_empty() { pair.newly_different() } else { parted };
         sightings.extend(restarted.into_iter().map(|it| (Subject::Variable(it), Some(Pitfall::RESTART))));
     }
     sightings
