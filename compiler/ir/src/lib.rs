@@ -23,6 +23,7 @@ mod types;
 mod chars;
 mod expression;
 mod external;
+mod limits;
 mod op;
 mod place;
 mod statement;

@@ -3,14 +3,12 @@
 //! index whose range follows from the loop's bounds, or from a check before, needs no check.
 
 use crate::alias::{self, Frame};
+use crate::limits::{Range, combined, length};
 use crate::visit;
 use crate::{
     ArrayId, Conversion, Expr, ExprKind, For, LocalId, Mode, Op, Place, Program, Root, Routine, Statement,
     StatementKind, Type, Value,
 };
-
-/// Inclusive.
-pub type Range = (i128, i128);
 
 /// The condition of `IF … THEN EXIT; END_IF`.
 pub fn exit_condition(statement: &Statement) -> Option<&Expr> {
@@ -98,8 +96,8 @@ impl Known<'_> {
                 [a, b] => self.range(a).zip(self.range(b)).and_then(|(a, b)| combined(*op, a, b)),
                 _ => None,
             },
+            ExprKind::ApplyText(op, operands) => length(*op, operands),
             ExprKind::Convert(Conversion::Truncate | Conversion::Bits, _)
-            | ExprKind::ApplyText(..)
             | ExprKind::Text(_)
             | ExprKind::AddressOf(_)
             | ExprKind::Aggregate(_) => None,
@@ -122,26 +120,6 @@ impl Known<'_> {
 /// Which of the loops has `place` as its counter.
 pub fn running(loops: &[&For], place: &Place) -> Option<usize> {
     loops.iter().rposition(|it| place.is_same_variable(&it.counter))
-}
-
-fn combined(op: Op, a: Range, b: Range) -> Option<Range> {
-    match op {
-        Op::Add => Some((a.0 + b.0, a.1 + b.1)),
-        Op::Sub => Some((a.0 - b.1, a.1 - b.0)),
-        Op::Mul => product(a, b),
-        // A remainder has the dividend's sign, and is smaller than the divisor.
-        Op::Mod if b.0 == b.1 && b.0 > 0 => {
-            let most = b.0 - 1;
-            Some((if a.0 >= 0 { 0 } else { -most }, if a.1 <= 0 { 0 } else { most }))
-        }
-        Op::And if b.0 == b.1 && b.0 >= 0 => Some((0, b.0)),
-        _ => None,
-    }
-}
-
-fn product(a: Range, b: Range) -> Option<Range> {
-    let corners = [a.0.checked_mul(b.0)?, a.0.checked_mul(b.1)?, a.1.checked_mul(b.0)?, a.1.checked_mul(b.1)?];
-    Some((*corners.iter().min()?, *corners.iter().max()?))
 }
 
 #[cfg(test)]

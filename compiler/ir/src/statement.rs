@@ -1,6 +1,7 @@
 //! Statements, and what each of them means.
 
-use crate::{Expr, ExternalCall, FaultKind, Location, Place, RoutineId, Value};
+use crate::limits::{Range, limits};
+use crate::{Expr, ExternalCall, FaultKind, Location, Place, RoutineId};
 use staunch_runtime::Context;
 
 pub type Block = Vec<Statement>;
@@ -158,24 +159,23 @@ pub enum Step {
 }
 
 impl For {
-    /// What the counter may be in the body, as far as constants say it. It holds for a private counter.
-    pub fn bounds(&self) -> (i128, i128) {
-        let constant = |it: &Expr| it.as_const().and_then(Value::as_integer);
-        let (least, most) = self.range;
-        let (first, last) = (constant(&self.first), constant(&self.last));
+    /// What the counter may be in the body, as far as constants and the capacities of strings say it. It holds for
+    /// a private counter.
+    pub fn bounds(&self) -> Range {
+        let [first, last] = [&self.first, &self.last].map(|it| limits(it).unwrap_or(self.range));
         match self.step {
-            Step::Constant(step) if step > 0 => (first.unwrap_or(least), last.unwrap_or(most)),
-            Step::Constant(_) => (last.unwrap_or(least), first.unwrap_or(most)),
+            Step::Constant(step) if step > 0 => (first.0, last.1),
+            Step::Constant(_) => (last.0, first.1),
             Step::Variable(_) => self.range,
         }
     }
 
     /// Whether a step may lead out of the counter's range.
     pub fn may_leave_range(&self) -> bool {
-        let last = self.last.as_const().and_then(Value::as_integer);
-        match (&self.step, last) {
-            (Step::Constant(step), Some(last)) if self.is_private => {
-                !(self.range.0..=self.range.1).contains(&(last + step))
+        match (&self.step, limits(&self.last)) {
+            (Step::Constant(step), Some((least, most))) if self.is_private => {
+                let furthest = if *step > 0 { most } else { least };
+                !(self.range.0..=self.range.1).contains(&(furthest + step))
             }
             (Step::Constant(_) | Step::Variable(_), _) => true,
         }
@@ -210,13 +210,13 @@ impl For {
         self.taking.is_ahead() || self.body.first().is_some_and(|it| matches!(it.kind, StatementKind::Turn))
     }
 
-    /// Whether constants show that the loop ends after few turns, together with those of the loops in it. What
+    /// Whether its [bounds](For::bounds) show that the loop ends after few turns, together with those of the loops in it. What
     /// it calls may have loops of its own, so that a loop with a call is not short.
     pub fn is_short(&self) -> bool {
         self.turns().is_some_and(|it| it < most_free()) && self.free_turns().is_some_and(|it| it <= most_free())
     }
 
-    /// Its turns less one, at most, where constants show them.
+    /// Its turns less one, at most.
     fn turns(&self) -> Option<i128> {
         let Step::Constant(step) = self.step else { return None };
         let (least, most) = self.bounds();

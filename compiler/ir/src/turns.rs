@@ -4,9 +4,7 @@ mod size;
 
 use crate::alias::{self, Frame};
 use crate::loops::{Known, exit_condition, is_private};
-use crate::{
-    Expr, ExprKind, Op, Place, Program, RoutineId, Statement, StatementKind, TextOp, Type, Value, faults, visit,
-};
+use crate::{Expr, ExprKind, Op, Place, Program, RoutineId, Statement, StatementKind, Value, faults, visit};
 
 /// Whether a block, or what it calls, takes turns.
 pub fn takes_turns(block: &[Statement], callee_does: &dyn Fn(RoutineId) -> bool) -> bool {
@@ -243,22 +241,8 @@ fn step_of(statement: &Statement, counter: &Place) -> Option<i128> {
 /// Whether a step from the last value leads to one of the counter's type.
 fn never_wraps(known: &Known<'_>, counter: &Place, bound: &Expr, way: i128) -> bool {
     let whole = known.program.repr(counter.ty).and_then(|repr| repr.range());
-    let (Some((least, most)), Some(bound_range)) = (whole, range_of_bound(known, bound)) else { return false };
+    let (Some((least, most)), Some(bound_range)) = (whole, known.range(bound)) else { return false };
     bound.ty == counter.ty && least <= bound_range.0 + way.min(0) && bound_range.1 + way.max(0) <= most
-}
-
-/// A string is never longer than its type says.
-fn range_of_bound(known: &Known<'_>, bound: &Expr) -> Option<(i128, i128)> {
-    match &bound.kind {
-        ExprKind::ApplyText(TextOp::Len, operands) => match operands.as_slice() {
-            [Expr { kind: ExprKind::Load(_), ty: Type::String(ty), .. }] => {
-                let (least, most) = known.range(bound)?;
-                Some((least.max(0), most.min(ty.capacity.into())))
-            }
-            _ => known.range(bound),
-        },
-        _ => known.range(bound),
-    }
 }
 
 #[cfg(test)]

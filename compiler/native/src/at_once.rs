@@ -2,8 +2,8 @@
 //! Where fewer are left than that, a loop of single turns goes on, up to the one that faults. So the turn of a
 //! fault is the same, and what is left of the turns is right wherever somebody looks.
 
+use crate::control::Control;
 use crate::function::{Flow, Function, LoopFrame};
-use crate::loops::Control;
 use cranelift_codegen::ir::{self as clif, InstBuilder, condcodes::IntCC};
 use staunch_ir::{RoutineId, Statement, turns};
 

@@ -70,7 +70,15 @@ fn add(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
 
 fn sub(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
     let (a, b) = (o.values[0], o.values[1]);
-    if o.repr.is_float() { f.ins().fsub(a, b) } else { f.ins().isub(a, b) }
+    if o.repr.is_float() {
+        return f.ins().fsub(a, b);
+    }
+    // A constant is added, because Cranelift folds a chain of additions, as copies of a loop's body have them.
+    let Some(constant) = o.constants[1].and_then(staunch_ir::Value::as_integer) else {
+        return f.ins().isub(a, b);
+    };
+    let negated = f.integer(clif_type(o.repr), -constant);
+    f.ins().iadd(a, negated)
 }
 
 fn mul(f: &mut Function<'_, '_>, o: &Operands) -> Clif {

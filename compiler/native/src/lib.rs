@@ -17,6 +17,7 @@ mod signature;
 mod at_once;
 mod follow;
 mod function;
+mod loop_start;
 mod loops;
 mod statement;
 mod turns;
@@ -36,6 +37,7 @@ mod runtime_call;
 mod fault;
 mod memory;
 
+mod control;
 mod entry;
 mod program;
 

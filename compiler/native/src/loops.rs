@@ -1,38 +1,16 @@
 //! Loops. What decides whether there is a further turn is in front of the loop and again at
 //! its end, so that a turn costs one branch.
 
-use crate::function::{Few, Flow, Function, LoopFrame};
+use crate::control::{Control, Known, Running};
+use crate::function::{Flow, Function, LoopFrame};
 use crate::place::PlaceValue;
 use crate::signature::clif_type;
-use crate::turns::{Size, Way};
 use cranelift_codegen::ir::{self as clif, InstBuilder, condcodes::IntCC, types};
-use cranelift_frontend::Variable;
 use staunch_ir::loops::{exit_condition, running};
-use staunch_ir::{Block, Count, Expr, ExprKind, FaultKind, For, Location, Repr, Statement, Step, Taking, Value};
+use staunch_ir::{Block, Count, Expr, ExprKind, FaultKind, For, Location, Repr, Statement, Step, Value};
 
 /// Conditions of more operations than this are there once, and the loop's end jumps to them.
 const SMALL: usize = 8;
-
-/// What leads to a further turn.
-pub(crate) enum Control<'p> {
-    Count(Running<'p>),
-    /// It leaves the loop.
-    Unless(&'p Expr),
-    Always,
-}
-
-/// A FOR loop that is being emitted. Values are of 64 bits.
-#[derive(Clone, Copy)]
-pub(crate) struct Running<'p> {
-    it: &'p For,
-    repr: Repr,
-    at: Location,
-    /// The counter, beside its storage, where nothing but the loop writes it.
-    register: Option<Variable>,
-    /// What is not constant.
-    last: Option<clif::Value>,
-    step: Option<clif::Value>,
-}
 
 impl<'p> Function<'_, 'p> {
     pub(crate) fn turns(&mut self, body: &'p Block, continuing: &'p Block, count: Option<&'p Count>) -> Flow {
@@ -43,9 +21,8 @@ impl<'p> Function<'_, 'p> {
             }
             _ => (Control::Always, &**body),
         };
-        let is_tested = matches!(control, Control::Unless(_));
-        let way = |this: &mut Self| count.map(|it| (it.taking, this.way_of_count(it, is_tested)));
-        let flow = self.turns_under(&control, way, body, continuing);
+        let known = count.map_or(Known::Nothing, Known::While);
+        let flow = self.loop_under(&control, known, body, continuing);
         self.close_turns(opens, flow)
     }
 
@@ -56,23 +33,12 @@ impl<'p> Function<'_, 'p> {
             self.counters.push(it);
             self.registers.push(register);
         }
-        let way = |this: &mut Self| (it.taking != Taking::Each).then(|| (it.taking, this.way_of_for(&running)));
-        let flow = self.turns_under(&Control::Count(running), way, &it.body, &[]);
+        let flow = self.loop_under(&Control::Count(running), Known::For(running), &it.body, &[]);
         if running.register.is_some() {
             self.registers.pop();
             self.counters.pop();
         }
         self.close_turns(opens, flow)
-    }
-
-    fn way_of_for(&mut self, running: &Running<'p>) -> Way {
-        let (first, last) = (self.counter_value(running), self.last(running));
-        let step = match (&running.it.step, running.step) {
-            (_, Some(step)) => Size::Variable(step),
-            (Step::Constant(step), None) => Size::Constant(*step),
-            (Step::Variable(_), None) => unreachable!("a variable step is evaluated before the loop"),
-        };
-        Way { first, last, repr: running.repr, step, is_before: false, is_tested: true }
     }
 
     fn start_for(&mut self, it: &'p For, at: Location) -> Running<'p> {
@@ -102,7 +68,7 @@ impl<'p> Function<'_, 'p> {
         self.widened(repr, value)
     }
 
-    fn counter_value(&mut self, running: &Running<'p>) -> clif::Value {
+    pub(crate) fn counter_value(&mut self, running: &Running<'p>) -> clif::Value {
         match running.register {
             Some(register) => self.builder.use_var(register),
             None => {
@@ -112,86 +78,12 @@ impl<'p> Function<'_, 'p> {
         }
     }
 
-    fn last(&mut self, running: &Running<'p>) -> clif::Value {
+    pub(crate) fn last(&mut self, running: &Running<'p>) -> clif::Value {
         match (running.last, running.it.last.as_const().and_then(Value::as_integer)) {
             (Some(last), _) => last,
             (None, Some(last)) => self.integer(types::I64, last),
             (None, None) => unreachable!("verified IR: an integer"),
         }
-    }
-
-    /// A loop, and what it takes before its first turn.
-    fn turns_under(
-        &mut self,
-        control: &Control<'p>,
-        way: impl FnOnce(&mut Self) -> Option<(Taking, Way)>,
-        body: &'p [Statement],
-        continuing: &'p [Statement],
-    ) -> Flow {
-        let [start, after] = [(); 2].map(|()| self.builder.create_block());
-        self.further_turn(control, start, after);
-        self.builder.switch_to_block(start);
-        let is_left = match way(self) {
-            None => self.first_turn_on(control, start, after, body, continuing),
-            Some((Taking::EachOfMany, way)) => {
-                self.builder.seal_block(start);
-                let few = self.is_few(&way);
-                self.each_of_many(control, few, after, body, continuing)
-            }
-            Some((taking, way)) => {
-                self.builder.seal_block(start);
-                if let Taking::Ahead(at) | Taking::AheadOfMany(at) = taking {
-                    self.take_ahead(&way, taking.is_of_many(), at);
-                }
-                let turn = self.builder.create_block();
-                self.ins().jump(turn, &[]);
-                self.builder.switch_to_block(turn);
-                self.first_turn_on(control, turn, after, body, continuing)
-            }
-        };
-        self.join(&[if is_left { Flow::Continues } else { Flow::Leaves }], after)
-    }
-
-    /// Where `few` is true, a loop without turns; else one that takes them. A large body is there once.
-    fn each_of_many(
-        &mut self,
-        control: &Control<'p>,
-        few: clif::Value,
-        after: clif::Block,
-        body: &'p [Statement],
-        continuing: &'p [Statement],
-    ) -> bool {
-        let [counted, free] = [(); 2].map(|()| self.builder.create_block());
-        if !self.may_copy(body, continuing) {
-            let [none, one] = [0, 1].map(|it| self.integer(types::I64, it));
-            let taken = self.ins().select(few, none, one);
-            self.ins().jump(counted, &[]);
-            self.builder.switch_to_block(counted);
-            let frame = LoopFrame { next: self.builder.create_block(), few: Few::Taken(taken), ..LoopFrame::to(after) };
-            return self.one_by_one(control, frame, counted, body, continuing);
-        }
-        self.ins().brif(few, free, &[], counted, &[]);
-        self.builder.switch_to_block(free);
-        let frame = LoopFrame { next: self.builder.create_block(), few: Few::Yes, ..LoopFrame::to(after) };
-        let is_left = self.one_by_one(control, frame, free, body, continuing);
-        self.builder.switch_to_block(counted);
-        self.first_turn_on(control, counted, after, body, continuing) || is_left
-    }
-
-    /// A loop from its first turn on, whose block is open and not sealed. Whether control goes on after it.
-    fn first_turn_on(
-        &mut self,
-        control: &Control<'p>,
-        turn: clif::Block,
-        after: clif::Block,
-        body: &'p [Statement],
-        continuing: &'p [Statement],
-    ) -> bool {
-        if let Some(copies) = self.copies(body, continuing) {
-            return self.turns_at_once(control, copies, [turn, after], body, continuing);
-        }
-        let frame = LoopFrame { next: self.builder.create_block(), ..LoopFrame::to(after) };
-        self.one_by_one(control, frame, turn, body, continuing)
     }
 
     /// A loop from its first turn on, whose block is open. Whether control goes on after it.

@@ -5,7 +5,7 @@
 use crate::function::{Few, Flow, Function};
 use cranelift_codegen::ir as clif;
 use cranelift_codegen::ir::{InstBuilder, MemFlagsData, condcodes::IntCC, types};
-use staunch_ir::{Block, Count, FaultKind, Location, Repr, StatementKind, visit};
+use staunch_ir::{Block, FaultKind, Location, Repr, StatementKind, visit};
 use staunch_runtime::Context;
 
 /// The values that a loop's counter has, of 64 bits.
@@ -25,6 +25,20 @@ pub(crate) struct Way {
 pub(crate) enum Size {
     Constant(i128),
     Variable(clif::Value),
+}
+
+impl Way {
+    /// Ways of constant steps that are shorter than this have few turns.
+    fn most_of_few(&self) -> Option<u64> {
+        let Size::Constant(step) = self.step else { return None };
+        let size = u64::try_from(step.unsigned_abs()).unwrap_or(u64::MAX);
+        Some(size.saturating_mul(Context::FREE_TURNS).saturating_add(u64::from(self.is_before)))
+    }
+
+    /// Whether 64 bits hold the way between any two values.
+    fn is_narrow(&self) -> bool {
+        self.repr.size() < 8
+    }
 }
 
 impl<'p> Function<'_, 'p> {
@@ -95,15 +109,6 @@ impl<'p> Function<'_, 'p> {
         self.builder.def_var(variable, rest);
     }
 
-    /// The way of a WHILE loop's counter, before the loop.
-    pub(crate) fn way_of_count(&mut self, count: &'p Count, is_tested: bool) -> Way {
-        let repr = self.module.program.repr(count.counter.ty).expect("verified IR: an integer counter");
-        let first = self.load_place(&count.counter);
-        let first = self.widened(repr, first);
-        let last = self.wide_scalar(repr, &count.bound);
-        Way { first, last, repr, step: Size::Constant(count.step), is_before: count.offset != 0, is_tested }
-    }
-
     /// Takes all turns before the first one, if there is any.
     pub(crate) fn take_ahead(&mut self, way: &Way, is_of_many: bool, at: Location) {
         let [take, go] = [(); 2].map(|()| self.builder.create_block());
@@ -128,18 +133,17 @@ impl<'p> Function<'_, 'p> {
     /// Whether the loop need not take its turns.
     pub(crate) fn is_few(&mut self, way: &Way) -> clif::Value {
         let length = self.length(way);
-        let is_few = match way.step {
-            Size::Constant(step) => {
-                let size = u64::try_from(step.unsigned_abs()).unwrap_or(u64::MAX);
-                let few = size.saturating_mul(Context::FREE_TURNS).saturating_add(u64::from(way.is_before));
+        let is_few = match way.most_of_few() {
+            // 64 bits hold the way between narrower values, with its sign: it is below zero where there is no turn.
+            Some(few) if way.is_narrow() => {
                 let few = self.integer(types::I64, few.into());
-                // 64 bits hold the way between narrower values, with its sign.
-                if way.repr.size() < 8 {
-                    return self.ins().icmp(IntCC::SignedLessThan, length, few);
-                }
+                return self.ins().icmp(IntCC::SignedLessThan, length, few);
+            }
+            Some(few) => {
+                let few = self.integer(types::I64, few.into());
                 self.ins().icmp(IntCC::UnsignedLessThan, length, few)
             }
-            Size::Variable(_) => {
+            None => {
                 let further = self.further(way, length);
                 let few = self.integer(types::I64, Context::FREE_TURNS.into());
                 self.ins().icmp(IntCC::UnsignedLessThan, further, few)
@@ -150,6 +154,17 @@ impl<'p> Function<'_, 'p> {
         }
         let past = self.is_past_last(way);
         self.ins().bor(past, is_few)
+    }
+
+    /// Whether the loop has turns, but few, for a way of which two instructions tell it.
+    pub(crate) fn is_few_and_some(&mut self, way: &Way) -> Option<clif::Value> {
+        let few = way.most_of_few().filter(|_| way.is_narrow())?;
+        let length = self.length(way);
+        // A way on which there is no turn is below zero, which is much without a sign.
+        let before = u64::from(way.is_before);
+        let length = if way.is_before { self.ins().iadd_imm_s(length, -1) } else { length };
+        let few = self.integer(types::I64, (few - before).into());
+        Some(self.ins().icmp(IntCC::UnsignedLessThan, length, few))
     }
 
     /// From the first value to the last.

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::fixture::{AT, add, assign, call_adder, count, flag, int, load, local, sample, stmt, temp, wide};
-use crate::{Const, Elementary, For, LocalId, Repr, Step, Taking};
+use crate::{Const, Elementary, For, LocalId, Repr, Step, Taking, Type};
 
 const MAIN: usize = 3;
 

@@ -1,0 +1,53 @@
+//! What is known of a loop while it is emitted: what leads to a further turn, and what says how many there are.
+
+use cranelift_codegen::ir as clif;
+use cranelift_frontend::Variable;
+use staunch_ir::{Count, Expr, For, Location, Repr, Taking};
+
+/// What leads to a further turn.
+pub(crate) enum Control<'p> {
+    Count(Running<'p>),
+    /// It leaves the loop.
+    Unless(&'p Expr),
+    Always,
+}
+
+/// A FOR loop that is being emitted. Values are of 64 bits.
+#[derive(Clone, Copy)]
+pub(crate) struct Running<'p> {
+    pub(crate) it: &'p For,
+    pub(crate) repr: Repr,
+    pub(crate) at: Location,
+    /// The counter, beside its storage, where nothing but the loop writes it.
+    pub(crate) register: Option<Variable>,
+    /// What is not constant.
+    pub(crate) last: Option<clif::Value>,
+    pub(crate) step: Option<clif::Value>,
+}
+
+/// What says how many turns a loop has, when it starts.
+#[derive(Clone, Copy)]
+pub(crate) enum Known<'p> {
+    Nothing,
+    While(&'p Count),
+    For(Running<'p>),
+}
+
+impl Known<'_> {
+    pub(crate) fn taking(&self) -> Taking {
+        match self {
+            Known::Nothing => Taking::Each,
+            Known::While(it) => it.taking,
+            Known::For(it) => it.it.taking,
+        }
+    }
+
+    /// Whether there is a turn as long as the counter is on its way, whatever else the loop tests.
+    pub(crate) fn is_all_that_is_tested(&self) -> bool {
+        match self {
+            Known::Nothing => false,
+            Known::While(it) => it.taking.is_ahead(),
+            Known::For(_) => true,
+        }
+    }
+}
