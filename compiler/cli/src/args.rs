@@ -357,6 +357,9 @@ impl Compare {
         }
         let is_picture = |it: &PathBuf| it.extension().is_some_and(|it| it.eq_ignore_ascii_case("svg"));
         if let Some(Some(file)) = settled.trace.take_if(|it| it.as_ref().is_some_and(|it| !is_picture(it))) {
+            if !file.exists() {
+                return Err(format!("--trace {}: compare draws both systems as .svg", file.display()));
+            }
             settled.files.files.push(file);
             settled.trace = Some(None);
         }

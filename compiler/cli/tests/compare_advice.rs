@@ -257,3 +257,45 @@ fn a_call_by_position_needs_no_change() {
     assert_eq!(output.status.code(), Some(0), "{}", out(&output));
     assert!(!out(&output).contains("Trap 9"), "{}", out(&output));
 }
+
+/// What IEC refuses of CODESYS comes with what to write, which is equal.
+#[test]
+fn a_called_program_and_a_list_of_globals_say_what_to_write_elsewhere() {
+    let file = |name: &str, text: &str| {
+        let path = scratch().join(name);
+        std::fs::write(&path, text).expect("a program");
+        path
+    };
+    let original = file(
+        "called_codesys.st",
+        "{gvl 'Plant'}\nVAR_GLOBAL most : INT := 3; END_VAR\n\
+         PROGRAM Sub VAR_INPUT go : BOOL; END_VAR VAR_OUTPUT full : BOOL; END_VAR VAR c : CTU; END_VAR\n\
+         c(CU := go, PV := 2); full := c.Q; END_PROGRAM\n\
+         PROGRAM p VAR_INPUT sensor : BOOL; END_VAR VAR full : BOOL; n : INT; END_VAR\n\
+         Sub(go := sensor); full := Sub.full; n := MIN(n + 1, Plant.most); END_PROGRAM\n",
+    );
+    let moved = file(
+        "called_iec.st",
+        "VAR_GLOBAL most : INT := 3; END_VAR\n\
+         FUNCTION_BLOCK Sub VAR_INPUT go : BOOL; END_VAR VAR_OUTPUT full : BOOL; END_VAR VAR c : CTU; END_VAR\n\
+         c(CU := go, PV := 2); full := c.Q; END_FUNCTION_BLOCK\n\
+         PROGRAM p VAR_INPUT sensor : BOOL; END_VAR VAR full : BOOL; n : INT; instance : Sub; END_VAR\n\
+         instance(go := sensor); full := instance.full; n := MIN(n + 1, most); END_PROGRAM\n",
+    );
+    let alone = |more: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
+        command.arg("compare").arg(&original).args(["--from", "codesys", "--to", "iec"]).args(more);
+        command.output().expect("the command starts")
+    };
+    let refused = alone(&[]);
+    let text = out(&refused);
+    assert_eq!(refused.status.code(), Some(1), "{text}");
+    assert!(text.contains("What to do: Change it as the message says.\n"), "{text}");
+    assert!(text.contains("write it as FUNCTION_BLOCK Sub … END_FUNCTION_BLOCK, declare an instance of it"), "{text}");
+    assert!(text.contains("write the variable without `Plant.`"), "{text}");
+    equal("a called PROGRAM", "codesys", "iec", "full,n", [&original, &moved]);
+
+    let png = alone(&["--trace", "picture.png"]);
+    assert_eq!(png.status.code(), Some(2), "{}", out(&png));
+    assert!(out(&png).contains("--trace picture.png: compare draws both systems as .svg"), "{}", out(&png));
+}

@@ -2,6 +2,7 @@
 //! VAR_GLOBAL is one, by the name of the file; a pragma `{gvl 'Name'}` names the blocks that follow it.
 
 use crate::dialect::Dialect;
+use crate::spelling::Key;
 use crate::types::declarations::Declarations;
 use crate::{Code, Diagnostic, Span, ast};
 
@@ -25,6 +26,7 @@ impl<'s> Lists<'s> {
         lists.qualified.extend(attributes.map(|it| it.span.start));
         for pragma in file.pragmas.iter().filter(|it| is_list_pragma(it.text)) {
             if declarations.dialect(pragma.span) != Dialect::Codesys {
+                declarations.names.nameless_lists.extend(quoted(pragma.text).map(Key));
                 declarations.report(
                     Diagnostic::new(Code::W0102, pragma.span, "lists of global variables have names in codesys")
                         .label("it has no effect")
@@ -49,10 +51,13 @@ impl<'s> Lists<'s> {
         let spans: Option<Vec<_>> = file.items.iter().map(globals).collect();
         if let Some([first, ..]) = spans.as_deref()
             && file.regions.len() <= 1
-            && declarations.dialect(*first) == Dialect::Codesys
         {
             let path = declarations.log.sources.get(first.file).path.as_str();
-            lists.file = stem(path).filter(|it| is_name(it));
+            let name = stem(path).filter(|it| is_name(it));
+            match declarations.dialect(*first) {
+                Dialect::Codesys => lists.file = name,
+                _ => declarations.names.nameless_lists.extend(name.map(Key)),
+            }
         }
         lists
     }

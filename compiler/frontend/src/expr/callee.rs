@@ -194,8 +194,14 @@ impl<'s> Checker<'_, 's> {
                 _ => format!("`{}` is a FUNCTION_BLOCK; an instance of it is called", name.text),
             },
         );
+        let declared = format!("`VAR instance : {}; END_VAR`, and call `instance(…)`", name.text);
         if kind == ast::PouKind::FunctionBlock {
-            error = error.help(format!("declare one: `VAR instance : {}; END_VAR`, and call `instance(…)`", name.text));
+            error = error.help(format!("declare one: {declared}"));
+        } else if kind == ast::PouKind::Program && !self.decl.dialect(name.span).calls_programs() {
+            error = error.label("PROGRAMs are called in `codesys` alone").help(format!(
+                "write it as FUNCTION_BLOCK {} … END_FUNCTION_BLOCK, declare an instance of it: {declared}",
+                name.text
+            ));
         }
         self.report(error);
         None

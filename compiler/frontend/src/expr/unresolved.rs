@@ -221,6 +221,10 @@ impl<'s> Checker<'_, 's> {
             self.report(error.help(help).fix(name.span, full));
             return;
         }
+        if self.decl.names.nameless_lists.contains(&Key(name.text)) {
+            self.report(self.list_without_a_name(name, error));
+            return;
+        }
         if let Some(slots) = self.decl.names.qualified_enumerators.get(&Key(name.text)) {
             let full: Vec<_> =
                 slots.iter().map(|it| format!("{}.{}", self.decl.types[*it].decl.name.text, name.text)).collect();
@@ -248,5 +252,18 @@ impl<'s> Checker<'_, 's> {
             error = error.help(format!("call the function: `{}(…)`", name.text));
         }
         self.report(error);
+    }
+
+    /// `GVL.x`, where lists of global variables have no names.
+    fn list_without_a_name(&self, name: ast::Name<'s>, error: Diagnostic) -> Diagnostic {
+        let dialect = self.decl.dialect(name.span).name();
+        let help = format!(
+            "lists of global variables have names in `codesys`, not in `{dialect}`: write the variable without `{}.`",
+            name.text
+        );
+        let with_point = Span { end: name.span.end + 1, ..name.span };
+        let is_before_point = self.decl.log.sources.text(with_point).ends_with('.');
+        let error = error.help(help);
+        if is_before_point { error.fix(with_point, "") } else { error }
     }
 }

@@ -112,6 +112,8 @@ pub(crate) struct Names<'s> {
     spaces: Vec<Namespace<'s>>,
     regions: Regions,
     lists: FxHashMap<Key<'s>, SpaceId>,
+    /// What lists would be called in a dialect where they have names.
+    pub nameless_lists: FxHashSet<Key<'s>>,
     /// The global variables in lists.
     listed: FxHashMap<Key<'s>, Vec<(SpaceId, Entry)>>,
     /// The names of libraries, after which what the root holds can be named.
@@ -134,6 +136,7 @@ impl Default for Names<'_> {
             spaces: vec![Namespace::default()],
             regions: Regions::default(),
             lists: FxHashMap::default(),
+            nameless_lists: FxHashSet::default(),
             listed: FxHashMap::default(),
             libraries: Vec::new(),
             globals: FxHashMap::default(),

@@ -76,7 +76,7 @@ fn of(to: &Session, error: &Diagnostic, from: Dialect, target: Dialect) -> Rejec
             let advice = "Use a CTU and a CTD and subtract, or count in a variable of your own".to_owned();
             Rejection { pitfall: None, why, advice }
         }
-        None if block => Rejection {
+        None if block && counter.is_some() => Rejection {
             pitfall: None,
             why,
             advice: "Write the program for that system, with a block that it has or that names its family, and give it with \
