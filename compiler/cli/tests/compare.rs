@@ -388,6 +388,25 @@ fn assumptions_bound_what_is_tried() {
     assert!(text(&output.stderr).contains("wrong.txt:1: `for` is not expected here"), "{}", text(&output.stderr));
 }
 
+/// A trace may be made simpler by the values that inputs hold before they are given, which the plant may never give.
+#[test]
+fn a_trace_keeps_to_the_assumptions_from_its_first_scan_on() {
+    let path = written(
+        "assumed_first.st",
+        "PROGRAM p\nVAR_INPUT item : BOOL; target : INT; END_VAR\nVAR full : BOOL; n : INT; c : CTU; END_VAR\n\
+         c(NOT item, FALSE, 3); full := c.Q; n := target;\nEND_PROGRAM\n",
+    );
+    let (assumed, saved) = (written("first.txt", "target 2..500\n"), written("first.csv", ""));
+    let arguments =
+        format!("{} --from iec --to cscape --vars full --save-stimulus {}", path.display(), saved.display());
+    let stimulus = |more: &str| {
+        assert!(difference(&format!("{arguments}{more}")).contains("differ after 3 scans"));
+        std::fs::read_to_string(&saved).expect("a stimulus")
+    };
+    assert_eq!(stimulus(""), "scan,item,target\n1,FALSE,0\n3,FALSE,0\n");
+    assert_eq!(stimulus(&format!(" --assume {}", assumed.display())), "scan,item,target\n1,FALSE,2\n3,FALSE,2\n");
+}
+
 /// CODESYS keeps every variable over STOP -> RUN; IEC keeps what is RETAIN over both events.
 #[test]
 fn what_only_stop_to_run_keeps_is_found() {
