@@ -276,6 +276,7 @@ mod tests {
         assert!(wrong("Start Stop").1.starts_with("`Stop` is not expected here; a line is "));
         assert_eq!(wrong("not (Start").1, "a `)` is missing");
         assert_eq!(wrong("Target > x").1, "Target: `x` is no value");
+        assert_eq!(wrong("Target > level").1, "`level` is an input, too: `Target` is compared with a value");
         assert_eq!(wrong("Target 0.5..2").1, "Target: `0.5` is no value");
         assert_eq!(wrong("Start ! Stop").1, "`!` is not expected");
     }

@@ -150,7 +150,10 @@ impl Parser<'_> {
         if is_text && !matches!(relation, Relation::Eq | Relation::Ne) {
             return Err(format!("`{name}` is a string: it is compared by `=` and `<>`"));
         }
-        let limit = self.limit(at, value)?;
+        let limit = self.limit(at, value).map_err(|error| match self.input(value) {
+            Ok(_) => format!("`{value}` is an input, too: `{name}` is compared with a value"),
+            Err(_) => error,
+        })?;
         self.tokens = rest;
         Ok(Condition::Compare(at, *relation, limit))
     }
