@@ -512,10 +512,8 @@ impl<'s> Declarations<'s> {
     pub(super) fn check_named_programs(&mut self, files: &[ast::File<'s>]) {
         let sources = self.log.sources;
         let is_idle = |it: ast::Name<'s>| listing(files, sources, Key(it.text)) == Listing::Others;
-        let mut alone: Vec<_> =
-            self.named_programs.iter().filter(|(at, it)| !it.is_called && !self.is_of_library(**at)).collect();
-        alone.sort_by_key(|(slot, _)| **slot);
-        let alone: Vec<_> = alone.into_iter().map(|(_, it)| (it.variable.name, it.first)).collect();
+        let alone = self.named_programs.iter().filter(|(at, it)| !it.is_called && !self.is_of_library(**at));
+        let alone: Vec<_> = alone.map(|(_, it)| (it.variable.name, it.first)).collect();
         for (name, span) in alone {
             if !self.log.options.tests && is_idle(name) {
                 continue;
