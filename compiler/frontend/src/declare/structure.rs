@@ -241,7 +241,7 @@ impl<'s> Declarations<'s> {
         match self.smallest_part(resolved.ty) {
             Ok(size) => Some(size),
             Err((ty, why)) => {
-                let name = self.program.type_name(ty);
+                let name = self.name_of_type(ty);
                 self.report(
                     Diagnostic::new(Code::E0412, decl.ty.span, format!("{name} cannot share its bytes with others"))
                         .label(why),
@@ -249,6 +249,15 @@ impl<'s> Declarations<'s> {
                 None
             }
         }
+    }
+
+    /// A type's name while declarations are read, when what references lead to is not looked up yet.
+    fn name_of_type(&self, ty: Type) -> String {
+        let pending = self.table.pending_references.iter().find(|it| ty == Type::Reference(it.id));
+        pending.map_or_else(
+            || self.program.type_name(ty),
+            |it| format!("{} {}", self.program.references[it.id.index()].kind.word(), self.log.sources.text(it.span)),
+        )
     }
 
     /// The bytes of the smallest part; of what cannot share its bytes, which type that is, and why.

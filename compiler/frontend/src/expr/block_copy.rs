@@ -128,6 +128,11 @@ impl<'s> Checker<'_, 's> {
             true => length,
             false => least(length, target.remaining(at), at),
         };
+        let assigned = match constant(&count) {
+            Some(1) => target.at(&lint(0, at), at),
+            _ => target.place.clone(),
+        };
+        self.note_assigned(&assigned, target.span);
         let sizes = [&source, &target].map(|it| i64::try_from(self.decl.sizeof(it.element)).unwrap_or(i64::MAX));
         let read = match (is_same, constant(&count)) {
             (true, _) => count.clone(),
@@ -158,11 +163,8 @@ impl<'s> Checker<'_, 's> {
     /// What an operand names.
     fn copied_side(&mut self, name: ast::Name<'s>, expr: &ast::Expr<'s>, is_target: bool) -> Option<Side> {
         let found = self.place(expr)?;
-        if is_target {
-            if !self.writable(&found, expr.span) {
-                return None;
-            }
-            self.note_assigned(&found.place, expr.span);
+        if is_target && !self.writable(&found, expr.span) {
+            return None;
         }
         let mut place = found.place;
         self.fix(&mut place);

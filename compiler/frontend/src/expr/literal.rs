@@ -206,8 +206,15 @@ impl<'s> Checker<'_, 's> {
         })
     }
 
-    /// Arithmetic on integers without a type is exact; with a fraction it waits for its type.
-    pub(crate) fn fold_untyped(&mut self, op: ast::BinaryOp, a: &Operand, b: &Operand, span: Span) -> Option<Operand> {
+    /// Arithmetic on integers without a type is exact; with a fraction it waits for its type. The inner `None` says that
+    /// it was reported.
+    pub(crate) fn fold_untyped(
+        &mut self,
+        op: ast::BinaryOp,
+        a: &Operand,
+        b: &Operand,
+        span: Span,
+    ) -> Option<Option<Operand>> {
         if let (Operand::Integer(a), Operand::Integer(b)) = (a, b) {
             return self.fold_integers(op, *a, *b, span);
         }
@@ -218,10 +225,10 @@ impl<'s> Checker<'_, 's> {
             ast::BinaryOp::Div => Op::Div,
             _ => return None,
         };
-        Some(Operand::Real { number: Real::Apply(op, vec![number(a)?, number(b)?]) })
+        Some(Some(Operand::Real { number: Real::Apply(op, vec![number(a)?, number(b)?]) }))
     }
 
-    fn fold_integers(&mut self, op: ast::BinaryOp, a: i128, b: i128, span: Span) -> Option<Operand> {
+    fn fold_integers(&mut self, op: ast::BinaryOp, a: i128, b: i128, span: Span) -> Option<Option<Operand>> {
         let value = match op {
             ast::BinaryOp::Add => a.checked_add(b),
             ast::BinaryOp::Sub => a.checked_sub(b),
@@ -238,7 +245,7 @@ impl<'s> Checker<'_, 's> {
         if value.is_none() {
             self.error(Code::E0202, span, "the value of this expression fits no type");
         }
-        value.map(Operand::Integer)
+        Some(value.map(Operand::Integer))
     }
 }
 

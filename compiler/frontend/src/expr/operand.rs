@@ -156,7 +156,8 @@ impl<'s> Checker<'_, 's> {
     fn wrapped_bits(&mut self, value: i128, ty: Elementary, span: Span) -> Option<Value> {
         let (_, high) = ty.repr().range()?;
         let mixes = self.decl.dialect(span).mixes_bits_and_integers();
-        if !mixes || value >= 0 || ty == Elementary::Bool || !ty.repr().is_unsigned() || -value > high / 2 + 1 {
+        if !mixes || !value.is_negative() || ty == Elementary::Bool || !ty.repr().is_unsigned() || -value > high / 2 + 1
+        {
             return None;
         }
         self.report(

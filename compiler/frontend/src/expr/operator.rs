@@ -47,7 +47,7 @@ impl<'s> Checker<'_, 's> {
         }
         if sides.a.typed().is_none() && sides.b.typed().is_none() {
             if let Some(folded) = self.fold_untyped(sides.op, &sides.a, &sides.b, sides.span) {
-                return Some(folded);
+                return folded;
             }
             sides.a = Operand::Typed(self.materialise(sides.a, sides.hint, sides.left)?);
             if let (Operand::Integer(_), Some(ty)) = (&sides.b, sides.a.ty())

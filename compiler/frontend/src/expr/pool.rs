@@ -304,7 +304,6 @@ impl<'s> Checker<'_, 's> {
         if !self.writable(&found, pointer.span) {
             return None;
         }
-        self.note_assigned(&place, pointer.span);
         let (at, lword) = (self.at(span), Type::Elementary(Elementary::Lword));
         let bits = self.temporary("deleted", lword);
         let value = self.convert(Conversion::Same, lword, Expr::load(place.clone(), at));

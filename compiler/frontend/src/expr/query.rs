@@ -54,7 +54,6 @@ impl<'s> Checker<'_, 's> {
         }
         let wants_pointer = name.text.eq_ignore_ascii_case("__QUERYPOINTER");
         let classes = self.answering(found.place.ty, wants_pointer, to.span)?;
-        self.note_assigned(&found.place, to.span);
         let numbers: Vec<_> = classes.into_iter().map(|it| self.decl.class_number(it, span)).collect();
         Some(Operand::Typed(self.answer(&pointer, found.place, &numbers, span)))
     }
@@ -96,7 +95,6 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let classes = self.answering(found.place.ty, wants_pointer, target.span)?;
-        self.note_assigned(&found.place, target.span);
         let numbers: Vec<_> = classes.into_iter().map(|it| self.decl.class_number(it, span)).collect();
         self.answer(&pointer, found.place, &numbers, span);
         Some(())

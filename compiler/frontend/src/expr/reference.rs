@@ -385,7 +385,6 @@ impl<'s> Checker<'_, 's> {
             let bound = this.reference_to(value, kind)?;
             this.coerce(Operand::Typed(bound), ty, value.span)
         })?;
-        self.note_assigned(&place, target.span);
         self.assign(place, value, span);
         Some(())
     }

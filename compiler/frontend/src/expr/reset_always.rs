@@ -33,18 +33,16 @@ impl<'s> Checker<'_, 's> {
         if self.is_test() || !self.is_whole(slot) || may_leave(body) {
             return;
         }
-        let mut found = self.paired_calls(body);
-        found.retain(|_, it| it.dead().is_some());
+        let found = self.paired_calls(body).into_iter();
+        let mut found: Vec<_> = found.filter_map(|(name, calls)| Some((name, calls.dead()?))).collect();
         if found.is_empty() {
             return;
         }
         let elsewhere = elsewhere(body);
-        let mut found: Vec<_> = found.into_iter().filter(|(name, _)| !elsewhere.contains(name)).collect();
-        found.sort_by_key(|(_, it)| it.dead().map(|it| it[0].start));
-        for (name, calls) in found {
-            if let Some([resets, gives]) = calls.dead() {
-                self.report_reset(name.0, resets, gives);
-            }
+        found.retain(|(name, _)| !elsewhere.contains(name));
+        found.sort_by_key(|(_, [resets, _])| resets.start);
+        for (name, [resets, gives]) in found {
+            self.report_reset(name.0, resets, gives);
         }
     }
 

@@ -154,9 +154,7 @@ impl<'s> Checker<'_, 's> {
             Slot::Open | Slot::Failed => None,
         });
         let mut found: Vec<_> = known.collect();
-        let mut programs: Vec<_> = self.decl.named_programs.iter().collect();
-        programs.sort_by_key(|it| it.0);
-        found.extend(programs.into_iter().map(|it| Rc::clone(&it.1.variable)));
+        found.extend(self.decl.named_programs.values().map(|it| Rc::clone(&it.variable)));
         for slot in 0..self.decl.written_pous().len() {
             let Some(signature) = self.decl.signature(slot) else { continue };
             let is_static = |it: &&Rc<Variable<'s>>| is_held(it, Root::Globals) && it.section == Section::Internal;

@@ -512,10 +512,8 @@ impl<'s> Declarations<'s> {
     pub(super) fn check_named_programs(&mut self, files: &[ast::File<'s>]) {
         let sources = self.log.sources;
         let is_idle = |it: ast::Name<'s>| listing(files, sources, Key(it.text)) == Listing::Others;
-        let mut alone: Vec<_> =
-            self.named_programs.iter().filter(|(at, it)| !it.is_called && !self.is_of_library(**at)).collect();
-        alone.sort_by_key(|(slot, _)| **slot);
-        let alone: Vec<_> = alone.into_iter().map(|(_, it)| (it.variable.name, it.first)).collect();
+        let alone = self.named_programs.iter().filter(|(at, it)| !it.is_called && !self.is_of_library(**at));
+        let alone: Vec<_> = alone.map(|(_, it)| (it.variable.name, it.first)).collect();
         for (name, span) in alone {
             if !self.log.options.tests && is_idle(name) {
                 continue;
@@ -544,5 +542,32 @@ impl<'s> Declarations<'s> {
             );
         }
         true
+    }
+}
+
+#[cfg(test)]
+mod test {
+    use super::looked_at;
+
+    #[test]
+    fn a_single_is_looked_at_in_whole_parts_of_its_interval() {
+        // In microseconds. 1,999 ms have no part that is found.
+        let expected = [
+            (10_000, 10_000),
+            (11_000, 1_000),
+            (20_000, 10_000),
+            (21_000, 7_000),
+            (25_000, 5_000),
+            (30_000, 10_000),
+            (31_000, 1_000),
+            (99_000, 9_000),
+            (1_999_000, 1_000),
+            (1_500, 1_500),
+            (15_500, 7_750),
+            (500, 500),
+        ];
+        for (interval, part) in expected {
+            assert_eq!(looked_at(interval * 1000), part * 1000, "of {interval} us");
+        }
     }
 }

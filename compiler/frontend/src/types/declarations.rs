@@ -22,6 +22,7 @@ use staunch_ir::{
     BlockId, Location, Program, RefKind, RefType, ReferenceId, Routine, Section, SourceFile, StructId, Type,
 };
 use staunch_runtime::Class;
+use std::collections::BTreeMap;
 use std::rc::Rc;
 
 /// A declaration, and what it was resolved to.
@@ -167,7 +168,7 @@ pub(crate) struct Declarations<'s> {
     /// The symbols of what is implemented outside, and where each is declared.
     pub externals: FxHashMap<String, Span>,
     /// By their slots.
-    pub named_programs: FxHashMap<usize, NamedProgram<'s>>,
+    pub named_programs: BTreeMap<usize, NamedProgram<'s>>,
     /// The CONSTANTs of POUs, by their slots, which others read by a POU's name.
     pub constants: FxHashMap<usize, Rc<Scope<'s>>>,
     pub tests: Tests,
@@ -206,7 +207,7 @@ impl<'s> Declarations<'s> {
             image: Image::default(),
             synthetic: Synthetic::default(),
             externals: FxHashMap::default(),
-            named_programs: FxHashMap::default(),
+            named_programs: BTreeMap::new(),
             constants: FxHashMap::default(),
             tests: Tests::default(),
             coverage: None,

@@ -46,6 +46,6 @@ impl Declarations<'_> {
 /// Whether two parameters take the same arguments.
 fn is_same(a: &Formal<'_>, b: &Formal<'_>) -> bool {
     let types = a.resolved.ty.read() == b.resolved.ty.read()
-        || matches!((a.resolved.ty, b.resolved.ty), (Type::String(_), Type::String(_)));
+        || matches!((a.resolved.ty, b.resolved.ty), (Type::String(a), Type::String(b)) if a.wide == b.wide);
     a.section == b.section && a.word == b.word && types
 }
