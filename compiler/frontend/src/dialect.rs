@@ -132,6 +132,11 @@ impl Dialect {
         matches!(self, Self::Siemens | Self::Codesys)
     }
 
+    /// `CHAR#16#80`, a character by its number.
+    pub const fn has_numbered_characters(self) -> bool {
+        matches!(self, Self::Siemens)
+    }
+
     /// `Act;` calls an ACTION, as `Act();` does.
     pub const fn calls_actions_by_name(self) -> bool {
         matches!(self, Self::Codesys)

@@ -5,6 +5,7 @@
 
 mod addresses;
 mod expected;
+mod varying;
 
 use crate::Span;
 use crate::ast::{
@@ -17,6 +18,7 @@ pub(crate) use addresses::is_once;
 
 use addresses::Addresses;
 use expected::Types;
+use varying::{Everywhere, Names};
 
 /// METHODs that CODESYS calls by itself.
 pub(crate) const INITIAL: [&str; 3] = [INIT, "FB_reinit", EXIT];
@@ -56,16 +58,17 @@ pub(crate) fn expand(files: &mut [File<'_>]) {
     let mut of_globals_alone = Addresses::default();
     let mut first = None;
     let types = Types::of(files);
+    let everywhere = Everywhere::of(files);
     for item in files.iter_mut().flat_map(|it| &mut it.items) {
         match item {
             Item::Pou(pou) => {
-                addresses::of_calls(pou, &types);
+                addresses::of_calls(pou, &types, &Names::everywhere(&everywhere));
                 let found = if has_state(pou.kind) { addresses::of_state(pou, &types) } else { Addresses::default() };
                 first = first.or((!found.is_empty()).then_some(pou.name.span));
                 states.push(found);
             }
             Item::Globals(_) | Item::Configuration(_) => {
-                let found = addresses::taken(blocks_of(item).iter_mut(), &types);
+                let found = addresses::taken(blocks_of(item).iter_mut(), &types, None);
                 first = first.or(found.before.first().map(|it| it.span));
                 of_globals_alone.before.extend(found.before);
                 of_globals_alone.after.extend(found.after);

@@ -336,7 +336,13 @@ impl<'a> Machine<'a> {
         // Each with the number of its argument: they come back in the order in which those are written.
         let mut copies: Vec<(usize, (Place<'a>, Place<'a>))> = Vec::new();
         let mut in_outs = Vec::new();
-        for number in 0..self.declared.pous[pou].variables.len() {
+        // What a call gives is there before the initial values that ask for it.
+        let is_given = |it: &usize| {
+            matches!(self.declared.pous[pou].variables[*it].kind, VarKind::Input | VarKind::InOut)
+        };
+        let (mut order, others): (Vec<_>, Vec<_>) = (0..self.declared.pous[pou].variables.len()).partition(is_given);
+        order.extend(others);
+        for number in order {
             let Variable { name, kind, slot, .. } = &self.declared.pous[pou].variables[number];
             let (name, kind, slot) = (*name, *kind, slot.clone());
             let key = name.to_ascii_uppercase();

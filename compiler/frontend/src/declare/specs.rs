@@ -264,10 +264,14 @@ impl<'s> Declarations<'s> {
             Some(family) => no_such_block(family, name),
             None => {
                 let families = Family::ALL.map(Family::name);
+                let libraries: Vec<_> = self.names.libraries.iter().map(String::as_str).collect();
+                let help = match libraries.as_slice() {
+                    [] => format!("the families of blocks are {}", list(&families)),
+                    libraries => format!("the project's libraries are {}, by their files or folders", list(libraries)),
+                };
                 let place = around.first().map_or(span, |it| it.span);
                 self.not_there(&full, place).unwrap_or_else(|| {
-                    Diagnostic::new(Code::E0102, place, format!("there is no namespace `{full}`"))
-                        .help(format!("the families of blocks are {}", list(&families)))
+                    Diagnostic::new(Code::E0102, place, format!("there is no namespace `{full}`")).help(help)
                 })
             }
         };

@@ -93,10 +93,12 @@ impl<'s> Checker<'_, 's> {
         if let Some(variable) = self.scope.get(name.text) {
             // A variable that cannot be called does not hide a function of its name.
             let callable = matches!(variable.place.ty, Type::Block(_) | Type::Struct(_));
-            let function = matches!(
-                found,
-                Found::One(Meaning::Function | Meaning::Instruction | Meaning::Declared(Entry::Pou(_)))
-            );
+            let function = match &found {
+                Found::One(Meaning::Declared(Entry::Pou(slot))) => {
+                    self.decl.pous[*slot].ast.kind == ast::PouKind::Function
+                }
+                found => matches!(found, Found::One(Meaning::Function | Meaning::Instruction)),
+            };
             if callable || !function {
                 return Some(Callee::Instance);
             }

@@ -7,7 +7,7 @@ use crate::types::scope::Variable;
 use crate::types::window::Window;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, UnaryOp};
-use staunch_ir::{Chars, Const, Conversion, Elementary, Expr, ExprKind, Op, Type};
+use staunch_ir::{Chars, Const, Conversion, Elementary, Expr, ExprKind, Op, Root, Section, Type};
 use staunch_runtime::Class;
 
 impl<'s> Checker<'_, 's> {
@@ -98,6 +98,17 @@ impl<'s> Checker<'_, 's> {
     fn variable_value(&mut self, variable: &Variable<'s>, span: Span) -> Option<Expr> {
         if let Some(value) = variable.constant_value() {
             return self.constant_variable(variable, value, span);
+        }
+        let is_given = match variable.place.root {
+            Root::Local(_) => variable.section == Section::Input,
+            Root::Param(_) => true,
+            Root::Instance | Root::Globals => false,
+        };
+        if self.context == Context::Initial && is_given {
+            let error = super::unresolved::not_constant(span);
+            let what = format!("what `{}` is, each call says", variable.name.text);
+            self.report(error.other(variable.name.span, what).help("assign it at the start of the body"));
+            return None;
         }
         if self.context == Context::Initial {
             let initial = variable.resolved.initial.clone();

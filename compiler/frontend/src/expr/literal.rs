@@ -70,6 +70,11 @@ impl<'s> Checker<'_, 's> {
             Converted::Elementary(ty) => ty,
             Converted::Text { wide } => return self.string_of_kind(value, wide, span),
         };
+        if let (LiteralValue::Integer { value, .. }, false) = (value, is_negative)
+            && let Some(character) = self.numbered_character(ty, *value, span)
+        {
+            return Some(character);
+        }
         let operand = self.plain_literal(value, span)?;
         match operand {
             Operand::Typed(value) if is_negative => {
@@ -81,6 +86,18 @@ impl<'s> Checker<'_, 's> {
             number if is_negative => self.literal_as(&number.negated(), ty, span),
             number => self.literal_as(&number, ty, span),
         }
+    }
+
+    /// `CHAR#16#80`, in dialects that have it.
+    fn numbered_character(&mut self, ty: Elementary, number: u64, span: Span) -> Option<Expr> {
+        if !ty.is_char() || !self.decl.dialect(span).has_numbered_characters() {
+            return None;
+        }
+        let value = match ty == Elementary::Char {
+            true => Value::U8(u8::try_from(number).ok()?),
+            false => Value::U16(u16::try_from(number).ok()?),
+        };
+        Some(Expr::constant(ty, value, self.at(span)))
     }
 
     /// `'A'`: a CHAR where one is expected.

@@ -224,6 +224,11 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn report_no_accessor(&mut self, name: ast::Name<'s>, word: &str, use_: &str, other: Option<(usize, Span)>) {
+        let class = other.and_then(|it| self.decl.pous[it.0].owner);
+        if class.is_some_and(|it| self.decl.has_unknown_parts(it)) {
+            // It may be the base's.
+            return;
+        }
         let mut error = Diagnostic::new(Code::E0504, name.span, format!("the PROPERTY `{}` has no {word}", name.text))
             .label(format!("so it cannot be {use_}"));
         if let Some((_, span)) = other {

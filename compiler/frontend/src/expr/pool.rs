@@ -2,7 +2,10 @@
 //! declares with `{pool 16}`, and deleted by making that free again.
 
 use super::checker::Checker;
+use super::method::is_this;
 use super::operand::Operand;
+use super::place::{Access, Found};
+use crate::names::{Found as Meant, Sense};
 use crate::types::pools::Pool;
 use crate::types::table::Resolved;
 use crate::{Code, Diagnostic, Span, ast};
@@ -185,13 +188,35 @@ impl<'s> Checker<'_, 's> {
     fn type_named(&mut self, named: &ast::Expr<'s>) -> Option<Type> {
         let ty = self.type_of_path(named);
         // What is no expression has been reported.
-        if ty.is_none() && !matches!(named.kind, ast::ExprKind::Error(_)) {
+        if ty.is_none() && !matches!(named.kind, ast::ExprKind::Error(_)) && !self.reports_unknown_type(named) {
             self.report(
                 Diagnostic::new(Code::E0413, named.span, "`__NEW` makes objects of a type")
                     .label("expected the name of a FUNCTION_BLOCK or a type"),
             );
         }
         ty
+    }
+
+    /// Reports a type that is not there; what is another thing by its name is not reported here.
+    fn reports_unknown_type(&mut self, named: &ast::Expr<'s>) -> bool {
+        let Some(path) = named.path() else { return false };
+        let [first, ..] = path.as_slice() else { return false };
+        let Some((name, around)) = path.split_last() else { return false };
+        if self.scope.get(first.text).is_some() || self.decl.lookup(&path, Sense::Value) != Meant::Nothing {
+            return false;
+        }
+        let is_declared = self.decl.lookup(&path, Sense::Type) != Meant::Nothing;
+        if is_declared || self.scope.is_refused(first.text) {
+            // What is wrong with it has been reported.
+            return true;
+        }
+        let error = self.decl.not_in_library(Code::E0102, around, *name);
+        let error = error.or_else(|| self.decl.not_there(first.text, first.span)).unwrap_or_else(|| {
+            let full = path.iter().map(|it| it.text).collect::<Vec<_>>().join(".");
+            Diagnostic::new(Code::E0102, named.span, format!("there is no type `{full}`")).label("unknown type")
+        });
+        self.report(error);
+        true
     }
 
     fn is_abstract(&self, ty: Type) -> Option<Span> {
@@ -298,7 +323,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn delete(&mut self, pointer: &ast::Expr<'s>, span: Span) -> Option<()> {
-        let found = self.place_of_reference(pointer)?;
+        let found = self.deleted_place(pointer)?;
         let place = found.place.clone();
         let pools = self.pools_behind(place.ty, pointer.span)?;
         if !self.writable(&found, pointer.span) {
@@ -323,6 +348,19 @@ impl<'s> Checker<'_, 's> {
         let condition = Expr::apply(Op::Ne, Type::BOOL, vec![Expr::load(bits, at), zero], at);
         self.push(StatementKind::If { condition, then, otherwise: Vec::new() }, span);
         Some(())
+    }
+
+    /// The variable whose object is deleted. A REFERENCE TO a pointer stands for that; THIS is a pointer of its own.
+    fn deleted_place(&mut self, pointer: &ast::Expr<'s>) -> Option<Found<'s>> {
+        let found = self.place_of_reference(pointer)?;
+        if is_this(pointer) && matches!(found.place.ty, Type::Struct(_)) {
+            let ty = self.decl.reference_type(RefKind::PointerTo, found.place.ty);
+            let this = self.value(pointer, ty)?;
+            let own = self.temporary("this", ty);
+            self.assign(own.clone(), this, pointer.span);
+            return Some(Found { place: own, view: None, access: Access::Write });
+        }
+        self.referred(found, pointer.span)
     }
 
     /// Frees the place of a pool whose object a reference names.
@@ -354,6 +392,8 @@ impl<'s> Checker<'_, 's> {
     /// The pools that what a variable refers to may be in.
     fn pools_behind(&mut self, ty: Type, span: Span) -> Option<Vec<Pool>> {
         let target = match ty {
+            // That what it refers to is not known has been reported.
+            Type::Reference(id) if self.decl.table.unknown_references.contains(&id) => return None,
             Type::Reference(id) => {
                 let target = self.decl.program.references[id.index()];
                 (target.kind != RefKind::ReferenceTo).then_some(target.target)

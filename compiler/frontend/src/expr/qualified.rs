@@ -87,6 +87,9 @@ impl<'s> Checker<'_, 's> {
         if self.scope.get(first.text).is_some() {
             return None;
         }
+        if self.scope.is_refused(first.text) {
+            return Some(None);
+        }
         let path = callee.path()?;
         let (last, around) = path.split_last()?;
         match self.decl.lookup(&path, Sense::Callee) {

@@ -1,12 +1,13 @@
 //! Initial values that are addresses: nothing knows them before the program runs, so they are assigned. In a routine, and
 //! in VAR_TEMP, that is at the start of each call, of VAR_STAT and VAR_INST of the first one; elsewhere with the start of
-//! instances.
+//! instances. What lives for one call is assigned the values of variables, too.
 
 use super::expected::{By, Expected, Types};
+use super::varying::Names;
 use crate::Span;
 use crate::ast::{
     BinaryOp, Element, Expr, ExprKind, Initial, InitialKind, LiteralValue, Name, Pou, PouKind, Statement,
-    StatementKind, TypeKind, TypeSpec, UnaryOp, VarBlock, VarKind, each_part,
+    StatementKind, TypeKind, TypeSpec, UnaryOp, VarBlock, VarDecl, VarKind, each_part,
 };
 use crate::testing::tree::{assign, literal, named, variables};
 
@@ -45,20 +46,23 @@ impl<'s> Addresses<'s> {
     }
 }
 
-/// Takes out of a POU the addresses that its calls assign, and puts them before its statements.
-pub(super) fn of_calls<'s>(pou: &mut Pou<'s>, types: &Types<'s>) {
-    let is_of_calls = |kind: PouKind, block: &VarBlock<'_>| match kind {
+/// Takes out of a POU the addresses and the values of variables that its calls assign, and puts them before its statements.
+pub(super) fn of_calls<'s>(pou: &mut Pou<'s>, types: &Types<'s>, around: &Names<'_, 's>) {
+    let mut names = around.with(pou);
+    for routine in &mut pou.routines {
+        of_calls(routine, types, &names);
+    }
+    let kind = pou.kind;
+    let is_of_calls = |block: &VarBlock<'_>| match kind {
         PouKind::Function | PouKind::Method | PouKind::Getter | PouKind::Setter => {
-            matches!(block.kind, VarKind::Var | VarKind::Temp)
+            matches!(block.kind, VarKind::Var | VarKind::Temp | VarKind::Output)
         }
         PouKind::Program | PouKind::FunctionBlock | PouKind::Test => block.kind == VarKind::Temp,
         PouKind::Class | PouKind::Interface | PouKind::Action => false,
     };
-    for routine in &mut pou.routines {
-        of_calls(routine, types);
-    }
-    let kind = pou.kind;
-    let found = taken(pou.blocks.iter_mut().filter(|it| is_of_calls(kind, it)), types);
+    let has_statements = pou.external.is_none() && !pou.is_stub && pou.modifiers.is_abstract.is_none();
+    let names = has_statements.then_some(&mut names);
+    let found = taken(pou.blocks.iter_mut().filter(|it| is_of_calls(it)), types, names);
     pou.body.splice(0..0, found.before);
     if kind.is_function() {
         for lasting in [VarKind::Stat, VarKind::Inst] {
@@ -73,7 +77,7 @@ pub(crate) const ADDRESSED: [&str; 2] = ["__stat_addressed", "__inst_addressed"]
 
 /// Takes out of a POU the addresses of variables that outlive its calls: they are assigned once after each start.
 fn once<'s>(pou: &mut Pou<'s>, kind: VarKind, types: &Types<'s>) -> Vec<Statement<'s>> {
-    let found = taken(pou.blocks.iter_mut().filter(|it| it.kind == kind), types);
+    let found = taken(pou.blocks.iter_mut().filter(|it| it.kind == kind), types, None);
     let Some(first) = found.before.first().map(|it| it.span) else { return Vec::new() };
     // No name of the source is there, and what inherits the block has the same mark.
     let at = pou.blocks.iter().find(|it| it.kind == kind).map_or(first, |it| it.span);
@@ -103,7 +107,7 @@ pub(super) fn of_members<'s>(ty: &mut TypeSpec<'s>, types: &Types<'s>) -> Option
     for member in members {
         let is_own = |it: &Initial<'_>| match &it.kind {
             InitialKind::Bind(_) => true,
-            InitialKind::Value(value) => is_address(value) || Expected::variable(&member.ty, types).by(value).is_some(),
+            InitialKind::Value(value) => is_address(value) || Expected::variable(&member.ty, types, None).by(value).is_some(),
             InitialKind::Elements(_) | InitialKind::Fields(_) => false,
         };
         if member.initial.as_ref().is_some_and(is_own) {
@@ -122,32 +126,39 @@ pub(super) fn of_state<'s>(pou: &mut Pou<'s>, types: &Types<'s>) -> Addresses<'s
     let is_state = |it: &&mut VarBlock<'s>| {
         matches!(it.kind, VarKind::Var | VarKind::Input | VarKind::Output) || is_lasting && it.kind == VarKind::Stat
     };
-    let mut found = taken(pou.blocks.iter_mut().filter(is_state), types);
+    let mut found = taken(pou.blocks.iter_mut().filter(is_state), types, None);
     let shared = once(pou, VarKind::Stat, types);
     found.before.splice(0..0, shared);
     found
 }
 
-/// Takes the addresses out of declarations.
+/// Takes the addresses out of declarations, and what asks for variables by `names`.
 pub(super) fn taken<'a, 's: 'a>(
     blocks: impl Iterator<Item = &'a mut VarBlock<'s>>,
     types: &Types<'s>,
+    mut names: Option<&mut Names<'_, 's>>,
 ) -> Addresses<'s> {
     let mut found = Addresses::default();
     // What writes to a CONSTANT is refused.
     for decl in blocks.filter(|it| !it.has_values()).flat_map(|it| &mut it.vars) {
-        if decl.initial.as_ref().is_none_or(|it| !holds_address(it, Expected::variable(&decl.ty, types))) {
-            continue;
-        }
-        let names = decl.names.clone();
-        let initial = decl.initial.take();
-        for name in names {
-            let target = Expr { kind: ExprKind::Name(name), span: name.span };
-            decl.initial =
-                initial.clone().and_then(|it| rest(it, &target, Expected::variable(&decl.ty, types), &mut found));
+        take(decl, types, names.as_deref(), &mut found);
+        if let Some(names) = &mut names {
+            names.give(&decl.names);
         }
     }
     found
+}
+
+fn take<'s>(decl: &mut VarDecl<'s>, types: &Types<'s>, names: Option<&Names<'_, 's>>, found: &mut Addresses<'s>) {
+    if decl.initial.as_ref().is_none_or(|it| !holds_address(it, Expected::variable(&decl.ty, types, names))) {
+        return;
+    }
+    let initial = decl.initial.take();
+    for name in decl.names.clone() {
+        let target = Expr { kind: ExprKind::Name(name), span: name.span };
+        let expected = Expected::variable(&decl.ty, types, names);
+        decl.initial = initial.clone().and_then(|it| rest(it, &target, expected, found));
+    }
 }
 
 fn holds_address<'s>(initial: &Initial<'s>, expected: Expected<'_, 's>) -> bool {

@@ -1,6 +1,7 @@
 //! What types variables and their members are declared with, as far as initial values ask: whether `i` in `(i := a)` is of
 //! an INTERFACE, or a REFERENCE TO.
 
+use super::varying::Names;
 use crate::ast::{Bound, Expr, ExprKind, File, Item, Name, PouKind, TypeKind, TypeSpec, UnaryOp, VarDecl};
 use crate::spelling::Key;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -101,6 +102,8 @@ pub(super) enum By {
 pub(super) struct Expected<'a, 's> {
     ty: Option<&'a TypeSpec<'s>>,
     types: &'a Types<'s>,
+    /// Where values of variables are assigned, too.
+    names: Option<&'a Names<'a, 's>>,
     /// It is a part of an instance or a structure, `(i := a)`.
     pub is_member: bool,
 }
@@ -109,8 +112,8 @@ pub(super) struct Expected<'a, 's> {
 const DEPTH: usize = 16;
 
 impl<'a, 's> Expected<'a, 's> {
-    pub fn variable(ty: &'a TypeSpec<'s>, types: &'a Types<'s>) -> Self {
-        Self { ty: Some(ty), types, is_member: false }
+    pub fn variable(ty: &'a TypeSpec<'s>, types: &'a Types<'s>, names: Option<&'a Names<'a, 's>>) -> Self {
+        Self { ty: Some(ty), types, names, is_member: false }
     }
 
     /// The type with the names of others resolved.
@@ -124,8 +127,19 @@ impl<'a, 's> Expected<'a, 's> {
         Some(&ty.kind)
     }
 
-    /// How a value is assigned that is an address by the type of what it is for: 0 and NULL have no name.
+    /// How a value is assigned that is known when the program runs.
     pub fn by(&self, value: &Expr<'s>) -> Option<By> {
+        self.by_type(value).or_else(|| self.varies(value).then_some(By::Assignment))
+    }
+
+    /// Whether a value asks for a variable. What a REFERENCE TO refers to is none.
+    fn varies(&self, value: &Expr<'s>) -> bool {
+        self.names.is_some_and(|it| it.vary(value))
+            && !matches!(self.kind(), Some(TypeKind::Reference { kind: RefKind::ReferenceTo, .. }))
+    }
+
+    /// The same of what is an address by the type of what it is for: 0 and NULL have no name.
+    fn by_type(&self, value: &Expr<'s>) -> Option<By> {
         let is_place = matches!(value.kind, ExprKind::Name(_) | ExprKind::Member(..) | ExprKind::Index(..));
         if !is_place && !is_own_instance(value) {
             return None;
@@ -163,7 +177,7 @@ impl<'a, 's> Expected<'a, 's> {
             }
             _ => None,
         };
-        Self { ty, types: self.types, is_member: true }
+        Self { ty, is_member: true, ..*self }
     }
 
     /// The lower bound and the elements of an array of one dimension. What a bound's names mean is known where the array

@@ -29,6 +29,7 @@ struct Found<'s> {
 
 /// Reports such declarations, and makes one name of the tokens of each of them and of their uses.
 pub fn mend(tokens: &mut Tokens<'_>, text: &str, file: u16) {
+    members(tokens);
     let mut found = Found { text, file, ..Found::default() };
     declarations(tokens, &mut found);
     if found.declared.is_empty() {
@@ -36,6 +37,18 @@ pub fn mend(tokens: &mut Tokens<'_>, text: &str, file: u16) {
     }
     rewrite(tokens, &found);
     tokens.diagnostics.append(&mut found.reports);
+}
+
+/// A reserved word directly after `a.` is a member: `machine.Configuration`.
+fn members(tokens: &mut Tokens<'_>) {
+    for at in 2..tokens.kinds.len() {
+        let [owner, dot, word] = [at - 2, at - 1, at].map(|it| tokens.kinds[it]);
+        let is_owner = matches!(owner, Kind::Name | Kind::CloseBracket | Kind::CloseParen | Kind::Caret);
+        let is_joined = |it: usize| tokens.places[it].1 == tokens.places[it + 1].0;
+        if is_owner && dot == Kind::Dot && word.keyword().is_some() && is_joined(at - 2) && is_joined(at - 1) {
+            tokens.kinds[at] = Kind::Name;
+        }
+    }
 }
 
 /// Walks over the places where a name is declared.

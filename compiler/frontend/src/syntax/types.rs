@@ -16,7 +16,7 @@ use super::{
     foreign_types,
     initial::assign,
     parser::{Expected, In, TokenReader},
-    recovery,
+    recovery, unsupported,
 };
 
 /// `spec` is the type of an element, or of what a reference refers to.
@@ -142,6 +142,7 @@ fn named<'t, 's: 't>() -> impl Rule<'t, 's, TypeKind<'s>> {
     let alone = no_more.map(|()| Suffix::Members(Vec::new()));
     let of_number = choice((values, range.clone(), length.clone(), some_members, alone));
     // What is in parentheses after another name may be for the FB_init of an instance.
+    let members = members.then_ignore(unsupported::generic_values());
     let of_other = choice((any_range, length, members));
     let number = ahead(is_elementary).ignore_then(name()).then(of_number);
     let other = ahead(|input| !is_elementary(input) && !is_string(input)).ignore_then(name()).then(of_other);

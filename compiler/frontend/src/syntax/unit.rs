@@ -244,6 +244,16 @@ fn pou<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind) -> Item<'s> {
     input.eat(Kind::Semicolon);
     input.state().open.push((end, opened));
     let mut pou = Pou { modifiers, result, attributes, external, pool, doc, ..Pou::new(kind, name, span) };
+    let (mut extends, mut implements) = (extends, implements);
+    if unsupported::begins_generic(input) {
+        // They are read as variables of types that are not known, so that what uses them is not refused, too.
+        unsupported::generic_constants(input);
+        input.state().instead = Some(Kind::Var);
+        pou.blocks.extend(section(input).map(unsupported::unknown));
+        let later = input.parse(names_after("EXTENDS").then(names_after("IMPLEMENTS"))).unwrap_or_default();
+        extends.extend(later.0);
+        implements.extend(later.1);
+    }
     bases(input, &mut pou, extends, implements);
     pou.blocks.extend(parameters);
     let region = namespace::of_pou(input, opened);
@@ -351,7 +361,11 @@ fn head<'t, 's: 't>(kind: PouKind) -> impl Rule<'t, 's, Head<'s>> {
 /// `EXTENDS a, b.c`, if it is there.
 fn names_after<'t, 's: 't>(keyword: &'static str) -> impl Rule<'t, 's, Vec<Path<'s>>> {
     let path = name().separated_by(token(Kind::Dot)).at_least(1).collect::<Vec<_>>();
-    let names = word(keyword).ignore_then(path.separated_by(token(Kind::Comma)).at_least(1).collect());
+    let path = ahead(|input| routine::begins(input).is_none()).ignore_then(path);
+    let path = path.then_ignore(unsupported::generic_values());
+    // TwinCAT writes a comma after the last of an INTERFACE's, and reads it.
+    let paths = path.separated_by(token(Kind::Comma)).at_least(1).allow_trailing();
+    let names = word(keyword).ignore_then(paths.collect());
     names.or(ahead(move |input| !input.is_word(keyword)).map(|()| Vec::new()))
 }
 

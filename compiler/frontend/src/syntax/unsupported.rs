@@ -2,13 +2,14 @@
 //! Their words are names everywhere else.
 
 use crate::{
-    ast::{Expr, ExprKind},
+    ast::{Expr, ExprKind, TypeKind, VarBlock},
     lex::{Kind, index},
     spelling::Key,
     vendor::controller_service,
 };
 
 use super::{
+    combinator::{Rule, rule},
     diagnostics,
     parser::{In, TokenReader},
     recovery,
@@ -32,12 +33,8 @@ pub fn skip(input: &mut In<'_, '_, '_>) -> bool {
         recovery::skip_operands(input);
         return true;
     }
-    let declares = matches!(input.kind_ahead(1), Kind::Constant | Kind::Name);
-    if word.eq_ignore_ascii_case("VAR_GENERIC") && declares {
-        input.report(
-            diagnostics::unsupported(span, "VAR_GENERIC CONSTANT")
-                .help("declare a VAR_GLOBAL CONSTANT, or an `ARRAY[*]` in VAR_IN_OUT"),
-        );
+    if begins_generic(input) {
+        generic_constants(input);
         recovery::skip_section(input);
         return true;
     }
@@ -61,6 +58,62 @@ pub fn skip(input: &mut In<'_, '_, '_>) -> bool {
         return true;
     }
     false
+}
+
+/// Whether `VAR_GENERIC CONSTANT` begins here.
+pub fn begins_generic(input: &mut In<'_, '_, '_>) -> bool {
+    input.is_word("VAR_GENERIC") && matches!(input.kind_ahead(1), Kind::Constant | Kind::Name)
+}
+
+/// Refuses generic constants, whose declarations are next.
+pub fn generic_constants(input: &mut In<'_, '_, '_>) {
+    let span = input.take();
+    input.report(
+        diagnostics::unsupported(span, "VAR_GENERIC CONSTANT")
+            .help("declare a VAR_GLOBAL CONSTANT, or an `ARRAY[*]` in VAR_IN_OUT"),
+    );
+}
+
+/// The variables of a section, whose types and values nobody knows.
+pub fn unknown(mut section: VarBlock<'_>) -> VarBlock<'_> {
+    section.constant = None;
+    for decl in &mut section.vars {
+        decl.ty.kind = TypeKind::Error;
+        decl.initial = None;
+    }
+    section
+}
+
+/// Values of generic constants, which are refused where they are.
+pub fn generic_values<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
+    rule(|input| {
+        generic_arguments(input);
+        Ok(())
+    })
+}
+
+/// Refuses and passes over `<5, MOST>` after the name of a FUNCTION_BLOCK: what its generic constants are.
+fn generic_arguments(input: &mut In<'_, '_, '_>) -> bool {
+    if input.kind() != Kind::Less {
+        return false;
+    }
+    let first = input.here();
+    let mut ahead = 0;
+    while input.kind_ahead(ahead) != Kind::Greater {
+        if matches!(input.kind_ahead(ahead), Kind::Semicolon | Kind::Assign | Kind::End) {
+            return false;
+        }
+        ahead += 1;
+    }
+    for _ in 0..=ahead {
+        input.take();
+    }
+    let span = first.to(input.last());
+    input.report(
+        diagnostics::unsupported(span, "VAR_GENERIC CONSTANT, which is given its values here,")
+            .help("write a FUNCTION_BLOCK with a VAR CONSTANT for each of these values, or an `ARRAY[*]` in VAR_IN_OUT"),
+    );
+    true
 }
 
 /// Refuses and passes over `POINTER TO T` where a value is asked for: `__NEW(POINTER TO T, 4)`.

@@ -35,7 +35,9 @@ const ENDS: [&str; 5] = ["END_PROGRAM", "END_FUNCTION_BLOCK", "END_FUNCTION", "E
 /// Whether a text begins as an export does.
 pub fn is_export(text: &str) -> bool {
     let first = text.trim_start().strip_prefix("(*").map(str::trim_start);
-    first.is_some_and(|it| it.starts_with("@NESTEDCOMMENTS") || it.starts_with("@PATH"))
+    let begins = text.trim_start().split_inclusive('\n').next().unwrap_or_default();
+    let is_section = SECTIONS.iter().any(|it| it.0 == begins.trim_end());
+    is_section || first.is_some_and(|it| it.starts_with("@NESTEDCOMMENTS") || it.starts_with("@PATH"))
 }
 
 pub fn read(text: &str) -> Assembly {

@@ -156,6 +156,10 @@ impl<'t> Scl<'t> {
         }
         self.notes();
         while self.at < self.tokens.len() {
+            if !self.is_body && self.is(self.at, "CONST") {
+                self.constants();
+                continue;
+            }
             let end = self.text(self.at);
             let word = end.split_at_checked(4).filter(|it| it.0.eq_ignore_ascii_case("END_"));
             if word.is_some_and(|it| it.1.eq_ignore_ascii_case(block.0)) {
@@ -165,6 +169,31 @@ impl<'t> Scl<'t> {
                 return;
             }
             self.simple();
+        }
+    }
+
+    /// `CONST most := 5; END_CONST`, of STEP 7: constants whose values say what types they have.
+    fn constants(&mut self) {
+        let place = self.place(self.at);
+        self.replace(place, "VAR CONSTANT");
+        self.at += 1;
+        while self.at < self.tokens.len() && !self.is(self.at, "BEGIN") {
+            if self.is(self.at, "END_CONST") {
+                let place = self.place(self.at);
+                self.replace(place, "END_VAR");
+                self.at += 1;
+                return;
+            }
+            let (name, place) = (self.at, self.place(self.at));
+            self.simple();
+            let Some(end) = (name..self.tokens.len()).find(|it| self.text(*it) == ";") else { return };
+            if self.text(name + 1) == ":" && self.text(name + 2) == "=" {
+                let value = self.file[self.place(name + 3).start..self.place(end).start].trim();
+                self.replace(place.end..place.end, &format!(" : {}", type_of(value)));
+            }
+            while self.at <= end {
+                self.simple();
+            }
         }
     }
 
@@ -378,6 +407,31 @@ impl<'t> Scl<'t> {
             _ => return,
         };
         self.replace(place.start..place.start + prefix.len(), long);
+    }
+}
+
+/// The type that a constant has by its value.
+fn type_of(value: &str) -> String {
+    let is_number = |it: &str| it.chars().all(|it| it.is_ascii_digit());
+    if value.starts_with('\'') {
+        return "STRING".to_owned();
+    }
+    if ["TRUE", "FALSE"].iter().any(|it| value.eq_ignore_ascii_case(it)) {
+        return "BOOL".to_owned();
+    }
+    match value.split_once('#') {
+        Some((prefix, _)) if !is_number(prefix) => match prefix.to_ascii_uppercase().as_str() {
+            "T" => "TIME".to_owned(),
+            "D" => "DATE".to_owned(),
+            "B" => "BYTE".to_owned(),
+            "W" => "WORD".to_owned(),
+            "DW" => "DWORD".to_owned(),
+            "L" => "DINT".to_owned(),
+            prefix => prefix.to_owned(),
+        },
+        _ if value.contains('.') => "REAL".to_owned(),
+        _ if value.trim_start_matches('-').parse::<i64>().is_ok_and(|it| it > 32767) => "DINT".to_owned(),
+        _ => "INT".to_owned(),
     }
 }
 

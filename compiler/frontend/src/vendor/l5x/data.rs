@@ -200,12 +200,52 @@ fn number<'t>(ty: &str, written: &str) -> What<'t> {
             _ => What::Odd,
         };
     }
+    if matches!(ty, "DT" | "LDT" | "TIME" | "LTIME") {
+        return moment(ty, written);
+    }
     let Some((bits, is_signed)) = bits(ty) else { return real(written) };
-    let Some(value) = integer(written) else { return What::Odd };
+    let Some(value) = integer(written).or_else(|| microseconds(written)) else { return What::Odd };
     // Digits of other bases are the bits.
     let limit = 1_i128 << bits;
     let value = if is_signed && value >= limit / 2 && value < limit { value - limit } else { value };
     What::Number(value.to_string(), value == 0)
+}
+
+/// `DT#1970-01-01-00:00:00.000_000Z`, `T#0us`: what is 0 of these is a time, too.
+fn moment<'t>(ty: &str, written: &str) -> What<'t> {
+    let Some((_, digits)) = written.split_once('#') else { return What::Odd };
+    let is_zero = match date(written) {
+        Some(it) => it == 0,
+        None => !digits.contains(|it: char| ('1'..='9').contains(&it)),
+    };
+    let digits = digits.strip_suffix('Z').map_or_else(|| digits.to_owned(), |it| it.replace('_', ""));
+    What::Number(format!("{ty}#{digits}"), is_zero)
+}
+
+/// A date as a number of microseconds, which a LINT shows as one.
+fn microseconds(written: &str) -> Option<i128> {
+    Some(date(written)? / 1000)
+}
+
+/// `DT#2024-02-29-12:30:00.000_000Z`, in nanoseconds since 1970.
+fn date(written: &str) -> Option<i128> {
+    let (prefix, rest) = written.strip_suffix('Z')?.split_once('#')?;
+    if !matches!(prefix, "DT" | "LDT") {
+        return None;
+    }
+    let mut parts = rest.splitn(4, '-');
+    let mut part = || parts.next()?.parse::<i128>().ok();
+    let (year, month, day) = (part()?, part()?, part()?);
+    let mut time = parts.next()?.split(':');
+    let (hour, minute): (i128, i128) = (time.next()?.parse().ok()?, time.next()?.parse().ok()?);
+    let (seconds, fraction) = time.next()?.split_once('.')?;
+    let fraction = fraction.replace('_', "");
+    let nanoseconds: i128 = format!("{fraction:0<9}").get(..9)?.parse().ok()?;
+    // Years begin with March, so that the day that some lack is the last.
+    let (years, months) = if month > 2 { (year, month - 3) } else { (year - 1, month + 9) };
+    let days = 365 * years + years / 4 - years / 100 + years / 400 + (153 * months + 2) / 5 + day - 1 - 719_468;
+    let seconds = ((days * 24 + hour) * 60 + minute) * 60 + seconds.parse::<i128>().ok()?;
+    Some(seconds * 1_000_000_000 + nanoseconds)
 }
 
 fn real<'t>(written: &str) -> What<'t> {
@@ -218,13 +258,19 @@ fn real<'t>(written: &str) -> What<'t> {
 
 fn integer(written: &str) -> Option<i128> {
     if let Some(inner) = written.strip_prefix('\'') {
-        return of_characters(inner.strip_suffix('\'')?);
+        return of_characters(&without_entities(inner.strip_suffix('\'')?));
     }
     let (base, digits) = match written.split_once('#') {
         Some((base, digits)) => (base.parse().ok().filter(|it| (2..=16).contains(it))?, digits),
         None => (10, written),
     };
     i128::from_str_radix(&digits.replace('_', ""), base).ok()
+}
+
+/// What an attribute has in place of characters that are signs of XML.
+fn without_entities(text: &str) -> String {
+    let entities = [("&quot;", "\""), ("&apos;", "'"), ("&lt;", "<"), ("&gt;", ">"), ("&amp;", "&")];
+    entities.iter().fold(text.to_owned(), |text, (entity, sign)| text.replace(entity, sign))
 }
 
 /// `$00$41`, `A$r`: the first is the highest byte.
@@ -267,7 +313,7 @@ impl Value<'_> {
             What::Number(text, _) => out.push(Chunk::words(text.clone(), place)),
             What::Odd => {
                 out.push(Chunk::odd(format!("this is no value of the type {}", self.ty), place));
-                out.push(Chunk::words("0", place));
+                out.push(Chunk::words(nothing(self.ty), place));
             }
             What::Text(chunk, _) => out.push(chunk.clone()),
             What::List(elements) => {
@@ -290,6 +336,17 @@ impl Value<'_> {
                 out.push(Chunk::words(")", place));
             }
         }
+    }
+}
+
+/// What is written in place of a value that is none of its type.
+fn nothing(ty: &str) -> &'static str {
+    match ty {
+        "DT" => "DT#1970-01-01-00:00:00",
+        "LDT" => "LDT#1970-01-01-00:00:00",
+        "TIME" => "T#0s",
+        "LTIME" => "LTIME#0s",
+        _ => "0",
     }
 }
 
