@@ -160,6 +160,9 @@ impl<'a> Machine<'a> {
                 }
             },
             ExprKind::Unary(_, inner) => self.number(inner, ty),
+            ExprKind::Binary(..) if let Some(number) = literal_number(expr).filter(|_| ty.is_integer()) => {
+                Ok(typed_integer(number, ty))
+            }
             ExprKind::Binary(sides, op, at) => {
                 let a = self.number(&sides[0], ty)?;
                 let b = self.number(&sides[1], ty)?;
@@ -178,6 +181,19 @@ pub(crate) fn literal_number(expr: &Expr<'_>) -> Option<i128> {
         ExprKind::Literal(Literal { prefix: None, value: LiteralValue::Integer { value, .. } }) => {
             Some(i128::from(*value))
         }
+        ExprKind::Binary(sides, op, _) => exactly(*op, literal_number(&sides[0])?, literal_number(&sides[1])?),
+        _ => None,
+    }
+}
+
+/// Numbers without a type are computed exactly.
+fn exactly(op: BinaryOp, a: i128, b: i128) -> Option<i128> {
+    match op {
+        BinaryOp::Add => a.checked_add(b),
+        BinaryOp::Sub => a.checked_sub(b),
+        BinaryOp::Mul => a.checked_mul(b),
+        BinaryOp::Div => a.checked_div(b),
+        BinaryOp::Mod => a.checked_rem(b),
         _ => None,
     }
 }
@@ -218,13 +234,17 @@ fn typed_number<'a>(value: &LiteralValue<'_>, negative: bool, ty: Elementary) ->
         LiteralValue::Real(digits) if ty.is_real() => real(&format!("{sign}{digits}"), ty),
         LiteralValue::Integer { value, .. } => {
             let number = i128::from(*value) * if negative { -1 } else { 1 };
-            // A number that is too large for its place makes it a wider one.
-            let wider = [ty, Elementary::Int, Elementary::Dint, Elementary::Lint, Elementary::Ulint];
-            let ty = wider.into_iter().find(|it| it.holds(number)).unwrap_or(ty);
-            Ok(Value { ty: Type::Elementary(ty), cells: vec![integer_cell(ty, number)] })
+            Ok(typed_integer(number, ty))
         }
         _ => unknown("this literal"),
     }
+}
+
+/// A number that is too large for its place makes it a wider one.
+fn typed_integer<'a>(number: i128, ty: Elementary) -> Value<'a> {
+    let wider = [ty, Elementary::Int, Elementary::Dint, Elementary::Lint, Elementary::Ulint];
+    let ty = wider.into_iter().find(|it| it.holds(number)).unwrap_or(ty);
+    Value { ty: Type::Elementary(ty), cells: vec![integer_cell(ty, number)] }
 }
 
 fn real<'a>(digits: &str, ty: Elementary) -> Outcome<Value<'a>> {

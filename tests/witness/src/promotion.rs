@@ -1,4 +1,4 @@
-//! CODESYS computes integers and bit strings of fewer than 32 bits at 32. Such a value keeps the type
+//! CODESYS and Logix compute integers and bit strings of fewer than 32 bits at 32. Such a value keeps the type
 //! that its operands give it, and is cut to that where it is stored: until then its cell has 32 bits.
 
 use crate::expressions::in_repr;
@@ -15,7 +15,7 @@ impl<'a> Machine<'a> {
 
     /// Whether values of this type are computed at 32 bits.
     pub(crate) fn promotes(&self, ty: Elementary) -> bool {
-        self.is_codesys() && ty.is_narrow()
+        matches!(self.declared.family, Family::Codesys | Family::Logix) && ty.is_narrow()
     }
 
     /// The type at which two operands meet: of narrow numbers in CODESYS that of more bits, the signed

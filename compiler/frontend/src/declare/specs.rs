@@ -329,6 +329,10 @@ impl<'s> Declarations<'s> {
     }
 
     fn report_unknown_type(&mut self, name: ast::Name<'s>) {
+        let dialect = self.dialect(name.span);
+        if let Some(library) = missing::library_of_type(dialect, name.text) {
+            return self.not_supported(name.span, &format!("`{}` of {library}", name.text));
+        }
         if let Some(dialect) = prelude::owner(name.text) {
             let system = dialect.name().to_ascii_uppercase();
             self.report(
@@ -343,10 +347,6 @@ impl<'s> Declarations<'s> {
         {
             self.report(error);
             return;
-        }
-        let dialect = self.dialect(name.span);
-        if let Some(library) = missing::library_of_type(dialect, name.text) {
-            return self.not_supported(name.span, &format!("`{}` of {library}", name.text));
         }
         let blocks = staunch_runtime::BLOCKS.iter().map(|it| it.name);
         let blocks = blocks.filter(|it| dialect::bare_block(dialect, it).is_some());
