@@ -337,9 +337,8 @@ impl<'a> Machine<'a> {
         let mut copies: Vec<(usize, (Place<'a>, Place<'a>))> = Vec::new();
         let mut in_outs = Vec::new();
         // What a call gives is there before the initial values that ask for it.
-        let is_given = |it: &usize| {
-            matches!(self.declared.pous[pou].variables[*it].kind, VarKind::Input | VarKind::InOut)
-        };
+        let is_given =
+            |it: &usize| matches!(self.declared.pous[pou].variables[*it].kind, VarKind::Input | VarKind::InOut);
         let (mut order, others): (Vec<_>, Vec<_>) = (0..self.declared.pous[pou].variables.len()).partition(is_given);
         order.extend(others);
         for number in order {

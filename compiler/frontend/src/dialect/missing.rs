@@ -1,10 +1,29 @@
-//! What CODESYS and TwinCAT have by names that are known, and Staunch has not: it is refused by its name.
+//! What CODESYS, TwinCAT and Logix have by names that are known, and Staunch has not: it is refused by its name.
 
 use super::Dialect;
 use super::library::is_one_of;
 
 /// Types and blocks, and the library that they are of.
 const TYPES: [(&str, &[&str]); 1] = [("Tc2_Utilities", &["FB_FormatString", "FB_FormatString2", "T_Arg"])];
+
+/// Types that Logix has for instructions of ladder, charts and communication.
+const OF_LOGIX: [&str; 15] = [
+    "ALARM",
+    "ALARM_ANALOG",
+    "ALARM_DIGITAL",
+    "CAM",
+    "CAM_PROFILE",
+    "DEADTIME",
+    "MESSAGE",
+    "MOTION_GROUP",
+    "PHASE",
+    "PID",
+    "PID_ENHANCED",
+    "SERIAL_PORT_CONTROL",
+    "SFC_ACTION",
+    "SFC_STEP",
+    "SFC_STOP",
+];
 
 /// Operators, whose operands may be what is no value elsewhere.
 const OPERATORS: [&str; 4] = ["ADRINST", "BITADR", "INDEXOF", "__VARINFO"];
@@ -17,6 +36,9 @@ const VARIABLES: [&str; 1] = ["__CURRENTTASK"];
 
 /// The library that has a type of this name.
 pub(crate) fn library_of_type(dialect: Dialect, name: &str) -> Option<&'static str> {
+    if dialect == Dialect::Logix {
+        return is_one_of(&OF_LOGIX, name).then_some("Logix Designer");
+    }
     let found = TYPES.iter().find(|(_, names)| is_one_of(names, name)).map(|it| it.0);
     found.filter(|_| dialect == Dialect::Codesys)
 }

@@ -30,12 +30,13 @@ impl Calls {
 impl<'s> Checker<'_, 's> {
     /// `t(IN := start, PT := T#1s); t(IN := FALSE);`: both calls in each scan, so that the timer never runs.
     pub(crate) fn reset_always(&mut self, slot: usize, body: &[ast::Statement<'s>]) {
-        if self.is_test() || !self.is_whole(slot) || may_leave(body) {
+        if self.is_test() || may_leave(body) {
             return;
         }
         let mut found = self.paired_calls(body);
         found.retain(|_, it| it.dead().is_some());
-        if found.is_empty() {
+        // Whether others extend it, all of them say.
+        if found.is_empty() || !self.is_whole(slot) {
             return;
         }
         let elsewhere = elsewhere(body);

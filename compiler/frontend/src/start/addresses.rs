@@ -107,7 +107,9 @@ pub(super) fn of_members<'s>(ty: &mut TypeSpec<'s>, types: &Types<'s>) -> Option
     for member in members {
         let is_own = |it: &Initial<'_>| match &it.kind {
             InitialKind::Bind(_) => true,
-            InitialKind::Value(value) => is_address(value) || Expected::variable(&member.ty, types, None).by(value).is_some(),
+            InitialKind::Value(value) => {
+                is_address(value) || Expected::variable(&member.ty, types, None).by(value).is_some()
+            }
             InitialKind::Elements(_) | InitialKind::Fields(_) => false,
         };
         if member.initial.as_ref().is_some_and(is_own) {

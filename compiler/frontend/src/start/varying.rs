@@ -18,11 +18,15 @@ impl<'s> Everywhere<'s> {
         for item in files.iter().flat_map(|it| &it.items) {
             match item {
                 Item::Pou(pou) => drop(
-                    matches!(pou.kind, PouKind::Function | PouKind::Program).then(|| found.pous.insert(Key(pou.name.text))),
+                    matches!(pou.kind, PouKind::Function | PouKind::Program)
+                        .then(|| found.pous.insert(Key(pou.name.text))),
                 ),
                 Item::Globals(block) => found.add(block),
                 Item::Configuration(it) => {
-                    it.globals.iter().chain(it.resources.iter().flat_map(|it| &it.globals)).for_each(|it| found.add(it));
+                    it.globals
+                        .iter()
+                        .chain(it.resources.iter().flat_map(|it| &it.globals))
+                        .for_each(|it| found.add(it));
                 }
                 Item::Types(_) | Item::Test(_) => {}
             }

@@ -110,8 +110,9 @@ fn generic_arguments(input: &mut In<'_, '_, '_>) -> bool {
     }
     let span = first.to(input.last());
     input.report(
-        diagnostics::unsupported(span, "VAR_GENERIC CONSTANT, which is given its values here,")
-            .help("write a FUNCTION_BLOCK with a VAR CONSTANT for each of these values, or an `ARRAY[*]` in VAR_IN_OUT"),
+        diagnostics::unsupported(span, "VAR_GENERIC CONSTANT, which is given its values here,").help(
+            "write a FUNCTION_BLOCK with a VAR CONSTANT for each of these values, or an `ARRAY[*]` in VAR_IN_OUT",
+        ),
     );
     true
 }

@@ -65,7 +65,9 @@ pub fn read(text: &str) -> Assembly {
                 // The end of a section is a part of it, the end of a body is one of its POU.
                 from = if ENDS.contains(&word) { place.start } else { at };
             }
-        } else if let Some((_, end)) = SECTIONS.iter().find(|it| it.0 == word).filter(|_| is_alone(line)) {
+        } else if let Some((_, end)) =
+            SECTIONS.iter().find(|it| it.0 == word).filter(|_| is_alone(line) || is_picture(line))
+        {
             take(&mut out, text, from..place.start);
             until = Some(core::slice::from_ref(end));
         } else if let Some((_, language)) = BODIES.iter().find(|it| it.0 == word) {
@@ -95,6 +97,11 @@ pub fn read(text: &str) -> Assembly {
 
 fn take(out: &mut Assembly, text: &str, range: Range<usize>) {
     out.copy(text, &[Chunk::verbatim(range)]);
+}
+
+/// `VISUALISATION Tank _VISU_TYPES : 1,1`
+fn is_picture(line: &str) -> bool {
+    first_word(line) == "VISUALISATION" && line.contains("_VISU_TYPES")
 }
 
 /// How many comments are open after a line, where so many are before it.
