@@ -17,10 +17,11 @@ impl<'s> Everywhere<'s> {
         let mut found = Self::default();
         for item in files.iter().flat_map(|it| &it.items) {
             match item {
-                Item::Pou(pou) => drop(
-                    matches!(pou.kind, PouKind::Function | PouKind::Program)
-                        .then(|| found.pous.insert(Key(pou.name.text))),
-                ),
+                Item::Pou(pou) => {
+                    if matches!(pou.kind, PouKind::Function | PouKind::Program) {
+                        found.pous.insert(Key(pou.name.text));
+                    }
+                }
                 Item::Globals(block) => found.add(block),
                 Item::Configuration(it) => {
                     it.globals

@@ -4,6 +4,7 @@ use super::super::assembly::Chunk;
 use super::super::xml::{Broken, Element, Part, Reader};
 use super::names::{legal, plain};
 use core::ops::Range;
+use staunch_runtime::literal;
 
 /// What a tag, a member or an element has as its value.
 #[derive(Clone, Debug)]
@@ -233,19 +234,7 @@ fn date(written: &str) -> Option<i128> {
     if !matches!(prefix, "DT" | "LDT") {
         return None;
     }
-    let mut parts = rest.splitn(4, '-');
-    let mut part = || parts.next()?.parse::<i128>().ok();
-    let (year, month, day) = (part()?, part()?, part()?);
-    let mut time = parts.next()?.split(':');
-    let (hour, minute): (i128, i128) = (time.next()?.parse().ok()?, time.next()?.parse().ok()?);
-    let (seconds, fraction) = time.next()?.split_once('.')?;
-    let fraction = fraction.replace('_', "");
-    let nanoseconds: i128 = format!("{fraction:0<9}").get(..9)?.parse().ok()?;
-    // Years begin with March, so that the day that some lack is the last.
-    let (years, months) = if month > 2 { (year, month - 3) } else { (year - 1, month + 9) };
-    let days = 365 * years + years / 4 - years / 100 + years / 400 + (153 * months + 2) / 5 + day - 1 - 719_468;
-    let seconds = ((days * 24 + hour) * 60 + minute) * 60 + seconds.parse::<i128>().ok()?;
-    Some(seconds * 1_000_000_000 + nanoseconds)
+    literal::date_and_time(rest).ok().map(i128::from)
 }
 
 fn real<'t>(written: &str) -> What<'t> {
