@@ -94,7 +94,7 @@ impl<'t> Scl<'t> {
     }
 
     fn text(&self, at: usize) -> &'t str {
-        self.token(at).map_or("", |it| &self.file[it.place.clone()])
+        self.token(at).and_then(|it| self.file.get(it.place.clone())).unwrap_or_default()
     }
 
     fn is(&self, at: usize, word: &str) -> bool {

@@ -138,7 +138,9 @@ impl Scl<'_> {
 
     /// A value for a path of members; an element of an array has none alone.
     fn value(&mut self, values: &mut Values, path: Range<usize>, value: Range<usize>) {
-        let place = self.place(path.start).start..self.place(path.end - 1).end;
+        // Before a lone `:=` there is no path.
+        let from = self.place(path.start).start;
+        let place = from..self.place(path.end.saturating_sub(1)).end.max(from);
         let names: Vec<_> = path.clone().step_by(2).map(|at| (self.name(at), self.place(at))).collect();
         let is_path = path.clone().skip(1).step_by(2).all(|at| self.text(at) == ".");
         let is_plain = value
