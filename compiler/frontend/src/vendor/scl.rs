@@ -124,8 +124,12 @@ impl<'t> Scl<'t> {
     }
 
     fn refuse(&mut self, place: Range<usize>, message: String) {
+        self.problem(Trouble::NotSupported, place, message);
+    }
+
+    fn problem(&mut self, trouble: Trouble, place: Range<usize>, message: String) {
         self.copy_to(place.start);
-        self.out.problem(Trouble::NotSupported, message, &place);
+        self.out.problem(trouble, message, &place);
         self.copied = place.end;
     }
 

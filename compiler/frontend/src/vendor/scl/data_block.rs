@@ -1,13 +1,17 @@
 //! A data block: a variable of its structure, or of the type or block that it names.
 
-use super::super::assembly::{Assembly, Chunk};
+use super::super::assembly::{Assembly, Chunk, Trouble};
 use super::{Kind, Scl};
 use core::ops::Range;
+use rustc_hash::FxHashMap;
 
 /// The values of a data block's members, by their names.
 #[derive(Default)]
 struct Values {
     members: Vec<(String, Range<usize>, Value)>,
+    /// Where a member is whose members have values, by its name in lower case. One that has a
+    /// value as a whole as well is there twice, which is an error like any other.
+    wholes: FxHashMap<String, usize>,
 }
 
 enum Value {
@@ -126,8 +130,12 @@ impl Scl<'_> {
             }
             let end = self.at;
             self.at += usize::from(self.text(self.at) == ";");
-            if let Some(sign) = sign {
-                self.value(&mut values, start..sign, sign + 2..end);
+            match sign {
+                Some(sign) if start < sign && sign + 2 < end => {
+                    self.value(&mut values, start..sign, sign + 2..end);
+                }
+                _ if start < end => self.no_value(start..end),
+                _ => {}
             }
         }
         let end = self.place(self.at).end;
@@ -136,17 +144,23 @@ impl Scl<'_> {
         values
     }
 
+    /// What lacks its member, its value or the sign between them.
+    fn no_value(&mut self, tokens: Range<usize>) {
+        let place = self.place(tokens.start).start..self.place(tokens.end - 1).end;
+        let message = "an initial value of a data block is `member := value;`".to_owned();
+        self.copied = place.start;
+        self.problem(Trouble::Odd, place, message);
+    }
+
     /// A value for a path of members; an element of an array has none alone.
     fn value(&mut self, values: &mut Values, path: Range<usize>, value: Range<usize>) {
-        // Before a lone `:=` there is no path.
-        let from = self.place(path.start).start;
-        let place = from..self.place(path.end.saturating_sub(1)).end.max(from);
+        let place = self.place(path.start).start..self.place(path.end - 1).end;
         let names: Vec<_> = path.clone().step_by(2).map(|at| (self.name(at), self.place(at))).collect();
         let is_path = path.clone().skip(1).step_by(2).all(|at| self.text(at) == ".");
         let is_plain = value
             .clone()
             .all(|at| matches!(self.token(at).map(|it| it.kind), Some(Kind::Other | Kind::Word | Kind::Literal)));
-        if !is_path || !is_plain || value.is_empty() {
+        if !is_path || !is_plain {
             let text = &self.file[place.clone()];
             // What is before it is written with the variable.
             self.copied = place.start;
@@ -166,8 +180,7 @@ impl Values {
             self.members.push((name, place, Value::Written(written)));
             return;
         }
-        let known = self.members.iter().position(|it| it.0.eq_ignore_ascii_case(&name));
-        let at = known.unwrap_or_else(|| {
+        let at = *self.wholes.entry(name.to_ascii_lowercase()).or_insert_with(|| {
             self.members.push((name, place, Value::Members(Self::default())));
             self.members.len() - 1
         });

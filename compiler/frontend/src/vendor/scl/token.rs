@@ -95,11 +95,10 @@ fn word(rest: &str) -> usize {
 
 /// `T#1.5s`, `W#16#FF`; a `.` is of it before a digit, the `..` of a range is not.
 fn literal(rest: &str) -> usize {
-    let bytes = rest.as_bytes();
-    let is_point = |at: usize| bytes[at] == b'.' && bytes.get(at + 1).is_some_and(u8::is_ascii_digit);
-    let end = (0..bytes.len())
-        .find(|at| !(bytes[*at].is_ascii_alphanumeric() || b"_#".contains(&bytes[*at]) || is_point(*at)));
-    end.unwrap_or(rest.len())
+    let is_point =
+        |at: usize| rest[at..].starts_with('.') && rest[at + 1..].starts_with(|it: char| it.is_ascii_digit());
+    let is_of_literal = |at: usize, it: char| is_of_word(it) || it == '#' || is_point(at);
+    rest.char_indices().find(|(at, it)| !is_of_literal(*at, *it)).map_or(rest.len(), |(at, _)| at)
 }
 
 fn text(rest: &str) -> usize {
