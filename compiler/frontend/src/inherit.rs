@@ -29,6 +29,7 @@ pub(crate) fn expand<'s>(files: &mut [File<'s>], log: &mut Log<'s>) {
         classes: &classes,
         diagnostics: &mut log.diagnostics,
         made: FxHashMap::default(),
+        named: FxHashMap::default(),
         depths: FxHashMap::default(),
         unknown: FxHashSet::default(),
         is_unknown: false,
@@ -55,11 +56,33 @@ fn has_abstract(pou: &Pou<'_>) -> bool {
     pou.routines.iter().any(|it| it.modifiers.is_abstract.is_some() || it.modifiers.overrides.is_some())
 }
 
+/// The places of a class's routines, by their names.
+type Named<'s> = FxHashMap<Key<'s>, Vec<usize>>;
+
+fn named<'s>(routines: &[Pou<'s>]) -> Named<'s> {
+    let mut named = Named::default();
+    for (at, routine) in routines.iter().enumerate() {
+        named.entry(Key(routine.name.text)).or_default().push(at);
+    }
+    named
+}
+
+/// Those of a name.
+fn of_name<'a, 's>(
+    routines: &'a [Pou<'s>],
+    named: &'a Named<'s>,
+    name: &'s str,
+) -> impl Iterator<Item = &'a Pou<'s>> + Clone {
+    named.get(&Key(name)).into_iter().flatten().map(|at| &routines[*at])
+}
+
 struct Expansion<'c, 's> {
     classes: &'c Classes<'s>,
     diagnostics: &'c mut Vec<Diagnostic>,
     /// Those that are whole.
     made: FxHashMap<usize, Pou<'s>>,
+    /// The routines of each of them.
+    named: FxHashMap<usize, Named<'s>>,
     /// How many classes each extends, one through the other.
     depths: FxHashMap<usize, usize>,
     /// The classes that extend what is not known, directly or not: nobody knows what they override.
@@ -91,17 +114,17 @@ impl<'s> Expansion<'_, 's> {
         self.is_unknown = base.map_or(pou.extends.is_some(), |it| self.unknown.contains(&it));
         self.unknown.extend(Some(at).filter(|_| self.is_unknown));
         let base = base.filter(|it| self.is_near(at, *it));
+        let inherited = base.and_then(|it| self.named.get(&it)).cloned().unwrap_or_default();
         let base = base.and_then(|it| self.made.get(&it)).cloned();
+        for it in &pou.routines {
+            self.check_base_of_override(it, base.as_ref(), &inherited);
+        }
         let whole = match &base {
             Some(base) => self.heir(pou, base),
-            None => {
-                for it in &pou.routines {
-                    self.check_base_of_override(it, None);
-                }
-                Pou { extends: None, ..pou.clone() }
-            }
+            None => Pou { extends: None, ..pou.clone() },
         };
         self.report_abstract(&whole, base.as_ref());
+        self.named.insert(at, named(&whole.routines));
         self.made.insert(at, whole);
     }
 
@@ -181,10 +204,12 @@ impl<'s> Expansion<'_, 's> {
         // By its declaration, wherever that is.
         whole.extends = Some(base.name);
         let mut hidden = Vec::new();
+        let news = named(&own.routines);
         for routine in &base.routines {
             let home = routine.home.unwrap_or(base.name);
             let copy = Pou { home: Some(home), ..routine.clone() };
-            match own.routines.iter().find(|it| self.overrides(it, routine)) {
+            let mut candidates = of_name(&own.routines, &news, routine.name.text);
+            match candidates.find(|it| self.overrides(it, routine)) {
                 _ if routine.is_hidden => hidden.push(copy),
                 Some(new) => {
                     self.check_override(new, routine);
@@ -192,9 +217,6 @@ impl<'s> Expansion<'_, 's> {
                 }
                 None => whole.routines.push(copy),
             }
-        }
-        for new in &own.routines {
-            self.check_base_of_override(new, Some(base));
         }
         let name = base.name;
         hidden.push(Pou {
@@ -217,16 +239,19 @@ impl<'s> Expansion<'_, 's> {
         let mut wanted = Vec::new();
         // They run one after the other.
         let is_called = |it: &Pou<'s>| is_initial(it.name) || whole.pool.is_some() && Key(it.name.text) == Key(EXIT);
-        let (initial, mut hidden): (Vec<_>, Vec<_>) = hidden.into_iter().partition(is_called);
+        let (initial, hidden): (Vec<_>, Vec<_>) = hidden.into_iter().partition(is_called);
         whole.routines.extend(initial);
+        let mut unwanted: FxHashMap<Span, Vec<Pou<'s>>> = FxHashMap::default();
+        for it in hidden {
+            unwanted.entry(it.name.span).or_default().push(it);
+        }
         supers(&whole.body, whole.name, &mut wanted);
         for it in &whole.routines {
             supers(&it.body, it.home.unwrap_or(whole.name), &mut wanted);
         }
         while let Some((home, name)) = wanted.pop() {
             for meant in self.meant(whole, home, name) {
-                while let Some(at) = hidden.iter().position(|it| it.name.span == meant) {
-                    let routine = hidden.swap_remove(at);
+                for routine in unwanted.remove(&meant).into_iter().flatten() {
                     supers(&routine.body, routine.home.unwrap_or(whole.name), &mut wanted);
                     whole.routines.push(routine);
                 }
@@ -237,12 +262,12 @@ impl<'s> Expansion<'_, 's> {
     /// Where those routines are declared that SUPER may mean in a routine of a class; the base's body has the base's
     /// name.
     fn meant(&self, whole: &Pou<'s>, home: Name<'s>, name: Option<Name<'s>>) -> Vec<Span> {
-        let made = |name| self.made.get(&self.classes.declared(name)?);
-        let home = if home.span == whole.name.span { Some(whole) } else { made(home) };
-        let Some(base) = home.and_then(|it| made(it.extends?)) else { return Vec::new() };
+        let made = |name| self.classes.declared(name).and_then(|at| Some((self.made.get(&at)?, self.named.get(&at)?)));
+        let home = if home.span == whole.name.span { Some(whole) } else { made(home).map(|it| it.0) };
+        let Some((base, named)) = home.and_then(|it| made(it.extends?)) else { return Vec::new() };
         let Some(name) = name else { return vec![base.name.span] };
-        let named = |it: &&Pou<'s>| !it.is_hidden && Key(it.name.text) == Key(name.text);
-        base.routines.iter().filter(named).map(|it| it.name.span).collect()
+        let is_seen = |it: &&Pou<'s>| !it.is_hidden;
+        of_name(&base.routines, named, name.text).filter(is_seen).map(|it| it.name.span).collect()
     }
 
     /// Whether a routine overrides one of its base.
@@ -284,10 +309,11 @@ impl<'s> Expansion<'_, 's> {
     }
 
     /// Reports OVERRIDE where nothing is overridden.
-    fn check_base_of_override(&mut self, new: &Pou<'s>, base: Option<&Pou<'s>>) {
+    fn check_base_of_override(&mut self, new: &Pou<'s>, base: Option<&Pou<'s>>, named: &Named<'s>) {
         let routines = base.map_or(&[][..], |it| &it.routines);
+        let mut candidates = of_name(routines, named, new.name.text).filter(|it| !it.is_hidden);
         let Some(span) = new.modifiers.overrides.filter(|_| !self.is_unknown) else { return };
-        if routines.iter().any(|it| !it.is_hidden && self.overrides(new, it)) {
+        if candidates.clone().any(|it| self.overrides(new, it)) {
             return;
         }
         let message = match base {
@@ -295,7 +321,7 @@ impl<'s> Expansion<'_, 's> {
             None => "there is nothing to override: this FUNCTION_BLOCK extends no other".to_owned(),
         };
         let error = Diagnostic::new(Code::E0403, span, message);
-        self.diagnostics.push(match routines.iter().find(|it| !it.is_hidden && is_same(it, new)) {
+        self.diagnostics.push(match candidates.find(|it| is_same(it, new)) {
             Some(other) => error
                 .label("none with these parameters")
                 .other(other.name.span, "it has this one")

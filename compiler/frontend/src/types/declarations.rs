@@ -405,17 +405,19 @@ impl<'s> Declarations<'s> {
     /// The routines that `SUPER^.name` may mean in a routine: copies of those that the base has, overridden or not.
     pub fn super_slots(&self, slot: usize, name: ast::Name<'_>) -> Vec<usize> {
         let base = self.pous[self.home(slot)].ast.extends.and_then(|it| self.class_named(it));
-        let Some(base) = base.map(|it| self.pous[it].ast) else { return Vec::new() };
+        let Some(base) = base else { return Vec::new() };
         let owner = &self.pous[self.pous[slot].owner.unwrap_or(slot)];
-        let own = owner.routines.get(&Key(name.text)).copied().unwrap_or_default();
+        let named = |it: &PouSlot<'_>| it.routines.get(&Key(name.text)).copied().unwrap_or_default();
+        let own = named(owner);
         let copy = |it: &ast::Pou<'_>| {
             let hidden = owner.hidden.get(&it.name.span).and_then(|routines| routines.of(it.kind));
             let own = || own.of(it.kind).into_iter().flat_map(|first| self.all_of_a_name(first.0));
             let inherited = || own().find(|slot| self.pous[*slot].ast.name.span == it.name.span);
             hidden.map(|it| it.0).or_else(inherited)
         };
-        let named = base.routines.iter().filter(|it| !it.is_hidden && Key(it.name.text) == Key(name.text));
-        named.filter_map(copy).collect()
+        let Routines { called, getter, setter } = named(&self.pous[base]);
+        let bases = [called, getter, setter].into_iter().flatten().flat_map(|first| self.all_of_a_name(first.0));
+        bases.filter_map(|it| copy(self.pous[it].ast)).collect()
     }
 
     /// The type of what a call of the POU in a slot gives, where its signature is known.
