@@ -4,6 +4,7 @@
 use crate::expr::checker::Checker;
 use crate::expr::operand::Operand;
 use crate::expr::operator::{Sides, beside};
+use crate::expr::test_words::WORDS;
 use crate::names::{Entry, Found, Meaning, Sense};
 use crate::testing::{Assertion, CALLS, CLOCK, FAILED, MOCKED};
 use crate::types::signature::pin_place;
@@ -22,24 +23,6 @@ const COMPARISONS: [(&str, BinaryOp, &str); 6] = [
     ("LT", BinaryOp::Lt, "to be less than {}"),
     ("GE", BinaryOp::Ge, "to be at least {}"),
     ("LE", BinaryOp::Le, "to be at most {}"),
-];
-
-/// The words that only a test has: how many values each takes, and how it is written.
-const WORDS: [(&str, usize, &str); 14] = [
-    ("ASSERT_TRUE", 1, "ASSERT_TRUE(condition);"),
-    ("ASSERT_FALSE", 1, "ASSERT_FALSE(condition);"),
-    ("ASSERT_EQ", 2, "ASSERT_EQ(actual, expected);"),
-    ("ASSERT_NEQ", 2, "ASSERT_NEQ(actual, expected);"),
-    ("ASSERT_GT", 2, "ASSERT_GT(actual, expected);"),
-    ("ASSERT_LT", 2, "ASSERT_LT(actual, expected);"),
-    ("ASSERT_GE", 2, "ASSERT_GE(actual, expected);"),
-    ("ASSERT_LE", 2, "ASSERT_LE(actual, expected);"),
-    ("ASSERT_NEAR", 3, "ASSERT_NEAR(actual, expected, tolerance);"),
-    ("MOCK_VERIFY_CALLED", 1, "MOCK_VERIFY_CALLED(instance);"),
-    ("MOCK_VERIFY_CALL_COUNT", 2, "MOCK_VERIFY_CALL_COUNT(instance, count);"),
-    ("MOCK", 1, "MOCK instance;"),
-    ("MOCK_FUNCTION", 2, "MOCK_FUNCTION name RETURNS value;"),
-    ("ADVANCE_TIME", 1, "ADVANCE_TIME(T#100ms);"),
 ];
 
 /// What an assertion has checked: its condition, and the variables that keep what it compared.

@@ -170,6 +170,7 @@ fn check_body<'s>(
     checker.edge_inputs(&signature, pou.name.span);
     checker.mocked_result(slot, pou.name.span);
     checker.start_locals(&signature);
+    checker.reset_always(slot, statements);
     let mut body = match pou.external {
         Some(_) => {
             checker.external_body(slot, &signature, statements);
@@ -181,7 +182,6 @@ fn check_body<'s>(
         body.append(&mut checker.not_there(pou.name.span));
     }
     checker.migration_lints(statements);
-    checker.reset_always(slot, statements);
     let mut whole = std::mem::take(&mut checker.block);
     if whole.is_empty() {
         whole = body;

@@ -26,7 +26,9 @@ impl<'s> Checker<'_, 's> {
             return;
         }
         let counted = counted(place.ty, arguments);
-        if let Some(first) = self.called.note(place, Call { span: callee.span, counted }) {
+        if let Some(first) = self.called.note(place, Call { span: callee.span, counted })
+            && !self.dead_calls.contains(&callee.span)
+        {
             let text = self.decl.log.sources.text(callee.span).to_owned();
             let error = Diagnostic::new(Code::W0507, callee.span, format!("`{text}` is called twice in a scan"))
                 .label("called again here")

@@ -1,8 +1,8 @@
 //! What a call calls.
 
 use super::checker::Checker;
-use super::logix_operands;
 use super::unresolved::{block_of_another_dialect, no_such_block};
+use super::{logix_operands, test_words};
 use crate::dialect::missing;
 use crate::inherit::is_super;
 use crate::names::{Entry, Found, Meaning, Sense, functions, is_instruction};
@@ -277,6 +277,8 @@ impl<'s> Checker<'_, 's> {
         } else if name.text.eq_ignore_ascii_case("POW") {
             error = error.help("write `EXPT(base, exponent)`, or `base ** exponent`");
         } else if let Some(hint) = self.decl.hint_of_namespace(name) {
+            error = error.help(hint);
+        } else if let Some(hint) = test_words::hint(name.text).filter(|_| self.is_test()) {
             error = error.help(hint);
         } else if let Some(near) = near {
             error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);

@@ -9,7 +9,7 @@ use crate::types::declarations::Declarations;
 use crate::types::scope::Scope;
 use crate::types::signature::Signature;
 use crate::{Code, Diagnostic, Span, ast};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{Block, Expr, Local, Location, Place, Statement, StatementKind, Type};
 use std::rc::Rc;
 
@@ -37,6 +37,8 @@ pub(crate) struct Checker<'d, 's> {
     pub context: Context,
     /// Instances called so far on the way to this statement.
     pub called: Called,
+    /// The calls of which one takes back what the other gives, which are reported as such.
+    pub dead_calls: FxHashSet<Span>,
     /// Which of the FUNCTIONs of one name calls mean, by the places of these names.
     pub choices: FxHashMap<Span, Choice>,
     /// The first statement that makes nothing, because something in it was refused.
@@ -86,6 +88,7 @@ impl<'d, 's> Checker<'d, 's> {
             uses: Uses::default(),
             context,
             called: Called::default(),
+            dead_calls: FxHashSet::default(),
             choices: FxHashMap::default(),
             left_out: None,
             may_not_run: false,

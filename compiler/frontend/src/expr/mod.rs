@@ -60,6 +60,7 @@ mod retained;
 pub(crate) mod standard;
 pub(crate) mod start;
 mod string_compare;
+pub(crate) mod test_words;
 mod text_conversion;
 mod typed_function;
 pub(crate) mod unresolved;

@@ -152,13 +152,20 @@ impl<'s> Checker<'_, 's> {
 
     fn report_no_array_pool(&mut self, element: Type, span: Span) {
         let name = self.type_name(element);
+        let help = match self.decl.held_instance(element) {
+            Some(_) => format!(
+                "such arrays are of values alone: declare `{{pool 4}}` before `{name}`, with the most objects at a time, \
+                 and make each by a `__NEW({name})`"
+            ),
+            None => format!(
+                "declare one: `{{pool 4}} TYPE Some : ARRAY[0..99] OF {name}; END_TYPE`, with the most arrays at a time, \
+                 and the most elements of one"
+            ),
+        };
         self.report(
             Diagnostic::new(Code::E0413, span, format!("there is no pool with arrays of {name}"))
                 .label("a program has no heap")
-                .help(format!(
-                    "declare one: `{{pool 4}} TYPE Some : ARRAY[0..99] OF {name}; END_TYPE`, with the most arrays at a time, \
-                     and the most elements of one"
-                )),
+                .help(help),
         );
     }
 

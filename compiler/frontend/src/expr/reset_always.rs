@@ -43,6 +43,7 @@ impl<'s> Checker<'_, 's> {
         found.retain(|(name, _)| !elsewhere.contains(name));
         found.sort_by_key(|(_, [resets, _])| resets.start);
         for (name, [resets, gives]) in found {
+            self.dead_calls.extend([resets, gives]);
             self.report_reset(name.0, resets, gives);
         }
     }
