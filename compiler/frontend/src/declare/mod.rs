@@ -93,7 +93,10 @@ impl<'s> Declarations<'s> {
     /// Which FUNCTIONs and METHODs say what their result is.
     fn note_results(&mut self, bodies: &[Vec<ast::Statement<'s>>]) {
         for (pou, body) in self.pous.iter_mut().zip(bodies) {
-            pou.names_itself = pou.ast.kind.is_function() && mentions(body, pou.ast.name.text);
+            let name = Key(pou.ast.name.text);
+            let mut variables = pou.ast.blocks.iter().flat_map(|it| &it.vars).flat_map(|it| &it.names);
+            let is_meant = pou.ast.kind.is_function() && !variables.any(|it| Key(it.text) == name);
+            pou.names_itself = is_meant && mentions(body, name.0);
         }
     }
 

@@ -263,6 +263,8 @@ impl<'s> Checker<'_, 's> {
     /// Whether a name means a PROGRAM that may be called, or read, by it.
     pub(crate) fn is_callable_program(&self, slot: usize, name: ast::Name<'s>) -> bool {
         self.signature.is_some()
+            // What the POU itself has of the name is meant.
+            && self.own_routine(name).is_none()
             && self.decl.pous[slot].ast.kind == ast::PouKind::Program
             && self.decl.dialect(name.span).calls_programs()
     }

@@ -174,10 +174,6 @@ impl<'s> Checker<'_, 's> {
         if self.decl.names.unread.contains(&Key(name.text)) {
             return;
         }
-        if let Some(crate::names::Entry::Type(_) | crate::names::Entry::Pou(_)) = self.decl.declared(name) {
-            self.not_a_variable(name);
-            return;
-        }
         if let Some(slot) = self.own_routine(name) {
             let (word, call) = (self.decl.pous[slot].ast.kind.word(), format!("{}()", name.text));
             self.report(
@@ -186,6 +182,10 @@ impl<'s> Checker<'_, 's> {
                     .help(format!("call it: `{call}`"))
                     .fix(name.span, call),
             );
+            return;
+        }
+        if let Some(crate::names::Entry::Type(_) | crate::names::Entry::Pou(_)) = self.decl.declared(name) {
+            self.not_a_variable(name);
             return;
         }
         if self.is_of_unknown_base() {

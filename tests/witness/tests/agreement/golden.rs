@@ -5,11 +5,14 @@ use crate::compare::{Scan, Verdict, difference};
 use crate::leaf::Read;
 use crate::recorded::{Event, recorded};
 use crate::scan::Table;
-use staunch_frontend::{ast, parse_file};
+use staunch_frontend::{Sources, ast, parse_file};
 use staunch_runtime::{Family, FaultKind};
 use staunch_witness::{Input, Machine, Stop};
 use std::collections::BTreeMap;
 use std::path::Path;
+
+/// Turns of loops that a scan may take.
+const TURNS: u64 = 200_000;
 
 #[test]
 fn golden_cases() {
@@ -20,7 +23,7 @@ fn golden_cases() {
     let mut unknown: BTreeMap<String, Vec<String>> = BTreeMap::new();
     let (mut compared, mut wrong) = (0, 0);
     for case in cases.iter().filter(|it| is_chosen(it)) {
-        match compare(case) {
+        match compare(case, &case.sources()).unwrap_or_else(Verdict::Differs) {
             Verdict::Same { .. } => compared += 1,
             Verdict::Endless => unknown.entry("how it ends".to_owned()).or_default().push(case.name.clone()),
             Verdict::Rejected(reason) => unknown.entry(reason).or_default().push(case.name.clone()),
@@ -39,32 +42,31 @@ fn golden_cases() {
     assert_eq!(wrong, 0, "of {compared} cases");
 }
 
-fn compare(case: &Case) -> Verdict {
-    let (sources, compilation) = case.compile();
-    let Some(program) = compilation.program else { return Verdict::Rejected("it is refused".to_owned()) };
-    let table = match Table::parse(&case.pinned(Pin::Scan)) {
-        Ok(table) => table,
-        Err(problem) => return Verdict::Differs(problem),
+/// Compares the witness and the interpreter on sources, with the settings and the stimulus of a case; an error is that the
+/// stimulus is none for the sources.
+pub fn compare(case: &Case, sources: &Sources) -> Result<Verdict, String> {
+    let mut settings = case.settings();
+    // What hangs ends all the same.
+    settings.loop_budget.get_or_insert(TURNS);
+    let Some(program) = staunch_frontend::compile(sources, &settings.options).program else {
+        return Ok(Verdict::Rejected("it is refused".to_owned()));
     };
-    let settings = case.settings();
+    let table = Table::parse(&case.pinned(Pin::Scan))?;
     if settings.options.ctu_stop_at_pv {
-        return Verdict::Rejected("a counter that stops at PV".to_owned());
+        return Ok(Verdict::Rejected("a counter that stops at PV".to_owned()));
     }
     let family = settings.options.dialect.family();
     // The witness has no prescan of Logix: programs with its counters start without one.
     let is_logix = family == Family::Logix || sources.files().iter().any(|it| it.text.contains("LOGIX."));
-    let events = match recorded(&program, &table, &settings, !is_logix, &case.module()) {
-        Ok(events) => events,
-        Err(problem) => return Verdict::Differs(problem),
-    };
-    let files: Vec<ast::File<'_>> = (0..).zip(sources.files()).map(|(at, _)| parse_file(&sources, at)).collect();
+    let events = recorded(&program, &table, &settings, !is_logix, &case.module())?;
+    let files: Vec<ast::File<'_>> = (0..).zip(sources.files()).map(|(at, _)| parse_file(sources, at)).collect();
     let running: Vec<&str> = program.instances.iter().map(|it| it.name.as_str()).collect();
-    let start = || Machine::new(&sources, &files, family, &running);
-    replayed(&start, events).unwrap_or_else(|stop| match stop {
+    let start = || Machine::new(sources, &files, family, &running);
+    Ok(replayed(&start, events).unwrap_or_else(|stop| match stop {
         Stop::Endless => Verdict::Endless,
         Stop::Unknown(what) => Verdict::Rejected(what),
         Stop::Fault(fault) => Verdict::Differs(format!("the witness faults at the start: {fault}")),
-    })
+    }))
 }
 
 fn replayed<'a>(start: &dyn Fn() -> Result<Machine<'a>, Stop>, events: Vec<Event>) -> Result<Verdict, Stop> {

@@ -7,6 +7,7 @@
 
 #[path = "../../../src/case.rs"]
 mod case;
+mod changed;
 mod compare;
 mod golden;
 #[path = "../../../src/leaf.rs"]
