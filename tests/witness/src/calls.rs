@@ -57,8 +57,8 @@ impl<'a> Machine<'a> {
     ) -> Outcome<Option<Value<'a>>> {
         let mut enabled = true;
         let mut eno = None;
-        let declares = self.declares_enable(frame, callee);
-        for argument in arguments.iter().filter(|it| is_enable(it) && !declares) {
+        let declared = self.parameters_of(frame, callee);
+        for argument in arguments.iter().filter(|it| is_enable(it) && !is_declared(&declared, it)) {
             match &argument.kind {
                 ArgumentKind::Input(_, value) => enabled = self.value_as(frame, value, &Type::BOOL)?.as_bool()?,
                 ArgumentKind::Output { target: Some(_), negated, .. } => eno = Some((argument, *negated)),
@@ -75,7 +75,8 @@ impl<'a> Machine<'a> {
                 None => self.target_of_enable(frame, argument)?,
             };
             let target = self.checked(target)?;
-            self.write(&target, &Value::bool(enabled != negated));
+            let told = self.converted(Value::bool(enabled != negated), &target.ty, argument.span)?;
+            self.write(&target, &told);
         }
         Ok(result)
     }
@@ -99,20 +100,22 @@ impl<'a> Machine<'a> {
         Ok(())
     }
 
-    /// Whether the callee has EN among its own parameters.
-    fn declares_enable(&self, frame: &Frame<'a>, callee: &Expr<'a>) -> bool {
-        let ExprKind::Name(name) = &callee.kind else { return false };
+    /// The parameters of what has a name of its own.
+    fn parameters_of(&self, frame: &Frame<'a>, callee: &Expr<'a>) -> Vec<Formal<'a>> {
+        let ExprKind::Name(name) = &callee.kind else { return Vec::new() };
         let instance = self.variable(frame, name).and_then(|it| it.ty.class());
         let pou = instance.or_else(|| self.declared.pou_named(&[*name]));
-        pou.is_some_and(|it| self.formals(it).iter().any(|it| it.name.eq_ignore_ascii_case("EN")))
+        pou.map(|it| self.formals(it)).unwrap_or_default()
     }
 
     /// A body runs while an EN of its own is TRUE; an ENO of its own says so.
     fn body(&mut self, own: &Frame<'a>, pou: usize) -> Outcome<()> {
-        let declares = self.formals(pou).iter().any(|it| it.name.eq_ignore_ascii_case("EN"));
-        let enable = own.names.get("EN").filter(|_| declares && !self.declared.is_codesys());
+        let formals = self.formals(pou);
+        let declares =
+            |name| formals.iter().any(|it| it.name.eq_ignore_ascii_case(name)) && !self.declared.is_codesys();
+        let enable = own.names.get("EN").filter(|_| declares("EN"));
         let enabled = enable.map_or(Ok(true), |it| self.read(it).as_bool())?;
-        if let Some(eno) = own.names.get("ENO").filter(|_| enable.is_some()) {
+        if let Some(eno) = own.names.get("ENO").filter(|_| declares("ENO")) {
             self.write(eno, &Value::bool(enabled));
         }
         if enabled {
@@ -504,9 +507,8 @@ impl<'a> Machine<'a> {
         let mut passed: Vec<Passed<'a>> = Vec::new();
         // A named argument that comes later does not take a parameter from a positional one.
         let mut taken: Vec<&str> = Vec::new();
-        let declares = formals.iter().any(|it| it.name.eq_ignore_ascii_case("EN"));
         for argument in arguments {
-            if is_enable(argument) && !declares {
+            if is_enable(argument) && !is_declared(formals, argument) {
                 self.enable_argument(frame, argument)?;
                 continue;
             }
@@ -635,6 +637,15 @@ pub(crate) fn is_enable(argument: &Argument<'_>) -> bool {
         ArgumentKind::Input(name, _) => name.text.eq_ignore_ascii_case("EN"),
         ArgumentKind::Output { name, .. } => name.text.eq_ignore_ascii_case("ENO"),
     }
+}
+
+/// Whether the callee has a parameter of its own for it.
+fn is_declared(formals: &[Formal<'_>], enable: &Argument<'_>) -> bool {
+    let name = match &enable.kind {
+        ArgumentKind::Positional(_) => return false,
+        ArgumentKind::Input(name, _) | ArgumentKind::Output { name, .. } => name.text,
+    };
+    formals.iter().any(|it| it.name.eq_ignore_ascii_case(name))
 }
 
 fn cut<'a>(text: &Cell<'a>, capacity: usize) -> Cell<'a> {

@@ -4,7 +4,7 @@
 //! a place of the heir's type. So what is called is what the place's own type has.
 
 use crate::calls::Passed;
-use crate::declarations::{Declarations, path_of};
+use crate::declarations::{Declarations, Pou, path_of};
 use crate::machine::{Frame, Machine, Outcome, unknown};
 use crate::storage::{Place, Value};
 use crate::types::{RefKind, Type};
@@ -23,6 +23,27 @@ impl<'a> Declarations<'a> {
         line
     }
 
+    /// The witness has METHODs by their names alone: none that only their parameters tell apart.
+    pub fn refuse_overloads(&self) -> Outcome<()> {
+        let parameters = |it: &Pou<'a>| {
+            let all = it.variables.iter().filter(|it| it.is_parameter());
+            all.map(|it| format!("{:?} {:?}", it.kind, it.slot.ty)).collect::<Vec<_>>()
+        };
+        let methods = || self.pous.iter().enumerate().filter(|it| it.1.kind == PouKind::Method);
+        for (at, method) in methods() {
+            let Some(class) = method.owner.filter(|it| self.pous[*it].kind != PouKind::Interface) else { continue };
+            let line: Vec<usize> = self.line(class).collect();
+            let mut beside = methods().filter(|it| it.0 != at && it.1.owner.is_some_and(|it| line.contains(&it)));
+            let is_one =
+                |it: &Pou<'a>| it.name.eq_ignore_ascii_case(method.name) && parameters(it) != parameters(method);
+            if beside.any(|it| it.1.owner == Some(class) && it.1.name.eq_ignore_ascii_case(method.name) || is_one(it.1))
+            {
+                return unknown("METHODs of one name");
+            }
+        }
+        Ok(())
+    }
+
     /// The METHOD of that name that a class itself declares.
     pub fn own_routine(&self, class: usize, name: &str) -> Option<usize> {
         self.pous
@@ -32,7 +53,7 @@ impl<'a> Declarations<'a> {
 
     fn routine_where(&self, class: usize, name: &str, fits: impl Fn(PouKind) -> bool) -> Option<usize> {
         self.line(class).find_map(|class| {
-            let own = |it: &crate::declarations::Pou<'a>| it.owner == Some(class) && fits(it.kind);
+            let own = |it: &Pou<'a>| it.owner == Some(class) && fits(it.kind);
             self.pous.iter().position(|it| own(it) && it.name.eq_ignore_ascii_case(name))
         })
     }

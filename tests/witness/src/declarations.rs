@@ -104,6 +104,7 @@ impl<'a> Declarations<'a> {
         for (owner, pou) in pous.enumerate() {
             pou.routines.iter().try_for_each(|it| this.pou(it, Some(owner)))?;
         }
+        this.refuse_overloads()?;
         Ok(this)
     }
 

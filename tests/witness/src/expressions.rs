@@ -112,6 +112,10 @@ impl<'a> Machine<'a> {
         match op {
             UnaryOp::Plus => Ok(value),
             UnaryOp::Neg => self.computed("NEG", ty, &[value.as_scalar()?], inner.span),
+            // Which of its operands' types a selection has does not show but here.
+            UnaryOp::Not if matches!(inner.kind, ExprKind::Call(..)) && self.promotes(ty) => {
+                unknown("NOT of a narrow value that a function chooses")
+            }
             UnaryOp::Not => self.applied("NOT", ty, &[in_repr(value.as_scalar()?, ty).as_scalar()?], inner.span),
         }
     }
@@ -230,6 +234,8 @@ pub(crate) fn default_type(kind: Untyped, asked: Option<&Type<'_>>) -> Elementar
 fn typed_number<'a>(value: &LiteralValue<'_>, negative: bool, ty: Elementary) -> Outcome<Value<'a>> {
     let sign = if negative { "-" } else { "" };
     match value {
+        // There is one integer 0.
+        LiteralValue::Integer { value: 0, .. } if ty.is_real() => real("0", ty),
         LiteralValue::Integer { value, .. } if ty.is_real() => real(&format!("{sign}{value}"), ty),
         LiteralValue::Real(digits) if ty.is_real() => real(&format!("{sign}{digits}"), ty),
         LiteralValue::Integer { value, .. } => {

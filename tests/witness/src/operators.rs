@@ -2,7 +2,7 @@
 
 use crate::expressions::{Untyped, default_type, in_repr, literal_number, untyped};
 use crate::machine::{Frame, Machine, Outcome, unknown};
-use crate::references::null;
+use crate::references::{is_null, null};
 use crate::storage::Value;
 use crate::types::{Elementary, Type};
 use staunch_frontend::Span;
@@ -52,7 +52,8 @@ impl<'a> Machine<'a> {
             (None, Some(kind)) => {
                 let a = self.value(frame, left, asked)?;
                 if matches!(a.ty, Type::Reference(_)) {
-                    return Ok((a, null()));
+                    // What number a reference is nobody says.
+                    return if is_null(right) { Ok((a, null())) } else { unknown("the number of a reference") };
                 }
                 let ty = beside(&a.ty, kind, literal_number(right), asked)?;
                 let b = self.number(right, ty)?;

@@ -6,6 +6,7 @@ use crate::machine::{Frame, Machine, Outcome, unknown};
 use crate::statements::Flow;
 use crate::storage::{Place, Value, integer_cell};
 use crate::types::{Elementary, RefKind, Type};
+use staunch_frontend::Span;
 use staunch_frontend::ast::{Expr, ExprKind, Name};
 use staunch_runtime::{BlockInfo, Direction, FaultKind};
 
@@ -133,6 +134,7 @@ impl<'a> Machine<'a> {
         place: &Place<'a>,
         part: &Name<'a>,
         value: &'a Expr<'a>,
+        at: Span,
     ) -> Outcome<Flow> {
         let part = part_named(part.text)?;
         let value = self.value_as(frame, value, &Type::Elementary(part.ty))?.as_integer()?;
@@ -142,7 +144,9 @@ impl<'a> Machine<'a> {
         let old = self.read(place).as_integer()? & mask(width);
         let new = old & !(mask(part.width) << part.shift) | (value & mask(part.width)) << part.shift;
         let signed = if ty.repr().is_signed() && new > ty.range().1 { new - (1 << width) } else { new };
-        self.write(place, &Value { ty: Type::Elementary(ty), cells: vec![integer_cell(ty, signed)] });
+        let whole = Value { ty: Type::Elementary(ty), cells: vec![integer_cell(ty, signed)] };
+        let whole = self.converted(whole, &place.ty, at)?;
+        self.write(place, &whole);
         Ok(Flow::Next)
     }
 }

@@ -48,6 +48,9 @@ impl<'a> Machine<'a> {
             if self.declared.pous[pou].kind == PouKind::Program && !listed.iter().any(|it| it.pou == pou) {
                 let (name, connections) = (self.declared.pous[pou].name, &[] as &[_]);
                 let runs = running.iter().any(|it| it.eq_ignore_ascii_case(name));
+                if !runs && !listed.is_empty() {
+                    return unknown("whether anything calls a PROGRAM that is not listed");
+                }
                 let place = self.start_run(Listed { name, pou, connections, task: Task::default(), runs })?;
                 self.globals.insert(self.declared.pous[pou].key.clone(), place);
             }

@@ -4,7 +4,7 @@ use crate::machine::{Frame, Machine, Outcome, Stop, unknown};
 use crate::storage::{Cell, Place, integer_cell};
 use crate::types::{Slot, Type};
 use staunch_frontend::ast::{Initial, InitialKind};
-use staunch_runtime::Value as Scalar;
+use staunch_runtime::{BlockInfo, Family, Value as Scalar};
 
 /// What an initial value gives a variable.
 #[derive(Clone, Copy, Debug)]
@@ -68,6 +68,10 @@ impl<'a> Machine<'a> {
             Some(InitialKind::Fields(fields)) => {
                 self.start_unset(frame, place)?;
                 for (name, initial) in fields {
+                    let is_count = |it: &BlockInfo| it.family == Family::Cscape && name.text.eq_ignore_ascii_case("CV");
+                    if matches!(place.ty, Type::Block(info) if is_count(info)) {
+                        return unknown("what a counter of Cscape does with a count that it is given first");
+                    }
                     let field = self.member(place, name.text).ok_or(Stop::Unknown("an unknown member".into()))?;
                     self.start(frame, &field, Some(initial))?;
                 }

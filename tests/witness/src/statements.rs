@@ -61,7 +61,7 @@ impl<'a> Machine<'a> {
     fn assign(&mut self, frame: &Frame<'a>, target: &'a Expr<'a>, value: &'a Expr<'a>) -> Outcome<Flow> {
         if let ExprKind::Part(base, part) = &target.kind {
             let place = self.place(frame, base)?;
-            return self.assign_part(frame, &place, part, value);
+            return self.assign_part(frame, &place, part, value, target.span);
         }
         if let Some(property) = self.property(frame, target)? {
             self.set(frame, property, value)?;

@@ -133,6 +133,7 @@ impl<'a> Machine<'a> {
                 Ok(Value { ty: ty.clone(), cells: vec![Cell::Text(units)] })
             }
             Type::Reference(_) => Ok(Value { ty: ty.clone(), cells: value.cells }),
+            _ if ty.class() != value.ty.class() => unknown("a copy of an heir as its base"),
             Type::Enum(_) | Type::Array(_) | Type::Record(_) | Type::Union(_) | Type::Block(_) => Ok(value),
         }
     }

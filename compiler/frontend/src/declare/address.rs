@@ -226,7 +226,7 @@ impl<'s> Declarations<'s> {
             return width;
         }
         let fits = match ty {
-            Type::Array(_) => bits.is_multiple_of(width),
+            Type::Array(_) => bits.is_multiple_of(width) && address.bit.is_multiple_of(8),
             // They begin there, and take what they need.
             Type::Struct(_) | Type::String(_) => address.bit.is_multiple_of(8),
             Type::Elementary(_) | Type::Subrange(..) | Type::Enum(_) | Type::Reference(_) | Type::Block(_) => {
@@ -243,6 +243,11 @@ impl<'s> Declarations<'s> {
         let name = self.program.type_name(ty);
         let error = Diagnostic::new(Code::E0409, span, format!("{name} does not fit this address"));
         let plural = if address.width == 1 { "bit" } else { "bits" };
+        if matches!(ty, Type::Array(_)) && !address.bit.is_multiple_of(8) {
+            let byte = Address { bit: address.bit / 8 * 8, ..address };
+            return self
+                .report(error.label("it begins within a byte").help(format!("an array begins with a byte: `{byte}`")));
+        }
         let error = error.label(format!("the address is {} {plural} wide, {name} is {bits}", address.width));
         let is_whole = matches!(ty, Type::Struct(_) | Type::String(_));
         self.report(match u8::try_from(bits).ok().filter(|it| [1, 8, 16, 32, 64].contains(it)) {

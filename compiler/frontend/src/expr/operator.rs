@@ -49,7 +49,13 @@ impl<'s> Checker<'_, 's> {
             if let Some(folded) = self.fold_untyped(sides.op, &sides.a, &sides.b, sides.span) {
                 return folded;
             }
-            sides.a = Operand::Typed(self.materialise(sides.a, sides.hint, sides.left)?);
+            // Integers are divided as such, also by 0, whatever the quotient is stored in.
+            let are_integers = matches!((&sides.a, &sides.b), (Operand::Integer(_), Operand::Integer(_)));
+            let is_real = |it: &Type| matches!(it, Type::Elementary(it) if it.is_real());
+            let hint = sides
+                .hint
+                .filter(|it| !(are_integers && matches!(sides.op, BinaryOp::Div | BinaryOp::Mod) && is_real(it)));
+            sides.a = Operand::Typed(self.materialise(sides.a, hint, sides.left)?);
             if let (Operand::Integer(_), Some(ty)) = (&sides.b, sides.a.ty())
                 && matches!(ty, Type::Elementary(it) if it.is_real())
             {

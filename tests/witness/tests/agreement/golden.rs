@@ -114,8 +114,11 @@ fn have_any_in_common(a: &Scan, b: &Scan) -> bool {
 fn add_addresses(machine: &Machine<'_>, theirs: &Scan, ours: &mut Scan) {
     let sizes = [("Bool", 0), ("U8", 1), ("U16", 2), ("U32", 4), ("U64", 8)];
     for (path, value) in &theirs.variables {
-        let size = sizes.iter().find(|it| value.split('(').next() == Some(it.0)).map(|it| it.1);
-        let is_known = ours.variables.iter().any(|it| it.0.eq_ignore_ascii_case(path));
+        let kind = value.split('(').next();
+        let size = sizes.iter().find(|it| kind == Some(it.0)).map(|it| it.1);
+        // What has several types there may have another one of them.
+        let is_same = |it: &(String, String)| it.0.eq_ignore_ascii_case(path) && it.1.split('(').next() == kind;
+        let is_known = ours.variables.iter().any(is_same);
         if let Some(size) = size.filter(|_| path.starts_with("Globals.") && !is_known) {
             ours.variables.extend(machine.addressed(path, size).map(|it| (path.clone(), it)));
         }

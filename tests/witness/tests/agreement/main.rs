@@ -5,6 +5,7 @@
 //! golden case.
 #![allow(clippy::unwrap_used)]
 
+#[expect(dead_code, reason = "sources are compiled by themselves")]
 #[path = "../../../src/case.rs"]
 mod case;
 mod changed;
