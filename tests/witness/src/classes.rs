@@ -23,11 +23,15 @@ impl<'a> Declarations<'a> {
         line
     }
 
-    /// The witness has METHODs by their names alone: none that only their parameters tell apart.
+    /// The witness has METHODs by their names alone: none that only their parameters tell apart, which CODESYS has not.
     pub fn refuse_overloads(&self) -> Outcome<()> {
+        if self.is_codesys() {
+            return Ok(());
+        }
         let parameters = |it: &Pou<'a>| {
             let all = it.variables.iter().filter(|it| it.is_parameter());
-            all.map(|it| format!("{:?} {:?}", it.kind, it.slot.ty)).collect::<Vec<_>>()
+            let ty = |it: &Type<'a>| if let Type::Reference(_) = it { String::new() } else { format!("{it:?}") };
+            all.map(|it| format!("{:?} {}", it.kind, ty(&it.slot.ty))).collect::<Vec<_>>()
         };
         let methods = || self.pous.iter().enumerate().filter(|it| it.1.kind == PouKind::Method);
         for (at, method) in methods() {
