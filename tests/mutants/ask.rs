@@ -18,7 +18,12 @@ unsafe extern "C" {
     fn waitpid(pid: i32, status: *mut i32, options: i32) -> i32;
     fn _exit(code: i32) -> !;
     fn alarm(seconds: u32) -> u32;
+    fn setrlimit(resource: i32, limit: *const [u64; 2]) -> i32;
 }
+
+/// `RLIMIT_AS` of Linux, and how much a process may have.
+const ADDRESS_SPACE: i32 = 9;
+static MEMORY: [u64; 2] = [4 << 30; 2];
 
 /// Something that holds without a mutant: `false` and a panic say that it does not.
 struct Question {
@@ -112,6 +117,8 @@ fn every_mutant() {
         // SAFETY: no other thread has a lock that what is asked needs: the harness waits for this one.
         let child = unsafe { fork() };
         if child == 0 {
+            // SAFETY: the limit is there to be read. What finds no end asks for no end of memory, too.
+            unsafe { setrlimit(ADDRESS_SPACE, &raw const MEMORY) };
             mutant::turn_on(number);
             let is_seen = asked.iter().any(|it| !answers_in_time(&questions[*it]));
             // SAFETY: it ends this process, which has nothing to write.

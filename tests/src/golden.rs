@@ -63,7 +63,7 @@ fn actual(case: &Case, executors: &[Executor]) -> Result<Vec<(Pin, String)>, Str
                     return Err("there is an .err, but nothing to say".to_owned());
                 }
                 Pin::Diagnostics => diagnostics.clone(),
-                Pin::Ir => staunch_ir::print(program()?),
+                Pin::Ir => staunch_ir::print(program()?) + &tests(&compilation),
                 Pin::Rust => {
                     let options = staunch_rust::Options { state: staunch_rust::State::Lean, ..Default::default() };
                     staunch_rust::emit(program()?, &options)
@@ -74,6 +74,13 @@ fn actual(case: &Case, executors: &[Executor]) -> Result<Vec<(Pin, String)>, Str
         ))
     };
     case.pins.iter().map(|pin| text(*pin)).collect()
+}
+
+/// What is known of the unit tests in a program, and of what they cover.
+fn tests(compilation: &Compilation) -> String {
+    let tests = compilation.tests.iter().map(|it| format!("\n{it:#?}\n"));
+    let coverage = compilation.coverage.iter().map(|it| format!("\n{it:?}"));
+    tests.chain(coverage).collect()
 }
 
 /// All diagnostics as people see them, without colour.
