@@ -70,15 +70,15 @@ impl Inserter<'_> {
         });
     }
 
-    fn guard(&mut self, guard: &mut Expr) {
+    fn guard(&mut self, guard: &mut Expr, at: proc_macro2::Span) {
         if holds_let(guard) {
             return;
         }
-        if let Some(number) = self.number(guard.span(), "the guard always holds") {
-            *guard = parse_quote!((#guard) || crate::mutant::on(#number));
+        if let Some(number) = self.number(at, "the guard always holds") {
+            *guard = parse_quote!(crate::mutant::on(#number) || (#guard));
         }
-        if let Some(number) = self.number(guard.span(), "the guard never holds") {
-            *guard = parse_quote!((#guard) && !crate::mutant::on(#number));
+        if let Some(number) = self.number(at, "the guard never holds") {
+            *guard = parse_quote!(!crate::mutant::on(#number) && (#guard));
         }
     }
 
@@ -132,8 +132,9 @@ impl VisitMut for Inserter<'_> {
 
     fn visit_pat_mut(&mut self, pattern: &mut Pat) {
         if let Pat::Guard(it) = pattern {
+            let at = it.guard.span();
             self.visit_expr_mut(&mut it.guard);
-            self.guard(&mut it.guard);
+            self.guard(&mut it.guard, at);
         }
     }
 
