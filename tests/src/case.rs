@@ -95,6 +95,8 @@ impl Case {
                 ("moved-from", name) => settings.options.moved_from = Some(dialect(name)),
                 ("ctu-stop-at-pv", value) => settings.options.ctu_stop_at_pv = value == "on",
                 ("implicit-narrowing", value) => settings.options.implicit_narrowing = value == "on",
+                ("tests", value) => settings.options.tests = value == "on",
+                ("coverage", value) => settings.options.coverage = value.parse().ok(),
                 ("loop-budget", value) => settings.loop_budget = value.parse().ok(),
                 ("cycle", value) => settings.cycle = Some(value.to_owned()),
                 _ => {}

@@ -167,8 +167,19 @@ pub fn run(
 
 /// Runs the table on all executors, and compares every variable after every scan.
 pub fn agree(program: &Program, module: &str, table: &Table, settings: &Settings) -> Result<Outcome, String> {
+    agree_on(&Executor::ALL, program, module, table, settings)
+}
+
+/// The same for the interpreter and those of `executors`.
+pub fn agree_on(
+    executors: &[Executor],
+    program: &Program,
+    module: &str,
+    table: &Table,
+    settings: &Settings,
+) -> Result<Outcome, String> {
     let reference = run(Executor::Interpreter, program, module, table, settings)?;
-    for executor in [Executor::Rust, Executor::Native] {
+    for executor in executors.iter().copied().filter(|it| *it != Executor::Interpreter) {
         let outcome = run(executor, program, module, table, settings).map_err(|it| format!("{executor:?}: {it}"))?;
         if outcome != reference {
             return Err(format!("{executor:?} and the interpreter disagree\n{}", disagreement(&reference, &outcome)));

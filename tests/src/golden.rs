@@ -2,7 +2,7 @@
 
 use crate::case::{Case, Pin};
 use crate::difference;
-use crate::execute::{Settings, agree};
+use crate::execute::{Executor, Settings, agree_on};
 use crate::scan::Table;
 use staunch_frontend::{Compilation, Format, Severity, Sources, Style, render};
 use staunch_ir::Program;
@@ -10,7 +10,12 @@ use std::fs;
 
 /// Compares a case with all that is pinned; the error says what differs.
 pub fn check(case: &Case) -> Result<(), String> {
-    let actual = actual(case)?;
+    check_on(case, &Executor::ALL)
+}
+
+/// The same, where its `.scan` runs on these executors alone.
+pub fn check_on(case: &Case, executors: &[Executor]) -> Result<(), String> {
+    let actual = actual(case, executors)?;
     let mut differences = String::new();
     for (pin, text) in actual {
         let changed = difference::lines(&case.pinned(pin), &text);
@@ -25,7 +30,7 @@ pub fn check(case: &Case) -> Result<(), String> {
 /// Rewrites the files beside a case and returns what changed; where anything is wrong, nothing.
 pub fn bless(case: &Case) -> Result<String, String> {
     let mut changes = String::new();
-    for (pin, text) in actual(case)? {
+    for (pin, text) in actual(case, &Executor::ALL)? {
         let changed = difference::lines(&case.pinned(pin), &text);
         if !changed.is_empty() {
             let path = case.golden(pin);
@@ -36,7 +41,7 @@ pub fn bless(case: &Case) -> Result<String, String> {
     Ok(changes)
 }
 
-fn actual(case: &Case) -> Result<Vec<(Pin, String)>, String> {
+fn actual(case: &Case, executors: &[Executor]) -> Result<Vec<(Pin, String)>, String> {
     let (sources, compilation) = case.compile();
     let diagnostics = diagnostics(&sources, &compilation);
     if compilation.has_errors() != compilation.program.is_none() {
@@ -58,17 +63,24 @@ fn actual(case: &Case) -> Result<Vec<(Pin, String)>, String> {
                     return Err("there is an .err, but nothing to say".to_owned());
                 }
                 Pin::Diagnostics => diagnostics.clone(),
-                Pin::Ir => staunch_ir::print(program()?),
+                Pin::Ir => staunch_ir::print(program()?) + &tests(&compilation),
                 Pin::Rust => {
                     let options = staunch_rust::Options { state: staunch_rust::State::Lean, ..Default::default() };
                     staunch_rust::emit(program()?, &options)
                 }
                 Pin::Clif => clif(program()?)?,
-                Pin::Scan => scan(case, program()?)?,
+                Pin::Scan => scan(case, program()?, executors)?,
             },
         ))
     };
     case.pins.iter().map(|pin| text(*pin)).collect()
+}
+
+/// What is known of the unit tests in a program, and of what they cover.
+fn tests(compilation: &Compilation) -> String {
+    let tests = compilation.tests.iter().map(|it| format!("\n{it:#?}\n"));
+    let coverage = compilation.coverage.iter().map(|it| format!("\n{it:?}"));
+    tests.chain(coverage).collect()
 }
 
 /// All diagnostics as people see them, without colour.
@@ -85,12 +97,12 @@ fn clif(program: &Program) -> Result<String, String> {
     staunch_native::clif(program, &target).map_err(|it| it.to_string())
 }
 
-fn scan(case: &Case, program: &Program) -> Result<String, String> {
+fn scan(case: &Case, program: &Program, executors: &[Executor]) -> Result<String, String> {
     let pinned = case.pinned(Pin::Scan);
     let table = Table::parse(&pinned).map_err(|it| format!("{}.scan: {it}", case.name))?;
     let case_settings = case.settings();
     let settings = Settings { cycle: case_settings.cycle, loop_budget: case_settings.loop_budget, first: None };
-    let outcome = agree(program, &case.module(), &table, &settings)?.table;
+    let outcome = agree_on(executors, program, &case.module(), &table, &settings)?.table;
     // How cells are spaced is not what is pinned.
     Ok(if outcome == table { pinned } else { outcome.to_string() })
 }

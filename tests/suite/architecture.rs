@@ -56,6 +56,8 @@ const UNSAFE: &[&str] = &[
     "compiler/rust/tests/",
     "tests/src/generated.rs",
     "tests/src/execute.rs",
+    // The test that forks, of a copy with mutants.
+    "tests/mutants/ask.rs",
 ];
 
 fn metadata() -> Json {

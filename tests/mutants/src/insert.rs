@@ -1,10 +1,11 @@
 //! What a mutant is: another operator, an integer that is one more, a condition or a NOT turned around, a `Some` that
-//! is `None`, a statement left out.
+//! is `None`, a statement left out, an arm of a `match` left out, a guard that always or never holds, a function that
+//! does nothing but give a plain value. What asks for memory ahead is left as it is: no program sees it.
 
 use std::collections::HashSet;
 use syn::spanned::Spanned;
 use syn::visit_mut::{self, VisitMut};
-use syn::{Attribute, BinOp, Block, Expr, ExprLit, Lit, Stmt, UnOp, parse_quote};
+use syn::{Arm, Attribute, BinOp, Block, Expr, ExprLit, Lit, Pat, PatGuard, ReturnType, Stmt, Type, UnOp, parse_quote};
 
 /// A mutant, and where it is in the text.
 pub struct Mutant {
@@ -56,6 +57,41 @@ impl Inserter<'_> {
         let Some(number) = self.number(condition.span(), "the condition turned around") else { return };
         *condition = parse_quote!((#condition) != crate::mutant::on(#number));
     }
+
+    /// An arm before one that takes everything can be left out.
+    fn arm(&mut self, arm: &mut Arm) {
+        let Some(number) = self.number(arm.pat.span(), "the arm left out") else { return };
+        let guard = parse_quote!(!crate::mutant::on(#number));
+        arm.pat = Pat::Guard(PatGuard {
+            attrs: Vec::new(),
+            pat: Box::new(arm.pat.clone()),
+            if_token: Default::default(),
+            guard: Box::new(guard),
+        });
+    }
+
+    fn guard(&mut self, guard: &mut Expr, at: proc_macro2::Span) {
+        if holds_let(guard) {
+            return;
+        }
+        if let Some(number) = self.number(at, "the guard always holds") {
+            *guard = parse_quote!(crate::mutant::on(#number) || (#guard));
+        }
+        if let Some(number) = self.number(at, "the guard never holds") {
+            *guard = parse_quote!(!crate::mutant::on(#number) && (#guard));
+        }
+    }
+
+    /// A function of a type with plain values gives one of them, and does nothing else.
+    fn body(&mut self, signature: &syn::Signature, block: &mut Block) {
+        for (value, text) in plain(&signature.output) {
+            let Some(number) = self.number(signature.ident.span(), format!("{} {text}", signature.ident)) else {
+                continue;
+            };
+            let statement = parse_quote!(if crate::mutant::on(#number) { return #value; });
+            block.stmts.insert(0, statement);
+        }
+    }
 }
 
 impl VisitMut for Inserter<'_> {
@@ -67,8 +103,12 @@ impl VisitMut for Inserter<'_> {
             syn::Item::Trait(it) => (&it.attrs, false),
             _ => return,
         };
-        if !is_constant && !is_test(attributes) {
-            visit_mut::visit_item_mut(self, item);
+        if is_constant || is_test(attributes) {
+            return;
+        }
+        visit_mut::visit_item_mut(self, item);
+        if let syn::Item::Fn(it) = item {
+            self.body(&it.sig, &mut it.block);
         }
     }
 
@@ -78,6 +118,7 @@ impl VisitMut for Inserter<'_> {
             && !is_test(&it.attrs)
         {
             self.visit_block_mut(&mut it.block);
+            self.body(&it.sig, &mut it.block);
         }
     }
 
@@ -89,7 +130,14 @@ impl VisitMut for Inserter<'_> {
         }
     }
 
-    fn visit_pat_mut(&mut self, _: &mut syn::Pat) {}
+    fn visit_pat_mut(&mut self, pattern: &mut Pat) {
+        if let Pat::Guard(it) = pattern {
+            let at = it.guard.span();
+            self.visit_expr_mut(&mut it.guard);
+            self.guard(&mut it.guard, at);
+        }
+    }
+
     fn visit_type_mut(&mut self, _: &mut syn::Type) {}
     fn visit_generic_argument_mut(&mut self, _: &mut syn::GenericArgument) {}
     fn visit_expr_const_mut(&mut self, _: &mut syn::ExprConst) {}
@@ -102,6 +150,9 @@ impl VisitMut for Inserter<'_> {
         visit_mut::visit_block_mut(self, block);
         for statement in &mut block.stmts {
             let Stmt::Expr(expr, Some(_)) = statement else { continue };
+            if asks_for_memory(expr) {
+                continue;
+            }
             let is_effect = matches!(expr, Expr::MethodCall(_) | Expr::Call(_) | Expr::Assign(_) | Expr::Try(_))
                 || matches!(expr, Expr::Binary(it) if is_compound(&it.op));
             if !is_effect {
@@ -117,7 +168,20 @@ impl VisitMut for Inserter<'_> {
         self.condition(&mut it.cond);
     }
 
+    fn visit_expr_match_mut(&mut self, it: &mut syn::ExprMatch) {
+        visit_mut::visit_expr_match_mut(self, it);
+        let takes_all = it.arms.iter().position(|arm| matches!(arm.pat, Pat::Wild(_)));
+        for arm in it.arms.iter_mut().take(takes_all.unwrap_or(0)) {
+            if !matches!(arm.pat, Pat::Guard(_)) {
+                self.arm(arm);
+            }
+        }
+    }
+
     fn visit_expr_mut(&mut self, expr: &mut Expr) {
+        if asks_for_memory(expr) {
+            return;
+        }
         // Of a negative number the sign belongs to the literal.
         if !matches!(expr, Expr::Unary(it) if matches!(it.op, UnOp::Neg(_)) && matches!(*it.expr, Expr::Lit(_))) {
             visit_mut::visit_expr_mut(self, expr);
@@ -161,6 +225,34 @@ fn is_compound(op: &BinOp) -> bool {
             | BinOp::BitOrAssign(_)
             | BinOp::BitXorAssign(_)
     )
+}
+
+/// Whether it is about room for what comes later, or room that is given back.
+fn asks_for_memory(expr: &Expr) -> bool {
+    match expr {
+        Expr::MethodCall(it) => ["reserve", "reserve_exact", "shrink_to_fit"].iter().any(|name| it.method == name),
+        Expr::Call(it) => {
+            matches!(&*it.func, Expr::Path(it) if it.path.segments.last().is_some_and(|it| it.ident == "with_capacity" || it.ident == "with_capacity_and_hasher"))
+        }
+        _ => false,
+    }
+}
+
+/// The plain values of what a function gives, and how they read.
+fn plain(output: &ReturnType) -> Vec<(Expr, &'static str)> {
+    let ReturnType::Type(_, ty) = output else { return vec![(parse_quote!(()), "does nothing")] };
+    let Type::Path(ty) = &**ty else { return Vec::new() };
+    let Some(last) = ty.path.segments.last() else { return Vec::new() };
+    match last.ident.to_string().as_str() {
+        "bool" => vec![(parse_quote!(true), "is true"), (parse_quote!(false), "is false")],
+        "Option" => vec![(parse_quote!(None), "is None")],
+        "String" => vec![(parse_quote!(Default::default()), "is empty")],
+        "Vec" => vec![(parse_quote!(Default::default()), "is empty")],
+        "usize" | "u8" | "u16" | "u32" | "u64" | "u128" | "i8" | "i16" | "i32" | "i64" | "i128" => {
+            vec![(parse_quote!(0), "is 0"), (parse_quote!(1), "is 1")]
+        }
+        _ => Vec::new(),
+    }
 }
 
 /// A condition with `let` cannot be put into a block.

@@ -9,20 +9,15 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
-/// What each crate with mutants gets at its end.
-const SWITCH: &str = r#"
-#[doc(hidden)]
-#[allow(missing_docs, clippy::all)]
-pub mod mutant {
-    extern crate std;
-    /// Whether this mutant is on.
-    pub fn on(number: u32) -> bool {
-        static ON: std::sync::OnceLock<u32> = std::sync::OnceLock::new();
-        let read = || std::env::var("STAUNCH_MUTANT").ok().and_then(|it| it.parse().ok()).unwrap_or(u32::MAX);
-        *ON.get_or_init(read) == number
-    }
-}
-"#;
+/// What the runtime gets at its end. Every crate with mutants, and every test, has the runtime.
+const SWITCH: &str = concat!(
+    "\n#[doc(hidden)]\n#[allow(missing_docs, unused, clippy::all)]\npub mod mutant {\n",
+    include_str!("switch.rs"),
+    "}\n"
+);
+/// What other crates with mutants get.
+const FROM_RUNTIME: &str = "\n#[doc(hidden)]\npub use staunch_runtime::mutant;\n";
+const RUNTIME: &str = "runtime/core/src/lib.rs";
 
 fn main() -> io::Result<()> {
     let mut arguments = env::args().skip(1);
@@ -47,11 +42,16 @@ fn main() -> io::Result<()> {
         fs::write(&file, prettyplease::unparse(&syntax))?;
         crates.insert(root(&file)?);
     }
-    for root in crates {
-        let text = fs::read_to_string(&root)?;
-        fs::write(&root, text + SWITCH)?;
+    let runtime = tree.join(RUNTIME);
+    append(&runtime, SWITCH)?;
+    for root in crates.iter().filter(|it| **it != runtime) {
+        append(root, FROM_RUNTIME)?;
     }
     fs::write(list, lines)
+}
+
+fn append(path: &Path, more: &str) -> io::Result<()> {
+    fs::write(path, fs::read_to_string(path)? + more)
 }
 
 /// Whether the module that a file is says `#[cfg(test)]` where it is declared. A name says nothing: the compiler has

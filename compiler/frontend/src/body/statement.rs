@@ -274,11 +274,13 @@ impl<'s> Checker<'_, 's> {
         let of = self.character_type(ty, index.span);
         let mut place = found.place;
         let (position, value) = self.after_place(&mut place, |this| {
-            let mut position = this.character_index(index, ty)?;
+            let Some(mut position) = this.character_index(index, ty) else {
+                this.operand(value, None);
+                return None;
+            };
             let value = this.after(&mut [&mut position], |this| this.value(value, of))?;
             Some((position, value))
         })?;
-        self.note_assigned(&place, text.span);
         let whole = Expr::load(place.clone(), self.at(span));
         let changed = self.with_character(whole, position, value, span)?;
         self.write(place, None, changed, span)

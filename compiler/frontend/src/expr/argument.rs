@@ -213,7 +213,6 @@ impl<'s> Checker<'_, 's> {
             && from.wide == to.wide
             && from != to
         {
-            self.note_assigned(place, span);
             return Some(Role::Copied(self.temporary("text", ty), None));
         }
         if self.decl.extends_structure(place.ty, ty) {

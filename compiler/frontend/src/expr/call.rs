@@ -25,7 +25,7 @@ impl<'s> Checker<'_, 's> {
     ) -> Option<Operand> {
         let own = self.own_of_suite(callee);
         let callee = own.as_ref().unwrap_or(callee);
-        if let Some(value) = self.reference_function(callee, arguments, expr.span) {
+        if let Some(value) = self.value_of_name(callee, arguments, expr.span) {
             return value;
         }
         if let Some(value) = self.memory_function(callee, arguments, expr.span) {
@@ -35,12 +35,6 @@ impl<'s> Checker<'_, 's> {
             return value;
         }
         if let Some(value) = self.new_object(callee, arguments, expr.span) {
-            return value;
-        }
-        if let Some(value) = self.pou_text(callee, arguments, expr.span) {
-            return value;
-        }
-        if let Some(value) = self.bound_function(callee, arguments, expr.span) {
             return value;
         }
         if self.logix_statement(callee, arguments, expr.span) {
@@ -71,6 +65,27 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
+    /// What is written as a call, and looks at what its argument names rather than at a value; the inner `None` says that
+    /// it was reported.
+    fn value_of_name(
+        &mut self,
+        callee: &ast::Expr<'s>,
+        arguments: &[ast::Argument<'s>],
+        span: Span,
+    ) -> Option<Option<Operand>> {
+        self.reference_function(callee, arguments, span)
+            .or_else(|| self.pou_text(callee, arguments, span))
+            .or_else(|| self.bound_function(callee, arguments, span))
+    }
+
+    fn report_unused(&mut self, name: ast::Name<'s>, span: Span) {
+        self.report(
+            Diagnostic::new(Code::E0508, span, format!("the result of `{}` is not used", name.text))
+                .label("this statement has no effect")
+                .help(format!("assign it: `result := {}(…);`", name.text)),
+        );
+    }
+
     pub(crate) fn call_statement(
         &mut self,
         expr: &ast::Expr<'s>,
@@ -84,6 +99,14 @@ impl<'s> Checker<'_, 's> {
             || self.pool_statement(callee, arguments, expr.span).is_some()
             || self.logix_statement(callee, arguments, expr.span)
         {
+            return;
+        }
+        if let Ast::Name(name) = &callee.kind
+            && let Some(value) = self.value_of_name(callee, arguments, expr.span)
+        {
+            if value.is_some() {
+                self.report_unused(*name, expr.span);
+            }
             return;
         }
         let what = self.checked_callee(callee, arguments);
@@ -100,11 +123,7 @@ impl<'s> Checker<'_, 's> {
                 if value.is_none() || functions::is_statement(name.text) {
                     return;
                 }
-                self.report(
-                    Diagnostic::new(Code::E0508, expr.span, format!("the result of `{}` is not used", name.text))
-                        .label("this statement has no effect")
-                        .help(format!("assign it: `result := {}(…);`", name.text)),
-                );
+                self.report_unused(name, expr.span);
             }
             Some(other) => {
                 self.call(other, callee, arguments, None, expr.span);

@@ -185,19 +185,23 @@ impl<'s> Checker<'_, 's> {
                 let (expected, found) = (self.type_name(to), self.type_name(expr.ty));
                 let error = Diagnostic::new(Code::E0201, span, format!("expected {expected}, found {found}"))
                     .label(format!("this is {found}"));
-                let text = self.decl.log.sources.text(span);
-                let short = !text.is_empty() && text.len() < 60 && !text.contains('\n');
-                self.report(match (expr.ty, to, self.members(to)) {
-                    (Type::Enum(_), Type::Elementary(it), _) if it.is_integer() && short => {
+                self.report(match (expr.ty, to, self.members(to), self.short_text(span)) {
+                    (Type::Enum(_), Type::Elementary(it), _, Some(text)) if it.is_integer() => {
                         let meant = format!("TO_{}({text})", it.name());
                         error.help(format!("write `{meant}`")).fix(span, meant)
                     }
-                    (_, _, Some(members)) => error.help(format!("name a member: {members}")),
+                    (_, _, Some(members), _) => error.help(format!("name a member: {members}")),
                     _ => error,
                 });
                 None
             }
         }
+    }
+
+    /// What is written there, where a help can repeat it.
+    fn short_text(&self, span: Span) -> Option<String> {
+        let text = self.decl.log.sources.text(span);
+        ((1..60).contains(&text.len()) && !text.contains('\n')).then(|| text.to_owned())
     }
 
     /// Reports an `ARRAY[*]` that is assigned, or read, as a whole.
@@ -338,15 +342,12 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn report_narrowing(&mut self, from: Elementary, to: Elementary, span: Span) {
-        let text = self.decl.log.sources.text(span).to_owned();
         let function = format!("{}_TO_{}", from.name(), to.name());
         let mut error = Diagnostic::new(Code::E0203, span, format!("expected {}, found {}", to.name(), from.name()))
             .label(format!("{} does not convert to {} by itself", from.name(), to.name()));
-        let short = !text.is_empty() && text.len() < 60 && !text.contains('\n');
-        error = if short {
-            error.help(format!("write `{function}({text})`")).fix(span, format!("{function}({text})"))
-        } else {
-            error.help(format!("convert it with `{function}(…)`"))
+        error = match self.short_text(span) {
+            Some(text) => error.help(format!("write `{function}({text})`")).fix(span, format!("{function}({text})")),
+            None => error.help(format!("convert it with `{function}(…)`")),
         };
         let may_be_set = self.decl.dialect(span).mixes_bits_and_integers() && keeps_low_bits(from, to);
         if may_be_set && !std::mem::replace(&mut self.decl.log.has_named_narrowing, true) {

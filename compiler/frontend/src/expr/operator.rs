@@ -43,7 +43,7 @@ impl<'s> Checker<'_, 's> {
     /// The operation on two sides that have been checked.
     pub(crate) fn combine(&mut self, mut sides: Sides) -> Option<Operand> {
         if sides.a.is_reference() || sides.b.is_reference() {
-            return self.reference_operation(sides.op, sides.a, sides.b, sides.span);
+            return self.reference_operation(sides);
         }
         if sides.a.typed().is_none() && sides.b.typed().is_none() {
             if let Some(folded) = self.fold_untyped(sides.op, &sides.a, &sides.b, sides.span) {

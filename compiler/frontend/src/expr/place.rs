@@ -242,7 +242,9 @@ impl<'s> Checker<'_, 's> {
         let this = self.this()?.place;
         let scope = self.scope.outer.as_ref().unwrap_or(&self.scope);
         let Some(variable) = scope.get(name.text).cloned() else {
-            if !scope.is_refused(name.text) {
+            // A METHOD that is inherited has been looked at before.
+            let is_reported = self.decl.log.diagnostics.iter().any(|it| it.span == name.span);
+            if !scope.is_refused(name.text) && !is_reported {
                 let near = nearest(name.text, scope.variables.iter().map(|it| it.name.text));
                 self.decl.unknown_member(name, this.ty, near);
             }

@@ -3,11 +3,11 @@
 use super::callee::Callee;
 use super::checker::Checker;
 use crate::dialect::{library, missing};
-use crate::names::{Entry, Found, Meaning, Sense, functions};
+use crate::names::{Entry, Found, Meaning, Sense, SpaceId, functions};
 use crate::prelude;
 use crate::spelling::nearest;
 use crate::types::scope::Variable;
-use crate::{Code, Diagnostic, ast};
+use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::Type;
 use std::rc::Rc;
 
@@ -41,6 +41,13 @@ impl<'s> Checker<'_, 's> {
             Found::Nothing => {
                 let error = self.decl.not_in_library(Code::E0101, around, *last)?;
                 self.report(error);
+                Some(None)
+            }
+            Found::One(Meaning::Declared(Entry::Type(_) | Entry::Pou(_))) => {
+                self.report(
+                    Diagnostic::new(Code::E0101, last.span, format!("`{}` is not a variable", last.text))
+                        .label("a variable or a value is expected here"),
+                );
                 Some(None)
             }
             Found::One(_) => None,
@@ -127,6 +134,18 @@ impl<'s> Checker<'_, 's> {
 }
 
 impl<'s> crate::types::declarations::Declarations<'s> {
+    /// That a name stands for a namespace, where something in it is meant.
+    pub(crate) fn only_a_namespace(&self, code: Code, space: SpaceId, full: &str, span: Span) -> Diagnostic {
+        let what = match space {
+            SpaceId::ROOT => "a library",
+            it if self.names.is_list(it) => "a list of global variables",
+            _ => "a namespace",
+        };
+        Diagnostic::new(code, span, format!("`{full}` is {what}"))
+            .label("expected something that it holds")
+            .help(format!("write its name after it: `{full}.name`"))
+    }
+
     /// That a namespace, or a list of global variables, holds nothing of a name.
     pub(crate) fn not_in_namespace(&self, code: Code, around: &[ast::Name<'s>], name: ast::Name<'s>) -> Diagnostic {
         let full = around.iter().map(|it| it.text).collect::<Vec<_>>().join(".");
@@ -139,6 +158,10 @@ impl<'s> crate::types::declarations::Declarations<'s> {
         }
         if let Some(help) = missing::namespace(&format!("{full}.{}", name.text)) {
             return crate::log::unsupported(name.span, &format!("`{full}.{}`", name.text)).help(help);
+        }
+        let path: Vec<_> = around.iter().copied().chain([name]).collect();
+        if let Some(space) = self.names.space_at(self.site(name.span), &path) {
+            return self.only_a_namespace(code, space, &format!("{full}.{}", name.text), name.span);
         }
         let what = match space {
             Some(it) if self.names.is_list(it) => format!("the list `{full}` has no variable `{}`", name.text),

@@ -6,6 +6,7 @@
 use super::checker::Checker;
 use super::method::is_this;
 use super::operand::Operand;
+use super::operator::Sides;
 use super::place::{Access, Found};
 use crate::names::{Entry, Found as Meant, Meaning, Sense};
 use crate::types::window::Window;
@@ -178,7 +179,7 @@ impl<'s> Checker<'_, 's> {
         let mut reference = Expr::new(ty, ExprKind::AddressOf(Box::new(place.clone())), at);
         if bytes > 0 {
             let bytes = Operand::Integer(bytes.into());
-            reference = self.advance(Operand::Typed(reference), bytes, BinaryOp::Add, expr.span)?;
+            reference = self.advance(Operand::Typed(reference), (bytes, expr.span), BinaryOp::Add, expr.span)?;
         }
         self.decl.note_referred(place.ty);
         Some(self.told_apart(reference, &place, expr.span))
@@ -538,7 +539,8 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// Comparison and arithmetic where one side is a reference.
-    pub(crate) fn reference_operation(&mut self, op: BinaryOp, a: Operand, b: Operand, span: Span) -> Option<Operand> {
+    pub(crate) fn reference_operation(&mut self, sides: Sides) -> Option<Operand> {
+        let Sides { op, a, b, left, right, span, op_span: _, hint: _ } = sides;
         let of_interface = |it: &Operand| it.ty().is_some_and(|ty| self.decl.interface_of(ty).is_some());
         if super::operator::compares(op) && (of_interface(&a) || of_interface(&b)) {
             let fits = |it: &Operand| match it {
@@ -552,11 +554,11 @@ impl<'s> Checker<'_, 's> {
         }
         let made = match (a.is_reference(), b.is_reference(), op) {
             (_, _, BinaryOp::Eq | BinaryOp::Ne | BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge) => {
-                self.compare_addresses(op, a, b, span)
+                self.compare_addresses(op, (a, left), (b, right), span)
             }
             (true, true, BinaryOp::Sub) => self.distance(a, b, span),
-            (true, false, BinaryOp::Add | BinaryOp::Sub) => self.advance(a, b, op, span),
-            (false, true, BinaryOp::Add) => self.advance(b, a, op, span),
+            (true, false, BinaryOp::Add | BinaryOp::Sub) => self.advance(a, (b, right), op, span),
+            (false, true, BinaryOp::Add) => self.advance(b, (a, left), op, span),
             _ => {
                 let operands = [&a, &b].map(|it| it.ty().map_or("a number".to_owned(), |ty| self.type_name(ty)));
                 let message = format!("`{}` does not take {} and {}", op.text(), operands[0], operands[1]);
@@ -595,8 +597,8 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    fn compare_addresses(&mut self, op: BinaryOp, a: Operand, b: Operand, span: Span) -> Option<Expr> {
-        let (a, b) = (self.as_address(a, span)?, self.as_address(b, span)?);
+    fn compare_addresses(&mut self, op: BinaryOp, a: (Operand, Span), b: (Operand, Span), span: Span) -> Option<Expr> {
+        let (a, b) = (self.as_address(a.0, a.1)?, self.as_address(b.0, b.1)?);
         let op = super::operator::comparison(op);
         self.apply(op, Type::Elementary(Elementary::Lword), vec![a, b], Type::BOOL, span)
     }
@@ -642,14 +644,14 @@ impl<'s> Checker<'_, 's> {
             }
             other => other,
         };
-        let mut moved = self.advance(Operand::Typed(pointer), steps, BinaryOp::Add, index.span)?;
+        let mut moved = self.advance(Operand::Typed(pointer), (steps, index.span), BinaryOp::Add, index.span)?;
         self.save("pointer", &mut moved);
         let ExprKind::Load(place) = moved.kind else { return None };
         self.followed(Found { place: Place { ty, ..place }, view: None, access: Access::Write }, id, index.span)
     }
 
     /// A reference moved by a number of bytes.
-    fn advance(&mut self, reference: Operand, by: Operand, op: BinaryOp, span: Span) -> Option<Expr> {
+    fn advance(&mut self, reference: Operand, (by, place): (Operand, Span), op: BinaryOp, span: Span) -> Option<Expr> {
         let Operand::Typed(reference) = reference else { return None };
         if self.decl.interface_of(reference.ty).is_some() {
             self.report_interface(reference.ty, "a reference is moved by bytes", span);
@@ -659,7 +661,7 @@ impl<'s> Checker<'_, 's> {
             Operand::Typed(value) if matches!(value.ty, Type::Elementary(it) if it.repr().is_integer() && !it.is_time()) => {
                 self.convert(Conversion::Value, Type::LINT, value)
             }
-            other => self.coerce(other, Type::LINT, span)?,
+            other => self.coerce(other, Type::LINT, place)?,
         };
         let by = match op {
             BinaryOp::Sub => self.apply(Op::Neg, Type::LINT, vec![by], Type::LINT, span)?,

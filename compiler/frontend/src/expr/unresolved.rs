@@ -17,7 +17,7 @@ pub(crate) fn not_constant(span: Span) -> Diagnostic {
 /// `CSCAPE.CTUD`: the family has no such block.
 pub(crate) fn no_such_block(family: Family, name: ast::Name<'_>) -> Diagnostic {
     let own = BLOCKS.iter().filter(|it| it.family == family && it.facts.option.is_none());
-    let names: Vec<_> = own.map(|it| it.name).collect();
+    let names: Vec<_> = own.map(|it| it.name).filter(|it| !it.starts_with("__")).collect();
     let owner = family.name();
     let error = Diagnostic::new(Code::E0309, name.span, format!("{owner} documents no `{}`", name.text))
         .label(format!("not a block of {owner}"));
@@ -198,6 +198,10 @@ impl<'s> Checker<'_, 's> {
             self.report(error);
             return;
         }
+        if let Some(space) = self.decl.names.space_at(self.decl.site(name.span), &[name]) {
+            self.report(self.decl.only_a_namespace(Code::E0101, space, name.text, name.span));
+            return;
+        }
         let block = self.decl.bare_block(name).is_some();
         let message = if block {
             format!("`{}` is a FUNCTION_BLOCK, not an instance of one", name.text)
@@ -240,12 +244,15 @@ impl<'s> Checker<'_, 's> {
         let own = self.scope.variables.iter().map(|it| it.name.text);
         // Each search goes through all names: where there are as many mistakes, no one reads what each may have meant.
         let searched = if self.decl.log.diagnostics.len() < 1000 { usize::MAX } else { 0 };
-        let near = nearest(name.text, own.chain(self.decl.names.all()).take(searched));
+        let others = own.chain(self.decl.names.all()).take(searched).filter(|it| Key(it) != Key(name.text));
+        let near = nearest(name.text, others);
         let enumerators = self.decl.names.enumerators.keys().map(|key| key.0);
         let near =
             near.or_else(|| nearest(name.text, enumerators)).or_else(|| nearest(name.text, CONSTANTS.into_iter()));
         if let Some((_, help)) = FOREIGN.iter().find(|(it, _)| it.eq_ignore_ascii_case(name.text)) {
             error = error.help(*help);
+        } else if let Some(hint) = self.decl.hint_of_namespace(name) {
+            error = error.help(hint);
         } else if let Some(near) = near {
             error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
         } else if functions::exists(name.text) {

@@ -19,11 +19,10 @@ pub(crate) fn widens(from: Elementary, to: Elementary) -> bool {
         return LONG_FORMS.contains(&(from, to));
     }
     match (from.repr().range(), to.repr().range()) {
-        (Some(from), Some(to)) => from.0 >= to.0 && from.1 <= to.1,
+        (Some(from), Some((low, high))) => (low..=high).contains(&from.0) && (low..=high).contains(&from.1),
         // A REAL holds 24 bits exactly, an LREAL 53.
-        (Some(_), None) => from.repr().size() * 2 <= to.repr().size(),
+        (_, None) => from.repr().size() < to.repr().size(),
         (None, Some(_)) => false,
-        (None, None) => from.repr().size() <= to.repr().size(),
     }
 }
 
@@ -60,7 +59,7 @@ pub(crate) fn join_in(dialect: Dialect) -> Join {
 
 /// Logix makes a REAL of an integer beside one (1756-RM003, "Convert Integer to REAL").
 fn join_in_logix(a: Elementary, b: Elementary) -> Option<Elementary> {
-    let is_integer = |it: Elementary| it.is_integer() && it.repr().size() <= 4;
+    let is_integer = |it: Elementary| it.is_integer() && it.repr().size() < 8;
     match (a, b) {
         (Elementary::Real, other) | (other, Elementary::Real) if is_integer(other) => Some(Elementary::Real),
         _ => join_promoted(a, b),
