@@ -244,8 +244,10 @@ impl<'s> Declarations<'s> {
 
     /// Reports a name with underlines where the standard has none.
     pub(super) fn check_spelling(&mut self, name: ast::Name<'s>) {
-        // The compiler's own name, or one of Logix that is no name here.
-        let is_made = self.dialect(name.span) == Dialect::Logix && self.log.sources.get(name.span.file).is_assembled();
+        // The compiler's own name, one of Logix that is no name here, or one that SCL has in quotes.
+        let source = self.log.sources.get(name.span.file);
+        let is_logix = self.dialect(name.span) == Dialect::Logix;
+        let is_made = source.is_assembled() && (is_logix || !source.is_verbatim(name.span));
         if is_made || self.log.sources.text(name.span) != name.text {
             return;
         }
