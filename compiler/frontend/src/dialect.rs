@@ -212,7 +212,7 @@ impl Dialect {
         matches!(self, Self::Siemens)
     }
 
-    /// ADR takes a CONSTANT.
+    /// ADR takes a CONSTANT, and a BIT that is the first of its byte.
     pub const fn has_addresses_of_constants(self) -> bool {
         matches!(self, Self::Codesys)
     }

@@ -125,7 +125,10 @@ impl<'s> Checker<'_, 's> {
 
     /// A reference to a variable.
     pub(crate) fn reference_to(&mut self, expr: &ast::Expr<'s>, kind: RefKind) -> Option<Expr> {
-        let found = self.place_or_view(expr)?;
+        let mut found = self.place_or_view(expr)?;
+        if self.decl.dialect(expr.span).has_addresses_of_constants() {
+            found.view = found.view.map(byte_of_a_bit);
+        }
         let target = self.type_of(&found);
         let mut bytes = 0;
         let found = match found.view {
@@ -670,4 +673,10 @@ impl<'s> Checker<'_, 's> {
         let moved = self.apply(Op::Advance, lword, vec![bits, by], lword, span)?;
         Some(self.convert(Conversion::Same, ty, moved))
     }
+}
+
+/// A BIT that is the first of its byte has that one's address; what is selected of a variable has none.
+fn byte_of_a_bit(view: Window) -> Window {
+    let has_one = view.is_bit && !view.is_selected && view.address.is_none() && view.bit.is_multiple_of(8);
+    if has_one { Window { ty: Type::Elementary(Elementary::Byte), is_bit: false, ..view } } else { view }
 }
