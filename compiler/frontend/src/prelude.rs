@@ -149,6 +149,11 @@ pub(crate) const UNITS: &[Unit] = units! {
     Function "F_RTrim"          "f_rtrim"          [Codesys: Tc2_Utilities] "T_MaxString";
     Function "LEN2"             "len2"             [Codesys: Tc2_Utilities];
     Function "CONCAT2"          "concat2"          [Codesys: Tc2_Utilities] "LEN2";
+    Function "WLEN2"            "wlen2"            [Codesys: Tc2_Utilities];
+    Function "WCONCAT2"         "wconcat2"         [Codesys: Tc2_Utilities] "WLEN2";
+    Function "STRNCPY"          "strncpy"          [Codesys: Tc2_Utilities] "LEN2";
+    Function "WSTRNCPY"         "wstrncpy"         [Codesys: Tc2_Utilities] "WLEN2";
+    Function "LrealIsNaN"       "lrealisnan"       [Codesys: Tc2_Utilities];
     Function "BYTE_TO_HEXSTR"   "byte_to_hexstr"   [Codesys: Tc2_Utilities] "LWORD_TO_HEXSTR";
     Function "WORD_TO_HEXSTR"   "word_to_hexstr"   [Codesys: Tc2_Utilities] "LWORD_TO_HEXSTR";
     Function "DWORD_TO_HEXSTR"  "dword_to_hexstr"  [Codesys: Tc2_Utilities] "LWORD_TO_HEXSTR";
