@@ -217,6 +217,11 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
+    /// A PROPERTY may be a statement of its own, for what its GET does.
+    pub const fn reads_properties_alone(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
     /// METHODs of an instance's internal instances may be called from outside.
     pub const fn calls_inner_methods(self) -> bool {
         matches!(self, Self::Codesys)
