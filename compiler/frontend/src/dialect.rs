@@ -212,7 +212,7 @@ impl Dialect {
         matches!(self, Self::Siemens)
     }
 
-    /// ADR takes a CONSTANT, and a BIT that is the first of its byte.
+    /// ADR takes a CONSTANT, and a BIT of a UNION.
     pub const fn has_addresses_of_constants(self) -> bool {
         matches!(self, Self::Codesys)
     }
