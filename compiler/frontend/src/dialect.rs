@@ -212,8 +212,13 @@ impl Dialect {
         matches!(self, Self::Siemens)
     }
 
-    /// ADR takes a CONSTANT.
+    /// ADR takes a CONSTANT, and a BIT of a UNION.
     pub const fn has_addresses_of_constants(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
+    /// A PROPERTY may be a statement of its own, for what its GET does.
+    pub const fn reads_properties_alone(self) -> bool {
         matches!(self, Self::Codesys)
     }
 

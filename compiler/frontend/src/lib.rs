@@ -47,7 +47,7 @@ pub use options::Options;
 pub use source::{Source, Sources, Span};
 pub use syntax::{parse, parse_file};
 pub use testing::{Assertion, Fixture, FixtureCase, Suite, Test};
-pub use types::coverage::{CoverageKind, CoveragePoint, Decision, Formula};
+pub use types::coverage::{Condition, CoverageKind, CoveragePoint, Decision, Formula};
 pub use vendor::Reference;
 
 use lex::{Declared, Known, Subject};

@@ -31,6 +31,10 @@ impl Unit {
     pub fn is_function(&self) -> bool {
         self.use_ == Use::Function
     }
+
+    pub fn is_value(&self) -> bool {
+        self.use_ == Use::Value
+    }
 }
 
 /// What a unit declares, and so where its name is its own.
@@ -38,6 +42,8 @@ impl Unit {
 enum Use {
     Type,
     Function,
+    /// A global constant.
+    Value,
     /// A NAMESPACE, `System.Timer`, with all that is in it.
     Space,
     /// The same, where a program adds to what is in it.
@@ -54,6 +60,9 @@ const MOCKING: &str = "AxUnit.Mocking";
 
 /// The namespace of what is handed on for an input of ANY, and its members.
 const ANY: &str = "__SYSTEM";
+/// The list of global variables of TwinCAT's libraries.
+pub(crate) const LIST: &str = "Global_Variables";
+
 const OF_ANY: [&str; 3] = ["TypeClass", "pValue", "diSize"];
 
 macro_rules! units {
@@ -72,6 +81,13 @@ macro_rules! units {
     };
     (@text $file:literal) => {
         include_str!(concat!("prelude/", $file, ".st"))
+    };
+}
+
+/// The text of a unit that is a constant.
+macro_rules! constant {
+    ($name:ident, $type:ident, $value:literal) => {
+        concat!("VAR_GLOBAL CONSTANT ", stringify!($name), " : ", stringify!($type), " := ", $value, "; END_VAR\n")
     };
 }
 
@@ -133,6 +149,11 @@ pub(crate) const UNITS: &[Unit] = units! {
     Function "F_RTrim"          "f_rtrim"          [Codesys: Tc2_Utilities] "T_MaxString";
     Function "LEN2"             "len2"             [Codesys: Tc2_Utilities];
     Function "CONCAT2"          "concat2"          [Codesys: Tc2_Utilities] "LEN2";
+    Function "WLEN2"            "wlen2"            [Codesys: Tc2_Utilities];
+    Function "WCONCAT2"         "wconcat2"         [Codesys: Tc2_Utilities] "WLEN2";
+    Function "STRNCPY"          "strncpy"          [Codesys: Tc2_Utilities] "LEN2";
+    Function "WSTRNCPY"         "wstrncpy"         [Codesys: Tc2_Utilities] "WLEN2";
+    Function "LrealIsNaN"       "lrealisnan"       [Codesys: Tc2_Utilities];
     Function "BYTE_TO_HEXSTR"   "byte_to_hexstr"   [Codesys: Tc2_Utilities] "LWORD_TO_HEXSTR";
     Function "WORD_TO_HEXSTR"   "word_to_hexstr"   [Codesys: Tc2_Utilities] "LWORD_TO_HEXSTR";
     Function "DWORD_TO_HEXSTR"  "dword_to_hexstr"  [Codesys: Tc2_Utilities] "LWORD_TO_HEXSTR";
@@ -173,6 +194,20 @@ pub(crate) const UNITS: &[Unit] = units! {
     Function "LMOD"             "lmod"             [Codesys: Tc2_Math];
     Function "MODABS"           "modabs"           [Codesys: Tc2_Math] "LMOD";
     Function "MODTURNS"         "modturns"         [Codesys: Tc2_Math] "MODABS";
+    Function "ADSLOGSTR"        "adslogstr"        [Codesys: Tc2_System] "__AdsLog";
+    Function "ADSLOGDINT"       "adslogdint"       [Codesys: Tc2_System] "__AdsLog";
+    Function "ADSLOGLREAL"      "adsloglreal"      [Codesys: Tc2_System] "__AdsLog";
+    Function "__AdsLog"         "adslog"           [Codesys];
+    Value "ADSLOG_MSGTYPE_HINT"     (constant!(ADSLOG_MSGTYPE_HINT, DWORD, "16#01"))     [Codesys: Tc2_System];
+    Value "ADSLOG_MSGTYPE_WARN"     (constant!(ADSLOG_MSGTYPE_WARN, DWORD, "16#02"))     [Codesys: Tc2_System];
+    Value "ADSLOG_MSGTYPE_ERROR"    (constant!(ADSLOG_MSGTYPE_ERROR, DWORD, "16#04"))    [Codesys: Tc2_System];
+    Value "ADSLOG_MSGTYPE_LOG"      (constant!(ADSLOG_MSGTYPE_LOG, DWORD, "16#10"))      [Codesys: Tc2_System];
+    Value "ADSLOG_MSGTYPE_MSGBOX"   (constant!(ADSLOG_MSGTYPE_MSGBOX, DWORD, "16#20"))   [Codesys: Tc2_System];
+    Value "ADSLOG_MSGTYPE_RESOURCE" (constant!(ADSLOG_MSGTYPE_RESOURCE, DWORD, "16#40")) [Codesys: Tc2_System];
+    Value "ADSLOG_MSGTYPE_STRING"   (constant!(ADSLOG_MSGTYPE_STRING, DWORD, "16#80"))   [Codesys: Tc2_System];
+    Value "DEFAULT_ADS_TIMEOUT"     (constant!(DEFAULT_ADS_TIMEOUT, TIME, "T#5s"))       [Codesys: Tc2_System];
+    Value "MAX_STRING_LENGTH"       (constant!(MAX_STRING_LENGTH, UDINT, "255"))         [Codesys: Tc2_System];
+    Value "PI"                      (constant!(PI, LREAL, "3.1415926535897932384626433832795")) [Codesys: Tc2_System];
     Type     "INTEGRAL"         "iec_integral"     [Iec Openplc];
     Type     "DERIVATIVE"       "iec_derivative"   [Iec Openplc];
     Type     "PID"              "iec_pid"          [Iec Openplc] "INTEGRAL" "DERIVATIVE";
@@ -327,6 +362,9 @@ impl Uses {
         let mut heads = Heads::default();
         for (at, kind) in tokens.kinds.iter().enumerate() {
             types.see(*kind);
+            if *kind == Kind::VarGlobal {
+                types.is_qualified = is_qualified_only(&tokens, at);
+            }
             heads.enter(*kind);
             let word = |at: usize| tokens.places.get(at).and_then(|it| text.get(range(*it))).unwrap_or_default();
             if *kind != Kind::Name {
@@ -349,15 +387,20 @@ impl Uses {
             let name = if names_mocking { MOCKING } else { space.as_deref().unwrap_or(word(at)) };
             let Some(any) = units(name).next() else { continue };
             let unit = unit(name, dialect);
-            // `Tc2_System.DRAND`
-            let of_library = at >= 2
-                && dialect == Dialect::Codesys
-                && tokens.kinds[at - 1] == Kind::Dot
-                && unit.is_some_and(|it| is_one_of(it.libraries, word(at - 2)));
-            let first = if of_library { at - 2 } else { at };
+            // `Tc2_System.DRAND`, `Tc2_System.Global_Variables.PI`
+            let is_after = |at: usize| at >= 2 && tokens.kinds[at - 1] == Kind::Dot;
+            let is_of = |owner: usize| unit.is_some_and(|it| is_one_of(it.libraries, word(owner)));
+            let owner = at.checked_sub(2).filter(|_| dialect == Dialect::Codesys && is_after(at));
+            let list = owner.filter(|it| any.is_value() && is_after(*it) && word(*it).eq_ignore_ascii_case(LIST));
+            let first = owner.filter(|it| is_of(*it)).or(list.map(|it| it - 2).filter(|it| is_of(*it))).unwrap_or(at);
             let before = first.checked_sub(1).map(|it| (tokens.kinds[it], word(it)));
             let after = tokens.kinds.get(at + 1).copied();
-            if declares(before, after, &types) && any.use_ != Use::Open {
+            let is_declared = match any.use_ {
+                Use::Type | Use::Function | Use::Space => declares(before, after, &types),
+                Use::Value => declares(before, after, &types) || types.declare_value(before, after),
+                Use::Open => false,
+            };
+            if is_declared {
                 self.declared.insert(any.name);
             } else if let Some(unit) = unit.filter(|it| names(it, before, after)) {
                 self.named.push(Named { unit, at: Span { file, start, end }, dialect });
@@ -386,16 +429,35 @@ impl Uses {
 struct TypeBlock {
     open: bool,
     structures: u32,
+    /// It is a VAR_GLOBAL.
+    is_list: bool,
+    /// What it declares has no name without its list's.
+    is_qualified: bool,
 }
 
 impl TypeBlock {
     fn see(&mut self, kind: Kind) {
         match kind {
-            Kind::Type | Kind::VarGlobal => (self.open, self.structures) = (true, 0),
+            Kind::Type | Kind::VarGlobal => {
+                *self = Self { open: true, is_list: kind == Kind::VarGlobal, ..Self::default() };
+            }
             Kind::EndType | Kind::EndVar => self.open = false,
             Kind::Struct => self.structures += 1,
             Kind::EndStruct => self.structures = self.structures.saturating_sub(1),
             _ => {}
+        }
+    }
+
+    /// Whether a name between these tokens is a global variable, or a member of an enumeration.
+    fn declare_value(&self, before: Option<(Kind, &str)>, after: Option<Kind>) -> bool {
+        let before = before.map(|it| it.0);
+        if !self.open || self.structures > 0 || self.is_qualified {
+            false
+        } else if self.is_list {
+            let is_first = !matches!(before, Some(Kind::Assign | Kind::OpenBracket | Kind::OpenParen));
+            is_first && matches!(after, Some(Kind::Colon | Kind::Comma | Kind::At))
+        } else {
+            matches!(before, Some(Kind::OpenParen | Kind::Comma))
         }
     }
 }
@@ -436,6 +498,13 @@ impl Heads {
     }
 }
 
+/// Whether what a VAR_GLOBAL declares is named by its list alone: `{attribute 'qualified_only'}` is before it.
+fn is_qualified_only(tokens: &Tokens<'_>, at: usize) -> bool {
+    let from = at.checked_sub(1).map_or(0, |it| tokens.places[it].1);
+    let here = tokens.pragmas.iter().filter(|it| (from..tokens.places[at].0).contains(&it.span.start));
+    here.into_iter().any(|it| it.text.contains("qualified_only"))
+}
+
 /// Whether a name between these tokens is declared there.
 fn declares(before: Option<(Kind, &str)>, after: Option<Kind>, types: &TypeBlock) -> bool {
     let Some((before, word)) = before else { return false };
@@ -447,7 +516,10 @@ fn declares(before: Option<(Kind, &str)>, after: Option<Kind>, types: &TypeBlock
                 ["PUBLIC", "INTERNAL", "PRIVATE", "PROTECTED", "FINAL", "ABSTRACT", "CLASS", "INTERFACE", "NAMESPACE"];
             words.iter().any(|it| word.eq_ignore_ascii_case(it))
         }
-        _ => types.open && types.structures == 0 && after == Some(Kind::Colon) && before != Kind::Comma,
+        _ => {
+            let is_open = types.open && types.structures == 0 && !types.is_qualified;
+            is_open && after == Some(Kind::Colon) && before != Kind::Comma
+        }
     }
 }
 
@@ -457,6 +529,8 @@ fn names(unit: &Unit, before: Option<(Kind, &str)>, after: Option<Kind>) -> bool
     match unit.use_ {
         Use::Space | Use::Open => !is_after(Kind::Dot),
         Use::Function => after == Some(Kind::OpenParen) && !is_after(Kind::Dot),
+        // A variable of the name, `PI : REAL`, is another one.
+        Use::Value => !is_after(Kind::Dot) && !matches!(after, Some(Kind::Colon | Kind::OpenParen | Kind::Dot)),
         Use::Type => {
             let is_type = is_after(Kind::Colon) || is_after(Kind::Of) || is_after(Kind::To);
             let extends = before.is_some_and(|it| it.1.eq_ignore_ascii_case("EXTENDS"));
@@ -532,6 +606,7 @@ mod tests {
                 Use::Type => format!("VAR_GLOBAL it : {}; END_VAR", unit.name),
                 Use::Space | Use::Open => format!("USING {};", unit.name),
                 Use::Function => format!("PROGRAM Main {}(); END_PROGRAM", unit.name),
+                Use::Value => format!("VAR_GLOBAL it : ARRAY[0..1] OF LREAL := [{}]; END_VAR", unit.name),
             };
             let mut sources = Sources::default();
             sources.add(Source::new("main.st", call));

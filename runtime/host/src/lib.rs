@@ -18,6 +18,7 @@ mod value;
 
 mod column;
 mod expected;
+mod messages;
 mod retain;
 mod schedule;
 mod start;

@@ -3,6 +3,7 @@
 use crate::column::columns;
 use crate::json::quote;
 use crate::map::Map;
+use crate::messages::Messages;
 use crate::path::{nearest, same};
 use crate::retain::{Pace, Retention};
 use crate::schedule::Schedule;
@@ -175,6 +176,7 @@ pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Su
         fresh: vec![true; map.instances.len()],
         retention: None,
         start: Start::of(map),
+        messages: Messages::of(map),
         epoch: 0,
         out: Output { rows: 0, trace: None, table: Table::new(terminal::width()) },
         clock: None,
@@ -243,6 +245,7 @@ struct Runner<'a> {
     fresh: Vec<bool>,
     retention: Option<Retention>,
     start: Start,
+    messages: Messages,
     /// The program's clock at this run's time 0: a retained timer goes on where it stood.
     epoch: Time,
     out: Output,
@@ -326,18 +329,23 @@ impl Runner<'_> {
         }
         self.stimulate(number, now)?;
         let began = self.clock.as_ref().map(|_| Instant::now());
+        let mut ran = Ok(());
         for instance in self.schedule.advance(now, placed.is_some()) {
             let first_scan = std::mem::take(&mut self.fresh[*instance]);
             let turns = self.options.loop_budget.unwrap_or(Context::TURNS);
             let cx = Context::new(self.epoch.saturating_add(now), first_scan).with_turns(turns);
-            let end = self.machine.scan(*instance, &cx);
-            end.map_err(|fault| Error::Fault {
+            ran = self.machine.scan(*instance, &cx).map_err(|fault| Error::Fault {
                 fault,
                 scan: number,
                 instance: self.map.instances[*instance].name.clone(),
                 path: self.map.file(fault.at.file).to_owned(),
-            })?;
+            });
+            if ran.is_err() {
+                break;
+            }
         }
+        self.tell(number)?;
+        ran?;
         if let (Some(clock), Some(began)) = (&mut self.clock, began) {
             clock.figures.add(began.elapsed());
         }
@@ -348,6 +356,18 @@ impl Runner<'_> {
         }
         self.record(subject, now)?;
         Ok(Some(now))
+    }
+
+    /// Says on standard error, or as JSON, what the program has logged.
+    fn tell(&mut self, scan: u64) -> Result<(), Error> {
+        for message in self.messages.take(self.map, self.machine.state()) {
+            if self.options.json {
+                self.options.print_json(&message.json(scan))?;
+            } else if !self.options.quiet {
+                crate::error::tell(message.line(scan));
+            }
+        }
+        Ok(())
     }
 
     /// Events and values that come before scan `number`.

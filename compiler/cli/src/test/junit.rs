@@ -33,7 +33,9 @@ fn case(result: &Result, title: &str) -> String {
     if result.problem.is_empty() {
         return format!("{head}/>\n");
     }
-    let what = escaped(result.problem.get(1).unwrap_or(&result.problem[0]));
+    // Of a fault the second line is what the source says there.
+    let told = result.problem.get(usize::from(!result.faulted)).unwrap_or(&result.problem[0]);
+    let what = escaped(told);
     let kind = if result.faulted { "fault" } else { "assertion" };
     let details = escaped(&result.problem.join("\n"));
     format!("{head}>\n      <failure type=\"{kind}\" message=\"{what}\">{details}</failure>\n    </testcase>\n")
@@ -49,7 +51,7 @@ fn escaped(text: &str) -> String {
             '>' => out += "&gt;",
             '"' => out += "&quot;",
             '\n' => out += "&#10;",
-            it if it.is_control() => {}
+            it if it.is_control() || matches!(it, '\u{fffe}' | '\u{ffff}') => {}
             it => out.push(it),
         }
     }

@@ -278,3 +278,49 @@ fn every_error_of_every_command_is_an_object_on_request() {
         assert!(!error["message"].as_str().unwrap().is_empty(), "{command}");
     }
 }
+
+#[test]
+fn what_a_program_logs_is_printed_after_the_scan() {
+    let logs = "{dialect 'codesys'} PROGRAM Main
+VAR n : DINT; i : DINT; zero : DINT; END_VAR
+n := n + 1;
+IF n = 2 THEN ADSLOGSTR(ADSLOG_MSGTYPE_ERROR, 'pump %s', 'P7'); ADSLOGDINT(ADSLOG_MSGTYPE_WARN, '%d \"parts\"', 3); END_IF
+IF n = 3 THEN FOR i := 1 TO 18 DO ADSLOGDINT(0, '%d', i); END_FOR END_IF
+IF n = 4 THEN ADSLOGSTR(ADSLOG_MSGTYPE_HINT, 'before the fault', ''); n := n / zero; END_IF
+END_PROGRAM
+";
+    let restart = "scan,@event\n3,restart\n4,\n";
+    let folder = Folder::with("logs", &[("main.st", logs), ("in.csv", restart)]);
+    let told = folder.staunch("run main.st --scans 3").err(0);
+    let of_scan_2 = "log, scan 2: error: pump P7\nlog, scan 2: warning: 3 \"parts\"\n";
+    has(&told, &[of_scan_2, "\nlog, scan 3: note: 2 messages before these are not kept\nlog, scan 3: message: 3\n"]);
+    assert!(told.ends_with("log, scan 3: message: 18\n"), "{told}");
+    let fault = folder.staunch("run main.st").err(3);
+    has(&fault, &["log, scan 4: hint: before the fault\nerror: "]);
+    assert_eq!(folder.staunch("run main.st --scans 3 -q").err(0), "");
+    let json = folder.staunch("run main.st --scans 2 --message-format json").out(0);
+    has(&json, &["{\"reason\":\"log\",\"scan\":2,\"kind\":\"warning\",\"message\":\"3 \\\"parts\\\"\"}\n"]);
+    // After a power cycle the counts begin anew.
+    assert_eq!(
+        folder.staunch("run main.st --stimulus in.csv").err(0),
+        format!("{of_scan_2}{}", of_scan_2.replace('2', "4"))
+    );
+}
+
+#[test]
+fn a_unit_test_looks_at_what_is_logged() {
+    let source = "{dialect 'codesys'} FUNCTION_BLOCK Pump
+VAR_INPUT on : BOOL; END_VAR
+IF on THEN ADSLOGSTR(ADSLOG_MSGTYPE_HINT, 'pump %s', 'P7'); END_IF
+END_FUNCTION_BLOCK
+";
+    let test = "{dialect 'codesys'} TEST 'logs'
+VAR pump : Pump; END_VAR
+pump(on := FALSE); pump(on := TRUE);
+ASSERT_EQ(__AdsLogCount, 1);
+ASSERT_EQ(__AdsLogTexts[0], 'pump P7');
+END_TEST
+";
+    let folder = Folder::with("logs_of_tests", &[("pump.st", source), ("pump_test.st", test)]);
+    has(&folder.staunch("test .").out(0), &["1 passed, 0 failed"]);
+}

@@ -217,6 +217,14 @@ TEST 'bad' ASSERT_EQ(Sum(1, 2), 4); END_TEST
 }
 
 #[test]
+fn a_fault_says_which_one_for_machines() {
+    let tests = "TEST 'halves' VAR none : INT; END_VAR\nnone := 1 / none;\nEND_TEST\n";
+    let folder = Folder::with("tests_junit_fault", &[("halves.st", tests)]);
+    folder.staunch("test . --junit out.xml").out(1);
+    has(&folder.read("out.xml"), &["<failure type=\"fault\" message=\"halves.st:2:11: division by zero\">"]);
+}
+
+#[test]
 fn tests_of_one_title_are_two_for_machines() {
     let tests = "TEST 'same' ASSERT_TRUE(TRUE); END_TEST
 TEST 'same' ASSERT_TRUE(FALSE); END_TEST

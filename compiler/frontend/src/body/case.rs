@@ -182,13 +182,29 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
+    /// In `codesys` a member of an enumeration may be a label though the selector's type does not hold it: it is never
+    /// chosen, which a lint says in place of the error.
+    fn is_beyond_the_selector(&mut self, label: &ast::Expr<'s>, reported: usize) -> bool {
+        let is_named = label.path().is_some() && self.decl.dialect(label.span).mixes_bits_and_integers();
+        let [error] = &self.decl.log.diagnostics[reported..] else { return false };
+        if !is_named || error.code != Code::E0202 {
+            return false;
+        }
+        let why = error.message.clone();
+        self.decl.log.diagnostics.truncate(reported);
+        self.report(Diagnostic::new(Code::W0512, label.span, "this CASE label is never chosen").label(why));
+        true
+    }
+
     fn label_value(&mut self, expr: &ast::Expr<'s>, ty: Type) -> Option<i128> {
         let reported = self.decl.log.diagnostics.len();
         let around = std::mem::replace(&mut self.context, Context::Constant);
         let value = self.value(expr, ty);
         self.context = around;
         let Some(value) = value else {
-            self.label_of_another_type(reported, ty);
+            if !self.is_beyond_the_selector(expr, reported) {
+                self.label_of_another_type(reported, ty);
+            }
             return None;
         };
         let number = value.as_const().and_then(Value::as_integer);

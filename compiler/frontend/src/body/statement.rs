@@ -157,6 +157,9 @@ impl<'s> Checker<'_, 's> {
 
     fn report_missing_call(&mut self, expr: &ast::Expr<'s>) {
         let Some(found) = self.place(expr) else { return };
+        if self.decl.dialect(expr.span).reads_properties_alone() && self.property(expr).is_some() {
+            return;
+        }
         let text = self.decl.log.sources.text(expr.span).to_owned();
         let instance = match found.place.ty {
             Type::Block(_) => true,

@@ -1,7 +1,7 @@
 //! Inputs of ANY and the like as CODESYS has them: the body gets no value, but the argument's class of type, its address
 //! and its size, as a structure. So it is where a body asks for one of these, in FUNCTION_BLOCKs, and in METHODs
 //! without a body; what has to have the same parameters as such a METHOD, or hands an input of its own on to
-//! one, has them, too. Other FUNCTIONs and METHODs are generic.
+//! one, or to what takes an `__SYSTEM.AnyType`, has them, too. Other FUNCTIONs and METHODs are generic.
 
 use crate::ast::{self, ExprKind as Ast, PouKind, VarKind};
 use crate::spelling::Key;
@@ -30,9 +30,12 @@ impl<'s> Declarations<'s> {
         let Some(structure) = all.position(|it| is_it(it.decl.name)) else { return };
         self.table.any.structure = Some(structure);
         let mut candidates = self.candidates(bodies);
+        let takers: Vec<_> =
+            self.pous.iter().filter(|it| takes_structures(it.ast)).map(|it| Key(it.ast.name.text)).collect();
         loop {
             let known = candidates.iter().filter(|it| it.is_one);
-            let known: FxHashSet<_> = known.flat_map(|it| [(it.name, None), (it.name, it.family)]).collect();
+            let known = known.flat_map(|it| [(it.name, None), (it.name, it.family)]);
+            let known: FxHashSet<_> = known.chain(takers.iter().map(|it| (*it, None))).collect();
             let mut is_more = false;
             for it in candidates.iter_mut().filter(|it| !it.is_one) {
                 let is_kin = it.family.is_some() && known.contains(&(it.name, it.family));
@@ -93,6 +96,14 @@ impl<'s> Declarations<'s> {
         }
         (0..parents.len()).map(|it| top(&mut parents, it)).collect()
     }
+}
+
+/// Whether a POU has a parameter that is what is handed on for an ANY.
+fn takes_structures(pou: &ast::Pou<'_>) -> bool {
+    let parameters = pou.blocks.iter().filter(|it| matches!(it.kind, VarKind::Input | VarKind::InOut));
+    let is_one = |it: &ast::Name<'_>| it.text.eq_ignore_ascii_case("AnyType");
+    let mut variables = parameters.flat_map(|it| &it.vars);
+    variables.any(|it| matches!(&it.ty.kind, ast::TypeKind::Named(path) if path.last().is_some_and(is_one)))
 }
 
 /// The inputs of a POU whose whole type is ANY or the like.

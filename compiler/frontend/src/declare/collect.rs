@@ -200,12 +200,21 @@ impl<'s> Declarations<'s> {
             );
             return;
         }
-        let Some(first) = self.clash(space, name.text, entry) else {
+        let first = self.clash(space, name.text, entry);
+        // A library brings its PROGRAMs along, and names are its user's first.
+        if first.is_some() && self.is_program_of_library(entry) {
+            return;
+        }
+        let Some(first) = first.filter(|it| !self.is_program_of_library(*it)) else {
             self.names.insert(space, name.text, entry, internal);
             return;
         };
         let first = self.span_of(first);
         self.report(declared_twice(name, first));
+    }
+
+    fn is_program_of_library(&self, entry: Entry) -> bool {
+        matches!(entry, Entry::Pou(at) if self.pous[at].ast.kind == ast::PouKind::Program && self.is_of_library(at))
     }
 
     /// What is in the way of a new name. A global may have the name of a type, `motor : Motor`, and two
@@ -244,8 +253,10 @@ impl<'s> Declarations<'s> {
 
     /// Reports a name with underlines where the standard has none.
     pub(super) fn check_spelling(&mut self, name: ast::Name<'s>) {
-        // The compiler's own name, or one of Logix that is no name here.
-        let is_made = self.dialect(name.span) == Dialect::Logix && self.log.sources.get(name.span.file).is_assembled();
+        // The compiler's own name, one of Logix that is no name here, or one that SCL has in quotes.
+        let source = self.log.sources.get(name.span.file);
+        let is_logix = self.dialect(name.span) == Dialect::Logix;
+        let is_made = source.is_assembled() && (is_logix || !source.is_verbatim(name.span));
         if is_made || self.log.sources.text(name.span) != name.text {
             return;
         }

@@ -88,12 +88,9 @@ impl<'s> Declarations<'s> {
                 .label(label)
                 .help("initial values are after `:=`: `: Type := (member := value)`"),
             );
-        } else if is_array != construction.is_of_elements {
-            let label = match is_array {
-                true => "write one list for each element: `[(…), (…)]`",
-                false => "write one list: `(…)`",
-            };
-            self.report(Diagnostic::new(Code::E0304, construction.span, "FB_init runs for each instance").label(label));
+        } else if !is_array && construction.is_of_elements {
+            let error = Diagnostic::new(Code::E0304, construction.span, "FB_init runs for each instance");
+            self.report(error.label("write one list: `(…)`"));
         }
     }
 

@@ -28,9 +28,6 @@ const OF_LOGIX: [&str; 15] = [
 /// Operators, whose operands may be what is no value elsewhere.
 const OPERATORS: [&str; 4] = ["ADRINST", "BITADR", "INDEXOF", "__VARINFO"];
 
-/// Functions of Tc2_Utilities.
-const FUNCTIONS: [&str; 1] = ["WCONCAT2"];
-
 /// Variables that the system has.
 const VARIABLES: [&str; 1] = ["__CURRENTTASK"];
 
@@ -45,10 +42,6 @@ pub(crate) fn library_of_type(dialect: Dialect, name: &str) -> Option<&'static s
 
 pub(crate) fn is_operator(dialect: Dialect, name: &str) -> bool {
     dialect == Dialect::Codesys && is_one_of(&OPERATORS, name)
-}
-
-pub(crate) fn is_function(dialect: Dialect, name: &str) -> bool {
-    is_operator(dialect, name) || dialect == Dialect::Codesys && is_one_of(&FUNCTIONS, name)
 }
 
 pub(crate) fn is_variable(dialect: Dialect, name: &str) -> bool {

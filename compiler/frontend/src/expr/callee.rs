@@ -294,7 +294,7 @@ fn typed_function(name: &str) -> Option<String> {
 
 /// Functions of the standard's tables, and of CODESYS, that are known to be missing.
 fn not_yet(name: &str, dialect: dialect::Dialect) -> bool {
-    if missing::is_function(dialect, name) {
+    if missing::is_operator(dialect, name) {
         return true;
     }
     let name = name.to_ascii_uppercase();

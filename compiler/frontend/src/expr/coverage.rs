@@ -4,7 +4,7 @@
 use crate::Span;
 use crate::ast::{self, BinaryOp, ExprKind as Ast, PouKind};
 use crate::expr::checker::Checker;
-use crate::types::coverage::{CoverageKind, CoveragePoint, Decision, Formula, Sort};
+use crate::types::coverage::{Condition, CoverageKind, CoveragePoint, Decision, Formula, Sort};
 use crate::types::declarations::Declarations;
 use crate::types::table::Resolved;
 use staunch_ir::{
@@ -16,6 +16,9 @@ const COUNT: Type = Type::Elementary(Elementary::Udint);
 
 /// A decision with more conditions counts as one condition: its table would be too large.
 const MOST_CONDITIONS: usize = 10;
+
+/// The name of what an AND_THEN or OR_ELSE gives, among the temporaries.
+pub(crate) const JOINED: &str = "both";
 
 /// The conditions of a decision, from left to right.
 #[derive(Default)]
@@ -119,8 +122,9 @@ impl<'s> Checker<'_, 's> {
 
     /// An arm of a CASE, by its first label, or that no label holds the value, by the CASE.
     pub(crate) fn count_arm(&mut self, label: Option<Span>, case: Span) {
+        let at = self.at(case);
         match label {
-            Some(label) => self.count_point(Sort::Arm, CoverageKind::Arm, label),
+            Some(label) => self.count_point(Sort::Arm, CoverageKind::Arm(at), label),
             None => self.count_point(Sort::Otherwise, CoverageKind::Otherwise, case),
         }
     }
@@ -162,8 +166,9 @@ impl<'s> Checker<'_, 's> {
         let Some(rows) = u32::try_from(all.len()).ok().filter(|it| *it > 0).map(|it| 1_i64 << it) else { return };
         let places: Vec<_> = all.iter().map(|it| start(it)).collect();
         let branches = branch.is_some();
-        let key = if branches { places.iter().copied().chain([Location::default()]).collect() } else { places.clone() };
-        let conditions = if is_known { Vec::new() } else { places };
+        let key = if branches { places.iter().copied().chain([Location::default()]).collect() } else { places };
+        let condition = |it: &&Expr| Condition { at: start(it), is_joined: self.is_joined(it) };
+        let conditions = if is_known { Vec::new() } else { all.iter().map(condition).collect() };
         let kind = CoverageKind::Decision(Decision { branches, conditions, formula });
         let counters = self.decl.counters(rows);
         let at = branch.unwrap_or_else(|| start(value));
@@ -174,6 +179,12 @@ impl<'s> Checker<'_, 's> {
         let place = counter_place(field, counters).index(row, COUNT, value.at);
         self.block.push(one_more(place, value.at));
         all.into_iter().for_each(|it| self.count_within(it));
+    }
+
+    /// Whether it is what an AND_THEN or OR_ELSE gives.
+    fn is_joined(&self, condition: &Expr) -> bool {
+        let ExprKind::Load(Place { root: Root::Local(local), .. }) = condition.kind else { return false };
+        self.locals[local.index()].name == JOINED
     }
 
     /// Counts the decisions inside of what is no decision itself.

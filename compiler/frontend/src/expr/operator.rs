@@ -1,6 +1,7 @@
 //! Operators: the type at which two sides meet, and what is computed there.
 
 use super::checker::{Checker, Context};
+use super::coverage::JOINED;
 use super::operand::{Operand, computed};
 use crate::types::coercion::{Join, as_number, is_narrow, join, join_in};
 use crate::{Code, Diagnostic, Span, ast};
@@ -450,7 +451,7 @@ impl<'s> Checker<'_, 's> {
             return Some(known);
         }
         let at = self.at(span);
-        let result = self.temporary("both", Type::BOOL);
+        let result = self.temporary(JOINED, Type::BOOL);
         self.block.push(Statement::assign(result.clone(), a, at));
         let mut decide = evaluate;
         decide.push(Statement::assign(result.clone(), b, at));

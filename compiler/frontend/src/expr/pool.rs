@@ -193,6 +193,20 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn type_named(&mut self, named: &ast::Expr<'s>) -> Option<Type> {
+        if let Some(word) = ["STRING", "WSTRING"].into_iter().find(|it| is_named(named, it)) {
+            self.report(
+                Diagnostic::new(
+                    Code::E0413,
+                    named.span,
+                    format!("a {word} has no pool that `__NEW` could take it from"),
+                )
+                .label("a program has no heap")
+                .help(format!(
+                    "make it a member: `{{pool 16}} TYPE Text : STRUCT value : {word}(80); END_STRUCT END_TYPE`"
+                )),
+            );
+            return None;
+        }
         let ty = self.type_of_path(named);
         // What is no expression has been reported.
         if ty.is_none() && !matches!(named.kind, ast::ExprKind::Error(_)) && !self.reports_unknown_type(named) {

@@ -184,15 +184,18 @@ impl<'s> crate::types::declarations::Declarations<'s> {
         around: &[ast::Name<'s>],
         name: ast::Name<'s>,
     ) -> Option<Diagnostic> {
-        let [owner] = around else { return None };
+        let (owner, between) = around.split_first()?;
         let site = self.site(name.span);
+        let is_list = matches!(between, [it] if it.text.eq_ignore_ascii_case(prelude::LIST));
+        if !between.is_empty() && !is_list {
+            return None;
+        }
         if !self.names.is_library(site, owner.text) {
             return None;
         }
         let (library, text) = (owner.text, name.text);
-        // Nothing that is bundled is a variable.
         let is_value = code == Code::E0101;
-        let unit = prelude::unit(text, site.dialect).filter(|_| !is_value);
+        let unit = prelude::unit(text, site.dialect).filter(|it| it.is_value() == is_value);
         let built_in = if is_value { &[] } else { library::of_built_in(text) };
         let libraries = unit.map_or(built_in, |it| it.libraries);
         let error = Diagnostic::new(code, owner.span.to(name.span), format!("the library `{library}` has no `{text}`"));

@@ -126,7 +126,12 @@ impl<'s> Checker<'_, 's> {
 
     /// A reference to a variable.
     pub(crate) fn reference_to(&mut self, expr: &ast::Expr<'s>, kind: RefKind) -> Option<Expr> {
-        let found = self.place_or_view(expr)?;
+        let mut found = self.place_or_view(expr)?;
+        if let Some(view) = found.view.as_mut().filter(|it| it.is_bit)
+            && self.is_of_a_union(expr)
+        {
+            (view.ty, view.is_bit) = (Type::Elementary(Elementary::Byte), false);
+        }
         let target = self.type_of(&found);
         let mut bytes = 0;
         let found = match found.view {
@@ -183,6 +188,16 @@ impl<'s> Checker<'_, 's> {
         }
         self.decl.note_referred(place.ty);
         Some(self.told_apart(reference, &place, expr.span))
+    }
+
+    /// Whether it is a BIT that starts where another member does, as in a UNION: CODESYS gives it the address of its byte.
+    fn is_of_a_union(&self, expr: &ast::Expr<'s>) -> bool {
+        let Ast::Member(owner, name) = &expr.bare().kind else { return false };
+        let Some(Type::Struct(id)) = self.static_type(owner) else { return false };
+        let overlays = &self.decl.program.structure(id).overlays;
+        let own = overlays.iter().find(|it| it.name.eq_ignore_ascii_case(name.text));
+        let is_shared = own.is_some_and(|own| overlays.iter().any(|it| it.name != own.name && it.bit == own.bit));
+        is_shared && self.decl.dialect(expr.span).has_addresses_of_constants()
     }
 
     /// Whether a reference may lead to a view: it begins with a byte, and where addresses share bits it is aligned as what

@@ -246,6 +246,10 @@ impl<'s> Checker<'_, 's> {
     /// Starts what a declaration declares.
     fn start_declared(&mut self, place: Place, declared: Option<&'s ast::VarDecl<'s>>, value: Const, span: Span) {
         let construction = declared.and_then(|it| it.construction.as_deref());
+        if construction.is_some_and(|it| it.is_of_elements) && !matches!(place.ty, Type::Array(_)) {
+            // Lists for elements that there are not have been reported.
+            return;
+        }
         let arguments = construction.filter(|it| !it.is_of_elements).and_then(|it| it.lists.first());
         let given = Given {
             arguments: arguments.map_or(&[], Vec::as_slice),

@@ -291,11 +291,16 @@ pub(crate) struct Conversion {
     pub from: Option<Converted>,
     pub to: Converted,
     pub how: How,
+    /// `ANY_TO_INT`, which is TO_INT.
+    of_any: bool,
 }
 
 impl Conversion {
     /// Whose it is, if it is a vendor's.
     fn owner(self) -> Option<Dialect> {
+        if self.of_any {
+            return CODESYS;
+        }
         match self.how {
             How::Rounds(Rounding::ToEven | Rounding::Up | Rounding::Down) => SIEMENS,
             How::Rounds(Rounding::ToZero) | How::Value | How::FromBcd | How::ToBcd => None,
@@ -356,6 +361,9 @@ pub(crate) fn conversion(name: &str) -> Option<Conversion> {
     if let Some((from, to)) = name.split_once("_TRUNC_") {
         return made(How::Rounds(Rounding::ToZero), from, to);
     }
+    if let Some(to) = name.strip_prefix("ANY_TO_") {
+        return Some(Conversion { of_any: true, ..made(How::Value, "", to)? });
+    }
     let (from, to) = name.split_once("_TO_").or_else(|| Some(("", name.strip_prefix("TO_")?)))?;
     match (from.strip_suffix("BCD"), to.strip_prefix("BCD_")) {
         (Some(from), None) => made(How::FromBcd, from.strip_suffix('_').unwrap_or(from), to),
@@ -380,7 +388,7 @@ fn made(how: How, from: &str, to: &str) -> Option<Conversion> {
         "" => None,
         from => Some(named(from, takes)?),
     };
-    Some(Conversion { from, to: named(to, gives)?, how })
+    Some(Conversion { from, to: named(to, gives)?, how, of_any: false })
 }
 
 /// Some of the elementary types.

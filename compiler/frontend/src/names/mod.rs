@@ -232,7 +232,9 @@ impl<'s> Names<'s> {
     /// What a library has. What is bundled in Structured Text is declared as what users write is.
     fn of_library(&self, dialect: Dialect, of: &str, name: &str, sense: Sense) -> Option<Meaning> {
         if prelude::unit(name, dialect).is_some_and(|it| library::is_one_of(it.libraries, of)) {
-            return self.spaces[SpaceId::ROOT.0].own.get(&Key(name))?.of(sense).map(Meaning::Declared);
+            let own = self.spaces[SpaceId::ROOT.0].own.get(&Key(name)).and_then(|it| it.of(sense));
+            let listed = || self.in_lists(name).first().map(|it| it.1).filter(|_| sense == Sense::Value);
+            return own.or_else(listed).map(Meaning::Declared);
         }
         self.library(dialect, name, sense).filter(|_| library::is_one_of(library::of_built_in(name), of))
     }
@@ -245,6 +247,9 @@ impl<'s> Names<'s> {
     fn qualified(&self, site: Site, first: &str, between: &[ast::Name<'_>], last: &str, sense: Sense) -> Found {
         let found = match self.prefix(site, first) {
             Some(Prefix::Space(space)) => return self.in_space(site, space, between, last, sense),
+            Some(Prefix::Library(of)) if is_list_of_a_library(between) => {
+                self.of_library(site.dialect, &of, last, sense).filter(|_| sense == Sense::Value)
+            }
             _ if !between.is_empty() => None,
             Some(Prefix::Enumeration(slot)) => Some(Meaning::Enumerator(slot)),
             Some(Prefix::Globals) => return self.global(site, last),
@@ -539,6 +544,11 @@ pub(crate) fn libraries(sources: &Sources) -> Vec<String> {
 }
 
 /// What a family's name before `name` makes of it.
+/// `Tc2_System.Global_Variables.PI`
+fn is_list_of_a_library(between: &[ast::Name<'_>]) -> bool {
+    matches!(between, [it] if it.text.eq_ignore_ascii_case(prelude::LIST))
+}
+
 fn in_family(family: Family, name: &str, sense: Sense) -> Option<Meaning> {
     match sense {
         // What all systems share needs no family of its own.

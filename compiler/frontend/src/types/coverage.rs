@@ -16,8 +16,8 @@ pub struct CoveragePoint {
 pub enum CoverageKind {
     /// How often the statement was begun.
     Statement,
-    /// How often the arm of a CASE that begins with this label was chosen.
-    Arm,
+    /// How often the arm that begins with this label was chosen, of the CASE that begins there.
+    Arm(Location),
     /// How often no label of a CASE held the value.
     Otherwise,
     /// For each row of values of its conditions, how often it was evaluated with these. The first condition
@@ -30,9 +30,16 @@ pub enum CoverageKind {
 pub struct Decision {
     /// What is executed next depends on it: the condition of an IF, ELSIF, WHILE or UNTIL.
     pub branches: bool,
-    /// Where each begins.
-    pub conditions: Vec<Location>,
+    pub conditions: Vec<Condition>,
     pub formula: Formula,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub struct Condition {
+    /// Where it begins.
+    pub at: Location,
+    /// It is what an AND_THEN or OR_ELSE gives, whose operands begin there, too.
+    pub is_joined: bool,
 }
 
 /// How the conditions make the decision.

@@ -461,7 +461,7 @@ impl<'s> Declarations<'s> {
             Slot::Done(signature) => Some(Rc::clone(signature)),
             Slot::Failed => None,
             Slot::Open => {
-                let error = own_type(self.pous[at].ast);
+                let error = own_type(self.pous[at].ast, &self.pous);
                 self.report(error);
                 None
             }
@@ -663,20 +663,37 @@ pub(crate) fn empty_program(files: Vec<SourceFile>) -> Program {
     }
 }
 
-/// A block that needs its own type, in a variable that is part of it or in an in-out.
-fn own_type(pou: &ast::Pou<'_>) -> Diagnostic {
+/// A block that needs its own type, in a variable that is part of it or in an in-out: its own, or one of a block that it
+/// holds, or that holds it.
+fn own_type(pou: &ast::Pou<'_>, all: &[PouSlot<'_>]) -> Diagnostic {
     let name = pou.name;
-    let is_own = |it: &&ast::VarDecl<'_>| match &it.ty.kind {
-        ast::TypeKind::Named(path) => path.last().is_some_and(|it| Key(it.text) == Key(name.text)),
-        _ => false,
-    };
-    let mut in_outs = pou.blocks.iter().filter(|it| it.kind == ast::VarKind::InOut).flat_map(|it| &it.vars);
-    if let Some(in_out) = in_outs.find(is_own) {
+    if let Some(in_out) = of_type(pou, name, true) {
         let message = format!("`{}` cannot have a VAR_IN_OUT of its own type", name.text);
-        return Diagnostic::new(Code::E0402, in_out.ty.span, message)
+        return Diagnostic::new(Code::E0402, in_out, message)
             .label("the block is not declared yet here")
             .help(format!("take a reference to the other instance: a VAR_INPUT of `REF_TO {}`", name.text));
     }
+    let others = || all.iter().map(|it| it.ast).filter(|it| it.kind.is_block());
+    let pairs = others().flat_map(|it| [(pou, it), (it, pou)]);
+    for (outer, inner) in pairs {
+        if let (Some(in_out), Some(held)) = (of_type(inner, outer.name, true), of_type(outer, inner.name, false)) {
+            let (outer, inner) = (outer.name.text, inner.name.text);
+            let message = format!("`{inner}`, which `{outer}` holds, cannot have a VAR_IN_OUT of `{outer}`");
+            return Diagnostic::new(Code::E0402, in_out, message)
+                .label(format!("`{outer}` is not declared yet here"))
+                .other(held, "held here")
+                .help(format!("take a reference to the instance: a VAR_INPUT of `REF_TO {outer}`"));
+        }
+    }
     Diagnostic::new(Code::E0402, name.span, format!("`{}` contains an instance of itself", name.text))
         .label("its size would be endless")
+}
+
+/// Where a block has a variable of the named type: an in-out, or one that it holds.
+fn of_type(pou: &ast::Pou<'_>, name: ast::Name<'_>, is_in_out: bool) -> Option<Span> {
+    let blocks = pou.blocks.iter().filter(|it| (it.kind == ast::VarKind::InOut) == is_in_out);
+    let is_it = |it: &ast::Name<'_>| Key(it.text) == Key(name.text);
+    let is_of_it =
+        |it: &&ast::VarDecl<'_>| matches!(&it.ty.kind, ast::TypeKind::Named(path) if path.last().is_some_and(is_it));
+    blocks.flat_map(|it| &it.vars).find(is_of_it).map(|it| it.ty.span)
 }

@@ -277,8 +277,17 @@ impl<'t> Scl<'t> {
                 }
             }
             Kind::Literal => self.literal(place),
-            Kind::Word if after_dot => self.timer(at, place),
-            Kind::Word => self.word(at, place),
+            Kind::Word => {
+                if after_dot {
+                    self.timer(at, place.clone());
+                } else {
+                    self.word(at, place.clone());
+                }
+                if !self.text(at).is_ascii() {
+                    let name = self.name(at);
+                    self.replace(place, &name);
+                }
+            }
             Kind::Other => self.sign(at, place),
             Kind::Address => {}
         }
@@ -364,7 +373,7 @@ impl<'t> Scl<'t> {
             }
             _ if !self.is_body && self.declares(at) => {
                 let ty = self.text(self.after(at) + 1).to_ascii_lowercase();
-                self.locals.insert(word.to_ascii_lowercase(), ty);
+                self.locals.insert(self.name(at).to_ascii_lowercase(), ty);
             }
             _ if self.text(at.wrapping_sub(1)) == ":" && is_counter(&word) => {
                 let message = format!(

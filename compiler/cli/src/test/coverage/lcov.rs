@@ -1,8 +1,8 @@
 //! Coverage as lcov's tools and most CI systems read it.
 
-use super::{File, Way, text};
+use super::{Branch, Condition, File, Way};
 use crate::session::Session;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 pub fn text(session: &Session, files: &[File]) -> String {
     let mut text = String::new();
@@ -27,32 +27,45 @@ fn lines(file: &File, text: &mut String) {
     *text += &format!("LF:{}\nLH:{}\n", lines.len(), lines.values().filter(|it| **it > 0).count());
 }
 
+/// A decision is a block with its branches, on the line where it begins; `-` says that it was never reached.
 fn branches(file: &File, text: &mut String) {
-    for (number, branch) in file.branches.iter().enumerate() {
-        let taken = if matches!(branch.way, Way::If(_)) && branch.reached == 0 {
-            "-".to_owned()
-        } else {
-            branch.taken.to_string()
+    let mut blocks: BTreeMap<(u32, u16), Vec<&Branch>> = BTreeMap::new();
+    for branch in &file.branches {
+        let at = match branch.way {
+            Way::If(_) | Way::Otherwise => branch.at,
+            Way::Label(case) => case,
         };
-        // The block is the decision; both of its branches are numbered in it.
-        let (block, own) = match branch.way {
-            Way::If(false) => (number - 1, 1),
-            Way::If(true) | Way::Label | Way::Otherwise => (number, 0),
-        };
-        *text += &format!("BRDA:{},{block},{own},{taken}\n", branch.at.line);
+        blocks.entry((at.line, at.column)).or_default().push(branch);
+    }
+    for (block, ((line, _), branches)) in blocks.iter().enumerate() {
+        let is_reached = branches.iter().any(|it| it.taken > 0);
+        for (number, branch) in branches.iter().enumerate() {
+            let taken = if is_reached { branch.taken.to_string() } else { "-".to_owned() };
+            *text += &format!("BRDA:{line},{block},{number},{taken}\n");
+        }
     }
     let hit = file.branches.iter().filter(|it| it.taken > 0).count();
     *text += &format!("BRF:{}\nBRH:{hit}\n", file.branches.len());
 }
 
-/// For each condition, whether it decided when it was TRUE, and when it was FALSE.
+/// For each condition, whether it decided when it was TRUE, and when it was FALSE. A decision is where its first condition
+/// is. lcov knows the decisions of a line by how many conditions they have: where two have as many, those of the line are
+/// one.
 fn conditions(session: &Session, file: &File, text: &mut String) {
-    for condition in &file.conditions {
-        let written = text::condition(session, condition.at, false).replace(',', " ");
-        for (sense, value) in [("t", 1), ("f", 0)] {
-            let taken = condition.decided[value];
-            let (line, of, number) = (condition.at.line, condition.of, condition.number);
-            *text += &format!("MCDC:{line},{of},{sense},{taken},{number},{written}\n");
+    let mut lines: BTreeMap<u32, Vec<&[Condition]>> = BTreeMap::new();
+    for decision in file.conditions.chunk_by(|a, b| a.decision == b.decision) {
+        lines.entry(decision[0].at.line).or_default().push(decision);
+    }
+    for (line, decisions) in lines {
+        let sizes: BTreeSet<usize> = decisions.iter().map(|it| it.len()).collect();
+        let is_clear = sizes.len() == decisions.len();
+        let all: usize = decisions.iter().map(|it| it.len()).sum();
+        for (number, condition) in decisions.iter().copied().flatten().enumerate() {
+            let (of, number) = if is_clear { (condition.of, condition.number) } else { (all, number) };
+            let written = condition.text(session).replace(',', " ");
+            for (sense, taken) in [("t", condition.decided[1]), ("f", condition.decided[0])] {
+                *text += &format!("MCDC:{line},{of},{sense},{taken},{number},{written}\n");
+            }
         }
     }
     if !file.conditions.is_empty() {

@@ -13,6 +13,7 @@ use staunch_ir::{Location, Program, Type};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
+use text::Extent;
 
 /// The counts of a program's points, summed over its runs.
 #[derive(Debug)]
@@ -71,10 +72,10 @@ fn key(point: &CoveragePoint) -> Key {
     let Location { file, line, column } = point.at;
     let (sort, conditions) = match &point.kind {
         CoverageKind::Statement => (0, Vec::new()),
-        CoverageKind::Arm => (1, Vec::new()),
+        CoverageKind::Arm(_) => (1, Vec::new()),
         CoverageKind::Otherwise => (4, Vec::new()),
         CoverageKind::Decision(it) => {
-            (if it.branches { 2 } else { 3 }, it.conditions.iter().map(|it| (it.line, it.column)).collect())
+            (if it.branches { 2 } else { 3 }, it.conditions.iter().map(|it| (it.at.line, it.at.column)).collect())
         }
     };
     (file, line, column, sort, conditions)
@@ -104,8 +105,8 @@ struct Branch {
 enum Way {
     /// The condition has this value.
     If(bool),
-    /// A label of a CASE holds the value.
-    Label,
+    /// A label of the CASE that begins there holds the value.
+    Label(Location),
     /// No label does.
     Otherwise,
 }
@@ -124,6 +125,13 @@ struct Condition {
     is_shown: bool,
     /// It is alone, and what is said of it as a branch says it all.
     is_branch: bool,
+    extent: Extent,
+}
+
+impl Condition {
+    fn text(&self, session: &Session) -> String {
+        text::condition(session, self.at, self.extent)
+    }
 }
 
 impl Branch {
@@ -211,7 +219,9 @@ impl File {
         let count: u64 = counts.iter().sum();
         match &point.kind {
             CoverageKind::Statement => self.statements.push((at, count)),
-            CoverageKind::Arm => self.branches.push(Branch { at, way: Way::Label, taken: count, reached: count }),
+            CoverageKind::Arm(case) => {
+                self.branches.push(Branch { at, way: Way::Label(*case), taken: count, reached: count });
+            }
             CoverageKind::Otherwise => {
                 self.branches.push(Branch { at, way: Way::Otherwise, taken: count, reached: count });
             }
@@ -229,7 +239,7 @@ impl File {
             }
         }
         let number_of_decision = self.conditions.last().map_or(0, |it| it.decision + 1);
-        for (number, at) in decision.conditions.iter().copied().enumerate() {
+        for (number, condition) in decision.conditions.iter().enumerate() {
             let value = |row: usize| decision.formula.value(row);
             // The rows in which the condition decides.
             let deciding = |it: &&(usize, u64)| value(it.0) != value(it.0 ^ 1 << number);
@@ -243,13 +253,14 @@ impl File {
             let is_shown = outcomes[0][0] && outcomes[1][1] || outcomes[0][1] && outcomes[1][0];
             let of = decision.conditions.len();
             self.conditions.push(Condition {
-                at,
+                at: condition.at,
                 decision: number_of_decision,
                 number,
                 of,
                 decided,
                 is_shown,
                 is_branch: of == 1 && decision.branches,
+                extent: if condition.is_joined { Extent::Joined } else { Extent::Condition },
             });
         }
     }
@@ -265,20 +276,20 @@ impl File {
 
     /// What the tests leave open, in the order of the source, each with its place.
     fn open(&self, session: &Session) -> Vec<(Location, String)> {
-        let written = |at, is_whole| text::condition(session, at, is_whole);
+        let whole = |at| text::condition(session, at, Extent::Decision);
         let mut open: Vec<(Location, String)> = Vec::new();
         open.extend(self.statements.iter().filter(|it| it.1 == 0).map(|it| (it.0, "not executed".to_owned())));
         for branch in self.branches.iter().filter(|it| it.is_open()) {
             let what = match branch.way {
-                Way::If(true) => format!("never TRUE: {}", written(branch.at, true)),
-                Way::If(false) => format!("never FALSE: {}", written(branch.at, true)),
-                Way::Label => format!("never chosen: {}", written(branch.at, true)),
+                Way::If(true) => format!("never TRUE: {}", whole(branch.at)),
+                Way::If(false) => format!("never FALSE: {}", whole(branch.at)),
+                Way::Label(_) => format!("never chosen: {}", whole(branch.at)),
                 Way::Otherwise => "never without a label that fits".to_owned(),
             };
             open.push((branch.at, what));
         }
         for condition in self.conditions.iter().filter(|it| !it.is_shown && !it.is_branch) {
-            open.push((condition.at, format!("not shown to decide: {}", written(condition.at, false))));
+            open.push((condition.at, format!("not shown to decide: {}", condition.text(session))));
         }
         open.sort_by_key(|it| (it.0.line, it.0.column));
         open
@@ -293,7 +304,8 @@ mod tests {
     fn shown(formula: &Formula, conditions: usize, rows: &[usize]) -> Vec<bool> {
         let mut counts = vec![0; 1 << conditions];
         rows.iter().for_each(|it| counts[*it] += 1);
-        let conditions = vec![Location::default(); conditions];
+        let condition = staunch_frontend::Condition { at: Location::default(), is_joined: false };
+        let conditions = vec![condition; conditions];
         let decision = Decision { branches: true, conditions, formula: formula.clone() };
         let mut file = File {
             number: 0,

@@ -4,62 +4,96 @@ use crate::session::Session;
 use staunch_ir::Location;
 
 /// What ends a decision, and what ends a condition in it, outside of parentheses.
-const ENDS: [&str; 6] = ["THEN", "DO", "OF", "END_REPEAT", "AND_THEN", "OR_ELSE"];
+const ENDS: [&str; 4] = ["THEN", "DO", "OF", "END_REPEAT"];
 const OPERATORS: [&str; 3] = ["AND", "OR", "XOR"];
+const JOINING: [&str; 2] = ["AND_THEN", "OR_ELSE"];
+
+/// How far a text goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    Decision,
+    Condition,
+    /// A condition that an AND_THEN or OR_ELSE gives.
+    Joined,
+}
 
 /// The condition, or the whole decision, as far as it is on its line.
-pub fn condition(session: &Session, at: Location, is_whole: bool) -> String {
+pub fn condition(session: &Session, at: Location, extent: Extent) -> String {
     let file = session.sources.file(at.file);
     let line = file.text.get(file.line_range(at.line)).unwrap_or_default();
     let from: String = line.chars().skip(usize::from(at.column.saturating_sub(1))).collect();
-    from[..end(&from, is_whole)].trim_end().to_owned()
+    from[..end(&from, extent)].trim_end().to_owned()
 }
 
-fn end(text: &str, is_whole: bool) -> usize {
-    let (mut depth, mut quoted, mut word) = (0, false, 0);
+fn end(text: &str, extent: Extent) -> usize {
+    let (mut depth, mut quoted, mut word, mut is_joined) = (0, None, 0, false);
     for (position, character) in text.char_indices() {
         let is_part = character.is_alphanumeric() || character == '_';
-        if !is_part && depth == 0 && !quoted && ends(&text[word..position], is_whole) {
-            return word;
+        if !is_part && depth == 0 && quoted.is_none() {
+            let before = &text[word..position];
+            if ends(before, extent, is_joined) {
+                return word;
+            }
+            is_joined |= is_one(before, &JOINING);
         }
         match character {
-            '\'' => quoted = !quoted,
-            _ if quoted => {}
+            _ if quoted == Some(character) => quoted = None,
+            _ if quoted.is_some() => {}
+            '\'' | '"' => quoted = Some(character),
             '(' | '[' => depth += 1,
             ')' | ']' if depth == 0 => return position,
             ')' | ']' => depth -= 1,
             ';' | ':' => return position,
             ',' if depth == 0 => return position,
-            '&' if depth == 0 && !is_whole => return position,
+            '&' if depth == 0 && extent == Extent::Condition => return position,
             _ => {}
         }
         if !is_part {
             word = position + character.len_utf8();
         }
     }
-    if depth == 0 && ends(&text[word..], is_whole) { word } else { text.len() }
+    if depth == 0 && ends(&text[word..], extent, is_joined) { word } else { text.len() }
 }
 
-fn ends(word: &str, is_whole: bool) -> bool {
-    let is_one = |all: &[&str]| all.iter().any(|it| word.eq_ignore_ascii_case(it));
-    is_one(&ENDS) || !is_whole && is_one(&OPERATORS)
+/// Whether an AND_THEN or OR_ELSE was before the word, is said too.
+fn ends(word: &str, extent: Extent, is_joined: bool) -> bool {
+    let is_operator = match extent {
+        Extent::Decision => false,
+        Extent::Condition => is_one(word, &OPERATORS) || is_one(word, &JOINING),
+        Extent::Joined => is_joined && is_one(word, &OPERATORS),
+    };
+    is_one(word, &ENDS) || is_operator
+}
+
+fn is_one(word: &str, all: &[&str]) -> bool {
+    all.iter().any(|it| word.eq_ignore_ascii_case(it))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::end;
+    use super::{Extent, end};
 
     #[test]
     fn conditions_end_where_their_operators_do() {
-        let cut = |text: &'static str, is_whole| text[..end(text, is_whole)].trim_end();
-        assert_eq!(cut("a.Q AND b THEN", false), "a.Q");
-        assert_eq!(cut("a.Q AND b THEN", true), "a.Q AND b");
-        assert_eq!(cut("x[i, 2] > F(a AND b, ';') OR c THEN", false), "x[i, 2] > F(a AND b, ';')");
-        assert_eq!(cut("b) AND c THEN", false), "b");
-        assert_eq!(cut("done END_REPEAT", true), "done");
-        assert_eq!(cut("ANDROID THEN", false), "ANDROID");
-        assert_eq!(cut("a & b;", false), "a");
-        assert_eq!(cut("a, IN := b", false), "a");
-        assert_eq!(cut("a OR", false), "a");
+        let cut = |text: &'static str, extent| text[..end(text, extent)].trim_end();
+        assert_eq!(cut("a.Q AND b THEN", Extent::Condition), "a.Q");
+        assert_eq!(cut("a.Q AND b THEN", Extent::Decision), "a.Q AND b");
+        assert_eq!(cut("x[i, 2] > F(a AND b, ';') OR c THEN", Extent::Condition), "x[i, 2] > F(a AND b, ';')");
+        assert_eq!(cut("b) AND c THEN", Extent::Condition), "b");
+        assert_eq!(cut("done END_REPEAT", Extent::Decision), "done");
+        assert_eq!(cut("ANDROID THEN", Extent::Condition), "ANDROID");
+        assert_eq!(cut("a & b;", Extent::Condition), "a");
+        assert_eq!(cut("a, IN := b", Extent::Condition), "a");
+        assert_eq!(cut("a OR", Extent::Condition), "a");
+        assert_eq!(cut("text = \"it's\" AND b", Extent::Condition), "text = \"it's\"");
+    }
+
+    #[test]
+    fn what_an_and_then_gives_is_one_condition() {
+        let cut = |text: &'static str, extent| text[..end(text, extent)].trim_end();
+        assert_eq!(cut("a AND_THEN b THEN", Extent::Decision), "a AND_THEN b");
+        assert_eq!(cut("a AND_THEN b", Extent::Condition), "a");
+        assert_eq!(cut("a AND_THEN b OR_ELSE c) AND d", Extent::Joined), "a AND_THEN b OR_ELSE c");
+        assert_eq!(cut("a AND b AND_THEN c XOR d;", Extent::Joined), "a AND b AND_THEN c");
     }
 }

@@ -114,9 +114,29 @@ fn text(rest: &str) -> usize {
     rest.len()
 }
 
-/// A name without its signs; what names cannot have becomes `_`.
+/// A name without its signs. German letters are written as two, so that `Größe` and `Grüße` stay two names; what else
+/// names cannot have becomes `_`.
 pub fn name(token: &str) -> String {
     let inner = token.trim_start_matches('#').trim_matches('"');
-    let plain: String = inner.chars().map(|it| if it.is_ascii_alphanumeric() { it } else { '_' }).collect();
+    let mut plain = String::with_capacity(inner.len());
+    for it in inner.chars() {
+        match (it.is_ascii_alphanumeric(), plain_letters(it)) {
+            (true, _) => plain.push(it),
+            (false, letters) => plain.push_str(letters.unwrap_or("_")),
+        }
+    }
     if plain.starts_with(|it: char| it.is_ascii_digit()) { format!("_{plain}") } else { plain }
+}
+
+fn plain_letters(it: char) -> Option<&'static str> {
+    Some(match it {
+        'ä' => "ae",
+        'ö' => "oe",
+        'ü' => "ue",
+        'Ä' => "Ae",
+        'Ö' => "Oe",
+        'Ü' => "Ue",
+        'ß' | 'ẞ' => "ss",
+        _ => return None,
+    })
 }
