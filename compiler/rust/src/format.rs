@@ -134,7 +134,13 @@ fn heads(text: &str) -> String {
         if whole.len() <= WIDE {
             joined.push_str(&format!("{whole}\n"));
         } else {
-            head.iter().for_each(|it| joined.push_str(&format!("{it}\n")));
+            let broken = head.join("\n");
+            let indent = line.len() - line.trim_start().len();
+            match broken.strip_suffix(") {}").filter(|_| head.len() > 1) {
+                // A body without statements ends on a line of its own then.
+                Some(open) => joined.push_str(&format!("{open}) {{\n{:indent$}}}\n", "")),
+                None => joined.push_str(&format!("{broken}\n")),
+            }
         }
         at += head.len();
     }
