@@ -3,6 +3,7 @@
 use super::checker::{Checker, Context};
 use super::operand::Operand;
 use super::unresolved::not_constant;
+use crate::diagnostic::wording::article;
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Expr, ExprKind, Place, Type};
 
@@ -49,6 +50,20 @@ impl<'s> Checker<'_, 's> {
         );
     }
 
+    /// Whether a METHOD or ACTION of the POU is named where something is assigned, which is refused.
+    fn refuse_routine(&mut self, target: &ast::Expr<'s>) -> bool {
+        let ast::ExprKind::Name(name) = target.kind else { return false };
+        let is_variable = self.scope.get(name.text).is_some() || self.result_variable(name).is_some();
+        let Some(slot) = self.own_routine(name).filter(|_| !is_variable) else { return false };
+        let word = self.decl.pous[slot].ast.kind.word();
+        self.report(
+            Diagnostic::new(Code::E0101, name.span, format!("`{}` is {}", name.text, article(word)))
+                .label("nothing is assigned to it")
+                .help(format!("assign to a variable; a result is assigned in the {word} itself")),
+        );
+        true
+    }
+
     /// What the first of the targets is given, where that `is_read`. Targets are found from left to right, then the value is
     /// computed, and assigned from right to left. It is computed once where a target to the left reads it.
     pub(crate) fn assigned(
@@ -69,7 +84,8 @@ impl<'s> Checker<'_, 's> {
             self.operand(value, None);
             return None;
         }
-        let Some(found) = self.place_or_view(target) else {
+        let found = if self.refuse_routine(target) { None } else { self.place_or_view(target) };
+        let Some(found) = found else {
             // What is left may hold mistakes of its own.
             rest.iter().for_each(|it| drop(self.place(it)));
             self.operand(value, None);
