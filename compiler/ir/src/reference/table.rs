@@ -141,11 +141,10 @@ impl<'p> Builder<'p> {
     }
 
     fn structure(&mut self, size: u64, id: u32, members: &[(u64, Type)]) -> usize {
-        let members: Vec<_> = members.iter().filter(|(_, ty)| self.layout.size(*ty) > 0).copied().collect();
         let mut words = vec![encode::STRUCTURE, word(size), id, position(members.len())];
         for (offset, ty) in members {
-            let node = self.node(ty);
-            words.extend([word(offset), position(node)]);
+            let node = self.node(*ty);
+            words.extend([word(*offset), position(node)]);
         }
         self.push(words)
     }

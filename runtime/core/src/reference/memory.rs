@@ -123,8 +123,9 @@ impl<T: Shared, const N: usize> Shared for [T; N] {
 
     fn find(&self, at: usize, wanted: TypeId) -> Option<&dyn Any> {
         this(self, at, wanted).or_else(|| {
-            let position = at.checked_div(size_of::<T>())?;
-            self.get(position)?.find(at % size_of::<T>(), wanted)
+            // Of elements without bytes one is as good as the other.
+            let position = at.checked_div(size_of::<T>()).unwrap_or(0);
+            self.get(position)?.find(at.checked_rem(size_of::<T>()).unwrap_or(0), wanted)
         })
     }
 }
@@ -212,8 +213,9 @@ macro_rules! shared {
                 let _ = (at, bytes);
             }
 
+            // An instance without variables has no bytes, and lies where it begins.
             fn find(&self, at: usize, wanted: ::core::any::TypeId) -> Option<&dyn ::core::any::Any> {
-                $(if let Some(at) = $crate::reference::inside(at, ::core::mem::offset_of!($name, $field), size_of_val(&self.$field)) {
+                $(if let Some(at) = $crate::reference::inside(at, ::core::mem::offset_of!($name, $field), size_of_val(&self.$field).max(1)) {
                     if let Some(found) = $crate::reference::Shared::find(&self.$field, at, wanted) {
                         return Some(found);
                     }

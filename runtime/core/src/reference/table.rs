@@ -281,10 +281,16 @@ impl<'t> Table<'t> {
         wanted: Wanted,
     ) -> Result<usize, FaultKind> {
         self.check_is_there(memory, bits)?;
-        let (offset, _) = self.locate(bits, distance)?;
+        let (offset, rest) = self.locate_up_to_end(bits, distance)?;
+        // An instance without variables has no bytes, and may be at the object's end.
+        if self.finds(self.around(bits), offset, wanted) {
+            return Ok(offset);
+        }
+        if rest == 0 {
+            return Err(FaultKind::OutsideObject);
+        }
         // What is not within the object may be around it: the structure of which it is the first member.
-        let is_found = self.finds(self.around(bits), offset, wanted) || self.finds(self.whole(), offset, wanted);
-        if is_found { Ok(offset) } else { Err(FaultKind::ForbiddenView) }
+        if self.finds(self.whole(), offset, wanted) { Ok(offset) } else { Err(FaultKind::ForbiddenView) }
     }
 
     /// Whether a variable of this type lies at an offset of what is `found`.
@@ -301,7 +307,7 @@ impl<'t> Table<'t> {
                 }
                 _ => false,
             };
-            if is_it {
+            if is_it || self.has_empty_part(at, offset, wanted) {
                 return true;
             }
             found = self.below(at, offset);
@@ -311,6 +317,12 @@ impl<'t> Table<'t> {
 
     /// The offset in the state, and how many bytes of the object follow.
     fn locate(&self, bits: u64, distance: u64) -> Result<(usize, usize), FaultKind> {
+        self.locate_up_to_end(bits, distance)
+            .and_then(|it| if it.1 == 0 { Err(FaultKind::OutsideObject) } else { Ok(it) })
+    }
+
+    /// The same, where there may be no bytes.
+    fn locate_up_to_end(&self, bits: u64, distance: u64) -> Result<(usize, usize), FaultKind> {
         let reference = Reference::from_bits(bits);
         if reference.object == 0 {
             return Err(FaultKind::NullReference);
@@ -319,7 +331,7 @@ impl<'t> Table<'t> {
         let offset = (u64::from(reference.address) + distance).checked_sub(u64::from(ORIGIN));
         let position = offset.and_then(|it| usize::try_from(it).ok()?.checked_sub(start));
         match position {
-            Some(position) if position < size => Ok((start + position, size - position)),
+            Some(position) if position <= size => Ok((start + position, size - position)),
             Some(_) | None => Err(FaultKind::OutsideObject),
         }
     }
@@ -350,17 +362,34 @@ impl<'t> Table<'t> {
                 self.node(self.word(found.after) as usize, found.start + position * stride)
             }
             encode::STRUCTURE => {
-                let (mut low, mut high) = (0, found.node.second as usize);
-                while low < high {
-                    let middle = low + (high - low) / 2;
-                    if self.word(found.after + 2 * middle) as usize > inside { high = middle } else { low = middle + 1 }
-                }
-                let at = found.after + 2 * low.checked_sub(1)?;
-                let part = self.node(self.word(at + 1) as usize, found.start + self.word(at) as usize)?;
+                let part = self.nth_part(found, self.parts_up_to(found, inside).checked_sub(1)?)?;
                 (offset < part.start + part.node.size).then_some(part)
             }
             _ => None,
         }
+    }
+
+    /// How many parts of a structure begin at a byte of it or before.
+    fn parts_up_to(&self, found: Found, inside: usize) -> usize {
+        let (mut low, mut high) = (0, found.node.second as usize);
+        while low < high {
+            let middle = low + (high - low) / 2;
+            if self.word(found.after + 2 * middle) as usize > inside { high = middle } else { low = middle + 1 }
+        }
+        low
+    }
+
+    fn nth_part(&self, found: Found, number: usize) -> Option<Found> {
+        let at = found.after + 2 * number;
+        self.node(self.word(at + 1) as usize, found.start + self.word(at) as usize)
+    }
+
+    /// Whether an instance without variables is part of a structure, before what holds the byte.
+    fn has_empty_part(&self, found: Found, offset: usize, wanted: Wanted) -> bool {
+        let (encode::STRUCTURE, Wanted::Exact(id)) = (found.node.kind, wanted) else { return false };
+        let parts = (0..self.parts_up_to(found, offset - found.start)).rev();
+        let mut there = parts.map_while(|it| self.nth_part(found, it).filter(|it| it.start == offset));
+        there.any(|it| it.node.size == 0 && it.node.first == id)
     }
 
     /// The variable without parts in what is `found` that holds the byte, or the array of numbers.

@@ -115,7 +115,7 @@ fn changed(text: &str, random: &mut Random) -> String {
     words.concat()
 }
 
-fn change<'t>(words: &mut Vec<&'t str>, random: &mut Random) {
+fn change(words: &mut Vec<&str>, random: &mut Random) {
     match random.below(6) {
         // A statement is missing, there again, or somewhere else.
         0 => {
