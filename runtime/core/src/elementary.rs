@@ -208,9 +208,9 @@ impl Elementary {
     /// and nanoseconds of the long forms of these.
     pub const fn counted_in(self) -> Option<crate::Time> {
         match self {
-            Self::Time | Self::Ltime | Self::Tod => Some(time::MILLISECOND),
+            Self::Time | Self::Tod => Some(time::MILLISECOND),
             Self::Date | Self::Dt => Some(time::SECOND),
-            Self::Ldate | Self::Ltod | Self::Ldt => Some(1),
+            Self::Ltime | Self::Ldate | Self::Ltod | Self::Ldt => Some(1),
             _ => None,
         }
     }

@@ -36,7 +36,7 @@ impl Elementary {
     fn unit(self) -> i128 {
         match self {
             E::Date | E::Dt => SECOND,
-            E::Time | E::Ltime | E::Tod => SECOND / 1000,
+            E::Time | E::Tod => SECOND / 1000,
             _ => 1,
         }
     }

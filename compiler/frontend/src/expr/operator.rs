@@ -194,10 +194,12 @@ impl<'s> Checker<'_, 's> {
                 Some(format!("write the TIME after it: `{b} + {a}`"))
             }
             (Some(Type::Elementary(x)), Some(Type::Elementary(y))) if x.is_duration() && y.is_duration() => {
+                let units = if x == Elementary::Time { "milliseconds" } else { "nanoseconds" };
                 let (a, b) = (format!("{}_TO_LINT({a})", x.name()), format!("{}_TO_LINT({b})", y.name()));
                 match sides.op {
-                    BinaryOp::Div => Some(format!("divide their milliseconds: `{a} / {b}`")),
-                    BinaryOp::Mod => Some(format!("take their milliseconds: `LINT_TO_{}({a} MOD {b})`", x.name())),
+                    _ if x != y => Some("make both of one type: `TIME_TO_LTIME(…)`".to_owned()),
+                    BinaryOp::Div => Some(format!("divide their {units}: `{a} / {b}`")),
+                    BinaryOp::Mod => Some(format!("take their {units}: `LINT_TO_{}({a} MOD {b})`", x.name())),
                     _ => None,
                 }
             }
