@@ -419,7 +419,7 @@ impl<'a> Machine<'a> {
         self.converted_by_name(&value, named(to)?, at)
     }
 
-    /// TIME and numbers meet at milliseconds; of a bit string or an integer BOOL takes the rightmost bit.
+    /// TIME and numbers meet at milliseconds, LTIME and numbers at nanoseconds; of a bit string or an integer BOOL takes the rightmost bit.
     fn converted_by_name(&self, value: &Value<'a>, to: Elementary, at: Span) -> Outcome<Value<'a>> {
         let scalar = value.as_scalar()?;
         let Some(from) = value.ty.base() else { return unknown("a conversion of this type") };
@@ -428,7 +428,8 @@ impl<'a> Machine<'a> {
         }
         let real = from.is_real() || to.is_real();
         let wide = if real { Elementary::Lreal } else { Elementary::Lint };
-        let factor = in_repr(Scalar::I64(MILLISECOND), wide).as_scalar()?;
+        let unit = if [from, to].contains(&Elementary::Ltime) { 1 } else { MILLISECOND };
+        let factor = in_repr(Scalar::I64(unit), wide).as_scalar()?;
         match (from.is_time(), to.is_time()) {
             (true, false) => {
                 let count = self.applied("DIV", wide, &[in_repr(scalar, wide).as_scalar()?, factor], at)?;
