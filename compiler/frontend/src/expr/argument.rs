@@ -5,7 +5,7 @@
 use super::binding::Given;
 use super::checker::Checker;
 use super::operand::Operand;
-use super::order::{Held, Written};
+use super::order::{Held, Turn, Written};
 use super::place::Found;
 use crate::diagnostic::wording::article;
 use crate::types::signature::{Formal, Target};
@@ -24,7 +24,7 @@ pub(crate) enum Role {
     Instance,
     /// It is stored in this field of the instance before the call.
     Stored(FieldId, Type),
-    /// The statement of the call evaluates it, in this turn; the instance's is 0.
+    /// The statement of the call evaluates it, for this parameter.
     Passed(usize),
     /// A string of another capacity than the VAR_IN_OUT's, which is cut where it is too long, or what shares its
     /// bits with others: it goes in by a copy, and comes back so.
@@ -105,14 +105,18 @@ impl Parts {
             let number = |list: &[usize]| list.iter().position(|it| *it == at).unwrap_or_default();
             let (first, last) = match part.role {
                 // Copies come before the call, and need no instance.
-                Role::Instance => ((if stored.is_empty() { call } else { 0 }, 0), call + copied.len() + targets.len()),
-                Role::Stored(_, Type::Array(_) | Type::Struct(_)) => ((number(&stored) + follows, 1), number(&stored)),
-                Role::Stored(..) => ((number(&stored), 1), number(&stored)),
-                Role::Passed(turn) => ((call + follows, turn), call),
-                Role::Copied(..) => ((stored.len() + number(&copied), 0), call + 1 + number(&copied)),
+                Role::Instance => {
+                    ((if stored.is_empty() { call } else { 0 }, Turn::Place), call + copied.len() + targets.len())
+                }
+                Role::Stored(_, Type::Array(_) | Type::Struct(_)) => {
+                    ((number(&stored) + follows, Turn::Value(0)), number(&stored))
+                }
+                Role::Stored(..) => ((number(&stored), Turn::Value(0)), number(&stored)),
+                Role::Passed(parameter) => ((call + follows, Turn::Value(parameter)), call),
+                Role::Copied(..) => ((stored.len() + number(&copied), Turn::Place), call + 1 + number(&copied)),
                 Role::Target(..) | Role::Count(..) => {
                     let at = call + 1 + copied.len() + number(&targets);
-                    ((at, 0), at)
+                    ((at, Turn::Place), at)
                 }
             };
             self.written[at].first = first;
@@ -165,11 +169,11 @@ impl<'s> Checker<'_, 's> {
         &mut self,
         parts: &mut Parts,
         formal: &Formal<'s>,
-        turn: usize,
+        parameter: usize,
         expr: &ast::Expr<'s>,
     ) -> Option<()> {
         if formal.constant {
-            return self.constant_in_out_part(parts, formal, turn, expr);
+            return self.constant_in_out_part(parts, formal, parameter, expr);
         }
         let Found { place, view, .. } = self.after_parts(&mut parts.written, |this| {
             let mut found = this.variable_or_view(expr, formal.name.text)?;
@@ -185,7 +189,7 @@ impl<'s> Checker<'_, 's> {
                 return None;
             }
             Some(view) => self.shared_in_out(formal, &place, view, expr.span)?,
-            None => self.in_out_role(formal, &place, turn, expr.span)?,
+            None => self.in_out_role(formal, &place, parameter, expr.span)?,
         };
         parts.push(Held::Place(place), role, expr.span);
         Some(())
@@ -207,7 +211,13 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// What a call does with the variable given for a VAR_IN_OUT.
-    pub(crate) fn in_out_role(&mut self, formal: &Formal<'s>, place: &Place, turn: usize, span: Span) -> Option<Role> {
+    pub(crate) fn in_out_role(
+        &mut self,
+        formal: &Formal<'s>,
+        place: &Place,
+        parameter: usize,
+        span: Span,
+    ) -> Option<Role> {
         let ty = formal.resolved.ty;
         if let (Type::String(from), Type::String(to)) = (place.ty, ty)
             && from.wide == to.wide
@@ -230,7 +240,7 @@ impl<'s> Checker<'_, 's> {
         }
         self.note_kin(formal, place);
         self.note_passed(place, span, formal.name.span);
-        Some(Role::Passed(turn))
+        Some(Role::Passed(parameter))
     }
 
     /// Notes an instance that may be of another class than is declared, or comes to be if others are.
@@ -316,12 +326,12 @@ impl<'s> Checker<'_, 's> {
         &mut self,
         parts: &mut Parts,
         formal: &Formal<'s>,
-        turn: usize,
+        parameter: usize,
         expr: &ast::Expr<'s>,
     ) -> Option<()> {
         let ty = formal.resolved.ty;
         if self.decl.program.is_open(ty) {
-            return self.open_input_part(parts, formal, turn, expr);
+            return self.open_input_part(parts, formal, parameter, expr);
         }
         let given = self.after_parts(&mut parts.written, |this| {
             let value = this.operand(expr, Some(ty))?;
@@ -348,7 +358,7 @@ impl<'s> Checker<'_, 's> {
             this.assign(copy.clone(), value, expr.span);
             Some(copy)
         })?;
-        parts.push(Held::Place(given), Role::Passed(turn), expr.span);
+        parts.push(Held::Place(given), Role::Passed(parameter), expr.span);
         Some(())
     }
 

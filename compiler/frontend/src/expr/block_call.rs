@@ -120,7 +120,7 @@ impl<'s> Checker<'_, 's> {
                     let number = info.inputs().position(|it| it.name == parameter.name)?;
                     inputs[number] = Some(parts.written.len());
                     let (_, ty) = pin(id, parameter.name)?;
-                    self.pin_part(&mut parts, id, expr, ty, 1 + number)
+                    self.pin_part(&mut parts, id, expr, ty, number)
                 }
                 Given::Output { target: Some(target), negated } => {
                     let (field, ty) = pin(id, parameter.name)?;
@@ -156,7 +156,14 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// Evaluates the next part, what is given for an input of a standard block.
-    fn pin_part(&mut self, parts: &mut Parts, id: BlockId, expr: &ast::Expr<'s>, ty: Type, turn: usize) -> Option<()> {
+    fn pin_part(
+        &mut self,
+        parts: &mut Parts,
+        id: BlockId,
+        expr: &ast::Expr<'s>,
+        ty: Type,
+        parameter: usize,
+    ) -> Option<()> {
         let overload = id.info().facts.overload.filter(|_| self.decl.dialect(expr.span).overloads_timers());
         let value = self.after_parts(&mut parts.written, |this| match this.operand(expr, Some(ty))? {
             Operand::Typed(value) if overload.is_some_and(|it| value.ty == Type::Elementary(it)) => {
@@ -164,7 +171,7 @@ impl<'s> Checker<'_, 's> {
             }
             operand => this.coerce(operand, ty, expr.span),
         })?;
-        parts.push(Held::Value(value), Role::Passed(turn), expr.span);
+        parts.push(Held::Value(value), Role::Passed(parameter), expr.span);
         Some(())
     }
 
@@ -294,7 +301,7 @@ impl<'s> Checker<'_, 's> {
                 }
                 (Target::Param(_), Given::Value(expr)) => {
                     references[at] = Some(parts.written.len());
-                    self.in_out_part(parts, formal, 1 + at, expr)
+                    self.in_out_part(parts, formal, at, expr)
                 }
                 (_, Given::Nothing | Given::Output { .. }) => Some(()),
             };

@@ -218,11 +218,11 @@ impl<'s> Checker<'_, 's> {
         self.is_of_class(formal, expr)?;
         match signature.params[at].mode {
             Mode::Value(_) if formal.section == Section::InOut => {
-                self.polymorphic_part(parts, formal, Role::Passed(1 + at), expr)
+                self.polymorphic_part(parts, formal, Role::Passed(at), expr)
             }
-            Mode::Value(_) => self.value_part(parts, expr, formal.resolved.ty, Role::Passed(1 + at)),
-            Mode::Reference if formal.section == Section::Input => self.open_input_part(parts, formal, 1 + at, expr),
-            Mode::Reference => self.in_out_part(parts, formal, 1 + at, expr),
+            Mode::Value(_) => self.value_part(parts, expr, formal.resolved.ty, Role::Passed(at)),
+            Mode::Reference if formal.section == Section::Input => self.open_input_part(parts, formal, at, expr),
+            Mode::Reference => self.in_out_part(parts, formal, at, expr),
         }
     }
 

@@ -52,7 +52,7 @@ impl<'s> Checker<'_, 's> {
         if formal.section == Section::InOut {
             let place =
                 self.after_parts(&mut parts.written, |this| this.variable_argument(expr, formal.name.text))?.place;
-            parts.push(Held::Place(place), Role::Passed(1 + at), expr.span);
+            parts.push(Held::Place(place), Role::Passed(at), expr.span);
             open.push(Open { part, formal: at, word, operand: None, is_output: false });
             return Some(());
         }
@@ -64,7 +64,7 @@ impl<'s> Checker<'_, 's> {
         let location = self.at(expr.span);
         // A number that has no type yet is one that nothing changes.
         let value = operand.typed().cloned().unwrap_or_else(|| staunch_ir::Expr::bool(false, location));
-        parts.push(Held::Value(value), Role::Passed(1 + at), expr.span);
+        parts.push(Held::Value(value), Role::Passed(at), expr.span);
         open.push(Open { part, formal: at, word, operand: Some(operand), is_output: false });
         Some(())
     }
@@ -185,7 +185,7 @@ impl<'s> Checker<'_, 's> {
                 }
             } else {
                 let place = parts.written[part].place()?.clone();
-                match self.in_out_role(formal, &place, 1 + at, span) {
+                match self.in_out_role(formal, &place, at, span) {
                     Some(role) => parts.parts[part].role = role,
                     None => complete = false,
                 }

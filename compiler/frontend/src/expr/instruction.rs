@@ -65,7 +65,7 @@ impl<'s> Checker<'_, 's> {
                     found = self.tag_part(&mut parts, operand, instructions, name, &tag);
                     found.map(drop)
                 }
-                Given::Value(rung) => self.value_part(&mut parts, rung, Type::BOOL, Role::Passed(1)),
+                Given::Value(rung) => self.value_part(&mut parts, rung, Type::BOOL, Role::Passed(0)),
                 Given::Nothing | Given::Output { .. } => Some(()),
             };
             complete &= made.is_some();

@@ -151,7 +151,7 @@ impl<'s> Checker<'_, 's> {
         &mut self,
         parts: &mut Parts,
         formal: &Formal<'s>,
-        turn: usize,
+        parameter: usize,
         expr: &ast::Expr<'s>,
     ) -> Option<()> {
         let given = self.after_parts(&mut parts.written, |this| {
@@ -161,7 +161,7 @@ impl<'s> Checker<'_, 's> {
             this.assign(copy.clone(), value, expr.span);
             Some(copy)
         })?;
-        parts.push(Held::Place(given), Role::Passed(turn), expr.span);
+        parts.push(Held::Place(given), Role::Passed(parameter), expr.span);
         Some(())
     }
 

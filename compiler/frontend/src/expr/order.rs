@@ -19,19 +19,28 @@ pub(crate) enum Held {
     Place(Place),
 }
 
+/// When a statement of a call evaluates a part of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Turn {
+    /// Places come first: the instance's, those of copies and of assignments.
+    Place,
+    /// What is passed, by its parameter; what is stored.
+    Value(usize),
+}
+
 /// A part of a call, and where the call's statements evaluate it.
 #[derive(Clone, Debug)]
 pub(crate) struct Written {
     pub held: Held,
     /// The first statement that evaluates it, and its turn there.
-    pub first: (usize, usize),
+    pub first: (usize, Turn),
     /// The last one.
     pub last: usize,
 }
 
 impl Written {
     pub fn new(held: Held) -> Self {
-        Self { held, first: (0, 0), last: 0 }
+        Self { held, first: (0, Turn::Place), last: 0 }
     }
 
     pub fn value(&self) -> Option<&Expr> {
