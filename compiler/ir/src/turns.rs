@@ -80,7 +80,7 @@ pub fn linear<'a>(frame: &Frame<'_>, body: &'a [Statement]) -> Option<Linear<'a>
     let known = Known { program: frame.program, loops: &[], checked: &|_| false };
     conditions.into_iter().flat_map(compared).find_map(|(counter, bound, ahead, offset)| {
         let step = only_step(frame, rest, counter).filter(|_| is_private(frame, counter, before))?;
-        let toward = (step > 0) == ahead && !alias::changes(frame, body, bound);
+        let toward = step.is_positive() == ahead && !alias::changes(frame, body, bound);
         let fits = !faults::expr_faults(frame.program, bound) && never_wraps(&known, counter, bound, offset + step);
         (toward && fits).then_some(Linear { counter, step, bound, offset, has_others, test, rest })
     })

@@ -2,7 +2,10 @@
 
 use super::*;
 use crate::fixture::{AT, assign, field, int, lint, load, local, param, program, routine, structure};
-use crate::{Argument, Array, ArrayId, Const, Field, FieldId, LocalId, Mode, ParamId, Routine, RoutineKind};
+use crate::{
+    Argument, Array, ArrayId, Const, Field, FieldId, LocalId, Mode, ParamId, RefKind, RefType, ReferenceId, Routine,
+    RoutineKind,
+};
 
 const PART: Type = Type::Struct(StructId(0));
 const STATE: Type = Type::Struct(StructId(1));
@@ -219,4 +222,43 @@ fn an_index_is_read() {
     let a = parts.index(load(index()), PART, AT).field(FieldId(0), Type::INT);
     assert!(reads(&frame, &load(a.clone()), &index()));
     assert!(changes(&frame, &[assign(index(), lint(1))], &load(a)));
+}
+
+#[test]
+fn what_a_reference_leads_to_is_any_variable_but_one_that_lives_for_a_call() {
+    let mut program = small();
+    program.references = vec![RefType { kind: RefKind::PointerTo, target: Type::INT }];
+    let frame = Frame::of(&program, &program.routines[0]);
+    let pointer = Type::Reference(ReferenceId(0));
+    let through = |root| Place::root(root, pointer).deref(Type::INT, AT);
+    let k = Place::root(Root::Globals, GLOBALS).field(FieldId(0), Type::INT);
+    let own = Place::root(Root::Instance, STATE).field(FieldId(1), Type::INT);
+    let temp = Place::local(LocalId(1), Type::INT);
+    for pointer in [through(Root::Local(LocalId(0))), through(Root::Param(ParamId(0)))] {
+        for (place, meets) in [(&k, Alias::May), (&own, Alias::May), (&pointer, Alias::May), (&temp, Alias::No)] {
+            assert_eq!((alias(&frame, &pointer, place), alias(&frame, place, &pointer)), (meets, meets));
+        }
+    }
+}
+
+#[test]
+fn a_pin_may_be_what_a_parameter_stands_for() {
+    let counter = crate::fixture::counter();
+    let mut program = small();
+    program.structs[2].fields.push(field("counter", counter.ty, Const::Zero));
+    program.routines[0].params.push(param("text", Type::string(9), Mode::Reference));
+    let frame = Frame::of(&program, &program.routines[0]);
+    let block = Place::root(Root::Globals, GLOBALS).field(FieldId(3), counter.ty);
+    // CV and PV are INTs; no pin is a text.
+    assert_eq!(alias(&frame, &Place::root(Root::Param(ParamId(0)), Type::INT), &block), Alias::May);
+    assert_eq!(alias(&frame, &Place::root(Root::Param(ParamId(2)), Type::string(9)), &block), Alias::No);
+}
+
+#[test]
+fn ways_have_fields_in_common_until_they_part() {
+    let way = |numbers: &[u32]| numbers.iter().map(|it| Projection::Field(FieldId(*it))).collect::<Vec<_>>();
+    assert_eq!(common_fields(&way(&[]), &way(&[1])), 0);
+    assert_eq!(common_fields(&way(&[2]), &way(&[1])), 0);
+    assert_eq!(common_fields(&way(&[1, 2]), &way(&[1, 2, 3])), 2);
+    assert_eq!(common_fields(&way(&[1, 2, 4]), &way(&[1, 3, 4])), 1);
 }

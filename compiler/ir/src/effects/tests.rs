@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::fixture::{
-    adder, assign, call_adder, call_counter, call_double, count, int, load, sample, temp, total, wide,
+    adder, assign, call_adder, call_counter, call_double, count, int, load, sample, stmt, temp, total, value, wide,
 };
-use crate::{Conversion, FieldId};
+use crate::{Conversion, FieldId, For, Step, Taking};
 
 const MAIN: usize = 3;
 
@@ -60,4 +60,56 @@ fn globals_are_passed_up() {
     let found = of_main(vec![assign(total(), sum)]);
     assert!(found.uses_globals() && !found.reads.any_global() && found.writes.any_global());
     assert!(!of_main(vec![assign(count(), int(1))]).uses_globals());
+}
+
+#[test]
+fn turns_and_faults_are_passed_up() {
+    let mut program = sample(vec![call_adder(temp())]);
+    program.routines[1].body.push(stmt(StatementKind::Turn));
+    let all = effects(&program, &Rules::PLAIN);
+    for found in [&all[1], &all[MAIN]] {
+        assert_eq!([found.turns, found.context, found.faults, found.reaches], [true, true, true, false]);
+    }
+    assert_eq!([all[0].turns, all[0].context, all[0].faults], [false; 3]);
+    let mut program = sample(vec![call_adder(temp())]);
+    let way = Expr { ty: Type::DINT, kind: ExprKind::AddressOf(Box::new(total())), at: crate::fixture::AT };
+    program.routines[1].body.push(assign(total(), way));
+    let all = effects(&program, &Rules::PLAIN);
+    assert_eq!([all[0].reaches, all[1].reaches, all[MAIN].reaches], [false, true, true]);
+}
+
+#[test]
+fn callees_are_named_once_in_their_order() {
+    let found = of_main(vec![call_adder(temp()), call_double(int(1), temp(), None), call_adder(temp())]);
+    assert_eq!(found.calls, [RoutineId(0), RoutineId(1)]);
+}
+
+/// A FOR loop whose counter goes from `first` to `last`, over a body.
+fn counted(first: i16, last: i16, is_private: bool, body: Vec<Statement>) -> Statement {
+    stmt(StatementKind::For(Box::new(For {
+        counter: count(),
+        first: int(first),
+        last: int(last),
+        step: Step::Constant(1),
+        range: (i16::MIN.into(), i16::MAX.into()),
+        is_private,
+        body,
+        taking: Taking::Each,
+        step_at: crate::fixture::AT,
+    })))
+}
+
+#[test]
+fn a_check_is_dropped_within_the_loop_that_bounds_its_index_and_nowhere_else() {
+    let rules = Rules { drops_checks: true, ..Rules::PLAIN };
+    let faults = |body| effects(&sample(body), &rules).remove(MAIN).faults;
+    let element = || {
+        let index = Expr::convert(Conversion::Value, Type::LINT, load(count()), crate::fixture::AT);
+        assign(value(index, 1), int(1))
+    };
+    assert!(!faults(vec![counted(1, 3, true, vec![element()])]));
+    assert!(faults(vec![counted(1, 4, true, vec![element()])]));
+    assert!(faults(vec![counted(1, 3, false, vec![element()])]));
+    assert!(faults(vec![counted(1, 3, true, vec![]), element()]));
+    assert!(faults(vec![element()]));
 }

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::fixture::{AT, assign, call_adder, count, int, lint, load, local, sample, stmt, temp, total, value, values};
-use crate::{Argument, Array, BoundsId, Const, Elementary, LocalId, RoutineId, Step, Taking, Type, apply};
+use crate::{Argument, Array, BoundsId, Const, Elementary, LocalId, RoutineId, Step, StructId, Taking, Type, apply};
 
 const MAIN: usize = 3;
 
@@ -42,6 +42,15 @@ fn a_counter_is_private_while_nobody_else_can_write_it() {
     assert!(!private(&value(lint(1), 1), vec![]), "elements are not known by a name");
     assert!(!private(&values(), vec![assign(value(lint(1), 1), int(1))]));
     assert!(private(&count(), vec![assign(value(load(count()), 1), int(1)), call_adder(value(lint(1), 1))]));
+}
+
+#[test]
+fn a_variable_of_an_instance_that_is_come_back_to_is_private_where_nothing_is_called() {
+    let mut program = sample(Vec::new());
+    program.reentered.insert(StructId(1));
+    let private = |body: &[Statement]| is_private(&Frame::of(&program, &program.routines[MAIN]), &count(), body);
+    assert!(private(&[]) && private(&[assign(temp(), int(1))]));
+    assert!(!private(&[call_adder(temp())]) && !private(&[assign(count(), int(1))]));
 }
 
 /// What an expression of two counters may be holds for each of their values.

@@ -1,7 +1,7 @@
 //! Which WHILE and REPEAT loops are known to end, and after how many turns.
 
 use super::*;
-use crate::fixture::{AT, add, assign, call_adder, count, flag, int, load, local, sample, stmt, temp, wide};
+use crate::fixture::{AT, add, assign, call_adder, count, flag, int, load, local, sample, stmt, temp, value, wide};
 use crate::{Const, Elementary, For, LocalId, Repr, Step, Taking, Type};
 
 const MAIN: usize = 3;
@@ -65,6 +65,12 @@ fn a_loop_toward_a_bound_is_linear_where_it_cannot_wrap() {
     assert_eq!((counting(Op::Lt, bound(), -1), counting(Op::Gt, bound(), 1)), (None, None));
     assert_eq!((counting(Op::Le, int(9), -1), counting(Op::Ge, int(9), 1)), (None, None));
     assert_eq!((counting(Op::Lt, bound(), 0), counting(Op::Gt, bound(), 0)), (None, None));
+    assert_eq!((counting(Op::Lt, int(9), 0), counting(Op::Gt, int(9), 0)), (None, None));
+    // A bound at the end of the type that the counter comes from.
+    assert_eq!(
+        (counting(Op::Ge, int(i16::MAX), -1), counting(Op::Le, int(i16::MIN), 1)),
+        (Some((-1, 0)), Some((1, 0)))
+    );
     assert_eq!(counting(Op::Ne, bound(), 1), None);
 }
 
@@ -103,6 +109,11 @@ fn only_the_step_may_reach_the_counter_and_nothing_the_bound() {
         (None, None)
     );
     assert_eq!((of(vec![assign(temp(), int(1)), up()]), of(vec![up(), step(Op::Sub, &temp(), 1)])), (None, None));
+    // What is made of another variable is no step.
+    let above = |body| found(&while_loop(compare(Op::Gt, load(count()), load(temp())), body));
+    let one_less = |place| Expr::apply(Op::Sub, Type::INT, vec![load(place), int(1)], AT);
+    assert_eq!(above(vec![assign(count(), one_less(count()))]), Some((-1, 1, false)));
+    assert_eq!(above(vec![assign(count(), one_less(temp()))]), None);
     assert_eq!(of(vec![assign(count(), Expr::apply(Op::Mul, Type::INT, vec![load(count()), int(2)], AT))]), None);
     let then = vec![up()];
     let inside = stmt(StatementKind::If { condition: load(flag()), then, otherwise: Vec::new() });
@@ -292,4 +303,15 @@ fn a_loop_that_nothing_ends_early_takes_its_turns_ahead() {
     let both = Expr::apply(Op::And, Type::BOOL, vec![below(), load(flag())], AT);
     assert_eq!(of(both.clone(), vec![up()]), (Taking::EachOfMany, 3));
     assert_eq!(of(both, vec![up(), inner()]), (Taking::Each, 4));
+}
+
+#[test]
+fn a_body_is_as_large_as_what_it_does() {
+    let size = |statement: Statement| size::size(&[statement]);
+    assert_eq!(size(assign(count(), int(1))), 1);
+    assert_eq!(size(assign(count(), add(load(temp()), int(1)))), 3);
+    assert_eq!(size(assign(value(load(temp()), 1), int(1))), 1 + 4 + 1);
+    assert_eq!(size(assign(count(), load(value(int(1), 1)))), 1 + 1 + 4);
+    assert_eq!(size(call_adder(count())), 16);
+    assert_eq!(size(turn()), 0);
 }
