@@ -192,3 +192,33 @@ fn what_stands_for_a_block_is_pinned_as_it_is() {
         }
     }
 }
+
+#[test]
+fn time_that_a_test_lets_pass_goes_on_and_never_back() {
+    let cx = Context::at(5);
+    let mut block = iec::AdvanceTime::default();
+    block.call(7, &cx);
+    assert_eq!((cx.now(), block.in_), (12, 7));
+    block.step(&cx);
+    assert_eq!(cx.now(), 19);
+    block.call(-3, &cx);
+    assert_eq!(cx.now(), 19);
+}
+
+#[test]
+fn a_task_is_due_once_from_each_multiple_of_its_interval_on() {
+    let due = |interval, times: &[i64]| {
+        let mut task = iec::TaskTurn::default();
+        let mut at = |now| {
+            task.call(false, interval, &Context::at(now));
+            task.q
+        };
+        times.iter().map(|now| at(*now)).collect::<Vec<_>>()
+    };
+    assert_eq!(due(10, &[0, 0, 9, 10, 10, 35, 39, 40]), [true, false, false, true, false, true, false, true]);
+    assert_eq!(due(1, &[0, 0, 1, 2, 2]), [true, false, true, true, false]);
+    // An interval of none counts as the shortest.
+    assert_eq!(due(0, &[0, 0, 1]), [true, false, true]);
+    // Time that starts anew.
+    assert_eq!(due(10, &[100, 3, 9, 10]), [true, true, false, true]);
+}

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use staunch_runtime::ops::*;
+use staunch_runtime::time::{DAY, date};
 use staunch_runtime::{Fault, FaultKind, Location, OrFault, Repr, Value};
 
 macro_rules! for_integers {
@@ -178,4 +179,35 @@ fn dates_at_the_ends_of_what_they_can_say() {
     const DAY: i64 = 86_400_000_000_000;
     let first = start_of_day(i64::MIN);
     assert_eq!((first.rem_euclid(DAY), first.checked_sub(DAY)), (0, None));
+}
+
+#[test]
+fn a_value_at_a_bound_stays_what_it_is() {
+    let bits = |min: f64, value, max| limit(min, value, max).to_bits();
+    assert_eq!(bits(0.0, -0.0, 1.0), (-0.0_f64).to_bits());
+    assert_eq!(bits(-0.0, 0.0, 1.0), 0.0_f64.to_bits());
+    assert_eq!(bits(-1.0, 0.0, -0.0), 0.0_f64.to_bits());
+    assert_eq!(bits(-1.0, -0.0, 0.0), (-0.0_f64).to_bits());
+}
+
+#[test]
+fn a_counter_that_has_not_passed_the_last_value_may_not_leave_its_range() {
+    assert_eq!((step(5_i16, 1, 6, (0, 5)), step(5_i16, 1, 5, (0, 5))), (Err(FaultKind::SubrangeViolated), Ok(None)));
+    assert_eq!((step(0_i16, -1, -1, (0, 5)), step(0_i16, -1, 0, (0, 5))), (Err(FaultKind::SubrangeViolated), Ok(None)));
+    assert_eq!(
+        (step(5_u8, 1, 6, (0, 5)), step(255_u8, 1, 255, (0, 255))),
+        (Err(FaultKind::SubrangeViolated), Ok(None))
+    );
+}
+
+#[test]
+fn dates_are_of_their_day() {
+    for (y, m, d) in [(1970, 1, 1), (1969, 12, 31), (2000, 2, 29), (2024, 12, 1), (1678, 1, 1), (2262, 4, 10)] {
+        let midnight = date(y, m, d);
+        for time in [midnight, midnight + 1, midnight + DAY - 1] {
+            assert_eq!((year(time), month(time), day(time)), (y, m, d));
+        }
+    }
+    assert_eq!((whole_units(-1, 10), whole_units(19, 10), whole_units(7, 1)), (-1, 1, 7));
+    assert_eq!((whole_units(7, 0), whole_units(7, -3), whole_units(9, 2)), (7, 7, 4));
 }

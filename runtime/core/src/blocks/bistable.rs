@@ -17,7 +17,7 @@ impl Sr {
     #[inline]
     pub fn call(&mut self, s1: bool, r: bool) {
         (self.s1, self.r) = (s1, r);
-        self.step(&Context::at(0));
+        self.step(&Context::default());
     }
 
     /// One call with the inputs as they are.
@@ -46,7 +46,7 @@ impl Rs {
     #[inline]
     pub fn call(&mut self, s: bool, r1: bool) {
         (self.s, self.r1) = (s, r1);
-        self.step(&Context::at(0));
+        self.step(&Context::default());
     }
 
     /// One call with the inputs as they are.

@@ -22,7 +22,7 @@ impl Ctu {
     #[inline]
     pub fn call(&mut self, cu: bool, reset: bool, pv: i16) {
         (self.cu, self.reset, self.pv) = (cu, reset, pv);
-        self.step(&Context::at(0));
+        self.step(&Context::default());
     }
 
     /// One call with the inputs as they are.
@@ -56,7 +56,7 @@ impl Ctd {
     #[inline]
     pub fn call(&mut self, cd: bool, load: bool, pv: i16) {
         (self.cd, self.load, self.pv) = (cd, load, pv);
-        self.step(&Context::at(0));
+        self.step(&Context::default());
     }
 
     /// One call with the inputs as they are.

@@ -19,7 +19,7 @@ impl RTrig {
     #[inline]
     pub fn call(&mut self, clk: bool) {
         self.clk = clk;
-        self.step(&Context::at(0));
+        self.step(&Context::default());
     }
 
     /// One call with the input as it is.
@@ -52,7 +52,7 @@ impl FTrig {
     #[inline]
     pub fn call(&mut self, clk: bool) {
         self.clk = clk;
-        self.step(&Context::at(0));
+        self.step(&Context::default());
     }
 
     /// One call with the input as it is.

@@ -60,7 +60,7 @@ impl<T: Count> Ctu<T> {
     #[inline]
     pub fn call(&mut self, cu: bool, r: bool, pv: T) {
         (self.cu, self.r, self.pv) = (cu, r, pv);
-        self.step(&Context::at(0));
+        self.step(&Context::default());
     }
 
     /// One call with the inputs as they are.
@@ -100,7 +100,7 @@ impl<T: Count> Ctd<T> {
     #[inline]
     pub fn call(&mut self, cd: bool, ld: bool, pv: T) {
         (self.cd, self.ld, self.pv) = (cd, ld, pv);
-        self.step(&Context::at(0));
+        self.step(&Context::default());
     }
 
     /// One call with the inputs as they are.
@@ -145,7 +145,7 @@ impl<T: Count> Ctud<T> {
     #[inline]
     pub fn call(&mut self, cu: bool, cd: bool, r: bool, ld: bool, pv: T) {
         (self.cu, self.cd, self.r, self.ld, self.pv) = (cu, cd, r, ld, pv);
-        self.step(&Context::at(0));
+        self.step(&Context::default());
     }
 
     /// One call with the inputs as they are.

@@ -8,7 +8,7 @@ use crate::{FaultKind, Time};
 /// as 1.
 #[inline]
 pub fn whole_units(time: Time, unit: Time) -> i64 {
-    time.div_euclid(if unit < 1 { 1 } else { unit })
+    time.div_euclid(unit.max(1))
 }
 
 /// The midnight before a point in time, or at it. Where that is out of reach, which it is on 1677-09-21

@@ -24,8 +24,8 @@ pub fn step_value(
     last: Value,
     (low, high): (i128, i128),
 ) -> Result<Option<Value>, FaultKind> {
-    let number = |it: Value| it.as_integer().unwrap_or(0);
-    let (next, last) = (number(counter).saturating_add(step), number(last));
+    let (Some(now), Some(last)) = (counter.as_integer(), last.as_integer()) else { return Ok(None) };
+    let next = now.saturating_add(step);
     if low <= next && next <= high {
         return Ok(counter.repr().integer(next));
     }
