@@ -170,7 +170,7 @@ impl<'a> Machine<'a> {
     }
 }
 
-fn unit(ty: Elementary) -> i64 {
+pub(crate) fn unit(ty: Elementary) -> i64 {
     wrapped(ty.unit())
 }
 

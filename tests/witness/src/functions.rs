@@ -1,6 +1,7 @@
 //! The standard's functions. Arguments are evaluated as they are written, then the function runs.
 
 use crate::calls::is_enable;
+use crate::dates::unit;
 use crate::expressions::{Untyped, default_type, in_repr, literal_number, untyped};
 use crate::machine::{Frame, Machine, Outcome, Stop, unknown};
 use crate::operators::operator;
@@ -8,7 +9,6 @@ use crate::storage::{Value, integer_cell};
 use crate::types::{Elementary, Type};
 use staunch_frontend::Span;
 use staunch_frontend::ast::{Argument, ArgumentKind, BinaryOp, Expr, ExprKind, Name};
-use staunch_runtime::time::MILLISECOND;
 use staunch_runtime::{FaultKind, Value as Scalar, ops};
 
 /// An argument, and the position of its parameter.
@@ -419,7 +419,7 @@ impl<'a> Machine<'a> {
         self.converted_by_name(&value, named(to)?, at)
     }
 
-    /// TIME and numbers meet at milliseconds, LTIME and numbers at nanoseconds; of a bit string or an integer BOOL takes the rightmost bit.
+    /// TIMEs and numbers meet at the [unit] of the TIME; of a bit string or an integer BOOL takes the rightmost bit.
     fn converted_by_name(&self, value: &Value<'a>, to: Elementary, at: Span) -> Outcome<Value<'a>> {
         let scalar = value.as_scalar()?;
         let Some(from) = value.ty.base() else { return unknown("a conversion of this type") };
@@ -428,8 +428,7 @@ impl<'a> Machine<'a> {
         }
         let real = from.is_real() || to.is_real();
         let wide = if real { Elementary::Lreal } else { Elementary::Lint };
-        let unit = if [from, to].contains(&Elementary::Ltime) { 1 } else { MILLISECOND };
-        let factor = in_repr(Scalar::I64(unit), wide).as_scalar()?;
+        let factor = in_repr(Scalar::I64(unit(if from.is_time() { from } else { to })), wide).as_scalar()?;
         match (from.is_time(), to.is_time()) {
             (true, false) => {
                 let count = self.applied("DIV", wide, &[in_repr(scalar, wide).as_scalar()?, factor], at)?;
