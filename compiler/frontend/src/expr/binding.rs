@@ -1,7 +1,7 @@
 //! Which argument goes to which parameter.
 
 use super::checker::Checker;
-use crate::names::{Found, Sense};
+use crate::names::Sense;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ArgumentKind, ExprKind as Ast};
 use staunch_ir::Section;
@@ -107,7 +107,7 @@ impl<'s> Checker<'_, 's> {
         let Ast::Binary(sides, ast::BinaryOp::Eq, sign) = &value.kind else { return None };
         let Ast::Name(name) = &sides[0].kind else { return None };
         let at = parameters.iter().position(|it| it.name.eq_ignore_ascii_case(name.text))?;
-        if self.scope.get(name.text).is_some() || self.decl.lookup(&[*name], Sense::Value) != Found::Nothing {
+        if self.means_anything(&[*name], Sense::Value) {
             return None;
         }
         let arrow = if parameters[at].section == Section::Output { "=>" } else { ":=" };

@@ -7,7 +7,7 @@
 
 use super::checker::Checker;
 use super::operand::Operand;
-use crate::names::{Found as Meant, Sense};
+use crate::names::Sense;
 use crate::vendor::controller_service;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ArgumentKind, ExprKind as Ast};
@@ -80,8 +80,7 @@ impl<'s> Checker<'_, 's> {
     ) -> bool {
         let Ast::Name(name) = &callee.kind else { return false };
         let Some((instruction, names)) = instruction(name.text) else { return false };
-        let is_known =
-            self.scope.get(name.text).is_some() || self.decl.lookup(&[*name], Sense::Callee) != Meant::Nothing;
+        let is_known = self.means_anything(&[*name], Sense::Callee);
         if is_known || self.decl.dialect(name.span).family() != Family::Logix {
             return false;
         }

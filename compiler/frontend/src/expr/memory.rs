@@ -4,7 +4,7 @@
 use super::checker::Checker;
 use super::operand::Operand;
 use crate::dialect::library;
-use crate::names::{Found as Meant, Sense};
+use crate::names::Sense;
 use crate::{Span, ast};
 use ast::ExprKind as Ast;
 use staunch_ir::{
@@ -74,9 +74,7 @@ impl<'s> Checker<'_, 's> {
         };
         let name = path.last()?;
         let (function, names) = function(name.text)?;
-        let declared =
-            self.scope.get(path[0].text).is_some() || self.decl.lookup(&path, Sense::Callee) != Meant::Nothing;
-        if declared || self.signature.is_none() {
+        if self.means_anything(&path, Sense::Callee) || self.signature.is_none() {
             return None;
         }
         let Some(given) = self.in_order(*name, names, arguments, span) else {

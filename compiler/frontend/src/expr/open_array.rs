@@ -5,7 +5,7 @@ use super::checker::Checker;
 use super::operand::Operand;
 use super::order::Held;
 use crate::diagnostic::wording::article;
-use crate::names::{Found, Sense};
+use crate::names::Sense;
 use crate::types::signature::Formal;
 use crate::types::table::Resolved;
 use crate::{Code, Diagnostic, Span, ast};
@@ -34,9 +34,7 @@ impl<'s> Checker<'_, 's> {
     ) -> Option<Option<Operand>> {
         let Ast::Name(name) = &callee.kind else { return None };
         let end = end(name.text)?;
-        let declared =
-            self.scope.get(name.text).is_some() || self.decl.lookup(&[*name], Sense::Callee) != Found::Nothing;
-        if declared {
+        if self.means_anything(&[*name], Sense::Callee) {
             return None;
         }
         let value = |at: usize, parameter: &str| match &arguments.get(at)?.kind {

@@ -223,7 +223,7 @@ impl<'s> Checker<'_, 's> {
         let Some(path) = named.path() else { return false };
         let [first, ..] = path.as_slice() else { return false };
         let Some((name, around)) = path.split_last() else { return false };
-        if self.scope.get(first.text).is_some() || self.decl.lookup(&path, Sense::Value) != Meant::Nothing {
+        if self.means_anything(&path, Sense::Value) {
             return false;
         }
         let is_declared = self.decl.lookup(&path, Sense::Type) != Meant::Nothing;

@@ -12,6 +12,12 @@ use staunch_ir::Type;
 use std::rc::Rc;
 
 impl<'s> Checker<'_, 's> {
+    /// Whether a path begins with a variable, or means something that is declared.
+    pub(crate) fn means_anything(&self, path: &[ast::Name<'s>], sense: Sense) -> bool {
+        path.first().is_some_and(|it| self.scope.get(it.text).is_some())
+            || self.decl.lookup(path, sense) != Found::Nothing
+    }
+
     /// The path that an expression is, where its first name is no variable and nothing that is declared.
     fn namespace_path(&self, expr: &ast::Expr<'s>) -> Option<ast::Path<'s>> {
         let first = expr.first_name()?;

@@ -105,9 +105,7 @@ impl<'s> Checker<'_, 's> {
     ) -> Option<Option<Operand>> {
         let Ast::Name(name) = &callee.kind else { return None };
         let function = function(name.text)?;
-        let declared =
-            self.scope.get(name.text).is_some() || self.decl.lookup(&[*name], Sense::Callee) != Meant::Nothing;
-        if declared {
+        if self.means_anything(&[*name], Sense::Callee) {
             return None;
         }
         let [ast::Argument { kind: ArgumentKind::Positional(argument), .. }] = arguments else {
