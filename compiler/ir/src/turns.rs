@@ -242,7 +242,7 @@ fn step_of(statement: &Statement, counter: &Place) -> Option<i128> {
 fn never_wraps(known: &Known<'_>, counter: &Place, bound: &Expr, way: i128) -> bool {
     let whole = known.program.repr(counter.ty).and_then(|repr| repr.range());
     let (Some((least, most)), Some(bound_range)) = (whole, known.range(bound)) else { return false };
-    bound.ty == counter.ty && least <= bound_range.0 + way.min(0) && bound_range.1 + way.max(0) <= most
+    bound.ty == counter.ty && least <= bound_range.0 + way && bound_range.1 + way <= most
 }
 
 #[cfg(test)]

@@ -262,3 +262,18 @@ fn ways_have_fields_in_common_until_they_part() {
     assert_eq!(common_fields(&way(&[1, 2]), &way(&[1, 2, 3])), 2);
     assert_eq!(common_fields(&way(&[1, 2, 4]), &way(&[1, 3, 4])), 1);
 }
+
+#[test]
+fn an_array_of_any_length_may_be_one_of_two_elements() {
+    let mut program = small();
+    program.arrays.push(Array::open(Type::INT));
+    let open = Type::Array(ArrayId(2));
+    program.routines[0].params.push(param("any", open, Mode::Reference));
+    let frame = Frame::of(&program, &program.routines[0]);
+    let any = Place::root(Root::Param(ParamId(2)), open);
+    let pair = Place::root(Root::Param(ParamId(1)), PART).field(FieldId(1), PAIR);
+    let number = Place::root(Root::Param(ParamId(0)), Type::INT);
+    for (a, b) in [(&any, &pair), (&pair, &any), (&any, &number)] {
+        assert_eq!(alias(&frame, a, b), Alias::May);
+    }
+}

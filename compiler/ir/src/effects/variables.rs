@@ -111,3 +111,39 @@ impl Bits {
         (0..self.0.len() * Self::WORD).filter(|it| self.holds(*it))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_set_holds_what_was_added_and_nothing_else() {
+        let numbers = [0, 3, 63, 64, 130];
+        let mut bits = Bits::default();
+        assert!(bits.is_empty() && bits.iter().next().is_none());
+        numbers.iter().for_each(|it| bits.add(*it));
+        assert!(!bits.is_empty());
+        assert_eq!(bits.iter().collect::<Vec<_>>(), numbers);
+        assert!((0..300).all(|it| bits.holds(it) == numbers.contains(&it)));
+        // A union is the same whichever is added to which.
+        let mut few = Bits::default();
+        few.add(5);
+        let mut more = few.clone();
+        more.add_all(&bits);
+        bits.add_all(&few);
+        assert_eq!(bits, more);
+        assert_eq!(more.iter().collect::<Vec<_>>(), [0, 3, 5, 63, 64, 130]);
+    }
+
+    #[test]
+    fn variables_are_kept_apart_by_their_roots() {
+        let field = |root| Place::root(root, crate::Type::INT).field(FieldId(2), crate::Type::INT);
+        let mut set = Variables::default();
+        assert!(!set.any_own() && !set.any_global());
+        set.add(&field(Root::Globals), 0);
+        assert!(!set.any_own() && set.any_global() && set.has_global(FieldId(2)) && !set.has_global(FieldId(1)));
+        assert!(set.holds(&field(Root::Globals)) && !set.holds(&field(Root::Instance)));
+        set.add(&Place::root(Root::Instance, crate::Type::INT), 3);
+        assert!((0..5).all(|it| set.has_own(FieldId(it)) == (it < 3)));
+    }
+}

@@ -29,6 +29,6 @@ pub fn step_value(
     if low <= next && next <= high {
         return Ok(counter.repr().integer(next));
     }
-    let is_past = if step > 0 { next > last } else { next < last };
+    let is_past = if step.is_positive() { next > last } else { next < last };
     if is_past { Ok(None) } else { Err(FaultKind::SubrangeViolated) }
 }
