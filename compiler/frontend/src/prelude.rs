@@ -44,6 +44,8 @@ enum Use {
     Function,
     /// A global constant.
     Value,
+    /// A global variable, or a list of them.
+    Global,
     /// A NAMESPACE, `System.Timer`, with all that is in it.
     Space,
     /// The same, where a program adds to what is in it.
@@ -208,6 +210,16 @@ pub(crate) const UNITS: &[Unit] = units! {
     Value "DEFAULT_ADS_TIMEOUT"     (constant!(DEFAULT_ADS_TIMEOUT, TIME, "T#5s"))       [Codesys: Tc2_System];
     Value "MAX_STRING_LENGTH"       (constant!(MAX_STRING_LENGTH, UDINT, "255"))         [Codesys: Tc2_System];
     Value "PI"                      (constant!(PI, LREAL, "3.1415926535897932384626433832795")) [Codesys: Tc2_System];
+    Global   "TwinCAT_SystemInfoVarList" "taskinfo" [Codesys];
+    // Without its list.
+    Global   "_TaskInfo"        (LINE_END)         [Codesys] "TwinCAT_SystemInfoVarList";
+    Global   "_AppInfo"         (LINE_END)         [Codesys] "TwinCAT_SystemInfoVarList";
+    Type     "PlcTaskSystemInfo" (LINE_END)        [Codesys] "TwinCAT_SystemInfoVarList";
+    Type     "PlcAppSystemInfo" (LINE_END)         [Codesys] "TwinCAT_SystemInfoVarList";
+    Type     "GETCURTASKINDEX"  "getcurtaskindex"  [Codesys: Tc2_System] "TwinCAT_SystemInfoVarList";
+    Function "GETCURTASKINDEXEX" "getcurtaskindexex" [Codesys: Tc2_System] "TwinCAT_SystemInfoVarList";
+    Function "F_GetTaskInfo"    "f_gettaskinfo"    [Codesys: Tc2_System] "TwinCAT_SystemInfoVarList";
+    Type     "GETCPUCOUNTER"    "getcpucounter"    [Codesys: Tc2_System];
     Type     "INTEGRAL"         "iec_integral"     [Iec Openplc];
     Type     "DERIVATIVE"       "iec_derivative"   [Iec Openplc];
     Type     "PID"              "iec_pid"          [Iec Openplc] "INTEGRAL" "DERIVATIVE";
@@ -397,7 +409,7 @@ impl Uses {
             let after = tokens.kinds.get(at + 1).copied();
             let is_declared = match any.use_ {
                 Use::Type | Use::Function | Use::Space => declares(before, after, &types),
-                Use::Value => declares(before, after, &types) || types.declare_value(before, after),
+                Use::Value | Use::Global => declares(before, after, &types) || types.declare_value(before, after),
                 Use::Open => false,
             };
             if is_declared {
@@ -531,6 +543,7 @@ fn names(unit: &Unit, before: Option<(Kind, &str)>, after: Option<Kind>) -> bool
         Use::Function => after == Some(Kind::OpenParen) && !is_after(Kind::Dot),
         // A variable of the name, `PI : REAL`, is another one.
         Use::Value => !is_after(Kind::Dot) && !matches!(after, Some(Kind::Colon | Kind::OpenParen | Kind::Dot)),
+        Use::Global => !is_after(Kind::Dot) && !matches!(after, Some(Kind::Colon | Kind::OpenParen)),
         Use::Type => {
             let is_type = is_after(Kind::Colon) || is_after(Kind::Of) || is_after(Kind::To);
             let extends = before.is_some_and(|it| it.1.eq_ignore_ascii_case("EXTENDS"));
@@ -606,6 +619,7 @@ mod tests {
                 Use::Type => format!("VAR_GLOBAL it : {}; END_VAR", unit.name),
                 Use::Space | Use::Open => format!("USING {};", unit.name),
                 Use::Function => format!("PROGRAM Main {}(); END_PROGRAM", unit.name),
+                Use::Global => format!("PROGRAM Main VAR it : BOOL; END_VAR it := {}; END_PROGRAM", unit.name),
                 Use::Value => format!("VAR_GLOBAL it : ARRAY[0..1] OF LREAL := [{}]; END_VAR", unit.name),
             };
             let mut sources = Sources::default();
