@@ -93,6 +93,31 @@ macro_rules! constant {
     };
 }
 
+/// The text of a unit that makes a T_Arg of a whole number or of bits.
+macro_rules! argument {
+    ($name:ident, $type:ident, $kind:ident, $size:literal, $bits:literal) => {
+        concat!(
+            "FUNCTION ",
+            stringify!($name),
+            " : T_Arg\nVAR_INPUT\n    in : ",
+            stringify!($type),
+            ";\nEND_VAR\n",
+            stringify!($name),
+            ".eType := E_ArgType.",
+            stringify!($kind),
+            ";\n",
+            stringify!($name),
+            ".cbLen := ",
+            $size,
+            ";\n",
+            stringify!($name),
+            ".__bits := ",
+            $bits,
+            ";\nEND_FUNCTION\n"
+        )
+    };
+}
+
 /// Every unit. Those of one name are of different dialects.
 pub(crate) const UNITS: &[Unit] = units! {
     Type     "BLINK"            "blink"            [Codesys: Util];
@@ -210,6 +235,28 @@ pub(crate) const UNITS: &[Unit] = units! {
     Value "DEFAULT_ADS_TIMEOUT"     (constant!(DEFAULT_ADS_TIMEOUT, TIME, "T#5s"))       [Codesys: Tc2_System];
     Value "MAX_STRING_LENGTH"       (constant!(MAX_STRING_LENGTH, UDINT, "255"))         [Codesys: Tc2_System];
     Value "PI"                      (constant!(PI, LREAL, "3.1415926535897932384626433832795")) [Codesys: Tc2_System];
+    Type     "E_ArgType"        "e_argtype"        [Codesys: Tc2_Utilities];
+    Type     "T_Arg"            "t_arg"            [Codesys: Tc2_Utilities] "E_ArgType";
+    Function "F_BYTE"           (argument!(F_BYTE, BYTE, ARGTYPE_BYTE, "1", "BYTE_TO_LWORD(in)")) [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_WORD"           (argument!(F_WORD, WORD, ARGTYPE_WORD, "2", "WORD_TO_LWORD(in)")) [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_DWORD"          (argument!(F_DWORD, DWORD, ARGTYPE_DWORD, "4", "DWORD_TO_LWORD(in)")) [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_LWORD"          (argument!(F_LWORD, LWORD, ARGTYPE_LWORD, "8", "in")) [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_SINT"           (argument!(F_SINT, SINT, ARGTYPE_SINT, "1", "LINT_TO_LWORD(SINT_TO_LINT(in))")) [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_INT"            (argument!(F_INT, INT, ARGTYPE_INT, "2", "LINT_TO_LWORD(INT_TO_LINT(in))")) [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_DINT"           (argument!(F_DINT, DINT, ARGTYPE_DINT, "4", "LINT_TO_LWORD(DINT_TO_LINT(in))")) [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_LINT"           (argument!(F_LINT, LINT, ARGTYPE_LARGE, "8", "LINT_TO_LWORD(in)")) [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_USINT"          (argument!(F_USINT, USINT, ARGTYPE_USINT, "1", "USINT_TO_LWORD(in)")) [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_UINT"           (argument!(F_UINT, UINT, ARGTYPE_UINT, "2", "UINT_TO_LWORD(in)")) [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_UDINT"          (argument!(F_UDINT, UDINT, ARGTYPE_UDINT, "4", "UDINT_TO_LWORD(in)")) [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_ULINT"          (argument!(F_ULINT, ULINT, ARGTYPE_ULARGE, "8", "ULINT_TO_LWORD(in)")) [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_BOOL"           (argument!(F_BOOL, BOOL, ARGTYPE_BOOL, "1", "BOOL_TO_LWORD(in)")) [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_REAL"           "f_real"           [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_LREAL"          "f_lreal"          [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_STRING"         "f_string"         [Codesys: Tc2_Utilities] "T_Arg";
+    Type     "FB_FormatString"  "fb_formatstring"  [Codesys: Tc2_Utilities] "__FormatBase";
+    Type     "FB_FormatString2" "fb_formatstring2" [Codesys: Tc2_Utilities] "__FormatBase";
+    Type     "FB_MemRingBuffer" "fb_memringbuffer" [Codesys: Tc2_Utilities];
+    Type     "__FormatBase"     "formatted"        [Codesys] "T_Arg";
     Global   "TwinCAT_SystemInfoVarList" "taskinfo" [Codesys];
     // Without its list.
     Global   "_TaskInfo"        (LINE_END)         [Codesys] "TwinCAT_SystemInfoVarList";

@@ -4,7 +4,20 @@ use super::Dialect;
 use super::library::is_one_of;
 
 /// Types and blocks, and the library that they are of.
-const TYPES: [(&str, &[&str]); 1] = [("Tc2_Utilities", &["FB_FormatString", "FB_FormatString2", "T_Arg"])];
+const TYPES: [(&str, &[&str]); 1] = [(
+    "Tc2_Utilities",
+    &[
+        "FB_MemRingBufferEx",
+        "FB_StringRingBuffer",
+        "FB_FileRingBuffer",
+        "FB_LocalSystemTime",
+        "NT_GetTime",
+        "RTC_EX",
+        "RTC_EX2",
+        "Profiler",
+        "FB_BasicPID",
+    ],
+)];
 
 /// What TwinCAT's types tell of the machine, of which a program is told nothing here.
 const MEMBERS: [(&str, &[&str]); 2] = [
