@@ -4,7 +4,7 @@
 mod tcunit;
 
 use crate::dialect::Dialect;
-use crate::dialect::library::is_one_of;
+use crate::dialect::library::{is_one_of, leads_to};
 use crate::lex::{Kind, Known, Tokens, lex_with};
 use crate::options::Options;
 use crate::spelling::Key;
@@ -452,6 +452,10 @@ impl Uses {
             let owner = at.checked_sub(2).filter(|_| dialect == Dialect::Codesys && is_after(at));
             let list = owner.filter(|it| any.is_value() && is_after(*it) && word(*it).eq_ignore_ascii_case(LIST));
             let first = owner.filter(|it| is_of(*it)).or(list.map(|it| it - 2).filter(|it| is_of(*it))).unwrap_or(at);
+            let outer = first
+                .checked_sub(2)
+                .filter(|it| first < at && is_after(first) && leads_to(dialect, word(*it), word(first)));
+            let first = outer.unwrap_or(first);
             let before = first.checked_sub(1).map(|it| (tokens.kinds[it], word(it)));
             let after = tokens.kinds.get(at + 1).copied();
             let is_declared = match any.use_ {
