@@ -230,7 +230,7 @@ impl Machine for Recorder<'_> {
 
     fn scan(&mut self, instance: usize, cx: &Context) -> Result<(), staunch_runtime::Fault> {
         let told = self.first.and_then(|it| it.get(self.states.len()).copied());
-        let cx = told.map_or_else(|| cx.clone(), |first_scan| Context::new(cx.now(), first_scan));
+        let cx = told.map_or_else(|| cx.clone(), |first_scan| Context::new(cx.now(), first_scan).with_cycle(cx.cycle));
         let end = self.machine.scan(instance, &cx);
         self.states.push(self.leaves.of(self.machine.state()));
         end

@@ -8,7 +8,7 @@ use std::path::Path;
 const ROOT: &str = "compiler/frontend/src";
 
 /// The folders and files at the root, from the lowest.
-const LAYERS: [&str; 26] = [
+const LAYERS: [&str; 27] = [
     "vendor",
     "source",
     "diagnostic",
@@ -22,6 +22,7 @@ const LAYERS: [&str; 26] = [
     "testing",
     "mutate",
     "start",
+    "tasks",
     "dialect",
     "options",
     "log",

@@ -260,6 +260,7 @@ impl Build {
             if let Ok((_, lists)) = listing::sources(list) {
                 sources.refer(listing::references(&lists));
                 sources.define(listing::definitions(&lists));
+                sources.name_project(listing::project_name(&lists));
             }
         }
         if own.is_empty() {

@@ -52,6 +52,12 @@ pub fn references(lists: &[PathBuf]) -> Vec<Reference> {
     projects.filter_map(|it| std::fs::read(it).ok()).flat_map(|it| Source::references(&it)).collect()
 }
 
+/// The name of the first PLC project among lists.
+pub fn project_name(lists: &[PathBuf]) -> Option<String> {
+    let mut projects = lists.iter().filter(|it| has_extension(it, &["plcproj"]));
+    projects.find_map(|it| Source::project_name(&std::fs::read(it).ok()?))
+}
+
 /// What the PLC projects among lists define for conditional compilation.
 pub fn definitions(lists: &[PathBuf]) -> Vec<String> {
     let projects = lists.iter().filter(|it| has_extension(it, &["plcproj"]));

@@ -42,6 +42,7 @@ pub fn read(arguments: &[PathBuf], libraries: &[PathBuf]) -> Result<Sources, Str
         let lists = listing::sources(Path::new(&shown(list)))?.1;
         sources.refer(listing::references(&lists));
         sources.define(listing::definitions(&lists));
+        sources.name_project(listing::project_name(&lists));
     }
     Ok(sources)
 }

@@ -16,6 +16,7 @@ mod testing;
 
 mod mutate;
 mod start;
+mod tasks;
 
 mod allow;
 mod dialect;
@@ -153,8 +154,9 @@ fn run_with(sources: &Sources, options: &Options, keep: Bodies, whole: &mut Whol
         return Some(Compilation::rejected(log.diagnostics));
     };
     let Trees { mut files, groups, stubs, allowances, has_tests } = write_out(files, &mut log);
-    let mut bodies: Vec<_> = files.iter_mut().flat_map(ast::File::take_bodies).collect();
     let mut runs = declare::run::runs(&files, options.tests, sources, &whole.shared);
+    declare::run::begin_cycles(&mut files, &runs, options.tests);
+    let mut bodies: Vec<_> = files.iter_mut().flat_map(ast::File::take_bodies).collect();
     bodies.extend(runs.iter_mut().map(|it| std::mem::take(&mut it.body)));
     let mut declarations = declare::declare(log, whole, &files, &runs, &bodies);
     declarations.coverage = options.coverage.map(|files| Coverage { files, ..Coverage::default() });
@@ -219,6 +221,7 @@ fn write_out<'s>(mut files: Vec<ast::File<'s>>, log: &mut Log<'s>) -> Trees<'s> 
     inherit::expand(&mut files, log);
     let groups = testing::expand(&mut files, log.options.tests, sources, &mut log.diagnostics);
     start::expand(&mut files);
+    tasks::expand(&mut files, log.options.tests);
     let allowances = allow::Allowances::read(&files, &mut log.diagnostics);
     Trees { files, groups, stubs, allowances, has_tests }
 }

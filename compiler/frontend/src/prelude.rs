@@ -4,7 +4,7 @@
 mod tcunit;
 
 use crate::dialect::Dialect;
-use crate::dialect::library::is_one_of;
+use crate::dialect::library::{is_one_of, leads_to};
 use crate::lex::{Kind, Known, Tokens, lex_with};
 use crate::options::Options;
 use crate::spelling::Key;
@@ -44,6 +44,8 @@ enum Use {
     Function,
     /// A global constant.
     Value,
+    /// A global variable, or a list of them.
+    Global,
     /// A NAMESPACE, `System.Timer`, with all that is in it.
     Space,
     /// The same, where a program adds to what is in it.
@@ -88,6 +90,31 @@ macro_rules! units {
 macro_rules! constant {
     ($name:ident, $type:ident, $value:literal) => {
         concat!("VAR_GLOBAL CONSTANT ", stringify!($name), " : ", stringify!($type), " := ", $value, "; END_VAR\n")
+    };
+}
+
+/// The text of a unit that makes a T_Arg of a whole number or of bits.
+macro_rules! argument {
+    ($name:ident, $type:ident, $kind:ident, $size:literal, $bits:literal) => {
+        concat!(
+            "FUNCTION ",
+            stringify!($name),
+            " : T_Arg\nVAR_INPUT\n    in : ",
+            stringify!($type),
+            ";\nEND_VAR\n",
+            stringify!($name),
+            ".eType := E_ArgType.",
+            stringify!($kind),
+            ";\n",
+            stringify!($name),
+            ".cbLen := ",
+            $size,
+            ";\n",
+            stringify!($name),
+            ".__bits := ",
+            $bits,
+            ";\nEND_FUNCTION\n"
+        )
     };
 }
 
@@ -208,6 +235,38 @@ pub(crate) const UNITS: &[Unit] = units! {
     Value "DEFAULT_ADS_TIMEOUT"     (constant!(DEFAULT_ADS_TIMEOUT, TIME, "T#5s"))       [Codesys: Tc2_System];
     Value "MAX_STRING_LENGTH"       (constant!(MAX_STRING_LENGTH, UDINT, "255"))         [Codesys: Tc2_System];
     Value "PI"                      (constant!(PI, LREAL, "3.1415926535897932384626433832795")) [Codesys: Tc2_System];
+    Type     "E_ArgType"        "e_argtype"        [Codesys: Tc2_Utilities];
+    Type     "T_Arg"            "t_arg"            [Codesys: Tc2_Utilities] "E_ArgType";
+    Function "F_BYTE"           (argument!(F_BYTE, BYTE, ARGTYPE_BYTE, "1", "BYTE_TO_LWORD(in)")) [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_WORD"           (argument!(F_WORD, WORD, ARGTYPE_WORD, "2", "WORD_TO_LWORD(in)")) [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_DWORD"          (argument!(F_DWORD, DWORD, ARGTYPE_DWORD, "4", "DWORD_TO_LWORD(in)")) [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_LWORD"          (argument!(F_LWORD, LWORD, ARGTYPE_LWORD, "8", "in")) [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_SINT"           (argument!(F_SINT, SINT, ARGTYPE_SINT, "1", "LINT_TO_LWORD(SINT_TO_LINT(in))")) [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_INT"            (argument!(F_INT, INT, ARGTYPE_INT, "2", "LINT_TO_LWORD(INT_TO_LINT(in))")) [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_DINT"           (argument!(F_DINT, DINT, ARGTYPE_DINT, "4", "LINT_TO_LWORD(DINT_TO_LINT(in))")) [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_LINT"           (argument!(F_LINT, LINT, ARGTYPE_LARGE, "8", "LINT_TO_LWORD(in)")) [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_USINT"          (argument!(F_USINT, USINT, ARGTYPE_USINT, "1", "USINT_TO_LWORD(in)")) [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_UINT"           (argument!(F_UINT, UINT, ARGTYPE_UINT, "2", "UINT_TO_LWORD(in)")) [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_UDINT"          (argument!(F_UDINT, UDINT, ARGTYPE_UDINT, "4", "UDINT_TO_LWORD(in)")) [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_ULINT"          (argument!(F_ULINT, ULINT, ARGTYPE_ULARGE, "8", "ULINT_TO_LWORD(in)")) [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_BOOL"           (argument!(F_BOOL, BOOL, ARGTYPE_BOOL, "1", "BOOL_TO_LWORD(in)")) [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_REAL"           "f_real"           [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_LREAL"          "f_lreal"          [Codesys: Tc2_Utilities] "T_Arg";
+    Function "F_STRING"         "f_string"         [Codesys: Tc2_Utilities] "T_Arg";
+    Type     "FB_FormatString"  "fb_formatstring"  [Codesys: Tc2_Utilities] "__FormatBase";
+    Type     "FB_FormatString2" "fb_formatstring2" [Codesys: Tc2_Utilities] "__FormatBase";
+    Type     "FB_MemRingBuffer" "fb_memringbuffer" [Codesys: Tc2_Utilities];
+    Type     "__FormatBase"     "formatted"        [Codesys] "T_Arg";
+    Global   "TwinCAT_SystemInfoVarList" "taskinfo" [Codesys];
+    // Without its list.
+    Global   "_TaskInfo"        (LINE_END)         [Codesys] "TwinCAT_SystemInfoVarList";
+    Global   "_AppInfo"         (LINE_END)         [Codesys] "TwinCAT_SystemInfoVarList";
+    Type     "PlcTaskSystemInfo" (LINE_END)        [Codesys] "TwinCAT_SystemInfoVarList";
+    Type     "PlcAppSystemInfo" (LINE_END)         [Codesys] "TwinCAT_SystemInfoVarList";
+    Type     "GETCURTASKINDEX"  "getcurtaskindex"  [Codesys: Tc2_System] "TwinCAT_SystemInfoVarList";
+    Function "GETCURTASKINDEXEX" "getcurtaskindexex" [Codesys: Tc2_System] "TwinCAT_SystemInfoVarList";
+    Function "F_GetTaskInfo"    "f_gettaskinfo"    [Codesys: Tc2_System] "TwinCAT_SystemInfoVarList";
+    Type     "GETCPUCOUNTER"    "getcpucounter"    [Codesys: Tc2_System];
     Type     "INTEGRAL"         "iec_integral"     [Iec Openplc];
     Type     "DERIVATIVE"       "iec_derivative"   [Iec Openplc];
     Type     "PID"              "iec_pid"          [Iec Openplc] "INTEGRAL" "DERIVATIVE";
@@ -393,11 +452,15 @@ impl Uses {
             let owner = at.checked_sub(2).filter(|_| dialect == Dialect::Codesys && is_after(at));
             let list = owner.filter(|it| any.is_value() && is_after(*it) && word(*it).eq_ignore_ascii_case(LIST));
             let first = owner.filter(|it| is_of(*it)).or(list.map(|it| it - 2).filter(|it| is_of(*it))).unwrap_or(at);
+            let outer = first
+                .checked_sub(2)
+                .filter(|it| first < at && is_after(first) && leads_to(dialect, word(*it), word(first)));
+            let first = outer.unwrap_or(first);
             let before = first.checked_sub(1).map(|it| (tokens.kinds[it], word(it)));
             let after = tokens.kinds.get(at + 1).copied();
             let is_declared = match any.use_ {
                 Use::Type | Use::Function | Use::Space => declares(before, after, &types),
-                Use::Value => declares(before, after, &types) || types.declare_value(before, after),
+                Use::Value | Use::Global => declares(before, after, &types) || types.declare_value(before, after),
                 Use::Open => false,
             };
             if is_declared {
@@ -531,6 +594,7 @@ fn names(unit: &Unit, before: Option<(Kind, &str)>, after: Option<Kind>) -> bool
         Use::Function => after == Some(Kind::OpenParen) && !is_after(Kind::Dot),
         // A variable of the name, `PI : REAL`, is another one.
         Use::Value => !is_after(Kind::Dot) && !matches!(after, Some(Kind::Colon | Kind::OpenParen | Kind::Dot)),
+        Use::Global => !is_after(Kind::Dot) && !matches!(after, Some(Kind::Colon | Kind::OpenParen)),
         Use::Type => {
             let is_type = is_after(Kind::Colon) || is_after(Kind::Of) || is_after(Kind::To);
             let extends = before.is_some_and(|it| it.1.eq_ignore_ascii_case("EXTENDS"));
@@ -606,6 +670,7 @@ mod tests {
                 Use::Type => format!("VAR_GLOBAL it : {}; END_VAR", unit.name),
                 Use::Space | Use::Open => format!("USING {};", unit.name),
                 Use::Function => format!("PROGRAM Main {}(); END_PROGRAM", unit.name),
+                Use::Global => format!("PROGRAM Main VAR it : BOOL; END_VAR it := {}; END_PROGRAM", unit.name),
                 Use::Value => format!("VAR_GLOBAL it : ARRAY[0..1] OF LREAL := [{}]; END_VAR", unit.name),
             };
             let mut sources = Sources::default();

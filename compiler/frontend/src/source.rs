@@ -109,6 +109,8 @@ pub struct Sources {
     references: Vec<Reference>,
     /// What it defines for the conditional compilation of its own files.
     defined: Vec<String>,
+    /// Its name.
+    project: Option<String>,
 }
 
 impl Source {
@@ -166,6 +168,11 @@ impl Source {
     /// What a PLC project of TwinCAT's defines for conditional compilation.
     pub fn definitions(project: &[u8]) -> Vec<String> {
         vendor::definitions(&Self::decoded("", project).text)
+    }
+
+    /// The name of a PLC project of TwinCAT's.
+    pub fn project_name(project: &[u8]) -> Option<String> {
+        vendor::project_name(&Self::decoded("", project).text)
     }
 
     /// The same, as one of a library, which a project uses and which is not its own.
@@ -374,6 +381,16 @@ impl Sources {
     /// What is defined before a file begins. A library does not see what a project defines.
     pub fn defined(&self, source: &Source) -> &[String] {
         if source.is_of_library() { &[] } else { &self.defined }
+    }
+
+    /// Takes the name of the project, the first of which is told.
+    pub fn name_project(&mut self, name: Option<String>) {
+        self.project = self.project.take().or(name);
+    }
+
+    /// The name of the project that the files are of.
+    pub fn project(&self) -> Option<&str> {
+        self.project.as_deref()
     }
 
     pub fn references(&self) -> &[Reference] {

@@ -13,7 +13,7 @@ mod xml;
 
 pub use assembly::{Assembly, Piece, Problem, Trouble};
 pub(crate) use l5x::controller_service;
-pub use listing::{Reference, definitions, listed, references};
+pub use listing::{Reference, definitions, listed, project_name, references};
 
 use xml::Reader;
 

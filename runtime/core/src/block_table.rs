@@ -57,6 +57,9 @@ macro_rules! for_each_block {
             // What reads the time for TIME(); no program names it.
             Iec "__CLOCK" iec::Clock {} { timed "" call staunch_iec_clock; }
 
+            // What tells the start of a cycle of a task of TwinCAT's; no program names it.
+            Iec "__SCAN" iec::ScanInfo {} [TIME => LTIME] { timed "" call staunch_iec_scan; }
+
             // The compiler adds RCV to the inputs of R_CTU and R_CTD.
             // What says when a TASK with SINGLE and INTERVAL is due; no program names it.
             Iec "__TASK" iec::TaskTurn {} { timed "" call staunch_iec_task; }

@@ -1,4 +1,5 @@
-//! What a scan hands to all that runs in it: its time, whether it is the first, and the turns that loops have left.
+//! What a scan hands to all that runs in it: its time, whether it is the first, the time between two, and the turns that
+//! loops have left.
 
 use crate::{FaultKind, Time};
 use core::cell::Cell;
@@ -14,6 +15,8 @@ pub struct Context {
     pub first_scan: bool,
     /// The turns that the loops of this scan have left.
     turns: Cell<u64>,
+    /// Nanoseconds from one scan of this program to the next, as its host places them; 0 where the host does not say.
+    pub cycle: Time,
 }
 
 impl Context {
@@ -26,7 +29,7 @@ impl Context {
 
     /// A scan at `now` nanoseconds.
     pub const fn new(now: Time, first_scan: bool) -> Self {
-        Self { now: Cell::new(now), first_scan, turns: Cell::new(Self::TURNS) }
+        Self { now: Cell::new(now), first_scan, turns: Cell::new(Self::TURNS), cycle: 0 }
     }
 
     /// A scan at `now` nanoseconds that is not the first.
@@ -54,6 +57,12 @@ impl Context {
     #[must_use]
     pub fn with_turns(self, turns: u64) -> Self {
         Self { turns: Cell::new(turns), ..self }
+    }
+
+    /// The same for a program that is scanned every `cycle` nanoseconds.
+    #[must_use]
+    pub fn with_cycle(self, cycle: Time) -> Self {
+        Self { cycle, ..self }
     }
 
     /// Takes one turn of a loop; [`FaultKind::LoopBudget`] if none is left.

@@ -219,6 +219,7 @@ impl Bench<'_> {
     fn scan(&mut self, instance: usize, now: Time) -> Result<(), Error> {
         let first_scan = std::mem::take(&mut self.fresh[instance]);
         let cx = Context::new(now, first_scan).with_turns(self.turns);
+        let cx = cx.with_cycle(self.schedule.period(instance));
         self.machine.scan(instance, &cx).map_err(|fault| Error::Fault {
             fault,
             scan: self.number,

@@ -37,6 +37,9 @@ pub(crate) fn columns(map: &Map, running: &[usize], vars: Option<&str>) -> Resul
     Ok(columns)
 }
 
+/// The list of what TwinCAT tells of tasks, which is shown where it is asked for.
+const TOLD: &str = "TwinCAT_SystemInfoVarList.";
+
 /// Globals that a program names itself, as VAR_EXTERNAL or by the same address, are among its variables,
 /// as are those of the PROGRAM of a name, and constants show nothing.
 fn used_globals(map: &Map, running: &[usize], out: &mut Vec<Column>) {
@@ -45,12 +48,14 @@ fn used_globals(map: &Map, running: &[usize], out: &mut Vec<Column>) {
     let own: HashSet<(usize, Type)> = own.map(|it| (it.offset, it.ty)).collect();
     // A name that begins so is the compiler's own.
     let is_own = |it: &Variable| it.name.starts_with("__") || it.section == Section::Memory;
+    let is_told =
+        |it: &Variable| map.global_paths.iter().any(|(name, path)| *name == it.name && path.starts_with(TOLD));
     let is_run = |it: &Variable| {
         let structure = map.structure(it.ty);
         let instances = running.iter().map(|at| &map.instances[*at]).filter(|it| !it.variables.is_empty());
         structure.is_some_and(|state| instances.clone().any(|it| path::same(&it.program, &state.name)))
     };
-    let is_shown = |it: &&Variable| it.used && !it.constant && !is_own(it) && !is_run(it);
+    let is_shown = |it: &&Variable| it.used && !it.constant && !is_own(it) && !is_told(it) && !is_run(it);
     for variable in globals.iter().filter(is_shown) {
         let place = Place::of(variable, base);
         if !own.contains(&(place.offset, place.ty)) {

@@ -66,8 +66,10 @@ impl Drive {
     /// The programs that are due.
     pub fn scan(&mut self, machine: &mut Compiled) -> Result<(), Fault> {
         let now = self.schedule.next();
-        for instance in self.schedule.advance(now, false) {
+        self.schedule.advance(now, false);
+        for instance in self.schedule.due() {
             let cx = Context::new(now, std::mem::take(&mut self.fresh[*instance]));
+            let cx = cx.with_cycle(self.schedule.period(*instance));
             machine.scan(*instance, &cx)?;
         }
         Ok(())

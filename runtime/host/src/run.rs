@@ -330,10 +330,12 @@ impl Runner<'_> {
         self.stimulate(number, now)?;
         let began = self.clock.as_ref().map(|_| Instant::now());
         let mut ran = Ok(());
-        for instance in self.schedule.advance(now, placed.is_some()) {
+        self.schedule.advance(now, placed.is_some());
+        for instance in self.schedule.due() {
             let first_scan = std::mem::take(&mut self.fresh[*instance]);
             let turns = self.options.loop_budget.unwrap_or(Context::TURNS);
             let cx = Context::new(self.epoch.saturating_add(now), first_scan).with_turns(turns);
+            let cx = cx.with_cycle(self.schedule.period(*instance));
             ran = self.machine.scan(*instance, &cx).map_err(|fault| Error::Fault {
                 fault,
                 scan: number,

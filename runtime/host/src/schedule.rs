@@ -41,6 +41,11 @@ impl Schedule {
         Self { tasks: tasks.collect(), tick, due: Vec::new() }
     }
 
+    /// The time from one scan of an instance to the next.
+    pub fn period(&self, instance: usize) -> Time {
+        self.tasks.iter().find(|it| it.instance == instance).map_or(0, |it| it.period)
+    }
+
     /// When the next scan is due.
     pub fn next(&self) -> Time {
         let next = self.tasks.iter().map(|it| it.next).min().unwrap_or(0);

@@ -39,11 +39,13 @@ fn trace(mut command: Command, test: &Test, scans: u64, turns: u64, names: &[Str
     Ok(Trace { heading: rows.remove(0), rows, fault })
 }
 
-pub fn test(executable: &Path, test: &Test, turns: u64) -> Result<Outcome, String> {
+pub fn test(executable: &Path, test: &Test, turns: u64, cycle: i64) -> Result<Outcome, String> {
     let assertions = test.assertions.iter();
     let kept = assertions.flat_map(|it| [&it.actual, &it.expected, &it.message]).flatten();
     let names: Vec<_> = [test.failed.clone()].into_iter().chain(kept.cloned()).collect();
-    let traced = trace(Command::new(executable), test, 2, turns, &names)?;
+    let mut command = Command::new(executable);
+    command.arg(format!("--cycle={cycle}ns"));
+    let traced = trace(command, test, 2, turns, &names)?;
     for row in &traced.rows {
         let outcome = failed(test, &|name| traced.value(row, name))?;
         if outcome != Outcome::Passed {

@@ -128,7 +128,7 @@ impl Executor<'_> {
             Runs::Here(machine, map) => {
                 machine.init();
                 for first_scan in [true, false] {
-                    let cx = Context::new(0, first_scan).with_turns(self.turns);
+                    let cx = Context::new(0, first_scan).with_turns(self.turns).with_cycle(self.pace.cycle);
                     if let Err(fault) = machine.scan(instance, &cx) {
                         return Ok(Outcome::Faulted(place_of(fault, map)));
                     }
@@ -140,7 +140,7 @@ impl Executor<'_> {
                 }
                 Ok(Outcome::Passed)
             }
-            Runs::Apart(executable) => apart::test(executable, test, self.turns),
+            Runs::Apart(executable) => apart::test(executable, test, self.turns, self.pace.cycle),
         }
     }
 
@@ -156,7 +156,7 @@ impl Executor<'_> {
                         let place = staunch_host::place_of(map, &[instance], &name)?;
                         machine.write(place.offset, &value.bytes());
                     }
-                    let cx = Context::new(now, now == 0).with_turns(turns);
+                    let cx = Context::new(now, now == 0).with_turns(turns).with_cycle(cycle);
                     if let Err(fault) = machine.scan(instance, &cx) {
                         outcomes.push(Outcome::Faulted(place_of(fault, map)));
                         break;
@@ -183,7 +183,7 @@ impl Executor<'_> {
                 machine.write(asked.offset, &number.to_le_bytes());
                 let (mut now, mut fault) = (0_i64, None);
                 for scan in 0..scans {
-                    let cx = Context::new(now, scan == 0).with_turns(turns);
+                    let cx = Context::new(now, scan == 0).with_turns(turns).with_cycle(cycle);
                     fault = machine.scan(instance, &cx).err().map(|it| place_of(it, map));
                     if fault.is_some() || value_at(map, &[instance], machine.state(), &over)? == "TRUE" {
                         break;

@@ -324,3 +324,53 @@ END_TEST
     let folder = Folder::with("logs_of_tests", &[("pump.st", source), ("pump_test.st", test)]);
     has(&folder.staunch("test .").out(0), &["1 passed, 0 failed"]);
 }
+
+const TASK_INFO: &str = "{dialect 'codesys'} PROGRAM Main
+VAR cycle, count : UDINT; first : BOOL; END_VAR
+cycle := _TaskInfo[GETCURTASKINDEXEX()].CycleTime;
+count := _TaskInfo[1].CycleCount;
+first := _TaskInfo[1].FirstCycle;
+END_PROGRAM
+";
+
+#[test]
+fn a_program_knows_the_time_between_its_scans() {
+    let task = "CONFIGURATION c RESOURCE r ON x TASK t (INTERVAL := T#20ms, PRIORITY := 1); PROGRAM p WITH t : Main; \
+                END_RESOURCE END_CONFIGURATION\n";
+    let folder = Folder::with("task_info", &[("main.st", TASK_INFO), ("task.st", task)]);
+    let trace = "--scans 2 --trace - --vars cycle,count,first";
+    for backend in ["interpret", "native", "rust"] {
+        let run = |arguments: &str| folder.staunch(&format!("run {arguments} {trace} --backend {backend}")).out(0);
+        // Of what lies around the program, nothing is shown that is not asked for.
+        has(&run("main.st"), &["\n1,0,100000,1,TRUE\n2,10,100000,2,FALSE\n"]);
+        has(&run("main.st --cycle 5ms"), &["\n1,0,50000,1,TRUE\n2,5,50000,2,FALSE\n"]);
+        has(&run("main.st task.st"), &["\n1,0,200000,1,TRUE\n2,20,200000,2,FALSE\n"]);
+        has(&run("main.st task.st --cycle 5ms"), &["\n1,0,50000,1,TRUE\n2,5,50000,2,FALSE\n"]);
+    }
+    let all = folder.staunch("run main.st --scans 1 --trace -").out(0);
+    has(&all, &["scan,time_ms,cycle,count,first\n"]);
+    has(&folder.staunch("run main.st --scans 1 --trace - --vars _TaskInfo[1].CycleCount").out(0), &["\n1,0,1\n"]);
+}
+
+#[test]
+fn a_unit_test_is_a_task_of_the_cycle_of_tests() {
+    let test = |cycle: u32| {
+        format!(
+            "{{dialect 'codesys'}} TEST 'task'
+VAR first, second : UDINT; END_VAR
+ASSERT_EQ(_TaskInfo[GETCURTASKINDEXEX()].CycleTime, {cycle});
+first := _TaskInfo[1].CycleCount;
+ADVANCE_TIME(T#1s);
+second := _TaskInfo[1].CycleCount;
+ASSERT_EQ(first, 1); ASSERT_EQ(second, 1); ASSERT_TRUE(_TaskInfo[1].FirstCycle);
+END_TEST
+"
+        )
+    };
+    let folder = Folder::with("task_info_of_tests", &[("main.st", TASK_INFO), ("main_test.st", &test(100_000))]);
+    has(&folder.staunch("test .").out(0), &["1 passed, 0 failed"]);
+    has(&folder.staunch("test . --backend rust").out(0), &["1 passed, 0 failed"]);
+    let project = [("staunch.toml", "cycle = \"25ms\"\n"), ("main.st", TASK_INFO), ("main_test.st", &test(250_000))];
+    let folder = Folder::with("task_info_of_a_project", &project);
+    has(&folder.staunch("test .").out(0), &["1 passed, 0 failed"]);
+}

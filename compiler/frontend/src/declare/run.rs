@@ -10,6 +10,7 @@
 //! hold nothing and call it by its name.
 
 use crate::spelling::Key;
+use crate::tasks::{Tasks, prepend};
 use crate::types::address::is_input;
 use crate::types::synthetic::Binding;
 use crate::{Sources, Span, ast};
@@ -105,13 +106,17 @@ pub(crate) fn runs<'a, 's>(
         };
         bindings.iter().filter_map(bound).collect::<Vec<_>>()
     };
+    let cycles = Tasks::of(files);
     if listed.is_empty() && !tests {
         let resource = ast::Resource::default();
         // What nothing connects is reported where the instances are.
-        let programs = items().filter_map(program).filter(|it| !has_in_outs(it));
-        let own = |it: &ast::Pou<'s>| match by_name(it, &bindings) {
-            Some(it) => Some(run(&it, None, bound_in(&resource, &it))),
-            None => shared.contains(&it.name.span).then(|| call(&unlisted(it, it.name.span))),
+        let programs = items().filter_map(program).enumerate().filter(|(_, it)| !has_in_outs(it));
+        let own = |(at, it): (usize, &ast::Pou<'s>)| {
+            let begin = || cycles.map(|tasks| tasks.begin(files, None, at + 1, it.name.span));
+            match by_name(it, &bindings) {
+                Some(it) => Some(run(&it, None, bound_in(&resource, &it), begin())),
+                None => shared.contains(&it.name.span).then(|| call(&unlisted(it, it.name.span), begin())),
+            }
         };
         return programs.filter_map(own).collect();
     }
@@ -123,7 +128,15 @@ pub(crate) fn runs<'a, 's>(
         let is_same = |other: &&(_, &ast::ProgramInstance<'s>)| Key(other.1.program.text) == Key(it.program.text);
         // Instances with other paths have other initial values.
         let has_path = has_paths && !is_task(resource, sources) && listed.iter().filter(is_same).count() > 1;
-        takes || has_path || is_bound || !it.connections.is_empty() || trigger(resource, it).is_some()
+        // Each of several notes whose cycle it is.
+        let is_one_of_several =
+            cycles.is_some() && !is_task(resource, sources) && listed.iter().filter(is_same).count() > 1;
+        takes
+            || has_path
+            || is_one_of_several
+            || is_bound
+            || !it.connections.is_empty()
+            || trigger(resource, it).is_some()
     };
     let wrapped: FxHashSet<_> = listed.iter().filter(asks).map(|(_, it)| Key(it.program.text)).collect();
     let is_shared = |resource: &ast::Resource<'s>, program: &ast::Pou<'s>| {
@@ -131,19 +144,44 @@ pub(crate) fn runs<'a, 's>(
         let is_called_twice = || is_task(resource, sources) && listed.iter().filter(is_same).count() > 1;
         !tests && (shared.contains(&program.name.span) || is_called_twice())
     };
-    let own = |(resource, it): &Listed<'_, 's>| {
+    let own = |(at, (resource, it)): (usize, &Listed<'_, 's>)| {
         let key = Key(it.program.text);
         let program = programs.get(&key)?;
+        let begin = || cycles.map(|tasks| tasks.begin(files, Some((resource, it)), at + 1, it.program.span));
         match wrapped.contains(&key) {
-            true => Some(run(it, trigger(resource, it), bound_in(resource, it))),
-            false => is_shared(resource, program).then(|| call(it)),
+            true => Some(run(it, trigger(resource, it), bound_in(resource, it), begin())),
+            false => is_shared(resource, program).then(|| call(it, begin())),
         }
     };
-    listed.iter().filter_map(own).collect()
+    listed.iter().enumerate().filter_map(own).collect()
+}
+
+/// Where the program asks for its tasks, the other runs note whose cycle it is in the bodies of their PROGRAMs.
+pub(crate) fn begin_cycles<'s>(files: &mut [ast::File<'s>], runs: &[Run<'s>], tests: bool) {
+    let Some(tasks) = Tasks::of(files).filter(|_| !tests) else { return };
+    let has_run = |instance: Span| runs.iter().any(|it| it.instance == instance);
+    let mut begins: FxHashMap<Key<'s>, ast::Statement<'s>> = FxHashMap::default();
+    let all = listed(files);
+    for (number, run) in (1..).zip(&all).filter(|(_, it)| !has_run(it.1.name.span)) {
+        let program = run.1.program;
+        begins.insert(Key(program.text), tasks.begin(files, Some(*run), number, program.span));
+    }
+    let programs = files.iter().flat_map(|it| &it.items).filter_map(program).map(|it| it.name);
+    for (number, name) in (1..).zip(programs).filter(|(_, it)| all.is_empty() && !has_run(it.span)) {
+        begins.insert(Key(name.text), tasks.begin(files, None, number, name.span));
+    }
+    for item in files.iter_mut().flat_map(|it| &mut it.items) {
+        if let ast::Item::Pou(pou) = item
+            && pou.kind == PouKind::Program
+            && let Some(begin) = begins.remove(&Key(pou.name.text))
+        {
+            prepend(pou, begin);
+        }
+    }
 }
 
 /// The run of a PROGRAM with one instance, which is among the globals.
-fn call<'s>(instance: &ast::ProgramInstance<'s>) -> Run<'s> {
+fn call<'s>(instance: &ast::ProgramInstance<'s>, begin: Option<ast::Statement<'s>>) -> Run<'s> {
     let span = instance.program.span;
     let expr = |kind| ast::Expr { kind, span };
     let (first, rest) = match instance.namespace.split_first() {
@@ -154,7 +192,7 @@ fn call<'s>(instance: &ast::ProgramInstance<'s>) -> Run<'s> {
     let callee = rest.into_iter().fold(expr(ExprKind::Name(first)), member);
     let kind = StatementKind::Expr(expr(ExprKind::Call(Box::new(callee), Vec::new())));
     let pou = ast::Pou::new(PouKind::Program, instance.program, span);
-    let body = vec![ast::Statement { kind, span }];
+    let body = begin.into_iter().chain([ast::Statement { kind, span }]).collect();
     Run { pou, body, bound: Vec::new(), valued: Vec::new(), instance: instance.name.span }
 }
 
@@ -272,6 +310,7 @@ fn run<'s>(
     instance: &ast::ProgramInstance<'s>,
     trigger: Option<Trigger<'_, 's>>,
     bindings: Vec<(ast::Expr<'s>, &ast::VarDecl<'s>)>,
+    begin: Option<ast::Statement<'s>>,
 ) -> Run<'s> {
     let span = instance.program.span;
     let name = |text: &'static str| ast::Name { text, span };
@@ -306,6 +345,7 @@ fn run<'s>(
         }
         bound.push((target, address));
     }
+    body.splice(0..0, begin);
     if let Some(trigger) = trigger {
         let Trigger { single, interval } = trigger;
         let (block, inputs) = match interval {

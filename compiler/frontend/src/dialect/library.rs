@@ -6,6 +6,10 @@ use super::{Dialect, bare_block};
 const LIBRARIES: [&str; 7] =
     ["Standard", "Standard64", "Util", "Tc2_Standard", "Tc2_System", "Tc2_Utilities", "Tc2_Math"];
 
+/// Libraries that are not bundled, and those that they refer to, whose names may be after theirs:
+/// `Tc2_EtherCAT.Tc2_Utilities.TIMESTRUCT`.
+const THROUGH: [(&str, &[&str]); 1] = [("Tc2_EtherCAT", &["Tc2_Standard", "Tc2_System", "Tc2_Utilities"])];
+
 const BLOCKS: &[&str] = &["Standard", "Standard64", "Tc2_Standard"];
 const TEXTS: &[&str] = &["Standard", "Standard64", "Tc2_Standard"];
 const MEMORY: &[&str] = &["Tc2_System"];
@@ -26,6 +30,12 @@ const FUNCTIONS: [(&[&str], &[&str]); 3] = [
 /// Whether a name is that of a library whose blocks and functions need no qualification.
 pub(crate) fn is_library(dialect: Dialect, name: &str) -> bool {
     dialect == Dialect::Codesys && is_one_of(&LIBRARIES, name)
+}
+
+/// Whether a library of the first name leads to that of the second one.
+pub(crate) fn leads_to(dialect: Dialect, library: &str, inner: &str) -> bool {
+    let is_it = |(name, refers): &(&str, &[&str])| name.eq_ignore_ascii_case(library) && is_one_of(refers, inner);
+    dialect == Dialect::Codesys && THROUGH.iter().any(is_it)
 }
 
 /// The libraries that have a block or function which is not written in Structured Text.

@@ -4,7 +4,57 @@ use super::Dialect;
 use super::library::is_one_of;
 
 /// Types and blocks, and the library that they are of.
-const TYPES: [(&str, &[&str]); 1] = [("Tc2_Utilities", &["FB_FormatString", "FB_FormatString2", "T_Arg"])];
+const TYPES: [(&str, &[&str]); 1] = [(
+    "Tc2_Utilities",
+    &[
+        "FB_MemRingBufferEx",
+        "FB_StringRingBuffer",
+        "FB_FileRingBuffer",
+        "FB_LocalSystemTime",
+        "NT_GetTime",
+        "RTC_EX",
+        "RTC_EX2",
+        "Profiler",
+        "FB_BasicPID",
+    ],
+)];
+
+/// What TwinCAT's types tell of the machine, of which a program is told nothing here.
+const MEMBERS: [(&str, &[&str]); 2] = [
+    (
+        "PlcTaskSystemInfo",
+        &[
+            "ObjId",
+            "AdsPort",
+            "DcTaskTime",
+            "LastExecTime",
+            "CycleTimeExceeded",
+            "InCallAfterOutputUpdate",
+            "RTViolation",
+        ],
+    ),
+    (
+        "PlcAppSystemInfo",
+        &[
+            "ObjId",
+            "Flags",
+            "AdsPort",
+            "BootDataLoaded",
+            "OldBootData",
+            "AppTimestamp",
+            "KeepOutputsOnBP",
+            "ShutdownInProgress",
+            "LicensesPending",
+            "BSODOccured",
+            "LoggedIn",
+            "PersistentStatus",
+            "ActivePlcForces",
+            "ActiveIoForces",
+            "TComSrvPtr",
+            "AppName",
+        ],
+    ),
+];
 
 /// Types that Logix has for instructions of ladder, charts and communication.
 const OF_LOGIX: [&str; 15] = [
@@ -38,6 +88,12 @@ pub(crate) fn library_of_type(dialect: Dialect, name: &str) -> Option<&'static s
     }
     let found = TYPES.iter().find(|(_, names)| is_one_of(names, name)).map(|it| it.0);
     found.filter(|_| dialect == Dialect::Codesys)
+}
+
+/// Whether TwinCAT's type has a member of this name, which is not there here.
+pub(crate) fn is_member(dialect: Dialect, ty: &str, name: &str) -> bool {
+    let is_it = |(of, names): &(&str, &[&str])| of.eq_ignore_ascii_case(ty) && is_one_of(names, name);
+    dialect == Dialect::Codesys && MEMBERS.iter().any(is_it)
 }
 
 pub(crate) fn is_operator(dialect: Dialect, name: &str) -> bool {

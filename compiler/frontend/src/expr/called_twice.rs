@@ -4,16 +4,20 @@
 use super::call_tracking::Call;
 use super::checker::Checker;
 use super::migration::bare;
+use crate::spelling::Key;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ArgumentKind, ExprKind as Ast, LiteralValue};
 use staunch_ir::{Place, Type};
 use staunch_runtime::PinRole;
 
+/// Blocks of TwinCAT's that know nothing of earlier calls.
+const AT_ONCE: [&str; 4] = ["FB_FormatString", "FB_FormatString2", "GETCURTASKINDEX", "GETCPUCOUNTER"];
+
 impl<'s> Checker<'_, 's> {
     /// A counter or timer that is called twice in a scan sees two edges, or none.
     pub(super) fn note_called(&mut self, place: &Place, arguments: &[ast::Argument<'s>], callee: &ast::Expr<'s>) {
         // A test calls again and again, and says itself when time passes.
-        if self.is_test() || is_latch(place.ty) {
+        if self.is_test() || is_latch(place.ty) || self.is_at_once(place.ty) {
             return;
         }
         if only_resets(place.ty, arguments) {
@@ -36,6 +40,13 @@ impl<'s> Checker<'_, 's> {
                 .help("declare a second instance, or call it once and use its outputs");
             self.report(error);
         }
+    }
+
+    /// Whether it is a block of the library that does all of its work in each call.
+    fn is_at_once(&self, ty: Type) -> bool {
+        let slot = if let Type::Struct(id) = ty { self.decl.slot_of_instance(id) } else { None };
+        let name = slot.map(|it| self.decl.pous[it].ast.name.text);
+        name.is_some_and(|name| AT_ONCE.iter().any(|it| Key(it) == Key(name)))
     }
 
     /// Notes the members that a condition reads, of whatever has such: its branch may start the instance anew.

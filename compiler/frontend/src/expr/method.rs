@@ -217,7 +217,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// Whether it is an instance that is given for a VAR_IN_OUT CONSTANT: it is the caller's, with its METHODs.
-    fn is_constant_in_out(&self, found: &Found<'s>) -> bool {
+    pub(super) fn is_constant_in_out(&self, found: &Found<'s>) -> bool {
         let Access::Constant(name) = found.access else { return false };
         let variable = self.scope.get(name.text).filter(|it| it.section == Section::InOut);
         variable.is_some_and(|it| it.place.root == found.place.root && !self.decl.program.is_open(it.place.ty))

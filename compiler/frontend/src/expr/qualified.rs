@@ -190,8 +190,13 @@ impl<'s> crate::types::declarations::Declarations<'s> {
         around: &[ast::Name<'s>],
         name: ast::Name<'s>,
     ) -> Option<Diagnostic> {
-        let (owner, between) = around.split_first()?;
         let site = self.site(name.span);
+        let (mut owner, mut between) = around.split_first()?;
+        if let [inner, rest @ ..] = between
+            && library::leads_to(site.dialect, owner.text, inner.text)
+        {
+            (owner, between) = (inner, rest);
+        }
         let is_list = matches!(between, [it] if it.text.eq_ignore_ascii_case(prelude::LIST));
         if !between.is_empty() && !is_list {
             return None;
@@ -199,25 +204,24 @@ impl<'s> crate::types::declarations::Declarations<'s> {
         if !self.names.is_library(site, owner.text) {
             return None;
         }
+        let place = around.first()?.span.to(name.span);
         let (library, text) = (owner.text, name.text);
         let is_value = code == Code::E0101;
         let unit = prelude::unit(text, site.dialect).filter(|it| it.is_value() == is_value);
         let built_in = if is_value { &[] } else { library::of_built_in(text) };
         let libraries = unit.map_or(built_in, |it| it.libraries);
-        let error = Diagnostic::new(code, owner.span.to(name.span), format!("the library `{library}` has no `{text}`"));
+        let error = Diagnostic::new(code, place, format!("the library `{library}` has no `{text}`"));
         if let Some(right) = libraries.first() {
             let meant = format!("{right}.{text}");
             return Some(
                 error
                     .label(format!("it is in `{right}`"))
                     .help(format!("write `{meant}`, or `{text}`"))
-                    .fix(owner.span.to(name.span), meant),
+                    .fix(place, meant),
             );
         }
         if unit.is_some() || !is_value && functions::exists_in(text, site.dialect) {
-            return Some(
-                error.label("it is in no library").help(format!("write `{text}`")).fix(owner.span.to(name.span), text),
-            );
+            return Some(error.label("it is in no library").help(format!("write `{text}`")).fix(place, text));
         }
         Some(
             error

@@ -246,6 +246,12 @@ impl<'s> Names<'s> {
 
     fn qualified(&self, site: Site, first: &str, between: &[ast::Name<'_>], last: &str, sense: Sense) -> Found {
         let found = match self.prefix(site, first) {
+            None if let [inner, rest @ ..] = between
+                && library::leads_to(site.dialect, first, inner.text)
+                && self.is_library(site, inner.text) =>
+            {
+                return self.qualified(site, inner.text, rest, last, sense);
+            }
             Some(Prefix::Space(space)) => return self.in_space(site, space, between, last, sense),
             Some(Prefix::Library(of)) if is_list_of_a_library(between) => {
                 self.of_library(site.dialect, &of, last, sense).filter(|_| sense == Sense::Value)

@@ -14,7 +14,7 @@ use crate::{Code, Diagnostic, Span};
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{Instance, Section, Type, Value};
 
-const LOWEST_PRIORITY: u32 = 65535;
+pub(super) const LOWEST_PRIORITY: u32 = 65535;
 
 /// Fills the program's instances: those of the configurations, or else one of each PROGRAM that no other calls.
 pub(super) fn instances<'s>(declarations: &mut Declarations<'s>, files: &'s [ast::File<'s>]) {
@@ -30,10 +30,12 @@ pub(super) fn instances<'s>(declarations: &mut Declarations<'s>, files: &'s [ast
     declarations.check_configurations(&configurations, &bindings);
     let runs: FxHashMap<_, _> =
         declarations.pous.iter().enumerate().filter_map(|(at, it)| Some((it.run?, at))).collect();
-    let mut listed = Vec::new();
+    let (mut listed, mut tasks) = (Vec::new(), Vec::new());
     for resource in configurations.iter().flat_map(|it| &it.resources) {
-        declarations.resource(resource, &runs, &mut listed);
+        let timings = declarations.resource(resource, &runs, &mut listed);
+        tasks.extend(resource.tasks.iter().map(|it| it.name.text).zip(timings));
     }
+    declarations.set_task_info(&tasks);
     declarations.report_globals_of_several(&listed);
     if declarations.log.options.tests {
         return declarations.test_instances();
@@ -83,9 +85,9 @@ fn looked_at(interval: i64) -> i64 {
 }
 
 #[derive(Clone, Copy)]
-struct Timing {
-    interval: Option<i64>,
-    priority: u32,
+pub(super) struct Timing {
+    pub interval: Option<i64>,
+    pub priority: u32,
 }
 
 impl<'s> Declarations<'s> {
@@ -360,7 +362,7 @@ impl<'s> Declarations<'s> {
         resource: &'s ast::Resource<'s>,
         runs: &FxHashMap<Span, usize>,
         listed: &mut Vec<(usize, Span)>,
-    ) {
+    ) -> Vec<Timing> {
         let tasks: Vec<_> = resource.tasks.iter().map(|task| (task.name, self.task(task))).collect();
         for instance in &resource.programs {
             let mut timing = Timing { interval: None, priority: LOWEST_PRIORITY };
@@ -374,6 +376,7 @@ impl<'s> Declarations<'s> {
             let slot = self.instance(instance, timing, runs);
             listed.extend(slot.map(|it| (it, instance.name.span)));
         }
+        tasks.into_iter().map(|it| it.1).collect()
     }
 
     fn unknown_task(&mut self, name: ast::Name<'s>, tasks: &[(ast::Name<'s>, Timing)]) {

@@ -6,6 +6,7 @@ mod instance_path;
 mod order;
 mod pins;
 mod prescan;
+mod task_info;
 pub(crate) mod tests;
 
 use crate::body::Checked;

@@ -12,7 +12,7 @@ use super::starts::Starts;
 use super::synthetic::{NamedProgram, Synthetic};
 use super::table::{Resolved, Table};
 use super::tests::Tests;
-use crate::dialect::{self, Dialect};
+use crate::dialect::{self, Dialect, missing};
 use crate::log::Log;
 use crate::names::{Entry, Found, Meaning, Names, Sense, Site, SpaceId};
 use crate::spelling::Key;
@@ -593,6 +593,12 @@ impl<'s> Declarations<'s> {
             return;
         }
         let owner = self.program.type_name(ty);
+        if missing::is_member(self.dialect(name.span), &owner, name.text) {
+            return self.report(
+                Diagnostic::new(Code::E0902, name.span, format!("`{}` of {owner} is not supported yet", name.text))
+                    .label("a program is told nothing of the machine that runs it"),
+            );
+        }
         if let Some((slot, declared)) = self.routines_on(ty, name.text).and_then(|it| it.called) {
             let kind = crate::diagnostic::wording::article(self.pous[slot].ast.kind.word());
             return self.report(

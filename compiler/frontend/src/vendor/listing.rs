@@ -76,6 +76,20 @@ pub fn references(text: &str) -> Vec<Reference> {
     found
 }
 
+/// What a PLC project is called in its first `Name`.
+pub fn project_name(text: &str) -> Option<String> {
+    let (mut reader, mut is_it) = (Reader::new(text)?, false);
+    while let Ok(Some(part)) = reader.part() {
+        match part {
+            Part::Open(element) => is_it = element.name == "Name",
+            Part::Text(chunk) if is_it => return Some(text[chunk.place].trim().to_owned()),
+            Part::Text(_) => {}
+            Part::Close => is_it = false,
+        }
+    }
+    None
+}
+
 /// The names in a PLC project's `CompilerDefines`, each with its value after `=` where it has one: `Line=3`.
 pub fn definitions(text: &str) -> Vec<String> {
     let Some(mut reader) = Reader::new(text) else { return Vec::new() };

@@ -57,6 +57,35 @@ pins!([] Clock {
     Memory {}
 });
 
+/// What a program's scan knows of itself: `first` in the first one after a start, and in `cycle` the time from one to the
+/// next; 0 where the host does not say it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ScanInfo {
+    pub first: bool,
+    pub cycle: Time,
+}
+
+impl ScanInfo {
+    /// One call: reads both.
+    #[inline]
+    pub fn call(&mut self, cx: &Context) {
+        self.step(cx);
+    }
+
+    /// As [`call`](Self::call): there are no inputs.
+    #[inline]
+    pub fn step(&mut self, cx: &Context) {
+        (self.first, self.cycle) = (cx.first_scan, cx.cycle);
+    }
+}
+
+pins!([] ScanInfo {
+    Input {}
+    Output { first: BOOL = "FIRST", cycle: TIME = "CYCLE" }
+    Memory {}
+});
+
 /// When a TASK with SINGLE and INTERVAL is due (IEC 61131-3, 6.8.2): `q` in each call in which `single` rises, and
 /// while it is FALSE in the first call from each multiple of `interval` on. What falls due while it is TRUE is left out.
 #[repr(C)]

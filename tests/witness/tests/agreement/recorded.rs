@@ -89,7 +89,7 @@ impl Machine for Recorder<'_> {
     }
 
     fn scan(&mut self, instance: usize, cx: &Context) -> Result<(), Fault> {
-        let told = if self.prescan { cx.clone() } else { Context::new(cx.now(), false) };
+        let told = if self.prescan { cx.clone() } else { Context::new(cx.now(), false).with_cycle(cx.cycle) };
         self.interpreter.set_budget(Some(STEPS));
         let end = self.interpreter.scan(instance, &told).map_err(|stop| match stop {
             Stop::Fault(fault) => fault,
