@@ -11,8 +11,8 @@ const DECIDING_PRAGMAS: [&str; 6] = ["if", "elsif", "else", "end_if", "define", 
 const CONDITIONS: [&str; 6] =
     ["hasattribute", "hasconstanttype", "hasconstantvalue", "hasvalue", "hastype", "project_defined"];
 /// Pragmas for editors and other tools.
-const HARMLESS_PRAGMAS: [&str; 11] =
-    ["region", "endregion", "end_region", "info", "text", "flag", "analysis", "nobp", "bp", "flow", "noflow"];
+const HARMLESS_PRAGMAS: [&str; 12] =
+    ["analysis", "axcode", "bp", "end_region", "endregion", "flag", "flow", "info", "nobp", "noflow", "region", "text"];
 
 /// The attributes that Staunch acts on, and those of CODESYS's and TwinCAT's editors, monitoring and downloads, which
 /// change nothing here.
