@@ -346,7 +346,10 @@ fn said_once(diagnostics: Vec<Diagnostic>, sources: &Sources) -> Vec<Diagnostic>
             it.message.ends_with(" is not declared") && after.is_some_and(|it| it.starts_with('.'))
         };
         let is_missing = match it.code {
-            Code::E0102 | Code::E0307 => it.message.starts_with("there is no "),
+            Code::E0102 | Code::E0307 => {
+                let of_library = it.message.starts_with("the library `") && it.fix.is_none();
+                of_library || it.message.starts_with("there is no ")
+            }
             Code::E0101 => is_owner(),
             Code::E0902 => NAMED_ONCE.iter().any(|name| it.message.contains(name)),
             _ => false,

@@ -49,6 +49,8 @@ pub(crate) struct Checker<'d, 's> {
     pub late: Option<LateTarget<'s>>,
     /// What is executed of the body is counted.
     pub is_covered: bool,
+    /// The structure whose members' declarations are followed: THIS means it there.
+    pub this_structure: Option<Place>,
     /// What an assertion of a suite compares: the globals that keep it if the assertion fails.
     pub compared: Vec<(Place, Expr)>,
 }
@@ -94,6 +96,7 @@ impl<'d, 's> Checker<'d, 's> {
             may_not_run: false,
             late: None,
             is_covered: false,
+            this_structure: None,
             compared: Vec::new(),
         }
     }

@@ -59,7 +59,9 @@ impl<'s> Checker<'_, 's> {
             Ast::Member(base, name) if is_super(base) => {
                 self.slot.map_or_else(Vec::new, |it| self.decl.super_slots(it, *name))
             }
-            Ast::Member(base, name) if is_this_instance(base) => self.own_methods(*name),
+            Ast::Member(base, name) if is_this_instance(base) && self.this_structure.is_none() => {
+                self.own_methods(*name)
+            }
             Ast::Member(base, name) => {
                 self.static_type(base).map_or_else(Vec::new, |it| self.decl.methods_on(it, name.text))
             }
@@ -331,7 +333,8 @@ impl<'s> Checker<'_, 's> {
 
     /// The instance whose routine this is.
     pub(crate) fn this(&self) -> Option<Found<'s>> {
-        let place = Place::root(Root::Instance, Type::Struct(self.signature.as_ref()?.state?));
+        let instance = || Some(Place::root(Root::Instance, Type::Struct(self.signature.as_ref()?.state?)));
+        let place = self.this_structure.clone().or_else(instance)?;
         Some(Found { place, view: None, access: Access::Write })
     }
 
@@ -467,7 +470,7 @@ impl<'s> Checker<'_, 's> {
             return Some(ty);
         }
         // An inherited routine means its own class's, where an heir has another of the name.
-        if is_this_instance(owner) {
+        if is_this_instance(owner) && self.this_structure.is_none() {
             let scope = self.scope.outer.as_ref().unwrap_or(&self.scope);
             return scope.get(name.text).map(|it| it.place.ty);
         }
@@ -486,7 +489,7 @@ impl<'s> Checker<'_, 's> {
         if self.scope.get(name.text).is_some() {
             return None;
         }
-        let this = self.this().filter(|_| self.is_function_block());
+        let this = self.this().filter(|_| self.this_structure.is_some() || self.is_function_block());
         if this.is_none() {
             let error =
                 Diagnostic::new(Code::E0101, name.span, "THIS is the instance of a FUNCTION_BLOCK, which this is not")

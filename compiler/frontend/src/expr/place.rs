@@ -334,8 +334,13 @@ impl<'s> Checker<'_, 's> {
             return self.member_of_this(name);
         }
         if let Some(this) = self.this_of(base) {
-            this?;
-            return self.member_of_this(name);
+            return match (self.this_structure.is_some(), this?) {
+                (true, structure) => {
+                    let Type::Struct(id) = structure.place.ty else { return None };
+                    self.struct_member(structure, id, name)
+                }
+                (false, _) => self.member_of_this(name),
+            };
         }
         let found = self.place_or_view(base)?;
         if self.is_unknown_head(base, name) {

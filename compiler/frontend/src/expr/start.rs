@@ -407,8 +407,9 @@ impl<'s> Checker<'_, 's> {
     /// What the members' declarations say is in the words of the TYPE, which sees nothing of the POU around.
     fn start_structure(&mut self, place: Place, id: StructId, given: &Given<'_, 's>) {
         let own = std::mem::take(&mut self.scope);
+        let outer = self.this_structure.replace(place.clone());
         self.start_members_of(place, id, given);
-        self.scope = own;
+        (self.scope, self.this_structure) = (own, outer);
     }
 
     fn start_members_of(&mut self, place: Place, id: StructId, given: &Given<'_, 's>) {
