@@ -157,6 +157,11 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
+    /// AND, OR, XOR and NOT of integers are of their bits: there are no bit strings.
+    pub const fn has_bits_of_integers(self) -> bool {
+        matches!(self, Self::Logix)
+    }
+
     /// A DATE and a TIME are the day on which that time after midnight is.
     pub const fn adds_times_to_days(self) -> bool {
         matches!(self, Self::Codesys)

@@ -205,10 +205,7 @@ impl<'s> Checker<'_, 's> {
             (UnaryOp::Plus, operand) => Some(operand),
             (UnaryOp::Neg, operand) if operand.typed().is_some() => self.negate(operand, span),
             (UnaryOp::Neg, number) => Some(number.negated()),
-            (UnaryOp::Not, operand) => {
-                let value = self.materialise(operand.cut(), expected, inner.span)?;
-                self.not(value, inner.span).map(Operand::Typed)
-            }
+            (UnaryOp::Not, operand) => self.complement(operand, expected, inner.span),
         }
     }
 
@@ -238,27 +235,5 @@ impl<'s> Checker<'_, 's> {
             _ => return value,
         };
         self.convert(Conversion::Value, signed, value)
-    }
-
-    pub(crate) fn not(&mut self, value: Expr, span: Span) -> Option<Expr> {
-        let value = match value.ty {
-            Type::Enum(id) if self.decl.table.named_values.contains(&id) => {
-                let base = Type::Elementary(self.decl.program.enumeration(id).base);
-                self.convert(Conversion::Same, base, value)
-            }
-            _ => value,
-        };
-        let ty = value.ty;
-        let mixes = self.decl.dialect(span).mixes_bits_and_integers();
-        let bits = matches!(ty, Type::Elementary(it) if it.is_bits() || (mixes && it.is_integer()));
-        if !bits {
-            let found = self.type_name(ty);
-            self.report(
-                Diagnostic::new(Code::E0204, span, format!("NOT needs a BOOL or a bit string, this is {found}"))
-                    .label(format!("this is {found}")),
-            );
-            return None;
-        }
-        self.apply(Op::Not, ty, vec![value], ty, span)
     }
 }

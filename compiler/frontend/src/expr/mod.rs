@@ -7,6 +7,7 @@ mod argument;
 mod assignment;
 mod binding;
 mod bit_instruction;
+mod bitwise;
 mod block_call;
 mod block_copy;
 mod bound;

@@ -1,5 +1,6 @@
 //! Operands: typed expressions, and literals that take the type of their place.
 
+use super::bitwise::pattern;
 use super::checker::Checker;
 use super::promotion::stored;
 use super::real::Real;
@@ -143,6 +144,12 @@ impl<'s> Checker<'_, 's> {
         }
         if let Some(it) = self.wrapped_bits(value, ty, span) {
             return Some(it);
+        }
+        if self.decl.dialect(span).has_bits_of_integers()
+            && self.decl.log.sources.text(span).contains('#')
+            && let Some(of_bits) = pattern(value, ty)
+        {
+            return ty.repr().integer(of_bits);
         }
         let (low, high) = ty.repr().range()?;
         self.report(

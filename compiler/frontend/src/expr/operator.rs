@@ -98,7 +98,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// The one type of both sides, and the sides converted to it.
-    fn meet(&mut self, sides: Sides, allowed: fn(Elementary, bool) -> bool, wants: &str) -> Option<Meeting> {
+    pub(super) fn meet(&mut self, sides: Sides, allowed: fn(Elementary, bool) -> bool, wants: &str) -> Option<Meeting> {
         let dialect = self.decl.dialect(sides.span);
         let mixes = dialect.mixes_bits_and_integers();
         let own = match common(&sides, [sides.a.ty(), sides.b.ty()], mixes, join_in(dialect)) {
@@ -295,19 +295,6 @@ impl<'s> Checker<'_, 's> {
             },
             other => other,
         }
-    }
-
-    fn bitwise(&mut self, sides: Sides) -> Option<Operand> {
-        let op = match sides.op {
-            BinaryOp::And => Op::And,
-            BinaryOp::Or => Op::Or,
-            _ => Op::Xor,
-        };
-        let op_span = sides.op_span;
-        let allowed = |ty: Elementary, mixes: bool| ty.is_bits() || (mixes && ty.is_integer());
-        let Meeting { ty, own, a, b } = self.meet(sides, allowed, "both sides need to be BOOL, or bit strings")?;
-        let value = self.apply(op, ty, vec![a, b], ty, op_span)?;
-        Some(computed(value, own))
     }
 
     /// `**`: a REAL or LREAL base gives its own type, whatever the exponent is. A REAL to the power of what REAL does not
@@ -509,11 +496,11 @@ pub(crate) fn beside(a: &Operand, hint: Option<Type>) -> Option<Type> {
 }
 
 /// Two sides at the type that they are computed at, and the one that the result counts as.
-struct Meeting {
-    ty: Type,
-    own: Type,
-    a: Expr,
-    b: Expr,
+pub(super) struct Meeting {
+    pub ty: Type,
+    pub own: Type,
+    pub a: Expr,
+    pub b: Expr,
 }
 
 /// The type in which sides of these types meet, where `None` is a literal's.

@@ -1,0 +1,125 @@
+//! AND, OR, XOR and NOT: of BOOLs and bit strings, of integers where those are bit strings, too, and of the bits of
+//! integers where a dialect has no bit strings.
+
+use super::checker::Checker;
+use super::operand::{Operand, computed};
+use super::operator::{Meeting, Sides};
+use crate::types::coercion::is_narrow;
+use crate::{Code, Diagnostic, Span, ast};
+use ast::BinaryOp;
+use staunch_ir::{Conversion, Elementary, Expr, Op, Type};
+
+impl<'s> Checker<'_, 's> {
+    pub(super) fn bitwise(&mut self, sides: Sides) -> Option<Operand> {
+        let op = match sides.op {
+            BinaryOp::And => Op::And,
+            BinaryOp::Or => Op::Or,
+            _ => Op::Xor,
+        };
+        let op_span = sides.op_span;
+        if let Some(own) = self.own_of_integers(&sides) {
+            let ty = computed_at(own);
+            let a = self.bits_of(sides.a, ty, sides.left)?;
+            let b = self.bits_of(sides.b, ty, sides.right)?;
+            let value = self.apply(op, a.ty, vec![a, b], Type::Elementary(ty), op_span)?;
+            return Some(computed(value, Type::Elementary(own)));
+        }
+        let allowed = |ty: Elementary, mixes: bool| ty.is_bits() || (mixes && ty.is_integer());
+        let wants = match self.decl.dialect(op_span).has_bits_of_integers() {
+            true => "both sides need to be BOOL, or integers",
+            false => "both sides need to be BOOL, or bit strings",
+        };
+        let Meeting { ty, own, a, b } = self.meet(sides, allowed, wants)?;
+        let value = self.apply(op, ty, vec![a, b], ty, op_span)?;
+        Some(computed(value, own))
+    }
+
+    /// `NOT` of an operand as it is written.
+    pub(super) fn complement(&mut self, operand: Operand, expected: Option<Type>, span: Span) -> Option<Operand> {
+        match operand.ty() {
+            Some(Type::Elementary(own)) if own.is_integer() && self.decl.dialect(span).has_bits_of_integers() => {
+                let value = self.bits_of(operand, computed_at(own), span)?;
+                let ty = value.ty;
+                let value = self.apply(Op::Not, ty, vec![value], ty, span)?;
+                Some(computed(value, Type::Elementary(own)))
+            }
+            _ => {
+                let value = self.materialise(operand.cut(), expected, span)?;
+                self.not(value, span).map(Operand::Typed)
+            }
+        }
+    }
+
+    pub(crate) fn not(&mut self, value: Expr, span: Span) -> Option<Expr> {
+        let value = match value.ty {
+            Type::Enum(id) if self.decl.table.named_values.contains(&id) => {
+                let base = Type::Elementary(self.decl.program.enumeration(id).base);
+                self.convert(Conversion::Same, base, value)
+            }
+            _ => value,
+        };
+        let ty = value.ty;
+        let dialect = self.decl.dialect(span);
+        let of_integers = dialect.mixes_bits_and_integers() || dialect.has_bits_of_integers();
+        let bits = matches!(ty, Type::Elementary(it) if it.is_bits() || (of_integers && it.is_integer()));
+        if !bits {
+            let found = self.type_name(ty);
+            self.report(
+                Diagnostic::new(Code::E0204, span, format!("NOT needs a BOOL or a bit string, this is {found}"))
+                    .label(format!("this is {found}")),
+            );
+            return None;
+        }
+        self.apply(Op::Not, ty, vec![value], ty, span)
+    }
+
+    /// The type that bits of these sides count as, where both are integers of a dialect that has none but their bits: that of
+    /// more bits.
+    fn own_of_integers(&self, sides: &Sides) -> Option<Elementary> {
+        if !self.decl.dialect(sides.span).has_bits_of_integers() {
+            return None;
+        }
+        let own = |side: &Operand| match (side, side.ty()) {
+            (_, Some(Type::Elementary(it))) if it.is_integer() => Some(it),
+            (Operand::Integer(value), None) => {
+                let types = [Elementary::Sint, Elementary::Int, Elementary::Dint, Elementary::Lint];
+                types.into_iter().find(|it| pattern(*value, *it).is_some())
+            }
+            _ => None,
+        };
+        let both = [own(&sides.a)?, own(&sides.b)?];
+        both.into_iter().max_by_key(|it| (it.repr().size(), !it.repr().is_unsigned()))
+    }
+
+    /// The bits of an integer in a type of as many or more: those that it has not are 0.
+    fn bits_of(&mut self, operand: Operand, ty: Elementary, span: Span) -> Option<Expr> {
+        let to = Type::Elementary(ty);
+        if let Operand::Integer(value) = operand {
+            let value = pattern(value, ty).unwrap_or(value);
+            return self.coerce(Operand::Integer(value), to, span);
+        }
+        let value = self.materialise(operand, Some(to), span)?;
+        let Type::Elementary(from) = value.ty else { return None };
+        let unsigned = match from {
+            Elementary::Sint => Elementary::Usint,
+            Elementary::Int => Elementary::Uint,
+            Elementary::Dint => Elementary::Udint,
+            other => other,
+        };
+        let is_wider = from.repr().size() < ty.repr().size();
+        let value = if is_wider { self.convert(Conversion::Value, Type::Elementary(unsigned), value) } else { value };
+        Some(self.convert(Conversion::Value, to, value))
+    }
+}
+
+/// At how many bits those of an integer are computed: 32 at least.
+fn computed_at(own: Elementary) -> Elementary {
+    if is_narrow(own) { Elementary::Dint } else { own }
+}
+
+/// The number that a type has for the bits of a literal, `16#FFFF_FFFF` is -1; `None` where they are too many.
+pub(super) fn pattern(value: i128, ty: Elementary) -> Option<i128> {
+    let bits = ty.repr().size() * 8;
+    let wrapped = if value >> bits == 0 && ty.repr().integer(value).is_none() { value - (1 << bits) } else { value };
+    ty.repr().integer(wrapped).map(|_| wrapped)
+}
