@@ -279,6 +279,8 @@ pub(crate) const UNITS: &[Unit] = units! {
     Type     "RTC"              "rtc"              [Iec Cscape Openplc Logix Siemens];
     Type     "RTC"              "codesys_rtc"      [Codesys: Standard];
     Function "SQR"              "sqr"              [Siemens];
+    Function "DEG"              "logix_deg"        [Logix];
+    Function "RAD"              "logix_rad"        [Logix];
     Function "SPLIT_DATE"       "split_date";
     Function "SPLIT_TOD"        "split_tod";
     Function "SPLIT_LTOD"       "split_ltod";
