@@ -569,7 +569,14 @@ impl<'s> Checker<'_, 's> {
             (_, _, BinaryOp::Eq | BinaryOp::Ne | BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge) => {
                 self.compare_addresses(op, (a, left), (b, right), span)
             }
-            (true, true, BinaryOp::Sub) => self.distance(a, b, span),
+            (true, true, BinaryOp::Sub) => {
+                let distance = self.distance(a, b, span)?;
+                return Some(match self.decl.dialect(span).mixes_bits_and_integers() {
+                    // It counts as a DWORD, which a LINT holds whole.
+                    true => Operand::Promoted(distance, Elementary::Dword),
+                    false => Operand::Typed(distance),
+                });
+            }
             (true, false, BinaryOp::Add | BinaryOp::Sub) => self.advance(a, (b, right), op, span),
             (false, true, BinaryOp::Add) => self.advance(b, (a, left), op, span),
             _ => {
