@@ -75,11 +75,11 @@ fn a_program_knows_the_names_of_its_project_and_task() {
     let listed =
         "<ItemGroup><Compile Include=\"PlcTask.TcTTO\"><SubType>Code</SubType></Compile></ItemGroup></Project>";
     let named = "<PropertyGroup><Name>BottlingLine</Name></PropertyGroup><ItemGroup>";
-    folder.write("Line.plcproj", &PROJECT.replacen("<ItemGroup>", named, 1).replacen("</Project>", listed, 1));
+    folder.write("Line.plcproj", PROJECT.replacen("<ItemGroup>", named, 1).replacen("</Project>", listed, 1));
     let body = "task := _TaskInfo[1].TaskName; project := _AppInfo.ProjectName; cycle := _TaskInfo[1].CycleTime;";
     let variables = "station : FB_Station; task, project : STRING; cycle : UDINT;";
     let main = MAIN.replacen("station : FB_Station;", variables, 1);
-    folder.write("POUs/MAIN.TcPOU", &main.replacen("<ST><![CDATA[", &format!("<ST><![CDATA[{body}"), 1));
+    folder.write("POUs/MAIN.TcPOU", main.replacen("<ST><![CDATA[", &format!("<ST><![CDATA[{body}"), 1));
     let trace = folder.staunch("run Line.plcproj --scans 2 --trace - --vars task,project,cycle").out(0);
     assert_eq!(
         trace,
