@@ -27,13 +27,17 @@ pub(crate) struct Tasks {
 }
 
 impl Tasks {
-    /// Nothing, where the program does not ask.
-    pub fn of(files: &[File<'_>]) -> Option<Self> {
+    /// Nothing, where the program does not ask. Unit tests run no PROGRAM by itself.
+    pub fn of(files: &[File<'_>], tests: bool) -> Option<Self> {
         home(files)?;
         let listed: usize = resources(files).map(|it| it.tasks.len()).sum();
         let has_none = |resource: &Resource<'_>| resource.programs.iter().any(|it| task_of(resource, it).is_none());
         let lists_any = resources(files).any(|it| !it.programs.is_empty());
-        let is_one_more = if lists_any { resources(files).any(has_none) } else { true };
+        let is_one_more = match (tests, lists_any) {
+            (true, _) => listed == 0,
+            (false, true) => resources(files).any(has_none),
+            (false, false) => true,
+        };
         Some(Self { count: u64::try_from(listed + usize::from(is_one_more)).unwrap_or(u64::MAX) })
     }
 
@@ -57,7 +61,7 @@ type Listed<'a, 's> = (&'a Resource<'s>, &'a ProgramInstance<'s>);
 
 /// Gives what holds something for each task its size. Each unit test is a task of its own, the first one.
 pub(crate) fn expand(files: &mut [File<'_>], tests: bool) {
-    let (Some(home), Some(Tasks { count })) = (home(files), Tasks::of(files)) else { return };
+    let (Some(home), Some(Tasks { count })) = (home(files), Tasks::of(files, tests)) else { return };
     files[home].items.iter_mut().for_each(|it| size(it, count));
     for pou in files.iter_mut().flat_map(|it| &mut it.items).filter_map(pou_in) {
         if tests && pou.kind == PouKind::Test {

@@ -63,7 +63,7 @@ _Alignas(STAUNCH_STATE_ALIGN) static uint8_t state[STAUNCH_STATE_SIZE];
 int main(void) {
     staunch_init(state);
     for (int scan = 0; scan < 2; scan++) {
-        staunch_context cx = {scan * 10000000LL, scan == 0, STAUNCH_TURNS};
+        staunch_context cx = {scan * 10000000LL, scan == 0, STAUNCH_TURNS, 10000000LL};
         if (staunch_scan(state, &cx, STAUNCH_MAIN) != 0) {
             return 1;
         }

@@ -370,6 +370,35 @@ END_TEST
     let folder = Folder::with("task_info_of_tests", &[("main.st", TASK_INFO), ("main_test.st", &test(100_000))]);
     has(&folder.staunch("test .").out(0), &["1 passed, 0 failed"]);
     has(&folder.staunch("test . --backend rust").out(0), &["1 passed, 0 failed"]);
+    let suite = "{dialect 'codesys'} FUNCTION_BLOCK Sums EXTENDS TcUnit.FB_TestSuite
+VAR first, now, scans : UDINT; END_VAR
+now := _TaskInfo[GETCURTASKINDEXEX()].CycleCount;
+IF scans = 0 THEN first := now; END_IF
+scans := scans + 1;
+TEST('cycles');
+IF scans = 5 THEN
+    AssertEquals_UDINT(Expected := 4, Actual := now - first, Message := 'cycles');
+    AssertEquals_UDINT(Expected := 100000, Actual := _TaskInfo[1].CycleTime, Message := 'time');
+    AssertFalse(_TaskInfo[1].FirstCycle, 'first');
+    TEST_FINISHED();
+END_IF
+END_FUNCTION_BLOCK
+PROGRAM Prg
+VAR sums : Sums; END_VAR
+TcUnit.RUN();
+END_PROGRAM
+";
+    has(&Folder::with("task_info_of_a_suite", &[("main.st", suite)]).staunch("test .").out(0), &["1 passed, 0 failed"]);
+    let tasks = "CONFIGURATION c RESOURCE r ON x TASK a (INTERVAL := T#20ms, PRIORITY := 1); \
+                 TASK b (INTERVAL := T#30ms, PRIORITY := 2); PROGRAM p WITH b : Main; END_RESOURCE END_CONFIGURATION\n";
+    let of_two = "{dialect 'codesys'} TEST 'two tasks'
+ASSERT_EQ(_AppInfo.TaskCnt, 2);
+ASSERT_EQ(_TaskInfo[1].CycleTime, 100000); ASSERT_EQ(_TaskInfo[2].CycleTime, 300000);
+ASSERT_EQ(_TaskInfo[2].CycleCount, 0); ASSERT_EQ(_TaskInfo[2].TaskName, 'b');
+END_TEST
+";
+    let files = [("main.st", TASK_INFO), ("tasks.st", tasks), ("main_test.st", of_two)];
+    has(&Folder::with("task_info_of_two", &files).staunch("test .").out(0), &["1 passed, 0 failed"]);
     let project = [("staunch.toml", "cycle = \"25ms\"\n"), ("main.st", TASK_INFO), ("main_test.st", &test(250_000))];
     let folder = Folder::with("task_info_of_a_project", &project);
     has(&folder.staunch("test .").out(0), &["1 passed, 0 failed"]);

@@ -67,6 +67,27 @@ fn a_project_of_twincat_runs_as_it_lies() {
 }
 
 #[test]
+fn a_program_knows_the_names_of_its_project_and_task() {
+    let folder = project("twincat-names");
+    let task = "<TcPlcObject Version=\"1.1.0.1\"><Task Name=\"PlcTask\" Id=\"{b1}\"><CycleTime>4000</CycleTime><Priority>20</Priority>\
+                <PouCall><Name>MAIN</Name></PouCall></Task></TcPlcObject>\n";
+    folder.write("PlcTask.TcTTO", task);
+    let listed =
+        "<ItemGroup><Compile Include=\"PlcTask.TcTTO\"><SubType>Code</SubType></Compile></ItemGroup></Project>";
+    let named = "<PropertyGroup><Name>BottlingLine</Name></PropertyGroup><ItemGroup>";
+    folder.write("Line.plcproj", PROJECT.replacen("<ItemGroup>", named, 1).replacen("</Project>", listed, 1));
+    let body = "task := _TaskInfo[1].TaskName; project := _AppInfo.ProjectName; cycle := _TaskInfo[1].CycleTime;";
+    let variables = "station : FB_Station; task, project : STRING; cycle : UDINT;";
+    let main = MAIN.replacen("station : FB_Station;", variables, 1);
+    folder.write("POUs/MAIN.TcPOU", main.replacen("<ST><![CDATA[", &format!("<ST><![CDATA[{body}"), 1));
+    let trace = folder.staunch("run Line.plcproj --scans 2 --trace - --vars task,project,cycle").out(0);
+    assert_eq!(
+        trace,
+        "scan,time_ms,task,project,cycle\n1,0,PlcTask,BottlingLine,40000\n2,4,PlcTask,BottlingLine,40000\n"
+    );
+}
+
+#[test]
 fn what_a_project_defines_decides_what_is_compiled() {
     let folder = project("twincat-defines");
     let body =

@@ -106,7 +106,7 @@ pub(crate) fn runs<'a, 's>(
         };
         bindings.iter().filter_map(bound).collect::<Vec<_>>()
     };
-    let cycles = Tasks::of(files);
+    let cycles = Tasks::of(files, tests);
     if listed.is_empty() && !tests {
         let resource = ast::Resource::default();
         // What nothing connects is reported where the instances are.
@@ -158,7 +158,7 @@ pub(crate) fn runs<'a, 's>(
 
 /// Where the program asks for its tasks, the other runs note whose cycle it is in the bodies of their PROGRAMs.
 pub(crate) fn begin_cycles<'s>(files: &mut [ast::File<'s>], runs: &[Run<'s>], tests: bool) {
-    let Some(tasks) = Tasks::of(files).filter(|_| !tests) else { return };
+    let Some(tasks) = Tasks::of(files, tests).filter(|_| !tests) else { return };
     let has_run = |instance: Span| runs.iter().any(|it| it.instance == instance);
     let mut begins: FxHashMap<Key<'s>, ast::Statement<'s>> = FxHashMap::default();
     let all = listed(files);
