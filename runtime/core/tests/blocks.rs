@@ -222,3 +222,19 @@ fn a_task_is_due_once_from_each_multiple_of_its_interval_on() {
     // Time that starts anew.
     assert_eq!(due(10, &[100, 3, 9, 10]), [true, true, false, true]);
 }
+
+#[test]
+fn a_scan_tells_whether_it_is_the_first_and_how_far_the_next_one_is() {
+    let told = |cx: Context| {
+        let mut block = iec::ScanInfo::default();
+        block.call(&cx);
+        let called = (block.first, block.cycle);
+        block = iec::ScanInfo::default();
+        block.step(&cx);
+        assert_eq!(called, (block.first, block.cycle));
+        called
+    };
+    assert_eq!([told(Context::first(5)), told(Context::at(5))], [(true, 0), (false, 0)]);
+    assert_eq!([told(Context::first(5).with_cycle(7)), told(Context::at(5).with_cycle(9))], [(true, 7), (false, 9)]);
+    assert_eq!(Context::at(5).with_cycle(7).with_turns(3).cycle, 7);
+}
