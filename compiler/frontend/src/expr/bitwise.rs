@@ -2,7 +2,7 @@
 //! integers where a dialect has no bit strings.
 
 use super::checker::Checker;
-use super::operand::{Operand, computed};
+use super::operand::{Operand, computed, pattern};
 use super::operator::{Meeting, Sides};
 use crate::types::coercion::is_narrow;
 use crate::{Code, Diagnostic, Span, ast};
@@ -115,11 +115,4 @@ impl<'s> Checker<'_, 's> {
 /// At how many bits those of an integer are computed: 32 at least.
 fn computed_at(own: Elementary) -> Elementary {
     if is_narrow(own) { Elementary::Dint } else { own }
-}
-
-/// The number that a type has for the bits of a literal, `16#FFFF_FFFF` is -1; `None` where they are too many.
-pub(super) fn pattern(value: i128, ty: Elementary) -> Option<i128> {
-    let bits = ty.repr().size() * 8;
-    let wrapped = if value >> bits == 0 && ty.repr().integer(value).is_none() { value - (1 << bits) } else { value };
-    ty.repr().integer(wrapped).map(|_| wrapped)
 }

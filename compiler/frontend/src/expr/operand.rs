@@ -1,6 +1,5 @@
 //! Operands: typed expressions, and literals that take the type of their place.
 
-use super::bitwise::pattern;
 use super::checker::Checker;
 use super::promotion::stored;
 use super::real::Real;
@@ -220,4 +219,11 @@ pub(crate) fn computed(value: Expr, ty: Type) -> Operand {
         Type::Elementary(ty) if value.ty != Type::Elementary(ty) && is_narrow(ty) => Operand::Promoted(value, ty),
         _ => Operand::Typed(value),
     }
+}
+
+/// The number that a type has for the bits of a literal, `16#FFFF_FFFF` is -1; `None` where they are too many.
+pub(crate) fn pattern(value: i128, ty: Elementary) -> Option<i128> {
+    let bits = ty.repr().size() * 8;
+    let wrapped = if value >> bits == 0 && ty.repr().integer(value).is_none() { value - (1 << bits) } else { value };
+    ty.repr().integer(wrapped).map(|_| wrapped)
 }
